@@ -1,0 +1,43 @@
+"""What can be wrong with a mesh, or with an operation on it. Every error names the elements."""
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+_SHOWN = 6
+
+
+class _ElementsError(ValueError):
+    """A ValueError that carries the offending elements and lists the first few in its message.
+
+    `elements` maps a kind ("vertices", "edges", "faces", "rows" …) to an array: (k,) indices, or
+    (k, 2) pairs of vertices for edges. Kinds without elements are left out.
+    """
+
+    elements: dict[str, NDArray[np.int64]]
+
+    def __init__(self, message: str, **elements: ArrayLike) -> None:
+        arrays = {kind: np.asarray(found, dtype=np.int64) for kind, found in elements.items()}
+        self.elements = {kind: found for kind, found in arrays.items() if len(found)}
+        listed = [f"{kind}: {_listed(found)}" for kind, found in self.elements.items()]
+        super().__init__(f"{message} ({'; '.join(listed)})" if listed else message)
+
+
+def _listed(found: NDArray[np.int64]) -> str:
+    shown = ", ".join(_one(element) for element in found[:_SHOWN].tolist())
+    return f"{shown} and {len(found) - _SHOWN:,} more" if len(found) > _SHOWN else shown
+
+
+def _one(element: int | list[int]) -> str:
+    return "-".join(map(str, element)) if isinstance(element, list) else str(element)
+
+
+class MeshError(_ElementsError):
+    """The input is no mesh that can be worked with."""
+
+
+class NonManifoldError(MeshError):
+    """The mesh is sound as a list of triangles, but some edge or vertex is not a surface's."""
+
+
+class TopologyError(_ElementsError):
+    """The operation would break the surface; the mesh is untouched."""
