@@ -1,0 +1,290 @@
+"""From one compiled kernel, four uses.
+
+A kernel answers one query for one element: ``vertex_faces(m, v, out) -> count`` reads the records
+``m``, writes the neighbors of ``v`` to ``out`` and tells how many there are. ``Uses`` derives
+
+1. ``single``: one handle, called from Python;
+2. ``batch``: many handles into offsets and values, in one compiled loop;
+3. ``sweep``: the same loop with nothing kept, for timing;
+4. ``work``: the same source, uncompiled, over arrays that count their reads.
+
+The derived functions are cached on disk. Numba decides by the file of the function itself whether
+its cache is stale, so their names carry a digest of the kernel's own file: an edited kernel never
+meets old machine code. Kernels may therefore call only what stands in their file or in this one.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import inspect
+from collections.abc import Callable
+from functools import cache, cached_property
+from pathlib import Path
+from types import CellType, FunctionType
+from typing import Any
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from hem.ragged import Ragged
+
+Array = NDArray[Any]
+Kernel = Callable[..., Any]
+
+# What the templates below call; bound anew for every query of every structure.
+_KERNEL: Kernel = len
+_RECORDS: Callable[..., Any] = tuple
+
+
+def _single(handle: int, out: Array, *arrays: Array) -> int:
+    count: int = _KERNEL(_RECORDS(*arrays), handle, out)
+    return count
+
+
+def _batch(handles: Array, values: Array, width: int, *arrays: Array) -> tuple[Array, Array]:
+    m = _RECORDS(*arrays)
+    offsets = np.empty(len(handles) + 1, np.int64)
+    end = 0
+    for i in range(len(handles)):
+        offsets[i] = end
+        if end + width > len(values):
+            grown = np.empty(2 * len(values) + width, values.dtype)
+            grown[:end] = values[:end]
+            values = grown
+        end += _KERNEL(m, handles[i], values[end:])
+    offsets[-1] = end
+    return offsets, values[:end]
+
+
+def _sweep(handles: Array, out: Array, *arrays: Array) -> int:
+    m = _RECORDS(*arrays)
+    checksum = 0
+    for i in range(len(handles)):
+        count = _KERNEL(m, handles[i], out)
+        checksum += count
+        if count > 0:
+            checksum ^= out[count - 1]
+    return checksum
+
+
+def _find_edge(a: int, b: int, out: Array, vertices: Array, *arrays: Array) -> int:
+    m = _RECORDS(*arrays)
+    for i in range(_KERNEL(m, a, out)):
+        _EDGE_VERTICES(m, out[i], vertices)
+        if vertices[0] == b or vertices[1] == b:
+            found: int = out[i]
+            return found
+    return -1
+
+
+_EDGE_VERTICES: Kernel = len
+
+
+class Uses:
+    """The uses of one query kernel on one kind of records (a ``NamedTuple`` of arrays)."""
+
+    def __init__(self, kernel: Kernel, records: type[Any]) -> None:
+        self._kernel, self._records = kernel, records
+
+    @cached_property
+    def single(self) -> Callable[..., int]:
+        """``single(handle, out, *records) -> count``.
+
+        The arrays come one by one, as Numba dispatches them three times faster than a NamedTuple.
+        """
+        return self._compiled(_single)
+
+    @cached_property
+    def batch(self) -> Callable[..., tuple[Array, Array]]:
+        """``batch(handles, values, width, *records) -> (offsets, values)``.
+
+        ``values`` is room to begin with and grows as needed; ``width`` is the most neighbors that
+        one element can have. The values returned are a view that is just as long as the answer.
+        """
+        return self._compiled(_batch)
+
+    @cached_property
+    def sweep(self) -> Callable[..., int]:
+        """``sweep(handles, out, *records) -> checksum``; every answer overwrites the last."""
+        return self._compiled(_sweep)
+
+    def find_edge(self, edge_vertices: Kernel) -> Callable[..., int]:
+        """``find_edge(a, b, out, vertices, *records) -> edge or -1``, from ``vertex_edges``."""
+        return self._compiled(_find_edge, _EDGE_VERTICES=edge_vertices)
+
+    def work(self, handles: Array, out: Array, records: tuple[Array, ...]) -> NDArray[np.int64]:
+        """(n,) int64: how many array elements the kernel reads for each handle, exactly."""
+        counters = [CountingArray(array) for array in records]
+        kernel, m = interpreted(self._kernel), self._records(*counters)
+        totals = [0]
+        for handle in handles.tolist():
+            kernel(m, handle, out)
+            totals.append(sum(counter.reads for counter in counters))
+        return np.diff(totals)
+
+    @cached_property
+    def _digest(self) -> str:
+        """Of the structure's file, and of this one, whose helpers its kernels call."""
+        files = inspect.getfile(self._records), __file__
+        sources = b"".join(Path(file).read_bytes() for file in files)
+        return hashlib.blake2b(sources, digest_size=6).hexdigest()
+
+    def _compiled(self, template: Kernel, **scope: Kernel) -> Callable[..., Any]:
+        """``template`` with its free names bound to this kernel, compiled and cached on disk."""
+        scope = {"_KERNEL": self._kernel, "_RECORDS": self._records, **scope}
+        function = FunctionType(template.__code__, {**template.__globals__, **scope})
+        kernel, owner, digest = _source(self._kernel), self._records.__name__, self._digest
+        function.__qualname__ = f"{template.__name__}_{owner}_{kernel.__name__}_{digest}"
+        compiled: Callable[..., Any] = njit(cache=True, nogil=True)(function)
+        return compiled
+
+
+class CountingArray:
+    """An array that counts how many of its elements are read. Elements come as Python numbers."""
+
+    def __init__(self, array: Array) -> None:
+        self._array = array
+        self.reads = 0
+
+    def __getitem__(self, key: Any) -> Any:
+        value = self._array[key]
+        self.reads += int(np.size(value))
+        return value.item() if np.ndim(value) == 0 else value
+
+    def __len__(self) -> int:
+        return len(self._array)
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """As the array's own; looking at it reads no element."""
+        return self._array.shape
+
+
+@cache
+def interpreted(function: Kernel) -> Kernel:
+    """The Python source of a compiled function, its compiled callees replaced by theirs as well."""
+    source = _source(function)
+    scope = source.__globals__
+    called = {name: scope[name] for name in source.__code__.co_names if name in scope}
+    closure = tuple(CellType(_uncompiled(cell.cell_contents)) for cell in source.__closure__ or ())
+    return FunctionType(
+        source.__code__,
+        {**scope, **{name: _uncompiled(value) for name, value in called.items()}},
+        source.__name__,
+        source.__defaults__,
+        closure,
+    )
+
+
+def _uncompiled(value: Any) -> Any:
+    return interpreted(value) if hasattr(value, "py_func") else value
+
+
+def _source(function: Any) -> Any:
+    return getattr(function, "py_func", function)
+
+
+def named(*kernels: Kernel) -> dict[str, Kernel]:
+    """The kernels of a structure by query."""
+    return {kernel.__name__: kernel for kernel in kernels}
+
+
+# What kernels of several structures share ---------------------------------------------------------
+
+
+def circulator(clockwise: Kernel, counterclockwise: Kernel) -> Kernel:
+    """Make ``around(m, start, v, out) -> (count, closed)`` of two steps ``step(m, item, v)``.
+
+    A step goes from one item at vertex ``v`` (a half-edge, an edge, a triangle) to the next, or to
+    a negative number at the border. The items come counterclockwise. A fan open at the border is
+    circulated from both sides of ``start``. Cost O(valence).
+    """
+
+    def around(m: Any, start: int, v: int, out: Array) -> tuple[int, bool]:
+        count, item = 0, start
+        while item >= 0:
+            out[count] = item
+            count += 1
+            item = clockwise(m, item, v)
+            if item == start:
+                reverse(out, count)
+                return count, True
+        reverse(out, count)
+        item = counterclockwise(m, start, v) if count else -1
+        while item >= 0:
+            out[count] = item
+            count += 1
+            item = counterclockwise(m, item, v)
+        return count, False
+
+    compiled: Kernel = njit(around)
+    return compiled
+
+
+def edges_at_both_ends(edge_vertices: Kernel, vertex_edges: Kernel) -> Kernel:
+    """Make the kernel ``edge_edges``: the edges at either end, without the edge itself."""
+
+    def edge_edges(m: Any, e: int, out: Array) -> int:
+        edge_vertices(m, e, out)
+        a, b = out[0], out[1]
+        count = without(out, vertex_edges(m, a, out), e)
+        return count + without(out[count:], vertex_edges(m, b, out[count:]), e)
+
+    compiled: Kernel = njit(edge_edges)
+    return compiled
+
+
+@njit
+def reverse(out: Array, count: int) -> None:
+    """Turn the first ``count`` elements round, in place."""
+    for i in range(count // 2):
+        out[i], out[count - 1 - i] = out[count - 1 - i], out[i]
+
+
+@njit
+def without(out: Array, count: int, value: int) -> int:
+    """Take ``value`` out of the first ``count`` elements, in place -> how many are left."""
+    left = 0
+    for i in range(count):
+        if out[i] != value:
+            out[left] = out[i]
+            left += 1
+    return left
+
+
+@njit
+def append_new(out: Array, count: int, value: int) -> int:
+    """Append ``value`` unless it is among the first ``count`` already -> the new count."""
+    for i in range(count):
+        if out[i] == value:
+            return count
+    out[count] = value
+    return count + 1
+
+
+@njit
+def distinct(out: Array, count: int) -> int:
+    """Sort the first ``count`` elements and keep each once, in place -> how many are left."""
+    out[:count].sort()
+    kept = min(count, 1)
+    for i in range(1, count):
+        if out[i] != out[kept - 1]:
+            out[kept] = out[i]
+            kept += 1
+    return kept
+
+
+@njit
+def pack(a: int, b: int) -> int:
+    """The handle of edge (a, b) where no edges are recorded: both vertices in one int64."""
+    packed: int = (np.int64(min(a, b)) << 32) | np.int64(max(a, b))
+    return packed
+
+
+@njit
+def edge_vertices(m: Any, e: int, out: Array) -> int:
+    """The kernel where no edges are recorded: unpacked from the handle, nothing is read."""
+    out[0] = e >> 32
+    out[1] = e & 0xFFFFFFFF
+    return 2

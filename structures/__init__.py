@@ -1,0 +1,33 @@
+"""The data structures, one file each, behind one contract."""
+
+from __future__ import annotations
+
+from hem.mesh import TriangleMesh
+from hem.structure import REFERENCE_TYPES, Structure
+from structures.half_edge import HalfEdge
+from structures.indexed import Indexed
+from structures.triangle_neighbor import TriangleNeighbor
+from structures.winged_edge import WingedEdge
+
+REGISTRY: dict[str, type[Structure]] = {
+    structure.name: structure for structure in (Indexed, TriangleNeighbor, WingedEdge, HalfEdge)
+}
+"""Every structure by name, in the order of the thesis' table 1. A new one is one entry here."""
+
+NAMES = tuple(REGISTRY)
+
+__all__ = ["NAMES", "REGISTRY", "Structure", "build"]
+
+
+def build(name: str, mesh: TriangleMesh, reference_bytes: int = 4) -> Structure:
+    """The structure called ``name``, holding ``mesh``.
+
+    ``reference_bytes``: 4, or 8 as the thesis counts. Cost O(n_v + n_t). Raises NonManifoldError,
+    with the elements, for what the structure cannot represent; KeyError or ValueError for a name
+    or a reference size that does not exist.
+    """
+    if name not in REGISTRY:
+        raise KeyError(f"no structure is called {name!r}; there are {', '.join(NAMES)}")
+    if reference_bytes not in REFERENCE_TYPES:
+        raise ValueError(f"references take 4 or 8 bytes, not {reference_bytes!r}")
+    return REGISTRY[name].build(mesh, reference_bytes)
