@@ -27,8 +27,6 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from hem.ragged import Ragged
-
 Array = NDArray[Any]
 Kernel = Callable[..., Any]
 

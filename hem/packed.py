@@ -13,8 +13,8 @@ class PackedEdges(Structure):
     """A structure whose edge handle is the edge's two vertices packed into one int64.
 
     The smaller vertex stands in the upper 32 bits. Table 1 prints N/A for the queries from an edge;
-    here they are answered by searching for the two vertices. ``edge_vertices`` only unpacks the handle
-    and does not look whether the two are joined.
+    here they are answered by searching for the two vertices. ``edge_vertices`` only unpacks the
+    handle and does not look whether the two are joined.
     """
 
     emulated = frozenset({"edge_vertices", "edge_edges", "edge_faces"})

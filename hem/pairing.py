@@ -41,8 +41,9 @@ def pair_half_edges(mesh: TriangleMesh) -> Pairing:
     """Pair the half-edges of a manifold mesh, with or without borders.
 
     Cost O(n_v + n_t), and O(k log k) at a vertex of valence k; while it runs it takes 24 bytes per
-    triangle, and 8 to 64 per vertex, beside its result. Raises NonManifoldError with the elements for an edge in
-    more than two faces, faces that run the same way along an edge, and fans that meet in a vertex.
+    triangle and 12 to 68 per vertex beside its result. Raises NonManifoldError with the elements
+    for an edge in more than two faces, faces that run the same way along an edge, and fans that
+    meet in a vertex.
     """
     triangles, n_vertices = mesh.triangles, len(mesh.points)
     n_half_edges = 3 * len(triangles)

@@ -1,4 +1,6 @@
-"""Winged-edge mesh (WEM; thesis 2.4.2): an edge knows its two ends, its two faces and four wings::
+"""Winged-edge mesh (WEM; thesis 2.4.2): an edge knows its ends, its faces and four wings.
+
+::
 
               head
          ╲     ▲     ╱
