@@ -226,7 +226,10 @@ def edges_at_both_ends(edge_vertices: Kernel, vertex_edges: Kernel) -> Kernel:
     def edge_edges(m: Any, e: int, out: Array) -> int:
         edge_vertices(m, e, out)
         a, b = out[0], out[1]
-        count = without(out, vertex_edges(m, a, out), e)
+        around = vertex_edges(m, a, out)
+        count = without(out, around, e)
+        if count == around:  # the handle names two vertices that are not joined
+            return 0
         return count + without(out[count:], vertex_edges(m, b, out[count:]), e)
 
     compiled: Kernel = njit(edge_edges)

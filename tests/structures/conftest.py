@@ -1,0 +1,57 @@
+"""Small meshes of every kind that a structure must hold."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import hem
+import structures
+
+NEEDS_MANIFOLD = tuple(name for name in structures.NAMES if name != "indexed")
+
+
+def octahedron() -> hem.TriangleMesh:
+    points = np.vstack([np.eye(3), -np.eye(3)])
+    faces = [(0, 1, 2), (1, 3, 2), (3, 4, 2), (4, 0, 2), (1, 0, 5), (3, 1, 5), (4, 3, 5), (0, 4, 5)]
+    return hem.TriangleMesh(points, faces)
+
+
+def strip(n: int) -> hem.TriangleMesh:
+    """``n`` triangles in a row: every vertex lies on the border."""
+    points = np.array([(i / 2, i % 2, 0) for i in range(n + 2)])
+    faces = [(i, i + 1, i + 2) if i % 2 else (i + 1, i, i + 2) for i in range(n)]
+    return hem.TriangleMesh(points, faces)
+
+
+def shuffled(mesh: hem.TriangleMesh, seed: int = 0) -> hem.TriangleMesh:
+    """The same surface with vertices and faces renumbered and corners turned."""
+    rng = np.random.default_rng(seed)
+    order = rng.permutation(len(mesh.points))
+    points = np.empty_like(mesh.points)
+    points[order] = mesh.points
+    faces = [np.roll(order[face], rng.integers(3)) for face in mesh.triangles]
+    return hem.TriangleMesh(points, rng.permutation(np.array(faces)))
+
+
+MESHES = {
+    "empty": lambda: hem.TriangleMesh(np.zeros((0, 3)), np.zeros((0, 3), int)),
+    "one triangle": lambda: hem.TriangleMesh(np.eye(3), [(0, 1, 2)]),
+    "pillow": lambda: hem.TriangleMesh(np.eye(3), [(0, 1, 2), (0, 2, 1)]),
+    "unreferenced vertices": lambda: hem.TriangleMesh(np.ones((6, 3)), [(1, 3, 4)]),
+    "octahedron": octahedron,
+    "strip": lambda: strip(7),
+    "shuffled torus": lambda: shuffled(hem.generate("torus", 100)),
+    "shuffled grid": lambda: shuffled(hem.generate("grid", 49)),
+    "cone": lambda: shuffled(hem.generate("cone", 100)),
+}
+
+
+@pytest.fixture(params=MESHES)
+def mesh(request: pytest.FixtureRequest) -> hem.TriangleMesh:
+    return MESHES[request.param]()
+
+
+@pytest.fixture(params=structures.NAMES)
+def name(request: pytest.FixtureRequest) -> str:
+    return request.param

@@ -1,0 +1,107 @@
+"""Building: what is kept, what it weighs, what is refused."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import hem
+import structures
+from tests.structures.conftest import NEEDS_MANIFOLD, shuffled
+
+NON_MANIFOLD = {
+    "edge in three faces": ([(0, 1, 2), (1, 0, 3), (0, 1, 4)], "edges", [[0, 1]]),
+    "faces that run the same way": ([(0, 1, 2), (0, 1, 3)], "edges", [[0, 1]]),
+    "two fans in a vertex": ([(0, 1, 2), (0, 3, 4)], "vertices", [0]),
+    "edge in four faces": ([(0, 1, 2), (1, 0, 3), (0, 1, 4), (1, 0, 5)], "edges", [[0, 1]]),
+}
+
+
+def turned(triangles: np.ndarray) -> list[tuple[int, ...]]:
+    """Each triangle from its smallest corner on, in the order of the faces."""
+    return [tuple(np.roll(t, -int(np.argmin(t))).tolist()) for t in triangles]
+
+
+def test_a_mesh_comes_back_as_it_was_face_by_face(name, mesh):
+    back = structures.build(name, mesh).to_triangles()
+    assert np.array_equal(back.points, mesh.points)
+    assert turned(back.triangles) == turned(mesh.triangles)
+
+
+def test_a_structure_does_not_share_its_arrays_with_the_mesh(name):
+    mesh = hem.generate("torus", 100)
+    before = mesh.points.copy()
+    structures.build(name, mesh).points[0] = 7
+    assert np.array_equal(mesh.points, before)
+
+
+@pytest.mark.parametrize("name", NEEDS_MANIFOLD)
+@pytest.mark.parametrize("case", NON_MANIFOLD)
+def test_what_is_not_manifold_is_refused_with_its_elements(name, case):
+    triangles, kind, elements = NON_MANIFOLD[case]
+    mesh = hem.TriangleMesh(np.random.default_rng(0).random((6, 3)), triangles)
+    with pytest.raises(hem.NonManifoldError) as refusal:
+        structures.build(name, mesh)
+    assert refusal.value.elements[kind].tolist() == elements
+
+
+@pytest.mark.parametrize("case", NON_MANIFOLD)
+def test_the_indexed_mesh_holds_what_is_not_manifold(case):
+    mesh = hem.TriangleMesh(np.random.default_rng(0).random((6, 3)), NON_MANIFOLD[case][0])
+    s = structures.build("indexed", mesh)
+    s.validate()
+    assert s.n_faces == len(mesh.triangles)
+
+
+@pytest.mark.parametrize("name", NEEDS_MANIFOLD)
+def test_a_fault_is_found_wherever_it_lies(name):
+    """Random pairs of far vertices of a torus merged: two closed fans in one vertex each time."""
+    mesh, rng = hem.generate("torus", 400), np.random.default_rng(1)
+    for _ in range(20):
+        a, b = rng.choice(400, 2, replace=False)
+        triangles = np.where(mesh.triangles == b, a, mesh.triangles)
+        if len({*triangles[(triangles == a).any(axis=1)].ravel()}) < 13:
+            continue
+        with pytest.raises(hem.NonManifoldError) as refusal:
+            structures.build(name, hem.TriangleMesh(mesh.points, triangles))
+        assert a in refusal.value.elements["vertices"]
+
+
+@pytest.mark.parametrize("name", NEEDS_MANIFOLD)
+def test_a_face_too_many_is_found_at_a_vertex_of_large_valence(name):
+    mesh = hem.generate("cone", 3000)
+    again = np.vstack([mesh.triangles, mesh.triangles[[1500]]])
+    with pytest.raises(hem.NonManifoldError):
+        structures.build(name, hem.TriangleMesh(mesh.points, again))
+
+
+@pytest.mark.parametrize("reference_bytes", [4, 8])
+def test_a_renumbered_mesh_is_the_same_surface(name, reference_bytes):
+    mesh = shuffled(hem.generate("torus", 900), seed=3)
+    s = structures.build(name, mesh, reference_bytes)
+    s.validate()
+    assert (s.n_vertices, s.n_edges, s.n_faces) == (900, 2700, 1800)
+
+
+def test_slices_side_by_side_build_what_one_slice_builds(name, monkeypatch):
+    mesh = shuffled(hem.generate("torus", 400))
+    alone = structures.build(name, mesh).records
+    monkeypatch.setattr("hem.slices.slice_count", lambda n: 3)
+    monkeypatch.setattr("hem.pairing.slice_count", lambda n: 3)
+    for one, many in zip(alone, structures.build(name, mesh).records, strict=True):
+        assert np.array_equal(one, many)
+
+
+def test_every_byte_of_the_arrays_is_a_field_of_the_thesis(name):
+    for reference_bytes in (4, 8):
+        s = structures.build(name, hem.generate("torus", 400), reference_bytes)
+        assert sum(s.memory().values()) == sum(array.nbytes for array in s.records)
+
+
+@pytest.mark.parametrize(
+    ("structure", "size", "error"),
+    [("half-edge", 4, KeyError), ("half_edge", 2, ValueError), ("half_edge", None, ValueError)],
+)
+def test_a_name_or_size_that_does_not_exist_is_refused(structure, size, error):
+    with pytest.raises(error, match=r"half_edge|4 or 8"):
+        structures.build(structure, hem.generate("torus", 100), reference_bytes=size)

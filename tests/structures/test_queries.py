@@ -1,0 +1,154 @@
+"""The nine queries, against sets worked out from the triangle list alone."""
+
+from __future__ import annotations
+
+from itertools import combinations
+
+import numpy as np
+import pytest
+
+import hem
+import structures
+from hem.queries import QUERIES
+
+ORDERED = tuple(name for name in structures.NAMES if name != "indexed")
+
+
+class Relations:
+    """Every adjacency of a mesh as sets; an edge is the set of its two vertices."""
+
+    def __init__(self, mesh: hem.TriangleMesh) -> None:
+        faces = [tuple(face) for face in mesh.triangles.tolist()]
+        edges = {frozenset(pair) for face in faces for pair in combinations(face, 2)}
+        self.members = {
+            "vertex": {v: frozenset([v]) for v in range(len(mesh.points))},
+            "edge": {e: e for e in edges},
+            "face": {f: frozenset(face) for f, face in enumerate(faces)},
+        }
+
+    def __call__(self, source: str, target: str, key: object) -> set[object]:
+        mine = self.members[source][key]
+        return {
+            other
+            for other, theirs in self.members[target].items()
+            if (source != target or other != key) and self._adjacent(source, target, mine, theirs)
+        }
+
+    def _adjacent(self, source: str, target: str, mine: frozenset, theirs: frozenset) -> bool:
+        if source == target == "vertex":
+            return mine | theirs in self.members["edge"]
+        if source == target == "face":
+            return len(mine & theirs) >= 2
+        return mine <= theirs or theirs <= mine or (source == target and bool(mine & theirs))
+
+
+def vertices_of(s: structures.Structure, edge: int) -> frozenset[int]:
+    return frozenset(s.edge_vertices(edge).tolist())
+
+
+@pytest.mark.parametrize("query", QUERIES.values(), ids=QUERIES)
+def test_a_query_gives_what_the_triangle_list_says_each_neighbor_once(name, mesh, query):
+    s, relations = structures.build(name, mesh), Relations(mesh)
+    for handle in s.handles(query.source).tolist():
+        answer = getattr(s, query.name)(handle).tolist()
+        keys = [vertices_of(s, e) for e in answer] if query.target == "edge" else answer
+        key = vertices_of(s, handle) if query.source == "edge" else handle
+        assert len(keys) == len(set(keys))
+        assert set(keys) == relations(query.source, query.target, key)
+
+
+@pytest.mark.parametrize("query", QUERIES.values(), ids=QUERIES)
+def test_many_handles_give_the_answers_of_one_by_one(name, mesh, query):
+    s = structures.build(name, mesh)
+    handles = s.handles(query.source)
+    handles = np.concatenate([handles[::-1], handles])
+    answers = getattr(s, query.name)(handles)
+    assert len(answers) == len(handles)
+    for handle, answer in zip(handles.tolist(), answers, strict=True):
+        assert answer.tolist() == getattr(s, query.name)(handle).tolist()
+
+
+@pytest.mark.parametrize("query", QUERIES.values(), ids=QUERIES)
+def test_large_references_change_no_answer(name, mesh, query):
+    small, large = (structures.build(name, mesh, reference_bytes=k) for k in (4, 8))
+    handles = small.handles(query.source)
+    a, b = (getattr(s, query.name)(handles) for s in (small, large))
+    assert a.offsets.tolist() == b.offsets.tolist()
+    assert a.values.tolist() == b.values.tolist()
+    assert a.values.dtype == b.values.dtype == (np.int64 if query.target == "edge" else np.int32)
+
+
+@pytest.mark.parametrize("name", ORDERED)
+def test_neighbors_come_counterclockwise(name, mesh):
+    s = structures.build(name, mesh)
+    for v in s.vertices().tolist():
+        ring, around = s.vertex_vertices(v).tolist(), s.vertex_faces(v).tolist()
+        corners = [[v, b, c] for b, c in zip(ring, ring[1:] + ring[:1], strict=True)]
+        for f, corner in zip(around, corners, strict=False):
+            turned = mesh.triangles[f].tolist()
+            assert corner in (turned[i:] + turned[:i] for i in range(3))
+        assert [vertices_of(s, e) for e in s.vertex_edges(v)] == [frozenset((v, w)) for w in ring]
+
+
+def test_counts_and_handles_are_those_of_the_triangle_list(name, mesh):
+    s, relations = structures.build(name, mesh), Relations(mesh)
+    sizes = [len(relations.members[kind]) for kind in ("vertex", "edge", "face")]
+    assert [s.n_vertices, s.n_edges, s.n_faces] == sizes
+    assert [len(s.vertices()), len(s.edges()), len(s.faces())] == sizes
+    assert {vertices_of(s, e) for e in s.edges().tolist()} == set(relations.members["edge"])
+    assert (np.diff(s.edges()) > 0).all()
+
+
+def test_an_edge_is_found_by_its_vertices_from_either_end(name, mesh):
+    s, relations = structures.build(name, mesh), Relations(mesh)
+    for a, b in combinations(range(min(len(mesh.points), 40)), 2):
+        found = s.find_edge(a, b)
+        assert found == s.find_edge(b, a)
+        if frozenset((a, b)) in relations.members["edge"]:
+            assert found in s.edges()
+            assert vertices_of(s, found) == {a, b}
+        else:
+            assert found is None
+
+
+@pytest.mark.parametrize("query", QUERIES.values(), ids=QUERIES)
+@pytest.mark.parametrize("wrong", [-1, 10**6, 2**40 + 7, -(2**40)])
+def test_a_handle_that_names_nothing_is_refused(name, query, wrong):
+    s = structures.build(name, hem.generate("torus", 100))
+    for handles in (wrong, np.array([s.handles(query.source)[0], wrong])):
+        with pytest.raises(hem.MeshError, match=query.source):
+            getattr(s, query.name)(handles)
+
+
+@pytest.mark.parametrize("wrong", ["7", 7.0, None, [0.5], [[1, 2]], True])
+def test_what_is_no_handle_is_refused(name, wrong):
+    s = structures.build(name, hem.generate("torus", 100))
+    with pytest.raises(hem.MeshError, match="handle"):
+        s.vertex_faces(wrong)
+
+
+def test_vertices_that_are_not_joined_are_no_edge():
+    for name in ("indexed", "triangle_neighbor"):
+        s = structures.build(name, hem.generate("torus", 100))
+        apart = next(v for v in range(1, 100) if s.find_edge(0, v) is None)
+        for query in ("edge_edges", "edge_faces"):
+            with pytest.raises(hem.MeshError, match="edge"):
+                getattr(s, query)(apart)
+
+
+def test_any_integer_type_names_a_handle(name):
+    s = structures.build(name, hem.generate("torus", 100))
+    expected = s.vertex_faces(7).tolist()
+    for handle in (np.int32(7), np.int64(7), np.uint8(7), np.array(7)):
+        assert s.vertex_faces(handle).tolist() == expected
+    assert s.vertex_faces([7])[0].tolist() == expected
+    assert len(s.vertex_faces([])) == 0
+
+
+def test_a_vertex_of_a_very_large_valence_is_answered(name):
+    mesh = hem.generate("cone", 5000)
+    s, apex = structures.build(name, mesh), int(np.bincount(mesh.triangles.ravel()).argmax())
+    ring = s.vertex_vertices(apex)
+    faces = mesh.triangles[(mesh.triangles == apex).any(axis=1)]
+    assert sorted(ring.tolist()) == np.setdiff1d(faces, [apex]).tolist()
+    assert len(s.vertex_faces(apex)) == len(faces)

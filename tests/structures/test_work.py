@@ -1,0 +1,66 @@
+"""The cost of a query, counted in reads: exact, so the classes of table 1 are exact as well."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import hem
+import structures
+from hem.kernels import CountingArray
+from hem.queries import QUERIES
+
+SCANS = {
+    "vertex_vertices",
+    "vertex_edges",
+    "vertex_faces",
+    "edge_edges",
+    "edge_faces",
+    "face_faces",
+}
+
+
+def reads(name: str, n_vertices: int, query: str) -> int:
+    s = structures.build(name, hem.generate("torus", n_vertices))
+    return int(s.work(query, s.handles(QUERIES[query].source)[[7]])[0])
+
+
+def test_the_faces_around_a_half_edge_vertex_take_one_read_and_three_per_face():
+    for n_vertices in (100, 900):
+        assert reads("half_edge", n_vertices, "vertex_faces") == 1 + 3 * 6
+
+
+@pytest.mark.parametrize("query", QUERIES)
+def test_reads_do_not_depend_on_the_size_unless_the_mesh_is_scanned(name, query):
+    small, large = reads(name, 100, query), reads(name, 900, query)
+    if name == "indexed" and query in SCANS:
+        assert large > 8 * small
+    else:
+        assert large <= small + 2
+
+
+@pytest.mark.parametrize("query", QUERIES)
+def test_compiled_and_interpreted_kernels_give_the_same_answer(name, query):
+    s = structures.build(name, hem.generate("grid", 49))
+    handles = s.handles(QUERIES[query].source)
+    before = {
+        field: array.copy() for field, array in zip(s.records._fields, s.records, strict=True)
+    }
+    checksum, out = 0, s._out[QUERIES[query].target]
+    for handle in handles:
+        s.work(query, np.array([handle]))
+        answer = getattr(s, query)(int(handle))
+        assert out[: len(answer)].tolist() == answer.tolist()
+        checksum = (checksum + len(answer)) ^ (int(answer[-1]) if len(answer) else 0)
+    assert s.sweep(query, handles) == checksum
+    assert all(np.array_equal(getattr(s.records, field), kept) for field, kept in before.items())
+
+
+def test_every_element_read_is_counted_once():
+    counted = CountingArray(np.arange(12).reshape(4, 3))
+    assert counted[1, 2] == 5
+    assert counted.reads == 1
+    assert counted[2].tolist() == [6, 7, 8]
+    assert counted.reads == 4
+    assert len(counted) == counted.shape[0] == 4
+    assert counted.reads == 4
