@@ -1,12 +1,12 @@
-"""Vertices of a wanted valence in a mesh of a fixed number of faces: two variables moved apart.
+r"""Vertices of a wanted valence in a mesh of a fixed number of faces: two variables moved apart.
 
 The mesh is as many separate bipyramids as fit, each two hubs of the wanted valence k over one rim
 of k vertices, and a strip of triangles that makes up the number of faces:
 
       hub        2k faces, 3k edges, k + 2 vertices
-     / | \\       every face has one hub and two rim vertices (valence 4);
+     / | \       every face has one hub and two rim vertices (valence 4);
     *--*--*      two edges in three join a hub and the rim
-     \\ | /
+     \ | /
       hub
 """
 
