@@ -10,12 +10,15 @@ class _ElementsError(ValueError):
     """A ValueError that carries the offending elements and lists the first few in its message.
 
     `elements` maps a kind ("vertices", "edges", "faces", "rows" …) to an array: (k,) indices, or
-    (k, 2) pairs of vertices for edges. Kinds without elements are left out.
+    (k, 2) pairs of vertices for edges. Kinds without elements are left out. `reason` is the
+    message without that list.
     """
 
+    reason: str
     elements: dict[str, NDArray[np.int64]]
 
     def __init__(self, message: str, **elements: ArrayLike) -> None:
+        self.reason = message
         arrays = {kind: np.asarray(found, dtype=np.int64) for kind, found in elements.items()}
         self.elements = {kind: found for kind, found in arrays.items() if len(found)}
         listed = [f"{kind}: {_listed(found)}" for kind, found in self.elements.items()]

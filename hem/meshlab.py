@@ -1,4 +1,4 @@
-"""The one door to pymeshlab: importing it, quieting it, and meshes going in and out."""
+"""The one door to pymeshlab: importing it, keeping it quiet, and meshes going in and out."""
 
 import contextlib
 import ctypes
@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from hem.errors import MeshError
-from hem.mesh import TriangleMesh, repeated_corners
+from hem.mesh import TriangleMesh
 
 # Shared libraries that pymeshlab's wheel needs from the system (found with ldd), and the Debian
 # and Ubuntu packages that hold them.
@@ -36,7 +36,7 @@ def meshlab() -> ModuleType:
     """The pymeshlab module. ImportError names the system packages to install where some lack."""
     said = io.StringIO()
     try:
-        with contextlib.redirect_stdout(said), quiet():
+        with contextlib.redirect_stdout(said), undisturbed():
             import pymeshlab
     except ImportError as error:
         raise ImportError(_advice(str(error))) from error
@@ -65,29 +65,25 @@ def apply(filter_name: str, mesh: TriangleMesh | None = None, /, **parameters: A
     """
     meshes = mesh_set(mesh)
     try:
-        with quiet():
+        with undisturbed():
             meshes.apply_filter(filter_name, **parameters)
     except meshlab().PyMeshLabException as error:
         raise MeshError(
             f"pymeshlab's {filter_name} failed: {' '.join(str(error).split())}"
         ) from error
-    return current_mesh(meshes)
-
-
-def current_mesh(meshes: Any) -> TriangleMesh:
-    """The current mesh of a MeshSet. Triangles that use a vertex twice are left out."""
     current = meshes.current_mesh()
-    triangles = current.face_matrix()
-    return TriangleMesh(current.vertex_matrix(), triangles[~repeated_corners(triangles)])
+    return TriangleMesh(current.vertex_matrix(), current.face_matrix())
 
 
 @contextlib.contextmanager
-def quiet() -> Iterator[None]:
-    """Send what C++ code writes to standard output nowhere.
+def undisturbed() -> Iterator[None]:
+    """Keep pymeshlab from writing to standard output and from changing the current folder.
 
     Some filters report progress with printf, past pymeshlab's own verbosity and past sys.stdout,
-    so the file descriptor itself is pointed elsewhere. Not for concurrent threads that print.
+    so the file descriptor itself is pointed elsewhere. Loading and saving leave the process in the
+    file's folder. Both concern the whole process: not for threads that print or open files.
     """
+    folder = os.getcwd()
     flush = ctypes.CDLL(None if os.name == "posix" else "ucrtbase").fflush
     flush(None)
     kept, nowhere = os.dup(1), os.open(os.devnull, os.O_WRONLY)
@@ -95,6 +91,7 @@ def quiet() -> Iterator[None]:
     try:
         yield
     finally:
+        os.chdir(folder)
         flush(None)
         os.dup2(kept, 1)
         os.close(kept)
