@@ -30,6 +30,12 @@ from numpy.typing import NDArray
 Array = NDArray[Any]
 Kernel = Callable[..., Any]
 
+kernel: Callable[[Kernel], Kernel] = njit(forceinline=True)
+"""Compiles a kernel or a part of one, inlined wherever it is called.
+
+A call would push some forty fields of the records' arrays, which takes longer than most queries.
+"""
+
 # What the templates below call; bound anew for every query of every structure.
 _KERNEL: Kernel = len
 _RECORDS: Callable[..., Any] = tuple
@@ -40,9 +46,8 @@ def _single(handle: int, out: Array, *arrays: Array) -> int:
     return count
 
 
-def _batch(handles: Array, values: Array, width: int, *arrays: Array) -> tuple[Array, Array]:
+def _batch(handles: Array, offsets: Array, values: Array, width: int, *arrays: Array) -> Array:
     m = _RECORDS(*arrays)
-    offsets = np.empty(len(handles) + 1, np.int64)
     end = 0
     for i in range(len(handles)):
         offsets[i] = end
@@ -52,7 +57,7 @@ def _batch(handles: Array, values: Array, width: int, *arrays: Array) -> tuple[A
             values = grown
         end += _KERNEL(m, handles[i], values[end:])
     offsets[-1] = end
-    return offsets, values[:end]
+    return values[:end]
 
 
 def _sweep(handles: Array, out: Array, *arrays: Array) -> int:
@@ -94,8 +99,8 @@ class Uses:
         return self._compiled(_single)
 
     @cached_property
-    def batch(self) -> Callable[..., tuple[Array, Array]]:
-        """``batch(handles, values, width, *records) -> (offsets, values)``.
+    def batch(self) -> Callable[..., Array]:
+        """``batch(handles, offsets, values, width, *records) -> values``.
 
         ``values`` is room to begin with and grows as needed; ``width`` is the most neighbors that
         one element can have. The values returned are a view that is just as long as the answer.
@@ -114,10 +119,10 @@ class Uses:
     def work(self, handles: Array, out: Array, records: tuple[Array, ...]) -> NDArray[np.int64]:
         """(n,) int64: how many array elements the kernel reads for each handle, exactly."""
         counters = [CountingArray(array) for array in records]
-        kernel, m = interpreted(self._kernel), self._records(*counters)
+        answer, m = interpreted(self._kernel), self._records(*counters)
         totals = [0]
         for handle in handles.tolist():
-            kernel(m, handle, out)
+            answer(m, handle, out)
             totals.append(sum(counter.reads for counter in counters))
         return np.diff(totals)
 
@@ -132,8 +137,8 @@ class Uses:
         """``template`` with its free names bound to this kernel, compiled and cached on disk."""
         scope = {"_KERNEL": self._kernel, "_RECORDS": self._records, **scope}
         function = FunctionType(template.__code__, {**template.__globals__, **scope})
-        kernel, owner, digest = _source(self._kernel), self._records.__name__, self._digest
-        function.__qualname__ = f"{template.__name__}_{owner}_{kernel.__name__}_{digest}"
+        names = template, self._records, _source(self._kernel)
+        function.__qualname__ = "_".join([*(it.__name__ for it in names), self._digest])
         compiled: Callable[..., Any] = njit(cache=True, nogil=True)(function)
         return compiled
 
@@ -185,7 +190,7 @@ def _source(function: Any) -> Any:
 
 def named(*kernels: Kernel) -> dict[str, Kernel]:
     """The kernels of a structure by query."""
-    return {kernel.__name__: kernel for kernel in kernels}
+    return {_source(kernel).__name__: kernel for kernel in kernels}
 
 
 # What kernels of several structures share ---------------------------------------------------------
@@ -216,7 +221,7 @@ def circulator(clockwise: Kernel, counterclockwise: Kernel) -> Kernel:
             item = counterclockwise(m, item, v)
         return count, False
 
-    compiled: Kernel = njit(around)
+    compiled: Kernel = kernel(around)
     return compiled
 
 
@@ -232,18 +237,21 @@ def edges_at_both_ends(edge_vertices: Kernel, vertex_edges: Kernel) -> Kernel:
             return 0
         return count + without(out[count:], vertex_edges(m, b, out[count:]), e)
 
-    compiled: Kernel = njit(edge_edges)
+    compiled: Kernel = kernel(edge_edges)
     return compiled
 
 
-@njit
+@kernel
 def reverse(out: Array, count: int) -> None:
     """Turn the first ``count`` elements round, in place."""
-    for i in range(count // 2):
-        out[i], out[count - 1 - i] = out[count - 1 - i], out[i]
+    first, last = 0, count - 1
+    while first < last:
+        out[first], out[last] = out[last], out[first]
+        first += 1
+        last -= 1
 
 
-@njit
+@kernel
 def without(out: Array, count: int, value: int) -> int:
     """Take ``value`` out of the first ``count`` elements, in place -> how many are left."""
     left = 0
@@ -254,17 +262,19 @@ def without(out: Array, count: int, value: int) -> int:
     return left
 
 
-@njit
-def append_new(out: Array, count: int, value: int) -> int:
-    """Append ``value`` unless it is among the first ``count`` already -> the new count."""
-    for i in range(count):
-        if out[i] == value:
-            return count
-    out[count] = value
+@kernel
+def append_face(out: Array, count: int, face: int) -> int:
+    """Append a face beyond the next edge of a triangle, unless it was just met -> the new count.
+
+    Two triangles that share two edges share all three, so the last one met is the only candidate.
+    """
+    if count and out[count - 1] == face:
+        return count
+    out[count] = face
     return count + 1
 
 
-@njit
+@kernel
 def distinct(out: Array, count: int) -> int:
     """Sort the first ``count`` elements and keep each once, in place -> how many are left."""
     out[:count].sort()
@@ -276,14 +286,13 @@ def distinct(out: Array, count: int) -> int:
     return kept
 
 
-@njit
+@kernel
 def pack(a: int, b: int) -> int:
     """The handle of edge (a, b) where no edges are recorded: both vertices in one int64."""
-    packed: int = (np.int64(min(a, b)) << 32) | np.int64(max(a, b))
-    return packed
+    return int((np.int64(min(a, b)) << 32) | np.int64(max(a, b)))
 
 
-@njit
+@kernel
 def edge_vertices(m: Any, e: int, out: Array) -> int:
     """The kernel where no edges are recorded: unpacked from the handle, nothing is read."""
     out[0] = e >> 32

@@ -19,6 +19,7 @@ from hem.kernels import Kernel, Uses
 from hem.mesh import TriangleMesh
 from hem.queries import ELEMENTS, QUERIES, Query
 from hem.ragged import Ragged
+from hem.slices import in_slices
 
 REFERENCE_TYPES = {4: np.int32, 8: np.int64}
 """Bytes of a stored reference to the type that holds it. The thesis counts 8 (section 7)."""
@@ -54,30 +55,32 @@ class QueryMethod(Protocol):
 
 
 def _query_method(query: Query) -> Any:
-    name, source, target = query.name, query.source, query.target
+    """The attribute ``Structure.vertex_faces`` and its like: a function bound once per structure."""
 
-    def ask(self: Structure, handles: Any) -> NDArray[Any] | Ragged:
-        if type(handles) is not int:
-            if np.ndim(handles):
-                return self._ask_many(query, handles)
-            handles = _as_integer(handles, query)
-        if not 0 <= handles < self._handle_end[source]:
-            self._check_handles(source, np.array([handles]))
-        out = self._out[target]
-        count = self._uses[name].single(handles, out, *self.records)
-        if not count and source == "edge":
-            refuse_handles(source, np.array([handles]))
-        return out[:count].copy()
+    def bound(self: Structure) -> QueryMethod:
+        single, records = self._uses[query.name].single, self.records
+        out, end = self._out[query.target], self._handle_end[query.source]
 
-    ask.__name__ = name
-    ask.__doc__ = (
-        f"{query.title}: the adjacent {name.split('_')[1]} of one {source} or of many.\n\n"
+        def ask(handles: Any) -> Any:
+            # One plain integer is the way that programs take a million times: no detours here.
+            if type(handles) is int and 0 <= handles < end:
+                count = single(handles, out, *records)
+                if count or query.source != "edge":
+                    return out[:count].copy()
+            return self._ask(query, handles)
+
+        ask.__name__, ask.__doc__ = query.name, attribute.__doc__
+        return ask
+
+    attribute = cached_property(bound)
+    attribute.__doc__ = (
+        f"{query.title}: the adjacent {ELEMENTS[query.target]} of one {query.source} or of many.\n\n"
         "One handle gives a 1-D array, an array of handles (n,) a ``Ragged`` with n rows. Each\n"
         "neighbor comes once; around a vertex or face counterclockwise where the structure\n"
         "knows the order. Cost per handle: thesis, table 1. Raises MeshError for a handle that\n"
-        f"names no {source} of this mesh."
+        f"names no {query.source} of this mesh."
     )
-    return ask
+    return attribute
 
 
 def _as_integer(handle: Any, query: Query) -> int:
@@ -253,9 +256,7 @@ class Structure(ABC):
     @cached_property
     def _width(self) -> int:
         """The most neighbors one query can have, those found twice before they are told apart."""
-        corners = self._uses["face_vertices"].batch(
-            self.faces(), np.empty(3 * self.n_faces, np.int32), 3, *self.records
-        )[1]
+        corners = self._ragged("face_vertices", self.faces(), 3).values
         return 4 * (int(np.bincount(corners).max(initial=0)) + 1)
 
     @cached_property
@@ -267,6 +268,12 @@ class Structure(ABC):
     def _find_edge(self) -> Callable[..., int]:
         return self._uses["vertex_edges"].find_edge(self.kernels["edge_vertices"])
 
+    def _ask(self, query: Query, handles: Any) -> NDArray[Any] | Ragged:
+        """Any handles for a query, checked."""
+        if np.ndim(handles):
+            return self._ask_many(query, handles)
+        return self._ask_many(query, [_as_integer(handles, query)])[0].copy()
+
     def _ask_many(self, query: Query, handles: ArrayLike) -> Ragged:
         wanted = np.asarray(handles)
         if wanted.ndim != 1 or (wanted.size and not np.issubdtype(wanted.dtype, np.integer)):
@@ -276,13 +283,24 @@ class Structure(ABC):
             )
         self._check_handles(query.source, wanted)
         width = 3 if query.name in ("face_vertices", "face_edges") else self._width
-        room = TYPICAL_NEIGHBORS[query.source] * len(wanted) + width
-        values = np.empty(room, HANDLE_TYPES[query.target])
         wanted = np.ascontiguousarray(wanted, HANDLE_TYPES[query.source])
-        answers = Ragged(*self._uses[query.name].batch(wanted, values, width, *self.records))
+        answers = self._ragged(query.name, wanted, width)
         if query.source == "edge" and not answers.counts.all():
             refuse_handles(query.source, wanted[answers.counts == 0])
         return answers
+
+    def _ragged(self, query: str, handles: NDArray[Any], width: int) -> Ragged:
+        """The answers for ``handles``, each of which has at most ``width`` neighbors."""
+        source, target = QUERIES[query]
+
+        def answer(begin: int, end: int, part: int) -> Ragged:
+            offsets = np.empty(end - begin + 1, np.int64)
+            room = TYPICAL_NEIGHBORS[source] * (end - begin) + width
+            values = np.empty(room, HANDLE_TYPES[target])
+            asked = handles[begin:end], offsets, values, width
+            return Ragged(offsets, self._uses[query].batch(*asked, *self.records))
+
+        return Ragged.joined(in_slices(answer, len(handles)))
 
     def _check_handles(self, element: str, handles: NDArray[Any]) -> None:
         """Raise MeshError if any of ``handles`` (n,) names no element of this mesh."""

@@ -35,7 +35,7 @@ from hem.invariants import (
     require_points,
     require_references,
 )
-from hem.kernels import append_new, circulator, edges_at_both_ends, named
+from hem.kernels import append_face, circulator, edges_at_both_ends, kernel, named
 from hem.mesh import TriangleMesh
 from hem.pairing import pair_half_edges
 from hem.slices import in_slices
@@ -55,20 +55,20 @@ class HalfEdgeRecords(NamedTuple):
     half_edge: Array  # (3 n_t, 4) origin, face, next, twin
 
 
-@njit
+@kernel
 def clockwise(m: HalfEdgeRecords, h: int, v: int) -> int:
     """The next half-edge that leaves v."""
     twin = m.half_edge[h, TWIN]
     return m.half_edge[twin, NEXT] if twin >= 0 else -1
 
 
-@njit
+@kernel
 def previous(m: HalfEdgeRecords, h: int) -> int:
     """The half-edge before h in its face."""
     return m.half_edge[m.half_edge[h, NEXT], NEXT]
 
 
-@njit
+@kernel
 def counterclockwise(m: HalfEdgeRecords, h: int, v: int) -> int:
     """The half-edge that leaves v before h."""
     return m.half_edge[previous(m, h), TWIN]
@@ -77,14 +77,14 @@ def counterclockwise(m: HalfEdgeRecords, h: int, v: int) -> int:
 outgoing = circulator(clockwise, counterclockwise)
 
 
-@njit
+@kernel
 def edge_of(m: HalfEdgeRecords, h: int) -> int:
     """The name of h's edge: the smaller of its two half-edges."""
     twin = m.half_edge[h, TWIN]
     return h if twin < 0 else min(h, twin)
 
 
-@njit
+@kernel
 def vertex_vertices(m: HalfEdgeRecords, v: int, out: Array) -> int:
     """Cost O(n_ev)."""
     count, closed = outgoing(m, m.vertex_half_edge[v], v, out)
@@ -97,7 +97,7 @@ def vertex_vertices(m: HalfEdgeRecords, v: int, out: Array) -> int:
     return count + 1
 
 
-@njit
+@kernel
 def vertex_edges(m: HalfEdgeRecords, v: int, out: Array) -> int:
     """Cost O(n_ev)."""
     count, closed = outgoing(m, m.vertex_half_edge[v], v, out)
@@ -110,7 +110,7 @@ def vertex_edges(m: HalfEdgeRecords, v: int, out: Array) -> int:
     return count + 1
 
 
-@njit
+@kernel
 def vertex_faces(m: HalfEdgeRecords, v: int, out: Array) -> int:
     """Cost O(n_ev)."""
     count, _ = outgoing(m, m.vertex_half_edge[v], v, out)
@@ -119,7 +119,7 @@ def vertex_faces(m: HalfEdgeRecords, v: int, out: Array) -> int:
     return count
 
 
-@njit
+@kernel
 def edge_vertices(m: HalfEdgeRecords, e: int, out: Array) -> int:
     """Cost O(1)."""
     out[0] = m.half_edge[e, ORIGIN]
@@ -130,7 +130,7 @@ def edge_vertices(m: HalfEdgeRecords, e: int, out: Array) -> int:
 edge_edges = edges_at_both_ends(edge_vertices, vertex_edges)
 
 
-@njit
+@kernel
 def edge_faces(m: HalfEdgeRecords, e: int, out: Array) -> int:
     """Cost O(1)."""
     out[0] = m.half_edge[e, FACE]
@@ -141,7 +141,7 @@ def edge_faces(m: HalfEdgeRecords, e: int, out: Array) -> int:
     return 2
 
 
-@njit
+@kernel
 def face_vertices(m: HalfEdgeRecords, f: int, out: Array) -> int:
     """Cost O(1)."""
     h = m.face_half_edge[f]
@@ -151,7 +151,7 @@ def face_vertices(m: HalfEdgeRecords, f: int, out: Array) -> int:
     return 3
 
 
-@njit
+@kernel
 def face_edges(m: HalfEdgeRecords, f: int, out: Array) -> int:
     """Cost O(1)."""
     h = m.face_half_edge[f]
@@ -161,14 +161,14 @@ def face_edges(m: HalfEdgeRecords, f: int, out: Array) -> int:
     return 3
 
 
-@njit
+@kernel
 def face_faces(m: HalfEdgeRecords, f: int, out: Array) -> int:
     """Cost O(1)."""
     h, count = m.face_half_edge[f], 0
     for _ in range(3):
         twin = m.half_edge[h, TWIN]
         if twin >= 0:
-            count = append_new(out, count, m.half_edge[twin, FACE])
+            count = append_face(out, count, m.half_edge[twin, FACE])
         h = m.half_edge[h, NEXT]
     return count
 

@@ -19,11 +19,10 @@ from __future__ import annotations
 from typing import Any, NamedTuple, Self
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from hem.invariants import require, require_points, require_references
-from hem.kernels import distinct, edge_vertices, edges_at_both_ends, named, pack
+from hem.kernels import distinct, edge_vertices, edges_at_both_ends, kernel, named, pack
 from hem.mesh import TriangleMesh
 from hem.packed import PackedEdges
 from hem.structure import Field
@@ -38,13 +37,13 @@ class IndexedRecords(NamedTuple):
     triangle: Array  # (n_t, 3) vertices
 
 
-@njit
+@kernel
 def has_corner(m: IndexedRecords, t: int, v: int) -> bool:
     """Whether v is a corner of triangle t."""
     return m.triangle[t, 0] == v or m.triangle[t, 1] == v or m.triangle[t, 2] == v
 
 
-@njit
+@kernel
 def vertex_vertices(m: IndexedRecords, v: int, out: Array) -> int:
     """Cost O(n_t)."""
     count = 0
@@ -57,7 +56,7 @@ def vertex_vertices(m: IndexedRecords, v: int, out: Array) -> int:
     return distinct(out, count)
 
 
-@njit
+@kernel
 def vertex_edges(m: IndexedRecords, v: int, out: Array) -> int:
     """Cost O(n_t)."""
     count = vertex_vertices(m, v, out)
@@ -66,7 +65,7 @@ def vertex_edges(m: IndexedRecords, v: int, out: Array) -> int:
     return count
 
 
-@njit
+@kernel
 def vertex_faces(m: IndexedRecords, v: int, out: Array) -> int:
     """Cost O(n_t)."""
     count = 0
@@ -80,7 +79,7 @@ def vertex_faces(m: IndexedRecords, v: int, out: Array) -> int:
 edge_edges = edges_at_both_ends(edge_vertices, vertex_edges)
 
 
-@njit
+@kernel
 def edge_faces(m: IndexedRecords, e: int, out: Array) -> int:
     """Cost O(n_t): the search of thesis chapter 5."""
     a, b = e >> 32, e & 0xFFFFFFFF
@@ -92,7 +91,7 @@ def edge_faces(m: IndexedRecords, e: int, out: Array) -> int:
     return count
 
 
-@njit
+@kernel
 def face_vertices(m: IndexedRecords, f: int, out: Array) -> int:
     """Cost O(1)."""
     for i in range(3):
@@ -100,7 +99,7 @@ def face_vertices(m: IndexedRecords, f: int, out: Array) -> int:
     return 3
 
 
-@njit
+@kernel
 def face_edges(m: IndexedRecords, f: int, out: Array) -> int:
     """Cost O(1)."""
     for i in range(3):
@@ -108,7 +107,7 @@ def face_edges(m: IndexedRecords, f: int, out: Array) -> int:
     return 3
 
 
-@njit
+@kernel
 def face_faces(m: IndexedRecords, f: int, out: Array) -> int:
     """Cost O(n_t)."""
     a, b, c = m.triangle[f, 0], m.triangle[f, 1], m.triangle[f, 2]

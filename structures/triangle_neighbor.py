@@ -34,7 +34,15 @@ from hem.invariants import (
     require_points,
     require_references,
 )
-from hem.kernels import append_new, circulator, edge_vertices, edges_at_both_ends, named, pack
+from hem.kernels import (
+    append_face,
+    circulator,
+    edge_vertices,
+    edges_at_both_ends,
+    kernel,
+    named,
+    pack,
+)
 from hem.mesh import TriangleMesh
 from hem.packed import PackedEdges
 from hem.pairing import pair_half_edges
@@ -54,7 +62,7 @@ class TriangleNeighborRecords(NamedTuple):
     triangle: Array  # (n_t, 6) three neighbors, three corners
 
 
-@njit
+@kernel
 def corner_of(m: TriangleNeighborRecords, t: int, v: int) -> int:
     """Which corner of triangle t vertex v is: 0, 1 or 2."""
     if m.triangle[t, CORNER] == v:
@@ -62,13 +70,13 @@ def corner_of(m: TriangleNeighborRecords, t: int, v: int) -> int:
     return 1 if m.triangle[t, CORNER + 1] == v else 2
 
 
-@njit
+@kernel
 def clockwise(m: TriangleNeighborRecords, t: int, v: int) -> int:
     """The next triangle at v: beyond the edge that leaves v."""
     return m.triangle[t, NEIGHBOR + corner_of(m, t, v)]
 
 
-@njit
+@kernel
 def counterclockwise(m: TriangleNeighborRecords, t: int, v: int) -> int:
     """The triangle at v before t: beyond the edge that enters v."""
     return m.triangle[t, NEIGHBOR + (corner_of(m, t, v) + 2) % 3]
@@ -77,7 +85,7 @@ def counterclockwise(m: TriangleNeighborRecords, t: int, v: int) -> int:
 fan = circulator(clockwise, counterclockwise)
 
 
-@njit
+@kernel
 def vertex_vertices(m: TriangleNeighborRecords, v: int, out: Array) -> int:
     """Cost O(n_ev)."""
     count, closed = fan(m, m.vertex_triangle[v], v, out)
@@ -90,7 +98,7 @@ def vertex_vertices(m: TriangleNeighborRecords, v: int, out: Array) -> int:
     return count + 1
 
 
-@njit
+@kernel
 def vertex_edges(m: TriangleNeighborRecords, v: int, out: Array) -> int:
     """Cost O(n_ev)."""
     count = vertex_vertices(m, v, out)
@@ -99,7 +107,7 @@ def vertex_edges(m: TriangleNeighborRecords, v: int, out: Array) -> int:
     return count
 
 
-@njit
+@kernel
 def vertex_faces(m: TriangleNeighborRecords, v: int, out: Array) -> int:
     """Cost O(n_ev)."""
     count, _ = fan(m, m.vertex_triangle[v], v, out)
@@ -109,7 +117,7 @@ def vertex_faces(m: TriangleNeighborRecords, v: int, out: Array) -> int:
 edge_edges = edges_at_both_ends(edge_vertices, vertex_edges)
 
 
-@njit
+@kernel
 def edge_faces(m: TriangleNeighborRecords, e: int, out: Array) -> int:
     """Cost O(n_ev): the triangles at one end are searched for the other."""
     a, b = e >> 32, e & 0xFFFFFFFF
@@ -123,7 +131,7 @@ def edge_faces(m: TriangleNeighborRecords, e: int, out: Array) -> int:
     return count
 
 
-@njit
+@kernel
 def face_vertices(m: TriangleNeighborRecords, f: int, out: Array) -> int:
     """Cost O(1)."""
     for i in range(3):
@@ -131,7 +139,7 @@ def face_vertices(m: TriangleNeighborRecords, f: int, out: Array) -> int:
     return 3
 
 
-@njit
+@kernel
 def face_edges(m: TriangleNeighborRecords, f: int, out: Array) -> int:
     """Cost O(1)."""
     for i in range(3):
@@ -139,14 +147,14 @@ def face_edges(m: TriangleNeighborRecords, f: int, out: Array) -> int:
     return 3
 
 
-@njit
+@kernel
 def face_faces(m: TriangleNeighborRecords, f: int, out: Array) -> int:
     """Cost O(1)."""
     count = 0
     for i in range(3):
         neighbor = m.triangle[f, NEIGHBOR + i]
         if neighbor >= 0:
-            count = append_new(out, count, neighbor)
+            count = append_face(out, count, neighbor)
     return count
 
 

@@ -40,7 +40,7 @@ from hem.invariants import (
     require_points,
     require_references,
 )
-from hem.kernels import append_new, circulator, edges_at_both_ends, named
+from hem.kernels import append_face, circulator, edges_at_both_ends, kernel, named
 from hem.mesh import TriangleMesh
 from hem.pairing import pair_half_edges
 from hem.slices import in_slices
@@ -71,20 +71,20 @@ class WingedEdgeRecords(NamedTuple):
     edge: Array  # (n_e, 8) the columns above
 
 
-@njit
+@kernel
 def directed_from(m: WingedEdgeRecords, e: int, v: int) -> int:
     """Edge e as it leaves vertex v."""
     return 2 * e if m.edge[e, TAIL] == v else 2 * e + 1
 
 
-@njit
+@kernel
 def counterclockwise(m: WingedEdgeRecords, d: int, v: int) -> int:
     """The directed edge that leaves v before d: it enters v in the face on the left hand of d."""
     e = m.edge[d >> 1, LEFT_PREVIOUS + (d & 1)]
     return directed_from(m, e, v) if e >= 0 else -1
 
 
-@njit
+@kernel
 def clockwise(m: WingedEdgeRecords, d: int, v: int) -> int:
     """The directed edge that leaves v after d: next in the face on the right hand of d."""
     e = m.edge[d >> 1, RIGHT_NEXT - (d & 1)]
@@ -94,7 +94,7 @@ def clockwise(m: WingedEdgeRecords, d: int, v: int) -> int:
 around = circulator(clockwise, counterclockwise)
 
 
-@njit
+@kernel
 def leaving(m: WingedEdgeRecords, v: int, out: Array) -> tuple[int, bool]:
     """The directed edges that leave v, counterclockwise -> how many, and whether they close."""
     e = m.vertex_edge[v]
@@ -103,7 +103,7 @@ def leaving(m: WingedEdgeRecords, v: int, out: Array) -> tuple[int, bool]:
     return around(m, directed_from(m, e, v), v, out)
 
 
-@njit
+@kernel
 def vertex_vertices(m: WingedEdgeRecords, v: int, out: Array) -> int:
     """Cost O(n_ev)."""
     count, _ = leaving(m, v, out)
@@ -112,7 +112,7 @@ def vertex_vertices(m: WingedEdgeRecords, v: int, out: Array) -> int:
     return count
 
 
-@njit
+@kernel
 def vertex_edges(m: WingedEdgeRecords, v: int, out: Array) -> int:
     """Cost O(n_ev)."""
     count, _ = leaving(m, v, out)
@@ -121,7 +121,7 @@ def vertex_edges(m: WingedEdgeRecords, v: int, out: Array) -> int:
     return count
 
 
-@njit
+@kernel
 def vertex_faces(m: WingedEdgeRecords, v: int, out: Array) -> int:
     """Cost O(n_ev)."""
     count, closed = leaving(m, v, out)
@@ -131,7 +131,7 @@ def vertex_faces(m: WingedEdgeRecords, v: int, out: Array) -> int:
     return faces
 
 
-@njit
+@kernel
 def edge_vertices(m: WingedEdgeRecords, e: int, out: Array) -> int:
     """Cost O(1)."""
     out[0] = m.edge[e, TAIL]
@@ -142,7 +142,7 @@ def edge_vertices(m: WingedEdgeRecords, e: int, out: Array) -> int:
 edge_edges = edges_at_both_ends(edge_vertices, vertex_edges)
 
 
-@njit
+@kernel
 def edge_faces(m: WingedEdgeRecords, e: int, out: Array) -> int:
     """Cost O(1)."""
     count = 0
@@ -154,13 +154,13 @@ def edge_faces(m: WingedEdgeRecords, e: int, out: Array) -> int:
     return count
 
 
-@njit
+@kernel
 def side_of(m: WingedEdgeRecords, e: int, f: int) -> int:
     """On which side of edge e face f lies: 0 for the left, 1 for the right."""
     return 0 if m.edge[e, LEFT] == f else 1
 
 
-@njit
+@kernel
 def face_vertices(m: WingedEdgeRecords, f: int, out: Array) -> int:
     """Cost O(1)."""
     e = m.face_edge[f]
@@ -171,7 +171,7 @@ def face_vertices(m: WingedEdgeRecords, f: int, out: Array) -> int:
     return 3
 
 
-@njit
+@kernel
 def face_edges(m: WingedEdgeRecords, f: int, out: Array) -> int:
     """Cost O(1)."""
     e = m.face_edge[f]
@@ -181,7 +181,7 @@ def face_edges(m: WingedEdgeRecords, f: int, out: Array) -> int:
     return 3
 
 
-@njit
+@kernel
 def face_faces(m: WingedEdgeRecords, f: int, out: Array) -> int:
     """Cost O(1)."""
     e, count = m.face_edge[f], 0
@@ -189,7 +189,7 @@ def face_faces(m: WingedEdgeRecords, f: int, out: Array) -> int:
         side = side_of(m, e, f)
         beyond = m.edge[e, RIGHT - side]
         if beyond >= 0:
-            count = append_new(out, count, beyond)
+            count = append_face(out, count, beyond)
         e = m.edge[e, LEFT_NEXT + side]
     return count
 
@@ -286,12 +286,8 @@ class WingedEdge(Structure):
         after = m.edge[:, [LEFT_NEXT, RIGHT_NEXT]].ravel()
         owner, inner = np.arange(2 * n) // 2, np.flatnonzero(face >= 0)
 
-        missing = (face < 0) == (before < 0)
-        require(
-            ((missing & ((face < 0) == (after < 0))).reshape(n, 2)),
-            "wings belong to a face",
-            "edges",
-        )
+        winged = ((face < 0) == (before < 0)) & ((face < 0) == (after < 0))
+        require(winged.reshape(n, 2), "an edge has the wings of its faces, and no others", "edges")
         require((face.reshape(n, 2) >= 0).any(axis=1), "an edge has a face", "edges")
         require_distinct_edges(m.edge[:, TAIL], m.edge[:, HEAD], "edges")
 
