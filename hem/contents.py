@@ -58,7 +58,7 @@ def _off(data: bytes) -> Contents:
 
 
 def _obj(data: bytes) -> Contents:
-    found = Contents(len(re.findall(rb"(?m)^v\s", data)), len(re.findall(rb"(?m)^f\s", data)))
+    found = len(re.findall(rb"(?m)^v\s", data)), len(re.findall(rb"(?m)^f\s", data))
     for kind, number in zip((b"Vertices", b"Faces"), found, strict=True):
         promised = re.search(rb"(?m)^# " + kind + rb": (\d+)", data[:2000])
         if promised:
@@ -67,7 +67,7 @@ def _obj(data: bytes) -> Contents:
     last = data[data.rstrip().rfind(b"\n") + 1 :].split()
     if last and last[0] in (b"v", b"f"):
         _require(len(last) > 3, "a last line without all its numbers")
-    return found
+    return Contents(*found)
 
 
 def _stl(data: bytes) -> Contents:

@@ -14,7 +14,7 @@ _SAVE_OPTIONS: dict[str, dict[str, bool]] = {
     "ply": {**_PLAIN, "save_vertex_quality": False},
     "obj": _PLAIN,
 }
-_SAYS_ONLY_WHERE = ("Unable to open file", "Error encountered while loading file", "File:")
+_SAYS_ONLY_WHERE = ("Unable to open file", "Error encountered while loading file", "File:", '"')
 _COMMON = "ply, obj, off, stl, 3ds, dae, wrl, x3d, ctm, 3mf"
 
 
@@ -140,4 +140,6 @@ def _words(error: Exception) -> str:
     lines = [line.strip() for line in str(error).splitlines() if line.strip()]
     said = [line for line in lines if not line.startswith(_SAYS_ONLY_WHERE)]
     message = " ".join(said or lines).replace("Error details: ", "")
-    return f"{message} (usual: {_COMMON})" if "Unknown format" in message else message
+    if "Unknown format" in message:
+        return f"{message} (usual: {_COMMON})"
+    return f"pymeshlab says {message!r}; is it whole, and of the format of its name?"

@@ -72,5 +72,5 @@ def _strip(n_faces: int) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
     points = np.stack([step / n_faces, -2.0 + 0.0 * step, 0.0 * step], axis=1) * _SPACING / 2
     points[1::2, 1] -= 1 / np.sqrt(n_faces)
     triangles = step[:n_faces, None] + np.arange(3)
-    triangles[::2] = triangles[::2, [1, 0, 2]]
+    triangles[1::2] = triangles[1::2, [1, 0, 2]]
     return points, triangles
