@@ -27,6 +27,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from hem.pinned import Pinned, loader
+
 Array = NDArray[Any]
 Kernel = Callable[..., Any]
 
@@ -39,10 +41,13 @@ A call would push some forty fields of the records' arrays, which takes longer t
 # What the templates below call; bound anew for every query of every structure.
 _KERNEL: Kernel = len
 _RECORDS: Callable[..., Any] = tuple
+_LOAD: Callable[..., Any] = len
+_EDGE_VERTICES: Kernel = len
 
 
-def _single(handle: int, out: Array, *arrays: Array) -> int:
-    count: int = _KERNEL(_RECORDS(*arrays), handle, out)
+def _single(handle: int, address: int) -> int:
+    arrays = _LOAD(address)
+    count: int = _KERNEL(_RECORDS(*arrays[:-1]), handle, arrays[-1])
     return count
 
 
@@ -81,22 +86,15 @@ def _find_edge(a: int, b: int, out: Array, vertices: Array, *arrays: Array) -> i
     return -1
 
 
-_EDGE_VERTICES: Kernel = len
-
-
 class Uses:
     """The uses of one query kernel on one kind of records (a ``NamedTuple`` of arrays)."""
 
     def __init__(self, kernel: Kernel, records: type[Any]) -> None:
         self._kernel, self._records = kernel, records
 
-    @cached_property
-    def single(self) -> Callable[..., int]:
-        """``single(handle, out, *records) -> count``.
-
-        The arrays come one by one, as Numba dispatches them three times faster than a NamedTuple.
-        """
-        return self._compiled(_single)
+    def single(self, pinned: Pinned) -> Callable[[int, int], int]:
+        """``single(handle, pinned.address) -> count``, for records and an ``out`` as these."""
+        return self._compiled(_single, str(pinned.kind), _LOAD=loader(pinned.kind))
 
     @cached_property
     def batch(self) -> Callable[..., Array]:
@@ -126,20 +124,23 @@ class Uses:
             totals.append(sum(counter.reads for counter in counters))
         return np.diff(totals)
 
-    @cached_property
-    def _digest(self) -> str:
+    def _digest(self, variant: str) -> str:
         """Of the structure's file, and of this one, whose helpers its kernels call."""
         files = inspect.getfile(self._records), __file__
         sources = b"".join(Path(file).read_bytes() for file in files)
-        return hashlib.blake2b(sources, digest_size=6).hexdigest()
+        return hashlib.blake2b(sources + variant.encode(), digest_size=6).hexdigest()
 
-    def _compiled(self, template: Kernel, **scope: Kernel) -> Callable[..., Any]:
-        """``template`` with its free names bound to this kernel, compiled and cached on disk."""
+    def _compiled(self, template: Kernel, variant: str = "", **scope: Any) -> Callable[..., Any]:
+        """``template`` with its free names bound to this kernel, compiled and cached on disk.
+
+        ``variant`` tells apart what is bound otherwise than by the kernel.
+        """
         scope = {"_KERNEL": self._kernel, "_RECORDS": self._records, **scope}
         function = FunctionType(template.__code__, {**template.__globals__, **scope})
         names = template, self._records, _source(self._kernel)
-        function.__qualname__ = "_".join([*(it.__name__ for it in names), self._digest])
-        compiled: Callable[..., Any] = njit(cache=True, nogil=True)(function)
+        function.__qualname__ = "_".join([*(it.__name__ for it in names), self._digest(variant)])
+        nogil = template is not _single  # for one query it would take longer than the query
+        compiled: Callable[..., Any] = njit(cache=True, nogil=nogil)(function)
         return compiled
 
 

@@ -17,6 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 from hem.errors import MeshError
 from hem.kernels import Kernel, Uses
 from hem.mesh import TriangleMesh
+from hem.pinned import Pinned
 from hem.queries import ELEMENTS, QUERIES, Query
 from hem.ragged import Ragged
 from hem.slices import in_slices
@@ -55,26 +56,28 @@ class QueryMethod(Protocol):
 
 
 def _query_method(query: Query) -> Any:
-    """The attribute ``Structure.vertex_faces`` and its like: a function bound once per structure."""
+    """The attribute ``Structure.vertex_faces`` and its like, bound once per structure."""
 
     def bound(self: Structure) -> QueryMethod:
-        single, records = self._uses[query.name].single, self.records
         out, end = self._out[query.target], self._handle_end[query.source]
+        pinned = Pinned(*self.records, out)
+        single, address = self._uses[query.name].single(pinned), pinned.address
 
         def ask(handles: Any) -> Any:
             # One plain integer is the way that programs take a million times: no detours here.
             if type(handles) is int and 0 <= handles < end:
-                count = single(handles, out, *records)
+                count = single(handles, address)
                 if count or query.source != "edge":
                     return out[:count].copy()
             return self._ask(query, handles)
 
         ask.__name__, ask.__doc__ = query.name, attribute.__doc__
+        ask.__dict__["pinned"] = pinned  # lives as long as the address is in use
         return ask
 
     attribute = cached_property(bound)
     attribute.__doc__ = (
-        f"{query.title}: the adjacent {ELEMENTS[query.target]} of one {query.source} or of many.\n\n"
+        f"{query.title}, of one {query.source} or of many.\n\n"
         "One handle gives a 1-D array, an array of handles (n,) a ``Ragged`` with n rows. Each\n"
         "neighbor comes once; around a vertex or face counterclockwise where the structure\n"
         "knows the order. Cost per handle: thesis, table 1. Raises MeshError for a handle that\n"
