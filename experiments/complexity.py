@@ -1,0 +1,160 @@
+"""From sizes and samples to a verdict on a growth class.
+
+Every model of `experiments.models` is fitted to one robust cost per size, with relative weights.
+"Consistent" and "violated" need evidence against all that would say otherwise; without it, or where
+no model explains the costs, the verdict is "undetermined".
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from experiments.costs import Costs, reduce, resample, slope
+from experiments.evidence import Comparison, account
+from experiments.models import NAMES, Array, canonical, predict
+
+Outcome = Literal["consistent", "violated", "undetermined"]
+Bound = Literal["tight", "upper"]
+
+MIN_SIZES = 4
+MIN_RANGE = 4.0
+MAX_SCATTER = 0.4
+"""Relative scatter of samples beyond which nothing is concluded."""
+MAX_ERROR = 0.12
+"""Relative error of a size's cost beyond which nothing is concluded."""
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What measurements say about a claimed growth class.
+
+    slope, slope_low, slope_high: log-log slope with the memory's part, as `best` sees it, taken
+    out, and its bootstrap interval; raw_slope: of the costs as measured. margin: evidence of `best`
+    against `runner_up`, negative where `best` is preferred for being simpler. noise: relative
+    scatter of samples. coefficients: per model `fixed`, `factor` and `rise` of
+    fixed·r + factor·f(n)·r, where r rises with the memory's latency from 1 to `rise`. errors: per
+    model, the root mean square of the relative residuals.
+    """
+
+    outcome: Outcome
+    expected: str
+    bound: Bound
+    best: str
+    runner_up: str
+    margin: float
+    slope: float
+    slope_low: float
+    slope_high: float
+    raw_slope: float
+    confidence: float
+    noise: float
+    coefficients: Mapping[str, Mapping[str, float]]
+    errors: Mapping[str, float]
+    reason: str
+
+    def as_dict(self) -> dict[str, Any]:
+        """The verdict in what JSON knows: strings, numbers and objects."""
+        return asdict(self)
+
+
+def judge(
+    sizes: ArrayLike,
+    samples: Sequence[ArrayLike],
+    expected: str = "O(1)",
+    latency: ArrayLike | None = None,
+    *,
+    exact: bool = False,
+    bound: Bound = "tight",
+    confidence: float = 0.95,
+    resamples: int = 200,
+    seed: int = 0,
+) -> Verdict:
+    """Judge whether costs measured at several sizes grow as claimed.
+
+    sizes: (k,) at least 1, the variable of the claim; 4 distinct ones over a range of 4 can decide.
+    samples: k arrays of positive costs, of any lengths: seconds, or read counts.
+    expected: a class of `MODELS` in any usual spelling; "O(n_t)" and "O(n_ev)" are linear.
+    latency: (k,) the machine's memory latency at each working set, in any unit. A cost may then
+    wait for memory to any degree, from not at all to entirely.
+    exact: the costs are counts of work, which no cache slows. With neither latency nor exact, a
+    smooth rise of up to `evidence.HIGHEST_RISE` may have happened unseen: what it could explain
+    violates nothing, and where it explains the costs better, nothing is confirmed.
+    bound: "tight" takes the claim for the class itself, as a table of growth classes means it;
+    "upper" for a bound, which slower growth keeps too.
+
+    Growth below `evidence.GROWTH` over the sizes is taken for O(1): beside so large an intercept
+    no class shows. The same input gives the same verdict. Takes milliseconds. Raises ValueError
+    for malformed input; data that are too few or too noisy are "undetermined".
+    """
+    if bound not in ("tight", "upper"):
+        raise ValueError(f'bound must be "tight" or "upper", not {bound!r}')
+    claim = NAMES.index(canonical(expected))
+    costs, caches = account(reduce(sizes, samples), sizes, latency, exact)
+    models = Comparison(costs, caches)
+    outcome, reason = _decide(costs, models, claim, bound)
+    slowed, fast = predict(costs.sizes, caches.measured, models.fit)
+    steady = fast[models.best] / slowed[models.best]
+    replicates = resample(costs, slowed[models.best], resamples, seed) * steady
+    tails = [(1 - confidence) / 2, (1 + confidence) / 2]
+    low, high = np.quantile(slope(costs.sizes, replicates), tails)
+    top = caches.measured.growing[models.fit.rise].max(axis=1)
+    coefficients = zip(NAMES, models.fit.fixed, models.fit.factor, top, strict=True)
+    return Verdict(
+        outcome=outcome,
+        expected=NAMES[claim],
+        bound=bound,
+        best=NAMES[models.best],
+        runner_up=NAMES[models.runner_up],
+        margin=models.margin,
+        slope=float(slope(costs.sizes, costs.cost * steady)),
+        slope_low=float(low),
+        slope_high=float(high),
+        raw_slope=float(slope(costs.sizes, costs.cost)),
+        confidence=confidence,
+        noise=costs.scatter,
+        coefficients={
+            name: {"fixed": float(fixed), "factor": float(factor), "rise": float(rise)}
+            for name, fixed, factor, rise in coefficients
+        },
+        errors=_by_name(np.sqrt(np.mean((slowed / costs.cost - 1) ** 2, axis=1))),
+        reason=reason,
+    )
+
+
+def _decide(costs: Costs, models: Comparison, claim: int, bound: Bound) -> tuple[Outcome, str]:
+    doubt = _doubt(costs, models)
+    if doubt:
+        return "undetermined", doubt
+    best = models.best
+    kept = range(claim + 1) if bound == "upper" else range(claim, claim + 1)
+    if best in kept:
+        rivals = [m for m in range(len(NAMES)) if m not in kept and not models.confirms(best, m)]
+        if not rivals:
+            return "consistent", f"{NAMES[best]} explains the costs, and no other class does."
+    else:
+        rivals = [m for m in kept if not models.rejects(best, m)]
+        if not rivals:
+            return "violated", f"{NAMES[best]} explains the costs, {NAMES[claim]} does not."
+    close = ", ".join(NAMES[m] for m in rivals)
+    return "undetermined", f"{NAMES[best]} explains the costs best, but {close} not much worse."
+
+
+def _doubt(costs: Costs, models: Comparison) -> str:
+    """Why these costs cannot decide anything; empty if they can."""
+    distinct, reach = len(np.unique(costs.sizes)), costs.sizes[-1] / costs.sizes[0]
+    if distinct < MIN_SIZES:
+        return f"Too few sizes: {distinct}, where {MIN_SIZES} are needed."
+    if reach < MIN_RANGE:
+        return f"Too short a range: the largest size is {reach:.1f} times the smallest."
+    if costs.scatter > MAX_SCATTER or costs.error.max() > MAX_ERROR:
+        return f"Too noisy: the samples of a size scatter by {costs.scatter:.0%}."
+    if not models.explained:
+        return f"No class explains the costs; {NAMES[models.best]} comes closest."
+    return ""
+
+
+def _by_name(values: Array) -> dict[str, float]:
+    return dict(zip(NAMES, values.tolist(), strict=True))

@@ -1,0 +1,122 @@
+"""Growth models held against one another, with what caches may have done to the costs.
+
+Models are compared by the evidence of one, f, against another, g,
+
+    (p + d) · ln((p + χ²(g)) / (p + χ²(f))),
+
+the log-likelihood ratio for an error that the samples tell to p degrees of freedom, and the
+residuals to d; where the fits are good it is about χ²(g) less χ²(f). The simplest model is the
+best that explains the costs about as well as the closest one does.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from experiments.costs import Costs
+from experiments.models import NAMES, Fit, Rises, basis, fit, measured_rises, no_rise, unknown_rises
+
+LATENCY_ERROR = 0.03
+"""Relative error of a measured latency."""
+PRIOR = 10.0
+"""Degrees of freedom p to which the samples tell the error."""
+AGAINST_SIMPLER = 7.0
+"""Evidence that rejects a model in favor of a more complex one."""
+AGAINST_COMPLEX = 2.0
+"""Evidence that rejects a model in favor of a simpler one …"""
+NO_BETTER = 2.0
+"""… provided that it explains the costs better by less evidence than this."""
+GROWTH = 1.3
+"""Factor by which a model must grow over the sizes, intercept included, to be told from O(1) …"""
+CLEAR_GROWTH = 2.1
+"""… and by which it would have to grow to be rejected in favor of a simpler one."""
+HIGHEST_RISE = 12.0
+"""Slowdown over the sizes that unmeasured caches are reckoned with."""
+MISFIT = 2.5
+"""χ² per degree of freedom that a model may have and still explain times without a latency …"""
+MISFIT_EXPLAINED = 12.0
+"""… and with it, or exact counts: caches are accounted for, what is left is small print."""
+
+
+@dataclass(frozen=True)
+class Caches:
+    """What caches may have done to costs."""
+
+    measured: Rises
+    """Rises that the measured latency, or its absence, allows."""
+    unmeasured: Rises | None
+    """Rises that are possible besides, because nobody measured."""
+    misfit: float
+    """χ² per degree of freedom up to which a model explains the costs."""
+    parameters: int
+    """Free parameters of a model: intercept, factor, and the rise if there is one."""
+
+
+def account(
+    costs: Costs, sizes: ArrayLike, latency: ArrayLike | None, exact: bool
+) -> tuple[Costs, Caches]:
+    """The costs, with the latency's error added to theirs, and what caches may have done to them.
+
+    sizes: (k,) in the order of latency: (k,).
+    """
+    if latency is None:
+        unmeasured = None if exact else unknown_rises(costs.sizes, HIGHEST_RISE)
+        misfit = MISFIT_EXPLAINED if exact else MISFIT
+        return costs, Caches(no_rise(len(costs.sizes)), unmeasured, misfit, 2)
+    if exact:
+        raise ValueError("exact counts wait for no memory: give either latency or exact")
+    waits = np.asarray(latency, dtype=np.float64)
+    if waits.shape != costs.sizes.shape or not np.all(np.isfinite(waits) & (waits > 0)):
+        raise ValueError("latency must be one positive number per size")
+    rises = measured_rises(waits[np.argsort(np.asarray(sizes, dtype=np.float64), kind="stable")])
+    error = np.sqrt(costs.error**2 + LATENCY_ERROR**2)
+    return replace(costs, error=error), Caches(rises, None, MISFIT_EXPLAINED, 3)
+
+
+class Comparison:
+    """All models fitted to the same costs. Models go by their indices in `NAMES`."""
+
+    def __init__(self, costs: Costs, caches: Caches) -> None:
+        self.costs = costs
+        self.freedom = max(len(costs.sizes) - caches.parameters, 1)
+        self.fit = self._fit(caches.measured, GROWTH)
+        self.chi2 = self.fit.chi2
+        self.clear = self._fit(caches.measured, CLEAR_GROWTH).chi2
+        self.excused, self.clear_excused = self.chi2, self.clear
+        if caches.unmeasured is not None:
+            excused = self._fit(caches.unmeasured, GROWTH).chi2
+            clear = self._fit(caches.unmeasured, CLEAR_GROWTH).chi2
+            self.excused = np.minimum(self.chi2, excused)
+            self.clear_excused = np.minimum(self.clear, clear)
+        closest = self.chi2.min()
+        level = (self.evidence(closest, chi2) < NO_BETTER for chi2 in self.chi2)
+        self.best = list(level).index(True)
+        self.runner_up = min(set(range(len(NAMES))) - {self.best}, key=lambda m: self.chi2[m])
+        self.margin = self.evidence(self.chi2[self.best], self.chi2[self.runner_up])
+        self.explained = bool(self.chi2[self.best] <= caches.misfit * self.freedom)
+
+    def _fit(self, rises: Rises, growth: float) -> Fit:
+        return fit(basis(self.costs.sizes, rises, growth), self.costs.cost, self.costs.error)
+
+    def evidence(self, better: float, worse: float) -> float:
+        """Evidence of a model with misfit `better` against one with misfit `worse`."""
+        return float((PRIOR + self.freedom) * np.log((PRIOR + worse) / (PRIOR + better)))
+
+    def rejects(self, favored: int, other: int, excuse: bool = True) -> bool:
+        """Whether the costs are of class `favored` rather than `other`.
+
+        excuse: even if unmeasured caches may have bent the costs of `other`.
+        """
+        better = self.chi2[favored]
+        if other < favored:
+            worse = self.excused if excuse else self.chi2
+            return self.evidence(better, worse[other]) >= AGAINST_SIMPLER
+        worse = self.clear_excused if excuse else self.clear
+        no_better = self.evidence(self.chi2[other], better) < NO_BETTER
+        return no_better and self.evidence(better, worse[other]) >= AGAINST_COMPLEX
+
+    def confirms(self, claimed: int, rival: int) -> bool:
+        """Whether the claim beats a rival that unmeasured caches do not make the better one."""
+        excused = self.excused if rival < claimed else self.clear_excused
+        return self.rejects(claimed, rival, excuse=False) and excused[rival] >= self.chi2[claimed]
