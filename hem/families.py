@@ -1,6 +1,7 @@
 """Families of meshes that can be had at any size from 100 to 1,000,000 vertices."""
 
 import difflib
+import operator
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -44,7 +45,7 @@ def generate(family: str, n_vertices: int, seed: int = 0) -> TriangleMesh:
     Cost: O(n) or O(n log n) once, some 30 s at worst; afterwards that of reading a file. Raises
     MeshError for a family or a size that does not exist, naming those that do.
     """
-    chosen = _family(family)
+    chosen, n_vertices = _family(family), operator.index(n_vertices)
     if not chosen.smallest <= n_vertices <= LARGEST:
         raise MeshError(
             f"no {family} of {n_vertices:,} vertices: reachable are {chosen.smallest} … "

@@ -4,6 +4,7 @@ import contextlib
 import ctypes
 import io
 import os
+import re
 from collections.abc import Iterator
 from functools import cache
 from types import ModuleType
@@ -18,34 +19,36 @@ from hem.mesh import TriangleMesh
 # and Ubuntu packages that hold them.
 SYSTEM_LIBRARIES = {
     "libGL.so.1": "libgl1",
-    "libGLU.so.1": "libglu1-mesa",
     "libOpenGL.so.0": "libopengl0",
-    "libEGL.so.1": "libegl1",
     "libGLX.so.0": "libglx0",
     "libX11.so.6": "libx11-6",
     "libxcb.so.1": "libxcb1",
-    "libgomp.so.1": "libgomp1",
     "libgmp.so.10": "libgmp10",
 }
 _ALWAYS = ("libgl1", "libopengl0")
-_NEEDED_FILTERS = {"create_torus", "create_implicit_surface", "meshing_repair_non_manifold_edges"}
+_ABSENT = re.compile(r"(lib[\w+-]+\.so[.\d]*): cannot open shared object file")
+
+
+def meshlab() -> ModuleType:
+    """The pymeshlab module. ImportError names the system packages to install where some lack."""
+    module, problem = _imported()
+    if module is None:
+        raise ImportError(problem)
+    return module
 
 
 @cache
-def meshlab() -> ModuleType:
-    """The pymeshlab module. ImportError names the system packages to install where some lack."""
+def _imported() -> tuple[ModuleType | None, str]:
+    """The module, or what is wrong with it."""
     said = io.StringIO()
     try:
         with contextlib.redirect_stdout(said), undisturbed():
             import pymeshlab
     except ImportError as error:
-        raise ImportError(_advice(str(error))) from error
-    # pymeshlab imports even when its plug-ins cannot be loaded; it prints a warning then.
-    plugins_lack = "libio_base" in said.getvalue()
-    if plugins_lack or not set(pymeshlab.filter_list()) >= _NEEDED_FILTERS:
-        raise ImportError(_advice(said.getvalue().strip()))
-    module: ModuleType = pymeshlab
-    return module
+        return None, _advice(str(error))
+    # Plug-ins that cannot be loaded are only printed; without this one there are no file formats.
+    broken = "libio_base.so" in said.getvalue()
+    return (None, _advice(said.getvalue())) if broken else (pymeshlab, "")
 
 
 def mesh_set(mesh: TriangleMesh | None = None) -> Any:
@@ -99,11 +102,12 @@ def undisturbed() -> Iterator[None]:
 
 
 def _advice(problem: str) -> str:
-    if "No module named" in problem:
-        return f"{problem}; install it with: python -m pip install pymeshlab"
-    lacking = [package for library, package in SYSTEM_LIBRARIES.items() if library in problem]
-    packages = " ".join(dict.fromkeys((*_ALWAYS, *lacking)))
+    """What to install, from the words of a failed import or of plug-ins that failed to load."""
+    absent = list(dict.fromkeys(_ABSENT.findall(problem)))
+    if not absent:
+        return f"pymeshlab cannot be loaded: {problem}; python -m pip install pymeshlab brings it"
+    packages = dict.fromkeys([*_ALWAYS, *(SYSTEM_LIBRARIES.get(name, name) for name in absent)])
     return (
-        f"pymeshlab cannot be loaded: {problem}. It needs system libraries that are missing here; "
-        f"on Debian or Ubuntu install them with: apt-get install {packages}"
+        f"pymeshlab cannot be loaded, for want of the system library {', '.join(absent)}; "
+        f"on Debian or Ubuntu install it with: apt-get install {' '.join(packages)}"
     )

@@ -1,0 +1,207 @@
+"""Files: what is saved comes back, and what is broken is refused by name and reason."""
+
+import os
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import hem
+
+PLY = """ply
+format ascii 1.0
+element vertex 3
+property float x
+property float y
+property float z
+element face 1
+property list uchar int vertex_indices
+end_header
+0 0 0
+1 0 0
+1 1 0
+3 0 1 {}
+"""
+OFF = "OFF\n4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 {}\n3 0 1 2\n3 0 2 {}\n"
+OBJ = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 1 3 {}\n"
+FAITHFUL = ("ply", "obj", "off", "3ds")
+FORMATS = (*FAITHFUL, "stl", "wrl", "dae", "x3d", "ctm", "3mf")
+
+
+@pytest.fixture
+def lumpy() -> hem.TriangleMesh:
+    """A closed surface with a vertex without faces, and two vertices of one position."""
+    mesh = hem.generate("isosurface", 400)
+    points = np.vstack([mesh.points, [[9, 9, 9]], mesh.points[:1]])
+    return hem.TriangleMesh(points, mesh.triangles)
+
+
+def written(path: Path, content: str | bytes) -> Path:
+    path.write_bytes(content if isinstance(content, bytes) else content.encode())
+    return path
+
+
+@pytest.mark.parametrize("extension", FAITHFUL)
+def test_a_faithful_format_gives_back_every_bit(
+    tmp_path: Path, lumpy: hem.TriangleMesh, extension: str
+) -> None:
+    file = tmp_path / f"mesh.{extension}"
+    hem.save(lumpy, file)
+    back = hem.load(file)
+    assert np.array_equal(back.points, lumpy.points)
+    assert np.array_equal(back.triangles, lumpy.triangles)
+    assert os.listdir(tmp_path) == [file.name], "nothing is left beside"
+
+
+@pytest.mark.parametrize("extension", FORMATS)
+def test_every_format_gives_back_the_shape(tmp_path: Path, extension: str) -> None:
+    sphere = hem.generate("sphere", 162)
+    hem.save(sphere, tmp_path / f"mesh.{extension}")
+    back = hem.load(tmp_path / f"mesh.{extension}").welded(1e-5)
+    hem.require_manifold(back)
+    assert (len(back.points), len(back.triangles)) == (162, 320)
+    assert np.allclose(np.linalg.norm(back.points, axis=1), 1, atol=1e-3)
+
+
+def test_stl_has_one_vertex_per_position_and_none_without_faces(
+    tmp_path: Path, lumpy: hem.TriangleMesh
+) -> None:
+    hem.save(lumpy, tmp_path / "mesh.stl")
+    back = hem.load(tmp_path / "mesh.stl")
+    assert len(back.points) == len(lumpy.points) - 2
+    shape = back.points[back.triangles], lumpy.points[lumpy.triangles]
+    assert np.array_equal(*shape)
+
+
+@pytest.mark.parametrize("extension", FORMATS)
+def test_a_file_cut_anywhere_before_its_last_lines_is_refused(
+    tmp_path: Path, extension: str
+) -> None:
+    whole = tmp_path / f"whole.{extension}"
+    hem.save(hem.generate("sphere", 42), whole)
+    data = whole.read_bytes()
+    last_lines = {"obj": 60, "off": 8, "ctm": 8}.get(extension, 2)
+    for end in [*range(8), *np.linspace(8, len(data) - last_lines, 25).astype(int)]:
+        cut = written(tmp_path / f"cut.{extension}", data[:end])
+        for repair in (False, True):
+            with pytest.raises(hem.MeshError, match=f"cut.{extension}"):
+                hem.load(cut, repair=repair)
+
+
+def test_a_cut_text_stl_is_refused(tmp_path: Path) -> None:
+    facet = "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 {} 0\nendloop\n"
+    body = "".join(facet.format(i) + "endfacet\n" for i in range(1, 30))
+    whole = f"solid some\n{body}endsolid some\n"
+    assert len(hem.load(written(tmp_path / "whole.stl", whole)).triangles) == 29
+    for share in (0.2, 0.5, 0.9):
+        cut = written(tmp_path / "cut.stl", whole[: int(share * len(whole))])
+        with pytest.raises(hem.MeshError, match="cut short"):
+            hem.load(cut)
+
+
+@pytest.mark.parametrize("extension", FORMATS)
+@pytest.mark.parametrize("junk", [b"this is no mesh at all\n" * 9, bytes(range(256)) * 9])
+def test_what_is_no_mesh_is_refused(tmp_path: Path, extension: str, junk: bytes) -> None:
+    with pytest.raises(hem.MeshError, match=f"junk.{extension}"):
+        hem.load(written(tmp_path / f"junk.{extension}", junk))
+
+
+def test_what_cannot_be_opened_is_refused_with_the_reason(tmp_path: Path) -> None:
+    with pytest.raises(hem.MeshError, match=r"nowhere\.ply: there is no such file"):
+        hem.load(tmp_path / "nowhere.ply")
+    with pytest.raises(hem.MeshError, match="it is a folder"):
+        hem.load(tmp_path)
+    with pytest.raises(hem.MeshError, match="the file is empty"):
+        hem.load(written(tmp_path / "blank.obj", " \n"))
+    with pytest.raises(hem.MeshError, match=r"Unknown format for load: foo .*ply, obj"):
+        hem.load(written(tmp_path / "mesh.foo", PLY))
+    with pytest.raises(hem.MeshError, match="no extension"):
+        hem.load(written(tmp_path / "mesh", PLY))
+    with pytest.raises(hem.MeshError, match="no triangles in it, only 4 points"):
+        hem.load(written(tmp_path / "points.obj", OBJ[: OBJ.index("f")]))
+
+
+def test_what_cannot_be_saved_is_refused_with_the_reason(tmp_path: Path) -> None:
+    mesh = hem.TriangleMesh(np.eye(3), [[0, 1, 2]])
+    with pytest.raises(hem.MeshError, match="Unknown format for save: foo"):
+        hem.save(mesh, tmp_path / "mesh.foo")
+    with pytest.raises(hem.MeshError, match="there is no folder"):
+        hem.save(mesh, tmp_path / "nowhere" / "mesh.ply")
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(
+    ("name", "content"),
+    [
+        ("corner out of range.ply", PLY.format(7)),
+        ("corner below range.ply", PLY.format(-1)),
+        ("corner out of range.off", OFF.format(0, 7)),
+        ("corner below range.off", OFF.format(0, -1)),
+        ("repeated corner.off", OFF.format(0, 2)),
+        ("not finite.off", OFF.format("nan", 3)),
+        ("corner out of range.obj", OBJ.format(9)),
+        ("repeated corner.obj", OBJ.format(3)),
+    ],
+)
+def test_unusable_elements_are_never_left_out_silently(
+    tmp_path: Path, name: str, content: str
+) -> None:
+    with pytest.raises(hem.MeshError, match=name):
+        hem.load(written(tmp_path / name, content))
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "faces"),
+    [
+        ("a.off", OFF.format(0, -1), 1), ("b.off", OFF.format(0, 2), 1),
+        ("c.obj", OBJ.format(3), 1), ("d.obj", OBJ.format(9), 1), ("e.obj", OBJ.format(4), 2),
+    ],
+)  # fmt: skip
+def test_repair_leaves_unusable_elements_out(
+    tmp_path: Path, name: str, content: str, faces: int
+) -> None:
+    assert len(hem.load(written(tmp_path / name, content), repair=True).triangles) == faces
+
+
+@pytest.mark.parametrize(
+    "faces",
+    [
+        ["1 2 3", "2 1 4", "1 2 5"],  # an edge in three faces
+        ["1 2 3", "1 2 4"],  # the same way along an edge
+        ["1 2 3", "1 4 5"],  # two fans in one vertex
+        ["1 2 3", "2 3 1", "1 2 4"],  # a face twice
+    ],
+)
+def test_repair_makes_a_surface_of_what_is_none(tmp_path: Path, faces: list[str]) -> None:
+    corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 -1 0\nv 0 0 1\n"
+    file = written(tmp_path / "mesh.obj", corners + "".join(f"f {face}\n" for face in faces))
+    with pytest.raises(hem.NonManifoldError):
+        hem.require_manifold(hem.load(file))
+    mended = hem.load(file, repair=True)
+    hem.require_manifold(mended)
+    assert len(mended.triangles) >= 2
+
+
+def test_a_one_sided_surface_is_beyond_repair(tmp_path: Path) -> None:
+    strip = [f"f {i + 1} {(i + 1) % 5 + 1} {(i + 2) % 5 + 1}\n" for i in range(5)]
+    moebius = "".join(f"v {np.cos(i)} {np.sin(i)} {i}\n" for i in range(5)) + "".join(strip)
+    file = written(tmp_path / "moebius.obj", moebius)
+    with pytest.raises(hem.NonManifoldError, match="beyond repair"):
+        hem.load(file, repair=True)
+
+
+def test_polygons_are_cut_into_triangles(tmp_path: Path) -> None:
+    square = OFF.format(0, 3).replace("4 2 0", "4 1 0").replace("3 0 1 2\n3 0 2 3", "4 0 1 2 3")
+    assert len(hem.load(written(tmp_path / "square.off", square)).triangles) == 2
+
+
+def test_paths_may_be_relative_and_the_current_folder_stays(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "sub ü").mkdir()
+    monkeypatch.chdir(tmp_path)
+    mesh = hem.TriangleMesh(np.eye(3), [[0, 1, 2]])
+    hem.save(mesh, "sub ü/mesh.ply")
+    assert len(hem.load("sub ü/mesh.ply").points) == 3
+    assert Path.cwd() == tmp_path
+    assert capfd.readouterr() == ("", "")

@@ -1,0 +1,174 @@
+"""TriangleMesh: what it takes, what it refuses, and what it tells of itself."""
+
+import pickle
+import subprocess
+import sys
+from itertools import combinations
+from typing import Literal
+
+import numpy as np
+import pytest
+from numpy.typing import ArrayLike
+
+import hem
+
+SQUARE = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], np.float32)
+HALVES = np.array([[0, 1, 2], [0, 2, 3]], np.int32)
+
+
+def test_arrays_of_the_right_type_are_shared_read_only_and_stay_the_callers() -> None:
+    points, triangles = SQUARE.copy(), HALVES.copy()
+    mesh = hem.TriangleMesh(points, triangles)
+    for kept, given in ((mesh.points, points), (mesh.triangles, triangles)):
+        assert np.shares_memory(kept, given)
+        assert given.flags.writeable
+        with pytest.raises(ValueError, match="read-only"):
+            kept[0, 0] = 1
+
+
+@pytest.mark.parametrize("order", ["C", "F"])
+@pytest.mark.parametrize("kind", [np.int8, np.uint16, np.int64, np.uint64, np.float64])
+def test_other_types_and_orders_become_contiguous_float32_and_int32(
+    order: Literal["C", "F"], kind: type[np.generic]
+) -> None:
+    mesh = hem.TriangleMesh(SQUARE.astype(np.float64, order=order), HALVES.astype(kind))
+    assert [mesh.points.dtype.name, mesh.triangles.dtype.name] == ["float32", "int32"]
+    assert mesh.points.flags.c_contiguous
+    assert mesh.triangles.flags.c_contiguous
+    assert np.array_equal(mesh.points, SQUARE)
+    assert np.array_equal(mesh.triangles, HALVES)
+
+
+@pytest.mark.parametrize(
+    ("points", "triangles", "words", "rows"),
+    [
+        (SQUARE[:, :2], HALVES, "shape", None),
+        (SQUARE, [[0, 1]], "shape", None),
+        (SQUARE, [0, 1, 2], "shape", None),
+        (SQUARE, [[0, 1], [2]], "rows of three", None),
+        (SQUARE, [["a", "b", "c"]], "numbers", None),
+        (SQUARE, [[0, 1, 2**70]], "64 bits", None),
+        (SQUARE.astype(complex), HALVES, "numbers", None),
+        (np.where(SQUARE > 0, np.nan, SQUARE), HALVES, "not finite", [1, 2, 3]),
+        (np.where(SQUARE > 0, np.inf, SQUARE), HALVES, "not finite", [1, 2, 3]),
+        (SQUARE.astype(float) * 1e300, HALVES, "float32", [1, 2, 3]),
+        (SQUARE, [[0, 1, 2], [0, 1, 4]], "out of the range 0 … 3", [1]),
+        (SQUARE, [[0, -1, 2], [0, 1, 2]], "out of the range", [0]),
+        (SQUARE, [[0, 1, 2], [0, 1, 2**31]], "beyond int32", [1]),
+        (SQUARE, [[1, 2, 3], [1, 3, 4]], "count from 1", [1]),
+        (SQUARE, [[0, 1, 2], [0, 1, 2.5]], "whole numbers", [1]),
+        (SQUARE, [[0, 1, np.nan]], "whole numbers", [0]),
+        (SQUARE, [[0, 1, 2], [3, 1, 3], [2, 2, 1]], "a vertex twice", [1, 2]),
+        ([], [[0, 1, 2]], "no points", [0]),
+    ],
+)
+def test_what_is_no_mesh_is_refused_naming_the_rows(
+    points: ArrayLike, triangles: ArrayLike, words: str, rows: list[int] | None
+) -> None:
+    with pytest.raises(hem.MeshError, match=words) as refusal:
+        hem.TriangleMesh(points, triangles)
+    named = refusal.value.elements.get("rows")
+    assert (named if named is None else named.tolist()) == rows
+
+
+def test_an_error_lists_the_first_elements_and_how_many_more_there_are() -> None:
+    error = hem.MeshError("wrong", edges=[[i, i + 1] for i in range(9)], faces=[])
+    assert str(error) == "wrong (edges: 0-1, 1-2, 2-3, 3-4, 4-5, 5-6 and 3 more)"
+    assert list(error.elements) == ["edges"]
+    again = pickle.loads(pickle.dumps(error))
+    assert str(again) == str(error)
+    assert np.array_equal(again.elements["edges"], error.elements["edges"])
+
+
+def test_errors_are_value_errors_and_topology_apart_from_mesh() -> None:
+    assert issubclass(hem.NonManifoldError, hem.MeshError)
+    assert issubclass(hem.MeshError, ValueError)
+    assert issubclass(hem.TopologyError, ValueError)
+    assert not issubclass(hem.TopologyError, hem.MeshError)
+
+
+@pytest.mark.parametrize("none", [[], np.zeros((0, 3)), np.zeros((0, 3), np.int64)])
+def test_the_empty_mesh_is_legal(none: ArrayLike) -> None:
+    mesh = hem.TriangleMesh(none, none)
+    assert (mesh.points.shape, mesh.triangles.shape) == ((0, 3), (0, 3))
+    assert [mesh.points.dtype.name, mesh.triangles.dtype.name] == ["float32", "int32"]
+    summary = mesh.summary()
+    assert (summary.vertices, summary.edges, summary.faces, summary.components) == (0, 0, 0, 0)
+    assert mesh.welded().triangles.shape == mesh.flipped().triangles.shape == (0, 3)
+
+
+def test_flipping_turns_every_face_and_twice_gives_the_mesh() -> None:
+    mesh = hem.TriangleMesh(SQUARE, HALVES)
+    turned = {tuple(np.roll(t, -int(np.argmin(t)))) for t in mesh.flipped().triangles}
+    assert turned == {(0, 2, 1), (0, 3, 2)}
+    assert np.array_equal(mesh.flipped().flipped().triangles, HALVES)
+
+
+def test_welding_leaves_one_vertex_per_position_in_order_of_first_occurrence() -> None:
+    random = np.random.default_rng(1)
+    points = random.integers(-1, 2, (60, 3)).astype(np.float32) * random.choice([1, -1.0], (60, 1))
+    triangles = [t for t in random.integers(0, 60, (200, 3)) if len(set(t)) == 3]
+    mesh = hem.TriangleMesh(points, triangles)
+    welded = mesh.welded()
+
+    positions = list(dict.fromkeys(tuple(p) for p in points.tolist()))  # -0.0 is 0.0 as a key
+    assert [tuple(p) for p in welded.points.tolist()] == positions
+    places = [[tuple(points[v].tolist()) for v in t] for t in triangles]
+    kept = [t for t in places if len(set(t)) == 3]
+    assert [[tuple(p) for p in t] for t in welded.points[welded.triangles].tolist()] == kept
+
+
+def test_welding_within_a_tolerance_joins_chains_and_parts_the_rest() -> None:
+    random = np.random.default_rng(2)
+    points = random.random((120, 3)).astype(np.float32)
+    tolerance = 0.12
+    label = np.arange(120)
+    for i, j in combinations(range(120), 2):
+        if np.linalg.norm(points[i].astype(float) - points[j]) <= tolerance:
+            label[label == label[j]] = label[i]
+    first = sorted(min(np.flatnonzero(label == x)) for x in set(label))
+    welded = hem.TriangleMesh(points, []).welded(tolerance)
+    assert 1 < len(welded.points) < 120
+    assert np.array_equal(welded.points, points[first])
+
+
+@pytest.mark.parametrize("tolerance", [-1.0, np.nan, np.inf])
+def test_a_tolerance_is_finite_and_not_negative(tolerance: float) -> None:
+    with pytest.raises(hem.MeshError, match="tolerance"):
+        hem.TriangleMesh(SQUARE, HALVES).welded(tolerance)
+
+
+def test_a_summary_counts_what_sets_count() -> None:
+    random = np.random.default_rng(3)
+    triangles = [t for t in random.integers(0, 40, (25, 3)).tolist() if len(set(t)) == 3]
+    mesh = hem.TriangleMesh(random.random((50, 3)), triangles)
+    edges = [frozenset(p) for t in triangles for p in combinations(t, 2)]
+    used = {v for t in triangles for v in t}
+    valences = [sum(v in e for e in set(edges)) for v in used]
+    parts: list[set[int]] = []
+    for triangle in triangles:
+        touching = [part for part in parts if part & set(triangle)]
+        parts = [p for p in parts if p not in touching] + [set(triangle).union(*touching)]
+
+    summary = mesh.summary()
+    assert (summary.vertices, summary.edges, summary.faces) == (50, len(set(edges)), len(triangles))
+    assert summary.unreferenced == 50 - len(used)
+    assert summary.border_edges == sum(edges.count(e) == 1 for e in set(edges))
+    assert summary.components == len(parts)
+    assert summary.euler == len(used) - len(set(edges)) + len(triangles)
+    assert (summary.valence_min, summary.valence_max) == (min(valences), max(valences))
+    assert summary.valence_mean == pytest.approx(np.mean(valences))
+
+
+def test_a_summary_and_a_mesh_read_well() -> None:
+    mesh = hem.TriangleMesh(np.vstack([SQUARE, [[5, 5, 5]]]), HALVES)
+    assert repr(mesh) == "TriangleMesh(5 vertices, 2 faces)"
+    for line in ("vertices      5 (1 without faces)", "edges         5 (4 on the border)"):
+        assert line in str(mesh.summary())
+
+
+def test_importing_hem_imports_none_of_the_heavy_libraries() -> None:
+    heavy = ["pymeshlab", "pandas", "matplotlib", "scipy", "numba"]
+    program = f"import hem, sys; print([m for m in {heavy} if m in sys.modules])"
+    said = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
+    assert said.stdout.strip() == "[]", said.stderr
