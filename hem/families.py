@@ -42,7 +42,7 @@ def generate(family: str, n_vertices: int, seed: int = 0) -> TriangleMesh:
     FAMILIES says what there is and which sizes it reaches. `seed` changes the random families
     only; the same arguments always give the same mesh. The mesh is kept on disk (hem.cache).
 
-    Cost: O(n) or O(n log n) once, some 30 s at worst; afterwards that of reading a file. Raises
+    Cost: O(n) or O(n log n) once, some 20 s at worst; afterwards that of reading a file. Raises
     MeshError for a family or a size that does not exist, naming those that do.
     """
     chosen, n_vertices = _family(family), operator.index(n_vertices)

@@ -15,7 +15,7 @@ _SAVE_OPTIONS: dict[str, dict[str, bool]] = {
     "obj": _PLAIN,
 }
 _SAYS_ONLY_WHERE = ("Unable to open file", "Error encountered while loading file", "File:", '"')
-_COMMON = "ply, obj, off, stl, 3ds, dae, wrl, x3d, ctm, 3mf"
+_COMMON = "ply, obj, off, stl, 3ds, dae, wrl, x3d, ctm"
 
 
 def load(path: str | os.PathLike[str], repair: bool = False) -> TriangleMesh:

@@ -25,7 +25,7 @@ end_header
 OFF = "OFF\n4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 {}\n3 0 1 2\n3 0 2 {}\n"
 OBJ = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 1 3 {}\n"
 FAITHFUL = ("ply", "obj", "off", "3ds")
-FORMATS = (*FAITHFUL, "stl", "wrl", "dae", "x3d", "ctm", "3mf")
+FORMATS = (*FAITHFUL, "stl", "wrl", "dae", "x3d", "ctm")
 
 
 @pytest.fixture
