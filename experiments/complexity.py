@@ -135,11 +135,13 @@ def _decide(costs: Costs, models: Comparison, claim: int, bound: Bound) -> tuple
         if not rivals:
             return "consistent", f"{NAMES[best]} explains the costs, and no other class does."
     else:
-        rivals = [m for m in kept if not models.rejects(best, m)]
+        rivals = [m for m in kept if not models.refutes(best, m)]
         if not rivals:
             return "violated", f"{NAMES[best]} explains the costs, {NAMES[claim]} does not."
     close = ", ".join(NAMES[m] for m in rivals)
-    return "undetermined", f"{NAMES[best]} explains the costs best, but {close} not much worse."
+    unseen = " once caches of unknown latency are allowed for" if models.unmeasured else ""
+    reason = f"{NAMES[best]} explains the costs best, but {close} cannot be ruled out{unseen}."
+    return "undetermined", reason
 
 
 def _doubt(costs: Costs, models: Comparison) -> str:
@@ -152,7 +154,8 @@ def _doubt(costs: Costs, models: Comparison) -> str:
     if costs.scatter > MAX_SCATTER or costs.error.max() > MAX_ERROR:
         return f"Too noisy: the samples of a size scatter by {costs.scatter:.0%}."
     if not models.explained:
-        return f"No class explains the costs; {NAMES[models.best]} comes closest."
+        hint = ", and caches of unknown latency might have bent them" if models.unmeasured else ""
+        return f"No class explains the costs: {NAMES[models.best]} comes closest{hint}."
     return ""
 
 

@@ -21,12 +21,14 @@ LATENCY_ERROR = 0.03
 """Relative error of a measured latency."""
 PRIOR = 10.0
 """Degrees of freedom p to which the samples tell the error."""
-AGAINST_SIMPLER = 7.0
-"""Evidence that rejects a model in favor of a more complex one."""
-AGAINST_COMPLEX = 2.0
-"""Evidence that rejects a model in favor of a simpler one …"""
+AGAINST_SIMPLER = 6.5
+"""Evidence that rules out a model in favor of a more complex one."""
+AGAINST_COMPLEX = 1.5
+"""Evidence that rules out a more complex rival of a claim …"""
+AGAINST_COMPLEX_CLAIM = 4.0
+"""… and a claim more complex than what explains the costs: a violation accuses …"""
 NO_BETTER = 2.0
-"""… provided that it explains the costs better by less evidence than this."""
+"""… provided that the simpler one explains the costs worse by less evidence than this."""
 GROWTH = 1.3
 """Factor by which a model must grow over the sizes, intercept included, to be told from O(1) …"""
 CLEAR_GROWTH = 2.1
@@ -83,6 +85,7 @@ class Comparison:
         self.fit = self._fit(caches.measured, GROWTH)
         self.chi2 = self.fit.chi2
         self.clear = self._fit(caches.measured, CLEAR_GROWTH).chi2
+        self.unmeasured = caches.unmeasured is not None
         self.excused, self.clear_excused = self.chi2, self.clear
         if caches.unmeasured is not None:
             excused = self._fit(caches.unmeasured, GROWTH).chi2
@@ -103,20 +106,22 @@ class Comparison:
         """Evidence of a model with misfit `better` against one with misfit `worse`."""
         return float((PRIOR + self.freedom) * np.log((PRIOR + worse) / (PRIOR + better)))
 
-    def rejects(self, favored: int, other: int, excuse: bool = True) -> bool:
-        """Whether the costs are of class `favored` rather than `other`.
-
-        excuse: even if unmeasured caches may have bent the costs of `other`.
-        """
-        better = self.chi2[favored]
-        if other < favored:
-            worse = self.excused if excuse else self.chi2
-            return self.evidence(better, worse[other]) >= AGAINST_SIMPLER
-        worse = self.clear_excused if excuse else self.clear
-        no_better = self.evidence(self.chi2[other], better) < NO_BETTER
-        return no_better and self.evidence(better, worse[other]) >= AGAINST_COMPLEX
-
     def confirms(self, claimed: int, rival: int) -> bool:
-        """Whether the claim beats a rival that unmeasured caches do not make the better one."""
-        excused = self.excused if rival < claimed else self.clear_excused
-        return self.rejects(claimed, rival, excuse=False) and excused[rival] >= self.chi2[claimed]
+        """Whether a claim beats a rival, which unmeasured caches do not make the better one."""
+        found = self.chi2[claimed]
+        if rival < claimed:
+            ruled_out = self.evidence(found, self.chi2[rival]) >= AGAINST_SIMPLER
+            return ruled_out and self.excused[rival] >= found
+        ruled_out = self.evidence(found, self.clear[rival]) >= AGAINST_COMPLEX
+        return ruled_out and self.clear_excused[rival] >= found and self._no_better(rival, claimed)
+
+    def refutes(self, favored: int, claimed: int) -> bool:
+        """Whether a model rules out a claim, even one that unmeasured caches may have bent."""
+        found = self.chi2[favored]
+        if claimed < favored:
+            return self.evidence(found, self.excused[claimed]) >= AGAINST_SIMPLER
+        ruled_out = self.evidence(found, self.clear_excused[claimed]) >= AGAINST_COMPLEX_CLAIM
+        return ruled_out and self._no_better(claimed, favored)
+
+    def _no_better(self, complex_: int, simpler: int) -> bool:
+        return self.evidence(self.chi2[complex_], self.chi2[simpler]) < NO_BETTER

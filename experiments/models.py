@@ -32,9 +32,9 @@ MODELS: dict[str, Callable[[Array], Array]] = {
 NAMES = tuple(MODELS)
 
 
-def _letters(claim: str) -> str:
+def _bare(claim: str) -> str:
     plain = re.sub(r"(?<=n)_\w+", "", claim.lower()).replace("sqrt", "√")
-    return re.sub(r"[^1a-z√²]", "", re.sub(r"\^2|\*\*2", "²", plain))
+    return re.sub(r"[\s()·]", "", re.sub(r"\^2|\*\*2", "²", plain))
 
 
 def canonical(claim: str) -> str:
@@ -43,7 +43,7 @@ def canonical(claim: str) -> str:
     Raises ValueError for a class that is not modelled.
     """
     for name in NAMES:
-        if _letters(name) == _letters(claim):
+        if _bare(name) == _bare(claim):
             return name
     raise ValueError(f"unknown growth class {claim!r}; known are {', '.join(NAMES)}")
 

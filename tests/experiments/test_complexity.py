@@ -1,0 +1,266 @@
+"""Laws of the judge: right on curves of known class, hardly ever wrong, silent where data are."""
+
+import json
+from collections import Counter
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from experiments.complexity import Verdict, judge
+
+Array = NDArray[np.float64]
+
+CURVES: dict[str, Callable[[Array], Array]] = {
+    "O(1)": lambda n: n**0.0,
+    "O(log n)": lambda n: np.log2(n),
+    "O(√n)": lambda n: n**0.5,
+    "O(n)": lambda n: n,
+    "O(n log n)": lambda n: n * np.log2(n),
+    "O(n²)": lambda n: n**2.0,
+}
+RISES = ("none", "prefetched", "measured", "unmeasured")
+
+
+@dataclass
+class Cell:
+    sizes: Array
+    samples: list[Array]
+    latency: Array | None
+
+
+def machine_latency(working_set: Array) -> Array:
+    """Nanoseconds per dependent load: steps at 32 KB, 1 MB and 30 MB, smooth in the logarithm."""
+    steps = ((32e3, 4 / 1.2), (1e6, 15 / 4), (30e6, 100 / 15))
+    x = np.log(working_set)
+    rise = sum(np.log(factor) / (1 + np.exp((np.log(at) - x) / 0.35)) for at, factor in steps)
+    return 1.2 * np.exp(rise)
+
+
+def some_sizes(rng: np.random.Generator) -> tuple[Array, float]:
+    """Faces of a mesh or valences of a vertex, and the bytes that one of them takes."""
+    faces = bool(rng.random() < 0.5)
+    first, last = (100, rng.choice([1e5, 1e6])) if faces else (4, 4096)
+    low, high = (30, 400) if faces else (3e3, 4e4)
+    sizes = np.round(np.geomspace(first, last, rng.integers(5, 10)))
+    return sizes, float(np.exp(rng.uniform(np.log(low), np.log(high))))
+
+
+def slowdown(latency: Array, rng: np.random.Generator) -> Array:
+    """What a query makes of a latency: about tenfold, or less where the latency rises less."""
+    own = latency / latency[0]
+    share = min(rng.uniform(8, 12) - 1, own.max() - 1) / (own.max() - 1)
+    return 1 + share * (own - 1)
+
+
+def cell(rng: np.random.Generator, name: str, intercept: float, noise: float, rise: str) -> Cell:
+    sizes, size_bytes = some_sizes(rng)
+    latency = machine_latency(sizes * size_bytes)
+    growing = CURVES[name](sizes)
+    fixed = intercept * growing[0]
+    slow = slowdown(latency, rng) if rise in ("measured", "unmeasured") else np.ones_like(sizes)
+    cost = (fixed + growing) * slow if rng.random() < 0.5 else fixed + growing * slow
+    count = rng.integers(5, 31)
+    samples = [3e-9 * c * np.exp(rng.normal(0, noise, count)) for c in cost]
+    seen = latency * np.exp(rng.normal(0, rng.uniform(0.02, 0.05), len(sizes)))
+    return Cell(sizes, samples, seen if rise in ("measured", "prefetched") else None)
+
+
+def cells(name: str, rise: str, count: int = 48) -> Iterator[Cell]:
+    rng = np.random.default_rng([list(CURVES).index(name), RISES.index(rise)])
+    for intercept in (0.0, 1.0):
+        for noise in (0.02, 0.05, 0.1):
+            for _ in range(count // 2):
+                yield cell(rng, name, intercept, noise, rise)
+
+
+def outcomes(name: str, rise: str) -> tuple[Counter[str], Counter[str]]:
+    """Outcomes of the true claim, and of two false ones each."""
+    true, false = Counter[str](), Counter[str]()
+    others = [other for other in CURVES if other != name]
+    for i, c in enumerate(cells(name, rise)):
+        for claim in (name, others[i % 5], others[(i + 1 + i // 5) % 5]):
+            verdict = judge(c.sizes, c.samples, claim, c.latency, resamples=8)
+            (true if claim == name else false)[verdict.outcome] += 1
+    return true, false
+
+
+@pytest.mark.parametrize("name", CURVES)
+def test_curves_of_known_class_are_judged_right_and_hardly_ever_wrong(name: str) -> None:
+    wrong = judged = 0
+    for rise in RISES:
+        true, false = outcomes(name, rise)
+        print(
+            f"\n{name:11} rise {rise:11} true claim {dict(true)}, false claims {dict(false)}",
+            end="",
+        )
+        wrong += true["violated"] + false["consistent"]
+        judged += true.total() + false.total()
+        if rise != "unmeasured":
+            assert true["consistent"] >= 0.85 * true.total(), rise
+    assert wrong <= 0.01 * judged
+
+
+def noise_alone(rng: np.random.Generator, kind: str) -> list[Array]:
+    if kind == "wild samples":
+        return [rng.lognormal(0, 1, 20) for _ in range(7)]
+    if kind == "uniform samples":
+        return [rng.random(20) for _ in range(7)]
+    return [level * rng.lognormal(0, 0.05, 20) for level in rng.lognormal(0, 1, 7)]
+
+
+@pytest.mark.parametrize("latency", [None, np.geomspace(1, 10, 7)], ids=["bare", "latency"])
+@pytest.mark.parametrize("kind", ["wild samples", "uniform samples", "wild sizes"])
+def test_pure_noise_is_undetermined(kind: str, latency: Array | None) -> None:
+    rng = np.random.default_rng(1)
+    sizes = np.geomspace(100, 1e6, 7)
+    decided = 0
+    for i in range(150):
+        claim = list(CURVES)[i % 6]
+        verdict = judge(sizes, noise_alone(rng, kind), claim, latency, resamples=8)
+        decided += verdict.outcome != "undetermined"
+    assert decided <= 1
+
+
+@pytest.mark.parametrize("name", CURVES)
+@pytest.mark.parametrize("fixed", [0, 7])
+@pytest.mark.parametrize("sizes", [2.0 ** np.arange(2, 13), np.geomspace(200, 20000, 5).round()])
+def test_exact_counts_confirm_their_class_alone(name: str, fixed: int, sizes: Array) -> None:
+    counts = np.round(fixed + 10 * CURVES[name](sizes))
+    samples = [[count] for count in counts]
+    for claim in CURVES:
+        outcome = judge(sizes, samples, claim, exact=True).outcome
+        assert outcome == ("consistent" if claim == name else "violated"), claim
+
+
+def test_exact_counts_have_an_exact_slope() -> None:
+    sizes = 2.0 ** np.arange(4, 12)
+    verdict = judge(sizes, [[5 * n] for n in sizes], "O(n_t)", exact=True)
+    assert verdict.slope_low == pytest.approx(1) == verdict.slope_high
+    assert verdict.coefficients["O(n)"] == {"fixed": 0, "factor": pytest.approx(5), "rise": 1}
+    assert verdict.errors["O(n)"] == pytest.approx(0, abs=1e-9)
+
+
+def flat(
+    rng: np.random.Generator, sizes: Array, noise: float = 0.03, count: int = 15
+) -> list[Array]:
+    return [rng.lognormal(0, noise, count) for _ in sizes]
+
+
+def test_a_tenfold_rise_violates_constant_time_only_beyond_the_latency() -> None:
+    rng = np.random.default_rng(2)
+    sizes = np.geomspace(100, 1e6, 9)
+    rise = 1 + 9 / (1 + (3e4 / sizes) ** 1.2)
+    cache_bound = [r * s for r, s in zip(rise, flat(rng, sizes), strict=True)]
+    blind = judge(sizes, cache_bound)
+    assert blind.outcome == "undetermined"
+    assert "caches of unknown latency" in blind.reason
+    given = judge(sizes, cache_bound, latency=1.2 * rise)
+    assert given.outcome == "consistent"
+    assert given.raw_slope > 0.25 > 0.05 > abs(given.slope)
+    growing = [s * n**0.5 for s, n in zip(cache_bound, sizes, strict=True)]
+    assert judge(sizes, growing, latency=1.2 * rise).outcome == "violated"
+
+
+def test_small_valences_with_an_intercept_are_linear() -> None:
+    rng = np.random.default_rng(3)
+    valence = np.array([4, 6, 8, 12, 16, 24, 32, 48, 64.0])
+    samples = [(12 + 3 * v) * rng.lognormal(0, 0.02, 20) for v in valence]
+    assert judge(valence, samples, "O(n_ev)").outcome == "consistent"
+    assert judge(valence, samples, "O(1)").outcome == "violated"
+
+
+def test_a_fifth_of_samples_delayed_changes_no_verdict() -> None:
+    rng = np.random.default_rng(4)
+    sizes = np.geomspace(100, 1e5, 7)
+    for name, curve in CURVES.items():
+        samples = [c * rng.lognormal(0, 0.03, 20) for c in curve(sizes)]
+        for cost in samples:
+            cost[rng.choice(20, 4, replace=False)] *= rng.uniform(2, 20, 4)
+        assert judge(sizes, samples, name).outcome == "consistent"
+
+
+def test_an_upper_bound_is_kept_by_slower_growth_and_by_no_faster() -> None:
+    rng = np.random.default_rng(5)
+    sizes = np.geomspace(100, 1e6, 8)
+    samples = [c * s for c, s in zip(np.sqrt(sizes), flat(rng, sizes), strict=True)]
+    names = list(CURVES)
+    for claim in names:
+        outcome = judge(sizes, samples, claim, bound="upper", exact=True).outcome
+        slower = names.index(claim) < names.index("O(√n)")
+        assert outcome == ("violated" if slower else "consistent"), claim
+    assert judge(sizes, samples, "O(n)", exact=True).outcome == "violated"
+
+
+def test_too_little_data_is_undetermined_and_says_why() -> None:
+    rng = np.random.default_rng(6)
+
+    def reason(sizes: list[float], noise: float = 0.02) -> str:
+        n = np.array(sizes, dtype=float)
+        verdict = judge(n, flat(rng, n, noise))
+        assert verdict.outcome == "undetermined"
+        return verdict.reason
+
+    assert "Too few sizes: 1" in reason([100])
+    assert "Too few sizes: 3" in reason([100, 1000, 1000, 10000])
+    assert "Too short a range" in reason([100, 150, 200, 250, 300])
+    assert "Too noisy" in reason([100, 1000, 10000, 100000, 1000000], noise=0.8)
+
+
+def power_law(seed: int, exponent: float) -> Verdict:
+    rng = np.random.default_rng(seed)
+    sizes = np.geomspace(100, 1e6, 7)
+    samples = [n**exponent * rng.lognormal(0, 0.08, 10) for n in sizes]
+    return judge(sizes, samples, "O(n)", seed=seed)
+
+
+@pytest.mark.parametrize("exponent", [0.0, 0.5, 1.0, 2.0])
+def test_the_slope_interval_holds_the_exponent_as_often_as_it_says(exponent: float) -> None:
+    verdicts = [power_law(seed, exponent) for seed in range(100)]
+    held = sum(v.slope_low <= exponent <= v.slope_high for v in verdicts)
+    assert held >= 88
+    assert np.mean([v.slope_high - v.slope_low for v in verdicts]) < 0.05
+
+
+def test_verdicts_repeat_and_know_neither_unit_nor_order() -> None:
+    rng = np.random.default_rng(7)
+    c = cell(rng, "O(√n)", 1.0, 0.05, "measured")
+    assert c.latency is not None
+    first = judge(c.sizes, c.samples, "O(√n)", c.latency)
+    assert judge(c.sizes, c.samples, "O(√n)", c.latency) == first
+    back = slice(None, None, -1)
+    scaled = [1e9 * s for s in c.samples[back]]
+    again = judge(c.sizes[back], scaled, "O(sqrt(n))", 7 * c.latency[back])
+    assert (again.outcome, again.best) == (first.outcome, first.best)
+    assert again.slope == pytest.approx(first.slope)
+    assert again.margin == pytest.approx(first.margin)
+
+
+def test_a_verdict_survives_json() -> None:
+    verdict = judge([4, 8, 16, 32, 64], [[3, 3.1], [3], [3], [3.1], [3]])
+    assert Verdict(**json.loads(json.dumps(verdict.as_dict()))) == verdict
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"sizes": [[1, 2], [3, 4]]}, "sizes"),
+        ({"sizes": [0, 1, 2, 3]}, "sizes"),
+        ({"samples": [[1], [1]]}, "4 sizes, 2 arrays"),
+        ({"samples": [[1], [1], [], [1]]}, "size 3"),
+        ({"samples": [[1], [1], [1], [0]]}, "size 4"),
+        ({"latency": [1, 2, 3]}, "latency"),
+        ({"latency": [1, 2, 3, -4]}, "latency"),
+        ({"latency": [1, 2, 3, 4], "exact": True}, "either latency or exact"),
+        ({"expected": "O(2^n)"}, "unknown growth class"),
+        ({"expected": "N/A"}, "unknown growth class"),
+        ({"bound": "loose"}, "bound"),
+    ],
+)
+def test_malformed_input_is_named(change: dict[str, Any], message: str) -> None:
+    good: dict[str, Any] = {"sizes": [1, 2, 3, 4], "samples": [[1], [1], [1], [1]]}
+    with pytest.raises(ValueError, match=message):
+        judge(**(good | change))

@@ -1,0 +1,63 @@
+"""Laws of the growth models and their fit."""
+
+import numpy as np
+import pytest
+
+from experiments.models import NAMES, basis, canonical, fit, measured_rises, no_rise, predict
+
+
+@pytest.mark.parametrize(
+    ("spelling", "name"),
+    [
+        *((name, name) for name in NAMES),
+        ("O(n_t)", "O(n)"),
+        ("O(n_ev)", "O(n)"),
+        ("o(N)", "O(n)"),
+        ("O(sqrt n)", "O(√n)"),
+        ("O(sqrt(n_t))", "O(√n)"),
+        ("O(n_t log n_t)", "O(n log n)"),
+        ("O(n·log(n))", "O(n log n)"),
+        ("O(n^2)", "O(n²)"),
+        ("O(n_v**2)", "O(n²)"),
+    ],
+)
+def test_usual_spellings_name_a_model(spelling: str, name: str) -> None:
+    assert canonical(spelling) == name
+
+
+def test_fits_are_the_nonnegative_least_squares_of_scipy() -> None:
+    from scipy.optimize import nnls
+
+    rng = np.random.default_rng(0)
+    sizes = np.geomspace(100, 1e5, 7)
+    rises = measured_rises(np.geomspace(1, 30, 7), steps=4)
+    columns = basis(sizes, rises, 1.3)
+    for _ in range(20):
+        cost, error = rng.lognormal(0, 2, 7), rng.uniform(0.01, 0.1, 7)
+        fitted = fit(columns, cost, error)
+        for m in range(len(NAMES)):
+            pairs = zip(columns.pure[m], columns.mixed[m], strict=True)
+            residuals = [
+                nnls(np.stack(pair, 1) / (cost * error)[:, None], 1 / error)[1] for pair in pairs
+            ]
+            assert fitted.chi2[m] == pytest.approx(min(residuals) ** 2, rel=1e-6)
+
+
+def test_predictions_have_the_misfit_of_their_fit() -> None:
+    rng = np.random.default_rng(1)
+    sizes = np.geomspace(4, 4096, 6)
+    rises = measured_rises(np.geomspace(1, 10, 6))
+    cost, error = sizes * rng.lognormal(0, 0.2, 6), np.full(6, 0.05)
+    fitted = fit(basis(sizes, rises, 1.3), cost, error)
+    slowed, fast = predict(sizes, rises, fitted)
+    assert (((slowed / cost - 1) / error) ** 2).sum(1) == pytest.approx(fitted.chi2)
+    assert np.all(fast <= slowed * (1 + 1e-12))
+
+
+@pytest.mark.parametrize("growth", [1.3, 2.1])
+def test_no_model_but_constant_time_hides_its_growth_in_the_intercept(growth: float) -> None:
+    sizes = np.geomspace(100, 1e6, 7)
+    flat = fit(basis(sizes, no_rise(7), growth), np.ones(7), np.full(7, 0.1))
+    _, fast = predict(sizes, no_rise(7), flat)
+    assert fast[0] == pytest.approx(np.ones(7))
+    assert fast[1:, -1] / fast[1:, 0] == pytest.approx(np.full(5, growth), rel=1e-6)
