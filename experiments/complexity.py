@@ -86,8 +86,9 @@ def judge(
     "upper" for a bound, which slower growth keeps too.
 
     Growth below `evidence.GROWTH` over the sizes is taken for O(1): beside so large an intercept
-    no class shows. The same input gives the same verdict. Takes milliseconds. Raises ValueError
-    for malformed input; data that are too few or too noisy are "undetermined".
+    no class shows. Beside a tenfold slowdown by caches, growth below 1.5 may be missed as well.
+    The same input gives the same verdict. Takes milliseconds. Raises ValueError for malformed
+    input; data that are too few or too noisy are "undetermined".
     """
     if bound not in ("tight", "upper"):
         raise ValueError(f'bound must be "tight" or "upper", not {bound!r}')
@@ -95,13 +96,10 @@ def judge(
     costs, caches = account(reduce(sizes, samples), sizes, latency, exact)
     models = Comparison(costs, caches)
     outcome, reason = _decide(costs, models, claim, bound)
-    slowed, fast = predict(costs.sizes, caches.measured, models.fit)
-    steady = fast[models.best] / slowed[models.best]
-    replicates = resample(costs, slowed[models.best], resamples, seed) * steady
+    fitted, _ = predict(models.basis, models.fit)
+    replicates = resample(costs, fitted[models.best], resamples, seed)
     tails = [(1 - confidence) / 2, (1 + confidence) / 2]
-    low, high = np.quantile(slope(costs.sizes, replicates), tails)
-    top = caches.measured.growing[models.fit.rise].max(axis=1)
-    coefficients = zip(NAMES, models.fit.fixed, models.fit.factor, top, strict=True)
+    low, high = np.quantile(slope(costs.sizes, models.steady(replicates)), tails)
     return Verdict(
         outcome=outcome,
         expected=NAMES[claim],
@@ -109,17 +107,14 @@ def judge(
         best=NAMES[models.best],
         runner_up=NAMES[models.runner_up],
         margin=models.margin,
-        slope=float(slope(costs.sizes, costs.cost * steady)),
+        slope=float(slope(costs.sizes, models.steady(costs.cost))),
         slope_low=float(low),
         slope_high=float(high),
         raw_slope=float(slope(costs.sizes, costs.cost)),
         confidence=confidence,
         noise=costs.scatter,
-        coefficients={
-            name: {"fixed": float(fixed), "factor": float(factor), "rise": float(rise)}
-            for name, fixed, factor, rise in coefficients
-        },
-        errors=_by_name(np.sqrt(np.mean((slowed / costs.cost - 1) ** 2, axis=1))),
+        coefficients=_coefficients(models),
+        errors=_by_name(np.sqrt(np.mean((fitted / costs.cost - 1) ** 2, axis=1))),
         reason=reason,
     )
 
@@ -157,6 +152,12 @@ def _doubt(costs: Costs, models: Comparison) -> str:
         hint = ", and caches of unknown latency might have bent them" if models.unmeasured else ""
         return f"No class explains the costs: {NAMES[models.best]} comes closest{hint}."
     return ""
+
+
+def _coefficients(models: Comparison) -> dict[str, dict[str, float]]:
+    fixed, factor = _by_name(models.fit.fixed), _by_name(models.fit.factor)
+    rise = _by_name(models.basis.rises.growing[models.fit.rise].max(axis=1))
+    return {n: {"fixed": fixed[n], "factor": factor[n], "rise": rise[n]} for n in NAMES}
 
 
 def _by_name(values: Array) -> dict[str, float]:

@@ -15,7 +15,17 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from experiments.costs import Costs
-from experiments.models import NAMES, Fit, Rises, basis, fit, measured_rises, no_rise, unknown_rises
+from experiments.models import (
+    NAMES,
+    Array,
+    Rises,
+    basis,
+    fit,
+    measured_rises,
+    no_rise,
+    predict,
+    unknown_rises,
+)
 
 LATENCY_ERROR = 0.03
 """Relative error of a measured latency."""
@@ -82,14 +92,16 @@ class Comparison:
     def __init__(self, costs: Costs, caches: Caches) -> None:
         self.costs = costs
         self.freedom = max(len(costs.sizes) - caches.parameters, 1)
-        self.fit = self._fit(caches.measured, GROWTH)
+        self.weight = 1 / (costs.cost * costs.error)
+        self.basis = basis(costs.sizes, caches.measured, GROWTH)
+        self.fit = fit(self.basis, costs.cost, self.weight)
         self.chi2 = self.fit.chi2
-        self.clear = self._fit(caches.measured, CLEAR_GROWTH).chi2
+        self.clear = self._misfit(caches.measured, CLEAR_GROWTH)
         self.unmeasured = caches.unmeasured is not None
         self.excused, self.clear_excused = self.chi2, self.clear
         if caches.unmeasured is not None:
-            excused = self._fit(caches.unmeasured, GROWTH).chi2
-            clear = self._fit(caches.unmeasured, CLEAR_GROWTH).chi2
+            excused = self._misfit(caches.unmeasured, GROWTH)
+            clear = self._misfit(caches.unmeasured, CLEAR_GROWTH)
             self.excused = np.minimum(self.chi2, excused)
             self.clear_excused = np.minimum(self.clear, clear)
         closest = self.chi2.min()
@@ -99,8 +111,15 @@ class Comparison:
         self.margin = self.evidence(self.chi2[self.best], self.chi2[self.runner_up])
         self.explained = bool(self.chi2[self.best] <= caches.misfit * self.freedom)
 
-    def _fit(self, rises: Rises, growth: float) -> Fit:
-        return fit(basis(self.costs.sizes, rises, growth), self.costs.cost, self.costs.error)
+    def _misfit(self, rises: Rises, growth: float) -> Array:
+        return fit(basis(self.costs.sizes, rises, growth), self.costs.cost, self.weight).chi2
+
+    def steady(self, costs: Array) -> Array:
+        """Costs (..., k) with the memory's part, as the best model sees it in each row, removed."""
+        best = self.basis.only(self.best)
+        slowed, fast = predict(best, fit(best, costs, self.weight))
+        steady: Array = costs * (fast / slowed)[..., 0, :]
+        return steady
 
     def evidence(self, better: float, worse: float) -> float:
         """Evidence of a model with misfit `better` against one with misfit `worse`."""

@@ -87,34 +87,40 @@ def unknown_rises(sizes: Array, highest: float) -> Rises:
 
 @dataclass(frozen=True)
 class Basis:
-    """Two columns (m, s, k) for m models under s rises whose nonnegative sums are the models.
+    """Columns whose nonnegative sums are the costs of m models under s rises, at k sizes."""
 
-    `pure` is a·f alone, `mixed` is f with the largest intercept allowed, so that a nonnegative
-    combination of both has an intercept between none and the largest.
-    """
-
-    pure: Array
-    mixed: Array
+    rises: Rises
+    growing: Array
+    """(m, k) f, of largest value 1."""
     intercept: Array
-    """(m,) largest intercept beside f/max(f) = 1."""
+    """(m,) largest intercept beside it."""
     scale: Array
-    """(m,) max of f over the sizes."""
+    """(m,) largest value of f itself."""
+
+    def columns(self) -> tuple[Array, Array]:
+        """(m, s, k) f with no intercept, and with the largest: between them lie all others."""
+        pure = self.growing[:, None] * self.rises.growing
+        return pure, self.intercept[:, None, None] * self.rises.fixed + pure
+
+    def only(self, model: int) -> "Basis":
+        """The basis of one model."""
+        one = slice(model, model + 1)
+        return Basis(self.rises, self.growing[one], self.intercept[one], self.scale[one])
 
 
 def basis(sizes: Array, rises: Rises, growth: float) -> Basis:
-    """Columns of every model in `MODELS` that gains at least `growth` over the sizes, if it can."""
+    """Basis of every model in `MODELS`, which gains at least `growth` over the sizes, if it can."""
     f = np.array([model(sizes) for model in MODELS.values()])
     scale = np.maximum(f.max(1), 1e-9)
     f /= scale[:, None]
     intercept = np.maximum((1 - growth * f.min(1)) / (growth - 1), 0)
     intercept[0] = 0.0
-    pure = f[:, None] * rises.growing
-    return Basis(pure, intercept[:, None, None] * rises.fixed + pure, intercept, scale)
+    return Basis(rises, f, intercept, scale)
 
 
 @dataclass(frozen=True)
 class Fit:
-    """Best nonnegative fit of each model: misfit and coefficients, (m,) each."""
+    """Best nonnegative fit of each model: misfit and coefficients, (..., m) each."""
 
     chi2: Array
     """Squared relative residuals over their variances."""
@@ -126,16 +132,16 @@ class Fit:
     """Row of the rises that served best."""
 
 
-def fit(columns: Basis, cost: Array, error: Array) -> Fit:
-    """Weighted nonnegative least squares, in closed form, with relative weights 1/(cost·error).
+def fit(models: Basis, costs: Array, weight: Array) -> Fit:
+    """Nonnegative least squares of weighted costs, in closed form, under the best rise each.
 
-    Relative weights let a size count for its precision, not for its magnitude.
-    cost, error: (k,), the error relative. O(m·s·k).
+    costs: (..., k). weight: (k,), 1/(cost·relative error): a size counts for its precision, not
+    for its magnitude. O(m·s·k) per row of costs.
     """
-    weight = 1 / (cost * error)
-    u, v, t = columns.pure * weight, columns.mixed * weight, cost * weight
+    pure, mixed = models.columns()
+    u, v, t = pure * weight, mixed * weight, costs * weight
     uu, vv, uv = (np.maximum((p * q).sum(-1), 1e-30) for p, q in ((u, u), (v, v), (u, v)))
-    ut, vt = u @ t, v @ t
+    ut, vt = (np.tensordot(t, column, axes=(-1, -1)) for column in (u, v))
     det = uu * vv - uv * uv
     regular = det > 1e-12 * uu * vv
     safe = np.where(regular, det, 1.0)
@@ -144,17 +150,18 @@ def fit(columns: Basis, cost: Array, error: Array) -> Fit:
     pure_better = ut * ut * vv >= vt * vt * uu
     a = np.where(inside, a, np.where(pure_better, ut / uu, 0.0))
     b = np.where(inside, b, np.where(pure_better, 0.0, vt / vv))
-    chi2 = ((a[..., None] * u + b[..., None] * v - t) ** 2).sum(-1)
-    row = chi2.argmin(1)
-    at = np.arange(len(row)), row
-    factor = (a[at] + b[at]) / columns.scale
-    return Fit(chi2[at], b[at] * columns.intercept, factor, row)
+    saved = a * (2 * ut - a * uu - b * uv) + b * (2 * vt - b * vv - a * uv)
+    row = saved.argmax(-1)
+    best = [np.take_along_axis(x, row[..., None], -1)[..., 0] for x in (saved, a, b)]
+    chi2 = np.maximum((t * t).sum(-1)[..., None] - best[0], 0)
+    factor = (best[1] + best[2]) / models.scale
+    return Fit(chi2, best[2] * models.intercept, factor, row)
 
 
-def predict(sizes: Array, rises: Rises, fitted: Fit) -> tuple[Array, Array]:
-    """(m, k) costs that the fitted models predict, and the same with memory at its fastest."""
-    f = np.array([model(sizes) for model in MODELS.values()])
-    growing = fitted.factor[:, None] * f
-    fixed = fitted.fixed[:, None]
+def predict(models: Basis, fitted: Fit) -> tuple[Array, Array]:
+    """(..., m, k) costs that the fitted models predict, and the same with memory at its fastest."""
+    growing = (fitted.factor * models.scale)[..., None] * models.growing
+    fixed = np.broadcast_to(fitted.fixed[..., None], growing.shape)
+    rises = models.rises
     slowed = fixed * rises.fixed[fitted.rise] + growing * rises.growing[fitted.rise]
     return slowed, fixed + growing

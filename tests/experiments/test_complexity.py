@@ -36,8 +36,10 @@ def machine_latency(working_set: Array) -> Array:
     """Nanoseconds per dependent load: steps at 32 KB, 1 MB and 30 MB, smooth in the logarithm."""
     steps = ((32e3, 4 / 1.2), (1e6, 15 / 4), (30e6, 100 / 15))
     x = np.log(working_set)
-    rise = sum(np.log(factor) / (1 + np.exp((np.log(at) - x) / 0.35)) for at, factor in steps)
-    return 1.2 * np.exp(rise)
+    latency = np.full_like(x, 1.2)
+    for at, factor in steps:
+        latency *= factor ** (1 / (1 + np.exp((np.log(at) - x) / 0.35)))
+    return latency
 
 
 def some_sizes(rng: np.random.Generator) -> tuple[Array, float]:
@@ -45,7 +47,7 @@ def some_sizes(rng: np.random.Generator) -> tuple[Array, float]:
     faces = bool(rng.random() < 0.5)
     first, last = (100, rng.choice([1e5, 1e6])) if faces else (4, 4096)
     low, high = (30, 400) if faces else (3e3, 4e4)
-    sizes = np.round(np.geomspace(first, last, rng.integers(5, 10)))
+    sizes = np.geomspace(first, float(last), int(rng.integers(5, 10))).round()
     return sizes, float(np.exp(rng.uniform(np.log(low), np.log(high))))
 
 
@@ -53,7 +55,8 @@ def slowdown(latency: Array, rng: np.random.Generator) -> Array:
     """What a query makes of a latency: about tenfold, or less where the latency rises less."""
     own = latency / latency[0]
     share = min(rng.uniform(8, 12) - 1, own.max() - 1) / (own.max() - 1)
-    return 1 + share * (own - 1)
+    slow: Array = 1 + share * (own - 1)
+    return slow
 
 
 def cell(rng: np.random.Generator, name: str, intercept: float, noise: float, rise: str) -> Cell:
