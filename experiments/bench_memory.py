@@ -1,0 +1,41 @@
+"""Bytes of each structure: by the thesis' model, by its arrays, and as the process sees them."""
+
+from __future__ import annotations
+
+import tracemalloc
+
+import numpy as np
+
+import structures
+from experiments.conftest import Keep
+from experiments.profiles import Profile
+from experiments.subjects import Cell
+from structures import NAMES as STRUCTURES
+
+
+def cells(profile: Profile, structure: str) -> list[Cell]:
+    """The judged family by size and the real models, at both sizes of a reference."""
+    sizes = [(profile.families[0], size) for size in profile.build_sizes if size >= 1_000]
+    return [
+        Cell(structure, family, size, reference_bytes=reference_bytes)
+        for family, size in [*sizes, *((model, 0) for model in profile.models)]
+        for reference_bytes in (4, 8)
+    ]
+
+
+def test_memory(cell: Cell, keep: Keep) -> None:
+    """Weigh the structure; what the model counts must be just what the arrays hold."""
+    mesh = cell.mesh()
+    structures.build(cell.structure, mesh, cell.reference_bytes)  # compiles, unweighed
+    tracemalloc.start()
+    s = structures.build(cell.structure, mesh, cell.reference_bytes)
+    traced, peak = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    fields, arrays = s.memory(), sum(array.nbytes for array in s.records)
+    assert sum(fields.values()) == arrays
+    detail = {"fields": fields, "arrays": arrays, "traced": traced, "peak": peak}
+    model = np.array([sum(fields.values())])
+    keep(cell.result("bytes", s, model, checked=True, detail=detail))
+
+
+__all__ = ["STRUCTURES", "cells", "test_memory"]

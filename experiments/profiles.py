@@ -1,0 +1,90 @@
+"""How much a study measures: the profiles, as data."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Profile:
+    """One extent of a study. Sizes are numbers of vertices, valences those of the asked vertices.
+
+    ``families[0]`` is the judged one: its valence is the same at every size. A round is one sample;
+    ``round_seconds`` is how long it should last, ``cell_seconds`` what a cell may take in all.
+    """
+
+    what: str
+    families: tuple[str, ...]
+    sizes: tuple[int, ...]
+    orders: tuple[str, ...]
+    valences: tuple[int, ...]
+    valence_faces: int
+    work_sizes: tuple[int, ...]
+    work_faces: int
+    build_sizes: tuple[int, ...]
+    models: tuple[str, ...]
+    rounds: int
+    round_seconds: float
+    cell_seconds: float
+    latency_mib: int
+
+
+def _geometric(first: int, last: int, per_decade: int) -> tuple[int, ...]:
+    sizes = []
+    while (size := round(first * 10 ** (len(sizes) / per_decade))) <= last:
+        sizes.append(size)
+    return tuple(sizes)
+
+
+VALENCES = tuple(2**k for k in range(2, 13))
+
+PROFILES = {
+    "quick": Profile(
+        what="one family up to 100,000 vertices, within 3 minutes",
+        families=("torus",),
+        sizes=_geometric(100, 100_000, 2),
+        orders=("random", "consecutive"),
+        valences=VALENCES,
+        valence_faces=16_384,
+        work_sizes=_geometric(100, 3_200, 2),
+        work_faces=8_192,
+        build_sizes=_geometric(100, 100_000, 2),
+        models=("teapot", "bunny"),
+        rounds=9,
+        round_seconds=0.002,
+        cell_seconds=0.25,
+        latency_mib=128,
+    ),
+    "standard": Profile(
+        what="one family of each kind up to 1,000,000 vertices, some 20 minutes",
+        families=("torus", "sphere", "grid", "isosurface"),
+        sizes=_geometric(100, 1_000_000, 2),
+        orders=("random", "consecutive"),
+        valences=VALENCES,
+        valence_faces=65_536,
+        work_sizes=_geometric(100, 10_000, 2),
+        work_faces=8_192,
+        build_sizes=_geometric(100, 1_000_000, 2),
+        models=("teapot", "cow", "bunny", "bone"),
+        rounds=15,
+        round_seconds=0.004,
+        cell_seconds=1.0,
+        latency_mib=512,
+    ),
+    "full": Profile(
+        what="every family up to 1,000,000 vertices with finer steps, some two hours",
+        families=("torus", "sphere", "grid", "cone", "terrain", "isosurface"),
+        sizes=_geometric(100, 1_000_000, 4),
+        orders=("random", "consecutive"),
+        valences=VALENCES,
+        valence_faces=262_144,
+        work_sizes=_geometric(100, 32_000, 4),
+        work_faces=16_384,
+        build_sizes=_geometric(100, 1_000_000, 4),
+        models=("teapot", "cow", "airplane", "bunny", "bone"),
+        rounds=25,
+        round_seconds=0.01,
+        cell_seconds=5.0,
+        latency_mib=1024,
+    ),
+}

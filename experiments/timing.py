@@ -1,0 +1,62 @@
+"""Timing a query: as many handles per round as last long enough, and other ones every round."""
+
+from __future__ import annotations
+
+from itertools import count
+from time import perf_counter
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from experiments.profiles import Profile
+from hem.structure import Structure
+
+Array = NDArray[Any]
+
+MOST_HANDLES = 1_000_000
+FEWEST_ROUNDS = 5
+
+
+class TooSlowError(RuntimeError):
+    """A cell would take longer than its profile allows."""
+
+
+def time_query(
+    benchmark: Any, s: Structure, query: str, pool: Array, profile: Profile
+) -> tuple[Array, int]:
+    """Time ``s.sweep(query, …)`` over the handles in ``pool`` -> (seconds per query, handles).
+
+    Successive rounds take successive handles of the pool and begin again only when all have been
+    asked, so that a large mesh is not answered out of the caches by what the last round left there.
+    Raises TooSlowError before anything long is begun.
+    """
+    seconds = _seconds_per_query(s, query, pool, profile.round_seconds / 4)
+    handles = int(np.clip(profile.round_seconds / seconds, 1, MOST_HANDLES))
+    rounds = int(np.clip(profile.cell_seconds / (seconds * handles), 0, profile.rounds))
+    if rounds < FEWEST_ROUNDS:
+        raise TooSlowError(
+            f"one query takes {seconds:.3g} s, a cell may take {profile.cell_seconds} s"
+        )
+    windows = (np.arange(handles) + handles * k for k in count())
+
+    def successive() -> tuple[tuple[str, Array], dict[str, Any]]:
+        return (query, pool[next(windows) % len(pool)]), {}
+
+    benchmark.pedantic(s.sweep, setup=successive, rounds=rounds, warmup_rounds=1)
+    if benchmark.stats is None:  # --benchmark-disable: run once, timed by nobody
+        return np.zeros(0), handles
+    return np.array(benchmark.stats.stats.data) / handles, handles
+
+
+def _seconds_per_query(s: Structure, query: str, pool: Array, enough: float) -> float:
+    s.sweep(query, pool[:1])  # compiles
+    handles = 1
+    while True:
+        asked = pool[np.arange(handles) % len(pool)]
+        begin = perf_counter()
+        s.sweep(query, asked)
+        seconds = perf_counter() - begin
+        if seconds >= enough or handles >= MOST_HANDLES:
+            return max(seconds / handles, 1e-10)
+        handles *= 4
