@@ -30,7 +30,7 @@ class Profile:
 
 
 def _geometric(first: int, last: int, per_decade: int) -> tuple[int, ...]:
-    sizes = []
+    sizes: list[int] = []
     while (size := round(first * 10 ** (len(sizes) / per_decade))) <= last:
         sizes.append(size)
     return tuple(sizes)

@@ -105,7 +105,7 @@ def load(folder: Path | str) -> Run:
         rows += [{**owner, **cell} for cell in content["cells"]]
     columns = ["experiment", "structure", *CellResult.__dataclass_fields__]
     cells = pd.DataFrame(rows, columns=columns)
-    cells["samples"] = [np.asarray(samples, float) for samples in cells["samples"]]
+    cells["samples"] = cells["samples"].map(lambda samples: np.asarray(samples, float))
     measured = cells["left_out"] == ""
     return Run(folder, meta, cells[measured].reset_index(drop=True), cells[~measured])
 

@@ -1,0 +1,72 @@
+"""The claims of ``claims.toml``, read."""
+
+from __future__ import annotations
+
+import tomllib
+from dataclasses import dataclass
+from importlib.resources import files
+from typing import Any
+
+from hem.queries import QUERIES
+from structures import NAMES
+
+VARIABLES = {"faces": "n_t", "valence": "n_ev"}
+"""What a claim is judged in, one held while the other moves, and its symbol in the thesis."""
+
+MEMORY = "memory"
+NO_CLAIM = "N/A"
+
+
+@dataclass(frozen=True)
+class Claim:
+    """One cell of a table: what is printed of one structure, and where.
+
+    ``what`` is a query or "memory". ``expected``: the growth class per variable, empty where
+    nothing is claimed; ``bytes_per_vertex`` for the memory row, else None.
+    """
+
+    what: str
+    structure: str
+    printed: str
+    source: str
+    expected: dict[str, str]
+    bytes_per_vertex: int | None = None
+
+    @property
+    def title(self) -> str:
+        """The head of the row."""
+        return "Bytes per vertex" if self.what == MEMORY else QUERIES[self.what].title
+
+
+def load_claims(text: str | None = None) -> list[Claim]:
+    """All claims in the order of the table, row by row; ``text`` instead of the project's file.
+
+    Raises ValueError naming the row for a query, a structure or a class that does not exist.
+    """
+    content = tomllib.loads(text or (files("experiments") / "claims.toml").read_text())
+    return [
+        _claim(row, structure, content["classes"])
+        for row in content["row"]
+        for structure in NAMES
+        if structure in _checked(row)
+    ]
+
+
+def _checked(row: dict[str, Any]) -> dict[str, Any]:
+    if row.get("what") not in (MEMORY, *QUERIES):
+        known = ", ".join((MEMORY, *QUERIES))
+        raise ValueError(f"claims.toml: no query is called {row.get('what')!r}; there are {known}")
+    unknown = set(row) - {"what", "source", *NAMES}
+    if unknown or "source" not in row:
+        fault = f"no structure is called {min(unknown)!r}" if unknown else "no source is given"
+        raise ValueError(f"claims.toml, row {row['what']}: {fault}")
+    return row
+
+
+def _claim(row: dict[str, Any], structure: str, classes: dict[str, dict[str, str]]) -> Claim:
+    what, printed, source = row["what"], row[structure], row["source"]
+    if what == MEMORY:
+        return Claim(what, structure, str(printed), source, {}, printed)
+    if printed != NO_CLAIM and printed not in classes:
+        raise ValueError(f"claims.toml, row {what}: {printed!r} is none of {', '.join(classes)}")
+    return Claim(what, structure, printed, source, classes.get(printed, {}))

@@ -1,0 +1,205 @@
+"""The command line: ``hem study``, ``table``, ``report``, ``meshes``, ``info``."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from time import perf_counter
+from typing import Annotated, Any
+
+import typer
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+from rich.table import Table
+
+import hem
+from experiments import results, study
+from experiments.profiles import PROFILES
+
+app = typer.Typer(
+    help="Triangle-mesh data structures, measured and held against what a thesis claims of them.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+)
+console = Console()
+errors = Console(stderr=True)
+
+RunArgument = Annotated[
+    Path | None, typer.Argument(help="The folder of a run; the newest if it is not given.")
+]
+ProfileOption = Annotated[
+    str | None,
+    typer.Option(
+        help="How much to measure: " + "; ".join(f"{k}: {p.what}" for k, p in PROFILES.items())
+    ),
+]
+
+
+@contextmanager
+def user_errors() -> Iterator[None]:
+    """Turn what a user can mend into one line and exit code 1."""
+    try:
+        yield
+    except (ValueError, OSError) as error:
+        errors.print(f"[bold red]hem:[/] {error}", highlight=False)
+        raise typer.Exit(1) from error
+
+
+@app.command("study")
+def run_study(
+    profile: ProfileOption = None,
+    resume: Annotated[
+        bool, typer.Option("--resume", help="Go on with the newest unfinished run.")
+    ] = False,
+    output: Annotated[Path, typer.Option(help="Where the runs are kept.")] = results.RUNS,
+) -> None:
+    """Measure every structure; the results go to a new folder, cell by cell."""
+    with user_errors():
+        if profile is not None and profile not in PROFILES:
+            raise ValueError(f"no profile is called {profile!r}; there are {', '.join(PROFILES)}")
+        if resume:
+            folder, kept = study.resume(output)
+            if profile not in (None, kept):
+                raise ValueError(f"{folder} was begun as {kept}; resume it without --profile")
+            profile = kept
+        else:
+            profile = profile or "quick"
+            folder = study.begin(profile, output)
+        _run_with_progress(folder, profile)
+
+
+def _run_with_progress(folder: Path, profile: str) -> None:
+    begun = perf_counter()
+    console.print(f"Measuring into {folder} (profile {profile}: {PROFILES[profile].what})")
+    try:
+        with _progress(study.processes(profile), folder) as report:
+            study.run(folder, profile, report)
+    except KeyboardInterrupt:
+        errors.print(f"Stopped. What is finished is in {folder}; go on with: hem study --resume")
+        raise typer.Exit(130) from None
+    except study.StudyFailedError as failure:
+        errors.print(
+            f"[bold red]Some cells failed.[/] Try them again with: hem study --resume\n\n{failure}"
+        )
+        raise typer.Exit(1) from None
+    console.print(f"Done in {perf_counter() - begun:.0f} s. Now: hem table, hem report")
+
+
+@contextmanager
+def _progress(
+    every: list[study.Process], folder: Path
+) -> Iterator[Callable[[study.Process, int], None]]:
+    columns = TextColumn("{task.description:<32}"), BarColumn(), MofNCompleteColumn()
+    done = {process: process.done(folder) for process in every}
+    with Progress(
+        *columns, TextColumn("cells, left"), TimeRemainingColumn(), console=console
+    ) as bar:
+        task = bar.add_task("", total=sum(len(process.cells) for process in every))
+        bar.update(task, completed=sum(done.values()))
+
+        def report(process: study.Process, count: int) -> None:
+            done[process] = count
+            what = f"{process.experiment.removeprefix('bench_')} · {process.structure}"
+            bar.update(task, completed=sum(done.values()), description=what)
+
+        yield report
+
+
+@app.command("table")
+def show_table(run: RunArgument = None) -> None:
+    """Print the thesis' table 1 as printed beside as measured, with the verdicts."""
+    with user_errors():
+        from experiments.table import show
+
+        show(run or results.latest(), console)
+
+
+@app.command("report")
+def write_report(
+    run: RunArgument = None,
+    output: Annotated[Path, typer.Option(help="Where the pages go.")] = Path("report/html"),
+) -> None:
+    """Run the notebooks on a run and write the report: pages that open from disk."""
+    with user_errors():
+        from experiments.report import write
+
+        front = write(run or results.latest(), output)
+        console.print(f"Report written. Open {front.resolve().as_uri()}", soft_wrap=True)
+
+
+@app.command()
+def meshes(
+    size: Annotated[int, typer.Option(help="Number of vertices to make the families with.")] = 1000,
+) -> None:
+    """List the families and the real models, with their counts."""
+    with user_errors():
+        table = _mesh_table("Families, made by hem.generate(name, n_vertices)", "sizes")
+        for name, family in hem.FAMILIES.items():
+            table.add_row(name, *_counts(hem.generate(name, size)), family.what, family.sizes)
+        console.print(table)
+        table = _mesh_table("Models, read by hem.sample(name)")
+        for name, model in hem.SAMPLES.items():
+            table.add_row(name, *_counts(hem.sample(name)), model.what)
+        console.print(table)
+
+
+def _mesh_table(title: str, *more: str) -> Table:
+    table = Table(title=title)
+    table.add_column("name", style="bold")
+    for head in ("vertices", "edges", "faces", "border", "valence"):
+        table.add_column(head, justify="right")
+    for head in ("what", *more):
+        table.add_column(head)
+    return table
+
+
+def _counts(mesh: hem.TriangleMesh) -> list[str]:
+    s = mesh.summary()
+    counts = [f"{count:,}" for count in (s.vertices, s.edges, s.faces, s.border_edges)]
+    return [*counts, f"{s.valence_min}…{s.valence_max}"]
+
+
+@app.command()
+def info(
+    mesh: Annotated[
+        str, typer.Argument(help="A mesh file, or the name of a model (see hem meshes).")
+    ],
+    repair: Annotated[
+        bool, typer.Option("--repair", help="Mend what is not manifold first.")
+    ] = False,
+) -> None:
+    """Say what a mesh consists of, and which structure can hold it in how many bytes."""
+    with user_errors():
+        found = _read(mesh, repair)
+        console.print(f"[bold]{mesh}[/]\n{found.summary()}\n", highlight=False)
+        console.print(_holders(found))
+
+
+def _read(mesh: str, repair: bool) -> hem.TriangleMesh:
+    if mesh in hem.SAMPLES and not Path(mesh).exists():
+        options: dict[str, Any] = {"repair": True} if repair else {}
+        return hem.sample(mesh, **options)
+    return hem.load(mesh, repair=repair)
+
+
+def _holders(mesh: hem.TriangleMesh) -> Table:
+    from structures import REGISTRY
+
+    table = Table("structure", "bytes", "per vertex", "with 8-byte references", "per vertex")
+    for column in table.columns[1:]:
+        column.justify = "right"
+    for structure in REGISTRY.values():
+        try:
+            sizes = [sum(structure.build(mesh, k).memory().values()) for k in (4, 8)]
+        except hem.NonManifoldError as refusal:
+            table.add_row(structure.title, f"[red]cannot hold it:[/] {refusal}")
+            continue
+        each = [(f"{size:,}", f"{size / max(len(mesh.points), 1):.1f}") for size in sizes]
+        table.add_row(structure.title, *each[0], *each[1])
+    return table
+
+
+if __name__ == "__main__":
+    app()

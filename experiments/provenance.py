@@ -1,0 +1,80 @@
+"""What ran where: the facts that a run carries besides its measurements."""
+
+from __future__ import annotations
+
+import os
+import platform
+import subprocess
+import sys
+from datetime import UTC, datetime
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+from experiments.results import SCHEMA
+
+LIBRARIES = ("numpy", "numba", "scipy", "pandas", "pymeshlab", "pytest-benchmark")
+
+
+def describe(profile: str) -> dict[str, Any]:
+    """The head of a run: schema, profile, time, commit, machine and versions."""
+    commit = _git("rev-parse", "HEAD")
+    return {
+        "schema": SCHEMA,
+        "profile": profile,
+        "started": now(),
+        "commit": commit or "unknown",
+        "dirty": bool(_git("status", "--porcelain")) if commit else None,
+        "machine": machine(),
+        "versions": {
+            "python": platform.python_version(),
+            **{library: version(library) for library in LIBRARIES},
+        },
+    }
+
+
+def now() -> str:
+    """The time, UTC, to the second."""
+    return datetime.now(UTC).strftime("%Y-%m-%dT%H:%M:%SZ")
+
+
+def machine() -> dict[str, Any]:
+    """The processor, its caches and the memory."""
+    return {
+        "cpu": _cpu(),
+        "cores": os.cpu_count(),
+        "memory_bytes": os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES"),
+        "caches": _caches(),
+        "platform": f"{platform.system()} {platform.release()} {platform.machine()}",
+        "python": sys.implementation.name,
+    }
+
+
+def _cpu() -> str:
+    try:
+        lines = Path("/proc/cpuinfo").read_text().splitlines()
+    except OSError:
+        return platform.processor() or "unknown"
+    names = [line.partition(":")[2].strip() for line in lines if line.startswith("model name")]
+    return names[0] if names else platform.processor() or "unknown"
+
+
+def _caches() -> dict[str, str]:
+    """Data caches of the first core by level, such as ``{"L1": "32K"}``; Linux only."""
+    found = {}
+    for cache in sorted(Path("/sys/devices/system/cpu/cpu0/cache").glob("index*")):
+        if (cache / "type").read_text().strip() != "Instruction":
+            level = (cache / "level").read_text().strip()
+            found[f"L{level}"] = (cache / "size").read_text().strip()
+    return found
+
+
+def _git(*arguments: str) -> str:
+    here = Path(__file__).parent
+    try:
+        done = subprocess.run(
+            ["git", *arguments], cwd=here, capture_output=True, text=True, check=True, timeout=10
+        )
+    except (OSError, subprocess.SubprocessError):
+        return ""
+    return done.stdout.strip()

@@ -1,0 +1,128 @@
+"""Table 1 of the thesis, as printed beside as measured."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+from experiments.claims import MEMORY, VARIABLES
+from experiments.complexity import Verdict
+from experiments.results import Run, load
+from experiments.verdicts import OUTCOMES, judged, save
+from structures import REGISTRY
+
+STYLES = {
+    "consistent": "green",
+    "violated": "bold red",
+    "undetermined": "yellow",
+    "no claim": "dim",
+}
+
+
+def show(run_folder: Path, console: Console) -> None:
+    """Judge a run, keep the verdicts beside it, and print them."""
+    run = load(run_folder)
+    table = judged(run)
+    save(run, table)
+    console.print(_rendered(table, run))
+    console.print(_summary(table))
+    console.print(
+        "Slopes are log-log, by work (array elements read) and by time; the class claimed holds if "
+        "the work says so.\n[bold]✓[/] consistent  [bold]✗[/] violated  [bold]?[/] undetermined  "
+        "[bold]–[/] nothing claimed: found is what naming the edge by its two vertices costs",
+        style="dim",
+    )
+
+
+def markdown(run: Run) -> str:
+    """Table 1 for a page: what is printed, the mark, and what was found."""
+    table = judged(run)
+    heads = [REGISTRY[name].title for name in _structures(table)]
+    lines = ["| | " + " | ".join(heads) + " |", "|---" * (len(heads) + 1) + "|"]
+    for title, rows in _by_title(table):
+        cells = [_markdown_cell(row) for row in rows]
+        lines.append(f"| {title} | " + " | ".join(cells) + " |")
+    return "\n".join(lines)
+
+
+def found(row: dict[str, Any]) -> str:
+    """What was measured in a cell, in the table's own terms, such as ``O(n_ev)``."""
+    if row["query"] == MEMORY:
+        return f"{row['bytes_per_vertex']:g}"
+    factors = [_factor(row[f"work_{variable}"], symbol) for variable, symbol in VARIABLES.items()]
+    if None in factors:
+        return "?"
+    return f"O({' · '.join(it for it in factors if it) or '1'})"
+
+
+def slopes(row: dict[str, Any], measure: str) -> str:
+    """The slopes in both variables by one measure, such as ``n_t 1.00  n_ev 0.00``."""
+    verdicts = {symbol: row[f"{measure}_{it}"] for it, symbol in VARIABLES.items()}
+    return "  ".join(
+        f"{symbol} {verdict.slope + 0.0:.2f}" if verdict else f"{symbol} –"
+        for symbol, verdict in verdicts.items()
+    )
+
+
+def _factor(verdict: Verdict | None, symbol: str) -> str | None:
+    if verdict is None:
+        return None
+    return "" if verdict.best == "O(1)" else verdict.best[2:-1].replace("n", symbol)
+
+
+def _by_title(table: pd.DataFrame) -> Iterator[tuple[str, list[dict[str, Any]]]]:
+    for title, rows in table.groupby("title", sort=False):
+        records = rows.to_dict("records")
+        yield str(title), [{str(key): value for key, value in row.items()} for row in records]
+
+
+def _structures(table: pd.DataFrame) -> list[str]:
+    return list(table["structure"].unique())
+
+
+def _rendered(table: pd.DataFrame, run: Run) -> Table:
+    meta = run.meta
+    title = f"Table 1, printed and measured · {run.folder.name} · profile {meta.get('profile')}"
+    rendered = Table(title=title, show_lines=True, pad_edge=False)
+    rendered.add_column("", style="bold")
+    for name in _structures(table):
+        rendered.add_column(REGISTRY[name].title)
+    for heading, rows in _by_title(table):
+        rendered.add_row(heading, *(_cell(row) for row in rows))
+    return rendered
+
+
+def _cell(row: dict[str, Any]) -> Text:
+    mark = OUTCOMES[row["outcome"]]
+    text = Text(f"{row['printed']} {mark} ", style=STYLES[row["outcome"]])
+    text.append(f"found {found(row)}", style="default")
+    if row["query"] == MEMORY:
+        return text
+    for measure in ("work", "time"):
+        outcome = row[f"outcome_{measure}"]
+        text.append(
+            f"\n{measure} {slopes(row, measure)} {OUTCOMES[outcome]}", style=STYLES[outcome]
+        )
+    return text
+
+
+def _markdown_cell(row: dict[str, Any]) -> str:
+    mark = OUTCOMES[row["outcome"]]
+    return f"{row['printed']} {mark}" if mark != "–" else f"{row['printed']}, found {found(row)}"
+
+
+def _summary(table: pd.DataFrame) -> Text:
+    text = Text()
+    for measure in ("work", "time"):
+        counts = table[f"outcome_{measure}"].value_counts()
+        parts = [f"{counts.get(outcome, 0)} {outcome}" for outcome in OUTCOMES]
+        text.append(f"by {measure}: {', '.join(parts)}\n")
+    memory = table[table["query"] == MEMORY]["outcome"].value_counts()
+    text.append("by bytes: " + ", ".join(f"{count} {outcome}" for outcome, count in memory.items()))
+    return text

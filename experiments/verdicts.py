@@ -1,0 +1,173 @@
+"""From a run to a verdict on every claim: by work and by time, in each variable apart.
+
+Work counts are exact, so they decide; time is judged beside them, against the latency that the
+memory of the same machine had at each cell's working set.
+"""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from experiments.claims import MEMORY, VARIABLES, Claim, load_claims
+from experiments.complexity import Verdict, judge
+from experiments.results import Run, write_json
+from experiments.subjects import HUBS
+
+Array = NDArray[Any]
+
+OUTCOMES = {
+    "consistent": "✓",
+    "violated": "✗",
+    "undetermined": "?",
+    "no claim": "–",
+}
+"""What a verdict can be, and its mark."""
+
+SOURCES = {
+    ("work", "faces"): "bench_work",
+    ("work", "valence"): "bench_work",
+    ("time", "faces"): "bench_queries",
+    ("time", "valence"): "bench_valence",
+}
+"""The experiment that holds the evidence, by measure and variable."""
+
+
+class Evidence:
+    """The cells of a run that bear on the claims."""
+
+    def __init__(self, run: Run) -> None:
+        self.cells = run.cells
+
+    @cached_property
+    def judged_family(self) -> str | None:
+        """The family whose valence is the same at every size: that of the work counts."""
+        families = self.cells.query("experiment == 'bench_work' and family != @HUBS")["family"]
+        return None if families.empty else str(families.iloc[0])
+
+    @cached_property
+    def _latency(self) -> tuple[Array, Array]:
+        cells = self.cells[self.cells["experiment"] == "bench_latency"].sort_values("working_set")
+        seconds = [np.median(samples) for samples in cells["samples"]]
+        return cells["working_set"].to_numpy(float), np.array(seconds)
+
+    def latency(self, working_sets: Array) -> Array | None:
+        """Seconds per access at each working set, between those that were measured."""
+        sizes, seconds = self._latency
+        if len(sizes) == 0:
+            return None
+        return np.exp(np.interp(np.log(working_sets), np.log(sizes), np.log(seconds)))
+
+    def curve(self, measure: str, variable: str, structure: str, query: str) -> pd.DataFrame:
+        """The cells along one variable, ascending: of the judged family, or of the hubs."""
+        family = HUBS if variable == "valence" else self.judged_family
+        wanted = (
+            (self.cells["experiment"] == SOURCES[measure, variable])
+            & (self.cells["structure"] == structure)
+            & (self.cells["query"] == query)
+            & (self.cells["family"] == family)
+            & (self.cells["order"] == "random")
+        )
+        return self.cells[wanted].sort_values(variable)
+
+    def verdict(self, claim: Claim, measure: str, variable: str) -> Verdict | None:
+        """Judge one claim by one measure in one variable; None without any cells.
+
+        Where nothing is claimed the class found is what matters, and O(1) is asked about.
+        """
+        cells = self.curve(measure, variable, claim.structure, claim.what)
+        if cells.empty:
+            return None
+        exact = measure == "work"
+        # What reads nothing at all costs something all the same: the call.
+        samples = [np.maximum(it, 1) if exact else it for it in cells["samples"]]
+        latency = None if exact else self.latency(cells["working_set"].to_numpy(float))
+        expected = claim.expected.get(variable, "O(1)")
+        return judge(cells[variable].to_numpy(float), samples, expected, latency, exact=exact)
+
+    def largest(self, measure: str, claim: Claim) -> float:
+        """Cost per query at the largest size: the median over rounds, or the mean reads."""
+        cells = self.curve(measure, "faces", claim.structure, claim.what)
+        if cells.empty:
+            return float("nan")
+        samples = cells["samples"].iloc[-1]
+        return float(np.mean(samples) if measure == "work" else np.median(samples))
+
+    def bytes_per_vertex(self, structure: str, reference_bytes: int = 8) -> float:
+        """Of the judged family: bytes in the arrays per vertex, at the largest size."""
+        cells = self.cells[
+            (self.cells["experiment"] == "bench_memory")
+            & (self.cells["structure"] == structure)
+            & (self.cells["family"] == self.judged_family)
+            & (self.cells["reference_bytes"] == reference_bytes)
+        ].sort_values("vertices")
+        if cells.empty:
+            return float("nan")
+        return float(cells["samples"].iloc[-1][0] / cells["vertices"].iloc[-1])
+
+
+def judged(run: Run, claims: list[Claim] | None = None) -> pd.DataFrame:
+    """One row per claim: what is printed, what was found, and the verdicts behind it.
+
+    Columns: structure, query, title, printed, source, outcome, outcome_work, outcome_time, for
+    ``measure`` in work, time and ``variable`` in faces, valence ``<measure>_<variable>`` (a
+    ``Verdict`` or None), work_per_query, seconds_per_query, bytes_per_vertex.
+    """
+    evidence = Evidence(run)
+    return pd.DataFrame([_row(evidence, claim) for claim in claims or load_claims()])
+
+
+def save(run: Run, table: pd.DataFrame) -> Path:
+    """Keep the verdicts beside the raw results, in ``derived/verdicts.json``."""
+    path = run.folder / "derived" / "verdicts.json"
+    rows = [
+        {key: asdict(value) if isinstance(value, Verdict) else value for key, value in row.items()}
+        for row in table.to_dict("records")
+    ]
+    write_json(path, {"run": run.folder.name, "claims": rows})
+    return path
+
+
+def _row(evidence: Evidence, claim: Claim) -> dict[str, Any]:
+    row: dict[str, Any] = {
+        "structure": claim.structure,
+        "query": claim.what,
+        "title": claim.title,
+        "printed": claim.printed,
+        "source": claim.source,
+    }
+    if claim.what == MEMORY:
+        found = evidence.bytes_per_vertex(claim.structure)
+        outcome = "consistent" if found == claim.bytes_per_vertex else "violated"
+        outcome = "undetermined" if np.isnan(found) else outcome
+        return row | {"outcome": outcome, "bytes_per_vertex": found}
+    verdicts = {
+        f"{measure}_{variable}": evidence.verdict(claim, measure, variable)
+        for measure, variable in SOURCES
+    }
+    outcomes = {
+        f"outcome_{measure}": combined(claim, [verdicts[f"{measure}_{it}"] for it in VARIABLES])
+        for measure in ("work", "time")
+    }
+    return row | {
+        "outcome": outcomes["outcome_work"],
+        **outcomes,
+        **verdicts,
+        "work_per_query": evidence.largest("work", claim),
+        "seconds_per_query": evidence.largest("time", claim),
+        "bytes_per_vertex": float("nan"),
+    }
+
+
+def combined(claim: Claim, verdicts: list[Verdict | None]) -> str:
+    """The verdict on a claim from those in each variable: the worst of them, if it claims any."""
+    if not claim.expected:
+        return "no claim"
+    found = {verdict.outcome if verdict else "undetermined" for verdict in verdicts}
+    return next(it for it in ("violated", "undetermined", "consistent") if it in found)
