@@ -17,7 +17,7 @@ from experiments.truth import check
 from hem.queries import QUERIES
 from structures import NAMES as STRUCTURES
 
-CHECKED_HANDLES = 4
+CHECKED_HANDLES = 3
 
 
 def cells(profile: Profile, structure: str) -> list[Cell]:

@@ -18,9 +18,8 @@ from structures import NAMES as STRUCTURES
 def cells(profile: Profile, structure: str) -> list[Cell]:
     """The judged family by size, then the hubs by valence."""
     sizes = [(profile.families[0], size, None) for size in profile.work_sizes]
-    valences = [
-        (HUBS, profile.work_faces, k) for k in profile.valences if 2 * k <= profile.work_faces
-    ]
+    few = profile.work_faces // 16  # so that a scan's work is the scan, not what it finds
+    valences = [(HUBS, profile.work_faces, k) for k in profile.valences if k <= few]
     return [
         Cell(structure, family, size, query, "random", valence)
         for family, size, valence in (*sizes, *valences)

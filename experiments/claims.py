@@ -15,6 +15,8 @@ VARIABLES = {"faces": "n_t", "valence": "n_ev"}
 
 MEMORY = "memory"
 NO_CLAIM = "N/A"
+BOUND = "≤ "
+"""What a class begins with that is claimed as a bound only."""
 
 
 @dataclass(frozen=True)

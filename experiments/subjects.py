@@ -14,7 +14,7 @@ import structures
 from experiments.results import CellResult
 from hem.mesh import TriangleMesh
 from hem.queries import QUERIES, Query
-from hem.structure import HANDLE_TYPES, Structure
+from hem.structure import Structure
 
 Array = NDArray[Any]
 
@@ -86,17 +86,19 @@ class Cell:
 def pool(cell: Cell, s: Structure) -> Array:
     """The handles a cell asks, each once: in ascending order, or all of them in random order.
 
-    Where the valence varies they are those at the hubs: the hubs themselves, one edge from each hub
-    to the rim, one face at each hub.
+    Where the valence varies they are the hubs, and the edges and faces at hubs; there are as many
+    of these at every valence.
     """
     source = cell.asked.source
-    if cell.valence is None:
-        handles = _all_handles(cell.structure, cell.family, cell.size, source)
-    else:
-        hubs = np.array(hem.valence_hubs(cell.valence, cell.size))
-        around = s.vertex_edges if source == "edge" else s.vertex_faces
-        first = [around(hub)[0] for hub in hubs.tolist()] if source != "vertex" else hubs
-        handles = np.array(first, HANDLE_TYPES[source])
+    handles = _all_handles(cell.structure, cell.family, cell.size, cell.valence, source)
+    if cell.valence is not None:
+        corners = {
+            "vertex": lambda: handles,
+            "edge": lambda: s.edge_vertices(handles).values,
+            "face": lambda: s.face_vertices(handles).values,
+        }[source]().reshape(len(handles), -1)
+        hubs = hem.valence_hubs(cell.valence, cell.size)
+        handles = handles[(corners < len(hubs)).any(axis=1)]
     if cell.order == "random":
         handles = np.random.default_rng(HANDLE_SEED).permutation(handles)
     return handles
@@ -128,8 +130,8 @@ def _structure(
 
 
 @lru_cache(maxsize=3)
-def _all_handles(name: str, family: str, size: int, source: str) -> Array:
-    return _structure(name, family, size, None, 4).handles(source)
+def _all_handles(name: str, family: str, size: int, valence: int | None, source: str) -> Array:
+    return _structure(name, family, size, valence, 4).handles(source)
 
 
 @lru_cache(maxsize=4)

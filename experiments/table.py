@@ -65,7 +65,7 @@ def slopes(row: dict[str, Any], measure: str) -> str:
     """The slopes in both variables by one measure, such as ``n_t 1.00  n_ev 0.00``."""
     verdicts = {symbol: row[f"{measure}_{it}"] for it, symbol in VARIABLES.items()}
     return "  ".join(
-        f"{symbol} {verdict.slope + 0.0:.2f}" if verdict else f"{symbol} –"
+        f"{symbol} {round(verdict.slope, 2) + 0:.2f}" if verdict else f"{symbol} –"
         for symbol, verdict in verdicts.items()
     )
 

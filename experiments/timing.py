@@ -29,7 +29,7 @@ def time_query(
 
     Successive rounds take successive handles of the pool and begin again only when all have been
     asked, so that a large mesh is not answered out of the caches by what the last round left there.
-    Raises TooSlowError before anything long is begun.
+    All are asked once before, so that a small one is. Raises TooSlowError before anything long is begun.
     """
     seconds = _seconds_per_query(s, query, pool, profile.round_seconds / 4)
     handles = int(np.clip(profile.round_seconds / seconds, 1, MOST_HANDLES))
@@ -38,6 +38,8 @@ def time_query(
         raise TooSlowError(
             f"one query takes {seconds:.3g} s, a cell may take {profile.cell_seconds} s"
         )
+    if seconds * len(pool) < profile.cell_seconds:
+        s.sweep(query, pool)
     windows = (np.arange(handles) + handles * k for k in count())
 
     def successive() -> tuple[tuple[str, Array], dict[str, Any]]:

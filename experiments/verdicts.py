@@ -15,7 +15,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from experiments.claims import MEMORY, VARIABLES, Claim, load_claims
+from experiments.claims import BOUND, MEMORY, VARIABLES, Claim, load_claims
 from experiments.complexity import Verdict, judge
 from experiments.results import Run, write_json
 from experiments.subjects import HUBS
@@ -89,7 +89,9 @@ class Evidence:
         samples = [np.maximum(it, 1) if exact else it for it in cells["samples"]]
         latency = None if exact else self.latency(cells["working_set"].to_numpy(float))
         expected = claim.expected.get(variable, "O(1)")
-        return judge(cells[variable].to_numpy(float), samples, expected, latency, exact=exact)
+        bound = "upper" if expected.startswith(BOUND) else "tight"
+        sizes, expected = cells[variable].to_numpy(float), expected.removeprefix(BOUND)
+        return judge(sizes, samples, expected, latency, exact=exact, bound=bound)
 
     def largest(self, measure: str, claim: Claim) -> float:
         """Cost per query at the largest size: the median over rounds, or the mean reads."""

@@ -277,12 +277,24 @@ def append_face(out: Array, count: int, face: int) -> int:
 
 @kernel
 def distinct(out: Array, count: int) -> int:
-    """Sort the first ``count`` elements and keep each once, in place -> how many are left."""
-    out[:count].sort()
-    kept = min(count, 1)
-    for i in range(1, count):
-        if out[i] != out[kept - 1]:
-            out[kept] = out[i]
+    """Keep each of the first ``count`` elements once, in order, in place -> how many are left.
+
+    The next up to 4 · ``count`` elements of ``out`` serve as a hash table. Cost O(count) expected.
+    """
+    size = 1
+    while size < 2 * count:
+        size *= 2
+    table = out[count : count + size]
+    table[:] = -1
+    kept = 0
+    for i in range(count):
+        value = out[i]
+        place = (value * 40503 + (value >> 16)) & (size - 1)
+        while table[place] >= 0 and table[place] != value:
+            place = (place + 1) & (size - 1)
+        if table[place] < 0:
+            table[place] = value
+            out[kept] = value
             kept += 1
     return kept
 

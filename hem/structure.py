@@ -258,9 +258,9 @@ class Structure(ABC):
 
     @cached_property
     def _width(self) -> int:
-        """The most neighbors one query can have, those found twice before they are told apart."""
+        """Room for the answer to any one query, with what it finds twice and a table to tell."""
         corners = self._ragged("face_vertices", self.faces(), 3).values
-        return 4 * (int(np.bincount(corners).max(initial=0)) + 1)
+        return 12 * (int(np.bincount(corners).max(initial=0)) + 1)
 
     @cached_property
     def _out(self) -> dict[str, NDArray[Any]]:
