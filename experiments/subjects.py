@@ -92,13 +92,12 @@ def pool(cell: Cell, s: Structure) -> Array:
     source = cell.asked.source
     handles = _all_handles(cell.structure, cell.family, cell.size, cell.valence, source)
     if cell.valence is not None:
-        corners = {
-            "vertex": lambda: handles,
-            "edge": lambda: s.edge_vertices(handles).values,
-            "face": lambda: s.face_vertices(handles).values,
-        }[source]().reshape(len(handles), -1)
+        if source == "vertex":
+            corners = handles
+        else:
+            corners = (s.edge_vertices if source == "edge" else s.face_vertices)(handles).values
         hubs = hem.valence_hubs(cell.valence, cell.size)
-        handles = handles[(corners < len(hubs)).any(axis=1)]
+        handles = handles[(corners < len(hubs)).reshape(len(handles), -1).any(axis=1)]
     if cell.order == "random":
         handles = np.random.default_rng(HANDLE_SEED).permutation(handles)
     return handles

@@ -29,7 +29,7 @@ def time_query(
 
     Successive rounds take successive handles of the pool and begin again only when all have been
     asked, so that a large mesh is not answered out of the caches by what the last round left there.
-    All are asked once before, so that a small one is. Raises TooSlowError before anything long is begun.
+    All are asked once before, so that a small one is. Raises TooSlowError before it takes long.
     """
     seconds = _seconds_per_query(s, query, pool, profile.round_seconds / 4)
     handles = int(np.clip(profile.round_seconds / seconds, 1, MOST_HANDLES))

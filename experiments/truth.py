@@ -55,11 +55,10 @@ def neighbors(triangles: Array, query: Query, key: int) -> Array:
 
     ``key``: a vertex, a face, or an edge packed.
     """
-    corners = {
-        "vertex": lambda: np.array([key]),
-        "edge": lambda: np.array([key >> 32, key & 0xFFFFFFFF]),
-        "face": lambda: triangles[key],
-    }[query.source]()
+    if query.source == "face":
+        corners = triangles[key]
+    else:
+        corners = np.array([key] if query.source == "vertex" else [key >> 32, key & 0xFFFFFFFF])
     shared = np.isin(triangles, corners).sum(axis=1)
     if query.target == "face":
         found = np.flatnonzero(shared >= min(len(corners), 2))

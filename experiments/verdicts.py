@@ -16,7 +16,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from experiments.claims import BOUND, MEMORY, VARIABLES, Claim, load_claims
-from experiments.complexity import Verdict, judge
+from experiments.complexity import Bound, Verdict, judge
 from experiments.results import Run, write_json
 from experiments.subjects import HUBS
 
@@ -89,7 +89,7 @@ class Evidence:
         samples = [np.maximum(it, 1) if exact else it for it in cells["samples"]]
         latency = None if exact else self.latency(cells["working_set"].to_numpy(float))
         expected = claim.expected.get(variable, "O(1)")
-        bound = "upper" if expected.startswith(BOUND) else "tight"
+        bound: Bound = "upper" if expected.startswith(BOUND) else "tight"
         sizes, expected = cells[variable].to_numpy(float), expected.removeprefix(BOUND)
         return judge(sizes, samples, expected, latency, exact=exact, bound=bound)
 

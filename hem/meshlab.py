@@ -37,6 +37,11 @@ def meshlab() -> ModuleType:
     return module
 
 
+def problem() -> str:
+    """What keeps pymeshlab from loading, and what to install; empty where nothing does."""
+    return _imported()[1]
+
+
 @cache
 def _imported() -> tuple[ModuleType | None, str]:
     """The module, or what is wrong with it."""

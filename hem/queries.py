@@ -1,4 +1,4 @@
-"""The nine adjacency queries, as data: kernels, methods, tests, experiments and tables loop over them."""
+"""The nine adjacency queries, as data: kernels, tests, experiments and tables loop over them."""
 
 from __future__ import annotations
 

@@ -1,0 +1,52 @@
+# Two commands set everything up: `make study` measures and writes the report, `make test` tests.
+
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+INSTALLED := $(VENV)/installed
+PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
+
+.DEFAULT_GOAL := help
+.PHONY: help study test check format peers test-floor clean
+
+help:  ## show this list
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
+
+$(INSTALLED): pyproject.toml constraints.txt
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { echo "hem needs Python 3.11 or newer; say which with: make PYTHON=python3.12 ..." >&2; exit 1; }
+	@$(PYTHON) -c 'import ensurepip' || { echo "this Python has no venv module; on Debian or Ubuntu: apt-get install python3-venv" >&2; exit 1; }
+	@echo "Setting up $(VENV) (a minute or two)"
+	@test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
+	@$(PIP) install --editable '.[dev]' --constraint constraints.txt
+	@$(BIN)/python -c 'import sys, hem.meshlab; sys.exit(hem.meshlab.problem() or 0)'
+	@touch $@
+
+study: $(INSTALLED)  ## measure for some 3 minutes, print table 1, write the report
+	@$(BIN)/hem study --profile quick
+	@$(BIN)/hem table
+	@$(BIN)/hem report
+
+test: $(INSTALLED)  ## run all tests
+	@$(BIN)/python -m pytest tests
+
+check: $(INSTALLED)  ## check format, style and types
+	@$(BIN)/ruff format --check .
+	@$(BIN)/ruff check .
+	@$(BIN)/mypy
+
+format: $(INSTALLED)  ## format the code
+	@$(BIN)/ruff format .
+	@$(BIN)/ruff check --fix .
+
+peers: $(INSTALLED)  ## compare with OpenMesh, libigl, MeshLib and COMPAS on a million vertices
+	@$(PIP) install --editable '.[peers]' --constraint constraints.txt
+	@$(BIN)/python -m experiments.peers
+
+test-floor:  ## run all tests with the oldest versions that are supported
+	@test -x $(VENV)-floor/bin/python || $(PYTHON) -m venv $(VENV)-floor
+	@$(VENV)-floor/bin/python -m pip --disable-pip-version-check --quiet install --editable . pytest hypothesis --constraint constraints-floor.txt
+	@$(VENV)-floor/bin/python -m pytest tests
+
+clean:  ## remove everything that was made here, runs excepted
+	rm -rf $(VENV) $(VENV)-floor build *.egg-info .mypy_cache .ruff_cache .pytest_cache report/html
+	find . -name __pycache__ -type d -prune -exec rm -rf {} +
