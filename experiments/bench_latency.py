@@ -1,7 +1,6 @@
 """Latency of the machine's memory by working set: what an O(1) query waits for.
 
-A pointer chase visits every cache line of an array once, in random order; each access must wait for
-the one before. Queries are judged against the latency at their own working set.
+The whole curve, for the plots; a query is judged against the latency measured beside it.
 """
 
 from __future__ import annotations
@@ -9,18 +8,15 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numba import njit
-from numpy.typing import NDArray
 
 from experiments.conftest import Keep
+from experiments.latency import LINE, WORDS, chase, random_cycle
 from experiments.profiles import Profile
 from experiments.results import CellResult
 from experiments.subjects import Cell
 
 STRUCTURES = ("machine",)
 
-LINE = 64
-WORDS = LINE // 8
 SMALLEST = 16 * 1024
 STEPS = 50_000
 
@@ -58,17 +54,4 @@ def test_latency(cell: Cell, profile: Profile, benchmark: Any, keep: Keep) -> No
     )
 
 
-def random_cycle(lines: int) -> NDArray[np.int64]:
-    """(8 · lines,) int64: the first word of each line names the line to visit after it."""
-    order = np.random.default_rng(0).permutation(lines)
-    chain = np.zeros(WORDS * lines, np.int64)
-    chain[WORDS * order] = np.roll(order, -1)
-    return chain
-
-
-@njit(cache=True)
-def chase(chain: NDArray[np.int64], line: int, steps: int) -> int:
-    """The line reached from ``line`` after so many steps."""
-    for _ in range(steps):
-        line = chain[WORDS * line]
-    return line
+__all__ = ["STRUCTURES", "cells", "test_latency"]

@@ -42,12 +42,12 @@ def measure(cell: Cell, profile: Profile, benchmark: Any, keep: Keep) -> None:
     handles = pool(cell, s)
     check(s, cell.mesh(), cell.asked, handles[:CHECKED_HANDLES])
     try:
-        samples, count = time_query(benchmark, s, cell.asked.name, handles, profile)
+        timed = time_query(benchmark, s, cell.asked.name, handles, profile)
     except TooSlowError as reason:
         benchmark.pedantic(lambda: None)
         keep(cell.result("time", s, np.zeros(0), left_out=str(reason)))
     else:
-        keep(cell.result("time", s, samples, handles=count, checked=True))
+        keep(cell.result("time", s, checked=True, **timed))
 
 
 __all__ = ["STRUCTURES", "cells", "measure", "test_query"]

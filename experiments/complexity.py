@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from experiments.costs import Costs, reduce, resample, slope
-from experiments.evidence import Comparison, account
+from experiments.evidence import LATENCY_ERROR, Comparison, account
 from experiments.models import NAMES, Array, canonical, predict
 
 Outcome = Literal["consistent", "violated", "undetermined"]
@@ -67,6 +67,7 @@ def judge(
     latency: ArrayLike | None = None,
     *,
     exact: bool = False,
+    latency_error: float = LATENCY_ERROR,
     bound: Bound = "tight",
     confidence: float = 0.95,
     resamples: int = 200,
@@ -79,6 +80,7 @@ def judge(
     expected: a class of `MODELS` in any usual spelling; "O(n_t)" and "O(n_ev)" are linear.
     latency: (k,) the machine's memory latency at each working set, in any unit. A cost may then
     wait for memory to any degree, from not at all to entirely.
+    latency_error: how far, relatively, the latency may miss what the costs really waited for.
     exact: the costs are counts of work, which no cache slows. With neither latency nor exact, a
     smooth rise of up to `evidence.HIGHEST_RISE` may have happened unseen: what it could explain
     violates nothing, and where it explains the costs better, nothing is confirmed.
@@ -93,9 +95,10 @@ def judge(
     if bound not in ("tight", "upper"):
         raise ValueError(f'bound must be "tight" or "upper", not {bound!r}')
     claim = NAMES.index(canonical(expected))
-    costs, caches = account(reduce(sizes, samples), sizes, latency, exact)
+    measured = reduce(sizes, samples)
+    costs, caches = account(measured, sizes, latency, exact, latency_error)
     models = Comparison(costs, caches)
-    outcome, reason = _decide(costs, models, claim, bound)
+    outcome, reason = _decide(measured, models, claim, bound)
     fitted, _ = predict(models.basis, models.fit)
     replicates = resample(costs, fitted[models.best], resamples, seed)
     tails = [(1 - confidence) / 2, (1 + confidence) / 2]

@@ -28,7 +28,7 @@ from experiments.models import (
 )
 
 LATENCY_ERROR = 0.03
-"""Relative error of a measured latency."""
+"""Relative error of a measured latency, unless a caller knows better."""
 PRIOR = 10.0
 """Degrees of freedom p to which the samples tell the error."""
 AGAINST_SIMPLER = 6.5
@@ -66,7 +66,11 @@ class Caches:
 
 
 def account(
-    costs: Costs, sizes: ArrayLike, latency: ArrayLike | None, exact: bool
+    costs: Costs,
+    sizes: ArrayLike,
+    latency: ArrayLike | None,
+    exact: bool,
+    latency_error: float = LATENCY_ERROR,
 ) -> tuple[Costs, Caches]:
     """The costs, with the latency's error added to theirs, and what caches may have done to them.
 
@@ -82,7 +86,7 @@ def account(
     if waits.shape != costs.sizes.shape or not np.all(np.isfinite(waits) & (waits > 0)):
         raise ValueError("latency must be one positive number per size")
     rises = measured_rises(waits[np.argsort(np.asarray(sizes, dtype=np.float64), kind="stable")])
-    error = np.sqrt(costs.error**2 + LATENCY_ERROR**2)
+    error = np.sqrt(costs.error**2 + latency_error**2)
     return replace(costs, error=error), Caches(rises, None, MISFIT_EXPLAINED, 3)
 
 

@@ -34,7 +34,8 @@ class CellResult:
     ``samples``: seconds per query and round (``kind`` "time"), reads per query and handle ("work"),
     or bytes ("bytes"). ``handles``: queries per sample. ``working_set``: bytes of the structure's
     live records, or of the chased array in the latency experiment. ``valence``: that of the queried
-    vertices where the experiment varies it. ``left_out``: why nothing was measured, else empty.
+    vertices where the experiment varies it. ``latency``: seconds per memory access in the working
+    set, measured beside the cell. ``left_out``: why nothing was measured, else empty.
     """
 
     id: str
@@ -52,6 +53,7 @@ class CellResult:
     working_set: int = 0
     handles: int = 0
     checked: bool = False
+    latency: float | None = None
     samples: list[float] = field(default_factory=list)
     left_out: str = ""
     detail: dict[str, Any] = field(default_factory=dict)

@@ -7,7 +7,7 @@ from functools import lru_cache
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 import hem
 import structures
@@ -63,7 +63,7 @@ class Cell:
             self.structure, self.family, self.size, self.valence, self.reference_bytes
         )
 
-    def result(self, kind: str, s: Structure, samples: Array, **more: Any) -> CellResult:
+    def result(self, kind: str, s: Structure, samples: ArrayLike, **more: Any) -> CellResult:
         """The cell as measured, with the facts of its mesh."""
         return CellResult(
             id=self.id,

@@ -33,9 +33,9 @@ def show(run_folder: Path, console: Console) -> None:
     console.print(_rendered(table, run))
     console.print(_summary(table))
     console.print(
-        "Slopes are log-log, by work (array elements read) and by time; the class claimed holds if "
-        "the work says so.\n[bold]✓[/] consistent  [bold]✗[/] violated  [bold]?[/] undetermined  "
-        "[bold]–[/] nothing claimed: found is what naming the edge by its two vertices costs",
+        "Under what is printed: the log-log slopes in n_t and in n_ev, by work (array elements "
+        "read) and by time. The work decides.\n✓ consistent, ✗ violated, ? undetermined, – nothing "
+        "claimed: beside it the class that was found, for an edge named by its two vertices.",
         style="dim",
     )
 
@@ -58,16 +58,19 @@ def found(row: dict[str, Any]) -> str:
     factors = [_factor(row[f"work_{variable}"], symbol) for variable, symbol in VARIABLES.items()]
     if None in factors:
         return "?"
-    return f"O({' · '.join(it for it in factors if it) or '1'})"
+    joint = " + " if _mostly_fixed(row["work_valence"]) else " · "
+    return f"O({joint.join(it for it in factors if it) or '1'})"
 
 
 def slopes(row: dict[str, Any], measure: str) -> str:
-    """The slopes in both variables by one measure, such as ``n_t 1.00  n_ev 0.00``."""
-    verdicts = {symbol: row[f"{measure}_{it}"] for it, symbol in VARIABLES.items()}
-    return "  ".join(
-        f"{symbol} {round(verdict.slope, 2) + 0:.2f}" if verdict else f"{symbol} –"
-        for symbol, verdict in verdicts.items()
-    )
+    """The slopes in n_t and n_ev by one measure, such as ``1.00 0.00``."""
+    verdicts = [row[f"{measure}_{variable}"] for variable in VARIABLES]
+    return " ".join(f"{round(it.slope, 2) + 0:.2f}" if it else "   –" for it in verdicts)
+
+
+def _mostly_fixed(verdict: Verdict) -> bool:
+    """Whether what grows with n_ev comes on top of a larger part that does not."""
+    return verdict.slope < 0.5
 
 
 def _factor(verdict: Verdict | None, symbol: str) -> str | None:
@@ -92,7 +95,7 @@ def _rendered(table: pd.DataFrame, run: Run) -> Table:
     rendered = Table(title=title, show_lines=True, pad_edge=False)
     rendered.add_column("", style="bold")
     for name in _structures(table):
-        rendered.add_column(REGISTRY[name].title)
+        rendered.add_column(REGISTRY[name].abbreviation)
     for heading, rows in _by_title(table):
         rendered.add_row(heading, *(_cell(row) for row in rows))
     return rendered
@@ -100,8 +103,9 @@ def _rendered(table: pd.DataFrame, run: Run) -> Table:
 
 def _cell(row: dict[str, Any]) -> Text:
     mark = OUTCOMES[row["outcome"]]
-    text = Text(f"{row['printed']} {mark} ", style=STYLES[row["outcome"]])
-    text.append(f"found {found(row)}", style="default")
+    text = Text(f"{row['printed']} {mark}", style=STYLES[row["outcome"]])
+    if row["outcome"] != "consistent":
+        text.append(f" {found(row)}", style="default")
     if row["query"] == MEMORY:
         return text
     for measure in ("work", "time"):

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from experiments.latency import latency_now
 from experiments.profiles import Profile
 from hem.structure import Structure
 
@@ -24,8 +25,8 @@ class TooSlowError(RuntimeError):
 
 def time_query(
     benchmark: Any, s: Structure, query: str, pool: Array, profile: Profile
-) -> tuple[Array, int]:
-    """Time ``s.sweep(query, …)`` over the handles in ``pool`` -> (seconds per query, handles).
+) -> dict[str, Any]:
+    """Time ``s.sweep(query, …)`` over the handles in ``pool`` -> samples, handles and latency.
 
     Successive rounds take successive handles of the pool and begin again only when all have been
     asked, so that a large mesh is not answered out of the caches by what the last round left there.
@@ -38,6 +39,7 @@ def time_query(
         raise TooSlowError(
             f"one query takes {seconds:.3g} s, a cell may take {profile.cell_seconds} s"
         )
+    latency = latency_now(sum(s.memory().values()))
     if seconds * len(pool) < profile.cell_seconds:
         s.sweep(query, pool)
     windows = (np.arange(handles) + handles * k for k in count())
@@ -46,9 +48,8 @@ def time_query(
         return (query, pool[next(windows) % len(pool)]), {}
 
     benchmark.pedantic(s.sweep, setup=successive, rounds=rounds, warmup_rounds=1)
-    if benchmark.stats is None:  # --benchmark-disable: run once, timed by nobody
-        return np.zeros(0), handles
-    return np.array(benchmark.stats.stats.data) / handles, handles
+    data = benchmark.stats.stats.data if benchmark.stats else []  # none with --benchmark-disable
+    return {"samples": np.array(data) / handles, "handles": handles, "latency": latency}
 
 
 def _seconds_per_query(s: Structure, query: str, pool: Array, enough: float) -> float:

@@ -1,0 +1,194 @@
+"""The figures of the notebooks: a run in, a figure out. Nothing is computed but medians."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import FuncFormatter
+
+from experiments.claims import MEMORY, load_claims
+from experiments.results import Run
+from experiments.style import FADED, GRAY, LOOKS, label_ends, short, styled
+from experiments.verdicts import Evidence
+from hem.queries import QUERIES
+from structures import NAMES, REGISTRY
+
+Ends = dict[str, tuple[float, float, str]]
+
+MEASURES = {"time": (1e9, "time per query, ns"), "work": (1.0, "elements read per query")}
+"""By measure: the factor to the unit that is drawn, and the label."""
+VARIABLES = {"faces": "faces n_t", "valence": "valence n_ev"}
+
+
+def scaling(run: Run, measure: str, variable: str, queries: Iterable[str] = QUERIES) -> Figure:
+    """Cost against size or valence: a panel per query, a line per structure, both axes logarithmic.
+
+    ``measure``: "time" or "work"; ``variable``: "faces" or "valence". Time against size has
+    random handles in bold, consecutive ones thin, and in gray below them the latency of the memory
+    at the working set that a half-edge mesh of that size has.
+    """
+    evidence, names = Evidence(run), list(queries)
+    columns = min(3, len(names))
+    rows = -(-len(names) // columns)
+    with styled():
+        figure = Figure(figsize=(3.7 * columns, 2.8 * rows + 0.3), layout="constrained")
+        panels = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
+        ends = [
+            _panel(panel, evidence, measure, variable, query)
+            for panel, query in zip(panels.flat, names, strict=False)
+        ]
+        for panel in panels.flat[len(names) :]:
+            panel.set_visible(False)
+        for panel in panels[-1]:
+            panel.set_xlabel(VARIABLES[variable])
+        for panel in panels[:, 0]:
+            panel.set_ylabel(MEASURES[measure][1])
+        _label(figure, panels.flat[: len(names)], ends)
+    return figure
+
+
+def _panel(axes: Axes, evidence: Evidence, measure: str, variable: str, query: str) -> Ends:
+    scale, _ = MEASURES[measure]
+    axes.set_title(QUERIES[query].title)
+    axes.set(xscale="log", yscale="log")
+    ends: Ends = {}
+    drawn = "random" if (measure, variable) == ("time", "faces") else measure
+    for structure in NAMES:
+        cells = evidence.curve(drawn, variable, structure, query)
+        if cells.empty:
+            continue
+        x, y = cells[variable].to_numpy(float), scale * _centers(cells, measure)
+        seen = y > 0  # nothing is read to unpack a handle
+        look = LOOKS[structure]
+        axes.plot(x[seen], y[seen], look.line, color=look.color, marker=look.marker)
+        if seen.any():
+            ends[short(structure)] = (x[seen][-1], y[seen][-1], look.color)
+    if drawn == "random":
+        _consecutive(axes, evidence, query)
+        ends |= _latency_below(axes, evidence, query)
+    return ends
+
+
+def _consecutive(axes: Axes, evidence: Evidence, query: str) -> None:
+    """Thin lines without marks: the same queries, asked in consecutive order."""
+    for structure in NAMES:
+        cells = evidence.curve("time", "faces", structure, query)
+        x, y = cells["faces"].to_numpy(float), 1e9 * _centers(cells, "time")
+        axes.plot(x, y, LOOKS[structure].line, color=LOOKS[structure].color, linewidth=0.7)
+
+
+def _latency_below(axes: Axes, evidence: Evidence, query: str) -> Ends:
+    cells = evidence.curve("random", "faces", "half_edge", query)
+    latency = None if cells.empty else evidence.latency(cells["working_set"].to_numpy(float))
+    if latency is None:
+        return {}
+    x, y = cells["faces"].to_numpy(float), 1e9 * latency
+    axes.fill_between(x, y, 0.1, color=FADED, linewidth=0, zorder=0)
+    axes.plot(x, y, color=GRAY, linewidth=1)
+    axes.set_ylim(bottom=0.4)
+    return {"latency": (x[-1], y[-1], GRAY)}
+
+
+def _centers(cells: pd.DataFrame, measure: str) -> np.ndarray:
+    center = np.mean if measure == "work" else np.median
+    return np.array([center(samples) for samples in cells["samples"]])
+
+
+def _label(figure: Figure, panels: Iterable[Axes], ends: Sequence[Ends]) -> None:
+    """Labels need room beside the last point, and a settled layout before they are placed."""
+    shared = list(panels)
+    low, high = shared[0].get_xlim()
+    for panel in shared:
+        panel.set_xlim(low, high * (high / low) ** 0.17)
+    figure.draw_without_rendering()
+    for panel, labels in zip(shared, ends, strict=True):
+        label_ends(panel, labels)
+
+
+def memory(run: Run) -> Figure:
+    """Bytes per vertex, stacked by field: as printed, modeled with 8 and 4 bytes, and as traced."""
+    evidence = Evidence(run)
+    printed = {it.structure: it.bytes_per_vertex for it in load_claims() if it.what == MEMORY}
+    with styled():
+        figure = Figure(figsize=(11, 1.25 * len(NAMES) + 1.1), layout="constrained")
+        axes = figure.subplots()
+        for row, structure in enumerate(NAMES):
+            for offset, reference_bytes in ((-0.19, 8), (0.19, 4)):
+                cells = evidence.memory(structure, reference_bytes)
+                if not cells.empty:
+                    _bar(axes, row + offset, cells.iloc[-1], structure)
+            axes.plot(
+                2 * [float(printed[structure] or 0)], [row - 0.42, row + 0.02], color="black", linewidth=2.5
+            )
+        axes.set_yticks(range(len(NAMES)), [REGISTRY[name].title for name in NAMES])
+        axes.set(xlabel="bytes per vertex", xlim=(0, 330), ylim=(len(NAMES) - 0.45, -0.6))
+        axes.grid(axis="y", visible=False)
+    return figure
+
+
+def _bar(axes: Axes, height: float, cell: pd.Series, structure: str) -> None:
+    """One stacked bar, its fields named inside where there is room; beside it what was traced."""
+    fields, start = cell["detail"]["fields"], 0.0
+    for k, (field, size) in enumerate(fields.items()):
+        width = size / cell["vertices"]
+        shade = 0.28 if k % 2 else 0.42
+        axes.barh(
+            height, width, 0.36, start, color=LOOKS[structure].color, alpha=shade, edgecolor="white"
+        )
+        if width >= 5.0 * len(field.split(".")[1]) * 0.42:
+            axes.text(
+                start + width / 2, height, field.split(".")[1].replace("_", " "),
+                ha="center", va="center", fontsize=6.5,
+            )  # fmt: skip
+        start += width
+    traced, peak = (cell["detail"][key] / cell["vertices"] for key in ("traced", "peak"))
+    note = f"{start:g} B with {cell['reference_bytes']}-byte references · {traced:.1f} traced · "
+    axes.text(start + 3, height, note + f"{peak:.0f} at the peak", va="center", fontsize=8)
+
+
+def building(run: Run) -> Figure:
+    """Time to build, per vertex, against size: meshes as generated, and renumbered at random."""
+    built = run.cells["experiment"] == "bench_build"
+    cells = run.cells[built & (run.cells["reference_bytes"] == 4)]
+    orders = {"consecutive": "as generated", "random": "renumbered at random"}
+    with styled():
+        figure = Figure(figsize=(8.6, 3.2), layout="constrained")
+        panels = figure.subplots(1, 2, sharey=True)
+        ends: list[Ends] = []
+        for axes, (wanted, title) in zip(panels, orders.items(), strict=True):
+            axes.set(xscale="log", yscale="log", title=f"Building, {title}", xlabel="vertices n_v")
+            ends.append({})
+            for structure in NAMES:
+                mine = (cells["structure"] == structure) & (cells["order"] == wanted)
+                line = cells[mine].sort_values("vertices")
+                if line.empty:
+                    continue
+                x = line["vertices"].to_numpy(float)
+                y = 1e9 * _centers(line, "time") / x
+                look = LOOKS[structure]
+                axes.plot(x, y, look.line, color=look.color, marker=look.marker)
+                ends[-1][short(structure)] = (x[-1], y[-1], look.color)
+        panels[0].set_ylabel("time per vertex, ns")
+        panels[0].yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+        _label(figure, panels, ends)
+    return figure
+
+
+def overview(run: Run) -> Figure:
+    """The study in one picture: the faces around a vertex, by work and by time."""
+    evidence = Evidence(run)
+    with styled():
+        figure = Figure(figsize=(9, 3.4), layout="constrained")
+        panels = figure.subplots(1, 2)
+        ends = [
+            _panel(panel, evidence, measure, "faces", "vertex_faces")
+            for panel, measure in zip(panels, ("work", "time"), strict=True)
+        ]
+        for panel, measure in zip(panels, ("work", "time"), strict=True):
+            panel.set(xlabel="faces n_t", ylabel=MEASURES[measure][1])
+        _label(figure, panels, ends)
+    return figure
