@@ -43,6 +43,11 @@ def scaling(run: Run, measure: str, variable: str, queries: Iterable[str] = QUER
         ]
         for panel in panels.flat[len(names) :]:
             panel.set_visible(False)
+        heights = np.concatenate(
+            [np.ravel(line.get_ydata()) for it in panels.flat for line in it.lines]
+        )
+        if heights.size:
+            panels[0, 0].set_ylim(heights.min() / 2.2, heights.max() * 2.2)
         for panel in panels[-1]:
             panel.set_xlabel(VARIABLES[variable])
         for panel in panels[:, 0]:
@@ -87,9 +92,8 @@ def _latency_below(axes: Axes, evidence: Evidence, query: str) -> Ends:
     if latency is None:
         return {}
     x, y = cells["faces"].to_numpy(float), 1e9 * latency
-    axes.fill_between(x, y, 0.1, color=FADED, linewidth=0, zorder=0)
+    axes.fill_between(x, y, 1e-3, color=FADED, linewidth=0, zorder=0)
     axes.plot(x, y, color=GRAY, linewidth=1)
-    axes.set_ylim(bottom=0.4)
     return {"latency": (x[-1], y[-1], GRAY)}
 
 
@@ -122,10 +126,17 @@ def memory(run: Run) -> Figure:
                 if not cells.empty:
                     _bar(axes, row + offset, cells.iloc[-1], structure)
             axes.plot(
-                2 * [float(printed[structure] or 0)], [row - 0.42, row + 0.02], color="black", linewidth=2.5
+                2 * [float(printed[structure] or 0)],
+                [row - 0.42, row + 0.02],
+                color="black",
+                linewidth=2.5,
             )
+        axes.annotate(
+            "printed in the thesis", (printed["indexed"] or 0, -0.42), (0, 4),
+            textcoords="offset points", ha="center", fontsize=8, fontweight="bold",
+        )  # fmt: skip
         axes.set_yticks(range(len(NAMES)), [REGISTRY[name].title for name in NAMES])
-        axes.set(xlabel="bytes per vertex", xlim=(0, 330), ylim=(len(NAMES) - 0.45, -0.6))
+        axes.set(xlabel="bytes per vertex", xlim=(0, 350), ylim=(len(NAMES) - 0.45, -0.75))
         axes.grid(axis="y", visible=False)
     return figure
 

@@ -32,7 +32,7 @@ LOOKS = {
 GRAY = "#8a8a8a"
 FADED = "#efefef"
 
-RC: dict[str, Any] = {
+RC: Any = {
     "font.family": "sans-serif",
     "font.size": 9,
     "axes.titlesize": 10,

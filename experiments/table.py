@@ -45,7 +45,7 @@ def markdown(run: Run) -> str:
     table = judged(run)
     heads = [REGISTRY[name].title for name in _structures(table)]
     lines = ["| | " + " | ".join(heads) + " |", "|---" * (len(heads) + 1) + "|"]
-    for title, rows in _by_title(table):
+    for title, rows in by_title(table):
         cells = [_markdown_cell(row) for row in rows]
         lines.append(f"| {title} | " + " | ".join(cells) + " |")
     return "\n".join(lines)
@@ -79,7 +79,8 @@ def _factor(verdict: Verdict | None, symbol: str) -> str | None:
     return "" if verdict.best == "O(1)" else verdict.best[2:-1].replace("n", symbol)
 
 
-def _by_title(table: pd.DataFrame) -> Iterator[tuple[str, list[dict[str, Any]]]]:
+def by_title(table: pd.DataFrame) -> Iterator[tuple[str, list[dict[str, Any]]]]:
+    """The rows of the table as it is printed: a title and a record per structure."""
     for title, rows in table.groupby("title", sort=False):
         records = rows.to_dict("records")
         yield str(title), [{str(key): value for key, value in row.items()} for row in records]
@@ -96,7 +97,7 @@ def _rendered(table: pd.DataFrame, run: Run) -> Table:
     rendered.add_column("", style="bold")
     for name in _structures(table):
         rendered.add_column(REGISTRY[name].abbreviation)
-    for heading, rows in _by_title(table):
+    for heading, rows in by_title(table):
         rendered.add_row(heading, *(_cell(row) for row in rows))
     return rendered
 

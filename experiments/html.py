@@ -1,0 +1,107 @@
+"""The tables of the report as HTML, and the page around them."""
+
+from __future__ import annotations
+
+from html import escape
+from typing import Any
+
+import pandas as pd
+
+from experiments.claims import MEMORY, NO_CLAIM, VARIABLES
+from experiments.complexity import Verdict
+from experiments.table import by_title, found
+from experiments.verdicts import OUTCOMES
+from structures import REGISTRY
+
+CSS = """
+:root { --ink: #1b1b1b; --soft: #667; --line: #e3e3e8; }
+body { font: 16px/1.55 system-ui, "Segoe UI", "Liberation Sans", Arial, sans-serif;
+  color: var(--ink); margin: 0 auto; padding: 2rem 1.5rem 4rem; max-width: 1120px; }
+h1 { font-size: 1.7rem; line-height: 1.2; margin: .6rem 0 .4rem; }
+h2 { font-size: 1.2rem; margin-top: 2.2rem; }
+a { color: #1f5f99; } nav { font-size: .92rem; color: var(--soft); } nav a { margin-right: 1.1rem; }
+p, li { max-width: 74ch; } .soft { color: var(--soft); font-size: .9rem; }
+table { border-collapse: collapse; margin: 1rem 0; font-variant-numeric: tabular-nums; }
+th, td { text-align: left; vertical-align: top; padding: .42rem .8rem; font-size: .88rem;
+  border-bottom: 1px solid var(--line); }
+thead th { border-bottom: 2px solid #999; } tbody th { font-weight: 600; white-space: nowrap; }
+td b { font-size: .95rem; } td small { display: block; color: #556; font-size: .78rem; line-height: 1.4; }
+.consistent b { color: #17693a; } .violated { background: #fdeceb; } .violated b { color: #a3170f; }
+.undetermined b { color: #8a5a00; } .no-claim b { color: var(--soft); }
+img, svg { max-width: 100%; height: auto; } pre { white-space: pre-wrap; font-size: .8rem; }
+.jp-Cell-inputWrapper, .jp-OutputPrompt, .jp-InputPrompt { display: none; }
+"""
+
+
+def page(title: str, body: str, links: dict[str, str]) -> str:
+    """A page that opens from disk: everything it needs is in it."""
+    nav = "".join(f'<a href="{escape(to)}">{escape(name)}</a>' for name, to in links.items())
+    return (
+        '<!doctype html>\n<html lang="en"><head><meta charset="utf-8">'
+        f"<title>{escape(title)}</title>"
+        '<meta name="viewport" content="width=device-width, initial-scale=1">'
+        f"<style>{CSS}</style></head>\n<body><nav>{nav}</nav>\n{body}\n</body></html>\n"
+    )
+
+
+def verdicts(table: pd.DataFrame) -> str:
+    """The verdicts at a glance: what is printed, and whether it holds."""
+    return _table(table, _glance)
+
+
+def evidence(table: pd.DataFrame) -> str:
+    """Every cell with its slopes and their intervals by work and by time, and what it costs."""
+    return _table(table, _behind)
+
+
+def _table(table: pd.DataFrame, cell: Any) -> str:
+    heads = "".join(f"<th>{escape(REGISTRY[s].title)}</th>" for s in table["structure"].unique())
+    rows = [
+        f"<tr><th>{escape(title)}</th>"
+        + "".join(
+            f'<td class="{row["outcome"].replace(" ", "-")}">{cell(row)}</td>' for row in rows
+        )
+        + "</tr>"
+        for title, rows in by_title(table)
+    ]
+    body = "\n".join(rows)
+    return f"<table><thead><tr><th></th>{heads}</tr></thead>\n<tbody>{body}</tbody></table>"
+
+
+def _glance(row: dict[str, Any]) -> str:
+    outcome = row["outcome"]
+    mark = f"<b>{OUTCOMES[outcome]} {escape(row['printed'])}</b>"
+    if row["query"] == MEMORY:
+        return f"{mark}<small>{outcome}: {found(row)} measured</small>"
+    if row["printed"] == NO_CLAIM:
+        return f"{mark}<small>nothing claimed, found {escape(found(row))}</small>"
+    return f"{mark}<small>work: {row['outcome_work']}<br>time: {row['outcome_time']}</small>"
+
+
+def _behind(row: dict[str, Any]) -> str:
+    if row["query"] == MEMORY:
+        return _glance(row)
+    head = f"<b>{OUTCOMES[row['outcome']]} {escape(row['printed'])}</b>"
+    if row["printed"] == NO_CLAIM:
+        head += f"<small>found {escape(found(row))}</small>"
+    lines = [
+        f"{name} {_slope(row[f'{measure}_{variable}'])}"
+        for measure, label in (("work", "work"), ("time", "time"), ("random", "at random"))
+        for variable, symbol in VARIABLES.items()
+        if f"{measure}_{variable}" in row
+        for name in (f"{label}, {symbol}:",)
+    ]
+    cost = f"{row['work_per_query']:,.0f} read, {_time(row['seconds_per_query'])} at random"
+    return head + "".join(f"<small>{line}</small>" for line in [*lines, cost])
+
+
+def _slope(verdict: Verdict | None) -> str:
+    if verdict is None:
+        return "–"
+    interval = f"{verdict.slope_low + 0:.2f} … {verdict.slope_high + 0:.2f}"
+    mark = OUTCOMES[verdict.outcome]
+    return f"{round(verdict.slope, 2) + 0:.2f} ({interval}) {escape(verdict.best)} {mark}"
+
+
+def _time(seconds: float) -> str:
+    return f"{seconds * 1e9:,.1f} ns" if seconds < 1e-6 else f"{seconds * 1e6:,.1f} µs"

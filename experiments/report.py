@@ -1,0 +1,158 @@
+"""The report: the notebooks run on a run folder, as pages that open from disk, and a front page."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from html import escape
+from pathlib import Path
+from typing import Any
+
+from experiments import html
+from experiments.results import ResultsError, Run, load
+from experiments.table import markdown
+from experiments.verdicts import judged, save
+
+NOTEBOOKS = Path(__file__).parent.parent / "notebooks"
+CHAPTERS = {
+    "comparison_table": "The comparison table",
+    "query_scaling": "How queries scale",
+    "memory": "Memory",
+}
+"""The notebooks in the order they are read. A new chapter is one notebook and one line here."""
+
+RUN_VARIABLE = "HEM_RUN"
+"""The environment variable that tells a notebook which run to read."""
+
+
+def write(run_folder: Path, output: Path) -> Path:
+    """Write the report of a run to ``output`` -> its front page.
+
+    The pages replace what was there all at once. Raises ResultsError where the run cannot be read
+    or a notebook fails, naming it; then what was there stays.
+    """
+    run = load(run_folder)
+    table = judged(run)
+    save(run, table)
+    output.parent.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory(dir=output.parent, prefix=".report-") as beside:
+        fresh = Path(beside) / "html"
+        fresh.mkdir()
+        for name, title in CHAPTERS.items():
+            body = _chapter(name, run_folder)
+            (fresh / f"{name}.html").write_text(html.page(title, body, _links()), "utf-8")
+        front = html.page("Triangle-mesh structures, measured", _front(run, table), _links())
+        (fresh / "index.html").write_text(front, "utf-8")
+        shutil.rmtree(output, ignore_errors=True)
+        fresh.rename(output)
+    return output / "index.html"
+
+
+def write_page(run_folder: Path, folder: Path) -> Path:
+    """Write the page that is committed: table 1 and the main plots of a run."""
+    from experiments import plots
+
+    run = load(run_folder)
+    folder.mkdir(parents=True, exist_ok=True)
+    figures = {
+        "overview": ("The faces around a vertex, by work and by time", plots.overview(run)),
+        "time": ("Time of the nine queries", plots.scaling(run, "time", "faces")),
+        "work": ("Work of the nine queries", plots.scaling(run, "work", "faces")),
+        "memory": ("Bytes per vertex", plots.memory(run)),
+        "building": ("Time to build", plots.building(run)),
+    }
+    for name, (_, figure) in figures.items():
+        figure.savefig(folder / f"{name}.png")
+    shown = "\n\n".join(f"## {title}\n\n![{title}]({it}.png)" for it, (title, _) in figures.items())
+    page = folder / "README.md"
+    page.write_text(f"# Table 1, measured\n\n{_provenance(run)}\n\n{markdown(run)}\n\n{shown}\n")
+    return page
+
+
+def _links() -> dict[str, str]:
+    return {"Verdicts": "index.html", **{title: f"{it}.html" for it, title in CHAPTERS.items()}}
+
+
+@contextmanager
+def _environment(name: str, value: str) -> Iterator[None]:
+    before = os.environ.get(name)
+    os.environ[name] = value
+    try:
+        yield
+    finally:
+        if before is None:
+            del os.environ[name]
+        else:
+            os.environ[name] = before
+
+
+def _chapter(name: str, run_folder: Path) -> str:
+    """Run a notebook -> the body of its page, without its code."""
+    import nbformat
+    from nbclient import NotebookClient
+    from nbclient.exceptions import CellExecutionError
+    from nbconvert import HTMLExporter
+
+    notebook = nbformat.read(NOTEBOOKS / f"{name}.ipynb", as_version=4)
+    client = NotebookClient(notebook, timeout=300, kernel_name="python3")
+    try:
+        with _environment(RUN_VARIABLE, str(run_folder.resolve())):
+            client.execute(cwd=str(NOTEBOOKS))
+    except CellExecutionError as error:
+        what = f"{error.ename}: {error.evalue}"
+        raise ResultsError(f"notebooks/{name}.ipynb cannot read {run_folder}: {what}") from error
+    exporter = HTMLExporter(template_name="basic", exclude_input=True, exclude_output_prompt=True)
+    body: str = exporter.from_notebook_node(notebook)[0]
+    return body
+
+
+def _front(run: Run, table: Any) -> str:
+    claims = table[table["query"] != "memory"]
+    counts = ", ".join(
+        f"{number} {outcome}" for outcome, number in claims["outcome"].value_counts().items()
+    )
+    chapters = "".join(
+        f'<li><a href="{it}.html">{title}</a></li>' for it, title in CHAPTERS.items()
+    )
+    return (
+        "<h1>Does the thesis' table 1 hold?</h1>"
+        f"<p>Cells of the table, judged by the work that was counted: <b>{escape(counts)}</b>. "
+        "Work is the number of array elements that a query reads; it is exact and decides. Time is "
+        "judged beside it, and is undetermined where the machine's caches could explain it as "
+        "well.</p>"
+        f"{html.verdicts(table)}"
+        '<p class="soft">✓ consistent · ✗ violated · ? undetermined: the data cannot tell · '
+        "– nothing is claimed, as the structure keeps no record of an edge: what was found is the "
+        "cost of naming the edge by its two vertices.</p>"
+        f"<h2>The evidence</h2><ul>{chapters}</ul>"
+        f"<h2>The run</h2><p>{escape(_provenance(run))}</p>{_left_out(run)}"
+    )
+
+
+def _provenance(run: Run) -> str:
+    meta, machine = run.meta, run.meta.get("machine", {})
+    versions = ", ".join(f"{name} {number}" for name, number in meta.get("versions", {}).items())
+    caches = ", ".join(f"{level} {size}" for level, size in machine.get("caches", {}).items())
+    state = {True: " with changes that are not committed", False: "", None: ""}[meta.get("dirty")]
+    finished = f"to {meta['finished']}" if "finished" in meta else "and not finished"
+    return (
+        f"Profile {meta.get('profile')}, from {meta.get('started')} {finished}, at commit "
+        f"{str(meta.get('commit'))[:10]}{state}. "
+        f"{machine.get('cores')} cores of {machine.get('cpu')} ({caches}), "
+        f"{machine.get('memory_bytes', 0) / 2**30:.0f} GiB, {machine.get('platform')}. "
+        f"{versions}. {len(run.cells):,} cells, each checked against the triangle list before it "
+        "was measured."
+    )
+
+
+def _left_out(run: Run) -> str:
+    if run.left_out.empty:
+        return "<p>Nothing was left out.</p>"
+    items = "".join(
+        f"<li>{escape(f'{row.experiment} {row.structure} {row.id}: {row.left_out}')}</li>"
+        for row in run.left_out.itertuples()
+    )
+    return f"<p>Left out:</p><ul>{items}</ul>"
