@@ -25,7 +25,8 @@ table { border-collapse: collapse; margin: 1rem 0; font-variant-numeric: tabular
 th, td { text-align: left; vertical-align: top; padding: .42rem .8rem; font-size: .88rem;
   border-bottom: 1px solid var(--line); }
 thead th { border-bottom: 2px solid #999; } tbody th { font-weight: 600; white-space: nowrap; }
-td b { font-size: .95rem; } td small { display: block; color: #556; font-size: .78rem; line-height: 1.4; }
+td b { font-size: .95rem; }
+td small { display: block; color: #556; font-size: .78rem; line-height: 1.4; }
 .consistent b { color: #17693a; } .violated { background: #fdeceb; } .violated b { color: #a3170f; }
 .undetermined b { color: #8a5a00; } .no-claim b { color: var(--soft); }
 img, svg { max-width: 100%; height: auto; } pre { white-space: pre-wrap; font-size: .8rem; }

@@ -24,6 +24,8 @@ CHAPTERS = {
 }
 """The notebooks in the order they are read. A new chapter is one notebook and one line here."""
 
+QUIET = ["--IPKernelApp.log_level=40"]  # no warnings about how a local kernel is talked to
+
 RUN_VARIABLE = "HEM_RUN"
 """The environment variable that tells a notebook which run to read."""
 
@@ -97,7 +99,7 @@ def _chapter(name: str, run_folder: Path) -> str:
     from nbconvert import HTMLExporter
 
     notebook = nbformat.read(NOTEBOOKS / f"{name}.ipynb", as_version=4)
-    client = NotebookClient(notebook, timeout=300, kernel_name="python3")
+    client = NotebookClient(notebook, timeout=300, kernel_name="python3", extra_arguments=QUIET)
     try:
         with _environment(RUN_VARIABLE, str(run_folder.resolve())):
             client.execute(cwd=str(NOTEBOOKS))

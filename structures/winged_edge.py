@@ -286,8 +286,8 @@ class WingedEdge(Structure):
         after = m.edge[:, [LEFT_NEXT, RIGHT_NEXT]].ravel()
         owner, inner = np.arange(2 * n) // 2, np.flatnonzero(face >= 0)
 
-        missing = np.stack([face < 0, before < 0, after < 0], axis=1)
-        winged = missing.all(axis=1) | ~missing.any(axis=1)
+        missing = np.stack([face < 0, before < 0, after < 0], axis=1).sum(axis=1)
+        winged = np.isin(missing, (0, 3))
         require(winged.reshape(n, 2), "an edge has the wings of its faces, and no others", "edges")
         require((face.reshape(n, 2) >= 0).any(axis=1), "an edge has a face", "edges")
         require_distinct_edges(m.edge[:, TAIL], m.edge[:, HEAD], "edges")
