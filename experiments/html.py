@@ -22,11 +22,14 @@ h2 { font-size: 1.2rem; margin-top: 2.2rem; }
 a { color: #1f5f99; } nav { font-size: .92rem; color: var(--soft); } nav a { margin-right: 1.1rem; }
 p, li { max-width: 74ch; } .soft { color: var(--soft); font-size: .9rem; }
 table { border-collapse: collapse; margin: 1rem 0; font-variant-numeric: tabular-nums; }
-th, td { text-align: left; vertical-align: top; padding: .42rem .8rem; font-size: .88rem;
+th, td { text-align: left; vertical-align: top; padding: .42rem .6rem; font-size: .88rem;
   border-bottom: 1px solid var(--line); }
 thead th { border-bottom: 2px solid #999; } tbody th { font-weight: 600; white-space: nowrap; }
 td b { font-size: .95rem; }
 td small { display: block; color: #556; font-size: .78rem; line-height: 1.4; }
+.grid { display: grid; grid-template-columns: repeat(4, auto); column-gap: .5rem; width: max-content;
+  margin: .15rem 0; } .grid i { font-style: normal; font-size: .72rem; line-height: 1.4; color: #445; white-space: nowrap; }
+.anchor-link { display: none; }
 .consistent b { color: #17693a; } .violated { background: #fdeceb; } .violated b { color: #a3170f; }
 .undetermined b { color: #8a5a00; } .no-claim b { color: var(--soft); }
 img, svg { max-width: 100%; height: auto; } pre { white-space: pre-wrap; font-size: .8rem; }
@@ -85,23 +88,25 @@ def _behind(row: dict[str, Any]) -> str:
     head = f"<b>{OUTCOMES[row['outcome']]} {escape(row['printed'])}</b>"
     if row["printed"] == NO_CLAIM:
         head += f"<small>found {escape(found(row))}</small>"
-    lines = [
-        f"{name} {_slope(row[f'{measure}_{variable}'])}"
-        for measure, label in (("work", "work"), ("time", "time"), ("random", "at random"))
+    rows = [
+        _line(f"{measure} {symbol}", row[f"{measure}_{variable}"], bool(row["printed"] != NO_CLAIM))
+        for measure in ("work", "time", "random")
         for variable, symbol in VARIABLES.items()
         if f"{measure}_{variable}" in row
-        for name in (f"{label}, {symbol}:",)
     ]
     cost = f"{row['work_per_query']:,.0f} read, {_time(row['seconds_per_query'])} at random"
-    return head + "".join(f"<small>{line}</small>" for line in [*lines, cost])
+    return f"{head}<div class=grid>{''.join(rows)}</div><small>{cost}</small>"
 
 
-def _slope(verdict: Verdict | None) -> str:
+def _line(name: str, verdict: Verdict | None, claimed: bool) -> str:
+    """Name, slope, its interval, the class found and the mark, as a line of the cell's grid."""
     if verdict is None:
-        return "–"
-    interval = f"{verdict.slope_low + 0:.2f} … {verdict.slope_high + 0:.2f}"
-    mark = OUTCOMES[verdict.outcome]
-    return f"{round(verdict.slope, 2) + 0:.2f} ({interval}) {escape(verdict.best)} {mark}"
+        return f"<i>{name}</i><i>–</i><i></i><i></i>"
+    slope, low, high = (
+        f"{round(it, 2) + 0:.2f}" for it in (verdict.slope, verdict.slope_low, verdict.slope_high)
+    )
+    mark = f" {OUTCOMES[verdict.outcome]}" if claimed else ""
+    return f"<i>{name}</i><i>{slope}</i><i>{low}…{high}</i><i>{escape(verdict.best)}{mark}</i>"
 
 
 def _time(seconds: float) -> str:

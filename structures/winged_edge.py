@@ -289,7 +289,7 @@ class WingedEdge(Structure):
         missing = np.stack([face < 0, before < 0, after < 0], axis=1).sum(axis=1)
         winged = np.isin(missing, (0, 3))
         require(winged.reshape(n, 2), "an edge has the wings of its faces, and no others", "edges")
-        require((face.reshape(n, 2) >= 0).any(axis=1), "an edge has a face", "edges")
+        require(face.reshape(n, 2).max(axis=1, initial=-1) >= 0, "an edge has a face", "edges")
         require_distinct_edges(m.edge[:, TAIL], m.edge[:, HEAD], "edges")
 
         follower = np.full(2 * n, -1)
