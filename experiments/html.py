@@ -16,24 +16,26 @@ from structures import REGISTRY
 CSS = """
 :root { --ink: #1b1b1b; --soft: #667; --line: #e3e3e8; }
 body { font: 16px/1.55 system-ui, "Segoe UI", "Liberation Sans", Arial, sans-serif;
-  color: var(--ink); margin: 0 auto; padding: 2rem 1.5rem 4rem; max-width: 1120px; }
+  color: var(--ink); margin: 0 auto; padding: 2rem 1.2rem 4rem; max-width: 1160px; }
 h1 { font-size: 1.7rem; line-height: 1.2; margin: .6rem 0 .4rem; }
 h2 { font-size: 1.2rem; margin-top: 2.2rem; }
-a { color: #1f5f99; } nav { font-size: .92rem; color: var(--soft); } nav a { margin-right: 1.1rem; }
+a { color: #1f5f99; } nav { font-size: .92rem; } nav a { margin-right: 1.1rem; }
 p, li { max-width: 74ch; } .soft { color: var(--soft); font-size: .9rem; }
 table { border-collapse: collapse; margin: 1rem 0; font-variant-numeric: tabular-nums; }
-th, td { text-align: left; vertical-align: top; padding: .42rem .6rem; font-size: .88rem;
+th, td { text-align: left; vertical-align: top; padding: .42rem .45rem; font-size: .88rem;
   border-bottom: 1px solid var(--line); }
-thead th { border-bottom: 2px solid #999; } tbody th { font-weight: 600; white-space: nowrap; }
+thead th { border-bottom: 2px solid #999; } tbody th { font-weight: 600; max-width: 7.5rem; }
 td b { font-size: .95rem; }
 td small { display: block; color: #556; font-size: .78rem; line-height: 1.4; }
-.grid { display: grid; grid-template-columns: repeat(4, auto); column-gap: .5rem; width: max-content;
-  margin: .15rem 0; } .grid i { font-style: normal; font-size: .72rem; line-height: 1.4; color: #445; white-space: nowrap; }
-.anchor-link { display: none; }
-.consistent b { color: #17693a; } .violated { background: #fdeceb; } .violated b { color: #a3170f; }
-.undetermined b { color: #8a5a00; } .no-claim b { color: var(--soft); }
-img, svg { max-width: 100%; height: auto; } pre { white-space: pre-wrap; font-size: .8rem; }
-.jp-Cell-inputWrapper, .jp-OutputPrompt, .jp-InputPrompt { display: none; }
+.grid { display: grid; grid-template-columns: repeat(4, auto); column-gap: .4rem;
+  width: max-content; margin: .15rem 0; }
+.grid i { font-style: normal; font-size: .69rem; line-height: 1.45; color: #445;
+  white-space: nowrap; }
+.consistent b { color: #17693a; } .violated { background: #fdeceb; }
+.violated b { color: #a3170f; } .undetermined b { color: #8a5a00; }
+.no-claim b { color: var(--soft); }
+.wide { overflow-x: auto; } img { max-width: 100%; height: auto; }
+pre { white-space: pre-wrap; font-size: .8rem; } .anchor-link { display: none; }
 """
 
 
@@ -69,7 +71,8 @@ def _table(table: pd.DataFrame, cell: Any) -> str:
         for title, rows in by_title(table)
     ]
     body = "\n".join(rows)
-    return f"<table><thead><tr><th></th>{heads}</tr></thead>\n<tbody>{body}</tbody></table>"
+    head = f"<thead><tr><th></th>{heads}</tr></thead>"
+    return f'<div class="wide"><table>{head}\n<tbody>{body}</tbody></table></div>'
 
 
 def _glance(row: dict[str, Any]) -> str:
