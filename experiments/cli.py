@@ -120,13 +120,21 @@ def show_table(run: RunArgument = None) -> None:
 def write_report(
     run: RunArgument = None,
     output: Annotated[Path, typer.Option(help="Where the pages go.")] = Path("report/html"),
+    page: Annotated[
+        bool, typer.Option("--page", help="Instead write the page and the reference to commit.")
+    ] = False,
 ) -> None:
     """Run the notebooks on a run and write the report: pages that open from disk."""
     with user_errors():
-        from experiments.report import write
+        from experiments.report import write, write_page
 
-        front = write(run or results.latest(), output)
-        console.print(f"Report written. Open {front.resolve().as_uri()}", soft_wrap=True)
+        folder = run or results.latest()
+        if page:
+            written = write_page(folder, Path("report"), Path("results/reference"))
+            console.print(f"Page written: {written}")
+        else:
+            front = write(folder, output)
+            console.print(f"Report written. Open {front.resolve().as_uri()}", soft_wrap=True)
 
 
 @app.command()

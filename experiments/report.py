@@ -53,11 +53,15 @@ def write(run_folder: Path, output: Path) -> Path:
     return output / "index.html"
 
 
-def write_page(run_folder: Path, folder: Path) -> Path:
-    """Write the page that is committed: table 1 and the main plots of a run."""
+def write_page(run_folder: Path, folder: Path, reference: Path) -> Path:
+    """Write what is committed of a run: a page with table 1 and the main plots, and the verdicts.
+
+    The page goes to ``folder``, the verdicts to ``reference``, to compare later runs with.
+    """
     from experiments import plots
 
     run = load(run_folder)
+    save(run, judged(run), reference)
     folder.mkdir(parents=True, exist_ok=True)
     figures = {
         "overview": ("The faces around a vertex, by work and by time", plots.overview(run)),

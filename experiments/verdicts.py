@@ -139,9 +139,9 @@ def judged(run: Run, claims: list[Claim] | None = None) -> pd.DataFrame:
     return pd.DataFrame([_row(evidence, claim) for claim in claims or load_claims()])
 
 
-def save(run: Run, table: pd.DataFrame) -> Path:
-    """Keep the verdicts beside the raw results, in ``derived/verdicts.json``."""
-    path = run.folder / "derived" / "verdicts.json"
+def save(run: Run, table: pd.DataFrame, folder: Path | None = None) -> Path:
+    """Keep the verdicts as ``verdicts.json`` in ``folder``, or in the run's own ``derived``."""
+    path = (folder or run.folder / "derived") / "verdicts.json"
     rows = [
         {key: asdict(value) if isinstance(value, Verdict) else value for key, value in row.items()}
         for row in table.to_dict("records")

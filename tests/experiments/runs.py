@@ -1,0 +1,83 @@
+"""Runs made up for tests: costs that follow a law everybody knows."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+
+from experiments.claims import MEMORY, load_claims
+from experiments.provenance import describe
+from experiments.results import CellResult, ResultFile, write_json
+from experiments.subjects import HUBS
+
+SIZES = [200, 630, 2000, 6324, 20000, 63246, 200000]
+VALENCES = [2**k for k in range(2, 13)]
+FACES = 131_072
+
+Law = Callable[[int, int], float]
+LAWS: dict[str, Law] = {
+    "O(1)": lambda n_t, n_ev: 5.0,
+    "O(n_ev)": lambda n_t, n_ev: 2.0 + 3.0 * n_ev,
+    "O(n_t)": lambda n_t, n_ev: 10.0 + 3.0 * n_t,
+    "N/A": lambda n_t, n_ev: 7.0,
+}
+
+
+def write_run(folder: Path, law_of: Callable[[str, str, str], Law] | None = None) -> Path:
+    """A finished run in which every claim holds, unless ``law_of(structure, query, printed)``."""
+    rng = np.random.default_rng(3)
+    write_json(folder / "run.json", {**describe("quick"), "finished": "2026-01-01T00:00:00Z"})
+    files = {}
+    for claim in load_claims():
+        if claim.what == MEMORY:
+            _add(files, folder, "bench_memory", claim.structure, _memory(claim.bytes_per_vertex))
+            continue
+        chosen = law_of and law_of(claim.structure, claim.what, claim.printed)
+        law = chosen or LAWS[claim.printed]
+        for experiment, order, variable in (
+            ("bench_work", "random", "faces"),
+            ("bench_work", "random", "valence"),
+            ("bench_queries", "consecutive", "faces"),
+            ("bench_queries", "random", "faces"),
+            ("bench_valence", "random", "valence"),
+        ):
+            points = (
+                [(n, 6) for n in SIZES] if variable == "faces" else [(FACES, k) for k in VALENCES]
+            )
+            for n_t, n_ev in points:
+                kind = "work" if experiment == "bench_work" else "time"
+                noise = 1 if kind == "work" else 1e-9 * rng.normal(1, 0.02, 9)
+                cell = CellResult(
+                    id=f"{claim.what}/{n_t}/{n_ev}/{order}",
+                    kind=kind,
+                    query=claim.what,
+                    order=order,
+                    family=HUBS if variable == "valence" else "torus",
+                    faces=n_t,
+                    vertices=n_t // 2,
+                    valence=n_ev if variable == "valence" else None,
+                    working_set=60 * n_t,
+                    latency=2e-9,
+                    samples=np.atleast_1d(law(n_t, n_ev) * noise).tolist(),
+                )
+                _add(files, folder, experiment, claim.structure, cell)
+    for (experiment, structure), cells in files.items():
+        file = ResultFile(folder, experiment, structure)
+        file.cells = cells[:-1]
+        file.add(CellResult(**cells[-1]))
+    return folder
+
+
+def _memory(bytes_per_vertex: int | None) -> CellResult:
+    size = 1000 * int(bytes_per_vertex or 0)
+    detail = {"fields": {"vertex.point": size}, "arrays": size, "traced": size, "peak": size}
+    return CellResult(
+        id="torus/1000", kind="bytes", family="torus", vertices=1000, reference_bytes=8,
+        samples=[float(size)], detail=detail,
+    )  # fmt: skip
+
+
+def _add(files: dict, folder: Path, experiment: str, structure: str, cell: CellResult) -> None:
+    files.setdefault((experiment, structure), []).append(cell.__dict__)

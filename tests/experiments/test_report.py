@@ -1,0 +1,73 @@
+"""The report opens from disk, says what was found, and can be read."""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+import pytest
+
+from experiments import plots
+from experiments.report import CHAPTERS, write, write_page
+from experiments.results import ResultsError, load
+from experiments.style import spread_apart
+from tests.experiments.runs import write_run
+
+
+@pytest.fixture(scope="module")
+def run_folder(tmp_path_factory: pytest.TempPathFactory):
+    return write_run(tmp_path_factory.mktemp("run"))
+
+
+def test_the_pages_are_whole_and_need_nothing_from_elsewhere(run_folder, tmp_path):
+    front = write(run_folder, tmp_path / "html")
+    pages = {page.name: page.read_text() for page in front.parent.iterdir()}
+    assert set(pages) == {"index.html", *(f"{name}.html" for name in CHAPTERS)}
+    for text in pages.values():
+        assert not re.search(r'(src|href)="(?!data:|[\w.]+\.html|#)', text)
+        assert "<script" not in text
+    assert pages["index.html"].count('class="consistent"') == 26 + 4
+    assert pages["query_scaling.html"].count("data:image/png") == 5
+    assert "1.00" in pages["comparison_table.html"]
+
+
+def test_a_report_that_fails_leaves_the_old_one(run_folder, tmp_path, monkeypatch):
+    (tmp_path / "html").mkdir()
+    (tmp_path / "html" / "index.html").write_text("old")
+    monkeypatch.setattr("experiments.report.CHAPTERS", {"no_such": "No such chapter"})
+    with pytest.raises((OSError, ResultsError)):
+        write(run_folder, tmp_path / "html")
+    assert (tmp_path / "html" / "index.html").read_text() == "old"
+    assert [path.name for path in tmp_path.iterdir()] == ["html"]
+
+
+def test_the_committed_page_has_the_table_and_its_pictures(run_folder, tmp_path):
+    page = write_page(run_folder, tmp_path / "report", tmp_path / "reference")
+    text = page.read_text()
+    assert "| Bytes per vertex | 36 ✓ | 116 ✓ | 228 ✓ | 228 ✓ |" in text
+    for picture in re.findall(r"\((\w+\.png)\)", text):
+        assert (page.parent / picture).stat().st_size > 10_000
+    assert (tmp_path / "reference" / "verdicts.json").exists()
+
+
+@pytest.mark.parametrize(("measure", "variable"), [("time", "faces"), ("work", "valence")])
+def test_labels_do_not_overlap_and_stay_inside_the_figure(run_folder, measure, variable):
+    figure = plots.scaling(load(run_folder), measure, variable)
+    figure.draw_without_rendering()
+    for axes in figure.axes:
+        boxes = [text.get_window_extent() for text in axes.texts]
+        assert boxes
+        for i, box in enumerate(boxes):
+            assert figure.bbox.x1 >= box.x1
+            assert not any(box.overlaps(other) for other in boxes[i + 1 :])
+
+
+def test_labels_are_moved_as_little_as_need_be():
+    assert spread_apart([0.0, 30.0], 10) == [0.0, 30.0]
+    assert spread_apart([0.0, 0.0], 10) == [-5.0, 5.0]
+    rng = np.random.default_rng(0)
+    for _ in range(50):
+        heights = sorted(rng.uniform(0, 60, 5).tolist())
+        spread = spread_apart(heights, 10)
+        assert (np.diff(spread) >= 10 - 1e-9).all()
+        assert np.isclose(np.mean(spread), np.mean(heights))
