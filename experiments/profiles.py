@@ -39,6 +39,22 @@ def _geometric(first: int, last: int, per_decade: int) -> tuple[int, ...]:
 VALENCES = tuple(2**k for k in range(2, 13))
 
 PROFILES = {
+    "smoke": Profile(
+        what="a few small cells of everything, to see that it all works, within a minute",
+        families=("torus",),
+        sizes=(100, 400),
+        orders=("random", "consecutive"),
+        valences=(4, 8),
+        valence_faces=64,
+        work_sizes=(100, 400),
+        work_faces=128,
+        build_sizes=(100, 1_000),
+        models=("teapot",),
+        rounds=5,
+        round_seconds=0.0002,
+        cell_seconds=0.5,
+        latency_mib=1,
+    ),
     "quick": Profile(
         what="one family up to 100,000 vertices, within 3 minutes",
         families=("torus",),

@@ -1,4 +1,4 @@
-"""The check before every timing: it agrees with answers worked out by hand, and catches any change."""
+"""The check before every timing: it agrees with answers found by hand, and catches a change."""
 
 from __future__ import annotations
 
