@@ -1,33 +1,17 @@
-"""From one compiled kernel, four uses.
+"""What kernels are made of: the compiler's decorator, and the parts that structures share.
 
 A kernel answers one query for one element: ``vertex_faces(m, v, out) -> count`` reads the records
-``m``, writes the neighbors of ``v`` to ``out`` and tells how many there are. ``Uses`` derives
-
-1. ``single``: one handle, called from Python;
-2. ``batch``: many handles into offsets and values, in one compiled loop;
-3. ``sweep``: the same loop with nothing kept, for timing;
-4. ``work``: the same source, uncompiled, over arrays that count their reads.
-
-The derived functions are cached on disk. Numba decides by the file of the function itself whether
-its cache is stale, so their names carry a digest of the kernel's own file: an edited kernel never
-meets old machine code. Kernels may therefore call only what stands in their file or in this one.
+``m``, writes the neighbors of ``v`` to ``out`` and tells how many there are.
 """
 
 from __future__ import annotations
 
-import hashlib
-import inspect
 from collections.abc import Callable
-from functools import cache, cached_property
-from pathlib import Path
-from types import CellType, FunctionType
 from typing import Any
 
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
-
-from hem.pinned import Pinned, loader
 
 Array = NDArray[Any]
 Kernel = Callable[..., Any]
@@ -38,163 +22,10 @@ kernel: Callable[[Kernel], Kernel] = njit(forceinline=True)
 A call would push some forty fields of the records' arrays, which takes longer than most queries.
 """
 
-# What the templates below call; bound anew for every query of every structure.
-_KERNEL: Kernel = len
-_RECORDS: Callable[..., Any] = tuple
-_LOAD: Callable[..., Any] = len
-_EDGE_VERTICES: Kernel = len
-
-
-def _single(handle: int, address: int) -> int:
-    arrays = _LOAD(address)
-    count: int = _KERNEL(_RECORDS(*arrays[:-1]), handle, arrays[-1])
-    return count
-
-
-def _batch(handles: Array, offsets: Array, values: Array, width: int, *arrays: Array) -> Array:
-    m = _RECORDS(*arrays)
-    end = 0
-    for i in range(len(handles)):
-        offsets[i] = end
-        if end + width > len(values):
-            grown = np.empty(2 * len(values) + width, values.dtype)
-            grown[:end] = values[:end]
-            values = grown
-        end += _KERNEL(m, handles[i], values[end:])
-    offsets[-1] = end
-    return values[:end]
-
-
-def _sweep(handles: Array, out: Array, *arrays: Array) -> int:
-    m = _RECORDS(*arrays)
-    checksum = 0
-    for i in range(len(handles)):
-        count = _KERNEL(m, handles[i], out)
-        checksum += count
-        if count > 0:
-            checksum ^= out[count - 1]
-    return checksum
-
-
-def _find_edge(a: int, b: int, out: Array, vertices: Array, *arrays: Array) -> int:
-    m = _RECORDS(*arrays)
-    for i in range(_KERNEL(m, a, out)):
-        _EDGE_VERTICES(m, out[i], vertices)
-        if vertices[0] == b or vertices[1] == b:
-            found: int = out[i]
-            return found
-    return -1
-
-
-class Uses:
-    """The uses of one query kernel on one kind of records (a ``NamedTuple`` of arrays)."""
-
-    def __init__(self, kernel: Kernel, records: type[Any]) -> None:
-        self._kernel, self._records = kernel, records
-
-    def single(self, pinned: Pinned) -> Callable[[int, int], int]:
-        """``single(handle, pinned.address) -> count``, for records and an ``out`` as these."""
-        return self._compiled(_single, str(pinned.kind), _LOAD=loader(pinned.kind))
-
-    @cached_property
-    def batch(self) -> Callable[..., Array]:
-        """``batch(handles, offsets, values, width, *records) -> values``.
-
-        ``values`` is room to begin with and grows as needed; ``width`` is the most neighbors that
-        one element can have. The values returned are a view that is just as long as the answer.
-        """
-        return self._compiled(_batch)
-
-    @cached_property
-    def sweep(self) -> Callable[..., int]:
-        """``sweep(handles, out, *records) -> checksum``; every answer overwrites the last."""
-        return self._compiled(_sweep)
-
-    def find_edge(self, edge_vertices: Kernel) -> Callable[..., int]:
-        """``find_edge(a, b, out, vertices, *records) -> edge or -1``, from ``vertex_edges``."""
-        return self._compiled(_find_edge, _EDGE_VERTICES=edge_vertices)
-
-    def work(self, handles: Array, out: Array, records: tuple[Array, ...]) -> NDArray[np.int64]:
-        """(n,) int64: how many array elements the kernel reads for each handle, exactly."""
-        counters = [CountingArray(array) for array in records]
-        answer, m = interpreted(self._kernel), self._records(*counters)
-        totals = [0]
-        for handle in handles.tolist():
-            answer(m, handle, out)
-            totals.append(sum(counter.reads for counter in counters))
-        return np.diff(totals)
-
-    def _digest(self, variant: str) -> str:
-        """Of the structure's file, and of this one, whose helpers its kernels call."""
-        files = inspect.getfile(self._records), __file__
-        sources = b"".join(Path(file).read_bytes() for file in files)
-        return hashlib.blake2b(sources + variant.encode(), digest_size=6).hexdigest()
-
-    def _compiled(self, template: Kernel, variant: str = "", **scope: Any) -> Callable[..., Any]:
-        """``template`` with its free names bound to this kernel, compiled and cached on disk.
-
-        ``variant`` tells apart what is bound otherwise than by the kernel.
-        """
-        scope = {"_KERNEL": self._kernel, "_RECORDS": self._records, **scope}
-        function = FunctionType(template.__code__, {**template.__globals__, **scope})
-        names = template, self._records, _source(self._kernel)
-        function.__qualname__ = "_".join([*(it.__name__ for it in names), self._digest(variant)])
-        nogil = template is not _single  # for one query it would take longer than the query
-        compiled: Callable[..., Any] = njit(cache=True, nogil=nogil)(function)
-        return compiled
-
-
-class CountingArray:
-    """An array that counts how many of its elements are read. Elements come as Python numbers."""
-
-    def __init__(self, array: Array) -> None:
-        self._array = array
-        self.reads = 0
-
-    def __getitem__(self, key: Any) -> Any:
-        value = self._array[key]
-        self.reads += int(np.size(value))
-        return value.item() if np.ndim(value) == 0 else value
-
-    def __len__(self) -> int:
-        return len(self._array)
-
-    @property
-    def shape(self) -> tuple[int, ...]:
-        """As the array's own; looking at it reads no element."""
-        return self._array.shape
-
-
-@cache
-def interpreted(function: Kernel) -> Kernel:
-    """The Python source of a compiled function, its compiled callees replaced by theirs as well."""
-    source = _source(function)
-    scope = source.__globals__
-    called = {name: scope[name] for name in source.__code__.co_names if name in scope}
-    closure = tuple(CellType(_uncompiled(cell.cell_contents)) for cell in source.__closure__ or ())
-    return FunctionType(
-        source.__code__,
-        {**scope, **{name: _uncompiled(value) for name, value in called.items()}},
-        source.__name__,
-        source.__defaults__,
-        closure,
-    )
-
-
-def _uncompiled(value: Any) -> Any:
-    return interpreted(value) if hasattr(value, "py_func") else value
-
-
-def _source(function: Any) -> Any:
-    return getattr(function, "py_func", function)
-
 
 def named(*kernels: Kernel) -> dict[str, Kernel]:
     """The kernels of a structure by query."""
-    return {_source(kernel).__name__: kernel for kernel in kernels}
-
-
-# What kernels of several structures share ---------------------------------------------------------
+    return {getattr(kernel, "py_func", kernel).__name__: kernel for kernel in kernels}
 
 
 def circulator(clockwise: Kernel, counterclockwise: Kernel) -> Kernel:

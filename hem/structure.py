@@ -15,12 +15,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from hem.errors import MeshError
-from hem.kernels import Kernel, Uses
+from hem.kernels import Kernel
 from hem.mesh import TriangleMesh
 from hem.pinned import Pinned
 from hem.queries import ELEMENTS, QUERIES, Query
 from hem.ragged import Ragged
 from hem.slices import in_slices
+from hem.uses import Uses
 
 REFERENCE_TYPES = {4: np.int32, 8: np.int64}
 """Bytes of a stored reference to the type that holds it. The thesis counts 8 (section 7)."""

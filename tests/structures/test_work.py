@@ -7,8 +7,8 @@ import pytest
 
 import hem
 import structures
-from hem.kernels import CountingArray
 from hem.queries import QUERIES
+from hem.uses import CountingArray
 
 SCANS = {
     "vertex_vertices",
