@@ -43,11 +43,7 @@ def scaling(run: Run, measure: str, variable: str, queries: Iterable[str] = QUER
         ]
         for panel in panels.flat[len(names) :]:
             panel.set_visible(False)
-        heights = np.concatenate(
-            [np.ravel(line.get_ydata()) for it in panels.flat for line in it.lines]
-        )
-        if heights.size:
-            panels[0, 0].set_ylim(heights.min() / 2.2, heights.max() * 2.2)
+        _fit_heights(panels.flat)
         for panel in panels[-1]:
             panel.set_xlabel(VARIABLES[variable])
         for panel in panels[:, 0]:
@@ -102,10 +98,20 @@ def _centers(cells: pd.DataFrame, measure: str) -> np.ndarray:
     return np.array([center(samples) for samples in cells["samples"]])
 
 
+def _fit_heights(panels: Iterable[Axes]) -> None:
+    """One height axis for all these panels: that of their lines, with room above and below."""
+    shared = list(panels)
+    lines = [line for panel in shared for line in panel.lines]
+    heights = np.concatenate([np.ravel(np.asarray(line.get_ydata(), float)) for line in lines])
+    for panel in shared:
+        panel.set_ylim(heights.min() / 2.2, heights.max() * 2.2)
+
+
 def _label(figure: Figure, panels: Iterable[Axes], ends: Sequence[Ends]) -> None:
     """Labels need room beside the last point, and a settled layout before they are placed."""
     shared = list(panels)
-    low, high = shared[0].get_xlim()
+    limits = np.array([panel.get_xlim() for panel in shared])
+    low, high = limits[:, 0].min(), limits[:, 1].max()
     for panel in shared:
         panel.set_xlim(low, high * (high / low) ** 0.17)
     figure.draw_without_rendering()
@@ -201,5 +207,7 @@ def overview(run: Run) -> Figure:
         ]
         for panel, measure in zip(panels, ("work", "time"), strict=True):
             panel.set(xlabel="faces n_t", ylabel=MEASURES[measure][1])
+            panel.set_title(f"Vertex → Faces, {measure}")
+            _fit_heights([panel])
         _label(figure, panels, ends)
     return figure

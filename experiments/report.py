@@ -75,7 +75,17 @@ def write_page(run_folder: Path, folder: Path, reference: Path) -> Path:
     shown = "\n\n".join(f"## {title}\n\n![{title}]({it}.png)" for it, (title, _) in figures.items())
     page = folder / "README.md"
     page.write_text(f"# Table 1, measured\n\n{_provenance(run)}\n\n{markdown(run)}\n\n{shown}\n")
+    _fill_in(folder.parent / "README.md", markdown(run))
     return page
+
+
+def _fill_in(readme: Path, table: str) -> None:
+    """Put the table between the two marks of a README that has them."""
+    text = readme.read_text() if readme.exists() else ""
+    before, begin, rest = text.partition("<!-- table -->")
+    _, end, after = rest.partition("<!-- end of table -->")
+    if end:
+        readme.write_text(f"{before}{begin}\n{table}\n{end}{after}")
 
 
 def _links() -> dict[str, str]:

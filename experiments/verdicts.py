@@ -7,7 +7,6 @@ memory, which is slower the larger the mesh. Both are judged against the latency
 
 from __future__ import annotations
 
-from dataclasses import asdict
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -143,11 +142,23 @@ def save(run: Run, table: pd.DataFrame, folder: Path | None = None) -> Path:
     """Keep the verdicts as ``verdicts.json`` in ``folder``, or in the run's own ``derived``."""
     path = (folder or run.folder / "derived") / "verdicts.json"
     rows = [
-        {key: asdict(value) if isinstance(value, Verdict) else value for key, value in row.items()}
-        for row in table.to_dict("records")
+        {str(key): _plain(value) for key, value in row.items()} for row in table.to_dict("records")
     ]
     write_json(path, {"run": run.folder.name, "claims": rows})
     return path
+
+
+KEPT = ("outcome", "expected", "best", "runner_up", "margin", "slope", "slope_low", "slope_high")
+"""What of a verdict is kept in a file; the rest follows from the samples."""
+
+
+def _plain(value: Any) -> Any:
+    """A cell of the table in what JSON knows; numbers to five digits, none where there is none."""
+    if isinstance(value, Verdict):
+        return {key: _plain(getattr(value, key)) for key in KEPT}
+    if isinstance(value, float):
+        return float(f"{value:.5g}") if np.isfinite(value) else None
+    return value
 
 
 def _row(evidence: Evidence, claim: Claim) -> dict[str, Any]:
