@@ -10,6 +10,7 @@ cells that are there already are not measured again.
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable
 from dataclasses import asdict
 from pathlib import Path
@@ -30,6 +31,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
         "--profile", default="quick", choices=list(PROFILES), help="how much to measure"
     )
     group.addoption("--structure", action="append", help="measure just this one; may be repeated")
+    group.addoption("--study", type=int, help="end when the process of this number has ended")
     group.addoption("--run", type=Path, help="the folder that keeps the results, cell by cell")
 
 
@@ -61,6 +63,10 @@ def keep(request: pytest.FixtureRequest, cell: Cell) -> Keep:
     file = _file(request.config, request.module.__name__, cell.structure)
 
     def keeping(result: CellResult) -> None:
+        study = request.config.getoption("--study")
+        if study and os.getppid() != study:
+            # Whoever resumes it writes to the same file.
+            pytest.exit("the study that began this was killed", returncode=1)
         if "benchmark" in request.fixturenames:
             facts = {key: value for key, value in asdict(result).items() if key != "samples"}
             request.getfixturevalue("benchmark").extra_info.update(facts)

@@ -5,6 +5,7 @@ The processes run one after the other, because what runs beside a measurement is
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
 from collections.abc import Callable, Iterator
@@ -99,6 +100,7 @@ def _run_one(
     command = [sys.executable, "-m", "pytest", str(file), "-q", "--no-header", "--tb=short"]
     command += ["-p", "no:cacheprovider", "--benchmark-quiet", "--profile", profile]
     command += ["--structure", process.structure, "--run", str(folder.resolve())]
+    command += ["--study", str(os.getpid())]
     log = folder / "logs" / f"{process.experiment}.{process.structure}.txt"
     log.parent.mkdir(exist_ok=True)
     with log.open("w") as output:

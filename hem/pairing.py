@@ -37,13 +37,14 @@ class Pairing(NamedTuple):
     """Number of undirected edges."""
 
 
-def pair_half_edges(mesh: TriangleMesh) -> Pairing:
+def pair_half_edges(mesh: TriangleMesh, room: Array | None = None) -> Pairing:
     """Pair the half-edges of a manifold mesh, with or without borders.
 
-    Cost O(n_v + n_t), and O(k log k) at a vertex of valence k; while it runs it takes 24 bytes per
-    triangle and 12 to 68 per vertex beside its result. Raises NonManifoldError with the elements
-    for an edge in more than two faces, faces that run the same way along an edge, and fans that
-    meet in a vertex.
+    ``room``: at least 24 bytes per triangle that may be overwritten, such as the records that are
+    to be filled next; without one as much is taken for a while, beside 12 to 68 bytes per vertex.
+    Cost O(n_v + n_t), and O(k log k) at a vertex of valence k. Raises NonManifoldError with the
+    elements for an edge in more than two faces, faces that run the same way along an edge and fans
+    that meet in a vertex.
     """
     triangles, n_vertices = mesh.triangles, len(mesh.points)
     n_half_edges = 3 * len(triangles)
@@ -54,10 +55,11 @@ def pair_half_edges(mesh: TriangleMesh) -> Pairing:
     starts = np.empty(n_vertices + 1, np.int32)
     vertex_half_edge = np.empty(n_vertices, np.int32)
     _start_buckets(counts, firsts, starts, vertex_half_edge)
-    buckets = np.empty((n_half_edges, 2), np.int32)
-    in_slices(_fill_buckets, len(triangles), triangles, counts, buckets)
+    room = np.empty(2 * n_half_edges, np.int32) if room is None else room.reshape(-1).view(np.int32)
+    buckets = room[: 2 * n_half_edges].reshape(-1, 2)
+    twin = np.empty(n_half_edges, np.int32)
+    in_slices(_fill_buckets, len(triangles), triangles, counts, buckets, twin)
 
-    twin = np.full(n_half_edges, -1, np.int32)
     pairs = in_slices(_match, n_vertices, starts, buckets, twin)
     if min(pairs) < 0 or n_half_edges != sum(
         in_slices(_count_reached, n_vertices, vertex_half_edge, twin)
@@ -95,7 +97,7 @@ def _start_buckets(counts: Array, firsts: Array, starts: Array, vertex_half_edge
 
 @njit(cache=True, nogil=True)
 def _fill_buckets(
-    begin: int, end: int, part: int, triangles: Array, places: Array, buckets: Array
+    begin: int, end: int, part: int, triangles: Array, places: Array, buckets: Array, twin: Array
 ) -> None:
     """Enter each half-edge as (larger vertex, half-edge); ~half-edge if it starts at the larger."""
     place = places[part]
@@ -105,6 +107,7 @@ def _fill_buckets(
             smaller, larger = min(a, b), max(a, b)
             k = place[smaller]
             place[smaller] = k + 1
+            twin[3 * f + i] = -1
             buckets[k, 0] = larger
             buckets[k, 1] = 3 * f + i if a < b else ~(3 * f + i)
 

@@ -20,16 +20,6 @@ class Ragged:
     offsets: NDArray[np.int64]
     values: NDArray[Any]
 
-    @classmethod
-    def joined(cls, parts: list[Ragged]) -> Ragged:
-        """The rows of all ``parts``, one after the other."""
-        if len(parts) == 1:
-            return parts[0]
-        ends = np.cumsum([0, *(len(part.values) for part in parts)])
-        offsets = [part.offsets[:-1] + end for part, end in zip(parts, ends[:-1], strict=True)]
-        values = np.concatenate([part.values for part in parts])
-        return cls(np.concatenate([*offsets, ends[-1:]]), values)
-
     def __len__(self) -> int:
         return len(self.offsets) - 1
 

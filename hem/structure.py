@@ -20,8 +20,8 @@ from hem.mesh import TriangleMesh
 from hem.pinned import Pinned
 from hem.queries import ELEMENTS, QUERIES, Query
 from hem.ragged import Ragged
-from hem.slices import in_slices
-from hem.uses import Uses
+from hem.slices import in_slices, slice_count
+from hem.uses import Uses, move
 
 REFERENCE_TYPES = {4: np.int32, 8: np.int64}
 """Bytes of a stored reference to the type that holds it. The thesis counts 8 (section 7)."""
@@ -296,15 +296,27 @@ class Structure(ABC):
     def _ragged(self, query: str, handles: NDArray[Any], width: int) -> Ragged:
         """The answers for ``handles``, each of which has at most ``width`` neighbors."""
         source, target = QUERIES[query]
+        n, typical = len(handles), TYPICAL_NEIGHBORS[source]
+        offsets = np.empty(n + 1, np.int64)
+        room = np.empty(typical * n + slice_count(n) * width, HANDLE_TYPES[target])
 
-        def answer(begin: int, end: int, part: int) -> Ragged:
-            offsets = np.empty(end - begin + 1, np.int64)
-            room = TYPICAL_NEIGHBORS[source] * (end - begin) + width
-            values = np.empty(room, HANDLE_TYPES[target])
-            asked = handles[begin:end], offsets, values, width
-            return Ragged(offsets, self._uses[query].batch(*asked, *self.records))
+        def answer(begin: int, end: int, part: int) -> tuple[slice, NDArray[Any]]:
+            mine, own = slice(begin, end), slice(typical * begin, typical * end)
+            values = room[own.start + part * width : own.stop + (part + 1) * width]
+            asked = handles[mine], offsets[mine], values, width
+            return mine, self._uses[query].batch(*asked, *self.records)
 
-        return Ragged.joined(in_slices(answer, len(handles)))
+        parts = in_slices(answer, n)
+        if not all(np.may_share_memory(values, room) for _, values in parts if len(values)):
+            room = np.empty(sum(len(values) for _, values in parts), room.dtype)
+        end = 0
+        for mine, values in parts:
+            if end:
+                offsets[mine] += end
+            move(values, room, end)
+            end += len(values)
+        offsets[n] = end
+        return Ragged(offsets, room[:end])
 
     def _check_handles(self, element: str, handles: NDArray[Any]) -> None:
         """Raise MeshError if any of ``handles`` (n,) names no element of this mesh."""

@@ -55,7 +55,6 @@ def _batch(handles: Array, offsets: Array, values: Array, width: int, *arrays: A
             grown[:end] = values[:end]
             values = grown
         end += _KERNEL(m, handles[i], values[end:])
-    offsets[-1] = end
     return values[:end]
 
 
@@ -94,8 +93,9 @@ class Uses:
     def batch(self) -> Callable[..., Array]:
         """``batch(handles, offsets, values, width, *records) -> values``.
 
-        ``values`` is room to begin with and grows as needed; ``width`` is the most neighbors that
-        one element can have. The values returned are a view that is just as long as the answer.
+        ``offsets`` (n,) is filled. ``values`` is room to begin with, replaced by more where it is
+        too small; ``width`` is the most neighbors that one element can have. What is returned is a
+        view just as long as the answer.
         """
         return self._compiled(_batch)
 
@@ -136,6 +136,13 @@ class Uses:
         nogil = template is not _single  # for one query it would take longer than the query
         compiled: Callable[..., Any] = njit(cache=True, nogil=nogil)(function)
         return compiled
+
+
+@njit(cache=True, nogil=True)
+def move(values: Array, target: Array, begin: int) -> None:
+    """Copy ``values`` to ``target[begin:]``, which may overlap them from below."""
+    for i in range(len(values)):
+        target[begin + i] = values[i]
 
 
 class CountingArray:

@@ -208,11 +208,11 @@ class HalfEdge(Structure):
     @classmethod
     def build(cls, mesh: TriangleMesh, reference_bytes: int = 4) -> Self:
         """See ``Structure.build``."""
-        reference, pairing = REFERENCE_TYPES[reference_bytes], pair_half_edges(mesh)
-        n = len(mesh.triangles)
+        reference, n = REFERENCE_TYPES[reference_bytes], len(mesh.triangles)
         face, half_edge = np.empty(n, reference), np.empty((3 * n, 4), reference)
+        pairing = pair_half_edges(mesh, room=half_edge)
         in_slices(_fill, n, mesh.triangles, pairing.twin, face, half_edge)
-        vertex = pairing.vertex_half_edge.astype(reference)
+        vertex = pairing.vertex_half_edge.astype(reference, copy=False)
         built = cls(HalfEdgeRecords(mesh.points.copy(), vertex, face, half_edge))
         built.n_edges = pairing.n_edges
         return built

@@ -187,8 +187,9 @@ class TriangleNeighbor(PackedEdges):
     @classmethod
     def build(cls, mesh: TriangleMesh, reference_bytes: int = 4) -> Self:
         """See ``Structure.build``."""
-        reference, pairing = REFERENCE_TYPES[reference_bytes], pair_half_edges(mesh)
+        reference = REFERENCE_TYPES[reference_bytes]
         triangle = np.empty((len(mesh.triangles), 6), reference)
+        pairing = pair_half_edges(mesh, room=triangle)
         in_slices(_fill, len(triangle), mesh.triangles, pairing.twin, triangle)
         vertex_triangle = (pairing.vertex_half_edge // 3).astype(reference)  # -1 stays -1
         built = cls(TriangleNeighborRecords(mesh.points.copy(), vertex_triangle, triangle))
