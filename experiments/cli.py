@@ -182,7 +182,10 @@ def info(
     with user_errors():
         found = _read(mesh, repair)
         console.print(f"[bold]{mesh}[/]\n{found.summary()}\n", highlight=False)
-        console.print(_holders(found))
+        table, refusals = _holders(found)
+        console.print(table)
+        for refusal in refusals:
+            console.print(f"Why: {refusal}", highlight=False)
 
 
 def _read(mesh: str, repair: bool) -> hem.TriangleMesh:
@@ -192,21 +195,24 @@ def _read(mesh: str, repair: bool) -> hem.TriangleMesh:
     return hem.load(mesh, repair=repair)
 
 
-def _holders(mesh: hem.TriangleMesh) -> Table:
+def _holders(mesh: hem.TriangleMesh) -> tuple[Table, list[str]]:
+    """What each structure takes to hold the mesh, and why some cannot, each reason once."""
     from structures import REGISTRY
 
     table = Table("structure", "bytes", "per vertex", "with 8-byte references", "per vertex")
     for column in table.columns[1:]:
         column.justify = "right"
+    refusals: dict[str, None] = {}
     for structure in REGISTRY.values():
         try:
             sizes = [sum(structure.build(mesh, k).memory().values()) for k in (4, 8)]
         except hem.NonManifoldError as refusal:
-            table.add_row(structure.title, f"[red]cannot hold it:[/] {refusal}")
+            table.add_row(structure.title, "[red]cannot hold it[/]")
+            refusals[str(refusal)] = None
             continue
         each = [(f"{size:,}", f"{size / max(len(mesh.points), 1):.1f}") for size in sizes]
         table.add_row(structure.title, *each[0], *each[1])
-    return table
+    return table, list(refusals)
 
 
 if __name__ == "__main__":
