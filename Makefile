@@ -38,7 +38,7 @@ format: $(INSTALLED)  ## format the code
 	@$(BIN)/ruff format .
 	@$(BIN)/ruff check --fix .
 
-peers: $(INSTALLED)  ## compare with OpenMesh, libigl, MeshLib and COMPAS on a million vertices
+peers: $(INSTALLED)  ## compare with OpenMesh, libigl, MeshLib, trimesh and COMPAS
 	@$(PIP) install --editable '.[peers]' --constraint constraints.txt
 	@$(BIN)/python -m experiments.peers
 

@@ -50,6 +50,7 @@ class Peers:
             "openmesh": "openmesh",
             "igl": "igl",
             "meshlib": "meshlib.mrmeshnumpy",
+            "trimesh": "trimesh",
             "compas": "compas.datastructures",
         }
         try:
@@ -102,6 +103,9 @@ def comparisons(n_vertices: int) -> list[Comparison]:
             lambda: s.vertex_faces(vertices),
             {
                 "OpenMesh vf_indices": om.vf_indices,
+                "trimesh vertex_faces": lambda: (
+                    peers.trimesh.Trimesh(mesh.points, mesh.triangles, process=False).vertex_faces
+                ),
                 "libigl vertex_triangle_adjacency": lambda: peers.igl.vertex_triangle_adjacency(
                     faces, len(mesh.points)
                 ),
@@ -197,7 +201,7 @@ def main(
     vertices: Annotated[int, typer.Option(help="Size of the torus.")] = 1_000_000,
     output: Annotated[Path | None, typer.Option("--json", help="Keep the rounds here.")] = None,
 ) -> None:
-    """Compare with OpenMesh, libigl, MeshLib and COMPAS, and print the ratios."""
+    """Compare with OpenMesh, libigl, MeshLib, trimesh and COMPAS, and print the ratios."""
     console = Console()
     table = Table(title=f"Half-edge mesh against its peers, torus of {vertices:,} vertices")
     for head in ("what", "ours, ms", "peer", "peer's, ms", "times faster", "asked", ""):
