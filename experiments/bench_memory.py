@@ -31,7 +31,7 @@ def test_memory(cell: Cell, keep: Keep) -> None:
     s = structures.build(cell.structure, mesh, cell.reference_bytes)
     traced, peak = tracemalloc.get_traced_memory()
     tracemalloc.stop()
-    fields, arrays = s.memory(), sum(array.nbytes for array in s.records)
+    fields, arrays = s.memory(), sum(array.nbytes for array in s.arrays)
     assert sum(fields.values()) == arrays
     detail = {"fields": fields, "arrays": arrays, "traced": traced, "peak": peak}
     model = np.array([sum(fields.values())])

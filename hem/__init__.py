@@ -1,9 +1,10 @@
 """Triangle meshes, their sources, and what every data structure for them shares."""
 
+from hem.edit import Edit, Remapping
 from hem.errors import MeshError, NonManifoldError, TopologyError
 from hem.families import FAMILIES, generate
 from hem.files import load, save
-from hem.manifold import require_manifold
+from hem.manifold import require_manifold, require_sound
 from hem.mesh import MeshSummary, TriangleMesh
 from hem.samples import SAMPLES, sample
 from hem.valence import valence_hubs, valence_mesh
@@ -11,14 +12,17 @@ from hem.valence import valence_hubs, valence_mesh
 __all__ = [
     "FAMILIES",
     "SAMPLES",
+    "Edit",
     "MeshError",
     "MeshSummary",
     "NonManifoldError",
+    "Remapping",
     "TopologyError",
     "TriangleMesh",
     "generate",
     "load",
     "require_manifold",
+    "require_sound",
     "sample",
     "save",
     "valence_hubs",

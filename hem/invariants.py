@@ -2,50 +2,92 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hem.errors import MeshError
+from hem.kernels import EDGES, FACES, VERTICES
+from hem.queries import ELEMENTS
+from hem.records import Field, live
 
 Array = NDArray[Any]
 
 
-def require(holds: NDArray[np.bool_], invariant: str, elements: str) -> None:
+def require(
+    holds: NDArray[np.bool_], invariant: str, elements: str, of: Array | None = None
+) -> None:
     """Raise MeshError naming the ``invariant`` and the ``elements`` for which it does not hold.
 
-    ``holds``: (n,) or (n, k) bool, one row per element.
+    ``holds``: (n,) or (n, k) bool, one row per element, or per element in ``of`` (n,).
     """
     if not holds.all():
-        broken = ~holds if holds.ndim == 1 else ~holds.all(axis=1)
-        raise MeshError(f"broken invariant: {invariant}", **{elements: np.flatnonzero(broken)})
+        rows = np.flatnonzero(~holds if holds.ndim == 1 else ~holds.all(axis=1))
+        found = rows if of is None else np.unique(of[rows])
+        raise MeshError(f"broken invariant: {invariant}", **{elements: found})
 
 
-def require_references(values: Array, end: int, field: str, elements: str, least: int = 0) -> None:
-    """Require ``least <= values < end``: every reference names a record that exists."""
-    require((values >= least) & (values < end), f"{field} lies in {least} … {end - 1}", elements)
+def require_references(
+    values: Array,
+    alive: NDArray[np.bool_],
+    field: str,
+    elements: str,
+    of: Array | None = None,
+    least: int = 0,
+) -> None:
+    """Require that every reference names a live record, or is ``least`` = -1 where it names none.
+
+    ``values``: (n,) or (n, k). ``alive``: (end,) of the records that are referred to.
+    """
+    named: NDArray[np.bool_] = (values >= 0) & (values < len(alive))
+    named[named] = alive[values[named]]
+    if least < 0:
+        named |= values == least
+    require(named, f"{field} is a live record", elements, of)
 
 
 def require_points(points: Array) -> None:
-    """Require finite positions."""
-    require(np.isfinite(points), "positions are finite", "vertices")
+    """Require finite positions, of live vertices; a dead one has none at all."""
+    alike = np.isfinite(points).all(axis=1) == ~np.isnan(points).all(axis=1)
+    require(alike, "positions are finite", "vertices")
 
 
-def require_distinct_edges(a: Array, b: Array, elements: str) -> None:
+def require_counts(records: Any, fields: Sequence[Field], edges: int | None = None) -> None:
+    """Require that the live elements are as many as the structure says.
+
+    ``edges``: how many there are, where it is known without a search.
+    """
+    count = records.counts
+    found = {VERTICES: "vertex", FACES: "face"}
+    for column, element in found.items():
+        alive = int(np.count_nonzero(live(records, fields, element)))
+        _require_count(element, alive, int(count[column]))
+    if edges is not None:
+        _require_count("edge", edges, int(count[EDGES]))
+
+
+def _require_count(element: str, found: int, counted: int) -> None:
+    if found != counted:
+        many = ELEMENTS[element]
+        raise MeshError(f"broken invariant: {counted:,} live {many} are counted, not {found:,}")
+
+
+def require_distinct_edges(a: Array, b: Array, elements: str, of: Array | None = None) -> None:
     """Require that no two edges (a[i], b[i]) join the same two vertices, and none joins one."""
-    require(a != b, "an edge joins two different vertices", elements)
+    require(a != b, "an edge joins two different vertices", elements, of)
     named = (np.minimum(a, b).astype(np.int64) << 32) | np.maximum(a, b)
     first = np.zeros(len(named), np.bool_)
     first[np.unique(named, return_index=True)[1]] = True
-    require(first, "two vertices are joined by at most one edge", elements)
+    require(first, "two vertices are joined by at most one edge", elements, of)
 
 
-def require_one_fan(vertex: Array, clockwise: Array) -> None:
+def require_one_fan(vertex: Array, clockwise: Array, alive: Array) -> None:
     """Require that the faces around every vertex form one fan.
 
     ``vertex``: (n,) the vertex of each corner. ``clockwise``: (n,) the corner that follows around
-    the same vertex, or -1 at the border.
+    the same vertex, or -1 at the border. ``alive``: (k,) the corners of live faces.
     """
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
@@ -53,8 +95,8 @@ def require_one_fan(vertex: Array, clockwise: Array) -> None:
     n = len(vertex)
     if n == 0:
         return
-    corners = np.flatnonzero(clockwise >= 0)
+    corners = alive[clockwise[alive] >= 0]
     steps = (np.ones(len(corners), np.bool_), (corners, clockwise[corners]))
-    fan = connected_components(coo_array(steps, shape=(n, n)), directed=False)[1]
-    owner = vertex[np.unique(fan, return_index=True)[1]]
+    fan = connected_components(coo_array(steps, shape=(n, n)), directed=False)[1][alive]
+    owner = vertex[alive][np.unique(fan, return_index=True)[1]]
     require(np.bincount(owner) < 2, "the faces around a vertex form one fan", "vertices")

@@ -23,6 +23,16 @@ A call would push some forty fields of the records' arrays, which takes longer t
 """
 
 
+VERTICES, EDGES, FACES, VERTEX_END, EDGE_END, FACE_END = range(6)
+"""Columns of a structure's ``counts``: how many elements are live, and how many records are in use.
+
+Live and dead elements lie before the end, room for new ones behind it.
+"""
+
+VERTEX_ROOM, EDGE_ROOM, FACE_ROOM, VALENCE = range(6, 10)
+"""More columns: how many records there is room for, and a bound on the valence of any vertex."""
+
+
 def named(*kernels: Kernel) -> dict[str, Kernel]:
     """The kernels of a structure by query."""
     return {getattr(kernel, "py_func", kernel).__name__: kernel for kernel in kernels}
@@ -57,6 +67,38 @@ def circulator(clockwise: Kernel, counterclockwise: Kernel) -> Kernel:
     return compiled
 
 
+def joined_by_steps(first: Kernel, clockwise: Kernel, reaches: Kernel, back: Kernel) -> Kernel:
+    """Make ``joined(m, a, b) -> bool``: whether an edge joins two vertices that have faces.
+
+    ``first(m, v)`` is an item to begin at, and ``reaches(m, item, v, w)`` tells whether the edge or
+    face that the item stands for has w, too. The steps are those of ``circulator``. Both vertices
+    are circulated by turns, so the cost is O(the smaller of both valences).
+    """
+
+    @kernel
+    def onward(m: Any, item: int, start: int, v: int, turned: bool) -> tuple[int, bool]:
+        if not turned:
+            following = clockwise(m, item, v)
+            if following >= 0:
+                return (following, False) if following != start else (-1, False)
+            item = start
+        return back(m, item, v), True
+
+    def joined(m: Any, a: int, b: int) -> bool:
+        from_a, from_b = first(m, a), first(m, b)
+        at_a, at_b = from_a, from_b
+        turned_a, turned_b = False, False
+        while at_a >= 0 and at_b >= 0:
+            if reaches(m, at_a, a, b) or reaches(m, at_b, b, a):
+                return True
+            at_a, turned_a = onward(m, at_a, from_a, a, turned_a)
+            at_b, turned_b = onward(m, at_b, from_b, b, turned_b)
+        return False
+
+    compiled: Kernel = kernel(joined)
+    return compiled
+
+
 def edges_at_both_ends(edge_vertices: Kernel, vertex_edges: Kernel) -> Kernel:
     """Make the kernel ``edge_edges``: the edges at either end, without the edge itself."""
 
@@ -75,7 +117,7 @@ def edges_at_both_ends(edge_vertices: Kernel, vertex_edges: Kernel) -> Kernel:
 
 @kernel
 def reverse(out: Array, count: int) -> None:
-    """Turn the first ``count`` elements round, in place."""
+    """Turn the first ``counts`` elements round, in place."""
     first, last = 0, count - 1
     while first < last:
         out[first], out[last] = out[last], out[first]
@@ -85,7 +127,7 @@ def reverse(out: Array, count: int) -> None:
 
 @kernel
 def without(out: Array, count: int, value: int) -> int:
-    """Take ``value`` out of the first ``count`` elements, in place -> how many are left."""
+    """Take ``value`` out of the first ``counts`` elements, in place -> how many are left."""
     left = 0
     for i in range(count):
         if out[i] != value:
@@ -108,9 +150,9 @@ def append_face(out: Array, count: int, face: int) -> int:
 
 @kernel
 def distinct(out: Array, count: int) -> int:
-    """Keep each of the first ``count`` elements once, in order, in place -> how many are left.
+    """Keep each of the first ``counts`` elements once, in order, in place -> how many are left.
 
-    The next up to 4 · ``count`` elements of ``out`` serve as a hash table. Cost O(count) expected.
+    The next up to 4 · ``counts`` elements of ``out`` serve as a hash table. Cost O(count) expected.
     """
     size = 1
     while size < 2 * count:
@@ -142,3 +184,15 @@ def edge_vertices(m: Any, e: int, out: Array) -> int:
     out[0] = e >> 32
     out[1] = e & 0xFFFFFFFF
     return 2
+
+
+@kernel
+def vertex_exists(m: Any, v: int) -> bool:
+    """Whether there is a record for v, live or dead; who asks further finds no faces there."""
+    return bool(0 <= v < m.counts[VERTEX_END])
+
+
+@kernel
+def edge_exists(m: Any, e: int) -> bool:
+    """Whether the handle names two vertices, where no edges are recorded."""
+    return bool(0 <= e >> 32 < e & 0xFFFFFFFF < m.counts[VERTEX_END])

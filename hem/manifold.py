@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from hem.errors import NonManifoldError
+from hem.errors import MeshError, NonManifoldError
 
 if TYPE_CHECKING:
     from hem.mesh import TriangleMesh, Triangles
@@ -59,6 +59,33 @@ def split_vertices(triangles: "Triangles") -> Indices:
     vertex_of_fan = np.empty(fans, np.int64)
     vertex_of_fan[fan] = triangles.ravel()
     return np.flatnonzero(np.bincount(vertex_of_fan) > 1)
+
+
+def repeated_faces(triangles: "Triangles") -> Indices:
+    """Faces with the same three corners as an earlier one, either way round: (k,) faces."""
+    corners = np.sort(triangles, axis=1)
+    _, first = np.unique(corners, axis=0, return_index=True)
+    return np.setdiff1d(np.arange(len(triangles)), first)
+
+
+def euler_number(mesh: "TriangleMesh") -> int:
+    """V - E + F over the vertices that have faces."""
+    vertices = np.unique(mesh.triangles)
+    return len(vertices) - len(undirected_edges(mesh.triangles)[0]) + len(mesh.triangles)
+
+
+def require_sound(mesh: "TriangleMesh", euler: int | None = None) -> None:
+    """What must hold after any operation, from the triangles alone, whatever structure made them.
+
+    A manifold surface, no face twice, and Euler's number as predicted. Raises NonManifoldError or
+    MeshError with the elements.
+    """
+    require_manifold(mesh)
+    again = repeated_faces(mesh.triangles)
+    if len(again):
+        raise MeshError("faces have the same three corners as others", faces=again)
+    if euler is not None and euler_number(mesh) != euler:
+        raise MeshError(f"Euler's number is {euler_number(mesh)} instead of {euler}")
 
 
 def require_manifold(mesh: "TriangleMesh") -> None:

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
-from numpy.typing import NDArray
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
-from hem.structure import Structure, refuse_handles
+from hem.queryable import refuse_handles
+from hem.structure import Structure
 
 
 class PackedEdges(Structure):
@@ -19,14 +22,17 @@ class PackedEdges(Structure):
 
     emulated = frozenset({"edge_vertices", "edge_edges", "edge_faces"})
 
-    @property
-    def _edge_end(self) -> int:
-        return 0
-
     def _check_handles(self, element: str, handles: NDArray[Any]) -> None:
         if element != "edge":
             return super()._check_handles(element, handles)
         smaller, larger = handles >> 32, handles & 0xFFFFFFFF
-        legal = (smaller >= 0) & (smaller < larger) & (larger < self.n_vertices)
+        legal = (smaller >= 0) & (smaller < larger) & (larger < len(self.points))
         if not legal.all():
             refuse_handles("edge", handles[~legal])
+
+    def _renumbered(
+        self, edges: ArrayLike, number: Mapping[str, NDArray[Any]]
+    ) -> NDArray[np.int64]:
+        handles = np.asarray(edges, np.int64)
+        smaller, larger = number["vertex"][handles >> 32], number["vertex"][handles & 0xFFFFFFFF]
+        return np.where((smaller < 0) | (larger < 0), -1, (smaller << 32) | larger)

@@ -20,20 +20,32 @@ class Pinned:
     """Arrays described in memory just as Numba describes a tuple of arrays to itself.
 
     ``address`` is valid as long as this object lives, which keeps the arrays alive as well. They
-    may be written to, but not be resized.
+    may be written to, but not be resized; others of the same types may take their place.
     """
 
     def __init__(self, *arrays: NDArray[Any]) -> None:
         self.kind = types.Tuple([typeof(array) for array in arrays])
         self._arrays = arrays
-        self._image = np.array([word for array in arrays for word in _described(array)], np.int64)
+        self._image = np.array(_described(arrays), np.int64)
         self.address = int(self._image.ctypes.data)
 
+    def replace(self, *arrays: NDArray[Any]) -> None:
+        """Put others of the same types at the same address."""
+        self._image[:] = _described(arrays)
+        self._arrays = arrays
 
-def _described(array: NDArray[Any]) -> tuple[int, ...]:
-    """The fields of Numba's array: owner and parent (none), then where and how large it is."""
-    data = int(array.ctypes.data)
-    return (0, 0, array.size, array.itemsize, data, *array.shape, *array.strides)
+
+def _described(arrays: tuple[NDArray[Any], ...]) -> list[int]:
+    """The fields of Numba's arrays: owner and parent (none), then where and how large each is."""
+    return [
+        word
+        for array in arrays
+        for word in (
+            *(0, 0, array.size, array.itemsize, int(array.ctypes.data)),
+            *array.shape,
+            *array.strides,
+        )
+    ]
 
 
 def loader(kind: Any) -> Callable[[int], Any]:

@@ -8,10 +8,12 @@ A kernel answers one query for one element: ``vertex_faces(m, v, out) -> count``
 3. ``sweep``: the same loop with nothing kept, for timing;
 4. ``work``: the same source, uncompiled, over arrays that count their reads.
 
+An operation has two: ``perform``, for one or for many of them, and its work.
+
 The derived functions are cached on disk. Numba decides by the file of the function itself whether
 its cache is stale, so their names carry a digest of the kernel's own file: an edited kernel never
-meets old machine code. Kernels may therefore call only what stands in their own file or in
-``hem.kernels``.
+meets old machine code. Kernels may therefore call only what stands in their own file, in
+``hem.kernels``, ``hem.topology`` or ``hem.operations``.
 """
 
 from __future__ import annotations
@@ -28,21 +30,38 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from hem import kernels
-from hem.kernels import Array, Kernel
+from hem import kernels, operations, topology
+from hem.kernels import VALENCE, Array, Kernel
+from hem.operations import WIDTH
 from hem.pinned import Pinned, loader
+from hem.topology import NEEDS_ROOM
 
-# What the templates below call; bound anew for every query of every structure.
+# What the templates below call; bound anew for every query and operation of every structure.
 _KERNEL: Kernel = len
 _RECORDS: Callable[..., Any] = tuple
 _LOAD: Callable[..., Any] = len
+_EXISTS: Kernel = len
 _EDGE_VERTICES: Kernel = len
 
 
 def _single(handle: int, address: int) -> int:
     arrays = _LOAD(address)
-    count: int = _KERNEL(_RECORDS(*arrays[:-1]), handle, arrays[-1])
+    m, out = _RECORDS(*arrays[:-1]), arrays[-1]
+    if WIDTH * (m.counts[VALENCE] + 1) > len(out) or not _EXISTS(m, handle):
+        return 0
+    count: int = _KERNEL(m, handle, out)
     return count
+
+
+def _perform(address: int, begin: int, end: int, dry: bool, persist: bool) -> int:
+    arrays = _LOAD(address)
+    m = _RECORDS(*arrays[:-6])
+    args, points, results, at, out, log = arrays[-6:]
+    for i in range(begin, end):
+        results[i] = _KERNEL(m, args[i], points[i % len(points)], at, out, log, dry)
+        if results[i] == NEEDS_ROOM or (results[i] < 0 and not persist):
+            return i
+    return end
 
 
 def _batch(handles: Array, offsets: Array, values: Array, width: int, *arrays: Array) -> Array:
@@ -85,9 +104,22 @@ class Uses:
     def __init__(self, kernel: Kernel, records: type[Any]) -> None:
         self._kernel, self._records = kernel, records
 
-    def single(self, pinned: Pinned) -> Callable[[int, int], int]:
-        """``single(handle, pinned.address) -> count``, for records and an ``out`` as these."""
-        return self._compiled(_single, str(pinned.kind), _LOAD=loader(pinned.kind))
+    def single(self, pinned: Pinned, exists: Kernel) -> Callable[[int, int], int]:
+        """``single(handle, pinned.address) -> count``, for records and an ``out`` as these.
+
+        The count is 0 also where ``exists(m, handle)`` is false, and where ``out`` is too small.
+        """
+        scope = {"_LOAD": loader(pinned.kind), "_EXISTS": exists}
+        return self._compiled(_single, str(pinned.kind), **scope)
+
+    def perform(self, pinned: Pinned) -> Callable[[int, int, int, bool, bool], int]:
+        """``perform(pinned.address, begin, end, dry, persist) -> end``, for an operation.
+
+        Pinned are the records and ``args`` (n, 3), ``points`` (n or 1, 3), ``results`` (n,),
+        ``at``, ``out`` and ``log`` (see ``hem.operations``). Ends before the element that needs
+        more room, or that is refused unless ``persist``; its code is then among the results.
+        """
+        return self._compiled(_perform, str(pinned.kind), _LOAD=loader(pinned.kind))
 
     @cached_property
     def batch(self) -> Callable[..., Array]:
@@ -110,17 +142,30 @@ class Uses:
 
     def work(self, handles: Array, out: Array, records: tuple[Array, ...]) -> NDArray[np.int64]:
         """(n,) int64: how many array elements the kernel reads for each handle, exactly."""
-        counters = [CountingArray(array) for array in records]
-        answer, m = interpreted(self._kernel), self._records(*counters)
+        counters = [CountingArray(array) for array in records[:-1]]
+        answer, m = interpreted(self._kernel), self._records(*counters, records[-1])
         totals = [0]
         for handle in handles.tolist():
             answer(m, handle, out)
-            totals.append(sum(counter.reads for counter in counters))
+            totals.append(sum(counter.accesses for counter in counters))
         return np.diff(totals)
+
+    def operation_work(
+        self, args: Array, scratch: tuple[Array, ...], records: tuple[Array, ...]
+    ) -> tuple[int, int]:
+        """Perform an operation uncompiled -> its result, and the elements it read and wrote.
+
+        ``scratch``: the point, ``at``, ``out`` and ``log``.
+        """
+        counters = [CountingArray(array) for array in records[:-1]]
+        perform, m = interpreted(self._kernel), self._records(*counters, records[-1])
+        result = int(perform(m, args.tolist(), *scratch, False))
+        return result, sum(counter.accesses for counter in counters)
 
     def _digest(self, variant: str) -> str:
         """Of the structure's file, of the parts that its kernels share, and of this file."""
-        files = inspect.getfile(self._records), kernels.__file__, __file__
+        shared = kernels.__file__, topology.__file__, operations.__file__, __file__
+        files = (inspect.getfile(self._records), *shared)
         sources = b"".join(Path(file).read_bytes() for file in files)
         return hashlib.blake2b(sources + variant.encode(), digest_size=6).hexdigest()
 
@@ -146,16 +191,20 @@ def move(values: Array, target: Array, begin: int) -> None:
 
 
 class CountingArray:
-    """An array that counts how many of its elements are read. Elements come as Python numbers."""
+    """An array that counts how many of its elements are read or written, as Python numbers."""
 
     def __init__(self, array: Array) -> None:
         self._array = array
-        self.reads = 0
+        self.accesses = 0
 
     def __getitem__(self, key: Any) -> Any:
         value = self._array[key]
-        self.reads += int(np.size(value))
+        self.accesses += int(np.size(value))
         return value.item() if np.ndim(value) == 0 else value
+
+    def __setitem__(self, key: Any, value: Any) -> None:
+        self._array[key] = value
+        self.accesses += int(np.size(value))
 
     def __len__(self) -> int:
         return len(self._array)

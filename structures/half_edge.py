@@ -14,6 +14,7 @@ Invariants
 - ``next`` of next of next of h is h, and all three have the same face.
 - ``twin`` of twin of h is h; it starts where ``next`` of h starts. At the border it is -1.
 - The half-edge of a vertex starts at it; that of a face lies in it. An unreferenced vertex has -1.
+- Dead: a face has half-edge -1, a half-edge has face -1, a vertex has no position (NaN).
 
 There is no previous (it is next of next) and no half-edge outside the border. An edge is named by
 the smaller index of its two half-edges. Bytes per vertex with 8-byte references:
@@ -30,16 +31,29 @@ from numpy.typing import NDArray
 
 from hem.invariants import (
     require,
+    require_counts,
     require_distinct_edges,
     require_one_fan,
     require_points,
     require_references,
 )
-from hem.kernels import append_face, circulator, edges_at_both_ends, kernel, named
+from hem.kernels import (
+    EDGE_END,
+    FACE_END,
+    append_face,
+    circulator,
+    edges_at_both_ends,
+    joined_by_steps,
+    kernel,
+    named,
+    vertex_exists,
+)
 from hem.mesh import TriangleMesh
 from hem.pairing import pair_half_edges
+from hem.records import Field, counted, live
 from hem.slices import in_slices
-from hem.structure import REFERENCE_TYPES, Field, Structure
+from hem.structure import REFERENCE_TYPES, Structure
+from hem.topology import LEFT, RIGHT, A, B, C, D
 
 Array = NDArray[Any]
 
@@ -53,6 +67,7 @@ class HalfEdgeRecords(NamedTuple):
     vertex_half_edge: Array  # (n_v,) one that leaves the vertex
     face_half_edge: Array  # (n_t,)
     half_edge: Array  # (3 n_t, 4) origin, face, next, twin
+    counts: Array  # how many of them there are, see hem.kernels
 
 
 @kernel
@@ -122,8 +137,8 @@ def vertex_faces(m: HalfEdgeRecords, v: int, out: Array) -> int:
 @kernel
 def edge_vertices(m: HalfEdgeRecords, e: int, out: Array) -> int:
     """Cost O(1)."""
-    out[0] = m.half_edge[e, ORIGIN]
-    out[1] = m.half_edge[m.half_edge[e, NEXT], ORIGIN]
+    a, b = m.half_edge[e, ORIGIN], m.half_edge[m.half_edge[e, NEXT], ORIGIN]
+    out[0], out[1] = min(a, b), max(a, b)
     return 2
 
 
@@ -173,6 +188,280 @@ def face_faces(m: HalfEdgeRecords, f: int, out: Array) -> int:
     return count
 
 
+# What operations need to know, and what they change (hem.topology, hem.operations) ---------------
+
+
+@kernel
+def face_exists(m: HalfEdgeRecords, f: int) -> bool:
+    """Whether f is a live face."""
+    return 0 <= f < m.counts[FACE_END] and m.face_half_edge[f] >= 0
+
+
+@kernel
+def edge_exists(m: HalfEdgeRecords, e: int) -> bool:
+    """Whether e is a live half-edge."""
+    return 0 <= e < m.counts[EDGE_END] and m.half_edge[e, FACE] >= 0
+
+
+@kernel
+def tip(m: HalfEdgeRecords, h: int) -> int:
+    """The vertex where h ends."""
+    return m.half_edge[m.half_edge[h, NEXT], ORIGIN]
+
+
+@kernel
+def left_and_right(m: HalfEdgeRecords, e: int) -> tuple[int, int]:
+    """The half-edges of e: first the one that runs from its smaller to its larger vertex."""
+    twin = m.half_edge[e, TWIN]
+    return (e, twin) if m.half_edge[e, ORIGIN] < tip(m, e) else (twin, e)
+
+
+@kernel
+def diamond(m: HalfEdgeRecords, e: int, at: Array) -> int:
+    """Cost O(1)."""
+    h, twin = left_and_right(m, e)
+    edge_vertices(m, e, at)
+    at[LEFT], at[RIGHT], at[C], at[D] = -1, -1, -1, -1
+    if h >= 0:
+        at[LEFT], at[C] = m.half_edge[h, FACE], m.half_edge[previous(m, h), ORIGIN]
+    if twin >= 0:
+        at[RIGHT], at[D] = m.half_edge[twin, FACE], m.half_edge[previous(m, twin), ORIGIN]
+    return (h >= 0) + (twin >= 0)
+
+
+@kernel
+def first(m: HalfEdgeRecords, v: int) -> int:
+    """A half-edge that leaves v."""
+    return m.vertex_half_edge[v]
+
+
+@kernel
+def in_triangle(m: HalfEdgeRecords, h: int, v: int, w: int) -> bool:
+    """Whether w is a corner of the face of h, which leaves v."""
+    return tip(m, h) == w or m.half_edge[previous(m, h), ORIGIN] == w
+
+
+joined = joined_by_steps(first, clockwise, in_triangle, counterclockwise)
+
+
+@kernel
+def between(m: HalfEdgeRecords, a: int, b: int) -> int:
+    """The half-edge that runs a → b, or -1. Cost O(n_ev)."""
+    start = m.vertex_half_edge[a]
+    h = start
+    while h >= 0:
+        if tip(m, h) == b:
+            return h
+        h = clockwise(m, h, a)
+        if h == start:
+            return -1
+    h = counterclockwise(m, start, a) if start >= 0 else -1
+    while h >= 0:
+        if tip(m, h) == b:
+            return h
+        h = counterclockwise(m, h, a)
+    return -1
+
+
+@kernel
+def beside(m: HalfEdgeRecords, a: int, b: int) -> int:
+    """The face that runs a → b, or -1. Cost O(n_ev)."""
+    h = between(m, a, b)
+    return m.half_edge[h, FACE] if h >= 0 else -1
+
+
+@kernel
+def set_face(m: HalfEdgeRecords, f: int, g: int, h: int, i: int) -> None:
+    """Make a face of three half-edges that follow each other."""
+    m.face_half_edge[f] = g
+    m.half_edge[g, FACE], m.half_edge[g, NEXT] = f, h
+    m.half_edge[h, FACE], m.half_edge[h, NEXT] = f, i
+    m.half_edge[i, FACE], m.half_edge[i, NEXT] = f, g
+
+
+@kernel
+def set_twins(m: HalfEdgeRecords, g: int, h: int) -> None:
+    """Make an edge of two half-edges."""
+    m.half_edge[g, TWIN], m.half_edge[h, TWIN] = h, g
+
+
+@kernel
+def new_half_edge(m: HalfEdgeRecords, origin: int) -> int:
+    """Append a half-edge that has no twin yet."""
+    h = m.counts[EDGE_END]
+    m.half_edge[h, ORIGIN], m.half_edge[h, TWIN] = origin, -1
+    m.counts[EDGE_END] += 1
+    return int(h)
+
+
+@kernel
+def set_vertices(m: HalfEdgeRecords, h: int) -> None:
+    """Let both ends of h have half-edges in its face."""
+    m.vertex_half_edge[m.half_edge[h, ORIGIN]] = h
+    m.vertex_half_edge[tip(m, h)] = m.half_edge[h, NEXT]
+
+
+@kernel
+def cut_edge(m: HalfEdgeRecords, e: int, at: Array, v: int, f: int) -> None:
+    """Cost O(1): two half-edges of each face stay, one moves on, and three are new."""
+    left, right = left_and_right(m, e)  # they stay with a and v
+    on_left, on_right = -1, -1  # the halves of the edge from v to b
+    if left >= 0:
+        bc = m.half_edge[left, NEXT]
+        ca = m.half_edge[bc, NEXT]
+        on_left, cv, vc = new_half_edge(m, v), new_half_edge(m, at[C]), new_half_edge(m, v)
+        set_twins(m, cv, vc)
+        set_face(m, at[LEFT], left, vc, ca)
+        set_face(m, f, on_left, bc, cv)
+        set_vertices(m, on_left)
+        f += 1
+    if right >= 0:
+        ad = m.half_edge[right, NEXT]
+        db = m.half_edge[ad, NEXT]
+        on_right, vd, dv = new_half_edge(m, at[B]), new_half_edge(m, v), new_half_edge(m, at[D])
+        set_twins(m, vd, dv)
+        m.half_edge[right, ORIGIN] = v
+        set_face(m, at[RIGHT], right, ad, dv)
+        set_face(m, f, on_right, vd, db)
+        set_vertices(m, on_right)
+    if left >= 0 and right >= 0:
+        set_twins(m, on_left, on_right)
+
+
+@kernel
+def cut_face(m: HalfEdgeRecords, face: int, v: int, f: int) -> None:
+    """Cost O(1): each face keeps one half-edge of the old one and gets two."""
+    ab = m.face_half_edge[face]
+    other = ab
+    for _ in range(2):
+        other = m.half_edge[other, NEXT]
+        if m.half_edge[other, ORIGIN] < m.half_edge[ab, ORIGIN]:
+            ab = other
+    bc = m.half_edge[ab, NEXT]
+    ca = m.half_edge[bc, NEXT]
+    a, b, c = m.half_edge[ab, ORIGIN], m.half_edge[bc, ORIGIN], m.half_edge[ca, ORIGIN]
+    av, va = new_half_edge(m, a), new_half_edge(m, v)
+    bv, vb = new_half_edge(m, b), new_half_edge(m, v)
+    cv, vc = new_half_edge(m, c), new_half_edge(m, v)
+    set_twins(m, av, va)
+    set_twins(m, bv, vb)
+    set_twins(m, cv, vc)
+    set_face(m, face, ab, bv, va)
+    set_face(m, f, bc, cv, vb)
+    set_face(m, f + 1, ca, av, vc)
+    m.vertex_half_edge[v] = va
+
+
+@kernel
+def put(m: HalfEdgeRecords, h: int, into: int) -> None:
+    """Move half-edge h, but not its twin, into another record."""
+    before = previous(m, h)
+    for i in range(3):
+        m.half_edge[into, i] = m.half_edge[h, i]
+    m.half_edge[before, NEXT] = into
+    m.face_half_edge[m.half_edge[into, FACE]] = into
+    m.half_edge[h, FACE] = -1
+    if m.vertex_half_edge[m.half_edge[into, ORIGIN]] == h:
+        m.vertex_half_edge[m.half_edge[into, ORIGIN]] = into
+
+
+@kernel
+def leave(m: HalfEdgeRecords, h: int) -> int:
+    """Take h out of its edge, whose name stays -> the half-edge that is left of it, or -1."""
+    twin = m.half_edge[h, TWIN]
+    m.half_edge[h, FACE] = -1
+    if twin < 0:
+        return -1
+    m.half_edge[twin, TWIN] = -1
+    if twin < h:
+        return twin
+    put(m, twin, h)
+    m.half_edge[h, TWIN] = -1
+    return h
+
+
+@kernel
+def unite(m: HalfEdgeRecords, gone: int, stays: int) -> None:
+    """Make one edge of two sides of a triangle that vanishes; what is beyond them meets there."""
+    beyond = m.half_edge[gone, TWIN]
+    m.half_edge[gone, FACE] = -1
+    if beyond >= 0:
+        put(m, beyond, stays)
+    else:
+        stays = leave(m, stays)
+    set_vertices(m, stays)
+
+
+@kernel
+def contract(
+    m: HalfEdgeRecords, e: int, at: Array, drop: int, keep: int, around: int, out: Array
+) -> None:
+    """Cost O(n_ev) for the half-edges that leave ``drop``."""
+    left, right = left_and_right(m, e)
+    inward, outward = (left, right) if drop == at[A] else (right, left)  # inward ends at keep
+    for i in range(around):
+        h = m.face_half_edge[out[i]]
+        while m.half_edge[h, ORIGIN] != drop:
+            h = m.half_edge[h, NEXT]
+        m.half_edge[h, ORIGIN] = keep
+    m.vertex_half_edge[drop] = -1
+    for i in range(2):
+        h = inward if i == 0 else outward
+        if h < 0:
+            continue
+        following = m.half_edge[h, NEXT]
+        last = m.half_edge[following, NEXT]
+        m.half_edge[h, FACE] = -1
+        m.face_half_edge[at[LEFT] if h == left else at[RIGHT]] = -1
+        if i == 0:
+            unite(m, last, following)
+        else:
+            unite(m, following, last)
+
+
+@kernel
+def turn(m: HalfEdgeRecords, e: int, at: Array, one: int, other: int) -> None:
+    """Cost O(1)."""
+    ab, ba = left_and_right(m, e)
+    bc, ad = m.half_edge[ab, NEXT], m.half_edge[ba, NEXT]
+    ca, db = m.half_edge[bc, NEXT], m.half_edge[ad, NEXT]
+    m.half_edge[ab, ORIGIN], m.half_edge[ba, ORIGIN] = at[D], at[C]
+    set_face(m, one, ad, ab, ca)
+    set_face(m, other, bc, ba, db)
+    m.vertex_half_edge[at[A]], m.vertex_half_edge[at[B]] = ad, bc
+
+
+@kernel
+def attach(m: HalfEdgeRecords, a: int, b: int, c: int, f: int) -> None:
+    """Cost O(n_ev)."""
+    ab, bc, ca = between(m, b, a), between(m, c, b), between(m, a, c)  # beyond the edges
+    g, h, i = new_half_edge(m, a), new_half_edge(m, b), new_half_edge(m, c)
+    if ab >= 0:
+        set_twins(m, g, ab)
+    if bc >= 0:
+        set_twins(m, h, bc)
+    if ca >= 0:
+        set_twins(m, i, ca)
+    set_face(m, f, g, h, i)
+    set_vertices(m, g)
+    m.vertex_half_edge[c] = i
+
+
+@kernel
+def detach(m: HalfEdgeRecords, f: int) -> None:
+    """Cost O(1)."""
+    g = m.face_half_edge[f]
+    h = m.half_edge[g, NEXT]
+    i = m.half_edge[h, NEXT]
+    for j in (g, h, i):
+        m.vertex_half_edge[m.half_edge[j, ORIGIN]] = -1
+    m.face_half_edge[f] = -1
+    for j in (g, h, i):
+        left = leave(m, j)
+        if left >= 0:
+            set_vertices(m, left)
+
+
 @njit(cache=True, nogil=True)
 def _fill(
     begin: int, end: int, part: int, triangles: Array, twin: Array, face: Array, half_edge: Array
@@ -194,15 +483,20 @@ class HalfEdge(Structure):
     name, title, abbreviation = "half_edge", "Half-Edge", "HEM"
     records_type = HalfEdgeRecords
     fields = (
-        Field("vertex.point", "vertex_point", 3),
-        Field("vertex.half_edge", "vertex_half_edge"),
-        Field("face.half_edge", "face_half_edge"),
-        *(Field(f"half_edge.{name}", "half_edge") for name in ("origin", "face", "next", "twin")),
+        Field("vertex.point", "vertex_point", 3, marks=True),
+        Field("vertex.half_edge", "vertex_half_edge", target="half_edge"),
+        Field("face.half_edge", "face_half_edge", target="half_edge", marks=True),
+        Field("half_edge.origin", "half_edge", target="vertex"),
+        Field("half_edge.face", "half_edge", target="face", marks=True),
+        Field("half_edge.next", "half_edge", target="half_edge"),
+        Field("half_edge.twin", "half_edge", target="half_edge"),
     )
     kernels = named(
         *(vertex_vertices, vertex_edges, vertex_faces),
         *(edge_vertices, edge_edges, edge_faces),
         *(face_vertices, face_edges, face_faces),
+        *(vertex_exists, edge_exists, face_exists, diamond, joined, beside),
+        *(cut_edge, cut_face, contract, turn, attach, detach),
     )
 
     @classmethod
@@ -213,67 +507,61 @@ class HalfEdge(Structure):
         pairing = pair_half_edges(mesh, room=half_edge)
         in_slices(_fill, n, mesh.triangles, pairing.twin, face, half_edge)
         vertex = pairing.vertex_half_edge.astype(reference, copy=False)
-        built = cls(HalfEdgeRecords(mesh.points.copy(), vertex, face, half_edge))
-        built.n_edges = pairing.n_edges
-        return built
-
-    @property
-    def n_faces(self) -> int:
-        """Number of faces."""
-        return len(self.records.face_half_edge)
-
-    @property
-    def _edge_end(self) -> int:
-        return len(self.records.half_edge)
+        count = counted(len(mesh.points), pairing.n_edges, n, 3 * n)
+        return cls(HalfEdgeRecords(mesh.points.copy(), vertex, face, half_edge, count))
 
     def edges(self) -> NDArray[np.int64]:
-        """(n_edges,) int64: of each pair of half-edges the smaller."""
-        twin = self.records.half_edge[:, TWIN]
-        return np.flatnonzero((twin < 0) | (np.arange(len(twin)) < twin))
+        """(n_edges,) int64: of each pair of live half-edges the smaller."""
+        half_edge = self.records.half_edge[: self.records.counts[EDGE_END]]
+        twin, number = half_edge[:, TWIN], np.arange(len(half_edge))
+        return np.flatnonzero((half_edge[:, FACE] >= 0) & ((twin < 0) | (number < twin)))
+
+    def _edge_names(self, handles: Array) -> Array:
+        known = (handles >= 0) & (handles < self.records.counts[EDGE_END])
+        twin = self.records.half_edge[np.where(known, handles, 0), TWIN]
+        return np.where(known & (twin >= 0), np.minimum(handles, twin), handles)
 
     def validate(self) -> None:
         """See ``Structure.validate``; the invariants stand at the top of this file."""
-        m: HalfEdgeRecords = self.records
-        origin, face, following, twin = m.half_edge.T
-        n, h = len(m.half_edge), np.arange(len(m.half_edge))
-        require_points(m.vertex_point)
-        require_references(origin, self.n_vertices, "origin", "half_edges")
-        require_references(face, self.n_faces, "face", "half_edges")
-        require_references(following, n, "next", "half_edges")
-        require_references(twin, n, "twin", "half_edges", least=-1)
-        require_references(m.vertex_half_edge, n, "half-edge", "vertices", least=-1)
-        require_references(m.face_half_edge, n, "half-edge", "faces")
+        m, fields = self.records, self.fields
+        vertices, faces = live(m, fields, "vertex"), live(m, fields, "face")
+        half_edges = live(m, fields, "half_edge")
+        leaving, within = m.vertex_half_edge[: len(vertices)], m.face_half_edge[: len(faces)]
+        origin, face, following, twin = m.half_edge[: len(half_edges)].T
+        h, f, n = np.flatnonzero(half_edges), np.flatnonzero(faces), len(half_edges)
+        edges = h[(twin[h] < 0) | (h < twin[h])]
+        require_counts(m, fields, len(edges))
+        require_points(self.points)
+        require_references(origin[h], vertices, "origin", "half_edges", h)
+        require_references(face[h], faces, "face", "half_edges", h)
+        require_references(following[h], half_edges, "next", "half_edges", h)
+        require_references(twin[h], half_edges, "twin", "half_edges", h, least=-1)
+        require_references(leaving, half_edges, "half-edge", "vertices", least=-1)
+        require_references(within[f], half_edges, "half-edge", "faces", f)
 
-        require(following != h, "next is another half-edge", "half_edges")
-        require(following[following[following]] == h, "three times next comes round", "half_edges")
-        require(face[following] == face, "next lies in the same face", "half_edges")
-        require(
-            face[m.face_half_edge] == np.arange(self.n_faces),
-            "a face's half-edge lies in it",
-            "faces",
-        )
-        require(
-            np.bincount(face, minlength=self.n_faces) == 3, "a face has three half-edges", "faces"
-        )
+        after = following[h]
+        require(after != h, "next is another half-edge", "half_edges", h)
+        require(following[following[after]] == h, "three times next comes round", "half_edges", h)
+        require(face[after] == face[h], "next lies in the same face", "half_edges", h)
+        require(face[within[f]] == f, "a face's half-edge lies in it", "faces", f)
+        sides = np.bincount(face[h], minlength=len(faces))[f]
+        require(sides == 3, "a face has three half-edges", "faces", f)
 
-        inner = np.flatnonzero(twin >= 0)
-        paired, other = np.ones(n, np.bool_), twin[inner]
-        paired[inner] = (other != inner) & (twin[other] == inner)
-        require(paired, "twin of twin is the half-edge itself", "half_edges")
-        paired[inner] = (origin[other] == origin[following[inner]]) & (
+        inner = h[twin[h] >= 0]
+        other = twin[inner]
+        paired = (other != inner) & (twin[other] == inner)
+        require(paired, "twin of twin is the half-edge itself", "half_edges", inner)
+        opposite = (origin[other] == origin[following[inner]]) & (
             origin[following[other]] == origin[inner]
         )
-        require(paired, "twins run opposite ways between the same vertices", "half_edges")
+        words = "twins run opposite ways between the same vertices"
+        require(opposite, words, "half_edges", inner)
 
-        leaving, used = m.vertex_half_edge, np.bincount(origin, minlength=self.n_vertices) > 0
+        used = np.bincount(origin[h], minlength=len(vertices)) > 0
         require((leaving >= 0) == used, "just the vertices with faces have a half-edge", "vertices")
-        require(
-            origin[leaving[used]] == np.flatnonzero(used),
-            "a vertex' half-edge starts at it",
-            "vertices",
-        )
+        at = np.flatnonzero(used)
+        require(origin[leaving[at]] == at, "a vertex' half-edge starts at it", "vertices", at)
         clockwise = np.full(n, -1)
         clockwise[inner] = following[other]
-        require_one_fan(origin, clockwise)
-        edges = self.edges()
-        require_distinct_edges(origin[edges], origin[following[edges]], "edges")
+        require_one_fan(origin, clockwise, h)
+        require_distinct_edges(origin[edges], origin[following[edges]], "edges", edges)

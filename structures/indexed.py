@@ -8,6 +8,7 @@ This is what a renderer is given and what Unity stores::
 Invariants
 
 - The corners of a triangle are three different vertices that exist.
+- Dead: a triangle has corners -1, a vertex has no position (NaN).
 
 Nothing is known about neighbors, so whoever asks for one searches all triangles, and nothing keeps
 the mesh from being non-manifold. An edge is named by its two vertices. Bytes per vertex:
@@ -21,11 +22,22 @@ from typing import Any, NamedTuple, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from hem.invariants import require, require_points, require_references
-from hem.kernels import distinct, edge_vertices, edges_at_both_ends, kernel, named, pack
+from hem.invariants import require, require_counts, require_points, require_references
+from hem.kernels import (
+    FACE_END,
+    distinct,
+    edge_exists,
+    edge_vertices,
+    edges_at_both_ends,
+    kernel,
+    named,
+    pack,
+    vertex_exists,
+)
 from hem.mesh import TriangleMesh
 from hem.packed import PackedEdges
-from hem.structure import Field
+from hem.records import UNKNOWN, Field, counted, live
+from hem.topology import LEFT, RIGHT, A, B, C, D
 
 Array = NDArray[Any]
 
@@ -35,6 +47,7 @@ class IndexedRecords(NamedTuple):
 
     vertex_point: Array  # (n_v, 3) float32
     triangle: Array  # (n_t, 3) vertices
+    counts: Array  # how many of them there are, see hem.kernels
 
 
 @kernel
@@ -47,7 +60,7 @@ def has_corner(m: IndexedRecords, t: int, v: int) -> bool:
 def vertex_vertices(m: IndexedRecords, v: int, out: Array) -> int:
     """Cost O(n_t)."""
     count = 0
-    for t in range(len(m.triangle)):
+    for t in range(m.counts[FACE_END]):
         if has_corner(m, t, v):
             for i in range(3):
                 if m.triangle[t, i] != v:
@@ -69,7 +82,7 @@ def vertex_edges(m: IndexedRecords, v: int, out: Array) -> int:
 def vertex_faces(m: IndexedRecords, v: int, out: Array) -> int:
     """Cost O(n_t)."""
     count = 0
-    for t in range(len(m.triangle)):
+    for t in range(m.counts[FACE_END]):
         if has_corner(m, t, v):
             out[count] = t
             count += 1
@@ -84,7 +97,7 @@ def edge_faces(m: IndexedRecords, e: int, out: Array) -> int:
     """Cost O(n_t): the search of thesis chapter 5."""
     a, b = e >> 32, e & 0xFFFFFFFF
     count = 0
-    for t in range(len(m.triangle)):
+    for t in range(m.counts[FACE_END]):
         if has_corner(m, t, a) and has_corner(m, t, b):
             out[count] = t
             count += 1
@@ -112,7 +125,7 @@ def face_faces(m: IndexedRecords, f: int, out: Array) -> int:
     """Cost O(n_t)."""
     a, b, c = m.triangle[f, 0], m.triangle[f, 1], m.triangle[f, 2]
     count = 0
-    for t in range(len(m.triangle)):
+    for t in range(m.counts[FACE_END]):
         shared = 0
         for i in range(3):
             v = m.triangle[t, i]
@@ -123,31 +136,155 @@ def face_faces(m: IndexedRecords, f: int, out: Array) -> int:
     return count
 
 
+# What operations need to know, and what they change (hem.topology, hem.operations) ---------------
+
+
+@kernel
+def face_exists(m: IndexedRecords, f: int) -> bool:
+    """Whether f is a live triangle."""
+    return 0 <= f < m.counts[FACE_END] and m.triangle[f, 0] >= 0
+
+
+@kernel
+def diamond(m: IndexedRecords, e: int, at: Array) -> int:
+    """Cost O(n_t)."""
+    edge_vertices(m, e, at)
+    a, b, count = at[A], at[B], 0
+    at[LEFT], at[RIGHT], at[C], at[D] = -1, -1, -1, -1
+    for t in range(m.counts[FACE_END]):
+        if has_corner(m, t, a) and has_corner(m, t, b):
+            opposite = m.triangle[t, 0] + m.triangle[t, 1] + m.triangle[t, 2] - a - b
+            side = LEFT if follows(m, t, a, b) else RIGHT
+            count += 1 if at[side] < 0 else 3
+            at[side], at[C if side == LEFT else D] = t, opposite
+    return min(count, 3)
+
+
+@kernel
+def follows(m: IndexedRecords, t: int, a: int, b: int) -> bool:
+    """Whether corner b comes right after corner a in triangle t."""
+    for i in range(3):
+        if m.triangle[t, i] == a and m.triangle[t, (i + 1) % 3] == b:
+            return True
+    return False
+
+
+@kernel
+def beside(m: IndexedRecords, a: int, b: int) -> int:
+    """The triangle that runs a → b, or -1. Cost O(n_t)."""
+    for t in range(m.counts[FACE_END]):
+        if follows(m, t, a, b):
+            return t
+    return -1
+
+
+@kernel
+def joined(m: IndexedRecords, a: int, b: int) -> bool:
+    """Cost O(n_t)."""
+    for t in range(m.counts[FACE_END]):
+        if has_corner(m, t, a) and has_corner(m, t, b):
+            return True
+    return False
+
+
+@kernel
+def set_triangle(m: IndexedRecords, t: int, a: int, b: int, c: int) -> None:
+    """Write the corners of triangle t."""
+    m.triangle[t, 0], m.triangle[t, 1], m.triangle[t, 2] = a, b, c
+
+
+@kernel
+def replace(m: IndexedRecords, t: int, old: int, new: int) -> None:
+    """Put another vertex into a corner of triangle t."""
+    for i in range(3):
+        if m.triangle[t, i] == old:
+            m.triangle[t, i] = new
+
+
+@kernel
+def cut_edge(m: IndexedRecords, e: int, at: Array, v: int, f: int) -> None:
+    """Cost O(1) when the triangles are known, which takes a scan."""
+    for side in (LEFT, RIGHT):
+        t = at[side]
+        if t >= 0:
+            set_triangle(m, f, m.triangle[t, 0], m.triangle[t, 1], m.triangle[t, 2])
+            replace(m, f, at[A], v)
+            replace(m, t, at[B], v)
+            f += 1
+
+
+@kernel
+def cut_face(m: IndexedRecords, face: int, v: int, f: int) -> None:
+    """Cost O(1)."""
+    i = 0
+    for j in range(1, 3):
+        if m.triangle[face, j] < m.triangle[face, i]:
+            i = j
+    a, b, c = m.triangle[face, i], m.triangle[face, (i + 1) % 3], m.triangle[face, (i + 2) % 3]
+    set_triangle(m, face, a, b, v)
+    set_triangle(m, f, b, c, v)
+    set_triangle(m, f + 1, c, a, v)
+
+
+@kernel
+def contract(
+    m: IndexedRecords, e: int, at: Array, drop: int, keep: int, around: int, out: Array
+) -> None:
+    """Cost O(n_ev) when the triangles are known, which takes a scan."""
+    for i in range(around):
+        replace(m, out[i], drop, keep)
+    for side in (LEFT, RIGHT):
+        if at[side] >= 0:
+            detach(m, at[side])
+
+
+@kernel
+def turn(m: IndexedRecords, e: int, at: Array, one: int, other: int) -> None:
+    """Cost O(1) when the triangles are known, which takes a scan."""
+    set_triangle(m, one, at[A], at[D], at[C])
+    set_triangle(m, other, at[B], at[C], at[D])
+
+
+@kernel
+def attach(m: IndexedRecords, a: int, b: int, c: int, f: int) -> None:
+    """Cost O(1)."""
+    set_triangle(m, f, a, b, c)
+
+
+@kernel
+def detach(m: IndexedRecords, f: int) -> None:
+    """Cost O(1)."""
+    set_triangle(m, f, -1, -1, -1)
+
+
 class Indexed(PackedEdges):
     """The indexed mesh."""
 
     name, title, abbreviation = "indexed", "Indexed", "Indexed"
     records_type = IndexedRecords
-    fields = (Field("vertex.point", "vertex_point", 3), Field("triangle.vertex", "triangle", 3))
+    fields = (
+        Field("vertex.point", "vertex_point", 3, marks=True),
+        Field("triangle.vertex", "triangle", 3, target="vertex", marks=True),
+    )
     kernels = named(
         *(vertex_vertices, vertex_edges, vertex_faces),
         *(edge_vertices, edge_edges, edge_faces),
         *(face_vertices, face_edges, face_faces),
+        *(vertex_exists, edge_exists, face_exists, diamond, joined, beside),
+        *(cut_edge, cut_face, contract, turn, attach, detach),
     )
 
     @classmethod
     def build(cls, mesh: TriangleMesh, reference_bytes: int = 4) -> Self:
         """See ``Structure.build``. Any mesh is accepted; the indices are 4 bytes in any case."""
-        return cls(IndexedRecords(mesh.points.copy(), mesh.triangles.copy()))
-
-    @property
-    def n_faces(self) -> int:
-        """Number of faces."""
-        return len(self.records.triangle)
+        count = counted(len(mesh.points), UNKNOWN, len(mesh.triangles))
+        return cls(IndexedRecords(mesh.points.copy(), mesh.triangles.copy(), count))
 
     def validate(self) -> None:
         """See ``Structure.validate``; the invariants stand at the top of this file."""
-        m: IndexedRecords = self.records
-        require_points(m.vertex_point)
-        require_references(m.triangle, self.n_vertices, "corner", "faces")
-        require(m.triangle != np.roll(m.triangle, 1, axis=1), "corners differ", "faces")
+        m, faces = self.records, self.faces()
+        corner = m.triangle[faces]
+        require_counts(m, self.fields)
+        require_points(self.points)
+        require_references(corner, live(m, self.fields, "vertex"), "corner", "faces", of=faces)
+        require(corner != np.roll(corner, 1, axis=1), "corners differ", "faces", of=faces)

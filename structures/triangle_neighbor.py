@@ -13,6 +13,7 @@ Invariants
 
 - If u is beyond edge a → b of t, then t is beyond edge b → a of u. At the border there is -1.
 - The triangle of a vertex has it as a corner. An unreferenced vertex has -1.
+- Dead: a triangle has corners -1, a vertex has no position (NaN).
 
 Who walks around a vertex must find it again among the corners of every triangle on the way. An edge
 is named by its two vertices. Bytes per vertex with 8-byte references: 12 + 8 + 2 · 48 = 116
@@ -29,25 +30,32 @@ from numpy.typing import NDArray
 
 from hem.invariants import (
     require,
+    require_counts,
     require_distinct_edges,
     require_one_fan,
     require_points,
     require_references,
 )
 from hem.kernels import (
+    FACE_END,
     append_face,
     circulator,
+    edge_exists,
     edge_vertices,
     edges_at_both_ends,
+    joined_by_steps,
     kernel,
     named,
     pack,
+    vertex_exists,
 )
 from hem.mesh import TriangleMesh
 from hem.packed import PackedEdges
 from hem.pairing import pair_half_edges
+from hem.records import Field, counted, live
 from hem.slices import in_slices
-from hem.structure import REFERENCE_TYPES, Field
+from hem.structure import REFERENCE_TYPES
+from hem.topology import LEFT, RIGHT, A, B, C, D
 
 Array = NDArray[Any]
 
@@ -60,6 +68,7 @@ class TriangleNeighborRecords(NamedTuple):
     vertex_point: Array  # (n_v, 3) float32
     vertex_triangle: Array  # (n_v,) one of the triangles at the vertex
     triangle: Array  # (n_t, 6) three neighbors, three corners
+    counts: Array  # how many of them there are, see hem.kernels
 
 
 @kernel
@@ -158,6 +167,224 @@ def face_faces(m: TriangleNeighborRecords, f: int, out: Array) -> int:
     return count
 
 
+# What operations need to know, and what they change (hem.topology, hem.operations) ---------------
+
+
+@kernel
+def face_exists(m: TriangleNeighborRecords, f: int) -> bool:
+    """Whether f is a live triangle."""
+    return 0 <= f < m.counts[FACE_END] and m.triangle[f, CORNER] >= 0
+
+
+@kernel
+def first(m: TriangleNeighborRecords, v: int) -> int:
+    """A triangle at v."""
+    return m.vertex_triangle[v]
+
+
+@kernel
+def in_triangle(m: TriangleNeighborRecords, t: int, v: int, w: int) -> bool:
+    """Whether w is a corner of t."""
+    return m.triangle[t, CORNER + corner_of(m, t, w)] == w
+
+
+joined = joined_by_steps(first, clockwise, in_triangle, counterclockwise)
+
+
+@kernel
+def with_edge(m: TriangleNeighborRecords, a: int, b: int) -> int:
+    """A triangle that has edge a – b, or -1. Cost O(n_ev)."""
+    start = m.vertex_triangle[a]
+    t = start
+    while t >= 0:
+        if in_triangle(m, t, a, b):
+            return t
+        t = clockwise(m, t, a)
+        if t == start:
+            return -1
+    t = counterclockwise(m, start, a) if start >= 0 else -1
+    while t >= 0:
+        if in_triangle(m, t, a, b):
+            return t
+        t = counterclockwise(m, t, a)
+    return -1
+
+
+@kernel
+def beside(m: TriangleNeighborRecords, a: int, b: int) -> int:
+    """The triangle that runs a → b, or -1. Cost O(n_ev)."""
+    t = with_edge(m, a, b)
+    if t < 0:
+        return -1
+    i = corner_of(m, t, a)
+    if m.triangle[t, CORNER + (i + 1) % 3] == b:
+        return t
+    return m.triangle[t, NEIGHBOR + (i + 2) % 3]
+
+
+@kernel
+def diamond(m: TriangleNeighborRecords, e: int, at: Array) -> int:
+    """Cost O(n_ev)."""
+    edge_vertices(m, e, at)
+    at[LEFT], at[RIGHT] = beside(m, at[A], at[B]), -1
+    at[C], at[D] = -1, -1
+    if at[LEFT] >= 0:
+        i = corner_of(m, at[LEFT], at[A])
+        at[C] = m.triangle[at[LEFT], CORNER + (i + 2) % 3]
+        at[RIGHT] = m.triangle[at[LEFT], NEIGHBOR + i]
+    else:
+        at[RIGHT] = beside(m, at[B], at[A])
+    if at[RIGHT] >= 0:
+        i = corner_of(m, at[RIGHT], at[B])
+        at[D] = m.triangle[at[RIGHT], CORNER + (i + 2) % 3]
+    return (at[LEFT] >= 0) + (at[RIGHT] >= 0)
+
+
+@kernel
+def beyond(m: TriangleNeighborRecords, t: int, a: int) -> int:
+    """The triangle beyond the edge of t that leaves a, or -1."""
+    return m.triangle[t, NEIGHBOR + corner_of(m, t, a)]
+
+
+@kernel
+def set_beyond(m: TriangleNeighborRecords, t: int, a: int, u: int) -> None:
+    """Let u lie beyond the edge of t that leaves a, if there is a t."""
+    if t >= 0:
+        m.triangle[t, NEIGHBOR + corner_of(m, t, a)] = u
+
+
+@kernel
+def set_triangle(m: TriangleNeighborRecords, t: int, a: int, b: int, c: int) -> None:
+    """Write the corners of triangle t, which becomes theirs."""
+    m.triangle[t, CORNER], m.triangle[t, CORNER + 1], m.triangle[t, CORNER + 2] = a, b, c
+    m.vertex_triangle[a] = m.vertex_triangle[b] = m.vertex_triangle[c] = t
+
+
+@kernel
+def set_neighbors(m: TriangleNeighborRecords, t: int, ab: int, bc: int, ca: int) -> None:
+    """Join triangle t with those beyond its edges, in the order of its corners."""
+    a, b, c = m.triangle[t, CORNER], m.triangle[t, CORNER + 1], m.triangle[t, CORNER + 2]
+    m.triangle[t, NEIGHBOR], m.triangle[t, NEIGHBOR + 1], m.triangle[t, NEIGHBOR + 2] = ab, bc, ca
+    set_beyond(m, ab, b, t)
+    set_beyond(m, bc, c, t)
+    set_beyond(m, ca, a, t)
+
+
+@kernel
+def cut_edge(m: TriangleNeighborRecords, e: int, at: Array, v: int, f: int) -> None:
+    """Cost O(1) when the triangles are known, which takes O(n_ev)."""
+    a, b, left, right = at[A], at[B], at[LEFT], at[RIGHT]
+    bc, ca, ad, db, new_left, new_right = -1, -1, -1, -1, -1, -1
+    if left >= 0:
+        bc, ca = beyond(m, left, b), beyond(m, left, at[C])
+    if right >= 0:
+        ad, db = beyond(m, right, a), beyond(m, right, at[D])
+    if left >= 0:
+        new_left = f
+        set_triangle(m, left, a, v, at[C])
+        set_triangle(m, new_left, v, b, at[C])
+        set_neighbors(m, new_left, -1, bc, left)
+        set_neighbors(m, left, right, new_left, ca)
+        f += 1
+    if right >= 0:
+        new_right = f
+        set_triangle(m, right, v, a, at[D])
+        set_triangle(m, new_right, b, v, at[D])
+        set_neighbors(m, new_right, new_left, right, db)
+        set_neighbors(m, right, left, ad, new_right)
+
+
+@kernel
+def cut_face(m: TriangleNeighborRecords, face: int, v: int, f: int) -> None:
+    """Cost O(1)."""
+    i = 0
+    for j in range(1, 3):
+        if m.triangle[face, CORNER + j] < m.triangle[face, CORNER + i]:
+            i = j
+    j, k = (i + 1) % 3, (i + 2) % 3
+    a, b = m.triangle[face, CORNER + i], m.triangle[face, CORNER + j]
+    c = m.triangle[face, CORNER + k]
+    ab, bc = m.triangle[face, NEIGHBOR + i], m.triangle[face, NEIGHBOR + j]
+    ca = m.triangle[face, NEIGHBOR + k]
+    set_triangle(m, face, a, b, v)
+    set_triangle(m, f, b, c, v)
+    set_triangle(m, f + 1, c, a, v)
+    set_neighbors(m, f, bc, f + 1, face)
+    set_neighbors(m, f + 1, ca, face, f)
+    set_neighbors(m, face, ab, f, f + 1)
+
+
+@kernel
+def replace(m: TriangleNeighborRecords, t: int, old: int, new: int) -> None:
+    """Put another vertex into a corner of triangle t."""
+    m.triangle[t, CORNER + corner_of(m, t, old)] = new
+
+
+@kernel
+def take_out(m: TriangleNeighborRecords, t: int, drop: int, keep: int) -> None:
+    """Join what lies beyond the other two edges of a triangle at the edge that vanishes."""
+    i = corner_of(m, t, drop)
+    leaving = m.triangle[t, CORNER + (i + 1) % 3] == keep
+    c = m.triangle[t, CORNER + (i + (2 if leaving else 1)) % 3]
+    at_keep = beyond(m, t, keep if leaving else c)
+    at_drop = beyond(m, t, c if leaving else drop)
+    # Seen from beyond, the edge runs the other way: it leaves c if it left keep here.
+    set_beyond(m, at_keep, c if leaving else keep, at_drop)
+    set_beyond(m, at_drop, drop if leaving else c, at_keep)
+    stays = at_keep if at_keep >= 0 else at_drop
+    m.vertex_triangle[keep] = m.vertex_triangle[c] = stays
+    m.triangle[t, CORNER], m.triangle[t, CORNER + 1], m.triangle[t, CORNER + 2] = -1, -1, -1
+
+
+@kernel
+def contract(
+    m: TriangleNeighborRecords, e: int, at: Array, drop: int, keep: int, around: int, out: Array
+) -> None:
+    """Cost O(n_ev) for the triangles at ``drop``."""
+    for side in (LEFT, RIGHT):
+        if at[side] >= 0:
+            take_out(m, at[side], drop, keep)
+    for i in range(around):
+        if out[i] != at[LEFT] and out[i] != at[RIGHT]:
+            replace(m, out[i], drop, keep)
+    m.vertex_triangle[drop] = -1
+
+
+@kernel
+def turn(m: TriangleNeighborRecords, e: int, at: Array, one: int, other: int) -> None:
+    """Cost O(1) when the triangles are known, which takes O(n_ev)."""
+    a, b, c, d = at[A], at[B], at[C], at[D]
+    bc, ca = beyond(m, at[LEFT], b), beyond(m, at[LEFT], c)
+    ad, db = beyond(m, at[RIGHT], a), beyond(m, at[RIGHT], d)
+    set_triangle(m, one, a, d, c)
+    set_triangle(m, other, b, c, d)
+    set_neighbors(m, other, bc, one, db)
+    set_neighbors(m, one, ad, other, ca)
+
+
+@kernel
+def attach(m: TriangleNeighborRecords, a: int, b: int, c: int, f: int) -> None:
+    """Cost O(n_ev)."""
+    ab, bc, ca = beside(m, b, a), beside(m, c, b), beside(m, a, c)
+    set_triangle(m, f, a, b, c)
+    set_neighbors(m, f, ab, bc, ca)
+
+
+@kernel
+def detach(m: TriangleNeighborRecords, f: int) -> None:
+    """Cost O(1)."""
+    for i in range(3):
+        m.vertex_triangle[m.triangle[f, CORNER + i]] = -1
+    for i in range(3):
+        a, b = m.triangle[f, CORNER + i], m.triangle[f, CORNER + (i + 1) % 3]
+        t = m.triangle[f, NEIGHBOR + i]
+        if t >= 0:
+            set_beyond(m, t, b, -1)
+            m.vertex_triangle[a] = m.vertex_triangle[b] = t
+    for i in range(3):
+        m.triangle[f, CORNER + i] = -1
+
+
 @njit(cache=True, nogil=True)
 def _fill(begin: int, end: int, part: int, corners: Array, twin: Array, triangle: Array) -> None:
     for t in range(begin, end):
@@ -173,15 +400,17 @@ class TriangleNeighbor(PackedEdges):
     name, title, abbreviation = "triangle_neighbor", "Triangle-Neighbor", "TNS"
     records_type = TriangleNeighborRecords
     fields = (
-        Field("vertex.point", "vertex_point", 3),
-        Field("vertex.triangle", "vertex_triangle"),
-        Field("triangle.neighbor", "triangle", 3),
-        Field("triangle.vertex", "triangle", 3),
+        Field("vertex.point", "vertex_point", 3, marks=True),
+        Field("vertex.triangle", "vertex_triangle", target="triangle"),
+        Field("triangle.neighbor", "triangle", 3, target="triangle"),
+        Field("triangle.vertex", "triangle", 3, target="vertex", marks=True),
     )
     kernels = named(
         *(vertex_vertices, vertex_edges, vertex_faces),
         *(edge_vertices, edge_edges, edge_faces),
         *(face_vertices, face_edges, face_faces),
+        *(vertex_exists, edge_exists, face_exists, diamond, joined, beside),
+        *(cut_edge, cut_face, contract, turn, attach, detach),
     )
 
     @classmethod
@@ -192,41 +421,41 @@ class TriangleNeighbor(PackedEdges):
         pairing = pair_half_edges(mesh, room=triangle)
         in_slices(_fill, len(triangle), mesh.triangles, pairing.twin, triangle)
         vertex_triangle = (pairing.vertex_half_edge // 3).astype(reference)  # -1 stays -1
-        built = cls(TriangleNeighborRecords(mesh.points.copy(), vertex_triangle, triangle))
-        built.n_edges = pairing.n_edges
-        return built
-
-    @property
-    def n_faces(self) -> int:
-        """Number of faces."""
-        return len(self.records.triangle)
+        count = counted(len(mesh.points), pairing.n_edges, len(triangle))
+        return cls(TriangleNeighborRecords(mesh.points.copy(), vertex_triangle, triangle, count))
 
     def validate(self) -> None:
         """See ``Structure.validate``; the invariants stand at the top of this file."""
-        m: TriangleNeighborRecords = self.records
-        corner, beyond = m.triangle[:, CORNER:], m.triangle[:, NEIGHBOR:CORNER]
-        require_points(m.vertex_point)
-        require_references(corner, self.n_vertices, "corner", "faces")
-        require_references(beyond, self.n_faces, "neighbor", "faces", least=-1)
-        require_references(m.vertex_triangle, self.n_faces, "triangle", "vertices", least=-1)
-        require(corner != np.roll(corner, 1, axis=1), "corners differ", "faces")
+        m, fields = self.records, self.fields
+        vertices, faces = live(m, fields, "vertex"), live(m, fields, "triangle")
+        f, of_vertex = np.flatnonzero(faces), m.vertex_triangle[: len(vertices)]
+        corner = m.triangle[: len(faces), CORNER:]
+        beyond = np.full_like(corner, -1)
+        beyond[f] = m.triangle[f, NEIGHBOR:CORNER]
+        once = (beyond < np.arange(len(faces))[:, None]) & faces[:, None]  # of two the later one
+        require_counts(m, fields, int(np.count_nonzero(once)))
+        require_points(self.points)
+        require_references(corner[f], vertices, "corner", "faces", f)
+        require_references(beyond[f], faces, "neighbor", "faces", f, least=-1)
+        require_references(of_vertex, faces, "triangle", "vertices", least=-1)
+        require(corner[f] != np.roll(corner[f], 1, axis=1), "corners differ", "faces", f)
 
-        used = np.bincount(corner.ravel(), minlength=self.n_vertices) > 0
-        require((m.vertex_triangle >= 0) == used, "just vertices with faces have one", "vertices")
-        at = corner[m.vertex_triangle[used]] == np.flatnonzero(used)[:, None]
-        require(at.any(axis=1), "the triangle of a vertex has it as a corner", "vertices")
+        used = np.bincount(corner[f].ravel(), minlength=len(vertices)) > 0
+        require((of_vertex >= 0) == used, "just vertices with faces have one", "vertices")
+        v = np.flatnonzero(used)
+        at = (corner[of_vertex[v]] == v[:, None]).any(axis=1)
+        require(at, "the triangle of a vertex has it as a corner", "vertices", v)
 
         # Edge i of t runs a → b; the neighbor must run b → a along its edge j, and know t there.
         t, i = np.nonzero(beyond >= 0)
         u, a, b = beyond[t, i], corner[t, i], corner[t, (i + 1) % 3]
         j = np.argmax(corner[u] == b[:, None], axis=1)
         met = (corner[u, j] == b) & (corner[u, (j + 1) % 3] == a) & (beyond[u, j] == t)
-        paired = np.ones(self.n_faces, np.bool_)
-        paired[t[~met]] = False
-        require(paired, "neighbors name each other across one edge, run opposite ways", "faces")
+        words = "neighbors name each other across one edge, run opposite ways"
+        require(met, words, "faces", t)
 
         clockwise_corner = np.full(corner.size, -1)
         clockwise_corner[3 * t + i] = 3 * u + (j + 1) % 3
-        require_one_fan(corner.ravel(), clockwise_corner)
-        once = beyond < np.arange(self.n_faces)[:, None]  # border, or the later of the two
+        corners = np.flatnonzero(np.repeat(faces, 3))
+        require_one_fan(corner.ravel(), clockwise_corner, corners)
         require_distinct_edges(corner[once], np.roll(corner, -1, axis=1)[once], "edges")

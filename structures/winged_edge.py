@@ -18,6 +18,7 @@ Invariants
   at the border is -1, and so are its two wings.
 - Previous of next within the same face is the edge itself; three times next comes round.
 - The edge of a vertex ends there; that of a face borders it. An unreferenced vertex has -1.
+- Dead: a face has edge -1, an edge has tail -1, a vertex has no position (NaN).
 
 Who walks must look at every edge which way round it lies. The kernels therefore walk *directed*
 edges 2e + side: from tail to head with side 0, from head to tail with side 1; adding the side to a
@@ -35,31 +36,36 @@ from numpy.typing import NDArray
 
 from hem.invariants import (
     require,
+    require_counts,
     require_distinct_edges,
     require_one_fan,
     require_points,
     require_references,
 )
-from hem.kernels import append_face, circulator, edges_at_both_ends, kernel, named
+from hem.kernels import (
+    EDGE_END,
+    FACE_END,
+    append_face,
+    circulator,
+    edges_at_both_ends,
+    joined_by_steps,
+    kernel,
+    named,
+    vertex_exists,
+)
 from hem.mesh import TriangleMesh
 from hem.pairing import pair_half_edges
+from hem.records import Field, counted, live
 from hem.slices import in_slices
-from hem.structure import REFERENCE_TYPES, Field, Structure
+from hem.structure import REFERENCE_TYPES, Structure
+from hem.topology import LEFT as LEFT_FACE
+from hem.topology import RIGHT as RIGHT_FACE
+from hem.topology import A, B, C, D
 
 Array = NDArray[Any]
 
 TAIL, HEAD, LEFT, RIGHT = range(4)
 LEFT_PREVIOUS, RIGHT_PREVIOUS, LEFT_NEXT, RIGHT_NEXT = range(4, 8)
-COLUMNS = (
-    "tail",
-    "head",
-    "left",
-    "right",
-    "left_previous",
-    "right_previous",
-    "left_next",
-    "right_next",
-)
 
 
 class WingedEdgeRecords(NamedTuple):
@@ -68,7 +74,8 @@ class WingedEdgeRecords(NamedTuple):
     vertex_point: Array  # (n_v, 3) float32
     vertex_edge: Array  # (n_v,) one of the edges at the vertex
     face_edge: Array  # (n_t,) one of the edges of the face
-    edge: Array  # (n_e, 8) the columns above
+    edge: Array  # (n_e, 8) the eight columns above
+    counts: Array  # how many of them there are, see hem.kernels
 
 
 @kernel
@@ -134,8 +141,8 @@ def vertex_faces(m: WingedEdgeRecords, v: int, out: Array) -> int:
 @kernel
 def edge_vertices(m: WingedEdgeRecords, e: int, out: Array) -> int:
     """Cost O(1)."""
-    out[0] = m.edge[e, TAIL]
-    out[1] = m.edge[e, HEAD]
+    a, b = m.edge[e, TAIL], m.edge[e, HEAD]
+    out[0], out[1] = min(a, b), max(a, b)
     return 2
 
 
@@ -194,6 +201,252 @@ def face_faces(m: WingedEdgeRecords, f: int, out: Array) -> int:
     return count
 
 
+# What operations need to know, and what they change (hem.topology, hem.operations) ---------------
+
+
+@kernel
+def face_exists(m: WingedEdgeRecords, f: int) -> bool:
+    """Whether f is a live face."""
+    return 0 <= f < m.counts[FACE_END] and m.face_edge[f] >= 0
+
+
+@kernel
+def edge_exists(m: WingedEdgeRecords, e: int) -> bool:
+    """Whether e is a live edge."""
+    return 0 <= e < m.counts[EDGE_END] and m.edge[e, TAIL] >= 0
+
+
+@kernel
+def following(m: WingedEdgeRecords, d: int) -> int:
+    """The directed edge after d in the face on its left hand."""
+    return directed_from(m, m.edge[d >> 1, LEFT_NEXT + (d & 1)], tip(m, d))
+
+
+@kernel
+def tip(m: WingedEdgeRecords, d: int) -> int:
+    """The vertex where directed edge d ends."""
+    return m.edge[d >> 1, HEAD - (d & 1)]
+
+
+@kernel
+def left_of(m: WingedEdgeRecords, d: int) -> int:
+    """The face on the left hand of directed edge d, or -1."""
+    return m.edge[d >> 1, LEFT + (d & 1)]
+
+
+@kernel
+def diamond(m: WingedEdgeRecords, e: int, at: Array) -> int:
+    """Cost O(1)."""
+    edge_vertices(m, e, at)
+    left = directed_from(m, e, at[A])
+    at[LEFT_FACE], at[RIGHT_FACE], at[C], at[D] = left_of(m, left), left_of(m, left ^ 1), -1, -1
+    if at[LEFT_FACE] >= 0:
+        at[C] = tip(m, following(m, left))
+    if at[RIGHT_FACE] >= 0:
+        at[D] = tip(m, following(m, left ^ 1))
+    return (at[LEFT_FACE] >= 0) + (at[RIGHT_FACE] >= 0)
+
+
+@kernel
+def first(m: WingedEdgeRecords, v: int) -> int:
+    """A directed edge that leaves v, or a negative number."""
+    return directed_from(m, m.vertex_edge[v], v) if m.vertex_edge[v] >= 0 else -1
+
+
+@kernel
+def ends_at(m: WingedEdgeRecords, d: int, v: int, w: int) -> bool:
+    """Whether directed edge d, which leaves v, ends at w."""
+    return tip(m, d) == w
+
+
+joined = joined_by_steps(first, clockwise, ends_at, counterclockwise)
+
+
+@kernel
+def between(m: WingedEdgeRecords, a: int, b: int) -> int:
+    """The directed edge a → b, or -1. Cost O(n_ev)."""
+    start = first(m, a)
+    d = start
+    while d >= 0:
+        if tip(m, d) == b:
+            return d
+        d = clockwise(m, d, a)
+        if d == start:
+            return -1
+    d = counterclockwise(m, start, a) if start >= 0 else -1
+    while d >= 0:
+        if tip(m, d) == b:
+            return d
+        d = counterclockwise(m, d, a)
+    return -1
+
+
+@kernel
+def beside(m: WingedEdgeRecords, a: int, b: int) -> int:
+    """The face that runs a → b, or -1. Cost O(n_ev)."""
+    d = between(m, a, b)
+    return left_of(m, d) if d >= 0 else -1
+
+
+@kernel
+def set_side(m: WingedEdgeRecords, d: int, f: int, before: int, after: int) -> None:
+    """Write the face on the left hand of directed edge d, and the wings there."""
+    e, side = d >> 1, d & 1
+    m.edge[e, LEFT + side] = f
+    m.edge[e, LEFT_PREVIOUS + side] = before
+    m.edge[e, LEFT_NEXT + side] = after
+
+
+@kernel
+def set_face(m: WingedEdgeRecords, f: int, d: int, e: int, g: int) -> None:
+    """Make a face of three directed edges that follow each other."""
+    m.face_edge[f] = d >> 1
+    set_side(m, d, f, g >> 1, e >> 1)
+    set_side(m, e, f, d >> 1, g >> 1)
+    set_side(m, g, f, e >> 1, d >> 1)
+
+
+@kernel
+def set_ends(m: WingedEdgeRecords, d: int, tail: int, head: int) -> None:
+    """Write both ends of directed edge d, which becomes theirs."""
+    m.edge[d >> 1, TAIL + (d & 1)], m.edge[d >> 1, HEAD - (d & 1)] = tail, head
+    m.vertex_edge[tail] = m.vertex_edge[head] = d >> 1
+
+
+@kernel
+def new_edge(m: WingedEdgeRecords, tail: int, head: int) -> int:
+    """Append an edge without faces -> the directed edge tail → head."""
+    d = 2 * m.counts[EDGE_END]
+    m.counts[EDGE_END] += 1
+    set_ends(m, d, tail, head)
+    set_side(m, d, -1, -1, -1)
+    set_side(m, d + 1, -1, -1, -1)
+    return d
+
+
+@kernel
+def cut_edge(m: WingedEdgeRecords, e: int, at: Array, v: int, f: int) -> None:
+    """Cost O(1): the edge stays with a and v, and one edge is new on each side and beyond v."""
+    a, b = at[A], at[B]
+    av = directed_from(m, e, a)
+    bc, ad = -1, -1
+    if at[LEFT_FACE] >= 0:
+        bc = following(m, av)
+    if at[RIGHT_FACE] >= 0:
+        ad = following(m, av ^ 1)
+    set_ends(m, av, a, v)
+    vb = new_edge(m, v, b)
+    if at[LEFT_FACE] >= 0:
+        ca, vc = following(m, bc), new_edge(m, v, at[C])
+        set_face(m, at[LEFT_FACE], av, vc, ca)
+        set_face(m, f, vb, bc, vc ^ 1)
+        f += 1
+    if at[RIGHT_FACE] >= 0:
+        db, vd = following(m, ad), new_edge(m, v, at[D])
+        set_face(m, at[RIGHT_FACE], av ^ 1, ad, vd ^ 1)
+        set_face(m, f, vb ^ 1, vd, db)
+
+
+@kernel
+def cut_face(m: WingedEdgeRecords, face: int, v: int, f: int) -> None:
+    """Cost O(1)."""
+    e = m.face_edge[face]
+    ab = 2 * e + side_of(m, e, face)
+    other = ab
+    for _ in range(2):
+        other = following(m, other)
+        if tip(m, other ^ 1) < tip(m, ab ^ 1):
+            ab = other
+    bc = following(m, ab)
+    ca = following(m, bc)
+    a, b, c = tip(m, ca), tip(m, ab), tip(m, bc)
+    av, bv, cv = new_edge(m, a, v), new_edge(m, b, v), new_edge(m, c, v)
+    set_face(m, face, ab, bv, av ^ 1)
+    set_face(m, f, bc, cv, bv ^ 1)
+    set_face(m, f + 1, ca, av, cv ^ 1)
+
+
+@kernel
+def unite(m: WingedEdgeRecords, gone: int, stays: int) -> None:
+    """Let directed edge ``stays`` take the place that the other side of ``gone`` has in its face.
+
+    Both are sides of a triangle that vanishes, and so does the edge of ``gone``.
+    """
+    beyond = gone ^ 1
+    face = left_of(m, beyond)
+    if face >= 0:
+        after = following(m, beyond)
+        set_face(m, face, stays, after, following(m, after))
+    else:
+        set_side(m, stays, -1, -1, -1)
+    m.edge[gone >> 1, TAIL] = -1
+    e = stays >> 1
+    m.vertex_edge[m.edge[e, TAIL]] = m.vertex_edge[m.edge[e, HEAD]] = e
+
+
+@kernel
+def contract(
+    m: WingedEdgeRecords, e: int, at: Array, drop: int, keep: int, around: int, out: Array
+) -> None:
+    """Cost O(n_ev) for the edges at ``drop``."""
+    edges = vertex_edges(m, drop, out)
+    inward = directed_from(m, e, drop)  # ends at keep
+    if left_of(m, inward) >= 0:
+        m.face_edge[left_of(m, inward)] = -1
+        to_c = following(m, inward)
+        unite(m, following(m, to_c), to_c)
+    if left_of(m, inward ^ 1) >= 0:
+        m.face_edge[left_of(m, inward ^ 1)] = -1
+        to_d = following(m, inward ^ 1)
+        unite(m, to_d, following(m, to_d))
+    m.edge[e, TAIL] = -1
+    for i in range(edges):
+        for end in (TAIL, HEAD):
+            if m.edge[out[i], end] == drop:
+                m.edge[out[i], end] = keep
+    m.vertex_edge[drop] = -1
+
+
+@kernel
+def turn(m: WingedEdgeRecords, e: int, at: Array, one: int, other: int) -> None:
+    """Cost O(1)."""
+    ab = directed_from(m, e, at[A])
+    bc, ad = following(m, ab), following(m, ab ^ 1)
+    ca, db = following(m, bc), following(m, ad)
+    set_ends(m, ab, at[D], at[C])
+    set_face(m, one, ad, ab, ca)
+    set_face(m, other, bc, ab ^ 1, db)
+    m.vertex_edge[at[A]], m.vertex_edge[at[B]] = ad >> 1, bc >> 1
+
+
+@kernel
+def attach(m: WingedEdgeRecords, a: int, b: int, c: int, f: int) -> None:
+    """Cost O(n_ev)."""
+    ab, bc, ca = between(m, a, b), between(m, b, c), between(m, c, a)
+    ab = ab if ab >= 0 else new_edge(m, a, b)
+    bc = bc if bc >= 0 else new_edge(m, b, c)
+    ca = ca if ca >= 0 else new_edge(m, c, a)
+    set_face(m, f, ab, bc, ca)
+
+
+@kernel
+def detach(m: WingedEdgeRecords, f: int) -> None:
+    """Cost O(1)."""
+    e = m.face_edge[f]
+    ab = 2 * e + side_of(m, e, f)
+    bc = following(m, ab)
+    ca = following(m, bc)
+    a, b, c = tip(m, ca), tip(m, ab), tip(m, bc)
+    m.face_edge[f] = -1
+    m.vertex_edge[a] = m.vertex_edge[b] = m.vertex_edge[c] = -1
+    for d in (ab, bc, ca):
+        set_side(m, d, -1, -1, -1)
+        if left_of(m, d ^ 1) >= 0:
+            m.vertex_edge[tip(m, d)] = m.vertex_edge[tip(m, d ^ 1)] = d >> 1
+        else:
+            m.edge[d >> 1, TAIL] = -1
+
+
 @njit(cache=True, nogil=True)
 def _number_edges(twin: Array, edge_of: Array) -> None:
     """Number the edges in the order of the first of their half-edges."""
@@ -230,15 +483,24 @@ class WingedEdge(Structure):
     name, title, abbreviation = "winged_edge", "Winged-Edge", "WEM"
     records_type = WingedEdgeRecords
     fields = (
-        Field("vertex.point", "vertex_point", 3),
-        Field("vertex.edge", "vertex_edge"),
-        Field("face.edge", "face_edge"),
-        *(Field(f"edge.{name}", "edge") for name in COLUMNS),
+        Field("vertex.point", "vertex_point", 3, marks=True),
+        Field("vertex.edge", "vertex_edge", target="edge"),
+        Field("face.edge", "face_edge", target="edge", marks=True),
+        Field("edge.tail", "edge", target="vertex", marks=True),
+        Field("edge.head", "edge", target="vertex"),
+        Field("edge.left", "edge", target="face"),
+        Field("edge.right", "edge", target="face"),
+        Field("edge.left_previous", "edge", target="edge"),
+        Field("edge.right_previous", "edge", target="edge"),
+        Field("edge.left_next", "edge", target="edge"),
+        Field("edge.right_next", "edge", target="edge"),
     )
     kernels = named(
         *(vertex_vertices, vertex_edges, vertex_faces),
         *(edge_vertices, edge_edges, edge_faces),
         *(face_vertices, face_edges, face_faces),
+        *(vertex_exists, edge_exists, face_exists, diamond, joined, beside),
+        *(cut_edge, cut_face, contract, turn, attach, detach),
     )
 
     @classmethod
@@ -253,68 +515,64 @@ class WingedEdge(Structure):
         vertex_edge = np.full(len(used), -1, reference)
         vertex_edge[used] = edge_of[pairing.vertex_half_edge[used]]
         face_edge = edge_of[::3].astype(reference)
-        return cls(WingedEdgeRecords(mesh.points.copy(), vertex_edge, face_edge, edge))
-
-    @property
-    def n_faces(self) -> int:
-        """Number of faces."""
-        return len(self.records.face_edge)
-
-    @property
-    def _edge_end(self) -> int:
-        return len(self.records.edge)
+        count = counted(len(mesh.points), pairing.n_edges, len(face_edge), pairing.n_edges)
+        return cls(WingedEdgeRecords(mesh.points.copy(), vertex_edge, face_edge, edge, count))
 
     def edges(self) -> NDArray[np.int64]:
-        """(n_edges,) int64: the index of every edge record."""
-        return np.arange(len(self.records.edge), dtype=np.int64)
+        """(n_edges,) int64: the index of every live edge record."""
+        return np.flatnonzero(live(self.records, self.fields, "edge"))
 
     def validate(self) -> None:
         """See ``Structure.validate``; the invariants stand at the top of this file."""
-        m: WingedEdgeRecords = self.records
-        n = len(m.edge)
-        require_points(m.vertex_point)
-        require_references(m.edge[:, [TAIL, HEAD]], self.n_vertices, "end", "edges")
-        require_references(m.edge[:, [LEFT, RIGHT]], self.n_faces, "face", "edges", least=-1)
-        require_references(m.edge[:, LEFT_PREVIOUS:], n, "wing", "edges", least=-1)
-        require_references(m.vertex_edge, n, "edge", "vertices", least=-1)
-        require_references(m.face_edge, n, "edge", "faces")
+        m, fields = self.records, self.fields
+        vertices, faces = live(m, fields, "vertex"), live(m, fields, "face")
+        edges = live(m, fields, "edge")
+        of_vertex, of_face = m.vertex_edge[: len(vertices)], m.face_edge[: len(faces)]
+        record, e, f = m.edge[: len(edges)], np.flatnonzero(edges), np.flatnonzero(faces)
+        require_counts(m, fields, len(e))
+        require_points(self.points)
+        require_references(record[e][:, [TAIL, HEAD]], vertices, "end", "edges", e)
+        require_references(record[e][:, [LEFT, RIGHT]], faces, "face", "edges", e, least=-1)
+        require_references(record[e][:, LEFT_PREVIOUS:], edges, "wing", "edges", e, least=-1)
+        require_references(of_vertex, edges, "edge", "vertices", least=-1)
+        require_references(of_face[f], edges, "edge", "faces", f)
 
         # As directed edges 2e + side: one row each, whichever way round the edge lies.
-        tail, head = m.edge[:, [TAIL, HEAD]].ravel(), m.edge[:, [HEAD, TAIL]].ravel()
-        face = m.edge[:, [LEFT, RIGHT]].ravel()
-        before = m.edge[:, [LEFT_PREVIOUS, RIGHT_PREVIOUS]].ravel()
-        after = m.edge[:, [LEFT_NEXT, RIGHT_NEXT]].ravel()
-        owner, inner = np.arange(2 * n) // 2, np.flatnonzero(face >= 0)
+        tail, head = record[:, [TAIL, HEAD]].ravel(), record[:, [HEAD, TAIL]].ravel()
+        face = record[:, [LEFT, RIGHT]].ravel()
+        before = record[:, [LEFT_PREVIOUS, RIGHT_PREVIOUS]].ravel()
+        after = record[:, [LEFT_NEXT, RIGHT_NEXT]].ravel()
+        d = np.flatnonzero(np.repeat(edges, 2))
+        inner = d[face[d] >= 0]
+        owner = inner // 2
 
-        missing = np.stack([face < 0, before < 0, after < 0], axis=1).sum(axis=1)
-        winged = np.isin(missing, (0, 3))
-        require(winged.reshape(n, 2), "an edge has the wings of its faces, and no others", "edges")
-        require(face.reshape(n, 2).max(axis=1, initial=-1) >= 0, "an edge has a face", "edges")
-        require_distinct_edges(m.edge[:, TAIL], m.edge[:, HEAD], "edges")
+        missing = np.stack([face[d] < 0, before[d] < 0, after[d] < 0], axis=1).sum(axis=1)
+        words = "an edge has the wings of its faces, and no others"
+        require(np.isin(missing, (0, 3)), words, "edges", d // 2)
+        require(
+            face.reshape(-1, 2)[e].max(axis=1, initial=-1) >= 0, "an edge has a face", "edges", e
+        )
+        require_distinct_edges(tail[2 * e], head[2 * e], "edges", e)
 
-        follower = np.full(2 * n, -1)
+        follower = np.full(len(face), -1)
         on_right = face[2 * after[inner]] != face[inner]
         follower[inner] = 2 * after[inner] + on_right
-        joined = np.ones(2 * n, np.bool_)
-        joined[inner] = (face[follower[inner]] == face[inner]) & (
-            tail[follower[inner]] == head[inner]
-        )
-        require(joined.reshape(n, 2), "next lies in the same face and starts at the end", "edges")
-        joined[inner] = before[follower[inner]] == owner[inner]
-        require(joined.reshape(n, 2), "previous of next is the edge itself", "edges")
-        joined[inner] = follower[follower[follower[inner]]] == inner
-        require(joined.reshape(n, 2), "three times next comes round", "edges")
+        then = follower[inner]
+        joined = (face[then] == face[inner]) & (tail[then] == head[inner])
+        words = "next lies in the same face and starts at the end"
+        require(joined, words, "edges", owner)
+        require(before[then] == owner, "previous of next is the edge itself", "edges", owner)
+        round_ = follower[follower[then]] == inner
+        require(round_, "three times next comes round", "edges", owner)
 
-        require(
-            np.bincount(face[inner], minlength=self.n_faces) == 3, "a face has three edges", "faces"
-        )
-        own = (m.edge[m.face_edge][:, [LEFT, RIGHT]] == np.arange(self.n_faces)[:, None]).any(
-            axis=1
-        )
-        require(own, "the edge of a face borders it", "faces")
-        used = np.bincount(tail, minlength=self.n_vertices) > 0
-        require((m.vertex_edge >= 0) == used, "just the vertices with edges have one", "vertices")
-        ends = m.edge[m.vertex_edge[used]][:, [TAIL, HEAD]] == np.flatnonzero(used)[:, None]
-        require(ends.any(axis=1), "the edge of a vertex ends there", "vertices")
+        sides = np.bincount(face[inner], minlength=len(faces))[f]
+        require(sides == 3, "a face has three edges", "faces", f)
+        own = (record[of_face[f]][:, [LEFT, RIGHT]] == f[:, None]).any(axis=1)
+        require(own, "the edge of a face borders it", "faces", f)
+        used = np.bincount(tail[d], minlength=len(vertices)) > 0
+        require((of_vertex >= 0) == used, "just the vertices with edges have one", "vertices")
+        v = np.flatnonzero(used)
+        ends = (record[of_vertex[v]][:, [TAIL, HEAD]] == v[:, None]).any(axis=1)
+        require(ends, "the edge of a vertex ends there", "vertices", v)
         # Around its tail, clockwise of a directed edge comes the follower of its other direction.
-        require_one_fan(tail, follower[np.arange(2 * n) ^ 1])
+        require_one_fan(tail, follower[np.arange(len(face)) ^ 1], d)

@@ -95,7 +95,7 @@ def test_slices_side_by_side_build_what_one_slice_builds(name, monkeypatch):
 def test_every_byte_of_the_arrays_is_a_field_of_the_thesis(name):
     for reference_bytes in (4, 8):
         s = structures.build(name, hem.generate("torus", 400), reference_bytes)
-        assert sum(s.memory().values()) == sum(array.nbytes for array in s.records)
+        assert sum(s.memory().values()) == sum(array.nbytes for array in s.arrays)
 
 
 @pytest.mark.parametrize(

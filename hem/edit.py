@@ -1,0 +1,105 @@
+"""What an operation did, for those who follow it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Indices = NDArray[np.int32]
+
+CREATED, CHANGED, REMOVED = range(3)
+VERTEX, FACE = 0, 3
+"""An entry of the log is ``index << 3 | element + what happened``; the first says how many."""
+
+
+class Remapping(NamedTuple):
+    """Where ``compact`` moved everything: new handles by old ones, -1 for what was dead."""
+
+    vertices: Indices
+    """(old vertices, dead ones included): new vertex by old."""
+
+    faces: Indices
+    """(old faces, dead ones included): new face by old."""
+
+    edges: Callable[[ArrayLike], NDArray[np.int64]]
+    """Handles of edges, (k,) old ones -> (k,) new ones."""
+
+
+class Edit:
+    """What one operation, or one batch of them, did to a mesh: the vertices and faces it touched.
+
+    ``kind``: the method that was called, such as ``split_edge``. ``vertex``: the vertex that a
+    split created, or that a move moved; for a collapse the one that is left, else -1. Every element
+    is in one list at most: what was created and removed by the same batch is in none. A face is
+    changed when its corners are others than before, a vertex when its position is.
+
+    ``compact`` touches nothing but renumbers everything; ``remapping`` says how, else it is None.
+
+    The lists are made when they are asked for; an edit may be kept as long as one likes.
+    """
+
+    remapping: Remapping | None = None
+
+    def __init__(self, kind: str, vertex: int, log: NDArray[np.int64]) -> None:
+        self.kind, self.vertex, self._log = kind, vertex, log
+
+    def __repr__(self) -> str:
+        names = ("created", "changed", "removed")
+        parts = [
+            f"{len(found)} {what}_{kind}"
+            for kind in ("vertices", "faces")
+            for what in names
+            if len(found := getattr(self, f"{what}_{kind}"))
+        ]
+        return f"Edit({self.kind}: {', '.join(parts) or 'nothing'})"
+
+    @property
+    def created_vertices(self) -> Indices:
+        """(k,) int32, ascending."""
+        return self._found[VERTEX + CREATED]
+
+    @property
+    def changed_vertices(self) -> Indices:
+        """(k,) int32, ascending: those at another position."""
+        return self._found[VERTEX + CHANGED]
+
+    @property
+    def removed_vertices(self) -> Indices:
+        """(k,) int32, ascending."""
+        return self._found[VERTEX + REMOVED]
+
+    @property
+    def created_faces(self) -> Indices:
+        """(k,) int32, ascending."""
+        return self._found[FACE + CREATED]
+
+    @property
+    def changed_faces(self) -> Indices:
+        """(k,) int32, ascending: those with other corners."""
+        return self._found[FACE + CHANGED]
+
+    @property
+    def removed_faces(self) -> Indices:
+        """(k,) int32, ascending."""
+        return self._found[FACE + REMOVED]
+
+    @cached_property
+    def _found(self) -> dict[int, Indices]:
+        """The net effect: for each element whether it was there before, and whether it is now."""
+        found = {}
+        for kind in (VERTEX, FACE):
+            code, index = self._log & 7, self._log >> 3
+            mine = (code >= kind) & (code < kind + 3)
+            code, index = code[mine] - kind, index[mine]
+            elements, place = np.unique(index, return_inverse=True)
+            made, gone = np.zeros((2, len(elements)), np.bool_)
+            made[place[code == CREATED]] = True
+            gone[place[code == REMOVED]] = True
+            wanted = {CREATED: made & ~gone, CHANGED: ~made & ~gone, REMOVED: gone & ~made}
+            for what, these in wanted.items():
+                found[kind + what] = elements[these].astype(np.int32)
+        return found

@@ -1,0 +1,407 @@
+"""The operations of the contract, and who is told of them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from functools import cached_property
+from typing import Any, ClassVar, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from hem.edit import Edit, Remapping
+from hem.errors import MeshError, TopologyError
+from hem.operations import OPERATIONS
+from hem.pinned import Pinned
+from hem.queryable import Queryable
+from hem.records import compacted
+from hem.topology import COMMON_NEIGHBOR, NEEDS_ROOM, NO_EDGE, NOT_AN_END, NOT_FINITE, REFUSALS
+from hem.uses import Uses
+
+Array = NDArray[Any]
+
+GROWTH = {"split_edge": (1, 2), "split_face": (1, 2), "add_face": (0, 1)}
+"""How many vertices and faces an operation may create, where it may."""
+
+ASKED = {
+    "split_face": "faces",
+    "remove_face": "faces",
+    "add_face": "vertices",
+    "move_vertex": "vertices",
+}
+"""What the handles of an operation name, where it is not an edge."""
+
+NAMES_A_VERTEX = {"split_edge", "split_face", "collapse_edge", "move_vertex"}
+"""The operations whose result is the vertex that they are about."""
+
+ENTRIES = 8
+"""Room in the log per operation of a batch, to begin with; a split takes five entries."""
+
+NO_POINT = np.zeros((1, 3), np.float32)
+
+
+class Single(NamedTuple):
+    """An operation bound to a structure, for one at a time: where its arguments and result lie."""
+
+    perform: Callable[[int, int, int, bool, bool], int]
+    address: int
+    args: memoryview
+    point: memoryview
+    result: memoryview
+    pinned: Pinned
+
+
+class Editable(Queryable):
+    """What a mesh can have done to it.
+
+    Each operation checks first. If it may not be done, it raises TopologyError with the reason and
+    the elements, and nothing has changed; so it does for a handle that names nothing (any more).
+    MeshError is raised for arguments that are no handles or positions at all. Handles of untouched
+    elements stay valid; new vertices and faces take the next index.
+    """
+
+    _operation_uses: ClassVar[dict[str, Uses]]
+    # One at a time ---------------------------------------------------------------------------
+
+    def split_edge(self, edge: int, point: ArrayLike) -> Edit:
+        """Put a new vertex on an edge; each face there becomes two. The point may lie anywhere.
+
+        Interior: 1 vertex, 3 edges and 2 faces more; border: 1, 2 and 1. Cost O(1) where edges are
+        recorded, else that of finding the faces: O(n_ev) or O(n_t). Thesis 4.1.
+        """
+        return self._one("split_edge", edge, -1, -1, point)
+
+    def split_face(self, face: int, point: ArrayLike) -> Edit:
+        """Put a new vertex into a face, which becomes three.
+
+        1 vertex, 3 edges and 2 faces more. Cost O(1). Thesis 4.3.
+        """
+        return self._one("split_face", face, -1, -1, point)
+
+    def collapse_edge(self, edge: int, keep: int | None = None) -> Edit:
+        """Merge one end of an edge into the other, ``keep``, which stays where it is.
+
+        ``keep`` is ``edge_vertices(edge)[1]`` unless it is said. Interior: 1 vertex, 3 edges and 2
+        faces fewer; border: 1, 2 and 1. Cost O(n_ev), or O(n_t) where neighbors are searched for.
+        Thesis 4.2; refused as ``hem.topology`` says.
+        """
+        return self._one("collapse_edge", edge, -1 if keep is None else keep, -1, None)
+
+    def flip_edge(self, edge: int) -> Edit:
+        """Turn an edge inside the two faces at it, so that it joins their other two corners.
+
+        No count changes; a second flip undoes the first. Cost O(1) where edges are recorded, and
+        to see that no edge is there yet O(the smaller valence of the two corners).
+        """
+        return self._one("flip_edge", edge, -1, -1, None)
+
+    def add_face(self, a: int, b: int, c: int) -> Edit:
+        """Make a face of three vertices, counterclockwise. 1 face and 0 to 3 edges more.
+
+        Every corner must be without faces or share an edge with the surface. Cost O(n_ev).
+        """
+        return self._one("add_face", a, b, c, None)
+
+    def remove_face(self, face: int) -> Edit:
+        """Take a face away. 1 face and 0 to 3 edges fewer; vertices stay. Cost O(n_ev)."""
+        return self._one("remove_face", face, -1, -1, None)
+
+    def move_vertex(self, vertex: int, point: ArrayLike) -> Edit:
+        """Give a vertex another position. Cost O(1)."""
+        return self._one("move_vertex", vertex, -1, -1, point)
+
+    def can_collapse_edge(self, edge: int) -> bool:
+        """Whether ``collapse_edge`` would do it. Raises TopologyError if there is no such edge."""
+        return self._may("collapse_edge", edge)
+
+    def can_flip_edge(self, edge: int) -> bool:
+        """Whether ``flip_edge`` would do it. Raises TopologyError if there is no such edge."""
+        return self._may("flip_edge", edge)
+
+    # Many at once ----------------------------------------------------------------------------
+
+    def split_edges(self, edges: ArrayLike, points: ArrayLike) -> NDArray[np.int32]:
+        """Split different edges (k,) at points (k, 3), in order -> the new vertices (k,) int32.
+
+        All are checked before any is split. Subscribers hear of one edit.
+        """
+        handles = _handles("split_edges", edges)
+        return self._all("split_edges", "split_edge", handles, points, self._edge_names(handles))
+
+    def split_faces(self, faces: ArrayLike, points: ArrayLike) -> NDArray[np.int32]:
+        """Split different faces (k,) at points (k, 3), in order -> the new vertices (k,) int32.
+
+        All are checked before any is split. Subscribers hear of one edit.
+        """
+        handles = _handles("split_faces", faces)
+        return self._all("split_faces", "split_face", handles, points, handles)
+
+    def split_all_faces(self) -> NDArray[np.int32]:
+        """Split every face at its centroid -> the new vertices. Thrice as many faces. O(n_t)."""
+        faces = self.faces()
+        corners = self.face_vertices(faces).values.reshape(-1, 3)
+        centroids = self.points[corners].mean(axis=1, dtype=np.float64)
+        return self._all("split_all_faces", "split_face", faces, centroids, faces)
+
+    def move_vertices(self, vertices: ArrayLike, points: ArrayLike) -> None:
+        """Give different vertices (k,) the positions (k, 3). One edit. Cost O(k)."""
+        handles = _handles("move_vertices", vertices)
+        self._all("move_vertices", "move_vertex", handles, points, handles)
+
+    def collapse_edges(self, edges: ArrayLike, keep: ArrayLike | None = None) -> NDArray[np.bool_]:
+        """Collapse edges (k,) in order, skipping what is gone or refused -> which were done.
+
+        ``keep``: (k,) the ends that stay, each ``edge_vertices(edge)[1]`` unless it is said.
+        Subscribers hear of one edit.
+        """
+        handles = _handles("collapse_edges", edges)
+        ends = np.full(len(handles), -1) if keep is None else _handles("collapse_edges", keep)
+        if len(ends) != len(handles):
+            raise MeshError(
+                f"collapse_edges takes one vertex to keep per edge, not {len(ends)} "
+                f"for {len(handles)}"
+            )
+        results, log = self._run("collapse_edge", _rows(handles, ends), NO_POINT, persist=True)
+        self._publish(Edit("collapse_edges", -1, log))
+        return results >= 0
+
+    def compact(self) -> Remapping:
+        """Drop what is dead and the room for more; handles change -> the old ones to the new ones.
+
+        Elements keep their order. Cost O(n_v + n_t).
+        """
+        self.n_edges  # noqa: B018  known from here on, as it was before
+        self.records, number = compacted(self.records, self.fields)
+        for pinned, scratch in self._pins:
+            pinned.replace(*self.records, *scratch())
+        vertices = number["vertex"].astype(np.int32)
+        faces = next(number[it] for it in ("face", "triangle") if it in number).astype(np.int32)
+        remapping = Remapping(vertices, faces, lambda edges: self._renumbered(edges, number))
+        edit = Edit("compact", -1, np.zeros(0, np.int64))
+        edit.remapping = remapping
+        self._publish(edit)
+        return remapping
+
+    def _renumbered(self, edges: ArrayLike, number: Mapping[str, Array]) -> NDArray[np.int64]:
+        recorded = next(it for it in ("half_edge", "edge") if it in number)
+        return number[recorded][np.asarray(edges, np.int64)].astype(np.int64)
+
+    # Following -------------------------------------------------------------------------------
+
+    def subscribe(self, callback: Callable[[Edit], Any]) -> Callable[[], None]:
+        """Have ``callback`` called with every ``Edit`` once it is done -> a way to end that.
+
+        All are called, in the order they subscribed, even if one of them raises; what the first of
+        them raised is raised then.
+        """
+        self._subscribers.append(callback)
+
+        def unsubscribe() -> None:
+            if callback in self._subscribers:
+                self._subscribers.remove(callback)
+
+        return unsubscribe
+
+    @cached_property
+    def _subscribers(self) -> list[Callable[[Edit], Any]]:
+        return []
+
+    def _publish(self, edit: Edit) -> None:
+        failures = []
+        for callback in tuple(self._subscribers):
+            try:
+                callback(edit)
+            except Exception as failure:
+                failures.append(failure)
+        if failures:
+            raise failures[0]
+
+    # Measuring -------------------------------------------------------------------------------
+
+    def reserve(self, splits: int) -> None:
+        """Make room for so many splits at once, so that none of them has to. Cost O(n_v + n_t)."""
+        self._make_room(splits, 2 * splits, splits)
+
+    def operation_work(self, operation: str, *args: int, point: ArrayLike = (0, 0, 0)) -> int:
+        """Do one operation uncompiled -> the array elements it read and wrote, exactly.
+
+        Arguments as for the method of that name, which says what it raises; KeyError for no
+        operation.
+        """
+        uses, _ = self._operation_uses[operation], self._single
+        self.reserve(2)
+        row = np.array([*args, -1, -1][:3], np.int64)
+        self._log[0] = 0
+        scratch = np.asarray(point, np.float32), self._at, self._out["edge"], self._log
+        result, work = uses.operation_work(row, scratch, self.records)
+        self._finish(operation, result, row.tolist())
+        return work
+
+    # Behind the contract ---------------------------------------------------------------------
+
+    @cached_property
+    def _at(self) -> Array:
+        """Scratch for the parts of a diamond."""
+        return np.zeros(6, np.int64)
+
+    @cached_property
+    def _single(self) -> dict[str, Single]:
+        self.n_edges  # noqa: B018  searched for, where it is not known yet: operations count on it
+        return {operation: self._bound(operation) for operation in OPERATIONS}
+
+    def _bound(self, operation: str) -> Single:
+        args, point = np.zeros((1, 3), np.int64), np.zeros((1, 3), np.float32)
+        result = np.zeros(1, np.int64)
+        pinned = self._pin(lambda: (args, point, result, self._at, self._out["edge"], self._log))
+        perform = self._operation_uses[operation].perform(pinned)
+        # Writing to a view is several times faster than to an array.
+        views = [memoryview(it.reshape(-1).data) for it in (args, point, result)]
+        return Single(perform, pinned.address, views[0], views[1], views[2], pinned)
+
+    def _one(self, operation: str, a: Any, b: Any, c: Any, point: Any) -> Edit:
+        """Do one operation. What programs do a million times takes no detours here."""
+        perform, address, args, position, result, _ = self._single[operation]
+        try:
+            args[0], args[1], args[2] = a, b, c
+            if point is not None:
+                position[0], position[1], position[2] = point
+        except (TypeError, ValueError, OverflowError) as error:
+            raise _no_arguments(operation, (a, b, c), point) from error
+        log = self._log
+        log[0] = 0
+        if not perform(address, 0, 1, False, False) and result[0] == NEEDS_ROOM:
+            self._make_room(*GROWTH.get(operation, (0, 0)), 1)
+            self._log[0] = 0
+            perform(address, 0, 1, False, False)
+        return self._finish(operation, result[0], args)
+
+    def _finish(self, operation: str, result: int, args: Any) -> Edit:
+        if result < 0:
+            raise self._refusal(operation, result, args)
+        log = self._log
+        vertex = result if operation in NAMES_A_VERTEX else -1
+        edit = Edit(operation, vertex, log[1 : log[0] + 1].copy())
+        if self._subscribers:
+            self._publish(edit)
+        return edit
+
+    def _may(self, operation: str, edge: Any) -> bool:
+        perform, address, args, _, result, _ = self._single[operation]
+        try:
+            args[0], args[1] = edge, -1
+        except (TypeError, ValueError, OverflowError) as error:
+            raise _no_arguments(operation, (edge,), None) from error
+        self._log[0] = 0
+        if not perform(address, 0, 1, True, False) and result[0] == NEEDS_ROOM:
+            self._make_room(0, 0, 1)
+            perform(address, 0, 1, True, False)
+        if result[0] == NO_EDGE:
+            raise self._refusal(operation, NO_EDGE, args)
+        return bool(result[0] >= 0)
+
+    def _all(
+        self, called: str, operation: str, handles: Array, points: ArrayLike, names: Array
+    ) -> NDArray[np.int32]:
+        """Do an operation for all handles, or for none if one is refused -> the vertices."""
+        positions = _positions(called, points, len(handles))
+        first = np.zeros(len(handles), np.bool_)
+        first[np.unique(names, return_index=True)[1]] = True
+        if not first.all():
+            again = {ASKED.get(operation, "edges"): handles[~first]}
+            raise TopologyError(f"{called} takes different elements, each once", **again)
+        args = _rows(handles)
+        results, _ = self._run(operation, args, positions, dry=True)
+        refused = np.flatnonzero(results < 0)
+        if len(refused):
+            raise self._refusal(operation, int(results[refused[0]]), args[refused[0]].tolist())
+        results, log = self._run(operation, args, positions)
+        self._publish(Edit(called, -1, log))
+        return results.astype(np.int32)
+
+    def _run(
+        self, operation: str, args: Array, points: Array, dry: bool = False, persist: bool = False
+    ) -> tuple[Array, Array]:
+        """Do an operation for every row of ``args`` (n, 3) -> the results (n,) and the log."""
+        perform, n = self._single[operation].perform, len(args)
+        results, logs = np.zeros(n, np.int64), []
+        vertices, faces = GROWTH.get(operation, (0, 0))
+        if not dry:
+            self._make_room(vertices * n, faces * n, 0 if persist else n)
+        done = 0
+        while True:
+            log = np.zeros(ENTRIES * n + 4 * len(self._log), np.int64)
+            scratch = args, points, results, self._at, self._out["edge"], log
+            pinned = Pinned(*self.records, *scratch)
+            done = perform(pinned.address, done, n, dry, persist)
+            logs.append(log[1 : log[0] + 1])
+            if done == n or results[done] != NEEDS_ROOM:
+                return results, np.concatenate(logs)
+            self._make_room(vertices, faces, n - done)
+
+    def _refusal(self, operation: str, code: int, args: Any) -> MeshError | TopologyError:
+        """The error for a code, with the elements as the user knows them."""
+        words, handle = REFUSALS[code], int(args[0])
+        if code == NOT_FINITE:
+            return MeshError(words)
+        if operation == "add_face":
+            return TopologyError(f"cannot {operation}: {words}", vertices=[int(v) for v in args])
+        if operation in ASKED:
+            return TopologyError(f"cannot {operation}: {words}", **{ASKED[operation]: [handle]})
+        if code == NO_EDGE:
+            return TopologyError(f"cannot {operation}: {words}", edges=[handle])
+        ends = self.edge_vertices(handle)
+        elements = {"edges": ends[None, :]}
+        if code == NOT_AN_END:
+            elements["vertices"] = np.array([args[1]])
+        if code == COMMON_NEIGHBOR:
+            a, b = (self.vertex_vertices(int(v)) for v in ends)
+            beside = self.face_vertices(self.edge_faces(handle)).values
+            elements["vertices"] = np.setdiff1d(np.intersect1d(a, b), beside)
+        return TopologyError(f"cannot {operation}: {words}", **elements)
+
+    def _edge_names(self, handles: Array) -> Array:
+        return handles
+
+
+def _rows(handles: Array, ends: Array | int = -1) -> Array:
+    """(n, 3) int64: the arguments of n operations."""
+    rows = np.full((len(handles), 3), -1, np.int64)
+    rows[:, 0], rows[:, 1] = handles, ends
+    return rows
+
+
+def _handles(called: str, values: ArrayLike) -> Array:
+    handles = np.asarray(values)
+    if handles.ndim != 1 or (handles.size and not np.issubdtype(handles.dtype, np.integer)):
+        raise MeshError(
+            f"{called} takes a 1-D array of handles (integers), not {handles.dtype} of shape "
+            f"{handles.shape}"
+        )
+    return handles.astype(np.int64)
+
+
+def _positions(called: str, points: ArrayLike, n: int) -> Array:
+    try:
+        given = np.asarray(points, np.float64)
+    except (TypeError, ValueError) as error:
+        raise MeshError(f"{called} takes points as {n} rows of three numbers: {error}") from error
+    if n == 0 and given.size == 0:
+        return NO_POINT
+    if given.shape != (n, 3):
+        raise MeshError(f"{called} takes one point per handle, ({n}, 3), not {given.shape}")
+    with np.errstate(over="ignore"):
+        positions = np.ascontiguousarray(given, np.float32)
+    if not np.isfinite(positions).all():
+        raise MeshError(
+            REFUSALS[NOT_FINITE], rows=np.flatnonzero(~np.isfinite(positions).all(axis=1))
+        )
+    return positions
+
+
+def _no_arguments(operation: str, args: tuple[Any, ...], point: Any) -> MeshError:
+    wrong = [it for it in args if not isinstance(it, int | np.integer)]
+    if wrong:
+        return MeshError(f"{operation} takes handles (integers), not {wrong[0]!r}")
+    if any(not -(1 << 63) <= it < 1 << 63 for it in args):
+        return MeshError(f"{operation}: there is no such element: {max(args, key=abs)}")
+    return MeshError(f"{operation} takes a point of three finite float32 numbers, not {point!r}")

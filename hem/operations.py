@@ -1,0 +1,314 @@
+"""The operations, compiled: what every structure does alike around its own surgery.
+
+An operation checks the rules, sees to it that there is room, has the structure change its records,
+counts, and logs what it touched. All structures number new elements alike, because it is told here
+which index is whose::
+
+    split_edge      c                  c        Vertex v is new. The face at a, the smaller end,
+                  ╱   ╲              ╱ │ ╲      keeps its index; the one at b is new, the left
+                 a─────b    ──▶     a──v──b     one before the right one. The record of the
+                  ╲   ╱              ╲ │ ╱      edge stays with a and v.
+                    d                  d
+
+    split_face      c                  c        a is the smallest corner. The face keeps its
+                  ╱   ╲              ╱ │ ╲      index at (a, b, v); (b, c, v) and (c, a, v)
+                ╱       ╲          ╱   v   ╲    are new, in this order.
+               a─────────b        a ──╱─╲── b
+
+    collapse_edge   c                  c        keep is b: a and both faces are gone. The edges
+                  ╱   ╲                │        that b had keep their records.
+             ── a───────b ──  ──▶  ── ─b─ ──
+                  ╲   ╱                │
+                    d                  d
+
+    flip_edge       c                  c        The face at the smaller of c and d becomes the
+                  ╱   ╲              ╱ │ ╲      one at a, so that a second flip undoes the
+                 a─────b    ──▶     a  │  b     first, indices and all.
+                  ╲   ╱              ╲ │ ╱
+                    d                  d
+
+What a structure gives for it, beside its queries and the readings that ``hem.topology`` names:
+
+- ``cut_edge(m, e, at, v, f)``, the diamond in ``at``, the first new face in ``f``;
+- ``cut_face(m, face, v, f)``;
+- ``contract(m, e, at, drop, keep, around, out)``, the first ``around`` elements of ``out``
+  being the faces at ``drop``, and the rest of it free;
+- ``turn(m, e, at, one, other)``, the faces that get (a, d, c) and (b, c, d);
+- ``attach(m, a, b, c, f)`` and ``detach(m, f)``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from hem.edit import CHANGED, CREATED, FACE, REMOVED, VERTEX
+from hem.kernels import (
+    EDGE_END,
+    EDGE_ROOM,
+    EDGES,
+    FACE_END,
+    FACE_ROOM,
+    FACES,
+    VALENCE,
+    VERTEX_END,
+    VERTEX_ROOM,
+    VERTICES,
+    Array,
+    Kernel,
+    kernel,
+)
+from hem.topology import (
+    ALLOWED,
+    LEFT,
+    NEEDS_ROOM,
+    NO_FACE,
+    NO_VERTEX,
+    NOT_AN_END,
+    NOT_FINITE,
+    RIGHT,
+    A,
+    B,
+    C,
+    D,
+    rules,
+)
+
+OPERATIONS = (
+    "split_edge",
+    "split_face",
+    "collapse_edge",
+    "flip_edge",
+    "add_face",
+    "remove_face",
+    "move_vertex",
+)
+"""Every operation that is compiled, by name."""
+
+WIDTH = 12
+"""Room in ``out`` per neighbor: the neighbors of both ends of an edge, and a table to tell them."""
+
+
+@kernel
+def note(log: Array, what: int, index: int) -> None:
+    """Log what happened to a vertex or a face."""
+    log[0] += 1
+    log[log[0]] = (index << 3) | what
+
+
+@kernel
+def note_faces(log: Array, what: int, first: int, second: int) -> None:
+    """Log what happened to one or two faces; -1 is none."""
+    if first >= 0:
+        note(log, FACE + what, first)
+    if second >= 0:
+        note(log, FACE + what, second)
+
+
+@kernel
+def has_room(m: Any, vertices: int, faces: int, out: Array, log: Array) -> bool:
+    """Whether so many new elements, the answer to any query and the log of it all will fit."""
+    count = m.counts
+    return bool(
+        count[VERTEX_END] + vertices <= count[VERTEX_ROOM]
+        and count[FACE_END] + faces <= count[FACE_ROOM]
+        and count[EDGE_END] + 3 * faces <= count[EDGE_ROOM]
+        and WIDTH * (count[VALENCE] + 1) <= len(out)
+        and log[0] + 2 * count[VALENCE] + 16 <= len(log)
+    )
+
+
+@kernel
+def is_point(point: Array) -> bool:
+    """Whether a row of three float32 is a position."""
+    return bool(np.isfinite(point[0]) and np.isfinite(point[1]) and np.isfinite(point[2]))
+
+
+@kernel
+def new_vertex(m: Any, point: Array) -> int:
+    """Append a vertex. No duplicate is searched for."""
+    v = m.counts[VERTEX_END]
+    for i in range(3):
+        m.vertex_point[v, i] = point[i]
+    m.counts[VERTEX_END] += 1
+    m.counts[VERTICES] += 1
+    return int(v)
+
+
+@kernel
+def add_faces(m: Any, edges: int, faces: int) -> None:
+    """Count new edges and faces."""
+    m.counts[EDGES] += edges
+    m.counts[FACES] += faces
+    m.counts[FACE_END] += faces
+
+
+def operations(k: Mapping[str, Kernel]) -> dict[str, Kernel]:
+    """The operations of one structure by name: ``(m, args, point, at, out, log, dry) -> result``.
+
+    ``args`` are the handles, ``point`` (3,) is a position where one is asked for, ``at`` (6,) and
+    ``out`` are scratch. ``dry`` only checks. The result is the vertex that the operation is about,
+    or the new face, else 0; or the negative code of a refusal, or ``NEEDS_ROOM``, and then nothing
+    was changed.
+    """
+    rule = rules(k)
+    surface_edge, live_vertex = rule.surface_edge, rule.live_vertex
+    may_collapse, may_flip = rule.may_collapse, rule.may_flip
+    may_add_face, may_remove_face = rule.may_add_face, rule.may_remove_face
+    cut_edge, cut_face = k["cut_edge"], k["cut_face"]
+    contract, turn, attach, detach = k["contract"], k["turn"], k["attach"], k["detach"]
+    face_exists, vertex_faces = k["face_exists"], k["vertex_faces"]
+    face_vertices, beside = k["face_vertices"], k["beside"]
+
+    @kernel
+    def free_edges(m: Any, a: int, b: int, c: int) -> int:
+        """How many edges of triangle (a, b, c) have no face beyond them."""
+        return (beside(m, b, a) < 0) + (beside(m, c, b) < 0) + (beside(m, a, c) < 0)
+
+    @kernel
+    def split_edge(
+        m: Any, args: Array, point: Array, at: Array, out: Array, log: Array, dry: bool
+    ) -> int:
+        refusal = surface_edge(m, args[0], at)
+        if refusal == ALLOWED and not is_point(point):
+            refusal = NOT_FINITE
+        if refusal != ALLOWED or dry:
+            return refusal
+        faces = (at[LEFT] >= 0) + (at[RIGHT] >= 0)
+        if not has_room(m, 1, faces, out, log):
+            return NEEDS_ROOM
+        f, v = m.counts[FACE_END], new_vertex(m, point)
+        cut_edge(m, args[0], at, v, f)
+        add_faces(m, 1 + faces, faces)
+        m.counts[VALENCE] += 1
+        note(log, VERTEX + CREATED, v)
+        note_faces(log, CHANGED, at[LEFT], at[RIGHT])
+        note_faces(log, CREATED, f, f + 1 if faces == 2 else -1)
+        return v
+
+    @kernel
+    def split_face(
+        m: Any, args: Array, point: Array, at: Array, out: Array, log: Array, dry: bool
+    ) -> int:
+        face = args[0]
+        if not face_exists(m, face):
+            return NO_FACE
+        if not is_point(point):
+            return NOT_FINITE
+        if dry:
+            return ALLOWED
+        if not has_room(m, 1, 2, out, log):
+            return NEEDS_ROOM
+        f, v = m.counts[FACE_END], new_vertex(m, point)
+        cut_face(m, face, v, f)
+        add_faces(m, 3, 2)
+        m.counts[VALENCE] += 1
+        note(log, VERTEX + CREATED, v)
+        note_faces(log, CHANGED, face, -1)
+        note_faces(log, CREATED, f, f + 1)
+        return v
+
+    @kernel
+    def collapse_edge(
+        m: Any, args: Array, point: Array, at: Array, out: Array, log: Array, dry: bool
+    ) -> int:
+        if not has_room(m, 0, 0, out, log):
+            return NEEDS_ROOM
+        refusal = may_collapse(m, args[0], at, out)
+        if refusal != ALLOWED:
+            return refusal
+        keep = args[1] if args[1] >= 0 else at[B]
+        if keep != at[A] and keep != at[B]:
+            return NOT_AN_END
+        if dry:
+            return ALLOWED
+        drop = at[A] + at[B] - keep
+        faces = (at[LEFT] >= 0) + (at[RIGHT] >= 0)
+        stay = vertex_faces(m, keep, out)
+        around = vertex_faces(m, drop, out)
+        for i in range(around):
+            gone = out[i] == at[LEFT] or out[i] == at[RIGHT]
+            note(log, FACE + (REMOVED if gone else CHANGED), out[i])
+        contract(m, args[0], at, drop, keep, around, out)
+        for i in range(3):
+            m.vertex_point[drop, i] = np.nan
+        m.counts[VERTICES] -= 1
+        m.counts[EDGES] -= 1 + faces
+        m.counts[FACES] -= faces
+        m.counts[VALENCE] = max(m.counts[VALENCE], stay + around)
+        note(log, VERTEX + REMOVED, drop)
+        return int(keep)
+
+    @kernel
+    def flip_edge(
+        m: Any, args: Array, point: Array, at: Array, out: Array, log: Array, dry: bool
+    ) -> int:
+        refusal = may_flip(m, args[0], at)
+        if refusal != ALLOWED or dry:
+            return refusal
+        if not has_room(m, 0, 0, out, log):
+            return NEEDS_ROOM
+        if at[C] < at[D]:
+            turn(m, args[0], at, at[LEFT], at[RIGHT])
+        else:
+            turn(m, args[0], at, at[RIGHT], at[LEFT])
+        m.counts[VALENCE] += 1
+        note_faces(log, CHANGED, at[LEFT], at[RIGHT])
+        return ALLOWED
+
+    @kernel
+    def add_face(
+        m: Any, args: Array, point: Array, at: Array, out: Array, log: Array, dry: bool
+    ) -> int:
+        if not has_room(m, 0, 1, out, log):
+            return NEEDS_ROOM
+        a, b, c = args[0], args[1], args[2]
+        refusal = may_add_face(m, a, b, c, out)
+        if refusal != ALLOWED or dry:
+            return refusal
+        edges = free_edges(m, a, b, c)
+        f = m.counts[FACE_END]
+        attach(m, a, b, c, f)
+        add_faces(m, edges, 1)
+        m.counts[VALENCE] += 2
+        note_faces(log, CREATED, f, -1)
+        return int(f)
+
+    @kernel
+    def remove_face(
+        m: Any, args: Array, point: Array, at: Array, out: Array, log: Array, dry: bool
+    ) -> int:
+        face = args[0]
+        if not has_room(m, 0, 0, out, log):
+            return NEEDS_ROOM
+        refusal = may_remove_face(m, face, out)
+        if refusal != ALLOWED or dry:
+            return refusal
+        face_vertices(m, face, out)
+        m.counts[EDGES] -= free_edges(m, out[0], out[1], out[2])
+        detach(m, face)
+        m.counts[FACES] -= 1
+        note_faces(log, REMOVED, face, -1)
+        return ALLOWED
+
+    @kernel
+    def move_vertex(
+        m: Any, args: Array, point: Array, at: Array, out: Array, log: Array, dry: bool
+    ) -> int:
+        if not live_vertex(m, args[0]):
+            return NO_VERTEX
+        if not is_point(point):
+            return NOT_FINITE
+        if dry:
+            return ALLOWED
+        if not has_room(m, 0, 0, out, log):
+            return NEEDS_ROOM
+        for i in range(3):
+            m.vertex_point[args[0], i] = point[i]
+        note(log, VERTEX + CHANGED, args[0])
+        return int(args[0])
+
+    every = split_edge, split_face, collapse_edge, flip_edge, add_face, remove_face, move_vertex
+    return {getattr(it, "py_func", it).__name__: it for it in every}
