@@ -391,19 +391,24 @@ def contract(
     """Cost O(n_ev) for the edges at ``drop``."""
     edges = vertex_edges(m, drop, out)
     inward = directed_from(m, e, drop)  # ends at keep
+    to_c, from_c, to_d, from_d = -1, -1, -1, -1
     if left_of(m, inward) >= 0:
-        m.face_edge[left_of(m, inward)] = -1
         to_c = following(m, inward)
-        unite(m, following(m, to_c), to_c)
+        from_c = following(m, to_c)
+        m.face_edge[left_of(m, inward)] = -1
     if left_of(m, inward ^ 1) >= 0:
-        m.face_edge[left_of(m, inward ^ 1)] = -1
         to_d = following(m, inward ^ 1)
-        unite(m, to_d, following(m, to_d))
-    m.edge[e, TAIL] = -1
+        from_d = following(m, to_d)
+        m.face_edge[left_of(m, inward ^ 1)] = -1
     for i in range(edges):
         for end in (TAIL, HEAD):
             if m.edge[out[i], end] == drop:
                 m.edge[out[i], end] = keep
+    if to_c >= 0:
+        unite(m, from_c, to_c)
+    if to_d >= 0:
+        unite(m, to_d, from_d)
+    m.edge[e, TAIL] = -1
     m.vertex_edge[drop] = -1
 
 
