@@ -44,8 +44,10 @@ class Edit:
 
     remapping: Remapping | None = None
 
-    def __init__(self, kind: str, vertex: int, log: NDArray[np.int64]) -> None:
-        self.kind, self.vertex, self._log = kind, vertex, log
+    def __init__(self, kind: str, vertex: int, log: ArrayLike) -> None:
+        self.kind = kind
+        self.vertex = vertex
+        self._log = log
 
     def __repr__(self) -> str:
         names = ("created", "changed", "removed")
@@ -90,9 +92,9 @@ class Edit:
     @cached_property
     def _found(self) -> dict[int, Indices]:
         """The net effect: for each element whether it was there before, and whether it is now."""
-        found = {}
+        found, log = {}, np.asarray(self._log, np.int64)
         for kind in (VERTEX, FACE):
-            code, index = self._log & 7, self._log >> 3
+            code, index = log & 7, log >> 3
             mine = (code >= kind) & (code < kind + 3)
             code, index = code[mine] - kind, index[mine]
             elements, place = np.unique(index, return_inverse=True)

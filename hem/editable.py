@@ -11,12 +11,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from hem.edit import Edit, Remapping
 from hem.errors import MeshError, TopologyError
-from hem.operations import OPERATIONS
+from hem.operations import ENTRIES, OPERATIONS, WIDTH
 from hem.pinned import Pinned
 from hem.queryable import Queryable
 from hem.records import compacted
 from hem.topology import COMMON_NEIGHBOR, NEEDS_ROOM, NO_EDGE, NOT_AN_END, NOT_FINITE, REFUSALS
-from hem.uses import Uses
+from hem.uses import CHECK, DO, MODE, PERSIST, Uses
 
 Array = NDArray[Any]
 
@@ -31,24 +31,26 @@ ASKED = {
 }
 """What the handles of an operation name, where it is not an edge."""
 
+SINGULAR = {"vertices": "vertex", "edges": "edge", "faces": "face"}
+
 NAMES_A_VERTEX = {"split_edge", "split_face", "collapse_edge", "move_vertex"}
 """The operations whose result is the vertex that they are about."""
-
-ENTRIES = 8
-"""Room in the log per operation of a batch, to begin with; a split takes five entries."""
 
 NO_POINT = np.zeros((1, 3), np.float32)
 
 
-class Single(NamedTuple):
-    """An operation bound to a structure, for one at a time: where its arguments and result lie."""
+class Bound(NamedTuple):
+    """An operation bound to a structure: where its arguments and its result lie.
 
-    perform: Callable[[int, int, int, bool, bool], int]
-    address: int
+    Views, as they are faster to write and read than arrays.
+    """
+
+    perform: Callable[[int], int]
+    pinned: Pinned
+    task: memoryview
     args: memoryview
     point: memoryview
     result: memoryview
-    pinned: Pinned
 
 
 class Editable(Queryable):
@@ -69,14 +71,14 @@ class Editable(Queryable):
         Interior: 1 vertex, 3 edges and 2 faces more; border: 1, 2 and 1. Cost O(1) where edges are
         recorded, else that of finding the faces: O(n_ev) or O(n_t). Thesis 4.1.
         """
-        return self._one("split_edge", edge, -1, -1, point)
+        return self._do["split_edge"](edge, point)
 
     def split_face(self, face: int, point: ArrayLike) -> Edit:
         """Put a new vertex into a face, which becomes three.
 
         1 vertex, 3 edges and 2 faces more. Cost O(1). Thesis 4.3.
         """
-        return self._one("split_face", face, -1, -1, point)
+        return self._do["split_face"](face, point)
 
     def collapse_edge(self, edge: int, keep: int | None = None) -> Edit:
         """Merge one end of an edge into the other, ``keep``, which stays where it is.
@@ -85,7 +87,7 @@ class Editable(Queryable):
         faces fewer; border: 1, 2 and 1. Cost O(n_ev), or O(n_t) where neighbors are searched for.
         Thesis 4.2; refused as ``hem.topology`` says.
         """
-        return self._one("collapse_edge", edge, -1 if keep is None else keep, -1, None)
+        return self._do["collapse_edge"](edge, None, -1 if keep is None else keep)
 
     def flip_edge(self, edge: int) -> Edit:
         """Turn an edge inside the two faces at it, so that it joins their other two corners.
@@ -93,22 +95,22 @@ class Editable(Queryable):
         No count changes; a second flip undoes the first. Cost O(1) where edges are recorded, and
         to see that no edge is there yet O(the smaller valence of the two corners).
         """
-        return self._one("flip_edge", edge, -1, -1, None)
+        return self._do["flip_edge"](edge)
 
     def add_face(self, a: int, b: int, c: int) -> Edit:
         """Make a face of three vertices, counterclockwise. 1 face and 0 to 3 edges more.
 
         Every corner must be without faces or share an edge with the surface. Cost O(n_ev).
         """
-        return self._one("add_face", a, b, c, None)
+        return self._do["add_face"](a, None, b, c)
 
     def remove_face(self, face: int) -> Edit:
         """Take a face away. 1 face and 0 to 3 edges fewer; vertices stay. Cost O(n_ev)."""
-        return self._one("remove_face", face, -1, -1, None)
+        return self._do["remove_face"](face)
 
     def move_vertex(self, vertex: int, point: ArrayLike) -> Edit:
         """Give a vertex another position. Cost O(1)."""
-        return self._one("move_vertex", vertex, -1, -1, point)
+        return self._do["move_vertex"](vertex, point)
 
     def can_collapse_edge(self, edge: int) -> bool:
         """Whether ``collapse_edge`` would do it. Raises TopologyError if there is no such edge."""
@@ -161,7 +163,7 @@ class Editable(Queryable):
                 f"collapse_edges takes one vertex to keep per edge, not {len(ends)} "
                 f"for {len(handles)}"
             )
-        results, log = self._run("collapse_edge", _rows(handles, ends), NO_POINT, persist=True)
+        results, log = self._run("collapse_edge", _rows(handles, ends), NO_POINT, PERSIST)
         self._publish(Edit("collapse_edges", -1, log))
         return results >= 0
 
@@ -220,7 +222,7 @@ class Editable(Queryable):
 
     def reserve(self, splits: int) -> None:
         """Make room for so many splits at once, so that none of them has to. Cost O(n_v + n_t)."""
-        self._make_room(splits, 2 * splits, splits)
+        self._make_room(splits, 2 * splits)
 
     def operation_work(self, operation: str, *args: int, point: ArrayLike = (0, 0, 0)) -> int:
         """Do one operation uncompiled -> the array elements it read and wrote, exactly.
@@ -228,13 +230,15 @@ class Editable(Queryable):
         Arguments as for the method of that name, which says what it raises; KeyError for no
         operation.
         """
-        uses, _ = self._operation_uses[operation], self._single
-        self.reserve(2)
-        row = np.array([*args, -1, -1][:3], np.int64)
+        self._make_way(operation)
         self._log[0] = 0
-        scratch = np.asarray(point, np.float32), self._at, self._out["edge"], self._log
+        row, position = [*args, -1, -1][:3], np.asarray(point, np.float32)
+        scratch = position, self._at, self._out["edge"], self._log
+        uses = self._operation_uses[operation]
         result, work = uses.operation_work(row, scratch, self.records)
-        self._finish(operation, result, row.tolist())
+        if result < 0:
+            raise self._refusal(operation, result, row)
+        self._publish(Edit(operation, result, self._log[1 : self._log[0] + 1].tolist()))
         return work
 
     # Behind the contract ---------------------------------------------------------------------
@@ -245,98 +249,139 @@ class Editable(Queryable):
         return np.zeros(6, np.int64)
 
     @cached_property
-    def _single(self) -> dict[str, Single]:
+    def _log(self) -> memoryview:
+        """What the operation under way has touched. Views are faster to read than arrays."""
+        return memoryview(np.zeros(1, np.int64).data)
+
+    @cached_property
+    def _bound(self) -> dict[str, Bound]:
+        """Every operation, bound; by name."""
         self.n_edges  # noqa: B018  searched for, where it is not known yet: operations count on it
-        return {operation: self._bound(operation) for operation in OPERATIONS}
+        return {operation: self._bind(operation) for operation in OPERATIONS}
 
-    def _bound(self, operation: str) -> Single:
-        args, point = np.zeros((1, 3), np.int64), np.zeros((1, 3), np.float32)
-        result = np.zeros(1, np.int64)
-        pinned = self._pin(lambda: (args, point, result, self._at, self._out["edge"], self._log))
+    def _bind(self, operation: str) -> Bound:
+        task, args = np.array([DO, 0, 1]), np.full((1, 3), -1, np.int64)
+        points, result = np.zeros((1, 3), np.float32), np.zeros(1, np.int64)
+        own = task, args, points, result, self._at
+        pinned = self._pin(lambda: (*own, self._out["edge"], np.asarray(self._log)))
         perform = self._operation_uses[operation].perform(pinned)
-        # Writing to a view is several times faster than to an array.
-        views = [memoryview(it.reshape(-1).data) for it in (args, point, result)]
-        return Single(perform, pinned.address, views[0], views[1], views[2], pinned)
+        views = [memoryview(it.reshape(-1).data) for it in own[:4]]
+        return Bound(perform, pinned, views[0], views[1], views[2], views[3])
 
-    def _one(self, operation: str, a: Any, b: Any, c: Any, point: Any) -> Edit:
-        """Do one operation. What programs do a million times takes no detours here."""
-        perform, address, args, position, result, _ = self._single[operation]
-        try:
-            args[0], args[1], args[2] = a, b, c
-            if point is not None:
-                position[0], position[1], position[2] = point
-        except (TypeError, ValueError, OverflowError) as error:
-            raise _no_arguments(operation, (a, b, c), point) from error
-        log = self._log
-        log[0] = 0
-        if not perform(address, 0, 1, False, False) and result[0] == NEEDS_ROOM:
-            self._make_room(*GROWTH.get(operation, (0, 0)), 1)
-            self._log[0] = 0
-            perform(address, 0, 1, False, False)
-        return self._finish(operation, result[0], args)
+    @cached_property
+    def _do(self) -> dict[str, Callable[..., Edit]]:
+        """Every operation as a function of its first handle, a point and two more handles."""
+        return {operation: self._doing(operation) for operation in OPERATIONS}
 
-    def _finish(self, operation: str, result: int, args: Any) -> Edit:
-        if result < 0:
-            raise self._refusal(operation, result, args)
-        log = self._log
-        vertex = result if operation in NAMES_A_VERTEX else -1
-        edit = Edit(operation, vertex, log[1 : log[0] + 1].copy())
-        if self._subscribers:
-            self._publish(edit)
-        return edit
+    def _doing(self, operation: str) -> Callable[..., Edit]:
+        perform, pinned, _, args, position, result = self._bound[operation]
+        address, names_a_vertex = pinned.address, operation in NAMES_A_VERTEX
+
+        def do(a: Any, point: Any = None, b: Any = None, c: Any = None) -> Edit:
+            # What programs do a million times takes no detours here.
+            try:
+                args[0] = a
+                if b is not None:
+                    args[1] = b
+                    if c is not None:
+                        args[2] = c
+                if type(point) is np.ndarray:
+                    point = point.tolist()
+                if point is not None:
+                    position[0], position[1], position[2] = point
+            except (TypeError, ValueError, OverflowError) as error:
+                raise _no_arguments(operation, (a, b, c), point) from error
+            if not perform(address) and result[0] == NEEDS_ROOM:
+                self._make_way(operation)
+                perform(address)
+            vertex = result[0]
+            if vertex < 0:
+                raise self._refusal(operation, vertex, args)
+            log = self._log
+            touched = log[1 : log[0] + 1].tolist()
+            edit = Edit(operation, vertex if names_a_vertex else -1, touched)
+            if self._subscribers:
+                self._publish(edit)
+            return edit
+
+        return do
 
     def _may(self, operation: str, edge: Any) -> bool:
-        perform, address, args, _, result, _ = self._single[operation]
+        perform, pinned, task, args, _, result = self._bound[operation]
         try:
-            args[0], args[1] = edge, -1
+            args[0] = edge
+            args[1] = -1
         except (TypeError, ValueError, OverflowError) as error:
             raise _no_arguments(operation, (edge,), None) from error
-        self._log[0] = 0
-        if not perform(address, 0, 1, True, False) and result[0] == NEEDS_ROOM:
-            self._make_room(0, 0, 1)
-            perform(address, 0, 1, True, False)
+        task[MODE] = CHECK
+        if not perform(pinned.address) and result[0] == NEEDS_ROOM:
+            self._make_way(operation)
+            perform(pinned.address)
+        task[MODE] = DO
         if result[0] == NO_EDGE:
             raise self._refusal(operation, NO_EDGE, args)
         return bool(result[0] >= 0)
+
+    def _make_way(self, operation: str) -> None:
+        """Make room for what one operation may need."""
+        self._make_room(*GROWTH.get(operation, (0, 0)))
+        self._widen()
+        neighbors = len(self._out["edge"]) // WIDTH
+        if len(self._log) < 2 * neighbors + 2 * ENTRIES:
+            self._log = memoryview(np.zeros(2 * neighbors + 2 * ENTRIES, np.int64).data)
+            self._repin()
 
     def _all(
         self, called: str, operation: str, handles: Array, points: ArrayLike, names: Array
     ) -> NDArray[np.int32]:
         """Do an operation for all handles, or for none if one is refused -> the vertices."""
         positions = _positions(called, points, len(handles))
-        first = np.zeros(len(handles), np.bool_)
-        first[np.unique(names, return_index=True)[1]] = True
-        if not first.all():
-            again = {ASKED.get(operation, "edges"): handles[~first]}
-            raise TopologyError(f"{called} takes different elements, each once", **again)
+        element = ASKED.get(operation, "edges")
+        try:
+            self._check_handles(SINGULAR[element], handles)
+        except MeshError as error:
+            raise TopologyError(f"{called}: {error.reason} (any more)", **error.elements) from None
+        again = np.delete(handles, np.unique(names, return_index=True)[1])
+        if len(again):
+            raise TopologyError(
+                f"{called} takes different {element}, each once", **{element: again}
+            )
         args = _rows(handles)
-        results, _ = self._run(operation, args, positions, dry=True)
-        refused = np.flatnonzero(results < 0)
-        if len(refused):
-            raise self._refusal(operation, int(results[refused[0]]), args[refused[0]].tolist())
+        if element == "edges" and self.emulated:
+            self._require_allowed(operation, args, positions)
         results, log = self._run(operation, args, positions)
         self._publish(Edit(called, -1, log))
         return results.astype(np.int32)
 
+    def _require_allowed(self, operation: str, args: Array, positions: Array) -> None:
+        """Raise for the first row of ``args`` (n, 3) that would be refused; change nothing.
+
+        Where edges are recorded a live one can always be split. Else it may not even be one.
+        """
+        results, _ = self._run(operation, args, positions, CHECK)
+        refused = np.flatnonzero(results < 0)
+        if len(refused):
+            raise self._refusal(operation, int(results[refused[0]]), args[refused[0]].tolist())
+
     def _run(
-        self, operation: str, args: Array, points: Array, dry: bool = False, persist: bool = False
+        self, operation: str, args: Array, points: Array, mode: int = DO
     ) -> tuple[Array, Array]:
         """Do an operation for every row of ``args`` (n, 3) -> the results (n,) and the log."""
-        perform, n = self._single[operation].perform, len(args)
-        results, logs = np.zeros(n, np.int64), []
+        perform, n = self._bound[operation].perform, len(args)
+        results, logs, done = np.zeros(n, np.int64), [], 0
         vertices, faces = GROWTH.get(operation, (0, 0))
-        if not dry:
-            self._make_room(vertices * n, faces * n, 0 if persist else n)
-        done = 0
+        if mode == DO:
+            self._make_room(vertices * n, faces * n)
         while True:
-            log = np.zeros(ENTRIES * n + 4 * len(self._log), np.int64)
-            scratch = args, points, results, self._at, self._out["edge"], log
+            log = np.empty(ENTRIES * (n + 1) + 2 * len(self._log), np.int64)
+            task = np.array([mode, done, n])
+            scratch = task, args, points, results, self._at, self._out["edge"], log
             pinned = Pinned(*self.records, *scratch)
-            done = perform(pinned.address, done, n, dry, persist)
+            done = perform(pinned.address)
             logs.append(log[1 : log[0] + 1])
             if done == n or results[done] != NEEDS_ROOM:
                 return results, np.concatenate(logs)
-            self._make_room(vertices, faces, n - done)
+            self._make_way(operation)
 
     def _refusal(self, operation: str, code: int, args: Any) -> MeshError | TopologyError:
         """The error for a code, with the elements as the user knows them."""
@@ -399,6 +444,7 @@ def _positions(called: str, points: ArrayLike, n: int) -> Array:
 
 
 def _no_arguments(operation: str, args: tuple[Any, ...], point: Any) -> MeshError:
+    args = tuple(it for it in args if it is not None)
     wrong = [it for it in args if not isinstance(it, int | np.integer)]
     if wrong:
         return MeshError(f"{operation} takes handles (integers), not {wrong[0]!r}")

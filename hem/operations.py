@@ -87,6 +87,9 @@ OPERATIONS = (
 )
 """Every operation that is compiled, by name."""
 
+ENTRIES = 8
+"""Room in the log per operation; only a collapse may take more, two per face and these."""
+
 WIDTH = 12
 """Room in ``out`` per neighbor: the neighbors of both ends of an edge, and a table to tell them."""
 
@@ -108,16 +111,22 @@ def note_faces(log: Array, what: int, first: int, second: int) -> None:
 
 
 @kernel
-def has_room(m: Any, vertices: int, faces: int, out: Array, log: Array) -> bool:
-    """Whether so many new elements, the answer to any query and the log of it all will fit."""
-    count = m.counts
+def has_room(m: Any, vertices: int, faces: int, log: Array) -> bool:
+    """Whether so many new elements and the log of them will fit."""
+    counts = m.counts
     return bool(
-        count[VERTEX_END] + vertices <= count[VERTEX_ROOM]
-        and count[FACE_END] + faces <= count[FACE_ROOM]
-        and count[EDGE_END] + 3 * faces <= count[EDGE_ROOM]
-        and WIDTH * (count[VALENCE] + 1) <= len(out)
-        and log[0] + 2 * count[VALENCE] + 16 <= len(log)
+        counts[VERTEX_END] + vertices <= counts[VERTEX_ROOM]
+        and counts[FACE_END] + faces <= counts[FACE_ROOM]
+        and counts[EDGE_END] + 3 * faces <= counts[EDGE_ROOM]
+        and log[0] + ENTRIES < len(log)
     )
+
+
+@kernel
+def has_scratch(m: Any, out: Array, log: Array) -> bool:
+    """Whether the answer to any query, and a log of all faces at both ends of an edge, will fit."""
+    valence = m.counts[VALENCE] + 1
+    return bool(WIDTH * valence <= len(out) and log[0] + 2 * valence + ENTRIES < len(log))
 
 
 @kernel
@@ -177,7 +186,7 @@ def operations(k: Mapping[str, Kernel]) -> dict[str, Kernel]:
         if refusal != ALLOWED or dry:
             return refusal
         faces = (at[LEFT] >= 0) + (at[RIGHT] >= 0)
-        if not has_room(m, 1, faces, out, log):
+        if not has_room(m, 1, faces, log):
             return NEEDS_ROOM
         f, v = m.counts[FACE_END], new_vertex(m, point)
         cut_edge(m, args[0], at, v, f)
@@ -199,7 +208,7 @@ def operations(k: Mapping[str, Kernel]) -> dict[str, Kernel]:
             return NOT_FINITE
         if dry:
             return ALLOWED
-        if not has_room(m, 1, 2, out, log):
+        if not has_room(m, 1, 2, log):
             return NEEDS_ROOM
         f, v = m.counts[FACE_END], new_vertex(m, point)
         cut_face(m, face, v, f)
@@ -214,7 +223,7 @@ def operations(k: Mapping[str, Kernel]) -> dict[str, Kernel]:
     def collapse_edge(
         m: Any, args: Array, point: Array, at: Array, out: Array, log: Array, dry: bool
     ) -> int:
-        if not has_room(m, 0, 0, out, log):
+        if not has_scratch(m, out, log):
             return NEEDS_ROOM
         refusal = may_collapse(m, args[0], at, out)
         if refusal != ALLOWED:
@@ -248,7 +257,7 @@ def operations(k: Mapping[str, Kernel]) -> dict[str, Kernel]:
         refusal = may_flip(m, args[0], at)
         if refusal != ALLOWED or dry:
             return refusal
-        if not has_room(m, 0, 0, out, log):
+        if not has_room(m, 0, 0, log):
             return NEEDS_ROOM
         if at[C] < at[D]:
             turn(m, args[0], at, at[LEFT], at[RIGHT])
@@ -262,7 +271,7 @@ def operations(k: Mapping[str, Kernel]) -> dict[str, Kernel]:
     def add_face(
         m: Any, args: Array, point: Array, at: Array, out: Array, log: Array, dry: bool
     ) -> int:
-        if not has_room(m, 0, 1, out, log):
+        if not has_room(m, 0, 1, log) or not has_scratch(m, out, log):
             return NEEDS_ROOM
         a, b, c = args[0], args[1], args[2]
         refusal = may_add_face(m, a, b, c, out)
@@ -281,7 +290,7 @@ def operations(k: Mapping[str, Kernel]) -> dict[str, Kernel]:
         m: Any, args: Array, point: Array, at: Array, out: Array, log: Array, dry: bool
     ) -> int:
         face = args[0]
-        if not has_room(m, 0, 0, out, log):
+        if not has_scratch(m, out, log):
             return NEEDS_ROOM
         refusal = may_remove_face(m, face, out)
         if refusal != ALLOWED or dry:
@@ -303,7 +312,7 @@ def operations(k: Mapping[str, Kernel]) -> dict[str, Kernel]:
             return NOT_FINITE
         if dry:
             return ALLOWED
-        if not has_room(m, 0, 0, out, log):
+        if not has_room(m, 0, 0, log):
             return NEEDS_ROOM
         for i in range(3):
             m.vertex_point[args[0], i] = point[i]

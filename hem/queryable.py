@@ -229,37 +229,37 @@ class Queryable(ABC):
         return pinned
 
     @cached_property
-    def _log(self) -> Array:
-        """What the operation under way has touched."""
-        return np.zeros(1, np.int64)
-
-    @cached_property
     def _out(self) -> dict[str, Array]:
         """Scratch for the answer to one query, by the kind of element in it."""
         return self._scratch(0)
 
-    def _scratch(self, operations: int) -> dict[str, Array]:
-        """As ``_out``, with room for what so many operations may add to the largest valence."""
+    def _scratch(self, more: int) -> dict[str, Array]:
+        """As ``_out``, with room for a valence by so many larger than the largest there is."""
         corners = self._ragged("face_vertices", self.faces(), 3).values
         valence = int(np.bincount(corners).max(initial=0)) + 1
         self.records.counts[VALENCE] = valence
-        width = WIDTH * (valence + operations + 1)
+        width = WIDTH * (valence + more + 1)
         return {element: np.empty(width, dtype) for element, dtype in HANDLE_TYPES.items()}
 
-    def _make_room(self, vertices: int, faces: int, operations: int) -> None:
-        count, out = self.records.counts, self._out
+    def _make_room(self, vertices: int, faces: int) -> None:
+        """Make room for so many new elements."""
+        counts = self.records.counts
         if (
-            count[VERTEX_END] + vertices > count[VERTEX_ROOM]
-            or count[FACE_END] + faces > count[FACE_ROOM]
-            or count[EDGE_END] + 3 * faces > count[EDGE_ROOM]
+            counts[VERTEX_END] + vertices > counts[VERTEX_ROOM]
+            or counts[FACE_END] + faces > counts[FACE_ROOM]
+            or counts[EDGE_END] + 3 * faces > counts[EDGE_ROOM]
         ):
             self.records = grown(self.records, self.fields, vertices, faces)
-        if WIDTH * (count[VALENCE] + operations + 1) > len(out["edge"]):
+            self._repin()
+
+    def _widen(self) -> None:
+        """See that the answer to any query fits into the scratch for it."""
+        if WIDTH * (self.records.counts[VALENCE] + 1) > len(self._out["edge"]):
             # In proportion to the mesh, so that one operation pays O(1) of it in the long run.
-            out.update(self._scratch(max(operations, self.n_faces // 8)))
-        most = len(out["edge"]) // WIDTH
-        if len(self._log) < 2 * most + 16:
-            self._log = np.zeros(4 * most + 16, np.int64)
+            self._out.update(self._scratch(self.n_faces // 8))
+            self._repin()
+
+    def _repin(self) -> None:
         for pinned, scratch in self._pins:
             pinned.replace(*self.records, *scratch())
 
@@ -331,11 +331,6 @@ class Queryable(ABC):
         """Whether any record of a kind is dead; edges die with faces only."""
         alive, end = (VERTICES, VERTEX_END) if element == "vertex" else (FACES, FACE_END)
         return bool(self.records.counts[alive] < self.records.counts[end])
-
-    def _widen(self) -> None:
-        """See that the answer to any query fits into the scratch for it."""
-        if WIDTH * (self.records.counts[VALENCE] + 1) > len(self._out["edge"]):
-            self._make_room(0, 0, 1)
 
 
 def refuse_handles(element: str, handles: NDArray[Any]) -> None:

@@ -36,6 +36,12 @@ from hem.operations import WIDTH
 from hem.pinned import Pinned, loader
 from hem.topology import NEEDS_ROOM
 
+MODE, BEGIN, END = range(3)
+"""The parts of a task."""
+
+DO, CHECK, PERSIST = range(3)
+"""What to do with operations: do them, only check them, or pass over those that are refused."""
+
 # What the templates below call; bound anew for every query and operation of every structure.
 _KERNEL: Kernel = len
 _RECORDS: Callable[..., Any] = tuple
@@ -53,13 +59,15 @@ def _single(handle: int, address: int) -> int:
     return count
 
 
-def _perform(address: int, begin: int, end: int, dry: bool, persist: bool) -> int:
+def _perform(address: int) -> int:
     arrays = _LOAD(address)
-    m = _RECORDS(*arrays[:-6])
-    args, points, results, at, out, log = arrays[-6:]
-    for i in range(begin, end):
-        results[i] = _KERNEL(m, args[i], points[i % len(points)], at, out, log, dry)
-        if results[i] == NEEDS_ROOM or (results[i] < 0 and not persist):
+    m = _RECORDS(*arrays[:-7])
+    task, args, points, results, at, out, log = arrays[-7:]
+    mode, end = task[MODE], task[END]
+    log[0] = 0
+    for i in range(task[BEGIN], end):
+        results[i] = _KERNEL(m, args[i], points[i % len(points)], at, out, log, mode == CHECK)
+        if results[i] == NEEDS_ROOM or (results[i] < 0 and mode != PERSIST):
             return i
     return end
 
@@ -103,23 +111,32 @@ class Uses:
 
     def __init__(self, kernel: Kernel, records: type[Any]) -> None:
         self._kernel, self._records = kernel, records
+        self._by_kind: dict[Any, Callable[..., Any]] = {}
 
     def single(self, pinned: Pinned, exists: Kernel) -> Callable[[int, int], int]:
         """``single(handle, pinned.address) -> count``, for records and an ``out`` as these.
 
         The count is 0 also where ``exists(m, handle)`` is false, and where ``out`` is too small.
         """
-        scope = {"_LOAD": loader(pinned.kind), "_EXISTS": exists}
-        return self._compiled(_single, str(pinned.kind), **scope)
+        return self._bound(_single, pinned.kind, _EXISTS=exists)
 
-    def perform(self, pinned: Pinned) -> Callable[[int, int, int, bool, bool], int]:
-        """``perform(pinned.address, begin, end, dry, persist) -> end``, for an operation.
+    def perform(self, pinned: Pinned) -> Callable[[int], int]:
+        """``perform(pinned.address) -> end``, for an operation.
 
-        Pinned are the records and ``args`` (n, 3), ``points`` (n or 1, 3), ``results`` (n,),
-        ``at``, ``out`` and ``log`` (see ``hem.operations``). Ends before the element that needs
-        more room, or that is refused unless ``persist``; its code is then among the results.
+        Pinned are the records and ``task`` (``MODE``, ``BEGIN``, ``END``), ``args`` (n, 3),
+        ``points`` (n or 1, 3), ``results`` (n,), ``at``, ``out`` and ``log`` (see
+        ``hem.operations``). Ends before the element that needs
+        more room, or that is refused unless the mode is to ``PERSIST``; its code is then among
+        the results. ``CHECK`` changes nothing. The log begins anew.
         """
-        return self._compiled(_perform, str(pinned.kind), _LOAD=loader(pinned.kind))
+        return self._bound(_perform, pinned.kind)
+
+    def _bound(self, template: Kernel, kind: Any, **scope: Any) -> Callable[..., Any]:
+        """``template`` for arrays pinned as this ``kind``; all structures of a kind share it."""
+        if kind not in self._by_kind:
+            load = loader(kind)
+            self._by_kind[kind] = self._compiled(template, str(kind), _LOAD=load, **scope)
+        return self._by_kind[kind]
 
     @cached_property
     def batch(self) -> Callable[..., Array]:
@@ -151,7 +168,7 @@ class Uses:
         return np.diff(totals)
 
     def operation_work(
-        self, args: Array, scratch: tuple[Array, ...], records: tuple[Array, ...]
+        self, args: list[int], scratch: tuple[Any, ...], records: tuple[Array, ...]
     ) -> tuple[int, int]:
         """Perform an operation uncompiled -> its result, and the elements it read and wrote.
 
@@ -159,7 +176,7 @@ class Uses:
         """
         counters = [CountingArray(array) for array in records[:-1]]
         perform, m = interpreted(self._kernel), self._records(*counters, records[-1])
-        result = int(perform(m, args.tolist(), *scratch, False))
+        result = int(perform(m, args, *scratch, False))
         return result, sum(counter.accesses for counter in counters)
 
     def _digest(self, variant: str) -> str:
@@ -178,7 +195,7 @@ class Uses:
         function = FunctionType(template.__code__, {**template.__globals__, **scope})
         names = template, self._records, _source(self._kernel)
         function.__qualname__ = "_".join([*(it.__name__ for it in names), self._digest(variant)])
-        nogil = template is not _single  # for one query it would take longer than the query
+        nogil = template not in (_single, _perform)  # it would take longer than a query
         compiled: Callable[..., Any] = njit(cache=True, nogil=nogil)(function)
         return compiled
 
