@@ -44,10 +44,13 @@ class Edit:
 
     remapping: Remapping | None = None
 
+    touched: ArrayLike
+    """The log: an entry per element and each thing that happened to it."""
+
     def __init__(self, kind: str, vertex: int, log: ArrayLike) -> None:
         self.kind = kind
         self.vertex = vertex
-        self._log = log
+        self.touched = log
 
     def __repr__(self) -> str:
         names = ("created", "changed", "removed")
@@ -92,7 +95,7 @@ class Edit:
     @cached_property
     def _found(self) -> dict[int, Indices]:
         """The net effect: for each element whether it was there before, and whether it is now."""
-        found, log = {}, np.asarray(self._log, np.int64)
+        found, log = {}, np.asarray(self.touched, np.int64)
         for kind in (VERTEX, FACE):
             code, index = log & 7, log >> 3
             mine = (code >= kind) & (code < kind + 3)

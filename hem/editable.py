@@ -218,6 +218,22 @@ class Editable(Queryable):
         if failures:
             raise failures[0]
 
+    def copy_touched(
+        self, touched: ArrayLike, points: NDArray[np.float32], indices: NDArray[np.int32]
+    ) -> None:
+        """Write what an edit touched into the arrays of a render mesh, clockwise. O(edit).
+
+        ``points`` (n, 3) and ``indices`` (m, 3) have a row for every vertex and face there ever
+        was; what is dead becomes zeros.
+        """
+        entries, out = np.asarray(touched, np.int64), self._out["face"]
+        self._copy_touched(entries, points, indices, out, *self.records)
+
+    @cached_property
+    def _copy_touched(self) -> Callable[..., None]:
+        uses = self._uses["face_vertices"]
+        return uses.copy_touched(self.kernels["face_exists"])
+
     # Measuring -------------------------------------------------------------------------------
 
     def reserve(self, splits: int) -> None:

@@ -48,7 +48,7 @@ class TriangleMesh:
         vertices at most that far apart become one, at the first one's position. It is transitive:
         a chain of close vertices becomes one vertex however long it is.
 
-        Cost: O(n log n + m), and with a tolerance O(pairs of vertices that close) besides.
+        Cost: O(n + m), and with a tolerance O(n log n + pairs of vertices that close) besides.
         Source: thesis, construction of the mesh (one vertex per position).
         """
         from hem.weld import clusters

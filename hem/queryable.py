@@ -171,6 +171,11 @@ class Queryable(ABC):
         """(n_faces,) int32: the handles of all live faces, ascending."""
         return self._live("face")
 
+    @property
+    def face_end(self) -> int:
+        """One past the largest face handle there ever was; for vertices that is len(points)."""
+        return int(self.records.counts[FACE_END])
+
     def handles(self, element: str) -> NDArray[Any]:
         """The handles of all elements of one kind: ``vertex``, ``edge`` or ``face``."""
         every: dict[str, Callable[[], NDArray[Any]]] = {

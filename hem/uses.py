@@ -31,6 +31,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from hem import kernels, operations, topology
+from hem.edit import FACE
 from hem.kernels import VALENCE, Array, Kernel
 from hem.operations import WIDTH
 from hem.pinned import Pinned, loader
@@ -96,6 +97,23 @@ def _sweep(handles: Array, out: Array, *arrays: Array) -> int:
     return checksum
 
 
+def _copy_touched(
+    touched: Array, points: Array, indices: Array, out: Array, *arrays: Array
+) -> None:
+    m = _RECORDS(*arrays)
+    for entry in touched:
+        index = entry >> 3
+        if entry & 7 < FACE:
+            for i in range(3):
+                coordinate = m.vertex_point[index, i]
+                points[index, i] = coordinate if not np.isnan(coordinate) else 0
+        elif _EXISTS(m, index):
+            _KERNEL(m, index, out)
+            indices[index, 0], indices[index, 1], indices[index, 2] = out[0], out[2], out[1]
+        else:
+            indices[index, 0], indices[index, 1], indices[index, 2] = 0, 0, 0
+
+
 def _find_edge(a: int, b: int, out: Array, vertices: Array, *arrays: Array) -> int:
     m = _RECORDS(*arrays)
     for i in range(_KERNEL(m, a, out)):
@@ -152,6 +170,13 @@ class Uses:
     def sweep(self) -> Callable[..., int]:
         """``sweep(handles, out, *records) -> checksum``; every answer overwrites the last."""
         return self._compiled(_sweep)
+
+    def copy_touched(self, exists: Kernel) -> Callable[..., None]:
+        """``copy(touched, points, indices, out, *records)``, from ``face_vertices``.
+
+        Points and clockwise corners of what the log of an edit names; zeros for what is dead.
+        """
+        return self._compiled(_copy_touched, _EXISTS=exists)
 
     def find_edge(self, edge_vertices: Kernel) -> Callable[..., int]:
         """``find_edge(a, b, out, vertices, *records) -> edge or -1``, from ``vertex_edges``."""

@@ -1,6 +1,9 @@
 """Which vertices share a position."""
 
+from typing import Any
+
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
 from hem.mesh import Points
@@ -12,8 +15,8 @@ def clusters(points: Points, tolerance: float) -> Clusters:
     """The first vertex of each cluster in ascending order, and the cluster of each vertex.
 
     Two vertices are in one cluster when their positions are equal (-0.0 equals 0.0), or when a
-    chain of steps of at most `tolerance` leads from one to the other. O(n log n) and the number of
-    pairs that close.
+    chain of steps of at most `tolerance` leads from one to the other. O(n), and with a tolerance
+    O(n log n) and the number of pairs that close.
     """
     first, cluster = _equal(points)
     if tolerance > 0:
@@ -23,14 +26,42 @@ def clusters(points: Points, tolerance: float) -> Clusters:
 
 
 def _equal(points: Points) -> Clusters:
-    x, y, z = points.T
-    order = np.lexsort((z, y, x))
-    in_order = points[order]
-    starts = np.ones(len(points), bool)
-    starts[1:] = (in_order[1:] != in_order[:-1]).any(axis=1)
-    label = np.empty(len(points), np.int64)
-    label[order] = np.cumsum(starts) - 1
-    return _in_order_of_first(order[starts], label)
+    words = (points + np.float32(0)).view(np.uint32)  # -0.0 + 0.0 is 0.0
+    cluster = np.empty(len(points), np.int32)
+    first = np.empty(len(points), np.int64)
+    size = 1 << max(4, (2 * len(points) - 1).bit_length())
+    count = _number(words, np.full(size, -1, np.int32), cluster, first)
+    return first[:count], cluster
+
+
+@njit(cache=True)
+def _number(
+    words: NDArray[Any], table: NDArray[Any], cluster: NDArray[Any], first: NDArray[Any]
+) -> int:
+    """Number equal rows alike in the order they come, by a hash table -> how many there are."""
+    count, mask = 0, len(table) - 1
+    for v in range(len(words)):
+        mixed = np.uint64(words[v, 0])
+        for i in range(1, 3):
+            mixed = (mixed ^ (mixed >> np.uint64(29))) * np.uint64(0x9E3779B97F4A7C15)
+            mixed += np.uint64(words[v, i])
+        mixed = (mixed ^ (mixed >> np.uint64(32))) * np.uint64(0x9E3779B97F4A7C15)
+        place = np.int64(mixed >> np.uint64(33)) & mask
+        while table[place] >= 0:
+            u = first[table[place]]
+            if (
+                words[u, 0] == words[v, 0]
+                and words[u, 1] == words[v, 1]
+                and words[u, 2] == words[v, 2]
+            ):
+                break
+            place = (place + 1) & mask
+        if table[place] < 0:
+            table[place] = count
+            first[count] = v
+            count += 1
+        cluster[v] = table[place]
+    return count
 
 
 def _close(points: Points, tolerance: float) -> Clusters:
