@@ -7,7 +7,7 @@ INSTALLED := $(VENV)/installed
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 
 .DEFAULT_GOAL := help
-.PHONY: help study test check format peers test-floor clean
+.PHONY: help study test soak check format peers test-floor clean
 
 help:  ## show this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -28,6 +28,9 @@ study: $(INSTALLED)  ## measure for some 3 minutes, print table 1, write the rep
 
 test: $(INSTALLED)  ## run all tests
 	@$(BIN)/python -m pytest tests
+
+soak: $(INSTALLED)  ## operate at random on every structure, 100,000 times
+	@$(BIN)/python -m tests.structures.soak
 
 check: $(INSTALLED)  ## check format, style and types
 	@$(BIN)/ruff format --check .

@@ -31,6 +31,8 @@ ASKED = {
 }
 """What the handles of an operation name, where it is not an edge."""
 
+TAKES_A_POINT = {"split_edge", "split_face", "move_vertex"}
+
 SINGULAR = {"vertices": "vertex", "edges": "edge", "faces": "face"}
 
 NAMES_A_VERTEX = {"split_edge", "split_face", "collapse_edge", "move_vertex"}
@@ -153,7 +155,8 @@ class Editable(Queryable):
     def collapse_edges(self, edges: ArrayLike, keep: ArrayLike | None = None) -> NDArray[np.bool_]:
         """Collapse edges (k,) in order, skipping what is gone or refused -> which were done.
 
-        ``keep``: (k,) the ends that stay, each ``edge_vertices(edge)[1]`` unless it is said.
+        ``keep``: (k,) the ends that stay, each ``edge_vertices(edge)[1]`` unless it is said. Edges
+        at a merged vertex live on where edges are recorded; named by their ends they are gone.
         Subscribers hear of one edit.
         """
         handles = _handles("collapse_edges", edges)
@@ -249,13 +252,13 @@ class Editable(Queryable):
         self._make_way(operation)
         self._log[0] = 0
         row, position = [*args, -1, -1][:3], np.asarray(point, np.float32)
-        scratch = position, self._at, self._out["edge"], self._log
-        uses = self._operation_uses[operation]
-        result, work = uses.operation_work(row, scratch, self.records)
+        scratch = position, self._out["edge"], self._log
+        work = self._operation_uses[operation].operation_work
+        result, accesses = work(row, *scratch, self.records)
         if result < 0:
             raise self._refusal(operation, result, row)
         self._publish(Edit(operation, result, self._log[1 : self._log[0] + 1].tolist()))
-        return work
+        return accesses
 
     # Behind the contract ---------------------------------------------------------------------
 
@@ -292,6 +295,7 @@ class Editable(Queryable):
     def _doing(self, operation: str) -> Callable[..., Edit]:
         perform, pinned, _, args, position, result = self._bound[operation]
         address, names_a_vertex = pinned.address, operation in NAMES_A_VERTEX
+        takes_a_point = operation in TAKES_A_POINT
 
         def do(a: Any, point: Any = None, b: Any = None, c: Any = None) -> Edit:
             # What programs do a million times takes no detours here.
@@ -301,10 +305,9 @@ class Editable(Queryable):
                     args[1] = b
                     if c is not None:
                         args[2] = c
-                if type(point) is np.ndarray:
-                    point = point.tolist()
-                if point is not None:
-                    position[0], position[1], position[2] = point
+                if takes_a_point:
+                    place = point.tolist() if type(point) is np.ndarray else point
+                    position[0], position[1], position[2] = place
             except (TypeError, ValueError, OverflowError) as error:
                 raise _no_arguments(operation, (a, b, c), point) from error
             if not perform(address) and result[0] == NEEDS_ROOM:

@@ -185,7 +185,7 @@ def operations(k: Mapping[str, Kernel]) -> dict[str, Kernel]:
             refusal = NOT_FINITE
         if refusal != ALLOWED or dry:
             return refusal
-        faces = (at[LEFT] >= 0) + (at[RIGHT] >= 0)
+        faces = 2 if at[LEFT] >= 0 and at[RIGHT] >= 0 else 1
         if not has_room(m, 1, faces, log):
             return NEEDS_ROOM
         f, v = m.counts[FACE_END], new_vertex(m, point)
@@ -234,7 +234,7 @@ def operations(k: Mapping[str, Kernel]) -> dict[str, Kernel]:
         if dry:
             return ALLOWED
         drop = at[A] + at[B] - keep
-        faces = (at[LEFT] >= 0) + (at[RIGHT] >= 0)
+        faces = 2 if at[LEFT] >= 0 and at[RIGHT] >= 0 else 1
         stay = vertex_faces(m, keep, out)
         around = vertex_faces(m, drop, out)
         for i in range(around):

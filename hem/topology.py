@@ -99,7 +99,7 @@ def rules(k: Mapping[str, Kernel]) -> Any:
         refusal = surface_edge(m, e, at)
         if refusal != ALLOWED:
             return refusal
-        faces = (at[LEFT] >= 0) + (at[RIGHT] >= 0)
+        faces = 2 if at[LEFT] >= 0 and at[RIGHT] >= 0 else 1
         if faces == 2 and at[C] == at[D]:
             return SAME_CORNER
         if alone(m, at[LEFT], faces - 1, out) or alone(m, at[RIGHT], faces - 1, out):

@@ -193,15 +193,15 @@ class Uses:
         return np.diff(totals)
 
     def operation_work(
-        self, args: list[int], scratch: tuple[Any, ...], records: tuple[Array, ...]
+        self, args: list[int], point: Array, out: Array, log: Any, records: tuple[Array, ...]
     ) -> tuple[int, int]:
         """Perform an operation uncompiled -> its result, and the elements it read and wrote.
 
-        ``scratch``: the point, ``at``, ``out`` and ``log``.
+        In scratch of Python's own numbers, where True and True are 2 as they are when compiled.
         """
         counters = [CountingArray(array) for array in records[:-1]]
         perform, m = interpreted(self._kernel), self._records(*counters, records[-1])
-        result = int(perform(m, args, *scratch, False))
+        result = int(perform(m, args, point, [0] * 6, out, log, False))
         return result, sum(counter.accesses for counter in counters)
 
     def _digest(self, variant: str) -> str:

@@ -355,14 +355,15 @@ def cut_face(m: HalfEdgeRecords, face: int, v: int, f: int) -> None:
 @kernel
 def put(m: HalfEdgeRecords, h: int, into: int) -> None:
     """Move half-edge h, but not its twin, into another record."""
-    before = previous(m, h)
+    v, face, before = m.half_edge[h, ORIGIN], m.half_edge[h, FACE], previous(m, h)
     for i in range(3):
         m.half_edge[into, i] = m.half_edge[h, i]
-    m.half_edge[before, NEXT] = into
-    m.face_half_edge[m.half_edge[into, FACE]] = into
     m.half_edge[h, FACE] = -1
-    if m.vertex_half_edge[m.half_edge[into, ORIGIN]] == h:
-        m.vertex_half_edge[m.half_edge[into, ORIGIN]] = into
+    m.half_edge[before, NEXT] = into
+    if m.face_half_edge[face] == h:
+        m.face_half_edge[face] = into
+    if m.vertex_half_edge[v] == h:
+        m.vertex_half_edge[v] = into
 
 
 @kernel

@@ -375,8 +375,9 @@ def unite(m: WingedEdgeRecords, gone: int, stays: int) -> None:
     beyond = gone ^ 1
     face = left_of(m, beyond)
     if face >= 0:
-        after = following(m, beyond)
+        begin, after = m.face_edge[face], following(m, beyond)
         set_face(m, face, stays, after, following(m, after))
+        m.face_edge[face] = begin if begin != gone >> 1 else stays >> 1
     else:
         set_side(m, stays, -1, -1, -1)
     m.edge[gone >> 1, TAIL] = -1

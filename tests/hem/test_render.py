@@ -1,0 +1,226 @@
+"""The render mesh: what a renderer is given, in step with every structure."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import hem
+import structures
+from tests.structures.actions import KINDS, Action, aim, perform
+from tests.structures.conftest import octahedron, shuffled
+
+
+@pytest.fixture(params=structures.NAMES)
+def s(request: pytest.FixtureRequest) -> structures.Structure:
+    return structures.build(request.param, shuffled(hem.generate("torus", 100)))
+
+
+def afresh(s: structures.Structure) -> tuple[list[float], list[int]]:
+    """Flat points and clockwise indices, from the contract's queries one by one."""
+    points = np.where(np.isnan(s.points), 0, s.points)
+    indices = np.zeros((s.face_end, 3), int)
+    for f in s.faces().tolist():
+        indices[f] = s.face_vertices(f)[[0, 2, 1]]
+    return points.ravel().tolist(), indices.ravel().tolist()
+
+
+def assert_in_step(render: hem.RenderMesh) -> None:
+    points, indices = afresh(render.structure)
+    assert render.points.tolist() == points
+    assert render.indices.tolist() == indices
+
+
+def some_edits(s: structures.Structure, count: int, seed: int = 0) -> None:
+    rng = np.random.default_rng(seed)
+    for _ in range(count):
+        numbers = rng.integers(0, 5040, 3).tolist()
+        aimed = aim(s, Action(str(rng.choice(KINDS)), *numbers))
+        if aimed:
+            perform(s, aimed)
+
+
+def test_it_is_flat_clockwise_and_of_the_renderers_types():
+    mesh = octahedron()
+    render = hem.RenderMesh(structures.build("half_edge", mesh))
+    assert render.points.dtype == np.float32
+    assert render.indices.dtype == np.int32
+    assert render.points.shape == (18,)
+    assert render.indices.shape == (24,)
+    corners = mesh.points[render.indices.reshape(-1, 3)]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    assert ((normals * corners.mean(axis=1)).sum(axis=1) < 0).all()
+
+
+def test_after_any_edits_it_equals_one_made_afresh(s):
+    render = hem.RenderMesh(s)
+    for seed in range(8):
+        some_edits(s, 25, seed)
+        assert_in_step(render)
+
+
+def test_batches_moves_and_compaction_are_followed(s):
+    render, rng = hem.RenderMesh(s), np.random.default_rng(1)
+    s.split_faces(s.faces()[::5], rng.random((40, 3)))
+    assert_in_step(render)
+    s.split_edges(s.edges()[::9], rng.random((len(s.edges()[::9]), 3)))
+    assert_in_step(render)
+    s.collapse_edges(rng.permutation(s.edges()))
+    assert_in_step(render)
+    s.move_vertices(s.vertices()[:9], rng.random((9, 3)))
+    assert_in_step(render)
+    s.move_vertex(int(s.vertices()[0]), (7, 8, 9))
+    assert_in_step(render)
+    s.compact()
+    assert_in_step(render)
+    s.split_all_faces()
+    assert_in_step(render)
+
+
+def test_what_is_told_to_upload_is_all_that_changed(s):
+    render = hem.RenderMesh(s)
+    uploaded = [render.points.reshape(-1, 3).copy(), render.indices.reshape(-1, 3).copy()]
+
+    def upload(told: hem.Upload) -> None:
+        now = render.points.reshape(-1, 3), render.indices.reshape(-1, 3)
+        for i, ranges in enumerate((told.vertices, told.triangles)):
+            larger = np.zeros_like(now[i])
+            kept = min(len(larger), len(uploaded[i]))
+            larger[:kept] = uploaded[i][:kept]
+            for begin, end in ranges.tolist():
+                larger[begin:end] = now[i][begin:end]
+            uploaded[i] = larger
+
+    render.subscribe(upload)
+    for seed in range(5):
+        some_edits(s, 10, seed)
+        with render.transaction():
+            some_edits(s, 20, seed + 100)
+        s.split_faces(s.faces()[:3], np.ones((3, 3)))
+        if seed == 3:
+            s.compact()
+        assert uploaded[0].ravel().tolist() == render.points.tolist()
+        assert uploaded[1].ravel().tolist() == render.indices.tolist()
+
+
+def test_an_edit_uploads_a_handful_of_elements_of_a_large_mesh(s):
+    s = structures.build(s.name, hem.generate("torus", 10_000))
+    s.reserve(100)
+    s.split_face(5, (0, 0, 0))
+    render, told = hem.RenderMesh(s), []
+    s.split_face(9, (0, 0, 0))  # the first takes more room
+    render.subscribe(told.append)
+    s.split_face(12_000, (0, 0, 0))
+    (upload,) = told
+    assert not upload.resized
+    assert np.diff(upload.vertices).sum() <= 2
+    assert np.diff(upload.triangles).sum() <= 4
+
+
+def test_a_transaction_commits_once_whatever_happens_in_it(s):
+    render, told = hem.RenderMesh(s), []
+    render.subscribe(told.append)
+    s.split_face(0, (0, 0, 0))
+    s.split_face(0, (0, 0, 0))
+    assert render.commits == len(told) == 2
+    with render.transaction(), render.transaction():
+        some_edits(s, 30)
+        assert render.commits == 2
+        assert_in_step(render)
+    assert render.commits == len(told) == 3
+    with render.transaction():
+        pass
+    assert render.commits == 3
+    with pytest.raises(hem.TopologyError), render.transaction():
+        s.split_edge(s.split_face(1, (0, 0, 0)).vertex + 10**6, (0, 0, 0))
+    assert render.commits == 4
+    assert_in_step(render)
+
+
+def test_refused_operations_are_not_heard_of(s):
+    render = hem.RenderMesh(s)
+    with pytest.raises(hem.TopologyError):
+        s.split_face(10_000, (0, 0, 0))
+    assert render.commits == 0
+
+
+def test_closed_it_follows_no_more(s):
+    render = hem.RenderMesh(s)
+    before = render.indices.tolist()
+    render.close()
+    s.split_face(0, (0, 0, 0))
+    assert render.indices.tolist() == before
+
+
+def test_every_subscriber_hears_of_an_edit_even_if_another_raises(s):
+    heard = []
+
+    def failing(edit: hem.Edit) -> None:
+        raise RuntimeError("a listener of the user's")
+
+    end = s.subscribe(failing)
+    s.subscribe(heard.append)
+    with pytest.raises(RuntimeError, match="listener"):
+        s.split_face(0, (0, 0, 0))
+    assert len(heard) == 1
+    end()
+    end()
+    assert s.split_face(0, (0, 0, 0)) is heard[1]
+
+
+def seamed(mesh: hem.TriangleMesh) -> tuple[np.ndarray, np.ndarray]:
+    """As Unity stores it: positions repeated for every face, clockwise, flat."""
+    corners = mesh.triangles[:, [0, 2, 1]].ravel()
+    return mesh.points[corners].ravel(), np.arange(len(corners))
+
+
+@pytest.mark.parametrize("name", structures.NAMES)
+@pytest.mark.parametrize("source", ["torus", "sphere", "grid", "cone"])
+def test_a_render_mesh_with_seams_comes_back_as_the_surface_it_was(name, source):
+    mesh = shuffled(hem.generate(source, 200))
+    back = hem.mesh_from_render(*seamed(mesh))
+    s = structures.build(name, back)
+    assert (s.n_vertices, s.n_faces) == (len(mesh.points), len(mesh.triangles))
+    turned = [np.roll(row, -int(row.argmin())).tolist() for row in back.triangles]
+    assert len({*map(tuple, turned)}) == len(mesh.triangles)
+    assert np.array_equal(back.points[back.triangles], mesh.points[mesh.triangles]) or (
+        sorted(map(tuple, np.sort(back.points[back.triangles].sum(axis=2), axis=1).tolist()))
+        == sorted(map(tuple, np.sort(mesh.points[mesh.triangles].sum(axis=2), axis=1).tolist()))
+    )
+    before = mesh.points[mesh.triangles].astype(float)
+    after = back.points[back.triangles].astype(float)
+    volume = [np.linalg.det(it).sum() for it in (before, after)]
+    assert volume[0] == pytest.approx(volume[1])
+
+
+def test_there_and_back_keeps_the_mesh_even_after_edits(s):
+    render = hem.RenderMesh(s)
+    s.collapse_edges(s.edges()[::7])
+    s.move_vertices(s.vertices(), np.random.default_rng(0).random((s.n_vertices, 3)))
+    back, now = render.to_triangles(), s.to_triangles()
+    assert len(back.points) == len(now.points)
+    triples = [sorted(it.points[it.triangles].sum(axis=(1, 2)).tolist()) for it in (back, now)]
+    assert triples[0] == triples[1]
+
+
+@pytest.mark.parametrize(
+    ("points", "indices"),
+    [
+        ([0, 0, 0, 1], [0, 0, 0]),
+        ([0.0] * 9, [0, 1]),
+        ([0.0] * 9, [0, 1, 3]),
+        ([np.nan] * 9, [0, 1, 2]),
+        (np.zeros((3, 2)), [0, 1, 2]),
+    ],
+)
+def test_what_is_no_render_mesh_is_refused(points, indices):
+    with pytest.raises(hem.MeshError):
+        hem.mesh_from_render(points, indices)
+
+
+def test_welding_equals_a_search_through_all_positions():
+    rng = np.random.default_rng(5)
+    points = rng.integers(-2, 3, (300, 3)) * np.array([1.0, -0.0, 1e30])
+    mesh = hem.TriangleMesh(points, rng.permutation(300).reshape(-1, 3)).welded()
+    first = list(dict.fromkeys(map(tuple, (points + 0.0).astype(np.float32).tolist())))
+    assert mesh.points.tolist() == [list(it) for it in first]

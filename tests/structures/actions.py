@@ -1,0 +1,140 @@
+"""Random operations, told in vertices and faces, so that every structure can be asked for the same.
+
+Used by the differential tests and by the long soak (``python -m tests.structures.soak``).
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+import hem
+from hem.manifold import euler_number
+from hem.structure import Structure
+
+KINDS = (
+    *("split_edge", "split_face", "collapse_edge", "collapse_edge", "collapse_edge", "flip_edge"),
+    *("flip_edge", "remove_face", "add_face", "move_vertex"),
+)
+LISTS = ("created_vertices", "changed_vertices", "removed_vertices")
+LISTS += ("created_faces", "changed_faces", "removed_faces")
+
+
+class Action(NamedTuple):
+    """An operation yet to be aimed: three numbers choose among whatever there is."""
+
+    kind: str
+    first: int
+    second: int
+    third: int
+
+
+class Aimed(NamedTuple):
+    """An operation on an edge (two vertices), on a face, or on vertices."""
+
+    kind: str
+    elements: tuple[int, ...]
+    keep: int
+    point: tuple[float, float, float]
+
+
+def aim(s: Structure, action: Action) -> Aimed | None:
+    """Choose the elements, by what ``s`` has; None where there is nothing to choose from."""
+    kind, first, second, third = action
+    faces, vertices = s.faces(), s.vertices()
+    point = (first % 7, second % 5, third % 3)
+    if kind == "move_vertex":
+        return Aimed(kind, (int(vertices[first % len(vertices)]),), -1, point)
+    if kind == "add_face":
+        return Aimed(kind, _corners(s, action), -1, point)
+    if not len(faces):
+        return None
+    face = int(faces[first % len(faces)])
+    if kind in ("split_face", "remove_face"):
+        return Aimed(kind, (face,), -1, point)
+    corners = s.face_vertices(face).tolist()
+    a, b = corners[second % 3], corners[(second + 1) % 3]
+    return Aimed(kind, (a, b), (a, b)[third % 2], point)
+
+
+def _corners(s: Structure, action: Action) -> tuple[int, ...]:
+    """Often a face that fits onto the border, sometimes any three vertices."""
+    vertices = s.vertices()
+    rows = s.face_vertices(s.faces()).values.reshape(-1, 3)
+    sides = {
+        pair
+        for i in range(3)
+        for pair in zip(rows[:, i].tolist(), rows[:, i - 2].tolist(), strict=True)
+    }
+    border = sorted((b, a) for a, b in sides if (b, a) not in sides)
+    _, first, second, third = action
+    if border and third % 4:
+        a, b = border[first % len(border)]
+        onward = [y for x, y in border if x == b]
+        if onward and third % 4 > 1:
+            return a, b, onward[second % len(onward)]
+        return a, b, int(vertices[second % len(vertices)])
+    return tuple(int(vertices[it % len(vertices)]) for it in (first, second, third))
+
+
+def perform(s: Structure, aimed: Aimed) -> Any:
+    """Do it -> what the edit names, or why it was refused. The predicates must agree."""
+    kind, elements, keep, point = aimed
+    try:
+        if kind == "move_vertex" or kind == "split_face":
+            edit = getattr(s, kind)(*elements, point)
+        elif kind in ("remove_face", "add_face"):
+            edit = getattr(s, kind)(*elements)
+        else:
+            edit = _on_edge(s, kind, s.find_edge(*elements), keep, point)
+    except hem.TopologyError as refusal:
+        return refusal.reason
+    return edit.vertex, *(getattr(edit, name).tolist() for name in LISTS)
+
+
+def _on_edge(s: Structure, kind: str, edge: int, keep: int, point: Any) -> hem.Edit:
+    if kind == "split_edge":
+        return s.split_edge(edge, point)
+    allowed = getattr(s, f"can_{kind}")(edge)
+    try:
+        edit = s.collapse_edge(edge, keep=keep) if kind == "collapse_edge" else s.flip_edge(edge)
+    except hem.TopologyError:
+        assert not allowed
+        raise
+    assert allowed
+    return edit
+
+
+def faces_of(s: Structure) -> dict[int, tuple[int, ...]]:
+    """The live triangles by face, each from its smallest corner on."""
+    faces = s.faces()
+    rows = s.face_vertices(faces).values.reshape(-1, 3)
+    smallest = rows.argmin(axis=1) if len(rows) else []
+    turned = (tuple(np.roll(row, -k).tolist()) for row, k in zip(rows, smallest, strict=True))
+    return dict(zip(faces.tolist(), turned, strict=True))
+
+
+EULER = {"add_face": None, "remove_face": None}
+"""Operations that may change Euler's number; all others keep it."""
+
+
+def check(many: list[Structure], euler: int | None) -> int:
+    """Both validators, the counts, and that all structures hold the same mesh -> Euler's number.
+
+    ``euler``: what the number must be, None if the last operation may have changed it.
+    """
+    expected, first = faces_of(many[0]), many[0].to_triangles()
+    hem.require_sound(first, euler)
+    edges = len(
+        {frozenset(p) for t in expected.values() for p in zip(t, t[1:] + t[:1], strict=True)}
+    )
+    for s in many:
+        s.validate()
+        assert faces_of(s) == expected
+        assert (s.n_faces, s.n_edges) == (len(expected), edges)
+        assert len(s.vertices()) == s.n_vertices == len(first.points)
+        assert len(s.edges()) == s.n_edges
+        assert np.array_equal(s.to_triangles().points, first.points)
+        assert np.array_equal(s.points, many[0].points, equal_nan=True)
+    return euler_number(first)

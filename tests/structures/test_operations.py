@@ -1,0 +1,276 @@
+"""Random operations on random meshes: sound after each, and the same on every structure."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import hem
+import structures
+from tests.structures.actions import EULER, KINDS, Action, aim, check, faces_of, perform
+from tests.structures.conftest import octahedron, shuffled, strip
+
+TETRAHEDRON = [(0, 2, 1), (0, 1, 3), (1, 2, 3), (2, 0, 3)]
+
+
+def several() -> hem.TriangleMesh:
+    """A tetrahedron, a strip, one triangle and a vertex without faces."""
+    band = strip(4)
+    triangles = [*TETRAHEDRON, *(band.triangles + 4).tolist(), (10, 11, 12)]
+    return hem.TriangleMesh(np.random.default_rng(0).random((14, 3)), triangles)
+
+
+STARTS = {
+    "one triangle": lambda: hem.TriangleMesh(np.eye(3), [(0, 1, 2)]),
+    "tetrahedron": lambda: hem.TriangleMesh(np.eye(4)[:, :3], TETRAHEDRON),
+    "octahedron": octahedron,
+    "strip": lambda: strip(6),
+    "several components": several,
+    "torus": lambda: shuffled(hem.generate("torus", 30)),
+    "grid": lambda: shuffled(hem.generate("grid", 25)),
+    "high valence": lambda: shuffled(hem.generate("cone", 40)),
+}
+
+ACTIONS = st.lists(
+    st.builds(
+        Action,
+        st.sampled_from(KINDS),
+        *(st.integers(0, 5039) for _ in range(3)),
+    ),
+    min_size=1,
+    max_size=25,
+)
+
+
+@pytest.mark.parametrize("start", STARTS)
+@settings(max_examples=25, deadline=None, derandomize=True)
+@given(actions=ACTIONS)
+def test_any_operations_leave_every_structure_sound_and_with_the_same_mesh(start, actions):
+    many = [structures.build(name, STARTS[start]()) for name in structures.NAMES]
+    euler = check(many, None)
+    for action in actions:
+        aimed = aim(many[0], action)
+        if aimed is None:
+            continue
+        before = faces_of(many[0])
+        results = [perform(s, aimed) for s in many]
+        assert all(result == results[0] for result in results)
+        refused = isinstance(results[0], str)
+        if refused:
+            assert faces_of(many[0]) == before
+        euler = check(many, None if aimed.kind in EULER and not refused else euler)
+
+
+@pytest.mark.parametrize("start", STARTS)
+@settings(max_examples=8, deadline=None, derandomize=True)
+@given(actions=ACTIONS)
+def test_compacting_keeps_the_mesh_and_its_remapping_is_right(start, actions):
+    for name in structures.NAMES:
+        s = structures.build(name, STARTS[start]())
+        for action in actions:
+            aimed = aim(s, action)
+            if aimed is not None:
+                perform(s, aimed)
+        edges = s.edges()
+        ends = s.edge_vertices(edges).values.reshape(-1, 2)
+        faces, points = faces_of(s), s.points.copy()
+        vertices, remapped, renamed = s.compact()
+        s.validate()
+        moved = {
+            int(remapped[f]): sorted(vertices[list(corners)].tolist())
+            for f, corners in faces.items()
+        }
+        assert moved == {f: sorted(corners) for f, corners in faces_of(s).items()}
+        assert sorted(vertices[vertices >= 0].tolist()) == list(range(s.n_vertices))
+        alive = vertices >= 0
+        assert np.array_equal(points[alive], s.points[vertices[alive]])
+        assert np.isnan(points[~alive]).all()
+        found = s.edge_vertices(renamed(edges)).values.reshape(-1, 2)
+        assert np.array_equal(np.sort(found), np.sort(vertices[ends]))
+        assert sum(s.memory().values()) == sum(array.nbytes for array in s.arrays)
+
+
+def test_operations_keep_their_promise_on_the_counts(name):
+    """Interior and border, as the docstrings say: vertices, edges, faces."""
+    s = structures.build(name, hem.generate("grid", 100))
+    rows = s.edge_faces(s.edges())
+    border, inner = (int(s.edges()[rows.counts == k][20]) for k in (1, 2))
+    face = int(s.edge_faces(inner)[0])
+    far = next(int(e) for e in s.edges()[::-1] if s.can_flip_edge(int(e)))
+    for change, call in [
+        ((1, 3, 2), lambda: s.split_edge(inner, (0, 0, 0))),
+        ((1, 2, 1), lambda: s.split_edge(border, (0, 0, 0))),
+        ((1, 3, 2), lambda: s.split_face(face, (0, 0, 0))),
+        ((0, 0, 0), lambda: s.flip_edge(far)),
+        ((-1, -3, -2), lambda: s.collapse_edge(far)),
+    ]:
+        before = np.array([s.n_vertices, s.n_edges, s.n_faces])
+        call()
+        assert tuple(np.array([s.n_vertices, s.n_edges, s.n_faces]) - before) == change
+
+
+def test_handles_of_untouched_elements_stay_valid(name):
+    s, rng = structures.build(name, shuffled(hem.generate("torus", 100))), np.random.default_rng(3)
+    ends = {int(e): frozenset(s.edge_vertices(int(e)).tolist()) for e in s.edges()}
+    corners = faces_of(s)
+    for _ in range(60):
+        face = int(rng.choice(s.faces()))
+        a, b, _ = s.face_vertices(face).tolist()
+        aimed = [("split_edge", (a, b)), ("split_face", (face,)), ("collapse_edge", (a, b))]
+        kind, elements = aimed[rng.integers(3)]
+        around = set(s.face_vertices(s.vertex_faces([a, b]).values).values.tolist())
+        edge = s.find_edge(a, b)
+        if kind == "split_face":
+            s.split_face(face, (0, 0, 0))
+        elif kind == "split_edge":
+            s.split_edge(edge, (0, 0, 0))
+        elif s.can_collapse_edge(edge):
+            s.collapse_edge(edge)
+        ends = {e: pair for e, pair in ends.items() if not pair <= around}
+        corners = {f: t for f, t in corners.items() if not set(t) & {a, b, *elements}}
+        for e, pair in ends.items():
+            assert frozenset(s.edge_vertices(e).tolist()) == pair
+        now = faces_of(s)
+        assert all(now[f] == t for f, t in corners.items())
+
+
+def test_what_a_collapse_keeps_stays_where_it_is_and_so_do_the_edges_it_had(name):
+    s = structures.build(name, hem.generate("sphere", 162))
+    a, b = s.edge_vertices(int(s.edges()[40])).tolist()
+    place, spokes = s.points[a].copy(), set(s.vertex_edges(a).tolist())
+    edit = s.collapse_edge(s.find_edge(a, b), keep=a)
+    assert edit.vertex == a
+    assert np.array_equal(s.points[a], place)
+    assert np.isnan(s.points[b]).all()
+    assert len(spokes & set(s.vertex_edges(a).tolist())) == len(spokes) - 1
+
+
+@pytest.mark.parametrize("reference_bytes", [4, 8])
+def test_batches_do_what_one_by_one_does(name, reference_bytes):
+    one, many = (structures.build(name, hem.generate("grid", 400), reference_bytes) for _ in "12")
+    rng = np.random.default_rng(2)
+    faces, points = rng.choice(one.faces(), 50, replace=False), rng.random((50, 3))
+    new = many.split_faces(faces, points)
+    single = zip(faces.tolist(), points, strict=True)
+    assert new.tolist() == [one.split_face(f, p).vertex for f, p in single]
+    pairs = [one.edge_vertices(int(e)).tolist() for e in rng.choice(one.edges(), 50, replace=False)]
+    edges = [many.find_edge(*pair) for pair in pairs]
+    new = many.split_edges(edges, points)
+    single = zip(pairs, points, strict=True)
+    assert new.tolist() == [one.split_edge(one.find_edge(*pair), p).vertex for pair, p in single]
+    pairs = [one.edge_vertices(int(e)).tolist() for e in rng.permutation(one.edges())]
+    done = many.collapse_edges([many.find_edge(*pair) for pair in pairs])
+    # Record by record the same handles, as both have the same history.
+    expected = []
+    for edge in [one.find_edge(*pair) for pair in pairs]:
+        try:
+            one.collapse_edge(edge)
+            expected.append(True)
+        except hem.TopologyError:
+            expected.append(False)
+    assert 50 < sum(expected) < len(expected)
+    if name in ("winged_edge", "half_edge"):
+        assert done.tolist() == expected
+        assert faces_of(one) == faces_of(many)
+    many.validate()
+    one.validate()
+
+
+def test_batches_of_collapses_give_the_same_mesh_on_every_structure():
+    """Of edges that share no vertex: what becomes of the edges at a merged one is told below."""
+    mesh, rng = shuffled(hem.generate("grid", 400)), np.random.default_rng(4)
+    many, pairs, met = [structures.build(name, mesh) for name in structures.NAMES], [], set()
+    for pair in rng.permutation(mesh.triangles[:, :2]).tolist():
+        if not met & {*pair}:
+            pairs.append(pair)
+            met |= {*pair}
+    done = [s.collapse_edges([s.find_edge(*pair) for pair in pairs]) for s in many]
+    assert all(np.array_equal(it, done[0]) for it in done)
+    assert done[0].sum() > 100
+    check(many, 1)
+
+
+def test_an_edge_at_a_merged_vertex_lives_on_only_where_edges_are_recorded(name):
+    s = structures.build(name, octahedron())
+    edge, spoke = s.find_edge(0, 1), s.find_edge(1, 3)
+    s.collapse_edge(edge, keep=0)
+    if s.emulated:
+        with pytest.raises(hem.MeshError):
+            s.edge_faces(spoke)
+    else:
+        assert s.edge_vertices(spoke).tolist() == [0, 3]
+    assert s.find_edge(0, 3) is not None
+
+
+def test_subdividing_every_face_triples_the_faces_at_their_centroids(name):
+    mesh = hem.generate("torus", 100)
+    s = structures.build(name, mesh)
+    new = s.split_all_faces()
+    assert (s.n_vertices, s.n_edges, s.n_faces) == (300, 900, 600)
+    assert new.tolist() == list(range(100, 300))
+    assert np.allclose(s.points[new], mesh.points[mesh.triangles].mean(axis=1), atol=1e-6)
+    assert [len(ring) for ring in s.vertex_faces(new)] == [3] * 200
+    s.validate()
+
+
+def test_storage_grows_by_doubling(name):
+    s, rooms = structures.build(name, hem.generate("torus", 100)), []
+    for _ in range(2000):
+        s.split_face(0, (0, 0, 0))
+        rooms.append(len(s.arrays[0]))
+    grown = sorted(set(rooms))
+    assert len(grown) <= 6
+    assert all(b >= 2 * a for a, b in pairwise(grown))
+    s.validate()
+
+
+def test_a_vertex_whose_valence_grows_without_end_is_answered(name):
+    s = structures.build(name, hem.generate("torus", 100))
+    v = int(s.face_vertices(5)[0])
+    for i in range(3000):
+        s.split_face(int(s.vertex_faces(v)[i % 6]) if i < 20 else 5, (0, 0, 0))
+    for v in s.face_vertices(5).tolist():
+        assert set(s.vertex_vertices(v).tolist()) == {
+            int(u) for e in s.vertex_edges(v) for u in s.edge_vertices(int(e))
+        } - {v}
+    s.validate()
+
+
+def test_a_copy_is_apart_from_its_original(name):
+    s = structures.build(name, hem.generate("torus", 100))
+    before, heard = faces_of(s), []
+    s.subscribe(heard.append)
+    twin = s.copy()
+    twin.split_face(3, (0, 0, 0))
+    twin.collapse_edges(twin.edges()[:40])
+    assert faces_of(s) == before
+    assert not heard
+    s.validate()
+    twin.validate()
+
+
+@pytest.mark.parametrize("operation", ["split_edge", "split_face", "collapse_edge", "flip_edge"])
+def test_counted_and_compiled_operations_do_the_same(name, operation):
+    counted, compiled = (structures.build(name, hem.generate("sphere", 162)) for _ in "12")
+    handle = 7 if operation == "split_face" else int(counted.edges()[30])
+    work = counted.operation_work(operation, handle)
+    point = ((0, 0, 0),) if operation.startswith("split") else ()
+    getattr(compiled, operation)(handle, *point)
+    assert faces_of(counted) == faces_of(compiled)
+    counted.validate()
+    assert work > 10
+
+
+def test_splits_of_recorded_edges_take_the_same_work_on_any_mesh():
+    for name in ("winged_edge", "half_edge"):
+        for operation in ("split_edge", "split_face"):
+            work = set()
+            for n in (100, 900):
+                s = structures.build(name, hem.generate("torus", n))
+                handle = 7 if operation == "split_face" else int(s.edges()[n])
+                work.add(s.operation_work(operation, handle))
+            assert len(work) == 1

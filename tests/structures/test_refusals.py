@@ -1,0 +1,192 @@
+"""What may not be done is refused with its reason and elements, and nothing has changed."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import hem
+import structures
+from tests.structures.actions import faces_of
+from tests.structures.conftest import NEEDS_MANIFOLD, octahedron, strip
+from tests.structures.test_operations import TETRAHEDRON
+
+PLANE = np.random.default_rng(1).random((12, 3))
+SQUARE = [(0, 1, 2), (0, 2, 3)]
+RING = [(0, 3, 4), (0, 4, 1), (1, 4, 5), (1, 5, 2), (2, 5, 3), (2, 3, 0)]
+"""A triangular tube 0 1 2 – 3 4 5, open at both ends."""
+
+BOOK = [(0, 1, 2), (1, 0, 3), (0, 1, 4)]
+"""Three faces at edge 0 – 1, which only an indexed mesh can hold."""
+
+FAN = [(0, 1, 2), (0, 2, 3), (0, 3, 4)]
+
+CASES = {
+    "collapse in a tetrahedron": (TETRAHEDRON, "collapse_edge", (0, 1), "tetrahedron"),
+    "collapse across a tube": (RING, "collapse_edge", (0, 1), "common neighbor"),
+    "collapse between two borders": (SQUARE, "collapse_edge", (0, 2), "its other two edges"),
+    "collapse of a strip's rung": (strip(4).triangles, "collapse_edge", (2, 3), "both ends lie"),
+    "collapse of a lone triangle": ([(0, 1, 2)], "collapse_edge", (0, 1), "other two edges"),
+    "collapse with a foreign keep": (octahedron().triangles, "collapse_edge", (0, 1, 5), "not an"),
+    "flip on the border": (SQUARE, "flip_edge", (0, 1), "no second face"),
+    "flip onto an edge": (TETRAHEDRON, "flip_edge", (0, 1), "joined by an edge already"),
+    "add a face with a corner twice": (SQUARE, "add_face", (0, 1, 1), "three different"),
+    "add a face that is there": (SQUARE, "add_face", (0, 1, 2), "lies a face already"),
+    "add a face from behind": ([(0, 1, 2)], "add_face", (0, 2, 1), "these three corners"),
+    "add a face on a full edge": (SQUARE, "add_face", (0, 2, 4), "lies a face already"),
+    "add a second fan": (SQUARE, "add_face", (0, 4, 5), "two fans"),
+    "remove from within a fan": (FAN, "remove_face", (1,), "between two others"),
+}
+
+
+def call(s: structures.Structure, operation: str, elements: tuple[int, ...]) -> None:
+    if operation in ("add_face", "remove_face"):
+        getattr(s, operation)(*elements)
+    else:
+        a, b, *keep = elements
+        getattr(s, operation)(s.find_edge(a, b), *keep)
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_a_refusal_says_why_and_changes_nothing(name, case):
+    triangles, operation, elements, words = CASES[case]
+    s, heard = structures.build(name, hem.TriangleMesh(PLANE, triangles)), []
+    s.subscribe(heard.append)
+    before = [array.copy() for array in s.arrays]
+    counts = (s.n_vertices, s.n_edges, s.n_faces)
+    with pytest.raises(hem.TopologyError, match=words) as refusal:
+        call(s, operation, elements)
+    assert refusal.value.elements
+    assert str(refusal.value).startswith(f"cannot {operation}")
+    assert (s.n_vertices, s.n_edges, s.n_faces) == counts
+    used = [array[: len(kept)] for array, kept in zip(s.arrays, before, strict=True)]
+    assert all(np.array_equal(a, b, equal_nan=True) for a, b in zip(used, before, strict=True))
+    assert not heard
+    if operation in ("collapse_edge", "flip_edge") and len(elements) == 2:
+        assert not getattr(s, f"can_{operation}")(s.find_edge(*elements))
+    s.validate()
+
+
+def test_the_extra_common_neighbor_is_named(name):
+    s = structures.build(name, hem.TriangleMesh(PLANE, RING))
+    with pytest.raises(hem.TopologyError) as refusal:
+        s.collapse_edge(s.find_edge(0, 1))
+    assert refusal.value.elements["edges"].tolist() == [[0, 1]]
+    assert refusal.value.elements["vertices"].tolist() == [2]
+
+
+def test_an_edge_in_three_faces_is_refused_by_the_mesh_that_can_hold_it():
+    s = structures.build("indexed", hem.TriangleMesh(PLANE, BOOK))
+    for operation in (s.flip_edge, s.collapse_edge, lambda e: s.split_edge(e, (0, 0, 0))):
+        with pytest.raises(hem.TopologyError, match="more faces than a surface"):
+            operation(s.find_edge(0, 1))
+
+
+OPERATIONS = {
+    "split_edge": lambda s, h: s.split_edge(h, (0, 0, 0)),
+    "collapse_edge": lambda s, h: s.collapse_edge(h),
+    "flip_edge": lambda s, h: s.flip_edge(h),
+    "can_collapse_edge": lambda s, h: s.can_collapse_edge(h),
+    "can_flip_edge": lambda s, h: s.can_flip_edge(h),
+    "split_edges": lambda s, h: s.split_edges([h], [(0, 0, 0)]),
+    "split_face": lambda s, h: s.split_face(h, (0, 0, 0)),
+    "split_faces": lambda s, h: s.split_faces([h], [(0, 0, 0)]),
+    "remove_face": lambda s, h: s.remove_face(h),
+    "move_vertex": lambda s, h: s.move_vertex(h, (0, 0, 0)),
+    "add_face": lambda s, h: s.add_face(h, 1, 2),
+}
+
+
+@pytest.mark.parametrize("operation", OPERATIONS)
+def test_a_dead_or_foreign_handle_is_refused(name, operation):
+    s = structures.build(name, octahedron())
+    gone = s.find_edge(0, 1)
+    edit = s.collapse_edge(gone, keep=0)
+    dead = {"edge": gone, "face": int(edit.removed_faces[0])}
+    dead |= {"faces": dead["face"], "edges": gone, "vertex": 1}
+    kind = operation.rpartition("_")[2] if operation != "add_face" else "vertex"
+    before = faces_of(s)
+    for handle in (dead[kind], -1, 10_000, 2**40, -(2**40)):
+        with pytest.raises(hem.TopologyError, match="no such"):
+            OPERATIONS[operation](s, handle)
+    assert faces_of(s) == before
+
+
+@pytest.mark.parametrize("operation", OPERATIONS)
+@pytest.mark.parametrize("wrong", [1.5, "7", None, 2**70])
+def test_what_is_no_handle_is_refused(name, operation, wrong):
+    s = structures.build(name, octahedron())
+    with pytest.raises(hem.MeshError):
+        OPERATIONS[operation](s, wrong)
+
+
+@pytest.mark.parametrize(
+    "point",
+    [(1, 2), (1, 2, 3, 4), None, "abc", (np.nan, 0, 0), 7, np.inf * np.ones(3), [[1, 2, 3]]],
+)
+def test_what_is_no_position_is_refused(name, point):
+    s = structures.build(name, octahedron())
+    before = faces_of(s), s.points.copy()
+    for operation in (s.split_face, s.split_edge, s.move_vertex):
+        with pytest.raises(hem.MeshError):
+            operation(int(s.edges()[0]) if operation == s.split_edge else 0, point)
+    for operation in (s.split_faces, s.split_edges, s.move_vertices):
+        with pytest.raises(hem.MeshError):
+            operation([int(s.edges()[0]) if operation == s.split_edges else 0], [point, point])
+    assert faces_of(s) == before[0]
+    assert np.array_equal(s.points, before[1])
+
+
+def test_a_batch_is_done_as_a_whole_or_not_at_all(name):
+    s = structures.build(name, octahedron())
+    before, edges = faces_of(s), s.edges()[:3].tolist()
+    points = np.zeros((4, 3))
+    for handles in ([0, 1, 2, 99], [0, 1, 2, 2]):
+        with pytest.raises(hem.TopologyError):
+            s.split_faces(handles, points)
+    for last in (10_000, edges[0]):
+        with pytest.raises(hem.TopologyError):
+            s.split_edges([*edges, last], points)
+    with pytest.raises(hem.MeshError, match="one point per handle"):
+        s.split_faces([0, 1], points)
+    assert faces_of(s) == before
+    assert s.split_faces([], []).tolist() == []
+    assert s.collapse_edges([]).tolist() == []
+
+
+@pytest.mark.parametrize("name", ["winged_edge", "half_edge"])
+def test_both_names_of_an_edge_are_one_edge_to_a_batch(name):
+    s = structures.build(name, octahedron())
+    if name == "half_edge":
+        e = int(s.edges()[0])
+        both = [e, int(s.records.half_edge[e, 3])]
+        with pytest.raises(hem.TopologyError, match="each once"):
+            s.split_edges(both, np.zeros((2, 3)))
+
+
+def test_a_query_for_what_is_dead_is_refused(name):
+    s = structures.build(name, octahedron())
+    edge = s.find_edge(0, 1)
+    edit = s.collapse_edge(edge, keep=0)
+    for query in ("vertex_faces", "vertex_vertices", "vertex_edges"):
+        for handles in (1, [0, 1]):
+            with pytest.raises(hem.MeshError, match="no such vertex"):
+                getattr(s, query)(handles)
+    for query in ("face_vertices", "face_edges", "face_faces"):
+        for handles in (int(edit.removed_faces[0]), edit.removed_faces):
+            with pytest.raises(hem.MeshError, match="no such face"):
+                getattr(s, query)(handles)
+    for query in ("edge_edges", "edge_faces"):
+        for handles in (edge, [edge]):
+            with pytest.raises(hem.MeshError, match="no such edge"):
+                getattr(s, query)(handles)
+
+
+@pytest.mark.parametrize("name", NEEDS_MANIFOLD)
+def test_a_dead_record_that_something_refers_to_is_found(name):
+    s = structures.build(name, octahedron())
+    s.collapse_edge(s.find_edge(0, 1), keep=0)
+    of_vertex = s.records[1]
+    of_vertex[1] = of_vertex[0]
+    with pytest.raises(hem.MeshError, match="broken invariant"):
+        s.validate()
