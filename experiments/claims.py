@@ -10,6 +10,16 @@ from typing import Any
 from hem.queries import QUERIES
 from structures import NAMES
 
+OPERATIONS = {
+    "split_edge": "Split edge",
+    "split_face": "Split face",
+    "collapse_edge": "Collapse edge",
+    "flip_edge": "Flip edge",
+    "add_face": "Add face",
+    "remove_face": "Remove face",
+}
+"""The operations that are measured, and how a table calls them."""
+
 VARIABLES = {"faces": "n_t", "valence": "n_ev"}
 """What a claim is judged in, one held while the other moves, and its symbol in the thesis."""
 
@@ -23,8 +33,8 @@ BOUND = "≤ "
 class Claim:
     """One cell of a table: what is printed of one structure, and where.
 
-    ``what`` is a query or "memory". ``expected``: the growth class per variable, empty where
-    nothing is claimed; ``bytes_per_vertex`` for the memory row, else None.
+    ``what`` is a query, an operation or "memory". ``expected``: the growth class per variable,
+    empty where nothing is claimed; ``bytes_per_vertex`` for the memory row, else None.
     """
 
     what: str
@@ -37,7 +47,14 @@ class Claim:
     @property
     def title(self) -> str:
         """The head of the row."""
-        return "Bytes per vertex" if self.what == MEMORY else QUERIES[self.what].title
+        if self.what == MEMORY:
+            return "Bytes per vertex"
+        return OPERATIONS.get(self.what) or QUERIES[self.what].title
+
+    @property
+    def table(self) -> str:
+        """Which table it stands in: that of the queries, table 1, or that of the operations."""
+        return "operations" if self.what in OPERATIONS else "queries"
 
 
 def load_claims(text: str | None = None) -> list[Claim]:
@@ -55,9 +72,11 @@ def load_claims(text: str | None = None) -> list[Claim]:
 
 
 def _checked(row: dict[str, Any]) -> dict[str, Any]:
-    if row.get("what") not in (MEMORY, *QUERIES):
-        known = ", ".join((MEMORY, *QUERIES))
-        raise ValueError(f"claims.toml: no query is called {row.get('what')!r}; there are {known}")
+    known = (MEMORY, *QUERIES, *OPERATIONS)
+    if row.get("what") not in known:
+        raise ValueError(
+            f"claims.toml: no query is called {row.get('what')!r}; there are {', '.join(known)}"
+        )
     unknown = set(row) - {"what", "source", *NAMES}
     if unknown or "source" not in row:
         fault = f"no structure is called {min(unknown)!r}" if unknown else "no source is given"

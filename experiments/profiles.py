@@ -22,6 +22,9 @@ class Profile:
     work_sizes: tuple[int, ...]
     work_faces: int
     build_sizes: tuple[int, ...]
+    operation_sizes: tuple[int, ...]
+    operation_faces: int
+    workload_sizes: tuple[int, ...]
     models: tuple[str, ...]
     rounds: int
     round_seconds: float
@@ -49,6 +52,9 @@ PROFILES = {
         work_sizes=(100, 400),
         work_faces=128,
         build_sizes=(100, 1_000),
+        operation_sizes=(100, 400),
+        operation_faces=256,
+        workload_sizes=(100, 400),
         models=("teapot",),
         rounds=5,
         round_seconds=0.0002,
@@ -65,6 +71,9 @@ PROFILES = {
         work_sizes=_geometric(100, 3_200, 2),
         work_faces=8_192,
         build_sizes=_geometric(100, 100_000, 2),
+        operation_sizes=_geometric(100, 31_623, 2),
+        operation_faces=16_384,
+        workload_sizes=_geometric(100, 10_000, 1),
         models=("teapot", "bunny"),
         rounds=9,
         round_seconds=0.002,
@@ -81,6 +90,9 @@ PROFILES = {
         work_sizes=_geometric(100, 10_000, 2),
         work_faces=16_384,
         build_sizes=_geometric(100, 1_000_000, 2),
+        operation_sizes=_geometric(100, 1_000_000, 2),
+        operation_faces=65_536,
+        workload_sizes=_geometric(100, 100_000, 2),
         models=("teapot", "cow", "bunny", "bone"),
         rounds=15,
         round_seconds=0.004,
@@ -97,6 +109,9 @@ PROFILES = {
         work_sizes=_geometric(100, 32_000, 4),
         work_faces=16_384,
         build_sizes=_geometric(100, 1_000_000, 4),
+        operation_sizes=_geometric(100, 1_000_000, 4),
+        operation_faces=131_072,
+        workload_sizes=_geometric(100, 100_000, 4),
         models=("teapot", "cow", "airplane", "bunny", "bone"),
         rounds=25,
         round_seconds=0.01,

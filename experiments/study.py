@@ -25,6 +25,9 @@ EXPERIMENTS = (
     "bench_build",
     "bench_valence",
     "bench_queries",
+    "bench_operation_work",
+    "bench_operations",
+    "bench_workloads",
 )
 """The experiments in the order they run. A new one is a file of this name beside this one."""
 

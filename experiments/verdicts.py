@@ -15,7 +15,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from experiments.claims import BOUND, MEMORY, VARIABLES, Claim, load_claims
+from experiments.claims import BOUND, MEMORY, OPERATIONS, VARIABLES, Claim, load_claims
 from experiments.complexity import Bound, Verdict, judge
 from experiments.results import Run, write_json
 from experiments.subjects import HUBS
@@ -35,13 +35,26 @@ CELL_ERROR = 0.15
 milliseconds, and neighbors on the machine slow its caches for longer than that."""
 
 SOURCES = {
-    ("work", "faces"): ("bench_work", "random"),
-    ("work", "valence"): ("bench_work", "random"),
-    ("time", "faces"): ("bench_queries", "consecutive"),
-    ("time", "valence"): ("bench_valence", "random"),
-    ("random", "faces"): ("bench_queries", "random"),
+    ("work", "faces"): {
+        "queries": ("bench_work", "random"),
+        "operations": ("bench_operation_work", "counted"),
+    },
+    ("work", "valence"): {
+        "queries": ("bench_work", "random"),
+        "operations": ("bench_operation_work", "counted"),
+    },
+    ("time", "faces"): {
+        "queries": ("bench_queries", "consecutive"),
+        "operations": ("bench_operations", "batched"),
+    },
+    ("time", "valence"): {
+        "queries": ("bench_valence", "random"),
+        "operations": ("bench_operations", "batched"),
+    },
+    ("random", "faces"): {"queries": ("bench_queries", "random")},
 }
-"""The experiment and the order of handles that hold the evidence, by measure and variable."""
+"""The experiment and the order of handles that hold the evidence, by measure and variable, for the
+queries of table 1 and for the operations."""
 
 
 class Evidence:
@@ -71,7 +84,8 @@ class Evidence:
 
     def curve(self, measure: str, variable: str, structure: str, query: str) -> pd.DataFrame:
         """The cells along one variable, ascending: of the judged family, or of the hubs."""
-        experiment, order = SOURCES[measure, variable]
+        table = "operations" if query in OPERATIONS else "queries"
+        experiment, order = SOURCES[measure, variable].get(table, (None, None))
         family = HUBS if variable == "valence" else self.judged_family
         wanted = (
             (self.cells["experiment"] == experiment)
@@ -127,12 +141,19 @@ class Evidence:
         return float(cells["samples"].iloc[-1][0] / cells["vertices"].iloc[-1])
 
 
+def at_largest(run: Run, structure: str, what: str) -> float:
+    """Median seconds of a query (random handles) or operation at its largest size; NaN if none."""
+    measure = "time" if what in OPERATIONS else "random"
+    cells = Evidence(run).curve(measure, "faces", structure, what)
+    return float(np.median(cells["samples"].iloc[-1])) if len(cells) else float("nan")
+
+
 def judged(run: Run, claims: list[Claim] | None = None) -> pd.DataFrame:
     """One row per claim: what is printed, what was found, and the verdicts behind it.
 
-    Columns: structure, query, title, printed, source, outcome, outcome_work, outcome_time, for
-    every key of ``SOURCES`` ``<measure>_<variable>`` (a ``Verdict`` or None), work_per_query,
-    seconds_per_query (random handles, largest size), bytes_per_vertex.
+    Columns: structure, query (or operation), title, table, printed, source, outcome, outcome_work,
+    outcome_time, for every key of ``SOURCES`` ``<measure>_<variable>`` (a ``Verdict`` or None),
+    work_per_query, seconds_per_query (random handles, largest size), bytes_per_vertex.
     """
     evidence = Evidence(run)
     return pd.DataFrame([_row(evidence, claim) for claim in claims or load_claims()])
@@ -166,6 +187,7 @@ def _row(evidence: Evidence, claim: Claim) -> dict[str, Any]:
         "structure": claim.structure,
         "query": claim.what,
         "title": claim.title,
+        "table": claim.table,
         "printed": claim.printed,
         "source": claim.source,
     }
@@ -187,7 +209,9 @@ def _row(evidence: Evidence, claim: Claim) -> dict[str, Any]:
         **outcomes,
         **verdicts,
         "work_per_query": evidence.largest("work", claim),
-        "seconds_per_query": evidence.largest("random", claim),
+        "seconds_per_query": evidence.largest(
+            "time" if claim.table == "operations" else "random", claim
+        ),
         "bytes_per_vertex": float("nan"),
     }
 

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from hem.edit import Edit, Remapping
 from hem.errors import MeshError, TopologyError
+from hem.kernels import VALENCE
 from hem.operations import ENTRIES, OPERATIONS, WIDTH
 from hem.pinned import Pinned
 from hem.queryable import Queryable
@@ -53,6 +54,28 @@ class Bound(NamedTuple):
     args: memoryview
     point: memoryview
     result: memoryview
+
+
+class Prepared(NamedTuple):
+    """Operations that only wait to be run."""
+
+    perform: Callable[[int], int]
+    pinned: Pinned
+    task: Array
+    results: Array
+    """(n,): what became of each; a refusal is negative."""
+
+    def check(self) -> NDArray[np.bool_]:
+        """Change nothing -> (n,) which of them would be done."""
+        self.task[MODE] = CHECK
+        self.perform(self.pinned.address)
+        self.task[MODE] = PERSIST
+        return self.results >= 0
+
+    def run(self) -> None:
+        """Do them all, but those that are refused; RuntimeError if not all could be tried."""
+        if self.perform(self.pinned.address) < len(self.results):
+            raise RuntimeError("there is no more room; prepare fewer operations at a time")
 
 
 class Editable(Queryable):
@@ -242,6 +265,28 @@ class Editable(Queryable):
     def reserve(self, splits: int) -> None:
         """Make room for so many splits at once, so that none of them has to. Cost O(n_v + n_t)."""
         self._make_room(splits, 2 * splits)
+
+    def prepare(self, operation: str, args: ArrayLike, points: ArrayLike | None = None) -> Prepared:
+        """Have operations ready to be run in one compiled loop, untold to anyone: for measuring.
+
+        ``args``: (n,) first handles, or (n, 3) all of them. Refused ones are passed over. There is
+        room for them all from here on; the arrays must stay the same until it is run. Raises
+        KeyError for no operation.
+        """
+        rows = np.asarray(args, np.int64)
+        rows = _rows(rows) if rows.ndim == 1 else np.ascontiguousarray(rows)
+        n, bound = len(rows), self._bound[operation]
+        vertices, faces = GROWTH.get(operation, (0, 0))
+        self._make_room(vertices * n, faces * n)
+        self._out.update(self._scratch(2 * n))  # an operation adds at most 2 to a valence
+        self._repin()
+        positions = NO_POINT if points is None else _positions("prepare", points, n)
+        valence = int(self.records.counts[VALENCE])
+        entries = n * (2 * valence + ENTRIES) + 2 * (valence + 2 * n + ENTRIES)
+        results, log = np.zeros(n, np.int64), np.empty(entries, np.int64)
+        task = np.array([PERSIST, 0, n])
+        scratch = task, rows, positions, results, self._at, self._out["edge"], log
+        return Prepared(bound.perform, Pinned(*self.records, *scratch), task, results)
 
     def operation_work(self, operation: str, *args: int, point: ArrayLike = (0, 0, 0)) -> int:
         """Do one operation uncompiled -> the array elements it read and wrote, exactly.

@@ -68,7 +68,7 @@ def _perform(address: int) -> int:
     log[0] = 0
     for i in range(task[BEGIN], end):
         results[i] = _KERNEL(m, args[i], points[i % len(points)], at, out, log, mode == CHECK)
-        if results[i] == NEEDS_ROOM or (results[i] < 0 and mode != PERSIST):
+        if results[i] == NEEDS_ROOM or (results[i] < 0 and mode == DO):
             return i
     return end
 
@@ -144,8 +144,8 @@ class Uses:
         Pinned are the records and ``task`` (``MODE``, ``BEGIN``, ``END``), ``args`` (n, 3),
         ``points`` (n or 1, 3), ``results`` (n,), ``at``, ``out`` and ``log`` (see
         ``hem.operations``). Ends before the element that needs
-        more room, or that is refused unless the mode is to ``PERSIST``; its code is then among
-        the results. ``CHECK`` changes nothing. The log begins anew.
+        more room; if the mode is ``DO``, also before one that is refused. Codes of refusals are
+        among the results. ``CHECK`` changes nothing. The log begins anew.
         """
         return self._bound(_perform, pinned.kind)
 

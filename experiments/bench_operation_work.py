@@ -1,0 +1,43 @@
+"""Work of the operations, counted in array elements read and written: by size, and by valence.
+
+Each is done uncompiled on a copy of the mesh. The counts are exact and the same on every machine.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from experiments.claims import OPERATIONS
+from experiments.conftest import Keep
+from experiments.operating import arguments, check, faces_of
+from experiments.profiles import Profile
+from experiments.subjects import HUBS, Cell
+from structures import NAMES as STRUCTURES
+
+REPETITIONS = 3
+SCANNED = 1  # one scan of a mesh reads as much as another
+
+
+def cells(profile: Profile, structure: str) -> list[Cell]:
+    """The judged family by size, then the hubs by valence."""
+    sizes = [(profile.families[0], size, None) for size in profile.work_sizes]
+    few = profile.work_faces // 16  # so that a scan's work is the scan, not what it finds
+    valences = [(HUBS, profile.work_faces, k) for k in profile.valences if k <= few]
+    return [
+        Cell(structure, family, size, operation, "counted", valence)
+        for family, size, valence in (*sizes, *valences)
+        for operation in OPERATIONS
+    ]
+
+
+def test_operation_work(cell: Cell, keep: Keep) -> None:
+    """Count what operations read and write, and check what they make of the mesh."""
+    s, operation = cell.build().copy(), str(cell.query)
+    faces = faces_of(cell, SCANNED if cell.structure == "indexed" else REPETITIONS)
+    rows = arguments(s, operation, faces).tolist()
+    work = [s.operation_work(operation, *row) for row in rows]
+    check(cell, s, faces)
+    keep(cell.result("work", cell.build(), np.array(work), handles=1, checked=True))
+
+
+__all__ = ["STRUCTURES", "cells", "test_operation_work"]

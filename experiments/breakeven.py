@@ -1,0 +1,61 @@
+"""When does a structure overtake the indexed mesh: after how many queries or edits per build?
+
+A structure takes longer to build and answers faster. After k queries or edits it has caught up:
+build + k · cost = the indexed mesh's build + k · its cost.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import pandas as pd
+
+from experiments.claims import OPERATIONS
+from experiments.results import Run
+from structures import NAMES
+
+BASE = "indexed"
+MIXES = {
+    "vertex_faces": "faces around a vertex",
+    "face_faces": "faces beside a face",
+    "split_edge": "edge splits",
+    "collapse_edge": "edge collapses",
+}
+"""What is done after building, one query or operation each."""
+
+
+def break_even(run: Run) -> pd.DataFrame:
+    """How many queries or edits per build it takes, by structure and size.
+
+    Columns: what, structure, vertices, count: 0 where the structure is ahead from the beginning,
+    infinite where it never catches up.
+    """
+    rows = []
+    for what in MIXES:
+        for structure in NAMES[1:]:
+            mine, base = _costs(run, structure, what), _costs(run, BASE, what)
+            both = mine.join(base, how="inner", lsuffix="_mine", rsuffix="_base")
+            for vertices, it in both.iterrows():
+                gain = it["each_base"] - it["each_mine"]
+                ahead = it["build_mine"] - it["build_base"]
+                count = max(ahead, 0.0) / gain if gain > 0 else float("inf")
+                rows.append((what, structure, vertices, count))
+    return pd.DataFrame(rows, columns=["what", "structure", "vertices", "count"])
+
+
+def _costs(run: Run, structure: str, what: str) -> pd.DataFrame:
+    """Seconds to build and per query or edit, by number of vertices."""
+    cells = run.cells[(run.cells["structure"] == structure) & run.cells["valence"].isna()]
+    cells = cells[(cells["family"] == "torus") & (cells["reference_bytes"] == 4)]
+    built = cells[(cells["experiment"] == "bench_build") & (cells["order"] == "consecutive")]
+    experiment, order = (
+        ("bench_operations", "batched") if what in OPERATIONS else ("bench_queries", "random")
+    )
+    wanted = (cells["experiment"] == experiment) & (cells["query"] == what)
+    asked = cells[wanted & (cells["order"] == order)]
+    return pd.DataFrame({"build": _medians(built), "each": _medians(asked)}).dropna()
+
+
+def _medians(cells: pd.DataFrame) -> pd.Series:
+    return pd.Series(
+        [float(np.median(it)) for it in cells["samples"]], index=cells["vertices"], dtype=float
+    )
