@@ -9,7 +9,7 @@ import numpy as np
 
 from experiments.claims import OPERATIONS
 from experiments.conftest import Keep
-from experiments.operating import arguments, check, faces_of
+from experiments.operating import arguments, faces_of, validate
 from experiments.profiles import Profile
 from experiments.subjects import HUBS, Cell
 from structures import NAMES as STRUCTURES
@@ -36,7 +36,7 @@ def test_operation_work(cell: Cell, keep: Keep) -> None:
     faces = faces_of(cell, SCANNED if cell.structure == "indexed" else REPETITIONS)
     rows = arguments(s, operation, faces).tolist()
     work = [s.operation_work(operation, *row) for row in rows]
-    check(cell, s, faces)
+    validate(s)
     keep(cell.result("work", cell.build(), np.array(work), handles=1, checked=True))
 
 

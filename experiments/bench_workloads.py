@@ -70,11 +70,11 @@ def _check(cell: Cell) -> None:
     for s in (mine, other):
         WORKLOADS[str(cell.query)].run(s)
         s.validate()
-    corners = [
+    corners, expected = (
         np.sort(s.face_vertices(s.faces()).values.reshape(-1, 3), axis=1) for s in (mine, other)
-    ]
+    )
     same_points = np.allclose(mine.points, other.points, atol=1e-5, equal_nan=True)
-    if not (np.array_equal(*corners) and same_points):
+    if not (np.array_equal(corners, expected) and same_points):
         raise AssertionError(f"{cell.query} on {cell.structure} gives another mesh than indexed")
 
 

@@ -1,4 +1,4 @@
-"""When does a structure overtake the indexed mesh: after how many queries or edits per build?
+"""After how many queries or edits per build a structure overtakes the indexed mesh.
 
 A structure takes longer to build and answers faster. After k queries or edits it has caught up:
 build + k · cost = the indexed mesh's build + k · its cost.
@@ -26,7 +26,7 @@ MIXES = {
 def break_even(run: Run) -> pd.DataFrame:
     """How many queries or edits per build it takes, by structure and size.
 
-    Columns: what, structure, vertices, count: 0 where the structure is ahead from the beginning,
+    Columns: what, structure, vertices, times: 0 where the structure is ahead from the beginning,
     infinite where it never catches up.
     """
     rows = []
@@ -34,12 +34,14 @@ def break_even(run: Run) -> pd.DataFrame:
         for structure in NAMES[1:]:
             mine, base = _costs(run, structure, what), _costs(run, BASE, what)
             both = mine.join(base, how="inner", lsuffix="_mine", rsuffix="_base")
-            for vertices, it in both.iterrows():
-                gain = it["each_base"] - it["each_mine"]
-                ahead = it["build_mine"] - it["build_base"]
-                count = max(ahead, 0.0) / gain if gain > 0 else float("inf")
-                rows.append((what, structure, vertices, count))
-    return pd.DataFrame(rows, columns=["what", "structure", "vertices", "count"])
+            gain = (both["each_base"] - both["each_mine"]).to_numpy(float)
+            lead = (both["build_mine"] - both["build_base"]).to_numpy(float).clip(min=0)
+            times = np.where(gain > 0, lead / np.where(gain > 0, gain, 1), np.inf)
+            rows += [
+                (what, structure, int(vertices), float(it))
+                for vertices, it in zip(both.index, times, strict=True)
+            ]
+    return pd.DataFrame(rows, columns=["what", "structure", "vertices", "times"])
 
 
 def _costs(run: Run, structure: str, what: str) -> pd.DataFrame:

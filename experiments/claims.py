@@ -20,6 +20,9 @@ OPERATIONS = {
 }
 """The operations that are measured, and how a table calls them."""
 
+TABLES = {"queries": "Table 1", "operations": "Operations"}
+"""The tables: the thesis' table 1, and what its chapters 4 and 5 say of operations."""
+
 VARIABLES = {"faces": "n_t", "valence": "n_ev"}
 """What a claim is judged in, one held while the other moves, and its symbol in the thesis."""
 
@@ -47,14 +50,17 @@ class Claim:
     @property
     def title(self) -> str:
         """The head of the row."""
-        if self.what == MEMORY:
-            return "Bytes per vertex"
-        return OPERATIONS.get(self.what) or QUERIES[self.what].title
+        return "Bytes per vertex" if self.what == MEMORY else title_of(self.what)
 
     @property
     def table(self) -> str:
-        """Which table it stands in: that of the queries, table 1, or that of the operations."""
+        """Which of ``TABLES`` it stands in."""
         return "operations" if self.what in OPERATIONS else "queries"
+
+
+def title_of(what: str) -> str:
+    """How a table calls a query or an operation."""
+    return OPERATIONS.get(what) or QUERIES[what].title
 
 
 def load_claims(text: str | None = None) -> list[Claim]:

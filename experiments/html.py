@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from html import escape
 from typing import Any
 
@@ -9,6 +10,7 @@ import pandas as pd
 
 from experiments.claims import MEMORY, NO_CLAIM, VARIABLES
 from experiments.complexity import Verdict
+from experiments.statements import Statement, bounds, span
 from experiments.table import by_title, found
 from experiments.verdicts import OUTCOMES
 from structures import REGISTRY
@@ -60,6 +62,19 @@ def evidence(table: pd.DataFrame) -> str:
     return _table(table, _behind)
 
 
+def statements(every: Iterable[Statement]) -> str:
+    """What the thesis says in sentences, what was measured of it, and the verdict."""
+    rows = "".join(
+        f'<tr class="{it.outcome}"><td>{escape(it.says)}<small>{escape(it.source)}</small></td>'
+        f"<td>{escape(it.measured)}<small>claimed: {escape(bounds(it))}</small></td>"
+        f"<td>{escape(span(it))}</td><td><b>{OUTCOMES[it.outcome]} {it.outcome}</b></td></tr>"
+        for it in every
+    )
+    heads = "".join(f"<th>{it}</th>" for it in ("The thesis", "measured by", "found", "verdict"))
+    inner = f"<thead><tr>{heads}</tr></thead><tbody>{rows}</tbody>"
+    return f'<div class="wide"><table>{inner}</table></div>'
+
+
 def _table(table: pd.DataFrame, cell: Any) -> str:
     heads = "".join(f"<th>{escape(REGISTRY[s].title)}</th>" for s in table["structure"].unique())
     rows = [
@@ -95,9 +110,10 @@ def _behind(row: dict[str, Any]) -> str:
         _line(f"{measure} {symbol}", row[f"{measure}_{variable}"], bool(row["printed"] != NO_CLAIM))
         for measure in ("work", "time", "random")
         for variable, symbol in VARIABLES.items()
-        if f"{measure}_{variable}" in row
+        if row.get(f"{measure}_{variable}") or (measure != "random" and row.get("work_faces"))
     ]
-    cost = f"{row['work_per_query']:,.0f} read, {_time(row['seconds_per_query'])} at random"
+    at_random = " at random" if row["table"] == "queries" else ""
+    cost = f"{row['work_per_query']:,.0f} accesses, {_time(row['seconds_per_query'])}{at_random}"
     return f"{head}<div class=grid>{''.join(rows)}</div><small>{cost}</small>"
 
 

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter
 
-from experiments.claims import MEMORY, load_claims
+from experiments.claims import MEMORY, load_claims, title_of
 from experiments.results import Run
 from experiments.style import FADED, GRAY, LOOKS, label_ends, short, styled
 from experiments.verdicts import Evidence
@@ -19,7 +19,7 @@ from structures import NAMES, REGISTRY
 
 Ends = dict[str, tuple[float, float, str]]
 
-MEASURES = {"time": (1e9, "time per query, ns"), "work": (1.0, "elements read per query")}
+MEASURES = {"time": (1e9, "time each, ns"), "work": (1.0, "elements accessed each")}
 """By measure: the factor to the unit that is drawn, and the label."""
 VARIABLES = {"faces": "faces n_t", "valence": "valence n_ev"}
 
@@ -27,7 +27,8 @@ VARIABLES = {"faces": "faces n_t", "valence": "valence n_ev"}
 def scaling(run: Run, measure: str, variable: str, queries: Iterable[str] = QUERIES) -> Figure:
     """Cost against size or valence: a panel per query, a line per structure, both axes logarithmic.
 
-    ``measure``: "time" or "work"; ``variable``: "faces" or "valence". Time against size has
+    ``queries``: or operations. ``measure``: "time" or "work"; ``variable``: "faces" or "valence".
+    Time of queries against size has
     random handles in bold, consecutive ones thin, and in gray below them the latency of the memory
     at the working set that a half-edge mesh of that size has.
     """
@@ -48,16 +49,17 @@ def scaling(run: Run, measure: str, variable: str, queries: Iterable[str] = QUER
             panel.set_xlabel(VARIABLES[variable])
         for panel in panels[:, 0]:
             panel.set_ylabel(MEASURES[measure][1])
-        _label(figure, panels.flat[: len(names)], ends)
+        finish_panels(figure, panels.flat[: len(names)], ends)
     return figure
 
 
 def _panel(axes: Axes, evidence: Evidence, measure: str, variable: str, query: str) -> Ends:
     scale, _ = MEASURES[measure]
-    axes.set_title(QUERIES[query].title)
+    axes.set_title(title_of(query))
     axes.set(xscale="log", yscale="log")
     ends: Ends = {}
-    drawn = "random" if (measure, variable) == ("time", "faces") else measure
+    in_both_orders = (measure, variable) == ("time", "faces") and query in QUERIES
+    drawn = "random" if in_both_orders else measure
     for structure in NAMES:
         cells = evidence.curve(drawn, variable, structure, query)
         if cells.empty:
@@ -107,13 +109,15 @@ def _fit_heights(panels: Iterable[Axes]) -> None:
         panel.set_ylim(heights.min() / 2.2, heights.max() * 2.2)
 
 
-def _label(figure: Figure, panels: Iterable[Axes], ends: Sequence[Ends]) -> None:
-    """Labels need room beside the last point, and a settled layout before they are placed."""
+def finish_panels(
+    figure: Figure, panels: Iterable[Axes], ends: Sequence[Ends], room: float = 0.17
+) -> None:
+    """Label the lines. They need room beside the last point, and a settled layout before that."""
     shared = list(panels)
     limits = np.array([panel.get_xlim() for panel in shared])
     low, high = limits[:, 0].min(), limits[:, 1].max()
     for panel in shared:
-        panel.set_xlim(low, high * (high / low) ** 0.17)
+        panel.set_xlim(low, high * (high / low) ** room)
     figure.draw_without_rendering()
     for panel, labels in zip(shared, ends, strict=True):
         label_ends(panel, labels)
@@ -191,7 +195,7 @@ def building(run: Run) -> Figure:
                 ends[-1][short(structure)] = (x[-1], y[-1], look.color)
         panels[0].set_ylabel("time per vertex, ns")
         panels[0].yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-        _label(figure, panels, ends)
+        finish_panels(figure, panels, ends)
     return figure
 
 
@@ -209,5 +213,5 @@ def overview(run: Run) -> Figure:
             panel.set(xlabel="faces n_t", ylabel=MEASURES[measure][1])
             panel.set_title(f"Vertex → Faces, {measure}")
             _fit_heights([panel])
-        _label(figure, panels, ends)
+        finish_panels(figure, panels, ends)
     return figure

@@ -43,7 +43,7 @@ VALENCES = tuple(2**k for k in range(2, 13))
 
 PROFILES = {
     "smoke": Profile(
-        what="a few small cells of everything, to see that it all works, within a minute",
+        what="a few small cells of everything, to see that it all works, within two minutes",
         families=("torus",),
         sizes=(100, 400),
         orders=("random", "consecutive"),
@@ -62,7 +62,7 @@ PROFILES = {
         latency_mib=1,
     ),
     "quick": Profile(
-        what="one family up to 100,000 vertices, within 3 minutes",
+        what="one family up to 100,000 vertices, some 4 minutes",
         families=("torus",),
         sizes=_geometric(100, 100_000, 2),
         orders=("random", "consecutive"),

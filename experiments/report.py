@@ -11,16 +11,19 @@ from html import escape
 from pathlib import Path
 from typing import Any
 
-from experiments import html
+from experiments import html, statements
+from experiments.claims import OPERATIONS, TABLES
 from experiments.results import ResultsError, Run, load
 from experiments.table import markdown
-from experiments.verdicts import judged, save
+from experiments.verdicts import OUTCOMES, judged, save
 
 NOTEBOOKS = Path(__file__).parent.parent / "notebooks"
 CHAPTERS = {
     "comparison_table": "The comparison table",
     "query_scaling": "How queries scale",
     "memory": "Memory",
+    "operations": "Operations",
+    "half_edge_or_indexed": "Half-edge or indexed?",
 }
 """The notebooks in the order they are read. A new chapter is one notebook and one line here."""
 
@@ -58,7 +61,7 @@ def write_page(run_folder: Path, folder: Path, reference: Path) -> Path:
 
     The page goes to ``folder``, the verdicts to ``reference``, to compare later runs with.
     """
-    from experiments import plots
+    from experiments import operation_plots, plots
 
     run = load(run_folder)
     save(run, judged(run), reference)
@@ -69,14 +72,32 @@ def write_page(run_folder: Path, folder: Path, reference: Path) -> Path:
         "work": ("Work of the nine queries", plots.scaling(run, "work", "faces")),
         "memory": ("Bytes per vertex", plots.memory(run)),
         "building": ("Time to build", plots.building(run)),
+        "operations": ("Time of the operations", plots.scaling(run, "time", "faces", OPERATIONS)),
+        "workloads": ("What people do with meshes", operation_plots.workloads(run)),
+        "overtaking": (
+            "Queries and edits per build until the indexed mesh is overtaken",
+            operation_plots.overtaking(run),
+        ),
     }
     for name, (_, figure) in figures.items():
         figure.savefig(folder / f"{name}.png")
     shown = "\n\n".join(f"## {title}\n\n![{title}]({it}.png)" for it, (title, _) in figures.items())
     page = folder / "README.md"
-    page.write_text(f"# Table 1, measured\n\n{_provenance(run)}\n\n{markdown(run)}\n\n{shown}\n")
+    tables = "\n\n".join(f"## {title}\n\n{markdown(run, which)}" for which, title in TABLES.items())
+    page.write_text(
+        f"# The thesis, measured\n\n{_provenance(run)}\n\n{tables}\n\n## In sentences\n\n"
+        f"{_sentences(run)}\n\n{shown}\n"
+    )
     _fill_in(folder.parent / "README.md", markdown(run))
     return page
+
+
+def _sentences(run: Run) -> str:
+    lines = ["| the thesis | measured by | claimed | found | |", "|---|---|---|---|---|"]
+    for it in statements.judged(run):
+        found = statements.bounds(it), statements.span(it), f"{OUTCOMES[it.outcome]} {it.outcome}"
+        lines.append(f"| {it.says} | {it.measured} | {' | '.join(found)} |")
+    return "\n".join(lines)
 
 
 def _fill_in(readme: Path, table: str) -> None:
@@ -130,19 +151,24 @@ def _front(run: Run, table: Any) -> str:
     counts = ", ".join(
         f"{number} {outcome}" for outcome, number in claims["outcome"].value_counts().items()
     )
+    boards = "".join(
+        f"<h2>{title}</h2>{html.verdicts(table[table['table'] == which])}"
+        for which, title in TABLES.items()
+    )
     chapters = "".join(
         f'<li><a href="{it}.html">{title}</a></li>' for it, title in CHAPTERS.items()
     )
     return (
-        "<h1>Does the thesis' table 1 hold?</h1>"
-        f"<p>Cells of the table, judged by the work that was counted: <b>{escape(counts)}</b>. "
-        "Work is the number of array elements that a query reads; it is exact and decides. Time is "
-        "judged beside it, and is undetermined where the machine's caches could explain it as "
-        "well.</p>"
-        f"{html.verdicts(table)}"
+        "<h1>Does the thesis hold?</h1>"
+        f"<p>Cells of its tables, judged by the work that was counted: <b>{escape(counts)}</b>. "
+        "Work is the number of array elements that a query or an operation accesses; it is exact "
+        "and decides. Time is judged beside it, and is undetermined where the machine's caches "
+        "could explain it as well.</p>"
+        f"{boards}"
         '<p class="soft">✓ consistent · ✗ violated · ? undetermined: the data cannot tell · '
         "– nothing is claimed, as the structure keeps no record of an edge: what was found is the "
         "cost of naming the edge by its two vertices.</p>"
+        f"<h2>In sentences</h2>{html.statements(statements.judged(run))}"
         f"<h2>The evidence</h2><ul>{chapters}</ul>"
         f"<h2>The run</h2><p>{escape(_provenance(run))}</p>{_left_out(run)}"
     )

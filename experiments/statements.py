@@ -23,6 +23,10 @@ from experiments.verdicts import Evidence, at_largest
 from hem.queries import QUERIES
 
 Array = NDArray[np.float64]
+
+LARGER = 990
+"""Vertices from which on a mesh is spoken of: smaller ones are built and scanned in no time."""
+
 Quantity = Callable[[Run], Iterable[float]]
 
 
@@ -57,15 +61,16 @@ def _winged_half(run: Run) -> Iterable[float]:
 
 
 def _steps(run: Run) -> Iterable[float]:
-    """Elements read per query around a vertex, triangle-neighbor by half-edge."""
+    """Elements read to walk around a vertex, triangle-neighbor by half-edge, at every size."""
     evidence = Evidence(run)
-    for query in ("vertex_vertices", "vertex_edges", "vertex_faces"):
-        reads = []
-        for name in ("triangle_neighbor", "half_edge"):
-            cells = evidence.curve("work", "faces", name, query)
-            reads += [float(np.mean(it)) for it in cells["samples"][-1:]]
-        if len(reads) == 2:
-            yield reads[0] / reads[1]
+    reads = [
+        [
+            float(np.mean(it))
+            for it in evidence.curve("work", "faces", name, "vertex_faces")["samples"]
+        ]
+        for name in ("triangle_neighbor", "half_edge")
+    ]
+    yield from (mine / other for mine, other in zip(*reads, strict=True))
 
 
 def _static(run: Run) -> Iterable[float]:
@@ -78,14 +83,13 @@ def _static(run: Run) -> Iterable[float]:
 
 def _dynamic(run: Run) -> Iterable[float]:
     """The game-like mix of edits and queries, half-edge by indexed, on 1,000 vertices and more."""
-    cells = run.cells[(run.cells["query"] == "impacts") & (run.cells["vertices"] >= 999)]
+    cells = run.cells[(run.cells["query"] == "impacts") & (run.cells["vertices"] >= LARGER)]
     yield from _by_size(cells)
 
 
 def _by_size(cells: pd.DataFrame) -> Iterable[float]:
-    medians = {
-        (it.structure, it.vertices): float(np.median(it.samples)) for it in cells.itertuples()
-    }
+    columns = zip(cells["structure"], cells["vertices"], cells["samples"], strict=True)
+    medians = {(name, vertices): float(np.median(it)) for name, vertices, it in columns}
     for (name, vertices), seconds in medians.items():
         if name == "half_edge" and ("indexed", vertices) in medians:
             yield seconds / medians["indexed", vertices]
@@ -95,8 +99,8 @@ def _edits_per_build(run: Run) -> Iterable[float]:
     """Edge splits per vertex after which the half-edge mesh has overtaken, at the larger sizes."""
     table = break_even(run)
     mine = table[(table["structure"] == "half_edge") & (table["what"] == "split_edge")]
-    for row in mine[mine["vertices"] >= 999].itertuples():
-        yield row.count / row.vertices
+    mine = mine[mine["vertices"] >= LARGER]
+    yield from (mine["times"] / mine["vertices"]).tolist()
 
 
 QUANTITIES: dict[str, Quantity] = {
@@ -115,6 +119,25 @@ def judged(run: Run) -> list[Statement]:
     """Every sentence with its verdict."""
     content = tomllib.loads((files("experiments") / "statements.toml").read_text())
     return [_judge(run, row) for row in content["statement"]]
+
+
+def bounds(statement: Statement) -> str:
+    """What the quantity must be, such as ``at least 6``."""
+    low, high = statement.low, statement.high
+    if low == high:
+        return f"{low:g}"
+    if np.isinf(low):
+        return f"at most {high:g}"
+    return f"at least {low:g}" if np.isinf(high) else f"{low:g} to {high:g}"
+
+
+def span(statement: Statement) -> str:
+    """What was found: one value, or the smallest and the largest."""
+    values = statement.values
+    if not len(values):
+        return "–"
+    low, high = f"{values.min():.3g}", f"{values.max():.3g}"
+    return low if low == high else f"{low} … {high}"
 
 
 def _judge(run: Run, row: dict[str, str | float]) -> Statement:

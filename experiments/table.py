@@ -11,7 +11,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from experiments.claims import MEMORY, VARIABLES
+from experiments.claims import MEMORY, TABLES, VARIABLES
 from experiments.complexity import Verdict
 from experiments.results import Run, load
 from experiments.verdicts import OUTCOMES, judged, save
@@ -30,19 +30,22 @@ def show(run_folder: Path, console: Console) -> None:
     run = load(run_folder)
     table = judged(run)
     save(run, table)
-    console.print(_rendered(table, run))
-    console.print(_summary(table))
+    for name, title in TABLES.items():
+        part = table[table["table"] == name]
+        console.print(_rendered(part, title, run))
+        console.print(_summary(part))
     console.print(
         "Under what is printed: the log-log slopes in n_t and in n_ev, by work (array elements "
-        "read) and by time. The work decides.\n✓ consistent, ✗ violated, ? undetermined, – nothing "
-        "claimed: beside it the class that was found, for an edge named by its two vertices.",
+        "accessed) and by time. The work decides.\n✓ consistent, ✗ violated, ? undetermined, – "
+        "nothing claimed: beside it the class that was found; an edge that is not recorded is "
+        "named by its two vertices.",
         style="dim",
     )
 
 
-def markdown(run: Run) -> str:
-    """Table 1 for a page: what is printed, the mark, and what was found."""
-    table = judged(run)
+def markdown(run: Run, which: str = "queries") -> str:
+    """A table for a page: what is printed, the mark, and what was found."""
+    table = judged(run).query("table == @which")
     heads = [REGISTRY[name].title for name in _structures(table)]
     lines = ["| | " + " | ".join(heads) + " |", "|---" * (len(heads) + 1) + "|"]
     for title, rows in by_title(table):
@@ -90,9 +93,9 @@ def _structures(table: pd.DataFrame) -> list[str]:
     return list(table["structure"].unique())
 
 
-def _rendered(table: pd.DataFrame, run: Run) -> Table:
+def _rendered(table: pd.DataFrame, what: str, run: Run) -> Table:
     meta = run.meta
-    title = f"Table 1, printed and measured · {run.folder.name} · profile {meta.get('profile')}"
+    title = f"{what}, printed and measured · {run.folder.name} · profile {meta.get('profile')}"
     rendered = Table(title=title, show_lines=True, pad_edge=False)
     rendered.add_column("", style="bold")
     for name in _structures(table):
@@ -119,7 +122,9 @@ def _cell(row: dict[str, Any]) -> Text:
 
 def _markdown_cell(row: dict[str, Any]) -> str:
     mark = OUTCOMES[row["outcome"]]
-    return f"{row['printed']} {mark}" if mark != "–" else f"{row['printed']}, found {found(row)}"
+    if mark == "✓":
+        return f"{row['printed']} {mark}"
+    return f"{row['printed']}{' ' + mark if mark != '–' else ''}, found {found(row)}"
 
 
 def _summary(table: pd.DataFrame) -> Text:
@@ -129,5 +134,7 @@ def _summary(table: pd.DataFrame) -> Text:
         parts = [f"{counts.get(outcome, 0)} {outcome}" for outcome in OUTCOMES]
         text.append(f"by {measure}: {', '.join(parts)}\n")
     memory = table[table["query"] == MEMORY]["outcome"].value_counts()
+    if memory.empty:
+        return text
     text.append("by bytes: " + ", ".join(f"{count} {outcome}" for outcome, count in memory.items()))
     return text

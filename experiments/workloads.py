@@ -60,7 +60,12 @@ def subdivision(s: Structure) -> int:
 
 def simplification(s: Structure) -> int:
     """Collapse the shortest edge there is until a tenth of the vertices is left."""
-    wanted = max(4, int(KEPT * s.n_vertices))
+    return simplify(s, KEPT)
+
+
+def simplify(s: Structure, part: float) -> int:
+    """Collapse the shortest edge there is until ``part`` of the vertices is left -> how many."""
+    wanted = max(4, int(part * s.n_vertices))
     ends = np.sort(s.edge_vertices(s.edges()).values.reshape(-1, 2))
     lengths = np.linalg.norm(s.points[ends[:, 0]] - s.points[ends[:, 1]], axis=1)
     queue = [(x, a, b) for x, (a, b) in zip(lengths.tolist(), ends.tolist(), strict=True)]

@@ -11,6 +11,10 @@ from experiments.claims import MEMORY, load_claims
 from experiments.provenance import describe
 from experiments.results import CellResult, ResultFile, write_json
 from experiments.subjects import HUBS
+from experiments.workloads import WORKLOADS
+from structures import NAMES
+
+ORDERS = ("consecutive", "random")
 
 SIZES = [200, 630, 2000, 6324, 20000, 63246, 200000]
 VALENCES = [2**k for k in range(2, 13)]
@@ -25,6 +29,27 @@ LAWS: dict[str, Law] = {
 }
 
 
+EXPERIMENTS = {
+    "queries": (
+        ("bench_work", "random", "faces"),
+        ("bench_work", "random", "valence"),
+        ("bench_queries", "consecutive", "faces"),
+        ("bench_queries", "random", "faces"),
+        ("bench_valence", "random", "valence"),
+    ),
+    "operations": (
+        ("bench_operation_work", "counted", "faces"),
+        ("bench_operation_work", "counted", "valence"),
+        ("bench_operations", "batched", "faces"),
+        ("bench_operations", "batched", "valence"),
+    ),
+}
+"""The experiment, the order of its cells and what varies in them, by table."""
+
+BUILD = {"indexed": 1e-9, "triangle_neighbor": 21e-9, "winged_edge": 41e-9, "half_edge": 31e-9}
+"""Seconds per face to build, in these runs."""
+
+
 def write_run(folder: Path, law_of: Callable[[str, str, str], Law] | None = None) -> Path:
     """A finished run in which every claim holds, unless ``law_of(structure, query, printed)``."""
     rng = np.random.default_rng(3)
@@ -36,18 +61,12 @@ def write_run(folder: Path, law_of: Callable[[str, str, str], Law] | None = None
             continue
         chosen = law_of and law_of(claim.structure, claim.what, claim.printed)
         law = chosen or LAWS[claim.printed]
-        for experiment, order, variable in (
-            ("bench_work", "random", "faces"),
-            ("bench_work", "random", "valence"),
-            ("bench_queries", "consecutive", "faces"),
-            ("bench_queries", "random", "faces"),
-            ("bench_valence", "random", "valence"),
-        ):
+        for experiment, order, variable in EXPERIMENTS[claim.table]:
             points = (
                 [(n, 6) for n in SIZES] if variable == "faces" else [(FACES, k) for k in VALENCES]
             )
             for n_t, n_ev in points:
-                kind = "work" if experiment == "bench_work" else "time"
+                kind = "work" if experiment.endswith("work") else "time"
                 noise = 1 if kind == "work" else 1e-9 * rng.normal(1, 0.02, 9)
                 cell = CellResult(
                     id=f"{claim.what}/{n_t}/{n_ev}/{order}",
@@ -63,11 +82,35 @@ def write_run(folder: Path, law_of: Callable[[str, str, str], Law] | None = None
                     samples=np.atleast_1d(law(n_t, n_ev) * noise).tolist(),
                 )
                 _add(files, folder, experiment, claim.structure, cell)
+    for structure in NAMES:
+        _add_times(files, folder, structure)
     for (experiment, structure), cells in files.items():
         file = ResultFile(folder, experiment, structure)
         file.cells = cells[:-1]
         file.add(CellResult(**cells[-1]))
     return folder
+
+
+def _add_times(files: dict, folder: Path, structure: str) -> None:
+    """Building, the workloads, and the ways to keep a render mesh in step."""
+    slow = structure == "indexed"
+    orders = ("one by one", "rendered", "in a transaction", "render mesh built anew")
+    for n_t in SIZES:
+        about = {"kind": "time", "family": "torus", "faces": n_t, "vertices": n_t // 2}
+        every = [("bench_build", None, order, BUILD[structure] * n_t) for order in ORDERS]
+        every += [
+            ("bench_workloads", name, "workload", 1e-6 * (n_t if slow and it.scans else 1))
+            for name, it in WORKLOADS.items()
+        ]
+        every += [
+            ("bench_operations", "split_face", order, 1e-6 * (k + 1) * (n_t if k == 3 else 1))
+            for k, order in enumerate(orders)
+        ]
+        for experiment, what, order, seconds in every:
+            cell = CellResult(
+                id=f"{what}/{n_t}/{order}", query=what, order=order, samples=[seconds], **about
+            )
+            _add(files, folder, experiment, structure, cell)
 
 
 def _memory(bytes_per_vertex: int | None) -> CellResult:

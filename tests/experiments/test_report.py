@@ -7,7 +7,8 @@ import re
 import numpy as np
 import pytest
 
-from experiments import plots
+from experiments import operation_plots, plots
+from experiments.claims import OPERATIONS
 from experiments.report import CHAPTERS, write, write_page
 from experiments.results import ResultsError, load
 from experiments.style import spread_apart
@@ -26,7 +27,9 @@ def test_the_pages_are_whole_and_need_nothing_from_elsewhere(run_folder, tmp_pat
     for text in pages.values():
         assert not re.search(r'(src|href)="(?!data:|[\w.]+\.html|#)', text)
         assert "<script" not in text
-    assert pages["index.html"].count('class="consistent"') == 26 + 4
+    assert pages["index.html"].count('class="consistent"') >= 26 + 4 + 16 + 3
+    assert pages["operations.html"].count("data:image/png") == 12
+    assert pages["half_edge_or_indexed.html"].count("data:image/png") == 2
     assert pages["query_scaling.html"].count("data:image/png") == 5
     assert "1.00" in pages["comparison_table.html"]
 
@@ -45,16 +48,28 @@ def test_the_committed_page_has_the_table_and_its_pictures(run_folder, tmp_path)
     page = write_page(run_folder, tmp_path / "report", tmp_path / "reference")
     text = page.read_text()
     assert "| Bytes per vertex | 36 ✓ | 116 ✓ | 228 ✓ | 228 ✓ |" in text
+    assert "| Split face | O(n_t) ✓ | O(1) ✓ | O(1) ✓ | O(1) ✓ |" in text
+    assert "6.33 | ✓ consistent |" in text
     for picture in re.findall(r"\((\w+\.png)\)", text):
         assert (page.parent / picture).stat().st_size > 10_000
     assert (tmp_path / "reference" / "verdicts.json").exists()
 
 
-@pytest.mark.parametrize(("measure", "variable"), [("time", "faces"), ("work", "valence")])
-def test_labels_do_not_overlap_and_stay_inside_the_figure(run_folder, measure, variable):
-    figure = plots.scaling(load(run_folder), measure, variable)
+FIGURES = {
+    "queries by time": lambda run: plots.scaling(run, "time", "faces"),
+    "queries by work": lambda run: plots.scaling(run, "work", "valence"),
+    "operations": lambda run: plots.scaling(run, "time", "faces", OPERATIONS),
+    "workloads": operation_plots.workloads,
+    "overtaking": operation_plots.overtaking,
+    "rendering": operation_plots.rendering,
+}
+
+
+@pytest.mark.parametrize("name", FIGURES)
+def test_labels_do_not_overlap_and_stay_inside_the_figure(run_folder, name):
+    figure = FIGURES[name](load(run_folder))
     figure.draw_without_rendering()
-    for axes in figure.axes:
+    for axes in (it for it in figure.axes if it.get_visible()):
         boxes = [text.get_window_extent() for text in axes.texts]
         assert boxes
         for i, box in enumerate(boxes):

@@ -7,7 +7,7 @@ import json
 import numpy as np
 import pytest
 
-from experiments.claims import VARIABLES, load_claims
+from experiments.claims import OPERATIONS, VARIABLES, load_claims
 from experiments.results import load
 from experiments.table import by_title, found, markdown, show
 from experiments.verdicts import judged, save
@@ -35,7 +35,8 @@ def sound(tmp_path_factory: pytest.TempPathFactory):
 
 def test_the_claims_are_table_1_as_it_is_printed():
     claims = {(claim.what, claim.structure): claim for claim in load_claims()}
-    assert set(claims) == {(what, name) for what in (*PRINTED, "vertex_vertices") for name in NAMES}
+    every = (*PRINTED, "vertex_vertices", *OPERATIONS)
+    assert set(claims) == {(what, name) for what in every for name in NAMES}
     for what, cells in PRINTED.items():
         assert [claims[what, name].printed for name in NAMES] == cells
         assert all("table 1" in claims[what, name].source for name in NAMES)
@@ -44,7 +45,7 @@ def test_the_claims_are_table_1_as_it_is_printed():
 def test_what_grows_as_claimed_is_consistent_by_work_and_by_time(sound):
     table = judged(sound)
     claimed = table[(table["printed"] != "N/A") & (table["query"] != "memory")]
-    assert len(claimed) == 26
+    assert claimed["table"].value_counts().to_dict() == {"queries": 26, "operations": 16}
     assert set(claimed["outcome_work"]) == set(claimed["outcome_time"]) == {"consistent"}
     assert set(table[table["query"] == "memory"]["outcome"]) == {"consistent"}
     assert set(table[table["printed"] == "N/A"]["outcome"]) == {"no claim"}
@@ -73,7 +74,7 @@ def test_a_byte_too_many_is_a_violation(tmp_path):
 
 def test_a_query_that_was_not_measured_is_undetermined_never_a_pass(tmp_path):
     folder = write_run(tmp_path)
-    for path in folder.glob("bench_work.half_edge.json"):
+    for path in folder.glob("bench_*work.half_edge.json"):
         path.unlink()
     table = judged(load(folder))
     rows = table[(table["structure"] == "half_edge") & (table["printed"] != "N/A")]
@@ -90,7 +91,7 @@ def test_the_class_found_names_its_variables(sound):
 def test_verdicts_are_kept_as_plain_json(sound, tmp_path):
     path = save(sound, judged(sound), tmp_path)
     claims = json.loads(path.read_text())["claims"]
-    assert len(claims) == 10 * len(NAMES)
+    assert len(claims) == 16 * len(NAMES)
     assert {"best", "slope", "slope_low", "slope_high", "margin"} <= set(claims[-1]["work_faces"])
 
 
@@ -101,6 +102,8 @@ def test_the_table_shows_every_row_and_mark(sound, capsys):
     printed = capsys.readouterr().out
     assert printed.count("✓") > 26
     assert all(text in printed for text in ("228 ✓", "O(n_t) ✓", "N/A – O(1)", "26 consistent"))
+    assert "16 consistent" in printed
+    assert "| Split edge | O(n_t) ✓ | O(n_ev) ✓ | O(1) ✓ | O(1) ✓ |" in markdown(sound, "operations")
     lines = markdown(sound).splitlines()
     assert len(lines) == 2 + len(PRINTED) + 1
     assert "| Vertex → Faces | O(n_t) ✓ | O(n_ev) ✓ | O(n_ev) ✓ | O(n_ev) ✓ |" in lines

@@ -1,0 +1,259 @@
+"""Meshes as pictures: the figures of the thesis, made by the operations themselves."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import PolyCollection
+from matplotlib.figure import Figure
+from numpy.typing import ArrayLike, NDArray
+
+import hem
+import structures
+from experiments.style import styled
+from experiments.workloads import simplify
+from hem.structure import Structure
+
+Array = NDArray[Any]
+
+PAPER = "#f4f1ea"
+TOUCHED = "#f7d9a0"
+INK = "#333333"
+STRONG = "#c0392b"
+
+LIGHT = np.array([0.35, 0.45, 0.82])
+
+Step = tuple[str, Structure, dict[str, Any]]
+"""A title, a mesh, and what to point out in it: ``faces``, ``edges``, ``vertices``."""
+
+
+def hexagon() -> hem.TriangleMesh:
+    """Two inner vertices joined by an edge, in a ring of eight: enough to see an operation."""
+    angle = 2 * np.pi * np.arange(8) / 8
+    ring = np.stack([1.7 * np.cos(angle), 1.05 * np.sin(angle)], axis=1)
+    points = np.vstack([[-0.6, 0.0], [0.6, 0.0], ring])
+    fans = [(1, i) for i in (6, 7, 8, 9)] + [(0, i) for i in (2, 3, 4, 5)]
+    triangles = [(center, 2 + i % 8, 2 + (i + 1) % 8) for center, i in fans]
+    triangles += [(0, 1, 4), (1, 0, 8)]
+    return hem.TriangleMesh(np.column_stack([points, np.zeros(10)]), triangles)
+
+
+def quad() -> hem.TriangleMesh:
+    """A square of two triangles; their common edge is the one to be split."""
+    points = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)]
+    return hem.TriangleMesh(points, [(0, 1, 2), (0, 2, 3)])
+
+
+def steps(every: Sequence[Step], labels: bool = True) -> Figure:
+    """Flat meshes side by side, with their vertices numbered."""
+    with styled():
+        figure = Figure(figsize=(3.1 * len(every), 2.7), layout="constrained")
+        panels = figure.subplots(1, len(every), squeeze=False)[0]
+        for axes, (title, s, shown) in zip(panels, every, strict=True):
+            _flat(axes, s, shown, labels)
+            axes.set_title(title)
+        _same_view(panels)
+    return figure
+
+
+def _flat(axes: Axes, s: Structure, shown: dict[str, Any], labels: bool) -> None:
+    faces = s.faces()
+    corners = s.face_vertices(faces).values.reshape(-1, 3)
+    flat = s.points[:, :2]
+    marked = np.isin(faces, list(shown.get("faces", ())))
+    colors = np.where(marked, TOUCHED, PAPER)
+    axes.add_collection(PolyCollection(flat[corners], facecolors=colors, edgecolors=INK))
+    for a, b in shown.get("edges", ()):
+        axes.plot(*flat[[a, b]].T, color=STRONG, linewidth=2.6, solid_capstyle="round")
+    used = np.unique(corners)
+    strong = np.isin(used, list(shown.get("vertices", ())))
+    sizes, tones = np.where(strong, 42, 12), np.where(strong, STRONG, INK)
+    axes.scatter(flat[used, 0], flat[used, 1], sizes, list(tones), zorder=3)
+    if labels:
+        for v in used.tolist():
+            axes.annotate(str(v), flat[v], (4, 4), textcoords="offset points", fontsize=8)
+    axes.set_aspect("equal")
+    axes.axis("off")
+
+
+def _same_view(panels: Sequence[Axes]) -> None:
+    boxes = []
+    for axes in panels:
+        axes.autoscale_view()
+        boxes.append((*axes.get_xlim(), *axes.get_ylim()))
+    low, high = np.min(boxes, axis=0), np.max(boxes, axis=0)
+    for axes in panels:
+        axes.set(xlim=(low[0], high[1]), ylim=(low[2], high[3]))
+
+
+def split_edge_steps(structure: str) -> Figure:
+    """Figure 5: an edge is split, inside and on the border."""
+    s = structures.build(structure, hexagon())
+    before, edge = s.copy(), s.find_edge(0, 1)
+    around = s.edge_faces(int(edge or 0)).tolist()
+    edit = s.split_edge(_edge(s, 0, 1), (0, 0.0, 0))
+    middle = s.copy()
+    border = s.split_edge(_edge(s, 2, 3), _between(s, 2, 3))
+    return steps(
+        [
+            ("An edge, and the faces at it", before, {"faces": around, "edges": [(0, 1)]}),
+            (
+                "split: 1 vertex, 3 edges,\n2 faces more",
+                middle,
+                {"faces": _touched(edit), "vertices": [edit.vertex]},
+            ),
+            (
+                "on the border: 1 vertex,\n2 edges, 1 face more",
+                s,
+                {"faces": _touched(border), "vertices": [border.vertex]},
+            ),
+        ]
+    )
+
+
+def quad_splits(structure: str) -> Figure:
+    """Figure 6: the diagonal of a quad split in the middle, a quarter up its side, and off it."""
+    places = {
+        "in the middle": (0.5, 0.5, 0),
+        "a quarter up the left side": (0.0, 0.25, 0),
+        "off the edge": (0.75, 0.4, 0),
+    }
+    every: list[Step] = [("The quad", structures.build(structure, quad()), {"edges": [(0, 2)]})]
+    for title, place in places.items():
+        s = structures.build(structure, quad())
+        edge = (0, 3) if "left" in title else (0, 2)
+        edit = s.split_edge(_edge(s, *edge), place)
+        every.append((title, s, {"faces": _touched(edit), "vertices": [edit.vertex]}))
+    return steps(every)
+
+
+def collapse_steps(structure: str) -> Figure:
+    """Figure 7: an edge collapses into one of its ends."""
+    s = structures.build(structure, hexagon())
+    edge = _edge(s, 0, 1)
+    before, gone = s.copy(), s.edge_faces(edge).tolist()
+    around = s.vertex_faces(0).tolist()
+    edit = s.collapse_edge(edge, keep=1)
+    return steps(
+        [
+            ("Vertex 0 is to merge into 1", before, {"edges": [(0, 1)], "faces": around}),
+            ("These two faces vanish", before, {"faces": gone, "edges": [(0, 1)]}),
+            ("collapsed: 1 vertex, 3 edges,\n2 faces fewer", s, {
+                "faces": _touched(edit), "vertices": [1]}),
+        ]
+    )  # fmt: skip
+
+
+def split_face_steps(structure: str) -> Figure:
+    """Figure 9: a face is split; and every face is."""
+    s = structures.build(structure, hexagon())
+    before = s.copy()
+    edit = s.split_face(0, s.points[s.face_vertices(0)].mean(axis=0))
+    one = s.copy()
+    whole = before.copy()
+    new = whole.split_all_faces()
+    return steps(
+        [
+            ("A face", before, {"faces": [0]}),
+            ("split: 1 vertex, 3 edges,\n2 faces more", one, {
+                "faces": _touched(edit), "vertices": [edit.vertex]}),
+            ("all faces split", whole, {"vertices": new.tolist()}),
+        ],
+        labels=False,
+    )  # fmt: skip
+
+
+def flip_steps(structure: str) -> Figure:
+    """An edge is turned within its two faces, and turned back."""
+    s = structures.build(structure, hexagon())
+    edge = _edge(s, 0, 1)
+    a, b = s.copy(), s.copy()
+    edit = b.flip_edge(edge)
+    faces = _touched(edit)
+    c = b.copy()
+    c.flip_edge(_edge(c, 4, 8))
+    return steps(
+        [
+            ("An edge", a, {"faces": faces, "edges": [(0, 1)]}),
+            ("flipped: no count changes", b, {"faces": faces, "edges": [(4, 8)]}),
+            ("flipped again: as it was", c, {"faces": faces, "edges": [(0, 1)]}),
+        ]
+    )
+
+
+def _edge(s: Structure, a: int, b: int) -> int:
+    edge = s.find_edge(a, b)
+    assert edge is not None
+    return edge
+
+
+def _between(s: Structure, a: int, b: int) -> ArrayLike:
+    return 0.5 * (s.points[a] + s.points[b])
+
+
+def _touched(edit: hem.Edit) -> list[int]:
+    return [*edit.created_faces.tolist(), *edit.changed_faces.tolist()]
+
+
+def shaded(meshes: dict[str, hem.TriangleMesh], turn: float = 30, tilt: float = 22) -> Figure:
+    """Meshes side by side, shaded by one lamp; ``turn`` and ``tilt`` of the view in degrees."""
+    with styled():
+        figure = Figure(figsize=(3.7 * len(meshes), 3.0), layout="constrained")
+        panels = figure.subplots(1, len(meshes), squeeze=False)[0]
+        for axes, (title, mesh) in zip(panels, meshes.items(), strict=True):
+            _shade(axes, mesh, turn, tilt)
+            axes.set_title(title)
+    return figure
+
+
+def _shade(axes: Axes, mesh: hem.TriangleMesh, turn: float, tilt: float) -> None:
+    points = mesh.points @ _camera(turn, tilt).T
+    corners = points[mesh.triangles]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    lengths = np.linalg.norm(normals, axis=1)
+    facing = np.abs(normals @ LIGHT) / np.where(lengths > 0, lengths, 1)
+    order = np.argsort(corners[:, :, 2].mean(axis=1))
+    tone = (0.35 + 0.65 * facing)[order, None]
+    colors = tone * np.array([[0.96, 0.82, 0.55]])
+    lines = 0.5 * colors if len(order) < 20_000 else colors
+    far_first: Any = corners[order][:, :, :2]
+    shades: Any = {"facecolors": colors, "edgecolors": lines, "linewidths": 0.2}
+    axes.add_collection(PolyCollection(far_first, **shades))
+    axes.autoscale_view()
+    axes.set_aspect("equal")
+    axes.axis("off")
+
+
+def _camera(turn: float, tilt: float) -> Array:
+    """Rows: right, up and towards the eye, for models that stand on the plane z = 0."""
+    a, b = np.radians(turn), np.radians(tilt)
+    around = np.array([[np.cos(a), np.sin(a), 0], [-np.sin(a), np.cos(a), 0], [0, 0, 1]])
+    down = np.array([[1, 0, 0], [0, np.sin(b), np.cos(b)], [0, -np.cos(b), np.sin(b)]])
+    return down @ around
+
+
+def shrunk(mesh: hem.TriangleMesh, part: float, structure: str) -> hem.TriangleMesh:
+    """The mesh with its shortest edges collapsed until ``part`` of its vertices is left."""
+    s = structures.build(structure, mesh)
+    simplify(s, part)
+    return s.to_triangles()
+
+
+def split_all(mesh: hem.TriangleMesh, structure: str) -> hem.TriangleMesh:
+    """The mesh with every face split at its centroid."""
+    s = structures.build(structure, mesh)
+    s.split_all_faces()
+    return s.to_triangles()
+
+
+FIGURES: dict[str, Callable[[str], Figure]] = {
+    "split edge": split_edge_steps,
+    "quad": quad_splits,
+    "collapse": collapse_steps,
+    "split face": split_face_steps,
+    "flip": flip_steps,
+}
+"""The flat figures, each made by a structure of the given name."""
