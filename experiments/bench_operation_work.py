@@ -11,7 +11,7 @@ from experiments.claims import OPERATIONS
 from experiments.conftest import Keep
 from experiments.operating import arguments, faces_of, validate
 from experiments.profiles import Profile
-from experiments.subjects import HUBS, Cell
+from experiments.subjects import Cell
 from structures import NAMES as STRUCTURES
 
 REPETITIONS = 3
@@ -20,12 +20,9 @@ SCANNED = 1  # one scan of a mesh reads as much as another
 
 def cells(profile: Profile, structure: str) -> list[Cell]:
     """The judged family by size, then the hubs by valence."""
-    sizes = [(profile.families[0], size, None) for size in profile.work_sizes]
-    few = profile.work_faces // 16  # so that a scan's work is the scan, not what it finds
-    valences = [(HUBS, profile.work_faces, k) for k in profile.valences if k <= few]
     return [
         Cell(structure, family, size, operation, "counted", valence)
-        for family, size, valence in (*sizes, *valences)
+        for family, size, valence in profile.work_points()
         for operation in OPERATIONS
     ]
 

@@ -16,12 +16,12 @@ import hem
 from experiments.claims import OPERATIONS
 from experiments.conftest import Keep
 from experiments.operating import faces_of, time_operations
-from experiments.profiles import Profile
-from experiments.subjects import HUBS, Cell
+from experiments.profiles import HUBS, Profile
+from experiments.subjects import Cell
 from hem.structure import Structure
 from structures import NAMES as STRUCTURES
 
-FEWEST_HUBS = 128
+FEWEST_HUBS = 32
 """In a mesh whose valence is varied; with fewer operations at a time they are not worth timing."""
 
 SINGLE_FACES = 50

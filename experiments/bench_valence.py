@@ -6,8 +6,8 @@ from typing import Any
 
 from experiments.bench_queries import measure
 from experiments.conftest import Keep
-from experiments.profiles import Profile
-from experiments.subjects import HUBS, Cell
+from experiments.profiles import HUBS, Profile
+from experiments.subjects import Cell
 from hem.queries import QUERIES
 from structures import NAMES as STRUCTURES
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 from experiments.bench_queries import CHECKED_HANDLES
 from experiments.conftest import Keep
 from experiments.profiles import Profile
-from experiments.subjects import HUBS, Cell, pool
+from experiments.subjects import Cell, pool
 from experiments.truth import check
 from hem.queries import QUERIES
 from structures import NAMES as STRUCTURES
@@ -17,12 +17,9 @@ from structures import NAMES as STRUCTURES
 
 def cells(profile: Profile, structure: str) -> list[Cell]:
     """The judged family by size, then the hubs by valence."""
-    sizes = [(profile.families[0], size, None) for size in profile.work_sizes]
-    few = profile.work_faces // 16  # so that a scan's work is the scan, not what it finds
-    valences = [(HUBS, profile.work_faces, k) for k in profile.valences if k <= few]
     return [
         Cell(structure, family, size, query, "random", valence)
-        for family, size, valence in (*sizes, *valences)
+        for family, size, valence in profile.work_points()
         for query in QUERIES
     ]
 

@@ -33,7 +33,7 @@ def break_even(run: Run) -> pd.DataFrame:
     for what in MIXES:
         for structure in NAMES[1:]:
             mine, base = _costs(run, structure, what), _costs(run, BASE, what)
-            both = mine.join(base, how="inner", lsuffix="_mine", rsuffix="_base")
+            both = mine.add_suffix("_mine").join(base.add_suffix("_base"), how="inner")
             gain = (both["each_base"] - both["each_mine"]).to_numpy(float)
             lead = (both["build_mine"] - both["build_base"]).to_numpy(float).clip(min=0)
             times = np.where(gain > 0, lead / np.where(gain > 0, gain, 1), np.inf)

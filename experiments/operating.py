@@ -1,8 +1,8 @@
-"""Operations as they are measured: on which elements, on copies that are as they were each time."""
+"""Operations as they are measured: on which elements, on a copy that is made new each time."""
 
 from __future__ import annotations
 
-from functools import lru_cache
+from functools import lru_cache, partial
 from typing import Any
 
 import numpy as np
@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 import hem
 import structures
 from experiments.latency import latency_now
-from experiments.profiles import Profile
-from experiments.subjects import HUBS, Cell
+from experiments.profiles import HUBS, Profile
+from experiments.subjects import Cell
 from hem.records import copied
 from hem.structure import Structure
 
@@ -24,9 +24,13 @@ NOT_SCANNED = ("split_face",)
 """What does not search the whole mesh even where nothing is known of neighbors."""
 
 MOST_ELEMENTS = 2_000
-MOST_COPIES = 16
+
 FEWEST_OPERATIONS = 500
-"""Per round, where as many copies of a small mesh allow for it."""
+MOST_TURNS = 16
+"""A sample is of at least so many operations, in up to so many turns on a mesh made new each time.
+
+One mesh, so that a small one is found in the caches however many operations there is room for.
+"""
 
 ELEMENT_SEED = 22
 SMALL = 20_000
@@ -84,30 +88,24 @@ def arguments(s: Structure, operation: str, faces: Array) -> Array:
     return rows
 
 
-class Copies:
-    """A structure and its copies, to operate on over and over."""
+class Bench:
+    """A copy of a structure to operate on over and over."""
 
-    def __init__(self, s: Structure, operation: str, faces: Array, most: int = MOST_COPIES) -> None:
-        first = s.copy()
-        args = arguments(first, operation, faces)
+    def __init__(self, s: Structure, operation: str, faces: Array) -> None:
+        self.mesh = s.copy()
+        args = arguments(self.mesh, operation, faces)
         points = np.zeros((len(args), 3))
-        args = args[first.prepare(operation, args, points).check()]
-        self.operations, points = len(args), points[: len(args)]
-        count = int(np.clip(FEWEST_OPERATIONS // max(len(args), 1), 1, most))
-        self.meshes = [first, *(first.copy() for _ in range(count - 1))]
-        self._prepared = [it.prepare(operation, args, points) for it in self.meshes]
-        self._fresh = copied(first.records)
+        args = args[self.mesh.prepare(operation, args, points).check()]
+        self.operations = len(args)
+        self._prepared = self.mesh.prepare(operation, args, points[: len(args)])
+        self._fresh = copied(self.mesh.records)
+        # As bare as can be: a call takes as long as a few operations.
+        self.operate = partial(self._prepared.perform, self._prepared.pinned.address)
 
     def restore(self) -> None:
-        """Make all copies what they were."""
-        for mesh in self.meshes:
-            for array, fresh in zip(mesh.records, self._fresh, strict=True):
-                np.copyto(array, fresh)
-
-    def operate(self) -> None:
-        """Do every operation on every copy."""
-        for prepared in self._prepared:
-            prepared.run()
+        """Make the mesh what it was."""
+        for array, fresh in zip(self.mesh.records, self._fresh, strict=True):
+            np.copyto(array, fresh)
 
 
 def validate(operated: Structure) -> None:
@@ -127,9 +125,9 @@ def check(cell: Cell, operated: Structure, faces: Array) -> None:
 
 
 def _operated(name: str, cell: Cell, faces: Array) -> list[tuple[int, ...]]:
-    copies = Copies(structures.build(name, cell.mesh()), str(cell.query), faces, most=1)
-    copies.operate()
-    return _triangles(copies.meshes[0])
+    bench = Bench(structures.build(name, cell.mesh()), str(cell.query), faces)
+    bench.operate()
+    return _triangles(bench.mesh)
 
 
 def _triangles(s: Structure) -> list[tuple[int, ...]]:
@@ -138,15 +136,19 @@ def _triangles(s: Structure) -> list[tuple[int, ...]]:
 
 
 def time_operations(benchmark: Any, cell: Cell, profile: Profile) -> dict[str, Any]:
-    """Time operations in one compiled loop -> samples, how many per sample, and latency."""
+    """Time operations in compiled loops -> samples, how many per sample, and latency."""
     s, faces = cell.build(), faces_of(cell)
     if cell.structure == "indexed" and cell.query not in NOT_SCANNED:
         faces = faces[: max(4, int(profile.round_seconds / (5e-9 * s.n_faces)))]
-    copies = Copies(s, str(cell.query), faces, most=1)
-    copies.operate()
-    check(cell, copies.meshes[0], faces)
-    done = copies.operations * len(copies.meshes)
+    bench = Bench(s, str(cell.query), faces)
+    if bench.operate() < bench.operations:
+        raise RuntimeError(f"{cell.id}: there was no room for all operations")
+    check(cell, bench.mesh, faces)
+    turns = int(np.clip(FEWEST_OPERATIONS // bench.operations, 1, MOST_TURNS))
     latency = latency_now(sum(s.memory().values()))
-    benchmark.pedantic(copies.operate, setup=copies.restore, rounds=profile.rounds, warmup_rounds=1)
-    data = benchmark.stats.stats.data if benchmark.stats else []
-    return {"samples": np.array(data) / done, "handles": done, "latency": latency}
+    benchmark.pedantic(
+        bench.operate, setup=bench.restore, rounds=turns * profile.rounds, warmup_rounds=2
+    )
+    data = np.array(benchmark.stats.stats.data if benchmark.stats else [])
+    samples = data.reshape(-1, turns).mean(axis=1) / bench.operations
+    return {"samples": samples, "handles": turns * bench.operations, "latency": latency}

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+HUBS = "hubs"
+"""The family of ``hem.valence_mesh``: its size is a number of faces, its valence the hubs'."""
+
 
 @dataclass(frozen=True)
 class Profile:
@@ -30,6 +33,12 @@ class Profile:
     round_seconds: float
     cell_seconds: float
     latency_mib: int
+
+    def work_points(self) -> list[tuple[str, int, int | None]]:
+        """Where work is counted: family, size, valence; one family by size, the hubs by valence."""
+        few = self.work_faces // 16  # so that a scan's work is the scan, not what it finds
+        hubs = [(HUBS, self.work_faces, k) for k in self.valences if k <= few]
+        return [*((self.families[0], size, None) for size in self.work_sizes), *hubs]
 
 
 def _geometric(first: int, last: int, per_decade: int) -> tuple[int, ...]:
@@ -71,7 +80,7 @@ PROFILES = {
         work_sizes=_geometric(100, 3_200, 2),
         work_faces=8_192,
         build_sizes=_geometric(100, 100_000, 2),
-        operation_sizes=_geometric(100, 31_623, 2),
+        operation_sizes=_geometric(316, 100_000, 2),
         operation_faces=16_384,
         workload_sizes=_geometric(100, 10_000, 1),
         models=("teapot", "bunny"),
@@ -90,7 +99,7 @@ PROFILES = {
         work_sizes=_geometric(100, 10_000, 2),
         work_faces=16_384,
         build_sizes=_geometric(100, 1_000_000, 2),
-        operation_sizes=_geometric(100, 1_000_000, 2),
+        operation_sizes=_geometric(316, 1_000_000, 2),
         operation_faces=65_536,
         workload_sizes=_geometric(100, 100_000, 2),
         models=("teapot", "cow", "bunny", "bone"),

@@ -11,15 +11,13 @@ from numpy.typing import ArrayLike, NDArray
 
 import hem
 import structures
+from experiments.profiles import HUBS
 from experiments.results import CellResult
 from hem.mesh import TriangleMesh
 from hem.queries import QUERIES, Query
 from hem.structure import Structure
 
 Array = NDArray[Any]
-
-HUBS = "hubs"
-"""The family of ``hem.valence_mesh``: its size is a number of faces, its valence the hubs'."""
 
 SHUFFLE_SEED = 20
 HANDLE_SEED = 21

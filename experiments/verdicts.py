@@ -17,8 +17,8 @@ from numpy.typing import NDArray
 
 from experiments.claims import BOUND, MEMORY, OPERATIONS, VARIABLES, Claim, load_claims
 from experiments.complexity import Bound, Verdict, judge
+from experiments.profiles import HUBS
 from experiments.results import Run, write_json
-from experiments.subjects import HUBS
 
 Array = NDArray[Any]
 

@@ -43,6 +43,7 @@ from hem.kernels import (
     append_face,
     circulator,
     edges_at_both_ends,
+    found_by_steps,
     joined_by_steps,
     kernel,
     named,
@@ -245,22 +246,13 @@ joined = joined_by_steps(first, clockwise, in_triangle, counterclockwise)
 
 
 @kernel
-def between(m: HalfEdgeRecords, a: int, b: int) -> int:
-    """The half-edge that runs a → b, or -1. Cost O(n_ev)."""
-    start = m.vertex_half_edge[a]
-    h = start
-    while h >= 0:
-        if tip(m, h) == b:
-            return h
-        h = clockwise(m, h, a)
-        if h == start:
-            return -1
-    h = counterclockwise(m, start, a) if start >= 0 else -1
-    while h >= 0:
-        if tip(m, h) == b:
-            return h
-        h = counterclockwise(m, h, a)
-    return -1
+def ends_at(m: HalfEdgeRecords, h: int, v: int, w: int) -> bool:
+    """Whether h, which leaves v, ends at w."""
+    return tip(m, h) == w
+
+
+# The half-edge that runs a → b, or -1.
+between = found_by_steps(first, clockwise, ends_at, counterclockwise)
 
 
 @kernel

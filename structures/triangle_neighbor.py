@@ -43,6 +43,7 @@ from hem.kernels import (
     edge_exists,
     edge_vertices,
     edges_at_both_ends,
+    found_by_steps,
     joined_by_steps,
     kernel,
     named,
@@ -191,23 +192,8 @@ def in_triangle(m: TriangleNeighborRecords, t: int, v: int, w: int) -> bool:
 joined = joined_by_steps(first, clockwise, in_triangle, counterclockwise)
 
 
-@kernel
-def with_edge(m: TriangleNeighborRecords, a: int, b: int) -> int:
-    """A triangle that has edge a – b, or -1. Cost O(n_ev)."""
-    start = m.vertex_triangle[a]
-    t = start
-    while t >= 0:
-        if in_triangle(m, t, a, b):
-            return t
-        t = clockwise(m, t, a)
-        if t == start:
-            return -1
-    t = counterclockwise(m, start, a) if start >= 0 else -1
-    while t >= 0:
-        if in_triangle(m, t, a, b):
-            return t
-        t = counterclockwise(m, t, a)
-    return -1
+# A triangle that has edge a – b, or -1.
+with_edge = found_by_steps(first, clockwise, in_triangle, counterclockwise)
 
 
 @kernel

@@ -48,6 +48,7 @@ from hem.kernels import (
     append_face,
     circulator,
     edges_at_both_ends,
+    found_by_steps,
     joined_by_steps,
     kernel,
     named,
@@ -262,23 +263,8 @@ def ends_at(m: WingedEdgeRecords, d: int, v: int, w: int) -> bool:
 joined = joined_by_steps(first, clockwise, ends_at, counterclockwise)
 
 
-@kernel
-def between(m: WingedEdgeRecords, a: int, b: int) -> int:
-    """The directed edge a → b, or -1. Cost O(n_ev)."""
-    start = first(m, a)
-    d = start
-    while d >= 0:
-        if tip(m, d) == b:
-            return d
-        d = clockwise(m, d, a)
-        if d == start:
-            return -1
-    d = counterclockwise(m, start, a) if start >= 0 else -1
-    while d >= 0:
-        if tip(m, d) == b:
-            return d
-        d = counterclockwise(m, d, a)
-    return -1
+# The directed edge a → b, or -1.
+between = found_by_steps(first, clockwise, ends_at, counterclockwise)
 
 
 @kernel

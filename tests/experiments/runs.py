@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 
 from experiments.claims import MEMORY, load_claims
+from experiments.profiles import HUBS
 from experiments.provenance import describe
 from experiments.results import CellResult, ResultFile, write_json
-from experiments.subjects import HUBS
 from experiments.workloads import WORKLOADS
 from structures import NAMES
 

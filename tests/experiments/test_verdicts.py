@@ -103,7 +103,9 @@ def test_the_table_shows_every_row_and_mark(sound, capsys):
     assert printed.count("✓") > 26
     assert all(text in printed for text in ("228 ✓", "O(n_t) ✓", "N/A – O(1)", "26 consistent"))
     assert "16 consistent" in printed
-    assert "| Split edge | O(n_t) ✓ | O(n_ev) ✓ | O(1) ✓ | O(1) ✓ |" in markdown(sound, "operations")
+    assert "| Split edge | O(n_t) ✓ | O(n_ev) ✓ | O(1) ✓ | O(1) ✓ |" in markdown(
+        sound, "operations"
+    )
     lines = markdown(sound).splitlines()
     assert len(lines) == 2 + len(PRINTED) + 1
     assert "| Vertex → Faces | O(n_t) ✓ | O(n_ev) ✓ | O(n_ev) ✓ | O(n_ev) ✓ |" in lines
