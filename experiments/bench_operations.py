@@ -15,7 +15,7 @@ import numpy as np
 import hem
 from experiments.claims import OPERATIONS
 from experiments.conftest import Keep
-from experiments.operating import faces_of, time_operations
+from experiments.operating import NOT_SCANNED, arguments, faces_of, time_operations
 from experiments.profiles import HUBS, Profile
 from experiments.subjects import Cell
 from hem.structure import Structure
@@ -25,7 +25,8 @@ FEWEST_HUBS = 32
 """In a mesh whose valence is varied; with fewer operations at a time they are not worth timing."""
 
 SINGLE_FACES = 50
-BUILT_ANEW = 5  # as many faces as are split where each split takes a scan of the mesh
+SCANNED_FACES = 5
+"""How many are operated on where every operation takes a scan of the mesh."""
 
 
 Ending = Callable[[], Any]
@@ -51,20 +52,22 @@ def _built_anew(s: Structure) -> Ending:
     return lambda: None
 
 
-ONE_BY_ONE: dict[str, Callable[[Structure], Ending]] = {
-    "one by one": _alone,
+RENDERED: dict[str, Callable[[Structure], Ending]] = {
     "rendered": _rendered,
     "in a transaction": _in_a_transaction,
     "render mesh built anew": _built_anew,
 }
-"""Orders of a cell that splits faces from Python, and what is set up for it -> how it ends."""
+"""Ways to keep a render mesh up to date: the order of a cell, and what is set up -> how it ends."""
 
 
 def cells(profile: Profile, structure: str) -> list[Cell]:
-    """By size and by valence every operation; by size the ways to split faces one by one."""
+    """Batched by size and by valence; one by one, and with a render mesh, at some of the sizes."""
     family, faces = profile.families[0], profile.operation_faces
     by_size = [(family, size, None) for size in profile.operation_sizes]
     by_valence = [(HUBS, faces, k) for k in profile.valences if k <= faces // FEWEST_HUBS]
+    some = profile.operation_sizes[::2]
+    singly = [(operation, "one by one") for operation in OPERATIONS]
+    rendered = [("split_face", order) for order in RENDERED]
     return [
         *(
             Cell(structure, family, size, operation, "batched", valence)
@@ -72,9 +75,9 @@ def cells(profile: Profile, structure: str) -> list[Cell]:
             for operation in OPERATIONS
         ),
         *(
-            Cell(structure, family, size, "split_face", order)
-            for size in profile.operation_sizes[::2]
-            for order in ONE_BY_ONE
+            Cell(structure, family, size, operation, order)
+            for size in some
+            for operation, order in (*singly, *rendered)
         ),
     ]
 
@@ -90,26 +93,31 @@ def test_operation(cell: Cell, profile: Profile, benchmark: Any, keep: Keep) -> 
 
 
 def _single_faces(cell: Cell) -> list[int]:
-    scanned = cell.order == "render mesh built anew"
-    return faces_of(cell, BUILT_ANEW if scanned else SINGLE_FACES).tolist()
+    scanned = cell.structure == "indexed" and cell.query not in NOT_SCANNED
+    few = scanned or cell.order == "render mesh built anew"
+    return faces_of(cell, SCANNED_FACES if few else SINGLE_FACES).tolist()
 
 
 def _time_one_by_one(benchmark: Any, cell: Cell, profile: Profile) -> dict[str, Any]:
-    s, (first, *faces) = cell.build(), _single_faces(cell)
+    s, operation, (first, *faces) = cell.build(), str(cell.query), _single_faces(cell)
+    set_up = RENDERED.get(str(cell.order), _alone)
+    given = 3 if operation == "add_face" else 1
+    point = ((0.0, 0.0, 0.0),) if operation.startswith("split") else ()
 
-    def fresh() -> tuple[tuple[Structure, Ending], dict[str, Any]]:
+    def fresh() -> tuple[tuple[Any, list[list[int]], Ending], dict[str, Any]]:
         copy = s.copy()
         copy.reserve(2 * SINGLE_FACES)
-        end = ONE_BY_ONE[str(cell.order)](copy)
+        rows = arguments(copy, operation, np.array(faces))[:, :given].tolist()
+        end = set_up(copy)
         copy.split_face(first, (0, 0, 0))  # makes room, here and in the render mesh
-        return (copy, end), {}
+        return (getattr(copy, operation), rows, end), {}
 
-    def split(copy: Structure, end: Ending) -> None:
-        for face in faces:
-            copy.split_face(face, (0, 0, 0))
+    def operate(method: Callable[..., Any], rows: list[list[int]], end: Ending) -> None:
+        for row in rows:
+            method(*row, *point)
         end()
 
-    benchmark.pedantic(split, setup=fresh, rounds=profile.rounds, warmup_rounds=1)
+    benchmark.pedantic(operate, setup=fresh, rounds=profile.rounds, warmup_rounds=1)
     data = benchmark.stats.stats.data if benchmark.stats else []
     return {"samples": np.array(data) / len(faces), "handles": len(faces)}
 

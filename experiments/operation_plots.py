@@ -27,7 +27,7 @@ RENDERED = {
 def rendering(run: Run, structure: str = "half_edge") -> Figure:
     """What a render mesh adds to one edit from Python, by size."""
     cells = run.cells[run.cells["experiment"] == "bench_operations"]
-    cells = cells[cells["structure"] == structure]
+    cells = cells[(cells["structure"] == structure) & (cells["query"] == "split_face")]
     with styled():
         figure = Figure(figsize=(7.5, 3.6), layout="constrained")
         axes = figure.subplots()

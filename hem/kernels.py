@@ -67,42 +67,11 @@ def circulator(clockwise: Kernel, counterclockwise: Kernel) -> Kernel:
     return compiled
 
 
-def joined_by_steps(first: Kernel, clockwise: Kernel, reaches: Kernel, back: Kernel) -> Kernel:
-    """Make ``joined(m, a, b) -> bool``: whether an edge joins two vertices that have faces.
-
-    ``first(m, v)`` is an item to begin at, and ``reaches(m, item, v, w)`` tells whether the edge or
-    face that the item stands for has w, too. The steps are those of ``circulator``. Both vertices
-    are circulated by turns, so the cost is O(the smaller of both valences).
-    """
-
-    @kernel
-    def onward(m: Any, item: int, start: int, v: int, turned: bool) -> tuple[int, bool]:
-        if not turned:
-            following = clockwise(m, item, v)
-            if following >= 0:
-                return (following, False) if following != start else (-1, False)
-            item = start
-        return back(m, item, v), True
-
-    def joined(m: Any, a: int, b: int) -> bool:
-        from_a, from_b = first(m, a), first(m, b)
-        at_a, at_b = from_a, from_b
-        turned_a, turned_b = False, False
-        while at_a >= 0 and at_b >= 0:
-            if reaches(m, at_a, a, b) or reaches(m, at_b, b, a):
-                return True
-            at_a, turned_a = onward(m, at_a, from_a, a, turned_a)
-            at_b, turned_b = onward(m, at_b, from_b, b, turned_b)
-        return False
-
-    compiled: Kernel = kernel(joined)
-    return compiled
-
-
 def found_by_steps(first: Kernel, clockwise: Kernel, reaches: Kernel, back: Kernel) -> Kernel:
     """Make ``find(m, a, b) -> item``: the first item around a that reaches b, or -1.
 
-    The parts are those of ``joined_by_steps``. Cost O(valence of a).
+    ``first(m, v)`` is an item to begin at, or -1; ``reaches(m, item, v, w)`` tells whether the item
+    at v is the one for w. The steps are those of ``circulator``. Cost O(valence of a).
     """
 
     def find(m: Any, a: int, b: int) -> int:
@@ -122,6 +91,34 @@ def found_by_steps(first: Kernel, clockwise: Kernel, reaches: Kernel, back: Kern
         return -1
 
     compiled: Kernel = kernel(find)
+    return compiled
+
+
+def joined_by_steps(first: Kernel, clockwise: Kernel, ends: Kernel, find: Kernel) -> Kernel:
+    """Make ``joined(m, a, b) -> bool``: whether an edge joins two vertices that have faces.
+
+    ``ends(m, item, v, w)`` tells whether the edge that leaves v for an item ends at w, and ``find``
+    finds an item at v whose face has w. Both vertices are circulated by turns, so the cost is
+    O(the smaller of both valences); where the first that comes to an end lies on the border, its.
+    """
+
+    def joined(m: Any, a: int, b: int) -> bool:
+        from_a, from_b = first(m, a), first(m, b)
+        at_a, at_b = from_a, from_b
+        while not ends(m, at_a, a, b) and not ends(m, at_b, b, a):
+            at_a = clockwise(m, at_a, a)
+            if at_a == from_a:
+                return False
+            if at_a < 0:
+                return bool(find(m, a, b) >= 0)
+            at_b = clockwise(m, at_b, b)
+            if at_b == from_b:
+                return False
+            if at_b < 0:
+                return bool(find(m, b, a) >= 0)
+        return True
+
+    compiled: Kernel = kernel(joined)
     return compiled
 
 

@@ -242,17 +242,16 @@ def in_triangle(m: HalfEdgeRecords, h: int, v: int, w: int) -> bool:
     return tip(m, h) == w or m.half_edge[previous(m, h), ORIGIN] == w
 
 
-joined = joined_by_steps(first, clockwise, in_triangle, counterclockwise)
-
-
 @kernel
 def ends_at(m: HalfEdgeRecords, h: int, v: int, w: int) -> bool:
     """Whether h, which leaves v, ends at w."""
     return tip(m, h) == w
 
 
-# The half-edge that runs a → b, or -1.
+# The half-edge that runs a → b, or -1; and one at a whose face has b.
 between = found_by_steps(first, clockwise, ends_at, counterclockwise)
+with_edge = found_by_steps(first, clockwise, in_triangle, counterclockwise)
+joined = joined_by_steps(first, clockwise, ends_at, with_edge)
 
 
 @kernel

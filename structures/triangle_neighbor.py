@@ -189,11 +189,15 @@ def in_triangle(m: TriangleNeighborRecords, t: int, v: int, w: int) -> bool:
     return m.triangle[t, CORNER + corner_of(m, t, w)] == w
 
 
-joined = joined_by_steps(first, clockwise, in_triangle, counterclockwise)
+@kernel
+def leaves_for(m: TriangleNeighborRecords, t: int, v: int, w: int) -> bool:
+    """Whether w comes right after v in t."""
+    return m.triangle[t, CORNER + (corner_of(m, t, v) + 1) % 3] == w
 
 
 # A triangle that has edge a – b, or -1.
 with_edge = found_by_steps(first, clockwise, in_triangle, counterclockwise)
+joined = joined_by_steps(first, clockwise, leaves_for, with_edge)
 
 
 @kernel

@@ -260,11 +260,9 @@ def ends_at(m: WingedEdgeRecords, d: int, v: int, w: int) -> bool:
     return tip(m, d) == w
 
 
-joined = joined_by_steps(first, clockwise, ends_at, counterclockwise)
-
-
 # The directed edge a → b, or -1.
 between = found_by_steps(first, clockwise, ends_at, counterclockwise)
+joined = joined_by_steps(first, clockwise, ends_at, between)
 
 
 @kernel

@@ -16,6 +16,8 @@ SQUARE = [(0, 1, 2), (0, 2, 3)]
 RING = [(0, 3, 4), (0, 4, 1), (1, 4, 5), (1, 5, 2), (2, 5, 3), (2, 3, 0)]
 """A triangular tube 0 1 2 – 3 4 5, open at both ends."""
 
+PILLOW = [(0, 1, 2), (0, 2, 1)]
+
 BOOK = [(0, 1, 2), (1, 0, 3), (0, 1, 4)]
 """Three faces at edge 0 – 1, which only an indexed mesh can hold."""
 
@@ -28,6 +30,8 @@ CASES = {
     "collapse of a strip's rung": (strip(4).triangles, "collapse_edge", (2, 3), "both ends lie"),
     "collapse of a lone triangle": ([(0, 1, 2)], "collapse_edge", (0, 1), "other two edges"),
     "collapse with a foreign keep": (octahedron().triangles, "collapse_edge", (0, 1, 5), "not an"),
+    "collapse in a pillow": (PILLOW, "collapse_edge", (0, 1), "same three corners"),
+    "flip in a pillow": (PILLOW, "flip_edge", (0, 1), "same three corners"),
     "flip on the border": (SQUARE, "flip_edge", (0, 1), "no second face"),
     "flip onto an edge": (TETRAHEDRON, "flip_edge", (0, 1), "joined by an edge already"),
     "add a face with a corner twice": (SQUARE, "add_face", (0, 1, 1), "three different"),

@@ -1,0 +1,105 @@
+"""Laws that operations obey together."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import hem
+import structures
+from tests.structures.actions import faces_of
+from tests.structures.conftest import shuffled
+
+MESHES = {
+    "torus": lambda: shuffled(hem.generate("torus", 100)),
+    "grid": lambda: shuffled(hem.generate("grid", 64)),
+    "sphere": lambda: hem.generate("sphere", 162),
+}
+
+
+@pytest.fixture(params=MESHES)
+def s(request: pytest.FixtureRequest, name: str) -> structures.Structure:
+    return structures.build(name, MESHES[request.param]())
+
+
+def triangles(s: structures.Structure) -> list[tuple[int, ...]]:
+    return sorted(faces_of(s).values())
+
+
+def test_a_collapse_undoes_a_split_of_any_edge(s):
+    before = triangles(s)
+    for edge in s.edges()[::5].tolist():
+        a, b = s.edge_vertices(edge).tolist()
+        for keep in (a, b):
+            new = s.split_edge(s.find_edge(a, b), (0, 0, 0)).vertex
+            s.collapse_edge(s.find_edge(new, keep), keep=keep)
+            assert triangles(s) == before
+    s.validate()
+
+
+def test_a_collapse_undoes_a_split_of_any_face(s):
+    before = triangles(s)
+    for face in s.faces()[::7].tolist():
+        for keep in s.face_vertices(face).tolist():
+            around = sorted(s.face_vertices(face).tolist())
+            new = s.split_face(face, (0, 0, 0)).vertex
+            s.collapse_edge(s.find_edge(new, keep), keep=keep)
+            assert triangles(s) == before
+            face = next(f for f, t in faces_of(s).items() if sorted(t) == around)
+    s.validate()
+
+
+def test_a_second_flip_undoes_the_first_face_by_face(s):
+    flipped = 0
+    for edge in s.edges().tolist():
+        a, b = s.edge_vertices(edge).tolist()
+        edge = s.find_edge(a, b)
+        if not s.can_flip_edge(edge):
+            continue
+        before = faces_of(s)
+        faces = s.edge_faces(edge)
+        c, d = sorted({*s.face_vertices(faces).values.tolist()} - {a, b})
+        s.flip_edge(edge)
+        assert s.find_edge(a, b) is None
+        s.flip_edge(s.find_edge(c, d))
+        assert faces_of(s) == before
+        flipped += 1
+    assert flipped > 50
+    s.validate()
+
+
+def test_a_face_that_was_removed_can_be_added_again(s):
+    before, counts = triangles(s), (s.n_vertices, s.n_edges, s.n_faces)
+    for face in s.faces()[::6].tolist():
+        corners = s.face_vertices(face).tolist()
+        try:
+            s.remove_face(face)
+        except hem.TopologyError:
+            continue
+        assert s.n_faces == counts[2] - 1
+        s.add_face(*corners)
+        assert triangles(s) == before
+        assert (s.n_vertices, s.n_edges, s.n_faces) == counts
+    s.validate()
+
+
+def test_splitting_all_faces_one_by_one_or_at_once_is_the_same(s):
+    other = s.copy()
+    corners = s.face_vertices(s.faces()).values.reshape(-1, 3)
+    for face, center in zip(s.faces().tolist(), s.points[corners].mean(axis=1), strict=True):
+        other.split_face(face, center)
+    before = s.n_faces
+    s.split_all_faces()
+    assert s.n_faces == 3 * before
+    assert faces_of(s) == faces_of(other)
+    assert np.allclose(s.points, other.points, atol=1e-6)
+
+
+def test_a_moved_vertex_is_moved_and_nothing_else(s):
+    before, points = triangles(s), s.points.copy()
+    edit = s.move_vertex(7, (1, 2, 3))
+    assert edit.changed_vertices.tolist() == [7]
+    assert s.points[7].tolist() == [1, 2, 3]
+    points[7] = (1, 2, 3)
+    assert np.array_equal(s.points, points)
+    assert triangles(s) == before
