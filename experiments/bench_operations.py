@@ -21,7 +21,7 @@ from experiments.subjects import Cell
 from hem.structure import Structure
 from structures import NAMES as STRUCTURES
 
-FEWEST_HUBS = 32
+FEWEST_HUBS = 64
 """In a mesh whose valence is varied; with fewer operations at a time they are not worth timing."""
 
 SINGLE_FACES = 50

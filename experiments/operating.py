@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import lru_cache, partial
+from time import perf_counter
 from typing import Any
 
 import numpy as np
@@ -15,6 +16,7 @@ from experiments.profiles import HUBS, Profile
 from experiments.subjects import Cell
 from hem.records import copied
 from hem.structure import Structure
+from hem.uses import END
 
 Array = NDArray[Any]
 
@@ -31,6 +33,9 @@ MOST_TURNS = 16
 
 One mesh, so that a small one is found in the caches however many operations there is room for.
 """
+
+IDLE_CALLS = 15
+LEAST_SECONDS = 1e-8
 
 ELEMENT_SEED = 22
 SMALL = 20_000
@@ -99,8 +104,20 @@ class Bench:
         self.operations = len(args)
         self._prepared = self.mesh.prepare(operation, args, points[: len(args)])
         self._fresh = copied(self.mesh.records)
-        # As bare as can be: a call takes as long as a few operations.
+        # As bare as can be, but for the call itself, see ``idle_seconds``.
         self.operate = partial(self._prepared.perform, self._prepared.pinned.address)
+
+    def idle_seconds(self) -> float:
+        """What a call takes that does no operation: about as long as a few of them."""
+        task, seconds = self._prepared.task, []
+        task[END] = 0
+        for _ in range(IDLE_CALLS):
+            self.restore()
+            begin = perf_counter()
+            self.operate()
+            seconds.append(perf_counter() - begin)
+        task[END] = self.operations
+        return float(np.median(seconds))
 
     def restore(self) -> None:
         """Make the mesh what it was."""
@@ -150,5 +167,6 @@ def time_operations(benchmark: Any, cell: Cell, profile: Profile) -> dict[str, A
         bench.operate, setup=bench.restore, rounds=turns * profile.rounds, warmup_rounds=2
     )
     data = np.array(benchmark.stats.stats.data if benchmark.stats else [])
-    samples = data.reshape(-1, turns).mean(axis=1) / bench.operations
+    turned = data.reshape(-1, turns).mean(axis=1) - bench.idle_seconds()
+    samples = np.maximum(turned, LEAST_SECONDS) / bench.operations
     return {"samples": samples, "handles": turns * bench.operations, "latency": latency}

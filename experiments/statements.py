@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from experiments.breakeven import break_even
 from experiments.claims import OPERATIONS
 from experiments.results import Run
-from experiments.verdicts import Evidence, at_largest
+from experiments.verdicts import Evidence
 from hem.queries import QUERIES
 
 Array = NDArray[np.float64]
@@ -54,31 +54,35 @@ def _bytes_winged_half(run: Run) -> Iterable[float]:
 
 
 def _winged_half(run: Run) -> Iterable[float]:
-    """The time of every query and operation at the largest size, winged-edge by half-edge."""
+    """The work of every query and operation at the largest size, winged-edge by half-edge."""
     for what in (*QUERIES, *OPERATIONS):
-        pair = [at_largest(run, it, what) for it in ("winged_edge", "half_edge")]
-        yield pair[0] / pair[1]
+        winged, half = (_work(run, name, what)[-1:] for name in ("winged_edge", "half_edge"))
+        yield from winged / half
 
 
-def _steps(run: Run) -> Iterable[float]:
-    """Elements read to walk around a vertex, triangle-neighbor by half-edge, at every size."""
-    evidence = Evidence(run)
-    reads = [
-        [
-            float(np.mean(it))
-            for it in evidence.curve("work", "faces", name, "vertex_faces")["samples"]
-        ]
-        for name in ("triangle_neighbor", "half_edge")
-    ]
-    yield from (mine / other for mine, other in zip(*reads, strict=True))
+def _answers(run: Run) -> Iterable[float]:
+    """How many more queries a triangle-neighbor structure answers without searching the mesh."""
+    local = {"triangle_neighbor": 0, "indexed": 0}
+    for name in local:
+        for query in QUERIES:
+            work = _work(run, name, query)
+            local[name] += bool(len(work) > 1 and work[-1] < 2 * work[0] + 2)
+    if any(local.values()):
+        yield local["triangle_neighbor"] - local["indexed"]
+
+
+def _work(run: Run, structure: str, what: str) -> Array:
+    """Mean accesses of a query or operation, by size."""
+    cells = Evidence(run).curve("work", "faces", structure, what)
+    return np.array([max(float(np.mean(it)), 1) for it in cells["samples"]])
 
 
 def _static(run: Run) -> Iterable[float]:
-    """Building alone and a pass over all faces, half-edge by indexed."""
-    cells = run.cells[run.cells["family"] == "torus"]
+    """Building a half-edge mesh by building an indexed one, in time; and the bytes of both."""
+    cells = run.cells[(run.cells["family"] == "torus") & (run.cells["reference_bytes"] == 4)]
     alone = (cells["experiment"] == "bench_build") & (cells["order"] == "consecutive")
-    for wanted in (alone, cells["query"] == "vertex_normals"):
-        yield from _by_size(cells[wanted & (cells["reference_bytes"] == 4)])
+    yield from _by_size(cells[alone])
+    yield from _bytes_ratio(run)
 
 
 def _dynamic(run: Run) -> Iterable[float]:
@@ -107,7 +111,7 @@ QUANTITIES: dict[str, Quantity] = {
     "bytes_ratio": _bytes_ratio,
     "bytes_winged_half": _bytes_winged_half,
     "winged_half": _winged_half,
-    "steps": _steps,
+    "answers": _answers,
     "static": _static,
     "dynamic": _dynamic,
     "edits_per_build": _edits_per_build,

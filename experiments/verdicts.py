@@ -141,13 +141,6 @@ class Evidence:
         return float(cells["samples"].iloc[-1][0] / cells["vertices"].iloc[-1])
 
 
-def at_largest(run: Run, structure: str, what: str) -> float:
-    """Median seconds of a query (random handles) or operation at its largest size; NaN if none."""
-    measure = "time" if what in OPERATIONS else "random"
-    cells = Evidence(run).curve(measure, "faces", structure, what)
-    return float(np.median(cells["samples"].iloc[-1])) if len(cells) else float("nan")
-
-
 def judged(run: Run, claims: list[Claim] | None = None) -> pd.DataFrame:
     """One row per claim: what is printed, what was found, and the verdicts behind it.
 

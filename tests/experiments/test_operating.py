@@ -52,6 +52,15 @@ def test_a_bench_is_operated_on_and_restored(name, operation):
     assert it.build().n_faces == 1800  # the mesh it was copied from is left alone
 
 
+def test_an_idle_call_takes_no_time_to_speak_of_and_does_nothing():
+    it = cell("half_edge")
+    bench = Bench(it.build(), "split_face", faces_of(it))
+    before = bench.mesh.n_faces
+    assert 0 < bench.idle_seconds() < 1e-3
+    assert bench.mesh.n_faces == before
+    assert bench.operate() == bench.operations
+
+
 def test_all_structures_are_asked_for_the_same(monkeypatch):
     rows = []
     for name in structures.NAMES:

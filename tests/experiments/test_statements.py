@@ -30,13 +30,19 @@ def test_every_sentence_has_a_quantity_of_its_own_and_a_source(run):
     assert all(it.low > -np.inf or it.high < np.inf for it in every)
 
 
-def test_what_lies_within_its_bounds_is_consistent_what_does_not_is_violated(run):
+def test_what_lies_within_its_bounds_is_consistent(run):
     assert outcome(run, "bytes_ratio") == "consistent"
     assert outcome(run, "winged_half") == "consistent"
     assert outcome(run, "dynamic") == "consistent"
     assert outcome(run, "static") == "consistent"
     assert outcome(run, "edits_per_build") == "consistent"
-    assert outcome(run, "steps") == "violated"  # in this run they cost the same
+    assert outcome(run, "answers") == "consistent"
+
+
+def test_what_lies_outside_its_bounds_is_violated(tmp_path):
+    law = {"winged_edge": lambda n_t, n_ev: 1e6}
+    run = load(write_run(tmp_path, lambda s, q, p: law.get(s)))
+    assert outcome(run, "winged_half") == "violated"
 
 
 def test_where_nothing_was_measured_nothing_is_told(tmp_path):

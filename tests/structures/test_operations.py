@@ -101,12 +101,18 @@ def test_operations_keep_their_promise_on_the_counts(name):
     border, inner = (int(s.edges()[rows.counts == k][20]) for k in (1, 2))
     face = int(s.edge_faces(inner)[0])
     far = next(int(e) for e in s.edges()[::-1] if s.can_flip_edge(int(e)))
+
+    def collapsible(faces: int) -> int:
+        edges = (int(e) for e in s.edges() if len(s.edge_faces(int(e))) == faces)
+        return next(e for e in edges if s.can_collapse_edge(e))
+
     for change, call in [
         ((1, 3, 2), lambda: s.split_edge(inner, (0, 0, 0))),
         ((1, 2, 1), lambda: s.split_edge(border, (0, 0, 0))),
         ((1, 3, 2), lambda: s.split_face(face, (0, 0, 0))),
         ((0, 0, 0), lambda: s.flip_edge(far)),
-        ((-1, -3, -2), lambda: s.collapse_edge(far)),
+        ((-1, -3, -2), lambda: s.collapse_edge(collapsible(2))),
+        ((-1, -2, -1), lambda: s.collapse_edge(collapsible(1))),
     ]:
         before = np.array([s.n_vertices, s.n_edges, s.n_faces])
         call()
