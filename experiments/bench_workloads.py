@@ -12,6 +12,7 @@ from experiments.conftest import Keep
 from experiments.profiles import Profile
 from experiments.subjects import Cell
 from experiments.workloads import IMPACTS, WORKLOADS
+from hem.queries import QUERIES
 from hem.structure import Structure
 from structures import NAMES as STRUCTURES
 
@@ -47,13 +48,23 @@ def test_workload(cell: Cell, profile: Profile, benchmark: Any, keep: Keep) -> N
         keep(cell.result("time", s, np.zeros(0), left_out=reason))
         return
     _check(cell)
+    ready = _ready(s)
     begin = perf_counter()
-    units = workload.run(s.copy())
+    units = workload.run(ready)
     seconds = perf_counter() - begin
     rounds = int(np.clip(profile.cell_seconds / seconds, FEWEST_ROUNDS, profile.rounds))
-    benchmark.pedantic(workload.run, setup=lambda: ((s.copy(),), {}), rounds=rounds)
+    benchmark.pedantic(workload.run, setup=lambda: ((_ready(s),), {}), rounds=rounds)
     data = benchmark.stats.stats.data if benchmark.stats else []
     keep(cell.result("time", s, np.array(data) / units, handles=units, checked=True))
+
+
+def _ready(s: Structure) -> Structure:
+    """A copy that was asked everything once, so that its methods are bound."""
+    copy = s.copy()
+    for query in QUERIES.values():
+        getattr(copy, query.name)(int(copy.handles(query.source)[0]))
+    copy.can_flip_edge(int(copy.edges()[0]))
+    return copy
 
 
 def _least_seconds(s: Structure, cell: Cell) -> float:

@@ -15,7 +15,7 @@ from collections.abc import Callable
 from importlib import import_module
 from pathlib import Path
 from time import perf_counter
-from typing import Annotated, Any, NamedTuple
+from typing import Annotated, Any
 
 import numpy as np
 import typer
@@ -24,29 +24,18 @@ from rich.table import Table
 
 import hem
 import structures
-from experiments.latency import latency_now
+from experiments.peer_operations import (
+    ROUNDS,
+    Comparison,
+    Task,
+    edits_by_size,
+    operated,
+    rendered_edits,
+)
 from experiments.subjects import shuffled
 from hem.mesh import TriangleMesh
 
-ROUNDS = 7
 SINGLE_QUERIES = 100_000
-OPERATED = 20_000
-OPERATED_VERTICES = 100_000
-
-Task = Callable[[], Any]
-
-
-class Comparison(NamedTuple):
-    """One task, done by us and by others; ``asked``: how many times faster we are to be.
-
-    Tasks of one argument are given what ``fresh`` makes for them, untimed: a mesh to operate on.
-    """
-
-    what: str
-    asked: float
-    ours: Callable[..., Any]
-    theirs: dict[str, Callable[..., Any]]
-    fresh: dict[str, Task] = {}  # noqa: RUF012  by the name of the peer, "" for us
 
 
 class Peers:
@@ -125,7 +114,7 @@ def comparisons(n_vertices: int) -> list[Comparison]:
             {"OpenMesh ff_indices": om.ff_indices},
         ),
         *_single_queries(peers, mesh, s, om),
-        *_operations(peers),
+        *operated(peers.openmesh),
     ]
 
 
@@ -160,156 +149,6 @@ def _single_queries(peers: Peers, mesh: TriangleMesh, s: Any, om: Any) -> list[C
         )
         for name, vertices in orders.items()
     ]
-
-
-def _operations(peers: Peers) -> list[Comparison]:
-    """Operations on elements at random, batched and one by one, against OpenMesh's from Python."""
-    mesh, rng = hem.generate("torus", OPERATED_VERTICES), np.random.default_rng(1)
-    s = structures.build("half_edge", mesh)
-    points = rng.random((OPERATED, 3))
-    places = list(points)
-    orders: dict[str, Callable[[Any], Any]] = {
-        "at random": lambda every: rng.choice(every, OPERATED, replace=False),
-        "in order": lambda every: every[:: len(every) // OPERATED][:OPERATED],
-    }
-
-    def reserved() -> Any:
-        copy = s.copy()
-        copy.reserve(OPERATED)
-        copy.split_face(0, (0, 0, 0))  # binds the operations
-        return copy
-
-    def openmesh() -> Any:
-        return peers.openmesh.TriMesh(mesh.points.astype(np.float64), np.array(mesh.triangles))
-
-    def comparison(what: str, asked: float, ours: Any, theirs: Any) -> Comparison:
-        fresh = {"": reserved, "OpenMesh": openmesh}
-        return Comparison(f"{OPERATED:,} {what}", asked, ours, {"OpenMesh": theirs}, fresh)
-
-    def om_split_faces(faces: list[int]) -> Callable[[Any], None]:
-        def split(om: Any) -> None:
-            for face, place in zip(faces, places, strict=True):
-                om.split(om.face_handle(face), om.add_vertex(place))
-
-        return split
-
-    def om_split_edges(edges: list[int]) -> Callable[[Any], None]:
-        def split(om: Any) -> None:
-            for edge, place in zip(edges, places, strict=True):
-                om.split(om.edge_handle(edge), om.add_vertex(place))
-
-        return split
-
-    def om_collapse(edges: list[int]) -> Callable[[Any], None]:
-        def collapse(om: Any) -> None:
-            for edge in edges:
-                handle = om.halfedge_handle(om.edge_handle(edge), 0)
-                if not om.is_deleted(om.edge_handle(edge)) and om.is_collapse_ok(handle):
-                    om.collapse(handle)
-
-        return collapse
-
-    def om_flip(edges: list[int]) -> Callable[[Any], None]:
-        def flip(om: Any) -> None:
-            for edge in edges:
-                handle = om.edge_handle(edge)
-                if om.is_flip_ok(handle):
-                    om.flip(handle)
-
-        return flip
-
-    def one_by_one(operation: str, handles: list[int], with_points: bool) -> Callable[[Any], None]:
-        def operate(mine: Any) -> None:
-            method = getattr(mine, operation)
-            for i, handle in enumerate(handles):
-                try:
-                    _ = method(handle, places[i]) if with_points else method(handle)
-                except hem.TopologyError:
-                    continue
-
-        return operate
-
-    every: list[Comparison] = []
-    for order, choose in orders.items():
-        faces, edges = choose(s.faces()), choose(s.edges())
-        om_edges = choose(np.arange(s.n_edges)).tolist()
-        handles = edges.tolist()
-        every += [
-            comparison(
-                f"face splits, batched, {order}",
-                10.0,
-                lambda mine, it=faces: mine.split_faces(it, points),
-                om_split_faces(faces.tolist()),
-            ),
-            comparison(
-                f"edge splits, batched, {order}",
-                10.0,
-                lambda mine, it=edges: mine.split_edges(it, points),
-                om_split_edges(om_edges),
-            ),
-            comparison(
-                f"collapses, batched, {order}",
-                5.0,
-                lambda mine, it=edges: mine.collapse_edges(it),
-                om_collapse(om_edges),
-            ),
-            comparison(
-                f"face splits, one by one, {order}",
-                1.0,
-                one_by_one("split_face", faces.tolist(), True),
-                om_split_faces(faces.tolist()),
-            ),
-            comparison(
-                f"edge splits, one by one, {order}",
-                1.0,
-                one_by_one("split_edge", handles, True),
-                om_split_edges(om_edges),
-            ),
-            comparison(
-                f"collapses, one by one, {order}",
-                1.0,
-                one_by_one("collapse_edge", handles, False),
-                om_collapse(om_edges),
-            ),
-            comparison(
-                f"flips, one by one, {order}",
-                1.0,
-                one_by_one("flip_edge", handles, False),
-                om_flip(om_edges),
-            ),
-        ]
-    return every
-
-
-def edits_by_size(small: int = 10_000, large: int = 1_000_000) -> dict[str, dict[str, float]]:
-    """How many times as much a random edit costs on the large mesh, by structure and operation.
-
-    Nanoseconds per edit, small and large, and of the memory's latency at each working set.
-    """
-    found: dict[str, dict[str, float]] = {}
-    for name in ("triangle_neighbor", "winged_edge", "half_edge"):
-        for operation in ("split_face", "split_edge", "collapse_edge", "flip_edge"):
-            row: dict[str, float] = {}
-            for label, n_vertices in (("small", small), ("large", large)):
-                s = structures.build(name, hem.generate("torus", n_vertices))
-                row[f"latency {label}"] = 1e9 * latency_now(sum(s.memory().values()))
-                row[label] = 1e9 * _seconds_per_edit(s, operation)
-            found[f"{name} {operation}"] = row
-    return found
-
-
-def _seconds_per_edit(s: Any, operation: str) -> float:
-    """Of so many random edits, restored in between; the median of some rounds."""
-    rng, seconds = np.random.default_rng(3), []
-    every = s.faces() if operation == "split_face" else s.edges()
-    chosen = rng.choice(every, min(OPERATED, len(every) // 4), replace=False)
-    copies = [s.copy() for _ in range(ROUNDS)]
-    for copy in copies:
-        prepared = copy.prepare(operation, chosen, np.zeros((len(chosen), 3)))
-        begin = perf_counter()
-        prepared.run()
-        seconds.append((perf_counter() - begin) / len(chosen))
-    return float(np.median(seconds[1:]))
 
 
 def measure(comparison: Comparison) -> dict[str, list[float]]:
@@ -357,19 +196,6 @@ def memory_while_building(n_vertices: int) -> dict[str, float]:
     return sizes
 
 
-def _rendered_edits(edits: dict[str, dict[str, float]]) -> Table:
-    table = Table(title=f"{OPERATED:,} random edits on 10,000 and on 1,000,000 vertices")
-    heads = ("edit", "small, ns", "large, ns", "ratio", "latency's", "ratio less latency", "asked")
-    for head in heads:
-        table.add_column(head, justify="left" if head == "edit" else "right")
-    for name, row in edits.items():
-        ratio = row["large"] / row["small"]
-        latency = row["latency large"] / row["latency small"]
-        numbers = f"{row['small']:.0f}", f"{row['large']:.0f}", f"{ratio:.2f}", f"{latency:.2f}"
-        table.add_row(name, *numbers, f"{ratio / latency:.2f}", "≤ 2")
-    return table
-
-
 def main(
     vertices: Annotated[int, typer.Option(help="Size of the torus.")] = 1_000_000,
     output: Annotated[Path | None, typer.Option("--json", help="Keep the rounds here.")] = None,
@@ -398,7 +224,7 @@ def main(
         table.add_section()
     console.print(table)
     edits = edits_by_size()
-    console.print(_rendered_edits(edits))
+    console.print(rendered_edits(edits))
     sizes = memory_while_building(vertices)
     for how in ("traced", "resident"):
         ratio = sizes[how] / sizes["finished"]

@@ -9,37 +9,19 @@ from typing import Any, ClassVar, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from hem import arguments
 from hem.edit import Edit, Remapping
 from hem.errors import MeshError, TopologyError
 from hem.kernels import VALENCE
 from hem.operations import ENTRIES, OPERATIONS, WIDTH
 from hem.pinned import Pinned
+from hem.queries import ELEMENTS
 from hem.queryable import Queryable
 from hem.records import compacted
 from hem.topology import COMMON_NEIGHBOR, NEEDS_ROOM, NO_EDGE, NOT_AN_END, NOT_FINITE, REFUSALS
 from hem.uses import CHECK, DO, MODE, PERSIST, Uses
 
 Array = NDArray[Any]
-
-GROWTH = {"split_edge": (1, 2), "split_face": (1, 2), "add_face": (0, 1)}
-"""How many vertices and faces an operation may create, where it may."""
-
-ASKED = {
-    "split_face": "faces",
-    "remove_face": "faces",
-    "add_face": "vertices",
-    "move_vertex": "vertices",
-}
-"""What the handles of an operation name, where it is not an edge."""
-
-TAKES_A_POINT = {"split_edge", "split_face", "move_vertex"}
-
-SINGULAR = {"vertices": "vertex", "edges": "edge", "faces": "face"}
-
-NAMES_A_VERTEX = {"split_edge", "split_face", "collapse_edge", "move_vertex"}
-"""The operations whose result is the vertex that they are about."""
-
-NO_POINT = np.zeros((1, 3), np.float32)
 
 
 class Bound(NamedTuple):
@@ -152,7 +134,7 @@ class Editable(Queryable):
 
         All are checked before any is split. Subscribers hear of one edit.
         """
-        handles = _handles("split_edges", edges)
+        handles = arguments.handles("split_edges", edges)
         return self._all("split_edges", "split_edge", handles, points, self._edge_names(handles))
 
     def split_faces(self, faces: ArrayLike, points: ArrayLike) -> NDArray[np.int32]:
@@ -160,7 +142,7 @@ class Editable(Queryable):
 
         All are checked before any is split. Subscribers hear of one edit.
         """
-        handles = _handles("split_faces", faces)
+        handles = arguments.handles("split_faces", faces)
         return self._all("split_faces", "split_face", handles, points, handles)
 
     def split_all_faces(self) -> NDArray[np.int32]:
@@ -172,7 +154,7 @@ class Editable(Queryable):
 
     def move_vertices(self, vertices: ArrayLike, points: ArrayLike) -> None:
         """Give different vertices (k,) the positions (k, 3). One edit. Cost O(k)."""
-        handles = _handles("move_vertices", vertices)
+        handles = arguments.handles("move_vertices", vertices)
         self._all("move_vertices", "move_vertex", handles, points, handles)
 
     def collapse_edges(self, edges: ArrayLike, keep: ArrayLike | None = None) -> NDArray[np.bool_]:
@@ -182,14 +164,18 @@ class Editable(Queryable):
         at a merged vertex live on where edges are recorded; named by their ends they are gone.
         Subscribers hear of one edit.
         """
-        handles = _handles("collapse_edges", edges)
-        ends = np.full(len(handles), -1) if keep is None else _handles("collapse_edges", keep)
+        handles = arguments.handles("collapse_edges", edges)
+        ends = (
+            np.full(len(handles), -1) if keep is None else arguments.handles("collapse_edges", keep)
+        )
         if len(ends) != len(handles):
             raise MeshError(
                 f"collapse_edges takes one vertex to keep per edge, not {len(ends)} "
                 f"for {len(handles)}"
             )
-        results, log = self._run("collapse_edge", _rows(handles, ends), NO_POINT, PERSIST)
+        results, log = self._run(
+            "collapse_edge", arguments.rows(handles, ends), arguments.NO_POINT, PERSIST
+        )
         self._publish(Edit("collapse_edges", -1, log))
         return results >= 0
 
@@ -198,7 +184,7 @@ class Editable(Queryable):
 
         Elements keep their order. Cost O(n_v + n_t).
         """
-        self.n_edges  # noqa: B018  known from here on, as it was before
+        self._count_edges()
         self.records, number = compacted(self.records, self.fields)
         for pinned, scratch in self._pins:
             pinned.replace(*self.records, *scratch())
@@ -274,13 +260,15 @@ class Editable(Queryable):
         KeyError for no operation.
         """
         rows = np.asarray(args, np.int64)
-        rows = _rows(rows) if rows.ndim == 1 else np.ascontiguousarray(rows)
+        rows = arguments.rows(rows) if rows.ndim == 1 else np.ascontiguousarray(rows)
         n, bound = len(rows), self._bound[operation]
-        vertices, faces = GROWTH.get(operation, (0, 0))
+        vertices, faces = OPERATIONS[operation].growth
         self._make_room(vertices * n, faces * n)
         self._out.update(self._scratch(2 * n))  # an operation adds at most 2 to a valence
         self._repin()
-        positions = NO_POINT if points is None else _positions("prepare", points, n)
+        positions = (
+            arguments.NO_POINT if points is None else arguments.positions("prepare", points, n)
+        )
         valence = int(self.records.counts[VALENCE])
         entries = n * (2 * valence + ENTRIES) + 2 * (valence + 2 * n + ENTRIES)
         results, log = np.zeros(n, np.int64), np.empty(entries, np.int64)
@@ -320,7 +308,7 @@ class Editable(Queryable):
     @cached_property
     def _bound(self) -> dict[str, Bound]:
         """Every operation, bound; by name."""
-        self.n_edges  # noqa: B018  searched for, where it is not known yet: operations count on it
+        self._count_edges()
         return {operation: self._bind(operation) for operation in OPERATIONS}
 
     def _bind(self, operation: str) -> Bound:
@@ -339,8 +327,8 @@ class Editable(Queryable):
 
     def _doing(self, operation: str) -> Callable[..., Edit]:
         perform, pinned, _, args, position, result = self._bound[operation]
-        address, names_a_vertex = pinned.address, operation in NAMES_A_VERTEX
-        takes_a_point = operation in TAKES_A_POINT
+        address, names_a_vertex = pinned.address, OPERATIONS[operation].names_a_vertex
+        takes_a_point = OPERATIONS[operation].takes_a_point
 
         def do(a: Any, point: Any = None, b: Any = None, c: Any = None) -> Edit:
             # What programs do a million times takes no detours here.
@@ -354,7 +342,7 @@ class Editable(Queryable):
                     place = point.tolist() if type(point) is np.ndarray else point
                     position[0], position[1], position[2] = place
             except (TypeError, ValueError, OverflowError) as error:
-                raise _no_arguments(operation, (a, b, c), point) from error
+                raise arguments.refusal(operation, (a, b, c), point) from error
             if not perform(address) and result[0] == NEEDS_ROOM:
                 self._make_way(operation)
                 perform(address)
@@ -376,7 +364,7 @@ class Editable(Queryable):
             args[0] = edge
             args[1] = -1
         except (TypeError, ValueError, OverflowError) as error:
-            raise _no_arguments(operation, (edge,), None) from error
+            raise arguments.refusal(operation, (edge,), None) from error
         task[MODE] = CHECK
         if not perform(pinned.address) and result[0] == NEEDS_ROOM:
             self._make_way(operation)
@@ -388,7 +376,7 @@ class Editable(Queryable):
 
     def _make_way(self, operation: str) -> None:
         """Make room for what one operation may need."""
-        self._make_room(*GROWTH.get(operation, (0, 0)))
+        self._make_room(*OPERATIONS[operation].growth)
         self._widen()
         neighbors = len(self._out["edge"]) // WIDTH
         if len(self._log) < 2 * neighbors + 2 * ENTRIES:
@@ -399,19 +387,18 @@ class Editable(Queryable):
         self, called: str, operation: str, handles: Array, points: ArrayLike, names: Array
     ) -> NDArray[np.int32]:
         """Do an operation for all handles, or for none if one is refused -> the vertices."""
-        positions = _positions(called, points, len(handles))
-        element = ASKED.get(operation, "edges")
+        positions = arguments.positions(called, points, len(handles))
+        element = OPERATIONS[operation].element
         try:
-            self._check_handles(SINGULAR[element], handles)
+            self._check_handles(element, handles)
         except MeshError as error:
             raise TopologyError(f"{called}: {error.reason} (any more)", **error.elements) from None
+        many = ELEMENTS[element]
         again = np.delete(handles, np.unique(names, return_index=True)[1])
         if len(again):
-            raise TopologyError(
-                f"{called} takes different {element}, each once", **{element: again}
-            )
-        args = _rows(handles)
-        if element == "edges" and self.emulated:
+            raise TopologyError(f"{called} takes different {many}, each once", **{many: again})
+        args = arguments.rows(handles)
+        if element == "edge" and self.emulated:
             self._require_allowed(operation, args, positions)
         results, log = self._run(operation, args, positions)
         self._publish(Edit(called, -1, log))
@@ -433,7 +420,7 @@ class Editable(Queryable):
         """Do an operation for every row of ``args`` (n, 3) -> the results (n,) and the log."""
         perform, n = self._bound[operation].perform, len(args)
         results, logs, done = np.zeros(n, np.int64), [], 0
-        vertices, faces = GROWTH.get(operation, (0, 0))
+        vertices, faces = OPERATIONS[operation].growth
         if mode == DO:
             self._make_room(vertices * n, faces * n)
         while True:
@@ -454,10 +441,9 @@ class Editable(Queryable):
             return MeshError(words)
         if operation == "add_face":
             return TopologyError(f"cannot {operation}: {words}", vertices=[int(v) for v in args])
-        if operation in ASKED:
-            return TopologyError(f"cannot {operation}: {words}", **{ASKED[operation]: [handle]})
-        if code == NO_EDGE:
-            return TopologyError(f"cannot {operation}: {words}", edges=[handle])
+        element = OPERATIONS[operation].element
+        if element != "edge" or code == NO_EDGE:
+            return TopologyError(f"cannot {operation}: {words}", **{ELEMENTS[element]: [handle]})
         ends = self.edge_vertices(handle)
         elements = {"edges": ends[None, :]}
         if code == NOT_AN_END:
@@ -470,48 +456,3 @@ class Editable(Queryable):
 
     def _edge_names(self, handles: Array) -> Array:
         return handles
-
-
-def _rows(handles: Array, ends: Array | int = -1) -> Array:
-    """(n, 3) int64: the arguments of n operations."""
-    rows = np.full((len(handles), 3), -1, np.int64)
-    rows[:, 0], rows[:, 1] = handles, ends
-    return rows
-
-
-def _handles(called: str, values: ArrayLike) -> Array:
-    handles = np.asarray(values)
-    if handles.ndim != 1 or (handles.size and not np.issubdtype(handles.dtype, np.integer)):
-        raise MeshError(
-            f"{called} takes a 1-D array of handles (integers), not {handles.dtype} of shape "
-            f"{handles.shape}"
-        )
-    return handles.astype(np.int64)
-
-
-def _positions(called: str, points: ArrayLike, n: int) -> Array:
-    try:
-        given = np.asarray(points, np.float64)
-    except (TypeError, ValueError) as error:
-        raise MeshError(f"{called} takes points as {n} rows of three numbers: {error}") from error
-    if n == 0 and given.size == 0:
-        return NO_POINT
-    if given.shape != (n, 3):
-        raise MeshError(f"{called} takes one point per handle, ({n}, 3), not {given.shape}")
-    with np.errstate(over="ignore"):
-        positions = np.ascontiguousarray(given, np.float32)
-    if not np.isfinite(positions).all():
-        raise MeshError(
-            REFUSALS[NOT_FINITE], rows=np.flatnonzero(~np.isfinite(positions).all(axis=1))
-        )
-    return positions
-
-
-def _no_arguments(operation: str, args: tuple[Any, ...], point: Any) -> MeshError:
-    args = tuple(it for it in args if it is not None)
-    wrong = [it for it in args if not isinstance(it, int | np.integer)]
-    if wrong:
-        return MeshError(f"{operation} takes handles (integers), not {wrong[0]!r}")
-    if any(not -(1 << 63) <= it < 1 << 63 for it in args):
-        return MeshError(f"{operation}: there is no such element: {max(args, key=abs)}")
-    return MeshError(f"{operation} takes a point of three finite float32 numbers, not {point!r}")

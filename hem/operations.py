@@ -40,7 +40,7 @@ What a structure gives for it, beside its queries and the readings that ``hem.to
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -76,15 +76,30 @@ from hem.topology import (
     rules,
 )
 
-OPERATIONS = (
-    "split_edge",
-    "split_face",
-    "collapse_edge",
-    "flip_edge",
-    "add_face",
-    "remove_face",
-    "move_vertex",
-)
+
+class Operation(NamedTuple):
+    """What is asked of an operation, and what it may create."""
+
+    element: str
+    """The kind of its first handle."""
+
+    takes_a_point: bool = False
+    names_a_vertex: bool = False
+    """Whether its result is the vertex that it is about."""
+
+    growth: tuple[int, int] = (0, 0)
+    """How many vertices and faces it may create."""
+
+
+OPERATIONS = {
+    "split_edge": Operation("edge", True, True, (1, 2)),
+    "split_face": Operation("face", True, True, (1, 2)),
+    "collapse_edge": Operation("edge", names_a_vertex=True),
+    "flip_edge": Operation("edge"),
+    "add_face": Operation("vertex", growth=(0, 1)),
+    "remove_face": Operation("face"),
+    "move_vertex": Operation("vertex", True, True),
+}
 """Every operation that is compiled, by name."""
 
 ENTRIES = 8

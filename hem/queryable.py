@@ -140,10 +140,8 @@ class Queryable(ABC):
     @property
     def n_edges(self) -> int:
         """Number of live undirected edges."""
-        count = self.records.counts
-        if count[EDGES] == UNKNOWN:
-            count[EDGES] = len(self.edges())
-        return int(count[EDGES])
+        self._count_edges()
+        return int(self.records.counts[EDGES])
 
     @property
     def n_faces(self) -> int:
@@ -217,6 +215,11 @@ class Queryable(ABC):
         return self._uses[query].work(handles, out, self.records)
 
     # Behind the contract ---------------------------------------------------------------------
+
+    def _count_edges(self) -> None:
+        """Search for the edges where their number is not known yet; operations keep it up."""
+        if self.records.counts[EDGES] == UNKNOWN:
+            self.records.counts[EDGES] = len(self.edges())
 
     def _live(self, element: str) -> NDArray[np.int32]:
         """The indices of the live vertices or faces, ascending."""
