@@ -14,7 +14,6 @@ import structures
 from experiments.latency import latency_now
 from experiments.profiles import HUBS, Profile
 from experiments.subjects import Cell
-from hem.records import copied
 from hem.structure import Structure
 from hem.uses import END
 
@@ -103,7 +102,7 @@ class Bench:
         args = args[self.mesh.prepare(operation, args, points).check()]
         self.operations = len(args)
         self._prepared = self.mesh.prepare(operation, args, points[: len(args)])
-        self._fresh = copied(self.mesh.records)
+        self._fresh = self.mesh.snapshot()
         # As bare as can be, but for the call itself, see ``idle_seconds``.
         self.operate = partial(self._prepared.perform, self._prepared.pinned.address)
 
@@ -121,8 +120,7 @@ class Bench:
 
     def restore(self) -> None:
         """Make the mesh what it was."""
-        for array, fresh in zip(self.mesh.records, self._fresh, strict=True):
-            np.copyto(array, fresh)
+        self.mesh.restore(self._fresh)
 
 
 def validate(operated: Structure) -> None:

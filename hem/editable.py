@@ -12,9 +12,8 @@ from numpy.typing import ArrayLike, NDArray
 from hem import arguments
 from hem.edit import Edit, Remapping
 from hem.errors import MeshError, TopologyError
-from hem.kernels import VALENCE
-from hem.operations import ENTRIES, OPERATIONS, WIDTH
-from hem.pinned import Pinned
+from hem.kernels import SIDES, VALENCE
+from hem.operations import ENTRIES, OPERATIONS, WIDTH, Operation
 from hem.queries import ELEMENTS
 from hem.queryable import Queryable
 from hem.records import compacted
@@ -31,7 +30,7 @@ class Bound(NamedTuple):
     """
 
     perform: Callable[[int], int]
-    pinned: Pinned
+    pinned: Any
     task: memoryview
     args: memoryview
     point: memoryview
@@ -42,7 +41,7 @@ class Prepared(NamedTuple):
     """Operations that only wait to be run."""
 
     perform: Callable[[int], int]
-    pinned: Pinned
+    pinned: Any
     task: Array
     results: Array
     """(n,): what became of each; a refusal is negative."""
@@ -69,7 +68,11 @@ class Editable(Queryable):
     elements stay valid; new vertices and faces take the next index.
     """
 
+    operations: ClassVar[Mapping[str, Operation]] = OPERATIONS
+    """What can be done to this structure, by name."""
+
     _operation_uses: ClassVar[dict[str, Uses]]
+
     # One at a time ---------------------------------------------------------------------------
 
     def split_edge(self, edge: int, point: ArrayLike) -> Edit:
@@ -185,7 +188,7 @@ class Editable(Queryable):
         Elements keep their order. Cost O(n_v + n_t).
         """
         self._count_edges()
-        self.records, number = compacted(self.records, self.fields)
+        self.records, number = self._compacted()
         for pinned, scratch in self._pins:
             pinned.replace(*self.records, *scratch())
         vertices = number["vertex"].astype(np.int32)
@@ -195,6 +198,10 @@ class Editable(Queryable):
         edit.remapping = remapping
         self._publish(edit)
         return remapping
+
+    def _compacted(self) -> tuple[Any, dict[str, Array]]:
+        """The live records without gaps, and the new number of each old one by kind."""
+        return compacted(self.records, self.fields)
 
     def _renumbered(self, edges: ArrayLike, number: Mapping[str, Array]) -> NDArray[np.int64]:
         recorded = next(it for it in ("half_edge", "edge") if it in number)
@@ -243,8 +250,8 @@ class Editable(Queryable):
 
     @cached_property
     def _copy_touched(self) -> Callable[..., None]:
-        uses = self._uses["face_vertices"]
-        return uses.copy_touched(self.kernels["face_exists"])
+        uses, k = self._uses["face_vertices"], self.kernels
+        return uses.copy_touched(k["face_exists"], k["coordinate"])
 
     # Measuring -------------------------------------------------------------------------------
 
@@ -262,7 +269,7 @@ class Editable(Queryable):
         rows = np.asarray(args, np.int64)
         rows = arguments.rows(rows) if rows.ndim == 1 else np.ascontiguousarray(rows)
         n, bound = len(rows), self._bound[operation]
-        vertices, faces = OPERATIONS[operation].growth
+        vertices, faces = self.operations[operation].growth
         self._make_room(vertices * n, faces * n)
         self._out.update(self._scratch(2 * n))  # an operation adds at most 2 to a valence
         self._repin()
@@ -274,7 +281,7 @@ class Editable(Queryable):
         results, log = np.zeros(n, np.int64), np.empty(entries, np.int64)
         task = np.array([PERSIST, 0, n])
         scratch = task, rows, positions, results, self._at, self._out["edge"], log
-        return Prepared(bound.perform, Pinned(*self.records, *scratch), task, results)
+        return Prepared(bound.perform, self.pinning(*self.records, *scratch), task, results)
 
     def operation_work(self, operation: str, *args: int, point: ArrayLike = (0, 0, 0)) -> int:
         """Do one operation uncompiled -> the array elements it read and wrote, exactly.
@@ -296,7 +303,7 @@ class Editable(Queryable):
     # Behind the contract ---------------------------------------------------------------------
 
     @cached_property
-    def _at(self) -> Array:
+    def _at(self) -> Any:
         """Scratch for the parts of a diamond."""
         return np.zeros(6, np.int64)
 
@@ -309,7 +316,7 @@ class Editable(Queryable):
     def _bound(self) -> dict[str, Bound]:
         """Every operation, bound; by name."""
         self._count_edges()
-        return {operation: self._bind(operation) for operation in OPERATIONS}
+        return {operation: self._bind(operation) for operation in self.operations}
 
     def _bind(self, operation: str) -> Bound:
         task, args = np.array([DO, 0, 1]), np.full((1, 3), -1, np.int64)
@@ -323,12 +330,12 @@ class Editable(Queryable):
     @cached_property
     def _do(self) -> dict[str, Callable[..., Edit]]:
         """Every operation as a function of its first handle, a point and two more handles."""
-        return {operation: self._doing(operation) for operation in OPERATIONS}
+        return {operation: self._doing(operation) for operation in self.operations}
 
     def _doing(self, operation: str) -> Callable[..., Edit]:
         perform, pinned, _, args, position, result = self._bound[operation]
-        address, names_a_vertex = pinned.address, OPERATIONS[operation].names_a_vertex
-        takes_a_point = OPERATIONS[operation].takes_a_point
+        address, names_a_vertex = pinned.address, self.operations[operation].names_a_vertex
+        takes_a_point = self.operations[operation].takes_a_point
 
         def do(a: Any, point: Any = None, b: Any = None, c: Any = None) -> Edit:
             # What programs do a million times takes no detours here.
@@ -376,7 +383,9 @@ class Editable(Queryable):
 
     def _make_way(self, operation: str) -> None:
         """Make room for what one operation may need."""
-        self._make_room(*OPERATIONS[operation].growth)
+        more = int(self.records.counts[SIDES]) - 3
+        vertices, faces = self.operations[operation].growth
+        self._make_room(vertices, faces + more * self.operations[operation].grows_with_sides)
         self._widen()
         neighbors = len(self._out["edge"]) // WIDTH
         if len(self._log) < 2 * neighbors + 2 * ENTRIES:
@@ -388,7 +397,7 @@ class Editable(Queryable):
     ) -> NDArray[np.int32]:
         """Do an operation for all handles, or for none if one is refused -> the vertices."""
         positions = arguments.positions(called, points, len(handles))
-        element = OPERATIONS[operation].element
+        element = self.operations[operation].element
         try:
             self._check_handles(element, handles)
         except MeshError as error:
@@ -420,14 +429,14 @@ class Editable(Queryable):
         """Do an operation for every row of ``args`` (n, 3) -> the results (n,) and the log."""
         perform, n = self._bound[operation].perform, len(args)
         results, logs, done = np.zeros(n, np.int64), [], 0
-        vertices, faces = OPERATIONS[operation].growth
+        vertices, faces = self.operations[operation].growth
         if mode == DO:
             self._make_room(vertices * n, faces * n)
         while True:
             log = np.empty(ENTRIES * (n + 1) + 2 * len(self._log), np.int64)
             task = np.array([mode, done, n])
             scratch = task, args, points, results, self._at, self._out["edge"], log
-            pinned = Pinned(*self.records, *scratch)
+            pinned = self.pinning(*self.records, *scratch)
             done = perform(pinned.address)
             logs.append(log[1 : log[0] + 1])
             if done == n or results[done] != NEEDS_ROOM:
@@ -441,7 +450,7 @@ class Editable(Queryable):
             return MeshError(words)
         if operation == "add_face":
             return TopologyError(f"cannot {operation}: {words}", vertices=[int(v) for v in args])
-        element = OPERATIONS[operation].element
+        element = self.operations[operation].element
         if element != "edge" or code == NO_EDGE:
             return TopologyError(f"cannot {operation}: {words}", **{ELEMENTS[element]: [handle]})
         ends = self.edge_vertices(handle)

@@ -89,14 +89,27 @@ def require_one_fan(vertex: Array, clockwise: Array, alive: Array) -> None:
     ``vertex``: (n,) the vertex of each corner. ``clockwise``: (n,) the corner that follows around
     the same vertex, or -1 at the border. ``alive``: (k,) the corners of live faces.
     """
+    _require_one_each(vertex, clockwise, alive, "the faces around a vertex form one fan", "vertices")
+
+
+def require_one_loop(face: Array, following: Array, alive: Array) -> None:
+    """Require that the half-edges of every face form one loop.
+
+    ``face``, ``following``: (n,) of each half-edge. ``alive``: (k,) those that lie in live faces.
+    """
+    _require_one_each(face, following, alive, "the half-edges of a face form one loop", "faces")
+
+
+def _require_one_each(owner: Array, step: Array, alive: Array, words: str, elements: str) -> None:
+    """Require that all items of an owner hang together by steps; -1 is no step."""
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
 
-    n = len(vertex)
+    n = len(owner)
     if n == 0:
         return
-    corners = alive[clockwise[alive] >= 0]
-    steps = (np.ones(len(corners), np.bool_), (corners, clockwise[corners]))
-    fan = connected_components(coo_array(steps, shape=(n, n)), directed=False)[1][alive]
-    owner = vertex[alive][np.unique(fan, return_index=True)[1]]
-    require(np.bincount(owner) < 2, "the faces around a vertex form one fan", "vertices")
+    items = alive[step[alive] >= 0]
+    steps = (np.ones(len(items), np.bool_), (items, step[items]))
+    group = connected_components(coo_array(steps, shape=(n, n)), directed=False)[1][alive]
+    owners = owner[alive][np.unique(group, return_index=True)[1]]
+    require(np.bincount(owners) < 2, words, elements)

@@ -29,8 +29,12 @@ VERTICES, EDGES, FACES, VERTEX_END, EDGE_END, FACE_END = range(6)
 Live and dead elements lie before the end, room for new ones behind it.
 """
 
-VERTEX_ROOM, EDGE_ROOM, FACE_ROOM, VALENCE = range(6, 10)
-"""More columns: how many records there is room for, and a bound on the valence of any vertex."""
+VERTEX_ROOM, EDGE_ROOM, FACE_ROOM, VALENCE, SIDES, EDGE_GROWTH = range(6, 12)
+"""More columns: how many records there is room for, bounds on the valence of any vertex and on the
+sides of any face, and how many records of edges a new face may need.
+
+The bound on the valence is one on the sides as well: there is scratch for that many neighbors.
+"""
 
 
 def named(*kernels: Kernel) -> dict[str, Kernel]:
@@ -181,7 +185,8 @@ def distinct(out: Array, count: int) -> int:
     while size < 2 * count:
         size *= 2
     table = out[count : count + size]
-    table[:] = -1
+    for i in range(size):
+        table[i] = -1
     kept = 0
     for i in range(count):
         value = out[i]
@@ -207,6 +212,32 @@ def edge_vertices(m: Any, e: int, out: Array) -> int:
     out[0] = e >> 32
     out[1] = e & 0xFFFFFFFF
     return 2
+
+
+@kernel
+def coordinate(m: Any, v: int, i: int) -> float:
+    """x, y or z of vertex v; NaN if it is dead."""
+    return float(m.vertex_point[v, i])
+
+
+@kernel
+def place(m: Any, v: int, point: Array) -> None:
+    """Give a vertex its position, be it new or not."""
+    for i in range(3):
+        m.vertex_point[v, i] = point[i]
+
+
+@kernel
+def bury(m: Any, v: int) -> None:
+    """Make a vertex dead."""
+    for i in range(3):
+        m.vertex_point[v, i] = np.nan
+
+
+@kernel
+def sides(m: Any, f: int) -> int:
+    """How many sides face f has, where all are triangles."""
+    return 3
 
 
 @kernel

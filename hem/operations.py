@@ -34,7 +34,8 @@ What a structure gives for it, beside its queries and the readings that ``hem.to
 - ``contract(m, e, at, drop, keep, around, out)``, the first ``around`` elements of ``out``
   being the faces at ``drop``, and the rest of it free;
 - ``turn(m, e, at, one, other)``, the faces that get (a, d, c) and (b, c, d);
-- ``attach(m, a, b, c, f)`` and ``detach(m, f)``.
+- ``attach(m, corners, f)`` and ``detach(m, f)``;
+- ``place(m, v, point)`` and ``bury(m, v)``, and ``sides(m, f)``, the number of a face's corners.
 """
 
 from __future__ import annotations
@@ -47,11 +48,13 @@ import numpy as np
 from hem.edit import CHANGED, CREATED, FACE, REMOVED, VERTEX
 from hem.kernels import (
     EDGE_END,
+    EDGE_GROWTH,
     EDGE_ROOM,
     EDGES,
     FACE_END,
     FACE_ROOM,
     FACES,
+    SIDES,
     VALENCE,
     VERTEX_END,
     VERTEX_ROOM,
@@ -88,12 +91,15 @@ class Operation(NamedTuple):
     """Whether its result is the vertex that it is about."""
 
     growth: tuple[int, int] = (0, 0)
-    """How many vertices and faces it may create."""
+    """How many vertices and faces it may create, at triangles."""
+
+    grows_with_sides: bool = False
+    """Whether it creates one face more for every side that a face has beyond three."""
 
 
 OPERATIONS = {
     "split_edge": Operation("edge", True, True, (1, 2)),
-    "split_face": Operation("face", True, True, (1, 2)),
+    "split_face": Operation("face", True, True, (1, 2), grows_with_sides=True),
     "collapse_edge": Operation("edge", names_a_vertex=True),
     "flip_edge": Operation("edge"),
     "add_face": Operation("vertex", growth=(0, 1)),
@@ -105,8 +111,12 @@ OPERATIONS = {
 ENTRIES = 8
 """Room in the log per operation; only a collapse may take more, two per face and these."""
 
-WIDTH = 12
-"""Room in ``out`` per neighbor: the neighbors of both ends of an edge, and a table to tell them."""
+WIDTH = 20
+"""Room in ``out`` per neighbor: the neighbors of both ends of an edge, and a table to tell them.
+
+A vertex in k faces has up to 2 k neighbors where fans meet in it, both ends of an edge have 4 k, and
+the table is less than four times as large.
+"""
 
 
 @kernel
@@ -132,7 +142,7 @@ def has_room(m: Any, vertices: int, faces: int, log: Array) -> bool:
     return bool(
         counts[VERTEX_END] + vertices <= counts[VERTEX_ROOM]
         and counts[FACE_END] + faces <= counts[FACE_ROOM]
-        and counts[EDGE_END] + 3 * faces <= counts[EDGE_ROOM]
+        and counts[EDGE_END] + counts[EDGE_GROWTH] * faces <= counts[EDGE_ROOM]
         and log[0] + ENTRIES < len(log)
     )
 
@@ -148,17 +158,6 @@ def has_scratch(m: Any, out: Array, log: Array) -> bool:
 def is_point(point: Array) -> bool:
     """Whether a row of three float32 is a position."""
     return bool(np.isfinite(point[0]) and np.isfinite(point[1]) and np.isfinite(point[2]))
-
-
-@kernel
-def new_vertex(m: Any, point: Array) -> int:
-    """Append a vertex. No duplicate is searched for."""
-    v = m.counts[VERTEX_END]
-    for i in range(3):
-        m.vertex_point[v, i] = point[i]
-    m.counts[VERTEX_END] += 1
-    m.counts[VERTICES] += 1
-    return int(v)
 
 
 @kernel
@@ -178,24 +177,37 @@ def operations(k: Mapping[str, Kernel]) -> dict[str, Kernel]:
     was changed.
     """
     rule = rules(k)
-    surface_edge, live_vertex = rule.surface_edge, rule.live_vertex
+    triangle_edge, live_vertex = rule.triangle_edge, rule.live_vertex
     may_collapse, may_flip = rule.may_collapse, rule.may_flip
     may_add_face, may_remove_face = rule.may_add_face, rule.may_remove_face
     cut_edge, cut_face = k["cut_edge"], k["cut_face"]
     contract, turn, attach, detach = k["contract"], k["turn"], k["attach"], k["detach"]
     face_exists, vertex_faces = k["face_exists"], k["vertex_faces"]
     face_vertices, beside = k["face_vertices"], k["beside"]
+    place, bury, sides_of = k["place"], k["bury"], k["sides"]
 
     @kernel
-    def free_edges(m: Any, a: int, b: int, c: int) -> int:
-        """How many edges of triangle (a, b, c) have no face beyond them."""
-        return (beside(m, b, a) < 0) + (beside(m, c, b) < 0) + (beside(m, a, c) < 0)
+    def new_vertex(m: Any, point: Array) -> int:
+        """Append a vertex. No duplicate is searched for."""
+        v = m.counts[VERTEX_END]
+        place(m, v, point)
+        m.counts[VERTEX_END] += 1
+        m.counts[VERTICES] += 1
+        return int(v)
+
+    @kernel
+    def free_edges(m: Any, corners: Array, n: int) -> int:
+        """How many edges of the face with these n corners have no face beyond them."""
+        free = 0
+        for i in range(n):
+            free += beside(m, corners[(i + 1) % n], corners[i]) < 0
+        return free
 
     @kernel
     def split_edge(
         m: Any, args: Array, point: Array, at: Array, out: Array, log: Array, dry: bool
     ) -> int:
-        refusal = surface_edge(m, args[0], at)
+        refusal = triangle_edge(m, args[0], at)
         if refusal == ALLOWED and not is_point(point):
             refusal = NOT_FINITE
         if refusal != ALLOWED or dry:
@@ -223,15 +235,17 @@ def operations(k: Mapping[str, Kernel]) -> dict[str, Kernel]:
             return NOT_FINITE
         if dry:
             return ALLOWED
-        if not has_room(m, 1, 2, log):
+        sides = sides_of(m, face)
+        if not has_room(m, 1, sides - 1, log) or log[0] + sides + ENTRIES >= len(log):
             return NEEDS_ROOM
         f, v = m.counts[FACE_END], new_vertex(m, point)
         cut_face(m, face, v, f)
-        add_faces(m, 3, 2)
+        add_faces(m, sides, sides - 1)
         m.counts[VALENCE] += 1
         note(log, VERTEX + CREATED, v)
         note_faces(log, CHANGED, face, -1)
-        note_faces(log, CREATED, f, f + 1)
+        for i in range(sides - 1):
+            note(log, FACE + CREATED, f + i)
         return v
 
     @kernel
@@ -249,18 +263,17 @@ def operations(k: Mapping[str, Kernel]) -> dict[str, Kernel]:
         if dry:
             return ALLOWED
         drop = at[A] + at[B] - keep
-        faces = 2 if at[LEFT] >= 0 and at[RIGHT] >= 0 else 1
+        triangles = (at[C] >= 0) + (at[D] >= 0)  # which vanish; larger faces lose a corner
         stay = vertex_faces(m, keep, out)
         around = vertex_faces(m, drop, out)
         for i in range(around):
-            gone = out[i] == at[LEFT] or out[i] == at[RIGHT]
+            gone = (out[i] == at[LEFT] and at[C] >= 0) or (out[i] == at[RIGHT] and at[D] >= 0)
             note(log, FACE + (REMOVED if gone else CHANGED), out[i])
         contract(m, args[0], at, drop, keep, around, out)
-        for i in range(3):
-            m.vertex_point[drop, i] = np.nan
+        bury(m, drop)
         m.counts[VERTICES] -= 1
-        m.counts[EDGES] -= 1 + faces
-        m.counts[FACES] -= faces
+        m.counts[EDGES] -= 1 + triangles
+        m.counts[FACES] -= triangles
         m.counts[VALENCE] = max(m.counts[VALENCE], stay + around)
         note(log, VERTEX + REMOVED, drop)
         return int(keep)
@@ -286,17 +299,18 @@ def operations(k: Mapping[str, Kernel]) -> dict[str, Kernel]:
     def add_face(
         m: Any, args: Array, point: Array, at: Array, out: Array, log: Array, dry: bool
     ) -> int:
+        n = len(args)
         if not has_room(m, 0, 1, log) or not has_scratch(m, out, log):
             return NEEDS_ROOM
-        a, b, c = args[0], args[1], args[2]
-        refusal = may_add_face(m, a, b, c, out)
+        refusal = may_add_face(m, args, out)
         if refusal != ALLOWED or dry:
             return refusal
-        edges = free_edges(m, a, b, c)
+        edges = free_edges(m, args, n)
         f = m.counts[FACE_END]
-        attach(m, a, b, c, f)
+        attach(m, args, f)
         add_faces(m, edges, 1)
-        m.counts[VALENCE] += 2
+        m.counts[SIDES] = max(m.counts[SIDES], n)
+        m.counts[VALENCE] = max(m.counts[VALENCE] + 2, n)
         note_faces(log, CREATED, f, -1)
         return int(f)
 
@@ -310,8 +324,8 @@ def operations(k: Mapping[str, Kernel]) -> dict[str, Kernel]:
         refusal = may_remove_face(m, face, out)
         if refusal != ALLOWED or dry:
             return refusal
-        face_vertices(m, face, out)
-        m.counts[EDGES] -= free_edges(m, out[0], out[1], out[2])
+        n = face_vertices(m, face, out)
+        m.counts[EDGES] -= free_edges(m, out, n)
         detach(m, face)
         m.counts[FACES] -= 1
         note_faces(log, REMOVED, face, -1)
@@ -329,8 +343,7 @@ def operations(k: Mapping[str, Kernel]) -> dict[str, Kernel]:
             return ALLOWED
         if not has_room(m, 0, 0, log):
             return NEEDS_ROOM
-        for i in range(3):
-            m.vertex_point[args[0], i] = point[i]
+        place(m, args[0], point)
         note(log, VERTEX + CHANGED, args[0])
         return int(args[0])
 

@@ -17,11 +17,13 @@ from numpy.typing import ArrayLike, NDArray
 from hem.errors import MeshError
 from hem.kernels import (
     EDGE_END,
+    EDGE_GROWTH,
     EDGE_ROOM,
     EDGES,
     FACE_END,
     FACE_ROOM,
     FACES,
+    SIDES,
     VALENCE,
     VERTEX_END,
     VERTEX_ROOM,
@@ -65,14 +67,14 @@ def _query_method(query: Query) -> Any:
         target = query.target
         pinned = self._pin(lambda: (self._out[target],))
         single = self._uses[query.name].single(pinned, self.kernels[f"{query.source}_exists"])
-        address, scratch = pinned.address, self._out
+        address, scratch, kept = pinned.address, self._out, self._kept(target)
 
         def ask(handles: Any) -> Any:
             # One plain integer is the way that programs take a million times: no detours here.
             if type(handles) is int and -MOST <= handles < MOST:
                 count = single(handles, address)
                 if count:
-                    return scratch[target][:count].copy()
+                    return kept(scratch[target][:count])
             return self._ask(query, handles)
 
         ask.__name__, ask.__doc__ = query.name, attribute.__doc__
@@ -114,6 +116,9 @@ class Queryable(ABC):
 
     records_type: ClassVar[type[Any]]
     """The `NamedTuple` of the structure's arrays, with from→to names."""
+
+    pinning: ClassVar[type[Any]] = Pinned
+    """How records and scratch are handed to kernels time and again."""
 
     _uses: ClassVar[dict[str, Uses]]
 
@@ -224,17 +229,25 @@ class Queryable(ABC):
     def _live(self, element: str) -> NDArray[np.int32]:
         """The indices of the live vertices or faces, ascending."""
         if self._any_dead(element):
-            return np.flatnonzero(live(self.records, self.fields, element)).astype(np.int32)
+            return np.flatnonzero(self._alive(element)).astype(np.int32)
         return np.arange(self.records.counts[ENDS[element]], dtype=np.int32)
 
+    def _alive(self, element: str) -> NDArray[np.bool_]:
+        """(end,) bool: which of the records of a kind are live. Cost O(records)."""
+        return live(self.records, self.fields, element)
+
     @cached_property
-    def _pins(self) -> list[tuple[Pinned, Callable[[], tuple[Array, ...]]]]:
+    def _pins(self) -> list[tuple[Any, Callable[[], tuple[Any, ...]]]]:
         return []
 
-    def _pin(self, scratch: Callable[[], tuple[Array, ...]]) -> Pinned:
-        pinned = Pinned(*self.records, *scratch())
+    def _pin(self, scratch: Callable[[], tuple[Any, ...]]) -> Any:
+        pinned = self.pinning(*self.records, *scratch())
         self._pins.append((pinned, scratch))
         return pinned
+
+    def _kept(self, element: str) -> Callable[[Any], Array]:
+        """How an answer is taken out of the scratch for elements of a kind."""
+        return np.ndarray.copy
 
     @cached_property
     def _out(self) -> dict[str, Array]:
@@ -243,11 +256,16 @@ class Queryable(ABC):
 
     def _scratch(self, more: int) -> dict[str, Array]:
         """As ``_out``, with room for a valence by so many larger than the largest there is."""
-        corners = self._ragged("face_vertices", self.faces(), 3).values
-        valence = int(np.bincount(corners).max(initial=0)) + 1
-        self.records.counts[VALENCE] = valence
+        counts = self.records.counts
+        corners = self._ragged("face_vertices", self.faces(), int(counts[SIDES])).values
+        valence = max(int(np.bincount(corners).max(initial=0)) + 1, int(counts[SIDES]))
+        counts[VALENCE] = valence
         width = WIDTH * (valence + more + 1)
-        return {element: np.empty(width, dtype) for element, dtype in HANDLE_TYPES.items()}
+        return {element: self._room(width, dtype) for element, dtype in HANDLE_TYPES.items()}
+
+    def _room(self, width: int, dtype: Any) -> Any:
+        """Scratch for so many handles."""
+        return np.empty(width, dtype)
 
     def _make_room(self, vertices: int, faces: int) -> None:
         """Make room for so many new elements."""
@@ -255,7 +273,7 @@ class Queryable(ABC):
         if (
             counts[VERTEX_END] + vertices > counts[VERTEX_ROOM]
             or counts[FACE_END] + faces > counts[FACE_ROOM]
-            or counts[EDGE_END] + 3 * faces > counts[EDGE_ROOM]
+            or counts[EDGE_END] + counts[EDGE_GROWTH] * faces > counts[EDGE_ROOM]
         ):
             self.records = grown(self.records, self.fields, vertices, faces)
             self._repin()
@@ -291,7 +309,8 @@ class Queryable(ABC):
         self._check_handles(query.source, wanted)
         self._widen()
         fixed = query.name in ("face_vertices", "face_edges")
-        width = 3 if fixed else WIDTH * int(self.records.counts[VALENCE] + 1)
+        counts = self.records.counts
+        width = int(counts[SIDES]) if fixed else WIDTH * int(counts[VALENCE] + 1)
         wanted = np.ascontiguousarray(wanted, HANDLE_TYPES[query.source])
         answers = self._ragged(query.name, wanted, width)
         if query.source == "edge" and not answers.counts.all():
@@ -331,7 +350,7 @@ class Queryable(ABC):
         if handles.min() < 0 or handles.max() >= end:
             refuse_handles(element, handles[(handles < 0) | (handles >= end)])
         if self._any_dead(element):
-            dead = ~live(self.records, self.fields, element)[handles]
+            dead = ~self._alive(element)[handles]
             if dead.any():
                 refuse_handles(element, handles[dead])
 

@@ -15,11 +15,13 @@ from numpy.typing import NDArray
 
 from hem.kernels import (
     EDGE_END,
+    EDGE_GROWTH,
     EDGE_ROOM,
     EDGES,
     FACE_END,
     FACE_ROOM,
     FACES,
+    SIDES,
     VALENCE,
     VERTEX_END,
     VERTEX_ROOM,
@@ -63,12 +65,21 @@ class Field(NamedTuple):
         return self.name.split(".")[0]
 
 
-def counted(n_vertices: int, n_edges: int, n_faces: int, edge_records: int = ENDLESS) -> Array:
+def counted(
+    n_vertices: int,
+    n_edges: int,
+    n_faces: int,
+    edge_records: int = ENDLESS,
+    edge_growth: int = 3,
+    sides: int = 3,
+) -> Array:
     """The array ``counts`` of a structure just built, with no room for more and nothing dead.
 
-    ``edge_records``: how many edges or half-edges are recorded, if they are.
+    ``edge_records``: how many edges or half-edges are recorded, if they are; ``edge_growth``: how
+    many of them a new face may need; ``sides``: the most that a face has.
     """
-    count = np.zeros(10, np.int64)
+    count = np.zeros(12, np.int64)
+    count[EDGE_GROWTH], count[SIDES] = edge_growth, sides
     count[[VERTICES, VERTEX_END, VERTEX_ROOM]] = n_vertices
     count[[FACES, FACE_END, FACE_ROOM]] = n_faces
     count[EDGES], count[EDGE_ROOM] = n_edges, edge_records
@@ -91,7 +102,7 @@ def grown(records: Any, fields: Sequence[Field], vertices: int, faces: int) -> A
     Cost O(records), so that one new element costs O(1) in the long run.
     """
     count, arrays = records.counts.copy(), records._asdict()
-    wanted = {VERTEX_END: vertices, FACE_END: faces, EDGE_END: 3 * faces}
+    wanted = {VERTEX_END: vertices, FACE_END: faces, EDGE_END: count[EDGE_GROWTH] * faces}
     rooms = {VERTEX_END: VERTEX_ROOM, FACE_END: FACE_ROOM, EDGE_END: EDGE_ROOM}
     for field in fields:
         end = ENDS[field.element]
@@ -124,7 +135,8 @@ def compacted(records: Any, fields: Sequence[Field]) -> tuple[Any, dict[str, Arr
             part[...] = np.where(part < 0, part, number[field.target][part]) if part.size else part
     old, recorded = records.counts, [kind for kind in alive if ENDS[kind] == EDGE_END]
     edge_records = int(alive[recorded[0]].sum()) if recorded else ENDLESS
-    count = counted(old[VERTICES], old[EDGES], old[FACES], edge_records)
+    own = edge_records, old[EDGE_GROWTH], old[SIDES]
+    count = counted(old[VERTICES], old[EDGES], old[FACES], *own)
     count[VALENCE] = old[VALENCE]
     return type(records)(**arrays, counts=count), number
 

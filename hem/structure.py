@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hem.editable import Editable
+from hem.kernels import Kernel, bury, coordinate, named, place, sides, vertex_exists
 from hem.mesh import TriangleMesh
 from hem.operations import operations
 from hem.queries import QUERIES
@@ -21,6 +22,9 @@ from hem.records import copied
 from hem.uses import Uses
 
 Array = NDArray[Any]
+
+OF_ARRAYS = named(coordinate, place, bury, sides, vertex_exists)
+"""Kernels that are the same wherever vertices are rows of an array and faces triangles."""
 
 REFERENCE_TYPES = {4: np.int32, 8: np.int64}
 """Bytes of a stored reference to the type that holds it. The thesis counts 8 (section 7)."""
@@ -32,16 +36,23 @@ class Structure(Editable):
     name: ClassVar[str]
     title: ClassVar[str]
     abbreviation: ClassVar[str]
+    uses_type: ClassVar[type[Uses]] = Uses
 
     def __init_subclass__(cls) -> None:
         """Derive the four uses of every kernel; abstract intermediates declare none."""
         super().__init_subclass__()
         if hasattr(cls, "kernels"):
-            cls._uses = {name: Uses(cls.kernels[name], cls.records_type) for name in QUERIES}
+            cls.kernels = {**OF_ARRAYS, **cls.kernels}
+            derive, records = cls.uses_type, cls.records_type
+            cls._uses = {name: derive(cls.kernels[name], records) for name in QUERIES}
             cls._operation_uses = {
-                name: Uses(operation, cls.records_type)
-                for name, operation in operations(cls.kernels).items()
+                name: derive(kernel, records) for name, kernel in cls.operation_kernels().items()
             }
+
+    @classmethod
+    def operation_kernels(cls) -> dict[str, Kernel]:
+        """The kernels of ``operations`` by name, see ``hem.operations``."""
+        return operations(cls.kernels)
 
     @classmethod
     @abstractmethod
@@ -77,7 +88,7 @@ class Structure(Editable):
         counts = {
             "vertex": self.n_vertices,
             "edge": self.n_edges,
-            "half_edge": 3 * self.n_faces,
+            "half_edge": self.n_half_edges,
             "face": self.n_faces,
             "triangle": self.n_faces,
         }
@@ -87,6 +98,23 @@ class Structure(Editable):
             * int(getattr(self.records, field.array).itemsize)
             for field in self.fields
         }
+
+    @property
+    def n_half_edges(self) -> int:
+        """Number of live half-edges, one for each corner of a face; recorded or not."""
+        return 3 * self.n_faces
+
+    def snapshot(self) -> Any:
+        """What ``restore`` needs to make the mesh what it is now. Cost O(n_v + n_t)."""
+        return copied(self.records)
+
+    def restore(self, snapshot: Any) -> None:
+        """Make the mesh what it was, in the same place; there must be as much room. For measuring.
+
+        Subscribers are not told. Cost O(n_v + n_t).
+        """
+        for array, fresh in zip(self.records, snapshot, strict=True):
+            np.copyto(array, fresh)
 
     @property
     def arrays(self) -> tuple[Array, ...]:

@@ -10,6 +10,8 @@ Around an edge from ``a`` to ``b``, with ``a`` the smaller vertex, lies its *dia
           ╲   ╱
             d
 
+A face of more than three corners has no opposite one: it is -1, too.
+
 Rules are written over it and over a structure's own query kernels, so each stands once. They answer
 with 0 or with the code of a refusal; ``REFUSALS`` has its words. The rules of collapse and flip are
 those of the link condition (Dey et al., Topology preserving edge contraction, 1999).
@@ -23,7 +25,7 @@ from typing import Any
 
 import numpy as np
 
-from hem.kernels import VERTEX_END, Array, Kernel, distinct, kernel
+from hem.kernels import SIDES, VERTEX_END, Array, Kernel, distinct, kernel
 
 A, B, LEFT, RIGHT, C, D = range(6)
 """Where the parts of a diamond stand in the array that ``diamond(m, e, at)`` fills."""
@@ -32,6 +34,7 @@ ALLOWED, NEEDS_ROOM = 0, -1
 (NO_EDGE, NO_FACE, NO_VERTEX, NOT_FINITE, CROWDED, NOT_AN_END) = range(-7, -1)
 (LONE_FACE, SAME_CORNER, TWO_BORDERS, TETRAHEDRON, COMMON_NEIGHBOR) = range(-12, -7)
 (BORDER_EDGE, JOINED, SAME_VERTEX, TAKEN, COINCIDENT, SECOND_FAN, BETWEEN) = range(-19, -12)
+(NOT_TRIANGLES, SHARED_FACE) = range(-21, -19)
 
 REFUSALS = {
     NO_EDGE: "there is no such edge in this mesh (any more)",
@@ -59,6 +62,8 @@ REFUSALS = {
     "fans would meet in one vertex",
     BETWEEN: "at a corner on the border the face lies between two others, and without it two fans "
     "would meet in one vertex",
+    NOT_TRIANGLES: "a face at the edge has more than three corners; split that face first",
+    SHARED_FACE: "both ends are corners of a face that does not lie at the edge, and would pinch it",
 }
 """Why an operation is refused, in words."""
 
@@ -68,13 +73,15 @@ def rules(k: Mapping[str, Kernel]) -> Any:
 
     ``diamond(m, e, at) -> faces`` fills the diamond of a live edge and tells the number of its
     faces: 0 for no edge, 3 for more than a surface has. ``joined(m, a, b)`` tells whether an edge
-    joins two vertices; ``beside(m, a, b)`` is the face that runs a → b, or -1. Rules may overwrite
-    ``out``; ``at`` holds the diamond when they are done.
+    joins two vertices; ``beside(m, a, b)`` is the face that runs a → b, or -1; ``coordinate(m, v,
+    i)`` is NaN for a dead vertex. Rules may overwrite ``out``; ``at`` holds the diamond when they
+    are done.
     """
     diamond, joined, beside = k["diamond"], k["joined"], k["beside"]
     edge_exists, face_exists = k["edge_exists"], k["face_exists"]
     vertex_vertices, vertex_faces = k["vertex_vertices"], k["vertex_faces"]
     face_faces, face_vertices = k["face_faces"], k["face_vertices"]
+    coordinate = k["coordinate"]
 
     @kernel
     def surface_edge(m: Any, e: int, at: Array) -> int:
@@ -86,8 +93,15 @@ def rules(k: Mapping[str, Kernel]) -> Any:
         return CROWDED if faces > 2 else ALLOWED
 
     @kernel
-    def alone(m: Any, face: int, others: int, out: Array) -> bool:
-        return face >= 0 and face_faces(m, face, out) == others
+    def triangle_edge(m: Any, e: int, at: Array) -> int:
+        refusal = surface_edge(m, e, at)
+        if refusal == ALLOWED and ((at[LEFT] >= 0 > at[C]) or (at[RIGHT] >= 0 > at[D])):
+            return NOT_TRIANGLES
+        return refusal
+
+    @kernel
+    def alone(m: Any, face: int, corner: int, others: int, out: Array) -> bool:
+        return corner >= 0 and face_faces(m, face, out) == others
 
     @kernel
     def on_border(m: Any, v: int, neighbors: int, out: Array) -> bool:
@@ -100,9 +114,11 @@ def rules(k: Mapping[str, Kernel]) -> Any:
         if refusal != ALLOWED:
             return refusal
         faces = 2 if at[LEFT] >= 0 and at[RIGHT] >= 0 else 1
-        if faces == 2 and at[C] == at[D]:
+        triangles = (at[C] >= 0) + (at[D] >= 0)
+        if triangles == 2 and at[C] == at[D]:
             return SAME_CORNER
-        if alone(m, at[LEFT], faces - 1, out) or alone(m, at[RIGHT], faces - 1, out):
+        others = faces - 1
+        if alone(m, at[LEFT], at[C], others, out) or alone(m, at[RIGHT], at[D], others, out):
             return LONE_FACE
         around_a = vertex_vertices(m, at[A], out)
         border_a = on_border(m, at[A], around_a, out[around_a:])
@@ -113,14 +129,19 @@ def rules(k: Mapping[str, Kernel]) -> Any:
             return TWO_BORDERS
         if around_a == 3 and around_b == 3 and not border_a and not border_b:
             return TETRAHEDRON
-        if both - distinct(out, both) != faces:
+        if both - distinct(out, both) != triangles:
             return COMMON_NEIGHBOR
+        if m.counts[SIDES] > 3:
+            around_a = vertex_faces(m, at[A], out)
+            both = around_a + vertex_faces(m, at[B], out[around_a:])
+            if both - distinct(out, both) != faces:
+                return SHARED_FACE
         return ALLOWED
 
     @kernel
     def may_flip(m: Any, e: int, at: Array) -> int:
         """Cost: that of finding the edge, and O(the smaller valence of the opposite corners)."""
-        refusal = surface_edge(m, e, at)
+        refusal = triangle_edge(m, e, at)
         if refusal != ALLOWED:
             return refusal
         if at[LEFT] < 0 or at[RIGHT] < 0:
@@ -131,24 +152,29 @@ def rules(k: Mapping[str, Kernel]) -> Any:
 
     @kernel
     def live_vertex(m: Any, v: int) -> bool:
-        return 0 <= v < m.counts[VERTEX_END] and not np.isnan(m.vertex_point[v, 0])
+        return 0 <= v < m.counts[VERTEX_END] and not np.isnan(coordinate(m, v, 0))
 
     @kernel
-    def may_add_face(m: Any, a: int, b: int, c: int, out: Array) -> int:
+    def may_add_face(m: Any, corners: Array, out: Array) -> int:
         """Cost: that of ``vertex_faces`` at the corners."""
-        if not (live_vertex(m, a) and live_vertex(m, b) and live_vertex(m, c)):
-            return NO_VERTEX
-        if a == b or b == c or c == a:
-            return SAME_VERTEX
-        if beside(m, a, b) >= 0 or beside(m, b, c) >= 0 or beside(m, c, a) >= 0:
-            return TAKEN
-        ab, bc, ca = beside(m, b, a), beside(m, c, b), beside(m, a, c)
-        if ab >= 0 and ab == bc and bc == ca:
-            return COINCIDENT
-        free_a = ab >= 0 or ca >= 0 or vertex_faces(m, a, out) == 0
-        free_b = ab >= 0 or bc >= 0 or vertex_faces(m, b, out) == 0
-        free_c = bc >= 0 or ca >= 0 or vertex_faces(m, c, out) == 0
-        return ALLOWED if free_a and free_b and free_c else SECOND_FAN
+        n = len(corners)
+        for i in range(n):
+            if not live_vertex(m, corners[i]):
+                return NO_VERTEX
+            for j in range(i):
+                if corners[i] == corners[j]:
+                    return SAME_VERTEX
+        alike, last = True, beside(m, corners[0], corners[n - 1])
+        for i in range(n):
+            a, b = corners[i], corners[(i + 1) % n]
+            if beside(m, a, b) >= 0:
+                return TAKEN
+            beyond = beside(m, b, a)
+            alike = alike and beyond >= 0 and beyond == last
+            if beyond < 0 and last < 0 and vertex_faces(m, a, out) > 0:
+                return SECOND_FAN
+            last = beyond
+        return COINCIDENT if alike else ALLOWED
 
     @kernel
     def between(m: Any, v: int, before: int, after: int, out: Array) -> bool:
@@ -162,14 +188,19 @@ def rules(k: Mapping[str, Kernel]) -> Any:
         """Cost: that of ``vertex_vertices`` at the corners."""
         if not face_exists(m, f):
             return NO_FACE
-        face_vertices(m, f, out)
-        a, b, c = out[0], out[1], out[2]
-        ab, bc, ca = beside(m, b, a), beside(m, c, b), beside(m, a, c)
-        pinched = between(m, a, ca, ab, out) or between(m, b, ab, bc, out)
-        return BETWEEN if pinched or between(m, c, bc, ca, out) else ALLOWED
+        n = face_vertices(m, f, out)
+        before = beside(m, out[0], out[n - 1])
+        for i in range(n):
+            v = out[i]
+            after = beside(m, out[(i + 1) % n], v)
+            if between(m, v, before, after, out[n:]):
+                return BETWEEN
+            before = after
+        return ALLOWED
 
     return SimpleNamespace(
         surface_edge=surface_edge,
+        triangle_edge=triangle_edge,
         may_collapse=may_collapse,
         may_flip=may_flip,
         live_vertex=live_vertex,

@@ -34,7 +34,7 @@ from hem import kernels, operations, topology
 from hem.edit import FACE
 from hem.kernels import VALENCE, Array, Kernel
 from hem.operations import WIDTH
-from hem.pinned import Pinned, loader
+from hem.pinned import loader
 from hem.topology import NEEDS_ROOM
 
 MODE, BEGIN, END = range(3)
@@ -49,6 +49,7 @@ _RECORDS: Callable[..., Any] = tuple
 _LOAD: Callable[..., Any] = len
 _EXISTS: Kernel = len
 _EDGE_VERTICES: Kernel = len
+_COORDINATE: Kernel = len
 
 
 def _single(handle: int, address: int) -> int:
@@ -105,8 +106,8 @@ def _copy_touched(
         index = entry >> 3
         if entry & 7 < FACE:
             for i in range(3):
-                coordinate = m.vertex_point[index, i]
-                points[index, i] = coordinate if not np.isnan(coordinate) else 0
+                value = _COORDINATE(m, index, i)
+                points[index, i] = value if not np.isnan(value) else 0
         elif _EXISTS(m, index):
             _KERNEL(m, index, out)
             indices[index, 0], indices[index, 1], indices[index, 2] = out[0], out[2], out[1]
@@ -131,14 +132,14 @@ class Uses:
         self._kernel, self._records = kernel, records
         self._by_kind: dict[Any, Callable[..., Any]] = {}
 
-    def single(self, pinned: Pinned, exists: Kernel) -> Callable[[int, int], int]:
+    def single(self, pinned: Any, exists: Kernel) -> Callable[[int, int], int]:
         """``single(handle, pinned.address) -> count``, for records and an ``out`` as these.
 
         The count is 0 also where ``exists(m, handle)`` is false, and where ``out`` is too small.
         """
         return self._bound(_single, pinned.kind, _EXISTS=exists)
 
-    def perform(self, pinned: Pinned) -> Callable[[int], int]:
+    def perform(self, pinned: Any) -> Callable[[int], int]:
         """``perform(pinned.address) -> end``, for an operation.
 
         Pinned are the records and ``task`` (``MODE``, ``BEGIN``, ``END``), ``args`` (n, 3),
@@ -171,12 +172,12 @@ class Uses:
         """``sweep(handles, out, *records) -> checksum``; every answer overwrites the last."""
         return self._compiled(_sweep)
 
-    def copy_touched(self, exists: Kernel) -> Callable[..., None]:
+    def copy_touched(self, exists: Kernel, coordinate: Kernel) -> Callable[..., None]:
         """``copy(touched, points, indices, out, *records)``, from ``face_vertices``.
 
         Points and clockwise corners of what the log of an edit names; zeros for what is dead.
         """
-        return self._compiled(_copy_touched, _EXISTS=exists)
+        return self._compiled(_copy_touched, _EXISTS=exists, _COORDINATE=coordinate)
 
     def find_edge(self, edge_vertices: Kernel) -> Callable[..., int]:
         """``find_edge(a, b, out, vertices, *records) -> edge or -1``, from ``vertex_edges``."""
@@ -207,7 +208,8 @@ class Uses:
     def _digest(self, variant: str) -> str:
         """Of the structure's file, of the parts that its kernels share, and of this file."""
         shared = kernels.__file__, topology.__file__, operations.__file__, __file__
-        files = (inspect.getfile(self._records), *shared)
+        own = {inspect.getfile(it) for it in (self._records, _source(self._kernel))}
+        files = (*sorted(own), *shared)
         sources = b"".join(Path(file).read_bytes() for file in files)
         return hashlib.blake2b(sources + variant.encode(), digest_size=6).hexdigest()
 

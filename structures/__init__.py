@@ -5,12 +5,14 @@ from __future__ import annotations
 from hem.mesh import TriangleMesh
 from hem.structure import REFERENCE_TYPES, Structure
 from structures.half_edge import HalfEdge
+from structures.half_edge_objects import HalfEdgeMesh
 from structures.indexed import Indexed
+from structures.plankton import Plankton
 from structures.triangle_neighbor import TriangleNeighbor
 from structures.winged_edge import WingedEdge
 
 REGISTRY: dict[str, type[Structure]] = {
-    structure.name: structure for structure in (Indexed, TriangleNeighbor, WingedEdge, HalfEdge)
+    structure.name: structure for structure in (Indexed, TriangleNeighbor, WingedEdge, HalfEdge, HalfEdgeMesh, Plankton)
 }
 """Every structure by name, in the order of the thesis' table 1. A new one is one entry here."""
 

@@ -47,7 +47,6 @@ from hem.kernels import (
     joined_by_steps,
     kernel,
     named,
-    vertex_exists,
 )
 from hem.mesh import TriangleMesh
 from hem.pairing import pair_half_edges
@@ -424,8 +423,9 @@ def turn(m: HalfEdgeRecords, e: int, at: Array, one: int, other: int) -> None:
 
 
 @kernel
-def attach(m: HalfEdgeRecords, a: int, b: int, c: int, f: int) -> None:
+def attach(m: HalfEdgeRecords, corners: Array, f: int) -> None:
     """Cost O(n_ev)."""
+    a, b, c = corners[0], corners[1], corners[2]
     ab, bc, ca = between(m, b, a), between(m, c, b), between(m, a, c)  # beyond the edges
     g, h, i = new_half_edge(m, a), new_half_edge(m, b), new_half_edge(m, c)
     if ab >= 0:
@@ -487,7 +487,7 @@ class HalfEdge(Structure):
         *(vertex_vertices, vertex_edges, vertex_faces),
         *(edge_vertices, edge_edges, edge_faces),
         *(face_vertices, face_edges, face_faces),
-        *(vertex_exists, edge_exists, face_exists, diamond, joined, beside),
+        *(edge_exists, face_exists, diamond, joined, beside),
         *(cut_edge, cut_face, contract, turn, attach, detach),
     )
 

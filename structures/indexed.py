@@ -32,7 +32,6 @@ from hem.kernels import (
     kernel,
     named,
     pack,
-    vertex_exists,
 )
 from hem.mesh import TriangleMesh
 from hem.packed import PackedEdges
@@ -246,8 +245,9 @@ def turn(m: IndexedRecords, e: int, at: Array, one: int, other: int) -> None:
 
 
 @kernel
-def attach(m: IndexedRecords, a: int, b: int, c: int, f: int) -> None:
+def attach(m: IndexedRecords, corners: Array, f: int) -> None:
     """Cost O(1)."""
+    a, b, c = corners[0], corners[1], corners[2]
     set_triangle(m, f, a, b, c)
 
 
@@ -270,7 +270,7 @@ class Indexed(PackedEdges):
         *(vertex_vertices, vertex_edges, vertex_faces),
         *(edge_vertices, edge_edges, edge_faces),
         *(face_vertices, face_edges, face_faces),
-        *(vertex_exists, edge_exists, face_exists, diamond, joined, beside),
+        *(edge_exists, face_exists, diamond, joined, beside),
         *(cut_edge, cut_face, contract, turn, attach, detach),
     )
 

@@ -48,7 +48,6 @@ from hem.kernels import (
     kernel,
     named,
     pack,
-    vertex_exists,
 )
 from hem.mesh import TriangleMesh
 from hem.packed import PackedEdges
@@ -353,8 +352,9 @@ def turn(m: TriangleNeighborRecords, e: int, at: Array, one: int, other: int) ->
 
 
 @kernel
-def attach(m: TriangleNeighborRecords, a: int, b: int, c: int, f: int) -> None:
+def attach(m: TriangleNeighborRecords, corners: Array, f: int) -> None:
     """Cost O(n_ev)."""
+    a, b, c = corners[0], corners[1], corners[2]
     ab, bc, ca = beside(m, b, a), beside(m, c, b), beside(m, a, c)
     set_triangle(m, f, a, b, c)
     set_neighbors(m, f, ab, bc, ca)
@@ -399,7 +399,7 @@ class TriangleNeighbor(PackedEdges):
         *(vertex_vertices, vertex_edges, vertex_faces),
         *(edge_vertices, edge_edges, edge_faces),
         *(face_vertices, face_edges, face_faces),
-        *(vertex_exists, edge_exists, face_exists, diamond, joined, beside),
+        *(edge_exists, face_exists, diamond, joined, beside),
         *(cut_edge, cut_face, contract, turn, attach, detach),
     )
 

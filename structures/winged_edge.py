@@ -52,7 +52,6 @@ from hem.kernels import (
     joined_by_steps,
     kernel,
     named,
-    vertex_exists,
 )
 from hem.mesh import TriangleMesh
 from hem.pairing import pair_half_edges
@@ -410,8 +409,9 @@ def turn(m: WingedEdgeRecords, e: int, at: Array, one: int, other: int) -> None:
 
 
 @kernel
-def attach(m: WingedEdgeRecords, a: int, b: int, c: int, f: int) -> None:
+def attach(m: WingedEdgeRecords, corners: Array, f: int) -> None:
     """Cost O(n_ev)."""
+    a, b, c = corners[0], corners[1], corners[2]
     ab, bc, ca = between(m, a, b), between(m, b, c), between(m, c, a)
     ab = ab if ab >= 0 else new_edge(m, a, b)
     bc = bc if bc >= 0 else new_edge(m, b, c)
@@ -489,7 +489,7 @@ class WingedEdge(Structure):
         *(vertex_vertices, vertex_edges, vertex_faces),
         *(edge_vertices, edge_edges, edge_faces),
         *(face_vertices, face_edges, face_faces),
-        *(vertex_exists, edge_exists, face_exists, diamond, joined, beside),
+        *(edge_exists, face_exists, diamond, joined, beside),
         *(cut_edge, cut_face, contract, turn, attach, detach),
     )
 

@@ -9,6 +9,8 @@ import hem
 import structures
 
 NEEDS_MANIFOLD = tuple(name for name in structures.NAMES if name != "indexed")
+OF_ARRAYS = tuple(name for name in structures.NAMES if structures.REGISTRY[name].fields)
+"""Those whose records can be changed at random; the others are made of objects."""
 
 
 def octahedron() -> hem.TriangleMesh:

@@ -7,7 +7,7 @@ import pytest
 
 import hem
 import structures
-from tests.structures.conftest import NEEDS_MANIFOLD, shuffled
+from tests.structures.conftest import NEEDS_MANIFOLD, OF_ARRAYS, shuffled
 
 NON_MANIFOLD = {
     "edge in three faces": ([(0, 1, 2), (1, 0, 3), (0, 1, 4)], "edges", [[0, 1]]),
@@ -83,6 +83,7 @@ def test_a_renumbered_mesh_is_the_same_surface(name, reference_bytes):
     assert (s.n_vertices, s.n_edges, s.n_faces) == (900, 2700, 1800)
 
 
+@pytest.mark.parametrize("name", OF_ARRAYS)
 def test_slices_side_by_side_build_what_one_slice_builds(name, monkeypatch):
     mesh = shuffled(hem.generate("torus", 400))
     alone = structures.build(name, mesh).records
@@ -92,6 +93,7 @@ def test_slices_side_by_side_build_what_one_slice_builds(name, monkeypatch):
         assert np.array_equal(one, many)
 
 
+@pytest.mark.parametrize("name", OF_ARRAYS)
 def test_every_byte_of_the_arrays_is_a_field_of_the_thesis(name):
     for reference_bytes in (4, 8):
         s = structures.build(name, hem.generate("torus", 400), reference_bytes)

@@ -7,7 +7,7 @@ import pytest
 
 import hem
 import structures
-from tests.structures.conftest import shuffled
+from tests.structures.conftest import OF_ARRAYS, shuffled
 
 
 def test_what_was_built_is_valid(name, mesh):
@@ -21,17 +21,22 @@ def references(s: structures.Structure) -> list[tuple[str, np.ndarray]]:
 
 def sound_alternatives(s: structures.Structure, field: str, row: int) -> set[int]:
     """Other values that are just as good: any element at a vertex or face may stand for it."""
+    name = s.name
     kind, _, target = field.partition("_")
     if field in ("triangle", "edge", "half_edge"):
         return set()
     if target == "half_edge":
         column = {"vertex": 0, "face": 1}[kind]
-        return set(np.flatnonzero(s.records.half_edge[:, column] == row).tolist())
+        mine = s.records.half_edge[:, column] == row
+        if name == "plankton" and kind == "vertex" and (s.records.half_edge[mine, 1] < 0).any():
+            return set()  # at the border there is just one
+        return set(np.flatnonzero(mine).tolist())
     return set(
         getattr(s, f"{kind}_{target}s" if target == "edge" else "vertex_faces")(row).tolist()
     )
 
 
+@pytest.mark.parametrize("name", OF_ARRAYS)
 @pytest.mark.parametrize("family", ["torus", "grid"])
 def test_a_reference_changed_anywhere_is_found(name, family):
     if name == "indexed":
@@ -59,6 +64,7 @@ def test_a_corner_that_cannot_be_is_found_in_an_indexed_mesh(wrong):
     assert broken.value.elements["faces"].tolist() == [7]
 
 
+@pytest.mark.parametrize("name", OF_ARRAYS)
 def test_a_position_that_is_not_finite_is_found(name):
     s = structures.build(name, hem.generate("torus", 100))
     s.points[3, 1] = np.inf
@@ -67,6 +73,7 @@ def test_a_position_that_is_not_finite_is_found(name):
     assert broken.value.elements["vertices"].tolist() == [3]
 
 
+@pytest.mark.parametrize("name", OF_ARRAYS)
 def test_two_fans_joined_in_one_vertex_are_found(name):
     """Two tetrahedra that share a vertex: every record is consistent, the surface is not."""
     if name == "indexed":

@@ -1,0 +1,771 @@
+"""The thesis' half-edge mesh as it was designed: objects and references (thesis 3.2 to 4.3).
+
+The classes stand in ``structures.class_model``; here they fulfill the contract, so that every
+experiment runs on them. Kernels and surgery are those of ``structures.half_edge``, told in objects,
+and both number their elements alike::
+
+    mesh = structures.build("half_edge_objects", hem.sample("bunny"))
+    mesh.half_edges[3].next.opposite.face         # objects
+    mesh.vertex_faces(7)                          # handles, as everywhere
+    for vertex in mesh.vertices: ...              # called, mesh.vertices() gives the handles
+
+This is the sound version: the vertex circulator steps from half-edge to half-edge, the builder and
+the splits search for nothing, every reference is kept up. What the thesis prints is run in
+``structures.as_printed``.
+
+Invariants
+
+- Those of ``structures.half_edge``, with None where that has -1.
+- Every element stands in its list at its index, and every reference leads to one that does.
+
+Bytes per vertex: Python's own, see ``memory``, and those of the thesis' runtime, see ``clr_memory``.
+"""
+
+from __future__ import annotations
+
+import gc
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from functools import cached_property
+from typing import Any, NamedTuple, Self
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from hem.errors import MeshError
+from hem.interpreted import Held, InterpretedUses
+from hem.kernels import (
+    EDGE_END,
+    EDGE_ROOM,
+    EDGES,
+    FACE_ROOM,
+    FACES,
+    VALENCE,
+    VERTEX_END,
+    VERTEX_ROOM,
+    VERTICES,
+    append_face,
+    edges_at_both_ends,
+    named,
+)
+from hem.manifold import require_manifold
+from hem.mesh import TriangleMesh
+from hem.queryable import HANDLE_TYPES
+from hem.records import ENDLESS, counted
+from hem.render import mesh_from_render
+from hem.structure import Structure
+from hem.topology import LEFT, RIGHT, A, B, C, D
+from structures.class_model import (
+    ElementList,
+    Face,
+    FaceList,
+    HalfEdge,
+    HalfEdgeList,
+    Vertex,
+    VertexList,
+    around,
+)
+from structures.half_edge import HalfEdge as HalfEdgeArrays
+from structures.half_edge import HalfEdgeRecords
+
+Array = NDArray[Any]
+
+COUNTED = (Vertex, HalfEdge, Face, ElementList)
+"""The classes whose fields count as work when they are read or written."""
+
+
+class ObjectRecords(NamedTuple):
+    """What the kernels are given: the lists that own everything."""
+
+    vertices: VertexList
+    half_edges: HalfEdgeList
+    faces: FaceList
+    counts: Array  # how many of them there are, see hem.kernels
+
+
+def vertex_vertices(m: ObjectRecords, v: int, out: Any) -> int:
+    """Cost O(n_ev)."""
+    leaving, closed = around(m.vertices.items[v])
+    count = 0
+    for h in leaving:
+        out[count] = h.next.origin.index
+        count += 1
+    if closed or not count:
+        return count
+    out[count] = leaving[-1].next.next.origin.index
+    return count + 1
+
+
+def vertex_edges(m: ObjectRecords, v: int, out: Any) -> int:
+    """Cost O(n_ev)."""
+    leaving, closed = around(m.vertices.items[v])
+    count = 0
+    for h in leaving:
+        out[count] = h.edge
+        count += 1
+    if closed or not count:
+        return count
+    out[count] = leaving[-1].next.next.index
+    return count + 1
+
+
+def vertex_faces(m: ObjectRecords, v: int, out: Any) -> int:
+    """Cost O(n_ev)."""
+    count = 0
+    for h in around(m.vertices.items[v])[0]:
+        out[count] = h.face.index
+        count += 1
+    return count
+
+
+def edge_vertices(m: ObjectRecords, e: int, out: Any) -> int:
+    """Cost O(1)."""
+    h = m.half_edges.items[e]
+    a, b = h.origin.index, h.next.origin.index
+    out[0], out[1] = (a, b) if a < b else (b, a)
+    return 2
+
+
+edge_edges = edges_at_both_ends(edge_vertices, vertex_edges)
+
+
+def edge_faces(m: ObjectRecords, e: int, out: Any) -> int:
+    """Cost O(1)."""
+    h = m.half_edges.items[e]
+    out[0] = h.face.index
+    opposite = h.opposite
+    if opposite is None:
+        return 1
+    out[1] = opposite.face.index
+    return 2
+
+
+def face_vertices(m: ObjectRecords, f: int, out: Any) -> int:
+    """Cost O(1)."""
+    h = m.faces.items[f].half_edge
+    for i in range(3):
+        out[i] = h.origin.index
+        h = h.next
+    return 3
+
+
+def face_edges(m: ObjectRecords, f: int, out: Any) -> int:
+    """Cost O(1)."""
+    h = m.faces.items[f].half_edge
+    for i in range(3):
+        out[i] = h.edge
+        h = h.next
+    return 3
+
+
+def face_faces(m: ObjectRecords, f: int, out: Any) -> int:
+    """Cost O(1)."""
+    h, count = m.faces.items[f].half_edge, 0
+    for _ in range(3):
+        opposite = h.opposite
+        if opposite is not None:
+            count = append_face(out, count, opposite.face.index)
+        h = h.next
+    return count
+
+
+# What operations need to know, and what they change (hem.topology, hem.operations) ---------------
+
+
+def _exists(items: list[Any], index: int) -> bool:
+    return 0 <= index < len(items) and items[index] is not None
+
+
+def vertex_exists(m: ObjectRecords, v: int) -> bool:
+    """Whether v is a live vertex."""
+    return _exists(m.vertices.items, v)
+
+
+def edge_exists(m: ObjectRecords, e: int) -> bool:
+    """Whether e is a live half-edge."""
+    return _exists(m.half_edges.items, e)
+
+
+def face_exists(m: ObjectRecords, f: int) -> bool:
+    """Whether f is a live face."""
+    return _exists(m.faces.items, f)
+
+
+def coordinate(m: ObjectRecords, v: int, i: int) -> float:
+    """x, y or z of vertex v; NaN if it is dead."""
+    vertex = m.vertices.items[v]
+    return float("nan") if vertex is None else vertex.point[i]
+
+
+def place(m: ObjectRecords, v: int, point: Any) -> None:
+    """Give a vertex its position, be it new or not."""
+    position = float(point[0]), float(point[1]), float(point[2])
+    if v == len(m.vertices.items):
+        m.vertices.create(position)
+    else:
+        m.vertices.items[v].point = position
+
+
+def bury(m: ObjectRecords, v: int) -> None:
+    """Make a vertex dead."""
+    m.vertices.items[v] = None
+
+
+def left_and_right(h: HalfEdge) -> tuple[HalfEdge | None, HalfEdge | None]:
+    """The half-edges of h's edge: first the one that runs from its smaller to its larger vertex."""
+    return (h, h.opposite) if h.origin.index < h.end.index else (h.opposite, h)
+
+
+def diamond(m: ObjectRecords, e: int, at: Any) -> int:
+    """Cost O(1)."""
+    left, right = left_and_right(m.half_edges.items[e])
+    edge_vertices(m, e, at)
+    at[LEFT], at[RIGHT], at[C], at[D] = -1, -1, -1, -1
+    if left is not None:
+        at[LEFT], at[C] = left.face.index, left.previous.origin.index
+    if right is not None:
+        at[RIGHT], at[D] = right.face.index, right.previous.origin.index
+    return (left is not None) + (right is not None)
+
+
+def between(m: ObjectRecords, a: int, b: int) -> HalfEdge | None:
+    """The half-edge that runs a → b, if there is one. Cost O(n_ev)."""
+    for h in around(m.vertices.items[a])[0]:
+        if h.end.index == b:
+            return h
+    return None
+
+
+def joined(m: ObjectRecords, a: int, b: int) -> bool:
+    """Cost O(n_ev)."""
+    return between(m, a, b) is not None or between(m, b, a) is not None
+
+
+def beside(m: ObjectRecords, a: int, b: int) -> int:
+    """The face that runs a → b, or -1. Cost O(n_ev)."""
+    h = between(m, a, b)
+    return -1 if h is None else h.face.index
+
+
+def new_half_edge(m: ObjectRecords, origin: Vertex) -> HalfEdge:
+    """Append a half-edge that has no opposite yet."""
+    m.counts[EDGE_END] += 1
+    return m.half_edges.create(origin)
+
+
+def lead_from_ends(h: HalfEdge) -> None:
+    """Let both ends of h have half-edges in its face."""
+    h.origin.half_edge = h
+    h.end.half_edge = h.next
+
+
+def cut_edge(m: ObjectRecords, e: int, at: Any, v: int, f: int) -> None:
+    """Cost O(1): two half-edges of each face stay, one moves on, and three are new."""
+    left, right = left_and_right(m.half_edges.items[e])  # they stay with a and v
+    middle = m.vertices.items[v]
+    on_left, on_right = None, None  # the halves of the edge from v to b
+    if left is not None:
+        bc, ca = left.next, left.previous
+        on_left = new_half_edge(m, middle)
+        cv, vc = new_half_edge(m, ca.origin), new_half_edge(m, middle)
+        m.half_edges.pair(cv, vc)
+        m.faces.enclose(left.face, left, vc, ca)
+        m.faces.create(on_left, bc, cv)
+        lead_from_ends(on_left)
+    if right is not None:
+        ad, db, b = right.next, right.previous, right.origin
+        on_right = new_half_edge(m, b)
+        vd, dv = new_half_edge(m, middle), new_half_edge(m, db.origin)
+        m.half_edges.pair(vd, dv)
+        right.origin = middle
+        m.faces.enclose(right.face, right, ad, dv)
+        m.faces.create(on_right, vd, db)
+        lead_from_ends(on_right)
+    if on_left is not None and on_right is not None:
+        m.half_edges.pair(on_left, on_right)
+
+
+def cut_face(m: ObjectRecords, face: int, v: int, f: int) -> None:
+    """Cost O(1): each face keeps one half-edge of the old one and gets two."""
+    it, middle = m.faces.items[face], m.vertices.items[v]
+    h = it.half_edge
+    ab = min((h, h.next, h.previous), key=lambda side: side.origin.index)
+    bc, ca = ab.next, ab.previous
+    av, va = new_half_edge(m, ab.origin), new_half_edge(m, middle)
+    bv, vb = new_half_edge(m, bc.origin), new_half_edge(m, middle)
+    cv, vc = new_half_edge(m, ca.origin), new_half_edge(m, middle)
+    m.half_edges.pair(av, va)
+    m.half_edges.pair(bv, vb)
+    m.half_edges.pair(cv, vc)
+    m.faces.enclose(it, ab, bv, va)
+    m.faces.create(bc, cv, vb)
+    m.faces.create(ca, av, vc)
+    middle.half_edge = va
+
+
+def leave(m: ObjectRecords, h: HalfEdge) -> HalfEdge | None:
+    """Take h out of its edge, whose name stays -> the half-edge that is left of it, if any."""
+    opposite = h.opposite
+    m.half_edges.remove(h)
+    if opposite is None:
+        return None
+    opposite.opposite = None
+    if h.index < opposite.index:
+        m.half_edges.put(opposite, h.index)
+    return opposite
+
+
+def unite(m: ObjectRecords, gone: HalfEdge, stays: HalfEdge) -> None:
+    """Make one edge of two sides of a triangle that vanishes; what is beyond them meets there."""
+    beyond, left = gone.opposite, stays.opposite
+    m.half_edges.remove(gone)
+    if beyond is not None:
+        m.half_edges.put(beyond, stays.index)
+        beyond.opposite = left
+        if left is not None:
+            left.opposite = beyond
+        lead_from_ends(beyond)
+    else:
+        alone = leave(m, stays)
+        assert alone is not None  # else an edge without a face would be left, which is refused
+        lead_from_ends(alone)
+
+
+def contract(
+    m: ObjectRecords, e: int, at: Any, drop: int, keep: int, around: int, out: Any
+) -> None:
+    """Cost O(n_ev) for the half-edges that leave ``drop``."""
+    left, right = left_and_right(m.half_edges.items[e])
+    inward, outward = (left, right) if drop == at[A] else (right, left)  # inward ends at keep
+    dropped, kept = m.vertices.items[drop], m.vertices.items[keep]
+    for i in range(around):
+        h = m.faces.items[out[i]].half_edge
+        while h.origin is not dropped:
+            h = h.next
+        h.origin = kept
+    dropped.half_edge = None
+    for h in (inward, outward):
+        if h is None:
+            continue
+        following, last = h.next, h.previous
+        m.half_edges.remove(h)
+        m.faces.remove(h.face)
+        if h is inward:
+            unite(m, last, following)
+        else:
+            unite(m, following, last)
+
+
+def turn(m: ObjectRecords, e: int, at: Any, one: int, other: int) -> None:
+    """Cost O(1)."""
+    ab, ba = left_and_right(m.half_edges.items[e])
+    assert ab is not None and ba is not None  # at the border a flip is refused
+    bc, ad = ab.next, ba.next
+    ca, db = bc.next, ad.next
+    ab.origin, ba.origin = db.origin, ca.origin
+    m.faces.enclose(m.faces.items[one], ad, ab, ca)
+    m.faces.enclose(m.faces.items[other], bc, ba, db)
+    ad.origin.half_edge, bc.origin.half_edge = ad, bc
+
+
+def attach(m: ObjectRecords, corners: Any, f: int) -> None:
+    """Cost O(n_ev)."""
+    a, b, c = (m.vertices.items[int(corner)] for corner in corners)
+    beyond = [between(m, q.index, p.index) for p, q in ((a, b), (b, c), (c, a))]
+    sides = [new_half_edge(m, corner) for corner in (a, b, c)]
+    for side, opposite in zip(sides, beyond, strict=True):
+        if opposite is not None:
+            m.half_edges.pair(side, opposite)
+    m.faces.create(*sides)
+    for corner, side in zip((a, b, c), sides, strict=True):
+        corner.half_edge = side
+
+
+def detach(m: ObjectRecords, f: int) -> None:
+    """Cost O(1)."""
+    face = m.faces.items[f]
+    sides = [face.half_edge, face.half_edge.next, face.half_edge.previous]
+    for h in sides:
+        h.origin.half_edge = None
+    m.faces.remove(face)
+    for h in sides:
+        left = leave(m, h)
+        if left is not None:
+            lead_from_ends(left)
+
+
+class ObjectUses(InterpretedUses):
+    """Counts the fields of the class model."""
+
+    counted_classes = COUNTED
+
+
+class HalfEdgeMesh(Structure):
+    """The half-edge mesh of the thesis' class model."""
+
+    name, title, abbreviation = "half_edge_objects", "Half-Edge Objects", "Objects"
+    uses_type, pinning = ObjectUses, Held
+    records_type = ObjectRecords
+    fields = ()
+    kernels = named(
+        *(vertex_vertices, vertex_edges, vertex_faces),
+        *(edge_vertices, edge_edges, edge_faces),
+        *(face_vertices, face_edges, face_faces),
+        *(vertex_exists, edge_exists, face_exists, diamond, joined, beside),
+        *(coordinate, place, bury),
+        *(cut_edge, cut_face, contract, turn, attach, detach),
+    )
+
+    @classmethod
+    def build(cls, mesh: TriangleMesh, reference_bytes: int = 4) -> Self:
+        """See ``Structure.build``; a reference takes what Python gives it, whatever is asked for."""
+        return cls(HalfEdgeMeshBuilder.records(mesh))
+
+    @classmethod
+    def create(cls, a: ArrayLike, b: ArrayLike, c: ArrayLike) -> Self:
+        """A mesh of one triangle, its corners clockwise from outside (``CreateMesh``, thesis 3.3).
+
+        More are added with ``add_vertex`` and ``add_face``.
+        """
+        return cls.build(TriangleMesh([a, b, c], [(0, 2, 1)]))
+
+    # Elements --------------------------------------------------------------------------------
+
+    @property
+    def vertices(self) -> VertexList:  # type: ignore[override]
+        """The vertices as objects; called, their handles."""
+        found: VertexList = self.records.vertices
+        return found
+
+    @property
+    def half_edges(self) -> HalfEdgeList:
+        """The half-edges as objects; called, their indices."""
+        found: HalfEdgeList = self.records.half_edges
+        return found
+
+    @property
+    def faces(self) -> FaceList:  # type: ignore[override]
+        """The faces as objects; called, their handles."""
+        found: FaceList = self.records.faces
+        return found
+
+    @property
+    def points(self) -> NDArray[np.float32]:
+        """(n, 3) float32: positions by vertex, NaN for dead ones; gathered anew. Cost O(n_v)."""
+        dead = (np.nan,) * 3
+        rows = [dead if it is None else it.point for it in self.vertices.items]
+        return np.array(rows, np.float32).reshape(-1, 3)
+
+    def edges(self) -> NDArray[np.int64]:
+        """(n_edges,) int64: of each pair of live half-edges the smaller."""
+        return np.array([h.index for h in self.half_edges if h.edge == h.index], np.int64)
+
+    def _live(self, element: str) -> NDArray[np.int32]:
+        return np.flatnonzero(self._alive(element)).astype(np.int32)
+
+    def _alive(self, element: str) -> NDArray[np.bool_]:
+        lists = {"vertex": self.vertices, "face": self.faces}
+        return lists.get(element, self.half_edges).alive()
+
+    def _edge_names(self, handles: Array) -> Array:
+        items = self.half_edges.items
+        known = [items[h] if 0 <= h < len(items) else None for h in handles.tolist()]
+        names = [h if it is None else it.edge for h, it in zip(handles, known, strict=True)]
+        return np.array(names, np.int64)
+
+    # Behind the contract ---------------------------------------------------------------------
+
+    @cached_property
+    def _at(self) -> list[int]:
+        return [0] * 6
+
+    def _room(self, width: int, dtype: Any) -> memoryview:
+        # Slices of it are views, as of an array, but it is faster, and its numbers are Python's.
+        return memoryview(np.empty(width, dtype).data)
+
+    def _kept(self, element: str) -> Callable[[Any], Array]:
+        dtype = HANDLE_TYPES[element]
+        return lambda answer: np.array(answer, dtype)
+
+    def _compacted(self) -> tuple[ObjectRecords, dict[str, Array]]:
+        m, number = self.records, {}
+        lists = {"vertex": m.vertices, "half_edge": m.half_edges, "face": m.faces}
+        for kind, elements in lists.items():
+            alive = elements.alive()
+            number[kind] = np.where(alive, np.cumsum(alive) - 1, -1)
+            elements.items[:] = list(elements)
+            for index, element in enumerate(elements.items):
+                element.index = index
+        count = _counted(m.vertices, m.half_edges, m.faces, int(m.counts[EDGES]))
+        count[VALENCE] = m.counts[VALENCE]
+        return m._replace(counts=count), number
+
+    def copy(self) -> Self:
+        """The same mesh in objects of its own, with the same indices and no subscribers."""
+        arrays = self.to_arrays()
+        return type(self)(_from_arrays(arrays))
+
+    def snapshot(self) -> HalfEdgeRecords:
+        """See ``Structure.snapshot``."""
+        return self.to_arrays()
+
+    def restore(self, snapshot: HalfEdgeRecords) -> None:
+        """See ``Structure.restore``; the objects are new ones."""
+        fresh = _from_arrays(snapshot)
+        for mine, theirs in zip(self.records[:-1], fresh[:-1], strict=True):
+            mine.items[:] = theirs.items
+        np.copyto(self.records.counts[:VERTEX_ROOM], fresh.counts[:VERTEX_ROOM])
+
+    def to_arrays(self) -> HalfEdgeRecords:
+        """The same half-edges by index, as ``structures.half_edge`` has them. O(n_v + n_t)."""
+        m = self.records
+        index = _index_of
+        half_edge = [
+            (-1,) * 4
+            if h is None
+            else (h.origin.index, h.face.index, h.next.index, index(h.opposite))
+            for h in m.half_edges.items
+        ]
+        leaving = [-1 if v is None else index(v.half_edge) for v in m.vertices.items]
+        within = [-1 if f is None else f.half_edge.index for f in m.faces.items]
+        counts = m.counts.copy()
+        ends = VERTEX_ROOM, FACE_ROOM, EDGE_ROOM
+        counts[list(ends)] = len(leaving), len(within), len(half_edge)
+        return HalfEdgeRecords(
+            self.points,
+            np.array(leaving, np.int32),
+            np.array(within, np.int32),
+            np.array(half_edge, np.int32).reshape(-1, 4),
+            counts,
+        )
+
+    @property
+    def arrays(self) -> tuple[Array, ...]:
+        """There are none to measure: the bytes are those of the objects, see ``memory``."""
+        return ()
+
+    def memory(self) -> dict[str, int]:
+        """Bytes that Python's objects take, by class and by what their fields hold of their own.
+
+        As ``sys.getsizeof`` tells of the running interpreter; small integers are shared.
+        """
+        point = (0.0, 0.0, 0.0)
+        position = sys.getsizeof(point) + 3 * sys.getsizeof(1.5)
+        lists = {"vertex": self.vertices, "half_edge": self.half_edges, "face": self.faces}
+        taken = {}
+        for kind, elements in lists.items():
+            n = len(elements)
+            sample = next(iter(elements), None)
+            taken[f"{kind}.object"] = n * (sys.getsizeof(sample) if sample else 0)
+            taken[f"{kind}.index"] = sum(sys.getsizeof(it.index) for it in elements if it.index > 256)
+            taken[f"{kind}.list"] = 8 * n
+        taken["vertex.point"] = position * len(self.vertices)
+        return taken
+
+    def validate(self) -> None:
+        """Check the objects themselves, then as arrays what ``structures.half_edge`` requires."""
+        m = self.records
+        known = {id(it) for elements in m[:-1] for it in elements}
+        for elements in m[:-1]:
+            many = f"{elements.kind}s" if elements.kind != "vertex" else "vertices"
+            for index, element in enumerate(elements.items):
+                if element is None:
+                    continue
+                if element.index != index:
+                    raise _broken("an element stands in its list at its index", many, index)
+                for name in REFERENCES[elements.kind]:
+                    target = getattr(element, name, None)
+                    optional = name == "opposite" or elements.kind == "vertex"
+                    if id(target) not in known and not (target is None and optional):
+                        raise _broken(f"{name} is a live element", many, index)
+        HalfEdgeArrays(self.to_arrays()).validate()
+
+    # To and from a render mesh, and the runtime of the thesis -----------------------------------
+
+    def clr_memory(self) -> dict[str, int]:
+        """Bytes per field as the runtime of the thesis would lay its classes out: a model.
+
+        See ``CLR_CLASSES``; in a list every element takes one more reference.
+        """
+        counts = {"vertex": self.n_vertices, "half_edge": self.n_half_edges, "face": self.n_faces}
+        taken = {}
+        for kind, n in counts.items():
+            fields = CLR_CLASSES[kind]
+            size = CLR_HEADER + sum(fields.values())
+            taken |= {f"{kind}.header": CLR_HEADER * n}
+            taken |= {f"{kind}.{field}": width * n for field, width in fields.items()}
+            taken |= {f"{kind}.padding": -size % CLR_REFERENCE * n}
+            taken |= {f"{kind}.list": CLR_REFERENCE * n}
+        return taken
+
+
+REFERENCES = {
+    "vertex": ("half_edge",),
+    "half_edge": ("origin", "face", "next", "opposite"),
+    "face": ("half_edge",),
+}
+"""Which fields of an element refer to another."""
+
+CLR_HEADER, CLR_REFERENCE = 16, 8
+"""Bytes of an object's header (sync block index and type handle) and of a reference, on 64 bits."""
+
+CLR_CLASSES = {
+    "vertex": {"point": 12, "half_edge": 8, "index": 4, "position_changed": 8},
+    "half_edge": {"origin": 8, "face": 8, "next": 8, "opposite": 8, "index": 4},
+    "face": {"half_edge": 8, "index": 4},
+}
+"""The fields that the thesis declares (3.2.2) and their bytes: a Vector3, references, int, event."""
+
+
+class HalfEdgeMeshBuilder:
+    """From points and triangles to objects and back (thesis 3.3)."""
+
+    @staticmethod
+    def records(mesh: TriangleMesh) -> ObjectRecords:
+        """One vertex per point, one half-edge per index, one face per three (thesis 3.3.2).
+
+        Every half-edge is looked up once by its two vertices, and met by its opposite: O(n_v + n_t)
+        expected. Raises NonManifoldError with the elements for what half-edges cannot represent.
+        """
+        require_manifold(mesh)
+        n, open_sides = len(mesh.points), {}
+        with _uncollected():
+            vertices = [Vertex(i, (x, y, z)) for i, (x, y, z) in enumerate(mesh.points.tolist())]
+            half_edges, faces = [], []
+            for f, corners in enumerate(mesh.triangles.tolist()):
+                h = 3 * f
+                a, b, c = corners
+                sides = ab, bc, ca = (
+                    HalfEdge(h, vertices[a]),
+                    HalfEdge(h + 1, vertices[b]),
+                    HalfEdge(h + 2, vertices[c]),
+                )
+                face = Face(f, ab)
+                ab.face = bc.face = ca.face = face
+                ab.next, bc.next, ca.next = bc, ca, ab
+                for side, origin, end in ((ab, a, b), (bc, b, c), (ca, c, a)):
+                    opposite = open_sides.pop(end * n + origin, None)
+                    if opposite is None:
+                        open_sides[origin * n + end] = side
+                    else:
+                        side.opposite, opposite.opposite = opposite, side
+                    if vertices[origin].half_edge is None:
+                        vertices[origin].half_edge = side
+                half_edges += sides
+                faces.append(face)
+        n_edges = (len(half_edges) + len(open_sides)) // 2
+        lists = VertexList(vertices), HalfEdgeList(half_edges), FaceList(faces)
+        return ObjectRecords(*lists, _counted(*lists, n_edges))
+
+    @staticmethod
+    def from_render_mesh(
+        points: ArrayLike, indices: ArrayLike, tolerance: float = 0.0
+    ) -> HalfEdgeMesh:
+        """The half-edge mesh behind a render mesh: welded, and its winding turned. O(n + m).
+
+        See ``hem.mesh_from_render``.
+        """
+        return HalfEdgeMesh.build(mesh_from_render(points, indices, tolerance))
+
+    @staticmethod
+    def to_render_mesh(mesh: HalfEdgeMesh) -> tuple[NDArray[np.float32], NDArray[np.int32]]:
+        """Flat points (3 n,) and clockwise indices (3 m,) by the face circulator. O(n_v + n_t)."""
+        number = {v.index: i for i, v in enumerate(mesh.vertices)}
+        points = [v.point for v in mesh.vertices]
+        indices = [
+            number[h.origin.index] for f in mesh.faces for h in mesh.faces.circulator(f)
+        ]
+        return np.array(points, np.float32).reshape(-1), np.array(indices, np.int32)
+
+
+class EdgeSplittingBehaviour:
+    """Splits edges of a mesh, and remembers the faces that it made (thesis 4.1)."""
+
+    def __init__(self, mesh: HalfEdgeMesh) -> None:
+        self.mesh = mesh
+        self.created_faces: list[Face] = []
+
+    def split_half_edge(self, half_edge: HalfEdge, point: ArrayLike) -> Vertex:
+        """Put a new vertex on an edge -> the vertex. See ``Editable.split_edge``."""
+        edit = self.mesh.split_edge(half_edge.edge, point)
+        self.created_faces += [self.mesh.faces[f] for f in edit.created_faces.tolist()]
+        return self.mesh.vertices[edit.vertex]
+
+
+class FaceSplittingBehaviour:
+    """Splits faces of a mesh, and remembers the faces that it made (thesis 4.3)."""
+
+    def __init__(self, mesh: HalfEdgeMesh) -> None:
+        self.mesh = mesh
+        self.created_faces: list[Face] = []
+
+    def split_face(self, face: Face, point: ArrayLike) -> Vertex:
+        """Put a new vertex into a face -> the vertex. See ``Editable.split_face``."""
+        edit = self.mesh.split_face(face.index, point)
+        self.created_faces += [self.mesh.faces[f] for f in edit.created_faces.tolist()]
+        return self.mesh.vertices[edit.vertex]
+
+    def split_all_faces(self) -> list[Vertex]:
+        """Split every face at its centroid, as one edit -> the new vertices."""
+        end = self.mesh.face_end
+        made = self.mesh.split_all_faces()
+        self.created_faces += self.mesh.faces.items[end:]
+        return [self.mesh.vertices[v] for v in made.tolist()]
+
+
+def _index_of(element: Any) -> int:
+    return -1 if element is None else int(element.index)
+
+
+def _counted(
+    vertices: VertexList, half_edges: HalfEdgeList, faces: FaceList, n_edges: int
+) -> Array:
+    """The array ``counts`` for lists that grow by themselves."""
+    count = counted(len(vertices.items), n_edges, len(faces.items), len(half_edges.items))
+    count[[VERTEX_ROOM, EDGE_ROOM, FACE_ROOM]] = ENDLESS
+    count[VERTICES], count[FACES] = len(vertices), len(faces)
+    return count
+
+
+def _from_arrays(arrays: HalfEdgeRecords) -> ObjectRecords:
+    """Objects for records by index, dead ones included. Cost O(n_v + n_t)."""
+    with _uncollected():
+        rows = arrays.vertex_point[: arrays.counts[VERTEX_END]].tolist()
+        vertices: list[Any] = [
+            Vertex(i, (x, y, z)) if x == x else None for i, (x, y, z) in enumerate(rows)
+        ]
+        half_edge = arrays.half_edge.tolist()
+        half_edges: list[Any] = [
+            HalfEdge(i, vertices[row[0]]) if row[1] >= 0 else None for i, row in enumerate(half_edge)
+        ]
+        faces: list[Any] = [
+            Face(f, half_edges[h]) if h >= 0 else None
+            for f, h in enumerate(arrays.face_half_edge.tolist())
+        ]
+        for h, (_, face, following, opposite) in zip(half_edges, half_edge, strict=True):
+            if h is not None:
+                h.face, h.next = faces[face], half_edges[following]
+                h.opposite = half_edges[opposite] if opposite >= 0 else None
+        for vertex, leaving in zip(vertices, arrays.vertex_half_edge.tolist(), strict=True):
+            if vertex is not None and leaving >= 0:
+                vertex.half_edge = half_edges[leaving]
+    counts = arrays.counts.copy()
+    counts[[VERTEX_ROOM, EDGE_ROOM, FACE_ROOM]] = ENDLESS
+    return ObjectRecords(VertexList(vertices), HalfEdgeList(half_edges), FaceList(faces), counts)
+
+
+@contextmanager
+def _uncollected() -> Iterator[None]:
+    """Make many objects without the garbage collector looking through all of them in between."""
+    enabled = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if enabled:
+            gc.enable()
+
+
+def _broken(invariant: str, elements: str, index: int) -> MeshError:
+    return MeshError(f"broken invariant: {invariant}", **{elements: [index]})

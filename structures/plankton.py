@@ -1,0 +1,710 @@
+"""Plankton's half-edges: by index, in pairs, with borders and polygons (the article on Plankton).
+
+The half-edges 2k and 2k + 1 are the two sides of an edge, so that neither has to store the other::
+
+              c                     a, b, c   counterclockwise from outside
+            ╱   ╲                   h         the half-edge from a to b
+      next ╱     ╲ previous         start     a
+          ╱   f   ╲                 face      f, or -1 outside the border
+         b ◀───h── a                next      the half-edge from b on, in the same face
+           ──pair─▶                 previous  the half-edge that leads to a, in the same face
+                                    pair      h ^ 1, the half-edge from b to a
+
+Invariants
+
+- ``next`` of ``previous`` of h is h, and so the other way round; both have the face of h.
+- ``next`` of h starts where the pair of h does. An edge has a face on one side at least.
+- The half-edges of a face run round it once, past three corners or more.
+- Those without a face run round a hole: a vertex on the border has just one of them leave it, and
+  that is the vertex' own half-edge. An unreferenced vertex has -1.
+- Dead: a face has half-edge -1, a half-edge has start -1 (so has its pair), a vertex no position.
+
+Whoever steps around a vertex comes round even at the border, which takes no second direction. An
+edge is named by its half-edge 2k. Bytes per vertex of a closed mesh of triangles, with 8-byte
+references: 12 + 8 + 2 · 8 + 6 · 32 = 228, as many as those of the half-edge mesh.
+
+What can be done with polygons stands in ``structures.polygons``.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple, Self
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from hem.invariants import (
+    require,
+    require_counts,
+    require_distinct_edges,
+    require_one_fan,
+    require_one_loop,
+    require_points,
+    require_references,
+)
+from hem.kernels import (
+    EDGE_END,
+    FACE_END,
+    SIDES,
+    append_face,
+    distinct,
+    joined_by_steps,
+    kernel,
+    named,
+    without,
+)
+from hem.mesh import TriangleMesh
+from hem.pairing import pair_half_edges
+from hem.records import Field, counted, live
+from hem.slices import in_slices
+from hem.structure import REFERENCE_TYPES, Structure
+from hem.topology import LEFT, RIGHT, A, B, C, D
+
+Array = NDArray[Any]
+
+START, FACE, NEXT, PREVIOUS = range(4)  # the columns of a half-edge
+
+OUTSIDE = -1
+"""The face of a half-edge along a hole."""
+
+
+class PlanktonRecords(NamedTuple):
+    """One row per record; the two half-edges of an edge lie side by side."""
+
+    vertex_point: Array  # (n_v, 3) float32
+    vertex_half_edge: Array  # (n_v,) one that leaves the vertex, along the border if it lies there
+    face_half_edge: Array  # (n_f,) the first
+    half_edge: Array  # (2 n_e, 4) start, face, next, previous
+    counts: Array  # how many of them there are, see hem.kernels
+
+
+@kernel
+def counterclockwise(m: PlanktonRecords, h: int) -> int:
+    """The half-edge that leaves the same vertex after h."""
+    return m.half_edge[h, PREVIOUS] ^ 1
+
+
+@kernel
+def clockwise(m: PlanktonRecords, h: int, v: int) -> int:
+    """The half-edge that leaves v before h."""
+    return m.half_edge[h ^ 1, NEXT]
+
+
+@kernel
+def tip(m: PlanktonRecords, h: int) -> int:
+    """The vertex where h ends."""
+    return m.half_edge[h ^ 1, START]
+
+
+@kernel
+def edge_of(h: int) -> int:
+    """The name of h's edge."""
+    return h - (h & 1)
+
+
+@kernel
+def vertex_vertices(m: PlanktonRecords, v: int, out: Array) -> int:
+    """Cost O(n_ev)."""
+    first = m.vertex_half_edge[v]
+    h, count = first, 0
+    while h >= 0:
+        h = counterclockwise(m, h)
+        out[count] = tip(m, h)
+        count += 1
+        if h == first:
+            break
+    return count
+
+
+@kernel
+def vertex_edges(m: PlanktonRecords, v: int, out: Array) -> int:
+    """Cost O(n_ev)."""
+    first = m.vertex_half_edge[v]
+    h, count = first, 0
+    while h >= 0:
+        h = counterclockwise(m, h)
+        out[count] = edge_of(h)
+        count += 1
+        if h == first:
+            break
+    return count
+
+
+@kernel
+def vertex_faces(m: PlanktonRecords, v: int, out: Array) -> int:
+    """Cost O(n_ev)."""
+    first = m.vertex_half_edge[v]
+    h, count = first, 0
+    while h >= 0:
+        h = counterclockwise(m, h)
+        face = m.half_edge[h, FACE]
+        if face >= 0:
+            out[count] = face
+            count += 1
+        if h == first:
+            break
+    return count
+
+
+@kernel
+def edge_vertices(m: PlanktonRecords, e: int, out: Array) -> int:
+    """Cost O(1)."""
+    a, b = m.half_edge[e, START], tip(m, e)
+    out[0], out[1] = min(a, b), max(a, b)
+    return 2
+
+
+@kernel
+def edge_edges(m: PlanktonRecords, e: int, out: Array) -> int:
+    """The edges at either end, without the edge itself. Cost O(n_ev)."""
+    a, b = m.half_edge[e, START], tip(m, e)
+    count = without(out, vertex_edges(m, a, out), edge_of(e))
+    rest = out[count:]
+    return count + without(rest, vertex_edges(m, b, rest), edge_of(e))
+
+
+@kernel
+def edge_faces(m: PlanktonRecords, e: int, out: Array) -> int:
+    """Cost O(1)."""
+    count = 0
+    for h in (e, e ^ 1):
+        face = m.half_edge[h, FACE]
+        if face >= 0:
+            out[count] = face
+            count += 1
+    return count
+
+
+@kernel
+def face_vertices(m: PlanktonRecords, f: int, out: Array) -> int:
+    """Cost O(1) for a triangle, O(n) for n corners."""
+    first = m.face_half_edge[f]
+    h, count = first, 0
+    while True:
+        out[count] = m.half_edge[h, START]
+        count += 1
+        h = m.half_edge[h, NEXT]
+        if h == first:
+            return count
+
+
+@kernel
+def face_edges(m: PlanktonRecords, f: int, out: Array) -> int:
+    """Cost O(1) for a triangle, O(n) for n corners."""
+    first = m.face_half_edge[f]
+    h, count = first, 0
+    while True:
+        out[count] = edge_of(h)
+        count += 1
+        h = m.half_edge[h, NEXT]
+        if h == first:
+            return count
+
+
+@kernel
+def face_faces(m: PlanktonRecords, f: int, out: Array) -> int:
+    """Cost O(1) for a triangle, O(n) for n corners."""
+    first = m.face_half_edge[f]
+    h, count, sides = first, 0, 0
+    while True:
+        face = m.half_edge[h ^ 1, FACE]
+        if face >= 0:
+            count = append_face(out, count, face)
+        sides += 1
+        h = m.half_edge[h, NEXT]
+        if h == first:
+            # Polygons may share edges that do not follow each other.
+            return count if sides == 3 else distinct(out, count)
+
+
+# What operations need to know, and what they change (hem.topology, hem.operations) ---------------
+
+
+@kernel
+def sides(m: PlanktonRecords, f: int) -> int:
+    """How many corners face f has."""
+    first, count = m.face_half_edge[f], 0
+    h = first
+    while True:
+        count += 1
+        h = m.half_edge[h, NEXT]
+        if h == first:
+            return count
+
+
+@kernel
+def face_exists(m: PlanktonRecords, f: int) -> bool:
+    """Whether f is a live face."""
+    return 0 <= f < m.counts[FACE_END] and m.face_half_edge[f] >= 0
+
+
+@kernel
+def edge_exists(m: PlanktonRecords, e: int) -> bool:
+    """Whether e is a live half-edge."""
+    return 0 <= e < m.counts[EDGE_END] and m.half_edge[e, START] >= 0
+
+
+@kernel
+def from_smaller(m: PlanktonRecords, e: int) -> int:
+    """The half-edge of e that runs from its smaller to its larger vertex."""
+    return e if m.half_edge[e, START] < tip(m, e) else e ^ 1
+
+
+@kernel
+def is_triangle(m: PlanktonRecords, h: int) -> bool:
+    """Whether the loop of h is one of three."""
+    return m.half_edge[m.half_edge[h, PREVIOUS], PREVIOUS] == m.half_edge[h, NEXT]
+
+
+@kernel
+def apex(m: PlanktonRecords, h: int) -> int:
+    """The corner across h in its face; -1 where there is no face, or one of more corners."""
+    if m.half_edge[h, FACE] < 0 or not is_triangle(m, h):
+        return -1
+    return m.half_edge[m.half_edge[h, PREVIOUS], START]
+
+
+@kernel
+def diamond(m: PlanktonRecords, e: int, at: Array) -> int:
+    """Cost O(1)."""
+    h = from_smaller(m, e)
+    at[A], at[B] = m.half_edge[h, START], tip(m, h)
+    at[LEFT], at[RIGHT] = m.half_edge[h, FACE], m.half_edge[h ^ 1, FACE]
+    at[C], at[D] = apex(m, h), apex(m, h ^ 1)
+    return (at[LEFT] >= 0) + (at[RIGHT] >= 0)
+
+
+@kernel
+def first(m: PlanktonRecords, v: int) -> int:
+    """A half-edge that leaves v."""
+    return m.vertex_half_edge[v]
+
+
+@kernel
+def ends_at(m: PlanktonRecords, h: int, v: int, w: int) -> bool:
+    """Whether h, which leaves v, ends at w."""
+    return tip(m, h) == w
+
+
+@kernel
+def between(m: PlanktonRecords, a: int, b: int) -> int:
+    """The half-edge that runs a → b, or -1. Cost O(n_ev)."""
+    start = m.vertex_half_edge[a]
+    h = start
+    while h >= 0:
+        if tip(m, h) == b:
+            return h
+        h = counterclockwise(m, h)
+        if h == start:
+            break
+    return -1
+
+
+joined = joined_by_steps(first, clockwise, ends_at, between)
+
+
+@kernel
+def beside(m: PlanktonRecords, a: int, b: int) -> int:
+    """The face that runs a → b, or -1. Cost O(n_ev)."""
+    h = between(m, a, b)
+    return m.half_edge[h, FACE] if h >= 0 else -1
+
+
+@kernel
+def link(m: PlanktonRecords, g: int, h: int) -> None:
+    """Let h follow g."""
+    m.half_edge[g, NEXT], m.half_edge[h, PREVIOUS] = h, g
+
+
+@kernel
+def new_pair(m: PlanktonRecords, a: int, b: int) -> int:
+    """Append an edge that is not linked yet, with no faces -> its half-edge from a to b."""
+    h = m.counts[EDGE_END]
+    m.half_edge[h, START], m.half_edge[h, FACE] = a, OUTSIDE
+    m.half_edge[h + 1, START], m.half_edge[h + 1, FACE] = b, OUTSIDE
+    m.counts[EDGE_END] += 2
+    return int(h)
+
+
+@kernel
+def kill(m: PlanktonRecords, h: int) -> None:
+    """Make an edge dead."""
+    m.half_edge[h, START], m.half_edge[h ^ 1, START] = -1, -1
+    m.half_edge[h, FACE], m.half_edge[h ^ 1, FACE] = OUTSIDE, OUTSIDE
+
+
+@kernel
+def set_face(m: PlanktonRecords, f: int, g: int, h: int, i: int) -> None:
+    """Make a triangle of three half-edges."""
+    m.face_half_edge[f] = g
+    link(m, g, h)
+    link(m, h, i)
+    link(m, i, g)
+    m.half_edge[g, FACE], m.half_edge[h, FACE], m.half_edge[i, FACE] = f, f, f
+
+
+@kernel
+def insert(m: PlanktonRecords, h: int, v: int) -> int:
+    """Put vertex v on the edge of h, which ends there then -> the half-edge from v on.
+
+    Both faces have a corner more.
+    """
+    b, other = tip(m, h), h ^ 1
+    onward = new_pair(m, v, b)
+    back = onward ^ 1
+    following, before = m.half_edge[h, NEXT], m.half_edge[other, PREVIOUS]
+    m.half_edge[other, START] = v
+    if following == other:  # nothing but this edge at b; never so in a surface
+        before = onward
+        following = back
+    m.half_edge[onward, FACE] = m.half_edge[h, FACE]
+    m.half_edge[back, FACE] = m.half_edge[other, FACE]
+    link(m, onward, following)
+    link(m, h, onward)
+    link(m, before, back)
+    link(m, back, other)
+    if m.vertex_half_edge[b] == other:
+        m.vertex_half_edge[b] = back
+    m.vertex_half_edge[v] = other if m.half_edge[other, FACE] < 0 else onward
+    return onward
+
+
+@kernel
+def cut_edge(m: PlanktonRecords, e: int, at: Array, v: int, f: int) -> None:
+    """Cost O(1): a vertex on the edge, and in each face a diagonal from it."""
+    left = from_smaller(m, e)
+    right = left ^ 1
+    onward = insert(m, left, v)
+    for h in (left, onward ^ 1):
+        face = m.half_edge[h, FACE]
+        if face < 0:
+            continue
+        if h == left:  # a → v → b → c
+            va, vb, bc, ca = left, onward, m.half_edge[onward, NEXT], m.half_edge[left, PREVIOUS]
+            vc = new_pair(m, v, at[C])
+            set_face(m, face, va, vc, ca)
+            set_face(m, f, vb, bc, vc ^ 1)
+        else:  # b → v → a → d
+            ad, db = m.half_edge[right, NEXT], m.half_edge[h, PREVIOUS]
+            vd = new_pair(m, v, at[D])
+            set_face(m, face, right, ad, vd ^ 1)
+            set_face(m, f, h, vd, db)
+        f += 1
+
+
+@kernel
+def cut_face(m: PlanktonRecords, face: int, v: int, f: int) -> None:
+    """Cost O(1) for a triangle, O(n) for n corners: an edge from every corner to v."""
+    smallest, count = m.face_half_edge[face], 1
+    h = m.half_edge[smallest, NEXT]
+    while h != m.face_half_edge[face]:
+        if m.half_edge[h, START] < m.half_edge[smallest, START]:
+            smallest = h
+        h = m.half_edge[h, NEXT]
+        count += 1
+    spoke = m.counts[EDGE_END]
+    h = smallest
+    for i in range(count):
+        new_pair(m, m.half_edge[h, START], v)
+        h = m.half_edge[h, NEXT]
+    for i in range(count):
+        inward = spoke + 2 * ((i + 1) % count)
+        after = m.half_edge[h, NEXT]
+        set_face(m, face if i == 0 else f + i - 1, h, inward, spoke + 2 * i + 1)
+        h = after
+    m.vertex_half_edge[v] = spoke + 1
+
+
+@kernel
+def take_place(m: PlanktonRecords, h: int, of: int) -> None:
+    """Let h run in the loop of another half-edge instead of that one."""
+    face = m.half_edge[of, FACE]
+    m.half_edge[h, FACE] = face
+    link(m, m.half_edge[of, PREVIOUS], h)
+    link(m, h, m.half_edge[of, NEXT])
+    if face >= 0 and m.face_half_edge[face] == of:
+        m.face_half_edge[face] = h
+
+
+@kernel
+def leave_loop(m: PlanktonRecords, h: int) -> None:
+    """Take h out of its loop, which closes behind it."""
+    face = m.half_edge[h, FACE]
+    if face >= 0 and m.face_half_edge[face] == h:
+        m.face_half_edge[face] = m.half_edge[h, NEXT]
+    link(m, m.half_edge[h, PREVIOUS], m.half_edge[h, NEXT])
+
+
+@kernel
+def settle(m: PlanktonRecords, v: int, leaving: int) -> None:
+    """Give v its half-edge, given any that leaves it: along the border where it lies there."""
+    m.vertex_half_edge[v] = leaving
+    h = leaving
+    while True:
+        if m.half_edge[h, FACE] < 0:
+            m.vertex_half_edge[v] = h
+        h = counterclockwise(m, h)
+        if h == leaving:
+            return
+
+
+@kernel
+def contract(
+    m: PlanktonRecords, e: int, at: Array, drop: int, keep: int, around: int, out: Array
+) -> None:
+    """Cost O(n_ev) for the half-edges that leave both ends."""
+    inward = e if tip(m, e) == keep else e ^ 1  # drop → keep
+    outward = inward ^ 1
+    x_triangle, y_triangle = apex(m, inward) >= 0, apex(m, outward) >= 0
+    start = m.vertex_half_edge[drop]
+    h = start
+    while True:
+        m.half_edge[h, START] = keep
+        h = counterclockwise(m, h)
+        if h == start:
+            break
+    to_x, from_x = m.half_edge[inward, NEXT], m.half_edge[inward, PREVIOUS]
+    to_y, from_y = m.half_edge[outward, NEXT], m.half_edge[outward, PREVIOUS]
+    leave_loop(m, inward)
+    leave_loop(m, outward)
+    if x_triangle:  # the edge that keep has stays, the one that drop had goes
+        m.face_half_edge[m.half_edge[to_x, FACE]] = -1
+        x = m.half_edge[from_x, START]
+        if m.vertex_half_edge[x] == from_x:
+            m.vertex_half_edge[x] = to_x ^ 1
+        take_place(m, to_x, from_x ^ 1)
+        kill(m, from_x)
+    if y_triangle:
+        m.face_half_edge[m.half_edge[from_y, FACE]] = -1
+        y = m.half_edge[from_y, START]
+        if m.vertex_half_edge[y] == to_y ^ 1:
+            m.vertex_half_edge[y] = from_y
+        take_place(m, from_y, to_y ^ 1)
+        kill(m, to_y)
+    kill(m, inward)
+    m.vertex_half_edge[drop] = -1
+    settle(m, keep, to_x)
+
+
+@kernel
+def turn(m: PlanktonRecords, e: int, at: Array, one: int, other: int) -> None:
+    """Cost O(1)."""
+    ab = from_smaller(m, e)
+    ba = ab ^ 1
+    bc, ca = m.half_edge[ab, NEXT], m.half_edge[ab, PREVIOUS]
+    ad, db = m.half_edge[ba, NEXT], m.half_edge[ba, PREVIOUS]
+    m.half_edge[ab, START], m.half_edge[ba, START] = at[D], at[C]
+    set_face(m, one, ad, ab, ca)
+    set_face(m, other, bc, ba, db)
+    if m.vertex_half_edge[at[A]] == ab:
+        m.vertex_half_edge[at[A]] = ad
+    if m.vertex_half_edge[at[B]] == ba:
+        m.vertex_half_edge[at[B]] = bc
+
+
+@kernel
+def attach(m: PlanktonRecords, corners: Array, f: int) -> None:
+    """Cost O(n_ev) per corner. Every corner is free or shares an edge with the surface."""
+    n, old = len(corners), m.counts[EDGE_END]
+    side = np.empty(n, np.int64)
+    for i in range(n):
+        a, b = corners[i], corners[(i + 1) % n]
+        h = between(m, a, b)
+        side[i] = h if h >= 0 else new_pair(m, a, b)
+    for i in range(n):  # around the outside, past each corner
+        g, h = side[i], side[(i + 1) % n]
+        v = corners[(i + 1) % n]
+        if g >= old and h >= old:
+            link(m, h ^ 1, g ^ 1)
+        elif g >= old:
+            link(m, m.half_edge[h, PREVIOUS], g ^ 1)
+        elif h >= old:
+            link(m, h ^ 1, m.half_edge[g, NEXT])
+        if g >= old:
+            m.vertex_half_edge[v] = g ^ 1
+    for i in range(n):
+        link(m, side[i], side[(i + 1) % n])
+        m.half_edge[side[i], FACE] = f
+    m.face_half_edge[f] = side[0]
+
+
+@kernel
+def detach(m: PlanktonRecords, f: int) -> None:
+    """Cost O(1) for a triangle, O(n) for n corners."""
+    begin = m.face_half_edge[f]
+    m.face_half_edge[f] = -1
+    h = begin
+    while True:  # past the corner between h and the half-edge that follows
+        following = m.half_edge[h, NEXT]
+        v = m.half_edge[following, START]
+        goes, next_goes = m.half_edge[h ^ 1, FACE] < 0, m.half_edge[following ^ 1, FACE] < 0
+        if goes and next_goes:
+            m.vertex_half_edge[v] = -1
+        elif goes:
+            link(m, m.half_edge[h ^ 1, PREVIOUS], following)
+            m.vertex_half_edge[v] = following
+        elif next_goes:
+            link(m, h, m.half_edge[following ^ 1, NEXT])
+        else:
+            m.vertex_half_edge[v] = following
+        m.half_edge[h, FACE] = OUTSIDE
+        if goes and h != begin:
+            kill(m, h)
+        if following == begin:
+            break
+        h = following
+    if m.half_edge[begin ^ 1, FACE] < 0:
+        kill(m, begin)
+
+
+# Building ----------------------------------------------------------------------------------------
+
+
+@njit(cache=True, nogil=True)
+def _number(corner_vertex: Array, twin: Array, half: Array, vertex: Array) -> None:
+    """Number the half-edge at every corner; an edge counts where it is first met.
+
+    So does Plankton when it adds the faces in order, and a vertex keeps the half-edge that it had
+    when its last face was added.
+    """
+    end = 0
+    for corner in range(len(twin)):
+        if twin[corner] < 0 or corner < twin[corner]:
+            half[corner] = end
+            end += 2
+        else:
+            half[corner] = half[twin[corner]] ^ 1
+        vertex[corner_vertex[corner]] = half[corner]
+
+
+@njit(cache=True, nogil=True)
+def _fill(
+    begin: int, end: int, part: int, triangles: Array, half: Array, face: Array, half_edge: Array
+) -> None:
+    for f in range(begin, end):
+        face[f] = half[3 * f]
+        for i in range(3):
+            row = half_edge[half[3 * f + i]]
+            row[START] = triangles[f, i]
+            row[FACE] = f
+            row[NEXT] = half[3 * f + (i + 1) % 3]
+            row[PREVIOUS] = half[3 * f + (i + 2) % 3]
+
+
+@njit(cache=True, nogil=True)
+def _go_round_holes(inner: Array, vertex: Array, half_edge: Array) -> None:
+    """Fill in the half-edges beyond those in ``inner``: they lie on the border."""
+    for h in inner:
+        border = h ^ 1
+        half_edge[border, START] = half_edge[half_edge[h, NEXT], START]
+        half_edge[border, FACE] = OUTSIDE
+        vertex[half_edge[border, START]] = border
+    for h in inner:
+        border = h ^ 1
+        following = vertex[half_edge[h, START]]
+        half_edge[border, NEXT], half_edge[following, PREVIOUS] = following, border
+
+
+class Plankton(Structure):
+    """The half-edge mesh of Plankton."""
+
+    name, title, abbreviation = "plankton", "Plankton", "Plankton"
+    records_type = PlanktonRecords
+    fields = (
+        Field("vertex.point", "vertex_point", 3, marks=True),
+        Field("vertex.half_edge", "vertex_half_edge", target="half_edge"),
+        Field("face.half_edge", "face_half_edge", target="half_edge", marks=True),
+        Field("half_edge.start", "half_edge", target="vertex", marks=True),
+        Field("half_edge.face", "half_edge", target="face"),
+        Field("half_edge.next", "half_edge", target="half_edge"),
+        Field("half_edge.previous", "half_edge", target="half_edge"),
+    )
+    kernels = named(
+        *(vertex_vertices, vertex_edges, vertex_faces),
+        *(edge_vertices, edge_edges, edge_faces),
+        *(face_vertices, face_edges, face_faces),
+        *(edge_exists, face_exists, sides, diamond, joined, beside),
+        *(cut_edge, cut_face, contract, turn, attach, detach),
+    )
+
+    @classmethod
+    def build(cls, mesh: TriangleMesh, reference_bytes: int = 4) -> Self:
+        """See ``Structure.build``."""
+        reference, n = REFERENCE_TYPES[reference_bytes], len(mesh.triangles)
+        room = np.empty((3 * n, 4), reference)
+        pairing = pair_half_edges(mesh, room=room)
+        n_half_edges = 2 * pairing.n_edges
+        half_edge = room if n_half_edges == len(room) else np.empty((n_half_edges, 4), reference)
+        half, face = np.empty(3 * n, np.int32), np.empty(n, reference)
+        vertex = np.full(len(mesh.points), -1, reference)
+        _number(mesh.triangles.reshape(-1), pairing.twin, half, vertex)
+        in_slices(_fill, n, mesh.triangles, half, face, half_edge)
+        if n_half_edges > len(room):
+            _go_round_holes(half[pairing.twin < 0], vertex, half_edge)
+        count = counted(len(mesh.points), pairing.n_edges, n, n_half_edges, edge_growth=6)
+        return cls(PlanktonRecords(mesh.points.copy(), vertex, face, half_edge, count))
+
+    @property
+    def n_half_edges(self) -> int:
+        """Number of live half-edges, two per edge."""
+        return 2 * self.n_edges
+
+    def edges(self) -> NDArray[np.int64]:
+        """(n_edges,) int64: of each pair of live half-edges the first."""
+        start = self.records.half_edge[: self.records.counts[EDGE_END] : 2, START]
+        return 2 * np.flatnonzero(start >= 0)
+
+    def _edge_names(self, handles: Array) -> Array:
+        return handles - (handles & 1)
+
+    def validate(self) -> None:
+        """See ``Structure.validate``; the invariants stand at the top of this file."""
+        m, fields = self.records, self.fields
+        vertices, faces = live(m, fields, "vertex"), live(m, fields, "face")
+        half_edges = live(m, fields, "half_edge")
+        leaving, within = m.vertex_half_edge[: len(vertices)], m.face_half_edge[: len(faces)]
+        start, face, following, previous = m.half_edge[: len(half_edges)].T
+        h, f = np.flatnonzero(half_edges), np.flatnonzero(faces)
+        paired = half_edges[0::2] == half_edges[1::2]
+        require(np.repeat(paired, 2), "both half-edges of an edge are live or dead", "half_edges")
+        edges = h[0::2]
+        require_counts(m, fields, len(edges))
+        require_points(self.points)
+        require_references(start[h], vertices, "start", "half_edges", h)
+        require_references(face[h], faces, "face", "half_edges", h, least=OUTSIDE)
+        require_references(following[h], half_edges, "next", "half_edges", h)
+        require_references(previous[h], half_edges, "previous", "half_edges", h)
+        require_references(leaving, half_edges, "half-edge", "vertices", least=-1)
+        require_references(within[f], half_edges, "half-edge", "faces", f)
+
+        after = following[h]
+        require(previous[after] == h, "previous of next is the half-edge itself", "half_edges", h)
+        require(start[after] == start[h ^ 1], "next starts where the pair does", "half_edges", h)
+        require(face[after] == face[h], "next lies in the same face", "half_edges", h)
+        inhabited = (face[edges] >= 0) | (face[edges ^ 1] >= 0)
+        require(inhabited, "an edge has a face on one side at least", "half_edges", edges)
+        require(face[edges] != face[edges ^ 1], "an edge has two faces", "half_edges", edges)
+        require(face[within[f]] == f, "a face's half-edge lies in it", "faces", f)
+        inner = h[face[h] >= 0]
+        corners = np.bincount(face[inner], minlength=len(faces))[f]
+        require(corners >= 3, "a face has three corners or more", "faces", f)
+        require(corners <= m.counts[SIDES], "no face has more corners than the most", "faces", f)
+        require_one_loop(face, following, inner)
+        at_corner = face[inner].astype(np.int64) << 32 | start[inner]
+        once = np.unique(at_corner, return_counts=True)
+        require(once[1] == 1, "a face comes past a vertex once", "faces", once[0] >> 32)
+
+        used = np.bincount(start[h], minlength=len(vertices)) > 0
+        require((leaving >= 0) == used, "just the vertices with faces have a half-edge", "vertices")
+        at = np.flatnonzero(used)
+        require(start[leaving[at]] == at, "a vertex' half-edge starts at it", "vertices", at)
+        holes = np.bincount(start[h[face[h] < 0]], minlength=len(vertices))
+        require(holes < 2, "one hole at most lies at a vertex", "vertices")
+        on_border = np.flatnonzero(holes)
+        along = face[leaving[on_border]] < 0
+        require(along, "the half-edge of a vertex on the border runs along it", "vertices", on_border)
+        around = np.full(len(half_edges), -1)
+        around[h] = following[h ^ 1]
+        require_one_fan(start, around, h)
+        require_distinct_edges(start[edges], start[edges ^ 1], "edges", edges)
