@@ -188,25 +188,25 @@ def info(
             console.print(f"Why: {refusal}", highlight=False)
 
 
-def _read(mesh: str, repair: bool) -> hem.TriangleMesh:
+def _read(mesh: str, repair: bool) -> hem.TriangleMesh | hem.PolygonMesh:
     if mesh in hem.SAMPLES and not Path(mesh).exists():
         options: dict[str, Any] = {"repair": True} if repair else {}
         return hem.sample(mesh, **options)
     return hem.load(mesh, repair=repair)
 
 
-def _holders(mesh: hem.TriangleMesh) -> tuple[Table, list[str]]:
+def _holders(mesh: hem.TriangleMesh | hem.PolygonMesh) -> tuple[Table, list[str]]:
     """What each structure takes to hold the mesh, and why some cannot, each reason once."""
-    from structures import REGISTRY
+    from structures import REGISTRY, build
 
     table = Table("structure", "bytes", "per vertex", "with 8-byte references", "per vertex")
     for column in table.columns[1:]:
         column.justify = "right"
     refusals: dict[str, None] = {}
-    for structure in REGISTRY.values():
+    for name, structure in REGISTRY.items():
         try:
-            sizes = [sum(structure.build(mesh, k).memory().values()) for k in (4, 8)]
-        except hem.NonManifoldError as refusal:
+            sizes = [sum(build(name, mesh, k).memory().values()) for k in (4, 8)]
+        except hem.MeshError as refusal:
             table.add_row(structure.title, "[red]cannot hold it[/]")
             refusals[str(refusal)] = None
             continue

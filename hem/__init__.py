@@ -6,6 +6,7 @@ from hem.families import FAMILIES, generate
 from hem.files import load, save
 from hem.manifold import require_manifold, require_sound
 from hem.mesh import MeshSummary, TriangleMesh
+from hem.polygons import PolygonMesh
 from hem.render import RenderMesh, Upload, mesh_from_render
 from hem.samples import SAMPLES, sample
 from hem.valence import valence_hubs, valence_mesh
@@ -17,6 +18,7 @@ __all__ = [
     "MeshError",
     "MeshSummary",
     "NonManifoldError",
+    "PolygonMesh",
     "Remapping",
     "RenderMesh",
     "TopologyError",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -16,7 +17,7 @@ NO_POINT = np.zeros((1, 3), np.float32)
 """The positions of operations that take none."""
 
 
-def rows(handles: Array, ends: Array | int = -1) -> Array:
+def rows(handles: Array | Sequence[int], ends: Array | int = -1) -> Array:
     """(n, 3) int64: the arguments of n operations."""
     arguments = np.full((len(handles), 3), -1, np.int64)
     arguments[:, 0], arguments[:, 1] = handles, ends

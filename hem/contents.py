@@ -57,6 +57,77 @@ def _off(data: bytes) -> Contents:
     return Contents(vertices, faces)
 
 
+def off_polygons(data: bytes) -> tuple[list[list[float]], list[list[int]]]:
+    """The positions and the faces of an OFF file that ``contents`` has found whole. O(bytes)."""
+    _, vertices, faces = _off_parts(data)
+    points = [[float(it) for it in line.split()[:3]] for line in vertices]
+    return points, [_off_corners(line) for line in faces]
+
+
+def without_stray_corners(data: bytes, extension: str) -> tuple[bytes, int]:
+    """The file without faces whose corners are out of range -> it, and how many. O(bytes).
+
+    pymeshlab checks the corners of a ply file, but not those of off and obj: to these it computes
+    normals in memory that is not its own, so that the process dies of it sooner or later.
+    """
+    sift = {"off": _sifted_off, "obj": _sifted_obj}.get(extension)
+    return sift(data) if sift else (data, 0)
+
+
+def _off_parts(data: bytes) -> tuple[bytes, list[bytes], list[bytes]]:
+    """The word at the head, the lines of vertices and those of faces."""
+    lines = [line for line in data.splitlines() if line.strip() and not line.startswith(b"#")]
+    head = lines[0].split()
+    counts, first = (head[1:], 1) if len(head) > 1 else (lines[1].split(), 2)
+    faces = first + int(counts[0])
+    return head[0], lines[first:faces], lines[faces : faces + int(counts[1])]
+
+
+def _off_corners(line: bytes) -> list[int]:
+    sides, *rest = line.split()
+    return [int(it) for it in rest[: int(sides)]]
+
+
+def _sifted_off(data: bytes) -> tuple[bytes, int]:
+    if _off(data) == _UNKNOWN:
+        return data, 0
+    head, vertices, faces = _off_parts(data)
+    try:
+        kept = [it for it in faces if all(0 <= v < len(vertices) for v in _off_corners(it))]
+    except ValueError as error:
+        raise MeshError(f"a face has a corner that is no number: {error}") from error
+    if len(kept) == len(faces):
+        return data, 0
+    counts = f"{len(vertices)} {len(kept)} 0".encode()
+    return b"\n".join([head, counts, *vertices, *kept, b""]), len(faces) - len(kept)
+
+
+def _sifted_obj(data: bytes) -> tuple[bytes, int]:
+    n = len(re.findall(rb"(?m)^\s*v\s", data))
+    stray = 0
+
+    def keep(line: re.Match[bytes]) -> bytes:
+        nonlocal stray
+        corners = [corner.split(b"/")[0] for corner in line[1].split()]
+        if all(_is_obj_corner(corner, n) for corner in corners):
+            return line[0]
+        stray += 1
+        return b""
+
+    sifted = re.sub(rb"(?m)^[ \t]*f[ \t]+((?:[^\n\\]|\\\r?\n|\\)*)$", keep, data)
+    return (sifted, stray) if stray else (data, 0)
+
+
+def _is_obj_corner(corner: bytes, n: int) -> bool:
+    """Whether it names one of n vertices: from 1 on, or from -1 backward."""
+    if corner == b"\\":  # the line goes on
+        return True
+    try:
+        return 1 <= abs(int(corner)) <= n
+    except ValueError:
+        return False
+
+
 def _obj(data: bytes) -> Contents:
     found = len(re.findall(rb"(?m)^v\s", data)), len(re.findall(rb"(?m)^f\s", data))
     for kind, number in zip((b"Vertices", b"Faces"), found, strict=True):

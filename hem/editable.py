@@ -122,6 +122,10 @@ class Editable(Queryable):
         """Give a vertex another position. Cost O(1)."""
         return self._do["move_vertex"](vertex, point)
 
+    def add_vertex(self, point: ArrayLike) -> Edit:
+        """Make a vertex that no face uses yet. 1 vertex more. O(1), as none is searched for."""
+        return self._do["add_vertex"](-1, point)
+
     def can_collapse_edge(self, edge: int) -> bool:
         """Whether ``collapse_edge`` would do it. Raises TopologyError if there is no such edge."""
         return self._may("collapse_edge", edge)
@@ -431,7 +435,8 @@ class Editable(Queryable):
         results, logs, done = np.zeros(n, np.int64), [], 0
         vertices, faces = self.operations[operation].growth
         if mode == DO:
-            self._make_room(vertices * n, faces * n)
+            # A face of more corners needs the edges of so many triangles.
+            self._make_room(vertices * n, (faces + args.shape[1] - 3) * n)
         while True:
             log = np.empty(ENTRIES * (n + 1) + 2 * len(self._log), np.int64)
             task = np.array([mode, done, n])
@@ -452,7 +457,8 @@ class Editable(Queryable):
             return TopologyError(f"cannot {operation}: {words}", vertices=[int(v) for v in args])
         element = self.operations[operation].element
         if element != "edge" or code == NO_EDGE:
-            return TopologyError(f"cannot {operation}: {words}", **{ELEMENTS[element]: [handle]})
+            many = ELEMENTS.get(element, "half_edges")
+            return TopologyError(f"cannot {operation}: {words}", **{many: [handle]})
         ends = self.edge_vertices(handle)
         elements = {"edges": ends[None, :]}
         if code == NOT_AN_END:

@@ -2,12 +2,17 @@
 
 import os
 import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal, overload
 
-from hem.contents import Contents, contents
+import numpy as np
+
+from hem.contents import Contents, contents, off_polygons, without_stray_corners
 from hem.errors import MeshError
 from hem.mesh import TriangleMesh, repeated_corners
+from hem.polygons import PolygonMesh
 
 _PLAIN = {"save_vertex_normal": False, "save_vertex_color": False}
 _SAVE_OPTIONS: dict[str, dict[str, bool]] = {
@@ -18,8 +23,25 @@ _SAYS_ONLY_WHERE = ("Unable to open file", "Error encountered while loading file
 _COMMON = "ply, obj, off, stl, 3ds, dae, wrl, x3d, ctm"
 
 
-def load(path: str | os.PathLike[str], repair: bool = False) -> TriangleMesh:
-    """The triangles of a file, of any format that pymeshlab reads; polygons are triangulated.
+@overload
+def load(
+    path: str | os.PathLike[str], repair: bool = False, *, triangulate: Literal[True]
+) -> TriangleMesh: ...
+
+
+@overload
+def load(
+    path: str | os.PathLike[str], repair: bool = False, triangulate: bool = False
+) -> TriangleMesh | PolygonMesh: ...
+
+
+def load(
+    path: str | os.PathLike[str], repair: bool = False, triangulate: bool = False
+) -> TriangleMesh | PolygonMesh:
+    """The mesh of a file, of any format that pymeshlab reads.
+
+    A `PolygonMesh` if it has faces of more than three corners (ply, obj and off), which only some
+    structures hold; with `triangulate`, or in other formats, these are cut into triangles.
 
     Vertices keep their order, also those without faces and those of one position, but for STL,
     which has no shared vertices: there the ones of one position become one. Several meshes in one
@@ -33,8 +55,21 @@ def load(path: str | os.PathLike[str], repair: bool = False) -> TriangleMesh:
     """
     file = Path(path).absolute()
     try:
-        held = contents(_bytes(file), _extension(file))
-        mesh = _read(file, drop_unusable=repair)
+        data = _bytes(file)
+        held = contents(data, _extension(file))
+        sound, stray = without_stray_corners(data, _extension(file))
+        if stray and not repair:
+            raise MeshError(
+                f"{stray:,} of {held.faces or stray:,} faces have corners out of range; "
+                "repair=True leaves those out"
+            )
+        with _written(file, sound if stray else None) as readable:
+            found = _read(readable, sound, contents(sound, _extension(file)), repair)
+        if isinstance(found, PolygonMesh):
+            _require_all(found, held)
+            if not (triangulate or repair):
+                return found
+        mesh = found.triangulated() if isinstance(found, PolygonMesh) else found
         if not repair:
             _require_all(mesh, held)
         if not len(mesh.triangles):
@@ -67,6 +102,18 @@ def save(mesh: TriangleMesh, path: str | os.PathLike[str]) -> None:
         raise MeshError(f"cannot save {file}: {_words(error)}") from error
 
 
+@contextmanager
+def _written(file: Path, data: bytes | None) -> Iterator[Path]:
+    """The file itself, or for a while one with this content instead."""
+    if data is None:
+        yield file
+        return
+    with tempfile.TemporaryDirectory(prefix="hem-") as folder:
+        other = Path(folder) / file.name
+        other.write_bytes(data)
+        yield other
+
+
 def _extension(file: Path) -> str:
     return file.suffix.lower().removeprefix(".")
 
@@ -87,20 +134,35 @@ def _bytes(file: Path) -> bytes:
     return data
 
 
-def _read(file: Path, drop_unusable: bool) -> TriangleMesh:
+def _read(
+    file: Path, data: bytes, held: Contents, drop_unusable: bool
+) -> TriangleMesh | PolygonMesh:
     from hem.meshlab import mesh_set, meshlab, undisturbed
 
     meshes = mesh_set()
     try:
         with undisturbed():
             meshes.load_new_mesh(str(file))
-            if meshes.mesh_number() > 1:
+            several = meshes.mesh_number() > 1
+            if several:
                 meshes.generate_by_merging_visible_meshes(
                     mergevertices=False, alsounreferenced=True
                 )
     except meshlab().PyMeshLabException as error:
         raise MeshError(f"{_words(error)}") from error
+    cut = held.faces is not None and meshes.current_mesh().face_number() > held.faces
+    if cut and not several:
+        return _polygons(meshes.current_mesh(), _extension(file), data)
     return _current(meshes, drop_unusable)
+
+
+def _polygons(current: Any, extension: str, data: bytes) -> PolygonMesh:
+    """The faces as they stand in the file; pymeshlab has cut them, and puts them together again."""
+    if extension == "off":  # of faces with five corners or more pymeshlab 2025.7 makes other ones
+        return PolygonMesh(*off_polygons(data))
+    # A polygon comes turned by one corner, a triangle does not.
+    faces = [np.roll(face, len(face) > 3) for face in current.polygonal_face_list()]
+    return PolygonMesh(current.transformed_vertex_matrix(), faces)
 
 
 def _current(meshes: Any, drop_unusable: bool) -> TriangleMesh:
@@ -112,14 +174,15 @@ def _current(meshes: Any, drop_unusable: bool) -> TriangleMesh:
     return TriangleMesh(points, triangles)
 
 
-def _require_all(mesh: TriangleMesh, held: Contents) -> None:
+def _require_all(mesh: TriangleMesh | PolygonMesh, held: Contents) -> None:
     """Hold the mesh against the file: pymeshlab silently leaves out what it cannot use."""
+    faces = len(mesh.faces) if isinstance(mesh, PolygonMesh) else len(mesh.triangles)
     fewer_vertices = held.vertices is not None and len(mesh.points) < held.vertices
-    fewer_faces = held.faces is not None and len(mesh.triangles) < held.faces
+    fewer_faces = held.faces is not None and faces < held.faces
     if fewer_vertices or fewer_faces:
         raise MeshError(
             f"it holds {_counted(held)}, of which only {len(mesh.points):,} vertices and "
-            f"{len(mesh.triangles):,} faces can be used: others have coordinates that are not "
+            f"{faces:,} faces can be used: others have coordinates that are not "
             "finite, or corners that are repeated or out of range; repair=True leaves those out"
         )
 

@@ -89,7 +89,9 @@ def require_one_fan(vertex: Array, clockwise: Array, alive: Array) -> None:
     ``vertex``: (n,) the vertex of each corner. ``clockwise``: (n,) the corner that follows around
     the same vertex, or -1 at the border. ``alive``: (k,) the corners of live faces.
     """
-    _require_one_each(vertex, clockwise, alive, "the faces around a vertex form one fan", "vertices")
+    _require_one_each(
+        vertex, clockwise, alive, "the faces around a vertex form one fan", "vertices"
+    )
 
 
 def require_one_loop(face: Array, following: Array, alive: Array) -> None:

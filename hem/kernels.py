@@ -235,6 +235,11 @@ def bury(m: Any, v: int) -> None:
 
 
 @kernel
+def isolate(m: Any, v: int) -> None:
+    """See to it that vertex v has no faces, where it would not know of them anyway."""
+
+
+@kernel
 def sides(m: Any, f: int) -> int:
     """How many sides face f has, where all are triangles."""
     return 3

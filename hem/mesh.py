@@ -65,30 +65,9 @@ class TriangleMesh:
 
     def summary(self) -> "MeshSummary":
         """Counts of elements, borders, components and valences. O(m log m)."""
-        from scipy.sparse import coo_array
-        from scipy.sparse.csgraph import connected_components
-
         from hem.manifold import undirected_edges
 
-        n = len(self.points)
-        edges, faces_per_edge = undirected_edges(self.triangles)
-        valence = np.bincount(edges.ravel(), minlength=n)
-        unreferenced = int(np.count_nonzero(valence == 0))
-        graph = coo_array((np.ones(len(edges), bool), (edges[:, 0], edges[:, 1])), shape=(n, n))
-        label = connected_components(graph, directed=False)[1] if n else valence
-        used = valence[valence > 0] if len(edges) else np.zeros(1, np.int64)
-        return MeshSummary(
-            vertices=n,
-            edges=len(edges),
-            faces=len(self.triangles),
-            border_edges=int(np.count_nonzero(faces_per_edge == 1)),
-            components=len(np.unique(label[valence > 0])),
-            euler=n - unreferenced - len(edges) + len(self.triangles),
-            unreferenced=unreferenced,
-            valence_min=int(used.min()),
-            valence_mean=float(used.mean()),
-            valence_max=int(used.max()),
-        )
+        return summarized(len(self.points), len(self.triangles), *undirected_edges(self.triangles))
 
 
 @dataclass(frozen=True)
@@ -120,6 +99,32 @@ class MeshSummary:
             "valence": f"{self.valence_min:,} … {self.valence_max:,}, mean {self.valence_mean:.2f}",
         }
         return "\n".join(f"{name:<13} {value}" for name, value in rows.items())
+
+
+def summarized(
+    n: int, n_faces: int, edges: NDArray[Any], faces_per_edge: NDArray[Any]
+) -> MeshSummary:
+    """The summary of n vertices and the faces that have these undirected edges (k, 2)."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    valence = np.bincount(edges.ravel(), minlength=n)
+    unreferenced = int(np.count_nonzero(valence == 0))
+    graph = coo_array((np.ones(len(edges), bool), (edges[:, 0], edges[:, 1])), shape=(n, n))
+    label = connected_components(graph, directed=False)[1] if n else valence
+    used = valence[valence > 0] if len(edges) else np.zeros(1, np.int64)
+    return MeshSummary(
+        vertices=n,
+        edges=len(edges),
+        faces=n_faces,
+        border_edges=int(np.count_nonzero(faces_per_edge == 1)),
+        components=len(np.unique(label[valence > 0])),
+        euler=n - unreferenced - len(edges) + n_faces,
+        unreferenced=unreferenced,
+        valence_min=int(used.min()),
+        valence_mean=float(used.mean()),
+        valence_max=int(used.max()),
+    )
 
 
 def repeated_corners(triangles: Triangles) -> NDArray[np.bool_]:

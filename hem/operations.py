@@ -35,7 +35,8 @@ What a structure gives for it, beside its queries and the readings that ``hem.to
   being the faces at ``drop``, and the rest of it free;
 - ``turn(m, e, at, one, other)``, the faces that get (a, d, c) and (b, c, d);
 - ``attach(m, corners, f)`` and ``detach(m, f)``;
-- ``place(m, v, point)`` and ``bury(m, v)``, and ``sides(m, f)``, the number of a face's corners.
+- ``place(m, v, point)``, ``bury(m, v)`` and ``isolate(m, v)`` for one without
+  faces; ``sides(m, f)``, the number of a face's corners.
 """
 
 from __future__ import annotations
@@ -62,6 +63,7 @@ from hem.kernels import (
     Array,
     Kernel,
     kernel,
+    named,
 )
 from hem.topology import (
     ALLOWED,
@@ -105,6 +107,7 @@ OPERATIONS = {
     "add_face": Operation("vertex", growth=(0, 1)),
     "remove_face": Operation("face"),
     "move_vertex": Operation("vertex", True, True),
+    "add_vertex": Operation("vertex", True, True, (1, 0)),
 }
 """Every operation that is compiled, by name."""
 
@@ -114,8 +117,8 @@ ENTRIES = 8
 WIDTH = 20
 """Room in ``out`` per neighbor: the neighbors of both ends of an edge, and a table to tell them.
 
-A vertex in k faces has up to 2 k neighbors where fans meet in it, both ends of an edge have 4 k, and
-the table is less than four times as large.
+A vertex in k faces has up to 2 k neighbors where fans meet in it, both ends of an edge have 4 k,
+and the table is less than four times as large.
 """
 
 
@@ -168,6 +171,20 @@ def add_faces(m: Any, edges: int, faces: int) -> None:
     m.counts[FACE_END] += faces
 
 
+def appending(place: Kernel) -> Kernel:
+    """Make ``new_vertex(m, point) -> v``, which appends a vertex. No duplicate is searched for."""
+
+    def new_vertex(m: Any, point: Array) -> int:
+        v = m.counts[VERTEX_END]
+        place(m, v, point)
+        m.counts[VERTEX_END] += 1
+        m.counts[VERTICES] += 1
+        return int(v)
+
+    compiled: Kernel = kernel(new_vertex)
+    return compiled
+
+
 def operations(k: Mapping[str, Kernel]) -> dict[str, Kernel]:
     """The operations of one structure by name: ``(m, args, point, at, out, log, dry) -> result``.
 
@@ -184,16 +201,8 @@ def operations(k: Mapping[str, Kernel]) -> dict[str, Kernel]:
     contract, turn, attach, detach = k["contract"], k["turn"], k["attach"], k["detach"]
     face_exists, vertex_faces = k["face_exists"], k["vertex_faces"]
     face_vertices, beside = k["face_vertices"], k["beside"]
-    place, bury, sides_of = k["place"], k["bury"], k["sides"]
-
-    @kernel
-    def new_vertex(m: Any, point: Array) -> int:
-        """Append a vertex. No duplicate is searched for."""
-        v = m.counts[VERTEX_END]
-        place(m, v, point)
-        m.counts[VERTEX_END] += 1
-        m.counts[VERTICES] += 1
-        return int(v)
+    place, bury, sides_of, isolate = k["place"], k["bury"], k["sides"], k["isolate"]
+    new_vertex = appending(place)
 
     @kernel
     def free_edges(m: Any, corners: Array, n: int) -> int:
@@ -300,7 +309,7 @@ def operations(k: Mapping[str, Kernel]) -> dict[str, Kernel]:
         m: Any, args: Array, point: Array, at: Array, out: Array, log: Array, dry: bool
     ) -> int:
         n = len(args)
-        if not has_room(m, 0, 1, log) or not has_scratch(m, out, log):
+        if not has_room(m, 0, n - 2, log) or not has_scratch(m, out, log):
             return NEEDS_ROOM
         refusal = may_add_face(m, args, out)
         if refusal != ALLOWED or dry:
@@ -347,5 +356,20 @@ def operations(k: Mapping[str, Kernel]) -> dict[str, Kernel]:
         note(log, VERTEX + CHANGED, args[0])
         return int(args[0])
 
-    every = split_edge, split_face, collapse_edge, flip_edge, add_face, remove_face, move_vertex
-    return {getattr(it, "py_func", it).__name__: it for it in every}
+    @kernel
+    def add_vertex(
+        m: Any, args: Array, point: Array, at: Array, out: Array, log: Array, dry: bool
+    ) -> int:
+        if not is_point(point):
+            return NOT_FINITE
+        if dry:
+            return ALLOWED
+        if not has_room(m, 1, 0, log):
+            return NEEDS_ROOM
+        v = new_vertex(m, point)
+        isolate(m, v)
+        note(log, VERTEX + CREATED, v)
+        return v
+
+    changes = split_edge, split_face, collapse_edge, flip_edge, add_face, remove_face
+    return named(*changes, move_vertex, add_vertex)

@@ -14,8 +14,11 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from hem.errors import NonManifoldError
+from hem.invariants import require_one_fan
 from hem.manifold import require_manifold
 from hem.mesh import TriangleMesh
+from hem.polygons import PolygonMesh
 from hem.slices import in_slices, slice_count
 
 Array = NDArray[Any]
@@ -67,6 +70,34 @@ def pair_half_edges(mesh: TriangleMesh, room: Array | None = None) -> Pairing:
         require_manifold(mesh)
         raise AssertionError("pairing refuses a mesh that the diagnosis finds manifold")
     return Pairing(twin, vertex_half_edge, n_half_edges - sum(pairs))
+
+
+def pair_polygons(mesh: PolygonMesh) -> Pairing:
+    """Pair the half-edges of polygons: one for each corner of ``mesh.faces``, in their order.
+
+    Cost O(corners · log). Raises NonManifoldError as ``pair_half_edges``.
+    """
+    here, n = mesh.faces.values.astype(np.int64), len(mesh.points)
+    following = np.arange(1, len(here) + 1)
+    following[mesh.faces.offsets[1:] - 1] = mesh.faces.offsets[:-1]
+    there = here[following]
+    forth, back = here << 32 | there, there << 32 | here
+    order = np.argsort(forth, kind="stable")
+    again = np.diff(forth[order]) == 0
+    if again.any():
+        corners = order[1:][again]
+        raise NonManifoldError(
+            "an edge lies in more than two faces, or in two that run the same way along it",
+            edges=np.stack([here, there], axis=1)[corners],
+        )
+    place = np.minimum(np.searchsorted(forth[order], back), max(len(order) - 1, 0))
+    candidate = order[place] if len(order) else order
+    paired = np.where(forth[candidate] == back, candidate, -1)
+    twin: NDArray[np.int32] = paired.astype(np.int32)
+    vertex = np.full(n, -1, np.int32)
+    vertex[here[::-1]] = np.arange(len(here), dtype=np.int32)[::-1]
+    require_one_fan(here, np.where(twin >= 0, following[twin], -1), np.arange(len(here)))
+    return Pairing(twin, vertex, (len(here) + int((twin < 0).sum())) // 2)
 
 
 @njit(cache=True, nogil=True)

@@ -132,7 +132,7 @@ class Queryable(ABC):
     face_edges: QueryMethod = _query_method(QUERIES["face_edges"])
     face_faces: QueryMethod = _query_method(QUERIES["face_faces"])
 
-    def __init__(self, records: tuple[NDArray[Any], ...]) -> None:
+    def __init__(self, records: tuple[Any, ...]) -> None:
         self.records: Any = records
 
     # Elements --------------------------------------------------------------------------------
@@ -178,6 +178,11 @@ class Queryable(ABC):
     def face_end(self) -> int:
         """One past the largest face handle there ever was; for vertices that is len(points)."""
         return int(self.records.counts[FACE_END])
+
+    @property
+    def most_corners(self) -> int:
+        """A bound on the corners of any face there ever was: 3 where all are triangles."""
+        return int(self.records.counts[SIDES])
 
     def handles(self, element: str) -> NDArray[Any]:
         """The handles of all elements of one kind: ``vertex``, ``edge`` or ``face``."""

@@ -47,7 +47,8 @@ class RenderMesh:
 
     Every edit is committed at once: whoever subscribed is told what to upload. Within
     ``transaction()`` edits are gathered and committed once at its end. Cost to begin with, after
-    ``compact``, and now and then for more room: O(n_v + n_t).
+    ``compact``, and now and then for more room: O(n_v + n_t). MeshError for a mesh with polygons,
+    and when one arises: from then on the arrays stay as they are.
     """
 
     def __init__(self, structure: Structure) -> None:
@@ -95,6 +96,7 @@ class RenderMesh:
 
     def _rebuild(self) -> None:
         s = self.structure
+        self._require_triangles()
         self._n_vertices, self._n_triangles = len(s.points), s.face_end
         self._points = np.nan_to_num(s.points, nan=0.0)
         self._indices = np.zeros((self._n_triangles, 3), np.int32)
@@ -107,11 +109,20 @@ class RenderMesh:
             self._rebuild()
             self._pending, self._resized = [], True
         else:
+            self._require_triangles()
             self._pending.append(edit.touched)
             self._grow()
             self.structure.copy_touched(edit.touched, self._points, self._indices)
         if not self._depth:
             self._commit()
+
+    def _require_triangles(self) -> None:
+        s = self.structure
+        if s.most_corners > 3:
+            raise MeshError(
+                f"a render mesh holds triangles only, and {s.title} has faces of up to "
+                f"{s.most_corners} corners; follow a mesh built of to_triangles() instead"
+            )
 
     def _grow(self) -> None:
         s = self.structure

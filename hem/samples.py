@@ -38,7 +38,7 @@ def _from_file(name: str) -> Callable[..., TriangleMesh]:
     def make(repair: bool = False) -> TriangleMesh:
         from hem.files import load
 
-        return load(_sample_file(name), repair=repair)
+        return load(_sample_file(name), repair=repair, triangulate=True)
 
     return make
 

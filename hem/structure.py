@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hem.editable import Editable
-from hem.kernels import Kernel, bury, coordinate, named, place, sides, vertex_exists
+from hem.kernels import Kernel, bury, coordinate, isolate, named, place, sides, vertex_exists
 from hem.mesh import TriangleMesh
 from hem.operations import operations
 from hem.queries import QUERIES
@@ -23,7 +23,7 @@ from hem.uses import Uses
 
 Array = NDArray[Any]
 
-OF_ARRAYS = named(coordinate, place, bury, sides, vertex_exists)
+OF_ARRAYS = named(coordinate, place, bury, isolate, sides, vertex_exists)
 """Kernels that are the same wherever vertices are rows of an array and faces triangles."""
 
 REFERENCE_TYPES = {4: np.int32, 8: np.int64}
@@ -36,6 +36,9 @@ class Structure(Editable):
     name: ClassVar[str]
     title: ClassVar[str]
     abbreviation: ClassVar[str]
+    holds_polygons: ClassVar[bool] = False
+    """Whether faces may have more than three corners, and ``build`` takes a ``PolygonMesh``."""
+
     uses_type: ClassVar[type[Uses]] = Uses
 
     def __init_subclass__(cls) -> None:

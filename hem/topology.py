@@ -34,7 +34,8 @@ ALLOWED, NEEDS_ROOM = 0, -1
 (NO_EDGE, NO_FACE, NO_VERTEX, NOT_FINITE, CROWDED, NOT_AN_END) = range(-7, -1)
 (LONE_FACE, SAME_CORNER, TWO_BORDERS, TETRAHEDRON, COMMON_NEIGHBOR) = range(-12, -7)
 (BORDER_EDGE, JOINED, SAME_VERTEX, TAKEN, COINCIDENT, SECOND_FAN, BETWEEN) = range(-19, -12)
-(NOT_TRIANGLES, SHARED_FACE) = range(-21, -19)
+(NOT_TRIANGLES, SHARED_FACE, OTHER_FACE, NEIGHBORS, TOUCHING) = range(-24, -19)
+(OTHER_VERTEX, BORDER_VERTEX) = range(-26, -24)
 
 REFUSALS = {
     NO_EDGE: "there is no such edge in this mesh (any more)",
@@ -63,7 +64,13 @@ REFUSALS = {
     BETWEEN: "at a corner on the border the face lies between two others, and without it two fans "
     "would meet in one vertex",
     NOT_TRIANGLES: "a face at the edge has more than three corners; split that face first",
-    SHARED_FACE: "both ends are corners of a face that does not lie at the edge, and would pinch it",
+    SHARED_FACE: "both ends are corners of a face that does not lie at the edge, and would be "
+    "pinched",
+    OTHER_FACE: "the two half-edges do not lie in the same face",
+    NEIGHBORS: "the two corners are one, or joined by a side of the face already",
+    TOUCHING: "the faces meet at other corners, too, and the new one would come past them twice",
+    OTHER_VERTEX: "the two half-edges are not different ones that leave the same vertex",
+    BORDER_VERTEX: "the vertex lies on the border, or no face uses it",
 }
 """Why an operation is refused, in words."""
 
@@ -81,7 +88,7 @@ def rules(k: Mapping[str, Kernel]) -> Any:
     edge_exists, face_exists = k["edge_exists"], k["face_exists"]
     vertex_vertices, vertex_faces = k["vertex_vertices"], k["vertex_faces"]
     face_faces, face_vertices = k["face_faces"], k["face_vertices"]
-    coordinate = k["coordinate"]
+    coordinate, sides = k["coordinate"], k["sides"]
 
     @kernel
     def surface_edge(m: Any, e: int, at: Array) -> int:
@@ -102,6 +109,13 @@ def rules(k: Mapping[str, Kernel]) -> Any:
     @kernel
     def alone(m: Any, face: int, corner: int, others: int, out: Array) -> bool:
         return corner >= 0 and face_faces(m, face, out) == others
+
+    @kernel
+    def are_triangles(m: Any, a: int, b: int, c: int, d: int) -> bool:
+        """Whether the faces that run a → b and c → d are triangles."""
+        if m.counts[SIDES] == 3:
+            return True
+        return sides(m, beside(m, a, b)) == 3 and sides(m, beside(m, c, d)) == 3
 
     @kernel
     def on_border(m: Any, v: int, neighbors: int, out: Array) -> bool:
@@ -128,7 +142,8 @@ def rules(k: Mapping[str, Kernel]) -> Any:
         if faces == 2 and border_a and border_b:
             return TWO_BORDERS
         if around_a == 3 and around_b == 3 and not border_a and not border_b:
-            return TETRAHEDRON
+            if triangles == 2 and are_triangles(m, at[A], at[C], at[C], at[B]):
+                return TETRAHEDRON
         if both - distinct(out, both) != triangles:
             return COMMON_NEIGHBOR
         if m.counts[SIDES] > 3:

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from hem.mesh import TriangleMesh
+from hem.polygons import PolygonMesh, require_triangles
 from hem.structure import REFERENCE_TYPES, Structure
 from structures.half_edge import HalfEdge
 from structures.half_edge_objects import HalfEdgeMesh
@@ -12,7 +15,8 @@ from structures.triangle_neighbor import TriangleNeighbor
 from structures.winged_edge import WingedEdge
 
 REGISTRY: dict[str, type[Structure]] = {
-    structure.name: structure for structure in (Indexed, TriangleNeighbor, WingedEdge, HalfEdge, HalfEdgeMesh, Plankton)
+    structure.name: structure
+    for structure in (Indexed, TriangleNeighbor, WingedEdge, HalfEdge, HalfEdgeMesh, Plankton)
 }
 """Every structure by name, in the order of the thesis' table 1. A new one is one entry here."""
 
@@ -21,15 +25,19 @@ NAMES = tuple(REGISTRY)
 __all__ = ["NAMES", "REGISTRY", "Structure", "build"]
 
 
-def build(name: str, mesh: TriangleMesh, reference_bytes: int = 4) -> Structure:
+def build(name: str, mesh: TriangleMesh | PolygonMesh, reference_bytes: int = 4) -> Structure:
     """The structure called ``name``, holding ``mesh``.
 
     ``reference_bytes``: 4, or 8 as the thesis counts. Cost O(n_v + n_t). Raises NonManifoldError,
-    with the elements, for what the structure cannot represent; KeyError or ValueError for a name
-    or a reference size that does not exist.
+    with the elements, for what the structure cannot represent, MeshError for polygons where it
+    holds triangles; KeyError or ValueError for a name or a reference size that does not exist.
     """
     if name not in REGISTRY:
         raise KeyError(f"no structure is called {name!r}; there are {', '.join(NAMES)}")
     if reference_bytes not in REFERENCE_TYPES:
         raise ValueError(f"references take 4 or 8 bytes, not {reference_bytes!r}")
-    return REGISTRY[name].build(mesh, reference_bytes)
+    kind: Any = REGISTRY[name]
+    if not kind.holds_polygons:
+        mesh = require_triangles(mesh, kind.title)
+    built: Structure = kind.build(mesh, reference_bytes)
+    return built

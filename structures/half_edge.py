@@ -292,6 +292,12 @@ def set_vertices(m: HalfEdgeRecords, h: int) -> None:
 
 
 @kernel
+def isolate(m: HalfEdgeRecords, v: int) -> None:
+    """See to it that vertex v has no faces."""
+    m.vertex_half_edge[v] = -1
+
+
+@kernel
 def cut_edge(m: HalfEdgeRecords, e: int, at: Array, v: int, f: int) -> None:
     """Cost O(1): two half-edges of each face stay, one moves on, and three are new."""
     left, right = left_and_right(m, e)  # they stay with a and v
@@ -488,7 +494,7 @@ class HalfEdge(Structure):
         *(edge_vertices, edge_edges, edge_faces),
         *(face_vertices, face_edges, face_faces),
         *(edge_exists, face_exists, diamond, joined, beside),
-        *(cut_edge, cut_face, contract, turn, attach, detach),
+        *(isolate, cut_edge, cut_face, contract, turn, attach, detach),
     )
 
     @classmethod

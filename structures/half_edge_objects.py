@@ -18,7 +18,7 @@ Invariants
 - Those of ``structures.half_edge``, with None where that has -1.
 - Every element stands in its list at its index, and every reference leads to one that does.
 
-Bytes per vertex: Python's own, see ``memory``, and those of the thesis' runtime, see ``clr_memory``.
+Bytes per vertex: Python's own (``memory``), and those of the thesis' runtime (``clr_memory``).
 """
 
 from __future__ import annotations
@@ -55,7 +55,7 @@ from hem.queryable import HANDLE_TYPES
 from hem.records import ENDLESS, counted
 from hem.render import mesh_from_render
 from hem.structure import Structure
-from hem.topology import LEFT, RIGHT, A, B, C, D
+from hem.topology import LEFT, RIGHT, A, C, D
 from structures.class_model import (
     ElementList,
     Face,
@@ -212,6 +212,11 @@ def bury(m: ObjectRecords, v: int) -> None:
     m.vertices.items[v] = None
 
 
+def isolate(m: ObjectRecords, v: int) -> None:
+    """See to it that vertex v has no faces."""
+    m.vertices.items[v].half_edge = None
+
+
 def left_and_right(h: HalfEdge) -> tuple[HalfEdge | None, HalfEdge | None]:
     """The half-edges of h's edge: first the one that runs from its smaller to its larger vertex."""
     return (h, h.opposite) if h.origin.index < h.end.index else (h.opposite, h)
@@ -360,7 +365,8 @@ def contract(
 def turn(m: ObjectRecords, e: int, at: Any, one: int, other: int) -> None:
     """Cost O(1)."""
     ab, ba = left_and_right(m.half_edges.items[e])
-    assert ab is not None and ba is not None  # at the border a flip is refused
+    assert ab is not None  # at the border a flip is refused
+    assert ba is not None
     bc, ad = ab.next, ba.next
     ca, db = bc.next, ad.next
     ab.origin, ba.origin = db.origin, ca.origin
@@ -413,13 +419,13 @@ class HalfEdgeMesh(Structure):
         *(edge_vertices, edge_edges, edge_faces),
         *(face_vertices, face_edges, face_faces),
         *(vertex_exists, edge_exists, face_exists, diamond, joined, beside),
-        *(coordinate, place, bury),
+        *(coordinate, place, bury, isolate),
         *(cut_edge, cut_face, contract, turn, attach, detach),
     )
 
     @classmethod
     def build(cls, mesh: TriangleMesh, reference_bytes: int = 4) -> Self:
-        """See ``Structure.build``; a reference takes what Python gives it, whatever is asked for."""
+        """See ``Structure.build``; a reference takes what Python gives it."""
         return cls(HalfEdgeMeshBuilder.records(mesh))
 
     @classmethod
@@ -428,12 +434,12 @@ class HalfEdgeMesh(Structure):
 
         More are added with ``add_vertex`` and ``add_face``.
         """
-        return cls.build(TriangleMesh([a, b, c], [(0, 2, 1)]))
+        return cls.build(TriangleMesh(np.array([a, b, c]), [(0, 2, 1)]))
 
     # Elements --------------------------------------------------------------------------------
 
     @property
-    def vertices(self) -> VertexList:  # type: ignore[override]
+    def vertices(self) -> VertexList:
         """The vertices as objects; called, their handles."""
         found: VertexList = self.records.vertices
         return found
@@ -445,7 +451,7 @@ class HalfEdgeMesh(Structure):
         return found
 
     @property
-    def faces(self) -> FaceList:  # type: ignore[override]
+    def faces(self) -> FaceList:
         """The faces as objects; called, their handles."""
         found: FaceList = self.records.faces
         return found
@@ -465,7 +471,7 @@ class HalfEdgeMesh(Structure):
         return np.flatnonzero(self._alive(element)).astype(np.int32)
 
     def _alive(self, element: str) -> NDArray[np.bool_]:
-        lists = {"vertex": self.vertices, "face": self.faces}
+        lists: dict[str, ElementList[Any]] = {"vertex": self.vertices, "face": self.faces}
         return lists.get(element, self.half_edges).alive()
 
     def _edge_names(self, handles: Array) -> Array:
@@ -490,7 +496,7 @@ class HalfEdgeMesh(Structure):
 
     def _compacted(self) -> tuple[ObjectRecords, dict[str, Array]]:
         m, number = self.records, {}
-        lists = {"vertex": m.vertices, "half_edge": m.half_edges, "face": m.faces}
+        lists: dict[str, ElementList[Any]] = {it.kind: it for it in m[:-1]}
         for kind, elements in lists.items():
             alive = elements.alive()
             number[kind] = np.where(alive, np.cumsum(alive) - 1, -1)
@@ -513,8 +519,9 @@ class HalfEdgeMesh(Structure):
     def restore(self, snapshot: HalfEdgeRecords) -> None:
         """See ``Structure.restore``; the objects are new ones."""
         fresh = _from_arrays(snapshot)
-        for mine, theirs in zip(self.records[:-1], fresh[:-1], strict=True):
-            mine.items[:] = theirs.items
+        self.vertices.items[:] = fresh.vertices.items
+        self.half_edges.items[:] = fresh.half_edges.items
+        self.faces.items[:] = fresh.faces.items
         np.copyto(self.records.counts[:VERTEX_ROOM], fresh.counts[:VERTEX_ROOM])
 
     def to_arrays(self) -> HalfEdgeRecords:
@@ -552,13 +559,14 @@ class HalfEdgeMesh(Structure):
         """
         point = (0.0, 0.0, 0.0)
         position = sys.getsizeof(point) + 3 * sys.getsizeof(1.5)
-        lists = {"vertex": self.vertices, "half_edge": self.half_edges, "face": self.faces}
         taken = {}
-        for kind, elements in lists.items():
-            n = len(elements)
+        for elements in self.records[:-1]:
+            kind, n = elements.kind, len(elements)
             sample = next(iter(elements), None)
             taken[f"{kind}.object"] = n * (sys.getsizeof(sample) if sample else 0)
-            taken[f"{kind}.index"] = sum(sys.getsizeof(it.index) for it in elements if it.index > 256)
+            taken[f"{kind}.index"] = sum(
+                sys.getsizeof(it.index) for it in elements if it.index > 256
+            )
             taken[f"{kind}.list"] = 8 * n
         taken["vertex.point"] = position * len(self.vertices)
         return taken
@@ -589,7 +597,7 @@ class HalfEdgeMesh(Structure):
         See ``CLR_CLASSES``; in a list every element takes one more reference.
         """
         counts = {"vertex": self.n_vertices, "half_edge": self.n_half_edges, "face": self.n_faces}
-        taken = {}
+        taken: dict[str, int] = {}
         for kind, n in counts.items():
             fields = CLR_CLASSES[kind]
             size = CLR_HEADER + sum(fields.values())
@@ -615,7 +623,7 @@ CLR_CLASSES = {
     "half_edge": {"origin": 8, "face": 8, "next": 8, "opposite": 8, "index": 4},
     "face": {"half_edge": 8, "index": 4},
 }
-"""The fields that the thesis declares (3.2.2) and their bytes: a Vector3, references, int, event."""
+"""The fields that the thesis declares (3.2.2), in bytes: Vector3, references, int, event."""
 
 
 class HalfEdgeMeshBuilder:
@@ -629,10 +637,12 @@ class HalfEdgeMeshBuilder:
         expected. Raises NonManifoldError with the elements for what half-edges cannot represent.
         """
         require_manifold(mesh)
-        n, open_sides = len(mesh.points), {}
+        n = len(mesh.points)
+        open_sides: dict[int, HalfEdge] = {}
         with _uncollected():
             vertices = [Vertex(i, (x, y, z)) for i, (x, y, z) in enumerate(mesh.points.tolist())]
-            half_edges, faces = [], []
+            half_edges: list[Any] = []
+            faces: list[Any] = []
             for f, corners in enumerate(mesh.triangles.tolist()):
                 h = 3 * f
                 a, b, c = corners
@@ -655,7 +665,7 @@ class HalfEdgeMeshBuilder:
                 half_edges += sides
                 faces.append(face)
         n_edges = (len(half_edges) + len(open_sides)) // 2
-        lists = VertexList(vertices), HalfEdgeList(half_edges), FaceList(faces)
+        lists = VertexList([*vertices]), HalfEdgeList(half_edges), FaceList(faces)
         return ObjectRecords(*lists, _counted(*lists, n_edges))
 
     @staticmethod
@@ -673,9 +683,7 @@ class HalfEdgeMeshBuilder:
         """Flat points (3 n,) and clockwise indices (3 m,) by the face circulator. O(n_v + n_t)."""
         number = {v.index: i for i, v in enumerate(mesh.vertices)}
         points = [v.point for v in mesh.vertices]
-        indices = [
-            number[h.origin.index] for f in mesh.faces for h in mesh.faces.circulator(f)
-        ]
+        indices = [number[h.origin.index] for f in mesh.faces for h in mesh.faces.circulator(f)]
         return np.array(points, np.float32).reshape(-1), np.array(indices, np.int32)
 
 
@@ -737,7 +745,8 @@ def _from_arrays(arrays: HalfEdgeRecords) -> ObjectRecords:
         ]
         half_edge = arrays.half_edge.tolist()
         half_edges: list[Any] = [
-            HalfEdge(i, vertices[row[0]]) if row[1] >= 0 else None for i, row in enumerate(half_edge)
+            HalfEdge(i, vertices[row[0]]) if row[1] >= 0 else None
+            for i, row in enumerate(half_edge)
         ]
         faces: list[Any] = [
             Face(f, half_edges[h]) if h >= 0 else None

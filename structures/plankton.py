@@ -1,39 +1,30 @@
-"""Plankton's half-edges: by index, in pairs, with borders and polygons (the article on Plankton).
+"""Plankton's half-edge mesh: pairs of half-edges, with borders and polygons.
 
-The half-edges 2k and 2k + 1 are the two sides of an edge, so that neither has to store the other::
+The data structure itself, its invariants and kernels, stands in ``structures.pairs``; operations of
+polygons in ``structures.polygons``. This is the mesh that users hold: they ask it as any structure,
+and for what polygons need beside::
 
-              c                     a, b, c   counterclockwise from outside
-            ╱   ╲                   h         the half-edge from a to b
-      next ╱     ╲ previous         start     a
-          ╱   f   ╲                 face      f, or -1 outside the border
-         b ◀───h── a                next      the half-edge from b on, in the same face
-           ──pair─▶                 previous  the half-edge that leads to a, in the same face
-                                    pair      h ^ 1, the half-edge from b to a
+    mesh = structures.build("plankton", hem.load("house.obj"))     # quads and n-gons stay
+    h = mesh.split_face(mesh.face_half_edges(0)[0], mesh.face_half_edges(0)[2])
+    mesh.merge_faces(h)                                            # as it was
 
-Invariants
-
-- ``next`` of ``previous`` of h is h, and so the other way round; both have the face of h.
-- ``next`` of h starts where the pair of h does. An edge has a face on one side at least.
-- The half-edges of a face run round it once, past three corners or more.
-- Those without a face run round a hole: a vertex on the border has just one of them leave it, and
-  that is the vertex' own half-edge. An unreferenced vertex has -1.
-- Dead: a face has half-edge -1, a half-edge has start -1 (so has its pair), a vertex no position.
-
-Whoever steps around a vertex comes round even at the border, which takes no second direction. An
-edge is named by its half-edge 2k. Bytes per vertex of a closed mesh of triangles, with 8-byte
-references: 12 + 8 + 2 · 8 + 6 · 32 = 228, as many as those of the half-edge mesh.
-
-What can be done with polygons stands in ``structures.polygons``.
+Half-edges are named by their index, an edge by the first of its two. Where an operation of the
+contract meets a polygon: ``split_face`` with a point joins all corners to it, ``collapse_edge``
+takes a corner from it, ``remove_face`` and ``add_face`` take it as it is; ``flip_edge`` and
+``split_edge`` are refused, but for the split's form that only puts a vertex on the edge.
 """
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple, Self
+from typing import Any, Self
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
+from hem import arguments
+from hem.edit import Edit
+from hem.errors import MeshError, TopologyError
 from hem.invariants import (
     require,
     require_counts,
@@ -43,522 +34,20 @@ from hem.invariants import (
     require_points,
     require_references,
 )
-from hem.kernels import (
-    EDGE_END,
-    FACE_END,
-    SIDES,
-    append_face,
-    distinct,
-    joined_by_steps,
-    kernel,
-    named,
-    without,
-)
+from hem.kernels import EDGE_END, SIDES, Kernel, named
 from hem.mesh import TriangleMesh
-from hem.pairing import pair_half_edges
+from hem.operations import OPERATIONS
+from hem.pairing import pair_half_edges, pair_polygons
+from hem.polygons import PolygonMesh
+from hem.ragged import Ragged
 from hem.records import Field, counted, live
 from hem.slices import in_slices
 from hem.structure import REFERENCE_TYPES, Structure
-from hem.topology import LEFT, RIGHT, A, B, C, D
+from structures import pairs
+from structures.pairs import FACE, NEXT, OUTSIDE, PREVIOUS, START, PlanktonRecords
+from structures.polygons import POLYGON_KERNELS, POLYGON_OPERATIONS
 
 Array = NDArray[Any]
-
-START, FACE, NEXT, PREVIOUS = range(4)  # the columns of a half-edge
-
-OUTSIDE = -1
-"""The face of a half-edge along a hole."""
-
-
-class PlanktonRecords(NamedTuple):
-    """One row per record; the two half-edges of an edge lie side by side."""
-
-    vertex_point: Array  # (n_v, 3) float32
-    vertex_half_edge: Array  # (n_v,) one that leaves the vertex, along the border if it lies there
-    face_half_edge: Array  # (n_f,) the first
-    half_edge: Array  # (2 n_e, 4) start, face, next, previous
-    counts: Array  # how many of them there are, see hem.kernels
-
-
-@kernel
-def counterclockwise(m: PlanktonRecords, h: int) -> int:
-    """The half-edge that leaves the same vertex after h."""
-    return m.half_edge[h, PREVIOUS] ^ 1
-
-
-@kernel
-def clockwise(m: PlanktonRecords, h: int, v: int) -> int:
-    """The half-edge that leaves v before h."""
-    return m.half_edge[h ^ 1, NEXT]
-
-
-@kernel
-def tip(m: PlanktonRecords, h: int) -> int:
-    """The vertex where h ends."""
-    return m.half_edge[h ^ 1, START]
-
-
-@kernel
-def edge_of(h: int) -> int:
-    """The name of h's edge."""
-    return h - (h & 1)
-
-
-@kernel
-def vertex_vertices(m: PlanktonRecords, v: int, out: Array) -> int:
-    """Cost O(n_ev)."""
-    first = m.vertex_half_edge[v]
-    h, count = first, 0
-    while h >= 0:
-        h = counterclockwise(m, h)
-        out[count] = tip(m, h)
-        count += 1
-        if h == first:
-            break
-    return count
-
-
-@kernel
-def vertex_edges(m: PlanktonRecords, v: int, out: Array) -> int:
-    """Cost O(n_ev)."""
-    first = m.vertex_half_edge[v]
-    h, count = first, 0
-    while h >= 0:
-        h = counterclockwise(m, h)
-        out[count] = edge_of(h)
-        count += 1
-        if h == first:
-            break
-    return count
-
-
-@kernel
-def vertex_faces(m: PlanktonRecords, v: int, out: Array) -> int:
-    """Cost O(n_ev)."""
-    first = m.vertex_half_edge[v]
-    h, count = first, 0
-    while h >= 0:
-        h = counterclockwise(m, h)
-        face = m.half_edge[h, FACE]
-        if face >= 0:
-            out[count] = face
-            count += 1
-        if h == first:
-            break
-    return count
-
-
-@kernel
-def edge_vertices(m: PlanktonRecords, e: int, out: Array) -> int:
-    """Cost O(1)."""
-    a, b = m.half_edge[e, START], tip(m, e)
-    out[0], out[1] = min(a, b), max(a, b)
-    return 2
-
-
-@kernel
-def edge_edges(m: PlanktonRecords, e: int, out: Array) -> int:
-    """The edges at either end, without the edge itself. Cost O(n_ev)."""
-    a, b = m.half_edge[e, START], tip(m, e)
-    count = without(out, vertex_edges(m, a, out), edge_of(e))
-    rest = out[count:]
-    return count + without(rest, vertex_edges(m, b, rest), edge_of(e))
-
-
-@kernel
-def edge_faces(m: PlanktonRecords, e: int, out: Array) -> int:
-    """Cost O(1)."""
-    count = 0
-    for h in (e, e ^ 1):
-        face = m.half_edge[h, FACE]
-        if face >= 0:
-            out[count] = face
-            count += 1
-    return count
-
-
-@kernel
-def face_vertices(m: PlanktonRecords, f: int, out: Array) -> int:
-    """Cost O(1) for a triangle, O(n) for n corners."""
-    first = m.face_half_edge[f]
-    h, count = first, 0
-    while True:
-        out[count] = m.half_edge[h, START]
-        count += 1
-        h = m.half_edge[h, NEXT]
-        if h == first:
-            return count
-
-
-@kernel
-def face_edges(m: PlanktonRecords, f: int, out: Array) -> int:
-    """Cost O(1) for a triangle, O(n) for n corners."""
-    first = m.face_half_edge[f]
-    h, count = first, 0
-    while True:
-        out[count] = edge_of(h)
-        count += 1
-        h = m.half_edge[h, NEXT]
-        if h == first:
-            return count
-
-
-@kernel
-def face_faces(m: PlanktonRecords, f: int, out: Array) -> int:
-    """Cost O(1) for a triangle, O(n) for n corners."""
-    first = m.face_half_edge[f]
-    h, count, sides = first, 0, 0
-    while True:
-        face = m.half_edge[h ^ 1, FACE]
-        if face >= 0:
-            count = append_face(out, count, face)
-        sides += 1
-        h = m.half_edge[h, NEXT]
-        if h == first:
-            # Polygons may share edges that do not follow each other.
-            return count if sides == 3 else distinct(out, count)
-
-
-# What operations need to know, and what they change (hem.topology, hem.operations) ---------------
-
-
-@kernel
-def sides(m: PlanktonRecords, f: int) -> int:
-    """How many corners face f has."""
-    first, count = m.face_half_edge[f], 0
-    h = first
-    while True:
-        count += 1
-        h = m.half_edge[h, NEXT]
-        if h == first:
-            return count
-
-
-@kernel
-def face_exists(m: PlanktonRecords, f: int) -> bool:
-    """Whether f is a live face."""
-    return 0 <= f < m.counts[FACE_END] and m.face_half_edge[f] >= 0
-
-
-@kernel
-def edge_exists(m: PlanktonRecords, e: int) -> bool:
-    """Whether e is a live half-edge."""
-    return 0 <= e < m.counts[EDGE_END] and m.half_edge[e, START] >= 0
-
-
-@kernel
-def from_smaller(m: PlanktonRecords, e: int) -> int:
-    """The half-edge of e that runs from its smaller to its larger vertex."""
-    return e if m.half_edge[e, START] < tip(m, e) else e ^ 1
-
-
-@kernel
-def is_triangle(m: PlanktonRecords, h: int) -> bool:
-    """Whether the loop of h is one of three."""
-    return m.half_edge[m.half_edge[h, PREVIOUS], PREVIOUS] == m.half_edge[h, NEXT]
-
-
-@kernel
-def apex(m: PlanktonRecords, h: int) -> int:
-    """The corner across h in its face; -1 where there is no face, or one of more corners."""
-    if m.half_edge[h, FACE] < 0 or not is_triangle(m, h):
-        return -1
-    return m.half_edge[m.half_edge[h, PREVIOUS], START]
-
-
-@kernel
-def diamond(m: PlanktonRecords, e: int, at: Array) -> int:
-    """Cost O(1)."""
-    h = from_smaller(m, e)
-    at[A], at[B] = m.half_edge[h, START], tip(m, h)
-    at[LEFT], at[RIGHT] = m.half_edge[h, FACE], m.half_edge[h ^ 1, FACE]
-    at[C], at[D] = apex(m, h), apex(m, h ^ 1)
-    return (at[LEFT] >= 0) + (at[RIGHT] >= 0)
-
-
-@kernel
-def first(m: PlanktonRecords, v: int) -> int:
-    """A half-edge that leaves v."""
-    return m.vertex_half_edge[v]
-
-
-@kernel
-def ends_at(m: PlanktonRecords, h: int, v: int, w: int) -> bool:
-    """Whether h, which leaves v, ends at w."""
-    return tip(m, h) == w
-
-
-@kernel
-def between(m: PlanktonRecords, a: int, b: int) -> int:
-    """The half-edge that runs a → b, or -1. Cost O(n_ev)."""
-    start = m.vertex_half_edge[a]
-    h = start
-    while h >= 0:
-        if tip(m, h) == b:
-            return h
-        h = counterclockwise(m, h)
-        if h == start:
-            break
-    return -1
-
-
-joined = joined_by_steps(first, clockwise, ends_at, between)
-
-
-@kernel
-def beside(m: PlanktonRecords, a: int, b: int) -> int:
-    """The face that runs a → b, or -1. Cost O(n_ev)."""
-    h = between(m, a, b)
-    return m.half_edge[h, FACE] if h >= 0 else -1
-
-
-@kernel
-def link(m: PlanktonRecords, g: int, h: int) -> None:
-    """Let h follow g."""
-    m.half_edge[g, NEXT], m.half_edge[h, PREVIOUS] = h, g
-
-
-@kernel
-def new_pair(m: PlanktonRecords, a: int, b: int) -> int:
-    """Append an edge that is not linked yet, with no faces -> its half-edge from a to b."""
-    h = m.counts[EDGE_END]
-    m.half_edge[h, START], m.half_edge[h, FACE] = a, OUTSIDE
-    m.half_edge[h + 1, START], m.half_edge[h + 1, FACE] = b, OUTSIDE
-    m.counts[EDGE_END] += 2
-    return int(h)
-
-
-@kernel
-def kill(m: PlanktonRecords, h: int) -> None:
-    """Make an edge dead."""
-    m.half_edge[h, START], m.half_edge[h ^ 1, START] = -1, -1
-    m.half_edge[h, FACE], m.half_edge[h ^ 1, FACE] = OUTSIDE, OUTSIDE
-
-
-@kernel
-def set_face(m: PlanktonRecords, f: int, g: int, h: int, i: int) -> None:
-    """Make a triangle of three half-edges."""
-    m.face_half_edge[f] = g
-    link(m, g, h)
-    link(m, h, i)
-    link(m, i, g)
-    m.half_edge[g, FACE], m.half_edge[h, FACE], m.half_edge[i, FACE] = f, f, f
-
-
-@kernel
-def insert(m: PlanktonRecords, h: int, v: int) -> int:
-    """Put vertex v on the edge of h, which ends there then -> the half-edge from v on.
-
-    Both faces have a corner more.
-    """
-    b, other = tip(m, h), h ^ 1
-    onward = new_pair(m, v, b)
-    back = onward ^ 1
-    following, before = m.half_edge[h, NEXT], m.half_edge[other, PREVIOUS]
-    m.half_edge[other, START] = v
-    if following == other:  # nothing but this edge at b; never so in a surface
-        before = onward
-        following = back
-    m.half_edge[onward, FACE] = m.half_edge[h, FACE]
-    m.half_edge[back, FACE] = m.half_edge[other, FACE]
-    link(m, onward, following)
-    link(m, h, onward)
-    link(m, before, back)
-    link(m, back, other)
-    if m.vertex_half_edge[b] == other:
-        m.vertex_half_edge[b] = back
-    m.vertex_half_edge[v] = other if m.half_edge[other, FACE] < 0 else onward
-    return onward
-
-
-@kernel
-def cut_edge(m: PlanktonRecords, e: int, at: Array, v: int, f: int) -> None:
-    """Cost O(1): a vertex on the edge, and in each face a diagonal from it."""
-    left = from_smaller(m, e)
-    right = left ^ 1
-    onward = insert(m, left, v)
-    for h in (left, onward ^ 1):
-        face = m.half_edge[h, FACE]
-        if face < 0:
-            continue
-        if h == left:  # a → v → b → c
-            va, vb, bc, ca = left, onward, m.half_edge[onward, NEXT], m.half_edge[left, PREVIOUS]
-            vc = new_pair(m, v, at[C])
-            set_face(m, face, va, vc, ca)
-            set_face(m, f, vb, bc, vc ^ 1)
-        else:  # b → v → a → d
-            ad, db = m.half_edge[right, NEXT], m.half_edge[h, PREVIOUS]
-            vd = new_pair(m, v, at[D])
-            set_face(m, face, right, ad, vd ^ 1)
-            set_face(m, f, h, vd, db)
-        f += 1
-
-
-@kernel
-def cut_face(m: PlanktonRecords, face: int, v: int, f: int) -> None:
-    """Cost O(1) for a triangle, O(n) for n corners: an edge from every corner to v."""
-    smallest, count = m.face_half_edge[face], 1
-    h = m.half_edge[smallest, NEXT]
-    while h != m.face_half_edge[face]:
-        if m.half_edge[h, START] < m.half_edge[smallest, START]:
-            smallest = h
-        h = m.half_edge[h, NEXT]
-        count += 1
-    spoke = m.counts[EDGE_END]
-    h = smallest
-    for i in range(count):
-        new_pair(m, m.half_edge[h, START], v)
-        h = m.half_edge[h, NEXT]
-    for i in range(count):
-        inward = spoke + 2 * ((i + 1) % count)
-        after = m.half_edge[h, NEXT]
-        set_face(m, face if i == 0 else f + i - 1, h, inward, spoke + 2 * i + 1)
-        h = after
-    m.vertex_half_edge[v] = spoke + 1
-
-
-@kernel
-def take_place(m: PlanktonRecords, h: int, of: int) -> None:
-    """Let h run in the loop of another half-edge instead of that one."""
-    face = m.half_edge[of, FACE]
-    m.half_edge[h, FACE] = face
-    link(m, m.half_edge[of, PREVIOUS], h)
-    link(m, h, m.half_edge[of, NEXT])
-    if face >= 0 and m.face_half_edge[face] == of:
-        m.face_half_edge[face] = h
-
-
-@kernel
-def leave_loop(m: PlanktonRecords, h: int) -> None:
-    """Take h out of its loop, which closes behind it."""
-    face = m.half_edge[h, FACE]
-    if face >= 0 and m.face_half_edge[face] == h:
-        m.face_half_edge[face] = m.half_edge[h, NEXT]
-    link(m, m.half_edge[h, PREVIOUS], m.half_edge[h, NEXT])
-
-
-@kernel
-def settle(m: PlanktonRecords, v: int, leaving: int) -> None:
-    """Give v its half-edge, given any that leaves it: along the border where it lies there."""
-    m.vertex_half_edge[v] = leaving
-    h = leaving
-    while True:
-        if m.half_edge[h, FACE] < 0:
-            m.vertex_half_edge[v] = h
-        h = counterclockwise(m, h)
-        if h == leaving:
-            return
-
-
-@kernel
-def contract(
-    m: PlanktonRecords, e: int, at: Array, drop: int, keep: int, around: int, out: Array
-) -> None:
-    """Cost O(n_ev) for the half-edges that leave both ends."""
-    inward = e if tip(m, e) == keep else e ^ 1  # drop → keep
-    outward = inward ^ 1
-    x_triangle, y_triangle = apex(m, inward) >= 0, apex(m, outward) >= 0
-    start = m.vertex_half_edge[drop]
-    h = start
-    while True:
-        m.half_edge[h, START] = keep
-        h = counterclockwise(m, h)
-        if h == start:
-            break
-    to_x, from_x = m.half_edge[inward, NEXT], m.half_edge[inward, PREVIOUS]
-    to_y, from_y = m.half_edge[outward, NEXT], m.half_edge[outward, PREVIOUS]
-    leave_loop(m, inward)
-    leave_loop(m, outward)
-    if x_triangle:  # the edge that keep has stays, the one that drop had goes
-        m.face_half_edge[m.half_edge[to_x, FACE]] = -1
-        x = m.half_edge[from_x, START]
-        if m.vertex_half_edge[x] == from_x:
-            m.vertex_half_edge[x] = to_x ^ 1
-        take_place(m, to_x, from_x ^ 1)
-        kill(m, from_x)
-    if y_triangle:
-        m.face_half_edge[m.half_edge[from_y, FACE]] = -1
-        y = m.half_edge[from_y, START]
-        if m.vertex_half_edge[y] == to_y ^ 1:
-            m.vertex_half_edge[y] = from_y
-        take_place(m, from_y, to_y ^ 1)
-        kill(m, to_y)
-    kill(m, inward)
-    m.vertex_half_edge[drop] = -1
-    settle(m, keep, to_x)
-
-
-@kernel
-def turn(m: PlanktonRecords, e: int, at: Array, one: int, other: int) -> None:
-    """Cost O(1)."""
-    ab = from_smaller(m, e)
-    ba = ab ^ 1
-    bc, ca = m.half_edge[ab, NEXT], m.half_edge[ab, PREVIOUS]
-    ad, db = m.half_edge[ba, NEXT], m.half_edge[ba, PREVIOUS]
-    m.half_edge[ab, START], m.half_edge[ba, START] = at[D], at[C]
-    set_face(m, one, ad, ab, ca)
-    set_face(m, other, bc, ba, db)
-    if m.vertex_half_edge[at[A]] == ab:
-        m.vertex_half_edge[at[A]] = ad
-    if m.vertex_half_edge[at[B]] == ba:
-        m.vertex_half_edge[at[B]] = bc
-
-
-@kernel
-def attach(m: PlanktonRecords, corners: Array, f: int) -> None:
-    """Cost O(n_ev) per corner. Every corner is free or shares an edge with the surface."""
-    n, old = len(corners), m.counts[EDGE_END]
-    side = np.empty(n, np.int64)
-    for i in range(n):
-        a, b = corners[i], corners[(i + 1) % n]
-        h = between(m, a, b)
-        side[i] = h if h >= 0 else new_pair(m, a, b)
-    for i in range(n):  # around the outside, past each corner
-        g, h = side[i], side[(i + 1) % n]
-        v = corners[(i + 1) % n]
-        if g >= old and h >= old:
-            link(m, h ^ 1, g ^ 1)
-        elif g >= old:
-            link(m, m.half_edge[h, PREVIOUS], g ^ 1)
-        elif h >= old:
-            link(m, h ^ 1, m.half_edge[g, NEXT])
-        if g >= old:
-            m.vertex_half_edge[v] = g ^ 1
-    for i in range(n):
-        link(m, side[i], side[(i + 1) % n])
-        m.half_edge[side[i], FACE] = f
-    m.face_half_edge[f] = side[0]
-
-
-@kernel
-def detach(m: PlanktonRecords, f: int) -> None:
-    """Cost O(1) for a triangle, O(n) for n corners."""
-    begin = m.face_half_edge[f]
-    m.face_half_edge[f] = -1
-    h = begin
-    while True:  # past the corner between h and the half-edge that follows
-        following = m.half_edge[h, NEXT]
-        v = m.half_edge[following, START]
-        goes, next_goes = m.half_edge[h ^ 1, FACE] < 0, m.half_edge[following ^ 1, FACE] < 0
-        if goes and next_goes:
-            m.vertex_half_edge[v] = -1
-        elif goes:
-            link(m, m.half_edge[h ^ 1, PREVIOUS], following)
-            m.vertex_half_edge[v] = following
-        elif next_goes:
-            link(m, h, m.half_edge[following ^ 1, NEXT])
-        else:
-            m.vertex_half_edge[v] = following
-        m.half_edge[h, FACE] = OUTSIDE
-        if goes and h != begin:
-            kill(m, h)
-        if following == begin:
-            break
-        h = following
-    if m.half_edge[begin ^ 1, FACE] < 0:
-        kill(m, begin)
-
-
-# Building ----------------------------------------------------------------------------------------
 
 
 @njit(cache=True, nogil=True)
@@ -580,16 +69,38 @@ def _number(corner_vertex: Array, twin: Array, half: Array, vertex: Array) -> No
 
 @njit(cache=True, nogil=True)
 def _fill(
-    begin: int, end: int, part: int, triangles: Array, half: Array, face: Array, half_edge: Array
+    begin: int, end: int, part: int, corners: Array, half: Array, face: Array, half_edge: Array
 ) -> None:
     for f in range(begin, end):
         face[f] = half[3 * f]
         for i in range(3):
             row = half_edge[half[3 * f + i]]
-            row[START] = triangles[f, i]
+            row[START] = corners[3 * f + i]
             row[FACE] = f
             row[NEXT] = half[3 * f + (i + 1) % 3]
             row[PREVIOUS] = half[3 * f + (i + 2) % 3]
+
+
+@njit(cache=True, nogil=True)
+def _fill_polygons(
+    begin: int,
+    end: int,
+    part: int,
+    corners: Array,
+    offsets: Array,
+    half: Array,
+    face: Array,
+    half_edge: Array,
+) -> None:
+    for f in range(begin, end):
+        first, last = offsets[f], offsets[f + 1] - 1
+        face[f] = half[first]
+        for i in range(first, last + 1):
+            row = half_edge[half[i]]
+            row[START] = corners[i]
+            row[FACE] = f
+            row[NEXT] = half[i + 1 if i < last else first]
+            row[PREVIOUS] = half[i - 1 if i > first else last]
 
 
 @njit(cache=True, nogil=True)
@@ -610,6 +121,7 @@ class Plankton(Structure):
     """The half-edge mesh of Plankton."""
 
     name, title, abbreviation = "plankton", "Plankton", "Plankton"
+    holds_polygons = True
     records_type = PlanktonRecords
     fields = (
         Field("vertex.point", "vertex_point", 3, marks=True),
@@ -621,29 +133,50 @@ class Plankton(Structure):
         Field("half_edge.previous", "half_edge", target="half_edge"),
     )
     kernels = named(
-        *(vertex_vertices, vertex_edges, vertex_faces),
-        *(edge_vertices, edge_edges, edge_faces),
-        *(face_vertices, face_edges, face_faces),
-        *(edge_exists, face_exists, sides, diamond, joined, beside),
-        *(cut_edge, cut_face, contract, turn, attach, detach),
-    )
+        *(pairs.vertex_vertices, pairs.vertex_edges, pairs.vertex_faces),
+        *(pairs.edge_vertices, pairs.edge_edges, pairs.edge_faces),
+        *(pairs.face_vertices, pairs.face_edges, pairs.face_faces),
+        *(pairs.edge_exists, pairs.face_exists, pairs.sides, pairs.diamond, pairs.beside),
+        *(pairs.isolate, pairs.cut_edge, pairs.cut_face, pairs.contract, pairs.turn),
+        *(pairs.attach, pairs.detach),
+    ) | {"joined": pairs.joined}
+    operations = OPERATIONS | POLYGON_OPERATIONS
 
     @classmethod
-    def build(cls, mesh: TriangleMesh, reference_bytes: int = 4) -> Self:
-        """See ``Structure.build``."""
-        reference, n = REFERENCE_TYPES[reference_bytes], len(mesh.triangles)
-        room = np.empty((3 * n, 4), reference)
-        pairing = pair_half_edges(mesh, room=room)
+    def operation_kernels(cls) -> dict[str, Kernel]:
+        """Those of the contract and those of polygons."""
+        return super().operation_kernels() | POLYGON_KERNELS
+
+    @classmethod
+    def build(cls, mesh: TriangleMesh | PolygonMesh, reference_bytes: int = 4) -> Self:
+        """See ``Structure.build``; faces may have any number of corners."""
+        reference = REFERENCE_TYPES[reference_bytes]
+        if isinstance(mesh, PolygonMesh):
+            corners, offsets = mesh.faces.values, mesh.faces.offsets
+            n, most, room = len(mesh.faces), mesh.most_corners, None
+            pairing = pair_polygons(mesh)
+        else:
+            corners, offsets = mesh.triangles.reshape(-1), None
+            n, most = len(mesh.triangles), 3
+            room = np.empty((3 * n, 4), reference)
+            pairing = pair_half_edges(mesh, room=room)
         n_half_edges = 2 * pairing.n_edges
-        half_edge = room if n_half_edges == len(room) else np.empty((n_half_edges, 4), reference)
-        half, face = np.empty(3 * n, np.int32), np.empty(n, reference)
+        if room is None or n_half_edges > len(room):
+            room = np.empty((n_half_edges, 4), reference)
+        half, face = np.empty(len(corners), np.int32), np.empty(n, reference)
         vertex = np.full(len(mesh.points), -1, reference)
-        _number(mesh.triangles.reshape(-1), pairing.twin, half, vertex)
-        in_slices(_fill, n, mesh.triangles, half, face, half_edge)
-        if n_half_edges > len(room):
-            _go_round_holes(half[pairing.twin < 0], vertex, half_edge)
-        count = counted(len(mesh.points), pairing.n_edges, n, n_half_edges, edge_growth=6)
-        return cls(PlanktonRecords(mesh.points.copy(), vertex, face, half_edge, count))
+        _number(corners, pairing.twin, half, vertex)
+        if offsets is None:
+            in_slices(_fill, n, corners, half, face, room)
+        else:
+            in_slices(_fill_polygons, n, corners, offsets, half, face, room)
+        if n_half_edges > len(corners):
+            _go_round_holes(half[pairing.twin < 0], vertex, room)
+        own = n_half_edges, 6, most
+        count = counted(len(mesh.points), pairing.n_edges, n, *own)
+        return cls(PlanktonRecords(mesh.points.copy(), vertex, face, room, count))
+
+    # Elements --------------------------------------------------------------------------------
 
     @property
     def n_half_edges(self) -> int:
@@ -652,8 +185,295 @@ class Plankton(Structure):
 
     def edges(self) -> NDArray[np.int64]:
         """(n_edges,) int64: of each pair of live half-edges the first."""
-        start = self.records.half_edge[: self.records.counts[EDGE_END] : 2, START]
-        return 2 * np.flatnonzero(start >= 0)
+        return 2 * np.flatnonzero(self._half_edges[::2, START] >= 0)
+
+    def half_edges(self) -> NDArray[np.int64]:
+        """(2 n_edges,) int64: all live half-edges, ascending."""
+        return np.flatnonzero(self._half_edges[:, START] >= 0)
+
+    def start_vertex(self, h: int) -> int:
+        """Where half-edge h starts. O(1), as are the others; MeshError for one that is dead."""
+        return int(self._row(h)[START])
+
+    def end_vertex(self, h: int) -> int:
+        """Where half-edge h ends."""
+        return int(self._row(self.pair(h))[START])
+
+    def adjacent_face(self, h: int) -> int:
+        """The face of half-edge h, or -1 outside the border."""
+        return int(self._row(h)[FACE])
+
+    def next_half_edge(self, h: int) -> int:
+        """The half-edge that follows h round its face or hole."""
+        return int(self._row(h)[NEXT])
+
+    def previous_half_edge(self, h: int) -> int:
+        """The half-edge that h follows."""
+        return int(self._row(h)[PREVIOUS])
+
+    def pair(self, h: int) -> int:
+        """The other half-edge of the same edge."""
+        self._row(h)
+        return int(h) ^ 1
+
+    def outgoing_half_edge(self, vertex: int) -> int:
+        """The half-edge of a vertex, along the border if it lies there; -1 without faces. O(1)."""
+        self._check_handles("vertex", np.array([vertex]))
+        return int(self.records.vertex_half_edge[vertex])
+
+    def first_half_edge(self, face: int) -> int:
+        """The half-edge of a face. O(1)."""
+        self._check_handles("face", np.array([face]))
+        return int(self.records.face_half_edge[face])
+
+    def find_half_edge(self, a: int, b: int) -> int | None:
+        """The half-edge that runs from vertex a to vertex b, or None. Cost O(n_ev)."""
+        e = self.find_edge(a, b)
+        if e is None:
+            return None
+        return e if self.start_vertex(e) == a else e ^ 1
+
+    def vertex_half_edges(self, vertex: int) -> NDArray[np.int64]:
+        """(valence,) the half-edges that leave a vertex, counterclockwise, of any valence."""
+        edges = self.vertex_edges(int(vertex))
+        starts = self.records.half_edge[edges, START]
+        return edges + (starts != vertex)
+
+    def face_half_edges(self, face: int) -> NDArray[np.int64]:
+        """(corners,) the half-edges round a face, from its first."""
+        edges, corners = self.face_edges(int(face)), self.face_vertices(int(face))
+        return edges + (self.records.half_edge[edges, START] != corners)
+
+    # What the mesh is like ----------------------------------------------------------------------
+
+    def is_closed(self) -> bool:
+        """Whether no half-edge lies outside a border. Cost O(n_e)."""
+        return not len(self._outside())
+
+    def valence(self, vertex: int) -> int:
+        """Number of edges at a vertex. Cost O(n_ev)."""
+        return len(self.vertex_edges(int(vertex)))
+
+    def vertex_naked_edges(self, vertex: int) -> int:
+        """How many edges at a vertex lie on the border: 0 or 2. Cost O(1)."""
+        h = self.outgoing_half_edge(vertex)
+        return 2 if h >= 0 and self.records.half_edge[h, FACE] < 0 else 0
+
+    def face_naked_edges(self, face: int) -> int:
+        """How many edges of a face lie on the border. Cost O(corners)."""
+        return int((self.records.half_edge[self.face_half_edges(face) ^ 1, FACE] < 0).sum())
+
+    def face_normals(self) -> NDArray[np.float64]:
+        """(n_faces, 3) by Newell's sum over the corners of each face, as long as its area. O(n)."""
+        face, here, there = self._sides()
+        summed = np.zeros((self.n_faces, 3))
+        np.add.at(summed, face, np.cross(here, there) / 2)
+        return summed
+
+    def vertex_normals(self) -> NDArray[np.float64]:
+        """(n_vertices, 3) unit normals, faces weighing by area; zero without faces. O(n)."""
+        rows = self.face_vertices(self.faces())
+        summed = np.zeros((len(self.points), 3))
+        np.add.at(summed, rows.values, np.repeat(self.face_normals(), rows.counts, axis=0))
+        lengths = np.linalg.norm(summed, axis=1, keepdims=True)
+        return np.divide(summed, lengths, out=summed, where=lengths > 0)[self.vertices()]
+
+    def volume(self) -> float:
+        """The enclosed volume, positive where faces are counterclockwise from outside. O(n).
+
+        Faces that are not flat count as their fans. MeshError for a mesh that is not closed.
+        """
+        outside = self._outside()
+        if len(outside):
+            raise MeshError(
+                "a mesh with borders encloses no volume; close its holes", half_edges=outside
+            )
+        corner = self.to_triangles()
+        a, b, c = (corner.points[corner.triangles[:, i]].astype(np.float64) for i in range(3))
+        return float(np.einsum("ij,ij->", a, np.cross(b, c)) / 6)
+
+    def to_polygons(self) -> PolygonMesh:
+        """The same mesh as points and faces of any number of corners. Cost O(n)."""
+        rows, alive = self.face_vertices(self.faces()), self.vertices()
+        number = np.zeros(len(self.points), np.int32)
+        number[alive] = np.arange(len(alive), dtype=np.int32)
+        return PolygonMesh(self.points[alive], Ragged(rows.offsets, number[rows.values]))
+
+    def to_triangles(self) -> TriangleMesh:
+        """As ``Structure.to_triangles``; a larger face becomes the fan of its first corner."""
+        return self.to_polygons().triangulated()
+
+    def dual(self) -> Plankton:
+        """A vertex in the middle of every face, a face around every vertex inside. Cost O(n).
+
+        A closed mesh has as many edges as its dual, whose dual has the same faces again. Around a
+        vertex on the border there is none. TopologyError if a vertex inside has fewer than three
+        edges.
+        """
+        faces, inner = self.faces(), self._inner_vertices()
+        rings = self.vertex_faces(inner)
+        if (rings.counts < 3).any():
+            few = inner[rings.counts < 3]
+            raise TopologyError("a face of the dual would have two corners", vertices=few)
+        number = np.zeros(self.face_end, np.int32)
+        number[faces] = np.arange(len(faces), dtype=np.int32)
+        corners = self.face_vertices(faces)
+        middles = np.add.reduceat(
+            self.points[corners.values].astype(np.float64), corners.offsets[:-1]
+        )
+        middles /= corners.counts[:, None]
+        return type(self).build(PolygonMesh(middles, Ragged(rings.offsets, number[rings.values])))
+
+    # What can be done with polygons -------------------------------------------------------------
+
+    def add_face(self, *corners: int) -> Edit:
+        """Make a face of three vertices or more, counterclockwise. 1 face and 0 to n edges more.
+
+        Every corner must be without faces or share an edge with the surface. Cost O(n · n_ev).
+        """
+        if len(corners) == 3:
+            return super().add_face(*corners)
+        if len(corners) < 3:
+            raise MeshError(f"add_face takes three corners or more, not {len(corners)}")
+        row = arguments.handles("add_face", corners)[None, :]
+        return self._polygonal("add_face", "add_face", row)[1]
+
+    def split_edge(self, edge: int, point: ArrayLike, triangles: bool = True) -> Edit:
+        """Put a new vertex on an edge; each face there becomes two.
+
+        With ``triangles=False`` the faces stay whole and have a corner more, whatever they have:
+        1 vertex and 1 edge more.
+        """
+        if triangles:
+            return super().split_edge(edge, point)
+        return self._do["insert_vertex"](edge, point)
+
+    def split_face(self, face: int, point: Any) -> Any:
+        """Split a face: at a point into triangles -> Edit, or along a diagonal -> its half-edge.
+
+        ``split_face(face, point)``: a new vertex, joined to all n corners. 1 vertex, n edges and
+        n - 1 faces more. ``split_face(a, b)`` with two half-edges of one face: an edge between the
+        vertices where they start. 1 edge and 1 face more; what is returned is the half-edge of it
+        in the face that keeps its index, and ``merge_faces`` of it undoes the split. Refused where
+        both corners are joined already. Cost O(n).
+        """
+        if isinstance(point, int | np.integer):
+            return self._polygonal("split_face", "cut_across", arguments.rows([face], int(point)))[
+                0
+            ]
+        return super().split_face(face, point)
+
+    def stellate(self, face: int, point: ArrayLike | None = None) -> Edit:
+        """Join all corners of a face to a new vertex, in their middle unless a point is given."""
+        middle = self.points[self.face_vertices(int(face))].mean(axis=0, dtype=np.float64)
+        return super().split_face(face, middle if point is None else point)
+
+    def merge_faces(self, half_edge: int) -> int:
+        """Make one face of the two at an edge: that of the half-edge takes in the other -> it.
+
+        1 edge and 1 face fewer. Refused at the border, and where the faces meet at other corners
+        than the ends of the edge. Cost O(corners).
+        """
+        return self._polygonal("merge_faces", "merge_faces", arguments.rows([half_edge]))[0]
+
+    def split_vertex(self, first: int, second: int, point: ArrayLike | None = None) -> Edit:
+        """Split the vertex that two half-edges leave in two that an edge joins.
+
+        The new one takes the half-edges from ``first``, counterclockwise, to before ``second``. The
+        two faces at the new edge have a corner more. 1 vertex and 1 edge more; undone by collapsing
+        the edge. Without a point the new vertex lies where the old one does. Cost O(n_ev).
+        """
+        if point is None:
+            point = self.points[self.start_vertex(first)]
+        args = arguments.rows([first], second)
+        return self._polygonal("split_vertex", "split_vertex", args, point)[1]
+
+    def erase_center_vertex(self, vertex: int) -> int:
+        """Take a vertex inside the surface away; its faces become one -> that.
+
+        1 vertex, n edges and n - 1 faces fewer. Refused at the border, and where the faces meet at
+        other corners than the neighbors of the vertex. Cost O(corners).
+        """
+        args = arguments.rows([vertex])
+        return self._polygonal("erase_center_vertex", "erase_vertex", args)[0]
+
+    def truncate_vertex(self, vertex: int, fraction: float = 1 / 3) -> int:
+        """Cut a corner off: a face of n corners takes the place of a vertex of n edges -> it.
+
+        The new vertices lie at a fraction of the way along the edges. n - 1 vertices, n edges and 1
+        face more. Refused at the border, and for fewer than three edges. One edit. O(corners).
+        """
+        if not 0 < fraction < 1:
+            raise MeshError(f"a vertex is truncated at a fraction between 0 and 1, not {fraction}")
+        spokes = self.vertex_half_edges(vertex)
+        if len(spokes) < 3 or self.vertex_naked_edges(vertex):
+            raise TopologyError(
+                "cannot truncate_vertex: the vertex lies on the border, or has fewer than three "
+                "edges",
+                vertices=[vertex],
+            )
+        ends = self.points[self._half_edges[spokes ^ 1, START]]
+        points = (1 - fraction) * self.points[vertex] + fraction * ends
+        _, first = self._run("insert_vertex", arguments.rows(spokes), points.astype(np.float32))
+        before = self._half_edges[spokes, PREVIOUS]  # from the next new vertex to this one
+        pairs_ = np.stack([self._half_edges[spokes, NEXT], before, before], axis=1)
+        _, second = self._run("cut_across", pairs_.astype(np.int64), arguments.NO_POINT)
+        args = arguments.rows([vertex])
+        found, third = self._run("erase_vertex", args, arguments.NO_POINT)
+        self._publish(Edit("truncate_vertex", -1, np.concatenate([first, second, third])))
+        return int(found[0])
+
+    # Behind the contract ---------------------------------------------------------------------
+
+    @property
+    def _half_edges(self) -> Array:
+        used: Array = self.records.half_edge[: self.records.counts[EDGE_END]]
+        return used
+
+    def _row(self, h: int) -> Array:
+        rows = self._half_edges
+        if not 0 <= h < len(rows) or rows[h, START] < 0:
+            raise MeshError("no such half-edge in this mesh (any more)", half_edges=[h])
+        row: Array = rows[h]
+        return row
+
+    def _outside(self) -> Array:
+        rows = self._half_edges
+        return np.flatnonzero((rows[:, START] >= 0) & (rows[:, FACE] < 0))
+
+    def _inner_vertices(self) -> Array:
+        """The vertices with faces all around."""
+        vertices = self.vertices()
+        leaving = self.records.vertex_half_edge[vertices]
+        used = leaving >= 0
+        return vertices[used][self._half_edges[leaving[used], FACE] >= 0]
+
+    def _sides(self) -> tuple[Array, Array, Array]:
+        """Of every side of every face: which face, and the points where it starts and ends."""
+        rows = self.face_vertices(self.faces())
+        face = np.repeat(np.arange(len(rows)), rows.counts)
+        following = np.arange(1, len(rows.values) + 1)
+        following[rows.offsets[1:] - 1] = rows.offsets[:-1]
+        points = self.points.astype(np.float64)
+        return face, points[rows.values], points[rows.values[following]]
+
+    def _polygonal(
+        self, called: str, operation: str, args: Array, point: ArrayLike | None = None
+    ) -> tuple[int, Edit]:
+        """Do one operation -> its result and its edit, of which the subscribers are told."""
+        points = (
+            arguments.NO_POINT
+            if point is None
+            else arguments.positions(called, np.asarray(point)[None], 1)
+        )
+        results, log = self._run(operation, args, points)
+        result = int(results[0])
+        if result < 0:
+            raise self._refusal(operation, result, args[0].tolist())
+        names_a_vertex = self.operations[operation].names_a_vertex
+        edit = Edit(called, result if names_a_vertex else -1, log)
+        self._publish(edit)
+        return result, edit
 
     def _edge_names(self, handles: Array) -> Array:
         return handles - (handles & 1)
@@ -703,7 +523,9 @@ class Plankton(Structure):
         require(holes < 2, "one hole at most lies at a vertex", "vertices")
         on_border = np.flatnonzero(holes)
         along = face[leaving[on_border]] < 0
-        require(along, "the half-edge of a vertex on the border runs along it", "vertices", on_border)
+        require(
+            along, "the half-edge of a vertex on the border runs along it", "vertices", on_border
+        )
         around = np.full(len(half_edges), -1)
         around[h] = following[h ^ 1]
         require_one_fan(start, around, h)

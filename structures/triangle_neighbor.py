@@ -260,6 +260,12 @@ def set_neighbors(m: TriangleNeighborRecords, t: int, ab: int, bc: int, ca: int)
 
 
 @kernel
+def isolate(m: TriangleNeighborRecords, v: int) -> None:
+    """See to it that vertex v has no faces."""
+    m.vertex_triangle[v] = -1
+
+
+@kernel
 def cut_edge(m: TriangleNeighborRecords, e: int, at: Array, v: int, f: int) -> None:
     """Cost O(1) when the triangles are known, which takes O(n_ev)."""
     a, b, left, right = at[A], at[B], at[LEFT], at[RIGHT]
@@ -400,7 +406,7 @@ class TriangleNeighbor(PackedEdges):
         *(edge_vertices, edge_edges, edge_faces),
         *(face_vertices, face_edges, face_faces),
         *(edge_exists, face_exists, diamond, joined, beside),
-        *(cut_edge, cut_face, contract, turn, attach, detach),
+        *(isolate, cut_edge, cut_face, contract, turn, attach, detach),
     )
 
     @classmethod

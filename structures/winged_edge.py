@@ -308,6 +308,12 @@ def new_edge(m: WingedEdgeRecords, tail: int, head: int) -> int:
 
 
 @kernel
+def isolate(m: WingedEdgeRecords, v: int) -> None:
+    """See to it that vertex v has no faces."""
+    m.vertex_edge[v] = -1
+
+
+@kernel
 def cut_edge(m: WingedEdgeRecords, e: int, at: Array, v: int, f: int) -> None:
     """Cost O(1): the edge stays with a and v, and one edge is new on each side and beyond v."""
     a, b = at[A], at[B]
@@ -490,7 +496,7 @@ class WingedEdge(Structure):
         *(edge_vertices, edge_edges, edge_faces),
         *(face_vertices, face_edges, face_faces),
         *(edge_exists, face_exists, diamond, joined, beside),
-        *(cut_edge, cut_face, contract, turn, attach, detach),
+        *(isolate, cut_edge, cut_face, contract, turn, attach, detach),
     )
 
     @classmethod

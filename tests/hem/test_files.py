@@ -2,11 +2,13 @@
 
 import os
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
 import hem
+import structures
 
 PLY = """ply
 format ascii 1.0
@@ -190,9 +192,72 @@ def test_a_one_sided_surface_is_beyond_repair(tmp_path: Path) -> None:
         hem.load(file, repair=True)
 
 
-def test_polygons_are_cut_into_triangles(tmp_path: Path) -> None:
-    square = OFF.format(0, 3).replace("4 2 0", "4 1 0").replace("3 0 1 2\n3 0 2 3", "4 0 1 2 3")
-    assert len(hem.load(written(tmp_path / "square.off", square)).triangles) == 2
+POLYGONS = [(0, 1, 2, 3), (3, 2, 4), (1, 5, 7, 6, 2)]
+"""A quad, a triangle and a pentagon."""
+
+CORNERS = [
+    (0, 0, 0),
+    (1, 0, 0),
+    (1, 1, 0),
+    (0, 1, 0),
+    (0.5, 2, 0),
+    (2, 0, 0),
+    (2, 1, 0),
+    (3, 0.5, 0),
+]
+
+
+def house(extension: str) -> str:
+    rows = [" ".join(map(str, point)) for point in CORNERS]
+    faces = [" ".join(map(str, (len(face), *face))) for face in POLYGONS]
+    if extension == "off":
+        return "\n".join(["OFF", "8 3 0", *rows, *faces, ""])
+    if extension == "obj":
+        lines = ["f " + " ".join(str(v + 1) for v in face) for face in POLYGONS]
+        return "\n".join([*(f"v {row}" for row in rows), *lines, ""])
+    head = "ply\nformat ascii 1.0\nelement vertex 8\nproperty float x\nproperty float y\n"
+    head += "property float z\nelement face 3\nproperty list uchar int vertex_indices\nend_header"
+    return "\n".join([head, *rows, *faces, ""])
+
+
+@pytest.mark.parametrize("extension", ["obj", "off", "ply"])
+def test_polygons_stay_polygons_unless_triangles_are_asked_for(
+    tmp_path: Path, extension: str
+) -> None:
+    path = written(tmp_path / f"house.{extension}", house(extension))
+    mesh = hem.load(path)
+    assert isinstance(mesh, hem.PolygonMesh)
+    assert [tuple(face) for face in mesh.faces] == POLYGONS
+    assert np.array_equal(mesh.points, np.array(CORNERS, np.float32))
+    triangles = hem.load(path, triangulate=True)
+    fans = [(f[0], f[i], f[i + 1]) for f in POLYGONS for i in range(1, len(f) - 1)]
+    assert [tuple(row) for row in triangles.triangles] == fans
+
+
+def test_a_triangle_structure_says_how_to_cut_polygons(tmp_path: Path) -> None:
+    mesh = hem.load(written(tmp_path / "house.obj", house("obj")))
+    for name in structures.NAMES:
+        if name == "plankton":
+            assert structures.build(name, mesh).n_faces == 3
+            continue
+        with pytest.raises(hem.MeshError, match="triangulate=True") as refusal:
+            structures.build(name, mesh)
+        assert refusal.value.elements["faces"].tolist() == [0, 2]
+
+
+@pytest.mark.parametrize(
+    ("faces", "words"),
+    [
+        ([(0, 1)], "three corners"),
+        ([(0, 1, 2, 9)], "corners are"),
+        ([(0, 1, 2, 1)], "twice"),
+        ([[0.5, 1, 2, 3]], "integers"),
+        ([7], "rows"),
+    ],
+)
+def test_bad_polygons_are_refused(faces: Any, words: str) -> None:
+    with pytest.raises(hem.MeshError, match=words):
+        hem.PolygonMesh(np.eye(4)[:, :3], faces)
 
 
 def test_paths_may_be_relative_and_the_current_folder_stays(
