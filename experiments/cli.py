@@ -108,12 +108,17 @@ def _progress(
 
 
 @app.command("table")
-def show_table(run: RunArgument = None) -> None:
+def show_table(
+    run: RunArgument = None,
+    every: Annotated[
+        bool, typer.Option("--all", help="All six structures, and the thesis' listings.")
+    ] = False,
+) -> None:
     """Print the thesis' table 1 as printed beside as measured, with the verdicts."""
     with user_errors():
         from experiments.table import show
 
-        show(run or results.latest(), console)
+        show(run or results.latest(), console, every)
 
 
 @app.command("report")

@@ -44,7 +44,7 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
         cells = [
             cell
             for name in chosen
-            for cell in metafunc.module.cells(profile, name)
+            for cell in metafunc.module.cells(profile.of(name), name)
             if cell.id not in _file(config, metafunc.module.__name__, name).finished
         ]
         ids = [f"{cell.structure}/{cell.id}" for cell in cells]
@@ -52,9 +52,9 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
 
 
 @pytest.fixture
-def profile(request: pytest.FixtureRequest) -> Profile:
+def profile(request: pytest.FixtureRequest, cell: Cell) -> Profile:
     """How much to measure."""
-    return PROFILES[request.config.getoption("--profile")]
+    return PROFILES[request.config.getoption("--profile")].of(cell.structure)
 
 
 @pytest.fixture

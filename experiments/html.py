@@ -13,7 +13,7 @@ from experiments.complexity import Verdict
 from experiments.statements import Statement, bounds, span
 from experiments.table import by_title, found
 from experiments.verdicts import OUTCOMES
-from structures import REGISTRY
+from structures import NAMED
 
 CSS = """
 :root { --ink: #1b1b1b; --soft: #667; --line: #e3e3e8; }
@@ -76,7 +76,7 @@ def statements(every: Iterable[Statement]) -> str:
 
 
 def _table(table: pd.DataFrame, cell: Any) -> str:
-    heads = "".join(f"<th>{escape(REGISTRY[s].title)}</th>" for s in table["structure"].unique())
+    heads = "".join(f"<th>{escape(NAMED[s].title)}</th>" for s in table["structure"].unique())
     rows = [
         f"<tr><th>{escape(title)}</th>"
         + "".join(

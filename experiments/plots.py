@@ -135,12 +135,9 @@ def memory(run: Run) -> Figure:
                 cells = evidence.memory(structure, reference_bytes)
                 if not cells.empty:
                     _bar(axes, row + offset, cells.iloc[-1], structure)
-            axes.plot(
-                2 * [float(printed[structure] or 0)],
-                [row - 0.42, row + 0.02],
-                color="black",
-                linewidth=2.5,
-            )
+            if printed[structure]:
+                mark = 2 * [float(printed[structure] or 0)]
+                axes.plot(mark, [row - 0.42, row + 0.02], color="black", linewidth=2.5)
         axes.annotate(
             "printed in the thesis", (printed["indexed"] or 0, -0.42), (0, 4),
             textcoords="offset points", ha="center", fontsize=8, fontweight="bold",

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+
+from structures import REGISTRY
 
 HUBS = "hubs"
 """The family of ``hem.valence_mesh``: its size is a number of faces, its valence the hubs'."""
@@ -12,7 +14,9 @@ HUBS = "hubs"
 class Profile:
     """One extent of a study. Sizes are numbers of vertices, valences those of the asked vertices.
 
-    ``families[0]`` is the judged one: its valence is the same at every size. A round is one sample;
+    ``families[0]`` is the judged one: its valence is the same at every size. Structures made of
+    objects are measured on up to ``object_vertices``, and built of ten times as many; what the
+    thesis prints is built of ``printed_sizes``. A round is one sample;
     ``round_seconds`` is how long it should last, ``cell_seconds`` what a cell may take in all.
     """
 
@@ -28,11 +32,32 @@ class Profile:
     operation_sizes: tuple[int, ...]
     operation_faces: int
     workload_sizes: tuple[int, ...]
+    object_vertices: int
+    printed_sizes: tuple[int, ...]
     models: tuple[str, ...]
     rounds: int
     round_seconds: float
     cell_seconds: float
     latency_mib: int
+
+    def of(self, structure: str) -> Profile:
+        """The profile for one structure: smaller meshes where it is made of objects."""
+        if structure not in REGISTRY or REGISTRY[structure].compiled:
+            return self
+        most = self.object_vertices
+
+        def up_to(sizes: tuple[int, ...], limit: int = most) -> tuple[int, ...]:
+            return tuple(size for size in sizes if size <= limit)
+
+        return replace(
+            self,
+            sizes=up_to(self.sizes, 3 * most),
+            valence_faces=min(self.valence_faces, 10 * most),
+            build_sizes=up_to(self.build_sizes, 10 * most),
+            operation_sizes=up_to(self.operation_sizes),
+            operation_faces=min(self.operation_faces, most),
+            workload_sizes=up_to(self.workload_sizes),
+        )
 
     def work_points(self) -> list[tuple[str, int, int | None]]:
         """Where work is counted: family, size, valence; one family by size, the hubs by valence."""
@@ -64,6 +89,8 @@ PROFILES = {
         operation_sizes=(100, 400),
         operation_faces=256,
         workload_sizes=(100, 400),
+        object_vertices=400,
+        printed_sizes=(50, 100),
         models=("teapot",),
         rounds=5,
         round_seconds=0.0002,
@@ -83,6 +110,8 @@ PROFILES = {
         operation_sizes=_geometric(100, 100_000, 2)[1:],
         operation_faces=32_768,
         workload_sizes=_geometric(100, 10_000, 1),
+        object_vertices=3_200,
+        printed_sizes=_geometric(50, 500, 4),
         models=("teapot", "bunny"),
         rounds=9,
         round_seconds=0.002,
@@ -102,6 +131,8 @@ PROFILES = {
         operation_sizes=_geometric(100, 1_000_000, 2)[1:],
         operation_faces=65_536,
         workload_sizes=_geometric(100, 100_000, 2),
+        object_vertices=3_200,
+        printed_sizes=_geometric(50, 900, 5),
         models=("teapot", "cow", "bunny", "bone"),
         rounds=15,
         round_seconds=0.004,
@@ -121,6 +152,8 @@ PROFILES = {
         operation_sizes=_geometric(100, 1_000_000, 4),
         operation_faces=131_072,
         workload_sizes=_geometric(100, 100_000, 4),
+        object_vertices=10_000,
+        printed_sizes=_geometric(50, 1_600, 6),
         models=("teapot", "cow", "airplane", "bunny", "bone"),
         rounds=25,
         round_seconds=0.01,

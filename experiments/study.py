@@ -28,6 +28,7 @@ EXPERIMENTS = (
     "bench_operation_work",
     "bench_operations",
     "bench_workloads",
+    "bench_printed",
 )
 """The experiments in the order they run. A new one is a file of this name beside this one."""
 
@@ -73,7 +74,7 @@ def processes(profile: str) -> list[Process]:
         for experiment in EXPERIMENTS
         for module in [import_module(f"experiments.{experiment}")]
         for structure in module.STRUCTURES
-        for cells in [module.cells(PROFILES[profile], structure)]
+        for cells in [module.cells(PROFILES[profile].of(structure), structure)]
     ]
 
 

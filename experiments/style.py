@@ -10,7 +10,7 @@ from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.transforms import ScaledTranslation
 
-from structures import REGISTRY
+from structures import NAMED
 
 
 class Look(NamedTuple):
@@ -26,6 +26,9 @@ LOOKS = {
     "triangle_neighbor": Look("#a8325e", "^", "--"),
     "winged_edge": Look("#2f7fc1", "o", "-"),
     "half_edge": Look("#e69f00", "D", "-"),
+    "half_edge_objects": Look("#8c6bb1", "v", ":"),
+    "plankton": Look("#1b7f5c", "P", "--"),
+    "as_printed": Look("#c23b22", "X", "-"),
 }
 """By structure, the same in every plot."""
 
@@ -59,7 +62,7 @@ def styled() -> Any:
 
 def short(structure: str) -> str:
     """The name that stands at a line."""
-    return REGISTRY[structure].abbreviation
+    return str(NAMED[structure].abbreviation)
 
 
 def label_ends(axes: Axes, ends: Mapping[str, tuple[float, float, str]], gap: float = 10.5) -> None:

@@ -15,7 +15,7 @@ from experiments.claims import MEMORY, TABLES, VARIABLES
 from experiments.complexity import Verdict
 from experiments.results import Run, load
 from experiments.verdicts import OUTCOMES, judged, save
-from structures import REGISTRY
+from structures import NAMED, THESIS
 
 STYLES = {
     "consistent": "green",
@@ -25,13 +25,16 @@ STYLES = {
 }
 
 
-def show(run_folder: Path, console: Console) -> None:
-    """Judge a run, keep the verdicts beside it, and print them."""
+def show(run_folder: Path, console: Console, every: bool = False) -> None:
+    """Judge a run, keep the verdicts beside it, and print them: of the thesis' four, or of all."""
     run = load(run_folder)
     table = judged(run)
     save(run, table)
     for name, title in TABLES.items():
         part = table[table["table"] == name]
+        part = part if every else part[part["structure"].isin(THESIS)]
+        if part.empty:
+            continue
         console.print(_rendered(part, title, run))
         console.print(_summary(part))
     console.print(
@@ -46,7 +49,7 @@ def show(run_folder: Path, console: Console) -> None:
 def markdown(run: Run, which: str = "queries") -> str:
     """A table for a page: what is printed, the mark, and what was found."""
     table = judged(run).query("table == @which")
-    heads = [REGISTRY[name].title for name in _structures(table)]
+    heads = [NAMED[name].title for name in _structures(table)]
     lines = ["| | " + " | ".join(heads) + " |", "|---" * (len(heads) + 1) + "|"]
     for title, rows in by_title(table):
         cells = [_markdown_cell(row) for row in rows]
@@ -57,11 +60,13 @@ def markdown(run: Run, which: str = "queries") -> str:
 def found(row: dict[str, Any]) -> str:
     """What was measured in a cell, in the table's own terms, such as ``O(n_ev)``."""
     if row["query"] == MEMORY:
-        return f"{row['bytes_per_vertex']:g}"
-    factors = [_factor(row[f"work_{variable}"], symbol) for variable, symbol in VARIABLES.items()]
+        return f"{row['bytes_per_vertex']:,.4g}"
+    by_size = row["table"] == "listings"
+    moved = {"faces": VARIABLES["faces"]} if by_size else VARIABLES
+    factors = [_factor(row[f"work_{variable}"], symbol) for variable, symbol in moved.items()]
     if None in factors:
         return "?"
-    joint = " + " if _mostly_fixed(row["work_valence"]) else " · "
+    joint = " + " if not by_size and _mostly_fixed(row["work_valence"]) else " · "
     return f"O({joint.join(it for it in factors if it) or '1'})"
 
 
@@ -99,7 +104,7 @@ def _rendered(table: pd.DataFrame, what: str, run: Run) -> Table:
     rendered = Table(title=title, show_lines=True, pad_edge=False)
     rendered.add_column("", style="bold")
     for name in _structures(table):
-        rendered.add_column(REGISTRY[name].abbreviation)
+        rendered.add_column(NAMED[name].abbreviation)
     for heading, rows in by_title(table):
         rendered.add_row(heading, *(_cell(row) for row in rows))
     return rendered

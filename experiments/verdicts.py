@@ -38,6 +38,7 @@ SOURCES = {
     ("work", "faces"): {
         "queries": ("bench_work", "random"),
         "operations": ("bench_operation_work", "counted"),
+        "listings": ("bench_printed", "counted"),
     },
     ("work", "valence"): {
         "queries": ("bench_work", "random"),
@@ -46,6 +47,7 @@ SOURCES = {
     ("time", "faces"): {
         "queries": ("bench_queries", "consecutive"),
         "operations": ("bench_operations", "batched"),
+        "listings": ("bench_printed", "timed"),
     },
     ("time", "valence"): {
         "queries": ("bench_valence", "random"),
@@ -82,9 +84,11 @@ class Evidence:
             return None
         return np.exp(np.interp(np.log(working_sets), np.log(sizes), np.log(seconds)))
 
-    def curve(self, measure: str, variable: str, structure: str, query: str) -> pd.DataFrame:
+    def curve(
+        self, measure: str, variable: str, structure: str, query: str, table: str = ""
+    ) -> pd.DataFrame:
         """The cells along one variable, ascending: of the judged family, or of the hubs."""
-        table = "operations" if query in OPERATIONS else "queries"
+        table = table or ("operations" if query in OPERATIONS else "queries")
         experiment, order = SOURCES[measure, variable].get(table, (None, None))
         family = HUBS if variable == "valence" else self.judged_family
         wanted = (
@@ -101,7 +105,7 @@ class Evidence:
 
         Where nothing is claimed the class found is what matters, and O(1) is asked about.
         """
-        cells = self.curve(measure, variable, claim.structure, claim.what)
+        cells = self.curve(measure, variable, claim.structure, claim.what, claim.table)
         if cells.empty:
             return None
         exact = measure == "work"
@@ -117,7 +121,7 @@ class Evidence:
 
     def largest(self, measure: str, claim: Claim) -> float:
         """Cost per query at the largest size: the median over rounds, or the mean reads."""
-        cells = self.curve(measure, "faces", claim.structure, claim.what)
+        cells = self.curve(measure, "faces", claim.structure, claim.what, claim.table)
         if cells.empty:
             return float("nan")
         samples = cells["samples"].iloc[-1]
@@ -188,13 +192,16 @@ def _row(evidence: Evidence, claim: Claim) -> dict[str, Any]:
         found = evidence.bytes_per_vertex(claim.structure)
         outcome = "consistent" if found == claim.bytes_per_vertex else "violated"
         outcome = "undetermined" if np.isnan(found) else outcome
+        outcome = "no claim" if claim.bytes_per_vertex is None else outcome
         return row | {"outcome": outcome, "bytes_per_vertex": found}
     verdicts = {
         f"{measure}_{variable}": evidence.verdict(claim, measure, variable)
         for measure, variable in SOURCES
     }
     outcomes = {
-        f"outcome_{measure}": combined(claim, [verdicts[f"{measure}_{it}"] for it in VARIABLES])
+        f"outcome_{measure}": combined(
+            claim, [verdicts[f"{measure}_{it}"] for it in claim.expected or VARIABLES]
+        )
         for measure in ("work", "time")
     }
     return row | {
@@ -203,7 +210,7 @@ def _row(evidence: Evidence, claim: Claim) -> dict[str, Any]:
         **verdicts,
         "work_per_query": evidence.largest("work", claim),
         "seconds_per_query": evidence.largest(
-            "time" if claim.table == "operations" else "random", claim
+            "random" if claim.table == "queries" else "time", claim
         ),
         "bytes_per_vertex": float("nan"),
     }

@@ -39,6 +39,9 @@ class Structure(Editable):
     holds_polygons: ClassVar[bool] = False
     """Whether faces may have more than three corners, and ``build`` takes a ``PolygonMesh``."""
 
+    compiled: ClassVar[bool] = True
+    """Whether kernels are compiled; what is not is slow, and measured on smaller meshes."""
+
     uses_type: ClassVar[type[Uses]] = Uses
 
     def __init_subclass__(cls) -> None:

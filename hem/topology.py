@@ -141,9 +141,9 @@ def rules(k: Mapping[str, Kernel]) -> Any:
         border_b = on_border(m, at[B], around_b, out[both:])
         if faces == 2 and border_a and border_b:
             return TWO_BORDERS
-        if around_a == 3 and around_b == 3 and not border_a and not border_b:
-            if triangles == 2 and are_triangles(m, at[A], at[C], at[C], at[B]):
-                return TETRAHEDRON
+        closed = around_a == 3 and around_b == 3 and not border_a and not border_b
+        if closed and triangles == 2 and are_triangles(m, at[A], at[C], at[C], at[B]):
+            return TETRAHEDRON
         if both - distinct(out, both) != triangles:
             return COMMON_NEIGHBOR
         if m.counts[SIDES] > 3:

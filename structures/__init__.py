@@ -7,6 +7,7 @@ from typing import Any
 from hem.mesh import TriangleMesh
 from hem.polygons import PolygonMesh, require_triangles
 from hem.structure import REFERENCE_TYPES, Structure
+from structures.as_printed import AsPrinted
 from structures.half_edge import HalfEdge
 from structures.half_edge_objects import HalfEdgeMesh
 from structures.indexed import Indexed
@@ -18,11 +19,17 @@ REGISTRY: dict[str, type[Structure]] = {
     structure.name: structure
     for structure in (Indexed, TriangleNeighbor, WingedEdge, HalfEdge, HalfEdgeMesh, Plankton)
 }
-"""Every structure by name, in the order of the thesis' table 1. A new one is one entry here."""
+"""Every structure by name, those of the thesis' table 1 first. A new one is one entry here."""
 
 NAMES = tuple(REGISTRY)
 
-__all__ = ["NAMES", "REGISTRY", "Structure", "build"]
+THESIS = ("indexed", "triangle_neighbor", "winged_edge", "half_edge")
+"""Those of the thesis' table 1."""
+
+NAMED: dict[str, Any] = {**REGISTRY, AsPrinted.name: AsPrinted}
+"""Everything that has a name in a table; what is as printed is measured, and not to be used."""
+
+__all__ = ["NAMED", "NAMES", "REGISTRY", "THESIS", "Structure", "build"]
 
 
 def build(name: str, mesh: TriangleMesh | PolygonMesh, reference_bytes: int = 4) -> Structure:

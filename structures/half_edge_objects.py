@@ -34,7 +34,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from hem.errors import MeshError
-from hem.interpreted import Held, InterpretedUses
+from hem.interpreted import Held, InterpretedUses, counting
 from hem.kernels import (
     EDGE_END,
     EDGE_ROOM,
@@ -411,7 +411,7 @@ class HalfEdgeMesh(Structure):
     """The half-edge mesh of the thesis' class model."""
 
     name, title, abbreviation = "half_edge_objects", "Half-Edge Objects", "Objects"
-    uses_type, pinning = ObjectUses, Held
+    uses_type, pinning, compiled = ObjectUses, Held, False
     records_type = ObjectRecords
     fields = ()
     kernels = named(
@@ -606,6 +606,13 @@ class HalfEdgeMesh(Structure):
             taken |= {f"{kind}.padding": -size % CLR_REFERENCE * n}
             taken |= {f"{kind}.list": CLR_REFERENCE * n}
         return taken
+
+
+def fields_accessed(call: Callable[[], object]) -> int:
+    """How many fields of the class model's objects a call reads and writes."""
+    with counting(COUNTED) as counter:
+        call()
+    return counter[0]
 
 
 REFERENCES = {

@@ -10,7 +10,7 @@ import pytest
 import hem
 import structures
 from structures.plankton import Plankton
-from tests.structures.conftest import octahedron
+from tests.structures.conftest import octahedron, strip
 
 CUBE = hem.PolygonMesh(
     [(x, y, z) for z in (0, 1) for y in (0, 1) for x in (0, 1)],
@@ -221,9 +221,8 @@ def test_removing_and_adding_a_polygon_restores_the_mesh(mesh):
     for face, corners in rows(s).items():
         try:
             s.remove_face(face)
-        except hem.TopologyError as refusal:
-            assert "between two others" in str(refusal)
-            continue
+        except hem.TopologyError:
+            continue  # it lies between two others at a corner on the border
         s.validate()
         s.add_face(*corners)
         s.validate()
@@ -240,22 +239,24 @@ def test_random_operations_on_polygons_leave_a_sound_mesh():
         loop = s.face_half_edges(f).tolist()
         v = s.start_vertex(h)
         leaving = s.vertex_half_edges(v).tolist()
-        calls = {
-            "split_edge": lambda h=h: s.split_edge(h, rng.random(3), triangles=False),
-            "split_face": lambda loop=loop: s.split_face(loop[0], loop[2]),
-            "merge_faces": lambda h=h: s.merge_faces(h),
-            "stellate": lambda f=f: s.stellate(f),
-            "collapse_edge": lambda h=h: s.collapse_edge(h),
-            "flip_edge": lambda h=h: s.flip_edge(h),
-            "split_vertex": lambda leaving=leaving: s.split_vertex(leaving[0], leaving[-1]),
-            "erase_center_vertex": lambda v=v: s.erase_center_vertex(v),
-            "truncate_vertex": lambda v=v: s.truncate_vertex(v),
-            "triangles": lambda h=h: s.split_edge(h, rng.random(3)),
+        point = rng.random(3)
+        calls: dict[str, tuple[Any, ...]] = {
+            "split_edge": (s.split_edge, h, point, False),
+            "split_face": (s.split_face, loop[0], loop[2]),
+            "merge_faces": (s.merge_faces, h),
+            "stellate": (s.stellate, f),
+            "collapse_edge": (s.collapse_edge, h),
+            "flip_edge": (s.flip_edge, h),
+            "split_vertex": (s.split_vertex, leaving[0], leaving[-1]),
+            "erase_center_vertex": (s.erase_center_vertex, v),
+            "truncate_vertex": (s.truncate_vertex, v),
+            "triangles": (s.split_edge, h, point),
         }
         name = str(rng.choice(list(calls)))
         before = state(s)
+        call, *given = calls[name]
         try:
-            calls[name]()
+            call(*given)
             done.add(name)
             assert s.n_vertices - s.n_edges + s.n_faces == euler
         except hem.TopologyError:
@@ -366,16 +367,30 @@ def test_the_walk_of_the_article():
     s.validate()
 
 
-@pytest.mark.parametrize("family", ["torus", "grid"])
-def test_building_at_once_gives_what_adding_the_faces_one_by_one_gives(family):
-    mesh = hem.generate(family, 100)
+def fan_by_fan(mesh: hem.TriangleMesh) -> hem.TriangleMesh:
+    """The faces in an order in which none meets the ones before it in a vertex alone."""
+    left, order = mesh.triangles.tolist(), []
+    grown = plankton(hem.PolygonMesh(mesh.points, []))
+    while left:
+        for face in left:
+            try:
+                grown.add_face(*face)
+            except hem.TopologyError:
+                continue
+            order.append(face)
+            left.remove(face)
+            break
+        else:
+            raise AssertionError("no face fits")
+    return hem.TriangleMesh(mesh.points, order)
+
+
+@pytest.mark.parametrize("start", [lambda: strip(40), lambda: fan_by_fan(hem.generate("cone", 60))])
+def test_building_at_once_gives_what_adding_the_faces_one_by_one_gives(start):
+    mesh = start()
     added = plankton(hem.PolygonMesh(mesh.points, []))
     for face in mesh.triangles.tolist():
-        try:
-            added.add_face(*face)
-        except hem.TopologyError as refusal:  # a face that would meet the others in one vertex yet
-            assert "two fans" in str(refusal)
-            return
+        added.add_face(*face)
     assert state(added) == state(plankton(mesh))
 
 
@@ -389,7 +404,9 @@ def test_building_at_once_gives_what_adding_the_faces_one_by_one_gives(family):
 )
 def test_non_manifold_polygons_are_refused(faces):
     with pytest.raises(hem.MeshError):
-        structures.build("plankton", hem.PolygonMesh(np.random.default_rng(0).random((8, 3)), faces))
+        structures.build(
+            "plankton", hem.PolygonMesh(np.random.default_rng(0).random((8, 3)), faces)
+        )
 
 
 def test_a_render_mesh_holds_no_polygons_and_says_so():
