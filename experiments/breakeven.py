@@ -11,7 +11,7 @@ import pandas as pd
 
 from experiments.claims import OPERATIONS
 from experiments.results import Run
-from structures import NAMES
+from structures import NAMES, REGISTRY
 
 BASE = "indexed"
 MIXES = {
@@ -31,7 +31,7 @@ def break_even(run: Run) -> pd.DataFrame:
     """
     rows = []
     for what in MIXES:
-        for structure in NAMES[1:]:
+        for structure in (name for name in NAMES if name != BASE and REGISTRY[name].compiled):
             mine, base = _costs(run, structure, what), _costs(run, BASE, what)
             both = mine.add_suffix("_mine").join(base.add_suffix("_base"), how="inner")
             gain = (both["each_base"] - both["each_mine"]).to_numpy(float)

@@ -77,8 +77,8 @@ def load_claims(text: str | None = None) -> list[Claim]:
     return [
         _claim(row, structure, content["classes"])
         for row in content["row"]
-        for structure in NAMED
-        if structure in _checked(row)
+        for structure in _checked(row)
+        if structure in NAMED
     ]
 
 

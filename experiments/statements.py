@@ -9,18 +9,24 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Callable, Iterable
+from contextlib import suppress
 from dataclasses import dataclass
 from importlib.resources import files
+from typing import cast
 
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+import hem
+import structures
 from experiments.breakeven import break_even
 from experiments.claims import OPERATIONS
 from experiments.results import Run
 from experiments.verdicts import Evidence
 from hem.queries import QUERIES
+from structures.half_edge_objects import HalfEdgeMeshBuilder
+from structures.plankton import Plankton
 
 Array = NDArray[np.float64]
 
@@ -107,6 +113,76 @@ def _edits_per_build(run: Run) -> Iterable[float]:
     yield from (mine["times"] / mine["vertices"]).tolist()
 
 
+HALF_EDGES = ("half_edge", "half_edge_objects", "plankton")
+
+SPLITS = ("split_edge", "split_face")
+
+
+def _slopes(
+    run: Run, names: Iterable[str], listings: Iterable[str], table: str = "operations"
+) -> Iterable[float]:
+    """The log-log slopes of work in the number of faces."""
+    evidence = Evidence(run)
+    for name in names:
+        for what in listings:
+            cells = evidence.curve("work", "faces", name, what, table)
+            if len(cells) > 1:
+                work = np.array([float(np.mean(it)) for it in cells["samples"]])
+                yield float(np.polyfit(np.log(cells["faces"].to_numpy(float)), np.log(work), 1)[0])
+
+
+def _half_winged_operations(run: Run) -> Iterable[float]:
+    """The work of every operation at the largest size, half-edge by winged-edge."""
+    for what in OPERATIONS:
+        half, winged = (_work(run, name, what)[-1:] for name in ("half_edge", "winged_edge"))
+        yield from half / winged
+
+
+def _books_built(run: Run) -> Iterable[float]:
+    """How many half-edge meshes accept three faces at one edge."""
+    points = np.random.default_rng(0).random((5, 3))
+    mesh = hem.TriangleMesh(points, [(0, 1, 2), (1, 0, 3), (0, 1, 4)])
+    built = 0
+    for name in HALF_EDGES:
+        with suppress(hem.NonManifoldError):
+            built += bool(structures.build(name, mesh))
+    yield built
+
+
+def _polygon_corners(run: Run) -> Iterable[float]:
+    """The corners of a face of a hundred that is built, asked for and taken away again."""
+    angle = np.linspace(0, 2 * np.pi, 100, endpoint=False)
+    points = np.stack([np.cos(angle), np.sin(angle), 0 * angle], axis=1)
+    s = structures.build("plankton", hem.PolygonMesh(points, [list(range(100))]))
+    s.validate()
+    yield len(s.face_vertices(0))
+    s.remove_face(0)
+    s.validate()
+
+
+def _article_invariants(run: Run) -> Iterable[float]:
+    """The share of half-edges for which what the article says of them holds."""
+    s = cast(Plankton, structures.build("plankton", hem.generate("grid", 400)))
+    for _ in range(2):
+        holds = [
+            s.start_vertex(h ^ 1) == s.start_vertex(s.next_half_edge(h))
+            and (s.adjacent_face(h) >= 0 or s.outgoing_half_edge(s.start_vertex(h)) == h)
+            for h in s.half_edges().tolist()
+        ]
+        yield float(np.mean(holds))
+        s.collapse_edges(s.edges()[::5])
+        s.split_all_faces()
+
+
+def _cube_vertices(run: Run) -> Iterable[float]:
+    """The vertices that the builder makes of a render mesh with a seam at every edge."""
+    corner = np.array([(x, y, z) for z in (0, 1) for y in (0, 1) for x in (0, 1)], float)
+    sides = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
+    indices = [4 * i + k for i in range(6) for k in (0, 2, 1, 0, 3, 2)]  # clockwise
+    mesh = HalfEdgeMeshBuilder.from_render_mesh(corner[np.array(sides).ravel()], indices)
+    yield mesh.n_vertices
+
+
 QUANTITIES: dict[str, Quantity] = {
     "bytes_ratio": _bytes_ratio,
     "bytes_winged_half": _bytes_winged_half,
@@ -115,6 +191,15 @@ QUANTITIES: dict[str, Quantity] = {
     "static": _static,
     "dynamic": _dynamic,
     "edits_per_build": _edits_per_build,
+    "printed_splits": lambda run: _slopes(run, ["as_printed"], SPLITS, "listings"),
+    "mended_splits": lambda run: _slopes(run, HALF_EDGES, SPLITS),
+    "printed_collapse": lambda run: _slopes(run, ["as_printed"], ["collapse_edge"], "listings"),
+    "mended_collapse": lambda run: _slopes(run, HALF_EDGES, ["collapse_edge"]),
+    "half_winged_operations": _half_winged_operations,
+    "books_built": _books_built,
+    "polygon_corners": _polygon_corners,
+    "article_invariants": _article_invariants,
+    "cube_vertices": _cube_vertices,
 }
 """What can be measured of a sentence, by the name that ``statements.toml`` uses."""
 

@@ -522,7 +522,7 @@ class HalfEdgeMesh(Structure):
         self.vertices.items[:] = fresh.vertices.items
         self.half_edges.items[:] = fresh.half_edges.items
         self.faces.items[:] = fresh.faces.items
-        np.copyto(self.records.counts[:VERTEX_ROOM], fresh.counts[:VERTEX_ROOM])
+        np.copyto(self.records.counts, fresh.counts)
 
     def to_arrays(self) -> HalfEdgeRecords:
         """The same half-edges by index, as ``structures.half_edge`` has them. O(n_v + n_t)."""

@@ -25,6 +25,7 @@ LAWS: dict[str, Law] = {
     "O(1)": lambda n_t, n_ev: 5.0,
     "O(n_ev)": lambda n_t, n_ev: 2.0 + 3.0 * n_ev,
     "O(n_t)": lambda n_t, n_ev: 10.0 + 3.0 * n_t,
+    "O(n_t²)": lambda n_t, n_ev: 3.0 + 2e-3 * n_t**2,
     "N/A": lambda n_t, n_ev: 7.0,
 }
 
@@ -43,10 +44,14 @@ EXPERIMENTS = {
         ("bench_operations", "batched", "faces"),
         ("bench_operations", "batched", "valence"),
     ),
+    "listings": (("bench_printed", "counted", "faces"), ("bench_printed", "timed", "faces")),
 }
 """The experiment, the order of its cells and what varies in them, by table."""
 
-BUILD = {"indexed": 1e-9, "triangle_neighbor": 21e-9, "winged_edge": 41e-9, "half_edge": 31e-9}
+BUILD = {
+    **{"indexed": 1e-9, "triangle_neighbor": 21e-9, "winged_edge": 41e-9, "half_edge": 31e-9},
+    **{"half_edge_objects": 4e-6, "plankton": 36e-9},
+}
 """Seconds per face to build, in these runs."""
 
 
@@ -66,7 +71,7 @@ def write_run(folder: Path, law_of: Callable[[str, str, str], Law] | None = None
                 [(n, 6) for n in SIZES] if variable == "faces" else [(FACES, k) for k in VALENCES]
             )
             for n_t, n_ev in points:
-                kind = "work" if experiment.endswith("work") else "time"
+                kind = "work" if experiment.endswith("work") or order == "counted" else "time"
                 noise = 1 if kind == "work" else 1e-9 * rng.normal(1, 0.02, 9)
                 cell = CellResult(
                     id=f"{claim.what}/{n_t}/{n_ev}/{order}",
