@@ -95,8 +95,8 @@ def _printed(cell: Cell, faces: list[int]) -> list[Step]:
 
 def _mended(cell: Cell, faces: list[int]) -> list[Step]:
     s = cast(HalfEdgeMesh, structures.build(MENDED, cell.mesh()))
-    s.move_vertex(0, s.points[0])  # binds the operations
     edges = s.face_edges(np.array(faces)).values.reshape(-1, 3)[:, 0].tolist()
+    s.can_collapse_edge(edges[0])  # binds the operations, and makes room for answers
     points = [(9.0, 9.0, float(i)) for i in range(len(faces))]
     calls = {
         "split_edge": map(partial, repeat(s.split_edge), edges, points),

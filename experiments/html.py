@@ -10,6 +10,7 @@ import pandas as pd
 
 from experiments.claims import MEMORY, NO_CLAIM, VARIABLES
 from experiments.complexity import Verdict
+from experiments.errata import Erratum
 from experiments.statements import Statement, bounds, span
 from experiments.table import by_title, found
 from experiments.verdicts import OUTCOMES
@@ -36,6 +37,7 @@ td small { display: block; color: #556; font-size: .78rem; line-height: 1.4; }
 .consistent b { color: #17693a; } .violated { background: #fdeceb; }
 .violated b { color: #a3170f; } .undetermined b { color: #8a5a00; }
 .no-claim b { color: var(--soft); }
+.numbers td:not(:first-child), .numbers th:not(:first-child) { text-align: right; }
 .wide { overflow-x: auto; } img { max-width: 100%; height: auto; }
 pre { white-space: pre-wrap; font-size: .8rem; } .anchor-link { display: none; }
 """
@@ -72,6 +74,26 @@ def statements(every: Iterable[Statement]) -> str:
     )
     heads = "".join(f"<th>{it}</th>" for it in ("The thesis", "measured by", "found", "verdict"))
     inner = f"<thead><tr>{heads}</tr></thead><tbody>{rows}</tbody>"
+    return f'<div class="wide"><table>{inner}</table></div>'
+
+
+def errata(every: Iterable[Erratum]) -> str:
+    """What is printed, what it does, and what a run of it gave beside one of the sound version."""
+    rows = []
+    for number, it in enumerate(every, start=1):
+        shown = it.show()
+        outcome, mark = (
+            ("consistent", "✓ shown") if shown.confirmed else ("violated", "✗ not shown")
+        )
+        rows.append(
+            f'<tr class="{outcome}"><td>{number}</td>'
+            f"<td><b>{escape(it.title)}</b><small>{escape(it.source)}</small></td>"
+            f"<td>{escape(it.says)}<small>{escape(it.does)}</small></td>"
+            f"<td>{escape(shown.printed)}</td><td>{escape(shown.sound)}</td><td>{mark}</td></tr>"
+        )
+    titles = ("", "erratum", "what is printed, and what it does", "as printed", "mended", "")
+    heads = "".join(f"<th>{it}</th>" for it in titles)
+    inner = f"<thead><tr>{heads}</tr></thead><tbody>{''.join(rows)}</tbody>"
     return f'<div class="wide"><table>{inner}</table></div>'
 
 

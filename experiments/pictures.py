@@ -16,6 +16,7 @@ import structures
 from experiments.style import styled
 from experiments.workloads import simplify
 from hem.structure import Structure
+from structures.plankton import Plankton
 
 Array = NDArray[Any]
 
@@ -61,14 +62,18 @@ def steps(every: Sequence[Step], labels: bool = True) -> Figure:
 
 def _flat(axes: Axes, s: Structure, shown: dict[str, Any], labels: bool) -> None:
     faces = s.faces()
-    corners = s.face_vertices(faces).values.reshape(-1, 3)
+    corners = s.face_vertices(faces)
     flat = s.points[:, :2]
     marked = np.isin(faces, list(shown.get("faces", ())))
     colors = np.where(marked, TOUCHED, PAPER)
-    axes.add_collection(PolyCollection(flat[corners], facecolors=colors, edgecolors=INK))
+    outlines = [flat[row] for row in corners]
+    axes.add_collection(PolyCollection(outlines, facecolors=colors, edgecolors=INK))
     for a, b in shown.get("edges", ()):
         axes.plot(*flat[[a, b]].T, color=STRONG, linewidth=2.6, solid_capstyle="round")
-    used = np.unique(corners)
+    for a, b in shown.get("arrows", ()):
+        look = {"arrowstyle": "-|>", "color": STRONG, "linewidth": 2, "shrinkA": 5, "shrinkB": 5}
+        axes.annotate("", flat[b], flat[a], arrowprops=look)
+    used = np.unique(corners.values)
     strong = np.isin(used, list(shown.get("vertices", ())))
     sizes, tones = np.where(strong, 42, 12), np.where(strong, STRONG, INK)
     axes.scatter(flat[used, 0], flat[used, 1], sizes, list(tones), zorder=3)
@@ -87,6 +92,66 @@ def _same_view(panels: Sequence[Axes]) -> None:
     low, high = np.min(boxes, axis=0), np.max(boxes, axis=0)
     for axes in panels:
         axes.set(xlim=(low[0], high[1]), ylim=(low[2], high[3]))
+
+
+def plankton_walk() -> Figure:
+    """The article's figures 6 to 9: faces added around vertex 2, and the half-edge that it has."""
+    s = Plankton.build(hem.PolygonMesh([(0, 0, 0), (1, 0, 0), (0.5, 0.5, 0)], [(0, 1, 2)]))
+    shown: list[Step] = []
+
+    def show(title: str) -> None:
+        end = s.end_vertex(s.outgoing_half_edge(2))
+        lies = "on the border" if s.vertex_naked_edges(2) else "inside"
+        title = f"{title}\nvertex 2 {lies}: 2 → {end}"
+        shown.append((title, s.copy(), {"arrows": [(2, end)], "vertices": [2]}))
+
+    show("One face")
+    for corners, point in (((2, 1, 3), (1, 1, 0)), ((2, 3, 4), (0, 1, 0)), ((0, 2, 4), None)):
+        if point is not None:
+            s.add_vertex(point)
+        added = s.add_face(*corners)
+        show(f"Face {' '.join(map(str, corners))} added")
+        shown[-1][2]["faces"] = added.created_faces.tolist()
+    return steps(shown)
+
+
+def polygon_steps() -> Figure:
+    """What Plankton's half-edges do with polygons, each on a fresh sheet of four quads."""
+    return steps(
+        [
+            _polygon_step("Four quads", lambda s: []),
+            _polygon_step("split_face: a diagonal", _cut_first_face),
+            _polygon_step("merge_faces", lambda s: [s.merge_faces(_between_faces(s, 0, 1))]),
+            _polygon_step("stellate", _stellate_first_face),
+            _polygon_step("erase_center_vertex", lambda s: [s.erase_center_vertex(4)]),
+            _polygon_step("truncate_vertex", lambda s: [s.truncate_vertex(4)]),
+        ],
+        labels=False,
+    )
+
+
+def _polygon_step(title: str, change: Callable[[Plankton], list[int]]) -> Step:
+    at = np.arange(9).reshape(3, 3)
+    quads = np.stack([at[:-1, :-1], at[:-1, 1:], at[1:, 1:], at[1:, :-1]], axis=2).reshape(-1, 4)
+    y, x = np.divmod(np.arange(9), 3)
+    s = Plankton.build(hem.PolygonMesh(np.stack([x, y, 0 * x], axis=1), quads.tolist()))
+    return title, s, {"faces": change(s)}
+
+
+def _cut_first_face(s: Plankton) -> list[int]:
+    a, _, c, _ = s.face_half_edges(0).tolist()
+    s.split_face(a, c)
+    return [0, 4]
+
+
+def _stellate_first_face(s: Plankton) -> list[int]:
+    return [0, *s.stellate(0).created_faces.tolist()]
+
+
+def _between_faces(s: Plankton, face: int, other: int) -> int:
+    """The half-edge of a face that has another one beyond."""
+    sides = s.face_half_edges(face).tolist()
+    return next(h for h in sides if s.adjacent_face(s.pair(h)) == other)
 
 
 def split_edge_steps(structure: str) -> Figure:
@@ -110,6 +175,26 @@ def split_edge_steps(structure: str) -> Figure:
                 s,
                 {"faces": _touched(border), "vertices": [border.vertex]},
             ),
+        ]
+    )
+
+
+def split_as_printed() -> Figure:
+    """Erratum 3: a half-edge that moves into the new face and still names the old one."""
+    from structures.as_printed import AsPrinted, render_arrays
+
+    mesh = quad()
+    m = AsPrinted.build(*render_arrays(mesh.points, mesh.triangles), whole=True)
+    diagonal = next(h for h in m.half_edges if h.opposite is not None)
+    m.split_half_edge(diagonal, (0.5, 0.5, 0.0))
+    astray = [h for h in m.half_edges if h.next.face is not h.face]
+    corners = [[h.origin.index for h in m.face_circulator(face)][::-1] for face in m.faces]
+    s = Plankton.build(hem.PolygonMesh([v.point for v in m.vertices], corners))
+    wrong = [(h.origin.index, h.end.index) for h in astray if h.next.face is not h.face]
+    return steps(
+        [
+            ("A quad", structures.build("half_edge", mesh), {"edges": [(0, 2)]}),
+            ("split as printed", s, {"arrows": wrong, "vertices": [4]}),
         ]
     )
 

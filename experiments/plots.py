@@ -19,6 +19,9 @@ from structures import NAMES, REGISTRY
 
 Ends = dict[str, tuple[float, float, str]]
 
+LISTINGS_AND_OPERATIONS = ("build", "split_edge", "split_face", "collapse_edge")
+"""What is measured as printed and mended."""
+
 MEASURES = {"time": (1e9, "time each, ns"), "work": (1.0, "elements accessed each")}
 """By measure: the factor to the unit that is drawn, and the label."""
 VARIABLES = {"faces": "faces n_t", "valence": "valence n_ev"}
@@ -166,6 +169,87 @@ def _bar(axes: Axes, height: float, cell: pd.Series, structure: str) -> None:
     traced, peak = (cell["detail"][key] / cell["vertices"] for key in ("traced", "peak"))
     note = f"{start:g} B with {cell['reference_bytes']}-byte references · {traced:.1f} traced · "
     axes.text(start + 3, height, note + f"{peak:.0f} at the peak", va="center", fontsize=8)
+
+
+def listings(run: Run, measure: str = "work") -> Figure:
+    """What the thesis' listings cost as printed, and mended: a panel each, against size."""
+    evidence, scale = Evidence(run), {"work": 1.0, "time": 1e6}[measure]
+    label = {"work": "fields accessed each", "time": "time each, µs"}[measure]
+    with styled():
+        figure = Figure(figsize=(11, 3.0), layout="constrained")
+        panels = figure.subplots(1, len(LISTINGS_AND_OPERATIONS))
+        ends: list[Ends] = []
+        for axes, what in zip(panels, LISTINGS_AND_OPERATIONS, strict=True):
+            axes.set(xscale="log", yscale="log", title=title_of(what), xlabel="faces n_t")
+            ends.append({})
+            for structure, name in (("as_printed", "printed"), ("half_edge_objects", "mended")):
+                cells = evidence.curve(measure, "faces", structure, what, "listings")
+                if cells.empty:
+                    continue
+                x, y = cells["faces"].to_numpy(float), scale * _centers(cells, measure)
+                look = LOOKS[structure]
+                axes.plot(x, y, look.line, color=look.color, marker=look.marker)
+                ends[-1][name] = (x[-1], y[-1], look.color)
+        panels[0].set_ylabel(label)
+        _fit_heights(panels[1:])
+        finish_panels(figure, panels, ends, room=0.45)
+    return figure
+
+
+def references(run: Run) -> Figure:
+    """Bytes per vertex of one half-edge mesh by what holds it: arrays, and objects."""
+    evidence = Evidence(run)
+    held = {
+        f"arrays, {size}-byte references": _parts(evidence.memory("half_edge", size), "fields")
+        for size in (4, 8)
+    }
+    objects = evidence.memory("half_edge_objects", 8)
+    held["objects, as the thesis' runtime lays them out (model)"] = _parts(objects, "clr")
+    held["objects, in Python (measured)"] = _parts(objects, "fields")
+    with styled():
+        figure = Figure(figsize=(11, 2.9), layout="constrained")
+        axes = figure.subplots()
+        for row, parts in enumerate(held.values()):
+            start = 0.0
+            for k, (part, size) in enumerate(parts.items()):
+                color = LOOKS["half_edge" if row < 2 else "half_edge_objects"].color
+                shade = 0.55 if k % 2 else 0.32
+                axes.barh(row, size, 0.62, start, color=color, alpha=shade, edgecolor="white")
+                if size > 5.5 * len(part):
+                    axes.text(start + size / 2, row, part, ha="center", va="center", fontsize=7.5)
+                start += size
+            axes.text(start + 6, row, f"{start:,.0f}", va="center", fontsize=9, fontweight="bold")
+        axes.set_yticks(range(len(held)), list(held))
+        axes.set(xlabel="bytes per vertex", ylim=(len(held) - 0.4, -0.6))
+        axes.margins(x=0.08)
+        axes.grid(axis="y", visible=False)
+    return figure
+
+
+PARTS = {
+    "positions": ("vertex.point",),
+    "references": ("half_edge", "origin", "face", "next", "opposite", "twin"),
+    "indices": ("index",),
+    "event": ("position_changed",),
+    "headers": ("header",),
+    "padding": ("padding",),
+    "lists": ("list",),
+    "objects": ("object",),
+}
+"""What bytes are for, by the names of their fields."""
+
+
+def _parts(cells: pd.DataFrame, kind: str) -> dict[str, float]:
+    """Bytes per vertex by what they are for, at the largest size."""
+    if cells.empty:
+        return {}
+    cell = cells.iloc[-1]
+    sums = dict.fromkeys(PARTS, 0.0)
+    for field, size in cell["detail"][kind].items():
+        last = field.split(".")[1]
+        part = next(it for it, names in PARTS.items() if field in names or last in names)
+        sums[part] += size / cell["vertices"]
+    return {part: size for part, size in sums.items() if size}
 
 
 def building(run: Run) -> Figure:

@@ -15,8 +15,8 @@ class Profile:
     """One extent of a study. Sizes are numbers of vertices, valences those of the asked vertices.
 
     ``families[0]`` is the judged one: its valence is the same at every size. Structures made of
-    objects are measured on up to ``object_vertices``, and built of ten times as many; what the
-    thesis prints is built of ``printed_sizes``. A round is one sample;
+    objects are operated on up to ``object_vertices``, asked and built of three times as many; what
+    the thesis prints is built of ``printed_sizes``. A round is one sample;
     ``round_seconds`` is how long it should last, ``cell_seconds`` what a cell may take in all.
     """
 
@@ -53,7 +53,7 @@ class Profile:
             self,
             sizes=up_to(self.sizes, 3 * most),
             valence_faces=min(self.valence_faces, 10 * most),
-            build_sizes=up_to(self.build_sizes, 10 * most),
+            build_sizes=up_to(self.build_sizes, 3 * most),
             operation_sizes=up_to(self.operation_sizes),
             operation_faces=min(self.operation_faces, most),
             workload_sizes=up_to(self.workload_sizes),
@@ -77,7 +77,7 @@ VALENCES = tuple(2**k for k in range(2, 13))
 
 PROFILES = {
     "smoke": Profile(
-        what="a few small cells of everything, to see that it all works, within two minutes",
+        what="a few small cells of everything, to see that it all works, some 3 minutes",
         families=("torus",),
         sizes=(100, 400),
         orders=("random", "consecutive"),
@@ -98,7 +98,7 @@ PROFILES = {
         latency_mib=1,
     ),
     "quick": Profile(
-        what="one family up to 100,000 vertices, some 4 minutes",
+        what="one family up to 100,000 vertices, some 7 minutes",
         families=("torus",),
         sizes=_geometric(100, 100_000, 2),
         orders=("random", "consecutive"),

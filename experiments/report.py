@@ -24,6 +24,8 @@ CHAPTERS = {
     "memory": "Memory",
     "operations": "Operations",
     "half_edge_or_indexed": "Half-edge or indexed?",
+    "references_and_pairs": "References, indices and pairs",
+    "errata": "What the listings do",
 }
 """The notebooks in the order they are read. A new chapter is one notebook and one line here."""
 
@@ -61,7 +63,7 @@ def write_page(run_folder: Path, folder: Path, reference: Path) -> Path:
 
     The page goes to ``folder``, the verdicts to ``reference``, to compare later runs with.
     """
-    from experiments import operation_plots, plots
+    from experiments import operation_plots, pictures, plots
 
     run = load(run_folder)
     save(run, judged(run), reference)
@@ -74,6 +76,9 @@ def write_page(run_folder: Path, folder: Path, reference: Path) -> Path:
         "building": ("Time to build", plots.building(run)),
         "operations": ("Time of the operations", plots.scaling(run, "time", "faces", OPERATIONS)),
         "workloads": ("What people do with meshes", operation_plots.workloads(run)),
+        "references": ("A half-edge mesh in arrays and in objects", plots.references(run)),
+        "listings": ("The thesis' listings, as printed and mended", plots.listings(run)),
+        "plankton": ("The article's walk around a vertex", pictures.plankton_walk()),
         "overtaking": (
             "Queries and edits per build until the indexed mesh is overtaken",
             operation_plots.overtaking(run),
@@ -163,7 +168,8 @@ def _front(run: Run, table: Any) -> str:
         f"<p>Cells of its tables, judged by the work that was counted: <b>{escape(counts)}</b>. "
         "Work is the number of array elements that a query or an operation accesses; it is exact "
         "and decides. Time is judged beside it, and is undetermined where the machine's caches "
-        "could explain it as well.</p>"
+        "could explain it as well. Structures of objects are interpreted, and measured on smaller "
+        "meshes.</p>"
         f"{boards}"
         '<p class="soft">✓ consistent · ✗ violated · ? undetermined: the data cannot tell · '
         "– nothing is claimed, as the structure keeps no record of an edge: what was found is the "

@@ -225,6 +225,7 @@ def span(statement: Statement) -> str:
     values = statement.values
     if not len(values):
         return "–"
+    values = np.round(values, 6) + 0
     low, high = f"{values.min():.3g}", f"{values.max():.3g}"
     return low if low == high else f"{low} … {high}"
 
