@@ -54,28 +54,34 @@ def run_study(
         bool, typer.Option("--resume", help="Go on with the newest unfinished run.")
     ] = False,
     output: Annotated[Path, typer.Option(help="Where the runs are kept.")] = results.RUNS,
+    structure: Annotated[
+        list[str] | None, typer.Option(help="Measure just this one; may be repeated.")
+    ] = None,
 ) -> None:
     """Measure every structure; the results go to a new folder, cell by cell."""
     with user_errors():
         if profile is not None and profile not in PROFILES:
             raise ValueError(f"no profile is called {profile!r}; there are {', '.join(PROFILES)}")
+        chosen = structure or []
         if resume:
-            folder, kept = study.resume(output)
+            folder, kept, chosen = study.resume(output)
+            if structure:
+                raise ValueError(f"{folder} goes on as it was begun; resume it without --structure")
             if profile not in (None, kept):
                 raise ValueError(f"{folder} was begun as {kept}; resume it without --profile")
             profile = kept
         else:
             profile = profile or "quick"
-            folder = study.begin(profile, output)
-        _run_with_progress(folder, profile)
+            folder = study.begin(profile, output, chosen)
+        _run_with_progress(folder, profile, chosen)
 
 
-def _run_with_progress(folder: Path, profile: str) -> None:
+def _run_with_progress(folder: Path, profile: str, chosen: list[str]) -> None:
     begun = perf_counter()
     console.print(f"Measuring into {folder} (profile {profile}: {PROFILES[profile].what})")
     try:
-        with _progress(study.processes(profile), folder) as report:
-            study.run(folder, profile, report)
+        with _progress(study.processes(profile, chosen), folder) as report:
+            study.run(folder, profile, report, chosen)
     except KeyboardInterrupt:
         errors.print(f"Stopped. What is finished is in {folder}; go on with: hem study --resume")
         raise typer.Exit(130) from None

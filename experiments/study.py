@@ -8,7 +8,7 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from importlib import import_module
@@ -17,6 +17,7 @@ from pathlib import Path
 from experiments.profiles import PROFILES
 from experiments.provenance import describe, now
 from experiments.results import RUNS, ResultFile, latest, read_json, write_json
+from structures import NAMED
 
 EXPERIMENTS = (
     "bench_latency",
@@ -53,39 +54,52 @@ class StudyFailedError(RuntimeError):
     """Some cells failed; the message names the processes and shows what they printed."""
 
 
-def begin(profile: str, root: Path = RUNS) -> Path:
-    """A new run folder, named by the time and the profile, with what is known before it runs."""
+def begin(profile: str, root: Path = RUNS, structures: Sequence[str] = ()) -> Path:
+    """A new run folder, named by the time and the profile, with what is known before it runs.
+
+    ``structures``: just these; all of them for none. Raises ValueError for one there is not.
+    """
+    for name in structures:
+        if name not in NAMED:
+            raise ValueError(f"no structure is called {name!r}; there are {', '.join(NAMED)}")
     stamp = datetime.now(UTC).strftime("%Y%m%d-%H%M%S")
     folder = root / f"{stamp}-{profile}"
-    write_json(folder / "run.json", describe(profile))
+    write_json(folder / "run.json", {**describe(profile), "structures": list(structures)})
     return folder
 
 
-def resume(root: Path = RUNS) -> tuple[Path, str]:
-    """The newest unfinished run and its profile. Raises ResultsError if there is none."""
+def resume(root: Path = RUNS) -> tuple[Path, str, list[str]]:
+    """The newest unfinished run, its profile and structures. Raises ResultsError without any."""
     folder = latest(root, unfinished=True)
-    return folder, str(read_json(folder / "run.json")["profile"])
+    meta = read_json(folder / "run.json")
+    return folder, str(meta["profile"]), list(meta.get("structures", ()))
 
 
-def processes(profile: str) -> list[Process]:
+def processes(profile: str, structures: Sequence[str] = ()) -> list[Process]:
     """All processes of a profile, with the cells that each will leave behind."""
     return [
         Process(experiment, structure, frozenset(cell.id for cell in cells))
         for experiment in EXPERIMENTS
         for module in [import_module(f"experiments.{experiment}")]
         for structure in module.STRUCTURES
+        if not structures or structure in structures or structure not in NAMED
         for cells in [module.cells(PROFILES[profile].of(structure), structure)]
     ]
 
 
-def run(folder: Path, profile: str, report: Callable[[Process, int], None]) -> None:
+def run(
+    folder: Path,
+    profile: str,
+    report: Callable[[Process, int], None],
+    structures: Sequence[str] = (),
+) -> None:
     """Run what the folder lacks, and mark it finished.
 
     ``report(process, done)`` is called as cells come in. Raises StudyFailedError when everything
     else has run, and KeyboardInterrupt as it comes; what is finished stays in either case.
     """
     failures = []
-    for process in processes(profile):
+    for process in processes(profile, structures):
         if process.done(folder) < len(process.cells):
             output = _run_one(folder, profile, process, report)
             if process.done(folder) < len(process.cells):

@@ -65,15 +65,16 @@ class PolygonMesh:
         return TriangleMesh(self.points, corners[rows])
 
 
-def require_triangles(mesh: TriangleMesh | PolygonMesh, holder: str) -> TriangleMesh:
+def require_triangles(mesh: TriangleMesh | PolygonMesh) -> TriangleMesh:
     """The mesh as triangles, if it has no other faces; else a MeshError that says what to do."""
     if isinstance(mesh, TriangleMesh):
         return mesh
     larger = np.flatnonzero(mesh.faces.counts > 3)
     if len(larger):
         raise MeshError(
-            f"{holder} holds triangles only, and {len(larger):,} of {len(mesh.faces):,} faces have "
-            "more corners; cut them: hem.load(path, triangulate=True), or mesh.triangulated()",
+            f"only triangles can be held, and {len(larger):,} of {len(mesh.faces):,} faces have "
+            "more corners; use plankton, or cut them: hem.load(path, triangulate=True), or "
+            "mesh.triangulated()",
             faces=larger,
         )
     return TriangleMesh(mesh.points, mesh.faces.values.reshape(-1, 3))

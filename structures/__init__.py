@@ -45,6 +45,6 @@ def build(name: str, mesh: TriangleMesh | PolygonMesh, reference_bytes: int = 4)
         raise ValueError(f"references take 4 or 8 bytes, not {reference_bytes!r}")
     kind: Any = REGISTRY[name]
     if not kind.holds_polygons:
-        mesh = require_triangles(mesh, kind.title)
+        mesh = require_triangles(mesh)
     built: Structure = kind.build(mesh, reference_bytes)
     return built

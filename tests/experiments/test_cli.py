@@ -16,6 +16,7 @@ from experiments.cli import app
 from experiments.profiles import PROFILES
 from experiments.results import load
 from experiments.study import processes
+from structures import NAMES
 
 runner = CliRunner()
 
@@ -54,8 +55,13 @@ def test_info_says_which_structure_can_hold_a_mesh_and_why_another_cannot(tmp_pa
     assert "cannot hold" not in output
     code, output = hem("info", "face")
     assert code == 0
-    assert output.count("cannot hold it") == 3
+    assert output.count("cannot hold it") == len(NAMES) - 1
     assert "1850" in output
+    (tmp_path / "quad.obj").write_text("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n")
+    code, output = hem("info", str(tmp_path / "quad.obj"))
+    assert code == 0
+    assert output.count("cannot hold it") == len(NAMES) - 1
+    assert output.count("triangulate=True") == 1
 
 
 def test_meshes_lists_every_family_and_model():
@@ -66,7 +72,14 @@ def test_meshes_lists_every_family_and_model():
 
 def test_a_study_that_is_killed_goes_on_where_it_was_and_ends_complete(tmp_path):
     command = [sys.executable, "-m", "experiments.cli", "study", "--output", str(tmp_path)]
-    child = subprocess.Popen([*command, "--profile", "smoke"], stdout=subprocess.DEVNULL)
+    chosen = "indexed", "half_edge_objects", "plankton", "as_printed"
+    begun = [
+        *command,
+        "--profile",
+        "smoke",
+        *(it for name in chosen for it in ("--structure", name)),
+    ]
+    child = subprocess.Popen(begun, stdout=subprocess.DEVNULL)
     while not list(tmp_path.glob("*/bench_work.indexed.json")):
         assert child.poll() is None
         time.sleep(0.05)
@@ -79,8 +92,9 @@ def test_a_study_that_is_killed_goes_on_where_it_was_and_ends_complete(tmp_path)
     assert resumed.returncode == 0, resumed.stdout + resumed.stderr
     after = _cells(tmp_path)
     assert all(after[key] == cell for key, cell in before.items())
-    expected = {(p.experiment, p.structure, cell) for p in processes("smoke") for cell in p.cells}
-    assert set(after) == expected
+    every = processes("smoke", chosen)
+    assert set(after) == {(p.experiment, p.structure, cell) for p in every for cell in p.cells}
+    assert {p.structure for p in every} == {*chosen, "machine"}
 
     (folder,) = (path.parent for path in tmp_path.glob("*/run.json"))
     run = load(folder)
@@ -89,7 +103,7 @@ def test_a_study_that_is_killed_goes_on_where_it_was_and_ends_complete(tmp_path)
     assert {"commit", "dirty", "machine", "versions", "schema"} <= set(run.meta)
     code, output = hem("table", str(folder))
     assert code == 0
-    assert "228 ✓" in output
+    assert "36 ✓" in output
 
 
 def _cells(root: Path) -> dict[tuple[str, str, str], dict]:
