@@ -127,13 +127,17 @@ def finish_panels(
 
 
 def memory(run: Run) -> Figure:
-    """Bytes per vertex, stacked by field: as printed, modeled with 8 and 4 bytes, and as traced."""
+    """Bytes per vertex, stacked by field: as printed, modeled with 8 and 4 bytes, and as traced.
+
+    Of what is made of arrays; ``references`` has the objects.
+    """
     evidence = Evidence(run)
+    names = [name for name in NAMES if REGISTRY[name].compiled]
     printed = {it.structure: it.bytes_per_vertex for it in load_claims() if it.what == MEMORY}
     with styled():
-        figure = Figure(figsize=(11, 1.25 * len(NAMES) + 1.1), layout="constrained")
+        figure = Figure(figsize=(11, 1.25 * len(names) + 1.1), layout="constrained")
         axes = figure.subplots()
-        for row, structure in enumerate(NAMES):
+        for row, structure in enumerate(names):
             for offset, reference_bytes in ((-0.19, 8), (0.19, 4)):
                 cells = evidence.memory(structure, reference_bytes)
                 if not cells.empty:
@@ -145,8 +149,8 @@ def memory(run: Run) -> Figure:
             "printed in the thesis", (printed["indexed"] or 0, -0.42), (0, 4),
             textcoords="offset points", ha="center", fontsize=8, fontweight="bold",
         )  # fmt: skip
-        axes.set_yticks(range(len(NAMES)), [REGISTRY[name].title for name in NAMES])
-        axes.set(xlabel="bytes per vertex", xlim=(0, 350), ylim=(len(NAMES) - 0.45, -0.75))
+        axes.set_yticks(range(len(names)), [REGISTRY[name].title for name in names])
+        axes.set(xlabel="bytes per vertex", xlim=(0, 350), ylim=(len(names) - 0.45, -0.75))
         axes.grid(axis="y", visible=False)
     return figure
 

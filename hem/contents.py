@@ -156,6 +156,41 @@ def _3ds(data: bytes) -> Contents:
     return _UNKNOWN
 
 
+def _ctm(data: bytes) -> Contents:
+    """The counts of the header; of a compressed file every part must be there to its end."""
+    if len(data) < 36 or data[:4] != b"OCTM":
+        return _UNKNOWN
+    method, vertices, faces = struct.unpack_from("<4sII", data, 8)
+    place = 36 + int(struct.unpack_from("<I", data, 32)[0])
+    if method not in (b"MG1\0", b"MG2\0"):
+        return Contents(vertices, faces)
+    tags = set()
+    while place < len(data):
+        tags.add(data[place : place + 4])
+        place = _ctm_part_end(data, place, method)
+        _require(place <= len(data), f"{len(data):,} bytes, fewer than its parts take")
+    _require(tags >= {b"VERT", b"INDX"}, "no part for the vertices or the faces")
+    return Contents(vertices, faces)
+
+
+def _ctm_part_end(data: bytes, place: int, method: bytes) -> int:
+    """Where the part ends that begins here: a tag, names, a size, five bytes, and as many more."""
+    tag, beyond = data[place : place + 4], len(data) + 1
+    if tag == b"MG2H":
+        return place + 48
+    place += 4
+    names = {b"TEXC": 2, b"ATTR": 1}.get(tag, 0)
+    for _ in range(names):
+        if place + 4 > len(data):
+            return beyond
+        place += 4 + int(struct.unpack_from("<I", data, place)[0])
+    if names and method == b"MG2\0":
+        place += 4  # the precision
+    if place + 4 > len(data):
+        return beyond
+    return place + 9 + int(struct.unpack_from("<I", data, place)[0])
+
+
 def _require(whole: bool, found: str) -> None:
     if not whole:
         raise MeshError(f"the file is cut short or broken: it has {found}; get it anew")
@@ -167,4 +202,5 @@ _COUNTERS: dict[str, Callable[[bytes], Contents]] = {
     "obj": _obj,
     "stl": _stl,
     "3ds": _3ds,
+    "ctm": _ctm,
 }

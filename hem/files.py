@@ -79,13 +79,14 @@ def load(
         raise type(error)(f"cannot load {file}: {error.reason}", **error.elements) from error
 
 
-def save(mesh: TriangleMesh, path: str | os.PathLike[str]) -> None:
+def save(mesh: TriangleMesh | PolygonMesh, path: str | os.PathLike[str]) -> None:
     """Write the mesh in the format that the path's extension names; replaces what is there.
 
     ply, off, obj and 3ds keep every float32 and every vertex; stl (binary) keeps only vertices
-    that have faces; text formats such as wrl, dae and x3d round the coordinates. Written beside
-    and renamed, so that a broken run never leaves half a file. Raises MeshError where the format
-    is unknown or the folder cannot be written.
+    that have faces; text formats such as wrl, dae and x3d round the coordinates. Polygons are kept
+    by obj alone, where a face may begin with another corner. Written beside and renamed, so that
+    a broken run never leaves half a file. Raises MeshError where the format is unknown, or keeps
+    no polygons, or the folder cannot be written.
     """
     from hem.meshlab import mesh_set, meshlab, undisturbed
 
@@ -93,6 +94,13 @@ def save(mesh: TriangleMesh, path: str | os.PathLike[str]) -> None:
     if not file.parent.is_dir():
         raise MeshError(f"cannot save {file}: there is no folder {file.parent}")
     options = _SAVE_OPTIONS.get(_extension(file), {})
+    if isinstance(mesh, PolygonMesh):
+        if _extension(file) != "obj":  # pymeshlab 2025.7 cuts them in ply, and turns faces in off
+            raise MeshError(
+                f"cannot save {file}: polygons are kept in obj files only; save it as one, or "
+                "mesh.triangulated()"
+            )
+        options = {**_PLAIN, "save_polygonal": True}
     try:
         with tempfile.TemporaryDirectory(dir=file.parent, prefix=".hem-") as folder, undisturbed():
             beside = Path(folder) / file.name

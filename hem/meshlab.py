@@ -14,6 +14,7 @@ import numpy as np
 
 from hem.errors import MeshError
 from hem.mesh import TriangleMesh
+from hem.polygons import PolygonMesh
 
 # Shared libraries that pymeshlab's wheel needs from the system (found with ldd), and the Debian
 # and Ubuntu packages that hold them.
@@ -56,13 +57,17 @@ def _imported() -> tuple[ModuleType | None, str]:
     return (None, _advice(said.getvalue())) if broken else (pymeshlab, "")
 
 
-def mesh_set(mesh: TriangleMesh | None = None) -> Any:
+def mesh_set(mesh: TriangleMesh | PolygonMesh | None = None) -> Any:
     """A pymeshlab MeshSet, holding `mesh` where one is given."""
     module = meshlab()
     found = module.MeshSet(verbose=False)
     if mesh is not None:
         points = mesh.points.astype(np.float64)
-        found.add_mesh(module.Mesh(points, mesh.triangles.astype(np.int32)))
+        if isinstance(mesh, PolygonMesh):
+            faces = [np.array(face, np.int32) for face in mesh.faces]
+            found.add_mesh(module.Mesh(vertex_matrix=points, face_list_of_indices=faces))
+        else:
+            found.add_mesh(module.Mesh(points, mesh.triangles.astype(np.int32)))
     return found
 
 

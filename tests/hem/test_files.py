@@ -234,6 +234,19 @@ def test_polygons_stay_polygons_unless_triangles_are_asked_for(
     assert [tuple(row) for row in triangles.triangles] == fans
 
 
+def test_polygons_are_saved_and_come_back(tmp_path: Path) -> None:
+    mesh = hem.PolygonMesh(CORNERS, POLYGONS)
+    hem.save(mesh, tmp_path / "house.obj")
+    back = hem.load(tmp_path / "house.obj")
+    assert isinstance(back, hem.PolygonMesh)
+    assert np.array_equal(back.points, mesh.points)
+    for face, given in zip(back.faces, POLYGONS, strict=True):
+        assert given in [tuple(np.roll(face, k).tolist()) for k in range(len(given))]
+    with pytest.raises(hem.MeshError, match="obj files only"):
+        hem.save(mesh, tmp_path / "house.ply")
+    assert os.listdir(tmp_path) == ["house.obj"]
+
+
 def test_a_triangle_structure_says_how_to_cut_polygons(tmp_path: Path) -> None:
     mesh = hem.load(written(tmp_path / "house.obj", house("obj")))
     for name in structures.NAMES:
