@@ -35,6 +35,9 @@ LOOKS = {
 GRAY = "#8a8a8a"
 FADED = "#efefef"
 
+APART = 40.0
+"""Points between the ends of two lines from which on their labels cannot meet."""
+
 RC: Any = {
     "font.family": "sans-serif",
     "font.size": 9,
@@ -68,6 +71,7 @@ def short(structure: str) -> str:
 def label_ends(axes: Axes, ends: Mapping[str, tuple[float, float, str]], gap: float = 10.5) -> None:
     """Write each label to the right of its line's end, pushed apart to ``gap`` points.
 
+    Lines that end elsewhere, by more than ``APART`` points, are not in each other's way.
     ``ends``: label -> (x, y, color) in data coordinates. Call it when the axes' limits stand.
     """
     figure = axes.get_figure(root=True)
@@ -77,9 +81,21 @@ def label_ends(axes: Axes, ends: Mapping[str, tuple[float, float, str]], gap: fl
         label: float(axes.transData.transform((x, y))[1]) / points
         for label, (x, y, _) in ends.items()
     }
-    order = sorted(placed, key=lambda label: placed[label])
-    spread = spread_apart([placed[label] for label in order], gap)
-    for label, height in zip(order, spread, strict=True):
+    across = {
+        label: float(axes.transData.transform((x, y))[0]) / points
+        for label, (x, y, _) in ends.items()
+    }
+    groups: dict[int, list[str]] = {}
+    for label in sorted(placed, key=lambda label: placed[label]):
+        groups.setdefault(round(across[label] / APART), []).append(label)
+    moved = {
+        label: height
+        for order in groups.values()
+        for label, height in zip(
+            order, spread_apart([placed[label] for label in order], gap), strict=True
+        )
+    }
+    for label, height in moved.items():
         x, y, color = ends[label]
         shift = ScaledTranslation(5 / 72, (height - placed[label]) / 72, figure.dpi_scale_trans)
         axes.text(
