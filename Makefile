@@ -26,8 +26,8 @@ study: $(INSTALLED)  ## measure for some 7 minutes, print table 1, write the rep
 	@$(BIN)/hem table
 	@$(BIN)/hem report
 
-test: $(INSTALLED)  ## run all tests
-	@$(BIN)/python -m pytest tests
+test: $(INSTALLED)  ## run all tests, on every core
+	@$(BIN)/python -m pytest tests -n auto --dist loadfile
 
 soak: $(INSTALLED)  ## operate at random on every structure, 100,000 times
 	@$(BIN)/python -m tests.structures.soak
