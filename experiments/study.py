@@ -123,7 +123,7 @@ def _run_one(
     log.parent.mkdir(exist_ok=True)
     with log.open("w") as output:
         child = subprocess.Popen(
-            command, cwd=file.parent.parent, stdout=output, stderr=subprocess.STDOUT
+            command, cwd=file.parent.parent, env=_own(), stdout=output, stderr=subprocess.STDOUT
         )
         try:
             for _ in _until_it_ends(child):
@@ -133,6 +133,11 @@ def _run_one(
             child.wait()
             raise
     return "\n".join(log.read_text().splitlines()[-15:])
+
+
+def _own() -> dict[str, str]:
+    """The environment without what concerns another pytest, which might turn measuring off."""
+    return {key: value for key, value in os.environ.items() if not key.startswith("PYTEST_")}
 
 
 def _until_it_ends(child: subprocess.Popen[bytes]) -> Iterator[None]:

@@ -120,7 +120,8 @@ def _add_times(files: dict, folder: Path, structure: str) -> None:
 
 def _memory(bytes_per_vertex: int | None) -> CellResult:
     size = 1000 * int(bytes_per_vertex or 0)
-    detail = {"fields": {"vertex.point": size}, "arrays": size, "traced": size, "peak": size}
+    fields = {"vertex.point": size}
+    detail = {"fields": fields, "clr": fields, "traced": size, "peak": size}
     return CellResult(
         id="torus/1000", kind="bytes", family="torus", vertices=1000, reference_bytes=8,
         samples=[float(size)], detail=detail,

@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
+from experiments import cli
 from experiments.cli import app
 from experiments.profiles import PROFILES
 from experiments.results import load
@@ -22,7 +23,8 @@ runner = CliRunner()
 
 
 def hem(*arguments: str) -> tuple[int, str]:
-    result = runner.invoke(app, arguments, env={"COLUMNS": "200"})
+    cli.console.width = cli.errors.width = 200
+    result = runner.invoke(app, arguments)
     return result.exit_code, " ".join((result.stdout + result.stderr).split())
 
 

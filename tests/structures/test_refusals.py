@@ -131,8 +131,10 @@ def test_what_is_no_handle_is_refused(name, operation, wrong):
 def test_what_is_no_position_is_refused(name, point):
     s = structures.build(name, octahedron())
     before = faces_of(s), s.points.copy()
+    # To Plankton an integer is another half-edge, to which the face is to be cut.
+    refused = hem.TopologyError if name == "plankton" and isinstance(point, int) else hem.MeshError
     for operation in (s.split_face, s.split_edge, s.move_vertex):
-        with pytest.raises(hem.MeshError):
+        with pytest.raises((hem.MeshError, refused)):
             operation(int(s.edges()[0]) if operation == s.split_edge else 0, point)
     for operation in (s.split_faces, s.split_edges, s.move_vertices):
         with pytest.raises(hem.MeshError):
