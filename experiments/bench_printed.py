@@ -8,10 +8,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
-from itertools import repeat
-from typing import Any, cast
+from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 import structures
 from experiments.conftest import Keep
@@ -24,6 +24,8 @@ from hem.mesh import TriangleMesh
 from structures.as_printed import AsPrinted, render_arrays
 from structures.half_edge_objects import HalfEdgeMesh, HalfEdgeMeshBuilder, fields_accessed
 
+Array = NDArray[Any]
+
 MENDED = HalfEdgeMesh.name
 STRUCTURES = (AsPrinted.name, MENDED)
 
@@ -34,6 +36,12 @@ ORDERS = ("counted", "timed")
 TIMED_OPERATIONS = 9
 COUNTED_OPERATIONS = 3
 WARM_UP = 2
+
+MORE_FACES = {"build": 0, "split_edge": 2, "split_face": 2, "collapse_edge": -2}
+"""How many faces more there are after each, inside a surface."""
+
+POINTS = [(9.0, 9.0, float(i)) for i in range(TIMED_OPERATIONS + WARM_UP)]
+"""Different positions where nothing is yet."""
 
 Step = Callable[[], Any]
 
@@ -48,58 +56,80 @@ def cells(profile: Profile, structure: str) -> list[Cell]:
     ]
 
 
+class Bench(NamedTuple):
+    """What is to be counted or timed, one after the other, on one mesh, and its faces by now."""
+
+    steps: list[Step]
+    faces: Callable[[], int]
+
+
 def test_listing(cell: Cell, profile: Profile, benchmark: Any, keep: Keep) -> None:
     """Count or time what a listing does, and check what it made by the number of faces."""
-    if cell.order == "counted":
+    counted = cell.order == "counted"
+    bench = _bench(cell, COUNTED_OPERATIONS if counted else TIMED_OPERATIONS)
+    before, latency = bench.faces(), None
+    if counted:
         benchmark.pedantic(lambda: None)
-        samples = [fields_accessed(step) for step in _steps(cell, COUNTED_OPERATIONS)]
-        keep(_result(cell, "work", samples))
-        return
-    steps = _steps(cell, TIMED_OPERATIONS)
-    waiting, latency = iter(steps), latency_now(500 * len(cell.mesh().points))
-    benchmark.pedantic(lambda step: step(), setup=lambda: ((next(waiting),), {}), rounds=len(steps))
-    data = benchmark.stats.stats.data if benchmark.stats else []
-    keep(_result(cell, "time", data, latency=latency))
+        samples: Any = [fields_accessed(step) for step in bench.steps]
+    else:
+        waiting, latency = iter(bench.steps), latency_now(500 * len(cell.mesh().points))
+        benchmark.pedantic(
+            lambda step: step(), setup=lambda: ((next(waiting),), {}), rounds=len(bench.steps)
+        )
+        samples = benchmark.stats.stats.data if benchmark.stats else []
+    expected = before + MORE_FACES[str(cell.query)] * len(bench.steps)
+    if bench.faces() != expected:
+        raise AssertionError(
+            f"{cell.id} on {cell.structure}: {bench.faces()} faces, not {expected}"
+        )
+    keep(_result(cell, "work" if counted else "time", samples, latency))
 
 
-def _steps(cell: Cell, most: int) -> list[Step]:
-    """What is counted or timed, one after the other, on one mesh."""
+def _bench(cell: Cell, most: int) -> Bench:
     mesh = cell.mesh()
     if cell.query == "build":
-        return [partial(_built, cell.structure, mesh)] * (3 if most == TIMED_OPERATIONS else 1)
-    faces = faces_of(cell, most + WARM_UP).tolist()
-    steps = _mended(cell, faces) if cell.structure == MENDED else _printed(cell, faces)
+        times = 3 if most == TIMED_OPERATIONS else 1
+        return Bench([partial(_built, cell.structure, mesh)] * times, lambda: len(mesh.triangles))
+    faces = faces_of(cell, most + WARM_UP)
+    steps, counted = _mended(cell, faces) if cell.structure == MENDED else _printed(cell, faces)
     # The first ones bind methods and make room for many more, which takes a pass over the mesh.
     first = min(WARM_UP, len(steps) - 1)
     for step in steps[:first]:
         step()
-    return steps[first:]
+    return Bench(steps[first:], counted)
 
 
-def _printed(cell: Cell, faces: list[int]) -> list[Step]:
+def _printed(cell: Cell, faces: Array) -> Bench:
     m = _built(cell.structure, cell.mesh())
     m.generate_render_mesh()
-    targets = [m.faces[f] for f in faces]
+    targets = [m.faces[f] for f in faces.tolist()]
     sides = [face.half_edge for face in targets]
-    points = [(9.0, 9.0, float(i)) for i in range(len(faces))]
-    calls = {
-        "split_edge": map(partial, repeat(m.split_half_edge), sides, points),
-        "split_face": map(partial, repeat(m.split_face), targets, points),
-        "collapse_edge": map(partial, repeat(m.collapse_edge), sides),
+    calls: dict[str, tuple[Any, ...]] = {
+        "split_edge": (m.split_half_edge, sides, POINTS),
+        "split_face": (m.split_face, targets, POINTS),
+        "collapse_edge": (m.collapse_edge, sides),
     }
-    return list(calls[str(cell.query)])
+    return Bench(_calls(*calls[str(cell.query)]), lambda: len(m.faces))
 
 
-def _mended(cell: Cell, faces: list[int]) -> list[Step]:
-    s = cast(HalfEdgeMesh, structures.build(MENDED, cell.mesh()))
-    edges = s.face_edges(np.array(faces)).values.reshape(-1, 3)[:, 0].tolist()
-    points = [(9.0, 9.0, float(i)) for i in range(len(faces))]
-    calls = {
-        "split_edge": map(partial, repeat(s.split_edge), edges, points),
-        "split_face": map(partial, repeat(s.split_face), faces, points),
-        "collapse_edge": map(partial, repeat(s.collapse_edge), edges),
+def _mended(cell: Cell, faces: Array) -> Bench:
+    s = structures.build(MENDED, cell.mesh())
+    edges = s.face_edges(faces).values.reshape(-1, 3)[:, 0].tolist()
+    calls: dict[str, tuple[Any, ...]] = {
+        "split_edge": (s.split_edge, edges, POINTS),
+        "split_face": (s.split_face, faces.tolist(), POINTS),
+        "collapse_edge": (s.collapse_edge, edges),
     }
-    return list(calls[str(cell.query)])
+
+    def counted() -> int:
+        s.validate()
+        return s.n_faces
+
+    return Bench(_calls(*calls[str(cell.query)]), counted)
+
+
+def _calls(method: Callable[..., Any], *arguments: list[Any]) -> list[Step]:
+    return [partial(method, *given) for given in zip(*arguments, strict=False)]
 
 
 def _built(structure: str, mesh: TriangleMesh) -> Any:

@@ -187,10 +187,9 @@ def split_as_printed() -> Figure:
     m = AsPrinted.build(*render_arrays(mesh.points, mesh.triangles), whole=True)
     diagonal = next(h for h in m.half_edges if h.opposite is not None)
     m.split_half_edge(diagonal, (0.5, 0.5, 0.0))
-    astray = [h for h in m.half_edges if h.next.face is not h.face]
     corners = [[h.origin.index for h in m.face_circulator(face)][::-1] for face in m.faces]
     s = Plankton.build(hem.PolygonMesh([v.point for v in m.vertices], corners))
-    wrong = [(h.origin.index, h.end.index) for h in astray if h.next.face is not h.face]
+    wrong = [(h.origin.index, h.end.index) for h in m.half_edges if h.next.face is not h.face]
     return steps(
         [
             ("A quad", structures.build("half_edge", mesh), {"edges": [(0, 2)]}),

@@ -6,7 +6,9 @@ cannot use. These counts, from the file's own words, are what its result is held
 
 import re
 import struct
+from bisect import bisect
 from collections.abc import Callable
+from itertools import compress
 from typing import NamedTuple
 
 from hem.errors import MeshError
@@ -68,7 +70,8 @@ def without_stray_corners(data: bytes, extension: str) -> tuple[bytes, int]:
     """The file without faces whose corners are out of range -> it, and how many. O(bytes).
 
     pymeshlab checks the corners of a ply file, but not those of off and obj: to these it computes
-    normals in memory that is not its own, so that the process dies of it sooner or later.
+    normals in memory that is not its own, so that the process dies of it sooner or later. Comments
+    behind a face of an obj file, which keep it busy for ever, are left out, too.
     """
     sift = {"off": _sifted_off, "obj": _sifted_obj}.get(extension)
     return sift(data) if sift else (data, 0)
@@ -93,39 +96,43 @@ def _sifted_off(data: bytes) -> tuple[bytes, int]:
         return data, 0
     head, vertices, faces = _off_parts(data)
     try:
-        kept = [it for it in faces if all(0 <= v < len(vertices) for v in _off_corners(it))]
+        corners = [_off_corners(line) for line in faces]
+        whole = all(
+            len(it) == int(line.split()[0]) for it, line in zip(corners, faces, strict=True)
+        )
     except ValueError as error:
         raise MeshError(f"a face has a corner that is no number: {error}") from error
-    if len(kept) == len(faces):
+    _require(whole, "a face without all its corners")
+    n = len(vertices)
+    within = [all(0 <= v < n for v in it) for it in corners]
+    if all(within):
         return data, 0
-    counts = f"{len(vertices)} {len(kept)} 0".encode()
+    kept = list(compress(faces, within))
+    counts = f"{n} {len(kept)} 0".encode()
     return b"\n".join([head, counts, *vertices, *kept, b""]), len(faces) - len(kept)
 
 
 def _sifted_obj(data: bytes) -> tuple[bytes, int]:
-    n = len(re.findall(rb"(?m)^\s*v\s", data))
+    vertices = [line.start() for line in re.finditer(rb"(?m)^[ \t]*v[ \t]", data)]
     stray = 0
 
     def keep(line: re.Match[bytes]) -> bytes:
         nonlocal stray
-        corners = [corner.split(b"/")[0] for corner in line[1].split()]
-        if all(_is_obj_corner(corner, n) for corner in corners):
-            return line[0]
+        said, comment, _ = line[0].partition(b"#")
+        words = said.replace(b"\\", b" ").split()[1:]
+        try:
+            corners = [int(word.partition(b"/")[0]) for word in words]
+        except ValueError:
+            corners = [0]
+        before = bisect(vertices, line.start()) if min(corners, default=0) < 0 else 0
+        if all(1 <= v <= len(vertices) or -before <= v < 0 for v in corners):
+            return said if comment else line[0]
         stray += 1
         return b""
 
+    # A line may go on behind a backslash.
     sifted = re.sub(rb"(?m)^[ \t]*f[ \t]+((?:[^\n\\]|\\\r?\n|\\)*)$", keep, data)
-    return (sifted, stray) if stray else (data, 0)
-
-
-def _is_obj_corner(corner: bytes, n: int) -> bool:
-    """Whether it names one of n vertices: from 1 on, or from -1 backward."""
-    if corner == b"\\":  # the line goes on
-        return True
-    try:
-        return 1 <= abs(int(corner)) <= n
-    except ValueError:
-        return False
+    return (data, 0) if sifted == data else (sifted, stray)
 
 
 def _obj(data: bytes) -> Contents:

@@ -63,15 +63,13 @@ def load(
                 f"{stray:,} of {held.faces or stray:,} faces have corners out of range; "
                 "repair=True leaves those out"
             )
-        with _written(file, sound if stray else None) as readable:
+        with _written(file, None if sound is data else sound) as readable:
             found = _read(readable, sound, contents(sound, _extension(file)), repair)
-        if isinstance(found, PolygonMesh):
-            _require_all(found, held)
-            if not (triangulate or repair):
-                return found
-        mesh = found.triangulated() if isinstance(found, PolygonMesh) else found
         if not repair:
-            _require_all(mesh, held)
+            _require_all(found, held)
+        if isinstance(found, PolygonMesh) and not (triangulate or repair):
+            return found
+        mesh = found.triangulated() if isinstance(found, PolygonMesh) else found
         if not len(mesh.triangles):
             raise MeshError(f"there are no triangles in it, only {len(mesh.points):,} points")
         return _repaired(mesh) if repair else mesh
@@ -160,17 +158,21 @@ def _read(
         raise MeshError(f"{_words(error)}") from error
     cut = held.faces is not None and meshes.current_mesh().face_number() > held.faces
     if cut and not several:
-        return _polygons(meshes.current_mesh(), _extension(file), data)
+        return _polygons(meshes.current_mesh(), _extension(file), data, drop_unusable)
     return _current(meshes, drop_unusable)
 
 
-def _polygons(current: Any, extension: str, data: bytes) -> PolygonMesh:
+def _polygons(current: Any, extension: str, data: bytes, drop_unusable: bool) -> PolygonMesh:
     """The faces as they stand in the file; pymeshlab has cut them, and puts them together again."""
+    points: Any = current.transformed_vertex_matrix()
     if extension == "off":  # of faces with five corners or more pymeshlab 2025.7 makes other ones
-        return PolygonMesh(*off_polygons(data))
-    # A polygon comes turned by one corner, a triangle does not.
-    faces = [np.roll(face, len(face) > 3) for face in current.polygonal_face_list()]
-    return PolygonMesh(current.transformed_vertex_matrix(), faces)
+        points, faces = off_polygons(data)
+    else:  # a polygon comes turned by one corner, a triangle does not
+        listed = current.polygonal_face_list()
+        faces = [np.roll(face, len(face) > 3).tolist() for face in listed]
+    if drop_unusable:
+        faces = [face for face in faces if len(set(face)) == len(face) > 2]
+    return PolygonMesh(points, faces)
 
 
 def _current(meshes: Any, drop_unusable: bool) -> TriangleMesh:

@@ -14,7 +14,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from hem.errors import NonManifoldError
+from hem.errors import MeshError, NonManifoldError
 from hem.invariants import require_one_fan
 from hem.manifold import require_manifold
 from hem.mesh import TriangleMesh
@@ -77,10 +77,7 @@ def pair_polygons(mesh: PolygonMesh) -> Pairing:
 
     Cost O(corners · log). Raises NonManifoldError as ``pair_half_edges``.
     """
-    here, n = mesh.faces.values.astype(np.int64), len(mesh.points)
-    following = np.arange(1, len(here) + 1)
-    following[mesh.faces.offsets[1:] - 1] = mesh.faces.offsets[:-1]
-    there = here[following]
+    here, there = mesh.sides()
     forth, back = here << 32 | there, there << 32 | here
     order = np.argsort(forth, kind="stable")
     again = np.diff(forth[order]) == 0
@@ -94,9 +91,14 @@ def pair_polygons(mesh: PolygonMesh) -> Pairing:
     candidate = order[place] if len(order) else order
     paired = np.where(forth[candidate] == back, candidate, -1)
     twin: NDArray[np.int32] = paired.astype(np.int32)
-    vertex = np.full(n, -1, np.int32)
+    vertex = np.full(len(mesh.points), -1, np.int32)
     vertex[here[::-1]] = np.arange(len(here), dtype=np.int32)[::-1]
-    require_one_fan(here, np.where(twin >= 0, following[twin], -1), np.arange(len(here)))
+    following = np.roll(np.arange(len(here)), -1)
+    following[mesh.faces.offsets[1:] - 1] = mesh.faces.offsets[:-1]
+    try:
+        require_one_fan(here, np.where(twin >= 0, following[twin], -1), np.arange(len(here)))
+    except MeshError as error:
+        raise NonManifoldError("fans of faces meet in a vertex", **error.elements) from error
     return Pairing(twin, vertex, (len(here) + int((twin < 0).sum())) // 2)
 
 

@@ -143,6 +143,9 @@ def test_what_cannot_be_saved_is_refused_with_the_reason(tmp_path: Path) -> None
         ("not finite.off", OFF.format("nan", 3)),
         ("corner out of range.obj", OBJ.format(9)),
         ("repeated corner.obj", OBJ.format(3)),
+        ("corner before the first.obj", "f -4 -3 -2\n" + OBJ.format(4)),
+        ("no corner.obj", OBJ.format("x")),
+        ("short line.off", OFF.format(0, "").replace("3 0 1 2", "3 0 1")),
     ],
 )
 def test_unusable_elements_are_never_left_out_silently(
@@ -245,6 +248,22 @@ def test_polygons_are_saved_and_come_back(tmp_path: Path) -> None:
     with pytest.raises(hem.MeshError, match="obj files only"):
         hem.save(mesh, tmp_path / "house.ply")
     assert os.listdir(tmp_path) == ["house.obj"]
+
+
+def test_what_an_obj_file_may_say_of_its_corners(tmp_path: Path) -> None:
+    points = OBJ[: OBJ.index("f")]
+    faces = "f -4 -3 -2 # counted backward\nf 1/1/1 \\\n 3/1/1 4/1/1\n"
+    mesh = hem.load(written(tmp_path / "fine.obj", points + "vt 0 0\nvn 0 0 1\n" + faces))
+    assert mesh.triangles.tolist() == [[0, 1, 2], [0, 2, 3]]
+
+
+def test_repair_leaves_polygons_with_repeated_corners_out(tmp_path: Path) -> None:
+    for extension in ("obj", "off"):
+        text = house(extension).replace("1 2 3 4", "1 2 1 4").replace("4 0 1 2 3", "4 0 1 0 3")
+        path = written(tmp_path / f"house.{extension}", text)
+        with pytest.raises(hem.MeshError, match=r"twice|can be used"):
+            hem.load(path)
+        assert len(hem.load(path, repair=True).triangles) == 4
 
 
 def test_a_triangle_structure_says_how_to_cut_polygons(tmp_path: Path) -> None:

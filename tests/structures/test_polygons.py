@@ -403,7 +403,7 @@ def test_building_at_once_gives_what_adding_the_faces_one_by_one_gives(start):
     ],
 )
 def test_non_manifold_polygons_are_refused(faces):
-    with pytest.raises(hem.MeshError):
+    with pytest.raises(hem.NonManifoldError):
         structures.build(
             "plankton", hem.PolygonMesh(np.random.default_rng(0).random((8, 3)), faces)
         )
