@@ -12,15 +12,27 @@ from numpy.typing import ArrayLike, NDArray
 from hem import arguments
 from hem.edit import Edit, Remapping
 from hem.errors import MeshError, TopologyError
-from hem.kernels import SIDES, VALENCE
+from hem.kernels import SIDES, VALENCE, Kernel
 from hem.operations import ENTRIES, OPERATIONS, WIDTH, Operation
 from hem.queries import ELEMENTS
 from hem.queryable import Queryable
 from hem.records import compacted
-from hem.topology import COMMON_NEIGHBOR, NEEDS_ROOM, NO_EDGE, NOT_AN_END, NOT_FINITE, REFUSALS
+from hem.removal import Removal, remaining, removing, vanishing_edges
+from hem.topology import (
+    BETWEEN,
+    COMMON_NEIGHBOR,
+    NEEDS_ROOM,
+    NO_EDGE,
+    NOT_AN_END,
+    NOT_FINITE,
+    REFUSALS,
+)
 from hem.uses import CHECK, DO, MODE, PERSIST, Uses
 
 Array = NDArray[Any]
+
+Algorithm = Callable[[Mapping[str, Kernel], Mapping[str, Kernel]], Kernel]
+"""Makes an algorithm of one structure's queries and operations, see ``Editable.run``."""
 
 
 class Bound(NamedTuple):
@@ -72,6 +84,7 @@ class Editable(Queryable):
     """What can be done to this structure, by name."""
 
     _operation_uses: ClassVar[dict[str, Uses]]
+    _algorithms: ClassVar[dict[Algorithm, Uses]]
 
     # One at a time ---------------------------------------------------------------------------
 
@@ -158,6 +171,28 @@ class Editable(Queryable):
         corners = self.face_vertices(faces).values.reshape(-1, 3)
         centroids = self.points[corners].mean(axis=1, dtype=np.float64)
         return self._all("split_all_faces", "split_face", faces, centroids, faces)
+
+    def remove_faces(self, faces: ArrayLike) -> None:
+        """Take different faces (k,) away, all at once or none; vertices stay.
+
+        Refused where two fans of what is left would meet in one vertex. Subscribers hear of one
+        edit. Cost: that of ``vertex_faces`` at all the corners.
+        """
+        handles = arguments.handles("remove_faces", faces)
+        self._require_different("remove_faces", "face", handles, handles)
+        if not len(handles):
+            return
+        left = remaining(self, handles)
+        pinched = left.pinched()
+        if len(pinched):
+            raise TopologyError(f"cannot remove_faces: {REFUSALS[BETWEEN]}", vertices=pinched)
+        vertices, first = np.unique(left.vertex, return_index=True)
+        anchors = np.stack([vertices, left.face[first]], axis=1)
+        vanishing = np.array([vanishing_edges(self, handles, left)])
+        log = np.zeros(len(handles) + ENTRIES, np.int64)
+        self._count_edges()
+        self.run(removing, Removal(handles, anchors, vanishing, log))
+        self.tell("remove_faces", log[1 : log[0] + 1])
 
     def move_vertices(self, vertices: ArrayLike, points: ArrayLike) -> None:
         """Give different vertices (k,) the positions (k, 3). One edit. Cost O(k)."""
@@ -256,6 +291,44 @@ class Editable(Queryable):
     def _copy_touched(self) -> Callable[..., None]:
         uses, k = self._uses["face_vertices"], self.kernels
         return uses.copy_touched(k["face_exists"], k["coordinate"])
+
+    # Algorithms of one's own -----------------------------------------------------------------
+
+    def run(self, make: Algorithm, plan: Any) -> int:
+        """Run an algorithm over this mesh in one go, compiled where the structure is.
+
+        ``make(queries, operations)`` gets the kernels of this structure by name and makes one of
+        them, ``algorithm(m, plan) -> result``; it is asked once per structure. ``plan`` is a
+        ``NamedTuple`` of arrays. Operations need room and scratch, see ``scratch``, and are told to
+        subscribers by ``tell``.
+        """
+        return int(type(self)._algorithm(make).run(plan, *self.records))
+
+    def scratch(self, splits: int) -> tuple[Any, Array]:
+        """Make room for so many splits -> scratch for all of them, and a log.
+
+        Cost O(1) per split in the long run.
+        """
+        self._count_edges()
+        self._make_room(splits, 2 * splits)
+        out, valence = self._out["edge"], int(self.records.counts[VALENCE]) + splits + 1
+        if WIDTH * (valence + 1) > len(out):
+            self._out.update(self._scratch(max(splits, self.n_faces // 8)))
+            self._repin()
+        return self._out["edge"], np.zeros(ENTRIES * (splits + 2), np.int64)
+
+    def tell(self, kind: str, touched: Array) -> None:
+        """Tell subscribers of one edit, by the log of what an algorithm touched."""
+        if self._subscribers:
+            self._publish(Edit(kind, -1, touched))
+
+    @classmethod
+    def _algorithm(cls, make: Algorithm) -> Uses:
+        if make not in cls._algorithms:
+            operations = {name: uses.kernel for name, uses in cls._operation_uses.items()}
+            made = make(cls.kernels, operations)
+            cls._algorithms[make] = cls.uses_type(made, cls.records_type)
+        return cls._algorithms[make]
 
     # Measuring -------------------------------------------------------------------------------
 
@@ -402,6 +475,16 @@ class Editable(Queryable):
         """Do an operation for all handles, or for none if one is refused -> the vertices."""
         positions = arguments.positions(called, points, len(handles))
         element = self.operations[operation].element
+        self._require_different(called, element, handles, names)
+        args = arguments.rows(handles)
+        if element == "edge" and self.emulated:
+            self._require_allowed(operation, args, positions)
+        results, log = self._run(operation, args, positions)
+        self._publish(Edit(called, -1, log))
+        return results.astype(np.int32)
+
+    def _require_different(self, called: str, element: str, handles: Array, names: Array) -> None:
+        """Raise for handles that name nothing, and for elements ``names`` that are named twice."""
         try:
             self._check_handles(element, handles)
         except MeshError as error:
@@ -410,12 +493,6 @@ class Editable(Queryable):
         again = np.delete(handles, np.unique(names, return_index=True)[1])
         if len(again):
             raise TopologyError(f"{called} takes different {many}, each once", **{many: again})
-        args = arguments.rows(handles)
-        if element == "edge" and self.emulated:
-            self._require_allowed(operation, args, positions)
-        results, log = self._run(operation, args, positions)
-        self._publish(Edit(called, -1, log))
-        return results.astype(np.int32)
 
     def _require_allowed(self, operation: str, args: Array, positions: Array) -> None:
         """Raise for the first row of ``args`` (n, 3) that would be refused; change nothing.

@@ -22,6 +22,9 @@ kernel: Callable[[Kernel], Kernel] = njit(forceinline=True)
 A call would push some forty fields of the records' arrays, which takes longer than most queries.
 """
 
+part: Callable[[Kernel], Kernel] = njit
+"""Compiles a part of an algorithm that is large and called from several places: not inlined."""
+
 
 VERTICES, EDGES, FACES, VERTEX_END, EDGE_END, FACE_END = range(6)
 """Columns of a structure's ``counts``: how many elements are live, and how many records are in use.
@@ -237,6 +240,11 @@ def bury(m: Any, v: int) -> None:
 @kernel
 def isolate(m: Any, v: int) -> None:
     """See to it that vertex v has no faces, where it would not know of them anyway."""
+
+
+@kernel
+def anchor(m: Any, v: int, f: int) -> None:
+    """Let vertex v know of the face f at it, where it would not know of any."""
 
 
 @kernel

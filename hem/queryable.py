@@ -120,6 +120,9 @@ class Queryable(ABC):
     pinning: ClassVar[type[Any]] = Pinned
     """How records and scratch are handed to kernels time and again."""
 
+    uses_type: ClassVar[type[Uses]] = Uses
+    """How kernels become what is called."""
+
     _uses: ClassVar[dict[str, Uses]]
 
     vertex_vertices: QueryMethod = _query_method(QUERIES["vertex_vertices"])

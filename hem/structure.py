@@ -14,16 +14,25 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hem.editable import Editable
-from hem.kernels import Kernel, bury, coordinate, isolate, named, place, sides, vertex_exists
+from hem.kernels import (
+    Kernel,
+    anchor,
+    bury,
+    coordinate,
+    isolate,
+    named,
+    place,
+    sides,
+    vertex_exists,
+)
 from hem.mesh import TriangleMesh
 from hem.operations import operations
 from hem.queries import QUERIES
 from hem.records import copied
-from hem.uses import Uses
 
 Array = NDArray[Any]
 
-OF_ARRAYS = named(coordinate, place, bury, isolate, sides, vertex_exists)
+OF_ARRAYS = named(coordinate, place, bury, isolate, anchor, sides, vertex_exists)
 """Kernels that are the same wherever vertices are rows of an array and faces triangles."""
 
 REFERENCE_TYPES = {4: np.int32, 8: np.int64}
@@ -42,14 +51,13 @@ class Structure(Editable):
     compiled: ClassVar[bool] = True
     """Whether kernels are compiled; what is not is slow, and measured on smaller meshes."""
 
-    uses_type: ClassVar[type[Uses]] = Uses
-
     def __init_subclass__(cls) -> None:
         """Derive the four uses of every kernel; abstract intermediates declare none."""
         super().__init_subclass__()
         if hasattr(cls, "kernels"):
             cls.kernels = {**OF_ARRAYS, **cls.kernels}
             derive, records = cls.uses_type, cls.records_type
+            cls._algorithms = {}
             cls._uses = {name: derive(cls.kernels[name], records) for name in QUERIES}
             cls._operation_uses = {
                 name: derive(kernel, records) for name, kernel in cls.operation_kernels().items()

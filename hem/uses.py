@@ -8,7 +8,8 @@ A kernel answers one query for one element: ``vertex_faces(m, v, out) -> count``
 3. ``sweep``: the same loop with nothing kept, for timing;
 4. ``work``: the same source, uncompiled, over arrays that count their reads.
 
-An operation has two: ``perform``, for one or for many of them, and its work.
+An operation has two: ``perform``, for one or for many of them, and its work. An algorithm made of
+queries and operations has one: ``run``.
 
 The derived functions are cached on disk. Numba decides by the file of the function itself whether
 its cache is stale, so their names carry a digest of the kernel's own file: an edited kernel never
@@ -115,6 +116,11 @@ def _copy_touched(
             indices[index, 0], indices[index, 1], indices[index, 2] = 0, 0, 0
 
 
+def _run(plan: Any, *arrays: Array) -> int:
+    result: int = _KERNEL(_RECORDS(*arrays), plan)
+    return result
+
+
 def _find_edge(a: int, b: int, out: Array, vertices: Array, *arrays: Array) -> int:
     m = _RECORDS(*arrays)
     for i in range(_KERNEL(m, a, out)):
@@ -178,6 +184,16 @@ class Uses:
         Points and clockwise corners of what the log of an edit names; zeros for what is dead.
         """
         return self._compiled(_copy_touched, _EXISTS=exists, _COORDINATE=coordinate)
+
+    @cached_property
+    def run(self) -> Callable[..., int]:
+        """``run(plan, *records) -> result``, for an algorithm ``kernel(m, plan)``."""
+        return self._compiled(_run)
+
+    @property
+    def kernel(self) -> Kernel:
+        """What it is the uses of."""
+        return self._kernel
 
     def find_edge(self, edge_vertices: Kernel) -> Callable[..., int]:
         """``find_edge(a, b, out, vertices, *records) -> edge or -1``, from ``vertex_edges``."""

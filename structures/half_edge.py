@@ -460,6 +460,16 @@ def detach(m: HalfEdgeRecords, f: int) -> None:
             set_vertices(m, left)
 
 
+@kernel
+def anchor(m: HalfEdgeRecords, v: int, f: int) -> None:
+    """Let v know of the face f at it. Cost O(1)."""
+    h = m.face_half_edge[f]
+    for _ in range(3):
+        if m.half_edge[h, ORIGIN] == v:
+            m.vertex_half_edge[v] = h
+        h = m.half_edge[h, NEXT]
+
+
 @njit(cache=True, nogil=True)
 def _fill(
     begin: int, end: int, part: int, triangles: Array, twin: Array, face: Array, half_edge: Array
@@ -494,7 +504,7 @@ class HalfEdge(Structure):
         *(edge_vertices, edge_edges, edge_faces),
         *(face_vertices, face_edges, face_faces),
         *(edge_exists, face_exists, diamond, joined, beside),
-        *(isolate, cut_edge, cut_face, contract, turn, attach, detach),
+        *(isolate, cut_edge, cut_face, contract, turn, attach, detach, anchor),
     )
 
     @classmethod

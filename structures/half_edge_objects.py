@@ -401,6 +401,14 @@ def detach(m: ObjectRecords, f: int) -> None:
             lead_from_ends(left)
 
 
+def anchor(m: ObjectRecords, v: int, f: int) -> None:
+    """Let v know of the face f at it. Cost O(1)."""
+    h = m.faces.items[f].half_edge
+    while h.origin.index != v:
+        h = h.next
+    h.origin.half_edge = h
+
+
 class ObjectUses(InterpretedUses):
     """Counts the fields of the class model."""
 
@@ -420,7 +428,7 @@ class HalfEdgeMesh(Structure):
         *(face_vertices, face_edges, face_faces),
         *(vertex_exists, edge_exists, face_exists, diamond, joined, beside),
         *(coordinate, place, bury, isolate),
-        *(cut_edge, cut_face, contract, turn, attach, detach),
+        *(cut_edge, cut_face, contract, turn, attach, detach, anchor),
     )
 
     @classmethod

@@ -530,7 +530,12 @@ def detach(m: PlanktonRecords, f: int) -> None:
         v = m.half_edge[following, START]
         goes, next_goes = m.half_edge[h ^ 1, FACE] < 0, m.half_edge[following ^ 1, FACE] < 0
         if goes and next_goes:
+            # Border ran into v on one side of the face and out of it on the other.
+            into, out = m.half_edge[h ^ 1, PREVIOUS], m.half_edge[following ^ 1, NEXT]
             m.vertex_half_edge[v] = -1
+            if into != following ^ 1:  # faces that meet this one in v alone
+                link(m, into, out)
+                m.vertex_half_edge[v] = out
         elif goes:
             link(m, m.half_edge[h ^ 1, PREVIOUS], following)
             m.vertex_half_edge[v] = following

@@ -381,6 +381,12 @@ def detach(m: TriangleNeighborRecords, f: int) -> None:
         m.triangle[f, CORNER + i] = -1
 
 
+@kernel
+def anchor(m: TriangleNeighborRecords, v: int, f: int) -> None:
+    """Let v know of the face f at it. Cost O(1)."""
+    m.vertex_triangle[v] = f
+
+
 @njit(cache=True, nogil=True)
 def _fill(begin: int, end: int, part: int, corners: Array, twin: Array, triangle: Array) -> None:
     for t in range(begin, end):
@@ -406,7 +412,7 @@ class TriangleNeighbor(PackedEdges):
         *(edge_vertices, edge_edges, edge_faces),
         *(face_vertices, face_edges, face_faces),
         *(edge_exists, face_exists, diamond, joined, beside),
-        *(isolate, cut_edge, cut_face, contract, turn, attach, detach),
+        *(isolate, cut_edge, cut_face, contract, turn, attach, detach, anchor),
     )
 
     @classmethod

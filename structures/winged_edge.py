@@ -443,6 +443,17 @@ def detach(m: WingedEdgeRecords, f: int) -> None:
             m.edge[d >> 1, TAIL] = -1
 
 
+@kernel
+def anchor(m: WingedEdgeRecords, v: int, f: int) -> None:
+    """Let v know of the face f at it. Cost O(1)."""
+    e = m.face_edge[f]
+    d = 2 * e + side_of(m, e, f)
+    for _ in range(3):
+        if tip(m, d) == v:
+            m.vertex_edge[v] = d >> 1
+        d = following(m, d)
+
+
 @njit(cache=True, nogil=True)
 def _number_edges(twin: Array, edge_of: Array) -> None:
     """Number the edges in the order of the first of their half-edges."""
@@ -496,7 +507,7 @@ class WingedEdge(Structure):
         *(edge_vertices, edge_edges, edge_faces),
         *(face_vertices, face_edges, face_faces),
         *(edge_exists, face_exists, diamond, joined, beside),
-        *(isolate, cut_edge, cut_face, contract, turn, attach, detach),
+        *(isolate, cut_edge, cut_face, contract, turn, attach, detach, anchor),
     )
 
     @classmethod

@@ -1,0 +1,90 @@
+"""Materials: how what is hit breaks, as data."""
+
+from __future__ import annotations
+
+import difflib
+import os
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+from pathlib import Path
+from typing import Any
+
+from hem.errors import MeshError
+
+_OWN = Path(__file__).parent / "materials.toml"
+
+
+@dataclass(frozen=True)
+class Material:
+    """How something breaks; ``materials.toml`` says what each number means and its unit.
+
+    Lengths are parts of the diagonal of a mesh's bounding box, so that a material breaks a large
+    model as it does a small one. Raises MeshError for numbers that no material has.
+    """
+
+    name: str
+    density: float
+    thickness: float
+    circles: tuple[int, ...]
+    scale: float
+    sites: float
+    reach: float
+    burst: float
+    color: str = "#b0b0b0"
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "circles", tuple(self.circles))
+        wrong = [it for it in _POSITIVE if not _is_positive(getattr(self, it))]
+        if not all(isinstance(count, int) and count >= 0 for count in self.circles):
+            wrong.append("circles")
+        if self.burst > 1:
+            wrong.append("burst")
+        if wrong:
+            raise MeshError(
+                f"material {self.name!r}: {', '.join(wrong)} cannot be "
+                f"{', '.join(repr(getattr(self, it)) for it in wrong)}; numbers are positive, "
+                "circles are counts of break points, and burst is a part of 1"
+            )
+
+
+_POSITIVE = ("density", "thickness", "scale", "sites", "reach", "burst")
+
+
+def _is_positive(value: Any) -> bool:
+    return isinstance(value, int | float) and 0 < value < float("inf")
+
+
+def materials(path: str | os.PathLike[str] = _OWN) -> dict[str, Material]:
+    """The materials of a toml file by name. Raises MeshError that names the file and the entry."""
+    try:
+        read = tomllib.loads(Path(path).read_text())
+    except (OSError, ValueError) as error:
+        raise MeshError(f"cannot read materials from {path}: {error}") from error
+    return {name: _material(name, entry, path) for name, entry in read.items()}
+
+
+def material(name: str, known: Mapping[str, Material] | None = None) -> Material:
+    """The material of a name, of those that are ``known``. Raises MeshError where there is none."""
+    known = MATERIALS if known is None else known
+    if name not in known:
+        near = difflib.get_close_matches(name, known, n=1)
+        meant = f"; did you mean {near[0]!r}?" if near else ""
+        raise MeshError(f"no material {name!r} (there are {', '.join(known)}){meant}")
+    return known[name]
+
+
+def _material(name: str, entry: Any, path: Any) -> Material:
+    names = {field.name for field in fields(Material)} - {"name"}
+    if not isinstance(entry, dict):
+        raise MeshError(f"{path}: {name} is no table of a material's numbers")
+    unknown, missing = set(entry) - names, names - set(entry) - {"color"}
+    if unknown or missing:
+        what = [f"lacks {', '.join(sorted(missing))}"] if missing else []
+        what += [f"has no {', '.join(sorted(unknown))}"] if unknown else []
+        raise MeshError(f"{path}: material {name!r} {' and '.join(what)}")
+    return Material(name, **entry)
+
+
+MATERIALS = materials()
+"""The materials that come with this, by name."""
