@@ -1,5 +1,8 @@
 """Triangle meshes, their sources, and what every data structure for them shares."""
 
+from importlib import import_module
+from typing import Any
+
 from hem.edit import Edit, Remapping
 from hem.errors import MeshError, NonManifoldError, TopologyError
 from hem.families import FAMILIES, generate
@@ -34,3 +37,10 @@ __all__ = [
     "valence_hubs",
     "valence_mesh",
 ]
+
+
+def __getattr__(name: str) -> Any:
+    """``hem.fracture``, which brings a compiler along, when it is first asked for."""
+    if name == "fracture":
+        return import_module("hem.fracture")
+    raise AttributeError(f"module 'hem' has no attribute {name!r}")

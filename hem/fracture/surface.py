@@ -31,7 +31,7 @@ from hem.fracture.hanging import hanging
 from hem.fracture.islands import islands
 from hem.fracture.material import Material
 from hem.fracture.material import material as named
-from hem.fracture.nearest import Found, corner_vertices, nearest_face
+from hem.fracture.nearest import corner_vertices, nearest_face
 from hem.fracture.pieces import Fracture, box, diagonal
 from hem.mesh import TriangleMesh
 from hem.structure import Structure
@@ -120,25 +120,67 @@ def shatter(
     Source: thesis 4.4.
     """
     chosen = material if isinstance(material, Material) else named(material)
-    found = nearest_face(structure, impact)
-    size, tolerance = _measured(structure)
-    offsets = break_points(chosen, seed, chosen.scale * size if scale is None else scale)
-    broken = _broken(structure, found, offsets, tolerance)
-    structure.tell("shatter", broken.log[1 : broken.log[0] + 1])
-    shards, hung = _taken_out(structure, broken)
-    outcomes = {words: int((broken.outcome == code).sum()) for words, code in OUTCOMES.items()}
+    broken, new, size = break_surface(structure, impact, chosen, seed, scale)
+    loose = hanging(structure, new)
+    faces = np.concatenate([new, loose])
+    shards = Shards(structure.points[corner_vertices(structure, faces)])
+    structure.remove_faces(faces)
+    rest = Rest(structure)
     return Fracture(
         method="surface",
         material=chosen,
         seed=seed,
-        impact=found.point,
+        impact=broken.target,
         direction=-np.cross(broken.frame[0], broken.frame[1]),
-        shards=Shards(shards),
-        rest=Rest(structure),
-        counts=outcomes | {"broken off": hung},
+        shards=shards,
+        rest=rest,
+        counts=outcomes(broken) | {"broken off": len(loose)},
         diagonal=size,
-        find_neighbors=lambda: sharing_edges([*Shards(shards), *Rest(structure)]),
+        find_neighbors=lambda: sharing_edges([*shards, *rest]),
     )
+
+
+def break_surface(
+    structure: Structure,
+    impact: ArrayLike,
+    material: Material,
+    seed: int,
+    scale: float | None = None,
+) -> tuple[Plan, NDArray[np.int64], float]:
+    """Split all that ``shatter`` splits -> what became of it, the split faces, the diagonal."""
+    _require_triangles(structure)
+    found = nearest_face(structure, impact)
+    low, high = box(structure.points)
+    size = diagonal(structure.points)
+    tolerance = max(TOLERANCE * size, ROUNDING * float(np.abs([low, high]).max()))
+    offsets = break_points(material, seed, material.scale * size if scale is None else scale)
+    frame, start = tangent(structure, found.face), np.array([found.face])
+    out, log = structure.scratch(len(offsets) + 4)
+    told = plan(found.point, tolerance, out, log, start=start, frame=frame, offsets=offsets)
+    if structure.run(breaking, told) < 0:
+        raise RuntimeError("there was not enough room for the splits")
+    touched = log[1 : log[0] + 1]
+    structure.tell("break_surface", touched)
+    split = Edit("break_surface", -1, touched)
+    new = np.union1d(split.created_faces, split.changed_faces).astype(np.int64)
+    return told, new, size
+
+
+def outcomes(broken: Plan) -> dict[str, int]:
+    """How many break points came to what, by the words of ``OUTCOMES``."""
+    return {words: int((broken.outcome == code).sum()) for words, code in OUTCOMES.items()}
+
+
+def _require_triangles(structure: Structure) -> None:
+    if structure.most_corners > 3:
+        faces = structure.faces()
+        wrong = faces[structure.face_vertices(faces).counts > 3]
+        if len(wrong):
+            raise MeshError(
+                "only triangles can be shattered; cut the polygons first, with "
+                "structures.build(name, mesh.triangulated())",
+                faces=wrong,
+            )
 
 
 def break_points(material: Material, seed: int, step: float) -> NDArray[np.float64]:
@@ -167,35 +209,6 @@ def random_numbers(seed: int) -> Any:
     if isinstance(seed, bool) or not isinstance(seed, int | np.integer) or seed < 0:
         raise MeshError(f"a seed is a whole number from 0 on, not {seed!r}")
     return np.random.Generator(np.random.PCG64(int(seed))).random
-
-
-def _measured(structure: Structure) -> tuple[float, float]:
-    """The diagonal of the bounding box, and the tolerance that follows from it."""
-    low, high = box(structure.points)
-    size = diagonal(structure.points)
-    return size, max(TOLERANCE * size, ROUNDING * float(np.abs([low, high]).max()))
-
-
-def _broken(structure: Structure, found: Found, offsets: Array, tolerance: float) -> Plan:
-    """Split all that is to be split -> what became of it."""
-    frame = tangent(structure, found.face)
-    out, log = structure.scratch(len(offsets) + 4)
-    start = np.array([found.face])
-    told = plan(found.point, tolerance, out, log, start=start, frame=frame, offsets=offsets)
-    if structure.run(breaking, told) < 0:
-        raise RuntimeError("there was not enough room for the splits")
-    return told
-
-
-def _taken_out(structure: Structure, broken: Plan) -> tuple[NDArray[np.float32], int]:
-    """Remove the split faces and what would hang -> their corners (k, 3, 3), how many hung."""
-    split = Edit("shatter", -1, broken.log[1 : broken.log[0] + 1])
-    new = np.union1d(split.created_faces, split.changed_faces)
-    loose = hanging(structure, new)
-    faces = np.concatenate([new, loose])
-    corners = structure.points[corner_vertices(structure, faces)]
-    structure.remove_faces(faces)
-    return corners, len(loose)
 
 
 def tangent(structure: Structure, face: int) -> NDArray[np.float64]:

@@ -5,6 +5,7 @@ Used by the differential tests and by the long soak (``python -m tests.structure
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -15,7 +16,7 @@ from hem.structure import Structure
 
 KINDS = (
     *("split_edge", "split_face", "collapse_edge", "collapse_edge", "collapse_edge", "flip_edge"),
-    *("flip_edge", "remove_face", "add_face", "move_vertex"),
+    *("flip_edge", "remove_face", "remove_faces", "add_face", "move_vertex"),
 )
 LISTS = ("created_vertices", "changed_vertices", "removed_vertices")
 LISTS += ("created_faces", "changed_faces", "removed_faces")
@@ -51,6 +52,9 @@ def aim(s: Structure, action: Action) -> Aimed | None:
     if not len(faces):
         return None
     face = int(faces[first % len(faces)])
+    if kind == "remove_faces":
+        chosen = faces[(first + second * np.arange(1 + third % 12)) % len(faces)]
+        return Aimed(kind, tuple(np.unique(chosen).tolist()), -1, point)
     if kind in ("split_face", "remove_face"):
         return Aimed(kind, (face,), -1, point)
     corners = s.face_vertices(face).tolist()
@@ -82,7 +86,9 @@ def perform(s: Structure, aimed: Aimed) -> Any:
     """Do it -> what the edit names, or why it was refused. The predicates must agree."""
     kind, elements, keep, point = aimed
     try:
-        if kind == "move_vertex" or kind == "split_face":
+        if kind == "remove_faces":
+            edit = _told(s, lambda: s.remove_faces(elements))
+        elif kind == "move_vertex" or kind == "split_face":
             edit = getattr(s, kind)(*elements, point)
         elif kind in ("remove_face", "add_face"):
             edit = getattr(s, kind)(*elements)
@@ -91,6 +97,17 @@ def perform(s: Structure, aimed: Aimed) -> Any:
     except hem.TopologyError as refusal:
         return refusal.reason
     return edit.vertex, *(getattr(edit, name).tolist() for name in LISTS)
+
+
+def _told(s: Structure, operate: Callable[[], None]) -> hem.Edit:
+    """What subscribers hear of an operation that tells nobody else."""
+    heard: list[hem.Edit] = []
+    unsubscribe = s.subscribe(heard.append)
+    try:
+        operate()
+    finally:
+        unsubscribe()
+    return heard[0]
 
 
 def _on_edge(s: Structure, kind: str, edge: int, keep: int, point: Any) -> hem.Edit:
@@ -115,7 +132,7 @@ def faces_of(s: Structure) -> dict[int, tuple[int, ...]]:
     return dict(zip(faces.tolist(), turned, strict=True))
 
 
-EULER = {"add_face": None, "remove_face": None}
+EULER = {"add_face": None, "remove_face": None, "remove_faces": None}
 """Operations that may change Euler's number; all others keep it."""
 
 
