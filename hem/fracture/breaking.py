@@ -21,11 +21,14 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from hem.kernels import FACES, Array, Kernel, kernel, part
+from hem.kernels import FACE_END, FACES, Array, Kernel, kernel, part
 from hem.topology import ALLOWED, NEEDS_ROOM
 
 NOWHERE, ON_VERTEX, ON_EDGE, IN_FACE = -1, 0, 1, 2
 """What became of a break point: off the surface, on a vertex (no split), or splits of either."""
+
+JUMP = -1
+"""Begin a walk where it is likely to be short."""
 
 CROSSINGS_PER_ROOT = 16
 """Faces that a walk may visit per square root of their number; who needs more is going round."""
@@ -193,14 +196,38 @@ def surveying(k: Mapping[str, Kernel]) -> Any:
 
 
 def finding(k: Mapping[str, Kernel], operations: Mapping[str, Kernel]) -> Kernel:
-    """Make ``find(m, plan) -> face``: walk toward the target from ``plan.start``."""
+    """Make ``find(m, plan) -> face``: walk toward the target from ``plan.start``, or ``JUMP``.
+
+    -1 where there is no face to begin at, or the walk ends in one without area.
+    """
     survey = surveying(k)
     walk, measure = survey.walk, survey.measure
+    face_vertices, face_exists, coordinate = k["face_vertices"], k["face_exists"], k["coordinate"]
+
+    @part
+    def jump(m: Any, plan: Plan) -> int:
+        """Of about n_t^(1/3) faces, evenly spread over the handles, the one nearest by a corner."""
+        best, least = -1, np.inf
+        step = max(1, int(m.counts[FACE_END] ** (2 / 3)))
+        for f in range(0, m.counts[FACE_END], step):
+            if face_exists(m, f):
+                face_vertices(m, f, plan.out)
+                v, far = min(plan.out[0], plan.out[1], plan.out[2]), 0.0
+                for j in range(3):
+                    far += (coordinate(m, v, j) - plan.target[j]) ** 2
+                if far < least:
+                    best, least = f, far
+        return best
 
     @kernel
     def find(m: Any, plan: Plan) -> int:
         plan.visited[0] = 0
-        f = walk(m, plan.start[0], plan.target, plan)
+        f = plan.start[0]
+        if f == JUMP:
+            f = jump(m, plan)
+        if f < 0:
+            return -1
+        f = walk(m, f, plan.target, plan)
         return f if measure(m, f, plan.target, plan) else -1
 
     return find

@@ -9,14 +9,14 @@ from numba import njit
 from numpy.typing import ArrayLike, NDArray
 
 from hem.errors import MeshError
-from hem.fracture.breaking import finding, plan
+from hem.fracture.breaking import JUMP, finding, plan
 from hem.fracture.pieces import diagonal
 from hem.structure import Structure
 
 Array = NDArray[Any]
 
-NEAR = 1e-3
-"""How far from the surface a walk may end and be believed; a part of the diagonal."""
+NEAR = 0.05
+"""How far from its face a walk may end and be believed; a part of the face's longest side."""
 
 FAR = 0.5
 """How far from the surface a position may be at all; a part of the diagonal."""
@@ -36,24 +36,27 @@ class Found(NamedTuple):
     """Whether every face was."""
 
 
-def nearest_face(structure: Structure, position: ArrayLike, start: int | None = None) -> Found:
+def nearest_face(structure: Structure, position: ArrayLike, start: int = JUMP) -> Found:
     """The face nearest to a position (3,), found by walking from face to face over ``face_faces``.
 
     The walk begins at the nearest of n_t^(1/3) faces (Mücke, Saias & Zhu, Fast randomized point
     location without preprocessing, 1996), or at ``start``. Where it ends off the surface, by more
-    than 1e-3 of the diagonal of the bounding box, every face is looked at instead.
+    than a twentieth of a side of the face, every face is looked at instead.
 
     Cost O(n_t^(1/3)), from ``start`` O(√n_t), times that of ``face_faces``; else O(n_t). Raises
-    MeshError for no position, one farther from the surface than half the diagonal, and no faces.
+    MeshError for no position, one farther from the surface than half the diagonal of the bounding
+    box, and a mesh without faces.
     """
-    p, size = _position(position), _size(structure)
-    begin = _jump(structure, p) if start is None else start
-    face, visited = _walk(structure, p, begin)
+    p = _position(position)
+    out, log = structure.scratch(0)
+    told = plan(p, 0.0, out, log, start=np.array([start]))
+    face = structure.run(finding, told)
     if face >= 0:
-        _, point = closest(_corners(structure, np.array([face])), p)
-        if _distance(point, p) <= NEAR * size:
-            return Found(face, point, visited, False)
-    found = scanned(structure, p)
+        corners = _corners(structure, np.array([face]))
+        _, point = closest(corners, p)
+        if _distance(point, p) <= NEAR * told.longest[0]:
+            return Found(face, point, int(told.visited[0]), False)
+    found, size = scanned(structure, p), diagonal(structure.points)
     if _distance(found.point, p) > FAR * size:
         raise MeshError(
             f"{_words(p)} is {_distance(found.point, p):.4g} from the mesh, more than half of "
@@ -79,26 +82,6 @@ def _position(position: ArrayLike) -> NDArray[np.float64]:
     if p.shape != (3,) or not np.isfinite(p).all():
         raise MeshError(f"a position is three finite numbers, not {position!r}")
     return p
-
-
-def _size(structure: Structure) -> float:
-    if not structure.n_faces:
-        raise MeshError("there are no faces that could be near to anything")
-    return diagonal(structure.points)
-
-
-def _jump(structure: Structure, p: Array) -> int:
-    """Of about n_t^(1/3) faces, evenly spread over the handles, the one with the nearest corner."""
-    faces = structure.faces()
-    few = faces[:: max(1, round(len(faces) ** (2 / 3)))]
-    nearest, _ = closest(_corners(structure, few), p)
-    return int(few[nearest])
-
-
-def _walk(structure: Structure, p: Array, start: int) -> tuple[int, int]:
-    out, log = structure.scratch(0)
-    told = plan(p, 0.0, out, log, start=np.array([start]))
-    return structure.run(finding, told), int(told.visited[0])
 
 
 def corner_vertices(structure: Structure, faces: Array) -> Array:
@@ -155,7 +138,7 @@ def _weights(t: Array, p: Array) -> tuple[float, float, float]:
         return 0.0, 1.0, 0.0
     c = d1 * d4 - d3 * d2
     if c <= 0 and d1 >= 0 and d3 <= 0:
-        v = d1 / (d1 - d3)
+        v = d1 / (d1 - d3) if d1 > d3 else 0.0  # both corners in one place
         return 1 - v, v, 0.0
     cp = p - t[2]
     d5, d6 = _dot(ab, cp), _dot(ac, cp)
@@ -163,13 +146,16 @@ def _weights(t: Array, p: Array) -> tuple[float, float, float]:
         return 0.0, 0.0, 1.0
     b = d5 * d2 - d1 * d6
     if b <= 0 and d2 >= 0 and d6 <= 0:
-        w = d2 / (d2 - d6)
+        w = d2 / (d2 - d6) if d2 > d6 else 0.0
         return 1 - w, 0.0, w
     a = d3 * d6 - d5 * d4
     if a <= 0 and d4 - d3 >= 0 and d5 - d6 >= 0:
-        w = (d4 - d3) / ((d4 - d3) + (d5 - d6))
+        side = (d4 - d3) + (d5 - d6)
+        w = (d4 - d3) / side if side > 0 else 0.0
         return 0.0, 1 - w, w
     total = a + b + c
+    if not total > 0:  # no area: between the first corner and the one that is farther from it
+        return 1.0, 0.0, 0.0
     return a / total, b / total, c / total
 
 

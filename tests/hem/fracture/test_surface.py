@@ -206,7 +206,8 @@ def test_walking_finds_what_looking_at_every_face_finds(model):
         at = struck(mesh, seed) + rng.normal(size=3) * (seed % 4) * 1e-3 * diagonal(mesh)
         walked, looked = nearest_face(s, at), scanned(s, at)
         apart = np.linalg.norm(walked.point - at), np.linalg.norm(looked.point - at)
-        assert apart[0] <= max(apart[1] * 1.001, 1.1e-3 * diagonal(mesh))
+        side = np.ptp(s.points[s.face_vertices(walked.face)], axis=0).max()
+        assert apart[1] * (1 - 1e-9) <= apart[0] <= max(apart[1] * 1.001, 0.09 * side)
         if not seed % 4:
             assert np.linalg.norm(walked.point - looked.point) < 1e-5 * diagonal(mesh)
 
@@ -260,3 +261,13 @@ def test_polygons_and_empty_meshes_are_refused():
     for name in structures.NAMES:
         with pytest.raises(hem.MeshError, match="no faces"):
             shatter(structures.build(name, empty), (0, 0, 1))
+
+
+def test_faces_without_area_are_no_trouble_to_find_others():
+    flat = hem.TriangleMesh(
+        [(0, 0, 0), (0, 0, 0), (0, 0, 0), (1, 0, 0), (2, 0, 0), (5, 0, 0), (6, 0, 0), (5, 1, 0)],
+        [(0, 1, 2), (0, 1, 3), (0, 3, 4), (3, 4, 2), (5, 6, 7)],
+    )
+    s = structures.build("indexed", flat)
+    for at, face in (((5.2, 0.2, 0.5), 4), ((-1, 0, 1), 0), ((1.5, -1, 0), 2)):
+        assert scanned(s, at).face == face

@@ -1,0 +1,108 @@
+"""What pieces weigh: volume, mass, center and inertia of many meshes at once.
+
+Every integral over a piece is a sum over its triangles (Lien & Kajiya, A symbolic method for
+calculating the integral properties of arbitrary nonconvex polyhedra, 1984): over the tetrahedra
+that the triangles span with an origin, or over the triangles themselves. The origin lies amid each
+piece, so that a piece far from zero keeps its digits. Everything is float64, and all triangles of
+all pieces are worked through together: O(faces), whatever the number of pieces.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hem.errors import MeshError
+from hem.fracture.pieces import Floats, Mass
+from hem.mesh import TriangleMesh
+
+Owners = NDArray[np.int64]
+
+
+def of_bodies(meshes: Sequence[TriangleMesh], density: float) -> Mass:
+    """Of closed, outward oriented pieces of a density in kg / m³, by the divergence theorem.
+
+    A piece without volume weighs nothing, and its center is that of its bounding box. Raises
+    MeshError for a density that is not positive and finite.
+    """
+    corners, owner, origins = _corners(meshes)
+    volumes = _dot(corners[:, 0], np.cross(corners[:, 1], corners[:, 2])) / 6
+    return _mass(corners, owner, origins, volumes, (4, 20), _positive(density, "a density"))
+
+
+def of_sheets(meshes: Sequence[TriangleMesh], density: float, thickness: float) -> Mass:
+    """Of sheets of a thickness in m and a density in kg / m³, by the areas of their triangles.
+
+    The thickness counts for volume and mass; the inertia is that of a sheet without thickness.
+    Raises MeshError for a density or a thickness that is not positive and finite.
+    """
+    corners, owner, origins = _corners(meshes)
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    volumes = np.sqrt(_dot(normals, normals)) / 2 * _positive(thickness, "a thickness")
+    return _mass(corners, owner, origins, volumes, (3, 12), _positive(density, "a density"))
+
+
+def _positive(value: float, what: str) -> float:
+    if not (np.isfinite(value) and value > 0):
+        raise MeshError(f"{what} is positive and finite, not {value}")
+    return float(value)
+
+
+def _corners(meshes: Sequence[TriangleMesh]) -> tuple[Floats, Owners, Floats]:
+    """(m, 3, 3) corners of all triangles from their piece's origin, whose they are, the origins."""
+    points = np.concatenate([np.zeros((0, 3)), *(mesh.points for mesh in meshes)])
+    starts = np.cumsum([0, *(len(mesh.points) for mesh in meshes)])
+    counts = [len(mesh.triangles) for mesh in meshes]
+    owner = np.repeat(np.arange(len(meshes)), counts)
+    triangles = np.concatenate([np.zeros((0, 3), int), *(mesh.triangles for mesh in meshes)])
+    corners = points[triangles + starts[owner, None]]
+    origins = np.zeros((len(meshes), 3))
+    filled = np.flatnonzero(counts)
+    if len(filled):  # those without triangles begin where the next one does
+        first = np.cumsum([0, *counts])[filled]
+        low = np.minimum.reduceat(corners.min(axis=1), first)
+        origins[filled] = (low + np.maximum.reduceat(corners.max(axis=1), first)) / 2
+    return corners - origins[owner, None], owner, origins
+
+
+def _mass(
+    corners: Floats,
+    owner: Owners,
+    origins: Floats,
+    volumes: Floats,
+    parts: tuple[int, int],
+    density: float,
+) -> Mass:
+    """The masses from the volume of each triangle's simplex, (m,).
+
+    Over a simplex with corners v and their sum s, the mean of x is s / n, and that of x xᵀ is
+    (s sᵀ + Σ v vᵀ) / (n (n + 1)): ``parts`` are n and n (n + 1), with n = 4 for tetrahedra, whose
+    fourth corner is the origin, and 3 for triangles.
+    """
+    n = len(origins)
+    total = _sums(owner, volumes, n)
+    safe = np.where(total == 0, 1, total)
+    sums = corners.sum(axis=1)
+    centers = _sums(owner, volumes[:, None] * sums, n) / (parts[0] * safe[:, None])
+    squares = sums[:, :, None] * sums[:, None] + np.einsum("mki,mkj->mij", corners, corners)
+    second = _sums(owner, volumes[:, None, None] * squares, n) / parts[1]
+    second -= total[:, None, None] * centers[:, :, None] * centers[:, None]
+    trace = np.trace(second, axis1=1, axis2=2)[:, None, None]
+    inertias = density * (trace * np.eye(3) - second)
+    return Mass(total, density * total, origins + centers, inertias)
+
+
+def _sums(owner: Owners, values: Floats, n: int) -> Floats:
+    """The values (m, …) of each of n owners added up: (n, …)."""
+    columns = values.reshape(len(values), int(np.prod(values.shape[1:])))
+    summed = np.zeros((n, columns.shape[1]))
+    for i, column in enumerate(columns.T):
+        summed[:, i] = np.bincount(owner, column, n)
+    return summed.reshape(n, *values.shape[1:])
+
+
+def _dot(a: Floats, b: Floats) -> Floats:
+    """Row by row, (m,)."""
+    return (a * b).sum(axis=1)
