@@ -26,6 +26,7 @@ CHAPTERS = {
     "half_edge_or_indexed": "Half-edge or indexed?",
     "references_and_pairs": "References, indices and pairs",
     "errata": "What the listings do",
+    "fracture": "Destruction",
 }
 """The notebooks in the order they are read. A new chapter is one notebook and one line here."""
 

@@ -30,6 +30,7 @@ EXPERIMENTS = (
     "bench_operations",
     "bench_workloads",
     "bench_printed",
+    "bench_fracture",
 )
 """The experiments in the order they run. A new one is a file of this name beside this one."""
 
