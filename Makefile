@@ -7,7 +7,7 @@ INSTALLED := $(VENV)/installed
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 
 .DEFAULT_GOAL := help
-.PHONY: help study test soak check format peers test-floor clean
+.PHONY: help study test demo soak check format peers test-floor clean
 
 help:  ## show this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -29,8 +29,12 @@ study: $(INSTALLED)  ## measure for some 7 minutes, print table 1, write the rep
 test: $(INSTALLED)  ## run all tests, on every core
 	@$(BIN)/python -m pytest tests -n auto --dist loadfile
 
-soak: $(INSTALLED)  ## operate at random on every structure, 100,000 times
+demo: $(INSTALLED)  ## break some models, for two minutes, and make a page to watch it on
+	@$(BIN)/python -m experiments.demo
+
+soak: $(INSTALLED)  ## operate at random on every structure, 100,000 times; break a hundred times
 	@$(BIN)/python -m tests.structures.soak
+	@$(BIN)/python -m tests.hem.fracture.soak
 
 check: $(INSTALLED)  ## check format, style and types
 	@$(BIN)/ruff format --check .
@@ -51,5 +55,5 @@ test-floor:  ## run all tests with the oldest versions that are supported
 	@$(VENV)-floor/bin/python -m pytest tests
 
 clean:  ## remove everything that was made here, runs excepted
-	rm -rf $(VENV) $(VENV)-floor build *.egg-info .mypy_cache .ruff_cache .pytest_cache report/html
+	rm -rf $(VENV) $(VENV)-floor build *.egg-info .mypy_cache .ruff_cache .pytest_cache report/html report/demo
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +

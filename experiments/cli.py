@@ -1,4 +1,4 @@
-"""The command line: ``hem study``, ``table``, ``report``, ``meshes``, ``info``."""
+"""The command line: ``hem study``, ``table``, ``report``, ``meshes``, ``info``, ``fracture``."""
 
 from __future__ import annotations
 
@@ -9,12 +9,13 @@ from time import perf_counter
 from typing import Annotated, Any
 
 import typer
-from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 from rich.table import Table
 
 import hem
 from experiments import results, study
+from experiments.console import console, errors, user_errors
+from experiments.fracture_command import fracture
 from experiments.profiles import PROFILES
 
 app = typer.Typer(
@@ -23,9 +24,6 @@ app = typer.Typer(
     add_completion=False,
     pretty_exceptions_enable=False,
 )
-console = Console()
-errors = Console(stderr=True)
-
 RunArgument = Annotated[
     Path | None, typer.Argument(help="The folder of a run; the newest if it is not given.")
 ]
@@ -35,16 +33,6 @@ ProfileOption = Annotated[
         help="How much to measure: " + "; ".join(f"{k}: {p.what}" for k, p in PROFILES.items())
     ),
 ]
-
-
-@contextmanager
-def user_errors() -> Iterator[None]:
-    """Turn what a user can mend into one line and exit code 1."""
-    try:
-        yield
-    except (ValueError, OSError) as error:
-        errors.print(f"[bold red]hem:[/] {error}", highlight=False)
-        raise typer.Exit(1) from error
 
 
 @app.command("study")
@@ -224,6 +212,9 @@ def _holders(mesh: hem.TriangleMesh | hem.PolygonMesh) -> tuple[Table, list[str]
         each = [(f"{size:,}", f"{size / max(len(mesh.points), 1):.1f}") for size in sizes]
         table.add_row(structure.title, *each[0], *each[1])
     return table, list(refusals)
+
+
+app.command()(fracture)
 
 
 if __name__ == "__main__":

@@ -64,7 +64,7 @@ def write_page(run_folder: Path, folder: Path, reference: Path) -> Path:
 
     The page goes to ``folder``, the verdicts to ``reference``, to compare later runs with.
     """
-    from experiments import operation_plots, pictures, plots
+    from experiments import fracture_pictures, operation_plots, pictures, plots
 
     run = load(run_folder)
     save(run, judged(run), reference)
@@ -80,6 +80,12 @@ def write_page(run_folder: Path, folder: Path, reference: Path) -> Path:
         "references": ("A half-edge mesh in arrays and in objects", plots.references(run)),
         "listings": ("The thesis' listings, as printed and mended", plots.listings(run)),
         "plankton": ("The article's walk around a vertex", pictures.plankton_walk()),
+        "impacts": ("A plate struck in several places", fracture_pictures.impacts()),
+        "broken": (
+            "A bunny broken at three forces",
+            fracture_pictures.gallery(fracture_pictures.broken_by_force("bunny", "ceramic")),
+        ),
+        "shards": ("Breaking a surface", fracture_pictures.shards_per_second(run)),
         "overtaking": (
             "Queries and edits per build until the indexed mesh is overtaken",
             operation_plots.overtaking(run),

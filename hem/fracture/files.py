@@ -1,0 +1,247 @@
+"""Pieces as files, and what they are in numbers; nothing is left half-written."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from hem.errors import MeshError
+from hem.fracture.pieces import Fracture
+
+SCHEMA = 1
+
+
+def names(fracture: Fracture) -> list[str]:
+    """The names of all pieces: shard_000 and on, then rest, island_0 and on."""
+    digits = max(3, len(str(max(len(fracture.shards) - 1, 0))))
+    shards = [f"shard_{i:0{digits}d}" for i in range(len(fracture.shards))]
+    islands = [f"island_{i}" for i in range(len(fracture.rest) - 1)]
+    return [*shards, *(["rest"] if len(fracture.rest) else []), *islands]
+
+
+def save_pieces(
+    fracture: Fracture,
+    folder: str | os.PathLike[str],
+    format: str = "glb",
+    up: ArrayLike = (0.0, 1.0, 0.0),
+) -> list[Path]:
+    """Write all pieces into a folder, which is made if need be -> the files.
+
+    ``glb``  pieces.glb, a node per piece, turned so that ``up`` points up in viewers
+    ``obj``  pieces.obj, an ``o`` per piece
+    ``ply``  pieces/shard_000.ply …, a file per piece; those of a fracture before are removed
+
+    Coordinates are the model's own, to the last bit of float32. All is written beside and moved
+    into place when it is complete; other files stay. Cost O(vertices + faces). Raises MeshError for
+    another format, and where the folder cannot be written.
+    """
+    write = writer(format)
+    with whole(folder) as beside:
+        made = [path.relative_to(beside) for path in write(fracture, beside, up)]
+    return [Path(folder) / path for path in made]
+
+
+def writer(format: str) -> Callable[[Fracture, Path, ArrayLike], list[Path]]:
+    """What writes a format. Raises MeshError where there is none."""
+    if format not in FORMATS:
+        raise MeshError(f"pieces cannot be saved as {format!r}; formats are {', '.join(FORMATS)}")
+    return FORMATS[format]
+
+
+@contextmanager
+def whole(folder: str | os.PathLike[str]) -> Iterator[Path]:
+    """A folder to write into that becomes, file by file, part of ``folder`` if all went well.
+
+    A folder ``pieces`` is replaced as a whole, files of the same name are, all others stay. Raises
+    MeshError where the folder cannot be made or written.
+    """
+    target = Path(folder).absolute()
+    kept = require_writable(target)
+    try:
+        with tempfile.TemporaryDirectory(dir=kept, prefix=".hem-") as place:
+            beside = Path(place) / "new"
+            beside.mkdir()
+            yield beside
+            _move(beside, target, Path(place))
+    except OSError as error:
+        raise MeshError(f"cannot write into {target}: {error.strerror or error}") from error
+
+
+def require_writable(folder: str | os.PathLike[str]) -> Path:
+    """The folder, or of those above it the first that exists. MeshError if it takes no files."""
+    path = Path(folder).absolute()
+    for place in (path, *path.parents):
+        if place.is_dir():
+            if os.access(place, os.W_OK | os.X_OK):
+                return place
+            raise MeshError(
+                f"cannot write into {path}: {place} is read-only; choose another folder"
+            )
+        if place.exists() or place.is_symlink():
+            raise MeshError(f"cannot write into {path}: {place} is a file, not a folder")
+    raise MeshError(f"cannot write into {path}: there is no such place")
+
+
+def _move(beside: Path, target: Path, aside: Path) -> None:
+    target.mkdir(parents=True, exist_ok=True)
+    every = sorted(beside.iterdir())
+    for path in every:
+        if (target / path.name).is_dir() != path.is_dir() and (target / path.name).exists():
+            raise MeshError(f"cannot write {target / path.name}: something else has this name")
+    for path in every:
+        if path.is_dir():
+            _merge(path, target / path.name, aside)
+        else:
+            os.replace(path, target / path.name)
+
+
+def _merge(new: Path, old: Path, aside: Path) -> None:
+    """Put the files of a folder into another, whose own of the kind go first."""
+    old.mkdir(exist_ok=True)
+    for path in old.iterdir():
+        if path.name.startswith(("shard_", "rest.", "island_")) and path.suffix == ".ply":
+            os.replace(path, aside / path.name)
+    for path in sorted(new.iterdir()):
+        os.replace(path, old / path.name)
+
+
+def _save_glb(fracture: Fracture, folder: Path, up: ArrayLike) -> list[Path]:
+    import trimesh
+
+    color = [int(fracture.material.color[i : i + 2], 16) for i in (1, 3, 5)]
+    look = trimesh.visual.material.PBRMaterial(
+        name=fracture.material.name,
+        baseColorFactor=[*color, 255],
+        roughnessFactor=0.5,
+        metallicFactor=0.0,
+        doubleSided=True,
+    )
+    scene = trimesh.Scene()
+    for name, piece in zip(names(fracture), fracture.pieces, strict=True):
+        shown = trimesh.Trimesh(piece.points, piece.triangles, process=False)
+        shown.visual = trimesh.visual.TextureVisuals(material=look)
+        scene.add_geometry(shown, node_name=name, geom_name=name, transform=_upright(up))
+    path = folder / "pieces.glb"
+    path.write_bytes(scene.export(file_type="glb"))
+    return [path]
+
+
+def _upright(up: ArrayLike) -> Any:
+    """The (4, 4) transform that turns ``up`` to y, as glTF has it."""
+    from scipy.spatial.transform import Rotation
+
+    top = np.asarray(up, float) / np.linalg.norm(np.asarray(up, float))
+    turn = np.eye(4)
+    axis, cosine = np.cross(top, (0.0, 1.0, 0.0)), float(top[1])
+    length = float(np.linalg.norm(axis))
+    axis = axis / length if length > 0 else np.array([1.0, 0.0, 0.0])
+    turn[:3, :3] = Rotation.from_rotvec(axis * np.arctan2(length, cosine)).as_matrix()
+    return turn
+
+
+def _save_obj(fracture: Fracture, folder: Path, up: ArrayLike) -> list[Path]:
+    lines = [f"# {len(fracture.pieces)} pieces of {fracture.material.name}, by hem"]
+    before = 1
+    for name, piece in zip(names(fracture), fracture.pieces, strict=True):
+        lines.append(f"o {name}")
+        lines += ["v {:.9g} {:.9g} {:.9g}".format(*point) for point in piece.points.tolist()]
+        corners = (piece.triangles.astype(np.int64) + before).tolist()
+        lines += ["f {} {} {}".format(*face) for face in corners]
+        before += len(piece.points)
+    path = folder / "pieces.obj"
+    path.write_text("\n".join(lines) + "\n", encoding="ascii", newline="\n")
+    return [path]
+
+
+def _save_ply(fracture: Fracture, folder: Path, up: ArrayLike) -> list[Path]:
+    from hem.files import save
+
+    inner = folder / "pieces"
+    inner.mkdir()
+    paths = [inner / f"{name}.ply" for name in names(fracture)]
+    for path, piece in zip(paths, fracture.pieces, strict=True):
+        save(piece, path)
+    return paths
+
+
+FORMATS: dict[str, Callable[[Fracture, Path, ArrayLike], list[Path]]] = {
+    "glb": _save_glb,
+    "obj": _save_obj,
+    "ply": _save_ply,
+}
+
+
+def describe(fracture: Fracture, blow: Any, motion: Any, model: str = "") -> dict[str, Any]:
+    """A fracture in numbers, as JSON holds them: units are in the names of the entries.
+
+    A unit of the model is taken as a meter. ``neighbors`` are indices of pieces. Cost: that of
+    ``fracture.mass`` and ``fracture.neighbors``.
+    """
+    mass = fracture.mass
+    velocities, spins = np.asarray(motion.velocities, float), np.asarray(motion.spins, float)
+    kinetic = _kinetic(mass, velocities, spins)
+    beside: list[list[int]] = [[] for _ in fracture.pieces]
+    for a, b in fracture.neighbors.tolist():
+        beside[a].append(b)
+        beside[b].append(a)
+    pieces = []
+    for i, (name, piece) in enumerate(zip(names(fracture), fracture.pieces, strict=True)):
+        entry = {
+            "name": name,
+            "vertices": len(np.unique(piece.triangles)),
+            "faces": len(piece.triangles),
+            "volume_m3": float(mass.volumes[i]),
+            "mass_kg": float(mass.masses[i]),
+            "center_m": mass.centers[i].tolist(),
+            "velocity_m_s": velocities[i].tolist(),
+            "spin_rad_s": spins[i].tolist(),
+            "kinetic_energy_J": float(kinetic[i]),
+            "neighbors": sorted(beside[i]),
+        }
+        if not fracture.closed:
+            entry["area_m2"] = float(mass.volumes[i]) / _thickness(fracture)
+        pieces.append(entry)
+    return {
+        "schema": SCHEMA,
+        "model": model,
+        "method": fracture.method,
+        "material": _numbers(fracture),
+        "force_J_kg": float(blow.force),
+        "seed": int(fracture.seed),
+        "impact_m": np.asarray(fracture.impact, float).tolist(),
+        "direction": np.asarray(fracture.direction, float).tolist(),
+        "thickness_m": None if fracture.closed else _thickness(fracture),
+        "break_points": {name: int(count) for name, count in fracture.counts.items()},
+        "totals": {
+            "pieces": len(fracture.pieces),
+            "shards": len(fracture.shards),
+            "volume_m3": float(mass.volumes.sum()),
+            "mass_kg": float(mass.masses.sum()),
+            "momentum_kg_m_s": (mass.masses[:, None] * velocities).sum(axis=0).tolist(),
+            "kinetic_energy_J": float(kinetic.sum()),
+        },
+        "pieces": pieces,
+    }
+
+
+def _thickness(fracture: Fracture) -> float:
+    return float(fracture.material.thickness * fracture.diagonal)
+
+
+def _numbers(fracture: Fracture) -> dict[str, Any]:
+    from dataclasses import asdict
+
+    numbers = asdict(fracture.material)
+    return numbers | {"circles": list(fracture.material.circles)}
+
+
+def _kinetic(mass: Any, velocities: Any, spins: Any) -> Any:
+    turning = np.einsum("ni,nij,nj->n", spins, mass.inertias, spins)
+    return (mass.masses * (velocities * velocities).sum(axis=1) + turning) / 2
