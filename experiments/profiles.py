@@ -98,7 +98,7 @@ PROFILES = {
         latency_mib=1,
     ),
     "quick": Profile(
-        what="one family up to 100,000 vertices, some 7 minutes",
+        what="one family up to 100,000 vertices, some 10 minutes",
         families=("torus",),
         sizes=_geometric(100, 100_000, 2),
         orders=("random", "consecutive"),
@@ -119,7 +119,7 @@ PROFILES = {
         latency_mib=128,
     ),
     "standard": Profile(
-        what="one family of each kind up to 1,000,000 vertices, some 20 minutes",
+        what="one family of each kind up to 1,000,000 vertices, some 30 minutes",
         families=("torus", "sphere", "grid", "isosurface"),
         sizes=_geometric(100, 1_000_000, 2),
         orders=("random", "consecutive"),
