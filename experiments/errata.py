@@ -8,6 +8,7 @@ gives. How costs grow as printed is measured by ``bench_printed``.
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import NamedTuple, cast
 
 import numpy as np
@@ -363,6 +364,21 @@ def _needs_no_closed_mesh() -> Shown:
     )
 
 
+def _left_behind() -> Shown:
+    m, s = printed(), structures.build("half_edge", octahedron())
+    before = list(m.faces)
+    m.split_face(m.faces[0], MIDDLE)
+    created = [face for face in m.faces if not any(face is it for it in before)]
+    only_there = replace(hem.fracture.MATERIALS["glass"], circles=())
+    rest = hem.fracture.shatter(s, np.full(3, 1 / 3), only_there).rest[0]
+    struck = np.isclose(rest.points[rest.triangles].sum(axis=2), 1).all(axis=1)
+    return Shown(
+        f"{len(created)} of the 3 parts of the face are new, and 1 stays behind",
+        f"{struck.sum()} parts of the face that was struck stay behind",
+        len(created) == 2 and not struck.any(),
+    )
+
+
 ERRATA = (
     Erratum(
         "The builder loses the last triangle", "thesis 3.3.2",
@@ -489,6 +505,12 @@ ERRATA = (
         "It works only on the assumption that no half-edge lacks its neighbor.",
         "In Plankton none does: the border has half-edges of its own.",
         _needs_no_closed_mesh,
+    ),
+    Erratum(
+        "Breaking leaves a part of every split face behind", "thesis 4.3 and 4.4; found here",
+        "The new faces are cut out of the mesh and become shards.",
+        "The first part of a split face is no new one: it keeps its face, and stays in the hole.",
+        _left_behind,
     ),
 )  # fmt: skip
 """All of them, in the order in which they are numbered from 1."""
