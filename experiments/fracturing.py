@@ -40,7 +40,7 @@ def shattered(run: Run) -> pd.DataFrame:
                     "faster": searched / seconds,
                 }
             )
-    return pd.DataFrame(rows)
+    return pd.DataFrame(rows, columns=[*SHATTERED])
 
 
 def found(run: Run, structure: str = "half_edge") -> pd.DataFrame:
@@ -54,6 +54,8 @@ def found(run: Run, structure: str = "half_edge") -> pd.DataFrame:
     rows = []
     for way in WAYS:
         counted, timed = (cells[cells["order"] == it] for it in (f"{way}, {VISITED}", way))
+        if counted.empty or timed.empty:
+            continue
         work = judge(counted["faces"], list(counted["samples"]), exact=True)
         time = judge(timed["faces"], list(timed["samples"]), latency=timed["latency"].astype(float))
         rows.append(
@@ -65,7 +67,7 @@ def found(run: Run, structure: str = "half_edge") -> pd.DataFrame:
                 "microseconds": 1e6 * float(np.median(timed["samples"].iloc[-1])),
             }
         )
-    return pd.DataFrame(rows)
+    return pd.DataFrame(rows, columns=[*FOUND])
 
 
 def styled(table: pd.DataFrame, heads: dict[str, tuple[str, str]]) -> str:

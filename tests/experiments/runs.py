@@ -48,6 +48,9 @@ EXPERIMENTS = {
 }
 """The experiment, the order of its cells and what varies in them, by table."""
 
+FINDING = {"walk": 1 / 2, "jump and walk": 1 / 3, "scan": 1}
+"""The ways to find a face, and the power of n_t that they take in these runs."""
+
 BUILD = {
     **{"indexed": 1e-9, "triangle_neighbor": 21e-9, "winged_edge": 41e-9, "half_edge": 31e-9},
     **{"half_edge_objects": 4e-6, "plankton": 36e-9},
@@ -111,11 +114,19 @@ def _add_times(files: dict, folder: Path, structure: str) -> None:
             ("bench_operations", "split_face", order, 1e-6 * (k + 1) * (n_t if k == 3 else 1))
             for k, order in enumerate(orders)
         ]
+        every += [("bench_fracture", "shatter", None, 1e-6 * (n_t if slow else 1))]
+        every += [("bench_fracture", "find_face", it, 1e-8 * n_t**k) for it, k in FINDING.items()]
         for experiment, what, order, seconds in every:
             cell = CellResult(
-                id=f"{what}/{n_t}/{order}", query=what, order=order, samples=[seconds], **about
-            )
+                id=f"{what}/{n_t}/{order}", query=what, order=order, samples=[seconds], handles=1,
+                latency=2e-9, **about,
+            )  # fmt: skip
             _add(files, folder, experiment, structure, cell)
+        for way, power in FINDING.items():
+            order = f"{way}, faces looked at"
+            counted = {**about, "kind": "work", "samples": [float(round(n_t**power))]}
+            cell = CellResult(id=f"{order}/{n_t}", query="find_face", order=order, **counted)
+            _add(files, folder, "bench_fracture", structure, cell)
 
 
 def _memory(bytes_per_vertex: int | None) -> CellResult:
