@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import os
+from functools import lru_cache
 from pathlib import Path
 from time import sleep
 
 WATCHED_SECONDS = 0.1
 
 
+@lru_cache(maxsize=1)
 def allowed() -> list[int]:
-    """The cores this process may run on; none where the system does not say."""
+    """The cores this process was given; none where the system does not say."""
     return sorted(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else []
 
 
@@ -22,8 +24,9 @@ def pin() -> int | None:
     cores = allowed()
     if not cores:
         return None
-    core = calmest(cores)
     try:
+        os.sched_setaffinity(0, cores)
+        core = calmest(cores)
         os.sched_setaffinity(0, {core})
     except OSError:
         return None

@@ -4,8 +4,8 @@ A run is a folder: ``run.json`` says what ran where, and every process, that is 
 one structure, has a file ``<experiment>.<structure>.json`` with its cells. A file is written beside
 and renamed after each cell, so that whoever is killed loses the cell in flight and nothing else; it
 carries a checksum, so that what is damaged later is not read as measured. A run on several machines
-has a folder ``machine-…`` for each, with a ``run.json`` of its own. Raw samples are never rewritten;
-what is derived from them lives in ``derived/``.
+has a folder ``machine-…`` for each, with a ``run.json`` of its own. Raw samples are never
+rewritten; what is derived from them lives in ``derived/``.
 """
 
 from __future__ import annotations
@@ -52,8 +52,8 @@ class CellResult:
     or bytes ("bytes"). ``handles``: queries per sample. ``working_set``: bytes of the structure's
     live records, or of the chased array in the latency experiment. ``valence``: that of the queried
     vertices where the experiment varies it. ``latency``: seconds per memory access in the working
-    set, measured beside the cell. ``left_out``: why nothing was measured, else empty. ``noise``: how
-    steady the machine was meanwhile, see ``noise.Watch``; empty in runs of schema 1.
+    set, measured beside the cell. ``left_out``: why nothing was measured, else empty. ``noise``:
+    what ``noise.Watch`` saw meanwhile, and how often the cell was ``measured``; empty in schema 1.
     """
 
     id: str

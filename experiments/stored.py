@@ -42,11 +42,16 @@ def write_json(path: Path, content: Any) -> None:
 
     Raises CannotWriteError, and leaves the file as it was.
     """
+    write_text(path, json.dumps(content, indent=1))
+
+
+def write_text(path: Path, text: str) -> None:
+    """As ``write_json``, what is JSON already."""
     beside = path.with_suffix(".part")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         with beside.open("w") as file:
-            json.dump(content, file, indent=1)
+            file.write(text)
             file.flush()
             os.fsync(file.fileno())
         beside.replace(path)

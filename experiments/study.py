@@ -116,9 +116,9 @@ def _new_folder(root: Path, name: str) -> Path:
 
 
 def resume(root: Path = RUNS, folder: Path | None = None) -> tuple[Path, str, list[str]]:
-    """The newest unfinished run, its profile and structures; or those of ``folder``, finished or not.
+    """The newest unfinished run, its profile and structures. Raises ResultsError without any.
 
-    Raises ResultsError without any.
+    ``folder``: this one instead, finished or not.
     """
     folder = folder or latest(root, unfinished=True)
     meta = read_json(folder / "run.json")

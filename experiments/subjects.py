@@ -101,7 +101,7 @@ class Cell:
 
 
 def in_random_order(cells: Sequence[Cell], seed: int | str) -> list[Cell]:
-    """The cells in an order that the seed determines: meshes at random, on each its cells at random.
+    """The cells in an order that the seed determines: random meshes, on each its cells at random.
 
     What is asked of one mesh stays together, since building it anew for each question would take
     longer than the asking.
