@@ -12,7 +12,7 @@ import warnings
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from time import monotonic, sleep
 from typing import TYPE_CHECKING, Any
@@ -297,7 +297,7 @@ def _machines(client: Client, work: _Work, known: dict[str, str]) -> dict[str, s
         known[worker] = answer["digest"]
         path = work.folder / f"machine-{answer['digest']}" / "run.json"
         if not path.exists():
-            write_sealed(path, answer["about"])
+            write_sealed(path, {**answer["about"], **asdict(work.how)})
     here = {known[worker]: worker for worker in reversed(workers) if worker in known}
     return here | {it.machine: it.worker for it in work.running.values() if it.worker in workers}
 

@@ -50,7 +50,7 @@ class Outcome:
 
 
 def who(profile: str) -> dict[str, Any]:
-    """Which machine it is: ``digest``, eight digits that differ between machines, and its run.json."""
+    """Which machine it is: ``digest``, eight digits, other ones on each, and what ``about`` it."""
     about = describe(profile)
     name = os.environ.get(VARIABLE) or socket.gethostname()
     known = json.dumps([name, about["machine"]], sort_keys=True)

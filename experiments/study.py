@@ -176,10 +176,11 @@ def prepared(folder: Path, say: Callable[[str], None]) -> Iterator[None]:
     """Have a folder for oneself, with room in it and nothing damaged."""
     with held(folder):
         require_room(folder)
+        begun = bool(result_files(folder))
         for path in set_aside_damaged(folder):
             say(f"{path.name} was damaged and is set aside; its cells are measured again")
         meta = read_json(folder / "run.json")
-        if result_files(folder):
+        if begun:
             meta = {**meta, "resumed": [*meta.get("resumed", []), resumed()]}
             write_sealed(folder / "run.json", meta)
         yield
