@@ -24,18 +24,23 @@ VARIABLE = "HEM_MEMORY"
 """Environment variable that says how much memory there is, such as ``500M``, ``8G`` or bytes."""
 
 SMALL = 400
-MESH_BYTES = 300
-"""Bytes per vertex of a mesh while it is made, renumbered and checked."""
+MESH_BYTES = {"torus": 300, HUBS: 300}
+OTHER_MESH_BYTES = 1_600
+"""Bytes per vertex of a mesh while it is made, renumbered and checked: the sphere's and more."""
 
 OBJECTS_BYTES = 2_500
 """Bytes per vertex of what is as printed: objects, with the render mesh beside them."""
 
 COPIES = {
     "bench_memory": 2, "bench_work": 1, "bench_build": 3, "bench_valence": 2, "bench_queries": 2,
-    "bench_operation_work": 3, "bench_operations": 4, "bench_workloads": 3, "bench_printed": 3,
-    "bench_fracture": 4,
+    "bench_operation_work": 3, "bench_operations": 18, "bench_workloads": 4, "bench_printed": 3,
+    "bench_fracture": 10,
 }  # fmt: skip
-"""How many structures of its size an experiment has at a time; unknown ones count as 4."""
+"""How many structures' bytes an experiment takes at its peak, with snapshots and what it looks up.
+
+From peaks of the resident memory at 8,000 to 100,000 vertices, rounded up.
+"""
+MOST_COPIES = max(COPIES.values())
 
 BUILDING = 3
 """How much more than what remains of it a compiled structure takes while it is built."""
@@ -66,11 +71,12 @@ def estimate(cell: Cell, experiment: str) -> int:
     """Bytes that a cell takes at its peak, about; more rather than less."""
     if experiment == "bench_latency":
         return CHASE_COPIES * cell.size
-    copies = COPIES.get(experiment, 4)
+    copies = COPIES.get(experiment, MOST_COPIES)
     compiled = cell.structure in REGISTRY and REGISTRY[cell.structure].compiled
     each = per_vertex(cell.structure, cell.reference_bytes)
     building = BUILDING * each if compiled else each
-    return int(vertices(cell) * (MESH_BYTES + building + copies * each))
+    mesh = MESH_BYTES.get(cell.family, OTHER_MESH_BYTES)
+    return int(vertices(cell) * (mesh + building + copies * each))
 
 
 @lru_cache(maxsize=32)

@@ -88,9 +88,11 @@ def fill(disk: Path) -> Path:
 @pytest.mark.parametrize("how", DAMAGES)
 def test_a_damaged_file_is_named_with_what_to_do_and_never_read(made_up, how):
     damage(made_up, how)
-    for read in (lambda: load(made_up.parent), lambda: ResultFile(made_up.parent, "bench_x", "indexed")):  # fmt: skip
-        with pytest.raises(DamagedError, match=r"bench_x\.indexed\.json.*hem study --resume"):
-            read()
+    named = r"bench_x\.indexed\.json.*hem study --resume"
+    with pytest.raises(DamagedError, match=named):
+        load(made_up.parent)
+    with pytest.raises(DamagedError, match=named):
+        ResultFile(made_up.parent, "bench_x", "indexed")
 
 
 def test_no_flipped_bit_changes_what_is_read(made_up):
@@ -176,7 +178,8 @@ def test_a_full_disk_stops_the_study_and_loses_nothing(small_disk):
 def test_a_file_that_cannot_be_written_stays_as_it_was(tmp_path):
     """As a full disk, where none can be mounted: files may not grow past a limit."""
     script = (
-        "import resource, signal, sys; from pathlib import Path; from experiments.results import *\n"
+        "import resource, signal, sys; from pathlib import Path\n"
+        "from experiments.results import *\n"
         "signal.signal(signal.SIGXFSZ, signal.SIG_IGN)\n"
         "f = ResultFile(Path(sys.argv[1]), 'bench_x', 'indexed'); f.add(CellResult('a', 'time'))\n"
         "resource.setrlimit(resource.RLIMIT_FSIZE, (4000, 4000))\n"

@@ -96,5 +96,7 @@ def test_a_run_on_little_memory_leaves_out_what_does_not_fit_and_ends(monkeypatc
     assert "finished" in run.meta
     assert set(run.cells["id"]) == {cell for cell, it in fits.items() if it}
     assert set(run.left_out["id"]) == {cell for cell, it in fits.items() if not it}
-    assert run.left_out["left_out"].str.contains("are available, of which a cell may take 70%").all()
+    assert (
+        run.left_out["left_out"].str.contains("are available, of which a cell may take 70%").all()
+    )
     assert (run.left_out["kind"] == "bytes").all()

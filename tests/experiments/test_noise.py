@@ -7,6 +7,7 @@ import os
 import subprocess
 import sys
 import time
+from itertools import pairwise
 
 import pytest
 
@@ -129,7 +130,7 @@ def test_the_order_of_cells_is_random_and_its_seed_gives_it_again():
 
 def test_what_is_asked_of_a_mesh_stays_together_so_that_it_is_built_once():
     meshes = [(cell.family, cell.size) for cell in in_random_order(CELLS, 1)]
-    changes = sum(a != b for a, b in zip(meshes, meshes[1:], strict=False))
+    changes = sum(a != b for a, b in pairwise(meshes))
     assert changes == len(set(meshes)) - 1
 
 
