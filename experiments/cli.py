@@ -2,21 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from pathlib import Path
-from time import perf_counter
 from typing import Annotated, Any
 
 import typer
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 from rich.table import Table
 
 import hem
-from experiments import results, study
+from experiments import results
 from experiments.console import console, errors, user_errors
 from experiments.fracture_command import fracture
-from experiments.profiles import PROFILES
+from experiments.study_command import run_study
 
 app = typer.Typer(
     help="Triangle-mesh data structures, measured and held against what a thesis claims of them.",
@@ -27,78 +23,7 @@ app = typer.Typer(
 RunArgument = Annotated[
     Path | None, typer.Argument(help="The folder of a run; the newest if it is not given.")
 ]
-ProfileOption = Annotated[
-    str | None,
-    typer.Option(
-        help="How much to measure: " + "; ".join(f"{k}: {p.what}" for k, p in PROFILES.items())
-    ),
-]
-
-
-@app.command("study")
-def run_study(
-    profile: ProfileOption = None,
-    resume: Annotated[
-        bool, typer.Option("--resume", help="Go on with the newest unfinished run.")
-    ] = False,
-    output: Annotated[Path, typer.Option(help="Where the runs are kept.")] = results.RUNS,
-    structure: Annotated[
-        list[str] | None, typer.Option(help="Measure just this one; may be repeated.")
-    ] = None,
-) -> None:
-    """Measure every structure; the results go to a new folder, cell by cell."""
-    with user_errors():
-        if profile is not None and profile not in PROFILES:
-            raise ValueError(f"no profile is called {profile!r}; there are {', '.join(PROFILES)}")
-        chosen = structure or []
-        if resume:
-            folder, kept, chosen = study.resume(output)
-            if structure:
-                raise ValueError(f"{folder} goes on as it was begun; resume it without --structure")
-            if profile not in (None, kept):
-                raise ValueError(f"{folder} was begun as {kept}; resume it without --profile")
-            profile = kept
-        else:
-            profile = profile or "quick"
-            folder = study.begin(profile, output, chosen)
-        _run_with_progress(folder, profile, chosen)
-
-
-def _run_with_progress(folder: Path, profile: str, chosen: list[str]) -> None:
-    begun = perf_counter()
-    console.print(f"Measuring into {folder} (profile {profile}: {PROFILES[profile].what})")
-    try:
-        with _progress(study.processes(profile, chosen), folder) as report:
-            study.run(folder, profile, report, chosen)
-    except KeyboardInterrupt:
-        errors.print(f"Stopped. What is finished is in {folder}; go on with: hem study --resume")
-        raise typer.Exit(130) from None
-    except study.StudyFailedError as failure:
-        errors.print(
-            f"[bold red]Some cells failed.[/] Try them again with: hem study --resume\n\n{failure}"
-        )
-        raise typer.Exit(1) from None
-    console.print(f"Done in {perf_counter() - begun:.0f} s. Now: hem table, hem report")
-
-
-@contextmanager
-def _progress(
-    every: list[study.Process], folder: Path
-) -> Iterator[Callable[[study.Process, int], None]]:
-    columns = TextColumn("{task.description:<32}"), BarColumn(), MofNCompleteColumn()
-    done = {process: process.done(folder) for process in every}
-    with Progress(
-        *columns, TextColumn("cells, left"), TimeRemainingColumn(), console=console
-    ) as bar:
-        task = bar.add_task("", total=sum(len(process.cells) for process in every))
-        bar.update(task, completed=sum(done.values()))
-
-        def report(process: study.Process, count: int) -> None:
-            done[process] = count
-            what = f"{process.experiment.removeprefix('bench_')} · {process.structure}"
-            bar.update(task, completed=sum(done.values()), description=what)
-
-        yield report
+app.command("study")(run_study)
 
 
 @app.command("table")
@@ -216,6 +141,7 @@ def _holders(mesh: hem.TriangleMesh | hem.PolygonMesh) -> tuple[Table, list[str]
 
 app.command()(fracture)
 
+__all__ = ["app", "console", "errors"]
 
 if __name__ == "__main__":
     app()

@@ -5,27 +5,37 @@ Run one by hand, with all of pytest-benchmark's options::
     python -m pytest experiments/bench_queries.py --structure half_edge -k vertex_faces
 
 ``hem study`` runs them all, with ``--run FOLDER``: every finished cell is kept there at once, and
-cells that are there already are not measured again.
+cells that are there already are not measured again. Cells are measured in a random order, the same
+for the same seed, so that a machine that slows down does not look like a structure that scales
+badly; those that were disturbed are measured again at the end.
 """
 
 from __future__ import annotations
 
-import os
-from collections.abc import Callable
-from dataclasses import asdict
+from collections.abc import Callable, Iterator
+from dataclasses import asdict, replace
 from pathlib import Path
+from time import perf_counter
+from typing import Any, cast
 
 import pytest
 
+from experiments import cores, memory_foreseen
+from experiments.children import CANNOT_WRITE, DEFAULT_SEED, end_with
+from experiments.noise import REPEATS, Watch, badness, disturbed
 from experiments.profiles import PROFILES, Profile
-from experiments.results import CellResult, ResultFile
-from experiments.subjects import Cell
+from experiments.results import CannotWriteError, CellResult, ResultFile
+from experiments.subjects import Cell, in_random_order
 
 Keep = Callable[[CellResult], None]
 
+CORE = pytest.StashKey[int | None]()
+FILES = pytest.StashKey[dict[tuple[str, str], ResultFile]]()
+DISTURBED = pytest.StashKey[bool]()
+
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    """The extent of an experiment, and where its results go."""
+    """The extent of an experiment, how it is measured, and where its results go."""
     group = parser.getgroup("hem")
     group.addoption(
         "--profile", default="quick", choices=list(PROFILES), help="how much to measure"
@@ -33,22 +43,55 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     group.addoption("--structure", action="append", help="measure just this one; may be repeated")
     group.addoption("--study", type=int, help="end when the process of this number has ended")
     group.addoption("--run", type=Path, help="the folder that keeps the results, cell by cell")
+    group.addoption("--pin", action="store_true", help="stay on one core, where that is allowed")
+    group.addoption(
+        "--cell-seed", type=int, default=DEFAULT_SEED, help="seed of the order of the cells"
+    )
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Tie this process to its study and to a core."""
+    config.stash[FILES] = {}
+    study = config.getoption("--study")
+    if study:
+        end_with(study)
+    config.stash[CORE] = cores.pin() if config.getoption("--pin") else None
 
 
 def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
     """One test per cell of the experiment that the run does not have yet."""
     if "cell" in metafunc.fixturenames:
-        config = metafunc.config
-        chosen = config.getoption("--structure") or metafunc.module.STRUCTURES
+        config, module = metafunc.config, metafunc.module
+        chosen = config.getoption("--structure") or module.STRUCTURES
         profile = PROFILES[config.getoption("--profile")]
+        seed = config.getoption("--cell-seed")
         cells = [
             cell
             for name in chosen
-            for cell in metafunc.module.cells(profile.of(name), name)
-            if cell.id not in _file(config, metafunc.module.__name__, name).finished
+            for cell in in_random_order(
+                module.cells(profile.of(name), name), f"{seed} {module.__name__} {name}"
+            )
+            if cell.id not in _file(config, module.__name__, name).finished
         ]
         ids = [f"{cell.structure}/{cell.id}" for cell in cells]
         metafunc.parametrize("cell", cells, ids=ids)
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtestloop(session: pytest.Session) -> Iterator[None]:
+    """After all cells, measure again those that were disturbed, for as long as all took at most."""
+    begin = perf_counter()
+    result = yield
+    until = 2 * perf_counter() - begin
+    for _ in range(REPEATS):
+        again = [item for item in session.items if item.stash.get(DISTURBED, False)]
+        if again and session.config.getoption("--pin"):
+            session.config.stash[CORE] = cores.pin()  # another one may be calmer by now
+        for item in again:
+            if perf_counter() < until:
+                cast(Any, item)._initrequest()  # what pytest knows of its fixtures is used up
+                item.config.hook.pytest_runtest_protocol(item=item, nextitem=None)
+    return result
 
 
 @pytest.fixture
@@ -59,23 +102,54 @@ def profile(request: pytest.FixtureRequest, cell: Cell) -> Profile:
 
 @pytest.fixture
 def keep(request: pytest.FixtureRequest, cell: Cell) -> Keep:
-    """Keep a cell's result in the run, and what it is about in pytest-benchmark's own JSON."""
+    """Keep a cell's result in the run, and what it is about in pytest-benchmark's own JSON.
+
+    Skips the test, and keeps the reason, where there is not enough memory for the cell.
+    """
+    experiment = request.module.__name__.rpartition(".")[2]
+    kept = bool(request.config.getoption("--run"))
     file = _file(request.config, request.module.__name__, cell.structure)
+    reason = memory_foreseen.why_not(cell, experiment)
+    if reason:
+        if kept:
+            _add(file, cell.not_measured(experiment, reason))
+        pytest.skip(reason)
+    watch = Watch()
 
     def keeping(result: CellResult) -> None:
-        study = request.config.getoption("--study")
-        if study and os.getppid() != study:
-            # Whoever resumes it writes to the same file.
-            pytest.exit("the study that began this was killed", returncode=1)
+        result = _calmest(file, replace(result, noise=watch.seen()))
+        timed = result.kind == "time" and not result.left_out
         if "benchmark" in request.fixturenames:
             facts = {key: value for key, value in asdict(result).items() if key != "samples"}
             request.getfixturevalue("benchmark").extra_info.update(facts)
-        if request.config.getoption("--run"):
-            file.add(result)
+        if kept:
+            request.node.stash[DISTURBED] = timed and disturbed(result.noise)
+            _add(file, result)
 
     return keeping
 
 
+def _calmest(file: ResultFile, result: CellResult) -> CellResult:
+    """The result, or an earlier one of its cell that was less disturbed."""
+    earlier = file.get(result.id)
+    before = CellResult(**earlier) if earlier else result
+    chosen = min(result, before, key=lambda it: badness(it.noise))
+    times = 1 + before.noise.get("measured", 0)
+    return replace(chosen, noise={**chosen.noise, "measured": times})
+
+
+def _add(file: ResultFile, result: CellResult) -> None:
+    try:
+        file.add(result)
+    except CannotWriteError as error:
+        pytest.exit(str(error), returncode=CANNOT_WRITE)
+
+
 def _file(config: pytest.Config, module: str, structure: str) -> ResultFile:
-    folder = config.getoption("--run") or Path("no run")
-    return ResultFile(folder, module.rpartition(".")[2], structure)
+    files = config.stash[FILES]
+    if (module, structure) not in files:
+        folder = config.getoption("--run") or Path("no run")
+        file = ResultFile(folder, module.rpartition(".")[2], structure)
+        files[module, structure] = file
+    files[module, structure].head["core"] = config.stash[CORE]
+    return files[module, structure]

@@ -18,19 +18,29 @@ LIBRARIES = ("numpy", "numba", "scipy", "pandas", "pymeshlab", "pytest-benchmark
 
 def describe(profile: str) -> dict[str, Any]:
     """The head of a run: schema, profile, time, commit, machine and versions."""
-    commit = _git("rev-parse", "HEAD")
     return {
         "schema": SCHEMA,
         "profile": profile,
         "started": now(),
-        "commit": commit or "unknown",
-        "dirty": bool(_git("status", "--porcelain")) if commit else None,
+        **source(),
         "machine": machine(),
         "versions": {
             "python": platform.python_version(),
             **{library: version(library) for library in LIBRARIES},
         },
     }
+
+
+def source() -> dict[str, Any]:
+    """The commit that is run, and whether anything was changed since."""
+    commit = _git("rev-parse", "HEAD")
+    dirty = bool(_git("status", "--porcelain")) if commit else None
+    return {"commit": commit or "unknown", "dirty": dirty}
+
+
+def resumed() -> dict[str, Any]:
+    """When a run is gone on with, and by which commit."""
+    return {"at": now(), **source()}
 
 
 def now() -> str:

@@ -5,18 +5,32 @@ The processes run one after the other, because what runs beside a measurement is
 
 from __future__ import annotations
 
-import os
-import subprocess
-import sys
+import warnings
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from contextlib import contextmanager, suppress
+from dataclasses import asdict, dataclass
 from datetime import UTC, datetime
 from importlib import import_module
 from pathlib import Path
+from typing import Any
 
+from experiments import children, noise
+from experiments.children import CANNOT_WRITE, DEFAULT_SEED, How
+from experiments.locks import held
 from experiments.profiles import PROFILES
-from experiments.provenance import describe, now
-from experiments.results import RUNS, ResultFile, latest, read_json, write_json
+from experiments.provenance import describe, now, resumed
+from experiments.results import (
+    RUNS,
+    CannotWriteError,
+    DamagedError,
+    ResultFile,
+    latest,
+    load,
+    read_json,
+    result_files,
+    write_sealed,
+)
+from experiments.stored import cannot_write, set_aside
 from structures import NAMED
 
 EXPERIMENTS = (
@@ -34,7 +48,10 @@ EXPERIMENTS = (
 )
 """The experiments in the order they run. A new one is a file of this name beside this one."""
 
-POLL_SECONDS = 0.25
+ROOM_BYTES = 1 << 16
+"""What must be free in a folder for it to be worth measuring into."""
+
+Report = Callable[["Process", int], None]
 
 
 @dataclass(frozen=True)
@@ -46,8 +63,11 @@ class Process:
     cells: frozenset[str]
 
     def done(self, folder: Path) -> int:
-        """How many of its cells are on disk."""
-        finished = ResultFile(folder, self.experiment, self.structure).finished
+        """How many of its cells are on disk; none of a file that is damaged."""
+        try:
+            finished = ResultFile(folder, self.experiment, self.structure).finished
+        except DamagedError:
+            return 0
         return len(self.cells & finished)
 
 
@@ -55,25 +75,61 @@ class StudyFailedError(RuntimeError):
     """Some cells failed; the message names the processes and shows what they printed."""
 
 
-def begin(profile: str, root: Path = RUNS, structures: Sequence[str] = ()) -> Path:
+def begin(
+    profile: str,
+    root: Path = RUNS,
+    structures: Sequence[str] = (),
+    *,
+    seed: int = DEFAULT_SEED,
+    pin: bool = True,
+) -> Path:
     """A new run folder, named by the time and the profile, with what is known before it runs.
 
-    ``structures``: just these; all of them for none. Raises ValueError for one there is not.
+    ``structures``: just these; all of them for none. ``seed``: of the order of the cells; ``pin``:
+    whether to stay on one core. Raises ValueError for a structure there is not, CannotWriteError.
     """
     for name in structures:
         if name not in NAMED:
             raise ValueError(f"no structure is called {name!r}; there are {', '.join(NAMED)}")
-    stamp = datetime.now(UTC).strftime("%Y%m%d-%H%M%S")
-    folder = root / f"{stamp}-{profile}"
-    write_json(folder / "run.json", {**describe(profile), "structures": list(structures)})
+    folder = _new_folder(root, f"{datetime.now(UTC).strftime('%Y%m%d-%H%M%S')}-{profile}")
+    about = {"structures": list(structures), "seed": seed, "pin": pin}
+    try:
+        write_sealed(folder / "run.json", {**describe(profile), **about})
+    except CannotWriteError:
+        with suppress(OSError):
+            folder.rmdir()
+        raise
     return folder
 
 
-def resume(root: Path = RUNS) -> tuple[Path, str, list[str]]:
-    """The newest unfinished run, its profile and structures. Raises ResultsError without any."""
-    folder = latest(root, unfinished=True)
+def _new_folder(root: Path, name: str) -> Path:
+    """A folder that nobody else has: of two studies in one second the later gets a number."""
+    try:
+        root.mkdir(parents=True, exist_ok=True)
+        for suffix in ("", *(f"-{k}" for k in range(2, 1_000))):
+            with suppress(FileExistsError):
+                (root / f"{name}{suffix}").mkdir()
+                return root / f"{name}{suffix}"
+    except OSError as error:
+        raise cannot_write(root, error) from error
+    raise CannotWriteError(f"{root} has a thousand runs called {name}: clear it up")
+
+
+def resume(root: Path = RUNS, folder: Path | None = None) -> tuple[Path, str, list[str]]:
+    """The newest unfinished run, its profile and structures. Raises ResultsError without any.
+
+    ``folder``: this one instead, finished or not.
+    """
+    folder = folder or latest(root, unfinished=True)
     meta = read_json(folder / "run.json")
     return folder, str(meta["profile"]), list(meta.get("structures", ()))
+
+
+def how(folder: Path) -> How:
+    """How a run was begun, and is to go on."""
+    meta = read_json(folder / "run.json")
+    seed, pin = meta.get("seed", DEFAULT_SEED), meta.get("pin", True)
+    return How(str(meta["profile"]), int(seed), bool(pin))
 
 
 def processes(profile: str, structures: Sequence[str] = ()) -> list[Process]:
@@ -91,61 +147,95 @@ def processes(profile: str, structures: Sequence[str] = ()) -> list[Process]:
 def run(
     folder: Path,
     profile: str,
-    report: Callable[[Process, int], None],
+    report: Report,
     structures: Sequence[str] = (),
+    say: Callable[[str], None] = warnings.warn,
 ) -> None:
     """Run what the folder lacks, and mark it finished.
 
-    ``report(process, done)`` is called as cells come in. Raises StudyFailedError when everything
-    else has run, and KeyboardInterrupt as it comes; what is finished stays in either case.
+    ``report(process, done)`` is called as cells come in; ``say``: for what was found damaged and
+    set aside. Raises StudyFailedError when everything else has run, InUseError if another process
+    measures into the folder, CannotWriteError once results cannot be kept, and KeyboardInterrupt as
+    it comes; what is finished stays in any case.
     """
-    failures = []
-    for process in processes(profile, structures):
-        if process.done(folder) < len(process.cells):
-            output = _run_one(folder, profile, process, report)
+    with prepared(folder, say):
+        failures = []
+        for process in processes(profile, structures):
             if process.done(folder) < len(process.cells):
-                failures.append(f"{process.experiment} on {process.structure}:\n{output}")
-        report(process, process.done(folder))
-    if failures:
-        raise StudyFailedError("\n\n".join(failures))
-    write_json(folder / "run.json", {**read_json(folder / "run.json"), "finished": now()})
+                output = _run_one(folder, process, report)
+                if process.done(folder) < len(process.cells):
+                    failures.append(f"{process.experiment} on {process.structure}:\n{output}")
+            report(process, process.done(folder))
+        if failures:
+            raise StudyFailedError("\n\n".join(failures))
+        finish(folder)
 
 
-def _run_one(
-    folder: Path, profile: str, process: Process, report: Callable[[Process, int], None]
-) -> str:
+@contextmanager
+def prepared(folder: Path, say: Callable[[str], None]) -> Iterator[None]:
+    """Have a folder for oneself, with room in it and nothing damaged."""
+    with held(folder):
+        require_room(folder)
+        begun = bool(result_files(folder))
+        for path in set_aside_damaged(folder):
+            say(f"{path.name} was damaged and is set aside; its cells are measured again")
+        meta = read_json(folder / "run.json")
+        if begun:
+            meta = {**meta, "resumed": [*meta.get("resumed", []), resumed()]}
+            write_sealed(folder / "run.json", meta)
+        yield
+
+
+def finish(folder: Path) -> None:
+    """Mark a run as finished, with what it consists of and how steady the machine was."""
+    files = [str(path.relative_to(folder)) for path in result_files(folder)]
+    cores = {name: read_json(folder / name).get("core") for name in files}
+    more = {"finished": now(), "files": files, "cores": cores, "noise": _steadiness(folder)}
+    write_sealed(folder / "run.json", {**read_json(folder / "run.json"), **more})
+
+
+def _steadiness(folder: Path) -> dict[str, Any]:
+    found = noise.noise(load(folder))
+    return {**asdict(found), "share": found.share, "too_busy": found.too_busy}
+
+
+def set_aside_damaged(folder: Path) -> list[Path]:
+    """Rename the damaged files of a run, so that their cells are measured again -> where they are.
+
+    Raises CannotWriteError.
+    """
+    kept = []
+    for path in result_files(folder):
+        experiment, structure, _ = path.name.split(".")
+        try:
+            ResultFile(path.parent, experiment, structure)
+        except DamagedError:
+            kept.append(set_aside(path))
+    return kept
+
+
+def require_room(folder: Path) -> None:
+    """Raise CannotWriteError unless something can be written into a folder."""
+    trial = folder / ".room"
+    try:
+        trial.write_bytes(bytes(ROOM_BYTES))
+    except OSError as error:
+        raise cannot_write(folder, error) from error
+    finally:
+        with suppress(OSError):
+            trial.unlink()
+
+
+def _run_one(folder: Path, process: Process, report: Report) -> str:
     """Run one process to its end -> the end of what it printed."""
-    file = Path(str(import_module(f"experiments.{process.experiment}").__file__))
-    command = [sys.executable, "-m", "pytest", str(file), "-q", "--no-header", "--tb=short"]
-    command += ["-p", "no:cacheprovider", "--benchmark-quiet", "--profile", profile]
-    command += ["--structure", process.structure, "--run", str(folder.resolve())]
-    command += ["--study", str(os.getpid())]
-    log = folder / "logs" / f"{process.experiment}.{process.structure}.txt"
-    log.parent.mkdir(exist_ok=True)
-    with log.open("w") as output:
-        child = subprocess.Popen(
-            command, cwd=file.parent.parent, env=_own(), stdout=output, stderr=subprocess.STDOUT
-        )
-        try:
-            for _ in _until_it_ends(child):
-                report(process, process.done(folder))
-        except KeyboardInterrupt:
-            child.terminate()
-            child.wait()
-            raise
-    return "\n".join(log.read_text().splitlines()[-15:])
-
-
-def _own() -> dict[str, str]:
-    """The environment without what concerns another pytest, which might turn measuring off."""
-    return {key: value for key, value in os.environ.items() if not key.startswith("PYTEST_")}
-
-
-def _until_it_ends(child: subprocess.Popen[bytes]) -> Iterator[None]:
-    while True:
-        try:
-            child.wait(POLL_SECONDS)
-        except subprocess.TimeoutExpired:
-            yield
-        else:
-            return
+    code, output = children.measure(
+        folder,
+        process.experiment,
+        process.structure,
+        how(folder),
+        lambda: report(process, process.done(folder)),
+    )
+    if code == CANNOT_WRITE:
+        require_room(folder)
+        raise CannotWriteError(f"{folder}: {output}")
+    return output

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from itertools import groupby
+from random import Random
 from typing import Any
 
 import numpy as np
@@ -79,6 +82,40 @@ class Cell:
             samples=np.asarray(samples, float).tolist(),
             **more,
         )
+
+    def not_measured(self, experiment: str, reason: str) -> CellResult:
+        """The cell where its mesh was not even made; its counts are about those asked for."""
+        counted = self.order == "counted" or experiment == "bench_work"
+        return CellResult(
+            id=self.id,
+            kind={"bench_memory": "bytes"}.get(experiment, "work" if counted else "time"),
+            query=self.query,
+            order=self.order,
+            family=self.family,
+            vertices=self.size // 2 if self.family == HUBS else self.size,
+            faces=self.size if self.family == HUBS else 2 * self.size,
+            valence=self.valence,
+            reference_bytes=self.reference_bytes,
+            left_out=reason,
+        )
+
+
+def in_random_order(cells: Sequence[Cell], seed: int | str) -> list[Cell]:
+    """The cells in an order that the seed determines: random meshes, on each its cells at random.
+
+    What is asked of one mesh stays together, since building it anew for each question would take
+    longer than the asking.
+    """
+    random = Random(seed)
+
+    def mesh(cell: Cell) -> tuple[str, int, int]:
+        return cell.family, cell.size, cell.valence or 0
+
+    blocks = [list(block) for _, block in groupby(sorted(cells, key=mesh), mesh)]
+    random.shuffle(blocks)
+    for block in blocks:
+        random.shuffle(block)
+    return [cell for block in blocks for cell in block]
 
 
 def pool(cell: Cell, s: Structure) -> Array:
