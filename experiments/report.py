@@ -6,13 +6,18 @@ import os
 import shutil
 import tempfile
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from html import escape
 from pathlib import Path
-from typing import Any
+from typing import NamedTuple
 
-from experiments import html, statements
+import pandas as pd
+
+from experiments import answers, board, html, pdf, statements
 from experiments.claims import OPERATIONS, TABLES
+from experiments.entries import Entry, entries
+from experiments.page import page, static
 from experiments.results import ResultsError, Run, load
 from experiments.table import markdown
 from experiments.verdicts import OUTCOMES, judged, save
@@ -30,6 +35,21 @@ CHAPTERS = {
 }
 """The notebooks in the order they are read. A new chapter is one notebook and one line here."""
 
+FRONT = "index"
+TITLE = "Does the thesis hold?"
+"""The front page: its file, and what it is called."""
+
+READING = """<p class="soft">✓ consistent · ✗ violated · ? undetermined: the data cannot tell ·
+– nothing is claimed, as the structure keeps no record of an edge: what was found is the cost of
+naming the edge by its two vertices. Work is the number of array elements that a query or an
+operation accesses; it is exact and decides. Time is judged beside it, and is undetermined where the
+machine’s caches could explain it as well. Structures of objects are interpreted, and measured on
+smaller meshes.</p>"""
+"""How to read the tables."""
+
+AT_ONCE = 2
+"""Notebooks that run beside each other."""
+
 QUIET = ["--IPKernelApp.log_level=40"]  # no warnings about how a local kernel is talked to
 
 RUN_VARIABLE = "HEM_RUN"
@@ -43,20 +63,64 @@ def write(run_folder: Path, output: Path) -> Path:
     or a notebook fails, naming it; then what was there stays.
     """
     run = load(run_folder)
-    table = judged(run)
-    save(run, table)
-    output.parent.mkdir(parents=True, exist_ok=True)
-    with tempfile.TemporaryDirectory(dir=output.parent, prefix=".report-") as beside:
-        fresh = Path(beside) / "html"
-        fresh.mkdir()
-        for name, title in CHAPTERS.items():
-            body = _chapter(name, run_folder)
-            (fresh / f"{name}.html").write_text(html.page(title, body, _links()), "utf-8")
-        front = html.page("Triangle-mesh structures, measured", _front(run, table), _links())
-        (fresh / "index.html").write_text(front, "utf-8")
+    with _beside(output, "html") as fresh:
+        parts = _parts(run, run_folder)
+        for name, (title, body) in parts.bodies.items():
+            script = static("board.js") if name == FRONT else ""
+            text = page(title, body, _links(), script)
+            (fresh / f"{name}.html").write_text(text, "utf-8")
+        board.write_files(parts.entries, fresh)
         shutil.rmtree(output, ignore_errors=True)
         fresh.rename(output)
-    return output / "index.html"
+    return output / f"{FRONT}.html"
+
+
+def write_pdf(run_folder: Path, output: Path) -> Path:
+    """Write the report of a run as one document to print -> ``output``.
+
+    Raises ResultsError as ``write`` does, and PrintError where there is no browser to print it.
+    """
+    pdf.browser()  # rather now than after the notebooks
+    run = load(run_folder)
+    with _beside(output, "print") as fresh:
+        parts = _parts(run, run_folder)
+        (fresh / "print.html").write_text(pdf.document(TITLE, parts.bodies), "utf-8")
+        board.write_files(parts.entries, fresh)
+        printed = pdf.printed(fresh / "print.html", fresh / "report.pdf")
+        printed.replace(output)
+    return output
+
+
+class Parts(NamedTuple):
+    """What a report is made of: the title and the body of every page, and the claims."""
+
+    bodies: dict[str, tuple[str, str]]
+    entries: list[Entry]
+
+
+def _parts(run: Run, run_folder: Path) -> Parts:
+    table = judged(run)
+    save(run, table)
+    every = entries(run, table)
+    bodies = {FRONT: (TITLE, _front(run, table, every))}
+    with (
+        _environment(RUN_VARIABLE, str(run_folder.resolve())),
+        ThreadPoolExecutor(AT_ONCE) as pool,
+    ):
+        chapters = pool.map(lambda name: _chapter(name, run_folder), CHAPTERS)
+        for (name, title), body in zip(CHAPTERS.items(), chapters, strict=True):
+            bodies[name] = (title, body)
+    return Parts(bodies, every)
+
+
+@contextmanager
+def _beside(output: Path, name: str) -> Iterator[Path]:
+    """A new folder beside the output, on the same disk; it goes away at the end."""
+    output.parent.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory(dir=output.parent, prefix=".report-") as beside:
+        fresh = Path(beside) / name
+        fresh.mkdir()
+        yield fresh
 
 
 def write_page(run_folder: Path, folder: Path, reference: Path) -> Path:
@@ -122,7 +186,7 @@ def _fill_in(readme: Path, table: str) -> None:
 
 
 def _links() -> dict[str, str]:
-    return {"Verdicts": "index.html", **{title: f"{it}.html" for it, title in CHAPTERS.items()}}
+    return {TITLE: f"{FRONT}.html", **{title: f"{it}.html" for it, title in CHAPTERS.items()}}
 
 
 @contextmanager
@@ -148,8 +212,7 @@ def _chapter(name: str, run_folder: Path) -> str:
     notebook = nbformat.read(NOTEBOOKS / f"{name}.ipynb", as_version=4)
     client = NotebookClient(notebook, timeout=300, kernel_name="python3", extra_arguments=QUIET)
     try:
-        with _environment(RUN_VARIABLE, str(run_folder.resolve())):
-            client.execute(cwd=str(NOTEBOOKS))
+        client.execute(cwd=str(NOTEBOOKS))
     except CellExecutionError as error:
         what = f"{error.ename}: {error.evalue}"
         raise ResultsError(f"notebooks/{name}.ipynb cannot read {run_folder}: {what}") from error
@@ -158,11 +221,7 @@ def _chapter(name: str, run_folder: Path) -> str:
     return body
 
 
-def _front(run: Run, table: Any) -> str:
-    claims = table[table["query"] != "memory"]
-    counts = ", ".join(
-        f"{number} {outcome}" for outcome, number in claims["outcome"].value_counts().items()
-    )
+def _front(run: Run, table: pd.DataFrame, every: list[Entry]) -> str:
     boards = "".join(
         f"<h2>{title}</h2>{html.verdicts(table[table['table'] == which])}"
         for which, title in TABLES.items()
@@ -171,18 +230,14 @@ def _front(run: Run, table: Any) -> str:
         f'<li><a href="{it}.html">{title}</a></li>' for it, title in CHAPTERS.items()
     )
     return (
-        "<h1>Does the thesis hold?</h1>"
-        f"<p>Cells of its tables, judged by the work that was counted: <b>{escape(counts)}</b>. "
-        "Work is the number of array elements that a query or an operation accesses; it is exact "
-        "and decides. Time is judged beside it, and is undetermined where the machine's caches "
-        "could explain it as well. Structures of objects are interpreted, and measured on smaller "
-        "meshes.</p>"
-        f"{boards}"
-        '<p class="soft">✓ consistent · ✗ violated · ? undetermined: the data cannot tell · '
-        "– nothing is claimed, as the structure keeps no record of an edge: what was found is the "
-        "cost of naming the edge by its two vertices.</p>"
-        f"<h2>In sentences</h2>{html.statements(statements.judged(run))}"
-        f"<h2>The evidence</h2><ul>{chapters}</ul>"
+        f"<h1>{TITLE}</h1>"
+        f'<p class="question">{escape(answers.question())}</p>'
+        f"{answers.shown(answers.answers(run, table))}"
+        f"{boards}{READING}"
+        '<h2 id="claims">All claims</h2><p>Every cell of the tables and every sentence. A claim '
+        "unfolds to its plots, its data, the reasons for its verdict, and its source.</p>"
+        f"{board.board(every, CHAPTERS)}"
+        f'<h2>The chapters</h2><ol class="cards">{chapters}</ol>'
         f"<h2>The run</h2><p>{escape(_provenance(run))}</p>{_left_out(run)}"
     )
 
