@@ -106,10 +106,7 @@ def _progress(
 
 @app.command("table")
 def show_table(
-    run: PAGES, DOCUMENT = Path("report/html"), Path("report/report.pdf")
-"""Where the report goes."""
-
-RunArgument = None,
+    run: RunArgument = None,
     every: Annotated[
         bool, typer.Option("--all", help="All six structures, and the thesis' listings.")
     ] = False,
@@ -123,10 +120,7 @@ RunArgument = None,
 
 @app.command("report")
 def write_report(
-    run: PAGES, DOCUMENT = Path("report/html"), Path("report/report.pdf")
-"""Where the report goes."""
-
-RunArgument = None,
+    run: RunArgument = None,
     output: Annotated[
         Path | None,
         typer.Option(
