@@ -98,7 +98,7 @@ def _body(entry: Entry, chapters: dict[str, str]) -> str:
         f'<div class="body"><p class="words">{escape(entry.words)} '
         f'<span class="source">({escape(entry.source)})</span></p>'
         f'<div class="plots">{"".join(_plot(entry, it) for it in entry.plots)}</div>'
-        f'{_reasons(entry)}<p class="soft">{link} · {here}</p></div>'
+        f'{_reasons(entry)}<p class="soft files">{link} · {here}</p></div>'
     )
 
 

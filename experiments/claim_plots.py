@@ -78,9 +78,9 @@ def growth(panel: Panel, structure: str, claimed: bool) -> str:
     parts = list(svg.axes(x, y, ACROSS[panel.variable], unit))
     for name, curve in curves.items():
         rise = panel.verdict.coefficients[name]["rise"]
-        if rise > 1.01:
-            parts.append(svg.band(x(smooth), y(curve), np.maximum(y(rise * curve), svg.TOP)))
         is_claim = claimed and name == panel.verdict.expected
+        if rise > 1.01 and (is_claim or not claimed):
+            parts.append(svg.band(x(smooth), y(curve), np.maximum(y(rise * curve), svg.TOP)))
         parts.append(svg.line(x(smooth), y(curve), f"dash {'claim' if is_claim else 'found'}"))
     parts += [
         svg.whiskers(x(sizes), y(low), y(high), css, f"stroke:{color}" if color else ""),
@@ -125,7 +125,7 @@ def memory(cells: pd.DataFrame, structure: str, printed: int | None) -> str:
     vertices = cells["vertices"].to_numpy(float)
     each = np.array([it[0] for it in cells["samples"]]) / vertices
     x = svg.logarithmic(vertices, svg.LEFT, svg.WIDTH - svg.RIGHT)
-    top = max([*each, float(printed or 0)])
+    top = max([*each, float(printed or 0)]) or 1.0
     y = svg.Axis(0, 1.25 * top, svg.HEIGHT - svg.BOTTOM, svg.TOP, logarithmic=False)
     css, color = _color(structure)
     parts = list(svg.axes(x, y, "vertices n_v", "bytes per vertex"))

@@ -14,7 +14,7 @@ from experiments.complexity import Verdict
 from experiments.results import Run
 from experiments.statements import Statement
 from experiments.table import found
-from experiments.verdicts import Evidence
+from experiments.verdicts import OUTCOMES, Evidence
 from structures import NAMED
 
 SENTENCES = "sentences"
@@ -170,7 +170,8 @@ def caption(verdict: Verdict, claimed: bool) -> str:
     )
     most = "at most " if verdict.bound == "upper" else ""
     told = f"claimed {most}{verdict.expected}, " if claimed else ""
-    return f"slope {slope} ({low} … {high}) · {told}found {verdict.best}"
+    mark = f" {OUTCOMES[verdict.outcome]}" if claimed else ""
+    return f"slope {slope} ({low} … {high}) · {told}found {verdict.best}{mark}"
 
 
 def _sentence(it: Statement) -> Entry:

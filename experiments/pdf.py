@@ -67,24 +67,33 @@ def printed(document: Path, output: Path) -> Path:
     return output
 
 
-def document(title: str, bodies: dict[str, tuple[str, str]]) -> str:
-    """All pages as one, each on a new sheet of paper; links between them stay links."""
-    sections = "\n".join(
-        f'<section class="chapter" id="{name}">{_as_section(name, body)}</section>'
-        for name, (_, body) in bodies.items()
+def sections(front: str, chapters: dict[str, str], claims: str, back: str) -> dict[str, str]:
+    """The parts of a report in the order in which they are printed: the claims at the end."""
+    return {"index": _unfolded(front), **_chapters(chapters), "all": _unfolded(claims + back)}
+
+
+def document(title: str, parts: dict[str, str]) -> str:
+    """The parts as one page, each on a new sheet of paper; links between them stay links."""
+    shown = "\n".join(
+        f'<section class="chapter" id="page-{name}">{_leading(body)}</section>'
+        for name, body in parts.items()
     )
-    return f"<!doctype html>\n{head(title)}\n<body><main>{sections}</main></body></html>\n"
+    return f"<!doctype html>\n{head(title)}\n<body><main>{shown}</main></body></html>\n"
 
 
-def _as_section(name: str, body: str) -> str:
-    """A body whose ids are its own, whose links lead within the document, and all of it unfolded.
+def _chapters(chapters: dict[str, str]) -> dict[str, str]:
+    """The chapters with ids that are their own: on a page each they need not be."""
+    return {
+        name: re.sub(r'(<[^>]*\s(?:id="|href="#))', rf"\g<1>{name}--", body)
+        for name, body in chapters.items()
+    }
 
-    A link to another page becomes one to its section; to a file beside the pages, plain words.
-    """
-    body = re.sub(r'(<[^>]*\sid=")', rf"\g<1>{name}--", body)
-    body = re.sub(r'href="#([^"]*)"', rf'href="#{name}--\1"', body)
-    body = re.sub(r'href="(\w+)\.html#([^"]*)"', r'href="#\1--\2"', body)
-    body = re.sub(r'href="(\w+)\.html"', r'href="#\1"', body)
-    body = re.sub(r'<a href="claims/[^"]*">([^<]*)</a>', r"\1", body)
-    body = re.sub(r"<details(?! open)", "<details open", body)
-    return body.replace(' loading="lazy"', "")
+
+def _leading(body: str) -> str:
+    """Links to another page lead to its section; those to files beside the pages become words."""
+    body = re.sub(r'href="(\w+)\.html"', r'href="#page-\1"', body)
+    return re.sub(r'<a href="claims/[^"]*">([^<]*)</a>', r"\1", body)
+
+
+def _unfolded(body: str) -> str:
+    return re.sub(r"<details(?! open)", "<details open", body).replace(' loading="lazy"', "")

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import os
+import re
 import shutil
 import tempfile
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
-from html import escape
+from html import escape, unescape
 from pathlib import Path
 from typing import NamedTuple
 
@@ -47,6 +48,12 @@ machine’s caches could explain it as well. Structures of objects are interpret
 smaller meshes.</p>"""
 """How to read the tables."""
 
+UNFOLDING = """<p>Every cell of the tables and every sentence, with its plots, its data, the reasons
+for its verdict, and its source. In the plots a dot is what was measured at one size, between its
+smallest and largest sample; gray and dashed is the class that is claimed, as it fits best, and the
+shade above it what waiting for memory can add; red and dashed a class that fits better.</p>"""
+"""How to read the claims."""
+
 AT_ONCE = 2
 """Notebooks that run beside each other."""
 
@@ -65,9 +72,10 @@ def write(run_folder: Path, output: Path) -> Path:
     run = load(run_folder)
     with _beside(output, "html") as fresh:
         parts = _parts(run, run_folder)
-        for name, (title, body) in parts.bodies.items():
-            script = static("board.js") if name == FRONT else ""
-            text = page(title, body, _links(), script)
+        front = page(TITLE, parts.front + parts.claims + parts.back, _links(), static("board.js"))
+        (fresh / f"{FRONT}.html").write_text(front, "utf-8")
+        for name, body in parts.chapters.items():
+            text = page(CHAPTERS[name], body, _links())
             (fresh / f"{name}.html").write_text(text, "utf-8")
         board.write_files(parts.entries, fresh)
         shutil.rmtree(output, ignore_errors=True)
@@ -84,7 +92,8 @@ def write_pdf(run_folder: Path, output: Path) -> Path:
     run = load(run_folder)
     with _beside(output, "print") as fresh:
         parts = _parts(run, run_folder)
-        (fresh / "print.html").write_text(pdf.document(TITLE, parts.bodies), "utf-8")
+        sections = pdf.sections(parts.front, parts.chapters, parts.claims, parts.back)
+        (fresh / "print.html").write_text(pdf.document(TITLE, sections), "utf-8")
         board.write_files(parts.entries, fresh)
         printed = pdf.printed(fresh / "print.html", fresh / "report.pdf")
         printed.replace(output)
@@ -92,9 +101,12 @@ def write_pdf(run_folder: Path, output: Path) -> Path:
 
 
 class Parts(NamedTuple):
-    """What a report is made of: the title and the body of every page, and the claims."""
+    """What a report is made of: the front page in three parts, the chapters, and the claims."""
 
-    bodies: dict[str, tuple[str, str]]
+    front: str
+    claims: str
+    back: str
+    chapters: dict[str, str]
     entries: list[Entry]
 
 
@@ -102,15 +114,14 @@ def _parts(run: Run, run_folder: Path) -> Parts:
     table = judged(run)
     save(run, table)
     every = entries(run, table)
-    bodies = {FRONT: (TITLE, _front(run, table, every))}
+    front, claims, back = _front(run, table), _claims(every), _back(run)
     with (
         _environment(RUN_VARIABLE, str(run_folder.resolve())),
         ThreadPoolExecutor(AT_ONCE) as pool,
     ):
-        chapters = pool.map(lambda name: _chapter(name, run_folder), CHAPTERS)
-        for (name, title), body in zip(CHAPTERS.items(), chapters, strict=True):
-            bodies[name] = (title, body)
-    return Parts(bodies, every)
+        bodies = pool.map(lambda name: _chapter(name, run_folder), CHAPTERS)
+        chapters = dict(zip(CHAPTERS, bodies, strict=True))
+    return Parts(front, claims, back, chapters, every)
 
 
 @contextmanager
@@ -217,27 +228,44 @@ def _chapter(name: str, run_folder: Path) -> str:
         what = f"{error.ename}: {error.evalue}"
         raise ResultsError(f"notebooks/{name}.ipynb cannot read {run_folder}: {what}") from error
     exporter = HTMLExporter(template_name="basic", exclude_input=True, exclude_output_prompt=True)
-    body: str = exporter.from_notebook_node(notebook)[0]
-    return body
+    return _described(exporter.from_notebook_node(notebook)[0])
 
 
-def _front(run: Run, table: pd.DataFrame, every: list[Entry]) -> str:
+def _described(body: str) -> str:
+    """A chapter in which every picture is described by the heading that it stands under."""
+    heading = ""
+    parts = re.split(r"(<h[1-6].*?</h[1-6]>)", body, flags=re.DOTALL)
+    for i, part in enumerate(parts):
+        if i % 2:
+            heading = escape(unescape(re.sub(r"<[^>]*>|¶", "", part)).strip())
+        parts[i] = re.sub(r'alt="No description[^"]*"', f'alt="Plot: {heading}"', part)
+    return "".join(parts)
+
+
+def _front(run: Run, table: pd.DataFrame) -> str:
+    """The question, the answer and the tables."""
     boards = "".join(
         f"<h2>{title}</h2>{html.verdicts(table[table['table'] == which])}"
         for which, title in TABLES.items()
     )
+    return (
+        f"<h1>{TITLE}</h1>"
+        f'<p class="question">{escape(answers.question())}</p>'
+        f"{answers.shown(answers.answers(run, table))}{boards}{READING}"
+    )
+
+
+def _claims(every: list[Entry]) -> str:
+    return f'<h2 id="claims">All claims</h2>{UNFOLDING}{board.board(every, CHAPTERS)}'
+
+
+def _back(run: Run) -> str:
+    """The way on, and what was run."""
     chapters = "".join(
         f'<li><a href="{it}.html">{title}</a></li>' for it, title in CHAPTERS.items()
     )
     return (
-        f"<h1>{TITLE}</h1>"
-        f'<p class="question">{escape(answers.question())}</p>'
-        f"{answers.shown(answers.answers(run, table))}"
-        f"{boards}{READING}"
-        '<h2 id="claims">All claims</h2><p>Every cell of the tables and every sentence. A claim '
-        "unfolds to its plots, its data, the reasons for its verdict, and its source.</p>"
-        f"{board.board(every, CHAPTERS)}"
-        f'<h2>The chapters</h2><ol class="cards">{chapters}</ol>'
+        f'<div class="no-print"><h2>The chapters</h2><ol class="cards">{chapters}</ol></div>'
         f"<h2>The run</h2><p>{escape(_provenance(run))}</p>{_left_out(run)}"
     )
 
