@@ -42,8 +42,8 @@ def _digits(value: float, digits: int = 2) -> str:
     """So many digits that count, without powers: 0.036, 5.1, 64, 12,000."""
     if value == 0:
         return "0"
-    behind = digits - 1 - int(np.floor(np.log10(abs(value))))
-    rounded = round(value, behind)
+    rounded = float(f"{value:.{digits - 1}e}")
+    behind = digits - 1 - int(np.floor(np.log10(abs(rounded))))
     return f"{rounded:,.{max(behind, 0)}f}"
 
 
@@ -120,7 +120,9 @@ class Findings:
     @cached_property
     def _break_even(self) -> pd.DataFrame:
         table = break_even(self.run)
-        mine = table[(table["structure"] == "half_edge") & np.isfinite(table["times"])]
+        mine = table[
+            (table["structure"] == "half_edge") & np.isfinite(table["times"].astype(float))
+        ]
         wanted = mine[mine["what"].isin(("vertex_faces", "split_edge"))]
         both = wanted.groupby("vertices")["what"].transform("nunique") == 2
         return wanted[both]
