@@ -51,7 +51,8 @@ smaller meshes.</p>"""
 UNFOLDING = """<p>Every cell of the tables and every sentence, with its plots, its data, the reasons
 for its verdict, and its source. In the plots a dot is what was measured at one size, between its
 smallest and largest sample; gray and dashed is the class that is claimed, as it fits best, and the
-shade above it what waiting for memory can add; red and dashed a class that fits better.</p>"""
+shade above it what waiting for memory can add; red and dashed is a class that fits better, or the
+best one where nothing is claimed.</p>"""
 """How to read the claims."""
 
 AT_ONCE = 2
