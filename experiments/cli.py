@@ -20,6 +20,9 @@ app = typer.Typer(
     add_completion=False,
     pretty_exceptions_enable=False,
 )
+PAGES, DOCUMENT = Path("report/html"), Path("report/report.pdf")
+"""Where the report goes."""
+
 RunArgument = Annotated[
     Path | None, typer.Argument(help="The folder of a run; the newest if it is not given.")
 ]
@@ -43,21 +46,32 @@ def show_table(
 @app.command("report")
 def write_report(
     run: RunArgument = None,
-    output: Annotated[Path, typer.Option(help="Where the pages go.")] = Path("report/html"),
+    output: Annotated[
+        Path | None,
+        typer.Option(
+            help=f"Where the pages go ({PAGES} if it is not given), or the document ({DOCUMENT})."
+        ),
+    ] = None,
     page: Annotated[
         bool, typer.Option("--page", help="Instead write the page and the reference to commit.")
+    ] = False,
+    pdf: Annotated[
+        bool, typer.Option("--pdf", help="Instead write one document to print; needs Chromium.")
     ] = False,
 ) -> None:
     """Run the notebooks on a run and write the report: pages that open from disk."""
     with user_errors():
-        from experiments.report import write, write_page
+        from experiments.report import write, write_page, write_pdf
 
         folder = run or results.latest()
         if page:
             written = write_page(folder, Path("report"), Path("results/reference"))
             console.print(f"Page written: {written}")
+        elif pdf:
+            written = write_pdf(folder, output or DOCUMENT)
+            console.print(f"Document written: {written}", soft_wrap=True)
         else:
-            front = write(folder, output)
+            front = write(folder, output or PAGES)
             console.print(f"Report written. Open {front.resolve().as_uri()}", soft_wrap=True)
 
 

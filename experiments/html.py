@@ -1,8 +1,8 @@
-"""The tables of the report as HTML, and the page around them."""
+"""The tables of the report as HTML."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from html import escape
 from typing import Any
 
@@ -10,53 +10,17 @@ import pandas as pd
 
 from experiments.claims import MEMORY, NO_CLAIM, VARIABLES
 from experiments.complexity import Verdict
+from experiments.entries import key_of
 from experiments.errata import Erratum
 from experiments.statements import Statement, bounds, span
 from experiments.table import by_title, found
 from experiments.verdicts import OUTCOMES
 from structures import NAMED
 
-CSS = """
-:root { --ink: #1b1b1b; --soft: #667; --line: #e3e3e8; }
-body { font: 16px/1.55 system-ui, "Segoe UI", "Liberation Sans", Arial, sans-serif;
-  color: var(--ink); margin: 0 auto; padding: 2rem 1.2rem 4rem; max-width: 1160px; }
-h1 { font-size: 1.7rem; line-height: 1.2; margin: .6rem 0 .4rem; }
-h2 { font-size: 1.2rem; margin-top: 2.2rem; }
-a { color: #1f5f99; } nav { font-size: .92rem; } nav a { margin-right: 1.1rem; }
-p, li { max-width: 74ch; } .soft { color: var(--soft); font-size: .9rem; }
-table { border-collapse: collapse; margin: 1rem 0; font-variant-numeric: tabular-nums; }
-th, td { text-align: left; vertical-align: top; padding: .42rem .45rem; font-size: .88rem;
-  border-bottom: 1px solid var(--line); }
-thead th { border-bottom: 2px solid #999; } tbody th { font-weight: 600; max-width: 7.5rem; }
-td b { font-size: .95rem; }
-td small { display: block; color: #556; font-size: .78rem; line-height: 1.4; }
-.grid { display: grid; grid-template-columns: repeat(4, auto); column-gap: .4rem;
-  width: max-content; margin: .15rem 0; }
-.grid i { font-style: normal; font-size: .69rem; line-height: 1.45; color: #445;
-  white-space: nowrap; }
-.consistent b { color: #17693a; } .violated { background: #fdeceb; }
-.violated b { color: #a3170f; } .undetermined b { color: #8a5a00; }
-.no-claim b { color: var(--soft); }
-.numbers td:not(:first-child), .numbers th:not(:first-child) { text-align: right; }
-.wide { overflow-x: auto; } img { max-width: 100%; height: auto; }
-pre { white-space: pre-wrap; font-size: .8rem; } .anchor-link { display: none; }
-"""
-
-
-def page(title: str, body: str, links: dict[str, str]) -> str:
-    """A page that opens from disk: everything it needs is in it."""
-    nav = "".join(f'<a href="{escape(to)}">{escape(name)}</a>' for name, to in links.items())
-    return (
-        '<!doctype html>\n<html lang="en"><head><meta charset="utf-8">'
-        f"<title>{escape(title)}</title>"
-        '<meta name="viewport" content="width=device-width, initial-scale=1">'
-        f"<style>{CSS}</style></head>\n<body><nav>{nav}</nav>\n{body}\n</body></html>\n"
-    )
-
 
 def verdicts(table: pd.DataFrame) -> str:
-    """The verdicts at a glance: what is printed, and whether it holds."""
-    return _table(table, _glance)
+    """The verdicts at a glance: what is printed, and whether it holds; each leads to its claim."""
+    return _table(table, _linked, "glance")
 
 
 def evidence(table: pd.DataFrame) -> str:
@@ -97,7 +61,7 @@ def errata(every: Iterable[Erratum]) -> str:
     return f'<div class="wide"><table>{inner}</table></div>'
 
 
-def _table(table: pd.DataFrame, cell: Any) -> str:
+def _table(table: pd.DataFrame, cell: Callable[[dict[str, Any]], str], css: str = "") -> str:
     heads = "".join(f"<th>{escape(NAMED[s].title)}</th>" for s in table["structure"].unique())
     rows = [
         f"<tr><th>{escape(title)}</th>"
@@ -109,7 +73,15 @@ def _table(table: pd.DataFrame, cell: Any) -> str:
     ]
     body = "\n".join(rows)
     head = f"<thead><tr><th></th>{heads}</tr></thead>"
-    return f'<div class="wide"><table>{head}\n<tbody>{body}</tbody></table></div>'
+    return (
+        f'<div class="wide" tabindex="0"><table class="{css}">{head}\n'
+        f"<tbody>{body}</tbody></table></div>"
+    )
+
+
+def _linked(row: dict[str, Any]) -> str:
+    key = key_of(row["table"], row["structure"], row["query"])
+    return f'<a href="#{key}">{_glance(row)}</a>'
 
 
 def _glance(row: dict[str, Any]) -> str:

@@ -3,16 +3,22 @@
 from __future__ import annotations
 
 import os
+import re
 import shutil
 import tempfile
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
-from html import escape
+from html import escape, unescape
 from pathlib import Path
-from typing import Any
+from typing import NamedTuple
 
-from experiments import html, statements
+import pandas as pd
+
+from experiments import answers, board, html, pdf, statements
 from experiments.claims import OPERATIONS, TABLES
+from experiments.entries import Entry, entries
+from experiments.page import page, static
 from experiments.results import ResultsError, Run, load
 from experiments.table import markdown
 from experiments.verdicts import OUTCOMES, judged, save
@@ -30,6 +36,28 @@ CHAPTERS = {
 }
 """The notebooks in the order they are read. A new chapter is one notebook and one line here."""
 
+FRONT = "index"
+TITLE = "Does the thesis hold?"
+"""The front page: its file, and what it is called."""
+
+READING = """<p class="soft">✓ consistent · ✗ violated · ? undetermined: the data cannot tell ·
+– nothing is claimed, as the structure keeps no record of an edge: what was found is the cost of
+naming the edge by its two vertices. Work is the number of array elements that a query or an
+operation accesses; it is exact and decides. Time is judged beside it, and is undetermined where the
+machine’s caches could explain it as well. Structures of objects are interpreted, and measured on
+smaller meshes.</p>"""
+"""How to read the tables."""
+
+UNFOLDING = """<p>Every cell of the tables and every sentence, with its plots, its data, the reasons
+for its verdict, and its source. In the plots a dot is what was measured at one size, between its
+smallest and largest sample; gray and dashed is the class that is claimed, as it fits best, and the
+shade above it what waiting for memory can add; red and dashed is a class that fits better, or the
+best one where nothing is claimed.</p>"""
+"""How to read the claims."""
+
+AT_ONCE = 2
+"""Notebooks that run beside each other."""
+
 QUIET = ["--IPKernelApp.log_level=40"]  # no warnings about how a local kernel is talked to
 
 RUN_VARIABLE = "HEM_RUN"
@@ -43,20 +71,68 @@ def write(run_folder: Path, output: Path) -> Path:
     or a notebook fails, naming it; then what was there stays.
     """
     run = load(run_folder)
-    table = judged(run)
-    save(run, table)
-    output.parent.mkdir(parents=True, exist_ok=True)
-    with tempfile.TemporaryDirectory(dir=output.parent, prefix=".report-") as beside:
-        fresh = Path(beside) / "html"
-        fresh.mkdir()
-        for name, title in CHAPTERS.items():
-            body = _chapter(name, run_folder)
-            (fresh / f"{name}.html").write_text(html.page(title, body, _links()), "utf-8")
-        front = html.page("Triangle-mesh structures, measured", _front(run, table), _links())
-        (fresh / "index.html").write_text(front, "utf-8")
+    with _beside(output, "html") as fresh:
+        parts = _parts(run, run_folder)
+        front = page(TITLE, parts.front + parts.claims + parts.back, _links(), static("board.js"))
+        (fresh / f"{FRONT}.html").write_text(front, "utf-8")
+        for name, body in parts.chapters.items():
+            text = page(CHAPTERS[name], body, _links())
+            (fresh / f"{name}.html").write_text(text, "utf-8")
+        board.write_files(parts.entries, fresh)
         shutil.rmtree(output, ignore_errors=True)
         fresh.rename(output)
-    return output / "index.html"
+    return output / f"{FRONT}.html"
+
+
+def write_pdf(run_folder: Path, output: Path) -> Path:
+    """Write the report of a run as one document to print -> ``output``.
+
+    Raises ResultsError as ``write`` does, and PrintError where there is no browser to print it.
+    """
+    pdf.browser()  # rather now than after the notebooks
+    run = load(run_folder)
+    with _beside(output, "print") as fresh:
+        parts = _parts(run, run_folder)
+        sections = pdf.sections(parts.front, parts.chapters, parts.claims, parts.back)
+        (fresh / "print.html").write_text(pdf.document(TITLE, sections), "utf-8")
+        board.write_files(parts.entries, fresh)
+        printed = pdf.printed(fresh / "print.html", fresh / "report.pdf")
+        printed.replace(output)
+    return output
+
+
+class Parts(NamedTuple):
+    """What a report is made of: the front page in three parts, the chapters, and the claims."""
+
+    front: str
+    claims: str
+    back: str
+    chapters: dict[str, str]
+    entries: list[Entry]
+
+
+def _parts(run: Run, run_folder: Path) -> Parts:
+    table = judged(run)
+    save(run, table)
+    every = entries(run, table)
+    front, claims, back = _front(run, table), _claims(every), _back(run)
+    with (
+        _environment(RUN_VARIABLE, str(run_folder.resolve())),
+        ThreadPoolExecutor(AT_ONCE) as pool,
+    ):
+        bodies = pool.map(lambda name: _chapter(name, run_folder), CHAPTERS)
+        chapters = dict(zip(CHAPTERS, bodies, strict=True))
+    return Parts(front, claims, back, chapters, every)
+
+
+@contextmanager
+def _beside(output: Path, name: str) -> Iterator[Path]:
+    """A new folder beside the output, on the same disk; it goes away at the end."""
+    output.parent.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory(dir=output.parent, prefix=".report-") as beside:
+        fresh = Path(beside) / name
+        fresh.mkdir()
+        yield fresh
 
 
 def write_page(run_folder: Path, folder: Path, reference: Path) -> Path:
@@ -122,7 +198,7 @@ def _fill_in(readme: Path, table: str) -> None:
 
 
 def _links() -> dict[str, str]:
-    return {"Verdicts": "index.html", **{title: f"{it}.html" for it, title in CHAPTERS.items()}}
+    return {TITLE: f"{FRONT}.html", **{title: f"{it}.html" for it, title in CHAPTERS.items()}}
 
 
 @contextmanager
@@ -148,41 +224,49 @@ def _chapter(name: str, run_folder: Path) -> str:
     notebook = nbformat.read(NOTEBOOKS / f"{name}.ipynb", as_version=4)
     client = NotebookClient(notebook, timeout=300, kernel_name="python3", extra_arguments=QUIET)
     try:
-        with _environment(RUN_VARIABLE, str(run_folder.resolve())):
-            client.execute(cwd=str(NOTEBOOKS))
+        client.execute(cwd=str(NOTEBOOKS))
     except CellExecutionError as error:
         what = f"{error.ename}: {error.evalue}"
         raise ResultsError(f"notebooks/{name}.ipynb cannot read {run_folder}: {what}") from error
     exporter = HTMLExporter(template_name="basic", exclude_input=True, exclude_output_prompt=True)
-    body: str = exporter.from_notebook_node(notebook)[0]
-    return body
+    return _described(exporter.from_notebook_node(notebook)[0])
 
 
-def _front(run: Run, table: Any) -> str:
-    claims = table[table["query"] != "memory"]
-    counts = ", ".join(
-        f"{number} {outcome}" for outcome, number in claims["outcome"].value_counts().items()
-    )
+def _described(body: str) -> str:
+    """A chapter in which every picture is described by the heading that it stands under."""
+    heading = ""
+    parts = re.split(r"(<h[1-6].*?</h[1-6]>)", body, flags=re.DOTALL)
+    for i, part in enumerate(parts):
+        if i % 2:
+            heading = escape(unescape(re.sub(r"<[^>]*>|¶", "", part)).strip())
+        parts[i] = re.sub(r'alt="No description[^"]*"', f'alt="Plot: {heading}"', part)
+    return "".join(parts)
+
+
+def _front(run: Run, table: pd.DataFrame) -> str:
+    """The question, the answer and the tables."""
     boards = "".join(
         f"<h2>{title}</h2>{html.verdicts(table[table['table'] == which])}"
         for which, title in TABLES.items()
     )
+    return (
+        f"<h1>{TITLE}</h1>"
+        f'<p class="question">{escape(answers.question())}</p>'
+        f"{answers.shown(answers.answers(run, table))}{boards}{READING}"
+    )
+
+
+def _claims(every: list[Entry]) -> str:
+    return f'<h2 id="claims">All claims</h2>{UNFOLDING}{board.board(every, CHAPTERS)}'
+
+
+def _back(run: Run) -> str:
+    """The way on, and what was run."""
     chapters = "".join(
         f'<li><a href="{it}.html">{title}</a></li>' for it, title in CHAPTERS.items()
     )
     return (
-        "<h1>Does the thesis hold?</h1>"
-        f"<p>Cells of its tables, judged by the work that was counted: <b>{escape(counts)}</b>. "
-        "Work is the number of array elements that a query or an operation accesses; it is exact "
-        "and decides. Time is judged beside it, and is undetermined where the machine's caches "
-        "could explain it as well. Structures of objects are interpreted, and measured on smaller "
-        "meshes.</p>"
-        f"{boards}"
-        '<p class="soft">✓ consistent · ✗ violated · ? undetermined: the data cannot tell · '
-        "– nothing is claimed, as the structure keeps no record of an edge: what was found is the "
-        "cost of naming the edge by its two vertices.</p>"
-        f"<h2>In sentences</h2>{html.statements(statements.judged(run))}"
-        f"<h2>The evidence</h2><ul>{chapters}</ul>"
+        f'<div class="no-print"><h2>The chapters</h2><ol class="cards">{chapters}</ol></div>'
         f"<h2>The run</h2><p>{escape(_provenance(run))}</p>{_left_out(run)}"
     )
 

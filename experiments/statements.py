@@ -38,8 +38,9 @@ Quantity = Callable[[Run], Iterable[float]]
 
 @dataclass(frozen=True)
 class Statement:
-    """One sentence, what is measured of it, and the verdict."""
+    """One sentence, what is measured of it (a key of ``QUANTITIES``, and in words), the verdict."""
 
+    quantity: str
     says: str
     source: str
     measured: str
@@ -240,5 +241,7 @@ def _judge(run: Run, row: dict[str, str | float]) -> Statement:
         outcome = "consistent"
     else:
         outcome = "undetermined" if inside.any() else "violated"
-    words = str(row["says"]), str(row["source"]), str(row["measured"])
-    return Statement(*words, low, high, values, outcome)
+    quantity, says, source, measured = (
+        str(row[key]) for key in ("quantity", "says", "source", "measured")
+    )
+    return Statement(quantity, says, source, measured, low, high, values, outcome)

@@ -1,0 +1,71 @@
+"use strict";
+// The board works without this: then everything is shown, and unfolds by hand.
+(() => {
+  const form = document.getElementById("filters"), search = document.getElementById("search");
+  const shown = document.getElementById("shown"), none = document.getElementById("none");
+  const entries = [...document.querySelectorAll(".entry")];
+  const buttons = [...form.querySelectorAll("button[data-group]")];
+  const groups = ["outcome", "structure", "kind"];
+  const plain = (text) => text.toLowerCase().replace(/[-_→]/g, " ").replace(/\s+/g, " ");
+  const words = new Map(entries.map((it) => [it, plain([it.id, it.dataset.outcome,
+    it.querySelector("summary").textContent, it.querySelector(".words").textContent].join(" "))]));
+
+  function chosen(group) {
+    return buttons.filter((it) => it.dataset.group === group && it.ariaPressed === "true")
+      .map((it) => it.dataset.value);
+  }
+
+  function update() {
+    const wanted = Object.fromEntries(groups.map((group) => [group, chosen(group)]));
+    const asked = plain(search.value).split(" ").filter(Boolean);
+    const said = (it) => asked.every((word) => words.get(it).includes(word));
+    const fits = (it, group) => !wanted[group].length || wanted[group].includes(it.dataset[group]);
+    let count = 0;
+    for (const it of entries) {
+      it.hidden = !(said(it) && groups.every((group) => fits(it, group)));
+      count += !it.hidden;
+    }
+    for (const button of buttons) { // how many there would be, were this one chosen in its group
+      const mine = button.dataset.group, others = groups.filter((group) => group !== mine);
+      const number = entries.filter((it) => it.dataset[mine] === button.dataset.value && said(it)
+        && others.every((group) => fits(it, group))).length;
+      button.querySelector("span").textContent = number;
+      button.classList.toggle("empty", !number);
+    }
+    shown.textContent = count === entries.length ? `${count} claims`
+      : `${count} of ${entries.length} claims`;
+    none.hidden = count > 0;
+  }
+
+  function reset() {
+    search.value = "";
+    for (const button of buttons) button.ariaPressed = "false";
+    update();
+  }
+
+  function open() {
+    const it = document.getElementById(decodeURIComponent(location.hash.slice(1)));
+    if (!it || !it.classList.contains("entry")) return;
+    if (it.hidden) reset();
+    it.open = true;
+    it.scrollIntoView();
+  }
+
+  for (const button of buttons) {
+    button.addEventListener("click", () => {
+      button.ariaPressed = button.ariaPressed === "true" ? "false" : "true";
+      update();
+    });
+  }
+  form.addEventListener("submit", (event) => event.preventDefault());
+  search.addEventListener("input", update);
+  document.getElementById("all").addEventListener("click", reset);
+  window.addEventListener("hashchange", open);
+  document.addEventListener("click", (event) => { // the same link again
+    const link = event.target.closest('a[href^="#"]');
+    if (link && link.getAttribute("href") === location.hash) open();
+  });
+  form.hidden = false;
+  update();
+  open();
+})();
