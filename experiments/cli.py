@@ -16,6 +16,7 @@ import hem
 from experiments import results, study
 from experiments.console import console, errors, user_errors
 from experiments.fracture_command import fracture
+from experiments.history_command import history
 from experiments.profiles import PROFILES
 
 app = typer.Typer(
@@ -215,6 +216,7 @@ def _holders(mesh: hem.TriangleMesh | hem.PolygonMesh) -> tuple[Table, list[str]
 
 
 app.command()(fracture)
+app.add_typer(history, name="history")
 
 
 if __name__ == "__main__":
