@@ -112,10 +112,10 @@ def _locked(path: Path, flags: int, lock: int) -> Iterator[int]:
 
 
 def _whole(file: int) -> bytes:
-    parts = []
-    while part := os.pread(file, 1 << 20, sum(map(len, parts))):
-        parts.append(part)
-    return b"".join(parts)
+    content = bytearray()
+    while part := os.pread(file, 1 << 20, len(content)):
+        content += part
+    return bytes(content)
 
 
 def _write(file: int, content: bytes, before: int) -> None:

@@ -23,10 +23,10 @@ def record(run: Run) -> dict[str, Any]:
     """The line of a run. Raises ResultsError if it is not finished.
 
     Of each claim, as far as it was measured: ``outcome`` by work, which decides (of memory: by
-    bytes), and ``outcome_time``; ``slopes`` with their intervals, by measure and variable; ``work``,
-    accesses at ``work_faces``, the largest mesh; ``seconds`` at ``time_faces``, the largest one that
-    was timed, of ``time_sizes``; ``relative``: the time in memory accesses, which take what they
-    took beside the measurement; ``bytes`` per vertex.
+    bytes), and ``outcome_time``; ``slopes`` with their intervals, by measure and variable;
+    ``work``, accesses at ``work_faces``, the largest mesh; ``seconds`` at ``time_faces``, the
+    largest one that was timed, of ``time_sizes``; ``relative``: the time in memory accesses, which
+    take what they took beside the measurement; ``bytes`` per vertex.
     """
     meta = run.meta
     if "finished" not in meta:
