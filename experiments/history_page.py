@@ -24,8 +24,7 @@ def told(history: History) -> str:
             "There is no history yet. Measure and keep what was found with "
             "`hem study`, then `hem history add`; do so at each commit that is to be compared."
         )
-    runs = "one run" if count == 1 else f"{count} runs"
-    text = f"The history has {runs}, of {_plural(len(machines), 'machine')}."
+    text = f"The history has {_plural(count, 'run')}, of {_plural(len(machines), 'machine')}."
     if count < 3:
         text += (
             " A course needs three at least, and a step in the times three on either side of it: "
@@ -36,7 +35,7 @@ def told(history: History) -> str:
 
 
 def _plural(count: int, what: str) -> str:
-    return f"{count} {what}{'' if count == 1 else 's'}"
+    return f"one {what}" if count == 1 else f"{count} {what}s"
 
 
 def runs(history: History) -> str:
@@ -63,7 +62,8 @@ def runs(history: History) -> str:
 
 def changed(history: History) -> str:
     """A table of the figures and verdicts by work that changed, the newest first."""
-    found = [it for it in changes(history) if it.what != OUTCOMES["outcome_time"]][::-1]
+    found = [it for it in changes(history) if it.what != OUTCOMES["outcome_time"]]
+    found.sort(key=lambda it: -it.run)
     if not found:
         return "<p>Nothing changed so far.</p>"
     rows = [

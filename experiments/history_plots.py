@@ -29,8 +29,8 @@ PANELS = {
 FROM_ZERO = ("slope_time",)
 LABELS = 12
 """Commits that are named below a panel, at most."""
-SPREAD = 0.3
-"""How far apart, in runs, the structures' intervals are drawn."""
+SPREAD = 0.03
+"""How far apart the structures' intervals are drawn, in parts of the width, up to ten runs."""
 STRONGEST = 1.5
 """The ratio to its usual time from which on a color is as strong as can be."""
 
@@ -64,7 +64,7 @@ def by_commit(history: History, what: str) -> Figure:
                 asked = MEMORY if measure == "bytes" else what
                 table = "operations" if asked in OPERATIONS else "queries"
                 claim = f"{table}/{structure}/{asked}"
-                offset = SPREAD * (place / (len(NAMES) - 1) - 0.5) if measure in FROM_ZERO else 0.0
+                offset = _spread(history, measure) * (place / (len(NAMES) - 1) - 0.5)
                 for line in series(history, claim, measure):
                     if line.profile == run["profile"]:
                         end = _line(axes, history, line, structure, offset)
@@ -77,6 +77,10 @@ def by_commit(history: History, what: str) -> Figure:
         for axes, labels in zip(panels.flat, ends, strict=True):
             label_ends(axes, labels)
     return figure
+
+
+def _spread(history: History, measure: str) -> float:
+    return SPREAD * min(len(history.runs), 10) if measure in FROM_ZERO else 0.0
 
 
 def _line(
@@ -95,7 +99,7 @@ def _line(
             x[step.index], y[step.index], "o", markersize=11, markerfacecolor="none",
             markeredgecolor=look.color, gid="step",
         )  # fmt: skip
-    end = line.at[-1] + (SPREAD / 2 if line.measure in FROM_ZERO else 0.0)
+    end = line.at[-1] + _spread(history, line.measure) / 2
     return float(end), float(y[-1]), look.color
 
 
