@@ -57,6 +57,8 @@ def steps(values: ArrayLike, *, exact: bool = False) -> list[Step]:
         raise ValueError("a series is one row of finite numbers")
     if not exact and (series <= 0).any():
         raise ValueError("noisy values are positive: their noise is taken as relative")
+    if not len(series):
+        return []
     starts = np.flatnonzero(np.diff(series)) + 1 if exact else _noisy(np.log(series))
     return [step for step in _told(series, [int(it) for it in starts]) if exact or _matters(step)]
 

@@ -143,20 +143,32 @@ def _parsed(content: bytes, path: Path) -> tuple[list[Line], list[str]]:
 def _line(raw: bytes) -> Line:
     """A line as this version has it. Raises LineError with what it is instead."""
     try:
-        line = json.loads(raw)
+        line = json.loads(raw, parse_constant=_no_number)
     except (ValueError, RecursionError):
         raise LineError("is cut short or damaged") from None
     if not isinstance(line, dict) or "schema" not in line:
         raise LineError("is no run: it has no schema")
-    line = migrated(line)
+    try:
+        line = migrated(line)
+        _require_run(line)
+    except LineError:
+        raise
+    except (KeyError, TypeError, ValueError, AttributeError) as error:
+        raise LineError(f"is no run: {type(error).__name__} {error}") from None
+    return line
+
+
+def _require_run(line: Line) -> None:
     for key, kind in HEAD.items():
         if not isinstance(line.get(key), kind):
             raise LineError(f"is no run: its {key} is {line.get(key)!r:.40}")
-    try:
-        identity(line), when(line)
-    except (KeyError, TypeError, ValueError) as error:
-        raise LineError(f"is no run: {error}") from None
-    return line
+    identity(line), when(line)
+    if not all(isinstance(claim, dict) for claim in line["claims"].values()):
+        raise LineError("is no run: not all of its claims have figures")
+
+
+def _no_number(text: str) -> None:
+    raise ValueError(text)
 
 
 def migrated(line: Line) -> Line:

@@ -36,7 +36,7 @@ def add(
         told = "Added" if added else "Already there"
         console.print(
             f"{told}: {name} ({where}, {len(line['claims'])} claims). "
-            f"{file} has {len(kept.runs)} runs.",
+            f"{file} has {len(kept.runs)} run{'s'[: len(kept.runs) != 1]}.",
             highlight=False, soft_wrap=True, markup=False,
         )  # fmt: skip
         if line["dirty"]:

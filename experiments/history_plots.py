@@ -69,7 +69,9 @@ def by_commit(history: History, what: str) -> Figure:
                     if line.profile == run["profile"]:
                         end = _line(axes, history, line, structure, offset)
                         _crosses(axes, changed, line, structure, offset)
-                        if line.machine in (None, run["machine"]["id"]):
+                        if line.machine in (None, run["machine"]["id"]) and (
+                            measure in FROM_ZERO or end[1] > 0
+                        ):
                             ends[-1] |= {short(structure): end}
             _room_for_levels(axes, measure)
             _commits(axes, history, room=0.2)
@@ -114,8 +116,9 @@ def _crosses(
 
 def _room_for_levels(axes: Axes, measure: str) -> None:
     """Room above and below, and no axis so narrow that noise looks like news."""
-    low, high = axes.dataLim.y0, axes.dataLim.y1
-    if not np.isfinite([low, high]).all():
+    low = axes.dataLim.y0 if measure in FROM_ZERO else axes.dataLim.minposy
+    high = axes.dataLim.y1
+    if not axes.lines or not np.isfinite([low, high]).all():
         return
     if measure in FROM_ZERO:
         axes.set_ylim(min(low, 0) - 0.25, max(high, 1) + 0.15)
@@ -166,7 +169,7 @@ def departures(history: History, measure: str = "time") -> Figure:
         ticks[STRONGEST] = f"{STRONGEST - 1:+.0%}"
         bar = figure.colorbar(drawn, ax=panels, shrink=0.5, ticks=np.log(list(ticks)))
         bar.ax.set_yticklabels(list(ticks.values()))
-        bar.set_label(MEASURES[measure].title)
+        bar.set_label(PANELS[measure])
     return figure
 
 

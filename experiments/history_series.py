@@ -46,11 +46,11 @@ class Measure:
 
 MEASURES = {
     "work": Measure("work", "work", True, ("work_faces",)),
-    "bytes": Measure("bytes per vertex", "bytes", True),
-    "slope_faces": Measure("slope in n_t, work", "work_faces", True, slope=True),
-    "slope_valence": Measure("slope in n_ev, work", "work_valence", True, slope=True),
-    "slope_time": Measure("slope in n_t, time", "time_faces", False, slope=True),
-    "time": Measure("time, in memory accesses", "relative", False, ("time_faces", "time_sizes")),
+    "bytes": Measure("bytes", "bytes", True),
+    "slope_faces": Measure("slope n_t", "work_faces", True, slope=True),
+    "slope_valence": Measure("slope n_ev", "work_valence", True, slope=True),
+    "slope_time": Measure("slope n_t, time", "time_faces", False, slope=True),
+    "time": Measure("time", "relative", False, ("time_faces", "time_sizes")),
 }
 """What is drawn. What is exact is comparable between machines."""
 

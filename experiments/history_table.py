@@ -25,6 +25,8 @@ from experiments.verdicts import OUTCOMES as MARKS
 
 FEW = 6
 """Claims that get a table each; more of them share one."""
+WIDE = 110
+"""Columns of a terminal from which on intervals are shown."""
 BARS = "▁▂▃▄▅▆▇█"
 
 
@@ -61,25 +63,25 @@ def show(
         )
     elif len(names) <= FEW:
         for name in names:
-            console.print(_claim(history, name, shown, found))
+            console.print(_claim(history, name, shown, found, console.width >= WIDE))
     else:
         console.print(_glance(history, names, shown, found))
     console.print(_legend(history, brief), style="dim", highlight=False)
 
 
 def _runs(history: History, shown: Sequence[int], found: list[Change]) -> Table:
-    table = Table(title=f"{len(history.runs)} runs in {history.path}", pad_edge=False)
-    for head in ("commit", "of", "measured", "profile", "machine", "by work", "by time"):
+    table = _headed(history, f"{len(history.runs)} runs in {history.path}")
+    for head in ("by work", "by time"):
         table.add_column(head, no_wrap=True)
     for head in ("verdicts changed", "figures changed"):
         table.add_column(head, justify="right")
     for k in shown:
         mine = [it for it in found if it.run == k]
         verdicts = [sum(it.what == what for it in mine) for what in OUTCOMES.values()]
-        changed = f"{verdicts[0]} + {verdicts[1]} by time" if any(verdicts) else ""
+        changed = " + ".join(map(str, verdicts)) if any(verdicts) else ""
         figures = sum(not it.is_verdict for it in mine)
         table.add_row(
-            *_head(history.runs[k]),
+            *_head(history, k),
             *(_counts(history.runs[k], key) for key in OUTCOMES),
             Text(changed, style="bold yellow" if verdicts[0] else ""),
             str(figures or ""),
@@ -87,10 +89,32 @@ def _runs(history: History, shown: Sequence[int], found: list[Change]) -> Table:
     return table
 
 
-def _head(run: Line) -> list[str]:
-    commit = run["commit"][:10] + ("*" if run.get("dirty") else "")
-    day, started = (run.get("committed") or "?")[:10], run["started"][:16].replace("T", " ")
-    return [commit, day, started, run["profile"], run["machine"]["id"]]
+def _headed(history: History, title: str) -> Table:
+    """A table with the columns of ``_head``."""
+    table = Table(title=title, pad_edge=False)
+    for head in ("commit", "measured", *_told_apart(history)):
+        table.add_column(head, no_wrap=True)
+    return table
+
+
+def _head(history: History, k: int) -> list[str]:
+    run = history.runs[k]
+    facts = {"profile": run["profile"], "machine": run["machine"]["id"]}
+    return [short(run), run["started"][:10], *(facts[it] for it in _told_apart(history))]
+
+
+def _told_apart(history: History) -> list[str]:
+    """What of profile and machine is not the same in all runs."""
+    several = {
+        "profile": len({it["profile"] for it in history.runs}) > 1,
+        "machine": len({it["machine"]["id"] for it in history.runs}) > 1,
+    }
+    return [name for name, needed in several.items() if needed]
+
+
+def short(run: Line) -> str:
+    """The commit of a run, with a star where there were changes besides."""
+    return str(run["commit"][:7]) + ("*" if run.get("dirty") else "")
 
 
 def _counts(run: Line, key: str) -> Text:
@@ -105,22 +129,29 @@ def _counts(run: Line, key: str) -> Text:
 def _print_changes(history: History, found: list[Change], console: Console) -> None:
     if not found:
         return
+    machines = "machine" in _told_apart(history)
     table = Table(title="What changed", pad_edge=False)
-    for head in ("at", "claim", "figure", "before → after", "machine"):
-        table.add_column(head, no_wrap=head == "at")
+    for head in ("at", "claim", "figure", "before → after", *(["machine"] if machines else [])):
+        table.add_column(head, no_wrap=head in ("at", "claim"))
     for it in found:
-        at = history.runs[it.run]["commit"][:10]
-        style = STYLES.get(it.after, "")
-        after = Text(f"{it.before} → {it.after}", style=style)
-        table.add_row(at, it.claim, it.what, after, it.machine or "any")
+        after = Text(f"{it.before} → {it.after}", style=STYLES.get(it.after, ""))
+        claim = _without_table(it.claim)
+        where = [it.machine or "any"] if machines else []
+        table.add_row(short(history.runs[it.run]), claim, it.what, after, *where)
     console.print(table)
 
 
-def _claim(history: History, name: str, shown: Sequence[int], found: list[Change]) -> Table:
+def _without_table(claim: str) -> str:
+    return claim.removeprefix("queries/").removeprefix("operations/")
+
+
+def _claim(
+    history: History, name: str, shown: Sequence[int], found: list[Change], wide: bool
+) -> Table:
     """A row per run, a column per figure; below each column how it went."""
-    table = Table(title=name, pad_edge=False, show_footer=True)
-    for head in ("commit", "of", "measured", "profile", "machine", "verdict"):
-        table.add_column(head, no_wrap=True)
+    table = _headed(history, name)
+    table.show_footer = True
+    table.add_column("verdict", no_wrap=True)
     lines = {it: series(history, name, it) for it in MEASURES}
     lines = {it: each for it, each in lines.items() if each}
     for measure, each in lines.items():
@@ -132,8 +163,8 @@ def _claim(history: History, name: str, shown: Sequence[int], found: list[Change
         if claim is None:
             continue
         changed = {it.what for it in found if it.run == k and it.claim == name}
-        cells = [_figure(measure, each, claim, k) for measure, each in lines.items()]
-        table.add_row(*_head(history.runs[k]), _verdict(claim, changed), *cells)
+        cells = [_figure(measure, each, claim, k, wide) for measure, each in lines.items()]
+        table.add_row(*_head(history, k), _verdict(claim, changed), *cells)
     return table
 
 
@@ -146,7 +177,7 @@ def _verdict(claim: dict[str, Any], changed: set[str]) -> Text:
     return text
 
 
-def _figure(measure: str, lines: list[Series], claim: dict[str, Any], run: int) -> Text:
+def _figure(measure: str, lines: list[Series], claim: dict[str, Any], run: int, wide: bool) -> Text:
     """A figure with its interval or, where it is not comparable, in gray; marked where it steps."""
     it = MEASURES[measure]
     value = it.value(claim)
@@ -154,7 +185,7 @@ def _figure(measure: str, lines: list[Series], claim: dict[str, Any], run: int) 
         return Text("–", style="dim")
     text = Text(f"{round(value, 3) + 0:.3f}" if it.slope else f"{value:,.5g}")
     bounds = it.bounds(claim)
-    if bounds and not it.exact:
+    if bounds and wide and not it.exact:
         text.append(f" [{bounds[0]:.2f}, {bounds[1]:.2f}]", style="dim")
     if not any(run in line.at for line in lines):
         text.stylize("dim")
@@ -176,16 +207,18 @@ def _glance(history: History, names: list[str], shown: Sequence[int], found: lis
     """A row per claim: how its figures went, and where they are now."""
     table = Table(title=f"{len(names)} claims in {history.path}", pad_edge=False)
     table.add_column("claim", no_wrap=True)
-    table.add_column("verdict")
-    for measure in ("work", "bytes", "time"):
-        table.add_column(MEASURES[measure].title)
+    table.add_column("verdict", no_wrap=True)
+    for head in ("work or bytes", "time"):
+        table.add_column(head, no_wrap=True)
     table.add_column("changed at")
     for name in names:
-        cells = [_course(series(history, name, it), shown) for it in ("work", "bytes", "time")]
+        work = series(history, name, "bytes") or series(history, name, "work")
+        cells = [_course(it, shown) for it in (work, series(history, name, "time"))]
         mine = [it for it in found if it.claim == name and it.what != OUTCOMES["outcome_time"]]
-        at = dict.fromkeys(history.runs[it.run]["commit"][:10] for it in mine)
+        at = dict.fromkeys(short(history.runs[it.run]) for it in mine)
         newest = next(it["claims"][name] for it in reversed(history.runs) if name in it["claims"])
-        table.add_row(name, _verdict(newest, set()), *cells, ", ".join(at))
+        claim = _without_table(name)
+        table.add_row(claim, _verdict(newest, set()), *cells, ", ".join(at))
     return table
 
 
@@ -219,21 +252,29 @@ def sparkline(values: Sequence[float | None]) -> str:
 def _legend(history: History, brief: bool) -> str:
     machines = {it["machine"]["id"]: it["machine"] for it in history.runs}
     text = "✓ consistent, ✗ violated, ? undetermined; first by work, which decides, then by time. "
-    if not brief:
+    if brief:
+        text += "Verdicts changed: by work + by time. "
+    else:
         text += "≠ not the verdict before, ▲▼ a step to a new level. "
     text += "* with changes that were not committed."
     told = "; ".join(
         f"{key}: {it.get('cores')} cores of {it.get('cpu')}" for key, it in machines.items()
     )
-    text += f"\nMachine {told}."
+    text += "\nWork: elements accessed; bytes: per vertex; time: in memory accesses."
+    text += f"\nMachine {told}. {_profiles(history)}"
     if len(machines) > 1:
         text += (
             "\nWork, bytes and verdicts by work are compared between the machines, times are not: "
             "each machine has its own; --machine shows one."
         )
-    if len({it["profile"] for it in history.runs}) > 1:
-        text += "\nRuns of different profiles are not compared; --profile shows one."
     return text
+
+
+def _profiles(history: History) -> str:
+    names = list(dict.fromkeys(it["profile"] for it in history.runs))
+    if len(names) == 1:
+        return f"Profile {names[0]}."
+    return "Runs of different profiles are not compared; --profile shows one."
 
 
 def as_json(history: History, names: list[str], last: int | None) -> dict[str, Any]:
