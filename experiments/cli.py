@@ -12,6 +12,7 @@ import hem
 from experiments import results
 from experiments.console import console, errors, user_errors
 from experiments.fracture_command import fracture
+from experiments.history_command import history
 from experiments.study_command import run_study
 
 app = typer.Typer(
@@ -154,6 +155,7 @@ def _holders(mesh: hem.TriangleMesh | hem.PolygonMesh) -> tuple[Table, list[str]
 
 
 app.command()(fracture)
+app.add_typer(history, name="history")
 
 __all__ = ["app", "console", "errors"]
 

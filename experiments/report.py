@@ -33,6 +33,7 @@ CHAPTERS = {
     "references_and_pairs": "References, indices and pairs",
     "errata": "What the listings do",
     "fracture": "Destruction",
+    "regression": "From commit to commit",
 }
 """The notebooks in the order they are read. A new chapter is one notebook and one line here."""
 

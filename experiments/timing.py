@@ -48,8 +48,19 @@ def time_query(
         return (query, pool[next(windows) % len(pool)]), {}
 
     benchmark.pedantic(s.sweep, setup=successive, rounds=rounds, warmup_rounds=1)
-    data = benchmark.stats.stats.data if benchmark.stats else []  # none with --benchmark-disable
-    return {"samples": np.array(data) / handles, "handles": handles, "latency": latency}
+    samples = _per_query(benchmark.stats, handles) if benchmark.stats else []  # --benchmark-disable
+    return {"samples": np.array(samples), "handles": handles, "latency": latency}
+
+
+def _per_query(stats: Any, handles: int) -> list[float]:
+    """Seconds per query, in pytest-benchmark's own statistics as well.
+
+    A round takes as many handles as last long enough, so that rounds last the same however slow a
+    query is: `--benchmark-compare` of rounds would find every regression to be none.
+    """
+    samples = [seconds / handles for seconds in stats.stats.data]
+    stats.stats.data[:], stats.iterations = samples, handles
+    return samples
 
 
 def _seconds_per_query(s: Structure, query: str, pool: Array, enough: float) -> float:
@@ -57,9 +68,15 @@ def _seconds_per_query(s: Structure, query: str, pool: Array, enough: float) -> 
     handles = 1
     while True:
         asked = pool[np.arange(handles) % len(pool)]
-        begin = perf_counter()
-        s.sweep(query, asked)
-        seconds = perf_counter() - begin
+        seconds = _seconds(s, query, asked)
+        if seconds >= enough:  # or it was interrupted, and one handle would seem to last a round
+            seconds = min(seconds, _seconds(s, query, asked))
         if seconds >= enough or handles >= MOST_HANDLES:
             return max(seconds / handles, 1e-10)
         handles *= 4
+
+
+def _seconds(s: Structure, query: str, handles: Array) -> float:
+    begin = perf_counter()
+    s.sweep(query, handles)
+    return perf_counter() - begin

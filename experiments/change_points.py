@@ -1,0 +1,121 @@
+"""Where a series of figures, one per commit, steps from one level to another.
+
+Counts and bytes are exact: every other value is a step. Times are noisy: `ruptures` finds the best
+places for any number of steps, and an F test says how many the noise does not explain. It learns
+the noise from the series itself, and pays for the number of places there were to choose from.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import comb, log
+
+import numpy as np
+import ruptures
+from numpy.typing import ArrayLike, NDArray
+from scipy.stats import f as f_distribution
+
+Array = NDArray[np.float64]
+
+ALARM = 2e-3
+"""The share of series of nothing but normal noise in which a step may be found, at most. A run is
+drawn as some hundred series, so this is about one false step in five of them."""
+SHORTEST = 3
+"""Noisy values that make a level: a step is seen from the third value after it on."""
+SMALLEST = 0.05
+"""Noisy steps below this ratio are not told: they would be real, and matter to nobody."""
+FARTHEST = 4.0
+"""Standard deviations of the noise from its surroundings at which a single value is cut off."""
+MOST = 6
+"""Steps in one series."""
+
+
+@dataclass(frozen=True)
+class Step:
+    """A new level. ``index``: its first value; ``before``, ``after``: the levels' medians."""
+
+    index: int
+    before: float
+    after: float
+
+    @property
+    def ratio(self) -> float:
+        """By how much it changed, relative to what was before: 0.1 for a tenth more."""
+        return self.after / self.before - 1 if self.before else float("inf")
+
+
+def steps(values: ArrayLike, *, exact: bool = False) -> list[Step]:
+    """The steps in ``values``: (n,) in the order of the commits, none of them missing.
+
+    exact: the values have no noise, and may be anything. Else they are positive, and their noise is
+    relative; a series of less than ``2 * SHORTEST`` has no step. Takes milliseconds for a hundred
+    values. Raises ValueError for values that are not one row of finite, and positive, numbers.
+    """
+    series = np.asarray(values, np.float64)
+    if series.ndim != 1 or not np.isfinite(series).all():
+        raise ValueError("a series is one row of finite numbers")
+    if not exact and (series <= 0).any():
+        raise ValueError("noisy values are positive: their noise is taken as relative")
+    if not len(series):
+        return []
+    starts = np.flatnonzero(np.diff(series)) + 1 if exact else _noisy(np.log(series))
+    return [step for step in _told(series, [int(it) for it in starts]) if exact or _matters(step)]
+
+
+def _matters(step: Step) -> bool:
+    return abs(log(step.after / step.before)) >= log(1 + SMALLEST)
+
+
+def _told(series: Array, starts: Sequence[int]) -> list[Step]:
+    bounds = [0, *starts, len(series)]
+    levels = [float(np.median(it)) for it in np.split(series, list(starts))]
+    return [Step(bounds[k], levels[k - 1], levels[k]) for k in range(1, len(levels))]
+
+
+def _noisy(series: Array) -> list[int]:
+    """The first indices of the levels: more of them as long as the noise does not explain it.
+
+    One step more is tried and then two, as what goes up and comes down again shows only whole.
+    """
+    series = _without_spikes(series)
+    segmentations = _best(series)
+    chosen, more = 0, 1
+    while more <= 2 and chosen + more < len(segmentations):
+        if _by_chance(series, segmentations[chosen], segmentations[chosen + more]) < ALARM / 2:
+            chosen, more = chosen + more, 1
+        else:
+            more += 1
+    return segmentations[chosen]
+
+
+def _without_spikes(series: Array) -> Array:
+    """The series, with what stands out of its surroundings cut off: one slow run is no level."""
+    around = np.array([np.median(series[max(k - 2, 0) : k + 3]) for k in range(len(series))])
+    off = series - around
+    reach = FARTHEST * 1.4826 * float(np.median(np.abs(off)))
+    return around + np.clip(off, -reach, reach) if reach else series
+
+
+def _best(series: Array) -> list[list[int]]:
+    """The best places for 0, 1, 2 … steps: of the least squares around the levels."""
+    most = min(MOST, len(series) // SHORTEST - 1)
+    if most < 1:
+        return [[]]
+    search = ruptures.KernelCPD(kernel="linear", min_size=SHORTEST).fit(series[:, None])
+    return [[], *(search.predict(count)[:-1] for count in range(1, most + 1))]
+
+
+def _by_chance(series: Array, fewer: list[int], more: list[int]) -> float:
+    """A bound on the chance that noise gains as much from as many more steps, placed at best."""
+    extra, left = len(more) - len(fewer), len(series) - len(more) - 1
+    rest = _squares(series, more)
+    gained = max(_squares(series, fewer) - rest, 0.0)
+    if rest <= 1e-24 * max(gained, 1e-300):
+        return 0.0 if gained > 0 else 1.0
+    places = comb(max(len(series) - 2 * SHORTEST + 1, 1), extra)
+    return float(places * f_distribution.sf(gained / extra / (rest / left), extra, left))
+
+
+def _squares(series: Array, starts: list[int]) -> float:
+    return float(sum(((it - it.mean()) ** 2).sum() for it in np.split(series, starts)))
