@@ -1,4 +1,5 @@
-"""The command line: ``hem study``, ``table``, ``report``, ``meshes``, ``info``, ``fracture``."""
+"""The command line: ``hem study``, ``table``, ``report``, ``meshes``, ``info``, ``fracture``,
+``check``, ``reference update``."""
 
 from __future__ import annotations
 
@@ -14,6 +15,7 @@ from rich.table import Table
 
 import hem
 from experiments import results, study
+from experiments.check_command import check, reference_app
 from experiments.console import console, errors, user_errors
 from experiments.fracture_command import fracture
 from experiments.profiles import PROFILES
@@ -215,6 +217,8 @@ def _holders(mesh: hem.TriangleMesh | hem.PolygonMesh) -> tuple[Table, list[str]
 
 
 app.command()(fracture)
+app.command()(check)
+app.add_typer(reference_app, name="reference")
 
 
 if __name__ == "__main__":
