@@ -13,6 +13,9 @@ from experiments.results import Run, load
 from experiments.verdicts import judged, save
 from structures import NAMED
 
+HERE = Path(__file__).parent.parent
+"""The tree that this is."""
+
 
 def compare_all(
     run: Path | None,
@@ -50,7 +53,7 @@ def compare_all(
     if beside:
         from experiments.turns import compare_trees
 
-        findings += compare_trees(beside, Path.cwd(), structures, factor)
+        findings += compare_trees(beside, HERE, structures, factor)
     return findings, notes
 
 
