@@ -7,12 +7,12 @@ well: nothing passes because nobody looked.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cache
-from typing import Any, Literal
+from typing import Literal
 
-from experiments.claims import NO_CLAIM, TABLES, VARIABLES, load_claims
+from experiments.claims import NO_CLAIM, TABLES, load_claims
 from experiments.exact import Exact, Value
 from experiments.models import NAMES as CLASSES
 
@@ -120,8 +120,9 @@ def _changed(before: Value | None, after: Value | None) -> tuple[Outcome, str]:
     if before == after:
         return "same", ""
     if len(before) != len(after):
-        return ("worse" if sum(after) > sum(before) else "better"), f"{len(after)} instead of "\
-            f"{len(before)} values"
+        return (
+            "worse" if sum(after) > sum(before) else "better"
+        ), f"{len(after)} instead of {len(before)} values"
     pairs = list(zip(before, after, strict=True))
     return ("worse" if any(b < a for b, a in pairs) else "better"), ""
 
@@ -167,7 +168,9 @@ def claim_of(key: str) -> str:
     head, structure, *rest = key.split("/")
     memory = head in ("bytes", "bench_memory")
     known = _claims()
-    found = [it for what in (["memory"] if memory else rest) for it in known.get((structure, what), ())]
+    found = [
+        it for what in (["memory"] if memory else rest) for it in known.get((structure, what), ())
+    ]
     listing = "listing" in rest or head == "bench_printed"
     chosen = [it for it in found if it.startswith(TABLES["listings"]) == listing]
     return (chosen or found or [""])[0]

@@ -93,7 +93,9 @@ def update(
         lines = fresh.difference()
         for sign, line in lines:
             color = {"+": "green", "-": "red"}.get(sign, "cyan")
-            console.print(f"[{color}]{sign}[/] ", line, markup=True, highlight=False, soft_wrap=True)
+            console.print(
+                f"[{color}]{sign}[/] ", line, markup=True, highlight=False, soft_wrap=True
+            )
         if not lines:
             console.print(f"{reference} says just this already.")
             return

@@ -40,7 +40,7 @@ class Compared(NamedTuple):
 
 def compare_runs(before: Measured, after: Measured, factor: float = FACTOR) -> Compared:
     """All that two runs can be compared in. Raises ValueError for a factor of at most 1."""
-    notes = []
+    notes: list[str] = []
     exact, missing = _in_scope(before, after, before.exact, after.exact, notes, "work and bytes")
     python = _python(before) != _python(after)
     if python:
@@ -71,8 +71,12 @@ def _other_machine(before: dict[str, Any], after: dict[str, Any]) -> str:
 
 
 def _in_scope(
-    before: Measured, after: Measured, old: dict[str, Any], new: dict[str, Any],
-    notes: list[str], what: str,
+    before: Measured,
+    after: Measured,
+    old: dict[str, Any],
+    new: dict[str, Any],
+    notes: list[str],
+    what: str,
 ) -> tuple[tuple[dict[str, Any], dict[str, Any]], list[Finding]]:
     """The cells that both should have, and a finding for every process without any in the run.
 
@@ -136,7 +140,9 @@ def _verdicts(before: Measured, after: Measured) -> Iterator[Finding]:
             was, now = (it.get(f"outcome_{measure}") for it in (old, new))
             if was or now:
                 outcome = reclassed(named("", str(was)), named("", str(now)))
-                yield Finding(outcome, "class", f"{where} by {measure}", str(was), str(now), "", text)
+                yield Finding(
+                    outcome, "class", f"{where} by {measure}", str(was), str(now), "", text
+                )
         for measure, variable in SOURCES:
             was, now = (it.get(f"{measure}_{variable}") for it in (old, new))
             exact = measure == "work"

@@ -1,5 +1,6 @@
 """The command line: ``hem study``, ``table``, ``report``, ``meshes``, ``info``, ``fracture``,
-``check``, ``reference update``."""
+``check``, ``reference update``.
+"""
 
 from __future__ import annotations
 

@@ -26,7 +26,7 @@ from experiments.profiles import PROFILES
 from experiments.results import CellResult, Run
 from experiments.subjects import Cell
 from hem.queries import QUERIES
-from hem.structure import Structure
+from hem.structure import REFERENCE_TYPES, Structure
 
 Value = list[int] | str
 """Counts, one per handle or field; or a growth class and what it says of the claim."""
@@ -131,7 +131,7 @@ def _bytes(name: str) -> dict[str, Value]:
     cell = Cell(name, EXTENT.families[0], WEIGHED)
     mesh, head = cell.mesh(), f"bytes/{name}/{cell.family}/{WEIGHED}"
     found: dict[str, Value] = {}
-    for reference_bytes in structures.REFERENCE_TYPES:
+    for reference_bytes in REFERENCE_TYPES:
         build = partial(structures.build, name, mesh, reference_bytes)
         build()  # compiles, unweighed
         s, built = _weighed(build)

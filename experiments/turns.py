@@ -86,7 +86,7 @@ def _timed(workers: Sequence[Worker], name: str, query: str, factor: float) -> F
         return Finding("undetermined", "time", where, "", "", why, claim_of(where))
     shown = [f"{1e9 * it:.3g} ns" for it in seconds]
     why = f"× {found.ratio:.3f}, 95 % [{found.low:.3f}, {found.high:.3f}], p = {found.p:.1g}"
-    return Finding(found.outcome, "time", where, *shown, why, claim_of(where))
+    return Finding(found.outcome, "time", where, shown[0], shown[1], why, claim_of(where))
 
 
 def _by_turns(
@@ -105,7 +105,7 @@ def _by_turns(
             sample, probe = workers[which].ask(query=query)
             samples[which].append(sample)
             probes[which].append(probe)
-        found = compare(*samples, *probes, factor=factor)
+        found = compare(samples[0], samples[1], probes[0], probes[1], factor)
         if found.outcome != "undetermined" or len(samples[0]) >= MOST_ROUNDS:
             handles = times * _handles(query)
             return found, [sorted(it)[len(it) // 2] / handles for it in samples]
@@ -123,7 +123,9 @@ class Worker:
 
     def ask(self, **question: Any) -> Any:
         """Ask and wait for the answer. Raises OSError with what it said if it has ended."""
-        assert self.process.stdin and self.process.stdout and self.process.stderr
+        assert self.process.stdin is not None
+        assert self.process.stdout is not None
+        assert self.process.stderr is not None
         try:
             self.process.stdin.write(json.dumps(question) + "\n")
             self.process.stdin.flush()
