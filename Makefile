@@ -7,7 +7,7 @@ INSTALLED := $(VENV)/installed
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 
 .DEFAULT_GOAL := help
-.PHONY: help study test demo soak check format peers test-floor clean
+.PHONY: help study test demo soak mutants check format peers test-floor clean
 
 help:  ## show this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -35,6 +35,9 @@ demo: $(INSTALLED)  ## break some models, for two minutes, and make a page to wa
 soak: $(INSTALLED)  ## operate at random on every structure, 100,000 times; break a hundred times
 	@$(BIN)/python -m tests.structures.soak
 	@$(BIN)/python -m tests.hem.fracture.soak
+
+mutants: $(INSTALLED)  ## inject faults into a copy of the sources; hem check must catch each
+	@$(BIN)/python -m experiments.mutants
 
 check: $(INSTALLED)  ## check format, style and types
 	@$(BIN)/ruff format --check .

@@ -1,4 +1,6 @@
-"""The command line: ``hem study``, ``table``, ``report``, ``meshes``, ``info``, ``fracture``."""
+"""The command line: ``hem study``, ``table``, ``report``, ``meshes``, ``info``, ``fracture``,
+``check``, ``reference update``.
+"""
 
 from __future__ import annotations
 
@@ -10,6 +12,7 @@ from rich.table import Table
 
 import hem
 from experiments import results
+from experiments.check_command import check, reference_app
 from experiments.console import console, errors, user_errors
 from experiments.fracture_command import fracture
 from experiments.history_command import history
@@ -156,6 +159,8 @@ def _holders(mesh: hem.TriangleMesh | hem.PolygonMesh) -> tuple[Table, list[str]
 
 app.command()(fracture)
 app.add_typer(history, name="history")
+app.command()(check)
+app.add_typer(reference_app, name="reference")
 
 __all__ = ["app", "console", "errors"]
 

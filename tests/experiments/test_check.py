@@ -1,0 +1,206 @@
+"""The gate: what is as before passes, what is worse fails, and what was not seen never passes."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from experiments import cli
+from experiments.check import Finding, claim_of, code, compare_cells, compare_exact
+from experiments.check_run import compare_runs
+from experiments.check_shown import as_json, as_markdown
+from experiments.exact import Exact, measure
+from experiments.reference import load_exact, measured, save_exact, save_measured
+from experiments.results import load
+from experiments.verdicts import judged, save
+from tests.experiments.runs import LAWS, write_run
+
+REFERENCE = Path(__file__).parents[2] / "results/reference"
+KEY = "work/half_edge/vertex_faces/torus/100/random"
+
+
+def hem(*arguments: str) -> tuple[int, str]:
+    cli.console.width = cli.errors.width = 400
+    result = CliRunner().invoke(cli.app, arguments)
+    return result.exit_code, " ".join((result.stdout + result.stderr).split())
+
+
+def outcomes(findings) -> set[str]:
+    return {it.outcome for it in findings}
+
+
+def test_work_and_bytes_are_those_of_the_reference():
+    findings = compare_exact(load_exact(REFERENCE), measure())
+    assert [str(it) for it in findings if it.outcome != "same"] == []
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "outcome"),
+    [
+        ([19, 19], [19, 19], "same"),
+        ([19, 19], [19, 20], "worse"),
+        ([19, 19], [18, 20], "worse"),
+        ([19, 19], [18, 19], "better"),
+        ([19, 19], [19, 19, 19], "worse"),
+        ([19, 19], None, "undetermined"),
+        (None, [19, 19], "undetermined"),
+        ("O(n), consistent", "O(1), violated", "worse"),
+        ("O(1), no claim", "O(n), no claim", "worse"),
+        ("O(n), violated", "O(1), consistent", "better"),
+        ("O(n), consistent", "O(n), undetermined", "undetermined"),
+    ],
+)
+def test_an_exact_value_is_compared_to_the_last_count(before, after, outcome):
+    sides = ({KEY: it} if it is not None else {} for it in (before, after))
+    (found,) = compare_cells(*sides)
+    assert found.outcome == outcome
+    assert "Vertex → Faces: O(n_ev)" in found.claim
+    assert code([found]) == {"worse": 1, "undetermined": 2}.get(outcome, 0)
+
+
+def test_worse_outweighs_what_cannot_be_told_and_that_outweighs_better():
+    found = [Finding(it, "work", "", "", "") for it in ("better", "undetermined", "worse")]
+    assert code(found[:1]) == 0
+    assert code(found[:2]) == 2
+    assert code(found) == 1
+    assert code([]) == 0
+
+
+def test_what_could_not_be_measured_is_never_a_pass():
+    before = Exact({KEY: [19]})
+    (found,) = compare_exact(before, Exact({}, {KEY: "ValueError: broken"}))
+    assert (found.outcome, found.why) == ("undetermined", "ValueError: broken")
+
+
+def test_a_finding_names_the_claim_it_touches():
+    assert claim_of("bytes/half_edge/torus/1000").startswith("Table 1, Bytes per vertex: 228")
+    assert "Split face" in claim_of("work/half_edge/split_face/torus/100/counted")
+    assert claim_of("work/as_printed/listing/build/torus/50/counted").startswith("The listings")
+
+
+@pytest.fixture(scope="module")
+def sound(tmp_path_factory: pytest.TempPathFactory):
+    return load(write_run(tmp_path_factory.mktemp("sound")))
+
+
+def test_a_run_is_as_good_as_itself(sound):
+    before = measured(sound)
+    assert outcomes(compare_runs(before, before).findings) == {"same"}
+
+
+def test_a_query_that_becomes_linear_is_worse_by_work_class_slope_and_time(sound, tmp_path):
+    def law_of(structure, query, printed):
+        changed = (structure, query) == ("half_edge", "face_faces")
+        return LAWS["O(n_t)"] if changed else None
+
+    slow = load(write_run(tmp_path, law_of))
+    worse = [
+        it for it in compare_runs(measured(sound), measured(slow)).findings if it.outcome == "worse"
+    ]
+    assert {it.kind for it in worse} == {"work", "class", "slope", "time"}
+    assert all("half_edge/face_faces" in it.where for it in worse)
+    assert all("Face → adjacent Faces: O(1)" in it.claim for it in worse)
+
+
+def test_times_of_another_machine_are_left_out_and_that_is_said(sound):
+    before = measured(sound)
+    other = replace(before, head={**before.head, "machine": {"cpu": "another"}})
+    compared = compare_runs(before, other)
+    assert not [it for it in compared.findings if it.kind == "time"]
+    assert any("another machine" in note for note in compared.notes)
+
+
+def test_an_experiment_that_is_missing_cannot_be_told(sound):
+    before = measured(sound)
+    kept = {k: v for k, v in before.exact.items() if not k.startswith("bench_work/half_edge/")}
+    findings = compare_runs(before, replace(before, exact=kept)).findings
+    missing = [it for it in findings if it.outcome != "same"]
+    assert [it.where for it in missing] == ["bench_work/half_edge"]
+    assert code(findings) == 2
+
+
+def test_json_and_markdown_say_what_is_worse():
+    before, after = {KEY: [19]}, {KEY: [20]}
+    found = compare_cells(before, after)
+    content = as_json(found, ["a note"])
+    assert (content["code"], content["findings"][0]["where"]) == (1, KEY)
+    text = as_markdown(found, ["a note"])
+    assert f"| work | `{KEY}` | 19 | 20 |" in text
+    assert "- a note" in text
+
+
+@pytest.fixture
+def reference(tmp_path: Path) -> Path:
+    folder = tmp_path / "reference"
+    shutil.copytree(REFERENCE, folder)
+    return folder
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["nowhere"], "nowhere holds no run"),
+        (["--factor", "0.5"], "--factor is more than 1"),
+        (["--structure", "halfedge"], "no structure is called 'halfedge'"),
+        (["--reference", "nowhere"], "nowhere/exact.json is not there"),
+        (["--beside", "nowhere", "--structure", "indexed"], "nowhere is no checkout"),
+    ],
+)
+def test_a_mistake_is_one_line_and_never_a_pass(arguments, said, reference):
+    options = [] if "--reference" in arguments else ["--reference", str(reference)]
+    exit_code, output = hem("check", *arguments, *options)
+    assert exit_code == 2
+    assert output.startswith("hem:")
+    assert said in output
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("{", "exact.json cannot be read"),
+        ("[]", "exact.json holds no cells"),
+        ('{"schema": 99, "cells": {}}', "has schema 99, this version reads 1"),
+    ],
+)
+def test_a_broken_reference_is_named_with_the_way_out(text, said, reference):
+    (reference / "exact.json").write_text(text)
+    exit_code, output = hem("check", "--reference", str(reference))
+    assert exit_code == 2
+    assert said in output
+    assert "hem reference update" in output
+
+
+def test_an_empty_run_is_refused(reference, tmp_path):
+    (tmp_path / "run.json").write_text('{"schema": 1, "profile": "quick"}')
+    exit_code, output = hem("check", str(tmp_path), "--reference", str(reference))
+    assert exit_code == 2
+    assert "holds no cell" in output
+
+
+def test_a_worse_structure_fails_the_command_and_shows_the_numbers(reference, tmp_path):
+    exact = load_exact(reference)
+    exact.cells["work/indexed/face_vertices/torus/100/random"] = [2, 2, 2]
+    save_exact(exact, reference)
+    page = tmp_path / "summary.md"
+    options = "--structure", "indexed", "--reference", str(reference), "--markdown", str(page)
+    exit_code, output = hem("check", *options)
+    assert exit_code == 1
+    assert "2, 2, 2 → 3, 3, 3 (Table 1, Face → Vertices: O(1)" in output
+    assert "Something got worse" in page.read_text()
+
+
+def test_a_saved_reference_reads_as_it_was_one_line_per_cell(sound, tmp_path):
+    from experiments.reference import load_measured
+
+    before = measured(sound)
+    save_measured(before, tmp_path)
+    save(sound, judged(sound), tmp_path)
+    assert load_measured(tmp_path) == before
+    lines = (tmp_path / "times.json").read_text().splitlines()
+    assert len([it for it in lines if it.startswith('"bench_')]) == len(before.times)
+    assert json.loads((tmp_path / "run.json").read_text())["schema"] == 1
