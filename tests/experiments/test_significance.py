@@ -49,10 +49,9 @@ NOISES = [white, drifting, autocorrelated, heavy_tailed, bimodal, delayed, own_l
 def two_runs(
     rng: np.random.Generator, noise: Noise, slower: float, rounds: int, sd: float
 ) -> Comparison:
-    """Two runs of a cell; the second machine is half as fast again, as its probe shows."""
     before = 3e-6 * np.exp(noise(rng, rounds, sd))
-    after = 2e-6 * slower * np.exp(noise(rng, rounds, sd))
-    probes = np.exp(white(rng, 9, sd))[:, None] * [3e-9, 2e-9]
+    after = 3e-6 * slower * np.exp(noise(rng, rounds, sd))
+    probes = np.exp(white(rng, 9, sd))[:, None] * [3e-9, 3e-9]
     return compare(before.tolist(), after.tolist(), probes[:, 0].tolist(), probes[:, 1].tolist())
 
 
@@ -100,9 +99,27 @@ def test_a_slower_machine_is_no_slower_code() -> None:
     rng = np.random.default_rng(5)
     old, new = np.exp(white(rng, 15, 0.03)), 1.5 * np.exp(white(rng, 15, 0.03))
     probe = np.exp(white(rng, 15, 0.02))
-    found = compare(old.tolist(), new.tolist(), probe.tolist(), (1.5 * probe).tolist())
-    assert found.outcome == "same"
+    runs = old.tolist(), new.tolist(), probe.tolist(), (1.5 * probe).tolist()
+    assert compare(*runs).outcome == "undetermined"
+    assert compare(*runs, least_share=1).outcome == "same"
     assert compare(old.tolist(), new.tolist(), [1.0], [1.0]).outcome == "worse"
+
+
+def test_slower_code_is_found_on_a_faster_machine_whose_probe_is_as_much_faster() -> None:
+    rng = np.random.default_rng(8)
+    old, new = np.exp(white(rng, 15, 0.03)), 0.5 * 1.5 * np.exp(white(rng, 15, 0.03))
+    probe = np.exp(white(rng, 15, 0.02))
+    runs = old.tolist(), new.tolist(), probe.tolist(), (0.5 * probe).tolist()
+    assert compare(*runs).outcome == "undetermined"
+    assert compare(*runs, least_share=1).outcome == "worse"
+
+
+def test_a_probe_that_changes_beside_a_cell_that_does_not_is_no_alarm() -> None:
+    rng = np.random.default_rng(9)
+    for change in (0.1, 0.5, 2, 10):
+        old, new, probe = (np.exp(white(rng, 15, 0.03)) for _ in range(3))
+        found = compare(old.tolist(), new.tolist(), probe.tolist(), (change * probe).tolist())
+        assert found.outcome == "undetermined"
 
 
 def test_a_change_below_the_factor_is_none_however_sure() -> None:
@@ -151,3 +168,5 @@ def test_a_missing_probe_and_a_factor_of_one_are_refused() -> None:
         compare([1.0], [1.0], [], [1.0])
     with pytest.raises(ValueError, match="factor"):
         compare([1.0], [1.0], [1.0], [1.0], factor=1.0)
+    with pytest.raises(ValueError, match="share"):
+        compare([1.0], [1.0], [1.0], [1.0], least_share=2.0)
