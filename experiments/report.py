@@ -27,6 +27,7 @@ CHAPTERS = {
     "references_and_pairs": "References, indices and pairs",
     "errata": "What the listings do",
     "fracture": "Destruction",
+    "rigour": "How far to trust it",
 }
 """The notebooks in the order they are read. A new chapter is one notebook and one line here."""
 
