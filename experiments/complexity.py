@@ -24,7 +24,9 @@ MIN_RANGE = 4.0
 MAX_SCATTER = 0.4
 """Relative scatter of samples beyond which nothing is concluded."""
 MAX_ERROR = 0.12
-"""Relative error of a size's cost beyond which nothing is concluded."""
+"""Relative error of a size's cost beyond which the size is left out …"""
+MOST_LEFT_OUT = 0.25
+"""… if so few of the sizes are like that; otherwise nothing is concluded."""
 
 
 @dataclass(frozen=True)
@@ -87,6 +89,8 @@ def judge(
     bound: "tight" takes the claim for the class itself, as a table of growth classes means it;
     "upper" for a bound, which slower growth keeps too.
 
+    A size whose own samples tell its cost worse than `MAX_ERROR` is left out, up to a quarter of
+    the sizes: a neighbor who took the machine for some milliseconds spoils a cell, not the curve.
     Growth below `evidence.GROWTH` over the sizes is taken for O(1): beside so large an intercept
     no class shows. Beside a tenfold slowdown by caches, growth below 1.5 may be missed as well.
     The same input gives the same verdict. Takes milliseconds. Raises ValueError for malformed
@@ -96,6 +100,13 @@ def judge(
         raise ValueError(f'bound must be "tight" or "upper", not {bound!r}')
     claim = NAMES.index(canonical(expected))
     measured = reduce(sizes, samples)
+    kept = _legible(measured)
+    if len(kept) < len(measured.sizes):
+        order = np.argsort(np.asarray(sizes, float), kind="stable")[kept]
+        sizes, samples = measured.sizes[kept], [measured.samples[i] for i in kept]
+        if latency is not None and np.shape(latency) == measured.sizes.shape:
+            latency = np.asarray(latency, float)[order]
+        measured = reduce(sizes, samples)
     costs, caches = account(measured, sizes, latency, exact, latency_error)
     models = Comparison(costs, caches)
     outcome, reason = _decide(measured, models, claim, bound)
@@ -140,6 +151,13 @@ def _decide(costs: Costs, models: Comparison, claim: int, bound: Bound) -> tuple
     unseen = " once caches of unknown latency are allowed for" if models.unmeasured else ""
     reason = f"{NAMES[best]} explains the costs best, but {close} cannot be ruled out{unseen}."
     return "undetermined", reason
+
+
+def _legible(costs: Costs) -> list[int]:
+    """The sizes that are not drowned in noise, or all of them if too many are."""
+    clear = np.flatnonzero(costs.error <= MAX_ERROR).tolist()
+    few_left_out = len(costs.sizes) - len(clear) <= MOST_LEFT_OUT * len(costs.sizes)
+    return clear if few_left_out else list(range(len(costs.sizes)))
 
 
 def _doubt(costs: Costs, models: Comparison) -> str:

@@ -2,8 +2,6 @@
 
 import json
 from collections import Counter
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -11,80 +9,16 @@ import pytest
 from numpy.typing import NDArray
 
 from experiments.complexity import Verdict, judge
+from experiments.corpus import CURVES, PARTS, curve, curves
 
 Array = NDArray[np.float64]
-
-CURVES: dict[str, Callable[[Array], Array]] = {
-    "O(1)": lambda n: n**0.0,
-    "O(log n)": lambda n: np.log2(n),
-    "O(√n)": lambda n: n**0.5,
-    "O(n)": lambda n: n,
-    "O(n log n)": lambda n: n * np.log2(n),
-    "O(n²)": lambda n: n**2.0,
-}
-RISES = ("none", "prefetched", "measured", "unmeasured")
-
-
-@dataclass
-class Cell:
-    sizes: Array
-    samples: list[Array]
-    latency: Array | None
-
-
-def machine_latency(working_set: Array) -> Array:
-    """Nanoseconds per dependent load: steps at 32 KB, 1 MB and 30 MB, smooth in the logarithm."""
-    steps = ((32e3, 4 / 1.2), (1e6, 15 / 4), (30e6, 100 / 15))
-    x = np.log(working_set)
-    latency = np.full_like(x, 1.2)
-    for at, factor in steps:
-        latency *= factor ** (1 / (1 + np.exp((np.log(at) - x) / 0.35)))
-    return latency
-
-
-def some_sizes(rng: np.random.Generator) -> tuple[Array, float]:
-    """Faces of a mesh or valences of a vertex, and the bytes that one of them takes."""
-    faces = bool(rng.random() < 0.5)
-    first, last = (100, rng.choice([1e5, 1e6])) if faces else (4, 4096)
-    low, high = (30, 400) if faces else (3e3, 4e4)
-    sizes = np.geomspace(first, float(last), int(rng.integers(5, 10))).round()
-    return sizes, float(np.exp(rng.uniform(np.log(low), np.log(high))))
-
-
-def slowdown(latency: Array, rng: np.random.Generator) -> Array:
-    """What a query makes of a latency: about tenfold, or less where the latency rises less."""
-    own = latency / latency[0]
-    share = min(rng.uniform(8, 12) - 1, own.max() - 1) / (own.max() - 1)
-    slow: Array = 1 + share * (own - 1)
-    return slow
-
-
-def cell(rng: np.random.Generator, name: str, intercept: float, noise: float, rise: str) -> Cell:
-    sizes, size_bytes = some_sizes(rng)
-    latency = machine_latency(sizes * size_bytes)
-    growing = CURVES[name](sizes)
-    fixed = intercept * growing[0]
-    slow = slowdown(latency, rng) if rise in ("measured", "unmeasured") else np.ones_like(sizes)
-    cost = (fixed + growing) * slow if rng.random() < 0.5 else fixed + growing * slow
-    count = rng.integers(5, 31)
-    samples = [3e-9 * c * np.exp(rng.normal(0, noise, count)) for c in cost]
-    seen = latency * np.exp(rng.normal(0, rng.uniform(0.02, 0.05), len(sizes)))
-    return Cell(sizes, samples, seen if rise in ("measured", "prefetched") else None)
-
-
-def cells(name: str, rise: str, count: int = 48) -> Iterator[Cell]:
-    rng = np.random.default_rng([list(CURVES).index(name), RISES.index(rise)])
-    for intercept in (0.0, 1.0):
-        for noise in (0.02, 0.05, 0.1):
-            for _ in range(count // 2):
-                yield cell(rng, name, intercept, noise, rise)
 
 
 def outcomes(name: str, rise: str) -> tuple[Counter[str], Counter[str]]:
     """Outcomes of the true claim, and of two false ones each."""
     true, false = Counter[str](), Counter[str]()
     others = [other for other in CURVES if other != name]
-    for i, c in enumerate(cells(name, rise)):
+    for i, c in enumerate(curves(name, rise)):
         for claim in (name, others[i % 5], others[(i + 1 + i // 5) % 5]):
             verdict = judge(c.sizes, c.samples, claim, c.latency, resamples=8)
             (true if claim == name else false)[verdict.outcome] += 1
@@ -94,7 +28,7 @@ def outcomes(name: str, rise: str) -> tuple[Counter[str], Counter[str]]:
 @pytest.mark.parametrize("name", CURVES)
 def test_curves_of_known_class_are_judged_right_and_hardly_ever_wrong(name: str) -> None:
     wrong = judged = 0
-    for rise in RISES:
+    for rise in PARTS:
         true, false = outcomes(name, rise)
         print(
             f"\n{name:11} rise {rise:11} true claim {dict(true)}, false claims {dict(false)}",
@@ -179,8 +113,8 @@ def test_small_valences_with_an_intercept_are_linear() -> None:
 def test_a_fifth_of_samples_delayed_changes_no_verdict() -> None:
     rng = np.random.default_rng(4)
     sizes = np.geomspace(100, 1e5, 7)
-    for name, curve in CURVES.items():
-        samples = [c * rng.lognormal(0, 0.03, 20) for c in curve(sizes)]
+    for name, growth in CURVES.items():
+        samples = [c * rng.lognormal(0, 0.03, 20) for c in growth(sizes)]
         for cost in samples:
             cost[rng.choice(20, 4, replace=False)] *= rng.uniform(2, 20, 4)
         assert judge(sizes, samples, name).outcome == "consistent"
@@ -213,6 +147,21 @@ def test_too_little_data_is_undetermined_and_says_why() -> None:
     assert "Too noisy" in reason([100, 1000, 10000, 100000, 1000000], noise=0.8)
 
 
+def test_one_size_drowned_in_noise_spoils_no_curve_but_several_do() -> None:
+    rng = np.random.default_rng(8)
+    sizes = np.geomspace(100, 1e5, 8)
+    latency = np.geomspace(1, 4, 8)
+    samples = [n * s for n, s in zip(sizes, flat(rng, sizes), strict=True)]
+    for spoiled in range(8):
+        noisy = [c * rng.lognormal(0, 1.5 * (i == spoiled), 15) for i, c in enumerate(samples)]
+        for given in (None, latency):
+            back = None if given is None else given[::-1]
+            assert judge(sizes, noisy, "O(n)", given).outcome == "consistent"
+            assert judge(sizes[::-1], noisy[::-1], "O(n)", back).outcome == "consistent"
+    noisy = [c * rng.lognormal(0, 1.5 * (i < 3), 15) for i, c in enumerate(samples)]
+    assert "Too noisy" in judge(sizes, noisy, "O(n)").reason
+
+
 def power_law(seed: int, exponent: float) -> Verdict:
     rng = np.random.default_rng(seed)
     sizes = np.geomspace(100, 1e6, 7)
@@ -230,7 +179,7 @@ def test_the_slope_interval_holds_the_exponent_as_often_as_it_says(exponent: flo
 
 def test_verdicts_repeat_and_know_neither_unit_nor_order() -> None:
     rng = np.random.default_rng(7)
-    c = cell(rng, "O(√n)", 1.0, 0.05, "measured")
+    c = curve(rng, "O(√n)", "measured", 1.0)
     assert c.latency is not None
     first = judge(c.sizes, c.samples, "O(√n)", c.latency)
     assert judge(c.sizes, c.samples, "O(√n)", c.latency) == first

@@ -1,0 +1,118 @@
+"""Curves of known growth class, as a machine might measure them: what a judge is tried on.
+
+A curve is 5 to 9 sizes, faces of a mesh or valences of a vertex, and 5 to 30 samples at each: an
+intercept of nothing or as much as the smallest size costs, noise of 2, 5 or 10 %, and what the
+memory makes of it. Everything follows from a seed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+CURVES: dict[str, Callable[[Array], Array]] = {
+    "O(1)": lambda n: n**0.0,
+    "O(log n)": lambda n: np.log2(n),
+    "O(√n)": lambda n: n**0.5,
+    "O(n)": lambda n: n,
+    "O(n log n)": lambda n: n * np.log2(n),
+    "O(n²)": lambda n: n**2.0,
+}
+"""Growth by class; spelled here and not taken from the judge's own models."""
+
+PARTS = {
+    "none": "no memory rise, no latency given",
+    "prefetched": "no memory rise, though a latency that rises is given",
+    "measured": "a tenfold memory rise, and the latency given",
+    "unmeasured": "a tenfold memory rise, and no latency given",
+}
+"""What the memory does to a curve, and whether it was measured."""
+
+INTERCEPTS = (0.0, 1.0)
+NOISES = (0.02, 0.05, 0.1)
+
+
+class Curve(NamedTuple):
+    """A curve, and what it is.
+
+    sizes: (k,). samples: k arrays of seconds. latency: (k,) nanoseconds per access in the working
+    set, with an error of 2 to 5 %, or None.
+    """
+
+    name: str
+    part: str
+    sizes: Array
+    samples: list[Array]
+    latency: Array | None
+
+
+def machine_latency(working_set: Array) -> Array:
+    """Nanoseconds per dependent load: steps at 32 KB, 1 MB and 30 MB, smooth in the logarithm."""
+    steps = ((32e3, 4 / 1.2), (1e6, 15 / 4), (30e6, 100 / 15))
+    x = np.log(working_set)
+    latency = np.full_like(x, 1.2)
+    for at, factor in steps:
+        latency *= factor ** (1 / (1 + np.exp((np.log(at) - x) / 0.35)))
+    return latency
+
+
+def curve(
+    rng: np.random.Generator, name: str, part: str, intercept: float = 0.0, noise: float = 0.05
+) -> Curve:
+    """One curve of a class. Half of those with a rise have it in the intercept, too.
+
+    intercept: in units of the growing part at the smallest size. noise: relative, of a sample.
+    """
+    sizes, size_bytes = _sizes(rng)
+    latency = machine_latency(sizes * size_bytes)
+    growing = CURVES[name](sizes)
+    fixed = intercept * growing[0]
+    slow = _slowdown(latency, rng) if part in ("measured", "unmeasured") else np.ones_like(sizes)
+    cost = (fixed + growing) * slow if rng.random() < 0.5 else fixed + growing * slow
+    count = rng.integers(5, 31)
+    samples = [3e-9 * c * np.exp(rng.normal(0, noise, count)) for c in cost]
+    seen = latency * np.exp(rng.normal(0, rng.uniform(0.02, 0.05), len(sizes)))
+    return Curve(name, part, sizes, samples, seen if part in ("measured", "prefetched") else None)
+
+
+def curves(name: str, part: str, count: int = 144, seed: int = 0) -> Iterator[Curve]:
+    """``count`` curves of one class and part, as many of each intercept and noise.
+
+    ``count`` must be a multiple of 6: ValueError else. The same seed gives the same curves.
+    """
+    kinds = [(intercept, noise) for intercept in INTERCEPTS for noise in NOISES]
+    if count % len(kinds):
+        raise ValueError(f"count must be a multiple of {len(kinds)}, not {count}")
+    rng = np.random.default_rng([seed, list(CURVES).index(name), list(PARTS).index(part)])
+    for intercept, noise in kinds:
+        for _ in range(count // len(kinds)):
+            yield curve(rng, name, part, intercept, noise)
+
+
+def corpus(count: int = 144, seed: int = 0) -> Iterator[Curve]:
+    """``count`` curves of every class and part: 24 times as many in all."""
+    for part in PARTS:
+        for name in CURVES:
+            yield from curves(name, part, count, seed)
+
+
+def _sizes(rng: np.random.Generator) -> tuple[Array, float]:
+    """Faces of a mesh or valences of a vertex, and the bytes that one of them takes."""
+    faces = bool(rng.random() < 0.5)
+    first, last = (100, rng.choice([1e5, 1e6])) if faces else (4, 4096)
+    low, high = (30, 400) if faces else (3e3, 4e4)
+    sizes = np.geomspace(first, float(last), int(rng.integers(5, 10))).round()
+    return sizes, float(np.exp(rng.uniform(np.log(low), np.log(high))))
+
+
+def _slowdown(latency: Array, rng: np.random.Generator) -> Array:
+    """What a query makes of a latency: about tenfold, or less where the latency rises less."""
+    own = latency / latency[0]
+    share = min(rng.uniform(8, 12) - 1, own.max() - 1) / (own.max() - 1)
+    slow: Array = 1 + share * (own - 1)
+    return slow

@@ -1,0 +1,47 @@
+"""A reference that slows as compiled queries do when the machine is busy: times are divided by it.
+
+The latency of the memory will not do: beside cells that stay within 4 % from run to run it was
+measured to change by a third, as it depends on where an array happens to lie.
+"""
+
+from __future__ import annotations
+
+from time import perf_counter
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+WORDS = 2_048
+"""int64 in the table that is walked: 16 KB, found in the first cache."""
+STEPS = 2_000
+WALKS = 5
+
+
+def reading() -> float:
+    """Seconds per step of a walk that reads and computes: the least of some, as delays only add.
+
+    Takes some ten microseconds in all.
+    """
+    return min(_seconds() for _ in range(WALKS)) / STEPS
+
+
+def _seconds() -> float:
+    begin = perf_counter()
+    _walk(_TABLE, STEPS)
+    return perf_counter() - begin
+
+
+@njit(cache=True)
+def _walk(table: NDArray[np.int64], steps: int) -> int:
+    """Four walks side by side, so that computing and waiting both count."""
+    a, b, c, d = 0, 1, 2, 3
+    for step in range(steps):
+        a = table[(a + step) % WORDS]
+        b = table[(b ^ a) % WORDS]
+        c = table[(c + 3) % WORDS]
+        d = table[(d ^ step) % WORDS]
+    return a + b + c + d
+
+
+_TABLE = np.random.default_rng(0).permutation(WORDS)
