@@ -8,6 +8,7 @@ another one.
 
 from __future__ import annotations
 
+import re
 import warnings
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
@@ -38,6 +39,7 @@ if TYPE_CHECKING:
 TRIES = 3
 """On how many machines a task is tried that does not end."""
 
+ADDRESS = re.compile(r"[a-z]+://.+:\d+")
 CONNECT_SECONDS = 10
 POLL_SECONDS = 0.25
 LONELY_SECONDS = 60
@@ -95,6 +97,8 @@ def _client(address: str) -> Iterator[Client]:
     from distributed import Client
 
     try:
+        if not ADDRESS.fullmatch(address):
+            raise ValueError("no address")
         client = Client(address, timeout=CONNECT_SECONDS, set_as_default=False)
     except (OSError, ValueError) as error:
         raise ClusterError(

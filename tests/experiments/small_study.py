@@ -37,7 +37,9 @@ def samples(folder: Path) -> dict[str, list[float]]:
 
 def children_of(folder: Path) -> list[int]:
     """Processes that measure into a folder."""
-    listed = subprocess.run(["ps", "-eo", "pid,args"], capture_output=True, text=True, check=True)
+    listed = subprocess.run(
+        ["ps", "-eww", "-o", "pid,args"], capture_output=True, text=True, check=True
+    )
     lines = [line for line in listed.stdout.splitlines() if f"--run {folder.resolve()}" in line]
     return [int(line.split()[0]) for line in lines if "defunct" not in line]
 
