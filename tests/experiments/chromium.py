@@ -10,16 +10,14 @@ import subprocess
 import tempfile
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
 from experiments.pdf import FLAGS, browser
 
-PATIENCE = 30.0
+PATIENCE = 120.0
 """Seconds until an answer that does not come is given up."""
-
-NOISE = ("Runtime.consoleAPICalled", "Runtime.exceptionThrown", "Log.entryAdded")
 
 
 class Browser:
@@ -28,7 +26,6 @@ class Browser:
     def __init__(self, to: int, back: int) -> None:
         self._to, self._back, self._rest = to, back, b""
         self._last, self._session = 0, None
-        self._events: list[dict[str, Any]] = []
         self.errors: list[str] = []
         target = self.call("Target.createTarget", url="about:blank")["targetId"]
         attached = self.call("Target.attachToTarget", targetId=target, flatten=True)
@@ -62,11 +59,16 @@ class Browser:
     def open(self, url: str) -> None:
         """Go to a page and wait until it is there, pictures and all."""
         self.call("Page.navigate", url="about:blank")
-        self._events.clear()
         self.call("Page.navigate", url=url)
-        while not any(it["method"] == "Page.loadEventFired" for it in self._events):
-            self._note(self._receive())
-        self.run("1")
+        until = time.monotonic() + PATIENCE
+        while self._state() != [url.partition("#")[0], "complete"]:
+            if time.monotonic() > until:
+                raise TimeoutError(f"{url} does not open")
+            time.sleep(0.02)
+
+    def _state(self) -> Any:
+        with suppress(RuntimeError):  # the page went away under the question
+            return self.run("[location.href.split('#')[0], document.readyState]")
 
     def run(self, script: str) -> Any:
         """The value of an expression in the page, awaited. What it throws is raised."""
@@ -83,7 +85,6 @@ class Browser:
         path.write_bytes(base64.b64decode(shot["data"]))
 
     def _note(self, event: dict[str, Any]) -> None:
-        self._events.append(event)
         told = event.get("params", {})
         wrong = (
             event.get("method") == "Runtime.exceptionThrown"
