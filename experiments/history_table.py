@@ -204,21 +204,22 @@ def _mark(measure: str, before: float, after: float) -> str:
 
 
 def _glance(history: History, names: list[str], shown: Sequence[int], found: list[Change]) -> Table:
-    """A row per claim: how its figures went, and where they are now."""
+    """A row per claim: how its figures went, where they are now, and when they changed last."""
     table = Table(title=f"{len(names)} claims in {history.path}", pad_edge=False)
     table.add_column("claim", no_wrap=True)
     table.add_column("verdict", no_wrap=True)
     for head in ("work or bytes", "time"):
         table.add_column(head, no_wrap=True)
-    table.add_column("changed at")
+    table.add_column("changed", min_width=10, no_wrap=True)
     for name in names:
         work = series(history, name, "bytes") or series(history, name, "work")
         cells = [_course(it, shown) for it in (work, series(history, name, "time"))]
         mine = [it for it in found if it.claim == name and it.what != OUTCOMES["outcome_time"]]
-        at = dict.fromkeys(short(history.runs[it.run]) for it in mine)
+        at = list(dict.fromkeys(short(history.runs[it.run]) for it in mine))
+        changed = (at[-1] if at else "") + (f" +{len(at) - 1}" if len(at) > 1 else "")
         newest = next(it["claims"][name] for it in reversed(history.runs) if name in it["claims"])
         claim = _without_table(name)
-        table.add_row(claim, _verdict(newest, set()), *cells, ", ".join(at))
+        table.add_row(claim, _verdict(newest, set()), *cells, changed)
     return table
 
 
