@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 import pandas as pd
 
 from experiments.alternatives import PACKAGES, Judge, installed
-from experiments.claims import MEMORY
+from experiments.claims import MEMORY, TABLES
 from experiments.corpus import CURVES, PARTS, Curve, corpus
 from experiments.provenance import describe
 from experiments.results import Run, read_json, write_json
@@ -97,6 +97,38 @@ def saved(path: Path = RESULT) -> tuple[dict[str, Any], pd.DataFrame]:
     """What was measured when, and the counts. Raises ResultsError without the file."""
     kept = read_json(path)
     return kept, pd.DataFrame(kept["rows"], columns=kept["columns"])
+
+
+def table(named_: pd.DataFrame) -> pd.DataFrame:
+    """Shares by judge and part, in words, as a page shows them."""
+    found = shares(named_)
+    rows = [
+        {"curves": PARTS[part], "judge": judge, **{k: f"{v:.1%}" for k, v in row.items()}}
+        for (judge, part), row in sorted(
+            found.iterrows(), key=lambda it: (list(PARTS).index(it[0][1]), str(it[0][0]) != "hem")
+        )
+    ]
+    return pd.DataFrame(rows)
+
+
+def determined_table(run: Run) -> pd.DataFrame:
+    """Shares of claims that are determined in a run, in words, as a page shows them."""
+    rows = [
+        {"table": TABLES[name], "claims": it.claims}
+        | {f"determined by {measure}": f"{getattr(it, measure):.0%}" for measure in DETERMINED}
+        for name, it in determined(run).items()
+    ]
+    return pd.DataFrame(rows)
+
+
+def provenance(kept: dict[str, Any]) -> str:
+    """Where kept measurements come from, in a sentence."""
+    versions = ", ".join(f"{name} {number}" for name, number in kept["versions"].items())
+    machine = kept["machine"]
+    return (
+        f"Measured {kept['started'][:10]} at commit {kept['commit'][:10]} "
+        f"on {machine['cpu']}, {machine['cores']} cores, with {versions}; not by this page."
+    )
 
 
 def _version(package: str) -> str:

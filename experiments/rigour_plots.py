@@ -122,7 +122,7 @@ def same_code(kept: dict[str, Any]) -> Figure:
             alarms = list(row["alarms"].values())
             axes.plot([pair] * len(alarms), alarms, "X", color=KINDS["wrong"], markersize=7)
         axes.set_yscale("log")
-        axes.set_yticks([0.5, 0.7, 1, 1.4, 2], ["0.5", "0.7", "1", "1.4", "2"])
+        axes.set_yticks([1 / 8, 1 / 4, 1 / 2, 1, 2, 4, 8], ["⅛", "¼", "½", "1", "2", "4", "8"])
         axes.minorticks_off()
         axes.set_xticks(range(1, len(kept["pairs"]) + 1))
         axes.set(xlabel="pair of runs", ylabel="time after / before", xlim=(0.3, None))

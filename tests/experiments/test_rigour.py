@@ -1,0 +1,116 @@
+"""Laws of how far verdicts can be trusted: counts add up, and the kept ones are as asked."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pandas as pd
+import pytest
+
+from experiments import rigour, rigour_plots
+from experiments.a_against_a import LARGEST_SHARE, Rounds, Timed, cells, compared, measure
+from experiments.corpus import CURVES, PARTS, curves
+from experiments.results import load, read_json
+from tests.experiments.runs import write_run
+
+REFERENCE = Path(__file__).parents[2] / "results" / "reference"
+
+
+def always(answer: str | None):
+    return lambda sizes, samples, latency: answer
+
+
+def test_right_wrong_and_undetermined_are_told_apart() -> None:
+    drawn = [it for name in CURVES for it in curves(name, "none", 6)]
+    judges = {"O(n) to all": always("O(n)"), "silent": always(None)}
+    table = rigour.named(judges, drawn)
+    found = rigour.shares(table)
+    assert found.loc[("O(n) to all", "none")].tolist() == pytest.approx([1 / 6, 5 / 6, 0])
+    assert found.loc[("silent", "none")].tolist() == [0, 0, 1]
+    per_class = rigour.confusion(table, "O(n) to all", "none")
+    assert (per_class["O(n)"] == 6).all()
+    assert per_class.to_numpy().sum() == 36
+
+
+def test_a_sound_run_is_determined_and_one_without_data_is_not(tmp_path: Path) -> None:
+    run = load(write_run(tmp_path / "sound"))
+    found = rigour.determined(run)
+    assert found["queries"] == rigour.Shares(42, 1.0, 1.0)
+    emptied = type(run)(run.folder, run.meta, run.cells.iloc[:0], run.left_out)
+    assert rigour.determined(emptied)["queries"] == rigour.Shares(42, 0.0, 0.0)
+    shown = rigour.determined_table(run)
+    assert shown["determined by time"].iloc[0] == "100%"
+
+
+def test_half_of_the_timed_curves_missing_is_half_of_the_claims_undetermined(
+    tmp_path: Path,
+) -> None:
+    run = load(write_run(tmp_path / "run"))
+    timed = run.cells["experiment"].isin(["bench_queries", "bench_valence"])
+    kept = run.cells[~(timed & (run.cells["query"] == "vertex_faces"))]
+    found = rigour.determined(type(run)(run.folder, run.meta, kept, run.left_out))["queries"]
+    judged = 42
+    lost = run.cells[timed & (run.cells["query"] == "vertex_faces")]["structure"].nunique()
+    assert found.work == 1
+    assert found.time == pytest.approx(1 - lost / judged)
+
+
+def test_the_kept_corpus_gives_what_was_asked() -> None:
+    kept, table = rigour.saved(REFERENCE / "rigour.json")
+    assert table.groupby("judge")["count"].sum().eq(kept["curves"]).all()
+    found = rigour.shares(table)
+    for part, (right, wrong) in rigour.ASKED.items():
+        assert found.loc[("hem", part), "right"] >= right
+        assert found.loc[("hem", part), "wrong"] <= wrong
+
+
+def test_the_kept_pairs_of_the_same_code_raised_few_alarms() -> None:
+    kept = read_json(REFERENCE / "a_against_a.json")
+    assert len(kept["pairs"]) >= 20
+    assert kept["comparisons"] == sum(row["comparisons"] for row in kept["pairs"]) >= 1000
+    assert kept["alarms"] <= LARGEST_SHARE * kept["comparisons"]
+
+
+def test_a_cell_is_timed_with_a_probe_before_every_round() -> None:
+    first = next(iter(cells()))
+    found = measure([first], passes=2)
+    ((name, timed),) = found.items()
+    assert name.startswith(first.structure)
+    assert len(timed.samples) == 10
+    assert len(timed.probe) >= 10
+    assert all(seconds > 0 for seconds in timed.samples + timed.probe)
+    assert set(compared(found, found)) == {name}
+
+
+def test_rounds_hand_over_what_was_set_up() -> None:
+    asked = []
+    rounds = Rounds(lambda: 1.0)
+    rounds.pedantic(asked.append, setup=lambda: ((7,), {}), rounds=3, warmup_rounds=1)
+    assert asked == [7] * 4
+    assert rounds.readings == [1.0] * 4
+    assert len(rounds.stats.stats.data) == 3
+    rounds.pedantic(asked.append, (8,), rounds=1)
+    assert asked[-1] == 8
+
+
+def test_code_twice_as_slow_would_be_an_alarm() -> None:
+    times = [1 + 0.01 * (i * 7 % 5) for i in range(15)]
+    before = {"cell": Timed(times, [1.0] * 15)}
+    after = {"cell": Timed([2 * it for it in times], [1.0] * 15)}
+    assert compared(before, after)["cell"].outcome == "worse"
+
+
+def test_the_figures_draw() -> None:
+    kept, table = rigour.saved(REFERENCE / "rigour.json")
+    pairs = {"pairs": [{"ratios": [1.0, 1.3], "alarms": {"cell": 1.3}}]}
+    pairs |= {"factor": 1.15, "comparisons": 2, "alarms": 1}
+    for figure in (
+        rigour_plots.who_names_what(table),
+        rigour_plots.confusions(table, "measured"),
+        rigour_plots.same_code(pairs),
+    ):
+        assert figure.axes
+    assert kept["commit"][:10] in rigour.provenance(kept)
+    shown = rigour.table(table)
+    assert isinstance(shown, pd.DataFrame)
+    assert len(shown) == len(PARTS) * table["judge"].nunique()
