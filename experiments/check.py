@@ -119,12 +119,12 @@ def _changed(before: Value | None, after: Value | None) -> tuple[Outcome, str]:
         return reclassed(str(before), str(after)), ""
     if before == after:
         return "same", ""
-    if len(before) != len(after):
-        return (
-            "worse" if sum(after) > sum(before) else "better"
-        ), f"{len(after)} instead of {len(before)} values"
-    pairs = list(zip(before, after, strict=True))
-    return ("worse" if any(b < a for b, a in pairs) else "better"), ""
+    more = any(old < new for old, new in zip(before, after, strict=False))
+    if len(before) == len(after):
+        return ("worse" if more else "better"), ""
+    # Of storage that grows: room in excess shows in one step, growth by a constant in their sum.
+    more |= sum(after) > sum(before)
+    return ("worse" if more else "better"), f"{len(after)} instead of {len(before)} values"
 
 
 def reclassed(before: str, after: str) -> Outcome:
