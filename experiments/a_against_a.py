@@ -1,8 +1,8 @@
 """The same code against itself: how often a comparison of two runs cries wolf.
 
-``python -m experiments.a_against_a --pairs 20``: each run of a pair is a process of its own, and
-the two halves of a pair take turns at going first. A cell is timed as the study times it, with a
-reading of the reference probe before every round.
+``python -m experiments.a_against_a --pairs 20``: each run of a pair is some fresh processes, in
+turns with those of the other run. A cell is timed as the study times it, with a reading of the
+reference probe before every round. Takes about half a minute per pair.
 """
 
 from __future__ import annotations
@@ -36,9 +36,10 @@ RESULT = Path("results/reference/a_against_a.json")
 STRUCTURES = tuple(name for name, it in REGISTRY.items() if it.compiled)
 OPERATIONS = ("split_edge", "split_face", "flip_edge")
 SIZES = (1_000,)
-PASSES = 3
-"""Times that a run goes through its cells: a neighbor who takes the machine for a while takes some
-rounds of many cells, not all rounds of one."""
+PROCESSES = 3
+"""Processes that make up a run, in turns with those of the other. A process can be slow in one cell
+from beginning to end by where its memory happens to lie: runs of one process each raised 3 alarms
+in 1,300 comparisons, all of them of one query."""
 ROUNDS = 5
 PROFILE = replace(PROFILES["quick"], rounds=ROUNDS, round_seconds=0.0005, cell_seconds=1.0)
 ALARMS = ("worse", "better")
@@ -96,17 +97,9 @@ def cells() -> Iterator[Cell]:
         yield Cell(name, family, SIZES[-1], None, "consecutive")
 
 
-def measure(
-    chosen: Sequence[Cell], profile: Profile = PROFILE, passes: int = PASSES
-) -> dict[str, Timed]:
+def measure(chosen: Sequence[Cell], profile: Profile = PROFILE) -> dict[str, Timed]:
     """Time cells, each as the study does -> by structure and cell."""
-    found = {f"{cell.structure}/{cell.id}": Timed([], []) for cell in chosen}
-    for _ in range(passes):
-        for (_, timed), cell in zip(found.items(), chosen, strict=True):
-            samples, probe = _timed(cell, profile)
-            timed.samples.extend(samples)
-            timed.probe.extend(probe)
-    return found
+    return {f"{cell.structure}/{cell.id}": _timed(cell, profile) for cell in chosen}
 
 
 def _timed(cell: Cell, profile: Profile) -> Timed:
@@ -134,12 +127,10 @@ def compared(before: dict[str, Timed], after: dict[str, Timed]) -> dict[str, Com
 def run_pairs(pairs: int, report: Callable[[dict[str, Any], dict[str, Comparison]], None]) -> None:
     """Measure so many pairs, each compared, and report what is kept so far after each of them."""
     kept = {key: value for key, value in describe("a against a").items() if key != "profile"}
-    kept |= {"factor": FACTOR, "alpha": ALPHA, "drift": DRIFT, "rounds": PASSES * ROUNDS}
+    kept |= {"factor": FACTOR, "alpha": ALPHA, "drift": DRIFT, "rounds": PROCESSES * ROUNDS}
     kept |= {"comparisons": 0, "alarms": 0, "pairs": []}
     for pair in range(pairs):
-        first, second = _run(), _run()
-        before, after = (first, second) if pair % 2 == 0 else (second, first)
-        found = compared(before, after)
+        found = compared(*_pair(pair % 2 == 1))
         row = _row(found)
         kept["pairs"].append(row)
         kept["comparisons"] += row["comparisons"]
@@ -161,8 +152,27 @@ def _row(found: dict[str, Comparison]) -> dict[str, Any]:
     }
 
 
-def _run() -> dict[str, Timed]:
-    """One run in a process of its own."""
+def _pair(turned: bool) -> tuple[dict[str, Timed], dict[str, Timed]]:
+    """Two runs, their processes in turns: 0 1 1 0 0 1, or the other way around."""
+    parts: tuple[list[dict[str, Timed]], list[dict[str, Timed]]] = ([], [])
+    for step in range(2 * PROCESSES):
+        parts[((step + 1) // 2 + turned) % 2].append(_process())
+    return joined(parts[0]), joined(parts[1])
+
+
+def joined(parts: Sequence[dict[str, Timed]]) -> dict[str, Timed]:
+    """One run from its processes: the rounds of each cell, one process after the other."""
+    return {
+        name: Timed(
+            [seconds for part in parts for seconds in part[name].samples],
+            [seconds for part in parts for seconds in part[name].probe],
+        )
+        for name in parts[0]
+    }
+
+
+def _process() -> dict[str, Timed]:
+    """All cells once, in a process of its own."""
     command = [sys.executable, "-m", "experiments.a_against_a", "--measure"]
     done = subprocess.run(command, capture_output=True, text=True)
     if done.returncode:
@@ -183,7 +193,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--pairs", type=int, default=20)
     parser.add_argument("--output", type=Path, default=RESULT)
-    parser.add_argument("--measure", action="store_true", help="one run, printed as JSON")
+    parser.add_argument("--measure", action="store_true", help="one process, printed as JSON")
     given = parser.parse_args()
     if given.measure:
         print(json.dumps(measure(list(cells()))))

@@ -7,6 +7,7 @@ that are judged here. None of them knows of a latency.
 
 from __future__ import annotations
 
+import atexit
 from collections.abc import Callable, Sequence
 from importlib.util import find_spec
 
@@ -77,8 +78,9 @@ def bigo(sizes: Array, samples: Sequence[Array], latency: Array | None = None) -
 
     It leaves out outliers by itself, and curves that it cannot fit.
     """
-    from bigO import models
+    from bigO import bigO, models
 
+    atexit.unregister(bigO.save_performance_data)  # or it leaves a file where one happens to be
     names = {
         "O(1)": "O(1)",
         "O(log(n))": "O(log n)",

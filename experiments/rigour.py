@@ -103,10 +103,10 @@ def table(named_: pd.DataFrame) -> pd.DataFrame:
     """Shares by judge and part, in words, as a page shows them."""
     found = shares(named_)
     rows = [
-        {"curves": PARTS[part], "judge": judge, **{k: f"{v:.1%}" for k, v in row.items()}}
-        for (judge, part), row in sorted(
-            found.iterrows(), key=lambda it: (list(PARTS).index(it[0][1]), str(it[0][0]) != "hem")
-        )
+        {"curves": what, "judge": judge}
+        | {kind: f"{found.loc[(judge, part)][kind]:.1%}" for kind in found.columns}
+        for part, what in PARTS.items()
+        for judge in dict.fromkeys(named_["judge"])
     ]
     return pd.DataFrame(rows)
 

@@ -8,7 +8,7 @@ import pandas as pd
 import pytest
 
 from experiments import rigour, rigour_plots
-from experiments.a_against_a import LARGEST_SHARE, Rounds, Timed, cells, compared, measure
+from experiments.a_against_a import LARGEST_SHARE, Rounds, Timed, cells, compared, joined, measure
 from experiments.corpus import CURVES, PARTS, curves
 from experiments.results import load, read_json
 from tests.experiments.runs import write_run
@@ -73,7 +73,7 @@ def test_the_kept_pairs_of_the_same_code_raised_few_alarms() -> None:
 
 def test_a_cell_is_timed_with_a_probe_before_every_round() -> None:
     first = next(iter(cells()))
-    found = measure([first], passes=2)
+    found = joined([measure([first]), measure([first])])
     ((name, timed),) = found.items()
     assert name.startswith(first.structure)
     assert len(timed.samples) == 10
