@@ -37,9 +37,8 @@ STRUCTURES = tuple(name for name, it in REGISTRY.items() if it.compiled)
 OPERATIONS = ("split_edge", "split_face", "flip_edge")
 SIZES = (1_000,)
 PROCESSES = 3
-"""Processes that make up a run, in turns with those of the other. A process can be slow in one cell
-from beginning to end by where its memory happens to lie: runs of one process each raised 3 alarms
-in 1,300 comparisons, all of them of one query."""
+"""Processes that make up a run, in turns with those of the other: what makes one process slow in a
+cell from beginning to end is then seen as noise, and not taken for the code."""
 ROUNDS = 5
 PROFILE = replace(PROFILES["quick"], rounds=ROUNDS, round_seconds=0.0005, cell_seconds=1.0)
 ALARMS = ("worse", "better")

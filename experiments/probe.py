@@ -1,7 +1,7 @@
 """A reference that slows as compiled queries do when the machine is busy: times are divided by it.
 
-The latency of the memory will not do: beside cells that stay within 4 % from run to run it was
-measured to change by a third, as it depends on where an array happens to lie.
+The latency of the memory will not do: single readings of it were measured to change by a quarter
+from run to run, beside cells that stayed within 4 %.
 """
 
 from __future__ import annotations

@@ -122,7 +122,12 @@ def same_code(kept: dict[str, Any]) -> Figure:
             alarms = list(row["alarms"].values())
             axes.plot([pair] * len(alarms), alarms, "X", color=KINDS["wrong"], markersize=7)
         axes.set_yscale("log")
-        axes.set_yticks([1 / 8, 1 / 4, 1 / 2, 1, 2, 4, 8], ["⅛", "¼", "½", "1", "2", "4", "8"])
+        ticks = [0.125, 0.25, 0.5, 0.7, 0.8, 0.9, 1, 1.1, 1.25, 1.4, 2, 4, 8]
+        every = [ratio for row in kept["pairs"] for ratio in row["ratios"]]
+        low, high = min(0.8, *every) / 1.03, max(1.25, *every) * 1.03
+        shown = [tick for tick in ticks if low <= tick <= high]
+        axes.set_yticks(shown, [f"{tick:g}" for tick in shown])
+        axes.set_ylim(low, high)
         axes.minorticks_off()
         axes.set_xticks(range(1, len(kept["pairs"]) + 1))
         axes.set(xlabel="pair of runs", ylabel="time after / before", xlim=(0.3, None))
