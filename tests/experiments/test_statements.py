@@ -9,7 +9,7 @@ import pytest
 
 from experiments import statements
 from experiments.breakeven import break_even
-from experiments.results import load
+from experiments.results import load, write_sealed
 from tests.experiments.runs import BUILD, SIZES, write_run
 
 SOURCES = ("thesis", "article", "claim", "the")
@@ -75,7 +75,7 @@ def test_a_sentence_that_holds_in_part_is_undetermined(tmp_path):
     for cell in content["cells"]:
         if cell["query"] == "impacts" and cell["vertices"] > 10_000:
             cell["samples"] = [1.0]
-    path.write_text(json.dumps(content))
+    write_sealed(path, content)
     assert outcome(load(folder), "dynamic") == "undetermined"
 
 

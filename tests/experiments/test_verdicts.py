@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from experiments.claims import OPERATIONS, VARIABLES, load_claims
-from experiments.results import load
+from experiments.results import load, write_sealed
 from experiments.table import by_title, found, markdown, show
 from experiments.verdicts import judged, save
 from hem.queries import QUERIES
@@ -71,7 +71,7 @@ def test_a_byte_too_many_is_a_violation(tmp_path):
     path = folder / "bench_memory.half_edge.json"
     content = json.loads(path.read_text())
     content["cells"][0]["samples"] = [228_001.0]
-    path.write_text(json.dumps(content))
+    write_sealed(path, content)
     table = judged(load(folder)).query("query == 'memory'").set_index("structure")
     assert table.loc["half_edge", "outcome"] == "violated"
     assert table.loc["winged_edge", "outcome"] == "consistent"
