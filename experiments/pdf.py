@@ -92,6 +92,7 @@ def _chapters(chapters: dict[str, str]) -> dict[str, str]:
 def _leading(body: str) -> str:
     """Links to another page lead to its section; those to files beside the pages become words."""
     body = re.sub(r'href="(\w+)\.html"', r'href="#page-\1"', body)
+    body = body.replace('href="index.html#', 'href="#')
     return re.sub(r'<a href="claims/[^"]*">([^<]*)</a>', r"\1", body)
 
 

@@ -231,7 +231,9 @@ def _chapter(name: str, run_folder: Path) -> str:
         what = f"{error.ename}: {error.evalue}"
         raise ResultsError(f"notebooks/{name}.ipynb cannot read {run_folder}: {what}") from error
     exporter = HTMLExporter(template_name="basic", exclude_input=True, exclude_output_prompt=True)
-    return _described(exporter.from_notebook_node(notebook)[0])
+    body = _described(exporter.from_notebook_node(notebook)[0])
+    # Claims, whose keys have a slash, are on the front page.
+    return re.sub(r'href="#([\w.-]+/)', r'href="index.html#\1', body)
 
 
 def _described(body: str) -> str:
