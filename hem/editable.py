@@ -311,8 +311,10 @@ class Editable(Queryable):
         """
         self._count_edges()
         self._make_room(splits, 2 * splits)
-        out, valence = self._out["edge"], int(self.records.counts[VALENCE]) + splits + 1
-        if WIDTH * (valence + 1) > len(out):
+        if "_out" not in self.__dict__:
+            self._out = self._scratch(max(splits, self.n_faces // 8))
+        valence = int(self.records.counts[VALENCE]) + splits + 1
+        if WIDTH * (valence + 1) > len(self._out["edge"]):
             self._out.update(self._scratch(max(splits, self.n_faces // 8)))
             self._repin()
         return self._out["edge"], np.zeros(ENTRIES * (splits + 2), np.int64)

@@ -42,15 +42,24 @@ class Remaining(NamedTuple):
         A fan of k faces that is not closed has k + 1 edges there.
         """
         vertices, corners = np.unique(self.vertex, return_counts=True)
-        edges = np.unique(self.edges)
+        edges = ascending(self.edges)
         count = np.bincount(np.searchsorted(vertices, edges >> 32), minlength=len(vertices))
         return vertices[count - corners > 1]
 
 
-def remaining(s: Queryable, gone: Array) -> Remaining:
-    """What is left at the vertices of faces (k,). Cost: ``vertex_faces`` of these vertices."""
-    touched = np.unique(s.face_vertices(gone).values)
-    faces = np.unique(s.vertex_faces(touched).values)
+def ascending(values: Array) -> Array:
+    """Each value once, ascending; by sorting, which is quicker than hashing for so few."""
+    ordered = np.sort(values, axis=None)
+    return ordered[np.append(True, ordered[1:] != ordered[:-1])] if len(ordered) else ordered
+
+
+def remaining(s: Queryable, gone: Array, fresh: Array | None = None) -> Remaining:
+    """What is left at the vertices of faces (k,), or just of the ``fresh`` ones among them.
+
+    Cost: ``vertex_faces`` of these vertices.
+    """
+    touched = ascending(s.face_vertices(gone if fresh is None else fresh).values)
+    faces = ascending(s.vertex_faces(touched).values)
     faces = faces[~np.isin(faces, gone)]
     corners = s.face_vertices(faces)
     vertex, last = corners.values.astype(np.int64), corners.offsets[1:] - 1
@@ -68,7 +77,7 @@ def vanishing_edges(s: Queryable, gone: Array, left: Remaining) -> int:
     here, last = corners.values.astype(np.int64), corners.offsets[1:] - 1
     there = np.roll(here, -1)
     there[last] = here[corners.offsets[:-1]]
-    mine = np.unique(np.minimum(here, there) << 32 | np.maximum(here, there))
+    mine = ascending(np.minimum(here, there) << 32 | np.maximum(here, there))
     edges = left.edges
     ends = edges >> 32, edges & 0xFFFFFFFF
     return int((~np.isin(mine, np.minimum(*ends) << 32 | np.maximum(*ends))).sum())

@@ -26,13 +26,14 @@ def hanging(structure: Structure, gone: Array) -> NDArray[np.int64]:
 
     Cost: ``vertex_faces`` of the vertices of all of these.
     """
-    off = [np.zeros(0, np.int64)]
+    off, fresh = [np.zeros(0, np.int64)], gone
     while True:
-        left = remaining(structure, np.concatenate([gone, *off]))
+        left = remaining(structure, np.concatenate([gone, *off]), fresh)
         at_pinched = np.isin(left.vertex, left.pinched())
         if not at_pinched.any():
             return np.concatenate(off)
-        off.append(_loose(structure, Remaining(*(it[at_pinched] for it in left))))
+        fresh = _loose(structure, Remaining(*(it[at_pinched] for it in left)))
+        off.append(fresh)
 
 
 def _loose(structure: Structure, left: Remaining) -> NDArray[np.int64]:
