@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import json
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 
@@ -56,16 +58,13 @@ def check(
     raise typer.Exit(code(findings))
 
 
-class could_not_measure:  # noqa: N801 - reads as a function where it is used
-    """Exit with 2 instead of 1 where the gate could not look: 1 says that something got worse."""
-
-    def __enter__(self) -> None:
-        """Nothing to set up."""
-
-    def __exit__(self, kind: Any, error: Any, trace: Any) -> None:
-        """Turn a user's mistake into exit code 2."""
-        if isinstance(error, typer.Exit) and error.exit_code == 1:
-            raise typer.Exit(2) from error
+@contextmanager
+def could_not_measure() -> Iterator[None]:
+    """Exit with 2 instead of 1 for a user's mistake: 1 says that something got worse."""
+    try:
+        yield
+    except typer.Exit as error:
+        raise typer.Exit(2 if error.exit_code == 1 else error.exit_code) from error
 
 
 reference_app = typer.Typer(no_args_is_help=True, help="What hem check compares with.")

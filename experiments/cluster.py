@@ -14,6 +14,7 @@ from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass, field
+from importlib.util import find_spec
 from pathlib import Path
 from time import monotonic, sleep
 from typing import TYPE_CHECKING, Any
@@ -52,13 +53,11 @@ class ClusterError(ValueError):
 
 def require(address: str) -> None:
     """Raise ClusterError unless a study can be sent to ``address``."""
-    try:
-        import distributed  # noqa: F401
-    except ImportError:
+    if find_spec("distributed") is None:
         raise ClusterError(
             "--workers needs Dask, which is not installed; install it with: "
             "pip install 'hem[cluster]'"
-        ) from None
+        )
     with _client(address) as client:
         if not client.ncores():
             raise ClusterError(

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from time import perf_counter
+from types import MappingProxyType
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -32,7 +33,7 @@ class Comparison(NamedTuple):
     asked: float
     ours: Callable[..., Any]
     theirs: dict[str, Callable[..., Any]]
-    fresh: dict[str, Task] = {}  # noqa: RUF012  by the name of the peer, "" for us
+    fresh: Mapping[str, Task] = MappingProxyType({})  # by the name of the peer, "" for us
 
 
 class OpenMesh:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import asyncio
 import os
 import re
 import shutil
 import tempfile
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
 from html import escape, unescape
 from pathlib import Path
 from typing import NamedTuple
@@ -118,13 +119,42 @@ def _parts(run: Run, run_folder: Path) -> Parts:
     save(run, table)
     every = entries(run, table)
     front, claims, back = _front(run, table), _claims(every), _back(run)
+    return Parts(front, claims, back, _chapters(run_folder), every)
+
+
+def _chapters(run_folder: Path) -> dict[str, str]:
+    """Run every notebook -> the bodies of their pages.
+
+    In a thread with a loop of its own, as a notebook from which this is called has one already. An
+    interrupt cancels what runs there, which ends the kernels, before it goes on.
+    """
+    loop = asyncio.new_event_loop()
+    everything = loop.create_task(_all_chapters(run_folder))
     with (
+        closing(loop),
         _environment(RUN_VARIABLE, str(run_folder.resolve())),
-        ThreadPoolExecutor(AT_ONCE) as pool,
+        ThreadPoolExecutor(1) as pool,
     ):
-        bodies = pool.map(lambda name: _chapter(name, run_folder), CHAPTERS)
-        chapters = dict(zip(CHAPTERS, bodies, strict=True))
-    return Parts(front, claims, back, chapters, every)
+        running = pool.submit(loop.run_until_complete, everything)
+        try:
+            return running.result()
+        finally:
+            loop.call_soon_threadsafe(everything.cancel)
+
+
+async def _all_chapters(run_folder: Path) -> dict[str, str]:
+    places = asyncio.Semaphore(AT_ONCE)
+
+    async def chapter(name: str) -> str:
+        async with places:
+            return await _chapter(name, run_folder)
+
+    try:
+        async with asyncio.TaskGroup() as group:
+            tasks = {name: group.create_task(chapter(name)) for name in CHAPTERS}
+    except ExceptionGroup as failed:
+        raise failed.exceptions[0] from None
+    return {name: task.result() for name, task in tasks.items()}
 
 
 @contextmanager
@@ -216,7 +246,7 @@ def _environment(name: str, value: str) -> Iterator[None]:
             os.environ[name] = before
 
 
-def _chapter(name: str, run_folder: Path) -> str:
+async def _chapter(name: str, run_folder: Path) -> str:
     """Run a notebook -> the body of its page, without its code."""
     import nbformat
     from nbclient import NotebookClient
@@ -224,9 +254,12 @@ def _chapter(name: str, run_folder: Path) -> str:
     from nbconvert import HTMLExporter
 
     notebook = nbformat.read(NOTEBOOKS / f"{name}.ipynb", as_version=4)
-    client = NotebookClient(notebook, timeout=300, kernel_name="python3", extra_arguments=QUIET)
+    client = NotebookClient(
+        notebook, timeout=300, kernel_name="python3", extra_arguments=QUIET,
+        shutdown_kernel="immediate",
+    )  # fmt: skip
     try:
-        client.execute(cwd=str(NOTEBOOKS))
+        await client.async_execute(cwd=str(NOTEBOOKS))
     except CellExecutionError as error:
         what = f"{error.ename}: {error.evalue}"
         raise ResultsError(f"notebooks/{name}.ipynb cannot read {run_folder}: {what}") from error

@@ -125,18 +125,29 @@ def shatter(
     faces = np.concatenate([new, loose])
     shards = Shards(structure.points[corner_vertices(structure, faces)])
     structure.remove_faces(faces)
+    return in_place(
+        structure, broken, shards, {"broken off": len(loose)},
+        method="surface", material=chosen, seed=seed, diagonal=size,
+    )  # fmt: skip
+
+
+def in_place(
+    structure: Structure,
+    broken: Plan,
+    shards: Sequence[TriangleMesh],
+    counts: dict[str, int],
+    **told: Any,
+) -> Fracture:
+    """The fracture of what ``break_surface`` broke; the structure keeps the rest."""
     rest = Rest(structure)
     return Fracture(
-        method="surface",
-        material=chosen,
-        seed=seed,
         impact=broken.target,
         direction=-np.cross(broken.frame[0], broken.frame[1]),
         shards=shards,
         rest=rest,
-        counts=outcomes(broken) | {"broken off": len(loose)},
-        diagonal=size,
+        counts=outcomes(broken) | counts,
         find_neighbors=lambda: sharing_edges([*shards, *rest]),
+        **told,
     )
 
 

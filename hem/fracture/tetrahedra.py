@@ -28,7 +28,7 @@ from hem.fracture.nearest import corner_vertices
 from hem.fracture.overlap import crossing, overlapping
 from hem.fracture.pieces import Fracture
 from hem.fracture.solid import require_body
-from hem.fracture.surface import Rest, break_surface, outcomes, random_numbers, sharing_edges
+from hem.fracture.surface import break_surface, in_place, random_numbers
 from hem.mesh import TriangleMesh
 from hem.structure import Structure
 
@@ -83,20 +83,11 @@ def tetrahedra(
     solids = solids[deep]
     structure.split_faces(faces[deep], solids[:, 3])
     shards = [_mesh(it) for it in _split_inside(solids, broken.target, force, random)]
-    rest = Rest(structure)
-    return Fracture(
-        method="tetra",
-        material=chosen,
-        seed=seed,
-        impact=broken.target,
-        direction=-np.cross(broken.frame[0], broken.frame[1]),
-        shards=shards,
-        rest=rest,
-        counts=outcomes(broken)
-        | {"inside": (len(shards) - len(solids)) // 3, "too shallow": int((~deep).sum())},
-        diagonal=size,
-        find_neighbors=lambda: sharing_edges([*shards, *rest]),
-    )
+    inside = (len(shards) - len(solids)) // 3
+    return in_place(
+        structure, broken, shards, {"inside": inside, "too shallow": int((~deep).sum())},
+        method="tetra", material=chosen, seed=seed, diagonal=size,
+    )  # fmt: skip
 
 
 def _corners(structure: Structure, faces: Array) -> NDArray[np.float64]:

@@ -18,9 +18,11 @@ from experiments.exact import Exact, measure
 from experiments.reference import load_exact, measured, save_exact, save_measured
 from experiments.results import load
 from experiments.verdicts import judged, save
+from hem.queries import QUERIES
 from tests.experiments.runs import LAWS, write_run
 
-REFERENCE = Path(__file__).parents[2] / "results/reference"
+HERE = Path(__file__).parents[2]
+REFERENCE = HERE / "results/reference"
 KEY = "work/half_edge/vertex_faces/torus/100/random"
 
 
@@ -195,6 +197,27 @@ def test_a_worse_structure_fails_the_command_and_shows_the_numbers(reference, tm
     assert exit_code == 1
     assert "2, 2, 2 → 3, 3, 3 (Table 1, Face → Vertices: O(1)" in output
     assert "Something got worse" in page.read_text()
+
+
+def test_a_tree_beside_itself_is_timed_and_not_worse(reference):
+    options = "--structure", "indexed", "--reference", str(reference), "--json"
+    cli.console.width = 400
+    result = CliRunner().invoke(cli.app, ["check", "--beside", str(HERE), *options])
+    timed = [it for it in json.loads(result.stdout)["findings"] if it["kind"] == "time"]
+    assert len(timed) == len(QUERIES)
+    assert {it["outcome"] for it in timed} <= {"same", "undetermined"}
+    assert all(it["before"].endswith(" ns") and it["after"].endswith(" ns") for it in timed)
+    assert result.exit_code == (0 if {it["outcome"] for it in timed} == {"same"} else 2)
+
+
+def test_a_tree_that_cannot_be_timed_is_no_pass(reference, tmp_path):
+    other = tmp_path / "other"
+    (other / "hem").mkdir(parents=True)
+    (other / "hem" / "__init__.py").write_text("raise RuntimeError('this one is broken')")
+    options = "--structure", "indexed", "--reference", str(reference)
+    exit_code, output = hem("check", "--beside", str(other), *options)
+    assert exit_code == 2
+    assert "could not be timed: RuntimeError: this one is broken" in output
 
 
 def test_a_saved_reference_reads_as_it_was_one_line_per_cell(sound, tmp_path):

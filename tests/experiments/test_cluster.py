@@ -4,21 +4,21 @@ from __future__ import annotations
 
 import os
 import signal
+import subprocess
 import sys
-from contextlib import contextmanager
 
 import pytest
 
 from experiments import children, cluster, study
 from experiments.machine_task import VARIABLE, AbandonedError, Task, perform
 from experiments.results import load, read_json
-from tests.experiments.small_study import begin
+from tests.experiments.small_study import begin, samples, wait_for
 from tests.experiments.test_cli import hem
 
 SMOKE = children.How("smoke")
 
 
-@contextmanager
+@pytest.fixture(scope="module")
 def two_machines():
     """The address of a cluster of two workers that pass for two machines, and their processes."""
     distributed = pytest.importorskip("distributed")
@@ -31,20 +31,46 @@ def two_machines():
         yield local.scheduler_address, list(client.run(os.getpid).values())
 
 
+def test_an_interrupted_study_goes_on_with_what_its_machines_have_measured(
+    tmp_path, monkeypatch, two_machines
+):
+    address, _ = two_machines
+    folder = begin(tmp_path)
+    script = (
+        "import sys; from pathlib import Path; from experiments import cluster, study\n"
+        "study.EXPERIMENTS = ('bench_work',)\n"
+        "cluster.run(Path(sys.argv[1]), 'smoke', sys.argv[2], lambda p, n: None, ['indexed'])"
+    )
+    command = [sys.executable, "-c", script, str(folder), address]
+    caller = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
+    wait_for(lambda: samples(folder))
+    caller.send_signal(signal.SIGINT)
+    _, said = caller.communicate(timeout=30)
+    before = samples(folder)
+    assert "KeyboardInterrupt" in said
+    assert "finished" not in read_json(folder / "run.json")
+    monkeypatch.setattr(study, "EXPERIMENTS", ("bench_work",))
+    cluster.run(folder, "smoke", address, lambda process, done: None, ["indexed"], print)
+    after = samples(folder)
+    assert before.items() <= after.items()
+    assert len(after) == sum(len(it.cells) for it in study.processes("smoke", ["indexed"]))
+    assert len(load(folder).meta["resumed"]) == 1
+
+
 def test_work_is_spread_kept_apart_and_tried_elsewhere_when_a_machine_is_lost(
-    tmp_path, monkeypatch
+    tmp_path, monkeypatch, two_machines
 ):
     monkeypatch.setattr(study, "EXPERIMENTS", ("bench_latency", "bench_memory"))
     structures = ["indexed", "half_edge"]
     folder = begin(tmp_path)
     said: list[str] = []
-    with two_machines() as (address, workers):
+    address, workers = two_machines
 
-        def lose_one(process: study.Process, done: int) -> None:
-            if done and len(workers) == 2:
-                os.kill(workers.pop(), signal.SIGKILL)
+    def lose_one(process: study.Process, done: int) -> None:
+        if done and len(workers) == 2:
+            os.kill(workers.pop(), signal.SIGKILL)
 
-        cluster.run(folder, "smoke", address, lose_one, structures, said.append)
+    cluster.run(folder, "smoke", address, lose_one, structures, said.append)
     run = load(folder)
     every = study.processes("smoke", structures)
     found = run.cells.groupby(["experiment", "structure"])

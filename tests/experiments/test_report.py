@@ -3,6 +3,10 @@
 from __future__ import annotations
 
 import re
+import signal
+import subprocess
+import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -14,6 +18,7 @@ from experiments.results import ResultsError, load
 from experiments.style import spread_apart
 from tests.experiments.reports import made_up
 from tests.experiments.runs import write_run
+from tests.experiments.small_study import wait_for
 
 
 @pytest.fixture(scope="module")
@@ -45,6 +50,34 @@ def test_a_report_that_fails_leaves_the_old_one(run_folder, tmp_path, monkeypatc
         write(run_folder, tmp_path / "html")
     assert (tmp_path / "html" / "index.html").read_text() == "old"
     assert [path.name for path in tmp_path.iterdir()] == ["html"]
+
+
+def test_an_interrupt_in_a_notebook_leaves_the_old_report_and_no_kernel(run_folder, tmp_path):
+    """A notebook has a loop running, and the signal reaches it alone."""
+    (tmp_path / "html").mkdir()
+    (tmp_path / "html" / "index.html").write_text("old")
+    script = (
+        "import asyncio, sys; from pathlib import Path; from experiments import report\n"
+        "report.CHAPTERS = {'memory': 'Memory', 'errata': 'Errata', 'fracture': 'Fracture'}\n"
+        "async def cell(): report.write(Path(sys.argv[1]), Path(sys.argv[2]) / 'html')\n"
+        "asyncio.new_event_loop().run_until_complete(cell())"
+    )
+    command = [sys.executable, "-c", script, str(run_folder), str(tmp_path)]
+    caller = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
+    wait_for(lambda: kernels_of(caller.pid))
+    kernels = kernels_of(caller.pid)
+    caller.send_signal(signal.SIGINT)
+    _, said = caller.communicate(timeout=20)
+    assert "KeyboardInterrupt" in said
+    assert not any(Path(f"/proc/{kernel}").exists() for kernel in kernels)
+    assert (tmp_path / "html" / "index.html").read_text() == "old"
+    assert [path.name for path in tmp_path.iterdir()] == ["html"]
+
+
+def kernels_of(process: int) -> list[int]:
+    command = ["ps", "--ppid", str(process), "-o", "pid=,args="]
+    listed = subprocess.run(command, capture_output=True, text=True, check=False).stdout
+    return [int(line.split()[0]) for line in listed.splitlines() if "ipykernel" in line]
 
 
 def test_the_committed_page_has_the_table_and_its_pictures(run_folder, tmp_path):
