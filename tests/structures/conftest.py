@@ -57,3 +57,16 @@ def mesh(request: pytest.FixtureRequest) -> hem.TriangleMesh:
 @pytest.fixture(params=structures.NAMES)
 def name(request: pytest.FixtureRequest) -> str:
     return request.param
+
+
+SURFACES = {
+    "torus": lambda: shuffled(hem.generate("torus", 100)),
+    "grid": lambda: shuffled(hem.generate("grid", 64)),
+    "sphere": lambda: hem.generate("sphere", 162),
+}
+"""Large enough to operate on at many places."""
+
+
+@pytest.fixture(params=SURFACES)
+def s(request: pytest.FixtureRequest, name: str) -> structures.Structure:
+    return structures.build(name, SURFACES[request.param]())

@@ -3,23 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-import pytest
 
 import hem
 import structures
 from tests.structures.actions import faces_of
-from tests.structures.conftest import shuffled
-
-MESHES = {
-    "torus": lambda: shuffled(hem.generate("torus", 100)),
-    "grid": lambda: shuffled(hem.generate("grid", 64)),
-    "sphere": lambda: hem.generate("sphere", 162),
-}
-
-
-@pytest.fixture(params=MESHES)
-def s(request: pytest.FixtureRequest, name: str) -> structures.Structure:
-    return structures.build(name, MESHES[request.param]())
 
 
 def triangles(s: structures.Structure) -> list[tuple[int, ...]]:
