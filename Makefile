@@ -26,8 +26,9 @@ study: $(INSTALLED)  ## measure for some 10 minutes, print table 1, write the re
 	@$(BIN)/hem table
 	@$(BIN)/hem report
 
+# In the order of the files the slowest tests come first, and the cores end at the same time.
 test: $(INSTALLED)  ## run all tests, on every core
-	@$(BIN)/python -m pytest tests -n auto --dist loadfile
+	@$(BIN)/python -m pytest tests -n auto --dist loadfile --no-loadscope-reorder
 
 demo: $(INSTALLED)  ## break some models, for two minutes, and make a page to watch it on
 	@$(BIN)/python -m experiments.demo

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
+from rich.markup import escape
 
 from experiments.console import console, errors, user_errors
 
@@ -92,9 +93,7 @@ def update(
         lines = fresh.difference()
         for sign, line in lines:
             color = {"+": "green", "-": "red"}.get(sign, "cyan")
-            console.print(
-                f"[{color}]{sign}[/] ", line, markup=True, highlight=False, soft_wrap=True
-            )
+            console.print(f"[{color}]{sign}[/] {escape(line)}", highlight=False, soft_wrap=True)
         if not lines:
             console.print(f"{reference} says just this already.")
             return

@@ -17,7 +17,7 @@ from experiments.exact import Exact, Value
 from experiments.results import ResultsError, Run
 
 FOLDER = Path("results/reference")
-SCHEMA = 1
+SCHEMA = 2
 
 TIMED = {
     "bench_queries": ("consecutive", "random"),
@@ -40,7 +40,8 @@ Verdicts = dict[tuple[str, str, str], dict[str, Any]]
 class Measured:
     """The exact cells and the rounds of a run, by key.
 
-    ``times`` holds per cell its ``samples`` in seconds, and ``probe``, the latency beside it.
+    ``times`` holds per cell its ``samples`` in seconds, and ``probe``: the seconds of a fixed loop
+    before and after it.
     """
 
     head: dict[str, Any]
@@ -56,9 +57,10 @@ def measured(run: Run) -> Measured:
         name = f"{cell['experiment']}/{cell['structure']}/{cell['id']}"
         if cell["kind"] in ("work", "bytes"):
             found.exact[name] = [int(it) for it in cell["samples"]]
-        elif cell["order"] in TIMED.get(cell["experiment"], ()) and cell["latency"] > 0:
+        elif cell["order"] in TIMED.get(cell["experiment"], ()) and cell["noise"]:
             samples = [_short(it) for it in cell["samples"]]
-            found.times[name] = {"samples": samples, "probe": _short(cell["latency"])}
+            probe = [_short(cell["noise"][when]) for when in ("before", "after")]
+            found.times[name] = {"samples": samples, "probe": probe}
     found.verdicts = _verdicts_of(run)
     return found
 
@@ -107,7 +109,7 @@ def save_exact(exact: Exact, folder: Path = FOLDER) -> None:
 def save_measured(run: Measured, folder: Path = FOLDER) -> None:
     """Write ``run.json`` and ``times.json``; the verdicts are `experiments.verdicts.save`'s."""
     _write(folder / "run.json", {"schema": SCHEMA, **run.head}, run.exact)
-    holds = "seconds per query and round, and per access to memory beside it"
+    holds = "seconds per query and round, and of a fixed loop before and after"
     _write(folder / "times.json", {"schema": SCHEMA, "holds": holds}, run.times)
 
 

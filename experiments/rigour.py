@@ -77,12 +77,12 @@ def confusion(table: pd.DataFrame, judge: str, part: str) -> pd.DataFrame:
     return wide.reindex(index=list(CURVES), columns=[*CURVES, UNDETERMINED]).fillna(0).astype(int)
 
 
-def determined(run: Run) -> dict[str, Shares]:
+def determined(table: pd.DataFrame) -> dict[str, Shares]:
     """By table, the shares of its claims with a verdict other than undetermined.
 
-    Claims about memory are not judged by growth, and cells that claim nothing are not counted.
+    table: a row per claim, as `experiments.verdicts.judged` gives. Claims about memory are not
+    judged by growth, and cells that claim nothing are not counted.
     """
-    table = judged(run)
     table = table[(table["query"] != MEMORY) & (table["outcome"] != "no claim")]
     return {
         str(name): Shares(
@@ -116,7 +116,7 @@ def determined_table(run: Run) -> pd.DataFrame:
     rows = [
         {"table": TABLES[name], "claims": it.claims}
         | {f"determined by {measure}": f"{getattr(it, measure):.0%}" for measure in DETERMINED}
-        for name, it in determined(run).items()
+        for name, it in determined(judged(run)).items()
     ]
     return pd.DataFrame(rows)
 

@@ -84,6 +84,12 @@ class Evidence:
             return None
         return np.exp(np.interp(np.log(working_sets), np.log(sizes), np.log(seconds)))
 
+    @cached_property
+    def _curves(self) -> dict[Any, Any]:
+        """The rows of each curve."""
+        by = ["experiment", "structure", "query", "family", "order"]
+        return self.cells.groupby(by).indices
+
     def curve(
         self, measure: str, variable: str, structure: str, query: str, table: str = ""
     ) -> pd.DataFrame:
@@ -91,14 +97,8 @@ class Evidence:
         table = table or ("operations" if query in OPERATIONS else "queries")
         experiment, order = SOURCES[measure, variable].get(table, (None, None))
         family = HUBS if variable == "valence" else self.judged_family
-        wanted = (
-            (self.cells["experiment"] == experiment)
-            & (self.cells["structure"] == structure)
-            & (self.cells["query"] == query)
-            & (self.cells["family"] == family)
-            & (self.cells["order"] == order)
-        )
-        return self.cells[wanted].sort_values(variable)
+        rows = self._curves.get((experiment, structure, query, family, order), [])
+        return self.cells.iloc[rows].sort_values(variable)
 
     def verdict(self, claim: Claim, measure: str, variable: str) -> Verdict | None:
         """Judge one claim by one measure in one variable; None without any cells.

@@ -20,6 +20,9 @@ SIZES = [200, 630, 2000, 6324, 20000, 63246, 200000]
 VALENCES = [2**k for k in range(2, 13)]
 FACES = 131_072
 
+STEADY = {"fastest": 1e-4, "before": 1e-4, "after": 1e-4, "stray": 0.0, "waited": 0.0}
+"""What a machine that does nothing else shows."""
+
 Law = Callable[[int, int], float]
 LAWS: dict[str, Law] = {
     "O(1)": lambda n_t, n_ev: 5.0,
@@ -87,6 +90,7 @@ def write_run(folder: Path, law_of: Callable[[str, str, str], Law] | None = None
                     valence=n_ev if variable == "valence" else None,
                     working_set=60 * n_t,
                     latency=2e-9,
+                    noise=STEADY if kind == "time" else {},
                     samples=np.atleast_1d(law(n_t, n_ev) * noise).tolist(),
                 )
                 _add(files, folder, experiment, claim.structure, cell)

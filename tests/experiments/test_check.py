@@ -15,8 +15,9 @@ from experiments.check import Finding, claim_of, code, compare_cells, compare_ex
 from experiments.check_run import compare_runs
 from experiments.check_shown import as_json, as_markdown
 from experiments.exact import Exact, measure
-from experiments.reference import load_exact, measured, save_exact, save_measured
+from experiments.reference import SCHEMA, load_exact, measured, save_exact, save_measured
 from experiments.results import load
+from experiments.turns import compare_trees
 from experiments.verdicts import judged, save
 from hem.queries import QUERIES
 from tests.experiments.runs import LAWS, write_run
@@ -93,35 +94,46 @@ def sound(tmp_path_factory: pytest.TempPathFactory):
     return load(write_run(tmp_path_factory.mktemp("sound")))
 
 
-def test_a_run_is_as_good_as_itself(sound):
-    before = measured(sound)
+@pytest.fixture(scope="module")
+def before(sound):
+    return measured(sound)
+
+
+def test_a_run_is_as_good_as_itself(before):
     assert outcomes(compare_runs(before, before).findings) == {"same"}
 
 
-def test_a_query_that_becomes_linear_is_worse_by_work_class_slope_and_time(sound, tmp_path):
+def test_a_query_that_becomes_linear_is_worse_by_work_class_slope_and_time(before, tmp_path):
     def law_of(structure, query, printed):
         changed = (structure, query) == ("half_edge", "face_faces")
         return LAWS["O(n_t)"] if changed else None
 
     slow = load(write_run(tmp_path, law_of))
-    worse = [
-        it for it in compare_runs(measured(sound), measured(slow)).findings if it.outcome == "worse"
-    ]
+    worse = [it for it in compare_runs(before, measured(slow)).findings if it.outcome == "worse"]
     assert {it.kind for it in worse} == {"work", "class", "slope", "time"}
     assert all("half_edge/face_faces" in it.where for it in worse)
     assert all("Face → adjacent Faces: O(1)" in it.claim for it in worse)
 
 
-def test_times_of_another_machine_are_left_out_and_that_is_said(sound):
-    before = measured(sound)
+@pytest.mark.parametrize(("steeper", "outcome"), [(0.0, "undetermined"), (1.0, "worse")])
+def test_by_time_a_claim_is_lost_only_where_a_slope_says_so(before, steeper, outcome):
+    key = "queries", "half_edge", "face_edges"
+    row = dict(before.verdicts[key], outcome_time="violated")
+    slopes = ("slope", "slope_low", "slope_high")
+    row["time_faces"] = row["time_faces"] | {it: row["time_faces"][it] + steeper for it in slopes}
+    after = replace(before, verdicts={**before.verdicts, key: row})
+    (found,) = [it for it in compare_runs(before, after).findings if it.after == "violated"]
+    assert (found.where, found.outcome) == ("half_edge/face_edges by time", outcome)
+
+
+def test_times_of_another_machine_are_left_out_and_that_is_said(before):
     other = replace(before, head={**before.head, "machine": {"cpu": "another"}})
     compared = compare_runs(before, other)
     assert not [it for it in compared.findings if it.kind == "time"]
     assert any("another machine" in note for note in compared.notes)
 
 
-def test_an_experiment_that_is_missing_cannot_be_told(sound):
-    before = measured(sound)
+def test_an_experiment_that_is_missing_cannot_be_told(before):
     kept = {k: v for k, v in before.exact.items() if not k.startswith("bench_work/half_edge/")}
     findings = compare_runs(before, replace(before, exact=kept)).findings
     missing = [it for it in findings if it.outcome != "same"]
@@ -169,7 +181,7 @@ def test_a_mistake_is_one_line_and_never_a_pass(arguments, said, reference):
     [
         ("{", "exact.json cannot be read"),
         ("[]", "exact.json holds no cells"),
-        ('{"schema": 99, "cells": {}}', "has schema 99, this version reads 1"),
+        ('{"schema": 99, "cells": {}}', f"has schema 99, this version reads {SCHEMA}"),
     ],
 )
 def test_a_broken_reference_is_named_with_the_way_out(text, said, reference):
@@ -199,15 +211,11 @@ def test_a_worse_structure_fails_the_command_and_shows_the_numbers(reference, tm
     assert "Something got worse" in page.read_text()
 
 
-def test_a_tree_beside_itself_is_timed_and_not_worse(reference):
-    options = "--structure", "indexed", "--reference", str(reference), "--json"
-    cli.console.width = 400
-    result = CliRunner().invoke(cli.app, ["check", "--beside", str(HERE), *options])
-    timed = [it for it in json.loads(result.stdout)["findings"] if it["kind"] == "time"]
-    assert len(timed) == len(QUERIES)
-    assert {it["outcome"] for it in timed} <= {"same", "undetermined"}
-    assert all(it["before"].endswith(" ns") and it["after"].endswith(" ns") for it in timed)
-    assert result.exit_code == (0 if {it["outcome"] for it in timed} == {"same"} else 2)
+def test_a_tree_beside_itself_is_timed_and_not_worse():
+    found = compare_trees(HERE, HERE, ["indexed"])
+    assert [it.where.split("/")[2] for it in found] == list(QUERIES)
+    assert outcomes(found) <= {"same", "undetermined"}
+    assert all(it.before.endswith(" ns") and it.after.endswith(" ns") for it in found)
 
 
 def test_a_tree_that_cannot_be_timed_is_no_pass(reference, tmp_path):
@@ -220,13 +228,12 @@ def test_a_tree_that_cannot_be_timed_is_no_pass(reference, tmp_path):
     assert "could not be timed: RuntimeError: this one is broken" in output
 
 
-def test_a_saved_reference_reads_as_it_was_one_line_per_cell(sound, tmp_path):
+def test_a_saved_reference_reads_as_it_was_one_line_per_cell(sound, before, tmp_path):
     from experiments.reference import load_measured
 
-    before = measured(sound)
     save_measured(before, tmp_path)
     save(sound, judged(sound), tmp_path)
     assert load_measured(tmp_path) == before
     lines = (tmp_path / "times.json").read_text().splitlines()
     assert len([it for it in lines if it.startswith('"bench_')]) == len(before.times)
-    assert json.loads((tmp_path / "run.json").read_text())["schema"] == 1
+    assert json.loads((tmp_path / "run.json").read_text())["schema"] == SCHEMA

@@ -7,11 +7,13 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
-from experiments import rigour, rigour_plots
+from experiments import rigour, rigour_plots, same_code
 from experiments.a_against_a import LARGEST_SHARE, Rounds, Timed, cells, compared, joined, measure
 from experiments.corpus import CURVES, PARTS, curves
+from experiments.reference import load_measured, measured
 from experiments.results import load, read_json
-from tests.experiments.runs import write_run
+from experiments.verdicts import judged
+from tests.experiments.runs import LAWS, write_run
 
 REFERENCE = Path(__file__).parents[2] / "results" / "reference"
 
@@ -34,10 +36,10 @@ def test_right_wrong_and_undetermined_are_told_apart() -> None:
 
 def test_a_sound_run_is_determined_and_one_without_data_is_not(tmp_path: Path) -> None:
     run = load(write_run(tmp_path / "sound"))
-    found = rigour.determined(run)
+    found = rigour.determined(judged(run))
     assert found["queries"] == rigour.Shares(42, 1.0, 1.0)
     emptied = type(run)(run.folder, run.meta, run.cells.iloc[:0], run.left_out)
-    assert rigour.determined(emptied)["queries"] == rigour.Shares(42, 0.0, 0.0)
+    assert rigour.determined(judged(emptied))["queries"] == rigour.Shares(42, 0.0, 0.0)
     shown = rigour.determined_table(run)
     assert shown["determined by time"].iloc[0] == "100%"
 
@@ -55,6 +57,15 @@ def test_half_of_the_timed_curves_missing_is_half_of_the_claims_undetermined(
     assert found.time == pytest.approx(1 - lost / judged)
 
 
+def test_the_reference_has_as_many_cells_of_table_1_determined_as_was_asked() -> None:
+    kept = load_measured(REFERENCE)
+    found = rigour.determined(pd.DataFrame(kept.verdicts.values()))["queries"]
+    assert kept.head["profile"] == "standard"
+    assert kept.head["dirty"] is False
+    assert found.work >= rigour.DETERMINED["work"]
+    assert found.time >= rigour.DETERMINED["time"]
+
+
 def test_the_kept_corpus_gives_what_was_asked() -> None:
     kept, table = rigour.saved(REFERENCE / "rigour.json")
     assert table.groupby("judge")["count"].sum().eq(kept["curves"]).all()
@@ -69,6 +80,28 @@ def test_the_kept_pairs_of_the_same_code_raised_few_alarms() -> None:
     assert len(kept["pairs"]) >= 20
     assert kept["comparisons"] == sum(row["comparisons"] for row in kept["pairs"]) >= 1000
     assert kept["alarms"] <= LARGEST_SHARE * kept["comparisons"]
+
+
+def test_the_kept_runs_of_the_same_code_raised_few_alarms() -> None:
+    kept = read_json(REFERENCE / "same_code.json")
+    assert len(kept["pairs"]) >= 20
+    assert same_code.totals(kept["pairs"] + kept["turns"]).items() <= kept.items()
+    assert kept["comparisons"] >= 1000
+    assert kept["alarms"] <= LARGEST_SHARE * kept["comparisons"]
+    assert f"{len(kept['pairs'])} pairs" in same_code.words(kept)
+
+
+def test_a_run_of_slower_code_is_an_alarm_and_exact_counts_are_left_out(tmp_path: Path) -> None:
+    def law_of(structure, query, printed):
+        return LAWS["O(n_t)"] if (structure, query) == ("half_edge", "face_faces") else None
+
+    sound = measured(load(write_run(tmp_path / "sound")))
+    slow = measured(load(write_run(tmp_path / "slow", law_of)))
+    assert same_code.compared(sound, sound)["alarms"] == []
+    found = same_code.compared(sound, slow)
+    assert len(found["alarms"]) >= 3
+    assert all("half_edge/face_faces" in it and " by work" not in it for it in found["alarms"])
+    assert same_code.totals([found])["alarms"] == len(found["alarms"])
 
 
 def test_a_cell_is_timed_with_a_probe_before_every_round() -> None:

@@ -1,7 +1,8 @@
-"""In a real browser the report is without errors, leads where it says, and fits on a phone."""
+"""Pages that are whole; in a real browser without errors, with links that lead, fit for a phone."""
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from urllib.parse import unquote, urldefrag, urlparse
 
@@ -10,14 +11,9 @@ import pytest
 
 from experiments import demo
 from experiments.pdf import BROWSER_VARIABLE, find_browser
-from experiments.report import CHAPTERS
+from experiments.report import CHAPTERS, write
 from tests.experiments.chromium import Browser, started
-from tests.experiments.reports import made_up
-
-pytestmark = pytest.mark.skipif(
-    find_browser() is None,
-    reason=f"no Chromium or Chrome is installed; {BROWSER_VARIABLE} names one elsewhere",
-)
+from tests.experiments.runs import write_run
 
 PAGES = ("index", *CHAPTERS)
 SHOWN = "[...document.querySelectorAll('.entry')].filter(it => it.checkVisibility())"
@@ -26,12 +22,16 @@ COUNT = "document.getElementById('shown').textContent"
 
 
 @pytest.fixture(scope="module")
-def report() -> Path:
-    return made_up()
+def report(tmp_path_factory) -> Path:
+    """The pages of a whole report."""
+    folder = tmp_path_factory.mktemp("report")
+    return write(write_run(folder / "run"), folder / "html").parent
 
 
 @pytest.fixture(scope="module")
 def chromium():
+    if find_browser() is None:
+        pytest.skip(f"no Chromium or Chrome is installed; {BROWSER_VARIABLE} names one elsewhere")
     with started() as browser:
         yield browser
 
@@ -54,6 +54,21 @@ def search(browser: Browser, words: str) -> list[str]:
         f"(() => {{ const it = document.getElementById('search'); it.value = {words!r};"
         f"it.dispatchEvent(new Event('input')); return {KEYS}; }})()"
     )
+
+
+def test_the_pages_are_whole_and_need_nothing_from_elsewhere(report):
+    pages = {page.name: page.read_text() for page in report.glob("*.html")}
+    assert set(pages) == {"index.html", *(f"{name}.html" for name in CHAPTERS)}
+    assert {path.suffix for path in (report / "claims").iterdir()} == {".svg", ".csv"}
+    for name, text in pages.items():
+        assert not re.search(r'(src|href)="(?!data:|claims/|[\w.]+\.html|#)', text)
+        assert text.count("<script") == (name == "index.html")
+        assert "No description" not in text
+    assert pages["index.html"].count('class="consistent"') >= 26 + 4 + 16 + 3
+    assert pages["operations.html"].count("data:image/png") == 12
+    assert pages["half_edge_or_indexed.html"].count("data:image/png") == 2
+    assert pages["query_scaling.html"].count("data:image/png") == 5
+    assert "1.00" in pages["comparison_table.html"]
 
 
 @pytest.mark.parametrize("name", PAGES)
