@@ -63,7 +63,10 @@ FORMATS: dict[str, Callable[[float], str]] = {
 
 
 class Findings:
-    """What a run found of the things that the sentences speak of; nan where it found nothing."""
+    """What a run found of the things that the sentences speak of; nan where it found nothing.
+
+    Of a run of several machines no times are compared: the structures were on different ones.
+    """
 
     def __init__(self, run: Run, table: pd.DataFrame) -> None:
         self.run, self.evidence = run, Evidence(run)
@@ -87,6 +90,8 @@ class Findings:
 
     def at_largest(self, structure: str, what: str) -> float:
         """Seconds there."""
+        if self.run.machines:
+            return np.nan
         return self.cost(structure, what).get(self.largest or 0, np.nan)
 
     def outcomes(self, outcome: str) -> int:
@@ -99,6 +104,8 @@ class Findings:
 
     def ratio(self, cells: pd.DataFrame) -> tuple[int, float]:
         """The largest mesh that both were measured on, and half-edge by indexed."""
+        if self.run.machines:
+            return 0, np.nan
         names = cells["structure"]
         half, indexed = (_medians(cells[names == it]) for it in ("half_edge", "indexed"))
         vertices = max(set(half) & set(indexed), default=0)
@@ -134,6 +141,8 @@ class Findings:
 
     def even(self, what: str) -> float:
         """Queries or edits per build until the half-edge mesh is ahead, there."""
+        if self.run.machines:
+            return np.nan
         mine = self._break_even.query("what == @what and vertices == @self.even_vertices")
         return float(mine["times"].iloc[0]) if len(mine) else np.nan
 

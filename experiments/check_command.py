@@ -61,11 +61,14 @@ def check(
 
 @contextmanager
 def could_not_measure() -> Iterator[None]:
-    """Exit with 2 instead of 1 for a user's mistake: 1 says that something got worse."""
+    """Exit with 2 instead of 1 whatever goes wrong: 1 says that something got worse."""
     try:
         yield
     except typer.Exit as error:
         raise typer.Exit(2 if error.exit_code == 1 else error.exit_code) from error
+    except Exception as error:
+        errors.print(f"hem: it could not be measured: {error!r}", highlight=False, markup=False)
+        raise typer.Exit(2) from error
 
 
 reference_app = typer.Typer(no_args_is_help=True, help="What hem check compares with.")
@@ -97,6 +100,8 @@ def update(
         if not lines:
             console.print(f"{reference} says just this already.")
             return
+        for doubt in fresh.doubts():
+            console.print(f"[yellow]Mind that {doubt}.[/]")
         if not yes and not typer.confirm(f"Write this to {reference}?"):
             errors.print("Nothing was written.")
             raise typer.Exit(1)

@@ -3,8 +3,7 @@
 Rounds of a cell are milliseconds apart, so what they differ by within a cell says nothing about
 what two runs differ by. A curve, one query of one structure at all sizes, is therefore judged as a
 whole: it got slower only if most of its cells say so, each by significance and by size, relative to
-a fixed loop that the run timed before and after the cell. (The latency of the memory will not do:
-from run to run it was measured to change threefold beside cells that stayed within a fifth.)
+a fixed loop that the run timed before and after the cell (`experiments.noise`).
 """
 
 from __future__ import annotations
@@ -20,7 +19,7 @@ from experiments.claims import TABLES, load_claims
 from experiments.exact import named
 from experiments.reference import Measured
 from experiments.significance import compare
-from experiments.verdicts import SOURCES
+from experiments.verdicts import LEAST_SLOPE, SOURCES
 
 FACTOR = 1.3
 """How much slower a curve must be from run to run; two runs of the same code stay below it."""
@@ -28,6 +27,9 @@ FACTOR = 1.3
 SLOPE_DRIFT = 0.1
 """How far beyond their intervals the slopes of times differ between two runs of the same code; a
 query that becomes linear moves its slope by 1. Where nothing is claimed they are not compared."""
+
+STRAYS = 1
+"""Cells of a curve that may be slower while it is as before: somebody else was at work."""
 
 MACHINE = ("cpu", "cores", "caches")
 """What must be the same for times to be comparable."""
@@ -48,14 +50,38 @@ def compare_runs(before: Measured, after: Measured, factor: float = FACTOR) -> C
     if python:
         notes.append("another Python: the bytes of its objects are not compared")
     findings = [*missing, *compare_cells(*exact, other_python=python)]
-    findings += _verdicts(before, after)
+    busy = _too_busy(before.head, after.head)
+    alike = _profile(before) == _profile(after)
+    if not alike:
+        notes.append("slopes are not compared: another profile takes them over other sizes")
+    verdicts = _verdicts(before, after)
+    findings += [
+        it for it in verdicts if (alike or it.kind != "slope") and not (busy and it.by_chance)
+    ]
     reason = _other_machine(before.head, after.head)
-    if reason:
+    if busy:
+        findings.append(Finding("undetermined", "time", "all that is timed", "", "", busy))
+    elif reason:
         notes.append(f"times are not compared: {reason}")
     else:
         times, missing = _in_scope(before, after, before.times, after.times, notes, "times")
         findings += [*missing, *_times(*times, factor)]
+        if not times[0] or not times[1]:
+            why = "one of the runs has no times that can be compared"
+            findings.append(Finding("undetermined", "time", "all that is timed", "", "", why))
     return Compared(findings, notes)
+
+
+def _profile(run: Measured) -> Any:
+    return run.head.get("profile")
+
+
+def _too_busy(before: dict[str, Any], after: dict[str, Any]) -> str:
+    """Why nothing can be judged by time; empty if it can."""
+    for which, head in (("the run", after), ("the reference", before)):
+        if head.get("too_busy"):
+            return f"the machine was too busy to judge {which} by time; measure it again"
+    return ""
 
 
 def _python(run: Measured) -> str:
@@ -64,6 +90,8 @@ def _python(run: Measured) -> str:
 
 def _other_machine(before: dict[str, Any], after: dict[str, Any]) -> str:
     """Why times of these two runs cannot be compared; empty if they can."""
+    if any((it.get("machine") or {}).get("machines") for it in (before, after)):
+        return "they were measured by several machines"
     for key in MACHINE:
         old, new = ((it.get("machine") or {}).get(key) for it in (before, after))
         if old != new:
@@ -82,8 +110,7 @@ def _in_scope(
 ) -> tuple[tuple[dict[str, Any], dict[str, Any]], list[Finding]]:
     """The cells that both should have, and a finding for every process without any in the run.
 
-    Runs of one profile should have the same cells. Of another one they share what they share, and
-    every curve of the reference must be among it.
+    Runs of one profile should have the same cells. Of another one they share what they share.
     """
     lacking = Counter(_process(key) for key in old.keys() - new.keys())
     present = {_process(key) for key in new}
@@ -93,19 +120,13 @@ def _in_scope(
         for it in sorted(gone)
     ]  # fmt: skip
     old = {key: cell for key, cell in old.items() if _process(key) not in gone}
-    if before.head.get("profile") == after.head.get("profile"):
+    if _profile(before) == _profile(after):
         return (old, new), findings
-    both = old.keys() & new.keys()
-    curves = {_curve(key) for key in both}
-    alone = {_curve(key) for key in old.keys() | new.keys()} - curves
-    findings += [
-        Finding("undetermined", _kind(it), it, "", "", "no cell that both have", claim_of(it))
-        for it in sorted(alone)
-    ]
-    left = len(old.keys() | new.keys()) - len(both)
+    every, both = old.keys() | new.keys(), old.keys() & new.keys()
+    alone = {_curve(key) for key in every} - {_curve(key) for key in both}
     notes.append(
-        f"{what}: {len(both):,} cells are compared; {left:,} are of one profile only "
-        f"({before.head.get('profile')}, {after.head.get('profile')})"
+        f"{what}: {len(both):,} cells are compared; {len(every) - len(both):,} are of one profile "
+        f"only ({_profile(before)}, {_profile(after)}), among them all of {len(alone):,} curves"
     )
     return ({key: old[key] for key in both}, {key: new[key] for key in both}), findings
 
@@ -161,7 +182,7 @@ def _slopes(
         was, now = (it.get(f"{measure}_{variable}") for it in (old, new))
         exact = measure == "work"
         if was and now and (exact or claimed):
-            drift = 0 if exact else SLOPE_DRIFT
+            drift = LEAST_SLOPE if exact else SLOPE_DRIFT
             yield _slope(f"{where} by {measure} and {variable}", was, now, claim, drift)
 
 
@@ -204,7 +225,7 @@ def _timed(
     after: dict[str, dict[str, Any]],
     factor: float,
 ) -> Finding:
-    """One curve: decided where more than half of its cells say the same."""
+    """One curve: decided where more than half of its cells say the same, and none is lost."""
     both = [key for key in keys if key in before and key in after]
     if not both:
         lacks = "not in the reference" if keys[0] in after else "was not measured"
@@ -218,9 +239,13 @@ def _timed(
     ]  # fmt: skip
     said = Counter(cell.outcome for cell in cells)
     outcome, most = said.most_common(1)[0]
+    lost = sum(key not in after for key in keys)
     ratio = float(np.exp(np.nanmedian([np.log(cell.ratio) for cell in cells])))
     text = ", ".join(f"{count} {it}" for it, count in said.most_common())
+    text += f", {lost} not measured" if lost else ""
     low, high = min(cell.ratio for cell in cells), max(cell.ratio for cell in cells)
     decided = outcome if 2 * most > len(cells) else "undetermined"
+    if decided == "same" and (lost or said["worse"] > STRAYS):
+        decided = "undetermined"  # perhaps just the largest are slower
     slower = f"× {ratio:.2f} ({low:.2f} … {high:.2f})"
     return Finding(decided, "time", curve, "", slower, f"cells: {text}", claim_of(curve))

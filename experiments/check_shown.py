@@ -20,7 +20,7 @@ MOST = 40
 SUMMARY = {
     0: "Nothing got worse.",
     1: "Something got worse.",
-    2: "Some of it cannot be told, so this is no pass.",
+    2: "Too much of it cannot be told, so this is no pass.",
 }
 """What the exit codes mean."""
 

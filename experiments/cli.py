@@ -1,5 +1,5 @@
 """The command line: ``hem study``, ``table``, ``report``, ``meshes``, ``info``, ``fracture``,
-``check``, ``reference update``.
+``check``, ``reference update``, ``history``.
 """
 
 from __future__ import annotations
@@ -57,7 +57,7 @@ def write_report(
         ),
     ] = None,
     page: Annotated[
-        bool, typer.Option("--page", help="Instead write the page and the reference to commit.")
+        bool, typer.Option("--page", help="Instead write the page and the table to commit.")
     ] = False,
     pdf: Annotated[
         bool, typer.Option("--pdf", help="Instead write one document to print; needs Chromium.")
@@ -69,7 +69,7 @@ def write_report(
 
         folder = run or results.latest()
         if page:
-            written = write_page(folder, Path("report"), Path("results/reference"))
+            written = write_page(folder, Path("report"))
             console.print(f"Page written: {written}")
         elif pdf:
             written = write_pdf(folder, output or DOCUMENT)

@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING, Any
 from experiments.children import CANNOT_WRITE, How
 from experiments.machine_task import Outcome, Task, perform, who
 from experiments.provenance import source
-from experiments.results import write_sealed
+from experiments.results import read_json, result_files, write_sealed
 from experiments.stored import write_text
 from experiments.study import (
     Process,
@@ -88,7 +88,16 @@ def run(
             client.unsubscribe_topic(work.topic)
         if work.failures:
             raise StudyFailedError("\n\n".join(work.failures))
-        finish(folder)
+        finish(folder, together(folder))
+
+
+def together(folder: Path) -> dict[str, Any]:
+    """What measured a run: its one machine, or that there were several, whose times do not mix."""
+    used = sorted({path.parent for path in result_files(folder)} - {folder})
+    if len(used) == 1:
+        return dict(read_json(used[0] / "run.json")["machine"])
+    names = [path.name.removeprefix("machine-") for path in used]
+    return {"cpu": f"{len(names)} machines", "machines": names}
 
 
 @contextmanager
@@ -252,11 +261,9 @@ def _look_after(work: _Work, it: _Running, workers: set[str]) -> None:
         work.ended(it, it.future.result())
     else:
         gone = it.worker not in workers
+        error = None if gone else it.future.exception(timeout=CONNECT_SECONDS)
         it.future.cancel(force=True)
-        work.lost(
-            it,
-            "its worker was lost" if gone else repr(it.future.exception(timeout=CONNECT_SECONDS)),
-        )
+        work.lost(it, "its worker was lost" if gone else repr(error))
     del work.running[it.machine]
 
 
@@ -310,9 +317,13 @@ def _require_same_code(worker: str, answer: Any) -> None:
         raise ClusterError(
             f"the worker {worker} cannot measure ({answer!r}): install there what is installed here"
         )
-    mine, its = source()["commit"], answer["about"]["commit"]
+    mine, its = _named(source()), _named(answer["about"])
     if its != mine:
         raise ClusterError(
-            f"the worker {worker} runs commit {its[:12]}, here it is {mine[:12]}: "
+            f"the worker {worker} runs commit {its}, here it is {mine}: "
             "bring them to the same and begin again"
         )
+
+
+def _named(about: dict[str, Any]) -> str:
+    return str(about["commit"])[:12] + (" with changes" if about["dirty"] else "")

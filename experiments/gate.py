@@ -29,9 +29,10 @@ def compare_all(
         if name not in NAMED:
             raise ValueError(f"no structure is called {name!r}; there are {', '.join(NAMED)}")
     before = reference.load_exact(folder)  # before anything is measured
-    given = (reference.load_measured(folder), load(run)) if run else None
-    if given and given[1].cells.empty:
-        raise ValueError(f"{run} holds no cell; go on with: hem study --resume")
+    given = load(run) if run else None
+    if given and given.cells.empty:
+        raise ValueError(f"{run} holds no cell; go on with: hem study --resume --run {run}")
+    held = reference.load_measured(folder) if given else None
     after, notes = exact.measure(structures), []
     if structures:
         notes.append(f"just {', '.join(structures)} was measured")
@@ -42,9 +43,9 @@ def compare_all(
             "the bytes of its objects are not compared"
         )
     findings = compare_exact(before, after)
-    if given:
+    if given and held:
         compared = check_run.compare_runs(
-            given[0], reference.measured(given[1]), factor or check_run.FACTOR
+            held, reference.measured(given), factor or check_run.FACTOR
         )
         findings += compared.findings
         notes += compared.notes
@@ -76,7 +77,19 @@ class Update:
         if fresh.failed:
             key, why = next(iter(fresh.failed.items()))
             raise ValueError(f"{key} could not be measured, so there is nothing to keep: {why}")
-        return cls(folder, fresh, loaded, reference.measured(loaded) if loaded else None)
+        found = reference.measured(loaded) if loaded else None
+        if found is not None and not found.times:
+            raise ValueError(f"{run} has no times to compare with: measure a larger profile")
+        return cls(folder, fresh, loaded, found)
+
+    def doubts(self) -> list[str]:
+        """What speaks against this run as a reference."""
+        head = self.measured.head if self.measured else {}
+        words = {
+            "dirty": "it ran with changes that are not committed",
+            "too_busy": "the machine was too busy to judge by time",
+        }
+        return [text for key, text in words.items() if head.get(key)]
 
     def difference(self) -> list[tuple[str, str]]:
         """What would change, as signs and lines: - as it is, + as it would be, ± in numbers."""

@@ -26,9 +26,11 @@ def add(
     with user_errors():
         from experiments.history import append, read
         from experiments.history_record import record
+        from experiments.noise import noise
         from experiments.results import latest, load
 
-        line = record(load(run or latest()))
+        found = load(run or latest())
+        line = record(found)
         added = append(line, file)
         kept = read(file)
         name, commit, machine = line["run"], line["commit"][:10], line["machine"]["id"]
@@ -41,6 +43,8 @@ def add(
         )  # fmt: skip
         if line["dirty"]:
             console.print("* There were changes that are not committed.", style="dim")
+        if (seen := noise(found)).too_busy:
+            console.print(f"[yellow]{seen.words}[/]", highlight=False)
         _warn(kept.faults)
 
 

@@ -12,11 +12,9 @@ import numpy as np
 
 from experiments.claims import MEMORY, Claim, load_claims
 from experiments.results import ResultsError, Run
-from experiments.verdicts import SOURCES, Evidence, judged
+from experiments.verdicts import SOURCES, Evidence, judged, short
 
 SCHEMA = 2
-DIGITS = 5
-NOTHING = 1e-12
 
 
 def record(run: Run) -> dict[str, Any]:
@@ -63,6 +61,8 @@ def machine_id(machine: dict[str, Any]) -> str:
         "caches": machine.get("caches"),
         "platform": [*platform[:1], *platform[-1:]],
     }
+    if machine.get("machines"):
+        facts["machines"] = machine["machines"]
     return sha256(json.dumps(facts, sort_keys=True).encode()).hexdigest()[:8]
 
 
@@ -83,16 +83,16 @@ def _claims(run: Run) -> dict[str, Any]:
     evidence, claims = Evidence(run), load_claims()
     rows = judged(run, claims).to_dict("records")
     figures = {
-        f"{it.table}/{it.structure}/{it.what}": _figures(evidence, it, row)
+        f"{it.table}/{it.structure}/{it.what}": _figures(run, evidence, it, row)
         for it, row in zip(claims, rows, strict=True)
     }
     return {name: found for name, found in figures.items() if found}
 
 
-def _figures(evidence: Evidence, claim: Claim, row: dict[Any, Any]) -> dict[str, Any]:
+def _figures(run: Run, evidence: Evidence, claim: Claim, row: dict[Any, Any]) -> dict[str, Any]:
     if claim.what == MEMORY:
         size = row["bytes_per_vertex"]
-        return {"outcome": row["outcome"], "bytes": _short(size)} if np.isfinite(size) else {}
+        return {"outcome": row["outcome"], "bytes": short(size)} if np.isfinite(size) else {}
     verdicts = {
         f"{measure}_{variable}": row[f"{measure}_{variable}"]
         for measure, variable in SOURCES
@@ -101,11 +101,12 @@ def _figures(evidence: Evidence, claim: Claim, row: dict[Any, Any]) -> dict[str,
     if not verdicts:
         return {}
     slopes = {
-        name: [_short(it) for it in (found.slope, found.slope_low, found.slope_high)]
+        name: [short(it) for it in (found.slope, found.slope_low, found.slope_high)]
         for name, found in verdicts.items()
     }
     outcomes = {"outcome": row["outcome"], "outcome_time": row["outcome_time"]}
-    return outcomes | {"slopes": slopes} | _work(evidence, claim) | _time(evidence, claim)
+    times = {} if run.machines else _time(evidence, claim)
+    return outcomes | {"slopes": slopes} | _work(evidence, claim) | times
 
 
 def _work(evidence: Evidence, claim: Claim) -> dict[str, Any]:
@@ -113,7 +114,7 @@ def _work(evidence: Evidence, claim: Claim) -> dict[str, Any]:
     if cells.empty:
         return {}
     cell = cells.iloc[-1]
-    return {"work": _short(np.mean(cell["samples"])), "work_faces": int(cell["faces"])}
+    return {"work": short(np.mean(cell["samples"])), "work_faces": int(cell["faces"])}
 
 
 def _time(evidence: Evidence, claim: Claim) -> dict[str, Any]:
@@ -128,7 +129,7 @@ def _time(evidence: Evidence, claim: Claim) -> dict[str, Any]:
         return {}
     seconds = np.array([np.median(samples) for samples in cells["samples"]])
     found = {
-        "seconds": _short(seconds[-1]),
+        "seconds": short(seconds[-1]),
         "time_faces": int(cells["faces"].iloc[-1]),
         "time_sizes": len(cells),
     }
@@ -138,9 +139,4 @@ def _time(evidence: Evidence, claim: Claim) -> dict[str, Any]:
         if between is None:
             return found
         latency = np.where(np.isnan(latency), between, latency)
-    return found | {"relative": _short(np.exp(np.median(np.log(seconds / latency))))}
-
-
-def _short(value: float) -> float:
-    """Five digits, and none of 1e-12 or less, which is what rounding leaves of nothing."""
-    return float(f"{value:.{DIGITS}g}") if abs(value) > NOTHING else 0.0
+    return found | {"relative": short(np.exp(np.median(np.log(seconds / latency))))}

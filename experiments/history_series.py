@@ -15,10 +15,7 @@ import numpy as np
 
 from experiments.change_points import Step, steps
 from experiments.history import History, Line
-
-LEAST_SLOPE = 0.01
-"""Slopes of counts that differ by less are the same one: not even they come out alike everywhere,
-to the last digit."""
+from experiments.verdicts import LEAST_SLOPE
 
 
 @dataclass(frozen=True)

@@ -136,5 +136,15 @@ def _left_in_cgroups() -> list[int]:
         except OSError:
             continue
         if values[0] != "max":
-            left.append(max(0, int(values[0]) - int(values[1])))
+            taken = int(values[1]) - _given_back(Path(used).with_name("memory.stat"))
+            left.append(max(0, int(values[0]) - taken))
     return left
+
+
+def _given_back(stat: Path) -> int:
+    """Bytes of a control group that hold copies of files, and are let go where they are needed."""
+    try:
+        counts = dict(line.split() for line in stat.read_text().splitlines())
+    except (OSError, ValueError):
+        return 0
+    return int(counts.get("total_inactive_file") or counts.get("inactive_file") or 0)

@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from experiments.exact import Exact, Value
+from experiments.noise import noise
 from experiments.results import ResultsError, Run
 
 FOLDER = Path("results/reference")
@@ -28,7 +29,10 @@ TIMED = {
 """Whose times are compared: those that claims are judged by, in these orders."""
 
 HEAD = ("profile", "structures", "commit", "dirty", "machine", "versions", "started")
-"""What is kept of the head of a run."""
+"""What is kept of the head of a run, besides its name, and whether it can be judged by time."""
+
+LEAST_ROUNDS = 9
+"""Rounds on either side with which a comparison of times can decide at all."""
 
 UPDATE = "hem reference update"
 
@@ -53,16 +57,23 @@ class Measured:
 def measured(run: Run) -> Measured:
     """What a run holds that can be compared; judges it, which takes some seconds."""
     found = Measured({key: run.meta.get(key) for key in HEAD})
+    found.head |= {"run": run.folder.resolve().name, "too_busy": noise(run).too_busy}
     for cell in run.cells.to_dict("records"):
         name = f"{cell['experiment']}/{cell['structure']}/{cell['id']}"
         if cell["kind"] in ("work", "bytes"):
             found.exact[name] = [int(it) for it in cell["samples"]]
-        elif cell["order"] in TIMED.get(cell["experiment"], ()) and cell["noise"]:
+        elif _comparable(cell):
             samples = [_short(it) for it in cell["samples"]]
             probe = [_short(cell["noise"][when]) for when in ("before", "after")]
             found.times[name] = {"samples": samples, "probe": probe}
     found.verdicts = _verdicts_of(run)
     return found
+
+
+def _comparable(cell: dict[Any, Any]) -> bool:
+    """Whether the times of a cell can be compared, and are to be."""
+    wanted = cell["order"] in TIMED.get(cell["experiment"], ())
+    return wanted and bool(cell["noise"]) and len(cell["samples"]) >= LEAST_ROUNDS
 
 
 def _verdicts_of(run: Run) -> Verdicts:
@@ -83,7 +94,7 @@ def _short(seconds: float) -> float:
 def load_exact(folder: Path = FOLDER) -> Exact:
     """The exact part of the reference. Raises ResultsError that names the file and the way out."""
     content = _read(folder / "exact.json", UPDATE)
-    return Exact(content["cells"], python=str(content["python"]))
+    return Exact(content["cells"], python=str(content.get("python", "")))
 
 
 def load_measured(folder: Path = FOLDER) -> Measured:
@@ -92,7 +103,9 @@ def load_measured(folder: Path = FOLDER) -> Measured:
     run = _read(folder / "run.json", update)
     times = _read(folder / "times.json", update)
     verdicts = _read(folder / "verdicts.json", update, schema=None, within="claims")
-    head = {key: run.get(key) for key in HEAD}
+    if verdicts.get("run") != run.get("run"):
+        raise ResultsError(f"{folder} holds parts of two runs; make it anew: {update}")
+    head = {key: run.get(key) for key in (*HEAD, "run", "too_busy")}
     return Measured(head, run["cells"], times["cells"], _by_claim(verdicts))
 
 

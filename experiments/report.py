@@ -5,11 +5,10 @@ from __future__ import annotations
 import asyncio
 import os
 import re
-import shutil
 import tempfile
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import closing, contextmanager
+from contextlib import closing, contextmanager, suppress
 from html import escape, unescape
 from pathlib import Path
 from typing import NamedTuple
@@ -19,8 +18,9 @@ import pandas as pd
 from experiments import answers, board, html, pdf, statements
 from experiments.claims import OPERATIONS, TABLES
 from experiments.entries import Entry, entries
+from experiments.noise import noise
 from experiments.page import page, static
-from experiments.results import ResultsError, Run, load
+from experiments.results import CannotWriteError, ResultsError, Run, load
 from experiments.table import markdown
 from experiments.verdicts import OUTCOMES, judged, save
 
@@ -74,6 +74,7 @@ def write(run_folder: Path, output: Path) -> Path:
     or a notebook fails, naming it; then what was there stays.
     """
     run = load(run_folder)
+    _require_replaceable(output)
     with _beside(output, "html") as fresh:
         parts = _parts(run, run_folder)
         front = page(TITLE, parts.front + parts.claims + parts.back, _links(), static("board.js"))
@@ -82,8 +83,7 @@ def write(run_folder: Path, output: Path) -> Path:
             text = page(CHAPTERS[name], body, _links())
             (fresh / f"{name}.html").write_text(text, "utf-8")
         board.write_files(parts.entries, fresh)
-        shutil.rmtree(output, ignore_errors=True)
-        fresh.rename(output)
+        _replace(output, fresh)
     return output / f"{FRONT}.html"
 
 
@@ -104,6 +104,26 @@ def write_pdf(run_folder: Path, output: Path) -> Path:
     return output
 
 
+def _require_replaceable(output: Path) -> None:
+    """Raise ResultsError unless there is nothing at ``output``, or a report, to be replaced."""
+    known = {f"{name}.html" for name in (FRONT, *CHAPTERS)} | {"claims"}
+    if output.exists() and not (
+        output.is_dir() and all(it.name in known for it in output.iterdir())
+    ):
+        raise ResultsError(
+            f"{output} is no report, and would be replaced by one: choose a folder that is not "
+            "there yet, or empty"
+        )
+
+
+def _replace(output: Path, fresh: Path) -> None:
+    """Put the new pages in the place of the old ones, which go away with what is beside them."""
+    _require_replaceable(output)
+    if output.exists():
+        output.rename(fresh.with_name("old"))
+    fresh.rename(output)
+
+
 class Parts(NamedTuple):
     """What a report is made of: the front page in three parts, the chapters, and the claims."""
 
@@ -116,7 +136,8 @@ class Parts(NamedTuple):
 
 def _parts(run: Run, run_folder: Path) -> Parts:
     table = judged(run)
-    save(run, table)
+    with suppress(CannotWriteError):  # who may not write beside the run may read it all the same
+        save(run, table)
     every = entries(run, table)
     front, claims, back = _front(run, table), _claims(every), _back(run)
     return Parts(front, claims, back, _chapters(run_folder), every)
@@ -167,15 +188,14 @@ def _beside(output: Path, name: str) -> Iterator[Path]:
         yield fresh
 
 
-def write_page(run_folder: Path, folder: Path, reference: Path) -> Path:
-    """Write what is committed of a run: a page with table 1 and the main plots, and the verdicts.
+def write_page(run_folder: Path, folder: Path) -> Path:
+    """Write what is committed of a run for reading: a page with the tables and the main plots.
 
-    The page goes to ``folder``, the verdicts to ``reference``, to compare later runs with.
+    Table 1 goes into the README beside ``folder``, too, if it has the marks for it.
     """
     from experiments import fracture_pictures, operation_plots, pictures, plots
 
     run = load(run_folder)
-    save(run, judged(run), reference)
     folder.mkdir(parents=True, exist_ok=True)
     figures = {
         "overview": ("The faces around a vertex, by work and by time", plots.overview(run)),
@@ -309,18 +329,26 @@ def _back(run: Run) -> str:
 
 
 def _provenance(run: Run) -> str:
-    meta, machine = run.meta, run.meta.get("machine", {})
+    meta = run.meta
     versions = ", ".join(f"{name} {number}" for name, number in meta.get("versions", {}).items())
-    caches = ", ".join(f"{level} {size}" for level, size in machine.get("caches", {}).items())
     state = {True: " with changes that are not committed", False: "", None: ""}[meta.get("dirty")]
     finished = f"to {meta['finished']}" if "finished" in meta else "and not finished"
     return (
         f"Profile {meta.get('profile')}, from {meta.get('started')} {finished}, at commit "
         f"{str(meta.get('commit'))[:10]}{state}. "
+        f"{_machine(run)}. {versions}. {len(run.cells):,} cells, each checked against the triangle "
+        f"list before it was measured. {noise(run).words}"
+    )
+
+
+def _machine(run: Run) -> str:
+    if run.machines:
+        return f"Measured by {len(run.machines)} machines, whose times are not compared"
+    machine = run.meta.get("machine", {})
+    caches = ", ".join(f"{level} {size}" for level, size in machine.get("caches", {}).items())
+    return (
         f"{machine.get('cores')} cores of {machine.get('cpu')} ({caches}), "
-        f"{machine.get('memory_bytes', 0) / 2**30:.0f} GiB, {machine.get('platform')}. "
-        f"{versions}. {len(run.cells):,} cells, each checked against the triangle list before it "
-        "was measured."
+        f"{machine.get('memory_bytes', 0) / 2**30:.0f} GiB, {machine.get('platform')}"
     )
 
 

@@ -119,6 +119,11 @@ class Run:
     cells: pd.DataFrame
     left_out: pd.DataFrame
 
+    @property
+    def machines(self) -> list[str]:
+        """The machines that measured it, where they were several: their times do not mix."""
+        return list(self.meta.get("machine", {}).get("machines", ()))
+
 
 def load(folder: Path | str) -> Run:
     """Read a run. Raises ResultsError if there is none in ``folder``, or of another schema.
@@ -146,8 +151,9 @@ def load(folder: Path | str) -> Run:
 
 
 def result_files(folder: Path) -> list[Path]:
-    """The files with the cells of a run, those of every machine."""
-    return [*sorted(folder.glob("*.*.json")), *sorted(folder.glob(f"{MACHINES}/*.*.json"))]
+    """The files with the cells of a run, those of every machine; copies beside them are not."""
+    every = [*sorted(folder.glob("*.*.json")), *sorted(folder.glob(f"{MACHINES}/*.*.json"))]
+    return [path for path in every if path.name.count(".") == 2]
 
 
 def latest(root: Path | str = RUNS, *, unfinished: bool = False) -> Path:

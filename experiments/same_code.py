@@ -27,7 +27,8 @@ from experiments.results import load, write_json
 from experiments.turns import compare_trees
 
 RESULT = Path("results/reference/same_code.json")
-EXPERIMENTS = ("bench_queries", "bench_valence", "bench_operations")
+EXPERIMENTS = ("bench_work", "bench_queries", "bench_valence", "bench_operations")
+"""What verdicts by time rest on; the first says which family they are taken from."""
 PROFILE = "quick"
 
 
@@ -47,7 +48,7 @@ def timed(root: Path, seed: int) -> Measured:
 
 def compared(before: Measured, after: Measured) -> dict[str, Any]:
     """What the gate says of a pair of runs."""
-    return row(it for it in compare_runs(before, after).findings if _by_time(it))
+    return row(it for it in compare_runs(before, after).findings if _counts(it))
 
 
 def beside_itself(repetition: int) -> dict[str, Any]:
@@ -67,10 +68,10 @@ def row(findings: Iterable[Finding]) -> dict[str, Any]:
     }
 
 
-def _by_time(finding: Finding) -> bool:
-    """Whether chance has a say in it, and both runs have what is compared."""
-    by_work = " by work" in finding.where
-    return finding.kind in ("time", "slope", "class") and not by_work and bool(finding.after)
+def _counts(finding: Finding) -> bool:
+    """Whether chance has a say in it, and there is a verdict to be lost or won."""
+    nothing = finding.before == finding.after == "undetermined"
+    return finding.by_chance and not nothing
 
 
 def totals(rows: Iterable[dict[str, Any]]) -> dict[str, int]:

@@ -18,12 +18,13 @@ from experiments import children, noise
 from experiments.children import CANNOT_WRITE, DEFAULT_SEED, How
 from experiments.locks import held
 from experiments.profiles import PROFILES
-from experiments.provenance import describe, now, resumed
+from experiments.provenance import describe, now, resumed, source
 from experiments.results import (
     RUNS,
     CannotWriteError,
     DamagedError,
     ResultFile,
+    ResultsError,
     latest,
     load,
     read_json,
@@ -121,6 +122,8 @@ def resume(root: Path = RUNS, folder: Path | None = None) -> tuple[Path, str, li
     ``folder``: this one instead, finished or not.
     """
     folder = folder or latest(root, unfinished=True)
+    if not (folder / "run.json").exists():
+        raise ResultsError(f"{folder} holds no run to go on with: there is no run.json in it")
     meta = read_json(folder / "run.json")
     return folder, str(meta["profile"]), list(meta.get("structures", ()))
 
@@ -181,17 +184,32 @@ def prepared(folder: Path, say: Callable[[str], None]) -> Iterator[None]:
             say(f"{path.name} was damaged and is set aside; its cells are measured again")
         meta = read_json(folder / "run.json")
         if begun:
+            _require_same_code(folder, meta)
             meta = {**meta, "resumed": [*meta.get("resumed", []), resumed()]}
             write_sealed(folder / "run.json", meta)
         yield
 
 
-def finish(folder: Path) -> None:
-    """Mark a run as finished, with what it consists of and how steady the machine was."""
+def _require_same_code(folder: Path, meta: dict[str, Any]) -> None:
+    """Raise ResultsError if a run would be gone on with by other code than it was begun with."""
+    was, now = meta.get("commit"), source()["commit"]
+    if was and was != now:
+        raise ResultsError(
+            f"{folder} was begun at commit {was[:12]}, and this is {now[:12]}: what they measure "
+            "does not belong together; check that commit out, or begin a new run"
+        )
+
+
+def finish(folder: Path, machine: dict[str, Any] | None = None) -> None:
+    """Mark a run as finished, with what it consists of and how steady the machine was.
+
+    ``machine``: what measured it, if it was not this one.
+    """
     files = [str(path.relative_to(folder)) for path in result_files(folder)]
     cores = {name: read_json(folder / name).get("core") for name in files}
     more = {"finished": now(), "files": files, "cores": cores, "noise": _steadiness(folder)}
-    write_sealed(folder / "run.json", {**read_json(folder / "run.json"), **more})
+    meta = {**read_json(folder / "run.json"), **more}
+    write_sealed(folder / "run.json", {**meta, "machine": machine or meta["machine"]})
 
 
 def _steadiness(folder: Path) -> dict[str, Any]:

@@ -72,6 +72,8 @@ def run_study(
             if profile not in (None, kept):
                 raise ValueError(f"{folder} was begun as {kept}; resume it without --profile")
             profile = kept
+            if not workers and any(folder.glob(results.MACHINES)):
+                raise ValueError(f"{folder} is of a cluster; resume it with --workers tcp://…")
             _require_nothing_new(folder, structure, seed, pin)
         else:
             if run:
@@ -106,7 +108,7 @@ def _require_nothing_new(
 def _run_with_progress(folder: Path, profile: str, chosen: list[str], workers: str | None) -> None:
     begun = perf_counter()
     console.print(f"Measuring into {folder} (profile {profile}: {PROFILES[profile].what})")
-    go_on = f"hem study --resume --run {folder}"
+    go_on = f"hem study --resume --run {folder}" + (f" --workers {workers}" if workers else "")
     try:
         with _progress(study.processes(profile, chosen), folder) as report:
             if workers:

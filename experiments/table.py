@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +14,8 @@ from rich.text import Text
 
 from experiments.claims import MEMORY, TABLES, VARIABLES
 from experiments.complexity import Verdict
-from experiments.results import Run, load
+from experiments.noise import noise
+from experiments.results import CannotWriteError, Run, load
 from experiments.verdicts import OUTCOMES, judged, save
 from structures import NAMED, THESIS
 
@@ -29,7 +31,8 @@ def show(run_folder: Path, console: Console, every: bool = False) -> None:
     """Judge a run, keep the verdicts beside it, and print them: of the thesis' four, or of all."""
     run = load(run_folder)
     table = judged(run)
-    save(run, table)
+    with suppress(CannotWriteError):  # who may not write beside the run may read it all the same
+        save(run, table)
     for name, title in TABLES.items():
         part = table[table["table"] == name]
         part = part if every else part[part["structure"].isin(THESIS)]
@@ -37,6 +40,9 @@ def show(run_folder: Path, console: Console, every: bool = False) -> None:
             continue
         console.print(_rendered(part, title, run))
         console.print(_summary(part))
+    seen = noise(run)
+    if seen.too_busy:
+        console.print(f"[yellow]{seen.words}[/]", highlight=False)
     console.print(
         "Under what is printed: the log-log slopes in n_t and in n_ev, by work (array elements "
         "accessed) and by time. The work decides.\n✓ consistent, ✗ violated, ? undetermined, – "

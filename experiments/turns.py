@@ -11,7 +11,7 @@ import json
 import subprocess
 import sys
 from collections.abc import Iterator, Sequence
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -73,6 +73,9 @@ def compare_trees(
         for query in QUERIES
         if kind.compiled and (not structures or name in structures)
     ]
+    if not wanted:
+        why = f"none of {', '.join(structures)} is compiled, so there is nothing to time by turns"
+        return [Finding("undetermined", "time", "turns", "", "", why)]
     found = _in_pairs(before, after, wanted, factor or FACTOR)
     doubtful = [it for it, finding in found.items() if finding.outcome in ("worse", "better")]
     for it, again in _in_pairs(before, after, doubtful, factor or FACTOR).items():
@@ -163,3 +166,6 @@ def _worker(tree: Path) -> Iterator[Worker]:
             yield Worker(process)
         finally:
             process.kill()
+            if process.stdin:
+                with suppress(BrokenPipeError):  # it ended before it was asked
+                    process.stdin.close()

@@ -34,6 +34,13 @@ CELL_ERROR = 0.15
 """How far cells of one curve stray, beyond what their own rounds tell: each is measured within some
 milliseconds, and neighbors on the machine slow its caches for longer than that."""
 
+LEAST_SLOPE = 0.01
+"""Slopes of counts that differ by less are the same one: not even they come out alike everywhere,
+to the last digit."""
+
+DIGITS = 5
+NOTHING = 1e-12
+
 SOURCES = {
     ("work", "faces"): {
         "queries": ("bench_work", "random"),
@@ -175,8 +182,13 @@ def _plain(value: Any) -> Any:
     if isinstance(value, Verdict):
         return {key: _plain(getattr(value, key)) for key in KEPT}
     if isinstance(value, float):
-        return float(f"{value:.5g}") if np.isfinite(value) else None
+        return short(value) if np.isfinite(value) else None
     return value
+
+
+def short(value: float) -> float:
+    """Five digits, and none of 1e-12 or less, which is what rounding leaves of nothing."""
+    return float(f"{value:.{DIGITS}g}") if abs(value) > NOTHING else 0.0
 
 
 def _row(evidence: Evidence, claim: Claim) -> dict[str, Any]:

@@ -119,11 +119,87 @@ def test_a_query_that_becomes_linear_is_worse_by_work_class_slope_and_time(befor
 def test_by_time_a_claim_is_lost_only_where_a_slope_says_so(before, steeper, outcome):
     key = "queries", "half_edge", "face_edges"
     row = dict(before.verdicts[key], outcome_time="violated")
-    slopes = ("slope", "slope_low", "slope_high")
-    row["time_faces"] = row["time_faces"] | {it: row["time_faces"][it] + steeper for it in slopes}
+    row["time_faces"] = row["time_faces"] | {it: row["time_faces"][it] + steeper for it in SLOPES}
     after = replace(before, verdicts={**before.verdicts, key: row})
     (found,) = [it for it in compare_runs(before, after).findings if it.after == "violated"]
     assert (found.where, found.outcome) == ("half_edge/face_edges by time", outcome)
+
+
+SLOPES = ("slope", "slope_low", "slope_high")
+
+
+@pytest.mark.parametrize(("by", "outcome"), [(1e-9, "same"), (0.02, "worse")])
+def test_slopes_of_work_may_differ_by_rounding_and_no_more(before, by, outcome):
+    key = "queries", "half_edge", "face_edges"
+    row = dict(before.verdicts[key])
+    row["work_faces"] = row["work_faces"] | {it: row["work_faces"][it] + by for it in SLOPES}
+    after = replace(before, verdicts={**before.verdicts, key: row})
+    where = "half_edge/face_edges by work and faces"
+    (found,) = [it for it in compare_runs(before, after).findings if it.where == where]
+    assert found.outcome == outcome
+
+
+def test_of_another_profile_no_slopes_are_compared_and_that_is_said(before):
+    other = replace(before, head={**before.head, "profile": "full"})
+    compared = compare_runs(before, other)
+    assert not [it for it in compared.findings if it.kind == "slope"]
+    assert any("slopes are not compared" in note for note in compared.notes)
+    assert code(compared.findings) == 0
+
+
+def test_a_busy_machine_cannot_judge_by_time(before):
+    busy = replace(before, head={**before.head, "too_busy": True})
+    findings = compare_runs(before, busy).findings
+    timed = [it.where for it in findings if it.by_chance or it.kind == "time"]
+    assert timed == ["all that is timed"]
+    assert code(findings) == 2
+
+
+CURVE = "bench_queries/half_edge/face_edges/"
+
+
+def random_cells(before) -> list[str]:
+    keys = [it for it in before.times if it.startswith(CURVE) and it.endswith("/random")]
+    return sorted(keys, key=lambda key: before.times[key]["samples"])
+
+
+def of_curve(before, times) -> Finding:
+    findings = compare_runs(before, replace(before, times=times)).findings
+    (found,) = [it for it in findings if it.kind == "time" and it.where == f"{CURVE}random"]
+    return found
+
+
+@pytest.mark.parametrize("slower", [0, 1, 2])
+def test_a_curve_is_not_as_before_where_some_of_it_is_slower(before, slower):
+    keys = random_cells(before)
+    times = dict(before.times)
+    for key in keys[len(keys) - slower :]:
+        times[key] = {**times[key], "samples": [2 * it for it in times[key]["samples"]]}
+    assert of_curve(before, times).outcome == ("undetermined" if slower == 2 else "same")
+
+
+def test_a_timed_cell_that_is_gone_is_missed(before):
+    lost = random_cells(before)[0]
+    found = of_curve(before, {key: it for key, it in before.times.items() if key != lost})
+    assert (found.outcome, "1 not measured" in found.why) == ("undetermined", True)
+
+
+def test_chance_may_leave_a_tenth_open_and_nothing_else_may_be():
+    closed = [Finding("same", "time", "a curve", "", "× 1.0")] * 18
+    left_open = [Finding("undetermined", "time", "a curve", "", "× 1.2")]
+    missing = [Finding("undetermined", "time", "a curve", "", "", "was not measured")]
+    assert code(closed + 2 * left_open) == 0
+    assert code(closed + 3 * left_open) == 2
+    assert code(closed + missing) == 2
+
+
+def test_of_another_python_the_bytes_of_objects_are_left_out_in_runs_as_well():
+    cells = {"bench_memory/half_edge_objects/torus/100/8-byte references": [7]}
+    assert compare_cells(cells, {}, other_python=True) == []
+
+
+def test_what_is_not_compiled_cannot_be_timed_beside_a_tree():
+    assert code(compare_trees(HERE, HERE, ["half_edge_objects"])) == 2
 
 
 def test_times_of_another_machine_are_left_out_and_that_is_said(before):

@@ -87,6 +87,8 @@ def test_work_is_spread_kept_apart_and_tried_elsewhere_when_a_machine_is_lost(
         assert about["profile"] == "smoke"
         assert about["machine"]["cores"] == os.cpu_count()
     assert "finished" in run.meta
+    used = {name.removeprefix("machine-") for name in run.cells["machine"]}
+    assert set(run.machines) == (used if len(used) > 1 else set())
 
 
 def test_a_machine_gives_up_what_nobody_wants_and_is_free_again(tmp_path):
@@ -101,6 +103,13 @@ def test_a_machine_gives_up_what_nobody_wants_and_is_free_again(tmp_path):
 
     with pytest.raises(AbandonedError):
         perform(task, tmp_path.name, for_a_while, lambda text: None)
+
+
+def test_a_run_of_a_cluster_is_not_gone_on_with_by_this_machine_alone(tmp_path):
+    folder = begin(tmp_path)
+    (folder / "machine-0").mkdir()
+    code, output = hem("study", "--resume", "--run", str(folder))
+    assert (code, "resume it with --workers" in output) == (1, True)
 
 
 def test_without_dask_it_is_said_how_to_get_it(tmp_path, monkeypatch):

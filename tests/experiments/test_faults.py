@@ -193,16 +193,60 @@ def test_a_file_that_cannot_be_written_stays_as_it_was(tmp_path):
     assert [path.name for path in tmp_path.iterdir()] == ["bench_x.indexed.json"]
 
 
-def test_a_folder_that_cannot_be_written_is_named_in_one_line(tmp_path, small_disk):
+@pytest.fixture
+def read_only(tmp_path, request):
+    """A folder that nobody may write to: by its mode, which root need not mind, or by its mount."""
+    if os.geteuid() == 0:
+        place = request.getfixturevalue("small_disk")
+        subprocess.run(["mount", "-o", "remount,ro", str(place)], check=True)
+        return place
+    place = tmp_path / "read only"
+    place.mkdir(mode=0o555)
+    return place
+
+
+def require_named(place: Path, said: str) -> None:
+    code, output = hem("study", "--profile", "smoke", "--output", str(place))
+    assert code == 1
+    assert output.startswith("hem:")
+    assert str(place) in output
+    assert "choose another folder" in output
+    assert said in output
+
+
+def test_a_folder_that_cannot_be_written_is_named_in_one_line(read_only):
+    require_named(read_only, "writable")
+
+
+def test_a_file_in_the_place_of_a_folder_is_named_in_one_line(tmp_path):
     (tmp_path / "file").write_text("")
+    require_named(tmp_path / "file" / "runs", "a file")
+
+
+def test_a_run_that_cannot_be_written_to_can_be_read(small_disk):
+    folder = begin(small_disk)
+    assert go_on(folder) == []
     subprocess.run(["mount", "-o", "remount,ro", str(small_disk)], check=True)
-    for place, said in ((tmp_path / "file" / "runs", "a file"), (small_disk, "writable")):
-        code, output = hem("study", "--profile", "smoke", "--output", str(place))
-        assert code == 1
-        assert output.startswith("hem:")
-        assert str(place) in output
-        assert "choose another folder" in output
-        assert said in output
+    code, output = hem("table", str(folder))
+    assert (code, "Bytes per vertex" in output) == (0, True), output
+
+
+def test_a_run_is_not_gone_on_with_by_other_code(run):
+    meta = study.read_json(run / "run.json")
+    write_sealed(run / "run.json", {**meta, "commit": "0123456789abcdef"})
+    with pytest.raises(ResultsError, match=r"was begun at commit 0123456789ab.*check that commit"):
+        go_on(run)
+
+
+def test_a_copy_of_a_file_beside_it_is_not_read(made_up):
+    before = len(load(made_up.parent).cells)
+    shutil.copy(made_up, made_up.with_name("bench_x.indexed.backup.json"))
+    assert len(load(made_up.parent).cells) == before
+
+
+def test_a_folder_without_a_run_cannot_be_resumed(tmp_path):
+    code, output = hem("study", "--resume", "--run", str(tmp_path))
+    assert (code, "holds no run" in output) == (1, True)
 
 
 def test_of_two_studies_in_one_folder_the_second_is_told_who_has_it(run):
