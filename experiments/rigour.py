@@ -126,7 +126,8 @@ def provenance(kept: dict[str, Any]) -> str:
     versions = ", ".join(f"{name} {number}" for name, number in kept["versions"].items())
     machine = kept["machine"]
     return (
-        f"Measured {kept['started'][:10]} at commit {kept['commit'][:10]} "
+        f"Measured {kept['started'][:10]} at commit {kept['commit'][:10]}"
+        f"{' with changes that are not committed' if kept.get('dirty') else ''} "
         f"on {machine['cpu']}, {machine['cores']} cores, with {versions}; not by this page."
     )
 

@@ -12,12 +12,11 @@ import sys
 import tempfile
 from collections import Counter
 from collections.abc import Iterable, Sequence
-from itertools import combinations
 from pathlib import Path
 from typing import Any
 
 from experiments import children, study
-from experiments.a_against_a import ALARMS, LARGEST_SHARE, STRUCTURES
+from experiments.a_against_a import ALARMS, LARGEST_SHARE
 from experiments.check import Finding
 from experiments.check_run import FACTOR, compare_runs
 from experiments.gate import HERE
@@ -25,6 +24,7 @@ from experiments.provenance import describe
 from experiments.reference import Measured, measured
 from experiments.results import load, write_json
 from experiments.turns import compare_trees
+from structures import THESIS as STRUCTURES
 
 RESULT = Path("results/reference/same_code.json")
 EXPERIMENTS = ("bench_work", "bench_queries", "bench_valence", "bench_operations")
@@ -108,19 +108,26 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--output", type=Path, default=RESULT)
     given = parser.parse_args(arguments)
     kept = {key: it for key, it in describe(PROFILE).items() if key != "schema"}
-    turns = [beside_itself(repetition) for repetition in range(given.turns)]
+    kept |= {"runs": given.runs, "factor": FACTOR, "pairs": [], "turns": []}
+    for repetition in range(given.turns):
+        kept["turns"].append(told(beside_itself(repetition), "turns"))
     with tempfile.TemporaryDirectory(prefix="hem-same-") as root:
-        runs = []
+        runs: list[Measured] = []
         for seed in range(given.runs):
-            runs.append(timed(Path(root), seed))
-            print(f"run {seed + 1} of {given.runs}", flush=True)
-        pairs = [compared(before, after) for before, after in combinations(runs, 2)]
-    kept |= {"runs": given.runs, "factor": FACTOR, **totals(pairs + turns)}
-    write_json(given.output, {**kept, "pairs": pairs, "turns": turns})
-    for alarm in (alarm for row in pairs + turns for alarm in row["alarms"]):
-        print(alarm)
-    print(words({**kept, "pairs": pairs, "turns": turns}))
+            run = timed(Path(root), seed)
+            kept["pairs"] += [told(compared(it, run), "runs") for it in runs]
+            runs.append(run)
+    kept |= totals(kept["pairs"] + kept["turns"])
+    write_json(given.output, kept)
+    print(words(kept))
     return int(kept["alarms"] > LARGEST_SHARE * kept["comparisons"])
+
+
+def told(found: dict[str, Any], what: str) -> dict[str, Any]:
+    """Print a row as it comes."""
+    counts = f"{found['same']:4} same {found['undetermined']:4} undetermined"
+    print(f"{what:5} {counts}", *found["alarms"], sep="\n   ", flush=True)
+    return found
 
 
 if __name__ == "__main__":
