@@ -160,7 +160,12 @@ def judged(run: Run, claims: list[Claim] | None = None) -> pd.DataFrame:
     work_per_query, seconds_per_query (random handles, largest size), bytes_per_vertex.
     """
     evidence = Evidence(run)
-    return pd.DataFrame([_row(evidence, claim) for claim in claims or load_claims()])
+    rows = [_row(evidence, claim) for claim in claims or load_claims()]
+    table = pd.DataFrame(rows)
+    for measure, variable in SOURCES:  # a column without any verdict would become one of numbers
+        name = f"{measure}_{variable}"
+        table[name] = pd.Series([row.get(name) for row in rows], dtype=object)
+    return table
 
 
 def save(run: Run, table: pd.DataFrame, folder: Path | None = None) -> Path:
