@@ -66,7 +66,7 @@ def cells(profile: Profile, structure: str) -> list[Cell]:
     family = profile.families[0]
     return [
         Cell(structure, family, size, query, order)
-        for size in profile.operation_sizes
+        for size in profile.fracture_sizes
         for query, order in [(SHATTER, None), *((FIND, way) for way in ways)]
     ]
 

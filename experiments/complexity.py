@@ -81,7 +81,7 @@ def judge(
     samples: k arrays of positive costs, of any lengths: seconds, or read counts.
     expected: a class of `MODELS` in any usual spelling; "O(n_t)" and "O(n_ev)" are linear.
     latency: (k,) the machine's memory latency at each working set, in any unit. A cost may then
-    wait for memory to any degree, from not at all to entirely.
+    wait for memory to any degree, from not at all to entirely. Or (a, k): as any one row tells it.
     latency_error: how far, relatively, the latency may miss what the costs really waited for.
     exact: the costs are counts of work, which no cache slows. With neither latency nor exact, a
     smooth rise of up to `evidence.HIGHEST_RISE` may have happened unseen: what it could explain
@@ -104,8 +104,8 @@ def judge(
     if len(kept) < len(measured.sizes):
         order = np.argsort(np.asarray(sizes, float), kind="stable")[kept]
         sizes, samples = measured.sizes[kept], [measured.samples[i] for i in kept]
-        if latency is not None and np.shape(latency) == measured.sizes.shape:
-            latency = np.asarray(latency, float)[order]
+        if latency is not None and np.shape(latency)[-1:] == measured.sizes.shape:
+            latency = np.asarray(latency, float)[..., order]
         measured = reduce(sizes, samples)
     costs, caches = account(measured, sizes, latency, exact, latency_error)
     models = Comparison(costs, caches)

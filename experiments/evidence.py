@@ -19,6 +19,7 @@ from experiments.models import (
     NAMES,
     Array,
     Rises,
+    any_of,
     basis,
     fit,
     measured_rises,
@@ -74,7 +75,7 @@ def account(
 ) -> tuple[Costs, Caches]:
     """The costs, with the latency's error added to theirs, and what caches may have done to them.
 
-    sizes: (k,) in the order of latency: (k,).
+    sizes: (k,) in the order of latency: (k,), or (a, k) for as many possibilities.
     """
     if latency is None:
         unmeasured = None if exact else unknown_rises(costs.sizes, HIGHEST_RISE)
@@ -82,10 +83,11 @@ def account(
         return costs, Caches(no_rise(len(costs.sizes)), unmeasured, misfit, 2)
     if exact:
         raise ValueError("exact counts wait for no memory: give either latency or exact")
-    waits = np.asarray(latency, dtype=np.float64)
-    if waits.shape != costs.sizes.shape or not np.all(np.isfinite(waits) & (waits > 0)):
+    waits = np.atleast_2d(np.asarray(latency, dtype=np.float64))
+    if waits.shape[1:] != costs.sizes.shape or not np.all(np.isfinite(waits) & (waits > 0)):
         raise ValueError("latency must be one positive number per size")
-    rises = measured_rises(waits[np.argsort(np.asarray(sizes, dtype=np.float64), kind="stable")])
+    order = np.argsort(np.asarray(sizes, dtype=np.float64), kind="stable")
+    rises = any_of([measured_rises(row[order]) for row in waits])
     error = np.sqrt(costs.error**2 + latency_error**2)
     return replace(costs, error=error), Caches(rises, None, MISFIT_EXPLAINED, 3)
 

@@ -11,7 +11,7 @@ contain O(1), and no measurement could ever tell them apart.
 """
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -71,6 +71,11 @@ def measured_rises(latency: Array, steps: int = 65) -> Rises:
     share = (np.geomspace(1, 1 + top, steps) - 1) / top
     mixed = 1 + share[:, None] * slowdown
     return Rises(np.vstack([mixed, np.ones_like(mixed)]), np.vstack([mixed, mixed]))
+
+
+def any_of(every: Sequence[Rises]) -> Rises:
+    """All candidates of several."""
+    return Rises(np.vstack([it.fixed for it in every]), np.vstack([it.growing for it in every]))
 
 
 def unknown_rises(sizes: Array, highest: float) -> Rises:

@@ -18,6 +18,8 @@ class Profile:
     objects are operated on up to ``object_vertices``, asked and built of three times as many; what
     the thesis prints is built of ``printed_sizes``. A round is one sample;
     ``round_seconds`` is how long it should last, ``cell_seconds`` what a cell may take in all.
+    ``valence_faces`` stay in the caches that a core has to itself: beyond, neighbors on the machine
+    make cells of one curve differ threefold.
     """
 
     what: str
@@ -32,6 +34,7 @@ class Profile:
     operation_sizes: tuple[int, ...]
     operation_faces: int
     workload_sizes: tuple[int, ...]
+    fracture_sizes: tuple[int, ...]
     object_vertices: int
     printed_sizes: tuple[int, ...]
     models: tuple[str, ...]
@@ -57,6 +60,7 @@ class Profile:
             operation_sizes=up_to(self.operation_sizes),
             operation_faces=min(self.operation_faces, most),
             workload_sizes=up_to(self.workload_sizes),
+            fracture_sizes=up_to(self.fracture_sizes),
         )
 
     def work_points(self) -> list[tuple[str, int, int | None]]:
@@ -89,6 +93,7 @@ PROFILES = {
         operation_sizes=(100, 400),
         operation_faces=256,
         workload_sizes=(100, 400),
+        fracture_sizes=(100, 400),
         object_vertices=400,
         printed_sizes=(50, 100),
         models=("teapot",),
@@ -110,6 +115,7 @@ PROFILES = {
         operation_sizes=_geometric(100, 100_000, 2)[1:],
         operation_faces=32_768,
         workload_sizes=_geometric(100, 10_000, 1),
+        fracture_sizes=_geometric(100, 100_000, 2)[1:],
         object_vertices=3_200,
         printed_sizes=_geometric(50, 500, 4),
         models=("teapot", "bunny"),
@@ -119,18 +125,19 @@ PROFILES = {
         latency_mib=128,
     ),
     "standard": Profile(
-        what="one family of each kind up to 1,000,000 vertices, some 30 minutes",
+        what="one family of each kind up to 1,000,000 vertices, some 40 minutes",
         families=("torus", "sphere", "grid", "isosurface"),
         sizes=_geometric(100, 1_000_000, 2),
         orders=("random", "consecutive"),
         valences=VALENCES,
-        valence_faces=262_144,
+        valence_faces=65_536,
         work_sizes=_geometric(100, 10_000, 2),
         work_faces=16_384,
         build_sizes=_geometric(100, 1_000_000, 2),
         operation_sizes=_geometric(100, 1_000_000, 2)[1:],
         operation_faces=65_536,
         workload_sizes=_geometric(100, 100_000, 2),
+        fracture_sizes=_geometric(100, 100_000, 2)[1:],
         object_vertices=3_200,
         printed_sizes=_geometric(50, 900, 5),
         models=("teapot", "cow", "bunny", "bone"),
@@ -145,13 +152,14 @@ PROFILES = {
         sizes=_geometric(100, 1_000_000, 4),
         orders=("random", "consecutive"),
         valences=VALENCES,
-        valence_faces=524_288,
+        valence_faces=65_536,
         work_sizes=_geometric(100, 32_000, 4),
         work_faces=16_384,
         build_sizes=_geometric(100, 1_000_000, 4),
         operation_sizes=_geometric(100, 1_000_000, 4),
         operation_faces=131_072,
         workload_sizes=_geometric(100, 100_000, 4),
+        fracture_sizes=_geometric(100, 1_000_000, 2)[1:],
         object_vertices=10_000,
         printed_sizes=_geometric(50, 1_600, 6),
         models=("teapot", "cow", "airplane", "bunny", "bone"),

@@ -34,6 +34,10 @@ CELL_ERROR = 0.15
 """How far cells of one curve stray, beyond what their own rounds tell: each is measured within some
 milliseconds, and neighbors on the machine slow its caches for longer than that."""
 
+PARTS = (4, 16)
+"""By how much less than its working set a query or an operation may touch: one of several arrays,
+or what was just copied. It then waits for memory as a smaller mesh does."""
+
 LEAST_SLOPE = 0.01
 """Slopes of counts that differ by less are the same one: not even they come out alike everywhere,
 to the last digit."""
@@ -91,6 +95,13 @@ class Evidence:
             return None
         return np.exp(np.interp(np.log(working_sets), np.log(sizes), np.log(seconds)))
 
+    def latencies(self, cells: pd.DataFrame) -> Array:
+        """(a, k): what each cell may have waited for, beside it or in a part of its working set."""
+        beside = cells["latency"].to_numpy(float)
+        sets = np.maximum(cells["working_set"].to_numpy(float), 1)
+        within = [self.latency(sets / part) for part in PARTS]
+        return np.vstack([beside, *(it for it in within if it is not None)])
+
     @cached_property
     def _curves(self) -> dict[Any, Any]:
         """The rows of each curve."""
@@ -118,7 +129,7 @@ class Evidence:
         exact = measure == "work"
         # What reads nothing at all costs something all the same: the call.
         samples = [np.maximum(it, 1) if exact else it for it in cells["samples"]]
-        latency = None if exact else cells["latency"].to_numpy(float)
+        latency = None if exact else self.latencies(cells)
         expected = claim.expected.get(variable, "O(1)")
         bound: Bound = "upper" if expected.startswith(BOUND) else "tight"
         sizes, expected = cells[variable].to_numpy(float), expected.removeprefix(BOUND)
