@@ -82,15 +82,6 @@ def test_the_kept_pairs_of_the_same_code_raised_few_alarms() -> None:
     assert kept["alarms"] <= LARGEST_SHARE * kept["comparisons"]
 
 
-def test_the_kept_runs_of_the_same_code_raised_few_alarms() -> None:
-    kept = read_json(REFERENCE / "same_code.json")
-    assert len(kept["pairs"]) >= 20
-    assert same_code.totals(kept["pairs"] + kept["turns"]).items() <= kept.items()
-    assert kept["comparisons"] >= 1000
-    assert kept["alarms"] <= LARGEST_SHARE * kept["comparisons"]
-    assert f"{len(kept['pairs'])} pairs" in same_code.words(kept)
-
-
 def test_a_run_of_slower_code_is_an_alarm_and_exact_counts_are_left_out(tmp_path: Path) -> None:
     def law_of(structure, query, printed):
         return LAWS["O(n_t)"] if (structure, query) == ("half_edge", "face_faces") else None
