@@ -87,6 +87,20 @@ def flat(
     return [rng.lognormal(0, noise, count) for _ in sizes]
 
 
+def test_a_cost_may_have_waited_as_any_one_of_several_latencies_tells() -> None:
+    rng = np.random.default_rng(4)
+    sizes = np.geomspace(300, 3e6, 9)
+    early, late = (1 + 30 / (1 + (turn / sizes) ** 2) for turn in (1e4, 3e5))
+    samples = [3e-8 * cost * rng.normal(1, 0.01, 15) for cost in 1 + (late - 1) / 10]
+    assert judge(sizes, samples, "O(1)", early).outcome != "consistent"
+    either = judge(sizes, samples, "O(1)", np.vstack([early, late]))
+    assert either.outcome == "consistent"
+    again = judge(sizes, samples, "O(1)", np.vstack([late, early]))
+    assert (again.outcome, again.best) == (either.outcome, either.best)
+    linear = [1e-11 * n * rng.normal(1, 0.01, 15) + 1e-9 for n in sizes]
+    assert judge(sizes, linear, "O(1)", np.vstack([early, late])).outcome == "violated"
+
+
 def test_a_tenfold_rise_violates_constant_time_only_beyond_the_latency() -> None:
     rng = np.random.default_rng(2)
     sizes = np.geomspace(100, 1e6, 9)
