@@ -65,17 +65,17 @@ def write_report(
 ) -> None:
     """Run the notebooks on a run and write the report: pages that open from disk."""
     with user_errors():
-        from experiments.report import write, write_page, write_pdf
+        from experiments import committed_page, report
 
         folder = run or results.latest()
         if page:
-            written = write_page(folder, Path("report"))
+            written = committed_page.write(folder, Path("report"))
             console.print(f"Page written: {written}")
         elif pdf:
-            written = write_pdf(folder, output or DOCUMENT)
+            written = report.write_pdf(folder, output or DOCUMENT)
             console.print(f"Document written: {written}", soft_wrap=True)
         else:
-            front = write(folder, output or PAGES)
+            front = report.write(folder, output or PAGES)
             console.print(f"Report written. Open {front.resolve().as_uri()}", soft_wrap=True)
 
 

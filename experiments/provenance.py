@@ -9,9 +9,13 @@ import sys
 from datetime import UTC, datetime
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
+from experiments.noise import noise
 from experiments.results import SCHEMA
+
+if TYPE_CHECKING:
+    from experiments.results import Run
 
 LIBRARIES = ("numpy", "numba", "scipy", "pandas", "pymeshlab", "pytest-benchmark")
 
@@ -58,6 +62,31 @@ def machine() -> dict[str, Any]:
         "platform": f"{platform.system()} {platform.release()} {platform.machine()}",
         "python": sys.implementation.name,
     }
+
+
+def in_words(run: Run) -> str:
+    """What a run was, by whom it was measured, and how calm it was there."""
+    meta = run.meta
+    versions = ", ".join(f"{name} {number}" for name, number in meta.get("versions", {}).items())
+    state = {True: " with changes that are not committed", False: "", None: ""}[meta.get("dirty")]
+    finished = f"to {meta['finished']}" if "finished" in meta else "and not finished"
+    return (
+        f"Profile {meta.get('profile')}, from {meta.get('started')} {finished}, at commit "
+        f"{str(meta.get('commit'))[:10]}{state}. "
+        f"{_measured_by(run)}. {versions}. {len(run.cells):,} cells, each checked against the "
+        f"triangle list before it was measured. {noise(run).words}"
+    )
+
+
+def _measured_by(run: Run) -> str:
+    if run.machines:
+        return f"Measured by {len(run.machines)} machines, whose times are not compared"
+    machine = run.meta.get("machine", {})
+    caches = ", ".join(f"{level} {size}" for level, size in machine.get("caches", {}).items())
+    return (
+        f"{machine.get('cores')} cores of {machine.get('cpu')} ({caches}), "
+        f"{machine.get('memory_bytes', 0) / 2**30:.0f} GiB, {machine.get('platform')}"
+    )
 
 
 def _cpu() -> str:

@@ -8,8 +8,8 @@ import pytest
 
 from experiments import answers
 from experiments.answers import CONDITIONS, NUMBERS, Findings, Number
+from experiments.chapters import CHAPTERS
 from experiments.entries import entries
-from experiments.report import CHAPTERS
 from experiments.results import load
 from experiments.verdicts import judged
 from tests.experiments.runs import BUILD, LAWS, SIZES, write_run

@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 from experiments import board, svg
+from experiments.chapters import CHAPTERS
 from experiments.claims import MEMORY, load_claims
 from experiments.entries import KINDS, entries, key_of
-from experiments.report import CHAPTERS
 from experiments.results import load
 from experiments.statements import QUANTITIES
 from experiments.verdicts import judged

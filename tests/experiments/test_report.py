@@ -11,9 +11,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from experiments import operation_plots, plots
+from experiments import committed_page, operation_plots, plots
 from experiments.claims import OPERATIONS
-from experiments.report import write, write_page
+from experiments.report import write
 from experiments.results import ResultsError, load
 from experiments.style import spread_apart
 from tests.experiments.runs import write_run
@@ -40,7 +40,7 @@ def test_nothing_but_a_report_is_replaced(run_folder, tmp_path, there):
 def test_a_report_that_fails_leaves_the_old_one(run_folder, tmp_path, monkeypatch):
     (tmp_path / "html").mkdir()
     (tmp_path / "html" / "index.html").write_text("old")
-    monkeypatch.setattr("experiments.report.CHAPTERS", {"no_such": "No such chapter"})
+    monkeypatch.setattr("experiments.chapters.CHAPTERS", {"no_such": "No such chapter"})
     with pytest.raises((OSError, ResultsError)):
         write(run_folder, tmp_path / "html")
     assert (tmp_path / "html" / "index.html").read_text() == "old"
@@ -52,8 +52,8 @@ def test_an_interrupt_in_a_notebook_leaves_the_old_report_and_no_kernel(run_fold
     (tmp_path / "html").mkdir()
     (tmp_path / "html" / "index.html").write_text("old")
     script = (
-        "import asyncio, sys; from pathlib import Path; from experiments import report\n"
-        "report.CHAPTERS = {'memory': 'Memory', 'errata': 'Errata', 'fracture': 'Fracture'}\n"
+        "import asyncio, sys; from pathlib import Path; from experiments import chapters, report\n"
+        "chapters.CHAPTERS = {'memory': 'Memory', 'errata': 'Errata', 'fracture': 'Fracture'}\n"
         "async def cell(): report.write(Path(sys.argv[1]), Path(sys.argv[2]) / 'html')\n"
         "asyncio.new_event_loop().run_until_complete(cell())"
     )
@@ -76,7 +76,7 @@ def kernels_of(process: int) -> list[int]:
 
 
 def test_the_committed_page_has_the_table_and_its_pictures(run_folder, tmp_path):
-    page = write_page(run_folder, tmp_path / "report")
+    page = committed_page.write(run_folder, tmp_path / "report")
     text = page.read_text()
     assert "| Bytes per vertex | 36 ✓ | 116 ✓ | 228 ✓ | 228 ✓ |" in text
     assert "| Split face | O(n_t) ✓ | O(1) ✓ | O(1) ✓ | O(1) ✓ |" in text

@@ -10,8 +10,9 @@ import numpy as np
 import pytest
 
 from experiments import demo
+from experiments.chapters import CHAPTERS
 from experiments.pdf import BROWSER_VARIABLE, find_browser
-from experiments.report import CHAPTERS, write
+from experiments.report import write
 from tests.experiments.chromium import Browser, started
 from tests.experiments.runs import write_run
 
