@@ -10,20 +10,18 @@ from __future__ import annotations
 
 import re
 import warnings
-from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict
 from importlib.util import find_spec
 from pathlib import Path
 from time import monotonic, sleep
 from typing import TYPE_CHECKING, Any
 
-from experiments.children import CANNOT_WRITE, How
+from experiments.cluster_work import Running, Work
 from experiments.machine_task import Outcome, Task, perform, who
 from experiments.provenance import source
 from experiments.results import read_json, result_files, write_sealed
-from experiments.stored import write_text
 from experiments.study import (
     Process,
     Report,
@@ -36,9 +34,6 @@ from experiments.study import (
 
 if TYPE_CHECKING:
     from distributed import Client
-
-TRIES = 3
-"""On how many machines a task is tried that does not end."""
 
 ADDRESS = re.compile(r"[a-z]+://.+:\d+")
 CONNECT_SECONDS = 10
@@ -78,7 +73,7 @@ def run(
     As ``study.run``, and raises ClusterError if the cluster is not there, or runs other code.
     """
     with prepared(folder, say), _client(address) as client:
-        work = _Work(folder, how(folder), report, say)
+        work = Work(folder, how(folder), report, say)
         work.add(processes(profile, structures))
         client.subscribe_topic(work.topic, work.hear)
         try:
@@ -119,119 +114,7 @@ def _client(address: str) -> Iterator[Client]:
         client.close(timeout=CONNECT_SECONDS)
 
 
-@dataclass(frozen=True)
-class _Running:
-    """A task on its way."""
-
-    process: Process
-    machine: str
-    worker: str
-    future: Any
-
-
-@dataclass
-class _Work:
-    """What is to be done, what is on its way, and what came back."""
-
-    folder: Path
-    how: How
-    report: Report
-    say: Callable[[str], None]
-    waiting: list[Process] = field(default_factory=list)
-    running: dict[str, _Running] = field(default_factory=dict)
-    tries: dict[Process, list[str]] = field(default_factory=dict)
-    failures: list[str] = field(default_factory=list)
-    news: deque[tuple[str, str, str, str]] = field(default_factory=deque)
-
-    @property
-    def topic(self) -> str:
-        """Where machines tell of cells as they finish them."""
-        return f"hem-{self.folder.name}"
-
-    def add(self, every: list[Process]) -> None:
-        """Everything that is not complete on any machine."""
-        for process in every:
-            done = max(process.done(place) for place in self.places())
-            self.report(process, done)
-            if done < len(process.cells):
-                self.waiting.append(process)
-
-    def places(self) -> list[Path]:
-        """The folders with results: the run's own, and its machines'."""
-        return [self.folder, *sorted(self.folder.glob("machine-*/"))]
-
-    def file(self, process: Process, machine: str) -> Path:
-        """Where the cells of a process on a machine are kept."""
-        place = self.folder / f"machine-{machine}"
-        return place / f"{process.experiment}.{process.structure}.json"
-
-    def task(self, process: Process, machine: str) -> Task:
-        """What to ask of a machine: to go on with what it has measured before."""
-        path = self.file(process, machine)
-        text = path.read_text() if path.exists() else None
-        return Task(process.experiment, process.structure, self.how, text)
-
-    def hear(self, event: tuple[Any, Any]) -> None:
-        """Take note of what a machine has finished; called from another thread."""
-        self.news.append(event[1])
-
-    def keep_news(self) -> None:
-        """Keep what machines have finished so far of the tasks that are running there."""
-        while self.news:
-            machine, experiment, structure, text = self.news.popleft()
-            it = self.running.get(machine)
-            if it and (it.process.experiment, it.process.structure) == (experiment, structure):
-                self.keep(it.process, machine, text)
-
-    def keep(self, process: Process, machine: str, text: str) -> None:
-        """Keep a file as it came. Raises CannotWriteError."""
-        path = self.file(process, machine)
-        write_text(path, text)
-        self.report(process, process.done(path.parent))
-
-    def ended(self, it: _Running, outcome: Outcome) -> None:
-        """Keep what a task leaves; what is not complete has failed."""
-        if outcome.text is not None:
-            self.keep(it.process, it.machine, outcome.text)
-        if it.process.done(self.file(it.process, it.machine).parent) == len(it.process.cells):
-            self._supersede(it)
-        elif outcome.code == CANNOT_WRITE:
-            self.lost(it, f"it has no room for results: {outcome.output}")
-        else:
-            name = f"{it.process.experiment} on {it.process.structure}, {it.machine}"
-            self.failures.append(f"{name}:\n{outcome.output}")
-
-    def _supersede(self, it: _Running) -> None:
-        """Leave one machine's results of a process, so that no curve is of two machines."""
-        mine = self.file(it.process, it.machine)
-        for place in self.places():
-            other = place / mine.name
-            if other != mine and other.exists():
-                other.rename(other.with_name(f"{other.name}.superseded"))
-
-    def lost(self, it: _Running, why: str) -> None:
-        """Have a task tried on another machine, unless it was on too many."""
-        tried = self.tries.setdefault(it.process, [])
-        tried.append(it.machine)
-        name = f"{it.process.experiment} on {it.process.structure}"
-        self.say(f"{name} did not end on machine {it.machine}: {why}")
-        if len(tried) < TRIES:
-            self.waiting.insert(0, it.process)
-        else:
-            self.failures.append(f"{name} did not end on {', '.join(tried)}: {why}")
-
-    def next_for(self, machine: str, others: bool) -> Process | None:
-        """A task for a machine: one it has begun, else one it has not failed at.
-
-        ``others``: whether there are other machines, to leave the rest to.
-        """
-        fresh = [it for it in self.waiting if machine not in self.tries.get(it, ())]
-        begun = [it for it in fresh if self.file(it, machine).exists()]
-        choice = begun or fresh or ([] if others else self.waiting)
-        return choice[0] if choice else None
-
-
-def _spread(client: Client, work: _Work) -> None:
+def _spread(client: Client, work: Work) -> None:
     """Keep every machine at one task until there are none left."""
     known: dict[str, str] = {}
     seen = monotonic()
@@ -253,7 +136,7 @@ def _spread(client: Client, work: _Work) -> None:
         sleep(POLL_SECONDS)
 
 
-def _look_after(work: _Work, it: _Running, workers: set[str]) -> None:
+def _look_after(work: Work, it: Running, workers: set[str]) -> None:
     """Take what a task gave, if it has ended or its worker is lost."""
     if it.future.status == "pending" and it.worker in workers:
         return
@@ -267,12 +150,12 @@ def _look_after(work: _Work, it: _Running, workers: set[str]) -> None:
     del work.running[it.machine]
 
 
-def _submit(client: Client, work: _Work, process: Process, machine: str, worker: str) -> _Running:
+def _submit(client: Client, work: Work, process: Process, machine: str, worker: str) -> Running:
     task = work.task(process, machine)
     future = client.submit(
         measured_here, task, machine, work.topic, workers=[worker], pure=False, retries=0
     )
-    return _Running(process, machine, worker, future)
+    return Running(process, machine, worker, future)
 
 
 def measured_here(task: Task, machine: str, topic: str) -> Outcome:
@@ -292,7 +175,7 @@ def measured_here(task: Task, machine: str, topic: str) -> Outcome:
     return perform(task, machine, wanted, send)
 
 
-def _machines(client: Client, work: _Work, known: dict[str, str]) -> dict[str, str]:
+def _machines(client: Client, work: Work, known: dict[str, str]) -> dict[str, str]:
     """By machine one of its workers, the same as before where it is still there.
 
     ``known``: by worker its machine; new ones are asked who they are and get a folder.
