@@ -17,7 +17,7 @@ from experiments.console import console, errors, user_errors
 Reference = Annotated[Path, typer.Option(help="The folder with what is compared with.")]
 
 FACTOR_HELP = (
-    "How much slower counts as worse. Default: 1.3 from run to run, 1.15 for two trees by turns."
+    "How much slower counts as worse. Default: 2 from run to run, 1.15 for two trees by turns."
 )
 
 
@@ -43,7 +43,7 @@ def check(
     """Compare with the reference. Exit code 0; 1: something got worse; 2: it cannot be told."""
     with could_not_measure(), user_errors():
         if factor is not None and not factor > 1:
-            raise ValueError(f"--factor is more than 1, such as 1.3, not {factor:g}")
+            raise ValueError(f"--factor is more than 1, such as 1.5, not {factor:g}")
         from experiments import check_shown
         from experiments.check import code
         from experiments.gate import compare_all

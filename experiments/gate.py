@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Self
 
-from experiments import check_run, exact, reference
+from experiments import check_run, exact, reference, significance, turns
 from experiments.check import Finding, compare_exact
 from experiments.reference import Measured
 from experiments.results import Run, load
@@ -52,9 +52,7 @@ def compare_all(
     else:
         notes.append("just what is exact was compared; all of a run with: hem check RUN")
     if beside:
-        from experiments.turns import compare_trees
-
-        findings += compare_trees(beside, HERE, structures, factor)
+        findings += turns.compare_trees(beside, HERE, structures, factor or significance.FACTOR)
     return findings, notes
 
 

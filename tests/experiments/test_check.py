@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from experiments import cli
+from experiments import cli, turns
 from experiments.check import Finding, claim_of, code, compare_cells, compare_exact
 from experiments.check_run import compare_runs
 from experiments.check_shown import as_json, as_markdown
@@ -174,7 +174,7 @@ def test_a_curve_is_not_as_before_where_some_of_it_is_slower(before, slower):
     keys = random_cells(before)
     times = dict(before.times)
     for key in keys[len(keys) - slower :]:
-        times[key] = {**times[key], "samples": [2 * it for it in times[key]["samples"]]}
+        times[key] = {**times[key], "samples": [3 * it for it in times[key]["samples"]]}
     assert of_curve(before, times).outcome == ("undetermined" if slower == 2 else "same")
 
 
@@ -292,6 +292,47 @@ def test_a_tree_beside_itself_is_timed_and_not_worse():
     assert [it.where.split("/")[2] for it in found] == list(QUERIES)
     assert outcomes(found) <= {"same", "undetermined"}
     assert all(it.before.endswith(" ns") and it.after.endswith(" ns") for it in found)
+
+
+def timed(nanoseconds: float) -> turns.Timed:
+    samples = [1e-9 * nanoseconds * (1 + 0.01 * (i * 7 % 5)) for i in range(turns.ROUNDS)]
+    return turns.Timed(samples, [1e-6] * turns.ROUNDS, 1)
+
+
+@pytest.mark.parametrize(
+    ("first", "further", "said"),
+    [
+        ((10, 10), (10, 16), "same"),  # what is as before is not asked again
+        ((10, 16), (10, 10), "same"),
+        ((16, 10), (10, 10), "same"),
+        ((16, 20), (10, 13), "worse"),
+        ((10, 16), (10, 16), "worse"),
+    ],
+)
+def test_trees_are_judged_by_their_fastest_processes(first, further, said, monkeypatch):
+    """A process may be slow by where it lies in memory, and slow code is so in all of them."""
+    sides = iter([first, *[further] * turns.FURTHER])
+
+    def in_new_processes(before, after, wanted, factor):
+        old, new = next(sides)
+        return [(it, (timed(old), timed(new))) for it in wanted]
+
+    monkeypatch.setattr(turns, "_in_new_processes", in_new_processes)
+    assert outcomes(compare_trees(HERE, HERE, ["indexed"])) == {said}
+
+
+def test_a_process_that_fails_is_not_passed_over(monkeypatch):
+    failed = turns.Timed([], [], 0, "it ended")
+    sides = iter([(timed(10), timed(16)), (failed, failed), *[(timed(10), timed(10))] * 3])
+
+    def in_new_processes(before, after, wanted, factor):
+        pair = next(sides)
+        return [(it, pair) for it in wanted]
+
+    monkeypatch.setattr(turns, "_in_new_processes", in_new_processes)
+    found = compare_trees(HERE, HERE, ["indexed"])
+    assert outcomes(found) == {"undetermined"}
+    assert all("could not be timed: it ended" in it.why for it in found)
 
 
 def test_a_tree_that_cannot_be_timed_is_no_pass(reference, tmp_path):
