@@ -70,6 +70,7 @@ def judge(
     *,
     exact: bool = False,
     latency_error: float = LATENCY_ERROR,
+    unseen: bool = False,
     bound: Bound = "tight",
     confidence: float = 0.95,
     resamples: int = 200,
@@ -86,6 +87,8 @@ def judge(
     exact: the costs are counts of work, which no cache slows. With neither latency nor exact, a
     smooth rise of up to `evidence.HIGHEST_RISE` may have happened unseen: what it could explain
     violates nothing, and where it explains the costs better, nothing is confirmed.
+    unseen: such a rise may have happened even beside a latency, as the costs were not of what the
+    latency was measured on.
     bound: "tight" takes the claim for the class itself, as a table of growth classes means it;
     "upper" for a bound, which slower growth keeps too.
 
@@ -107,7 +110,7 @@ def judge(
         if latency is not None and np.shape(latency)[-1:] == measured.sizes.shape:
             latency = np.asarray(latency, float)[..., order]
         measured = reduce(sizes, samples)
-    costs, caches = account(measured, sizes, latency, exact, latency_error)
+    costs, caches = account(measured, sizes, latency, exact, latency_error, unseen)
     models = Comparison(costs, caches)
     outcome, reason = _decide(measured, models, claim, bound)
     fitted, _ = predict(models.basis, models.fit)

@@ -72,13 +72,17 @@ def account(
     latency: ArrayLike | None,
     exact: bool,
     latency_error: float = LATENCY_ERROR,
+    unseen: bool = False,
 ) -> tuple[Costs, Caches]:
     """The costs, with the latency's error added to theirs, and what caches may have done to them.
 
     sizes: (k,) in the order of latency: (k,), or (a, k) for as many possibilities.
+    unseen: whether costs may have risen with caches otherwise than the latency tells.
     """
+    unmeasured = None
+    if not exact and (latency is None or unseen):
+        unmeasured = unknown_rises(costs.sizes, HIGHEST_RISE)
     if latency is None:
-        unmeasured = None if exact else unknown_rises(costs.sizes, HIGHEST_RISE)
         misfit = MISFIT_EXPLAINED if exact else MISFIT
         return costs, Caches(no_rise(len(costs.sizes)), unmeasured, misfit, 2)
     if exact:
@@ -89,7 +93,7 @@ def account(
     order = np.argsort(np.asarray(sizes, dtype=np.float64), kind="stable")
     rises = any_of([measured_rises(row[order]) for row in waits])
     error = np.sqrt(costs.error**2 + latency_error**2)
-    return replace(costs, error=error), Caches(rises, None, MISFIT_EXPLAINED, 3)
+    return replace(costs, error=error), Caches(rises, unmeasured, MISFIT_EXPLAINED, 3)
 
 
 class Comparison:

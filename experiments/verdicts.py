@@ -130,12 +130,15 @@ class Evidence:
         # What reads nothing at all costs something all the same: the call.
         samples = [np.maximum(it, 1) if exact else it for it in cells["samples"]]
         latency = None if exact else self.latencies(cells)
+        # A batch finds its mesh half in the caches, as it was copied just before: see `operating`.
+        unseen = claim.table == "operations" and variable == "faces"
         expected = claim.expected.get(variable, "O(1)")
         bound: Bound = "upper" if expected.startswith(BOUND) else "tight"
         sizes, expected = cells[variable].to_numpy(float), expected.removeprefix(BOUND)
         return judge(
-            sizes, samples, expected, latency, exact=exact, latency_error=CELL_ERROR, bound=bound
-        )
+            sizes, samples, expected, latency,
+            exact=exact, latency_error=CELL_ERROR, unseen=unseen, bound=bound,
+        )  # fmt: skip
 
     def largest(self, measure: str, claim: Claim) -> float:
         """Cost per query at the largest size: the median over rounds, or the mean reads."""

@@ -116,6 +116,20 @@ def test_a_tenfold_rise_violates_constant_time_only_beyond_the_latency() -> None
     assert judge(sizes, growing, latency=1.2 * rise).outcome == "violated"
 
 
+def test_a_rise_that_the_latency_may_not_tell_accuses_nobody() -> None:
+    sizes = np.geomspace(100, 1_000_000, 8)
+    rise = np.array([1, 1, 1, 1, 1, 1.2, 3, 6])
+    saturated = np.array([1, 2, 2, 4, 9, 40, 60, 65])
+    risen = [[20 * r] * 7 for r in rise]
+    linear = [[20 + 0.01 * n] * 7 for n in sizes]
+    level = [[20 * (1 + 0.01 * (i % 2))] * 7 for i in range(8)]
+    assert judge(sizes, risen, "O(1)", saturated).outcome == "violated"
+    assert judge(sizes, risen, "O(1)", saturated, unseen=True).outcome == "undetermined"
+    assert judge(sizes, linear, "O(1)", saturated, unseen=True).outcome == "violated"
+    assert judge(sizes, linear, "O(n)", saturated, unseen=True).outcome == "consistent"
+    assert judge(sizes, level, "O(1)", saturated, unseen=True).outcome == "consistent"
+
+
 def test_small_valences_with_an_intercept_are_linear() -> None:
     rng = np.random.default_rng(3)
     valence = np.array([4, 6, 8, 12, 16, 24, 32, 48, 64.0])
