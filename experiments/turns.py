@@ -10,6 +10,7 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
@@ -18,7 +19,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from experiments.check import Finding, claim_of
-from experiments.significance import FACTOR, compare
+from experiments.significance import FACTOR, Comparison, compare
 from hem.queries import QUERIES
 from structures import REGISTRY
 
@@ -28,10 +29,10 @@ MOST_ROUNDS = 96
 ROUND_SECONDS = 0.002
 
 FURTHER = 4
-"""Pairs of processes in which a query is timed again that was not as before in the first. Each tree
-is then judged by its fastest process: where a process happens to lie in memory alone was measured
-to make a query slower by 1.6, in two of ten processes of the same code (compare Mytkowicz et al.,
-Producing wrong data without doing anything obviously wrong, ASPLOS 2009)."""
+"""Pairs of processes in which a query is timed again that was not as before in the first. Where a
+process happens to lie in memory alone was measured to make a query slower by 1.6, in two of ten
+processes of the same code (compare Mytkowicz et al., Producing wrong data without doing anything
+obviously wrong, ASPLOS 2009): so a tree is slower only if no pair says otherwise."""
 
 WORKER = """
 import json, sys
@@ -102,26 +103,37 @@ class Timed(NamedTuple):
     handles: int
     error: str = ""
 
-    def level(self) -> float:
-        """How slow the process was, relative to its probe."""
-        return float(np.median(self.samples) / np.median(self.probe))
-
 
 Pair = tuple[Timed, Timed]
 
 
 def _judged(name: str, query: str, pairs: Sequence[Pair], factor: float) -> Finding:
-    """Of each tree its fastest process; none is passed over because it failed."""
+    """What most pairs of processes say; a tree is slower or faster if besides none says otherwise.
+
+    A pair that failed is not passed over.
+    """
     where = f"turns/{name}/{query}/torus/{VERTICES}/consecutive"
     errors = [it.error for pair in pairs for it in pair if it.error]
     if errors:
         why = f"could not be timed: {errors[0]}"
         return Finding("undetermined", "time", where, "", "", why, claim_of(where))
-    old, new = (min(side, key=Timed.level) for side in zip(*pairs, strict=True))
-    found = compare(old.samples, new.samples, old.probe, new.probe, factor)
-    shown = [f"{1e9 * np.median(it.samples) / it.handles:.3g} ns" for it in (old, new)]
-    why = f"× {found.ratio:.3f}, 95 % [{found.low:.3f}, {found.high:.3f}], p = {found.p:.1g}"
-    return Finding(found.outcome, "time", where, shown[0], shown[1], why, claim_of(where))
+    found = [compare(it.samples, to.samples, it.probe, to.probe, factor) for it, to in pairs]
+    said = Counter(it.outcome for it in found)
+    outcome, most = said.most_common(1)[0]
+    agreed = outcome == "same" or most + said["undetermined"] == len(found)
+    decided = outcome if agreed and 2 * most > len(found) else "undetermined"
+    middle = sorted(range(len(found)), key=lambda i: found[i].ratio)[len(found) // 2]
+    old, new = (f"{1e9 * np.median(it.samples) / it.handles:.3g} ns" for it in pairs[middle])
+    return Finding(decided, "time", where, old, new, _why(found, middle), claim_of(where))
+
+
+def _why(found: Sequence[Comparison], middle: int) -> str:
+    it = found[middle]
+    words = f"× {it.ratio:.3f}, 95 % [{it.low:.3f}, {it.high:.3f}], p = {it.p:.1g}"
+    if len(found) == 1:
+        return words
+    said = Counter(it.outcome for it in found).most_common()
+    return f"{words}; processes: {', '.join(f'{count} {it}' for it, count in said)}"
 
 
 def _in_new_processes(

@@ -299,19 +299,23 @@ def timed(nanoseconds: float) -> turns.Timed:
     return turns.Timed(samples, [1e-6] * turns.ROUNDS, 1)
 
 
+AS_BEFORE, SLOWER, FASTER = (10, 10), (10, 16), (16, 10)
+
+
 @pytest.mark.parametrize(
-    ("first", "further", "said"),
+    ("pairs", "said"),
     [
-        ((10, 10), (10, 16), "same"),  # what is as before is not asked again
-        ((10, 16), (10, 10), "same"),
-        ((16, 10), (10, 10), "same"),
-        ((16, 20), (10, 13), "worse"),
-        ((10, 16), (10, 16), "worse"),
+        ([AS_BEFORE, *[SLOWER] * 4], "same"),  # it is not asked again
+        ([SLOWER] * 5, "worse"),
+        ([FASTER] * 5, "better"),
+        ([SLOWER, AS_BEFORE, AS_BEFORE, FASTER, AS_BEFORE], "same"),
+        ([SLOWER, SLOWER, SLOWER, SLOWER, AS_BEFORE], "undetermined"),
+        ([SLOWER, SLOWER, FASTER, SLOWER, SLOWER], "undetermined"),
     ],
 )
-def test_trees_are_judged_by_their_fastest_processes(first, further, said, monkeypatch):
+def test_a_tree_is_slower_only_if_no_pair_of_processes_says_otherwise(pairs, said, monkeypatch):
     """A process may be slow by where it lies in memory, and slow code is so in all of them."""
-    sides = iter([first, *[further] * turns.FURTHER])
+    sides = iter(pairs)
 
     def in_new_processes(before, after, wanted, factor):
         old, new = next(sides)
