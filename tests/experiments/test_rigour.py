@@ -15,6 +15,7 @@ from experiments.results import load, read_json
 from experiments.verdicts import judged
 from tests.experiments.runs import LAWS, write_run
 
+README = Path(__file__).parents[2] / "README.md"
 REFERENCE = Path(__file__).parents[2] / "results" / "reference"
 
 
@@ -80,6 +81,24 @@ def test_the_kept_pairs_of_the_same_code_raised_few_alarms() -> None:
     assert len(kept["pairs"]) >= 20
     assert kept["comparisons"] == sum(row["comparisons"] for row in kept["pairs"]) >= 1000
     assert kept["alarms"] <= LARGEST_SHARE * kept["comparisons"]
+    left_open = sum(row["undetermined"] for row in kept["pairs"])
+    said = f"none in {kept['comparisons']:,}, with {left_open} left open"
+    assert said in " ".join(README.read_text().split())
+
+
+def test_the_kept_check_of_the_same_code_raised_few_alarms() -> None:
+    kept = read_json(REFERENCE / "same_code.json")
+    pairs, turns = same_code.totals(kept["pairs"]), same_code.totals(kept["turns"])
+    assert kept["dirty"] is False
+    assert len(kept["pairs"]) >= 20
+    assert len(kept["turns"]) >= 20
+    assert pairs["comparisons"] >= 1000
+    assert kept["comparisons"] == pairs["comparisons"] + turns["comparisons"]
+    assert kept["alarms"] == pairs["alarms"] + turns["alarms"]
+    assert kept["alarms"] <= LARGEST_SHARE * kept["comparisons"]
+    assert f"{pairs['comparisons']:,} comparisons" in same_code.words(kept)
+    said = f"in {kept['comparisons']:,} comparisons and left {kept['undetermined']} open"
+    assert said in README.read_text()
 
 
 def test_a_run_of_slower_code_is_an_alarm_and_exact_counts_are_left_out(tmp_path: Path) -> None:
