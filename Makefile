@@ -21,7 +21,7 @@ $(INSTALLED): pyproject.toml constraints.txt
 	@$(BIN)/python -c 'import sys, hem.meshlab; sys.exit(hem.meshlab.problem() or 0)'
 	@touch $@
 
-study: $(INSTALLED)  ## measure for some 10 minutes, print table 1, write the report
+study: $(INSTALLED)  ## measure for some 15 minutes, print table 1, write the report
 	@$(BIN)/hem study --profile quick
 	@$(BIN)/hem table
 	@$(BIN)/hem report

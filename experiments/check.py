@@ -27,8 +27,9 @@ TITLES: dict[Outcome, str] = {
 """The outcomes in the order that a reader needs them."""
 
 MOST_OPEN = 0.1
-"""Part of what chance has a say in that may be left open: machines are never quiet all the time,
-and a gate that is never passed is not looked at. Of all else nothing may be."""
+"""Part of what chance has a say in that may be left open, and one in any case if it is not all:
+machines are never quiet all the time, and a gate that is never passed is not looked at. Of all else
+nothing may be."""
 
 VERDICTS: dict[tuple[str, str], Outcome] = {
     ("consistent", "violated"): "worse",
@@ -82,8 +83,8 @@ def code(findings: Iterable[Finding]) -> int:
     if any(it.outcome == "worse" for it in found):
         return 1
     doubtful = [it for it in found if it.outcome == "undetermined"]
-    left_open = sum(it.by_chance for it in doubtful)
-    too_many = left_open > MOST_OPEN * sum(it.by_chance for it in found)
+    left_open, chances = (sum(it.by_chance for it in some) for some in (doubtful, found))
+    too_many = left_open > max(MOST_OPEN * chances, min(1, chances - 1))
     return 2 if left_open < len(doubtful) or too_many else 0
 
 

@@ -17,7 +17,7 @@ from experiments.console import console, errors, user_errors
 Reference = Annotated[Path, typer.Option(help="The folder with what is compared with.")]
 
 FACTOR_HELP = (
-    "How much slower counts as worse. Default: 2 from run to run, 1.15 for two trees by turns."
+    "How many times slower counts as worse; less passes. Default: 2 from run to run, 1.15 by turns."
 )
 
 

@@ -23,8 +23,8 @@ from experiments.verdicts import LEAST_SLOPE, SOURCES
 
 FACTOR = 2.0
 """How much slower a curve must be from run to run. Curves of the same code were measured to differ
-by up to 1.8 between runs: where a process lies in memory makes a query slower at all sizes, and a
-neighbor on the same caches makes some of them slower. Two trees by turns tell much less apart."""
+between runs by up to 1.65 at all sizes, by where the process lies in memory, and by 1.8 at most of
+them, by a neighbor on the same caches. Two trees timed by turns show far smaller slow-downs."""
 
 SLOPE_DRIFT = 0.25
 """How far beyond their intervals slopes of times may differ. Between runs of the same code they

@@ -1,4 +1,4 @@
-"""The books of a study on a cluster: what is to be done, what is on its way, and what came back."""
+"""Bookkeeping for a study on a cluster: what is to be done, on its way, and back."""
 
 from __future__ import annotations
 

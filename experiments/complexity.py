@@ -87,8 +87,8 @@ def judge(
     exact: the costs are counts of work, which no cache slows. With neither latency nor exact, a
     smooth rise of up to `evidence.HIGHEST_RISE` may have happened unseen: what it could explain
     violates nothing, and where it explains the costs better, nothing is confirmed.
-    unseen: such a rise may have happened even beside a latency, as the costs were not of what the
-    latency was measured on.
+    unseen: beside a latency, too, what such a rise could explain violates nothing; for costs of
+    what was found in the caches in another state than what the latency was measured on.
     bound: "tight" takes the claim for the class itself, as a table of growth classes means it;
     "upper" for a bound, which slower growth keeps too.
 
@@ -151,8 +151,9 @@ def _decide(costs: Costs, models: Comparison, claim: int, bound: Bound) -> tuple
         if not rivals:
             return "violated", f"{NAMES[best]} explains the costs, {NAMES[claim]} does not."
     close = ", ".join(NAMES[m] for m in rivals)
-    unseen = " once caches of unknown latency are allowed for" if models.unmeasured else ""
-    reason = f"{NAMES[best]} explains the costs best, but {close} cannot be ruled out{unseen}."
+    bent = models.unmeasured and not (models.told and best in kept)
+    allowed = " once caches that no latency tells of are allowed for" if bent else ""
+    reason = f"{NAMES[best]} explains the costs best, but {close} cannot be ruled out{allowed}."
     return "undetermined", reason
 
 
@@ -173,7 +174,8 @@ def _doubt(costs: Costs, models: Comparison) -> str:
     if costs.scatter > MAX_SCATTER or costs.error.max() > MAX_ERROR:
         return f"Too noisy: the samples of a size scatter by {costs.scatter:.0%}."
     if not models.explained:
-        hint = ", and caches of unknown latency might have bent them" if models.unmeasured else ""
+        unknown = ", and caches that no latency tells of might have bent them"
+        hint = unknown if models.unmeasured else ""
         return f"No class explains the costs: {NAMES[models.best]} comes closest{hint}."
     return ""
 

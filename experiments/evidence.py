@@ -59,7 +59,9 @@ class Caches:
     measured: Rises
     """Rises that the measured latency, or its absence, allows."""
     unmeasured: Rises | None
-    """Rises that are possible besides, because nobody measured."""
+    """Rises that are possible besides, because nobody measured them: they violate nothing."""
+    told: bool
+    """Whether a latency tells what to confirm, or none is needed; unmeasured rises do not count."""
     misfit: float
     """χ² per degree of freedom up to which a model explains the costs."""
     parameters: int
@@ -77,14 +79,14 @@ def account(
     """The costs, with the latency's error added to theirs, and what caches may have done to them.
 
     sizes: (k,) in the order of latency: (k,), or (a, k) for as many possibilities.
-    unseen: whether costs may have risen with caches otherwise than the latency tells.
+    unseen: whether costs may besides have risen in a way that the latency misses.
     """
     unmeasured = None
     if not exact and (latency is None or unseen):
         unmeasured = unknown_rises(costs.sizes, HIGHEST_RISE)
     if latency is None:
         misfit = MISFIT_EXPLAINED if exact else MISFIT
-        return costs, Caches(no_rise(len(costs.sizes)), unmeasured, misfit, 2)
+        return costs, Caches(no_rise(len(costs.sizes)), unmeasured, exact, misfit, 2)
     if exact:
         raise ValueError("exact counts wait for no memory: give either latency or exact")
     waits = np.atleast_2d(np.asarray(latency, dtype=np.float64))
@@ -93,7 +95,7 @@ def account(
     order = np.argsort(np.asarray(sizes, dtype=np.float64), kind="stable")
     rises = any_of([measured_rises(row[order]) for row in waits])
     error = np.sqrt(costs.error**2 + latency_error**2)
-    return replace(costs, error=error), Caches(rises, unmeasured, MISFIT_EXPLAINED, 3)
+    return replace(costs, error=error), Caches(rises, unmeasured, True, MISFIT_EXPLAINED, 3)
 
 
 class Comparison:
@@ -107,7 +109,7 @@ class Comparison:
         self.fit = fit(self.basis, costs.cost, self.weight)
         self.chi2 = self.fit.chi2
         self.clear = self._misfit(caches.measured, CLEAR_GROWTH)
-        self.unmeasured = caches.unmeasured is not None
+        self.unmeasured, self.told = caches.unmeasured is not None, caches.told
         self.excused, self.clear_excused = self.chi2, self.clear
         if caches.unmeasured is not None:
             excused = self._misfit(caches.unmeasured, GROWTH)
@@ -136,13 +138,14 @@ class Comparison:
         return float((PRIOR + self.freedom) * np.log((PRIOR + worse) / (PRIOR + better)))
 
     def confirms(self, claimed: int, rival: int) -> bool:
-        """Whether a claim beats a rival, which unmeasured caches do not make the better one."""
+        """Whether a claim beats a rival that caches of no known latency do not make better."""
         found = self.chi2[claimed]
         if rival < claimed:
             ruled_out = self.evidence(found, self.chi2[rival]) >= AGAINST_SIMPLER
-            return ruled_out and self.excused[rival] >= found
+            return ruled_out and (self.told or self.excused[rival] >= found)
         ruled_out = self.evidence(found, self.clear[rival]) >= AGAINST_COMPLEX
-        return ruled_out and self.clear_excused[rival] >= found and self._no_better(rival, claimed)
+        unbent = self.told or self.clear_excused[rival] >= found
+        return ruled_out and unbent and self._no_better(rival, claimed)
 
     def refutes(self, favored: int, claimed: int) -> bool:
         """Whether a model rules out a claim, even one that unmeasured caches may have bent."""

@@ -40,7 +40,7 @@ def _bare(claim: str) -> str:
 def canonical(claim: str) -> str:
     """Name in `MODELS` of a claim as papers spell it: "O(n_ev)" is "O(n)", "O(sqrt n)" is "O(√n)".
 
-    Raises ValueError for a class that is not modelled.
+    Raises ValueError for a class that is not modeled.
     """
     for name in NAMES:
         if _bare(name) == _bare(claim):

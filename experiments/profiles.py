@@ -103,7 +103,7 @@ PROFILES = {
         latency_mib=1,
     ),
     "quick": Profile(
-        what="one family up to 100,000 vertices, some 10 minutes",
+        what="one family up to 100,000 vertices, some 15 minutes",
         families=("torus",),
         sizes=_geometric(100, 100_000, 2),
         orders=("random", "consecutive"),

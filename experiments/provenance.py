@@ -65,7 +65,7 @@ def machine() -> dict[str, Any]:
 
 
 def in_words(run: Run) -> str:
-    """What a run was, by whom it was measured, and how calm it was there."""
+    """What a run was, where it was measured, and how calm it was there."""
     meta = run.meta
     versions = ", ".join(f"{name} {number}" for name, number in meta.get("versions", {}).items())
     state = {True: " with changes that are not committed", False: "", None: ""}[meta.get("dirty")]

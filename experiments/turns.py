@@ -1,8 +1,8 @@
 """Two trees timed by turns, so that whatever slows the machine slows both.
 
-Each tree has a process of its own; they answer the same query a round at a time, one after the
-other, with a fixed piece of work timed beside every round. That tells a slow-down of a fifth that
-no two runs apart could show.
+Each tree has a process of its own, some one after another; a pair of them answers the same query a
+round at a time, one after the other, with a fixed piece of work timed beside every round. That
+tells a slow-down of a fifth that no two runs apart could show.
 """
 
 from __future__ import annotations
@@ -28,11 +28,15 @@ ROUNDS = 24
 MOST_ROUNDS = 96
 ROUND_SECONDS = 0.002
 
-FURTHER = 4
-"""Pairs of processes in which a query is timed again that was not as before in the first. Where a
-process happens to lie in memory alone was measured to make a query slower by 1.6, in two of ten
-processes of the same code (compare Mytkowicz et al., Producing wrong data without doing anything
-obviously wrong, ASPLOS 2009): so a tree is slower only if no pair says otherwise."""
+PAIRS, FURTHER = 2, 3
+"""Pairs of processes that time a query, and how many more where one of the first does not find it
+as before. Where a process happens to lie in memory alone was measured to make a query slower by
+1.6, in two of ten processes of the same code (compare Mytkowicz et al., Producing wrong data
+without doing anything obviously wrong, ASPLOS 2009): so a tree is slower only if no pair says
+otherwise."""
+
+STRAYS = 1
+"""Pairs that may say otherwise where most say that a query is as before."""
 
 WORKER = """
 import json, sys
@@ -69,9 +73,10 @@ for line in sys.stdin:
 def compare_trees(
     before: Path, after: Path, structures: Sequence[str] = (), factor: float = FACTOR
 ) -> list[Finding]:
-    """Time every query of the compiled structures in both trees, some two minutes at most.
+    """Time every query of the compiled structures in both trees, usually in a minute or two.
 
-    Raises ValueError where ``before`` is no tree; what does not run there cannot be told.
+    A tree that never ran compiles first. Raises ValueError where ``before`` is no tree; what does
+    not run there cannot be told.
     """
     if not (before / "hem" / "__init__.py").exists():
         raise ValueError(f"--beside {before} is no checkout: there is no hem/__init__.py in it")
@@ -84,71 +89,67 @@ def compare_trees(
     if not wanted:
         why = f"none of {', '.join(structures)} is compiled, so there is nothing to time by turns"
         return [Finding("undetermined", "time", "turns", "", "", why)]
-    pairs = {it: [pair] for it, pair in _in_new_processes(before, after, wanted, factor)}
-    doubtful = [it for it in wanted if _judged(*it, pairs[it], factor).outcome != "same"]
+    pairs: dict[tuple[str, str], list[Pair | str]] = {it: [] for it in wanted}
+    for _ in range(PAIRS):
+        for it, pair in _in_new_processes(before, after, wanted, factor):
+            pairs[it].append(pair)
+    doubtful = [it for it in wanted if _in_doubt(pairs[it])]
     for _ in range(FURTHER):
         for it, pair in _in_new_processes(before, after, doubtful, factor):
             pairs[it].append(pair)
-    return [_judged(*it, pairs[it], factor) for it in wanted]
+    return [_judged(*it, pairs[it]) for it in wanted]
 
 
-class Timed(NamedTuple):
-    """A query in a process: seconds per round, the probe's beside them, handles that a round asks.
+class Pair(NamedTuple):
+    """What two processes, one of each tree, say of a query; their median seconds per handle."""
 
-    error: why it could not be timed, or empty.
-    """
-
-    samples: list[float]
-    probe: list[float]
-    handles: int
-    error: str = ""
+    compared: Comparison
+    before: float
+    after: float
 
 
-Pair = tuple[Timed, Timed]
+def _in_doubt(pairs: Sequence[Pair | str]) -> bool:
+    """Whether further pairs could tell more: not where one could not be timed."""
+    timed = [it for it in pairs if not isinstance(it, str)]
+    return len(timed) == len(pairs) and any(it.compared.outcome != "same" for it in timed)
 
 
-def _judged(name: str, query: str, pairs: Sequence[Pair], factor: float) -> Finding:
-    """What most pairs of processes say; a tree is slower or faster if besides none says otherwise.
+def _judged(name: str, query: str, pairs: Sequence[Pair | str]) -> Finding:
+    """What more than half of the pairs say, if not too many others say another thing.
 
-    A pair that failed is not passed over.
+    Others may be undetermined. One that could not be timed is not passed over.
     """
     where = f"turns/{name}/{query}/torus/{VERTICES}/consecutive"
-    errors = [it.error for pair in pairs for it in pair if it.error]
+    errors = [it for it in pairs if isinstance(it, str)]
     if errors:
         why = f"could not be timed: {errors[0]}"
         return Finding("undetermined", "time", where, "", "", why, claim_of(where))
-    found = [compare(it.samples, to.samples, it.probe, to.probe, factor) for it, to in pairs]
-    said = Counter(it.outcome for it in found)
+    timed = sorted((it for it in pairs if isinstance(it, Pair)), key=lambda it: it.compared.ratio)
+    said = Counter(it.compared.outcome for it in timed)
     outcome, most = said.most_common(1)[0]
-    agreed = outcome == "same" or most + said["undetermined"] == len(found)
-    decided = outcome if agreed and 2 * most > len(found) else "undetermined"
-    middle = sorted(range(len(found)), key=lambda i: found[i].ratio)[len(found) // 2]
-    old, new = (f"{1e9 * np.median(it.samples) / it.handles:.3g} ns" for it in pairs[middle])
-    return Finding(decided, "time", where, old, new, _why(found, middle), claim_of(where))
-
-
-def _why(found: Sequence[Comparison], middle: int) -> str:
-    it = found[middle]
-    words = f"× {it.ratio:.3f}, 95 % [{it.low:.3f}, {it.high:.3f}], p = {it.p:.1g}"
-    if len(found) == 1:
-        return words
-    said = Counter(it.outcome for it in found).most_common()
-    return f"{words}; processes: {', '.join(f'{count} {it}' for it, count in said)}"
+    others = len(timed) - most - said["undetermined"]
+    agreed = others <= (STRAYS if outcome == "same" else 0) and 2 * most > len(timed)
+    decided = outcome if agreed else "undetermined"
+    middle = timed[len(timed) // 2]
+    old, new = (f"{1e9 * it:.3g} ns" for it in (middle.before, middle.after))
+    it = middle.compared
+    why = f"× {it.ratio:.3f}, 95 % [{it.low:.3f}, {it.high:.3f}], p = {it.p:.1g}; pairs: "
+    why += ", ".join(f"{count} {it}" for it, count in said.most_common())
+    return Finding(decided, "time", where, old, new, why, claim_of(where))
 
 
 def _in_new_processes(
     before: Path, after: Path, wanted: Sequence[tuple[str, str]], factor: float
-) -> Iterator[tuple[tuple[str, str], Pair]]:
-    """Time in a new process of each tree."""
+) -> Iterator[tuple[tuple[str, str], Pair | str]]:
+    """Time in a new process of each tree -> by query what they say, or why they could not."""
     with ExitStack() as stack:
         workers = [stack.enter_context(_worker(tree)) for tree in (before, after) if wanted]
         for name, query in wanted:
             try:
-                pair = _by_turns(workers, name, query, factor)
+                found: Pair | str = _by_turns(workers, name, query, factor)
             except (OSError, ValueError) as error:
-                failed = Timed([], [], 0, str(error))
-                pair = failed, failed
-            yield (name, query), pair
+                found = str(error)
+            yield (name, query), found
 
 
 def _by_turns(workers: Sequence[Worker], name: str, query: str, factor: float) -> Pair:
@@ -157,16 +158,17 @@ def _by_turns(workers: Sequence[Worker], name: str, query: str, factor: float) -
     times = max(1, round(ROUND_SECONDS / once))
     for worker in workers:
         worker.ask(times=times, query=query)
-    old, new = (Timed([], [], times * _handles(query)) for _ in workers)
+    samples: list[list[float]] = [[], []]
+    probes: list[list[float]] = [[], []]
     while True:
         for k in range(2 * ROUNDS):
             which = (k + k // 2) % 2  # neither is always the first: 0 1 1 0
             sample, probe = workers[which].ask(query=query)
-            (old, new)[which].samples.append(sample)
-            (old, new)[which].probe.append(probe)
-        found = compare(old.samples, new.samples, old.probe, new.probe, factor)
-        if found.outcome != "undetermined" or len(old.samples) >= MOST_ROUNDS:
-            return old, new
+            samples[which].append(sample / (times * _handles(query)))
+            probes[which].append(probe)
+        found = compare(samples[0], samples[1], probes[0], probes[1], factor)
+        if found.outcome != "undetermined" or len(samples[0]) >= MOST_ROUNDS:
+            return Pair(found, *(float(np.median(it)) for it in samples))
 
 
 def _handles(query: str) -> int:

@@ -130,7 +130,7 @@ class Evidence:
         # What reads nothing at all costs something all the same: the call.
         samples = [np.maximum(it, 1) if exact else it for it in cells["samples"]]
         latency = None if exact else self.latencies(cells)
-        # A batch finds its mesh half in the caches, as it was copied just before: see `operating`.
+        # A batch's mesh was written just before, see `operating.Bench.restore`.
         unseen = claim.table == "operations" and variable == "faces"
         expected = claim.expected.get(variable, "O(1)")
         bound: Bound = "upper" if expected.startswith(BOUND) else "tight"

@@ -17,7 +17,7 @@ from experiments.check_shown import as_json, as_markdown
 from experiments.exact import Exact, measure
 from experiments.reference import SCHEMA, load_exact, measured, save_exact, save_measured
 from experiments.results import load
-from experiments.turns import compare_trees
+from experiments.significance import Comparison
 from experiments.verdicts import judged, save
 from hem.queries import QUERIES
 from tests.experiments.runs import LAWS, write_run
@@ -178,6 +178,16 @@ def test_a_curve_is_not_as_before_where_some_of_it_is_slower(before, slower):
     assert of_curve(before, times).outcome == ("undetermined" if slower == 2 else "same")
 
 
+@pytest.mark.parametrize(("times", "said"), [(1.6, "same"), (2.5, "worse"), (0.4, "better")])
+def test_from_run_to_run_a_curve_must_be_twice_as_slow(before, times, said):
+    keys = random_cells(before)
+    scaled = {
+        key: {**it, "samples": [times * sample for sample in it["samples"]]} if key in keys else it
+        for key, it in before.times.items()
+    }
+    assert of_curve(before, scaled).outcome == said
+
+
 def test_a_timed_cell_that_is_gone_is_missed(before):
     lost = random_cells(before)[0]
     found = of_curve(before, {key: it for key, it in before.times.items() if key != lost})
@@ -191,6 +201,9 @@ def test_chance_may_leave_a_tenth_open_and_nothing_else_may_be():
     assert code(closed + 2 * left_open) == 0
     assert code(closed + 3 * left_open) == 2
     assert code(closed + missing) == 2
+    assert code(closed[:8] + left_open) == 0
+    assert code(closed[:8] + 2 * left_open) == 2
+    assert code(left_open) == 2
 
 
 def test_of_another_python_the_bytes_of_objects_are_left_out_in_runs_as_well():
@@ -199,7 +212,7 @@ def test_of_another_python_the_bytes_of_objects_are_left_out_in_runs_as_well():
 
 
 def test_what_is_not_compiled_cannot_be_timed_beside_a_tree():
-    assert code(compare_trees(HERE, HERE, ["half_edge_objects"])) == 2
+    assert code(turns.compare_trees(HERE, HERE, ["half_edge_objects"])) == 2
 
 
 def test_times_of_another_machine_are_left_out_and_that_is_said(before):
@@ -288,55 +301,47 @@ def test_a_worse_structure_fails_the_command_and_shows_the_numbers(reference, tm
 
 
 def test_a_tree_beside_itself_is_timed_and_not_worse():
-    found = compare_trees(HERE, HERE, ["indexed"])
+    found = turns.compare_trees(HERE, HERE, ["indexed"])
     assert [it.where.split("/")[2] for it in found] == list(QUERIES)
     assert outcomes(found) <= {"same", "undetermined"}
     assert all(it.before.endswith(" ns") and it.after.endswith(" ns") for it in found)
 
 
-def timed(nanoseconds: float) -> turns.Timed:
-    samples = [1e-9 * nanoseconds * (1 + 0.01 * (i * 7 % 5)) for i in range(turns.ROUNDS)]
-    return turns.Timed(samples, [1e-6] * turns.ROUNDS, 1)
+def pair(outcome: str, ratio: float = 1.0) -> turns.Pair:
+    return turns.Pair(Comparison(outcome, ratio, ratio, ratio, 0.0), 1e-8, 1e-8 * ratio)
 
 
-AS_BEFORE, SLOWER, FASTER = (10, 10), (10, 16), (16, 10)
+AS_BEFORE, OPEN = pair("same"), pair("undetermined", 1.1)
+SLOWER, FASTER = pair("worse", 1.6), pair("better", 0.6)
 
 
 @pytest.mark.parametrize(
     ("pairs", "said"),
     [
-        ([AS_BEFORE, *[SLOWER] * 4], "same"),  # it is not asked again
+        ([AS_BEFORE, AS_BEFORE, SLOWER, SLOWER, SLOWER], "same"),  # the last ones are not asked
         ([SLOWER] * 5, "worse"),
         ([FASTER] * 5, "better"),
-        ([SLOWER, AS_BEFORE, AS_BEFORE, FASTER, AS_BEFORE], "same"),
+        ([SLOWER, OPEN, SLOWER, SLOWER, OPEN], "worse"),
+        ([SLOWER, OPEN, SLOWER, OPEN, OPEN], "undetermined"),
         ([SLOWER, SLOWER, SLOWER, SLOWER, AS_BEFORE], "undetermined"),
         ([SLOWER, SLOWER, FASTER, SLOWER, SLOWER], "undetermined"),
+        ([SLOWER, AS_BEFORE, AS_BEFORE, OPEN, AS_BEFORE], "same"),
+        ([SLOWER, AS_BEFORE, AS_BEFORE, SLOWER, AS_BEFORE], "undetermined"),
+        ([AS_BEFORE, "it ended", *[AS_BEFORE] * 3], "undetermined"),
     ],
 )
 def test_a_tree_is_slower_only_if_no_pair_of_processes_says_otherwise(pairs, said, monkeypatch):
     """A process may be slow by where it lies in memory, and slow code is so in all of them."""
-    sides = iter(pairs)
+    rest = iter(pairs)
 
     def in_new_processes(before, after, wanted, factor):
-        old, new = next(sides)
-        return [(it, (timed(old), timed(new))) for it in wanted]
+        found = next(rest)
+        return [(it, found) for it in wanted]
 
     monkeypatch.setattr(turns, "_in_new_processes", in_new_processes)
-    assert outcomes(compare_trees(HERE, HERE, ["indexed"])) == {said}
-
-
-def test_a_process_that_fails_is_not_passed_over(monkeypatch):
-    failed = turns.Timed([], [], 0, "it ended")
-    sides = iter([(timed(10), timed(16)), (failed, failed), *[(timed(10), timed(10))] * 3])
-
-    def in_new_processes(before, after, wanted, factor):
-        pair = next(sides)
-        return [(it, pair) for it in wanted]
-
-    monkeypatch.setattr(turns, "_in_new_processes", in_new_processes)
-    found = compare_trees(HERE, HERE, ["indexed"])
-    assert outcomes(found) == {"undetermined"}
-    assert all("could not be timed: it ended" in it.why for it in found)
+    found = turns.compare_trees(HERE, HERE, ["indexed"])
+    assert outcomes(found) == {said}
+    assert "it ended" not in pairs or "could not be timed: it ended" in found[0].why
 
 
 def test_a_tree_that_cannot_be_timed_is_no_pass(reference, tmp_path):

@@ -13,7 +13,7 @@ from experiments.table import by_title, found, markdown, show
 from experiments.verdicts import judged, save
 from hem.queries import QUERIES
 from structures import NAMES
-from tests.experiments.runs import LAWS, write_run
+from tests.experiments.runs import LAWS, SIZES, write_run
 
 PRINTED = {
     "memory": ["36", "116", "228", "228", "N/A", "N/A"],
@@ -64,6 +64,19 @@ def test_what_grows_otherwise_is_violated(tmp_path, printed, really):
     rows = judged(run).query("printed == @printed and table != 'listings'")
     expected = {"consistent"} if printed == really else {"violated"}
     assert set(rows["outcome"]) == set(rows["outcome_work"]) == expected
+
+
+@pytest.mark.parametrize(
+    ("table", "said"), [("queries", "violated"), ("operations", "undetermined")]
+)
+def test_a_rise_beyond_the_latency_is_held_against_queries_and_not_against_batches(
+    tmp_path, table, said
+):
+    """Whose mesh was written just before: no chase of it tells what they wait for."""
+    risen = dict(zip(SIZES, [5, 5, 5, 5, 5.5, 12, 30], strict=True))
+    run = load(write_run(tmp_path, lambda s, q, p: lambda n_t, n_ev: risen.get(n_t, 5.0)))
+    rows = judged(run).query("printed == 'O(1)' and table == @table")
+    assert set(rows["outcome_time"]) == {said}
 
 
 def test_a_byte_too_many_is_a_violation(tmp_path):

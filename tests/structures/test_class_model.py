@@ -115,7 +115,7 @@ def test_a_vertex_tells_when_it_has_moved():
     assert s.points[2].tolist() == [0, 0, 4]
 
 
-def test_behaviours_split_and_remember_what_they_made():
+def test_behaviors_split_and_remember_what_they_made():
     s = objects(octahedron())
     edges, faces = EdgeSplittingBehaviour(s), FaceSplittingBehaviour(s)
     vertex = edges.split_half_edge(s.half_edges[0], (1, 1, 0))

@@ -72,7 +72,7 @@ def pair(s, edge):
 def answer(s, query, handle):
     found = getattr(s, query)(handle)
     names = [pair(s, e) for e in found] if query.endswith("edges") else [int(x) for x in found]
-    assert len(names) == len(set(names)), f"{query}({handle}) repeats a neighbour"
+    assert len(names) == len(set(names)), f"{query}({handle}) repeats a neighbor"
     return set(names)
 
 
