@@ -96,6 +96,7 @@ def judge(
     the sizes: a neighbor who took the machine for some milliseconds spoils a cell, not the curve.
     Growth below `evidence.GROWTH` over the sizes is taken for O(1): beside so large an intercept
     no class shows. Beside a tenfold slowdown by caches, growth below 1.5 may be missed as well.
+    Times that grow by less than `evidence.ACCUSING_GROWTH` violate no claim of slower growth.
     The same input gives the same verdict. Takes milliseconds. Raises ValueError for malformed
     input; data that are too few or too noisy are "undetermined".
     """

@@ -44,6 +44,9 @@ GROWTH = 1.3
 """Factor by which a model must grow over the sizes, intercept included, to be told from O(1) …"""
 CLEAR_GROWTH = 2.1
 """… and by which it would have to grow to be rejected in favor of a simpler one."""
+ACCUSING_GROWTH = 2.0
+"""Factor by which times must grow over the sizes to violate a claim of slower growth: cells of the
+same code were measured to differ by 1.8 where neighbors share the caches."""
 HIGHEST_RISE = 12.0
 """Slowdown over the sizes that unmeasured caches are reckoned with."""
 MISFIT = 2.5
@@ -61,7 +64,9 @@ class Caches:
     unmeasured: Rises | None
     """Rises that are possible besides, because nobody measured them: they violate nothing."""
     told: bool
-    """Whether a latency tells what to confirm, or none is needed; unmeasured rises do not count."""
+    """Whether a latency tells what to confirm, or none is needed; else `unmeasured` casts doubt."""
+    accusing: float
+    """Growth over the sizes from which on a model violates a simpler claim."""
     misfit: float
     """χ² per degree of freedom up to which a model explains the costs."""
     parameters: int
@@ -85,8 +90,14 @@ def account(
     if not exact and (latency is None or unseen):
         unmeasured = unknown_rises(costs.sizes, HIGHEST_RISE)
     if latency is None:
-        misfit = MISFIT_EXPLAINED if exact else MISFIT
-        return costs, Caches(no_rise(len(costs.sizes)), unmeasured, exact, misfit, 2)
+        return costs, Caches(
+            no_rise(len(costs.sizes)),
+            unmeasured,
+            told=exact,
+            accusing=1.0 if exact else ACCUSING_GROWTH,
+            misfit=MISFIT_EXPLAINED if exact else MISFIT,
+            parameters=2,
+        )
     if exact:
         raise ValueError("exact counts wait for no memory: give either latency or exact")
     waits = np.atleast_2d(np.asarray(latency, dtype=np.float64))
@@ -95,7 +106,14 @@ def account(
     order = np.argsort(np.asarray(sizes, dtype=np.float64), kind="stable")
     rises = any_of([measured_rises(row[order]) for row in waits])
     error = np.sqrt(costs.error**2 + latency_error**2)
-    return replace(costs, error=error), Caches(rises, unmeasured, True, MISFIT_EXPLAINED, 3)
+    return replace(costs, error=error), Caches(
+        rises,
+        unmeasured,
+        told=True,
+        accusing=ACCUSING_GROWTH,
+        misfit=MISFIT_EXPLAINED,
+        parameters=3,
+    )
 
 
 class Comparison:
@@ -108,6 +126,8 @@ class Comparison:
         self.basis = basis(costs.sizes, caches.measured, GROWTH)
         self.fit = fit(self.basis, costs.cost, self.weight)
         self.chi2 = self.fit.chi2
+        _, steady = predict(self.basis, self.fit)
+        self.accuses = steady.max(axis=1) >= caches.accusing * steady.min(axis=1)
         self.clear = self._misfit(caches.measured, CLEAR_GROWTH)
         self.unmeasured, self.told = caches.unmeasured is not None, caches.told
         self.excused, self.clear_excused = self.chi2, self.clear
@@ -151,7 +171,8 @@ class Comparison:
         """Whether a model rules out a claim, even one that unmeasured caches may have bent."""
         found = self.chi2[favored]
         if claimed < favored:
-            return self.evidence(found, self.excused[claimed]) >= AGAINST_SIMPLER
+            ruled_out = self.evidence(found, self.excused[claimed]) >= AGAINST_SIMPLER
+            return ruled_out and bool(self.accuses[favored])
         ruled_out = self.evidence(found, self.clear_excused[claimed]) >= AGAINST_COMPLEX_CLAIM
         return ruled_out and self._no_better(claimed, favored)
 

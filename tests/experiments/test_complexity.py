@@ -118,9 +118,8 @@ def test_a_tenfold_rise_violates_constant_time_only_beyond_the_latency() -> None
 
 def test_a_rise_that_the_latency_may_not_tell_accuses_nobody() -> None:
     sizes = np.geomspace(100, 1_000_000, 8)
-    rise = np.array([1, 1, 1, 1, 1, 1.2, 3, 6])
-    saturated = np.array([1, 2, 2, 4, 9, 40, 60, 65])
-    risen = [[20 * r] * 7 for r in rise]
+    saturated = np.array([1, 2, 3, 3, 3, 3, 3, 3])
+    risen = [[20 * r] * 7 for r in (1, 1, 1, 1.2, 1.5, 2.2, 4, 8)]
     linear = [[20 + 0.01 * n] * 7 for n in sizes]
     level = [[20 * (1 + 0.01 * (i % 2))] * 7 for i in range(8)]
     assert judge(sizes, risen, "O(1)", saturated).outcome == "violated"
@@ -128,6 +127,16 @@ def test_a_rise_that_the_latency_may_not_tell_accuses_nobody() -> None:
     assert judge(sizes, linear, "O(1)", saturated, unseen=True).outcome == "violated"
     assert judge(sizes, linear, "O(n)", saturated, unseen=True).outcome == "consistent"
     assert judge(sizes, level, "O(1)", saturated, unseen=True).outcome == "consistent"
+
+
+@pytest.mark.parametrize(("last", "said"), [(1.6, "undetermined"), (2.6, "violated")])
+def test_times_accuse_only_of_more_than_neighbors_do(last: float, said: str) -> None:
+    sizes = 2.0 ** np.arange(2, 13)
+    growth = 1 + (last - 1) * sizes / sizes[-1]
+    times = [[g * (1 + 0.01 * (i % 3)) for i in range(9)] for g in growth]
+    counts = [[round(1000 * g)] for g in growth]
+    assert judge(sizes, times, "O(1)", np.ones(11)).outcome == said
+    assert judge(sizes, counts, "O(1)", exact=True).outcome == "violated"
 
 
 def test_small_valences_with_an_intercept_are_linear() -> None:
