@@ -11,8 +11,7 @@ from typing import NamedTuple
 
 import pandas as pd
 
-from experiments import answers, board, html, pdf
-from experiments.chapters import CHAPTERS, bodies
+from experiments import answers, board, chapters, html, pdf
 from experiments.claims import TABLES
 from experiments.entries import Entry, entries
 from experiments.page import page, static
@@ -53,7 +52,7 @@ def write(run_folder: Path, output: Path) -> Path:
         front = page(TITLE, parts.front + parts.claims + parts.back, _links(), static("board.js"))
         (fresh / f"{FRONT}.html").write_text(front, "utf-8")
         for name, body in parts.chapters.items():
-            text = page(CHAPTERS[name], body, _links())
+            text = page(chapters.CHAPTERS[name], body, _links())
             (fresh / f"{name}.html").write_text(text, "utf-8")
         board.write_files(parts.entries, fresh)
         _replace(output, fresh)
@@ -79,7 +78,7 @@ def write_pdf(run_folder: Path, output: Path) -> Path:
 
 def _require_replaceable(output: Path) -> None:
     """Raise ResultsError unless there is nothing at ``output``, or a report, to be replaced."""
-    known = {f"{name}.html" for name in (FRONT, *CHAPTERS)} | {"claims"}
+    known = {f"{name}.html" for name in (FRONT, *chapters.CHAPTERS)} | {"claims"}
     if output.exists() and not (
         output.is_dir() and all(it.name in known for it in output.iterdir())
     ):
@@ -113,7 +112,7 @@ def _parts(run: Run, run_folder: Path) -> Parts:
         save(run, table)
     every = entries(run, table)
     front, claims, back = _front(run, table), _claims(every), _back(run)
-    return Parts(front, claims, back, bodies(run_folder), every)
+    return Parts(front, claims, back, chapters.bodies(run_folder), every)
 
 
 @contextmanager
@@ -127,7 +126,10 @@ def _beside(output: Path, name: str) -> Iterator[Path]:
 
 
 def _links() -> dict[str, str]:
-    return {TITLE: f"{FRONT}.html", **{title: f"{it}.html" for it, title in CHAPTERS.items()}}
+    return {
+        TITLE: f"{FRONT}.html",
+        **{title: f"{it}.html" for it, title in chapters.CHAPTERS.items()},
+    }
 
 
 def _front(run: Run, table: pd.DataFrame) -> str:
@@ -144,16 +146,16 @@ def _front(run: Run, table: pd.DataFrame) -> str:
 
 
 def _claims(every: list[Entry]) -> str:
-    return f'<h2 id="claims">All claims</h2>{UNFOLDING}{board.board(every, CHAPTERS)}'
+    return f'<h2 id="claims">All claims</h2>{UNFOLDING}{board.board(every, chapters.CHAPTERS)}'
 
 
 def _back(run: Run) -> str:
     """The way on, and what was run."""
-    chapters = "".join(
-        f'<li><a href="{it}.html">{title}</a></li>' for it, title in CHAPTERS.items()
+    listed = "".join(
+        f'<li><a href="{it}.html">{title}</a></li>' for it, title in chapters.CHAPTERS.items()
     )
     return (
-        f'<div class="no-print"><h2>The chapters</h2><ol class="cards">{chapters}</ol></div>'
+        f'<div class="no-print"><h2>The chapters</h2><ol class="cards">{listed}</ol></div>'
         f"<h2>The run</h2><p>{escape(in_words(run))}</p>{_left_out(run)}"
     )
 

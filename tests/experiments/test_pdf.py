@@ -8,7 +8,7 @@ import stat
 import pytest
 from typer.testing import CliRunner
 
-from experiments import pdf, report
+from experiments import chapters, pdf, report
 from experiments.cli import app
 from tests.experiments.runs import write_run
 
@@ -78,7 +78,7 @@ def test_the_document_is_printed_on_as_many_sheets_as_it_has_parts(tmp_path):
 
 @installed
 def test_a_report_is_printed_with_all_its_claims(tmp_path, monkeypatch):
-    monkeypatch.setattr(report, "CHAPTERS", {})  # the notebooks have their own test
+    monkeypatch.setattr(chapters, "CHAPTERS", {})  # the notebooks have their own test
     folder = write_run(tmp_path / "run")
     content = report.write_pdf(folder, tmp_path / "it.pdf").read_bytes()
     assert len(re.findall(rb"/Type\s*/Page\b", content)) > 15
