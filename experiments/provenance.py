@@ -9,13 +9,10 @@ import sys
 from datetime import UTC, datetime
 from importlib.metadata import version
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from experiments.noise import noise
-from experiments.results import SCHEMA
-
-if TYPE_CHECKING:
-    from experiments.results import Run
+from experiments.results import SCHEMA, Run
 
 LIBRARIES = ("numpy", "numba", "scipy", "pandas", "pymeshlab", "pytest-benchmark")
 
@@ -81,11 +78,11 @@ def in_words(run: Run) -> str:
 def _measured_by(run: Run) -> str:
     if run.machines:
         return f"Measured by {len(run.machines)} machines, whose times are not compared"
-    machine = run.meta.get("machine", {})
-    caches = ", ".join(f"{level} {size}" for level, size in machine.get("caches", {}).items())
+    it = run.meta.get("machine", {})
+    caches = ", ".join(f"{level} {size}" for level, size in it.get("caches", {}).items())
     return (
-        f"{machine.get('cores')} cores of {machine.get('cpu')} ({caches}), "
-        f"{machine.get('memory_bytes', 0) / 2**30:.0f} GiB, {machine.get('platform')}"
+        f"{it.get('cores')} cores of {it.get('cpu')} ({caches}), "
+        f"{it.get('memory_bytes', 0) / 2**30:.0f} GiB, {it.get('platform')}"
     )
 
 
