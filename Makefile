@@ -18,7 +18,7 @@ $(INSTALLED): pyproject.toml constraints.txt
 	@echo "Setting up $(VENV) (a minute or two)"
 	@test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
 	@$(PIP) install --editable '.[dev]' --constraint constraints.txt
-	@$(BIN)/python -c 'import sys, hem.meshlab; sys.exit(hem.meshlab.problem() or 0)'
+	@$(BIN)/python -c 'import sys, hem.sources.meshlab; sys.exit(hem.sources.meshlab.problem() or 0)'
 	@touch $@
 
 study: $(INSTALLED)  ## measure for some 15 minutes, print table 1, write the report
@@ -31,14 +31,14 @@ test: $(INSTALLED)  ## run all tests, on every core
 	@$(BIN)/python -m pytest tests -n auto --dist loadfile --no-loadscope-reorder
 
 demo: $(INSTALLED)  ## break some models, for two minutes, and make a page to watch it on
-	@$(BIN)/python -m experiments.demo
+	@$(BIN)/python -m experiments.cli.demo
 
 soak: $(INSTALLED)  ## operate at random on every structure, 100,000 times; break a hundred times
 	@$(BIN)/python -m tests.structures.soak
 	@$(BIN)/python -m tests.hem.fracture.soak
 
 mutants: $(INSTALLED)  ## inject faults into a copy of the sources; hem check must catch each
-	@$(BIN)/python -m experiments.mutants
+	@$(BIN)/python -m experiments.validation.mutants
 
 check: $(INSTALLED)  ## check format, style and types
 	@$(BIN)/ruff format --check .
@@ -51,7 +51,7 @@ format: $(INSTALLED)  ## format the code
 
 peers: $(INSTALLED)  ## compare with OpenMesh, libigl, MeshLib, trimesh and COMPAS
 	@$(PIP) install --editable '.[peers]' --constraint constraints.txt
-	@$(BIN)/python -m experiments.peers
+	@$(BIN)/python -m experiments.validation.peers
 
 test-floor:  ## run all tests with the oldest versions that are supported
 	@test -x $(VENV)-floor/bin/python || $(PYTHON) -m venv $(VENV)-floor

@@ -16,13 +16,13 @@ from numpy.typing import NDArray
 
 import structures
 from experiments.conftest import Keep
-from experiments.latency import latency_now
-from experiments.profiles import Profile
-from experiments.subjects import Cell
+from experiments.harness.cases import Cell
+from experiments.harness.latency import latency_now
+from experiments.harness.presets import Profile
+from hem.contract.structure import Structure
 from hem.fracture import MATERIALS, Material, nearest_face, scanned, shatter
-from hem.fracture.breaking import JUMP
-from hem.fracture.nearest import Found
-from hem.structure import Structure
+from hem.fracture.surface.breaking import JUMP
+from hem.fracture.surface.nearest import Found
 from structures import NAMES as STRUCTURES
 
 Array = NDArray[Any]

@@ -10,10 +10,10 @@ from typing import Any
 import numpy as np
 
 from experiments.conftest import Keep
-from experiments.latency import LINE, WORDS, chase, random_cycle
-from experiments.profiles import Profile
-from experiments.results import CellResult
-from experiments.subjects import Cell
+from experiments.harness.cases import Cell
+from experiments.harness.latency import LINE, WORDS, chase, random_cycle
+from experiments.harness.presets import Profile
+from experiments.runs.results import CellResult
 
 STRUCTURES = ("machine",)
 

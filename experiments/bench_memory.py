@@ -8,8 +8,8 @@ import numpy as np
 
 import structures
 from experiments.conftest import Keep
-from experiments.profiles import Profile
-from experiments.subjects import Cell
+from experiments.harness.cases import Cell
+from experiments.harness.presets import Profile
 from structures import NAMES as STRUCTURES
 from structures.half_edge_objects import HalfEdgeMesh
 

@@ -7,11 +7,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from experiments.claims import OPERATIONS
+from experiments.claims.growth import OPERATIONS
 from experiments.conftest import Keep
-from experiments.operating import arguments, faces_of, validate
-from experiments.profiles import Profile
-from experiments.subjects import Cell
+from experiments.harness.cases import Cell
+from experiments.harness.operations import arguments, faces_of, validate
+from experiments.harness.presets import Profile
 from structures import NAMES as STRUCTURES
 
 REPETITIONS = 3

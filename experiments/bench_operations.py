@@ -13,12 +13,12 @@ from typing import Any
 import numpy as np
 
 import hem
-from experiments.claims import OPERATIONS
+from experiments.claims.growth import OPERATIONS
 from experiments.conftest import Keep
-from experiments.operating import NOT_SCANNED, arguments, faces_of, time_operations
-from experiments.profiles import HUBS, Profile
-from experiments.subjects import Cell
-from hem.structure import Structure
+from experiments.harness.cases import Cell
+from experiments.harness.operations import NOT_SCANNED, arguments, faces_of, time_operations
+from experiments.harness.presets import HUBS, Profile
+from hem.contract.structure import Structure
 from structures import NAMES as STRUCTURES
 
 FEWEST_HUBS = 64

@@ -15,12 +15,12 @@ from numpy.typing import NDArray
 
 import structures
 from experiments.conftest import Keep
-from experiments.latency import latency_now
-from experiments.operating import faces_of
-from experiments.profiles import Profile
-from experiments.results import CellResult
-from experiments.subjects import Cell
-from hem.mesh import TriangleMesh
+from experiments.harness.cases import Cell
+from experiments.harness.latency import latency_now
+from experiments.harness.operations import faces_of
+from experiments.harness.presets import Profile
+from experiments.runs.results import CellResult
+from hem.meshes.triangles import TriangleMesh
 from structures.as_printed import AsPrinted, render_arrays
 from structures.half_edge_objects import HalfEdgeMesh, HalfEdgeMeshBuilder, fields_accessed
 

@@ -10,11 +10,11 @@ from typing import Any
 import numpy as np
 
 from experiments.conftest import Keep
-from experiments.profiles import Profile
-from experiments.subjects import Cell, pool
-from experiments.timing import TooSlowError, time_query
-from experiments.truth import check
-from hem.queries import QUERIES
+from experiments.harness.cases import Cell, pool
+from experiments.harness.oracle import check
+from experiments.harness.presets import Profile
+from experiments.harness.timer import TooSlowError, time_query
+from hem.contract.queries import QUERIES
 from structures import NAMES as STRUCTURES
 
 CHECKED_HANDLES = 3

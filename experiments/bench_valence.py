@@ -6,9 +6,9 @@ from typing import Any
 
 from experiments.bench_queries import measure
 from experiments.conftest import Keep
-from experiments.profiles import HUBS, Profile
-from experiments.subjects import Cell
-from hem.queries import QUERIES
+from experiments.harness.cases import Cell
+from experiments.harness.presets import HUBS, Profile
+from hem.contract.queries import QUERIES
 from structures import NAMES as STRUCTURES
 
 

@@ -8,10 +8,10 @@ from __future__ import annotations
 
 from experiments.bench_queries import CHECKED_HANDLES
 from experiments.conftest import Keep
-from experiments.profiles import Profile
-from experiments.subjects import Cell, pool
-from experiments.truth import check
-from hem.queries import QUERIES
+from experiments.harness.cases import Cell, pool
+from experiments.harness.oracle import check
+from experiments.harness.presets import Profile
+from hem.contract.queries import QUERIES
 from structures import NAMES as STRUCTURES
 
 

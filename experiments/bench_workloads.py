@@ -9,11 +9,11 @@ import numpy as np
 
 import structures
 from experiments.conftest import Keep
-from experiments.profiles import Profile
-from experiments.subjects import Cell
-from experiments.workloads import IMPACTS, WORKLOADS
-from hem.queries import QUERIES
-from hem.structure import Structure
+from experiments.harness.cases import Cell
+from experiments.harness.presets import Profile
+from experiments.harness.workloads import IMPACTS, WORKLOADS
+from hem.contract.queries import QUERIES
+from hem.contract.structure import Structure
 from structures import NAMES as STRUCTURES
 
 SECONDS_PER_FACE = 1e-9

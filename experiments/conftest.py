@@ -20,12 +20,12 @@ from typing import Any, cast
 
 import pytest
 
-from experiments import cores, memory_foreseen
-from experiments.children import CANNOT_WRITE, DEFAULT_SEED, end_with
-from experiments.noise import REPEATS, Watch, badness, disturbed
-from experiments.profiles import PROFILES, Profile
-from experiments.results import CannotWriteError, CellResult, ResultFile
-from experiments.subjects import Cell, in_random_order
+from experiments.harness import affinity, memory
+from experiments.harness.cases import Cell, in_random_order
+from experiments.harness.presets import PROFILES, Profile
+from experiments.harness.steadiness import REPEATS, Watch, badness, disturbed
+from experiments.runs.results import CannotWriteError, CellResult, ResultFile
+from experiments.runs.worker import CANNOT_WRITE, DEFAULT_SEED, end_with
 
 Keep = Callable[[CellResult], None]
 
@@ -55,7 +55,7 @@ def pytest_configure(config: pytest.Config) -> None:
     study = config.getoption("--study")
     if study:
         end_with(study)
-    config.stash[CORE] = cores.pin() if config.getoption("--pin") else None
+    config.stash[CORE] = affinity.pin() if config.getoption("--pin") else None
 
 
 def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
@@ -86,7 +86,7 @@ def pytest_runtestloop(session: pytest.Session) -> Iterator[None]:
     for _ in range(REPEATS):
         again = [item for item in session.items if item.stash.get(DISTURBED, False)]
         if again and session.config.getoption("--pin"):
-            session.config.stash[CORE] = cores.pin()  # another one may be calmer by now
+            session.config.stash[CORE] = affinity.pin()  # another one may be calmer by now
         for item in again:
             if perf_counter() < until:
                 cast(Any, item)._initrequest()  # what pytest knows of its fixtures is used up
@@ -109,7 +109,7 @@ def keep(request: pytest.FixtureRequest, cell: Cell) -> Keep:
     experiment = request.module.__name__.rpartition(".")[2]
     kept = bool(request.config.getoption("--run"))
     file = _file(request.config, request.module.__name__, cell.structure)
-    reason = memory_foreseen.why_not(cell, experiment)
+    reason = memory.why_not(cell, experiment)
     if reason:
         if kept:
             _add(file, cell.not_measured(experiment, reason))

@@ -5,14 +5,14 @@ from typing import Any
 
 from hem.edit import Edit, Remapping
 from hem.errors import MeshError, NonManifoldError, TopologyError
-from hem.families import FAMILIES, generate
-from hem.files import load, save
-from hem.manifold import require_manifold, require_sound
-from hem.mesh import MeshSummary, TriangleMesh
-from hem.polygons import PolygonMesh
-from hem.render import RenderMesh, Upload, mesh_from_render
-from hem.samples import SAMPLES, sample
-from hem.valence import valence_hubs, valence_mesh
+from hem.meshes.manifold import require_manifold, require_sound
+from hem.meshes.polygons import PolygonMesh
+from hem.meshes.triangles import MeshSummary, TriangleMesh
+from hem.rendering.render import RenderMesh, Upload, mesh_from_render
+from hem.sources.families import FAMILIES, generate
+from hem.sources.files import load, save
+from hem.sources.samples import SAMPLES, sample
+from hem.sources.valence import valence_hubs, valence_mesh
 
 __all__ = [
     "FAMILIES",

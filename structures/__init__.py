@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from hem.mesh import TriangleMesh
-from hem.polygons import PolygonMesh, require_triangles
-from hem.structure import REFERENCE_TYPES, Structure
+from hem.contract.structure import REFERENCE_TYPES, Structure
+from hem.meshes.polygons import PolygonMesh, require_triangles
+from hem.meshes.triangles import TriangleMesh
 from structures.as_printed import AsPrinted
 from structures.half_edge import HalfEdge
 from structures.half_edge_objects import HalfEdgeMesh

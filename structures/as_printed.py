@@ -3,7 +3,7 @@
 The algorithms of thesis 3.2.3 to 4.3, told anew over the classes of ``structures.class_model``: the
 vertex circulator that scans, the search for duplicates, the builder that scans for every triangle
 and stops one short, the surgery that forgets references, the commits of the whole render mesh.
-``experiments.errata`` shows each of them beside the sound version,
+``experiments.claims.errata`` shows each of them beside the sound version,
 ``structures.half_edge_objects``. Nothing here checks anything, and errors are left as they are.
 
 Lists shrink when an element is removed, as those of the thesis do, while every element keeps the

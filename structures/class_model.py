@@ -21,8 +21,8 @@ from typing import Any, Generic, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from hem.contract.queries import ELEMENTS
 from hem.errors import MeshError
-from hem.queries import ELEMENTS
 
 Point = tuple[float, float, float]
 

@@ -29,7 +29,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from hem.invariants import (
+from hem.authoring.invariants import (
     require,
     require_counts,
     require_distinct_edges,
@@ -37,7 +37,7 @@ from hem.invariants import (
     require_points,
     require_references,
 )
-from hem.kernels import (
+from hem.authoring.kernels import (
     EDGE_END,
     FACE_END,
     append_face,
@@ -48,12 +48,12 @@ from hem.kernels import (
     kernel,
     named,
 )
-from hem.mesh import TriangleMesh
-from hem.pairing import pair_half_edges
-from hem.records import Field, counted, live
-from hem.slices import in_slices
-from hem.structure import REFERENCE_TYPES, Structure
-from hem.topology import LEFT, RIGHT, A, B, C, D
+from hem.authoring.pairing import pair_half_edges
+from hem.authoring.records import Field, counted, live
+from hem.authoring.topology import LEFT, RIGHT, A, B, C, D
+from hem.contract.structure import REFERENCE_TYPES, Structure
+from hem.engine.slices import in_slices
+from hem.meshes.triangles import TriangleMesh
 
 Array = NDArray[Any]
 
@@ -67,7 +67,7 @@ class HalfEdgeRecords(NamedTuple):
     vertex_half_edge: Array  # (n_v,) one that leaves the vertex
     face_half_edge: Array  # (n_t,)
     half_edge: Array  # (3 n_t, 4) origin, face, next, twin
-    counts: Array  # how many of them there are, see hem.kernels
+    counts: Array  # how many of them there are, see hem.authoring.kernels
 
 
 @kernel
@@ -188,7 +188,7 @@ def face_faces(m: HalfEdgeRecords, f: int, out: Array) -> int:
     return count
 
 
-# What operations need to know, and what they change (hem.topology, hem.operations) ---------------
+# What operations need to know, and what they change (topology and operations in hem.authoring) ----
 
 
 @kernel

@@ -33,9 +33,7 @@ from typing import Any, NamedTuple, Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from hem.errors import MeshError
-from hem.interpreted import Held, InterpretedUses, counting
-from hem.kernels import (
+from hem.authoring.kernels import (
     EDGE_END,
     EDGE_ROOM,
     EDGES,
@@ -49,13 +47,15 @@ from hem.kernels import (
     edges_at_both_ends,
     named,
 )
-from hem.manifold import require_manifold
-from hem.mesh import TriangleMesh
-from hem.queryable import HANDLE_TYPES
-from hem.records import ENDLESS, counted
-from hem.render import mesh_from_render
-from hem.structure import Structure
-from hem.topology import LEFT, RIGHT, A, C, D
+from hem.authoring.records import ENDLESS, counted
+from hem.authoring.topology import LEFT, RIGHT, A, C, D
+from hem.contract.queryable import HANDLE_TYPES
+from hem.contract.structure import Structure
+from hem.engine.interpreted import Held, InterpretedUses, counting
+from hem.errors import MeshError
+from hem.meshes.manifold import require_manifold
+from hem.meshes.triangles import TriangleMesh
+from hem.rendering.render import mesh_from_render
 from structures.class_model import (
     ElementList,
     Face,
@@ -81,7 +81,7 @@ class ObjectRecords(NamedTuple):
     vertices: VertexList
     half_edges: HalfEdgeList
     faces: FaceList
-    counts: Array  # how many of them there are, see hem.kernels
+    counts: Array  # how many of them there are, see hem.authoring.kernels
 
 
 def vertex_vertices(m: ObjectRecords, v: int, out: Any) -> int:
@@ -170,7 +170,7 @@ def face_faces(m: ObjectRecords, f: int, out: Any) -> int:
     return count
 
 
-# What operations need to know, and what they change (hem.topology, hem.operations) ---------------
+# What operations need to know, and what they change (topology and operations in hem.authoring) ----
 
 
 def _exists(items: list[Any], index: int) -> bool:

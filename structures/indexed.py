@@ -22,8 +22,8 @@ from typing import Any, NamedTuple, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from hem.invariants import require, require_counts, require_points, require_references
-from hem.kernels import (
+from hem.authoring.invariants import require, require_counts, require_points, require_references
+from hem.authoring.kernels import (
     FACE_END,
     distinct,
     edge_exists,
@@ -33,10 +33,10 @@ from hem.kernels import (
     named,
     pack,
 )
-from hem.mesh import TriangleMesh
-from hem.packed import PackedEdges
-from hem.records import UNKNOWN, Field, counted, live
-from hem.topology import LEFT, RIGHT, A, B, C, D
+from hem.authoring.records import UNKNOWN, Field, counted, live
+from hem.authoring.topology import LEFT, RIGHT, A, B, C, D
+from hem.contract.packed import PackedEdges
+from hem.meshes.triangles import TriangleMesh
 
 Array = NDArray[Any]
 
@@ -46,7 +46,7 @@ class IndexedRecords(NamedTuple):
 
     vertex_point: Array  # (n_v, 3) float32
     triangle: Array  # (n_t, 3) vertices
-    counts: Array  # how many of them there are, see hem.kernels
+    counts: Array  # how many of them there are, see hem.authoring.kernels
 
 
 @kernel
@@ -135,7 +135,7 @@ def face_faces(m: IndexedRecords, f: int, out: Array) -> int:
     return count
 
 
-# What operations need to know, and what they change (hem.topology, hem.operations) ---------------
+# What operations need to know, and what they change (topology and operations in hem.authoring) ----
 
 
 @kernel

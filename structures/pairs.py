@@ -34,7 +34,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from hem.kernels import (
+from hem.authoring.kernels import (
     EDGE_END,
     FACE_END,
     append_face,
@@ -43,7 +43,7 @@ from hem.kernels import (
     kernel,
     without,
 )
-from hem.topology import LEFT, RIGHT, A, B, C, D
+from hem.authoring.topology import LEFT, RIGHT, A, B, C, D
 
 Array = NDArray[Any]
 
@@ -60,7 +60,7 @@ class PlanktonRecords(NamedTuple):
     vertex_half_edge: Array  # (n_v,) one that leaves the vertex, along the border if it lies there
     face_half_edge: Array  # (n_f,) the first
     half_edge: Array  # (2 n_e, 4) start, face, next, previous
-    counts: Array  # how many of them there are, see hem.kernels
+    counts: Array  # how many of them there are, see hem.authoring.kernels
 
 
 @kernel
@@ -202,7 +202,7 @@ def face_faces(m: PlanktonRecords, f: int, out: Array) -> int:
             return count if sides == 3 else distinct(out, count)
 
 
-# What operations need to know, and what they change (hem.topology, hem.operations) ---------------
+# What operations need to know, and what they change (topology and operations in hem.authoring) ----
 
 
 @kernel

@@ -22,10 +22,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import ArrayLike, NDArray
 
-from hem import arguments
-from hem.edit import Edit
-from hem.errors import MeshError, TopologyError
-from hem.invariants import (
+from hem.authoring.invariants import (
     require,
     require_counts,
     require_distinct_edges,
@@ -34,15 +31,18 @@ from hem.invariants import (
     require_points,
     require_references,
 )
-from hem.kernels import EDGE_END, SIDES, Kernel, named
-from hem.mesh import TriangleMesh
-from hem.operations import OPERATIONS
-from hem.pairing import pair_half_edges, pair_polygons
-from hem.polygons import PolygonMesh
+from hem.authoring.kernels import EDGE_END, SIDES, Kernel, named
+from hem.authoring.operations import OPERATIONS
+from hem.authoring.pairing import pair_half_edges, pair_polygons
+from hem.authoring.records import Field, counted, live
+from hem.contract import arguments
+from hem.contract.structure import REFERENCE_TYPES, Structure
+from hem.edit import Edit
+from hem.engine.slices import in_slices
+from hem.errors import MeshError, TopologyError
+from hem.meshes.polygons import PolygonMesh
+from hem.meshes.triangles import TriangleMesh
 from hem.ragged import Ragged
-from hem.records import Field, counted, live
-from hem.slices import in_slices
-from hem.structure import REFERENCE_TYPES, Structure
 from structures import pairs
 from structures.pairs import FACE, NEXT, OUTSIDE, PREVIOUS, START, PlanktonRecords
 from structures.polygons import POLYGON_KERNELS, POLYGON_OPERATIONS

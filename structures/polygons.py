@@ -21,8 +21,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from hem.edit import CHANGED, CREATED, FACE, REMOVED, VERTEX
-from hem.kernels import (
+from hem.authoring.kernels import (
     EDGES,
     FACE_END,
     FACES,
@@ -37,7 +36,7 @@ from hem.kernels import (
     place,
     vertex_exists,
 )
-from hem.operations import (
+from hem.authoring.operations import (
     Operation,
     add_faces,
     appending,
@@ -47,7 +46,7 @@ from hem.operations import (
     note,
     note_faces,
 )
-from hem.topology import (
+from hem.authoring.topology import (
     ALLOWED,
     BORDER_EDGE,
     BORDER_VERTEX,
@@ -61,6 +60,7 @@ from hem.topology import (
     OTHER_VERTEX,
     TOUCHING,
 )
+from hem.edit import CHANGED, CREATED, FACE, REMOVED, VERTEX
 from structures.pairs import FACE as FACE_OF
 from structures.pairs import (
     NEXT,
@@ -86,7 +86,7 @@ POLYGON_OPERATIONS = {
     "split_vertex": Operation("half-edge", True, True, (1, 1)),
     "erase_vertex": Operation("vertex"),
 }
-"""The operations of polygons that are compiled, by name; see ``hem.operations``."""
+"""The operations of polygons that are compiled, by name; see ``hem.authoring.operations``."""
 
 new_vertex = appending(place)
 

@@ -28,7 +28,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from hem.invariants import (
+from hem.authoring.invariants import (
     require,
     require_counts,
     require_distinct_edges,
@@ -36,7 +36,7 @@ from hem.invariants import (
     require_points,
     require_references,
 )
-from hem.kernels import (
+from hem.authoring.kernels import (
     FACE_END,
     append_face,
     circulator,
@@ -49,13 +49,13 @@ from hem.kernels import (
     named,
     pack,
 )
-from hem.mesh import TriangleMesh
-from hem.packed import PackedEdges
-from hem.pairing import pair_half_edges
-from hem.records import Field, counted, live
-from hem.slices import in_slices
-from hem.structure import REFERENCE_TYPES
-from hem.topology import LEFT, RIGHT, A, B, C, D
+from hem.authoring.pairing import pair_half_edges
+from hem.authoring.records import Field, counted, live
+from hem.authoring.topology import LEFT, RIGHT, A, B, C, D
+from hem.contract.packed import PackedEdges
+from hem.contract.structure import REFERENCE_TYPES
+from hem.engine.slices import in_slices
+from hem.meshes.triangles import TriangleMesh
 
 Array = NDArray[Any]
 
@@ -68,7 +68,7 @@ class TriangleNeighborRecords(NamedTuple):
     vertex_point: Array  # (n_v, 3) float32
     vertex_triangle: Array  # (n_v,) one of the triangles at the vertex
     triangle: Array  # (n_t, 6) three neighbors, three corners
-    counts: Array  # how many of them there are, see hem.kernels
+    counts: Array  # how many of them there are, see hem.authoring.kernels
 
 
 @kernel
@@ -167,7 +167,7 @@ def face_faces(m: TriangleNeighborRecords, f: int, out: Array) -> int:
     return count
 
 
-# What operations need to know, and what they change (hem.topology, hem.operations) ---------------
+# What operations need to know, and what they change (topology and operations in hem.authoring) ----
 
 
 @kernel

@@ -34,7 +34,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from hem.invariants import (
+from hem.authoring.invariants import (
     require,
     require_counts,
     require_distinct_edges,
@@ -42,7 +42,7 @@ from hem.invariants import (
     require_points,
     require_references,
 )
-from hem.kernels import (
+from hem.authoring.kernels import (
     EDGE_END,
     FACE_END,
     append_face,
@@ -53,14 +53,14 @@ from hem.kernels import (
     kernel,
     named,
 )
-from hem.mesh import TriangleMesh
-from hem.pairing import pair_half_edges
-from hem.records import Field, counted, live
-from hem.slices import in_slices
-from hem.structure import REFERENCE_TYPES, Structure
-from hem.topology import LEFT as LEFT_FACE
-from hem.topology import RIGHT as RIGHT_FACE
-from hem.topology import A, B, C, D
+from hem.authoring.pairing import pair_half_edges
+from hem.authoring.records import Field, counted, live
+from hem.authoring.topology import LEFT as LEFT_FACE
+from hem.authoring.topology import RIGHT as RIGHT_FACE
+from hem.authoring.topology import A, B, C, D
+from hem.contract.structure import REFERENCE_TYPES, Structure
+from hem.engine.slices import in_slices
+from hem.meshes.triangles import TriangleMesh
 
 Array = NDArray[Any]
 
@@ -75,7 +75,7 @@ class WingedEdgeRecords(NamedTuple):
     vertex_edge: Array  # (n_v,) one of the edges at the vertex
     face_edge: Array  # (n_t,) one of the edges of the face
     edge: Array  # (n_e, 8) the eight columns above
-    counts: Array  # how many of them there are, see hem.kernels
+    counts: Array  # how many of them there are, see hem.authoring.kernels
 
 
 @kernel
@@ -201,7 +201,7 @@ def face_faces(m: WingedEdgeRecords, f: int, out: Array) -> int:
     return count
 
 
-# What operations need to know, and what they change (hem.topology, hem.operations) ---------------
+# What operations need to know, and what they change (topology and operations in hem.authoring) ----
 
 
 @kernel

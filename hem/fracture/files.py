@@ -161,7 +161,7 @@ def _save_obj(fracture: Fracture, folder: Path, up: ArrayLike) -> list[Path]:
 
 
 def _save_ply(fracture: Fracture, folder: Path, up: ArrayLike) -> list[Path]:
-    from hem.files import save
+    from hem.sources.files import save
 
     inner = folder / "pieces"
     inner.mkdir()

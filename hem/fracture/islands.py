@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from hem.mesh import TriangleMesh
+from hem.meshes.triangles import TriangleMesh
 
 Array = NDArray[Any]
 

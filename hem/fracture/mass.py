@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from hem.errors import MeshError
 from hem.fracture.pieces import Floats, Mass
-from hem.mesh import TriangleMesh
+from hem.meshes.triangles import TriangleMesh
 
 Owners = NDArray[np.int64]
 

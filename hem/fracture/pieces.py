@@ -12,7 +12,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from hem.fracture.material import Material
-from hem.mesh import TriangleMesh
+from hem.meshes.triangles import TriangleMesh
 
 Floats = NDArray[np.float64]
 

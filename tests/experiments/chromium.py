@@ -14,7 +14,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
-from experiments.pdf import FLAGS, browser
+from experiments.report.pdf import FLAGS, browser
 
 PATIENCE = 120.0
 """Seconds until an answer that does not come is given up."""

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from experiments.history_record import record
-from experiments.results import load
-from tests.experiments.runs import write_run
+from experiments.regression.snapshots import record
+from experiments.runs.results import load
+from tests.experiments.made_runs import write_run
 
 
 @pytest.fixture(scope="session")

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from experiments.history import append
+from experiments.regression.history import append
 
 CLAIM = "queries/half_edge/vertex_faces"
 MACHINES = ("aaaa1111", "bbbb2222")

@@ -9,7 +9,7 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
-from experiments import study
+from experiments.runs import study
 
 STRUCTURES = ["indexed"]
 

@@ -11,8 +11,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 import hem
-from hem.manifold import euler_number
-from hem.structure import Structure
+from hem.contract.structure import Structure
+from hem.meshes.manifold import euler_number
 
 KINDS = (
     *("split_edge", "split_face", "collapse_edge", "collapse_edge", "collapse_edge", "flip_edge"),

@@ -7,8 +7,8 @@ import pytest
 
 import hem
 import structures
-from hem.queries import QUERIES
-from hem.uses import CountingArray
+from hem.contract.queries import QUERIES
+from hem.engine.uses import CountingArray
 
 SCANS = {
     "vertex_vertices",

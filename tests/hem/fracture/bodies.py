@@ -7,8 +7,8 @@ import pytest
 import trimesh
 
 import hem
-from hem.fracture.solid import Body, require_body, wrapped
-from hem.manifold import same_way_edges, undirected_edges
+from hem.fracture.bodies.solid import Body, require_body, wrapped
+from hem.meshes.manifold import same_way_edges, undirected_edges
 
 
 def box(*size, at=(0.0, 0.0, 0.0)):

@@ -15,7 +15,7 @@ from hem.fracture.blow import (
     motion,
     sites,
 )
-from hem.fracture.voronoi import voronoi
+from hem.fracture.bodies.voronoi import voronoi
 from tests.hem.fracture.bodies import NAMES, body, box, spot
 
 GLASS, STONE = MATERIALS["glass"], MATERIALS["stone"]

@@ -12,8 +12,8 @@ import hem
 import structures
 from hem.fracture import MATERIALS, shatter
 from hem.fracture.blow import Blow, motion
+from hem.fracture.bodies.voronoi import voronoi
 from hem.fracture.files import describe, names, require_writable, save_pieces, whole
-from hem.fracture.voronoi import voronoi
 
 
 @pytest.fixture(scope="module")

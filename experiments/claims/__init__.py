@@ -1,0 +1,1 @@
+"""What the documents say, and what a run makes of it."""

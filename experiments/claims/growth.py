@@ -1,0 +1,111 @@
+"""The claims of ``claims.toml``, read."""
+
+from __future__ import annotations
+
+import tomllib
+from dataclasses import dataclass
+from importlib.resources import files
+from typing import Any
+
+from hem.contract.queries import QUERIES
+from structures import NAMED
+
+OPERATIONS = {
+    "split_edge": "Split edge",
+    "split_face": "Split face",
+    "collapse_edge": "Collapse edge",
+    "flip_edge": "Flip edge",
+    "add_face": "Add face",
+    "remove_face": "Remove face",
+}
+"""The operations that are measured, and how a table calls them."""
+
+TABLES = {
+    "queries": "Table 1",
+    "operations": "Operations",
+    "listings": "The listings, as printed and mended",
+}
+"""The tables: the thesis' table 1, what its chapters 4 and 5 say of operations, and what its own
+listings really cost."""
+
+LISTINGS = {"build": "Build from a render mesh"}
+"""What is measured of the listings beside the operations."""
+
+VARIABLES = {"faces": "n_t", "valence": "n_ev"}
+"""What a claim is judged in, one held while the other moves, and its symbol in the thesis."""
+
+MEMORY = "memory"
+NO_CLAIM = "N/A"
+BOUND = "≤ "
+"""What a class begins with that is claimed as a bound only."""
+
+
+@dataclass(frozen=True)
+class Claim:
+    """One cell of a table: what is printed of one structure, and where.
+
+    ``what`` is a query, an operation or "memory"; ``table`` one of ``TABLES``. ``expected``: the
+    growth class per variable, empty where nothing is claimed; ``bytes_per_vertex`` for the memory
+    row, else None.
+    """
+
+    what: str
+    table: str
+    structure: str
+    printed: str
+    source: str
+    expected: dict[str, str]
+    bytes_per_vertex: int | None = None
+
+    @property
+    def title(self) -> str:
+        """The head of the row."""
+        return "Bytes per vertex" if self.what == MEMORY else title_of(self.what)
+
+
+def title_of(what: str) -> str:
+    """How a table calls a query or an operation."""
+    return OPERATIONS.get(what) or LISTINGS.get(what) or QUERIES[what].title
+
+
+def load_claims(text: str | None = None) -> list[Claim]:
+    """All claims in the order of the table, row by row; ``text`` instead of the project's file.
+
+    Raises ValueError naming the row for a query, a structure or a class that does not exist.
+    """
+    content = tomllib.loads(text or (files("experiments.claims") / "claims.toml").read_text())
+    return [
+        _claim(row, structure, content["classes"])
+        for row in content["row"]
+        for structure in _checked(row)
+        if structure in NAMED
+    ]
+
+
+def _checked(row: dict[str, Any]) -> dict[str, Any]:
+    known = (MEMORY, *QUERIES, *OPERATIONS, *LISTINGS)
+    if row.get("what") not in known:
+        raise ValueError(
+            f"claims.toml: no query is called {row.get('what')!r}; there are {', '.join(known)}"
+        )
+    unknown = set(row) - {"what", "table", "source", *NAMED}
+    if unknown or "source" not in row:
+        fault = f"no structure is called {min(unknown)!r}" if unknown else "no source is given"
+        raise ValueError(f"claims.toml, row {row['what']}: {fault}")
+    return row
+
+
+def _claim(row: dict[str, Any], structure: str, classes: dict[str, dict[str, str]]) -> Claim:
+    what, printed, source = row["what"], row[structure], row["source"]
+    table = row.get("table", "operations" if what in OPERATIONS else "queries")
+    if table not in TABLES:
+        raise ValueError(f"claims.toml, row {what}: no table is called {table!r}")
+    if what == MEMORY:
+        size = None if printed == NO_CLAIM else printed
+        return Claim(what, table, structure, str(printed), source, {}, size)
+    if printed != NO_CLAIM and printed not in classes:
+        raise ValueError(f"claims.toml, row {what}: {printed!r} is none of {', '.join(classes)}")
+    expected = classes.get(printed, {})
+    if table == "listings":  # measured by size alone
+        expected = {variable: it for variable, it in expected.items() if variable == "faces"}
+    return Claim(what, table, structure, printed, source, expected)

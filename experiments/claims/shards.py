@@ -1,0 +1,107 @@
+"""What breaking a surface costs, as tables: structure by structure, and how its face is found."""
+
+from __future__ import annotations
+
+import numpy as np
+import pandas as pd
+
+from experiments.bench_fracture import FIND, SHATTER, VISITED, WAYS
+from experiments.runs.results import Run
+from hem.complexity.judge import Verdict, judge
+from structures import NAMES, REGISTRY
+
+ASKED = "indexed"
+"""What the others are compared with."""
+
+
+def shattered(run: Run) -> pd.DataFrame:
+    """Breaking a surface, each structure at the largest size that the indexed mesh was measured at.
+
+    Columns: structure, vertices, shards, milliseconds (of the whole fracture), per_second (shards),
+    faster (than the indexed mesh).
+    """
+    cells = _cells(run, SHATTER)
+    rows = []
+    most = cells[cells["structure"] == ASKED]["vertices"].max()
+    for name in NAMES:
+        mine = cells[(cells["structure"] == name) & (cells["vertices"] <= most)]
+        if len(mine):
+            cell = mine.loc[mine["vertices"].idxmax()]
+            seconds = float(np.median(cell["samples"]))
+            asked = cells[(cells["structure"] == ASKED) & (cells["vertices"] == cell["vertices"])]
+            searched = float(np.median(asked["samples"].iloc[0])) if len(asked) else np.nan
+            rows.append(
+                {
+                    "structure": REGISTRY[name].title,
+                    "vertices": cell["vertices"],
+                    "shards": cell["handles"],
+                    "milliseconds": 1e3 * seconds * cell["handles"],
+                    "per_second": 1 / seconds,
+                    "faster": searched / seconds,
+                }
+            )
+    return pd.DataFrame(rows, columns=[*SHATTERED])
+
+
+def found(run: Run, structure: str = "half_edge") -> pd.DataFrame:
+    """How the ways to find a face grow with the number of faces, one row each.
+
+    Columns: way, visited and time (the slopes with their intervals, and the class that explains
+    them best), faces and microseconds (looked at and taken, at the largest size).
+    """
+    cells = _cells(run, FIND)
+    cells = cells[cells["structure"] == structure].sort_values("faces")
+    rows = []
+    for way in WAYS:
+        counted, timed = (cells[cells["order"] == it] for it in (f"{way}, {VISITED}", way))
+        if counted.empty or timed.empty:
+            continue
+        work = judge(counted["faces"], list(counted["samples"]), exact=True)
+        time = judge(timed["faces"], list(timed["samples"]), latency=timed["latency"].astype(float))
+        rows.append(
+            {
+                "way": way,
+                "visited": _slope(work),
+                "time": _slope(time),
+                "faces": float(np.median(counted["samples"].iloc[-1])),
+                "microseconds": 1e6 * float(np.median(timed["samples"].iloc[-1])),
+            }
+        )
+    return pd.DataFrame(rows, columns=[*FOUND])
+
+
+def styled(table: pd.DataFrame, heads: dict[str, tuple[str, str]]) -> str:
+    """As a table of a page; ``heads``: by column what stands above it, and the format of a cell."""
+    shown = pd.DataFrame(
+        {head: table[column].map(pattern.format) for column, (head, pattern) in heads.items()}
+    )
+    html: str = shown.to_html(index=False, border=0, classes="numbers")
+    return f'<div class="wide">{html}</div>'
+
+
+SHATTERED = {
+    "structure": ("", "{}"),
+    "vertices": ("vertices", "{:,}"),
+    "shards": ("shards", "{:,}"),
+    "milliseconds": ("ms in all", "{:,.1f}"),
+    "per_second": ("shards per second", "{:,.0f}"),
+    "faster": ("times faster than indexed", "{:,.1f}"),
+}
+
+FOUND = {
+    "way": ("", "{}"),
+    "visited": ("faces looked at: slope", "{}"),
+    "time": ("time: slope", "{}"),
+    "faces": ("faces, largest mesh, median", "{:,.0f}"),
+    "microseconds": ("µs, largest mesh", "{:,.1f}"),
+}
+
+
+def _cells(run: Run, query: str) -> pd.DataFrame:
+    cells = run.cells[run.cells["experiment"] == "bench_fracture"]
+    return cells[cells["query"] == query]
+
+
+def _slope(verdict: Verdict) -> str:
+    low, high = verdict.slope_low, verdict.slope_high
+    return f"{verdict.slope:.2f} ({low:.2f} … {high:.2f}), {verdict.best}"

@@ -1,0 +1,175 @@
+"""Operations as they are measured: on which elements, on a copy that is made new each time."""
+
+from __future__ import annotations
+
+from functools import lru_cache, partial
+from time import perf_counter
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+import hem
+import structures
+from experiments.harness.cases import Cell
+from experiments.harness.latency import latency_now
+from experiments.harness.presets import HUBS, Profile
+from hem.contract.structure import Structure
+from hem.engine.uses import END
+
+Array = NDArray[Any]
+
+ON_EDGES = ("split_edge", "collapse_edge", "flip_edge")
+
+NOT_SCANNED = ("split_face",)
+"""What does not search the whole mesh even where nothing is known of neighbors."""
+
+MOST_ELEMENTS = 2_000
+
+FEWEST_OPERATIONS = 500
+MOST_TURNS = 16
+"""A sample is of at least so many operations, in up to so many turns on a mesh made new each time.
+
+One mesh, so that a small one is found in the caches however many operations there is room for.
+"""
+
+IDLE_CALLS = 15
+LEAST_SECONDS = 1e-8
+
+ELEMENT_SEED = 22
+SMALL = 20_000
+"""Faces up to which the outcome is judged from its triangles, and against the indexed mesh."""
+
+
+def faces_of(cell: Cell, count: int = MOST_ELEMENTS) -> Array:
+    """Faces (k,) so far apart that what is done at one leaves the others as they are, ascending.
+
+    Where the valence varies each has a hub as its first corner.
+    """
+    chosen = _apart(cell.family, cell.size, cell.valence)
+    if len(chosen) > count:
+        chosen = np.sort(np.random.default_rng(ELEMENT_SEED).choice(chosen, count, replace=False))
+    return chosen
+
+
+@lru_cache(maxsize=2)
+def _apart(family: str, size: int, valence: int | None) -> Array:
+    mesh = Cell("half_edge", family, size, valence=valence).mesh()
+    if family == HUBS:
+        hubs = hem.valence_hubs(int(valence or 0), size)[::2]  # one of each bipyramid
+        order = np.argsort(mesh.triangles[:, 0], kind="stable")
+        # Half-way around, not where every walk around the hub begins.
+        across = np.searchsorted(mesh.triangles[order, 0], hubs) + int(valence or 0) // 2
+        return np.sort(order[across])
+    s = structures.build("half_edge", mesh)
+    taken, chosen = np.zeros(s.n_vertices, np.bool_), []
+    tried = np.random.default_rng(ELEMENT_SEED).permutation(s.n_faces)[: 40 * MOST_ELEMENTS]
+    around = s.vertex_vertices(mesh.triangles[tried].ravel())
+    for i, face in enumerate(tried.tolist()):
+        ring = around.values[around.offsets[3 * i] : around.offsets[3 * i + 3]]
+        if not taken[ring].any():
+            taken[ring] = True
+            chosen.append(face)
+        if len(chosen) == MOST_ELEMENTS:
+            break
+    return np.sort(chosen)
+
+
+def arguments(s: Structure, operation: str, faces: Array) -> Array:
+    """(k, 3) the handles of the operations at these faces: their first edges, or they themselves.
+
+    To be added are faces that are not there yet: ``s`` loses them.
+    """
+    rows = np.full((len(faces), 3), -1, np.int64)
+    if operation in ON_EDGES:
+        rows[:, 0] = s.face_edges(faces).values.reshape(-1, 3)[:, 0]
+    elif operation == "add_face":
+        rows[:] = s.face_vertices(faces).values.reshape(-1, 3)
+        for face in faces.tolist():
+            s.remove_face(face)
+    else:
+        rows[:, 0] = faces
+    return rows
+
+
+class Bench:
+    """A copy of a structure to operate on over and over."""
+
+    def __init__(self, s: Structure, operation: str, faces: Array) -> None:
+        self.mesh = s.copy()
+        args = arguments(self.mesh, operation, faces)
+        points = np.zeros((len(args), 3))
+        args = args[self.mesh.prepare(operation, args, points).check()]
+        self.operations = len(args)
+        self._prepared = self.mesh.prepare(operation, args, points[: len(args)])
+        self._fresh = self.mesh.snapshot()
+        # As bare as can be, but for the call itself, see ``idle_seconds``.
+        self.operate = partial(self._prepared.perform, self._prepared.pinned.address)
+
+    def idle_seconds(self) -> float:
+        """What a call takes that does no operation: about as long as a few of them."""
+        task, seconds = self._prepared.task, []
+        task[END] = 0
+        for _ in range(IDLE_CALLS if self.mesh.compiled else 1):
+            self.restore()
+            begin = perf_counter()
+            self.operate()
+            seconds.append(perf_counter() - begin)
+        task[END] = self.operations
+        return float(np.median(seconds))
+
+    def restore(self) -> None:
+        """Make the mesh what it was.
+
+        Just written, up to some 20 MB of it lie in the last caches, and its original beside it; a
+        chase of as much memory, read before, was measured to wait up to three times as long.
+        """
+        self.mesh.restore(self._fresh)
+
+
+def validate(operated: Structure) -> None:
+    """Validate what operations made, by its records and where that is quick by its triangles."""
+    operated.validate()
+    if operated.n_faces <= SMALL:
+        hem.require_sound(operated.to_triangles())
+
+
+def check(cell: Cell, operated: Structure, faces: Array) -> None:
+    """Validate what operations made, and compare it with the indexed mesh where that is quick."""
+    validate(operated)
+    if operated.n_faces <= SMALL and cell.structure != "indexed":
+        both = [_operated(name, cell, faces[:20]) for name in (cell.structure, "indexed")]
+        if both[0] != both[1]:
+            raise AssertionError(f"{cell.id} on {cell.structure} gives another mesh than indexed")
+
+
+def _operated(name: str, cell: Cell, faces: Array) -> list[tuple[int, ...]]:
+    bench = Bench(structures.build(name, cell.mesh()), str(cell.query), faces)
+    bench.operate()
+    return _triangles(bench.mesh)
+
+
+def _triangles(s: Structure) -> list[tuple[int, ...]]:
+    rows = s.face_vertices(s.faces()).values.reshape(-1, 3)
+    return sorted(tuple(np.roll(row, -int(row.argmin())).tolist()) for row in rows)
+
+
+def time_operations(benchmark: Any, cell: Cell, profile: Profile) -> dict[str, Any]:
+    """Time operations in compiled loops -> samples, how many per sample, and latency."""
+    s, faces = cell.build(), faces_of(cell)
+    if cell.structure == "indexed" and cell.query not in NOT_SCANNED:
+        faces = faces[: max(4, int(profile.round_seconds / (5e-9 * s.n_faces)))]
+    bench = Bench(s, str(cell.query), faces)
+    if bench.operate() < bench.operations:
+        raise RuntimeError(f"{cell.id}: there was no room for all operations")
+    check(cell, bench.mesh, faces)
+    most = MOST_TURNS if s.compiled else 1  # interpreted ones last long enough
+    turns = int(np.clip(FEWEST_OPERATIONS // bench.operations, 1, most))
+    latency = latency_now(sum(s.memory().values()))
+    benchmark.pedantic(
+        bench.operate, setup=bench.restore, rounds=turns * profile.rounds, warmup_rounds=2
+    )
+    data = np.array(benchmark.stats.stats.data if benchmark.stats else [])
+    turned = data.reshape(-1, turns).mean(axis=1) - bench.idle_seconds()
+    samples = np.maximum(turned, LEAST_SECONDS) / bench.operations
+    return {"samples": samples, "handles": turns * bench.operations, "latency": latency}

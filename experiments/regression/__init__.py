@@ -1,0 +1,1 @@
+"""What is worse than the baseline, the other checkout or the last commits."""

@@ -1,0 +1,165 @@
+"""The figures of the chapter on destruction: the thesis' figure 11, bodies, what it costs."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import PolyCollection
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+import hem
+import structures
+from experiments.bench_fracture import FIND, SHATTER, VISITED, WAYS
+from experiments.report.figures import Ends, finish_panels
+from experiments.report.fracture_scenes import Broken, break_up, model
+from experiments.report.mesh_figures import INK, PAPER, STRONG
+from experiments.report.operation_figures import _line, _lines, _plain_numbers
+from experiments.report.style import GRAY, LOOKS, styled
+from experiments.runs.results import Run
+from hem.fracture import MATERIALS, Fracture, material, shatter
+from hem.fracture.show.scene import still
+
+Array = NDArray[Any]
+
+APART = 0.4
+"""How far shards are drawn from where they came out; a part of their distance to the impact."""
+
+IMPACTS = ((0.5, 0.5), (0.3, 0.72), (0.86, 0.5), (0.06, 0.06))
+"""Where a plate of side 1 is struck: about the middle, off it, near a side, in a corner."""
+
+FORCES = (1.0, 10.0, 50.0)
+CENTER = (0.47, 0.52)
+
+
+def plate(squares: int = 5) -> hem.TriangleMesh:
+    """A flat plate of side 1, of squares cut in two, as the thesis breaks it."""
+    n = squares + 1
+    at = np.arange(n * n).reshape(n, n)
+    a, b, c, d = (it.ravel() for it in (at[:-1, :-1], at[:-1, 1:], at[1:, 1:], at[1:, :-1]))
+    y, x = np.divmod(np.arange(n * n), n) / np.array([[squares], [squares]])
+    faces = np.concatenate([np.stack([a, b, c], axis=1), np.stack([a, c, d], axis=1)])
+    return hem.TriangleMesh(np.stack([x, y, 0 * x], axis=1), faces)
+
+
+def impacts(name: str = "glass") -> Figure:
+    """Figure 11: a plate, struck in several places."""
+    titles = "About the middle", "Off the middle", "Near a side", "In a corner"
+    return _plates([(it, name, at) for it, at in zip(titles, IMPACTS, strict=True)])
+
+
+def materials() -> Figure:
+    """The same blow on plates of all materials."""
+    return _plates([(it.capitalize(), it, CENTER) for it in MATERIALS])
+
+
+def _plates(every: Sequence[tuple[str, str, tuple[float, float]]]) -> Figure:
+    with styled():
+        figure = Figure(figsize=(3.3 * len(every), 3.6), layout="constrained")
+        panels = figure.subplots(1, len(every), squeeze=False)[0]
+        for axes, (title, name, at) in zip(panels, every, strict=True):
+            s = structures.build("half_edge", plate())
+            broken = shatter(s, (*at, 0), name, seed=4)
+            _draw_plate(axes, broken)
+            axes.set_title(f"{title}: {len(broken.shards)} shards")
+    return figure
+
+
+def _draw_plate(axes: Axes, broken: Fracture) -> None:
+    """The rest in place, every shard moved away from the impact."""
+    rest = np.concatenate([part.points[part.triangles] for part in broken.rest])[:, :, :2]
+    shards = np.array([it.points for it in broken.shards])[:, :, :2].astype(float)
+    moved = shards + APART * (shards.mean(axis=1, keepdims=True) - broken.impact[:2])
+    for corners, color, width in ((rest, PAPER, 0.5), (moved, broken.material.color, 0.3)):
+        drawn = PolyCollection(list(corners), facecolors=color, edgecolors=INK, linewidths=width)
+        axes.add_collection(drawn)
+    axes.plot(*broken.impact[:2], "x", color=STRONG, markersize=7, markeredgewidth=2)
+    axes.set(xlim=(-0.22, 1.22), ylim=(-0.22, 1.22), aspect="equal")
+    axes.axis("off")
+
+
+def broken_by_force(
+    name: str, material_name: str, forces: Sequence[float] = FORCES, wrap: bool = False
+) -> list[Broken]:
+    """A model under Voronoi fracture by blows of several forces, J/kg, in the same place."""
+    mesh, up = model(name, wrap)
+    chosen = material(material_name)
+    return [break_up(mesh, "voronoi", chosen, force, up=up) for force in forces]
+
+
+def tetrahedra(name: str = "sphere:162", force: float = 2.0) -> Broken:
+    """A model of few and therefore large faces, broken into tetrahedra."""
+    mesh, up = model(name)
+    return break_up(mesh, "tetra", material("stone"), force, up=up)
+
+
+def gallery(every: Sequence[Broken]) -> Figure:
+    """Each fracture in a row of its own: in place on the left, exploded on the right."""
+    with styled():
+        figure = Figure(figsize=(9.6, 3.75 * len(every)), layout="constrained")
+        for axes, broken in zip(
+            figure.subplots(len(every), squeeze=False)[:, 0], every, strict=True
+        ):
+            axes.imshow(still(broken.stage(), (640, 480)))
+            axes.set_title(_told(broken))
+            axes.axis("off")
+    return figure
+
+
+def _told(broken: Broken) -> str:
+    found = broken.fracture
+    parts = found.mass.volumes / found.mass.volumes.sum()
+    shards = parts[: len(found.shards)]
+    return (
+        f"{found.material.name.capitalize()}, {broken.blow.force:g} J/kg: {len(shards):,} shards, "
+        f"{shards.sum():.0%} of the volume, the median one {100 * np.median(shards):.2g}%"
+    )
+
+
+def shards_per_second(run: Run) -> Figure:
+    """How many shards each structure makes a second, by size."""
+    cells = run.cells[(run.cells["experiment"] == "bench_fracture")]
+    cells = cells[cells["query"] == SHATTER].copy()
+    cells["samples"] = [1 / it for it in cells["samples"]]
+    with styled():
+        figure = Figure(figsize=(7.5, 3.8), layout="constrained")
+        axes = figure.subplots()
+        axes.set(xscale="log", yscale="log", xlabel="faces n_t", ylabel="shards per second")
+        axes.set_title("Breaking a surface around an impact")
+        ends = _lines(axes, cells, "faces", 1.0)
+        finish_panels(figure, [axes], [ends], room=0.2)
+    return figure
+
+
+def face_finding(run: Run, structure: str = "half_edge") -> Figure:
+    """Finding the face under an impact in three ways: faces looked at, and time."""
+    cells = run.cells[run.cells["experiment"] == "bench_fracture"]
+    cells = cells[(cells["query"] == FIND) & (cells["structure"] == structure)]
+    looks = dict(
+        zip(
+            WAYS,
+            ((LOOKS["winged_edge"].color, "o"), (LOOKS[structure].color, "D"), (GRAY, "s")),
+            strict=True,
+        )
+    )
+    with styled():
+        figure = Figure(figsize=(10.5, 3.7), layout="constrained")
+        panels = figure.subplots(1, 2)
+        every: list[Ends] = []
+        for axes, suffix, scale, label in (
+            (panels[0], f", {VISITED}", 1.0, VISITED),
+            (panels[1], "", 1e6, "time each, µs"),
+        ):
+            axes.set(xscale="log", yscale="log", xlabel="faces n_t", ylabel=label)
+            every.append({})
+            for way, (color, marker) in looks.items():
+                x, y = _line(cells[cells["order"] == way + suffix], "faces")
+                axes.plot(x, scale * y, color=color, marker=marker)
+                if len(x):
+                    every[-1][way] = (x[-1], scale * y[-1], color)
+            _plain_numbers(axes)
+        finish_panels(figure, panels, every, room=0.45)
+    return figure

@@ -1,0 +1,1 @@
+"""All cases into a folder, and a folder into a table."""

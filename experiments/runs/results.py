@@ -1,0 +1,192 @@
+"""What a run leaves on disk, written and read in one place.
+
+A run is a folder: ``run.json`` says what ran where, and every process, that is one experiment on
+one structure, has a file ``<experiment>.<structure>.json`` with its cells. A file is written beside
+and renamed after each cell, so that whoever is killed loses the cell in flight and nothing else; it
+carries a checksum, so that what is damaged later is not read as measured. A run on several machines
+has a folder ``machine-…`` for each, with a ``run.json`` of its own. Raw samples are never
+rewritten; what is derived from them lives in ``derived/``.
+"""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from experiments.runs.storage import (
+    SEAL,
+    CannotWriteError,
+    DamagedError,
+    ResultsError,
+    again,
+    read_json,
+    write_json,
+    write_sealed,
+)
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+SCHEMA = 2
+READABLE = (1, SCHEMA)
+"""Schemas that are understood: 1 had neither checksums nor noise."""
+
+RUNS = Path("results/runs")
+MACHINES = "machine-*"
+
+__all__ = [
+    "MACHINES", "READABLE", "RUNS", "SCHEMA", "CannotWriteError", "CellResult", "DamagedError",
+    "ResultFile", "ResultsError", "Run", "latest", "load", "read_json", "result_files",
+    "write_json", "write_sealed",
+]  # fmt: skip
+
+
+@dataclass
+class CellResult:
+    """One measured cell.
+
+    ``samples``: seconds per query and round (``kind`` "time"), reads per query and handle ("work"),
+    or bytes ("bytes"). ``handles``: queries per sample. ``working_set``: bytes of the structure's
+    live records, or of the chased array in the latency experiment. ``valence``: that of the queried
+    vertices where the experiment varies it. ``latency``: seconds per memory access in the working
+    set, measured beside the cell. ``left_out``: why nothing was measured, else empty. ``noise``:
+    what ``noise.Watch`` saw meanwhile, and how often the cell was ``measured``; empty in schema 1.
+    """
+
+    id: str
+    kind: str
+    query: str | None = None
+    order: str | None = None
+    family: str | None = None
+    seed: int = 0
+    vertices: int = 0
+    edges: int = 0
+    faces: int = 0
+    valence_max: int = 0
+    valence: int | None = None
+    reference_bytes: int = 4
+    working_set: int = 0
+    handles: int = 0
+    checked: bool = False
+    latency: float | None = None
+    samples: list[float] = field(default_factory=list)
+    left_out: str = ""
+    detail: dict[str, Any] = field(default_factory=dict)
+    noise: dict[str, Any] = field(default_factory=dict)
+
+
+class ResultFile:
+    """The cells of one process, kept on disk from one cell to the next.
+
+    Raises DamagedError where the file is not what was written.
+    """
+
+    def __init__(self, folder: Path, experiment: str, structure: str) -> None:
+        self.path = folder / f"{experiment}.{structure}.json"
+        self.head = {"schema": SCHEMA, "experiment": experiment, "structure": structure}
+        self.cells = _cells_of(self.path)["cells"] if self.path.exists() else []
+
+    @property
+    def finished(self) -> set[str]:
+        """The ids of the cells that are on disk."""
+        return {cell["id"] for cell in self.cells}
+
+    def add(self, cell: CellResult) -> None:
+        """Keep one more cell, or another result of one. Raises CannotWriteError, and keeps less."""
+        others = [kept for kept in self.cells if kept["id"] != cell.id]
+        write_sealed(self.path, {**self.head, "cells": [*others, asdict(cell)]})
+        self.cells = [*others, asdict(cell)]
+
+    def get(self, cell_id: str) -> dict[str, Any] | None:
+        """A cell as it is on disk, None if it is not."""
+        return next((cell for cell in self.cells if cell["id"] == cell_id), None)
+
+
+@dataclass(frozen=True)
+class Run:
+    """A run as read: ``meta`` is run.json, ``cells`` has one row per measured cell.
+
+    ``cells`` has the fields of ``CellResult``, ``samples`` as an array, besides ``experiment``,
+    ``structure`` and ``machine``: the folder of the machine that measured it, empty where there was
+    only one. ``left_out``: the cells that were not measured, with the reason.
+    """
+
+    folder: Path
+    meta: dict[str, Any]
+    cells: pd.DataFrame
+    left_out: pd.DataFrame
+
+    @property
+    def machines(self) -> list[str]:
+        """The machines that measured it, where they were several: their times do not mix."""
+        return list(self.meta.get("machine", {}).get("machines", ()))
+
+
+def load(folder: Path | str) -> Run:
+    """Read a run. Raises ResultsError if there is none in ``folder``, or of another schema.
+
+    Of a damaged or missing file too: nothing is read as a run that is not all of what was measured.
+    """
+    import pandas as pd
+
+    folder = Path(folder)
+    if not (folder / "run.json").exists():
+        raise ResultsError(f"{folder} holds no run: there is no run.json in it")
+    meta = _of_this_schema(folder / "run.json")
+    _require_all(folder, meta)
+    rows = []
+    for path in result_files(folder):
+        content = _cells_of(path)
+        owner = {key: content[key] for key in ("experiment", "structure")}
+        owner["machine"] = "" if path.parent == folder else path.parent.name
+        rows += [{**owner, "noise": {}, **cell} for cell in content["cells"]]
+    columns = ["experiment", "structure", "machine", *CellResult.__dataclass_fields__]
+    cells = pd.DataFrame(rows, columns=columns)
+    cells["samples"] = cells["samples"].map(lambda samples: np.asarray(samples, float))
+    measured = cells["left_out"] == ""
+    return Run(folder, meta, cells[measured].reset_index(drop=True), cells[~measured])
+
+
+def result_files(folder: Path) -> list[Path]:
+    """The files with the cells of a run, those of every machine; copies beside them are not."""
+    every = [*sorted(folder.glob("*.*.json")), *sorted(folder.glob(f"{MACHINES}/*.*.json"))]
+    return [path for path in every if path.name.count(".") == 2]
+
+
+def latest(root: Path | str = RUNS, *, unfinished: bool = False) -> Path:
+    """The newest run, or the newest that was not finished. Raises ResultsError if there is none."""
+    runs = sorted(Path(root).glob("*/run.json"), key=lambda path: path.parent.name, reverse=True)
+    for path in runs:
+        if not (unfinished and "finished" in read_json(path)):
+            return path.parent
+    what = "unfinished run" if unfinished else "run"
+    raise ResultsError(f"there is no {what} in {root}; start one with: hem study")
+
+
+def _of_this_schema(path: Path) -> dict[str, Any]:
+    content = read_json(path)
+    if content.get("schema") not in READABLE:
+        found = content.get("schema")
+        raise ResultsError(f"{path} has schema {found}, this version reads {SCHEMA}: run it anew")
+    return content
+
+
+def _cells_of(path: Path) -> dict[str, Any]:
+    """A file of cells. Since schema 2 one that lost its checksum is damaged as well."""
+    content = _of_this_schema(path)
+    sealed = content["schema"] == 1 or SEAL in content
+    if not sealed or not {"experiment", "structure", "cells"} <= set(content):
+        way_out = f"measure its cells again with: {again(path)}"
+        raise DamagedError(f"{path} is not as it was written; {way_out}")
+    return content
+
+
+def _require_all(folder: Path, meta: dict[str, Any]) -> None:
+    """Raise DamagedError if a file is gone that was there when the run was finished."""
+    gone = [name for name in meta.get("files", ()) if not (folder / name).exists()]
+    if gone:
+        missing = folder / gone[0]
+        raise DamagedError(f"{missing} is missing; measure its cells again with: {again(missing)}")

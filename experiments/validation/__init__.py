@@ -1,0 +1,1 @@
+"""How far the judge and the gate can be trusted, and other libraries beside ours."""

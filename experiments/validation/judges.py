@@ -1,0 +1,116 @@
+"""Other judges of growth, on the same curves: who names how many right.
+
+Each takes sizes and samples and names a class of `hem.complexity.models`, or none. They are given
+nanoseconds, as some of them have thresholds in absolute units, and asked only about the classes
+that are judged here. None of them knows of a latency.
+"""
+
+from __future__ import annotations
+
+import atexit
+from collections.abc import Callable, Sequence
+from importlib.util import find_spec
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hem.complexity.judge import judge
+
+Array = NDArray[np.float64]
+Judge = Callable[[Array, Sequence[Array], Array | None], str | None]
+
+NANOSECONDS = 1e9
+
+
+def hem_judge(sizes: Array, samples: Sequence[Array], latency: Array | None) -> str | None:
+    """`hem.complexity.judge.judge`: the class that is consistent, of all it could be asked."""
+    best = judge(sizes, samples, latency=latency, resamples=2).best
+    found = judge(sizes, samples, best, latency, resamples=2)
+    return best if found.outcome == "consistent" else None
+
+
+def google_benchmark(
+    sizes: Array, samples: Sequence[Array], latency: Array | None = None
+) -> str | None:
+    """Google Benchmark's rule, src/complexity.cc: MinimalLeastSq with oAuto.
+
+    Least squares of each curve without intercept over all points; the least root mean square error
+    relative to the mean wins, and O(1) where nothing beats it. It has no O(√n), and O(n³) is left
+    out.
+    """
+    n, t = _points(sizes, samples)
+    curves = {
+        "O(1)": np.ones_like(n),
+        "O(log n)": np.log2(n),
+        "O(n)": n,
+        "O(n log n)": n * np.log2(n),
+        "O(n²)": n * n,
+    }
+    return min(curves, key=lambda name: _normalized_rms(curves[name], t))
+
+
+def _normalized_rms(curve: Array, t: Array) -> float:
+    coefficient = (t @ curve) / (curve @ curve)
+    return float(np.sqrt(np.mean((t - coefficient * curve) ** 2)) / t.mean())
+
+
+def big_o(sizes: Array, samples: Sequence[Array], latency: Array | None = None) -> str | None:
+    """The package big-o (P. Berkes): least squares with an intercept, least residuals win.
+
+    It is given the least time of each size, as it measures. It has no O(√n).
+    """
+    from big_o import complexities, infer_big_o_class
+
+    names = {
+        complexities.Constant: "O(1)",
+        complexities.Logarithmic: "O(log n)",
+        complexities.Linear: "O(n)",
+        complexities.Linearithmic: "O(n log n)",
+        complexities.Quadratic: "O(n²)",
+    }
+    least = np.array([np.min(cell) for cell in samples])
+    best, _ = infer_big_o_class(sizes, NANOSECONDS * least, classes=list(names))
+    return names[type(best)] if best is not None else None
+
+
+def bigo(sizes: Array, samples: Sequence[Array], latency: Array | None = None) -> str | None:
+    """The package bigo (E. Berger, S. Freund): least squares with an intercept, Akaike's criterion.
+
+    It leaves out outliers by itself, and curves that it cannot fit.
+    """
+    from bigO import bigO, models
+
+    atexit.unregister(bigO.save_performance_data)  # or it leaves a file where one happens to be
+    names = {
+        "O(1)": "O(1)",
+        "O(log(n))": "O(log n)",
+        "O(sqrt(n))": "O(√n)",
+        "O(n)": "O(n)",
+        "O(n*log(n))": "O(n log n)",
+        "O(n**2)": "O(n²)",
+    }
+    n, t = _points(sizes, samples)
+    fitted = models.infer_bound(n, NANOSECONDS * t).models
+    return next((names[it.model.name] for it in fitted if it.model.name in names), None)
+
+
+def _points(sizes: Array, samples: Sequence[Array]) -> tuple[Array, Array]:
+    n = np.repeat(sizes, [len(cell) for cell in samples])
+    return n, np.concatenate([np.asarray(cell, float) for cell in samples])
+
+
+JUDGES: dict[str, Judge] = {
+    "hem": hem_judge,
+    "bigo": bigo,
+    "big-o": big_o,
+    "Google Benchmark": google_benchmark,
+}
+"""By name. Those of packages that are not installed fail when asked: see ``installed``."""
+
+PACKAGES = {"bigo": "bigO", "big-o": "big_o"}
+
+
+def installed() -> dict[str, Judge]:
+    """The judges that can be asked here: the extra ``rigour`` brings all of them."""
+    missing = {name for name, module in PACKAGES.items() if find_spec(module) is None}
+    return {name: it for name, it in JUDGES.items() if name not in missing}

@@ -1,0 +1,117 @@
+"""How a structure's validator states what must hold. Nothing here uses a structure's queries."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hem.authoring.kernels import EDGES, FACES, VERTICES
+from hem.authoring.records import Field, live
+from hem.contract.queries import ELEMENTS
+from hem.errors import MeshError
+
+Array = NDArray[Any]
+
+
+def require(
+    holds: NDArray[np.bool_], invariant: str, elements: str, of: Array | None = None
+) -> None:
+    """Raise MeshError naming the ``invariant`` and the ``elements`` for which it does not hold.
+
+    ``holds``: (n,) or (n, k) bool, one row per element, or per element in ``of`` (n,).
+    """
+    if not holds.all():
+        rows = np.flatnonzero(~holds if holds.ndim == 1 else ~holds.all(axis=1))
+        found = rows if of is None else np.unique(of[rows])
+        raise MeshError(f"broken invariant: {invariant}", **{elements: found})
+
+
+def require_references(
+    values: Array,
+    alive: NDArray[np.bool_],
+    field: str,
+    elements: str,
+    of: Array | None = None,
+    least: int = 0,
+) -> None:
+    """Require that every reference names a live record, or is ``least`` = -1 where it names none.
+
+    ``values``: (n,) or (n, k). ``alive``: (end,) of the records that are referred to.
+    """
+    named: NDArray[np.bool_] = (values >= 0) & (values < len(alive))
+    named[named] = alive[values[named]]
+    if least < 0:
+        named |= values == least
+    require(named, f"{field} is a live record", elements, of)
+
+
+def require_points(points: Array) -> None:
+    """Require finite positions, of live vertices; a dead one has none at all."""
+    alike = np.isfinite(points).all(axis=1) == ~np.isnan(points).all(axis=1)
+    require(alike, "positions are finite", "vertices")
+
+
+def require_counts(records: Any, fields: Sequence[Field], edges: int | None = None) -> None:
+    """Require that the live elements are as many as the structure says.
+
+    ``edges``: how many there are, where it is known without a search.
+    """
+    count = records.counts
+    found = {VERTICES: "vertex", FACES: "face"}
+    for column, element in found.items():
+        alive = int(np.count_nonzero(live(records, fields, element)))
+        _require_count(element, alive, int(count[column]))
+    if edges is not None:
+        _require_count("edge", edges, int(count[EDGES]))
+
+
+def _require_count(element: str, found: int, counted: int) -> None:
+    if found != counted:
+        many = ELEMENTS[element]
+        raise MeshError(f"broken invariant: {counted:,} live {many} are counted, not {found:,}")
+
+
+def require_distinct_edges(a: Array, b: Array, elements: str, of: Array | None = None) -> None:
+    """Require that no two edges (a[i], b[i]) join the same two vertices, and none joins one."""
+    require(a != b, "an edge joins two different vertices", elements, of)
+    named = (np.minimum(a, b).astype(np.int64) << 32) | np.maximum(a, b)
+    first = np.zeros(len(named), np.bool_)
+    first[np.unique(named, return_index=True)[1]] = True
+    require(first, "two vertices are joined by at most one edge", elements, of)
+
+
+def require_one_fan(vertex: Array, clockwise: Array, alive: Array) -> None:
+    """Require that the faces around every vertex form one fan.
+
+    ``vertex``: (n,) the vertex of each corner. ``clockwise``: (n,) the corner that follows around
+    the same vertex, or -1 at the border. ``alive``: (k,) the corners of live faces.
+    """
+    _require_one_each(
+        vertex, clockwise, alive, "the faces around a vertex form one fan", "vertices"
+    )
+
+
+def require_one_loop(face: Array, following: Array, alive: Array) -> None:
+    """Require that the half-edges of every face form one loop.
+
+    ``face``, ``following``: (n,) of each half-edge. ``alive``: (k,) those that lie in live faces.
+    """
+    _require_one_each(face, following, alive, "the half-edges of a face form one loop", "faces")
+
+
+def _require_one_each(owner: Array, step: Array, alive: Array, words: str, elements: str) -> None:
+    """Require that all items of an owner hang together by steps; -1 is no step."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    n = len(owner)
+    if n == 0:
+        return
+    items = alive[step[alive] >= 0]
+    steps = (np.ones(len(items), np.bool_), (items, step[items]))
+    group = connected_components(coo_array(steps, shape=(n, n)), directed=False)[1][alive]
+    owners = owner[alive][np.unique(group, return_index=True)[1]]
+    require(np.bincount(owners) < 2, words, elements)

@@ -1,0 +1,157 @@
+"""The arrays of a structure as records: which are live, room for more, dropping the dead ones.
+
+A structure's records are a ``NamedTuple`` of arrays, one row per record, and a last array
+``counts`` (see ``kernels``). The rows before an end are in use, those behind it are room. All
+that is done here follows from the structure's fields, which say what each column refers to.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hem.authoring.kernels import (
+    EDGE_END,
+    EDGE_GROWTH,
+    EDGE_ROOM,
+    EDGES,
+    FACE_END,
+    FACE_ROOM,
+    FACES,
+    SIDES,
+    VALENCE,
+    VERTEX_END,
+    VERTEX_ROOM,
+    VERTICES,
+)
+
+Array = NDArray[Any]
+
+ENDS = {
+    "vertex": VERTEX_END,
+    "edge": EDGE_END,
+    "half_edge": EDGE_END,
+    "face": FACE_END,
+    "triangle": FACE_END,
+}
+"""Where ``counts`` says how many records of a kind are in use."""
+
+UNKNOWN = -1
+"""The number of edges of a structure that would have to search for them."""
+
+ENDLESS = 1 << 62
+"""Room for records that a structure does not have."""
+
+
+class Field(NamedTuple):
+    """One field of one record: ``half_edge.twin`` is 1 element wide in the array ``half_edge``.
+
+    ``target`` is the kind of record it refers to, empty for a position. Of each kind of record one
+    field ``marks`` the dead: it is negative there, and a vertex has no position (NaN).
+    """
+
+    name: str
+    array: str
+    width: int = 1
+    target: str = ""
+    marks: bool = False
+
+    @property
+    def element(self) -> str:
+        """The record that has the field, such as ``half_edge``."""
+        return self.name.split(".")[0]
+
+
+def counted(
+    n_vertices: int,
+    n_edges: int,
+    n_faces: int,
+    edge_records: int = ENDLESS,
+    edge_growth: int = 3,
+    sides: int = 3,
+) -> Array:
+    """The array ``counts`` of a structure just built, with no room for more and nothing dead.
+
+    ``edge_records``: how many edges or half-edges are recorded, if they are; ``edge_growth``: how
+    many of them a new face may need; ``sides``: the most that a face has.
+    """
+    count = np.zeros(12, np.int64)
+    count[EDGE_GROWTH], count[SIDES] = edge_growth, sides
+    count[[VERTICES, VERTEX_END, VERTEX_ROOM]] = n_vertices
+    count[[FACES, FACE_END, FACE_ROOM]] = n_faces
+    count[EDGES], count[EDGE_ROOM] = n_edges, edge_records
+    count[EDGE_END] = 0 if edge_records == ENDLESS else edge_records
+    return count
+
+
+def live(records: Any, fields: Sequence[Field], element: str) -> NDArray[np.bool_]:
+    """(end,) bool: which of the records of a kind are live. Cost O(records)."""
+    mark = next(it for it in fields if it.marks and ENDS[it.element] == ENDS[element])
+    used = getattr(records, mark.array)[: records.counts[ENDS[element]]]
+    values = used[:, _columns(fields)[mark.name]][:, 0] if used.ndim == 2 else used
+    alive: NDArray[np.bool_] = ~np.isnan(values) if element == "vertex" else values >= 0
+    return alive
+
+
+def grown(records: Any, fields: Sequence[Field], vertices: int, faces: int) -> Any:
+    """The same records with room for so many more vertices and faces, and at least twice as many.
+
+    Cost O(records), so that one new element costs O(1) in the long run.
+    """
+    count, arrays = records.counts.copy(), records._asdict()
+    wanted = {VERTEX_END: vertices, FACE_END: faces, EDGE_END: count[EDGE_GROWTH] * faces}
+    rooms = {VERTEX_END: VERTEX_ROOM, FACE_END: FACE_ROOM, EDGE_END: EDGE_ROOM}
+    for field in fields:
+        end = ENDS[field.element]
+        used, room = count[end], rooms[end]
+        if used + wanted[end] > records.counts[room]:
+            count[room] = max(2 * used, used + wanted[end])
+            old = getattr(records, field.array)
+            if len(arrays[field.array]) < count[room]:
+                arrays[field.array] = np.empty((count[room], *old.shape[1:]), old.dtype)
+                arrays[field.array][:used] = old[:used]
+    return type(records)(**(arrays | {"counts": count}))
+
+
+def compacted(records: Any, fields: Sequence[Field]) -> tuple[Any, dict[str, Array]]:
+    """The live records, renumbered without gaps in the order they had -> them, and the numbers.
+
+    The numbers are by kind of record: (end,) the new one of each, -1 for the dead. O(records).
+    """
+    alive = {it.element: live(records, fields, it.element) for it in fields}
+    number = {kind: np.where(it, np.cumsum(it) - 1, -1) for kind, it in alive.items()}
+    columns, arrays = _columns(fields), {}
+    for field in fields:
+        if field.array not in arrays:
+            used = getattr(records, field.array)[: len(alive[field.element])]
+            arrays[field.array] = used[alive[field.element]]
+        if field.target:
+            array = arrays[field.array]
+            part = array if array.ndim == 1 else array[:, columns[field.name]]
+            # Where there is none, -1, the last number is taken and thrown away again.
+            part[...] = np.where(part < 0, part, number[field.target][part]) if part.size else part
+    old, recorded = records.counts, [kind for kind in alive if ENDS[kind] == EDGE_END]
+    edge_records = int(alive[recorded[0]].sum()) if recorded else ENDLESS
+    own = edge_records, old[EDGE_GROWTH], old[SIDES]
+    count = counted(old[VERTICES], old[EDGES], old[FACES], *own)
+    count[VALENCE] = old[VALENCE]
+    return type(records)(**arrays, counts=count), number
+
+
+def copied(records: Any) -> Any:
+    """The same records in arrays of their own."""
+    return type(records)(*(array.copy() for array in records))
+
+
+def _columns(fields: Sequence[Field]) -> dict[str, slice]:
+    """Which columns of its array each field takes."""
+    taken: dict[str, int] = {}
+    columns = {}
+    for field in fields:
+        begin = taken.get(field.array, 0)
+        taken[field.array] = begin + field.width
+        columns[field.name] = slice(begin, begin + field.width)
+    return columns

@@ -1,0 +1,1 @@
+"""Does a measured cost grow as claimed? NumPy alone is needed."""

@@ -1,0 +1,86 @@
+"""From samples to one cost per size, its error, and its log-log slope."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from hem.complexity.models import Array
+
+FLOOR = 0.02
+"""Relative error between sizes that no repetition at one size shows."""
+
+
+@dataclass(frozen=True)
+class Costs:
+    """One cost per size, ascending, with its relative error; and the samples behind it."""
+
+    sizes: Array
+    samples: list[Array]
+    cost: Array
+    error: Array
+    scatter: float
+    """Relative standard deviation of single samples, as all sizes share it."""
+
+
+def reduce(sizes: ArrayLike, samples: Sequence[ArrayLike]) -> Costs:
+    """Costs of k sizes from k arrays of samples; ValueError names what is malformed."""
+    n = np.asarray(sizes, dtype=np.float64)
+    cells = [np.asarray(cell, dtype=np.float64).ravel() for cell in samples]
+    _check(n, cells)
+    order = np.argsort(n, kind="stable")
+    n, cells = n[order], [cells[i] for i in order]
+    error, scatter = _errors(cells)
+    return Costs(n, cells, np.array([midmean(cell) for cell in cells]), error, scatter)
+
+
+def _check(n: Array, cells: list[Array]) -> None:
+    if n.ndim != 1 or not n.size or not np.all(np.isfinite(n) & (n >= 1)):
+        raise ValueError("sizes must be one row of numbers, each at least 1")
+    if len(cells) != len(n):
+        raise ValueError(f"one array of samples per size: {len(n)} sizes, {len(cells)} arrays")
+    for size, cell in zip(n, cells, strict=True):
+        if not cell.size or not np.all(np.isfinite(cell) & (cell > 0)):
+            raise ValueError(f"samples at size {size:g} must be there, finite and positive")
+
+
+def midmean(samples: Array) -> Array:
+    """Mean of the middle half along the last axis: nearly a mean's precision, deaf to outliers."""
+    cut = samples.shape[-1] // 4
+    middle: Array = np.sort(samples, axis=-1)[..., cut : samples.shape[-1] - cut].mean(-1)
+    return middle
+
+
+def _errors(cells: list[Array]) -> tuple[Array, float]:
+    """Relative standard error of each midmean, and the scatter of samples all sizes share.
+
+    Few samples tell their own scatter badly, so it is averaged with that of all sizes.
+    """
+    count = np.array([len(cell) for cell in cells])
+    small = np.sqrt(count / np.maximum(count - 0.8, 0.2))
+    off = [np.abs(c / np.median(c) - 1) * f for c, f in zip(cells, small, strict=True)]
+    own = 1.4826 * np.array([np.median(o) for o in off])
+    shared = 1.4826 * float(np.median(np.concatenate(off)))
+    variance = 1.15**2 * (shared**2 + own**2) / 2 / count
+    return np.sqrt(variance + FLOOR**2), shared
+
+
+def slope(sizes: Array, cost: Array) -> Array:
+    """Log-log slope along the last axis of costs (..., k), all sizes counting alike."""
+    x = np.log(sizes) - np.log(sizes).mean()
+    fitted: Array = np.log(cost) @ x / max(float(x @ x), 1e-12)
+    return fitted
+
+
+def resample(costs: Costs, fitted: Array, count: int, seed: int) -> Array:
+    """(count, k) bootstrap replicates of the costs around a fit.
+
+    Each draws every size's samples anew, and turns its residual's sign at random.
+    """
+    rng = np.random.default_rng(seed)
+    cells = (c[rng.integers(len(c), size=(count, len(c)))] for c in costs.samples)
+    drawn = np.stack([midmean(cell) for cell in cells], axis=1)
+    sign = rng.choice([-1.0, 1.0], size=drawn.shape)
+    replicates: Array = drawn * (costs.cost / fitted) ** (sign - 1)
+    return replicates

@@ -1,0 +1,191 @@
+"""From sizes and samples to a verdict on a growth class.
+
+Every model of `hem.complexity.models` is fitted to one robust cost per size, with relative weights.
+"Consistent" and "violated" need evidence against all that would say otherwise; without it, or where
+no model explains the costs, the verdict is "undetermined".
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from hem.complexity.estimates import Costs, reduce, resample, slope
+from hem.complexity.models import NAMES, Array, canonical, predict
+from hem.complexity.selection import LATENCY_ERROR, Comparison, account
+
+Outcome = Literal["consistent", "violated", "undetermined"]
+Bound = Literal["tight", "upper"]
+
+MIN_SIZES = 4
+MIN_RANGE = 4.0
+MAX_SCATTER = 0.4
+"""Relative scatter of samples beyond which nothing is concluded."""
+MAX_ERROR = 0.12
+"""Relative error of a size's cost beyond which the size is left out …"""
+MOST_LEFT_OUT = 0.25
+"""… if so few of the sizes are like that; otherwise nothing is concluded."""
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What measurements say about a claimed growth class.
+
+    slope, slope_low, slope_high: log-log slope with the memory's part, as `best` sees it, taken
+    out, and its bootstrap interval; raw_slope: of the costs as measured. margin: evidence of `best`
+    against `runner_up`, negative where `best` is preferred for being simpler. noise: relative
+    scatter of samples. coefficients: per model `fixed`, `factor` and `rise` of
+    fixed·r + factor·f(n)·r, where r rises with the memory's latency from 1 to `rise`. errors: per
+    model, the root mean square of the relative residuals.
+    """
+
+    outcome: Outcome
+    expected: str
+    bound: Bound
+    best: str
+    runner_up: str
+    margin: float
+    slope: float
+    slope_low: float
+    slope_high: float
+    raw_slope: float
+    confidence: float
+    noise: float
+    coefficients: Mapping[str, Mapping[str, float]]
+    errors: Mapping[str, float]
+    reason: str
+
+    def as_dict(self) -> dict[str, Any]:
+        """The verdict in what JSON knows: strings, numbers and objects."""
+        return asdict(self)
+
+
+def judge(
+    sizes: ArrayLike,
+    samples: Sequence[ArrayLike],
+    expected: str = "O(1)",
+    latency: ArrayLike | None = None,
+    *,
+    exact: bool = False,
+    latency_error: float = LATENCY_ERROR,
+    unseen: bool = False,
+    bound: Bound = "tight",
+    confidence: float = 0.95,
+    resamples: int = 200,
+    seed: int = 0,
+) -> Verdict:
+    """Judge whether costs measured at several sizes grow as claimed.
+
+    sizes: (k,) at least 1, the variable of the claim; 4 distinct ones over a range of 4 can decide.
+    samples: k arrays of positive costs, of any lengths: seconds, or read counts.
+    expected: a class of `MODELS` in any usual spelling; "O(n_t)" and "O(n_ev)" are linear.
+    latency: (k,) the machine's memory latency at each working set, in any unit. A cost may then
+    wait for memory to any degree, from not at all to entirely. Or (a, k): as any one row tells it.
+    latency_error: how far, relatively, the latency may miss what the costs really waited for.
+    exact: the costs are counts of work, which no cache slows. With neither latency nor exact, a
+    smooth rise of up to `evidence.HIGHEST_RISE` may have happened unseen: what it could explain
+    violates nothing, and where it explains the costs better, nothing is confirmed.
+    unseen: beside a latency, too, what such a rise could explain violates nothing; for costs of
+    what was found in the caches in another state than what the latency was measured on.
+    bound: "tight" takes the claim for the class itself, as a table of growth classes means it;
+    "upper" for a bound, which slower growth keeps too.
+
+    A size whose own samples tell its cost worse than `MAX_ERROR` is left out, up to a quarter of
+    the sizes: a neighbor who took the machine for some milliseconds spoils a cell, not the curve.
+    Growth below `evidence.GROWTH` over the sizes is taken for O(1): beside so large an intercept
+    no class shows. Beside a tenfold slowdown by caches, growth below 1.5 may be missed as well.
+    Times that grow by less than `evidence.ACCUSING_GROWTH` violate no claim of slower growth.
+    The same input gives the same verdict. Takes milliseconds. Raises ValueError for malformed
+    input; data that are too few or too noisy are "undetermined".
+    """
+    if bound not in ("tight", "upper"):
+        raise ValueError(f'bound must be "tight" or "upper", not {bound!r}')
+    claim = NAMES.index(canonical(expected))
+    measured = reduce(sizes, samples)
+    kept = _legible(measured)
+    if len(kept) < len(measured.sizes):
+        order = np.argsort(np.asarray(sizes, float), kind="stable")[kept]
+        sizes, samples = measured.sizes[kept], [measured.samples[i] for i in kept]
+        if latency is not None and np.shape(latency)[-1:] == measured.sizes.shape:
+            latency = np.asarray(latency, float)[..., order]
+        measured = reduce(sizes, samples)
+    costs, caches = account(measured, sizes, latency, exact, latency_error, unseen)
+    models = Comparison(costs, caches)
+    outcome, reason = _decide(measured, models, claim, bound)
+    fitted, _ = predict(models.basis, models.fit)
+    replicates = resample(costs, fitted[models.best], resamples, seed)
+    tails = [(1 - confidence) / 2, (1 + confidence) / 2]
+    low, high = np.quantile(slope(costs.sizes, models.steady(replicates)), tails)
+    return Verdict(
+        outcome=outcome,
+        expected=NAMES[claim],
+        bound=bound,
+        best=NAMES[models.best],
+        runner_up=NAMES[models.runner_up],
+        margin=models.margin,
+        slope=float(slope(costs.sizes, models.steady(costs.cost))),
+        slope_low=float(low),
+        slope_high=float(high),
+        raw_slope=float(slope(costs.sizes, costs.cost)),
+        confidence=confidence,
+        noise=costs.scatter,
+        coefficients=_coefficients(models),
+        errors=_by_name(np.sqrt(np.mean((fitted / costs.cost - 1) ** 2, axis=1))),
+        reason=reason,
+    )
+
+
+def _decide(costs: Costs, models: Comparison, claim: int, bound: Bound) -> tuple[Outcome, str]:
+    doubt = _doubt(costs, models)
+    if doubt:
+        return "undetermined", doubt
+    best = models.best
+    kept = range(claim + 1) if bound == "upper" else range(claim, claim + 1)
+    if best in kept:
+        rivals = [m for m in range(len(NAMES)) if m not in kept and not models.confirms(best, m)]
+        if not rivals:
+            return "consistent", f"{NAMES[best]} explains the costs, and no other class does."
+    else:
+        rivals = [m for m in kept if not models.refutes(best, m)]
+        if not rivals:
+            return "violated", f"{NAMES[best]} explains the costs, {NAMES[claim]} does not."
+    close = ", ".join(NAMES[m] for m in rivals)
+    bent = models.unmeasured and not (models.told and best in kept)
+    allowed = " once caches that no latency tells of are allowed for" if bent else ""
+    reason = f"{NAMES[best]} explains the costs best, but {close} cannot be ruled out{allowed}."
+    return "undetermined", reason
+
+
+def _legible(costs: Costs) -> list[int]:
+    """The sizes that are not drowned in noise, or all of them if too many are."""
+    clear = np.flatnonzero(costs.error <= MAX_ERROR).tolist()
+    few_left_out = len(costs.sizes) - len(clear) <= MOST_LEFT_OUT * len(costs.sizes)
+    return clear if few_left_out else list(range(len(costs.sizes)))
+
+
+def _doubt(costs: Costs, models: Comparison) -> str:
+    """Why these costs cannot decide anything; empty if they can."""
+    distinct, reach = len(np.unique(costs.sizes)), costs.sizes[-1] / costs.sizes[0]
+    if distinct < MIN_SIZES:
+        return f"Too few sizes: {distinct}, where {MIN_SIZES} are needed."
+    if reach < MIN_RANGE:
+        return f"Too short a range: the largest size is {reach:.1f} times the smallest."
+    if costs.scatter > MAX_SCATTER or costs.error.max() > MAX_ERROR:
+        return f"Too noisy: the samples of a size scatter by {costs.scatter:.0%}."
+    if not models.explained:
+        unknown = ", and caches that no latency tells of might have bent them"
+        hint = unknown if models.unmeasured else ""
+        return f"No class explains the costs: {NAMES[models.best]} comes closest{hint}."
+    return ""
+
+
+def _coefficients(models: Comparison) -> dict[str, dict[str, float]]:
+    fixed, factor = _by_name(models.fit.fixed), _by_name(models.fit.factor)
+    rise = _by_name(models.basis.rises.growing[models.fit.rise].max(axis=1))
+    return {n: {"fixed": fixed[n], "factor": factor[n], "rise": rise[n]} for n in NAMES}
+
+
+def _by_name(values: Array) -> dict[str, float]:
+    return dict(zip(NAMES, values.tolist(), strict=True))

@@ -1,0 +1,1 @@
+"""What every structure offers: elements, queries, operations and memory, for whoever uses one."""

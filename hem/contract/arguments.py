@@ -1,0 +1,63 @@
+"""What users hand to operations, checked and brought into shape."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from hem.authoring.topology import NOT_FINITE, REFUSALS
+from hem.errors import MeshError
+
+Array = NDArray[Any]
+
+NO_POINT = np.zeros((1, 3), np.float32)
+"""The positions of operations that take none."""
+
+
+def rows(handles: Array | Sequence[int], ends: Array | int = -1) -> Array:
+    """(n, 3) int64: the arguments of n operations."""
+    arguments = np.full((len(handles), 3), -1, np.int64)
+    arguments[:, 0], arguments[:, 1] = handles, ends
+    return arguments
+
+
+def handles(called: str, values: ArrayLike) -> Array:
+    """(n,) int64; MeshError for what is no row of integers."""
+    given = np.asarray(values)
+    if given.ndim != 1 or (given.size and not np.issubdtype(given.dtype, np.integer)):
+        raise MeshError(
+            f"{called} takes a 1-D array of handles (integers), not {given.dtype} of shape "
+            f"{given.shape}"
+        )
+    return given.astype(np.int64)
+
+
+def positions(called: str, points: ArrayLike, n: int) -> Array:
+    """(n, 3) float32; MeshError for what is no position per handle, naming the rows."""
+    try:
+        given = np.asarray(points, np.float64)
+    except (TypeError, ValueError) as error:
+        raise MeshError(f"{called} takes points as {n} rows of three numbers: {error}") from error
+    if n == 0 and given.size == 0:
+        return NO_POINT
+    if given.shape != (n, 3):
+        raise MeshError(f"{called} takes one point per handle, ({n}, 3), not {given.shape}")
+    with np.errstate(over="ignore"):
+        kept = np.ascontiguousarray(given, np.float32)
+    if not np.isfinite(kept).all():
+        raise MeshError(REFUSALS[NOT_FINITE], rows=np.flatnonzero(~np.isfinite(kept).all(axis=1)))
+    return kept
+
+
+def refusal(operation: str, args: tuple[Any, ...], point: Any) -> MeshError:
+    """The error for arguments of one operation that are no handles, or no point."""
+    args = tuple(it for it in args if it is not None)
+    wrong = [it for it in args if not isinstance(it, int | np.integer)]
+    if wrong:
+        return MeshError(f"{operation} takes handles (integers), not {wrong[0]!r}")
+    if any(not -(1 << 63) <= it < 1 << 63 for it in args):
+        return MeshError(f"{operation}: there is no such element: {max(args, key=abs)}")
+    return MeshError(f"{operation} takes a point of three finite float32 numbers, not {point!r}")

@@ -1,0 +1,113 @@
+"""Many faces taken away at once, whatever the order: what would be left is looked at first.
+
+One after the other is not always possible. A ring of faces, for one, has a last face whose removal
+would leave two parts that meet in a vertex, until the next one is gone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hem.authoring.kernels import EDGES, FACES, Array, Kernel, kernel
+from hem.authoring.operations import note
+from hem.edit import FACE, REMOVED
+
+if TYPE_CHECKING:
+    from hem.contract.queryable import Queryable
+
+
+class Remaining(NamedTuple):
+    """The corners (k,) that other faces have at the vertices of the faces to be taken away."""
+
+    vertex: NDArray[np.int64]
+    face: NDArray[np.int64]
+    following: NDArray[np.int64]
+    """The next corner of the face."""
+
+    before: NDArray[np.int64]
+    """The corner before it."""
+
+    @property
+    def edges(self) -> NDArray[np.int64]:
+        """(2 k,): the edges at the vertex, as ``vertex << 32 | other end``."""
+        return self.vertex << 32 | np.stack([self.following, self.before])
+
+    def pinched(self) -> NDArray[np.int64]:
+        """The vertices in which more than one fan of faces would be left, ascending. O(k log k).
+
+        A fan of k faces that is not closed has k + 1 edges there.
+        """
+        vertices, corners = np.unique(self.vertex, return_counts=True)
+        edges = ascending(self.edges)
+        count = np.bincount(np.searchsorted(vertices, edges >> 32), minlength=len(vertices))
+        return vertices[count - corners > 1]
+
+
+def ascending(values: Array) -> Array:
+    """Each value once, ascending; by sorting, which is quicker than hashing for so few."""
+    ordered = np.sort(values, axis=None)
+    return ordered[np.append(True, ordered[1:] != ordered[:-1])] if len(ordered) else ordered
+
+
+def remaining(s: Queryable, gone: Array, fresh: Array | None = None) -> Remaining:
+    """What is left at the vertices of faces (k,), or just of the ``fresh`` ones among them.
+
+    Cost: ``vertex_faces`` of these vertices.
+    """
+    touched = ascending(s.face_vertices(gone if fresh is None else fresh).values)
+    faces = ascending(s.vertex_faces(touched).values)
+    faces = faces[~np.isin(faces, gone)]
+    corners = s.face_vertices(faces)
+    vertex, last = corners.values.astype(np.int64), corners.offsets[1:] - 1
+    following, before = np.roll(vertex, -1), np.roll(vertex, 1)
+    following[last] = vertex[corners.offsets[:-1]]
+    before[corners.offsets[:-1]] = vertex[last]
+    face = np.repeat(faces.astype(np.int64), corners.counts)
+    chosen = np.isin(vertex, touched)
+    return Remaining(*(it[chosen] for it in (vertex, face, following, before)))
+
+
+def vanishing_edges(s: Queryable, gone: Array, left: Remaining) -> int:
+    """How many edges have no face any more once these are gone."""
+    corners = s.face_vertices(gone)
+    here, last = corners.values.astype(np.int64), corners.offsets[1:] - 1
+    there = np.roll(here, -1)
+    there[last] = here[corners.offsets[:-1]]
+    mine = ascending(np.minimum(here, there) << 32 | np.maximum(here, there))
+    edges = left.edges
+    ends = edges >> 32, edges & 0xFFFFFFFF
+    return int((~np.isin(mine, np.minimum(*ends) << 32 | np.maximum(*ends))).sum())
+
+
+class Removal(NamedTuple):
+    """What ``removing`` is told."""
+
+    faces: Array  # (k,) int64, each once
+    anchors: Array  # (n, 2) int64: a vertex that keeps faces, and one of them
+    vanishing: Array  # (1,) int64: the edges that are left without a face
+    log: Array
+
+
+def removing(k: Mapping[str, Kernel], operations: Mapping[str, Kernel]) -> Kernel:
+    """Make ``remove(m, plan) -> 0``: detach all faces, then see that every vertex knows one.
+
+    In between there may be several fans in a vertex, which knows only one of them, or none.
+    """
+    detach, anchor = k["detach"], k["anchor"]
+
+    @kernel
+    def remove(m: Any, plan: Removal) -> int:
+        for i in range(len(plan.faces)):
+            detach(m, plan.faces[i])
+            note(plan.log, FACE + REMOVED, plan.faces[i])
+        for i in range(len(plan.anchors)):
+            anchor(m, plan.anchors[i, 0], plan.anchors[i, 1])
+        m.counts[FACES] -= len(plan.faces)
+        m.counts[EDGES] -= plan.vanishing[0]
+        return 0
+
+    return remove

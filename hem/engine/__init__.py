@@ -1,0 +1,1 @@
+"""How kernels are run: single, batched, timed, counted, interpreted."""

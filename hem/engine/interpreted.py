@@ -1,0 +1,104 @@
+"""The uses of kernels over objects: the same templates, run by Python itself.
+
+A structure made of objects has nothing that could be compiled. Its kernels are plain functions of
+the same signatures, and the operations' drivers and rules run uncompiled around them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from types import FunctionType
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hem.authoring.kernels import Array, Kernel
+from hem.engine.uses import Uses, interpreted
+
+
+class Held:
+    """What ``Pinned`` is for arrays: records and scratch that kernels find by one ``address``."""
+
+    kind = "held"
+
+    def __init__(self, *things: Any) -> None:
+        self.things = things
+
+    @property
+    def address(self) -> Held:
+        """Python needs no other than the object."""
+        return self
+
+    def replace(self, *things: Any) -> None:
+        """Put others in the same place."""
+        self.things = things
+
+
+def _things(address: Held) -> tuple[Any, ...]:
+    return address.things
+
+
+class InterpretedUses(Uses):
+    """The uses of one kernel over objects; the classes to count are those with ``__slots__``."""
+
+    counted_classes: Sequence[type[Any]] = ()
+
+    def work(self, handles: Array, out: Any, records: tuple[Any, ...]) -> NDArray[np.int64]:
+        """(n,) int64: how many fields of objects the kernel reads for each handle, exactly."""
+        answer, m = interpreted(self._kernel), self._records(*records)
+        totals = [0]
+        with counting(self.counted_classes) as counter:
+            for handle in handles.tolist():
+                answer(m, handle, out)
+                totals.append(counter[0])
+        return np.diff(totals)
+
+    def operation_work(
+        self, args: list[int], point: Array, out: Any, log: Any, records: tuple[Any, ...]
+    ) -> tuple[int, int]:
+        """Perform an operation -> its result, and the fields of objects it read and wrote."""
+        perform, m = interpreted(self._kernel), self._records(*records)
+        with counting(self.counted_classes) as counter:
+            result = int(perform(m, args, point, [0] * 6, out, log, False))
+        return result, counter[0]
+
+    def _bound(self, template: Kernel, kind: Any, **scope: Any) -> Callable[..., Any]:
+        return self._compiled(template, _LOAD=_things, **scope)
+
+    def _compiled(self, template: Kernel, variant: str = "", **scope: Any) -> Callable[..., Any]:
+        scope = {"_KERNEL": interpreted(self._kernel), "_RECORDS": self._records, **scope}
+        return FunctionType(template.__code__, {**template.__globals__, **scope})
+
+
+@contextmanager
+def counting(classes: Sequence[type[Any]]) -> Iterator[list[int]]:
+    """Count every read and write of the ``__slots__`` of ``classes`` -> the count, in a list.
+
+    Concerns the whole process, until the end of the block.
+    """
+    counter = [0]
+    slots = [(it, name, it.__dict__[name]) for it in classes for name in it.__slots__]
+    for owner, name, slot in slots:
+        setattr(owner, name, _CountingSlot(slot, counter))
+    try:
+        yield counter
+    finally:
+        for owner, name, slot in slots:
+            setattr(owner, name, slot)
+
+
+class _CountingSlot:
+    """Stands in for a slot of a class while its uses are counted."""
+
+    def __init__(self, slot: Any, counter: list[int]) -> None:
+        self._slot, self._counter = slot, counter
+
+    def __get__(self, owner: Any, kind: Any = None) -> Any:
+        self._counter[0] += 1
+        return self._slot.__get__(owner, kind)
+
+    def __set__(self, owner: Any, value: Any) -> None:
+        self._counter[0] += 1
+        self._slot.__set__(owner, value)

@@ -1,0 +1,1 @@
+"""Breaking a body: into tetrahedra or Voronoi cells."""

@@ -1,0 +1,91 @@
+"""Voronoi cells as closed meshes that fit together: each wall is cut into triangles only once.
+
+Two cells on either side of a wall have the very same triangles there, one the other way round. So
+do cells and what is left when they are taken out, and nothing is between them, not even slivers.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hem.fracture.bodies.solid import to_manifold
+from hem.fracture.pieces import Floats
+
+_FAR = 4.0
+"""How far off the six sites are that close the outer cells, in radii of all that matters."""
+
+
+@dataclass(frozen=True, eq=False)
+class Cells:
+    """The Voronoi cells of n sites, the walls between them in triangles.
+
+    The part of space is finite: six sites far off, which are no cells here, end it.
+
+    ::
+
+        front  ┊→ back      seen from the back, a triangle's corners run counterclockwise;
+               ┊            it is outward as a part of the cell in front
+    """
+
+    sites: Floats  # (n, 3)
+    vertices: Floats  # (v, 3)
+    triangles: NDArray[np.int64]  # (t, 3) vertices
+    walls: NDArray[np.int64]  # (t,): the wall a triangle is a part of
+    front: NDArray[np.int64]  # (t,): the site before it; those of the six are n …
+    back: NDArray[np.int64]  # (t,): the site behind it
+
+    def union(self, chosen: NDArray[np.bool_], first_label: int = 0) -> Any:
+        """Some of the n cells together, as a body for manifold3d. O(t).
+
+        Its faces are labeled ``first_label`` + wall. Raises MeshError where they meet in an edge or
+        a corner only, so that their union has no surface.
+        """
+        of = np.append(chosen, np.zeros(6, bool))
+        outward, inward = of[self.front] & ~of[self.back], of[self.back] & ~of[self.front]
+        triangles = np.concatenate([self.triangles[outward], self.triangles[inward][:, ::-1]])
+        labels = np.concatenate([self.walls[outward], self.walls[inward]]) + first_label
+        used, corners = np.unique(triangles, return_inverse=True)
+        return to_manifold(self.vertices[used], corners.reshape(-1, 3), labels)
+
+    def cell(self, site: int, first_label: int = 0) -> Any:
+        """One cell, as a body for manifold3d. O(t)."""
+        return self.union(np.arange(len(self.sites)) == site, first_label)
+
+
+def cells(sites: Floats, center: Floats, radius: float) -> Cells:
+    """The cells of n different sites (n, 3), which fill the ball of a radius around a center.
+
+    Source: Qhull, by way of scipy (Barber et al., The quickhull algorithm for convex hulls, 1996).
+    """
+    from scipy.spatial import Voronoi
+
+    extent = max(radius, float(np.abs(sites - center).max()))
+    far = center + _FAR * extent * np.concatenate([np.eye(3), -np.eye(3)])
+    diagram = Voronoi(np.concatenate([sites, far]))
+    triangles, walls = [], []
+    for wall, corners in enumerate(diagram.ridge_vertices):
+        if -1 not in corners:  # infinite walls lie between two of the six
+            fan = [(corners[0], b, c) for b, c in pairwise(corners[1:])]
+            triangles += fan
+            walls += [wall] * len(fan)
+    pairs, of = np.asarray(diagram.ridge_points, np.int64), np.array(walls)
+    outward = _outward(diagram, pairs)[of]
+    front = np.where(outward, pairs[of, 0], pairs[of, 1])
+    back = np.where(outward, pairs[of, 1], pairs[of, 0])
+    return Cells(sites, diagram.vertices, np.array(triangles, np.int64), of, front, back)
+
+
+def _outward(diagram: Any, pairs: NDArray[np.int64]) -> NDArray[np.bool_]:
+    """Which walls run counterclockwise as seen from the second of their two sites."""
+    found = np.zeros(len(pairs), bool)
+    across = diagram.points[pairs[:, 1]] - diagram.points[pairs[:, 0]]
+    for wall, corners in enumerate(diagram.ridge_vertices):
+        polygon = diagram.vertices[corners]
+        arms = polygon[1:] - polygon[0]
+        found[wall] = np.cross(arms[:-1], arms[1:]).sum(axis=0) @ across[wall] > 0
+    return found

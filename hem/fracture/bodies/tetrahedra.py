@@ -1,0 +1,183 @@
+"""Breaking tetrahedra out of a body, as the thesis' outlook has it (chapter 6): its surface is
+broken, and each shard gets a fourth point inside.
+
+    ──a─────────b──   The fourth point d lies under the middle of the shard's face. Sides that lean
+       ╲       ╱      at most half the angle between two faces never meet those of the neighbor;
+        ╲     ╱       where anything else is in the way, a hollow opposite or a wall, d rises until
+         ╲   ╱        nothing is. Some tetrahedra, the nearest to the impact first, are split into
+          ╲ ╱         four by a break point inside, as a face is into three.
+           d
+
+The rest is the body with a pit for each shard: the very operation that splits a face at a point
+makes it of the face, so that it stays closed.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from hem.contract.structure import Structure
+from hem.fracture.blow import Blow
+from hem.fracture.bodies.overlap import crossing, overlapping
+from hem.fracture.bodies.solid import require_body
+from hem.fracture.islands import triangle_areas
+from hem.fracture.material import Material
+from hem.fracture.material import material as named
+from hem.fracture.pieces import Fracture
+from hem.fracture.surface.nearest import corner_vertices
+from hem.fracture.surface.shatter import break_surface, in_place, random_numbers
+from hem.meshes.triangles import TriangleMesh
+
+Array = NDArray[Any]
+
+SLENDER = 3.0
+"""A shard is at most so many times as deep as its face is wide."""
+
+LEAN = 0.9
+"""The part of half the angle between two faces that a side may lean."""
+
+RAISED = 0.7
+"""What is left of the depth of a shard that is in the way of another one."""
+
+SHALLOW = 0.02
+"""What is less deep than this part of its width is left in place."""
+
+
+def tetrahedra(
+    structure: Structure,
+    impact: ArrayLike,
+    material: Material | str = "glass",
+    force: float = 1.0,
+    seed: int = 0,
+) -> Fracture:
+    """Break tetrahedra out of the body that a structure holds, in place -> the pieces.
+
+    impact  (3,): taken to the nearest point of the surface
+    force   J / kg: the break points on the surface are the material's × √force, the shards at most
+            material.scale × diagonal × √force deep, and a part of 1 - 1/(1 + force/10) of them
+            is split by a break point inside
+
+    The surface is broken as by ``shatter``, which says what becomes of break points; here a shard
+    stays in place that could be but a sliver (``too shallow``). Shards are closed, outward
+    oriented, and overlap neither each other nor the rest, which the structure keeps, a closed
+    body. The same seed gives the same shards on every structure.
+
+    Cost: that of ``shatter``, and O(shards × faces near them). Raises MeshError for what is no body
+    and as ``shatter`` does. Source: thesis, chapter 6.
+    """
+    chosen = material if isinstance(material, Material) else named(material)
+    blow = Blow(np.zeros(3), np.array([0.0, 0.0, 1.0]), force)
+    require_body(structure.to_triangles())
+    more = np.sqrt(blow.force)
+    scattered = replace(chosen, circles=tuple(round(it * more) for it in chosen.circles))
+    broken, faces, size = break_surface(structure, impact, scattered, seed)
+    random = random_numbers(seed)
+    corners = _corners(structure, faces)
+    fourth = _fourth_points(structure, faces, corners, chosen.scale * size * more, random)
+    solids = np.concatenate([corners, fourth[:, None]], axis=1)
+    deep = _free(structure, faces, solids, size)
+    solids = solids[deep]
+    structure.split_faces(faces[deep], solids[:, 3])
+    shards = [_mesh(it) for it in _split_inside(solids, broken.target, force, random)]
+    inside = (len(shards) - len(solids)) // 3
+    return in_place(
+        structure, broken, shards, {"inside": inside, "too shallow": int((~deep).sum())},
+        method="tetra", material=chosen, seed=seed, diagonal=size,
+    )  # fmt: skip
+
+
+def _corners(structure: Structure, faces: Array) -> NDArray[np.float64]:
+    return structure.points[corner_vertices(structure, faces)].astype(np.float64)
+
+
+def _fourth_points(
+    structure: Structure, faces: Array, corners: Array, depth: float, random: Any
+) -> NDArray[np.float64]:
+    """(k, 3): one under the middle of each face, as deep as the angles at its sides allow."""
+    sides = np.stack([_length(corners[:, (i + 1) % 3] - corners[:, (i + 2) % 3]) for i in range(3)])
+    around = sides.sum(axis=0)
+    middle = (sides.T[:, :, None] * corners).sum(axis=1) / around[
+        :, None
+    ]  # of the inscribed circle
+    radius = 2 * triangle_areas(corners) / around
+    wanted = np.minimum(depth, SLENDER * np.sqrt(triangle_areas(corners)))
+    wanted = wanted * (0.5 + 0.5 * random(len(faces)))
+    allowed = radius * _steepest(structure, faces, corners)
+    down = -_normals(corners) * np.minimum(wanted, allowed)[:, None]
+    return (middle + down).astype(np.float32).astype(np.float64)
+
+
+def _steepest(structure: Structure, faces: Array, corners: Array) -> NDArray[np.float64]:
+    """(k,): the tangent of the angle at which the sides of a shard may go down."""
+    beyond = structure.face_faces(faces)
+    mine = np.repeat(_normals(corners), beyond.counts, axis=0)
+    others = _corners(structure, beyond.values)
+    middle = np.repeat(corners.mean(axis=1), beyond.counts, axis=0)
+    theirs = _normals(others)
+    # Convex edges, at which the other face falls off, leave less than half a turn inside.
+    falls = ((others.mean(axis=1) - middle) * mine).sum(axis=1) < 0
+    cosine = np.clip((mine * theirs).sum(axis=1), -1, 1)
+    half_tangent = np.sqrt((1 + cosine) / np.maximum(1 - cosine, 1e-12))  # of half the inner angle
+    steep = np.where(falls, LEAN * half_tangent, np.inf)
+    return np.minimum.reduceat(steep, beyond.offsets[:-1])
+
+
+def _free(structure: Structure, faces: Array, solids: Array, size: float) -> NDArray[np.bool_]:
+    """Raise the fourth points, in place, until nothing is in the way -> (k,) which have a depth."""
+    least = 1e-7 * size
+    middle = solids[:, :3].mean(axis=1)
+    low, high = solids.min(axis=(0, 1)), solids.max(axis=(0, 1))
+    others = _corners(structure, np.setdiff1d(structure.faces(), faces))
+    near = ((others.max(axis=1) > low) & (others.min(axis=1) < high)).all(axis=1)
+    skin = np.concatenate([others[near], solids[:, :3]])
+    width = np.sqrt(triangle_areas(solids[:, :3]))
+    deep = np.ones(len(solids), np.bool_)
+    while True:
+        height = -((solids[:, 3] - middle) * _normals(solids[:, :3])).sum(axis=1)
+        deep &= height > np.maximum(SHALLOW * width, 4 * least)
+        inside = np.flatnonzero(deep)
+        blocked = overlapping(solids[inside], least) | crossing(solids[inside], skin, least)
+        if not blocked.any():
+            return deep
+        raised = inside[blocked]
+        up = middle[raised] + RAISED * (solids[raised, 3] - middle[raised])
+        solids[raised, 3] = up.astype(np.float32)
+
+
+def _split_inside(solids: Array, impact: Array, force: float, random: Any) -> NDArray[np.float64]:
+    """(n, 4, 3): the tetrahedra, those nearest to the impact as four each."""
+    count = round(len(solids) * (1 - 1 / (1 + force / 10)))
+    far = _length(solids.mean(axis=1) - impact)
+    nearest = np.argsort(far, kind="stable")[:count]
+    weights = 0.1 + random((len(solids), 4))
+    at = (weights[:, :, None] * solids).sum(axis=1) / weights.sum(axis=1)[:, None]
+    at = at.astype(np.float32).astype(np.float64)
+    parts = []
+    for i, solid in enumerate(solids):
+        if i not in nearest:
+            parts.append(solid)
+            continue
+        for j in range(4):
+            part = solid.copy()
+            part[j] = at[i]
+            parts.append(part)
+    return np.array(parts).reshape(-1, 4, 3)
+
+
+def _mesh(solid: Array) -> TriangleMesh:
+    """A tetrahedron as a mesh: its corners a, b, c as seen from outside, and d below."""
+    return TriangleMesh(solid, [(0, 1, 2), (0, 3, 1), (1, 3, 2), (2, 3, 0)])
+
+
+def _normals(corners: Array) -> NDArray[np.float64]:
+    """(k, 3), of length 1, of triangles (k, 3, 3)."""
+    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    return np.asarray(normal / _length(normal)[:, None])
+
+
+def _length(vectors: Array) -> NDArray[np.float64]:
+    return np.asarray(np.sqrt((vectors * vectors).sum(axis=-1)))

@@ -1,0 +1,250 @@
+"""Breaking a body into Voronoi cells around the impact (the thesis' outlook: other methods)."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from hem.errors import MeshError
+from hem.fracture.blow import Blow, position
+from hem.fracture.blow import sites as sites_of
+from hem.fracture.bodies.cells import Cells, cells
+from hem.fracture.bodies.inside import normals, windings
+from hem.fracture.bodies.solid import Body, from_manifold, require_body
+from hem.fracture.bodies.walls import touching
+from hem.fracture.material import Material
+from hem.fracture.material import material as named
+from hem.fracture.pieces import Floats, Fracture
+from hem.fracture.surface.nearest import closest
+from hem.meshes.triangles import TriangleMesh
+
+VANISHING = 1e-9
+"""A piece of less than this part of the body's volume is dropped."""
+
+_THIN = 4
+"""So is one thinner than so many roundings of the largest coordinate, which would be flat."""
+
+_CLOSE = 1e-6
+"""Sites nearer to each other than this part of the diagonal are one."""
+
+_TOUCH = 1e-9
+"""Pieces are neighbors that share more than this part of the diagonal's square."""
+
+
+def voronoi(
+    mesh: TriangleMesh | Body,
+    impact: ArrayLike,
+    material: Material | str = "glass",
+    force: float = 1.0,
+    seed: int = 0,
+    direction: ArrayLike | None = None,
+    sites: ArrayLike | None = None,
+) -> Fracture:
+    """Break a body into the Voronoi cells of sites around the impact.
+
+    impact     (3,): where it is struck; the nearest point of the surface is
+    force      J / kg: hem.fracture.Blow says how it decides on the sites
+    direction  (3,): where the blow goes, of any length; into the surface if not given
+    sites      (k, 3): to break into exactly their cells, all of the body, instead of those of the
+               blow. They may lie anywhere; cells that the body has no part in are counted outside
+
+    The shards are closed bodies, in the order of their sites, a cell in several parts with the
+    largest first. What is beyond the reach of the blow is the rest; parts of it that no longer
+    hang together are bodies of their own, the largest first. With the shards they fill the body:
+    the volumes add up to the body's within 1e-6 of it, if it is not far from the origin for its
+    size. Vertices are rounded to float32, and neighbors coincide up to that.
+
+    Counts: ``used`` sites, positions ``outside``, ``repeated`` sites that are nearer than 1e-6
+    diagonals to an earlier one and left out, and ``vanished`` pieces, of less than 1e-9 of the
+    volume or thinner than what float32 can hold. The sites of a blow are the same on every
+    machine, and the pieces as far as Qhull's and manifold3d's float64 are; again on the same one.
+
+    Cost O(sites × faces). Raises MeshError for a mesh that is no body (pass what ``require_body``
+    gave to have it checked only once), an impact farther away than half a diagonal, and for what
+    hem.fracture.Blow refuses.
+
+    Source: Raghavachary, Fracture generation on polygonal meshes using Voronoi polygons, 2002.
+    """
+    body = mesh if isinstance(mesh, Body) else require_body(mesh)
+    chosen = material if isinstance(material, Material) else named(material)
+    blow = _aimed(body, position(impact, "an impact"), direction, force)
+    plan = _scattered(body, blow, chosen, seed) if sites is None else _given(body, sites)
+    made = _cut(body, plan)
+    return Fracture(
+        method="voronoi",
+        material=chosen,
+        seed=seed,
+        impact=blow.impact,
+        direction=blow.direction,
+        shards=[piece.mesh for piece in made.shards],
+        rest=[piece.mesh for piece in made.rest],
+        counts={
+            "used": plan.breaking,
+            "outside": plan.outside + made.missed,
+            "repeated": plan.repeated,
+            "vanished": made.vanished,
+        },
+        diagonal=body.diagonal,
+        find_neighbors=lambda: _neighbors(made, body.diagonal),
+    )
+
+
+class _Plan(NamedTuple):
+    """The sites to break at: cells of the first ones break off, the others' stay whole."""
+
+    sites: Floats
+    breaking: int
+    outside: int
+    repeated: int
+
+
+class _Piece(NamedTuple):
+    mesh: TriangleMesh
+    walls: NDArray[np.int64]  # (m,): the wall that each face is on, or negative
+
+
+class _Grain(NamedTuple):
+    """What is too small to be a piece, and the label of the first wall."""
+
+    volume: float
+    thickness: float
+    label: int
+
+
+class _Made(NamedTuple):
+    shards: list[_Piece]
+    rest: list[_Piece]
+    missed: int
+    vanished: int
+
+
+def _aimed(body: Body, at: Floats, direction: ArrayLike | None, force: float) -> Blow:
+    """The blow on the surface next to a position."""
+    across = normals(body.corners)
+    faces = np.flatnonzero(across.any(axis=1))  # those without area look nowhere
+    face, spot = closest(body.corners[faces], at)
+    with np.errstate(over="ignore"):
+        far = float(np.sqrt(((spot - at) ** 2).sum()))
+    if not far <= body.diagonal / 2:
+        raise MeshError(
+            f"the impact is {far:.6g} away from the mesh, more than half the diagonal of "
+            f"{body.diagonal:.6g}; the surface is nearest to it at {spot.round(6).tolist()}"
+        )
+    return Blow(spot, -across[faces[face]] if direction is None else np.asarray(direction), force)
+
+
+def _scattered(body: Body, blow: Blow, material: Material, seed: int) -> _Plan:
+    found = sites_of(blow, material, body.diagonal, body.contains, seed)
+    points, repeated = _distinct(found.points, body.diagonal)
+    return _Plan(np.concatenate([points, found.anchors]), len(points), found.outside, repeated)
+
+
+def _given(body: Body, sites: ArrayLike) -> _Plan:
+    points = np.asarray(sites)
+    if (
+        points.ndim != 2
+        or points.shape[1] != 3
+        or not len(points)
+        or points.dtype.kind not in "iuf"
+    ):
+        raise MeshError(f"sites are a row of three numbers each, not {points.shape}")
+    bad = ~np.isfinite(points).all(axis=1)
+    if bad.any():
+        raise MeshError("sites are not finite", rows=np.flatnonzero(bad))
+    found, repeated = _distinct(points.astype(np.float64), body.diagonal)
+    return _Plan(found, len(found), 0, repeated)
+
+
+def _distinct(points: Floats, diagonal: float) -> tuple[Floats, int]:
+    """Without those that are too close to an earlier one, and how many these were."""
+    from scipy.spatial import cKDTree
+
+    pairs = cKDTree(points).query_pairs(_CLOSE * diagonal, output_type="ndarray")
+    again = np.unique(pairs.max(axis=1)) if len(pairs) else np.zeros(0, np.int64)
+    return np.delete(points, again, axis=0), len(again)
+
+
+def _cut(body: Body, plan: _Plan) -> _Made:
+    """Cut the body at the walls of the cells."""
+    points = body.mesh.points.astype(np.float64)
+    center = (points.min(axis=0) + points.max(axis=0)) / 2
+    cut = cells(plan.sites, center, body.diagonal / 2)
+    thin = _THIN * float(np.spacing(np.abs(body.mesh.points).max()))
+    grain = _Grain(VANISHING * body.volume, thin, len(body.mesh.triangles))
+    shards: list[_Piece] = []
+    missed = vanished = 0
+    for site in range(plan.breaking):
+        parts, lost = _parts(cut.cell(site, grain.label) ^ body.manifold, grain)
+        shards += parts
+        missed += not parts and not lost
+        vanished += lost
+    rest: list[_Piece] = []
+    if plan.breaking < len(plan.sites):
+        rest, lost = _parts(_remainder(body, cut, plan.breaking, grain.label), grain)
+        vanished += lost
+    return _Made(shards, rest, missed, vanished)
+
+
+def _remainder(body: Body, cut: Cells, breaking: int, label: int) -> Any:
+    """The body without the cells that break off."""
+    import manifold3d
+
+    broken = np.arange(len(cut.sites)) < breaking
+    try:
+        return body.manifold - cut.union(broken, label)
+    except MeshError:  # cells that meet in an edge only are taken out one by one
+        each = [cut.cell(site, label) for site in range(breaking)]
+        return manifold3d.Manifold.batch_boolean([body.manifold, *each], manifold3d.OpType.Subtract)
+
+
+def _parts(made: Any, grain: _Grain) -> tuple[list[_Piece], int]:
+    """The connected parts, the largest first, and how many vanished.
+
+    manifold3d gives a hollow as a part of its own, inside out; here it belongs to what is around.
+    """
+    found = made.decompose()
+    real = sorted((part for part in found if _is_real(part, grain)), key=_volume, reverse=True)
+    pieces = [_piece(part, grain.label) for part in real if _volume(part) > 0]
+    hollows = [part for part in real if _volume(part) < 0]
+    for hollow in hollows:
+        inner = _piece(hollow, grain.label)
+        at = inner.mesh.points[:1].astype(np.float64)
+        around = [i for i, part in enumerate(pieces) if windings(_corners(part.mesh), at)[0] > 0]
+        # The smallest around is the last. Rounding may put a vertex on the surface: then no other.
+        chosen = around[-1] if around else 0
+        pieces[chosen] = _hollowed(pieces[chosen], inner)
+    return pieces, len(found) - len(real)
+
+
+def _is_real(part: Any, grain: _Grain) -> bool:
+    volume = abs(_volume(part))
+    return volume > grain.volume and 2 * volume > grain.thickness * float(part.surface_area())
+
+
+def _piece(part: Any, label: int) -> _Piece:
+    mesh, labels = from_manifold(part)
+    return _Piece(mesh, labels - label)
+
+
+def _hollowed(outer: _Piece, inner: _Piece) -> _Piece:
+    points = np.concatenate([outer.mesh.points, inner.mesh.points])
+    shifted = inner.mesh.triangles + len(outer.mesh.points)
+    triangles = np.concatenate([outer.mesh.triangles, shifted])
+    return _Piece(TriangleMesh(points, triangles), np.concatenate([outer.walls, inner.walls]))
+
+
+def _corners(mesh: TriangleMesh) -> Floats:
+    return mesh.points.astype(np.float64)[mesh.triangles]
+
+
+def _volume(made: Any) -> float:
+    return float(made.volume())
+
+
+def _neighbors(made: _Made, diagonal: float) -> NDArray[np.int64]:
+    pieces = made.shards + made.rest
+    return touching(
+        [piece.mesh for piece in pieces], [piece.walls for piece in pieces], _TOUCH * diagonal**2
+    )

@@ -1,0 +1,1 @@
+"""Breaking a surface, as in thesis 4.4."""

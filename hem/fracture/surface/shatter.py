@@ -1,0 +1,258 @@
+"""Breaking a surface, as the thesis does (4.4): in the plane as printed, and on any curved surface.
+
+The face under the impact is found, split there, and its edges are split in the middle; break points
+scattered in growing circles split the faces under them; what was split is taken out, face by face.
+Beyond what is printed: every part of a split face comes out (as printed, the third that keeps the
+index of its face stays behind), and so do faces that would be left hanging in a single point, so
+that the rest is a sound mesh.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import cached_property
+from typing import Any, overload
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from hem.contract.structure import Structure
+from hem.edit import Edit
+from hem.errors import MeshError
+from hem.fracture.islands import islands
+from hem.fracture.material import Material
+from hem.fracture.material import material as named
+from hem.fracture.pieces import Fracture, box, diagonal
+from hem.fracture.surface.breaking import (
+    IN_FACE,
+    NOWHERE,
+    ON_EDGE,
+    ON_VERTEX,
+    Plan,
+    breaking,
+    plan,
+)
+from hem.fracture.surface.hanging import hanging
+from hem.fracture.surface.nearest import corner_vertices, nearest_face
+from hem.meshes.triangles import TriangleMesh
+
+Array = NDArray[Any]
+
+TOLERANCE = 1e-5
+"""What is nearer than this to a vertex or an edge lies on it; a part of the diagonal."""
+
+ROUNDING = 32 * float(np.finfo(np.float32).eps)
+"""The least tolerance; a part of the largest coordinate."""
+
+OUTCOMES = {
+    "in a face": IN_FACE,
+    "on an edge": ON_EDGE,
+    "on a vertex": ON_VERTEX,
+    "outside": NOWHERE,
+}
+"""What became of the break points, in words: the first two split, the others are dropped."""
+
+
+class Shards(Sequence[TriangleMesh]):
+    """Triangles (k, 3, 3) float32 that came out, each a mesh when it is asked for."""
+
+    def __init__(self, corners: NDArray[np.float32]) -> None:
+        self.corners = corners
+
+    def __len__(self) -> int:
+        return len(self.corners)
+
+    @overload
+    def __getitem__(self, index: int) -> TriangleMesh: ...
+    @overload
+    def __getitem__(self, index: slice) -> Shards: ...
+    def __getitem__(self, index: int | slice) -> TriangleMesh | Shards:
+        """The mesh of one shard, one face; or some of the shards."""
+        if isinstance(index, slice):
+            return Shards(self.corners[index])
+        return TriangleMesh(self.corners[index], [(0, 1, 2)])
+
+
+class Rest(Sequence[TriangleMesh]):
+    """What is left of a structure, the largest part first; made when it is first asked for."""
+
+    def __init__(self, structure: Structure) -> None:
+        self.structure = structure
+
+    @cached_property
+    def _parts(self) -> list[TriangleMesh]:
+        return islands(self.structure.to_triangles())
+
+    def __len__(self) -> int:
+        return len(self._parts)
+
+    @overload
+    def __getitem__(self, index: int) -> TriangleMesh: ...
+    @overload
+    def __getitem__(self, index: slice) -> list[TriangleMesh]: ...
+    def __getitem__(self, index: int | slice) -> TriangleMesh | list[TriangleMesh]:
+        """One part, or some."""
+        return self._parts[index]
+
+
+def shatter(
+    structure: Structure,
+    impact: ArrayLike,
+    material: Material | str = "glass",
+    seed: int = 0,
+    scale: float | None = None,
+) -> Fracture:
+    """Break the surface that a structure holds, in place, around an impact (3,) -> the pieces.
+
+    The impact is taken to the nearest point of the surface. ``scale``: how far apart the circles of
+    break points lie, in units of the mesh; the material's unless it is said, 1 as printed. Points
+    are placed in the plane of the face that is hit and carried straight over the surface. Those
+    that come to lie beyond the border are dropped, and so are those within a tolerance of a vertex:
+    1e-5 of the diagonal of the bounding box, or 32 roundings of the largest coordinate if that is
+    more. Within that tolerance of an edge the edge is split. ``Fracture.counts`` tells how many.
+
+    The structure keeps the rest, sound, in which no handle changed; subscribers hear of one edit
+    for what was split and one for what came out. The same seed gives the same shards on every
+    structure and machine.
+
+    Cost: a walk of O(√n_t) to the face and to each point, and the splits. Raises MeshError for an
+    impact that is no position or not near the surface, for polygons, and for a mesh without faces.
+    Source: thesis 4.4.
+    """
+    chosen = material if isinstance(material, Material) else named(material)
+    broken, new, size = break_surface(structure, impact, chosen, seed, scale)
+    loose = hanging(structure, new)
+    faces = np.concatenate([new, loose])
+    shards = Shards(structure.points[corner_vertices(structure, faces)])
+    structure.remove_faces(faces)
+    return in_place(
+        structure, broken, shards, {"broken off": len(loose)},
+        method="surface", material=chosen, seed=seed, diagonal=size,
+    )  # fmt: skip
+
+
+def in_place(
+    structure: Structure,
+    broken: Plan,
+    shards: Sequence[TriangleMesh],
+    counts: dict[str, int],
+    **told: Any,
+) -> Fracture:
+    """The fracture of what ``break_surface`` broke; the structure keeps the rest."""
+    rest = Rest(structure)
+    return Fracture(
+        impact=broken.target,
+        direction=-np.cross(broken.frame[0], broken.frame[1]),
+        shards=shards,
+        rest=rest,
+        counts=outcomes(broken) | counts,
+        find_neighbors=lambda: sharing_edges([*shards, *rest]),
+        **told,
+    )
+
+
+def break_surface(
+    structure: Structure,
+    impact: ArrayLike,
+    material: Material,
+    seed: int,
+    scale: float | None = None,
+) -> tuple[Plan, NDArray[np.int64], float]:
+    """Split all that ``shatter`` splits -> what became of it, the split faces, the diagonal."""
+    _require_triangles(structure)
+    found = nearest_face(structure, impact)
+    low, high = box(structure.points)
+    size = diagonal(structure.points)
+    tolerance = max(TOLERANCE * size, ROUNDING * float(np.abs([low, high]).max()))
+    offsets = break_points(material, seed, material.scale * size if scale is None else scale)
+    frame, start = tangent(structure, found.face), np.array([found.face])
+    out, log = structure.scratch(len(offsets) + 4)
+    told = plan(found.point, tolerance, out, log, start=start, frame=frame, offsets=offsets)
+    if structure.run(breaking, told) < 0:
+        raise RuntimeError("there was not enough room for the splits")
+    touched = log[1 : log[0] + 1]
+    structure.tell("break_surface", touched)
+    split = Edit("break_surface", -1, touched)
+    new = np.union1d(split.created_faces, split.changed_faces).astype(np.int64)
+    return told, new, size
+
+
+def outcomes(broken: Plan) -> dict[str, int]:
+    """How many break points came to what, by the words of ``OUTCOMES``."""
+    return {words: int((broken.outcome == code).sum()) for words, code in OUTCOMES.items()}
+
+
+def _require_triangles(structure: Structure) -> None:
+    if structure.most_corners > 3:
+        faces = structure.faces()
+        wrong = faces[structure.face_vertices(faces).counts > 3]
+        if len(wrong):
+            raise MeshError(
+                "only triangles can be shattered; cut the polygons first, with "
+                "structures.build(name, mesh.triangulated())",
+                faces=wrong,
+            )
+
+
+def break_points(material: Material, seed: int, step: float) -> NDArray[np.float64]:
+    """(k, 2) float64: break points around 0, circle by circle, uniform in each (thesis 4.4).
+
+    Circle i, from 0, has the radius (i + 0.5) · ``step``. By rejection, so that nothing but exact
+    arithmetic decides, the same on every machine. Raises MeshError for a step that is no length,
+    and a seed that is none.
+    """
+    if not (np.isfinite(step) and step > 0):
+        raise MeshError(f"the scale of the circles is a positive length, not {step}")
+    random = random_numbers(seed)
+    circles = [np.zeros((0, 2))]
+    for i, count in enumerate(material.circles):
+        within = np.zeros((0, 2))
+        while len(within) < count:
+            tried = 2 * random((count, 2)) - 1
+            inside = tried[:, 0] * tried[:, 0] + tried[:, 1] * tried[:, 1] <= 1
+            within = np.concatenate([within, tried[inside]])
+        circles.append(within[:count] * ((i + 0.5) * step))
+    return np.concatenate(circles)
+
+
+def random_numbers(seed: int) -> Any:
+    """Uniform numbers in [0, 1) by shape, the same on every machine; MeshError for no seed."""
+    if isinstance(seed, bool) or not isinstance(seed, int | np.integer) or seed < 0:
+        raise MeshError(f"a seed is a whole number from 0 on, not {seed!r}")
+    return np.random.Generator(np.random.PCG64(int(seed))).random
+
+
+def tangent(structure: Structure, face: int) -> NDArray[np.float64]:
+    """(2, 3): two axes in the plane of a face, as near to x, y or z as can be."""
+    corners = corner_vertices(structure, np.array([face]))[0]
+    a, b, c = structure.points[corners].astype(np.float64)
+    normal = np.cross(b - a, c - a)
+    if not normal.any():
+        raise MeshError("the face under the impact has no area; strike beside it", faces=[face])
+    normal = _unit(normal)
+    axis = np.zeros(3)
+    axis[np.abs(normal).argmin()] = 1
+    first = _unit(axis - normal * normal[np.abs(normal).argmin()])
+    return np.stack([first, np.cross(normal, first)])
+
+
+def _unit(vector: Array) -> Array:
+    x, y, z = vector
+    return np.asarray(vector / np.sqrt(x * x + y * y + z * z))
+
+
+def sharing_edges(pieces: Sequence[TriangleMesh]) -> NDArray[np.int64]:
+    """(k, 2): the pieces that share an edge, by position, each pair once and ascending.
+
+    Cost O(faces log faces).
+    """
+    corners = np.concatenate([it.points[it.triangles] for it in pieces])
+    owner = np.repeat(np.arange(len(pieces)), [len(it.triangles) for it in pieces])
+    _, vertex = np.unique(corners.reshape(-1, 3), axis=0, return_inverse=True)
+    vertex = vertex.reshape(-1, 3)
+    sides = np.sort(np.concatenate([vertex, np.roll(vertex, -1, axis=1)]).reshape(2, -1).T)
+    owners = np.tile(np.repeat(owner, 3), 1)
+    order = np.lexsort((owners, sides[:, 1], sides[:, 0]))
+    sides, owners = sides[order], owners[order]
+    same = (sides[1:] == sides[:-1]).all(axis=1) & (owners[1:] != owners[:-1])
+    return np.unique(np.stack([owners[:-1], owners[1:]], axis=1)[same], axis=0)

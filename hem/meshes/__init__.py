@@ -1,0 +1,1 @@
+"""Meshes as plain arrays: triangles and polygons, manifoldness, welding and repair."""

@@ -1,0 +1,151 @@
+"""Is it a surface? Diagnosis from the triangles alone, independent of every structure.
+
+A mesh is a surface when every edge is in at most two faces, two faces run along their common edge
+in opposite directions, and the faces around a vertex form one fan. "Half-edge" 3f + i runs from
+corner i of face f to its corner i + 1. Everything here is O(m log m).
+"""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hem.errors import MeshError, NonManifoldError
+
+if TYPE_CHECKING:
+    from hem.meshes.triangles import TriangleMesh, Triangles
+
+Indices = NDArray[np.int64]
+
+
+def undirected_edges(triangles: "Triangles") -> tuple[Indices, Indices]:
+    """The (k, 2) edges, smaller vertex first and in ascending order, and the faces of each (k,)."""
+    keys, count = np.unique(_edge_keys(*_half_edges(triangles)), return_counts=True)
+    return _pairs(keys), count
+
+
+def non_manifold_edges(triangles: "Triangles") -> Indices:
+    """Edges in more than two faces: (k, 2) vertices."""
+    edges, faces = undirected_edges(triangles)
+    return edges[faces > 2]
+
+
+def same_way_edges(triangles: "Triangles") -> Indices:
+    """Edges in two faces that both run the same way along it: (k, 2) vertices."""
+    start, end = _half_edges(triangles)
+    keys = _edge_keys(start, end)
+    order = np.argsort(keys, kind="stable")
+    unique, first, count = np.unique(keys[order], return_index=True, return_counts=True)
+    two = first[count == 2]
+    same = start[order[two]] == start[order[two + 1]]
+    return _pairs(unique[count == 2][same])
+
+
+def split_vertices(triangles: "Triangles") -> Indices:
+    """Vertices whose faces form more than one fan: (k,) vertices.
+
+    Two corners at a vertex are in one fan when a chain of faces, each sharing with the next an
+    edge at that vertex, leads from one to the other.
+    """
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    corners = triangles.size
+    if not corners:
+        return np.zeros(0, np.int64)
+    a, b = _joined_corners(triangles)
+    graph = coo_array((np.ones(len(a), bool), (a, b)), shape=(corners, corners))
+    fans, fan = connected_components(graph, directed=False)
+    vertex_of_fan = np.empty(fans, np.int64)
+    vertex_of_fan[fan] = triangles.ravel()
+    return np.flatnonzero(np.bincount(vertex_of_fan) > 1)
+
+
+def repeated_faces(triangles: "Triangles") -> Indices:
+    """Faces with the same three corners as an earlier one, either way round: (k,) faces."""
+    corners = np.sort(triangles, axis=1)
+    _, first = np.unique(corners, axis=0, return_index=True)
+    return np.setdiff1d(np.arange(len(triangles)), first)
+
+
+def euler_number(mesh: "TriangleMesh") -> int:
+    """V - E + F over the vertices that have faces."""
+    vertices = np.unique(mesh.triangles)
+    return len(vertices) - len(undirected_edges(mesh.triangles)[0]) + len(mesh.triangles)
+
+
+def require_sound(mesh: "TriangleMesh", euler: int | None = None) -> None:
+    """What must hold after any operation, from the triangles alone, whatever structure made them.
+
+    A manifold surface, no face twice, and Euler's number as predicted. Raises NonManifoldError or
+    MeshError with the elements.
+    """
+    require_manifold(mesh)
+    again = repeated_faces(mesh.triangles)
+    if len(again):
+        raise MeshError("faces have the same three corners as others", faces=again)
+    if euler is not None and euler_number(mesh) != euler:
+        raise MeshError(f"Euler's number is {euler_number(mesh)} instead of {euler}")
+
+
+def require_manifold(mesh: "TriangleMesh") -> None:
+    """Raise NonManifoldError, with all offending edges, vertices and faces, unless a surface."""
+    crowded = non_manifold_edges(mesh.triangles)
+    twisted = same_way_edges(mesh.triangles)
+    split = split_vertices(mesh.triangles)
+    findings = {
+        "{} in more than two faces": (len(crowded), "edge", "edges"),
+        "{} along which both faces run the same way": (len(twisted), "edge", "edges"),
+        "{} where more than one fan of faces meets": (len(split), "vertex", "vertices"),
+    }
+    found = [
+        words.format(f"{k:,} {one if k == 1 else many}")
+        for words, (k, one, many) in findings.items()
+        if k
+    ]
+    if not found:
+        return
+    edges = np.concatenate([crowded, twisted])
+    raise NonManifoldError(
+        f"the mesh is no manifold surface: {', '.join(found)}; "
+        "mend it (hem.load and hem.sample take repair=True), or use the indexed mesh",
+        edges=edges,
+        vertices=split,
+        faces=_faces_at(mesh.triangles, edges, split),
+    )
+
+
+def _half_edges(triangles: "Triangles") -> tuple[Indices, Indices]:
+    start = triangles.astype(np.int64)
+    return start.ravel(), start[:, [1, 2, 0]].ravel()
+
+
+def _edge_keys(start: Indices, end: Indices) -> Indices:
+    keys: Indices = (np.minimum(start, end) << 32) | np.maximum(start, end)
+    return keys
+
+
+def _pairs(keys: Indices) -> Indices:
+    return np.stack([keys >> 32, keys & 0xFFFFFFFF], axis=1)
+
+
+def _joined_corners(triangles: "Triangles") -> tuple[Indices, Indices]:
+    """Pairs of corners (3f + i) at the same vertex whose faces share an edge there."""
+    start, end = _half_edges(triangles)
+    keys = _edge_keys(start, end)
+    corner = np.arange(len(keys))
+    following = corner - corner % 3 + (corner + 1) % 3
+    low = np.where(start < end, corner, following)
+    high = np.where(start < end, following, corner)
+    order = np.argsort(keys, kind="stable")
+    same = keys[order[1:]] == keys[order[:-1]]
+    one, other = order[:-1][same], order[1:][same]
+    return np.concatenate([low[one], high[one]]), np.concatenate([low[other], high[other]])
+
+
+def _faces_at(triangles: "Triangles", edges: Indices, vertices: Indices) -> Indices:
+    """Faces that have one of these edges or vertices, ascending."""
+    bad = np.isin(_edge_keys(*_half_edges(triangles)), _edge_keys(edges[:, 0], edges[:, 1]))
+    at_edge = bad.reshape(-1, 3).any(axis=1)
+    at_vertex = np.isin(triangles, vertices).any(axis=1)
+    return np.flatnonzero(at_edge | at_vertex)

@@ -1,0 +1,115 @@
+"""A mesh as points and polygons: what files with quads and n-gons hold."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from hem.errors import MeshError
+from hem.meshes.triangles import MeshSummary, Points, TriangleMesh, summarized
+from hem.ragged import Ragged
+
+
+class PolygonMesh:
+    """Points and faces of any number of corners between them, validated once.
+
+    points   (n, 3) float32, finite, in the units of the source
+    faces    a row of corners per face: indices into `points`, counterclockwise from outside, three
+             or more, all different
+
+    Cost: O(n + corners). Raises MeshError with the offending rows: what `TriangleMesh` refuses of
+    points, faces of fewer than three corners, corners out of range or repeated.
+    """
+
+    points: Points
+    faces: Ragged
+
+    def __init__(self, points: ArrayLike, faces: Ragged | Sequence[Sequence[int]]) -> None:
+        self.points = TriangleMesh(points, np.zeros((0, 3), np.int32)).points
+        self.faces = _validated(faces, len(self.points))
+
+    def __repr__(self) -> str:
+        return (
+            f"PolygonMesh({len(self.points):,} vertices, {len(self.faces):,} faces of up to "
+            f"{self.most_corners} corners)"
+        )
+
+    @property
+    def most_corners(self) -> int:
+        """The corners of the face that has the most; 3 for no faces."""
+        return int(self.faces.counts.max(initial=3))
+
+    def sides(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        """(corners,) of every side of every face the vertex where it starts and where it ends."""
+        here = self.faces.values.astype(np.int64)
+        following = np.arange(1, len(here) + 1)
+        following[self.faces.offsets[1:] - 1] = self.faces.offsets[:-1]
+        return here, here[following]
+
+    def summary(self) -> MeshSummary:
+        """Counts of elements, borders, components and valences. O(n log n)."""
+        ends = np.sort(np.stack(self.sides(), axis=1), axis=1)
+        edges, faces_per_edge = np.unique(ends, axis=0, return_counts=True)
+        return summarized(len(self.points), len(self.faces), edges, faces_per_edge)
+
+    def triangulated(self) -> TriangleMesh:
+        """Every face as the fan of its first corner, in order; exact for flat convex ones. O(n)."""
+        offsets, corners = self.faces.offsets, self.faces.values
+        cuts = self.faces.counts - 2
+        first = np.repeat(offsets[:-1], cuts)
+        step = np.arange(len(first)) - np.repeat(np.cumsum(cuts) - cuts, cuts)
+        rows = np.stack([first, first + step + 1, first + step + 2], axis=1)
+        return TriangleMesh(self.points, corners[rows])
+
+
+def require_triangles(mesh: TriangleMesh | PolygonMesh) -> TriangleMesh:
+    """The mesh as triangles, if it has no other faces; else a MeshError that says what to do."""
+    if isinstance(mesh, TriangleMesh):
+        return mesh
+    larger = np.flatnonzero(mesh.faces.counts > 3)
+    if len(larger):
+        raise MeshError(
+            f"only triangles can be held, and {len(larger):,} of {len(mesh.faces):,} faces have "
+            "more corners; use plankton, or cut them: hem.load(path, triangulate=True), or "
+            "mesh.triangulated()",
+            faces=larger,
+        )
+    return TriangleMesh(mesh.points, mesh.faces.values.reshape(-1, 3))
+
+
+def _validated(faces: Ragged | Sequence[Sequence[int]], n: int) -> Ragged:
+    if not isinstance(faces, Ragged):
+        faces = _ragged(faces)
+    counts, corners = faces.counts, faces.values
+    if not np.issubdtype(corners.dtype, np.integer):
+        raise MeshError(f"corners are vertex indices, integers, not {corners.dtype}")
+    _refuse(counts < 3, "faces have three corners or more")
+    face = np.repeat(np.arange(len(counts)), counts)
+    outside = (corners < 0) | (corners >= n)
+    _refuse(np.bincount(face[outside], minlength=len(counts)) > 0, f"corners are 0 … {n - 1:,}")
+    order = np.lexsort((corners, face))
+    alike = (np.diff(corners[order]) == 0) & (np.diff(face[order]) == 0)
+    again = np.bincount(face[order][1:][alike], minlength=len(counts)) > 0
+    _refuse(again, "faces come past a vertex twice; split or drop them")
+    return Ragged(faces.offsets.astype(np.int64), corners.astype(np.int32))
+
+
+def _ragged(faces: Sequence[Sequence[int]]) -> Ragged:
+    try:
+        rows = [np.asarray(face) for face in faces]
+    except (TypeError, ValueError) as error:
+        raise MeshError(f"faces are rows of vertex indices: {error}") from error
+    wrong = [i for i, row in enumerate(rows) if row.ndim != 1]
+    if wrong:
+        raise MeshError("faces are rows of vertex indices", rows=wrong)
+    offsets = np.concatenate([[0], np.cumsum([len(row) for row in rows])]).astype(np.int64)
+    values: NDArray[Any] = np.concatenate(rows) if rows else np.zeros(0, np.int32)
+    return Ragged(offsets, values)
+
+
+def _refuse(bad: NDArray[np.bool_], message: str) -> None:
+    if bad.any():
+        raise MeshError(message, faces=np.flatnonzero(bad))

@@ -1,0 +1,34 @@
+"""Mending what keeps a mesh from being a surface, with pymeshlab's own repair filters."""
+
+from hem.errors import NonManifoldError
+from hem.meshes.manifold import non_manifold_edges, require_manifold, same_way_edges, split_vertices
+from hem.meshes.triangles import TriangleMesh
+
+# Each filter is applied only where its fault is found: they leave a sound mesh as it is, but they
+# may renumber. In this order, since winding can only be made coherent along manifold edges.
+_REPAIRS = (
+    (non_manifold_edges, "meshing_remove_duplicate_faces"),
+    (non_manifold_edges, "meshing_repair_non_manifold_edges"),
+    (same_way_edges, "meshing_remove_duplicate_faces"),
+    (same_way_edges, "meshing_re_orient_faces_coherently"),
+    (split_vertices, "meshing_repair_non_manifold_vertices"),
+)
+
+
+def repaired(mesh: TriangleMesh) -> TriangleMesh:
+    """The mesh as a surface: itself where it is one, else mended.
+
+    Repeated faces go, faces beyond two go from an edge, faces are turned to run coherently, and a
+    vertex of several fans becomes one vertex per fan; such new vertices come last, all others keep
+    their index. Raises NonManifoldError for what no filter mends: a one-sided surface, say.
+    """
+    from hem.sources.meshlab import apply
+
+    for fault, filter_name in _REPAIRS:
+        if len(fault(mesh.triangles)):
+            mesh = apply(filter_name, mesh)
+    try:
+        require_manifold(mesh)
+    except NonManifoldError as error:
+        raise NonManifoldError(f"beyond repair: {error.reason}", **error.elements) from error
+    return mesh

@@ -1,0 +1,194 @@
+"""A mesh as points and triangles: what every source gives and every structure is built from."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from hem.errors import MeshError
+
+Points = NDArray[np.float32]
+Triangles = NDArray[np.int32]
+
+_MOST_ELEMENTS = np.iinfo(np.int32).max
+
+
+class TriangleMesh:
+    """Points and the triangles between them, validated once and read-only from then on.
+
+    points     (n, 3) float32, finite, in the units of the source
+    triangles  (m, 3) int32, indices into `points`, counterclockwise from outside, three different
+               corners each
+
+    Vertices that no triangle uses are legal, and so is the empty mesh. Arrays that already have
+    the right type and order are shared with the caller, not copied, so they should not be written
+    to afterwards; the caller's own arrays stay writable.
+
+    Cost: O(n + m). Raises MeshError with the offending rows: wrong shapes, coordinates that are
+    not finite (also: too large for float32), indices that are no integers, out of range or beyond
+    int32, repeated corners.
+    """
+
+    points: Points
+    triangles: Triangles
+
+    def __init__(self, points: ArrayLike, triangles: ArrayLike) -> None:
+        self.points = _read_only(_validated_points(points))
+        self.triangles = _read_only(_validated_triangles(triangles, len(self.points)))
+
+    def __repr__(self) -> str:
+        return f"TriangleMesh({len(self.points):,} vertices, {len(self.triangles):,} faces)"
+
+    def welded(self, tolerance: float = 0.0) -> "TriangleMesh":
+        """One vertex per position: the first at a position stays, in the order they had.
+
+        Faces that lose a corner are dropped; the others keep their order. Repeated faces and
+        vertices without faces stay. With `tolerance` > 0 (in the units of the points) any two
+        vertices at most that far apart become one, at the first one's position. It is transitive:
+        a chain of close vertices becomes one vertex however long it is.
+
+        Cost: O(n + m), and with a tolerance O(n log n + pairs of vertices that close) besides.
+        Source: thesis, construction of the mesh (one vertex per position).
+        """
+        from hem.meshes.weld import clusters
+
+        if not (np.isfinite(tolerance) and tolerance >= 0):
+            raise MeshError(f"a weld tolerance is finite and not negative, not {tolerance}")
+        first, cluster = clusters(self.points, tolerance)
+        triangles = cluster[self.triangles]
+        return TriangleMesh(self.points[first], triangles[~repeated_corners(triangles)])
+
+    def flipped(self) -> "TriangleMesh":
+        """The same faces seen from the other side: corners (a, b, c) become (a, c, b). O(m)."""
+        return TriangleMesh(self.points, self.triangles[:, [0, 2, 1]])
+
+    def summary(self) -> "MeshSummary":
+        """Counts of elements, borders, components and valences. O(m log m)."""
+        from hem.meshes.manifold import undirected_edges
+
+        return summarized(len(self.points), len(self.triangles), *undirected_edges(self.triangles))
+
+
+@dataclass(frozen=True)
+class MeshSummary:
+    """What a mesh consists of. Vertices without faces count in `vertices` and `unreferenced` only.
+
+    `euler` is V - E + F and `components` the connected parts, both of the vertices that have
+    faces. A vertex' valence is its number of edges; 0 for a mesh without faces.
+    """
+
+    vertices: int
+    edges: int
+    faces: int
+    border_edges: int
+    components: int
+    euler: int
+    unreferenced: int
+    valence_min: int
+    valence_mean: float
+    valence_max: int
+
+    def __str__(self) -> str:
+        rows = {
+            "vertices": f"{self.vertices:,} ({self.unreferenced:,} without faces)",
+            "edges": f"{self.edges:,} ({self.border_edges:,} on the border)",
+            "faces": f"{self.faces:,}",
+            "components": f"{self.components:,}",
+            "Euler number": f"{self.euler:,}",
+            "valence": f"{self.valence_min:,} … {self.valence_max:,}, mean {self.valence_mean:.2f}",
+        }
+        return "\n".join(f"{name:<13} {value}" for name, value in rows.items())
+
+
+def summarized(
+    n: int, n_faces: int, edges: NDArray[Any], faces_per_edge: NDArray[Any]
+) -> MeshSummary:
+    """The summary of n vertices and the faces that have these undirected edges (k, 2)."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    valence = np.bincount(edges.ravel(), minlength=n)
+    unreferenced = int(np.count_nonzero(valence == 0))
+    graph = coo_array((np.ones(len(edges), bool), (edges[:, 0], edges[:, 1])), shape=(n, n))
+    label = connected_components(graph, directed=False)[1] if n else valence
+    used = valence[valence > 0] if len(edges) else np.zeros(1, np.int64)
+    return MeshSummary(
+        vertices=n,
+        edges=len(edges),
+        faces=n_faces,
+        border_edges=int(np.count_nonzero(faces_per_edge == 1)),
+        components=len(np.unique(label[valence > 0])),
+        euler=n - unreferenced - len(edges) + n_faces,
+        unreferenced=unreferenced,
+        valence_min=int(used.min()),
+        valence_mean=float(used.mean()),
+        valence_max=int(used.max()),
+    )
+
+
+def repeated_corners(triangles: Triangles) -> NDArray[np.bool_]:
+    """Which triangles use a vertex twice. (m,) bool, O(m)."""
+    a, b, c = triangles.T
+    found: NDArray[np.bool_] = (a == b) | (b == c) | (c == a)
+    return found
+
+
+def _validated_points(points: ArrayLike) -> Points:
+    given = _rows_of_three(points, "points", kinds="fiu")
+    with np.errstate(over="ignore"):
+        kept = np.ascontiguousarray(given, dtype=np.float32)
+    if not np.isfinite(kept).all():
+        rows = np.flatnonzero(~np.isfinite(kept).all(axis=1))
+        why = (
+            "are not finite" if not np.isfinite(given[rows]).all() else "are too large for float32"
+        )
+        raise MeshError(f"coordinates {why}; remove or mend these points", rows=rows)
+    return kept
+
+
+def _validated_triangles(triangles: ArrayLike, n: int) -> Triangles:
+    given = _rows_of_three(triangles, "triangles", kinds="iuf")
+    if given.dtype.kind == "f":
+        _refuse(given != np.floor(given), "vertex indices are not whole numbers")
+    if given.size and (given.min() < 0 or given.max() >= n):
+        _refuse((given < 0) | (given >= n), _out_of_range(given, n))
+    kept = np.ascontiguousarray(given, dtype=np.int32)
+    _refuse(repeated_corners(kept), "triangles use a vertex twice; drop them, or see welded()")
+    return kept
+
+
+def _rows_of_three(values: ArrayLike, name: str, kinds: str) -> NDArray[Any]:
+    try:
+        rows = np.asarray(values)
+    except ValueError as error:
+        raise MeshError(f"{name} must form rows of three numbers: {error}") from error
+    if rows.size == 0 and rows.shape in ((0,), (0, 3)):
+        return np.zeros((0, 3), np.int32)
+    if rows.ndim != 2 or rows.shape[1] != 3:
+        raise MeshError(f"{name} must have shape (k, 3), not {rows.shape}")
+    if rows.dtype.kind not in kinds:
+        raise MeshError(f"{name} must be numbers of at most 64 bits, not {rows.dtype}")
+    if len(rows) > _MOST_ELEMENTS:
+        raise MeshError(f"{len(rows):,} {name} are more than int32 indices can name")
+    return rows
+
+
+def _out_of_range(given: NDArray[Any], n: int) -> str:
+    if n == 0:
+        return "there are triangles, but no points"
+    beyond = ", some beyond int32" if given.max() > _MOST_ELEMENTS else ""
+    hint = "; do the indices count from 1?" if given.min() == 1 and given.max() == n else ""
+    return f"vertex indices are out of the range 0 … {n - 1:,}{beyond}{hint}"
+
+
+def _refuse(bad: NDArray[np.bool_], message: str) -> None:
+    if bad.any():
+        rows = bad if bad.ndim == 1 else bad.any(axis=1)
+        raise MeshError(message, rows=np.flatnonzero(rows))
+
+
+def _read_only(array: NDArray[Any]) -> NDArray[Any]:
+    view = array.view()
+    view.flags.writeable = False
+    return view

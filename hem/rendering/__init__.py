@@ -1,0 +1,1 @@
+"""Flat arrays for a renderer that follow every edit."""

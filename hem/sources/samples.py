@@ -1,0 +1,72 @@
+"""Real models: those that come inside the pymeshlab package, and the Utah teapot."""
+
+import difflib
+from collections.abc import Callable
+from dataclasses import dataclass
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any
+
+from hem.errors import MeshError
+from hem.meshes.triangles import TriangleMesh
+from hem.sources.teapot import teapot
+
+
+@dataclass(frozen=True)
+class Sample:
+    """A model: what it is, and what makes it from the options that `sample` hands on."""
+
+    what: str
+    make: Callable[..., TriangleMesh]
+
+
+def sample(name: str, **options: Any) -> TriangleMesh:
+    """A real model by name; SAMPLES says which there are.
+
+    Options: `repair=True` for the scans and models in files (see hem.load), `tessellation=10` and
+    `welded=True` for the teapot. Raises MeshError for an unknown name, and where pymeshlab was
+    installed without its sample files.
+    """
+    if name not in SAMPLES:
+        near = difflib.get_close_matches(name, SAMPLES, n=1)
+        meant = f"; did you mean {near[0]!r}?" if near else ""
+        raise MeshError(f"no sample {name!r} (there are {', '.join(SAMPLES)}){meant}")
+    return SAMPLES[name].make(**options)
+
+
+def _from_file(name: str) -> Callable[..., TriangleMesh]:
+    def make(repair: bool = False) -> TriangleMesh:
+        from hem.sources.files import load
+
+        return load(_sample_file(name), repair=repair, triangulate=True)
+
+    return make
+
+
+def _sample_file(name: str) -> Path:
+    package = find_spec("pymeshlab")
+    if package is None or package.origin is None:
+        raise MeshError("pymeshlab is not installed: python -m pip install pymeshlab")
+    file = Path(package.origin).parent / "tests" / "sample_meshes" / name
+    if not file.exists():
+        raise MeshError(f"this pymeshlab came without its sample meshes: there is no {file}")
+    return file
+
+
+SAMPLES: dict[str, Sample] = {
+    "bunny": Sample("the Stanford bunny: closed, 28,088 vertices", _from_file("bunny.obj")),
+    "cow": Sample("a cow: closed, 2,904 vertices", _from_file("cow.obj")),
+    "airplane": Sample(
+        "an airplane: closed, 7,017 vertices, 1,617 of them without faces",
+        _from_file("airplane.obj"),
+    ),
+    "bone": Sample(
+        "a bone: closed, 1,872 vertices, 359 of them without faces", _from_file("bone.ply")
+    ),
+    "face": Sample(
+        "one range scan of a face: 85,849 vertices, a ragged border, 17 pieces, and six "
+        "vertices where two fans meet, which only repair=True makes a surface",
+        _from_file("rangemaps/face000.ply"),
+    ),
+    "teapot": Sample("the Utah teapot, from its patches at any tessellation", teapot),
+}

@@ -1,0 +1,119 @@
+"""The command line as a newcomer types it, wrong arguments included."""
+
+from __future__ import annotations
+
+import json
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from experiments import cli
+from experiments.cli import app
+from experiments.harness.presets import PROFILES
+from experiments.runs.results import load
+from experiments.runs.study import processes
+from structures import NAMES
+
+runner = CliRunner()
+
+
+def hem(*arguments: str) -> tuple[int, str]:
+    cli.console.width = cli.errors.width = 200
+    result = runner.invoke(app, arguments)
+    return result.exit_code, " ".join((result.stdout + result.stderr).split())
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["study", "--profile", "fast"], "no profile is called 'fast'; there are smoke, quick"),
+        (["study", "--resume"], "there is no unfinished run"),
+        (["table"], "there is no run"),
+        (["table", "nowhere"], "nowhere holds no run"),
+        (["report"], "there is no run"),
+        (["info", "no_such_file.ply"], "no_such_file.ply"),
+        (["info", "bunnny"], "bunnny"),
+        (["meshes", "--size", "3"], "reachable"),
+    ],
+)
+def test_a_mistake_gets_one_clear_line_and_an_exit_code(arguments, said, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    code, output = hem(*arguments)
+    assert code == 1
+    assert output.startswith("hem:")
+    assert said in output
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_info_says_which_structure_can_hold_a_mesh_and_why_another_cannot(tmp_path):
+    code, output = hem("info", "teapot")
+    assert code == 0
+    assert "Half-Edge" in output
+    assert "cannot hold" not in output
+    code, output = hem("info", "face")
+    assert code == 0
+    assert output.count("cannot hold it") == len(NAMES) - 1
+    assert "1850" in output
+    (tmp_path / "quad.obj").write_text("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n")
+    code, output = hem("info", str(tmp_path / "quad.obj"))
+    assert code == 0
+    assert output.count("cannot hold it") == len(NAMES) - 1
+    assert output.count("triangulate=True") == 1
+
+
+def test_meshes_lists_every_family_and_model():
+    code, output = hem("meshes", "--size", "400")
+    assert code == 0
+    assert all(name in output for name in ("torus", "isosurface", "bunny", "28,088", "teapot"))
+
+
+def test_a_study_that_is_killed_goes_on_where_it_was_and_ends_complete(tmp_path):
+    command = [sys.executable, "-m", "experiments.cli", "study", "--output", str(tmp_path)]
+    chosen = "indexed", "half_edge_objects", "as_printed"
+    options = [it for name in chosen for it in ("--structure", name)]
+    begun = [*command, "--profile", "smoke", *options]
+    child = subprocess.Popen(begun, stdout=subprocess.DEVNULL)
+    while not list(tmp_path.glob("*/bench_work.indexed.json")):
+        assert child.poll() is None
+        time.sleep(0.05)
+    child.send_signal(signal.SIGKILL)
+    child.wait()
+    before = _cells(tmp_path)
+    assert before
+
+    resumed = subprocess.run([*command, "--resume"], capture_output=True, text=True, timeout=300)
+    assert resumed.returncode == 0, resumed.stdout + resumed.stderr
+    after = _cells(tmp_path)
+    assert all(after[key] == cell for key, cell in before.items())
+    every = processes("smoke", chosen)
+    assert set(after) == {(p.experiment, p.structure, cell) for p in every for cell in p.cells}
+    assert {p.structure for p in every} == {*chosen, "machine"}
+
+    (folder,) = (path.parent for path in tmp_path.glob("*/run.json"))
+    run = load(folder)
+    assert run.meta["finished"] >= run.meta["started"]
+    assert run.cells.query("experiment != 'bench_latency'")["checked"].all()
+    assert {"commit", "dirty", "machine", "versions", "schema"} <= set(run.meta)
+    code, output = hem("table", str(folder))
+    assert code == 0
+    assert "36 ✓" in output
+
+
+def _cells(root: Path) -> dict[tuple[str, str, str], dict]:
+    found = {}
+    for path in root.glob("*/bench_*.json"):
+        content = json.loads(path.read_text())
+        owner = content["experiment"], content["structure"]
+        assert len({cell["id"] for cell in content["cells"]}) == len(content["cells"])
+        found |= {(*owner, cell["id"]): cell for cell in content["cells"]}
+    return found
+
+
+def test_profiles_reach_a_million_vertices_and_valence_4096():
+    assert max(PROFILES["standard"].sizes) == max(PROFILES["full"].sizes) == 1_000_000
+    assert all(set(p.valences) >= {4, 4096} for name, p in PROFILES.items() if name != "smoke")

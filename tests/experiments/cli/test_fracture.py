@@ -1,0 +1,207 @@
+"""``hem fracture`` as a newcomer types it, and the demo's page."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+from typer.testing import CliRunner
+
+import hem as package
+from experiments.cli import app, console, demo
+from experiments.report.fracture_scenes import break_up, default_impact, model
+from hem.fracture import MATERIALS
+from hem.fracture.show.scene import on_surface
+
+runner = CliRunner()
+
+
+def hem(*arguments: str) -> tuple[int, str]:
+    console.console.width = console.errors.width = 200
+    result = runner.invoke(app, ("fracture", *arguments))
+    return result.exit_code, " ".join((result.stdout + result.stderr).split())
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["nothing"], "there is no model 'nothing': name a file, or one of bunny"),
+        (["nothing.ply"], "there is no such file"),
+        (["empty.ply"], "the file is empty"),
+        (["sphere:many"], "after the colon stands a number of vertices"),
+        (["sphere:3"], "reachable are 12"),
+        (["sphere", "--impact", "a,b"], "--impact is three numbers"),
+        (["sphere", "--impact", "1,2"], "--impact is three numbers"),
+        (["sphere", "--impact", "nan,0,0"], "--impact is three finite numbers"),
+        (["sphere", "--impact", "40,0,0"], "more than half the diagonal"),
+        (["plate", "--impact", "40,0,0"], "more than half of its size"),
+        (["sphere", "--direction", "0,0"], "--direction is three numbers"),
+        (["sphere", "--direction", "0,0,0"], "a direction has some length"),
+        (["sphere", "--force", "0"], "--force is a positive number"),
+        (["sphere", "--force", "-1"], "--force is a positive number"),
+        (["sphere", "--force", "inf"], "--force is a positive number"),
+        (["sphere", "--material", "glas"], "did you mean 'glass'?"),
+        (["sphere", "--materials", "none.toml"], "cannot read materials from none.toml"),
+        (["sphere", "--method", "hammer"], "there is no method 'hammer', only voronoi, tetra"),
+        (["sphere", "--structure", "heap"], "there is no structure 'heap', only indexed"),
+        (["sphere", "--format", "glb", "--format", "stl"], "formats are glb, obj, ply"),
+        (["sphere", "--seed", "-1"], "a seed is a whole number from 0 on"),
+        (["sphere", "--size", "640"], "--size is a width and a height"),
+        (["sphere", "--size", "64x9999"], "64 … 4096"),
+        (["sphere", "--seconds", "0"], "--seconds is more than 0"),
+        (["sphere", "--up", "w"], "--up is x, y or z"),
+        (["sphere", "--scale", "0"], "--scale is a positive number"),
+        (["sphere", "--out", "empty.ply"], "is a file, not a folder"),
+        (["plate", "--method", "voronoi"], "the mesh is open"),
+        (["plate", "--method", "tetra"], "the mesh is open"),
+    ],
+)
+def test_a_mistake_gets_one_clear_line_and_nothing_is_written(
+    arguments, said, tmp_path, monkeypatch
+):
+    monkeypatch.chdir(tmp_path)
+    Path("empty.ply").touch()
+    code, output = hem(*arguments)
+    assert code == 1
+    assert output.startswith("hem:")
+    assert said in output
+    assert [path.name for path in tmp_path.iterdir()] == ["empty.ply"]
+
+
+def test_a_sphere_breaks_into_all_that_is_promised(tmp_path):
+    out = tmp_path / "new" / "folder"
+    every = [option for name in ("glb", "obj", "ply") for option in ("--format", name)]
+    code, output = hem(
+        "sphere:162", "--material", "stone", "--force", "2", "--size", "96x72",
+        "--seconds", "0.5", "--out", str(out), *every,
+    )  # fmt: skip
+    assert code == 0, output
+    assert "Broken by voronoi" in output
+    names = {path.name for path in out.iterdir()}
+    assert names == {
+        "fracture.gif", "fracture.json", "fracture.png", "pieces", "pieces.glb", "pieces.obj",
+    }  # fmt: skip
+    told = json.loads((out / "fracture.json").read_text())
+    assert len(list((out / "pieces").iterdir())) == told["totals"]["pieces"] > 3
+    assert told["totals"]["volume_m3"] == pytest.approx(4 / 3 * np.pi, rel=0.1)
+    with Image.open(out / "fracture.gif") as film:
+        assert film.size == (96, 72)
+        assert film.info["loop"] == 0
+        # Pillow makes one of frames that are alike.
+        assert 20 < film.n_frames <= told["animation"]["frames"]
+        first = np.asarray(film.convert("RGB")).astype(int)
+        film.seek(film.n_frames - 1)
+        assert np.abs(np.asarray(film.convert("RGB")) - first).max() > 50
+    assert told["animation"]["times_s"][-1] == 0.5
+    with Image.open(out / "fracture.png") as picture:
+        assert picture.size == (192, 72)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "method"),
+    [
+        (["plate"], "surface"),
+        (["plate:100", "--structure", "half_edge", "--direction", "0,0,-1"], "surface"),
+        (["sphere:162", "--method", "tetra", "--impact", "0,1,0"], "tetra"),
+        (["terrain:100", "--wrap"], "voronoi"),
+    ],
+)
+def test_every_method_can_be_had_and_the_same_call_gives_the_same(arguments, method, tmp_path):
+    for name in ("one", "two"):
+        code, output = hem(
+            *arguments, "--no-animation", "--size", "96x72", "--out", str(tmp_path / name)
+        )
+        assert code == 0, output
+        assert f"Broken by {method}" in output
+    files = sorted(path.name for path in (tmp_path / "one").iterdir())
+    assert files == ["fracture.json", "fracture.png", "pieces.glb"]
+    for name in files:
+        one, two = ((tmp_path / it / name).read_bytes() for it in ("one", "two"))
+        assert one == two, name
+
+
+def test_materials_of_ones_own_are_read(tmp_path):
+    (tmp_path / "own.toml").write_text(
+        "[jelly]\ndensity = 1000.0\nthickness = 0.01\ncircles = [3]\nscale = 0.1\nsites = 3.0\n"
+        'reach = 0.3\nburst = 0.1\ncolor = "#cc3355"\n'
+    )
+    code, output = hem(
+        "sphere:42", "--materials", str(tmp_path / "own.toml"), "--material", "jelly",
+        "--no-animation", "--size", "96x72", "--out", str(tmp_path / "out"),
+    )  # fmt: skip
+    assert code == 0, output
+    told = json.loads((tmp_path / "out" / "fracture.json").read_text())
+    assert told["material"]["name"] == "jelly"
+
+
+def test_an_interrupted_run_leaves_a_folder_as_it_was(tmp_path):
+    out = tmp_path / "out"
+    out.mkdir()
+    (out / "fracture.json").write_text("before")
+    command = [sys.executable, "-m", "experiments.cli", "fracture", "sphere:642", "--out", str(out)]
+    child = subprocess.Popen([*command, "--size", "1600x1200"], stderr=subprocess.PIPE, text=True)
+    while not list(out.glob(".hem-*/new/fracture.png")):
+        assert child.poll() is None
+        time.sleep(0.05)
+    child.send_signal(signal.SIGINT)
+    _, said = child.communicate(timeout=60)
+    assert child.returncode == 130
+    assert "nothing was written" in said
+    assert [path.name for path in out.iterdir()] == ["fracture.json"]
+    assert (out / "fracture.json").read_text() == "before"
+
+
+@pytest.mark.parametrize("name", ["bunny", "teapot", "plate", "sphere:642"])
+def test_the_default_impact_is_on_the_surface_and_goes_into_it(name):
+    mesh, up = model(name)
+    point, way = default_impact(mesh, up)
+    edges = np.linalg.norm(np.ptp(mesh.points, axis=0))
+    near = np.linalg.norm(mesh.points - point, axis=1).min()
+    assert near < 0.1 * edges
+    assert np.linalg.norm(way) == pytest.approx(1)
+    middle = (mesh.points.max(axis=0) + mesh.points.min(axis=0)) / 2
+    assert (middle - point) @ way >= -1e-6
+
+
+def test_skin_is_told_from_the_walls_of_cuts():
+    mesh, up = model("sphere:642")
+    broken = break_up(mesh, "voronoi", MATERIALS["ice"], 1.0, up=up)
+    for piece in broken.fracture.pieces:
+        corners = piece.points[piece.triangles].astype(float)
+        far = np.linalg.norm(corners, axis=2).min(axis=1)
+        skin = on_surface(corners, mesh, broken.fracture.diagonal)
+        assert (far[skin] > 0.98).all()
+        assert (~skin[far < 0.9]).all()
+
+
+def test_the_demo_is_one_page_that_needs_no_network(tmp_path):
+    scene = demo.SCENES[-1]._replace(forces=(0.5, 2))
+    page = demo.write(tmp_path / "demo", (scene,), size=(64, 48), seconds=0.4)
+    text = page.read_text(encoding="utf-8")
+    assert "://" not in text.replace("http://www.w3.org", "")
+    assert "__TOLD__" not in text
+    told = json.loads(text[text.index("const told = ") + 13 : text.index(";\nconst at")])
+    for take in told["scenes"][0]["takes"]:
+        with Image.open(page.parent / take["frames"]) as sheet:
+            rows = -(-len(take["times"]) // demo.COLUMNS)
+            assert sheet.size == (64 * demo.COLUMNS, 48 * rows)
+        assert take["energy"] <= take["given"]
+    assert sorted(os.listdir(page.parent))[0] == "index.html"
+
+
+def test_importing_the_package_stays_light():
+    code = (
+        "import sys, hem, experiments.cli.fracture; "
+        "print([m for m in ('embreex', 'trimesh', 'PIL', 'manifold3d') if m in sys.modules])"
+    )
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert run.stdout.strip() == "[]"
+    assert package.__name__ == "hem"

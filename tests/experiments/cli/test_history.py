@@ -1,0 +1,218 @@
+"""What `hem history` says is what is in the file, and a mistake gets one clear line."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+from matplotlib.figure import Figure
+from typer.testing import CliRunner
+
+from experiments import cli
+from experiments.regression.history import append, read
+from experiments.regression.trends import changes, series
+from experiments.report import history_figures, history_page, history_tables
+from experiments.report.history_tables import sparkline
+from experiments.runs import results
+from tests.experiments.histories import CLAIM, MACHINES, line, stepped
+
+runner = CliRunner()
+NAME = "half_edge/vertex_faces"
+
+
+def hem(*arguments: str) -> tuple[int, str]:
+    cli.console.width = cli.errors.width = 200
+    result = runner.invoke(cli.app, ["history", *arguments])
+    return result.exit_code, " ".join((result.stdout + result.stderr).split())
+
+
+@pytest.fixture(scope="module")
+def kept(base, tmp_path_factory):
+    """30 runs with one step in one claim, at the 16th."""
+    return stepped(tmp_path_factory.mktemp("history") / "history.jsonl", base)
+
+
+@pytest.fixture(scope="module")
+def mixed(base, tmp_path_factory):
+    """Runs of two machines by turns, the second of which takes twice the time."""
+    path = tmp_path_factory.mktemp("history") / "mixed.jsonl"
+    for k in range(24):
+        made = line(base, k, MACHINES[k % 2])
+        for claim in made["claims"].values():
+            if "relative" in claim:
+                claim["relative"] *= 1 + k % 2
+        append(made, path)
+    return path
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["show", "--file", "none.jsonl"], "there is no run in none.jsonl; begin with: hem study"),
+        (["show", "--last", "0", "--file", "KEPT"], "--last is at least 1, not 0"),
+        (["show", "half_edgy", "--file", "KEPT"], "no claim 'half_edgy'; say a structure (indexed"),
+        (["show", "--machine", "ffff", "--file", "KEPT"], "no run is of machine 'ffff'; there are"),
+        (["show", "--profile", "slow", "--file", "KEPT"], "no run is of profile 'slow'"),
+        (["show", "--file", "."], "Is a directory"),
+        (["add"], "there is no run in results/runs; start one with: hem study"),
+        (["add", "nowhere"], "nowhere holds no run"),
+    ],
+)
+def test_a_mistake_gets_one_clear_line_and_an_exit_code(
+    kept, arguments, said, tmp_path, monkeypatch
+):
+    monkeypatch.chdir(tmp_path)
+    code, output = hem(*(str(kept) if it == "KEPT" else it for it in arguments))
+    assert code == 1
+    assert output.startswith("hem:")
+    assert said in output
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_run_is_added_once_and_is_there_then(base_folder, tmp_path):
+    path = str(tmp_path / "history.jsonl")
+    assert "Added" in hem("add", str(base_folder), "--file", path)[1]
+    code, output = hem("add", str(base_folder), "--file", path)
+    assert code == 0
+    assert "Already there" in output
+    assert "has 1 runs" not in output
+    assert len(read(tmp_path / "history.jsonl").runs) == 1
+    code, output = hem("show", "--file", path)
+    assert code == 0
+    assert results.load(base_folder).meta["commit"][:7] in output
+
+
+def test_damage_is_told_of_beside_what_is_whole(base, tmp_path):
+    path = tmp_path / "history.jsonl"
+    append(line(base, 1), path)
+    with path.open("a") as file:
+        file.write('{"schema": 2, "comm')
+    code, output = hem("show", "--file", str(path))
+    assert code == 0
+    assert "line 2 is cut short or damaged" in output
+    assert line(base, 1)["commit"][:7] in output
+
+
+def test_the_changes_are_those_that_were_made_and_no_others(kept):
+    found = {(it.claim, it.what, it.run) for it in changes(read(kept)) if it.claim == CLAIM}
+    assert {(CLAIM, "verdict by work", 15), (CLAIM, "work", 15)} <= found
+    times = [it for it in changes(read(kept)) if it.what == "time"]
+    assert [(it.claim, it.machine) for it in times] == [(CLAIM, MACHINES[0])]
+    assert abs(times[0].run - 15) <= 1
+    assert all(it.claim == CLAIM for it in changes(read(kept)))
+
+
+def test_show_marks_the_commit_at_which_work_time_and_verdict_changed(kept, base):
+    code, output = hem("show", NAME, "--file", str(kept))
+    assert code == 0
+    assert output.count("≠") == 2  # once in the legend
+    assert "24 ▲+20.0%" in output
+    row = next(it for it in output.split("│ ") if "✗≠" in it)
+    assert row
+    code, output = hem("show", "--file", str(kept))
+    assert code == 0
+    assert "consistent → violated" in output
+    assert "20 → 24" in output
+    code, output = hem("show", "half_edge", "--file", str(kept))
+    assert code == 0
+    assert f"│ {line(base, 15)['commit'][:7]}" in output
+    assert f"│ {line(base, 14)['commit'][:7]}" not in output
+
+
+def test_last_shows_the_newest_and_judges_by_all(kept):
+    code, output = hem("show", NAME, "--file", str(kept), "--last", "15")
+    assert code == 0
+    assert "24 ▲+20.0%" in output
+    code, output = hem("show", NAME, "--file", str(kept), "--last", "3")
+    assert "▲+20.0%" not in output
+
+
+def test_json_has_every_series_whole(kept):
+    result = runner.invoke(cli.app, ["history", "show", NAME, "--file", str(kept), "--json"])
+    content = json.loads(result.stdout)
+    work = next(it for it in content["series"] if it["measure"] == "work")
+    assert work["values"] == 15 * [20.0] + 15 * [24.0]
+    assert work["machine"] is None
+    assert [it["index"] for it in work["steps"]] == [15]
+    assert [run["index"] for run in content["runs"]] == list(range(30))
+    assert {it["what"] for it in content["changes"]} >= {"work", "verdict by work"}
+
+
+def test_times_of_two_machines_are_two_series_and_their_difference_is_no_step(mixed):
+    history = read(mixed)
+    assert changes(history) == []
+    times = series(history, CLAIM, "time")
+    assert {it.machine for it in times} == set(MACHINES)
+    assert [len(it.at) for it in times] == [12, 12]
+    (work,) = series(history, CLAIM, "work")
+    assert len(work.at) == 24
+    code, output = hem("show", "--file", str(mixed))
+    assert code == 0
+    assert "Work, bytes and verdicts by work are compared between the machines, times are" in output
+    code, output = hem("show", "--file", str(mixed), "--machine", "aaaa")
+    assert code == 0
+    assert MACHINES[1] not in output
+    assert "12 runs" in output
+
+
+def test_what_was_measured_on_other_sizes_is_not_compared(base, tmp_path):
+    path = tmp_path / "history.jsonl"
+    for k in range(4):
+        made = line(base, k)
+        made["claims"][CLAIM]["work_faces"] = 1000 if k < 2 else 2000
+        made["claims"][CLAIM]["work"] = 10.0 if k < 2 else 20.0
+        append(made, path)
+    for k in (4, 5):
+        append(line(base, k) | {"profile": "smoke"}, path)
+    found = {it.profile: it for it in series(read(path), CLAIM, "work")}
+    assert found["quick"].at == [2, 3]
+    assert found["smoke"].at == [4, 5]
+    assert changes(read(path)) == []
+    assert "different profiles are not compared" in hem("show", "--file", str(path))[1]
+
+
+def test_a_sparkline_has_a_bar_per_value_and_none_where_none_is():
+    assert sparkline([1.0, None, 2.0]) == "▁ █"
+    assert sparkline([19.0, 19.0]) == "▄▄"
+    assert sparkline([1.0, 1.001]) == "▄▄"
+    assert sparkline([None]) == sparkline([]) == ""
+    assert sparkline([0.0, 0.0]) == "▄▄"
+
+
+@pytest.mark.parametrize("count", [1, 2, 30])
+def test_figures_and_page_are_there_for_any_number_of_runs(base, tmp_path, count):
+    history = read(stepped(tmp_path / "history.jsonl", base, count))
+    figure = history_figures.by_commit(history, "vertex_faces")
+    _require_labels(figure)
+    rings = [it for axes in figure.axes for it in axes.lines if it.get_gid() == "step"]
+    crosses = [it for axes in figure.axes for it in axes.lines if it.get_gid() == "verdict"]
+    assert bool(rings) == bool(crosses) == (count == 30)
+    history_figures.departures(history).draw_without_rendering()
+    assert ("three at least" in history_page.told(history)) == (count < 3)
+    assert ("consistent" in history_page.changed(history)) == (count == 30)
+    assert history_page.runs(history).count("<tr") == count + 1
+
+
+def _require_labels(figure: Figure) -> None:
+    figure.draw_without_rendering()
+    for axes in figure.axes:
+        boxes = [text.get_window_extent() for text in axes.texts]
+        assert boxes
+        for i, box in enumerate(boxes):
+            assert figure.bbox.x1 >= box.x1
+            assert not any(box.overlaps(other) for other in boxes[i + 1 :])
+
+
+def test_without_a_history_there_is_no_figure_but_what_to_do(tmp_path):
+    history = read(tmp_path / "none.jsonl")
+    assert "hem history add" in history_page.told(history)
+    with pytest.raises(ValueError, match="begin with: hem history add"):
+        history_figures.by_commit(history, "vertex_faces")
+
+
+def test_the_tables_are_as_wide_as_a_terminal(kept, capsys):
+    from rich.console import Console
+
+    console = Console(width=80)
+    history_tables.show(read(kept), [CLAIM], console, 5, brief=False)
+    assert max(map(len, capsys.readouterr().out.splitlines())) <= 80

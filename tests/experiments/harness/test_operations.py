@@ -1,0 +1,100 @@
+"""How operations are measured: on what, on how many copies, and that all did the same."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import hem
+import structures
+from experiments.claims.growth import OPERATIONS
+from experiments.harness.cases import Cell
+from experiments.harness.operations import Bench, arguments, faces_of
+from experiments.harness.presets import HUBS
+from experiments.harness.workloads import KEPT, WORKLOADS
+
+
+def cell(structure: str, family: str = "torus", valence: int | None = None) -> Cell:
+    return Cell(structure, family, 900 if family != HUBS else 2048, "split_face", valence=valence)
+
+
+@pytest.mark.parametrize("family", ["torus", "grid"])
+def test_chosen_elements_have_no_neighbor_in_common(family):
+    it = cell("half_edge", family)
+    s, faces = it.build(), faces_of(it)
+    rings = [set(s.vertex_vertices(s.face_vertices(int(f))).values.tolist()) for f in faces]
+    assert len(faces) > 10
+    assert sum(map(len, rings)) == len(set().union(*rings))
+
+
+def test_where_the_valence_varies_each_element_is_at_a_hub_of_its_own():
+    it = cell("half_edge", HUBS, valence=16)
+    faces, hubs = faces_of(it), hem.valence_hubs(16, 2048)
+    first = it.mesh().triangles[faces, 0]
+    assert set(first) == set(hubs[::2])
+
+
+@pytest.mark.parametrize("operation", OPERATIONS)
+@pytest.mark.parametrize("name", structures.NAMES)
+def test_a_bench_is_operated_on_and_restored(name, operation):
+    it = cell(name)
+    bench = Bench(it.build(), operation, faces_of(it))
+    before = [array.copy() for array in bench.mesh.arrays]
+    count, each = bench.mesh.n_faces, {"split_edge": 2, "split_face": 2, "collapse_edge": -2}
+    each |= {"flip_edge": 0, "add_face": 1, "remove_face": -1}
+    for _ in range(2):
+        assert bench.operate() == bench.operations > 10
+        assert bench.mesh.n_faces == count + each[operation] * bench.operations
+        bench.mesh.validate()
+        bench.restore()
+        now = bench.mesh.arrays
+        assert all(np.array_equal(a, b, equal_nan=True) for a, b in zip(now, before, strict=True))
+    assert it.build().n_faces == 1800  # the mesh it was copied from is left alone
+
+
+def test_an_idle_call_takes_no_time_to_speak_of_and_does_nothing():
+    it = cell("half_edge")
+    bench = Bench(it.build(), "split_face", faces_of(it))
+    before = bench.mesh.n_faces
+    assert 0 < bench.idle_seconds() < 1e-3
+    assert bench.mesh.n_faces == before
+    assert bench.operate() == bench.operations
+
+
+def test_all_structures_are_asked_for_the_same(monkeypatch):
+    rows = []
+    for name in structures.NAMES:
+        it = cell(name)
+        s = it.build().copy()
+        args = arguments(s, "split_edge", faces_of(it))
+        rows.append(s.edge_vertices(args[:, 0]).values.tolist())
+    assert all(row == rows[0] for row in rows)
+
+
+@pytest.mark.parametrize("workload", WORKLOADS)
+def test_a_workload_makes_of_every_structure_the_same_mesh(workload):
+    made = []
+    for name in structures.NAMES:
+        s = structures.build(name, hem.generate("sphere", 162))
+        units = WORKLOADS[workload].run(s)
+        s.validate()
+        corners = np.sort(s.face_vertices(s.faces()).values.reshape(-1, 3), axis=1)
+        made.append((units, corners.tolist()))
+    assert all(it == made[0] for it in made)
+
+
+def test_a_simplification_leaves_a_tenth_and_a_closed_surface():
+    s = structures.build("half_edge", hem.generate("sphere", 642))
+    WORKLOADS["simplification"].run(s)
+    assert s.n_vertices == int(KEPT * 642)
+    hem.require_sound(s.to_triangles(), euler=2)
+
+
+def test_smoothing_moves_every_vertex_to_the_mean_of_its_neighbors():
+    mesh = hem.generate("torus", 100)
+    s = structures.build("winged_edge", mesh)
+    WORKLOADS["smoothing"].run(s)
+    for v in (0, 50, 99):
+        near = np.unique(mesh.triangles[(mesh.triangles == v).any(axis=1)])
+        expected = mesh.points[near[near != v]].mean(axis=0)
+        assert np.allclose(s.points[v], expected, atol=1e-5)

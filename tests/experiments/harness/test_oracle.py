@@ -1,0 +1,50 @@
+"""The check before every timing: it agrees with answers found by hand, and catches a change."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import hem
+import structures
+from experiments.harness.oracle import CheckFailedError, check, neighbors, pack
+from hem.contract.queries import QUERIES
+
+# Two triangles (0, 1, 2) and (0, 2, 3) that share the edge 0-2.
+SQUARE = hem.TriangleMesh([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], [[0, 1, 2], [0, 2, 3]])
+BY_HAND = {
+    "vertex_vertices": (1, [0, 2]),
+    "vertex_edges": (1, [(0, 1), (1, 2)]),
+    "vertex_faces": (1, [0]),
+    "edge_vertices": ((0, 2), [0, 2]),
+    "edge_edges": ((0, 2), [(0, 1), (1, 2), (2, 3), (0, 3)]),
+    "edge_faces": ((0, 2), [0, 1]),
+    "face_vertices": (1, [0, 2, 3]),
+    "face_edges": (1, [(0, 2), (2, 3), (0, 3)]),
+    "face_faces": (1, [0]),
+}
+
+
+def packed(values: list) -> list[int]:
+    return sorted(pack(np.array(values)).tolist()) if isinstance(values[0], tuple) else values
+
+
+@pytest.mark.parametrize("query", QUERIES)
+def test_neighbors_are_those_found_by_hand(query):
+    key, expected = BY_HAND[query]
+    key = packed([key])[0] if isinstance(key, tuple) else key
+    assert neighbors(SQUARE.triangles, QUERIES[query], key).tolist() == packed(expected)
+
+
+@pytest.mark.parametrize("name", structures.NAMES)
+@pytest.mark.parametrize("query", QUERIES)
+def test_a_wrong_answer_is_caught(name, query, monkeypatch):
+    s = structures.build(name, hem.generate("torus", 100))
+    handles = s.handles(QUERIES[query].source)[10:12]
+    check(s, hem.generate("torus", 100), QUERIES[query], handles)
+    right = getattr(s, query)
+    monkeypatch.setitem(s.__dict__, query, lambda handle: right(handle)[:-1])
+    if query == "edge_vertices":
+        return  # the names of edges themselves come from this query
+    with pytest.raises(CheckFailedError, match=f"{name}.{query}"):
+        check(s, hem.generate("torus", 100), QUERIES[query], handles)

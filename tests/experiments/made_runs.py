@@ -1,0 +1,147 @@
+"""Runs made up for tests: costs that follow a law everybody knows."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+
+from experiments.claims.growth import MEMORY, load_claims
+from experiments.harness.presets import HUBS
+from experiments.harness.workloads import WORKLOADS
+from experiments.runs.provenance import describe
+from experiments.runs.results import CellResult, ResultFile, write_json
+from structures import NAMES
+
+ORDERS = ("consecutive", "random")
+
+SIZES = [200, 630, 2000, 6324, 20000, 63246, 200000]
+VALENCES = [2**k for k in range(2, 13)]
+FACES = 131_072
+
+STEADY = {"fastest": 1e-4, "before": 1e-4, "after": 1e-4, "stray": 0.0, "waited": 0.0}
+"""What a machine that does nothing else shows."""
+
+Law = Callable[[int, int], float]
+LAWS: dict[str, Law] = {
+    "O(1)": lambda n_t, n_ev: 5.0,
+    "O(n_ev)": lambda n_t, n_ev: 2.0 + 3.0 * n_ev,
+    "O(n_t)": lambda n_t, n_ev: 10.0 + 3.0 * n_t,
+    "O(n_t²)": lambda n_t, n_ev: 3.0 + 2e-3 * n_t**2,
+    "N/A": lambda n_t, n_ev: 7.0,
+}
+
+
+EXPERIMENTS = {
+    "queries": (
+        ("bench_work", "random", "faces"),
+        ("bench_work", "random", "valence"),
+        ("bench_queries", "consecutive", "faces"),
+        ("bench_queries", "random", "faces"),
+        ("bench_valence", "random", "valence"),
+    ),
+    "operations": (
+        ("bench_operation_work", "counted", "faces"),
+        ("bench_operation_work", "counted", "valence"),
+        ("bench_operations", "batched", "faces"),
+        ("bench_operations", "batched", "valence"),
+    ),
+    "listings": (("bench_printed", "counted", "faces"), ("bench_printed", "timed", "faces")),
+}
+"""The experiment, the order of its cells and what varies in them, by table."""
+
+FINDING = {"walk": 1 / 2, "jump and walk": 1 / 3, "scan": 1}
+"""The ways to find a face, and the power of n_t that they take in these runs."""
+
+BUILD = {
+    **{"indexed": 1e-9, "triangle_neighbor": 21e-9, "winged_edge": 41e-9, "half_edge": 31e-9},
+    **{"half_edge_objects": 4e-6, "plankton": 36e-9},
+}
+"""Seconds per face to build, in these runs."""
+
+
+def write_run(folder: Path, law_of: Callable[[str, str, str], Law] | None = None) -> Path:
+    """A finished run in which every claim holds, unless ``law_of(structure, query, printed)``."""
+    rng = np.random.default_rng(3)
+    write_json(folder / "run.json", {**describe("quick"), "finished": "2026-01-01T00:00:00Z"})
+    files = {}
+    for claim in load_claims():
+        if claim.what == MEMORY:
+            _add(files, folder, "bench_memory", claim.structure, _memory(claim.bytes_per_vertex))
+            continue
+        chosen = law_of and law_of(claim.structure, claim.what, claim.printed)
+        law = chosen or LAWS[claim.printed]
+        for experiment, order, variable in EXPERIMENTS[claim.table]:
+            points = (
+                [(n, 6) for n in SIZES] if variable == "faces" else [(FACES, k) for k in VALENCES]
+            )
+            for n_t, n_ev in points:
+                kind = "work" if experiment.endswith("work") or order == "counted" else "time"
+                noise = 1 if kind == "work" else 1e-9 * rng.normal(1, 0.02, 9)
+                cell = CellResult(
+                    id=f"{claim.what}/{n_t}/{n_ev}/{order}",
+                    kind=kind,
+                    query=claim.what,
+                    order=order,
+                    family=HUBS if variable == "valence" else "torus",
+                    faces=n_t,
+                    vertices=n_t // 2,
+                    valence=n_ev if variable == "valence" else None,
+                    working_set=60 * n_t,
+                    latency=2e-9,
+                    noise=STEADY if kind == "time" else {},
+                    samples=np.atleast_1d(law(n_t, n_ev) * noise).tolist(),
+                )
+                _add(files, folder, experiment, claim.structure, cell)
+    for structure in NAMES:
+        _add_times(files, folder, structure)
+    for (experiment, structure), cells in files.items():
+        file = ResultFile(folder, experiment, structure)
+        file.cells = cells[:-1]
+        file.add(CellResult(**cells[-1]))
+    return folder
+
+
+def _add_times(files: dict, folder: Path, structure: str) -> None:
+    """Building, the workloads, and the ways to keep a render mesh in step."""
+    slow = structure == "indexed"
+    orders = ("one by one", "rendered", "in a transaction", "render mesh built anew")
+    for n_t in SIZES:
+        about = {"kind": "time", "family": "torus", "faces": n_t, "vertices": n_t // 2}
+        every = [("bench_build", None, order, BUILD[structure] * n_t) for order in ORDERS]
+        every += [
+            ("bench_workloads", name, "workload", 1e-6 * (n_t if slow and it.scans else 1))
+            for name, it in WORKLOADS.items()
+        ]
+        every += [
+            ("bench_operations", "split_face", order, 1e-6 * (k + 1) * (n_t if k == 3 else 1))
+            for k, order in enumerate(orders)
+        ]
+        every += [("bench_fracture", "shatter", None, 1e-6 * (n_t if slow else 1))]
+        every += [("bench_fracture", "find_face", it, 1e-8 * n_t**k) for it, k in FINDING.items()]
+        for experiment, what, order, seconds in every:
+            cell = CellResult(
+                id=f"{what}/{n_t}/{order}", query=what, order=order, samples=[seconds], handles=1,
+                latency=2e-9, **about,
+            )  # fmt: skip
+            _add(files, folder, experiment, structure, cell)
+        for way, power in FINDING.items():
+            order = f"{way}, faces looked at"
+            counted = {**about, "kind": "work", "samples": [float(round(n_t**power))]}
+            cell = CellResult(id=f"{order}/{n_t}", query="find_face", order=order, **counted)
+            _add(files, folder, "bench_fracture", structure, cell)
+
+
+def _memory(bytes_per_vertex: int | None) -> CellResult:
+    size = 1000 * int(bytes_per_vertex or 0)
+    fields = {"vertex.point": size}
+    detail = {"fields": fields, "clr": fields, "traced": size, "peak": size}
+    return CellResult(
+        id="torus/1000", kind="bytes", family="torus", vertices=1000, reference_bytes=8,
+        samples=[float(size)], detail=detail,
+    )  # fmt: skip
+
+
+def _add(files: dict, folder: Path, experiment: str, structure: str, cell: CellResult) -> None:
+    files.setdefault((experiment, structure), []).append(cell.__dict__)

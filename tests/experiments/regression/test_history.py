@@ -1,0 +1,239 @@
+"""The history keeps what was added, whole, once, and in spite of crashes and company."""
+
+from __future__ import annotations
+
+import copy
+import errno
+import json
+import multiprocessing
+import os
+
+import pytest
+
+from experiments.regression import history
+from experiments.regression.history import LineError, append, migrated, read
+from experiments.regression.snapshots import committed, machine_id, record
+from experiments.runs.provenance import machine as this_machine
+from experiments.runs.results import ResultsError, load, read_json, write_json
+from tests.experiments.histories import CLAIM, line, lines
+from tests.experiments.made_runs import write_run
+
+OLD = {
+    "schema": 1,
+    "commit": "c7fc9364b2" + 30 * "0",
+    "date": "2025-11-03T09:15:00+01:00",
+    "dirty": False,
+    "started": "2025-11-03T08:20:11Z",
+    "profile": "quick",
+    "machine": {
+        "cpu": "AMD EPYC",
+        "cores": 2,
+        "memory_bytes": 25276514304,
+        "caches": {"L1": "32K", "L2": "1024K", "L3": "32768K"},
+        "platform": "Linux 6.18.44 x86_64",
+        "python": "cpython",
+    },
+    "versions": {"python": "3.11.7"},
+    "claims": {
+        "half_edge.vertex_faces": {
+            "outcome": "consistent",
+            "slope": [0.0, 0.0, 0.0],
+            "work": 19.0,
+            "faces": 6324,
+        },
+        "half_edge.split_face": {"outcome": "violated", "work": 56.0, "faces": 6324},
+        "indexed.memory": {"outcome": "consistent", "bytes": 36.0},
+    },
+}
+"""A line as the first version wrote it."""
+
+
+def test_a_line_has_the_verdicts_and_figures_of_its_run(base):
+    claim = base["claims"][CLAIM]  # 2 + 3 n_ev accesses and nanoseconds, latency 2 ns
+    assert (claim["outcome"], claim["outcome_time"]) == ("consistent", "consistent")
+    assert (claim["work"], claim["work_faces"]) == (20, 200_000)
+    assert claim["seconds"] == pytest.approx(20e-9, rel=0.03)
+    assert claim["relative"] == pytest.approx(10, rel=0.03)
+    assert (claim["time_faces"], claim["time_sizes"]) == (200_000, 7)
+    assert claim["slopes"]["work_faces"] == [0, 0, 0]
+    slope, low, high = claim["slopes"]["time_valence"]
+    assert low <= slope <= high
+    assert base["claims"]["queries/indexed/memory"] == {"outcome": "consistent", "bytes": 36}
+    assert len(json.dumps(base)) < 60_000
+
+
+def test_a_run_that_is_not_finished_is_refused(tmp_path):
+    folder = write_run(tmp_path / "run")
+    meta = read_json(folder / "run.json")
+    del meta["finished"]
+    write_json(folder / "run.json", meta)
+    with pytest.raises(ResultsError, match="not finished; go on with: hem study --resume"):
+        record(load(folder))
+
+
+def test_what_is_added_is_read_again_in_the_order_of_the_commits(base, tmp_path):
+    path = tmp_path / "deep" / "history.jsonl"
+    for k in (4, 1, 3):
+        assert append(line(base, k), path)
+    kept = read(path)
+    assert kept.runs == [line(base, k) for k in (1, 3, 4)]
+    assert kept.faults == []
+    assert [it["commit"] for it in lines(path)] == [line(base, k)["commit"] for k in (4, 1, 3)]
+
+
+def test_without_a_file_the_history_is_empty(tmp_path):
+    assert read(tmp_path / "none.jsonl").runs == []
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_the_same_run_is_kept_once(base, tmp_path):
+    path = tmp_path / "history.jsonl"
+    assert append(line(base, 1), path)
+    before = path.read_bytes()
+    assert not append(line(base, 1), path)
+    assert path.read_bytes() == before
+    assert append(line(base, 1, "another"), path)
+
+
+def _add(base, path, numbers):
+    for k in numbers:
+        append(line(base, k), path)
+
+
+def test_who_writes_at_the_same_time_loses_nothing_and_adds_nothing_twice(base, tmp_path):
+    path = tmp_path / "history.jsonl"
+    context = multiprocessing.get_context("fork")
+    shares = [range(10), range(5, 15), range(10, 25), range(25)]
+    writers = [context.Process(target=_add, args=(base, path, share)) for share in shares]
+    for writer in writers:
+        writer.start()
+    for writer in writers:
+        writer.join()
+        assert writer.exitcode == 0
+    kept = read(path)
+    assert kept.faults == []
+    assert kept.runs == [line(base, k) for k in range(25)]
+    assert len(lines(path)) == 25
+
+
+@pytest.mark.parametrize("share", [0.0001, 0.1, 0.5, 0.9, 0.9999])
+def test_a_line_that_a_crash_cut_short_is_told_of_and_hides_nothing_else(base, tmp_path, share):
+    path = tmp_path / "history.jsonl"
+    append(line(base, 1), path)
+    whole = path.read_bytes()
+    append(line(base, 2), path)
+    second = path.read_bytes()[len(whole) :]
+    path.write_bytes(whole + second[: max(int(share * len(second)), 1)])
+
+    kept = read(path)
+    assert kept.runs == [line(base, 1)]
+    assert kept.faults == [f"{path}, line 2 is cut short or damaged; it is left out"]
+
+    assert append(line(base, 2), path)
+    assert path.read_bytes().startswith(whole)
+    kept = read(path)
+    assert kept.runs == [line(base, 1), line(base, 2)]
+    assert len(kept.faults) == 1
+
+
+def test_a_line_that_lacks_nothing_but_its_end_is_whole(base, tmp_path):
+    path = tmp_path / "history.jsonl"
+    append(line(base, 1), path)
+    path.write_bytes(path.read_bytes().removesuffix(b"\n"))
+    assert len(read(path).runs) == 1
+    append(line(base, 2), path)
+    assert [len(read(path).runs), read(path).faults] == [2, []]
+
+
+def test_where_there_is_no_room_the_file_stays_as_it_was(base, tmp_path, monkeypatch):
+    path = tmp_path / "history.jsonl"
+    append(line(base, 1), path)
+    before, write, calls = path.read_bytes(), os.write, []
+
+    def full(file, content):
+        calls.append(content)
+        if len(calls) > 1:
+            raise OSError(errno.ENOSPC, "No space left on device")
+        return write(file, content[:100])
+
+    monkeypatch.setattr(history.os, "write", full)
+    with pytest.raises(OSError, match="No space"):
+        append(line(base, 2), path)
+    assert path.read_bytes() == before
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("[1, 2]", "is no run: it has no schema"),
+        ('{"schema": 3}', "has schema 3, this version knows 1 to 2"),
+        ('{"schema": 2}', "is no run: its commit is None"),
+        ('{"schema": 1}', "is no run"),
+        ('{"schema": [1]}', "is no run"),
+        ('{"schema": 2, "work": NaN}', "is cut short or damaged"),
+        ("\x00\x00\x00", "is cut short or damaged"),
+        ("[" * 100_000, "is cut short or damaged"),
+    ],
+)
+def test_a_line_that_is_no_run_is_told_of_and_left_out(base, tmp_path, text, said):
+    path = tmp_path / "history.jsonl"
+    append(line(base, 1), path)
+    with path.open("a") as file:
+        file.write(text + "\n")
+    append(line(base, 2), path)
+    kept = read(path)
+    assert len(kept.runs) == 2
+    assert len(kept.faults) == 1
+    assert f"line 2 {said}" in kept.faults[0]
+
+
+def test_a_line_of_the_first_schema_says_the_same_in_the_present_one(base, tmp_path):
+    path = tmp_path / "history.jsonl"
+    path.write_text(json.dumps(OLD) + "\n")
+    append(line(base, 1), path)
+    kept = read(path)
+    assert kept.faults == []
+    new = kept.runs[0]
+    assert new["schema"] == 2
+    assert new["committed"] == OLD["date"]
+    assert new["machine"]["id"] == machine_id(OLD["machine"])
+    assert new["claims"] == {
+        CLAIM: {
+            "outcome": "consistent",
+            "slopes": {"work_faces": [0, 0, 0]},
+            "work": 19,
+            "work_faces": 6324,
+        },
+        "operations/half_edge/split_face": {
+            "outcome": "violated",
+            "work": 56,
+            "work_faces": 6324,
+        },
+        "queries/indexed/memory": {"outcome": "consistent", "bytes": 36},
+    }
+    assert lines(path)[0] == OLD
+    untouched = copy.deepcopy(OLD)
+    migrated(OLD)
+    assert untouched == OLD
+    with pytest.raises(LineError, match="schema 7"):
+        migrated({"schema": 7})
+
+
+def test_a_machine_is_the_same_after_an_update_and_another_with_another_processor():
+    here = OLD["machine"]
+    updated = here | {
+        "platform": "Linux 7.1.2-other x86_64",
+        "memory_bytes": here["memory_bytes"] - 2**20,
+        "python": "other",
+    }
+    assert machine_id(here) == machine_id(updated)
+    assert machine_id(this_machine()) == machine_id(this_machine())
+    assert len(machine_id(here)) == 8
+    for key, other in (("cpu", "another"), ("cores", 99), ("caches", {}), ("memory_bytes", 2**40)):
+        assert machine_id(here | {key: other}) != machine_id(here)
+
+
+def test_a_commit_that_is_not_here_has_no_date():
+    assert committed("unknown") is None
+    assert committed("--help") is None
+    assert committed(40 * "0") is None

@@ -1,0 +1,172 @@
+"""Laws of the comparison of two runs: silent about noise, and not about what is slower."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from experiments.regression.significance import Comparison, compare
+
+Array = NDArray[np.float64]
+Noise = Callable[[np.random.Generator, int, float], Array]
+
+
+def white(rng: np.random.Generator, n: int, sd: float) -> Array:
+    return rng.normal(0, sd, n)
+
+
+def drifting(rng: np.random.Generator, n: int, sd: float) -> Array:
+    return rng.normal(0, sd, n) + np.linspace(0, rng.normal(0, 0.06), n)
+
+
+def autocorrelated(rng: np.random.Generator, n: int, sd: float) -> Array:
+    off, r = rng.normal(0, sd, n), 0.7
+    for i in range(1, n):
+        off[i] = r * off[i - 1] + np.sqrt(1 - r * r) * off[i]
+    return off
+
+
+def heavy_tailed(rng: np.random.Generator, n: int, sd: float) -> Array:
+    return sd * rng.standard_t(2, n)
+
+
+def bimodal(rng: np.random.Generator, n: int, sd: float) -> Array:
+    return rng.normal(0, sd, n) + 0.3 * (rng.random(n) < rng.uniform(0.1, 0.5))
+
+
+def delayed(rng: np.random.Generator, n: int, sd: float) -> Array:
+    return rng.normal(0, sd, n) + (rng.random(n) < 0.1) * np.log(rng.uniform(1.5, 5, n))
+
+
+def own_level(rng: np.random.Generator, n: int, sd: float) -> Array:
+    return rng.normal(0, sd, n) + rng.normal(0, 0.03)
+
+
+NOISES = [white, drifting, autocorrelated, heavy_tailed, bimodal, delayed, own_level]
+
+
+def two_runs(
+    rng: np.random.Generator, noise: Noise, slower: float, rounds: int, sd: float
+) -> Comparison:
+    before = 3e-6 * np.exp(noise(rng, rounds, sd))
+    after = 3e-6 * slower * np.exp(noise(rng, rounds, sd))
+    probes = np.exp(white(rng, 9, sd))[:, None] * [3e-9, 3e-9]
+    return compare(before.tolist(), after.tolist(), probes[:, 0].tolist(), probes[:, 1].tolist())
+
+
+def outcomes(noise: Noise, slower: float, count: int, seed: int, fewest: int = 9) -> list[str]:
+    rng = np.random.default_rng(seed)
+    rounds = rng.integers(fewest, fewest + 7, count)
+    noises = rng.uniform(0.03, 0.05, count)
+    return [
+        two_runs(rng, noise, slower, int(n), sd).outcome
+        for n, sd in zip(rounds, noises, strict=True)
+    ]
+
+
+@pytest.mark.parametrize("noise", NOISES)
+def test_the_same_code_raises_at_most_one_alarm_in_a_thousand(noise: Noise) -> None:
+    found = outcomes(noise, 1.0, 1000, 1)
+    assert found.count("worse") + found.count("better") <= 1
+
+
+@pytest.mark.parametrize("noise", [white, own_level, drifting, autocorrelated])
+def test_a_slow_down_by_three_tenths_is_found(noise: Noise) -> None:
+    found = outcomes(noise, 1.3, 400, 2)
+    wanted = 0.95 if noise is white else 0.85
+    assert found.count("worse") >= wanted * len(found)
+    assert "better" not in found
+
+
+@pytest.mark.parametrize("noise", NOISES)
+def test_a_slow_down_twofold_is_found_under_every_noise(noise: Noise) -> None:
+    found = outcomes(noise, 2.0, 200, 3, fewest=20)
+    assert found.count("worse") >= 0.9 * len(found)
+
+
+def test_worse_and_better_are_mirror_images() -> None:
+    rng = np.random.default_rng(4)
+    old, new = np.exp(white(rng, 12, 0.03)).tolist(), (1.4 * np.exp(white(rng, 12, 0.03))).tolist()
+    there, back = compare(old, new, [1.0], [1.0]), compare(new, old, [1.0], [1.0])
+    assert (there.outcome, back.outcome) == ("worse", "better")
+    assert there.ratio * back.ratio == pytest.approx(1)
+    assert there.low * back.high == pytest.approx(1)
+    assert there.p == pytest.approx(back.p)
+
+
+def test_a_slower_machine_is_no_slower_code() -> None:
+    rng = np.random.default_rng(5)
+    old, new = np.exp(white(rng, 15, 0.03)), 1.5 * np.exp(white(rng, 15, 0.03))
+    probe = np.exp(white(rng, 15, 0.02))
+    runs = old.tolist(), new.tolist(), probe.tolist(), (1.5 * probe).tolist()
+    assert compare(*runs).outcome == "undetermined"
+    assert compare(*runs, least_share=1).outcome == "same"
+    assert compare(old.tolist(), new.tolist(), [1.0], [1.0]).outcome == "worse"
+
+
+def test_slower_code_is_found_on_a_faster_machine_whose_probe_is_as_much_faster() -> None:
+    rng = np.random.default_rng(8)
+    old, new = np.exp(white(rng, 15, 0.03)), 0.5 * 1.5 * np.exp(white(rng, 15, 0.03))
+    probe = np.exp(white(rng, 15, 0.02))
+    runs = old.tolist(), new.tolist(), probe.tolist(), (0.5 * probe).tolist()
+    assert compare(*runs).outcome == "undetermined"
+    assert compare(*runs, least_share=1).outcome == "worse"
+
+
+def test_a_probe_that_changes_beside_a_cell_that_does_not_is_no_alarm() -> None:
+    rng = np.random.default_rng(9)
+    for change in (0.1, 0.5, 2, 10):
+        old, new, probe = (np.exp(white(rng, 15, 0.03)) for _ in range(3))
+        found = compare(old.tolist(), new.tolist(), probe.tolist(), (change * probe).tolist())
+        assert found.outcome == "undetermined"
+
+
+def test_a_change_below_the_factor_is_none_however_sure() -> None:
+    rng = np.random.default_rng(6)
+    old, new = (
+        np.exp(white(rng, 50, 0.005)).tolist(),
+        (1.1 * np.exp(white(rng, 50, 0.005))).tolist(),
+    )
+    found = compare(old, new, [1.0] * 9, [1.0] * 9)
+    assert found.outcome == "same"
+    assert found.p < 1e-4
+    assert compare(old, new, [1.0] * 9, [1.0] * 9, factor=1.05).outcome == "worse"
+
+
+def test_the_probe_makes_the_interval_wider() -> None:
+    rng = np.random.default_rng(7)
+    old, new = np.exp(white(rng, 15, 0.02)).tolist(), np.exp(white(rng, 15, 0.02)).tolist()
+    quiet, noisy = [1.0] * 9, np.exp(white(rng, 9, 0.1)).tolist()
+    still, loud = compare(old, new, quiet, quiet), compare(old, new, noisy, noisy)
+    assert np.log(loud.high / loud.low) > 2 * np.log(still.high / still.low)
+
+
+def test_too_few_rounds_are_undetermined() -> None:
+    for rounds in range(9):
+        times = np.linspace(1, 1.01, rounds)
+        found = compare(times.tolist(), (5 * times).tolist(), [1.0], [1.0])
+        assert found.outcome == "undetermined"
+
+
+def test_rounds_that_all_took_as_long_compare() -> None:
+    assert compare([1.0] * 15, [1.0] * 15, [1.0], [1.0]).outcome == "same"
+    assert compare([1.0] * 15, [2.0] * 15, [1.0], [1.0]).outcome == "worse"
+
+
+@pytest.mark.parametrize("bad", [0.0, -1.0, float("nan"), float("inf")])
+def test_malformed_times_are_named(bad: float) -> None:
+    for place, name in enumerate(("before", "after", "probe_before", "probe_after")):
+        times = [[1.0, 1.1, 1.2] for _ in range(4)]
+        times[place][1] = bad
+        with pytest.raises(ValueError, match=name):
+            compare(*times)
+
+
+def test_a_missing_probe_and_a_factor_of_one_are_refused() -> None:
+    with pytest.raises(ValueError, match="probe"):
+        compare([1.0], [1.0], [], [1.0])
+    with pytest.raises(ValueError, match="factor"):
+        compare([1.0], [1.0], [1.0], [1.0], factor=1.0)
+    with pytest.raises(ValueError, match="share"):
+        compare([1.0], [1.0], [1.0], [1.0], least_share=2.0)

@@ -1,0 +1,237 @@
+"""Pages that are whole; in a real browser without errors, with links that lead, fit for a phone."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from urllib.parse import unquote, urldefrag, urlparse
+
+import numpy as np
+import pytest
+
+from experiments.cli import demo
+from experiments.report.chapters import CHAPTERS
+from experiments.report.pdf import BROWSER_VARIABLE, find_browser
+from experiments.report.site import write
+from tests.experiments.chromium import Browser, started
+from tests.experiments.made_runs import write_run
+
+PAGES = ("index", *CHAPTERS)
+SHOWN = "[...document.querySelectorAll('.entry')].filter(it => it.checkVisibility())"
+KEYS = f"{SHOWN}.map(it => it.id)"
+COUNT = "document.getElementById('shown').textContent"
+
+
+@pytest.fixture(scope="module")
+def report(tmp_path_factory) -> Path:
+    """The pages of a whole report."""
+    folder = tmp_path_factory.mktemp("report")
+    return write(write_run(folder / "run"), folder / "html").parent
+
+
+@pytest.fixture(scope="module")
+def chromium():
+    if find_browser() is None:
+        pytest.skip(f"no Chromium or Chrome is installed; {BROWSER_VARIABLE} names one elsewhere")
+    with started() as browser:
+        yield browser
+
+
+@pytest.fixture
+def front(chromium: Browser, report: Path) -> Browser:
+    chromium.size(1300)
+    chromium.open((report / "index.html").as_uri())
+    return chromium
+
+
+def press(browser: Browser, group: str, value: str) -> None:
+    browser.run(
+        f"""document.querySelector('[data-group="{group}"][data-value="{value}"]').click()"""
+    )
+
+
+def search(browser: Browser, words: str) -> list[str]:
+    return browser.run(
+        f"(() => {{ const it = document.getElementById('search'); it.value = {words!r};"
+        f"it.dispatchEvent(new Event('input')); return {KEYS}; }})()"
+    )
+
+
+def test_the_pages_are_whole_and_need_nothing_from_elsewhere(report):
+    pages = {page.name: page.read_text() for page in report.glob("*.html")}
+    assert set(pages) == {"index.html", *(f"{name}.html" for name in CHAPTERS)}
+    assert {path.suffix for path in (report / "claims").iterdir()} == {".svg", ".csv"}
+    for name, text in pages.items():
+        assert not re.search(r'(src|href)="(?!data:|claims/|[\w.]+\.html|#)', text)
+        assert text.count("<script") == (name == "index.html")
+        assert "No description" not in text
+    assert pages["index.html"].count('class="consistent"') >= 26 + 4 + 16 + 3
+    assert pages["operations.html"].count("data:image/png") == 12
+    assert pages["half_edge_or_indexed.html"].count("data:image/png") == 2
+    assert pages["query_scaling.html"].count("data:image/png") == 5
+    assert "1.00" in pages["comparison_table.html"]
+
+
+@pytest.mark.parametrize("name", PAGES)
+def test_a_page_opens_without_an_error_in_its_console(chromium, report, name):
+    chromium.errors.clear()
+    chromium.open((report / f"{name}.html").as_uri())
+    assert chromium.run("document.querySelector('h1').textContent.length") > 3
+    assert chromium.errors == []
+
+
+@pytest.mark.parametrize("width", [390, 360])
+def test_no_page_is_wider_than_a_phone(chromium, report, width):
+    chromium.size(width)
+    for name in PAGES:
+        chromium.open((report / f"{name}.html").as_uri())
+        if name == "index":
+            chromium.run("document.querySelectorAll('.entry').forEach(it => { it.open = true; })")
+        assert chromium.run("document.documentElement.scrollWidth") <= width, name
+
+
+def test_every_link_leads_to_a_file_and_a_place_that_exist(chromium, report):
+    chromium.size(1300)
+    ids, links = {}, set()
+    for name in PAGES:
+        page = report / f"{name}.html"
+        chromium.open(page.as_uri())
+        ids[page] = set(chromium.run("[...document.querySelectorAll('[id]')].map(it => it.id)"))
+        ways = "'a[href], link[href], img[src], script[src]'"
+        links |= {
+            (page, it)
+            for it in chromium.run(
+                f"[...document.querySelectorAll({ways})].map(it => it.href || it.src)"
+            )
+            if not it.startswith("data:")
+        }
+    assert len(links) > 700
+    for page, link in links:
+        target, place = urldefrag(link)
+        assert target.startswith("file:"), (page.name, link)
+        path = Path(unquote(urlparse(target).path))
+        assert path.is_file(), (page.name, link)
+        assert path.is_relative_to(report), (page.name, link)
+        assert not place or unquote(place) in ids[path], (page.name, link)
+
+
+def test_every_chapter_is_reached_from_every_page(chromium, report):
+    for name in PAGES:
+        chromium.open((report / f"{name}.html").as_uri())
+        chromium.run("document.querySelector('nav summary').click()")
+        seen = "[...document.querySelectorAll('nav a')].filter(it => it.checkVisibility())"
+        names = chromium.run(f"{seen}.map(it => it.getAttribute('href'))")
+        assert {f"{it}.html" for it in PAGES} <= set(names)
+        assert chromium.run("document.querySelectorAll('nav [aria-current]').length") == 1
+
+
+def test_the_navigation_stays_on_one_line(chromium, report):
+    for width in (360, 1300):
+        chromium.size(width)
+        for name in PAGES:
+            chromium.open((report / f"{name}.html").as_uri())
+            assert chromium.run("document.querySelector('nav').offsetHeight") < 60
+
+
+def test_filters_show_what_they_name_and_counts_follow(front):
+    every = front.run(KEYS)
+    assert front.run(COUNT) == f"{len(every)} claims"
+    press(front, "structure", "half_edge")
+    mine = front.run(KEYS)
+    assert mine == [it for it in every if it.startswith("half_edge/")]
+    assert front.run(COUNT) == f"{len(mine)} of {len(every)} claims"
+    press(front, "structure", "indexed")  # either
+    assert len(front.run(KEYS)) == len(mine) + sum(it.startswith("indexed/") for it in every)
+    press(front, "structure", "indexed")
+    press(front, "kind", "operations")  # and
+    assert set(front.run(KEYS)) < set(mine)
+    assert front.run(f"{SHOWN}.every(it => it.dataset.kind === 'operations')")
+    offered = """document.querySelector('[data-value="queries"] span').textContent"""
+    press(front, "kind", "operations")
+    assert int(front.run(offered)) == sum(1 for it in mine) - 6  # but for the operations
+    press(front, "structure", "half_edge")
+    assert front.run(KEYS) == every
+
+
+def test_outcomes_are_told_apart_by_the_filter(front):
+    for outcome in ("consistent", "no claim"):
+        press(front, "outcome", outcome)
+        assert front.run(f"{SHOWN}.every(it => it.dataset.outcome === '{outcome}')")
+        assert front.run(f"{SHOWN}.length") > 9
+        press(front, "outcome", outcome)
+
+
+def test_search_finds_the_claims_that_have_all_the_words(front):
+    every = front.run(KEYS)
+    assert search(front, "half-edge collapse")[0] == "half_edge/collapse_edge"
+    assert search(front, "half_edge/vertex_faces") == ["half_edge/vertex_faces"]
+    assert set(search(front, "plankton")) > {it for it in every if it.startswith("plankton/")}
+    assert search(front, "no such claim") == []
+    assert front.run("document.getElementById('none').checkVisibility()")
+    front.run("document.getElementById('all').click()")
+    assert front.run(KEYS) == every
+
+
+def test_a_deep_link_opens_its_claim_even_if_it_is_filtered_out(front, report):
+    press(front, "structure", "indexed")
+    front.run("document.querySelector('a[href=\"#plankton/vertex_faces\"]').click()")
+    front.run("new Promise(done => setTimeout(done, 100))")
+    opened = "[...document.querySelectorAll('.entry[open]')].map(it => it.id)"
+    assert front.run(opened) == ["plankton/vertex_faces"]
+    front.open((report / "index.html").as_uri() + "#sentence/bytes_ratio")
+    assert front.run(opened) == ["sentence/bytes_ratio"]
+    top = front.run("document.querySelector('.entry[open]').getBoundingClientRect().top")
+    assert 0 <= top < 200
+
+
+def test_every_plot_is_drawn_and_described(front):
+    front.run("document.querySelectorAll('.entry img').forEach(it => { it.loading = 'eager'; })")
+    front.run("document.querySelectorAll('.entry').forEach(it => { it.open = true; })")
+    pictures = "[...document.querySelectorAll('.entry img')]"
+    assert front.run(f"Promise.all({pictures}.map(it => it.decode())).then(() => true)")
+    assert front.run(f"{pictures}.length") > 400
+    assert front.run(f"{pictures}.every(it => it.naturalWidth > 100 && it.alt.length > 10)")
+
+
+def test_claims_unfold_by_the_keyboard_and_controls_have_names(front):
+    front.run("document.querySelector('.entry summary').focus()")
+    for kind in ("keyDown", "keyUp"):
+        front.call(
+            "Input.dispatchKeyEvent", type=kind, key="Enter", text="\r" * (kind == "keyDown")
+        )
+    assert front.run("document.querySelector('.entry').open")
+    unnamed = [
+        node["role"]["value"]
+        for node in front.call("Accessibility.getFullAXTree")["nodes"]
+        if node.get("role", {}).get("value") in ("button", "searchbox", "link", "image")
+        and not node["ignored"]
+        and not node.get("name", {}).get("value")
+    ]
+    assert unnamed == []
+
+
+def test_without_scripts_everything_is_shown(chromium, report):
+    chromium.call("Emulation.setScriptExecutionDisabled", value=True)
+    try:
+        chromium.open((report / "index.html").as_uri())
+        total = chromium.run("document.querySelectorAll('.entry').length")
+        assert len(chromium.run(KEYS)) == total > 100
+        assert not chromium.run("document.getElementById('filters').checkVisibility()")
+    finally:
+        chromium.call("Emulation.setScriptExecutionDisabled", value=False)
+
+
+def test_the_demo_opens_without_an_error_and_fits_on_a_phone(chromium, tmp_path):
+    scene, size = demo.SCENES[0], (56, 40)
+    numbers = ("mass", "largest", "smallest", "energy", "given", "fastest")
+    take = {"force": 1, "frames": "it.webp", "times": [0, 0.1, 0.2], "pieces": 3}
+    told = {**demo._told(scene), "takes": [take | dict.fromkeys(numbers, 1.5)]}
+    demo._save(np.full((size[1], 6 * size[0], 3), 200, np.uint8), tmp_path / "it.webp")
+    page = tmp_path / "index.html"
+    page.write_text(demo._page([told], size), "utf-8")
+    chromium.size(390)
+    chromium.errors.clear()
+    chromium.open(page.as_uri())
+    assert chromium.run("document.querySelectorAll('button').length") > 2
+    assert chromium.run("document.documentElement.scrollWidth") <= 390
+    assert chromium.errors == []

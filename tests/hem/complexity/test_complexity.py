@@ -1,0 +1,255 @@
+"""Laws of the judge: right on curves of known class, hardly ever wrong, silent where data are."""
+
+import json
+from collections import Counter
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from experiments.validation.synthetic import CURVES, PARTS, curve, curves
+from hem.complexity.judge import Verdict, judge
+
+Array = NDArray[np.float64]
+
+
+def outcomes(name: str, rise: str) -> tuple[Counter[str], Counter[str]]:
+    """Outcomes of the true claim, and of two false ones each."""
+    true, false = Counter[str](), Counter[str]()
+    others = [other for other in CURVES if other != name]
+    for i, c in enumerate(curves(name, rise)):
+        for claim in (name, others[i % 5], others[(i + 1 + i // 5) % 5]):
+            verdict = judge(c.sizes, c.samples, claim, c.latency, resamples=8)
+            (true if claim == name else false)[verdict.outcome] += 1
+    return true, false
+
+
+@pytest.mark.parametrize("name", CURVES)
+def test_curves_of_known_class_are_judged_right_and_hardly_ever_wrong(name: str) -> None:
+    wrong = judged = 0
+    for rise in PARTS:
+        true, false = outcomes(name, rise)
+        print(
+            f"\n{name:11} rise {rise:11} true claim {dict(true)}, false claims {dict(false)}",
+            end="",
+        )
+        wrong += true["violated"] + false["consistent"]
+        judged += true.total() + false.total()
+        if rise != "unmeasured":
+            assert true["consistent"] >= 0.85 * true.total(), rise
+    assert wrong <= 0.01 * judged
+
+
+def noise_alone(rng: np.random.Generator, kind: str) -> list[Array]:
+    if kind == "wild samples":
+        return [rng.lognormal(0, 1, 20) for _ in range(7)]
+    if kind == "uniform samples":
+        return [rng.random(20) for _ in range(7)]
+    return [level * rng.lognormal(0, 0.05, 20) for level in rng.lognormal(0, 1, 7)]
+
+
+@pytest.mark.parametrize("latency", [None, np.geomspace(1, 10, 7)], ids=["bare", "latency"])
+@pytest.mark.parametrize("kind", ["wild samples", "uniform samples", "wild sizes"])
+def test_pure_noise_is_undetermined(kind: str, latency: Array | None) -> None:
+    rng = np.random.default_rng(1)
+    sizes = np.geomspace(100, 1e6, 7)
+    decided = 0
+    for i in range(150):
+        claim = list(CURVES)[i % 6]
+        verdict = judge(sizes, noise_alone(rng, kind), claim, latency, resamples=8)
+        decided += verdict.outcome != "undetermined"
+    assert decided <= 1
+
+
+@pytest.mark.parametrize("name", CURVES)
+@pytest.mark.parametrize("fixed", [0, 7])
+@pytest.mark.parametrize("sizes", [2.0 ** np.arange(2, 13), np.geomspace(200, 20000, 5).round()])
+def test_exact_counts_confirm_their_class_alone(name: str, fixed: int, sizes: Array) -> None:
+    counts = np.round(fixed + 10 * CURVES[name](sizes))
+    samples = [[count] for count in counts]
+    for claim in CURVES:
+        outcome = judge(sizes, samples, claim, exact=True).outcome
+        assert outcome == ("consistent" if claim == name else "violated"), claim
+
+
+def test_exact_counts_have_an_exact_slope() -> None:
+    sizes = 2.0 ** np.arange(4, 12)
+    verdict = judge(sizes, [[5 * n] for n in sizes], "O(n_t)", exact=True)
+    assert verdict.slope_low == pytest.approx(1) == verdict.slope_high
+    assert verdict.coefficients["O(n)"] == {"fixed": 0, "factor": pytest.approx(5), "rise": 1}
+    assert verdict.errors["O(n)"] == pytest.approx(0, abs=1e-9)
+
+
+def flat(
+    rng: np.random.Generator, sizes: Array, noise: float = 0.03, count: int = 15
+) -> list[Array]:
+    return [rng.lognormal(0, noise, count) for _ in sizes]
+
+
+def test_a_cost_may_have_waited_as_any_one_of_several_latencies_tells() -> None:
+    rng = np.random.default_rng(4)
+    sizes = np.geomspace(300, 3e6, 9)
+    early, late = (1 + 30 / (1 + (turn / sizes) ** 2) for turn in (1e4, 3e5))
+    samples = [3e-8 * cost * rng.normal(1, 0.01, 15) for cost in 1 + (late - 1) / 10]
+    assert judge(sizes, samples, "O(1)", early).outcome != "consistent"
+    either = judge(sizes, samples, "O(1)", np.vstack([early, late]))
+    assert either.outcome == "consistent"
+    again = judge(sizes, samples, "O(1)", np.vstack([late, early]))
+    assert (again.outcome, again.best) == (either.outcome, either.best)
+    linear = [1e-11 * n * rng.normal(1, 0.01, 15) + 1e-9 for n in sizes]
+    assert judge(sizes, linear, "O(1)", np.vstack([early, late])).outcome == "violated"
+
+
+def test_a_tenfold_rise_violates_constant_time_only_beyond_the_latency() -> None:
+    rng = np.random.default_rng(2)
+    sizes = np.geomspace(100, 1e6, 9)
+    rise = 1 + 9 / (1 + (3e4 / sizes) ** 1.2)
+    cache_bound = [r * s for r, s in zip(rise, flat(rng, sizes), strict=True)]
+    blind = judge(sizes, cache_bound)
+    assert blind.outcome == "undetermined"
+    assert "caches that no latency tells of" in blind.reason
+    given = judge(sizes, cache_bound, latency=1.2 * rise)
+    assert given.outcome == "consistent"
+    assert given.raw_slope > 0.25 > 0.05 > abs(given.slope)
+    growing = [s * n**0.5 for s, n in zip(cache_bound, sizes, strict=True)]
+    assert judge(sizes, growing, latency=1.2 * rise).outcome == "violated"
+
+
+def test_a_rise_that_the_latency_may_not_tell_accuses_nobody() -> None:
+    sizes = np.geomspace(100, 1_000_000, 8)
+    saturated = np.array([1, 2, 3, 3, 3, 3, 3, 3])
+    risen = [[20 * r] * 7 for r in (1, 1, 1, 1.2, 1.5, 2.2, 4, 8)]
+    linear = [[20 + 0.01 * n] * 7 for n in sizes]
+    level = [[20 * (1 + 0.01 * (i % 2))] * 7 for i in range(8)]
+    assert judge(sizes, risen, "O(1)", saturated).outcome == "violated"
+    assert judge(sizes, risen, "O(1)", saturated, unseen=True).outcome == "undetermined"
+    assert judge(sizes, linear, "O(1)", saturated, unseen=True).outcome == "violated"
+    assert judge(sizes, linear, "O(n)", saturated, unseen=True).outcome == "consistent"
+    assert judge(sizes, level, "O(1)", saturated, unseen=True).outcome == "consistent"
+
+
+@pytest.mark.parametrize(("last", "said"), [(1.6, "undetermined"), (2.6, "violated")])
+def test_times_accuse_only_of_more_than_neighbors_do(last: float, said: str) -> None:
+    sizes = 2.0 ** np.arange(2, 13)
+    growth = 1 + (last - 1) * sizes / sizes[-1]
+    times = [[g * (1 + 0.01 * (i % 3)) for i in range(9)] for g in growth]
+    counts = [[round(1000 * g)] for g in growth]
+    assert judge(sizes, times, "O(1)", np.ones(11)).outcome == said
+    assert judge(sizes, counts, "O(1)", exact=True).outcome == "violated"
+
+
+def test_small_valences_with_an_intercept_are_linear() -> None:
+    rng = np.random.default_rng(3)
+    valence = np.array([4, 6, 8, 12, 16, 24, 32, 48, 64.0])
+    samples = [(12 + 3 * v) * rng.lognormal(0, 0.02, 20) for v in valence]
+    assert judge(valence, samples, "O(n_ev)").outcome == "consistent"
+    assert judge(valence, samples, "O(1)").outcome == "violated"
+
+
+def test_a_fifth_of_samples_delayed_changes_no_verdict() -> None:
+    rng = np.random.default_rng(4)
+    sizes = np.geomspace(100, 1e5, 7)
+    for name, growth in CURVES.items():
+        samples = [c * rng.lognormal(0, 0.03, 20) for c in growth(sizes)]
+        for cost in samples:
+            cost[rng.choice(20, 4, replace=False)] *= rng.uniform(2, 20, 4)
+        assert judge(sizes, samples, name).outcome == "consistent"
+
+
+def test_an_upper_bound_is_kept_by_slower_growth_and_by_no_faster() -> None:
+    rng = np.random.default_rng(5)
+    sizes = np.geomspace(100, 1e6, 8)
+    samples = [c * s for c, s in zip(np.sqrt(sizes), flat(rng, sizes), strict=True)]
+    names = list(CURVES)
+    for claim in names:
+        outcome = judge(sizes, samples, claim, bound="upper", exact=True).outcome
+        slower = names.index(claim) < names.index("O(√n)")
+        assert outcome == ("violated" if slower else "consistent"), claim
+    assert judge(sizes, samples, "O(n)", exact=True).outcome == "violated"
+
+
+def test_too_little_data_is_undetermined_and_says_why() -> None:
+    rng = np.random.default_rng(6)
+
+    def reason(sizes: list[float], noise: float = 0.02) -> str:
+        n = np.array(sizes, dtype=float)
+        verdict = judge(n, flat(rng, n, noise))
+        assert verdict.outcome == "undetermined"
+        return verdict.reason
+
+    assert "Too few sizes: 1" in reason([100])
+    assert "Too few sizes: 3" in reason([100, 1000, 1000, 10000])
+    assert "Too short a range" in reason([100, 150, 200, 250, 300])
+    assert "Too noisy" in reason([100, 1000, 10000, 100000, 1000000], noise=0.8)
+
+
+def test_one_size_drowned_in_noise_spoils_no_curve_but_several_do() -> None:
+    rng = np.random.default_rng(8)
+    sizes = np.geomspace(100, 1e5, 8)
+    latency = np.geomspace(1, 4, 8)
+    samples = [n * s for n, s in zip(sizes, flat(rng, sizes), strict=True)]
+    for spoiled in range(8):
+        noisy = [c * rng.lognormal(0, 1.5 * (i == spoiled), 15) for i, c in enumerate(samples)]
+        for given in (None, latency):
+            back = None if given is None else given[::-1]
+            assert judge(sizes, noisy, "O(n)", given).outcome == "consistent"
+            assert judge(sizes[::-1], noisy[::-1], "O(n)", back).outcome == "consistent"
+    noisy = [c * rng.lognormal(0, 1.5 * (i < 3), 15) for i, c in enumerate(samples)]
+    assert "Too noisy" in judge(sizes, noisy, "O(n)").reason
+
+
+def power_law(seed: int, exponent: float) -> Verdict:
+    rng = np.random.default_rng(seed)
+    sizes = np.geomspace(100, 1e6, 7)
+    samples = [n**exponent * rng.lognormal(0, 0.08, 10) for n in sizes]
+    return judge(sizes, samples, "O(n)", seed=seed)
+
+
+@pytest.mark.parametrize("exponent", [0.0, 0.5, 1.0, 2.0])
+def test_the_slope_interval_holds_the_exponent_as_often_as_it_says(exponent: float) -> None:
+    verdicts = [power_law(seed, exponent) for seed in range(100)]
+    held = sum(v.slope_low <= exponent <= v.slope_high for v in verdicts)
+    assert held >= 88
+    assert np.mean([v.slope_high - v.slope_low for v in verdicts]) < 0.05
+
+
+def test_verdicts_repeat_and_know_neither_unit_nor_order() -> None:
+    rng = np.random.default_rng(7)
+    c = curve(rng, "O(√n)", "measured", 1.0)
+    assert c.latency is not None
+    first = judge(c.sizes, c.samples, "O(√n)", c.latency)
+    assert judge(c.sizes, c.samples, "O(√n)", c.latency) == first
+    back = slice(None, None, -1)
+    scaled = [1e9 * s for s in c.samples[back]]
+    again = judge(c.sizes[back], scaled, "O(sqrt(n))", 7 * c.latency[back])
+    assert (again.outcome, again.best) == (first.outcome, first.best)
+    assert again.slope == pytest.approx(first.slope)
+    assert again.margin == pytest.approx(first.margin)
+
+
+def test_a_verdict_survives_json() -> None:
+    verdict = judge([4, 8, 16, 32, 64], [[3, 3.1], [3], [3], [3.1], [3]])
+    assert Verdict(**json.loads(json.dumps(verdict.as_dict()))) == verdict
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"sizes": [[1, 2], [3, 4]]}, "sizes"),
+        ({"sizes": [0, 1, 2, 3]}, "sizes"),
+        ({"samples": [[1], [1]]}, "4 sizes, 2 arrays"),
+        ({"samples": [[1], [1], [], [1]]}, "size 3"),
+        ({"samples": [[1], [1], [1], [0]]}, "size 4"),
+        ({"latency": [1, 2, 3]}, "latency"),
+        ({"latency": [1, 2, 3, -4]}, "latency"),
+        ({"latency": [1, 2, 3, 4], "exact": True}, "either latency or exact"),
+        ({"expected": "O(2^n)"}, "unknown growth class"),
+        ({"expected": "N/A"}, "unknown growth class"),
+        ({"bound": "loose"}, "bound"),
+    ],
+)
+def test_malformed_input_is_named(change: dict[str, Any], message: str) -> None:
+    good: dict[str, Any] = {"sizes": [1, 2, 3, 4], "samples": [[1], [1], [1], [1]]}
+    with pytest.raises(ValueError, match=message):
+        judge(**(good | change))

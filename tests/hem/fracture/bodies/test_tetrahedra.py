@@ -1,0 +1,127 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import hem
+import structures
+from hem.fracture import MATERIALS, require_body
+from hem.fracture.bodies import tetrahedra
+from hem.fracture.bodies.overlap import crossing, overlapping
+from tests.hem.fracture.laws import body, holders, require_body_laws, struck
+
+SEEDS = {"plate": 100, "sphere": 100, "bunny": 4, "teapot": 20}
+"""The soak takes 100 of each."""
+
+
+@pytest.mark.parametrize("model", SEEDS)
+def test_tetrahedra_and_rest_are_closed_and_make_up_the_body(model):
+    mesh = body(model)
+    original = structures.build("half_edge", mesh)
+    for seed in range(SEEDS[model]):
+        s, name = original.copy(), list(MATERIALS)[seed % len(MATERIALS)]
+        broken = tetrahedra(s, struck(mesh, seed), name, (0.5, 3.0)[seed % 2], seed)
+        s.validate()
+        require_body_laws(mesh, broken)
+        assert all(len(it.triangles) == 4 for it in broken.shards)
+        assert len(broken.shards) > 10
+
+
+@pytest.mark.parametrize("model", ["plate", "sphere", "teapot"])
+def test_every_position_inside_lies_in_one_piece(model):
+    mesh = body(model)
+    for seed in range(3):
+        at = struck(mesh, seed)
+        broken = tetrahedra(structures.build("half_edge", mesh), at, "stone", 5.0, seed)
+        shards = np.array([it.points for it in broken.shards], float)
+        rng = np.random.default_rng(seed)
+        # Most of them where the shards are, which are a small part of the body.
+        spots = np.concatenate(
+            [
+                (rng.dirichlet(np.ones(4), len(shards))[:, :, None] * shards).sum(axis=1),
+                at + rng.normal(size=(300, 3)) * 0.02 * broken.diagonal,
+            ]
+        )
+        assert np.array_equal(holders(broken.pieces, spots), holders([mesh], spots))
+
+
+@pytest.mark.parametrize("model", ["plate", "sphere"])
+def test_the_rest_does_not_cross_itself(model):
+    for seed in range(6):
+        s = structures.build("half_edge", body(model))
+        broken = tetrahedra(s, struck(body(model), seed), "glass", 4.0, seed)
+        require_body(broken.rest[0])
+
+
+def test_all_structures_give_the_same_tetrahedra():
+    mesh = body("sphere")
+    for seed in range(10):
+        broken = [
+            tetrahedra(structures.build(name, mesh), struck(mesh, seed), "glass", 2.0, seed)
+            for name in structures.NAMES
+        ]
+        for other in broken[1:]:
+            assert other.counts == broken[0].counts
+            assert all(
+                np.array_equal(a.points, b.points)
+                for a, b in zip(other.pieces, broken[0].pieces, strict=True)
+            )
+
+
+def test_stronger_blows_make_more_and_smaller_shards_near_the_impact():
+    mesh, at = hem.generate("sphere", 2_000), struck(hem.generate("sphere", 2_000), 3)
+    many, sizes = [], []
+    for force in (0.5, 2.0, 8.0, 32.0):
+        broken = tetrahedra(structures.build("half_edge", mesh), at, "glass", force, 1)
+        k = len(broken.shards)
+        near = np.linalg.norm(broken.mass.centers[:k] - at, axis=1) < 0.1 * broken.diagonal
+        many.append(k)
+        sizes.append(np.median(broken.mass.volumes[:k][near]))
+    assert many == sorted(many)
+    assert many[-1] > 4 * many[0]
+    assert sizes == sorted(sizes, reverse=True)
+
+
+def test_each_shard_has_its_face_on_the_surface_and_its_fourth_point_inside():
+    mesh = body("sphere")
+    whole = require_body(mesh)
+    broken = tetrahedra(structures.build("half_edge", mesh), struck(mesh, 2), "glass", 0.01, 2)
+    assert broken.counts["inside"] == 0
+    for shard in broken.shards:
+        assert whole.contains(shard.points[3:])[0]
+        assert not whole.contains(shard.points[:3].mean(axis=0) * 1.0001)[0]
+
+
+def test_tetrahedra_that_share_what_they_may_do_not_overlap():
+    at = np.array([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 1, 1), (0, 0, -1)], float)
+    pairs = {
+        "a face": ((0, 1, 2, 3), (0, 2, 1, 5), False),
+        "a side": ((0, 1, 2, 3), (1, 2, 4, 4), False),
+        "inside": ((0, 1, 2, 3), (0, 1, 2, 4), True),
+    }
+    for one, other, expected in pairs.values():
+        solids = np.stack([at[list(one)], at[list(other)]])
+        if len(set(other)) < 4:
+            solids[1, 3] = (2, 1, 1)
+        assert overlapping(solids, 1e-9).tolist() == [expected] * 2
+    needle = np.array([[(0.1, 0.1, -1), (0.2, 0.1, -1), (0.1, 0.1, 1.0)]])
+    assert crossing(at[None, :4], needle, 1e-9).tolist() == [True]
+    assert crossing(at[None, :4], needle - (1, 0, 0), 1e-9).tolist() == [False]
+
+
+@pytest.mark.parametrize(
+    ("mesh", "force", "message"),
+    [
+        (lambda: hem.generate("grid", 100), 1.0, "open"),
+        (lambda: body("sphere").flipped(), 1.0, "inside out"),
+        (lambda: body("sphere"), 0.0, "positive"),
+        (lambda: body("sphere"), float("inf"), "finite"),
+    ],
+)
+def test_what_has_no_inside_is_refused_and_nothing_changes(mesh, force, message):
+    s = structures.build("half_edge", mesh())
+    before = s.copy()
+    with pytest.raises(hem.MeshError, match=message):
+        tetrahedra(s, s.points[0], "glass", force)
+    assert np.array_equal(s.points, before.points)
+    assert s.n_faces == before.n_faces

@@ -1,0 +1,58 @@
+import numpy as np
+import pytest
+from manifold3d import Manifold
+from scipy.spatial import cKDTree
+
+import hem
+from hem.fracture.bodies.solid import require_body
+from hem.fracture.bodies.voronoi import voronoi
+from tests.hem.fracture.bodies import (
+    body,
+    dumbbell,
+    holders,
+    hollow_sphere,
+    require_pieces,
+    spot,
+)
+
+
+def probed(pieces, size):
+    """The pairs of pieces that face each other across some triangle, by looking what is there."""
+    pairs, step = set(), 2e-6 * size
+    for i, piece in enumerate(pieces):
+        corners = piece.points.astype(float)[piece.triangles]
+        normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        double = np.linalg.norm(normal, axis=1)
+        large = double > 1e-6 * size**2
+        at = corners[large].mean(axis=1) + step * normal[large] / double[large, None]
+        held = holders(pieces, at)
+        pairs |= {(min(i, j), max(i, j)) for j in np.flatnonzero(held.any(axis=0)).tolist()}
+    return {pair for pair in pairs if pair[0] != pair[1]}
+
+
+@pytest.mark.parametrize("name", ["plate", "sphere", "dumbbell", "hollow"])
+def test_neighbors_are_those_that_face_each_other(name):
+    made = {"dumbbell": dumbbell, "hollow": hollow_sphere}
+    it = require_body(made[name]()) if name in made else body(name)
+    found = voronoi(it, spot(it.mesh, 3), "stone", 4.0, 3)
+    neighbors = {tuple(pair) for pair in found.neighbors.tolist()}
+    assert found.neighbors.tolist() == sorted(map(list, neighbors))
+    truth = probed(found.pieces, it.diagonal)
+    assert truth <= neighbors
+    # What is missed among the probes touches along too little for them, but does touch.
+    assert len(neighbors - truth) <= 0.05 * len(neighbors)
+    for a, b in neighbors - truth:
+        apart, _ = cKDTree(found.pieces[a].points).query(found.pieces[b].points)
+        assert apart.min() < 1e-5 * it.diagonal
+
+
+def test_cells_in_several_parts_have_neighbors_of_their_own():
+    # A frame: the cells of left and right each reach both arms, and touch in both.
+    ring = Manifold.cube((3, 3, 1), True) - Manifold.cube((1, 1, 3), True).scale((2.5, 1, 1))
+    made = ring.to_mesh64()
+    frame = hem.TriangleMesh(np.asarray(made.vert_properties)[:, :3], np.asarray(made.tri_verts))
+    found = voronoi(frame, (0, 1.5, 0), "wood", sites=[(-0.9, 0, 0), (0, 0, 0), (0.9, 0, 0)])
+    require_pieces(found, require_body(frame))
+    # left | upper and lower middle | right
+    assert len(found.shards) == 4
+    assert found.neighbors.tolist() == [[0, 1], [0, 2], [1, 3], [2, 3]]

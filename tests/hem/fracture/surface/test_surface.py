@@ -1,0 +1,273 @@
+from __future__ import annotations
+
+import hashlib
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import hem
+import structures
+from hem.fracture import MATERIALS, Material, nearest_face, scanned, shatter
+from hem.fracture.surface.shatter import TOLERANCE, break_points, break_surface
+from tests.hem.fracture.laws import MODELS, require_surface_laws, struck, surface
+from tests.hem.rendering.test_render import assert_in_step
+
+NAMES = tuple(MATERIALS)
+
+
+def sheet(n: int = 8) -> hem.TriangleMesh:
+    """A flat square of n × n squares, cut in two, at whole coordinates."""
+    at = np.arange((n + 1) ** 2).reshape(n + 1, n + 1)
+    a, b, c, d = at[:-1, :-1].ravel(), at[:-1, 1:].ravel(), at[1:, 1:].ravel(), at[1:, :-1].ravel()
+    y, x = np.divmod(np.arange(at.size), n + 1)
+    faces = np.concatenate([np.stack([a, b, c], 1), np.stack([a, c, d], 1)])
+    return hem.TriangleMesh(np.stack([x, y, 0 * x], 1), faces)
+
+
+def diagonal(mesh: hem.TriangleMesh) -> float:
+    return float(np.linalg.norm(np.ptp(mesh.points.astype(float), axis=0)))
+
+
+@pytest.mark.parametrize("model", MODELS)
+def test_shards_and_rest_make_up_the_surface_again(model):
+    mesh = surface(model)
+    original = structures.build("half_edge", mesh)
+    for seed in range(100):
+        s = original.copy()
+        broken = shatter(s, struck(mesh, seed), NAMES[seed % len(NAMES)], seed)
+        s.validate()
+        require_surface_laws(mesh, broken, TOLERANCE * diagonal(mesh))
+        points = sum(broken.material.circles)
+        told = [broken.counts[it] for it in ("in a face", "on an edge", "on a vertex", "outside")]
+        assert sum(told) == points
+
+
+@pytest.mark.parametrize(("model", "seeds"), [("plate", 100), ("sphere", 25), ("teapot", 4)])
+def test_all_structures_give_the_same_shards(model, seeds):
+    mesh = surface(model)
+    originals = [structures.build(name, mesh) for name in structures.NAMES]
+    for seed in range(seeds):
+        at, material = struck(mesh, seed), NAMES[seed % len(NAMES)]
+        broken = [shatter(it.copy(), at, material, seed) for it in originals]
+        for other in broken[1:]:
+            assert np.array_equal(other.shards.corners, broken[0].shards.corners)
+            assert other.counts == broken[0].counts
+            assert len(other.rest) == len(broken[0].rest)
+            assert all(
+                np.array_equal(a.points, b.points)
+                for a, b in zip(other.rest, broken[0].rest, strict=True)
+            )
+
+
+def test_the_shards_of_a_seed_are_the_same_on_every_machine():
+    shards = shatter(structures.build("half_edge", sheet()), (3.2, 4.1, 0), "glass", 7).shards
+    told = hashlib.sha256(shards.corners.astype("<f4").tobytes()).hexdigest()
+    assert (len(shards), told[:16]) == DIGEST
+
+
+DIGEST = (219, "b10c9e20c1c8ae05")
+
+
+def test_nothing_overlaps_in_the_plane():
+    mesh = sheet()
+    for seed in range(20):
+        broken = shatter(structures.build("half_edge", mesh), struck(mesh, seed), "glass", seed)
+        corners = np.concatenate([it.points[it.triangles] for it in broken.pieces])[:, :, :2]
+        at = np.random.default_rng(seed).random((400, 2)) * 8
+        turns = []
+        for i in range(3):
+            side, way = corners[:, i - 2] - corners[:, i], at[:, None] - corners[None, :, i]
+            turns.append(side[:, 0] * way[:, :, 1] - side[:, 1] * way[:, :, 0])
+        assert (np.min(turns, axis=0) > 0).sum(axis=1).tolist() == [1] * 400
+
+
+def test_break_points_lie_in_growing_circles():
+    material = replace(MATERIALS["glass"], circles=(500, 0, 2000))
+    points = break_points(material, 3, 2.0)
+    far = np.hypot(*points.T)
+    assert far[:500].max() <= 1.0
+    assert 4.5 < far[500:].max() <= 5.0
+    # Uniform in the circle: half of them within the radius over the root of 2.
+    assert abs((far[500:] < 5 / np.sqrt(2)).mean() - 0.5) < 0.04
+    assert abs(points[500:].mean(axis=0)).max() < 0.2
+
+
+def test_in_the_plane_points_stay_where_they_were_scattered():
+    mesh, at = sheet(), np.array([4.3, 3.9, 0])
+    wanted = break_points(MATERIALS["stone"], 5, 1.0) + at[:2]
+    s = structures.build("half_edge", mesh)
+    shatter(s, at, "stone", 5, scale=1.0)
+    new = s.points[len(mesh.points) :, :2]
+    near = np.linalg.norm(wanted[:, None] - new[None], axis=2).min(axis=1)
+    inside = ((wanted > 0) & (wanted < 8)).all(axis=1)
+    assert inside.sum() > 10
+    assert near[inside].max() < 1e-4
+
+
+def test_on_a_sphere_points_keep_their_distance_over_the_surface():
+    mesh = hem.generate("sphere", 40_000)
+    radius = float(np.linalg.norm(mesh.points[0]))
+    s, at = structures.build("half_edge", mesh), struck(mesh, 1)
+    offsets = break_points(MATERIALS["glass"], 2, 0.15 * radius)
+    shatter(s, at, "glass", 2, scale=0.15 * radius)
+    new = s.points[len(mesh.points) :].astype(float)
+    cosine = new @ at / np.linalg.norm(new, axis=1) / np.linalg.norm(at)
+    arcs = radius * np.arccos(np.clip(cosine, -1, 1))
+    for wanted in np.hypot(*offsets.T):
+        assert np.abs(arcs - wanted).min() < 2e-3 * radius
+
+
+def test_the_impact_and_the_middles_of_the_sides_are_split():
+    s = structures.build("half_edge", sheet())
+    bare = replace(MATERIALS["glass"], circles=())
+    broken = shatter(s, (4.5, 4.25, 0), bare)
+    new = s.points[81:].tolist()
+    assert new == [[4.5, 4.25, 0], [4.5, 4, 0], [5, 4.5, 0], [4.5, 4.5, 0]]
+    # Three faces of the one that was hit, each split at a side, and the three neighbors in two.
+    assert len(broken.shards) == 3 * 2 + 3 * 2
+
+
+@pytest.mark.parametrize(
+    ("impact", "what"), [((4, 4, 0), "a vertex"), ((4.5, 4, 0), "a side"), ((0, 0.5, 0), "border")]
+)
+def test_an_impact_on_a_vertex_or_a_side_is_handled(impact, what):
+    for name in structures.NAMES:
+        s = structures.build(name, sheet())
+        broken = shatter(s, impact, "glass", 3)
+        s.validate()
+        require_surface_laws(sheet(), broken, TOLERANCE * diagonal(sheet()))
+        assert len(broken.shards) > 20
+
+
+def test_points_on_sides_and_vertices_split_the_sides_or_nothing():
+    grid = sheet()
+    s = structures.build("half_edge", grid)
+    s.split_face(0, (0.6, 0.3, 0))
+    before = s.n_vertices
+    tiny = replace(MATERIALS["glass"], circles=(50,))
+    broken = shatter(s, (0.6, 0.3, 0), tiny, 1, scale=1e-5)
+    # All points lie within the tolerance of the vertex that is there already.
+    assert broken.counts["on a vertex"] == 50
+    assert s.n_vertices <= before + 3
+
+
+def test_what_hangs_in_a_point_comes_off():
+    grid = hem.generate("grid", 400)
+    s = structures.build("half_edge", grid)
+    split = s.copy()
+    _, faces, _ = break_surface(split, grid.points.mean(axis=0), MATERIALS["glass"], 0)
+    with pytest.raises(hem.TopologyError, match="two fans"):
+        split.remove_faces(faces)
+    broken = shatter(s, grid.points.mean(axis=0), "glass", 0)
+    assert broken.counts["broken off"] == len(broken.shards) - len(faces) > 0
+
+
+def test_islands_are_parts_of_the_rest_the_largest_first():
+    dense = replace(MATERIALS["glass"], circles=(0, 0, 400))
+    found = 0
+    for seed in range(30):
+        s = structures.build("half_edge", hem.generate("grid", 2_500))
+        broken = shatter(s, s.points[1200], replace(dense, scale=0.08), seed)
+        sizes = [len(it.triangles) for it in broken.rest]
+        assert sum(sizes) == s.n_faces
+        assert all(it.summary().components == 1 for it in broken.rest)
+        found += len(sizes) > 1
+    assert found > 3
+
+
+@pytest.mark.parametrize("name", structures.NAMES)
+def test_a_render_mesh_follows(name):
+    s = structures.build(name, sheet())
+    render = hem.RenderMesh(s)
+    shatter(s, (3.3, 4.2, 0), "wood", 2)
+    assert_in_step(render)
+
+
+def test_neighbors_are_those_that_share_a_side():
+    broken = shatter(structures.build("half_edge", sheet()), (3.3, 4.2, 0), "stone", 2)
+    ends = []
+    for piece in broken.pieces:
+        at = [tuple(point) for point in piece.points.tolist()]
+        faces = piece.triangles.tolist()
+        ends.append({frozenset((at[t[i]], at[t[i - 1]])) for t in faces for i in range(3)})
+    expected = [
+        [i, j] for i in range(len(ends)) for j in range(i + 1, len(ends)) if ends[i] & ends[j]
+    ]
+    assert broken.neighbors.tolist() == expected
+
+
+@pytest.mark.parametrize("model", MODELS)
+def test_walking_finds_what_looking_at_every_face_finds(model):
+    mesh = surface(model)
+    s = structures.build("half_edge", mesh)
+    rng = np.random.default_rng(4)
+    for seed in range(40):
+        at = struck(mesh, seed) + rng.normal(size=3) * (seed % 4) * 1e-3 * diagonal(mesh)
+        walked, looked = nearest_face(s, at), scanned(s, at)
+        apart = np.linalg.norm(walked.point - at), np.linalg.norm(looked.point - at)
+        side = np.ptp(s.points[s.face_vertices(walked.face)], axis=0).max()
+        assert apart[1] * (1 - 1e-9) <= apart[0] <= max(apart[1] * 1.001, 0.09 * side)
+        if not seed % 4:
+            assert np.linalg.norm(walked.point - looked.point) < 1e-5 * diagonal(mesh)
+
+
+def test_a_walk_visits_few_faces_and_starts_where_it_is_told():
+    mesh = hem.generate("grid", 40_000)
+    s = structures.build("half_edge", mesh)
+    visited = [nearest_face(s, struck(mesh, i)).visited for i in range(50)]
+    from_afar = [nearest_face(s, struck(mesh, i), start=0).visited for i in range(50)]
+    assert np.mean(visited) < 60
+    assert 100 < np.mean(from_afar) < 1000
+
+
+def test_materials_of_ones_own(tmp_path):
+    own = Material("jelly", 1000, 0.01, (3, 3), 0.1, 4, 0.1, 0.1)
+    broken = shatter(structures.build("half_edge", sheet()), (3.3, 4.2, 0), own)
+    assert broken.material is own
+    assert broken.mass.masses.sum() == pytest.approx(1000 * 0.01 * diagonal(sheet()) * 64, rel=1e-6)
+    file = tmp_path / "mine.toml"
+    file.write_text("[jelly]\ndensity = 1.0\n")
+    with pytest.raises(hem.MeshError, match=r"mine\.toml.*jelly.*lacks burst"):
+        hem.fracture.materials(file)
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda s: shatter(s, (1, 2)), "three finite numbers"),
+        (lambda s: shatter(s, (1, 2, np.nan)), "three finite numbers"),
+        (lambda s: shatter(s, "here"), "three numbers"),
+        (lambda s: shatter(s, (1, 2, 99)), "more than half of its size"),
+        (lambda s: shatter(s, (1, 2, 0), "glas"), "did you mean 'glass'"),
+        (lambda s: shatter(s, (1, 2, 0), seed=-1), "a seed is a whole number"),
+        (lambda s: shatter(s, (1, 2, 0), scale=0), "positive length"),
+    ],
+)
+def test_what_cannot_be_shattered_is_said_and_nothing_changes(call, message):
+    s = structures.build("half_edge", sheet())
+    before = s.copy()
+    with pytest.raises(hem.MeshError, match=message):
+        call(s)
+    assert np.array_equal(s.points, before.points)
+    assert s.faces().tolist() == before.faces().tolist()
+
+
+def test_polygons_and_empty_meshes_are_refused():
+    quads = hem.PolygonMesh(np.eye(3)[[0, 1, 2, 0]] + [[0], [0], [0], [1]], [[0, 1, 2, 3]])
+    with pytest.raises(hem.MeshError, match="only triangles"):
+        shatter(structures.build("plankton", quads), (0, 0, 1))
+    empty = hem.TriangleMesh(np.zeros((0, 3)), np.zeros((0, 3), int))
+    for name in structures.NAMES:
+        with pytest.raises(hem.MeshError, match="no faces"):
+            shatter(structures.build(name, empty), (0, 0, 1))
+
+
+def test_faces_without_area_are_no_trouble_to_find_others():
+    flat = hem.TriangleMesh(
+        [(0, 0, 0), (0, 0, 0), (0, 0, 0), (1, 0, 0), (2, 0, 0), (5, 0, 0), (6, 0, 0), (5, 1, 0)],
+        [(0, 1, 2), (0, 1, 3), (0, 3, 4), (3, 4, 2), (5, 6, 7)],
+    )
+    s = structures.build("indexed", flat)
+    for at, face in (((5.2, 0.2, 0.5), 4), ((-1, 0, 1), 0), ((1.5, -1, 0), 2)):
+        assert scanned(s, at).face == face
