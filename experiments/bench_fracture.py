@@ -16,9 +16,9 @@ from numpy.typing import NDArray
 
 import structures
 from experiments.conftest import Keep
-from experiments.harness.cases import Cell
+from experiments.harness.cases import Case
 from experiments.harness.latency import latency_now
-from experiments.harness.presets import Profile
+from experiments.harness.presets import Preset
 from hem.contract.structure import Structure
 from hem.fracture import MATERIALS, Material, nearest_face, scanned, shatter
 from hem.fracture.surface.breaking import JUMP
@@ -40,7 +40,7 @@ WAYS: dict[str, Callable[[Structure, Array], Found]] = {
     "jump and walk": lambda s, at: nearest_face(s, at, start=JUMP),
     "scan": scanned,
 }
-"""How a face is found, by the name of the order in a cell."""
+"""How a face is found, by the name of the order in a case."""
 
 VISITED = "faces looked at"
 IMPACTS = 64
@@ -60,71 +60,71 @@ ROUNDS = FEWEST_ROUNDS + 2
 """With those to check it and to warm up."""
 
 
-def cells(profile: Profile, structure: str) -> list[Cell]:
+def cases(profile: Preset, structure: str) -> list[Case]:
     """Both at every size; the faces that are looked at, which all structures share, on one."""
     ways = [*WAYS, *(f"{way}, {VISITED}" for way in WAYS if structure == COUNTED_ON)]
     family = profile.families[0]
     return [
-        Cell(structure, family, size, query, order)
+        Case(structure, family, size, query, order)
         for size in profile.fracture_sizes
         for query, order in [(SHATTER, None), *((FIND, way) for way in ways)]
     ]
 
 
-def test_fracture(cell: Cell, profile: Profile, benchmark: Any, keep: Keep) -> None:
+def test_fracture(case: Case, profile: Preset, benchmark: Any, keep: Keep) -> None:
     """Time a fracture, or the search for faces, after its outcome was checked."""
-    s = cell.build()
-    expected = _neighbors_asked(cell, s) * s.n_faces * SECONDS_PER_FACE
-    if cell.structure == "indexed" and ROUNDS * expected > LONGEST * profile.cell_seconds:
+    s = case.build()
+    expected = _neighbors_asked(case, s) * s.n_faces * SECONDS_PER_FACE
+    if case.structure == "indexed" and ROUNDS * expected > LONGEST * profile.case_seconds:
         benchmark.pedantic(lambda: None)
         reason = f"takes {expected:.0f} s and more, which is too long for all rounds"
-        keep(cell.result("time", s, np.zeros(0), left_out=reason))
-    elif cell.query == SHATTER:
-        _shatter(cell, s, profile, benchmark, keep)
+        keep(case.result("time", s, np.zeros(0), skipped=reason))
+    elif case.subject == SHATTER:
+        _shatter(case, s, profile, benchmark, keep)
     else:
-        _find(cell, s, profile, benchmark, keep)
+        _find(case, s, profile, benchmark, keep)
 
 
-def _neighbors_asked(cell: Cell, s: Structure) -> float:
+def _neighbors_asked(case: Case, s: Structure) -> float:
     """How often neighbors are asked for in a round, at the least."""
-    if cell.query == SHATTER:
+    if case.subject == SHATTER:
         return ASKED_PER_BREAK_POINT * sum(_material(s).circles)
     per_search = {"walk": np.sqrt(s.n_faces), "jump and walk": np.cbrt(s.n_faces), "scan": 0.0}
-    return float(IMPACTS * per_search[str(cell.order).partition(",")[0]])
+    return float(IMPACTS * per_search[str(case.order).partition(",")[0]])
 
 
-def _shatter(cell: Cell, s: Structure, profile: Profile, benchmark: Any, keep: Keep) -> None:
+def _shatter(case: Case, s: Structure, profile: Preset, benchmark: Any, keep: Keep) -> None:
     at, material = _impacts(s)[0], _material(s)
-    expected = shatter(structures.build("half_edge", cell.mesh()), at, material).shards
+    expected = shatter(structures.build("half_edge", case.mesh()), at, material).shards
     begin, copy = perf_counter(), s.copy()
     shards = shatter(copy, at, material).shards
     seconds = perf_counter() - begin
     copy.validate()
     if not np.array_equal([it.points for it in shards], [it.points for it in expected]):
-        raise AssertionError(f"{cell.structure} gives other shards than half_edge")
+        raise AssertionError(f"{case.structure} gives other shards than half_edge")
 
     def fresh() -> tuple[tuple[Structure, Array, Any], dict[str, Any]]:
         ready = s.copy()
         ready.reserve(2 * sum(material.circles))
         return (ready, at, material), {}
 
-    rounds = int(np.clip(profile.cell_seconds / seconds, FEWEST_ROUNDS, profile.rounds))
+    rounds = int(np.clip(profile.case_seconds / seconds, FEWEST_ROUNDS, profile.rounds))
     benchmark.pedantic(shatter, setup=fresh, rounds=rounds, warmup_rounds=1)
     data = benchmark.stats.stats.data if benchmark.stats else []
-    keep(cell.result("time", s, np.array(data) / len(shards), handles=len(shards), checked=True))
+    keep(case.result("time", s, np.array(data) / len(shards), handles=len(shards), checked=True))
 
 
-def _find(cell: Cell, s: Structure, profile: Profile, benchmark: Any, keep: Keep) -> None:
-    way, _, counted = str(cell.order).partition(", ")
+def _find(case: Case, s: Structure, profile: Preset, benchmark: Any, keep: Keep) -> None:
+    way, _, counted = str(case.order).partition(", ")
     find, impacts = WAYS[way], _impacts(s)
     found = [find(s, at) for at in impacts]
     apart = np.array([it.point for it in found]) - impacts
     if not (np.abs(apart) < MARGIN * np.abs(s.points).max()).all():
-        raise AssertionError(f"{cell.id} on {cell.structure}: a face that is not the nearest")
+        raise AssertionError(f"{case.id} on {case.structure}: a face that is not the nearest")
     if counted:
         benchmark.pedantic(lambda: None)
         visited = [it.visited for it in found]
-        keep(cell.result("work", s, np.array(visited), handles=1, checked=True))
+        keep(case.result("work", s, np.array(visited), handles=1, checked=True))
         return
 
     def all_of_them() -> None:
@@ -135,7 +135,7 @@ def _find(cell: Cell, s: Structure, profile: Profile, benchmark: Any, keep: Keep
     benchmark.pedantic(all_of_them, rounds=max(FEWEST_ROUNDS, profile.rounds // 2))
     data = np.array(benchmark.stats.stats.data if benchmark.stats else [])
     more = {"handles": len(impacts), "latency": latency, "checked": True}
-    keep(cell.result("time", s, data / len(impacts), **more))
+    keep(case.result("time", s, data / len(impacts), **more))
 
 
 def _material(s: Structure) -> Material:
@@ -151,4 +151,4 @@ def _impacts(s: Structure) -> NDArray[np.float64]:
     return np.asarray((weights[:, :, None] * corners.astype(np.float64)).sum(axis=1))
 
 
-__all__ = ["STRUCTURES", "cells", "test_fracture"]
+__all__ = ["STRUCTURES", "cases", "test_fracture"]

@@ -10,10 +10,10 @@ from typing import Any
 import numpy as np
 
 from experiments.conftest import Keep
-from experiments.harness.cases import Cell
+from experiments.harness.cases import Case
 from experiments.harness.latency import LINE, WORDS, chase, random_cycle
-from experiments.harness.presets import Profile
-from experiments.runs.results import CellResult
+from experiments.harness.presets import Preset
+from experiments.runs.results import Measurement
 
 STRUCTURES = ("machine",)
 
@@ -21,17 +21,17 @@ SMALLEST = 16 * 1024
 STEPS = 50_000
 
 
-def cells(profile: Profile, structure: str) -> list[Cell]:
+def cases(profile: Preset, structure: str) -> list[Case]:
     """Working sets of 16 KiB and up, two per doubling; ``size`` is in bytes."""
     most = profile.latency_mib * 1024 * 1024
     steps = int(2 * np.log2(most / SMALLEST)) + 1
     sizes = (round(SMALLEST * 2 ** (k / 2) / LINE) * LINE for k in range(steps))
-    return [Cell(structure, "chase", size) for size in sizes]
+    return [Case(structure, "chase", size) for size in sizes]
 
 
-def test_latency(cell: Cell, profile: Profile, benchmark: Any, keep: Keep) -> None:
+def test_latency(case: Case, profile: Preset, benchmark: Any, keep: Keep) -> None:
     """Time the chase; every line must be visited before the first comes again."""
-    chain = random_cycle(cell.size // LINE)
+    chain = random_cycle(case.size // LINE)
     assert chase(chain, 0, len(chain) // WORDS) == 0
 
     place = 0
@@ -43,10 +43,10 @@ def test_latency(cell: Cell, profile: Profile, benchmark: Any, keep: Keep) -> No
     benchmark.pedantic(go_on, rounds=profile.rounds, warmup_rounds=1)
     samples = np.array(benchmark.stats.stats.data if benchmark.stats else []) / STEPS
     keep(
-        CellResult(
-            id=cell.id,
+        Measurement(
+            id=case.id,
             kind="time",
-            working_set=cell.size,
+            working_set=case.size,
             handles=STEPS,
             checked=True,
             samples=samples.tolist(),
@@ -54,4 +54,4 @@ def test_latency(cell: Cell, profile: Profile, benchmark: Any, keep: Keep) -> No
     )
 
 
-__all__ = ["STRUCTURES", "cells", "test_latency"]
+__all__ = ["STRUCTURES", "cases", "test_latency"]

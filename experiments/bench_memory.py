@@ -8,31 +8,31 @@ import numpy as np
 
 import structures
 from experiments.conftest import Keep
-from experiments.harness.cases import Cell
-from experiments.harness.presets import Profile
+from experiments.harness.cases import Case
+from experiments.harness.presets import Preset
 from structures import NAMES as STRUCTURES
 from structures.half_edge_objects import HalfEdgeMesh
 
 
-def cells(profile: Profile, structure: str) -> list[Cell]:
+def cases(profile: Preset, structure: str) -> list[Case]:
     """The judged family by size and the real models, at both sizes of a reference."""
     sizes = [(profile.families[0], size) for size in profile.build_sizes if size >= 1_000]
     return [
-        Cell(structure, family, size, reference_bytes=reference_bytes)
+        Case(structure, family, size, reference_bytes=reference_bytes)
         for family, size in [*sizes, *((model, 0) for model in profile.models)]
         for reference_bytes in (4, 8)
     ]
 
 
-def test_memory(cell: Cell, keep: Keep) -> None:
+def test_memory(case: Case, keep: Keep) -> None:
     """Weigh the structure; what the model counts must be just what the arrays hold.
 
     Where there are none but objects, it is about what Python has handed out.
     """
-    mesh = cell.mesh()
-    structures.build(cell.structure, mesh, cell.reference_bytes)  # compiles, unweighed
+    mesh = case.mesh()
+    structures.build(case.structure, mesh, case.reference_bytes)  # compiles, unweighed
     tracemalloc.start()
-    s = structures.build(cell.structure, mesh, cell.reference_bytes)
+    s = structures.build(case.structure, mesh, case.reference_bytes)
     traced, peak = tracemalloc.get_traced_memory()
     tracemalloc.stop()
     fields = s.memory()
@@ -44,7 +44,7 @@ def test_memory(cell: Cell, keep: Keep) -> None:
     if isinstance(s, HalfEdgeMesh):
         detail["clr"] = s.clr_memory()
     model = np.array([sum(fields.values())])
-    keep(cell.result("bytes", s, model, checked=True, detail=detail))
+    keep(case.result("bytes", s, model, checked=True, detail=detail))
 
 
-__all__ = ["STRUCTURES", "cells", "test_memory"]
+__all__ = ["STRUCTURES", "cases", "test_memory"]

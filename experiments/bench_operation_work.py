@@ -9,32 +9,32 @@ import numpy as np
 
 from experiments.claims.growth import OPERATIONS
 from experiments.conftest import Keep
-from experiments.harness.cases import Cell
+from experiments.harness.cases import Case
 from experiments.harness.operations import arguments, faces_of, validate
-from experiments.harness.presets import Profile
+from experiments.harness.presets import Preset
 from structures import NAMES as STRUCTURES
 
 REPETITIONS = 3
 SCANNED = 1  # one scan of a mesh reads as much as another
 
 
-def cells(profile: Profile, structure: str) -> list[Cell]:
+def cases(profile: Preset, structure: str) -> list[Case]:
     """The judged family by size, then the hubs by valence."""
     return [
-        Cell(structure, family, size, operation, "counted", valence)
+        Case(structure, family, size, operation, "counted", valence)
         for family, size, valence in profile.work_points()
         for operation in OPERATIONS
     ]
 
 
-def test_operation_work(cell: Cell, keep: Keep) -> None:
+def test_operation_work(case: Case, keep: Keep) -> None:
     """Count what operations read and write, and check what they make of the mesh."""
-    s, operation = cell.build().copy(), str(cell.query)
-    faces = faces_of(cell, SCANNED if cell.structure == "indexed" else REPETITIONS)
+    s, operation = case.build().copy(), str(case.subject)
+    faces = faces_of(case, SCANNED if case.structure == "indexed" else REPETITIONS)
     rows = arguments(s, operation, faces).tolist()
     work = [s.operation_work(operation, *row) for row in rows]
     validate(s)
-    keep(cell.result("work", cell.build(), np.array(work), handles=1, checked=True))
+    keep(case.result("work", case.build(), np.array(work), handles=1, checked=True))
 
 
-__all__ = ["STRUCTURES", "cells", "test_operation_work"]
+__all__ = ["STRUCTURES", "cases", "test_operation_work"]

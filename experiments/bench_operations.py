@@ -15,9 +15,9 @@ import numpy as np
 import hem
 from experiments.claims.growth import OPERATIONS
 from experiments.conftest import Keep
-from experiments.harness.cases import Cell
+from experiments.harness.cases import Case
 from experiments.harness.operations import NOT_SCANNED, arguments, faces_of, time_operations
-from experiments.harness.presets import HUBS, Profile
+from experiments.harness.presets import HUBS, Preset
 from hem.contract.structure import Structure
 from structures import NAMES as STRUCTURES
 
@@ -57,10 +57,10 @@ RENDERED: dict[str, Callable[[Structure], Ending]] = {
     "in a transaction": _in_a_transaction,
     "render mesh built anew": _built_anew,
 }
-"""Ways to keep a render mesh up to date: the order of a cell, and what is set up -> how it ends."""
+"""Ways to keep a render mesh up to date: the order of a case, and what is set up -> how it ends."""
 
 
-def cells(profile: Profile, structure: str) -> list[Cell]:
+def cases(profile: Preset, structure: str) -> list[Case]:
     """Batched by size and by valence; one by one, and with a render mesh, at some of the sizes."""
     family, faces = profile.families[0], profile.operation_faces
     by_size = [(family, size, None) for size in profile.operation_sizes]
@@ -70,37 +70,37 @@ def cells(profile: Profile, structure: str) -> list[Cell]:
     rendered = [("split_face", order) for order in RENDERED]
     return [
         *(
-            Cell(structure, family, size, operation, "batched", valence)
+            Case(structure, family, size, operation, "batched", valence)
             for family, size, valence in (*by_size, *by_valence)
             for operation in OPERATIONS
         ),
         *(
-            Cell(structure, family, size, operation, order)
+            Case(structure, family, size, operation, order)
             for size in some
             for operation, order in (*singly, *rendered)
         ),
     ]
 
 
-def test_operation(cell: Cell, profile: Profile, benchmark: Any, keep: Keep) -> None:
-    """Time one cell, and check what the operations make of the mesh."""
-    s = cell.build()
-    if cell.order == "batched":
-        timed = time_operations(benchmark, cell, profile)
+def test_operation(case: Case, profile: Preset, benchmark: Any, keep: Keep) -> None:
+    """Time one case, and check what the operations make of the mesh."""
+    s = case.build()
+    if case.order == "batched":
+        timed = time_operations(benchmark, case, profile)
     else:
-        timed = _time_one_by_one(benchmark, cell, profile)
-    keep(cell.result("time", s, checked=True, **timed))
+        timed = _time_one_by_one(benchmark, case, profile)
+    keep(case.result("time", s, checked=True, **timed))
 
 
-def _single_faces(cell: Cell) -> list[int]:
-    scanned = cell.structure == "indexed" and cell.query not in NOT_SCANNED
-    few = scanned or cell.order == "render mesh built anew"
-    return faces_of(cell, SCANNED_FACES if few else SINGLE_FACES).tolist()
+def _single_faces(case: Case) -> list[int]:
+    scanned = case.structure == "indexed" and case.subject not in NOT_SCANNED
+    few = scanned or case.order == "render mesh built anew"
+    return faces_of(case, SCANNED_FACES if few else SINGLE_FACES).tolist()
 
 
-def _time_one_by_one(benchmark: Any, cell: Cell, profile: Profile) -> dict[str, Any]:
-    s, operation, (first, *faces) = cell.build(), str(cell.query), _single_faces(cell)
-    set_up = RENDERED.get(str(cell.order), _alone)
+def _time_one_by_one(benchmark: Any, case: Case, profile: Preset) -> dict[str, Any]:
+    s, operation, (first, *faces) = case.build(), str(case.subject), _single_faces(case)
+    set_up = RENDERED.get(str(case.order), _alone)
     given = 3 if operation == "add_face" else 1
     point = ((0.0, 0.0, 0.0),) if operation.startswith("split") else ()
 
@@ -122,4 +122,4 @@ def _time_one_by_one(benchmark: Any, cell: Cell, profile: Profile) -> dict[str, 
     return {"samples": np.array(data) / len(faces), "handles": len(faces)}
 
 
-__all__ = ["STRUCTURES", "cells", "test_operation"]
+__all__ = ["STRUCTURES", "cases", "test_operation"]

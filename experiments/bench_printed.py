@@ -15,11 +15,11 @@ from numpy.typing import NDArray
 
 import structures
 from experiments.conftest import Keep
-from experiments.harness.cases import Cell
+from experiments.harness.cases import Case
 from experiments.harness.latency import latency_now
 from experiments.harness.operations import faces_of
-from experiments.harness.presets import Profile
-from experiments.runs.results import CellResult
+from experiments.harness.presets import Preset
+from experiments.runs.results import Measurement
 from hem.meshes.triangles import TriangleMesh
 from structures.as_printed import AsPrinted, render_arrays
 from structures.half_edge_objects import HalfEdgeMesh, HalfEdgeMeshBuilder, fields_accessed
@@ -31,7 +31,7 @@ STRUCTURES = (AsPrinted.name, MENDED)
 
 LISTINGS = ("build", "split_edge", "split_face", "collapse_edge")
 ORDERS = ("counted", "timed")
-"""The kinds of cells: work, and time."""
+"""The kinds of cases: work, and time."""
 
 TIMED_OPERATIONS = 9
 COUNTED_OPERATIONS = 3
@@ -46,10 +46,10 @@ POINTS = [(9.0, 9.0, float(i)) for i in range(TIMED_OPERATIONS + WARM_UP)]
 Step = Callable[[], Any]
 
 
-def cells(profile: Profile, structure: str) -> list[Cell]:
+def cases(profile: Preset, structure: str) -> list[Case]:
     """Every listing at every size."""
     return [
-        Cell(structure, profile.families[0], size, listing, order)
+        Case(structure, profile.families[0], size, listing, order)
         for size in profile.printed_sizes
         for listing in LISTINGS
         for order in ORDERS
@@ -63,35 +63,35 @@ class Bench(NamedTuple):
     faces: Callable[[], int]
 
 
-def test_listing(cell: Cell, profile: Profile, benchmark: Any, keep: Keep) -> None:
+def test_listing(case: Case, profile: Preset, benchmark: Any, keep: Keep) -> None:
     """Count or time what a listing does, and check what it made by the number of faces."""
-    counted = cell.order == "counted"
-    bench = _bench(cell, COUNTED_OPERATIONS if counted else TIMED_OPERATIONS)
+    counted = case.order == "counted"
+    bench = _bench(case, COUNTED_OPERATIONS if counted else TIMED_OPERATIONS)
     before, latency = bench.faces(), None
     if counted:
         benchmark.pedantic(lambda: None)
         samples: Any = [fields_accessed(step) for step in bench.steps]
     else:
-        waiting, latency = iter(bench.steps), latency_now(500 * len(cell.mesh().points))
+        waiting, latency = iter(bench.steps), latency_now(500 * len(case.mesh().points))
         benchmark.pedantic(
             lambda step: step(), setup=lambda: ((next(waiting),), {}), rounds=len(bench.steps)
         )
         samples = benchmark.stats.stats.data if benchmark.stats else []
-    expected = before + MORE_FACES[str(cell.query)] * len(bench.steps)
+    expected = before + MORE_FACES[str(case.subject)] * len(bench.steps)
     if bench.faces() != expected:
         raise AssertionError(
-            f"{cell.id} on {cell.structure}: {bench.faces()} faces, not {expected}"
+            f"{case.id} on {case.structure}: {bench.faces()} faces, not {expected}"
         )
-    keep(_result(cell, "work" if counted else "time", samples, latency))
+    keep(_result(case, "work" if counted else "time", samples, latency))
 
 
-def _bench(cell: Cell, most: int) -> Bench:
-    mesh = cell.mesh()
-    if cell.query == "build":
+def _bench(case: Case, most: int) -> Bench:
+    mesh = case.mesh()
+    if case.subject == "build":
         times = 3 if most == TIMED_OPERATIONS else 1
-        return Bench([partial(_built, cell.structure, mesh)] * times, lambda: len(mesh.triangles))
-    faces = faces_of(cell, most + WARM_UP)
-    steps, counted = _mended(cell, faces) if cell.structure == MENDED else _printed(cell, faces)
+        return Bench([partial(_built, case.structure, mesh)] * times, lambda: len(mesh.triangles))
+    faces = faces_of(case, most + WARM_UP)
+    steps, counted = _mended(case, faces) if case.structure == MENDED else _printed(case, faces)
     # The first ones bind methods and make room for many more, which takes a pass over the mesh.
     first = min(WARM_UP, len(steps) - 1)
     for step in steps[:first]:
@@ -99,8 +99,8 @@ def _bench(cell: Cell, most: int) -> Bench:
     return Bench(steps[first:], counted)
 
 
-def _printed(cell: Cell, faces: Array) -> Bench:
-    m = _built(cell.structure, cell.mesh())
+def _printed(case: Case, faces: Array) -> Bench:
+    m = _built(case.structure, case.mesh())
     m.generate_render_mesh()
     targets = [m.faces[f] for f in faces.tolist()]
     sides = [face.half_edge for face in targets]
@@ -109,11 +109,11 @@ def _printed(cell: Cell, faces: Array) -> Bench:
         "split_face": (m.split_face, targets, POINTS),
         "collapse_edge": (m.collapse_edge, sides),
     }
-    return Bench(_calls(*calls[str(cell.query)]), lambda: len(m.faces))
+    return Bench(_calls(*calls[str(case.subject)]), lambda: len(m.faces))
 
 
-def _mended(cell: Cell, faces: Array) -> Bench:
-    s = structures.build(MENDED, cell.mesh())
+def _mended(case: Case, faces: Array) -> Bench:
+    s = structures.build(MENDED, case.mesh())
     edges = s.face_edges(faces).values.reshape(-1, 3)[:, 0].tolist()
     calls: dict[str, tuple[Any, ...]] = {
         "split_edge": (s.split_edge, edges, POINTS),
@@ -125,7 +125,7 @@ def _mended(cell: Cell, faces: Array) -> Bench:
         s.validate()
         return s.n_faces
 
-    return Bench(_calls(*calls[str(cell.query)]), counted)
+    return Bench(_calls(*calls[str(case.subject)]), counted)
 
 
 def _calls(method: Callable[..., Any], *arguments: list[Any]) -> list[Step]:
@@ -144,14 +144,14 @@ def _built(structure: str, mesh: TriangleMesh) -> Any:
     return built
 
 
-def _result(cell: Cell, kind: str, samples: Any, latency: float | None = None) -> CellResult:
-    summary = cell.mesh().summary()
-    return CellResult(
-        id=cell.id,
+def _result(case: Case, kind: str, samples: Any, latency: float | None = None) -> Measurement:
+    summary = case.mesh().summary()
+    return Measurement(
+        id=case.id,
         kind=kind,
-        query=cell.query,
-        order=cell.order,
-        family=cell.family,
+        subject=case.subject,
+        order=case.order,
+        family=case.family,
         vertices=summary.vertices,
         edges=summary.edges,
         faces=summary.faces,
@@ -164,4 +164,4 @@ def _result(cell: Cell, kind: str, samples: Any, latency: float | None = None) -
     )
 
 
-__all__ = ["STRUCTURES", "cells", "test_listing"]
+__all__ = ["STRUCTURES", "cases", "test_listing"]

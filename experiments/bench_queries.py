@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 
 from experiments.conftest import Keep
-from experiments.harness.cases import Cell, pool
+from experiments.harness.cases import Case, pool
 from experiments.harness.oracle import check
-from experiments.harness.presets import Profile
+from experiments.harness.presets import Preset
 from experiments.harness.timer import TooSlowError, time_query
 from hem.contract.queries import QUERIES
 from structures import NAMES as STRUCTURES
@@ -20,10 +20,10 @@ from structures import NAMES as STRUCTURES
 CHECKED_HANDLES = 3
 
 
-def cells(profile: Profile, structure: str) -> list[Cell]:
-    """All cells of one structure; those on the same mesh follow each other."""
+def cases(profile: Preset, structure: str) -> list[Case]:
+    """All cases of one structure; those on the same mesh follow each other."""
     return [
-        Cell(structure, family, size, query, order)
+        Case(structure, family, size, query, order)
         for family in profile.families
         for size in profile.sizes
         for query in QUERIES
@@ -31,23 +31,23 @@ def cells(profile: Profile, structure: str) -> list[Cell]:
     ]
 
 
-def test_query(cell: Cell, profile: Profile, benchmark: Any, keep: Keep) -> None:
+def test_query(case: Case, profile: Preset, benchmark: Any, keep: Keep) -> None:
     """Check the query on this mesh against the triangle list, then time it."""
-    measure(cell, profile, benchmark, keep)
+    measure(case, profile, benchmark, keep)
 
 
-def measure(cell: Cell, profile: Profile, benchmark: Any, keep: Keep) -> None:
-    """Check and time one cell, here and where the valence varies."""
-    s = cell.build()
-    handles = pool(cell, s)
-    check(s, cell.mesh(), cell.asked, handles[:CHECKED_HANDLES])
+def measure(case: Case, profile: Preset, benchmark: Any, keep: Keep) -> None:
+    """Check and time one case, here and where the valence varies."""
+    s = case.build()
+    handles = pool(case, s)
+    check(s, case.mesh(), case.query, handles[:CHECKED_HANDLES])
     try:
-        timed = time_query(benchmark, s, cell.asked.name, handles, profile)
+        timed = time_query(benchmark, s, case.query.name, handles, profile)
     except TooSlowError as reason:
         benchmark.pedantic(lambda: None)
-        keep(cell.result("time", s, np.zeros(0), left_out=str(reason)))
+        keep(case.result("time", s, np.zeros(0), skipped=str(reason)))
     else:
-        keep(cell.result("time", s, checked=True, **timed))
+        keep(case.result("time", s, checked=True, **timed))
 
 
-__all__ = ["STRUCTURES", "cells", "measure", "test_query"]
+__all__ = ["STRUCTURES", "cases", "measure", "test_query"]

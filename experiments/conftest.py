@@ -1,11 +1,11 @@
-"""The experiments as pytest-benchmark files: cells come from a profile, results go to a run.
+"""The experiments as pytest-benchmark files: cases come from a profile, results go to a run.
 
 Run one by hand, with all of pytest-benchmark's options::
 
     python -m pytest experiments/bench_queries.py --structure half_edge -k vertex_faces
 
-``hem study`` runs them all, with ``--run FOLDER``: every finished cell is kept there at once, and
-cells that are there already are not measured again. Cells are measured in a random order, the same
+``hem study`` runs them all, with ``--run FOLDER``: every finished case is kept there at once, and
+cases that are there already are not measured again. Cases are measured in a random order, the same
 for the same seed, so that a machine that slows down does not look like a structure that scales
 badly; those that were disturbed are measured again at the end.
 """
@@ -21,13 +21,13 @@ from typing import Any, cast
 import pytest
 
 from experiments.harness import affinity, memory
-from experiments.harness.cases import Cell, in_random_order
-from experiments.harness.presets import PROFILES, Profile
+from experiments.harness.cases import Case, in_random_order
+from experiments.harness.presets import PRESETS, Preset
 from experiments.harness.steadiness import REPEATS, Watch, badness, disturbed
-from experiments.runs.results import CannotWriteError, CellResult, ResultFile
+from experiments.runs.results import CannotWriteError, Measurement, ResultFile
 from experiments.runs.worker import CANNOT_WRITE, DEFAULT_SEED, end_with
 
-Keep = Callable[[CellResult], None]
+Keep = Callable[[Measurement], None]
 
 CORE = pytest.StashKey[int | None]()
 FILES = pytest.StashKey[dict[tuple[str, str], ResultFile]]()
@@ -37,15 +37,13 @@ DISTURBED = pytest.StashKey[bool]()
 def pytest_addoption(parser: pytest.Parser) -> None:
     """The extent of an experiment, how it is measured, and where its results go."""
     group = parser.getgroup("hem")
-    group.addoption(
-        "--profile", default="quick", choices=list(PROFILES), help="how much to measure"
-    )
+    group.addoption("--profile", default="quick", choices=list(PRESETS), help="how much to measure")
     group.addoption("--structure", action="append", help="measure just this one; may be repeated")
     group.addoption("--study", type=int, help="end when the process of this number has ended")
-    group.addoption("--run", type=Path, help="the folder that keeps the results, cell by cell")
+    group.addoption("--run", type=Path, help="the folder that keeps the results, case by case")
     group.addoption("--pin", action="store_true", help="stay on one core, where that is allowed")
     group.addoption(
-        "--cell-seed", type=int, default=DEFAULT_SEED, help="seed of the order of the cells"
+        "--case-seed", type=int, default=DEFAULT_SEED, help="seed of the order of the cases"
     )
 
 
@@ -59,27 +57,27 @@ def pytest_configure(config: pytest.Config) -> None:
 
 
 def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
-    """One test per cell of the experiment that the run does not have yet."""
-    if "cell" in metafunc.fixturenames:
+    """One test per case of the experiment that the run does not have yet."""
+    if "case" in metafunc.fixturenames:
         config, module = metafunc.config, metafunc.module
         chosen = config.getoption("--structure") or module.STRUCTURES
-        profile = PROFILES[config.getoption("--profile")]
-        seed = config.getoption("--cell-seed")
-        cells = [
-            cell
+        profile = PRESETS[config.getoption("--profile")]
+        seed = config.getoption("--case-seed")
+        cases = [
+            case
             for name in chosen
-            for cell in in_random_order(
-                module.cells(profile.of(name), name), f"{seed} {module.__name__} {name}"
+            for case in in_random_order(
+                module.cases(profile.of(name), name), f"{seed} {module.__name__} {name}"
             )
-            if cell.id not in _file(config, module.__name__, name).finished
+            if case.id not in _file(config, module.__name__, name).finished
         ]
-        ids = [f"{cell.structure}/{cell.id}" for cell in cells]
-        metafunc.parametrize("cell", cells, ids=ids)
+        ids = [f"{case.structure}/{case.id}" for case in cases]
+        metafunc.parametrize("case", cases, ids=ids)
 
 
 @pytest.hookimpl(wrapper=True)
 def pytest_runtestloop(session: pytest.Session) -> Iterator[None]:
-    """After all cells, measure again those that were disturbed, for as long as all took at most."""
+    """After all cases, measure again those that were disturbed, for as long as all took at most."""
     begin = perf_counter()
     result = yield
     until = 2 * perf_counter() - begin
@@ -95,30 +93,30 @@ def pytest_runtestloop(session: pytest.Session) -> Iterator[None]:
 
 
 @pytest.fixture
-def profile(request: pytest.FixtureRequest, cell: Cell) -> Profile:
+def profile(request: pytest.FixtureRequest, case: Case) -> Preset:
     """How much to measure."""
-    return PROFILES[request.config.getoption("--profile")].of(cell.structure)
+    return PRESETS[request.config.getoption("--profile")].of(case.structure)
 
 
 @pytest.fixture
-def keep(request: pytest.FixtureRequest, cell: Cell) -> Keep:
-    """Keep a cell's result in the run, and what it is about in pytest-benchmark's own JSON.
+def keep(request: pytest.FixtureRequest, case: Case) -> Keep:
+    """Keep a case's result in the run, and what it is about in pytest-benchmark's own JSON.
 
-    Skips the test, and keeps the reason, where there is not enough memory for the cell.
+    Skips the test, and keeps the reason, where there is not enough memory for the case.
     """
     experiment = request.module.__name__.rpartition(".")[2]
     kept = bool(request.config.getoption("--run"))
-    file = _file(request.config, request.module.__name__, cell.structure)
-    reason = memory.why_not(cell, experiment)
+    file = _file(request.config, request.module.__name__, case.structure)
+    reason = memory.why_not(case, experiment)
     if reason:
         if kept:
-            _add(file, cell.not_measured(experiment, reason))
+            _add(file, case.not_measured(experiment, reason))
         pytest.skip(reason)
     watch = Watch()
 
-    def keeping(result: CellResult) -> None:
+    def keeping(result: Measurement) -> None:
         result = _calmest(file, replace(result, noise=watch.seen()))
-        timed = result.kind == "time" and not result.left_out
+        timed = result.kind == "time" and not result.skipped
         if "benchmark" in request.fixturenames:
             facts = {key: value for key, value in asdict(result).items() if key != "samples"}
             request.getfixturevalue("benchmark").extra_info.update(facts)
@@ -129,16 +127,16 @@ def keep(request: pytest.FixtureRequest, cell: Cell) -> Keep:
     return keeping
 
 
-def _calmest(file: ResultFile, result: CellResult) -> CellResult:
-    """The result, or an earlier one of its cell that was less disturbed."""
+def _calmest(file: ResultFile, result: Measurement) -> Measurement:
+    """The result, or an earlier one of its case that was less disturbed."""
     earlier = file.get(result.id)
-    before = CellResult(**earlier) if earlier else result
+    before = Measurement(**earlier) if earlier else result
     chosen = min(result, before, key=lambda it: badness(it.noise))
     times = 1 + before.noise.get("measured", 0)
     return replace(chosen, noise={**chosen.noise, "measured": times})
 
 
-def _add(file: ResultFile, result: CellResult) -> None:
+def _add(file: ResultFile, result: Measurement) -> None:
     try:
         file.add(result)
     except CannotWriteError as error:

@@ -70,12 +70,12 @@ class Findings:
 
     def __init__(self, run: Run, table: pd.DataFrame) -> None:
         self.run, self.evidence = run, Evidence(run)
-        self.claims = table[(table["outcome"] != "no claim") & (table["query"] != MEMORY)]
+        self.claims = table[(table["outcome"] != "no claim") & (table["subject"] != MEMORY)]
 
     def cost(self, structure: str, what: str, measure: str = "time") -> dict[int, float]:
         """Seconds or accesses of a query or operation, by number of faces."""
-        cells = self.evidence.curve(measure, "faces", structure, what)
-        return _medians(cells, "faces")
+        cases = self.evidence.curve(measure, "faces", structure, what)
+        return _medians(cases, "faces")
 
     def both(self, *asked: tuple[str, str]) -> int | None:
         """The largest number of faces at which all of these were timed."""
@@ -95,34 +95,34 @@ class Findings:
         return self.cost(structure, what).get(self.largest or 0, np.nan)
 
     def outcomes(self, outcome: str) -> int:
-        """How many cells of the tables have this verdict."""
+        """How many cases of the tables have this verdict."""
         return int((self.claims["outcome"] == outcome).sum())
 
     def bytes(self, structure: str) -> float:
         """Bytes per vertex, with references as the thesis counts them."""
         return self.evidence.bytes_per_vertex(structure)
 
-    def ratio(self, cells: pd.DataFrame) -> tuple[int, float]:
+    def ratio(self, cases: pd.DataFrame) -> tuple[int, float]:
         """The largest mesh that both were measured on, and half-edge by indexed."""
         if self.run.machines:
             return 0, np.nan
-        names = cells["structure"]
-        half, indexed = (_medians(cells[names == it]) for it in ("half_edge", "indexed"))
+        names = cases["structure"]
+        half, indexed = (_medians(cases[names == it]) for it in ("half_edge", "indexed"))
         vertices = max(set(half) & set(indexed), default=0)
         return vertices, half[vertices] / indexed[vertices] if vertices else np.nan
 
     @cached_property
     def building(self) -> tuple[int, float]:
         """Vertices, and the time to build a half-edge mesh by that to build an indexed one."""
-        cells = self.run.cells
-        alone = (cells["experiment"] == "bench_build") & (cells["order"] == "consecutive")
-        narrow = (cells["reference_bytes"] == 4) & (cells["family"] == "torus")
-        return self.ratio(cells[alone & narrow])
+        cases = self.run.cases
+        alone = (cases["experiment"] == "bench_build") & (cases["order"] == "consecutive")
+        narrow = (cases["reference_bytes"] == 4) & (cases["family"] == "torus")
+        return self.ratio(cases[alone & narrow])
 
     def workload(self, name: str) -> float:
         """The time of a workload, half-edge by indexed, at the largest size of both."""
-        cells = self.run.cells[self.run.cells["experiment"] == "bench_workloads"]
-        return self.ratio(cells[cells["query"] == name])[1]
+        cases = self.run.cases[self.run.cases["experiment"] == "bench_workloads"]
+        return self.ratio(cases[cases["subject"] == name])[1]
 
     @cached_property
     def _break_even(self) -> pd.DataFrame:
@@ -148,15 +148,15 @@ class Findings:
 
     def growth(self, structure: str) -> tuple[float, float]:
         """How much larger the largest mesh is, and how much more a listed edge split costs."""
-        cells = self.evidence.curve("work", "faces", structure, "split_edge", "listings")
-        if len(cells) < 2:
+        cases = self.evidence.curve("work", "faces", structure, "split_edge", "listings")
+        if len(cases) < 2:
             return np.nan, np.nan
-        work = [float(np.mean(it)) for it in cells["samples"]]
-        return float(cells["faces"].iloc[-1] / cells["faces"].iloc[0]), work[-1] / work[0]
+        work = [float(np.mean(it)) for it in cases["samples"]]
+        return float(cases["faces"].iloc[-1] / cases["faces"].iloc[0]), work[-1] / work[0]
 
 
-def _medians(cells: pd.DataFrame, by: str = "vertices") -> dict[int, float]:
-    columns = zip(cells[by], cells["samples"], strict=True)
+def _medians(cases: pd.DataFrame, by: str = "vertices") -> dict[int, float]:
+    columns = zip(cases[by], cases["samples"], strict=True)
     return {int(size): float(np.median(it)) for size, it in columns}
 
 

@@ -46,18 +46,18 @@ def break_even(run: Run) -> pd.DataFrame:
 
 def _costs(run: Run, structure: str, what: str) -> pd.DataFrame:
     """Seconds to build and per query or edit, by number of vertices."""
-    cells = run.cells[(run.cells["structure"] == structure) & run.cells["valence"].isna()]
-    cells = cells[(cells["family"] == "torus") & (cells["reference_bytes"] == 4)]
-    built = cells[(cells["experiment"] == "bench_build") & (cells["order"] == "consecutive")]
+    cases = run.cases[(run.cases["structure"] == structure) & run.cases["valence"].isna()]
+    cases = cases[(cases["family"] == "torus") & (cases["reference_bytes"] == 4)]
+    built = cases[(cases["experiment"] == "bench_build") & (cases["order"] == "consecutive")]
     experiment, order = (
         ("bench_operations", "batched") if what in OPERATIONS else ("bench_queries", "random")
     )
-    wanted = (cells["experiment"] == experiment) & (cells["query"] == what)
-    asked = cells[wanted & (cells["order"] == order)]
+    wanted = (cases["experiment"] == experiment) & (cases["subject"] == what)
+    asked = cases[wanted & (cases["order"] == order)]
     return pd.DataFrame({"build": _medians(built), "each": _medians(asked)}).dropna()
 
 
-def _medians(cells: pd.DataFrame) -> pd.Series:
+def _medians(cases: pd.DataFrame) -> pd.Series:
     return pd.Series(
-        [float(np.median(it)) for it in cells["samples"]], index=cells["vertices"], dtype=float
+        [float(np.median(it)) for it in cases["samples"]], index=cases["vertices"], dtype=float
     )

@@ -42,14 +42,14 @@ BOUND = "≤ "
 
 @dataclass(frozen=True)
 class Claim:
-    """One cell of a table: what is printed of one structure, and where.
+    """One case of a table: what is printed of one structure, and where.
 
-    ``what`` is a query, an operation or "memory"; ``table`` one of ``TABLES``. ``expected``: the
+    ``subject`` is a query, an operation or "memory"; ``table`` one of ``TABLES``. ``expected``: the
     growth class per variable, empty where nothing is claimed; ``bytes_per_vertex`` for the memory
     row, else None.
     """
 
-    what: str
+    subject: str
     table: str
     structure: str
     printed: str
@@ -60,7 +60,7 @@ class Claim:
     @property
     def title(self) -> str:
         """The head of the row."""
-        return "Bytes per vertex" if self.what == MEMORY else title_of(self.what)
+        return "Bytes per vertex" if self.subject == MEMORY else title_of(self.subject)
 
 
 def title_of(what: str) -> str:

@@ -38,7 +38,7 @@ OUTCOMES = {
 """What a verdict can be, and its mark."""
 
 CELL_ERROR = 0.15
-"""How far cells of one curve stray, beyond what their own rounds tell: each is measured within some
+"""How far cases of one curve stray, beyond what their own rounds tell: each is measured within some
 milliseconds, and neighbors on the machine slow its caches for longer than that."""
 
 PARTS = (4, 16)
@@ -78,22 +78,22 @@ queries of table 1 and for the operations."""
 
 
 class Evidence:
-    """The cells of a run that bear on the claims."""
+    """The cases of a run that bear on the claims."""
 
     def __init__(self, run: Run) -> None:
-        self.cells = run.cells
+        self.cases = run.cases
 
     @cached_property
     def judged_family(self) -> str | None:
         """The family whose valence is the same at every size: that of the work counts."""
-        families = self.cells.query("experiment == 'bench_work' and family != @HUBS")["family"]
+        families = self.cases.query("experiment == 'bench_work' and family != @HUBS")["family"]
         return None if families.empty else str(families.iloc[0])
 
     @cached_property
     def _latency(self) -> tuple[Array, Array]:
-        cells = self.cells[self.cells["experiment"] == "bench_latency"].sort_values("working_set")
-        seconds = [np.median(samples) for samples in cells["samples"]]
-        return cells["working_set"].to_numpy(float), np.array(seconds)
+        cases = self.cases[self.cases["experiment"] == "bench_latency"].sort_values("working_set")
+        seconds = [np.median(samples) for samples in cases["samples"]]
+        return cases["working_set"].to_numpy(float), np.array(seconds)
 
     def latency(self, working_sets: Array) -> Array | None:
         """Seconds per access at each working set, between those that were measured."""
@@ -102,46 +102,46 @@ class Evidence:
             return None
         return np.exp(np.interp(np.log(working_sets), np.log(sizes), np.log(seconds)))
 
-    def latencies(self, cells: pd.DataFrame) -> Array:
-        """(a, k): what each cell may have waited for, beside it or in a part of its working set."""
-        beside = cells["latency"].to_numpy(float)
-        sets = np.maximum(cells["working_set"].to_numpy(float), 1)
+    def latencies(self, cases: pd.DataFrame) -> Array:
+        """(a, k): what each case may have waited for, beside it or in a part of its working set."""
+        beside = cases["latency"].to_numpy(float)
+        sets = np.maximum(cases["working_set"].to_numpy(float), 1)
         within = [self.latency(sets / part) for part in PARTS]
         return np.vstack([beside, *(it for it in within if it is not None)])
 
     @cached_property
     def _curves(self) -> dict[Any, Any]:
         """The rows of each curve."""
-        by = ["experiment", "structure", "query", "family", "order"]
-        return self.cells.groupby(by).indices
+        by = ["experiment", "structure", "subject", "family", "order"]
+        return self.cases.groupby(by).indices
 
     def curve(
         self, measure: str, variable: str, structure: str, query: str, table: str = ""
     ) -> pd.DataFrame:
-        """The cells along one variable, ascending: of the judged family, or of the hubs."""
+        """The cases along one variable, ascending: of the judged family, or of the hubs."""
         table = table or ("operations" if query in OPERATIONS else "queries")
         experiment, order = SOURCES[measure, variable].get(table, (None, None))
         family = HUBS if variable == "valence" else self.judged_family
         rows = self._curves.get((experiment, structure, query, family, order), [])
-        return self.cells.iloc[rows].sort_values(variable)
+        return self.cases.iloc[rows].sort_values(variable)
 
     def verdict(self, claim: Claim, measure: str, variable: str) -> Verdict | None:
-        """Judge one claim by one measure in one variable; None without any cells.
+        """Judge one claim by one measure in one variable; None without any cases.
 
         Where nothing is claimed the class found is what matters, and O(1) is asked about.
         """
-        cells = self.curve(measure, variable, claim.structure, claim.what, claim.table)
-        if cells.empty:
+        cases = self.curve(measure, variable, claim.structure, claim.subject, claim.table)
+        if cases.empty:
             return None
         exact = measure == "work"
         # What reads nothing at all costs something all the same: the call.
-        samples = [np.maximum(it, 1) if exact else it for it in cells["samples"]]
-        latency = None if exact else self.latencies(cells)
+        samples = [np.maximum(it, 1) if exact else it for it in cases["samples"]]
+        latency = None if exact else self.latencies(cases)
         # A batch's mesh was written just before, see `operating.Bench.restore`.
         unseen = claim.table == "operations" and variable == "faces"
         expected = claim.expected.get(variable, "O(1)")
         bound: Bound = "upper" if expected.startswith(BOUND) else "tight"
-        sizes, expected = cells[variable].to_numpy(float), expected.removeprefix(BOUND)
+        sizes, expected = cases[variable].to_numpy(float), expected.removeprefix(BOUND)
         return judge(
             sizes, samples, expected, latency,
             exact=exact, latency_error=CELL_ERROR, unseen=unseen, bound=bound,
@@ -149,28 +149,28 @@ class Evidence:
 
     def largest(self, measure: str, claim: Claim) -> float:
         """Cost per query at the largest size: the median over rounds, or the mean reads."""
-        cells = self.curve(measure, "faces", claim.structure, claim.what, claim.table)
-        if cells.empty:
+        cases = self.curve(measure, "faces", claim.structure, claim.subject, claim.table)
+        if cases.empty:
             return float("nan")
-        samples = cells["samples"].iloc[-1]
+        samples = cases["samples"].iloc[-1]
         return float(np.mean(samples) if measure == "work" else np.median(samples))
 
     def memory(self, structure: str, reference_bytes: int) -> pd.DataFrame:
-        """The judged family's cells of the memory experiment, by size."""
+        """The judged family's cases of the memory experiment, by size."""
         wanted = (
-            (self.cells["experiment"] == "bench_memory")
-            & (self.cells["structure"] == structure)
-            & (self.cells["family"] == self.judged_family)
-            & (self.cells["reference_bytes"] == reference_bytes)
+            (self.cases["experiment"] == "bench_memory")
+            & (self.cases["structure"] == structure)
+            & (self.cases["family"] == self.judged_family)
+            & (self.cases["reference_bytes"] == reference_bytes)
         )
-        return self.cells[wanted].sort_values("vertices")
+        return self.cases[wanted].sort_values("vertices")
 
     def bytes_per_vertex(self, structure: str, reference_bytes: int = 8) -> float:
         """Bytes in the arrays per vertex, at the largest size of the judged family."""
-        cells = self.memory(structure, reference_bytes)
-        if cells.empty:
+        cases = self.memory(structure, reference_bytes)
+        if cases.empty:
             return float("nan")
-        return float(cells["samples"].iloc[-1][0] / cells["vertices"].iloc[-1])
+        return float(cases["samples"].iloc[-1][0] / cases["vertices"].iloc[-1])
 
 
 def judged(run: Run, claims: list[Claim] | None = None) -> pd.DataFrame:
@@ -204,7 +204,7 @@ KEPT = ("outcome", "expected", "best", "runner_up", "margin", "slope", "slope_lo
 
 
 def _plain(value: Any) -> Any:
-    """A cell of the table in what JSON knows; numbers to five digits, none where there is none."""
+    """A case of the table in what JSON knows; numbers to five digits, none where there is none."""
     if isinstance(value, Verdict):
         return {key: _plain(getattr(value, key)) for key in KEPT}
     if isinstance(value, float):
@@ -220,13 +220,13 @@ def short(value: float) -> float:
 def _row(evidence: Evidence, claim: Claim) -> dict[str, Any]:
     row: dict[str, Any] = {
         "structure": claim.structure,
-        "query": claim.what,
+        "subject": claim.subject,
         "title": claim.title,
         "table": claim.table,
         "printed": claim.printed,
         "source": claim.source,
     }
-    if claim.what == MEMORY:
+    if claim.subject == MEMORY:
         found = evidence.bytes_per_vertex(claim.structure)
         outcome = "consistent" if found == claim.bytes_per_vertex else "violated"
         outcome = "undetermined" if np.isnan(found) else outcome

@@ -60,9 +60,9 @@ def _both(evidence: Evidence, measure: str, what: str) -> tuple[float, float, fl
     center = np.mean if measure == "work" else np.median
     curves = []
     for structure in (ARRAYS, OBJECTS):
-        cells = evidence.curve(measure, "faces", structure, what)
-        costs = [float(center(samples)) for samples in cells["samples"]]
-        curves.append(dict(zip(cells["vertices"], costs, strict=True)))
+        cases = evidence.curve(measure, "faces", structure, what)
+        costs = [float(center(samples)) for samples in cases["samples"]]
+        curves.append(dict(zip(cases["vertices"], costs, strict=True)))
     common = set(curves[0]) & set(curves[1])
     if not common:
         return float("nan"), float("nan"), float("nan")

@@ -80,26 +80,26 @@ def _answers(run: Run) -> Iterable[float]:
 
 def _work(run: Run, structure: str, what: str) -> Array:
     """Mean accesses of a query or operation, by size."""
-    cells = Evidence(run).curve("work", "faces", structure, what)
-    return np.array([max(float(np.mean(it)), 1) for it in cells["samples"]])
+    cases = Evidence(run).curve("work", "faces", structure, what)
+    return np.array([max(float(np.mean(it)), 1) for it in cases["samples"]])
 
 
 def _static(run: Run) -> Iterable[float]:
     """Building a half-edge mesh by building an indexed one, in time; and the bytes of both."""
-    cells = run.cells[(run.cells["family"] == "torus") & (run.cells["reference_bytes"] == 4)]
-    alone = (cells["experiment"] == "bench_build") & (cells["order"] == "consecutive")
-    yield from _by_size(cells[alone])
+    cases = run.cases[(run.cases["family"] == "torus") & (run.cases["reference_bytes"] == 4)]
+    alone = (cases["experiment"] == "bench_build") & (cases["order"] == "consecutive")
+    yield from _by_size(cases[alone])
     yield from _bytes_ratio(run)
 
 
 def _dynamic(run: Run) -> Iterable[float]:
     """The game-like mix of edits and queries, half-edge by indexed, on 1,000 vertices and more."""
-    cells = run.cells[(run.cells["query"] == "impacts") & (run.cells["vertices"] >= LARGER)]
-    yield from _by_size(cells)
+    cases = run.cases[(run.cases["subject"] == "impacts") & (run.cases["vertices"] >= LARGER)]
+    yield from _by_size(cases)
 
 
-def _by_size(cells: pd.DataFrame) -> Iterable[float]:
-    columns = zip(cells["structure"], cells["vertices"], cells["samples"], strict=True)
+def _by_size(cases: pd.DataFrame) -> Iterable[float]:
+    columns = zip(cases["structure"], cases["vertices"], cases["samples"], strict=True)
     medians = {(name, vertices): float(np.median(it)) for name, vertices, it in columns}
     for (name, vertices), seconds in medians.items():
         if name == "half_edge" and ("indexed", vertices) in medians:
@@ -126,10 +126,10 @@ def _slopes(
     evidence = Evidence(run)
     for name in names:
         for what in listings:
-            cells = evidence.curve("work", "faces", name, what, table)
-            if len(cells) > 1:
-                work = np.array([float(np.mean(it)) for it in cells["samples"]])
-                yield float(np.polyfit(np.log(cells["faces"].to_numpy(float)), np.log(work), 1)[0])
+            cases = evidence.curve("work", "faces", name, what, table)
+            if len(cases) > 1:
+                work = np.array([float(np.mean(it)) for it in cases["samples"]])
+                yield float(np.polyfit(np.log(cases["faces"].to_numpy(float)), np.log(work), 1)[0])
 
 
 def _half_winged_operations(run: Run) -> Iterable[float]:

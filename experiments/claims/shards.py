@@ -20,22 +20,22 @@ def shattered(run: Run) -> pd.DataFrame:
     Columns: structure, vertices, shards, milliseconds (of the whole fracture), per_second (shards),
     faster (than the indexed mesh).
     """
-    cells = _cells(run, SHATTER)
+    cases = _cases(run, SHATTER)
     rows = []
-    most = cells[cells["structure"] == ASKED]["vertices"].max()
+    most = cases[cases["structure"] == ASKED]["vertices"].max()
     for name in NAMES:
-        mine = cells[(cells["structure"] == name) & (cells["vertices"] <= most)]
+        mine = cases[(cases["structure"] == name) & (cases["vertices"] <= most)]
         if len(mine):
-            cell = mine.loc[mine["vertices"].idxmax()]
-            seconds = float(np.median(cell["samples"]))
-            asked = cells[(cells["structure"] == ASKED) & (cells["vertices"] == cell["vertices"])]
+            case = mine.loc[mine["vertices"].idxmax()]
+            seconds = float(np.median(case["samples"]))
+            asked = cases[(cases["structure"] == ASKED) & (cases["vertices"] == case["vertices"])]
             searched = float(np.median(asked["samples"].iloc[0])) if len(asked) else np.nan
             rows.append(
                 {
                     "structure": REGISTRY[name].title,
-                    "vertices": cell["vertices"],
-                    "shards": cell["handles"],
-                    "milliseconds": 1e3 * seconds * cell["handles"],
+                    "vertices": case["vertices"],
+                    "shards": case["handles"],
+                    "milliseconds": 1e3 * seconds * case["handles"],
                     "per_second": 1 / seconds,
                     "faster": searched / seconds,
                 }
@@ -49,11 +49,11 @@ def found(run: Run, structure: str = "half_edge") -> pd.DataFrame:
     Columns: way, visited and time (the slopes with their intervals, and the class that explains
     them best), faces and microseconds (looked at and taken, at the largest size).
     """
-    cells = _cells(run, FIND)
-    cells = cells[cells["structure"] == structure].sort_values("faces")
+    cases = _cases(run, FIND)
+    cases = cases[cases["structure"] == structure].sort_values("faces")
     rows = []
     for way in WAYS:
-        counted, timed = (cells[cells["order"] == it] for it in (f"{way}, {VISITED}", way))
+        counted, timed = (cases[cases["order"] == it] for it in (f"{way}, {VISITED}", way))
         if counted.empty or timed.empty:
             continue
         work = judge(counted["faces"], list(counted["samples"]), exact=True)
@@ -71,7 +71,7 @@ def found(run: Run, structure: str = "half_edge") -> pd.DataFrame:
 
 
 def styled(table: pd.DataFrame, heads: dict[str, tuple[str, str]]) -> str:
-    """As a table of a page; ``heads``: by column what stands above it, and the format of a cell."""
+    """As a table of a page; ``heads``: by column what stands above it, and the format of a case."""
     shown = pd.DataFrame(
         {head: table[column].map(pattern.format) for column, (head, pattern) in heads.items()}
     )
@@ -97,9 +97,9 @@ FOUND = {
 }
 
 
-def _cells(run: Run, query: str) -> pd.DataFrame:
-    cells = run.cells[run.cells["experiment"] == "bench_fracture"]
-    return cells[cells["query"] == query]
+def _cases(run: Run, query: str) -> pd.DataFrame:
+    cases = run.cases[run.cases["experiment"] == "bench_fracture"]
+    return cases[cases["subject"] == query]
 
 
 def _slope(verdict: Verdict) -> str:

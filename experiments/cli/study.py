@@ -14,7 +14,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 
 from experiments.cli.console import console, errors, user_errors
 from experiments.harness import memory
-from experiments.harness.presets import PROFILES
+from experiments.harness.presets import PRESETS
 from experiments.harness.steadiness import noise
 from experiments.runs import results, study
 from experiments.runs.worker import DEFAULT_SEED
@@ -22,7 +22,7 @@ from experiments.runs.worker import DEFAULT_SEED
 ProfileOption = Annotated[
     str | None,
     typer.Option(
-        help="How much to measure: " + "; ".join(f"{k}: {p.what}" for k, p in PROFILES.items())
+        help="How much to measure: " + "; ".join(f"{k}: {p.what}" for k, p in PRESETS.items())
     ),
 ]
 SeedOption = Annotated[
@@ -62,8 +62,8 @@ def run_study(
     is so much.
     """
     with user_errors():
-        if profile is not None and profile not in PROFILES:
-            raise ValueError(f"no profile is called {profile!r}; there are {', '.join(PROFILES)}")
+        if profile is not None and profile not in PRESETS:
+            raise ValueError(f"no profile is called {profile!r}; there are {', '.join(PRESETS)}")
         memory.available()  # whether HEM_MEMORY can be read
         if workers:
             _require_cluster(workers)
@@ -108,7 +108,7 @@ def _require_nothing_new(
 
 def _run_with_progress(folder: Path, profile: str, chosen: list[str], workers: str | None) -> None:
     begun = perf_counter()
-    console.print(f"Measuring into {folder} (profile {profile}: {PROFILES[profile].what})")
+    console.print(f"Measuring into {folder} (profile {profile}: {PRESETS[profile].what})")
     go_on = f"hem study --resume --run {folder}" + (f" --workers {workers}" if workers else "")
     try:
         with _progress(study.processes(profile, chosen), folder) as report:
@@ -133,8 +133,8 @@ def _run_with_progress(folder: Path, profile: str, chosen: list[str], workers: s
 def _conclude(folder: Path, seconds: float) -> None:
     """Say how it went: what was left out, how steady the machine was, what to do now."""
     run = results.load(folder)
-    if len(run.left_out):
-        console.print(f"{len(run.left_out)} cells were left out; hem report says which and why.")
+    if len(run.skipped):
+        console.print(f"{len(run.skipped)} cells were left out; hem report says which and why.")
     seen = noise(run)
     console.print(f"[yellow]{seen.words}[/]" if seen.too_busy else seen.words, highlight=False)
     console.print(f"Done in {seconds:.0f} s. Now: hem table, hem report")
@@ -153,7 +153,7 @@ def _progress(
     with Progress(
         *columns, TextColumn("cells, left"), TimeRemainingColumn(), console=console
     ) as bar:
-        task = bar.add_task("", total=sum(len(process.cells) for process in every))
+        task = bar.add_task("", total=sum(len(process.cases) for process in every))
         bar.update(task, completed=sum(done.values()))
 
         def report(process: study.Process, count: int) -> None:

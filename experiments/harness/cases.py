@@ -1,4 +1,4 @@
-"""What the experiments measure: cells, the meshes and structures they name, and whom they ask."""
+"""What the experiments measure: cases, the meshes and structures they name, and whom they ask."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 import hem
 import structures
 from experiments.harness.presets import HUBS
-from experiments.runs.results import CellResult
+from experiments.runs.results import Measurement
 from hem.contract.queries import QUERIES, Query
 from hem.contract.structure import Structure
 from hem.meshes.triangles import TriangleMesh
@@ -27,13 +27,13 @@ HANDLE_SEED = 21
 
 
 @dataclass(frozen=True)
-class Cell:
+class Case:
     """One point of an experiment, known before anything is built."""
 
     structure: str
     family: str
     size: int
-    query: str | None = None
+    subject: str | None = None
     order: str | None = None
     valence: int | None = None
     reference_bytes: int = 4
@@ -45,17 +45,17 @@ class Cell:
         references = (
             None if self.reference_bytes == 4 else f"{self.reference_bytes}-byte references"
         )
-        parts = self.query, self.family, self.size, valence, self.order, references
+        parts = self.subject, self.family, self.size, valence, self.order, references
         return "/".join(str(part) for part in parts if part is not None)
 
     @property
-    def asked(self) -> Query:
-        """The query of a cell that has one."""
-        return QUERIES[str(self.query)]
+    def query(self) -> Query:
+        """The query of a case that has one."""
+        return QUERIES[str(self.subject)]
 
     def mesh(self) -> TriangleMesh:
-        """The mesh, renumbered at random where the cell says so and asks nothing."""
-        shuffled = self.order == "random" and self.query is None
+        """The mesh, renumbered at random where the case says so and asks nothing."""
+        shuffled = self.order == "random" and self.subject is None
         return _mesh(self.family, self.size, self.valence, shuffled)
 
     def build(self) -> Structure:
@@ -64,12 +64,12 @@ class Cell:
             self.structure, self.family, self.size, self.valence, self.reference_bytes
         )
 
-    def result(self, kind: str, s: Structure, samples: ArrayLike, **more: Any) -> CellResult:
-        """The cell as measured, with the facts of its mesh."""
-        return CellResult(
+    def result(self, kind: str, s: Structure, samples: ArrayLike, **more: Any) -> Measurement:
+        """The case as measured, with the facts of its mesh."""
+        return Measurement(
             id=self.id,
             kind=kind,
-            query=self.query,
+            subject=self.subject,
             order=self.order,
             family=self.family,
             vertices=s.n_vertices,
@@ -83,57 +83,57 @@ class Cell:
             **more,
         )
 
-    def not_measured(self, experiment: str, reason: str) -> CellResult:
-        """The cell where its mesh was not even made; its counts are about those asked for."""
+    def not_measured(self, experiment: str, reason: str) -> Measurement:
+        """The case where its mesh was not even made; its counts are about those asked for."""
         counted = self.order == "counted" or experiment == "bench_work"
-        return CellResult(
+        return Measurement(
             id=self.id,
             kind={"bench_memory": "bytes"}.get(experiment, "work" if counted else "time"),
-            query=self.query,
+            subject=self.subject,
             order=self.order,
             family=self.family,
             vertices=self.size // 2 if self.family == HUBS else self.size,
             faces=self.size if self.family == HUBS else 2 * self.size,
             valence=self.valence,
             reference_bytes=self.reference_bytes,
-            left_out=reason,
+            skipped=reason,
         )
 
 
-def in_random_order(cells: Sequence[Cell], seed: int | str) -> list[Cell]:
-    """The cells in an order that the seed determines: random meshes, on each its cells at random.
+def in_random_order(cases: Sequence[Case], seed: int | str) -> list[Case]:
+    """The cases in an order that the seed determines: random meshes, on each its cases at random.
 
     What is asked of one mesh stays together, since building it anew for each question would take
     longer than the asking.
     """
     random = Random(seed)
 
-    def mesh(cell: Cell) -> tuple[str, int, int]:
-        return cell.family, cell.size, cell.valence or 0
+    def mesh(case: Case) -> tuple[str, int, int]:
+        return case.family, case.size, case.valence or 0
 
-    blocks = [list(block) for _, block in groupby(sorted(cells, key=mesh), mesh)]
+    blocks = [list(block) for _, block in groupby(sorted(cases, key=mesh), mesh)]
     random.shuffle(blocks)
     for block in blocks:
         random.shuffle(block)
-    return [cell for block in blocks for cell in block]
+    return [case for block in blocks for case in block]
 
 
-def pool(cell: Cell, s: Structure) -> Array:
-    """The handles a cell asks, each once: in ascending order, or all of them in random order.
+def pool(case: Case, s: Structure) -> Array:
+    """The handles a case asks, each once: in ascending order, or all of them in random order.
 
     Where the valence varies they are the hubs, and the edges and faces at hubs; there are as many
     of these at every valence.
     """
-    source = cell.asked.source
-    handles = _all_handles(cell.structure, cell.family, cell.size, cell.valence, source)
-    if cell.valence is not None:
+    source = case.query.source
+    handles = _all_handles(case.structure, case.family, case.size, case.valence, source)
+    if case.valence is not None:
         if source == "vertex":
             corners = handles
         else:
             corners = (s.edge_vertices if source == "edge" else s.face_vertices)(handles).values
-        hubs = hem.valence_hubs(cell.valence, cell.size)
+        hubs = hem.valence_hubs(case.valence, case.size)
         handles = handles[(corners < len(hubs)).reshape(len(handles), -1).any(axis=1)]
-    if cell.order == "random":
+    if case.order == "random":
         handles = np.random.default_rng(HANDLE_SEED).permutation(handles)
     return handles
 

@@ -24,7 +24,7 @@ def latency_now(working_set: int) -> float:
     """Seconds per access in a working set of so many bytes, as the machine is at this moment.
 
     On a shared machine the caches are as large as the neighbors leave them, and that changes within
-    seconds: a cell is compared with the latency measured right beside it.
+    seconds: a case is compared with the latency measured right beside it.
     """
     chain = random_cycle(max(working_set // LINE, 2))
     place = chase(chain, 0, min(len(chain) // WORDS, MOST_WARMING))

@@ -1,7 +1,7 @@
-"""What a cell will take of memory, before it takes it.
+"""What a case will take of memory, before it takes it.
 
 Estimated from what a small mesh takes in the same structure, which is in proportion to its
-vertices; a cell that would take more than a part of what there is is left out and says so.
+vertices; a case that would take more than a part of what there is is left out and says so.
 """
 
 from __future__ import annotations
@@ -13,12 +13,12 @@ from pathlib import Path
 
 import hem
 import structures
-from experiments.harness.cases import Cell
+from experiments.harness.cases import Case
 from experiments.harness.presets import HUBS
 from structures import REGISTRY
 
 SHARE = 0.7
-"""The part of the available memory that a cell may take."""
+"""The part of the available memory that a case may take."""
 
 VARIABLE = "HEM_MEMORY"
 """Environment variable that says how much memory there is, such as ``500M``, ``8G`` or bytes."""
@@ -56,27 +56,27 @@ CGROUPS = (
 )
 
 
-def why_not(cell: Cell, experiment: str) -> str:
-    """Why a cell had better be left out; empty if it fits."""
-    needed, there = estimate(cell, experiment), available()
+def why_not(case: Case, experiment: str) -> str:
+    """Why a case had better be left out; empty if it fits."""
+    needed, there = estimate(case, experiment), available()
     if needed <= SHARE * there:
         return ""
     return (
         f"would take some {megabytes(needed)} of memory; "
-        f"{megabytes(there)} are available, of which a cell may take {SHARE:.0%}"
+        f"{megabytes(there)} are available, of which a case may take {SHARE:.0%}"
     )
 
 
-def estimate(cell: Cell, experiment: str) -> int:
-    """Bytes that a cell takes at its peak, about; more rather than less."""
+def estimate(case: Case, experiment: str) -> int:
+    """Bytes that a case takes at its peak, about; more rather than less."""
     if experiment == "bench_latency":
-        return CHASE_COPIES * cell.size
+        return CHASE_COPIES * case.size
     copies = COPIES.get(experiment, MOST_COPIES)
-    compiled = cell.structure in REGISTRY and REGISTRY[cell.structure].compiled
-    each = per_vertex(cell.structure, cell.reference_bytes)
+    compiled = case.structure in REGISTRY and REGISTRY[case.structure].compiled
+    each = per_vertex(case.structure, case.reference_bytes)
     building = BUILDING * each if compiled else each
-    mesh = MESH_BYTES.get(cell.family, OTHER_MESH_BYTES)
-    return int(vertices(cell) * (mesh + building + copies * each))
+    mesh = MESH_BYTES.get(case.family, OTHER_MESH_BYTES)
+    return int(vertices(case) * (mesh + building + copies * each))
 
 
 @lru_cache(maxsize=32)
@@ -88,11 +88,11 @@ def per_vertex(structure: str, reference_bytes: int = 4) -> float:
     return sum(small.memory().values()) / small.n_vertices
 
 
-def vertices(cell: Cell) -> int:
-    """How many vertices the mesh of a cell will have, about."""
-    if cell.family in hem.SAMPLES:
-        return len(cell.mesh().points)
-    return cell.size // 2 if cell.family == HUBS else cell.size
+def vertices(case: Case) -> int:
+    """How many vertices the mesh of a case will have, about."""
+    if case.family in hem.SAMPLES:
+        return len(case.mesh().points)
+    return case.size // 2 if case.family == HUBS else case.size
 
 
 def available() -> int:

@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 
 import hem
 import structures
-from experiments.harness.cases import Cell
+from experiments.harness.cases import Case
 from experiments.harness.latency import latency_now
-from experiments.harness.presets import HUBS, Profile
+from experiments.harness.presets import HUBS, Preset
 from hem.contract.structure import Structure
 from hem.engine.uses import END
 
@@ -41,12 +41,12 @@ SMALL = 20_000
 """Faces up to which the outcome is judged from its triangles, and against the indexed mesh."""
 
 
-def faces_of(cell: Cell, count: int = MOST_ELEMENTS) -> Array:
+def faces_of(case: Case, count: int = MOST_ELEMENTS) -> Array:
     """Faces (k,) so far apart that what is done at one leaves the others as they are, ascending.
 
     Where the valence varies each has a hub as its first corner.
     """
-    chosen = _apart(cell.family, cell.size, cell.valence)
+    chosen = _apart(case.family, case.size, case.valence)
     if len(chosen) > count:
         chosen = np.sort(np.random.default_rng(ELEMENT_SEED).choice(chosen, count, replace=False))
     return chosen
@@ -54,7 +54,7 @@ def faces_of(cell: Cell, count: int = MOST_ELEMENTS) -> Array:
 
 @lru_cache(maxsize=2)
 def _apart(family: str, size: int, valence: int | None) -> Array:
-    mesh = Cell("half_edge", family, size, valence=valence).mesh()
+    mesh = Case("half_edge", family, size, valence=valence).mesh()
     if family == HUBS:
         hubs = hem.valence_hubs(int(valence or 0), size)[::2]  # one of each bipyramid
         order = np.argsort(mesh.triangles[:, 0], kind="stable")
@@ -134,17 +134,17 @@ def validate(operated: Structure) -> None:
         hem.require_sound(operated.to_triangles())
 
 
-def check(cell: Cell, operated: Structure, faces: Array) -> None:
+def check(case: Case, operated: Structure, faces: Array) -> None:
     """Validate what operations made, and compare it with the indexed mesh where that is quick."""
     validate(operated)
-    if operated.n_faces <= SMALL and cell.structure != "indexed":
-        both = [_operated(name, cell, faces[:20]) for name in (cell.structure, "indexed")]
+    if operated.n_faces <= SMALL and case.structure != "indexed":
+        both = [_operated(name, case, faces[:20]) for name in (case.structure, "indexed")]
         if both[0] != both[1]:
-            raise AssertionError(f"{cell.id} on {cell.structure} gives another mesh than indexed")
+            raise AssertionError(f"{case.id} on {case.structure} gives another mesh than indexed")
 
 
-def _operated(name: str, cell: Cell, faces: Array) -> list[tuple[int, ...]]:
-    bench = Bench(structures.build(name, cell.mesh()), str(cell.query), faces)
+def _operated(name: str, case: Case, faces: Array) -> list[tuple[int, ...]]:
+    bench = Bench(structures.build(name, case.mesh()), str(case.subject), faces)
     bench.operate()
     return _triangles(bench.mesh)
 
@@ -154,15 +154,15 @@ def _triangles(s: Structure) -> list[tuple[int, ...]]:
     return sorted(tuple(np.roll(row, -int(row.argmin())).tolist()) for row in rows)
 
 
-def time_operations(benchmark: Any, cell: Cell, profile: Profile) -> dict[str, Any]:
+def time_operations(benchmark: Any, case: Case, profile: Preset) -> dict[str, Any]:
     """Time operations in compiled loops -> samples, how many per sample, and latency."""
-    s, faces = cell.build(), faces_of(cell)
-    if cell.structure == "indexed" and cell.query not in NOT_SCANNED:
+    s, faces = case.build(), faces_of(case)
+    if case.structure == "indexed" and case.subject not in NOT_SCANNED:
         faces = faces[: max(4, int(profile.round_seconds / (5e-9 * s.n_faces)))]
-    bench = Bench(s, str(cell.query), faces)
+    bench = Bench(s, str(case.subject), faces)
     if bench.operate() < bench.operations:
-        raise RuntimeError(f"{cell.id}: there was no room for all operations")
-    check(cell, bench.mesh, faces)
+        raise RuntimeError(f"{case.id}: there was no room for all operations")
+    check(case, bench.mesh, faces)
     most = MOST_TURNS if s.compiled else 1  # interpreted ones last long enough
     turns = int(np.clip(FEWEST_OPERATIONS // bench.operations, 1, most))
     latency = latency_now(sum(s.memory().values()))

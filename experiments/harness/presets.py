@@ -11,15 +11,15 @@ HUBS = "hubs"
 
 
 @dataclass(frozen=True)
-class Profile:
+class Preset:
     """One extent of a study. Sizes are numbers of vertices, valences those of the asked vertices.
 
     ``families[0]`` is the judged one: its valence is the same at every size. Structures made of
     objects are operated on up to ``object_vertices``, asked and built of three times as many; what
     the thesis prints is built of ``printed_sizes``. A round is one sample;
-    ``round_seconds`` is how long it should last, ``cell_seconds`` what a cell may take in all.
+    ``round_seconds`` is how long it should last, ``case_seconds`` what a case may take in all.
     ``valence_faces`` stay in the caches that a core has to itself: beyond, neighbors on the machine
-    make cells of one curve differ threefold.
+    make cases of one curve differ threefold.
     """
 
     what: str
@@ -40,10 +40,10 @@ class Profile:
     models: tuple[str, ...]
     rounds: int
     round_seconds: float
-    cell_seconds: float
+    case_seconds: float
     latency_mib: int
 
-    def of(self, structure: str) -> Profile:
+    def of(self, structure: str) -> Preset:
         """The profile for one structure: smaller meshes where it is made of objects."""
         if structure not in REGISTRY or REGISTRY[structure].compiled:
             return self
@@ -79,9 +79,9 @@ def _geometric(first: int, last: int, per_decade: int) -> tuple[int, ...]:
 
 VALENCES = tuple(2**k for k in range(2, 13))
 
-PROFILES = {
-    "smoke": Profile(
-        what="a few small cells of everything, to see that it all works, some 3 minutes",
+PRESETS = {
+    "smoke": Preset(
+        what="a few small cases of everything, to see that it all works, some 3 minutes",
         families=("torus",),
         sizes=(100, 400),
         orders=("random", "consecutive"),
@@ -99,10 +99,10 @@ PROFILES = {
         models=("teapot",),
         rounds=5,
         round_seconds=0.0002,
-        cell_seconds=0.5,
+        case_seconds=0.5,
         latency_mib=1,
     ),
-    "quick": Profile(
+    "quick": Preset(
         what="one family up to 100,000 vertices, some 15 minutes",
         families=("torus",),
         sizes=_geometric(100, 100_000, 2),
@@ -121,10 +121,10 @@ PROFILES = {
         models=("teapot", "bunny"),
         rounds=9,
         round_seconds=0.002,
-        cell_seconds=0.25,
+        case_seconds=0.25,
         latency_mib=128,
     ),
-    "standard": Profile(
+    "standard": Preset(
         what="one family of each kind up to 1,000,000 vertices, some 40 minutes",
         families=("torus", "sphere", "grid", "isosurface"),
         sizes=_geometric(100, 1_000_000, 2),
@@ -143,10 +143,10 @@ PROFILES = {
         models=("teapot", "cow", "bunny", "bone"),
         rounds=15,
         round_seconds=0.004,
-        cell_seconds=1.0,
+        case_seconds=1.0,
         latency_mib=512,
     ),
-    "full": Profile(
+    "full": Preset(
         what="every family up to 1,000,000 vertices with finer steps, some two hours",
         families=("torus", "sphere", "grid", "cone", "terrain", "isosurface"),
         sizes=_geometric(100, 1_000_000, 4),
@@ -165,7 +165,7 @@ PROFILES = {
         models=("teapot", "cow", "airplane", "bunny", "bone"),
         rounds=25,
         round_seconds=0.01,
-        cell_seconds=5.0,
+        case_seconds=5.0,
         latency_mib=1024,
     ),
 }

@@ -1,7 +1,7 @@
 """A reference that slows as compiled queries do when the machine is busy: times are divided by it.
 
 The latency of the memory will not do: where the caches end, readings of it were measured to change
-by a quarter to threefold from run to run, beside cells that stayed within a twentieth to a fifth.
+by a quarter to threefold from run to run, beside cases that stayed within a twentieth to a fifth.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """How steady the machine was while a run measured.
 
-A probe, a short compiled loop that always does the same, is timed before and after each cell. One
+A probe, a short compiled loop that always does the same, is timed before and after each case. One
 that takes longer than it can take says that something else was running, or that the processor was
-throttled; so does a cell during which the process did not get its core. Cells that are disturbed
+throttled; so does a case during which the process did not get its core. Cases that are disturbed
 by more than ``STRAY`` are measured again at the end of their process, at most ``REPEATS`` times,
 and the calmest result is kept. What is still disturbed is counted, and past ``BUSY`` the machine
 was too busy to judge by time.
@@ -29,10 +29,10 @@ CALIBRATION = 10
 STRAY = 0.25
 """Part by which a probe may be slower than the fastest one …"""
 WAITED = 0.10
-"""… and part of its time that a cell may wait for its core, before it counts as disturbed."""
+"""… and part of its time that a case may wait for its core, before it counts as disturbed."""
 REPEATS = 2
 BUSY = 0.10
-"""Share of disturbed cells above which times should not be judged by."""
+"""Share of disturbed cases above which times should not be judged by."""
 
 
 @njit(cache=True)
@@ -93,20 +93,20 @@ def disturbed(noise: dict[str, Any]) -> bool:
 
 
 def badness(noise: dict[str, Any]) -> float:
-    """By how much a cell was disturbed, to choose the calmest of several results of it."""
+    """By how much a case was disturbed, to choose the calmest of several results of it."""
     return max(noise["stray"] / STRAY, noise["waited"] / WAITED) if noise else np.inf
 
 
 @dataclass(frozen=True)
 class Noise:
-    """How steady the machine was during a run, over its timed cells.
+    """How steady the machine was during a run, over its timed cases.
 
-    ``cells``: how many said so; ``disturbed``: how many were even when they were repeated;
+    ``cases``: how many said so; ``disturbed``: how many were even when they were repeated;
     ``repeated``: how many were measured more than once; ``probe_spread``: the 90th percentile of
-    the probes over their fastest, less one; ``worst``: the processes with most disturbed cells.
+    the probes over their fastest, less one; ``worst``: the processes with most disturbed cases.
     """
 
-    cells: int
+    cases: int
     disturbed: int
     repeated: int
     probe_spread: float
@@ -114,8 +114,8 @@ class Noise:
 
     @property
     def share(self) -> float:
-        """The disturbed part of the timed cells."""
-        return self.disturbed / max(self.cells, 1)
+        """The disturbed part of the timed cases."""
+        return self.disturbed / max(self.cases, 1)
 
     @property
     def too_busy(self) -> bool:
@@ -125,10 +125,10 @@ class Noise:
     @property
     def words(self) -> str:
         """All that in a sentence or two."""
-        if not self.cells:
+        if not self.cases:
             return "The run did not watch how steady the machine was."
         found = (
-            f"{self.disturbed:,} of {self.cells:,} timed cells ({self.share:.0%}) were disturbed, "
+            f"{self.disturbed:,} of {self.cases:,} timed cases ({self.share:.0%}) were disturbed, "
             f"{self.repeated:,} were repeated; a fixed loop took up to {self.probe_spread:.0%} "
             "longer than at its fastest in nine of ten probes."
         )
@@ -139,14 +139,14 @@ class Noise:
 
 
 def noise(run: Run) -> Noise:
-    """How steady the machine was during a run; no cells for runs that did not watch."""
-    cells = run.cells
-    timed = cells[(cells["kind"] == "time") & cells["noise"].map(bool)]
+    """How steady the machine was during a run; no cases for runs that did not watch."""
+    cases = run.cases
+    timed = cases[(cases["kind"] == "time") & cases["noise"].map(bool)]
     seen = list(timed["noise"])
     bad = timed[[disturbed(it) for it in seen]] if seen else timed
     names = (bad["experiment"] + " on " + bad["structure"]).value_counts().head(3)
     return Noise(
-        cells=len(seen),
+        cases=len(seen),
         disturbed=len(bad),
         repeated=sum(it.get("measured", 1) > 1 for it in seen),
         probe_spread=_spread(seen),

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from experiments.harness.latency import latency_now
-from experiments.harness.presets import Profile
+from experiments.harness.presets import Preset
 from hem.contract.structure import Structure
 
 Array = NDArray[Any]
@@ -22,11 +22,11 @@ CALIBRATIONS = 3
 
 
 class TooSlowError(RuntimeError):
-    """A cell would take longer than its profile allows."""
+    """A case would take longer than its profile allows."""
 
 
 def time_query(
-    benchmark: Any, s: Structure, query: str, pool: Array, profile: Profile
+    benchmark: Any, s: Structure, query: str, pool: Array, profile: Preset
 ) -> dict[str, Any]:
     """Time ``s.sweep(query, …)`` over the handles in ``pool`` -> samples, handles and latency.
 
@@ -36,13 +36,13 @@ def time_query(
     """
     seconds = _seconds_per_query(s, query, pool, profile.round_seconds / 4)
     handles = int(np.clip(profile.round_seconds / seconds, 1, MOST_HANDLES))
-    rounds = int(np.clip(profile.cell_seconds / (seconds * handles), 0, profile.rounds))
+    rounds = int(np.clip(profile.case_seconds / (seconds * handles), 0, profile.rounds))
     if rounds < FEWEST_ROUNDS:
         raise TooSlowError(
-            f"one query takes {seconds:.3g} s, a cell may take {profile.cell_seconds} s"
+            f"one query takes {seconds:.3g} s, a case may take {profile.case_seconds} s"
         )
     latency = latency_now(sum(s.memory().values()))
-    if seconds * len(pool) < profile.cell_seconds:
+    if seconds * len(pool) < profile.case_seconds:
         s.sweep(query, pool)
     windows = (np.arange(handles) + handles * k for k in count())
 

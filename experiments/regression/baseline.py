@@ -1,8 +1,8 @@
 """What `hem check` compares with: the small text files in ``results/reference/``.
 
-``exact.json`` holds what `regression.counters` measures, ``run.json`` a run and its exact cells,
+``exact.json`` holds what `regression.counters` measures, ``run.json`` a run and its exact cases,
 ``times.json`` its rounds, and ``verdicts.json`` what they say about each claim. One line is one
-cell, so that a change reads as one.
+case, so that a change reads as one.
 """
 
 from __future__ import annotations
@@ -42,9 +42,9 @@ Verdicts = dict[tuple[str, str, str], dict[str, Any]]
 
 @dataclass
 class Measured:
-    """The exact cells and the rounds of a run, by key.
+    """The exact cases and the rounds of a run, by key.
 
-    ``times`` holds per cell its ``samples`` in seconds, and ``probe``: the seconds of a fixed loop
+    ``times`` holds per case its ``samples`` in seconds, and ``probe``: the seconds of a fixed loop
     before and after it.
     """
 
@@ -58,22 +58,22 @@ def measured(run: Run) -> Measured:
     """What a run holds that can be compared; judges it, which takes some seconds."""
     found = Measured({key: run.meta.get(key) for key in HEAD})
     found.head |= {"run": run.folder.resolve().name, "too_busy": noise(run).too_busy}
-    for cell in run.cells.to_dict("records"):
-        name = f"{cell['experiment']}/{cell['structure']}/{cell['id']}"
-        if cell["kind"] in ("work", "bytes"):
-            found.exact[name] = [int(it) for it in cell["samples"]]
-        elif _comparable(cell):
-            samples = [_short(it) for it in cell["samples"]]
-            probe = [_short(cell["noise"][when]) for when in ("before", "after")]
+    for case in run.cases.to_dict("records"):
+        name = f"{case['experiment']}/{case['structure']}/{case['id']}"
+        if case["kind"] in ("work", "bytes"):
+            found.exact[name] = [int(it) for it in case["samples"]]
+        elif _comparable(case):
+            samples = [_short(it) for it in case["samples"]]
+            probe = [_short(case["noise"][when]) for when in ("before", "after")]
             found.times[name] = {"samples": samples, "probe": probe}
     found.verdicts = _verdicts_of(run)
     return found
 
 
-def _comparable(cell: dict[Any, Any]) -> bool:
-    """Whether the times of a cell can be compared, and are to be."""
-    wanted = cell["order"] in TIMED.get(cell["experiment"], ())
-    return wanted and bool(cell["noise"]) and len(cell["samples"]) >= LEAST_ROUNDS
+def _comparable(case: dict[Any, Any]) -> bool:
+    """Whether the times of a case can be compared, and are to be."""
+    wanted = case["order"] in TIMED.get(case["experiment"], ())
+    return wanted and bool(case["noise"]) and len(case["samples"]) >= LEAST_ROUNDS
 
 
 def _verdicts_of(run: Run) -> Verdicts:
@@ -84,7 +84,7 @@ def _verdicts_of(run: Run) -> Verdicts:
 
 
 def _by_claim(content: dict[str, Any]) -> Verdicts:
-    return {(it["table"], it["structure"], it["query"]): it for it in content["claims"]}
+    return {(it["table"], it["structure"], it["subject"]): it for it in content["claims"]}
 
 
 def _short(seconds: float) -> float:
@@ -94,7 +94,7 @@ def _short(seconds: float) -> float:
 def load_exact(folder: Path = FOLDER) -> Exact:
     """The exact part of the reference. Raises ResultsError that names the file and the way out."""
     content = _read(folder / "exact.json", UPDATE)
-    return Exact(content["cells"], python=str(content.get("python", "")))
+    return Exact(content["cases"], python=str(content.get("python", "")))
 
 
 def load_measured(folder: Path = FOLDER) -> Measured:
@@ -106,7 +106,7 @@ def load_measured(folder: Path = FOLDER) -> Measured:
     if verdicts.get("run") != run.get("run"):
         raise ResultsError(f"{folder} holds parts of two runs; make it anew: {update}")
     head = {key: run.get(key) for key in (*HEAD, "run", "too_busy")}
-    return Measured(head, run["cells"], times["cells"], _by_claim(verdicts))
+    return Measured(head, run["cases"], times["cases"], _by_claim(verdicts))
 
 
 def save_exact(exact: Exact, folder: Path = FOLDER) -> None:
@@ -116,7 +116,7 @@ def save_exact(exact: Exact, folder: Path = FOLDER) -> None:
         "holds": "what experiments/exact.py measures; reads per handle, bytes, classes by work",
         "python": exact.python,
     }
-    _write(folder / "exact.json", head, exact.cells)
+    _write(folder / "exact.json", head, exact.cases)
 
 
 def save_measured(run: Measured, folder: Path = FOLDER) -> None:
@@ -126,11 +126,11 @@ def save_measured(run: Measured, folder: Path = FOLDER) -> None:
     _write(folder / "times.json", {"schema": SCHEMA, "holds": holds}, run.times)
 
 
-def _write(path: Path, head: dict[str, Any], cells: dict[str, Any]) -> None:
-    """One line per entry of the head and per cell, all at once."""
-    lines = [f"{json.dumps(key)}: {json.dumps(cells[key])}" for key in sorted(cells)]
+def _write(path: Path, head: dict[str, Any], cases: dict[str, Any]) -> None:
+    """One line per entry of the head and per case, all at once."""
+    lines = [f"{json.dumps(key)}: {json.dumps(cases[key])}" for key in sorted(cases)]
     top = [f"{json.dumps(key)}: {json.dumps(value)},\n" for key, value in head.items()]
-    text = "{\n" + "".join(top) + '"cells": {\n' + ",\n".join(lines) + "\n}\n}\n"
+    text = "{\n" + "".join(top) + '"cases": {\n' + ",\n".join(lines) + "\n}\n}\n"
     path.parent.mkdir(parents=True, exist_ok=True)
     beside = path.with_suffix(".part")
     beside.write_text(text, "utf-8")
@@ -138,7 +138,7 @@ def _write(path: Path, head: dict[str, Any], cells: dict[str, Any]) -> None:
 
 
 def _read(
-    path: Path, update: str, schema: int | None = SCHEMA, within: str = "cells"
+    path: Path, update: str, schema: int | None = SCHEMA, within: str = "cases"
 ) -> dict[str, Any]:
     if not path.exists():
         raise ResultsError(f"{path} is not there, so there is nothing to compare with; {update}")

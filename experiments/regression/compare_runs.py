@@ -1,9 +1,9 @@
-"""A run compared with the reference run: exact cells, classes, slopes, and times.
+"""A run compared with the reference run: exact cases, classes, slopes, and times.
 
-Rounds of a cell are milliseconds apart, so what they differ by within a cell says nothing about
+Rounds of a case are milliseconds apart, so what they differ by within a case says nothing about
 what two runs differ by. A curve, one query of one structure at all sizes, is therefore judged as a
-whole: it got slower only if most of its cells say so, each by significance and by size, relative to
-a fixed loop that the run timed before and after the cell (`experiments.harness.steadiness`).
+whole: it got slower only if most of its cases say so, each by significance and by size, relative to
+a fixed loop that the run timed before and after the case (`experiments.harness.steadiness`).
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from experiments.claims.growth import TABLES, load_claims
 from experiments.claims.judged import LEAST_SLOPE, SOURCES
 from experiments.regression.baseline import Measured
 from experiments.regression.counters import named
-from experiments.regression.findings import Finding, Outcome, claim_of, compare_cells, reclassed
+from experiments.regression.findings import Finding, Outcome, claim_of, compare_cases, reclassed
 from experiments.regression.significance import compare
 
 FACTOR = 2.0
@@ -33,7 +33,7 @@ did not; a query that becomes linear moves its slope by 1. Where nothing is clai
 compared."""
 
 STRAYS = 1
-"""Cells of a curve that may be slower while it is as before: somebody else was at work."""
+"""Cases of a curve that may be slower while it is as before: somebody else was at work."""
 
 MACHINE = ("cpu", "cores", "caches")
 """What must be the same for times to be comparable."""
@@ -53,7 +53,7 @@ def compare_runs(before: Measured, after: Measured, factor: float = FACTOR) -> C
     python = _python(before) != _python(after)
     if python:
         notes.append("another Python: the bytes of its objects are not compared")
-    findings = [*missing, *compare_cells(*exact, other_python=python)]
+    findings = [*missing, *compare_cases(*exact, other_python=python)]
     busy = _too_busy(before.head, after.head)
     alike = _profile(before) == _profile(after)
     if not alike:
@@ -112,24 +112,24 @@ def _in_scope(
     notes: list[str],
     what: str,
 ) -> tuple[tuple[dict[str, Any], dict[str, Any]], list[Finding]]:
-    """The cells that both should have, and a finding for every process without any in the run.
+    """The cases that both should have, and a finding for every process without any in the run.
 
-    Runs of one profile should have the same cells. Of another one they share what they share.
+    Runs of one profile should have the same cases. Of another one they share what they share.
     """
     lacking = Counter(_process(key) for key in old.keys() - new.keys())
     present = {_process(key) for key in new}
     gone = {it for it in lacking if it not in present}
     findings = [
-        Finding("undetermined", _kind(it), it, f"{lacking[it]:,} cells", "none", "was not measured")
+        Finding("undetermined", _kind(it), it, f"{lacking[it]:,} cases", "none", "was not measured")
         for it in sorted(gone)
     ]  # fmt: skip
-    old = {key: cell for key, cell in old.items() if _process(key) not in gone}
+    old = {key: case for key, case in old.items() if _process(key) not in gone}
     if _profile(before) == _profile(after):
         return (old, new), findings
     every, both = old.keys() | new.keys(), old.keys() & new.keys()
     alone = {_curve(key) for key in every} - {_curve(key) for key in both}
     notes.append(
-        f"{what}: {len(both):,} cells are compared; {len(every) - len(both):,} are of one profile "
+        f"{what}: {len(both):,} cases are compared; {len(every) - len(both):,} are of one profile "
         f"only ({_profile(before)}, {_profile(after)}), among them all of {len(alone):,} curves"
     )
     return ({key: old[key] for key in both}, {key: new[key] for key in both}), findings
@@ -158,9 +158,9 @@ def _verdicts(before: Measured, after: Measured) -> Iterator[Finding]:
     Work is exact. By time a claim is lost or won only where a slope says so, too.
     """
     for claim in load_claims():
-        key = claim.table, claim.structure, claim.what
+        key = claim.table, claim.structure, claim.subject
         old, new = before.verdicts.get(key), after.verdicts.get(key)
-        where = f"{claim.structure}/{claim.what}"
+        where = f"{claim.structure}/{claim.subject}"
         text = f"{TABLES[claim.table]}, {claim.title}: {claim.printed}; {claim.source}"
         if old is None or new is None:
             lacks = "not in the reference" if old is None else "was not judged"
@@ -229,27 +229,27 @@ def _timed(
     after: dict[str, dict[str, Any]],
     factor: float,
 ) -> Finding:
-    """One curve: decided where more than half of its cells say the same, and none is lost."""
+    """One curve: decided where more than half of its cases say the same, and none is lost."""
     both = [key for key in keys if key in before and key in after]
     if not both:
         lacks = "not in the reference" if keys[0] in after else "was not measured"
         return Finding("undetermined", "time", curve, "", "", lacks, claim_of(curve))
-    cells = [
+    cases = [
         compare(
             before[it]["samples"], after[it]["samples"],
             before[it]["probe"], after[it]["probe"], factor,
         )
         for it in both
     ]  # fmt: skip
-    said = Counter(cell.outcome for cell in cells)
+    said = Counter(case.outcome for case in cases)
     outcome, most = said.most_common(1)[0]
     lost = sum(key not in after for key in keys)
-    ratio = float(np.exp(np.nanmedian([np.log(cell.ratio) for cell in cells])))
+    ratio = float(np.exp(np.nanmedian([np.log(case.ratio) for case in cases])))
     text = ", ".join(f"{count} {it}" for it, count in said.most_common())
     text += f", {lost} not measured" if lost else ""
-    low, high = min(cell.ratio for cell in cells), max(cell.ratio for cell in cells)
-    decided = outcome if 2 * most > len(cells) else "undetermined"
+    low, high = min(case.ratio for case in cases), max(case.ratio for case in cases)
+    decided = outcome if 2 * most > len(cases) else "undetermined"
     if decided == "same" and (lost or said["worse"] > STRAYS):
         decided = "undetermined"  # perhaps just the largest are slower
     slower = f"× {ratio:.2f} ({low:.2f} … {high:.2f})"
-    return Finding(decided, "time", curve, "", slower, f"cells: {text}", claim_of(curve))
+    return Finding(decided, "time", curve, "", slower, f"cases: {text}", claim_of(curve))

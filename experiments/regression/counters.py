@@ -22,9 +22,9 @@ from numpy.lib import tracemalloc_domain
 import structures
 from experiments import bench_operation_work, bench_printed, bench_work
 from experiments.claims.growth import Claim, load_claims
-from experiments.harness.cases import Cell
-from experiments.harness.presets import PROFILES
-from experiments.runs.results import CellResult, Run
+from experiments.harness.cases import Case
+from experiments.harness.presets import PRESETS
+from experiments.runs.results import Measurement, Run
 from hem.contract.queries import QUERIES
 from hem.contract.structure import REFERENCE_TYPES, Structure
 
@@ -32,7 +32,7 @@ Value = list[int] | str
 """Counts, one per handle or field; or a growth class and what it says of the claim."""
 
 EXTENT = replace(
-    PROFILES["quick"],
+    PRESETS["quick"],
     what="all that is exact, on small meshes",
     work_sizes=(100, 200, 400, 800),  # the fewest that a class can be judged from
     valences=(4, 8, 16, 32),
@@ -58,7 +58,7 @@ class Exact:
     key, and why.
     """
 
-    cells: dict[str, Value] = field(default_factory=dict)
+    cases: dict[str, Value] = field(default_factory=dict)
     failed: dict[str, str] = field(default_factory=dict)
     python: str = ".".join(platform.python_version_tuple()[:2])
 
@@ -71,14 +71,14 @@ class _Untimed:
 
 
 MEASURED: tuple[tuple[ModuleType, Callable[..., None]], ...] = (
-    (bench_work, lambda cell, keep: bench_work.test_work(cell, keep)),
-    (bench_operation_work, lambda cell, keep: bench_operation_work.test_operation_work(cell, keep)),
+    (bench_work, lambda case, keep: bench_work.test_work(case, keep)),
+    (bench_operation_work, lambda case, keep: bench_operation_work.test_operation_work(case, keep)),
     (
         bench_printed,
-        lambda cell, keep: bench_printed.test_listing(cell, EXTENT, _Untimed(), keep),
+        lambda case, keep: bench_printed.test_listing(case, EXTENT, _Untimed(), keep),
     ),
 )
-"""The experiments whose counts are exact, and how a cell of theirs is counted."""
+"""The experiments whose counts are exact, and how a case of theirs is counted."""
 
 
 def measure(chosen: Sequence[str] = ()) -> Exact:
@@ -89,14 +89,14 @@ def measure(chosen: Sequence[str] = ()) -> Exact:
     found, rows = Exact(), []
     for module, count in MEASURED:
         for name in _wanted(module.STRUCTURES, chosen):
-            for cell in module.cells(EXTENT.of(name), name):
-                if cell.order != "timed":
-                    rows += _counted(found, module.__name__.rpartition(".")[2], cell, count)
+            for case in module.cases(EXTENT.of(name), name):
+                if case.order != "timed":
+                    rows += _counted(found, module.__name__.rpartition(".")[2], case, count)
     for name in _wanted(structures.NAMES, chosen):
         _try(found, f"bytes/{name}", partial(_bytes, name))
         if structures.REGISTRY[name].compiled:
             _try(found, f"bytes/{name}/growing", partial(_growing, name))
-    found.cells |= _classes(rows, chosen)
+    found.cases |= _classes(rows, chosen)
     return found
 
 
@@ -105,31 +105,31 @@ def _wanted(names: Sequence[str], chosen: Sequence[str]) -> list[str]:
 
 
 def _counted(
-    found: Exact, experiment: str, cell: Cell, count: Callable[..., None]
+    found: Exact, experiment: str, case: Case, count: Callable[..., None]
 ) -> list[dict[str, Any]]:
-    """Count one cell -> its row as in a run, or none if it failed."""
+    """Count one case -> its row as in a run, or none if it failed."""
     table = "listing/" if experiment == "bench_printed" else ""
-    key, kept = f"work/{cell.structure}/{table}{cell.id}", list[CellResult]()
+    key, kept = f"work/{case.structure}/{table}{case.id}", list[Measurement]()
 
     def counted() -> dict[str, Value]:
-        count(cell, kept.append)
+        count(case, kept.append)
         return {key: [int(it) for it in kept[0].samples]}
 
     _try(found, key, counted)
-    return [{"experiment": experiment, "structure": cell.structure, **asdict(it)} for it in kept]
+    return [{"experiment": experiment, "structure": case.structure, **asdict(it)} for it in kept]
 
 
 def _try(found: Exact, key: str, measured: Callable[[], dict[str, Value]]) -> None:
     try:
-        found.cells |= measured()
+        found.cases |= measured()
     except Exception as error:  # whatever a broken structure does is a finding, not an end
         found.failed[key] = f"{type(error).__name__}: {error}".splitlines()[0]
 
 
 def _bytes(name: str) -> dict[str, Value]:
     """Bytes per field by the model, and what the arrays really take, once built and once asked."""
-    cell = Cell(name, EXTENT.families[0], WEIGHED)
-    mesh, head = cell.mesh(), f"bytes/{name}/{cell.family}/{WEIGHED}"
+    case = Case(name, EXTENT.families[0], WEIGHED)
+    mesh, head = case.mesh(), f"bytes/{name}/{case.family}/{WEIGHED}"
     found: dict[str, Value] = {}
     for reference_bytes in REFERENCE_TYPES:
         build = partial(structures.build, name, mesh, reference_bytes)
@@ -174,15 +174,15 @@ def _in_arrays() -> int:
 
 def _growing(name: str) -> dict[str, Value]:
     """Bytes of the arrays each time they are made anew while faces are split one by one."""
-    cell = Cell(name, EXTENT.families[0], GROWING)
-    s = structures.build(name, cell.mesh())
+    case = Case(name, EXTENT.families[0], GROWING)
+    s = structures.build(name, case.mesh())
     sizes = [_size(s)]
     for face in range(SPLITS):
         s.split_face(face, (0.0, 0.0, 0.0))
         if _size(s) != sizes[-1]:
             sizes.append(_size(s))
     s.validate()
-    key = f"bytes/{name}/{cell.family}/{GROWING}/arrays while {SPLITS} faces are split"
+    key = f"bytes/{name}/{case.family}/{GROWING}/arrays while {SPLITS} faces are split"
     return {key: list[int](sizes)}
 
 
@@ -196,13 +196,13 @@ def _classes(rows: list[dict[str, Any]], chosen: Sequence[str]) -> dict[str, Val
 
     from experiments.claims.judged import SOURCES, Evidence
 
-    cells = pd.DataFrame(rows)
-    if cells.empty:
+    cases = pd.DataFrame(rows)
+    if cases.empty:
         return {}
-    cells["samples"] = cells["samples"].map(lambda it: np.asarray(it, float))
-    evidence = Evidence(Run(Path(), {}, cells, cells[:0]))
+    cases["samples"] = cases["samples"].map(lambda it: np.asarray(it, float))
+    evidence = Evidence(Run(Path(), {}, cases, cases[:0]))
     return {
-        f"class/{claim.structure}/{claim.what}/{variable}": named(
+        f"class/{claim.structure}/{claim.subject}/{variable}": named(
             verdict.best, verdict.outcome if variable in claim.expected else "no claim"
         )
         for claim in _claims(chosen)

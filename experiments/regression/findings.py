@@ -47,7 +47,7 @@ OBJECTS = "half_edge_objects"
 class Finding:
     """One thing that was compared.
 
-    ``kind``: work, bytes, class, slope or time. ``where``: the cell, slash by slash. ``before`` and
+    ``kind``: work, bytes, class, slope or time. ``where``: the case, slash by slash. ``before`` and
     ``after``: the numbers as text, empty where there is none. ``claim``: what it touches.
     """
 
@@ -97,15 +97,15 @@ def compare_exact(before: Exact, after: Exact) -> list[Finding]:
     known = {it.where for it in failed}
     return failed + [
         it
-        for it in compare_cells(before.cells, after.cells, before.python != after.python)
+        for it in compare_cases(before.cases, after.cases, before.python != after.python)
         if it.where not in known
     ]
 
 
-def compare_cells(
+def compare_cases(
     before: dict[str, Value], after: dict[str, Value], other_python: bool = False
 ) -> list[Finding]:
-    """Two sets of exact cells, key by key."""
+    """Two sets of exact cases, key by key."""
     found = []
     for key in sorted(before.keys() | after.keys()):
         if other_python and _kind(key) == "bytes" and OBJECTS in key:
@@ -175,12 +175,12 @@ def _claims() -> dict[tuple[str, str], list[str]]:
     for claim in load_claims():
         printed = "nothing claimed" if claim.printed == NO_CLAIM else claim.printed
         text = f"{TABLES[claim.table]}, {claim.title}: {printed}; {claim.source}"
-        found.setdefault((claim.structure, claim.what), []).append(text)
+        found.setdefault((claim.structure, claim.subject), []).append(text)
     return found
 
 
 def claim_of(key: str) -> str:
-    """The claims that a cell touches: those on its structure's query, operation or memory."""
+    """The claims that a case touches: those on its structure's query, operation or memory."""
     head, structure, *rest = key.split("/")
     memory = head in ("bytes", "bench_memory")
     known = _claims()

@@ -67,8 +67,8 @@ def as_markdown(findings: Sequence[Finding], notes: Sequence[str]) -> str:
         lines += ["|---|---|---|---|---|"]
         for it in chosen[:MOST]:
             after = " ".join(part for part in (it.after, f"({it.why})" if it.why else "") if part)
-            cells = it.kind, f"`{it.where}`", it.before, after, it.claim
-            lines.append("| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |")
+            cases = it.kind, f"`{it.where}`", it.before, after, it.claim
+            lines.append("| " + " | ".join(case.replace("|", "\\|") for case in cases) + " |")
         more = len(chosen) - MOST
         lines += [f"\n… and {more:,} more.", ""] if more > 0 else [""]
     return "\n".join([*lines, *(f"- {note}" for note in notes)]).rstrip() + "\n"

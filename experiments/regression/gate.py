@@ -31,13 +31,13 @@ def compare_all(
             raise ValueError(f"no structure is called {name!r}; there are {', '.join(NAMED)}")
     before = baseline.load_exact(folder)  # before anything is measured
     given = load(run) if run else None
-    if given and given.cells.empty:
-        raise ValueError(f"{run} holds no cell; go on with: hem study --resume --run {run}")
+    if given and given.cases.empty:
+        raise ValueError(f"{run} holds no case; go on with: hem study --resume --run {run}")
     held = baseline.load_measured(folder) if given else None
     after, notes = exact.measure(structures), []
     if structures:
         notes.append(f"just {', '.join(structures)} was measured")
-        before.cells = {k: v for k, v in before.cells.items() if k.split("/")[1] in structures}
+        before.cases = {k: v for k, v in before.cases.items() if k.split("/")[1] in structures}
     if before.python != after.python:
         notes.append(
             f"Python {after.python}, the reference has {before.python}: "
@@ -95,10 +95,10 @@ class Update:
     def difference(self) -> list[tuple[str, str]]:
         """What would change, as signs and lines: - as it is, + as it would be, ± in numbers."""
         try:
-            old: dict[str, Any] = baseline.load_exact(self.folder).cells
+            old: dict[str, Any] = baseline.load_exact(self.folder).cases
         except ValueError:
             old = {}  # what cannot be read is replaced
-        lines = _changes(old, self.exact.cells)
+        lines = _changes(old, self.exact.cases)
         if self.measured is None:
             return lines
         try:
@@ -110,7 +110,7 @@ class Update:
         changed = sum(before.times.get(k) != v for k, v in self.measured.times.items())
         gone = len(before.times.keys() - self.measured.times.keys())
         if changed or gone:
-            lines.append(("±", f"times.json: {changed:,} cells anew, {gone:,} gone"))
+            lines.append(("±", f"times.json: {changed:,} cases anew, {gone:,} gone"))
         for key, value in self.measured.head.items():
             if before.head.get(key) != value:
                 lines.append(("±", f"run.json, {key}: {before.head.get(key)} → {value}"))
@@ -129,9 +129,9 @@ def _changes(before: dict[str, Any], after: dict[str, Any]) -> list[tuple[str, s
     for key in sorted(before.keys() | after.keys()):
         if before.get(key) != after.get(key):
             lines += [
-                (sign, f"{key}: {cells[key]}")
-                for sign, cells in (("-", before), ("+", after))
-                if key in cells
+                (sign, f"{key}: {cases[key]}")
+                for sign, cases in (("-", before), ("+", after))
+                if key in cases
             ]
     return lines
 

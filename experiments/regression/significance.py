@@ -1,4 +1,4 @@
-"""Whether a cell became slower: significant by rank *and* large by an interval, or not said.
+"""Whether a case became slower: significant by rank *and* large by an interval, or not said.
 
 Rounds of one run are not independent, and two runs of the same code differ by more than their
 rounds tell. So times are taken relative to a probe of the same run, as far as they may
@@ -37,7 +37,7 @@ LARGEST_EXACT = 2500
 
 
 class Comparison(NamedTuple):
-    """What two runs say about one cell.
+    """What two runs say about one case.
 
     ratio: time after over time before, each relative to its probe. low, high: the ends of its
     interval, each crossed with a chance of 1 - `CONFIDENCE`. p: of the rank test, two-sided.
@@ -59,15 +59,15 @@ def compare(
     alpha: float = ALPHA,
     least_share: float = 0.0,
 ) -> Comparison:
-    """Compare the rounds of one cell in two runs.
+    """Compare the rounds of one case in two runs.
 
     before, after: seconds per round, in the order they were measured; 9 rounds each can decide at
     the default `alpha`. probe_before, probe_after: seconds of a reference in the same run, taken
-    beside the cell; of a single reading the error is taken to be `SINGLE_ERROR`. Any unit will do.
-    least_share: how much of the probe's change the cell must at least have followed, from 0 to 1. A
-    memory latency can change tenfold beside a cell that never waits for it, so by default a cell
+    beside the case; of a single reading the error is taken to be `SINGLE_ERROR`. Any unit will do.
+    least_share: how much of the probe's change the case must at least have followed, from 0 to 1. A
+    memory latency can change tenfold beside a case that never waits for it, so by default a case
     may have followed to any degree, and is worse only if it is so at every one of them. Give 1 for
-    a probe that surely slows as the cell does, as between two machines.
+    a probe that surely slows as the case does, as between two machines.
 
     "worse": the ranks differ by more than `DRIFT` explains (Mann-Whitney, p < alpha), and the
     interval of the ratio lies above `factor`; "better" is its mirror image. "same": the interval

@@ -83,14 +83,14 @@ def _claims(run: Run) -> dict[str, Any]:
     evidence, claims = Evidence(run), load_claims()
     rows = judged(run, claims).to_dict("records")
     figures = {
-        f"{it.table}/{it.structure}/{it.what}": _figures(run, evidence, it, row)
+        f"{it.table}/{it.structure}/{it.subject}": _figures(run, evidence, it, row)
         for it, row in zip(claims, rows, strict=True)
     }
     return {name: found for name, found in figures.items() if found}
 
 
 def _figures(run: Run, evidence: Evidence, claim: Claim, row: dict[Any, Any]) -> dict[str, Any]:
-    if claim.what == MEMORY:
+    if claim.subject == MEMORY:
         size = row["bytes_per_vertex"]
         return {"outcome": row["outcome"], "bytes": short(size)} if np.isfinite(size) else {}
     verdicts = {
@@ -110,11 +110,11 @@ def _figures(run: Run, evidence: Evidence, claim: Claim, row: dict[Any, Any]) ->
 
 
 def _work(evidence: Evidence, claim: Claim) -> dict[str, Any]:
-    cells = evidence.curve("work", "faces", claim.structure, claim.what, claim.table)
-    if cells.empty:
+    cases = evidence.curve("work", "faces", claim.structure, claim.subject, claim.table)
+    if cases.empty:
         return {}
-    cell = cells.iloc[-1]
-    return {"work": short(np.mean(cell["samples"])), "work_faces": int(cell["faces"])}
+    case = cases.iloc[-1]
+    return {"work": short(np.mean(case["samples"])), "work_faces": int(case["faces"])}
 
 
 def _time(evidence: Evidence, claim: Claim) -> dict[str, Any]:
@@ -124,18 +124,18 @@ def _time(evidence: Evidence, claim: Claim) -> dict[str, Any]:
     more; the median over the sizes came back within 2 % (standard deviation, nine runs).
     """
     measure = "random" if claim.table == "queries" else "time"
-    cells = evidence.curve(measure, "faces", claim.structure, claim.what, claim.table)
-    if cells.empty:
+    cases = evidence.curve(measure, "faces", claim.structure, claim.subject, claim.table)
+    if cases.empty:
         return {}
-    seconds = np.array([np.median(samples) for samples in cells["samples"]])
+    seconds = np.array([np.median(samples) for samples in cases["samples"]])
     found = {
         "seconds": short(seconds[-1]),
-        "time_faces": int(cells["faces"].iloc[-1]),
-        "time_sizes": len(cells),
+        "time_faces": int(cases["faces"].iloc[-1]),
+        "time_sizes": len(cases),
     }
-    latency = cells["latency"].to_numpy(float)
+    latency = cases["latency"].to_numpy(float)
     if np.isnan(latency).any():
-        between = evidence.latency(cells["working_set"].to_numpy(float))
+        between = evidence.latency(cases["working_set"].to_numpy(float))
         if between is None:
             return found
         latency = np.where(np.isnan(latency), between, latency)

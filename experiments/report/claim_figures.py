@@ -57,7 +57,7 @@ def panels(evidence: Evidence, claim: Claim, row: dict[str, Any]) -> Iterator[Pa
     for measure, variable in SOURCES:
         verdict = row.get(f"{measure}_{variable}")
         if isinstance(verdict, Verdict):
-            cells = evidence.curve(measure, variable, claim.structure, claim.what, claim.table)
+            cells = evidence.curve(measure, variable, claim.structure, claim.subject, claim.table)
             yield Panel(measure, variable, cells, verdict)
 
 

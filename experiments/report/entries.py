@@ -87,11 +87,11 @@ CHAPTER = {"queries": "query_scaling", "operations": "operations", "listings": "
 
 def _cells(run: Run, table: pd.DataFrame) -> Iterator[Entry]:
     evidence = Evidence(run)
-    claims = {key_of(it.table, it.structure, it.what): it for it in load_claims()}
+    claims = {key_of(it.table, it.structure, it.subject): it for it in load_claims()}
     for record in table.to_dict("records"):
         row = {str(name): value for name, value in record.items()}
-        key = key_of(row["table"], row["structure"], row["query"])
-        yield (_bytes if row["query"] == MEMORY else _cell)(evidence, claims[key], row, key)
+        key = key_of(row["table"], row["structure"], row["subject"])
+        yield (_bytes if row["subject"] == MEMORY else _cell)(evidence, claims[key], row, key)
 
 
 def _cell(evidence: Evidence, claim: Claim, row: dict[str, Any], key: str) -> Entry:
@@ -145,7 +145,7 @@ def _words(claim: Claim) -> str:
     name, what = NAMED[claim.structure].title, claim.title
     if claim.printed == NO_CLAIM:
         return f"Of {what} on {name}, nothing is claimed. What was found stands here all the same."
-    if claim.what == MEMORY:
+    if claim.subject == MEMORY:
         return f"{name} takes {claim.printed} bytes per vertex, with references of 8 bytes."
     grown = [
         f"{_how(it)} {VARIABLES[variable]}" for variable, it in claim.expected.items()

@@ -133,7 +133,7 @@ def memory(run: Run) -> Figure:
     """
     evidence = Evidence(run)
     names = [name for name in NAMES if REGISTRY[name].compiled]
-    printed = {it.structure: it.bytes_per_vertex for it in load_claims() if it.what == MEMORY}
+    printed = {it.structure: it.bytes_per_vertex for it in load_claims() if it.subject == MEMORY}
     with styled():
         figure = Figure(figsize=(11, 1.25 * len(names) + 1.1), layout="constrained")
         axes = figure.subplots()
@@ -258,8 +258,8 @@ def _parts(cells: pd.DataFrame, kind: str) -> dict[str, float]:
 
 def building(run: Run) -> Figure:
     """Time to build, per vertex, against size: meshes as generated, and renumbered at random."""
-    built = run.cells["experiment"] == "bench_build"
-    cells = run.cells[built & (run.cells["reference_bytes"] == 4)]
+    built = run.cases["experiment"] == "bench_build"
+    cells = run.cases[built & (run.cases["reference_bytes"] == 4)]
     orders = {"consecutive": "as generated", "random": "renumbered at random"}
     with styled():
         figure = Figure(figsize=(8.6, 3.2), layout="constrained")

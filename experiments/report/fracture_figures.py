@@ -121,8 +121,8 @@ def _told(broken: Broken) -> str:
 
 def shards_per_second(run: Run) -> Figure:
     """How many shards each structure makes a second, by size."""
-    cells = run.cells[(run.cells["experiment"] == "bench_fracture")]
-    cells = cells[cells["query"] == SHATTER].copy()
+    cells = run.cases[(run.cases["experiment"] == "bench_fracture")]
+    cells = cells[cells["subject"] == SHATTER].copy()
     cells["samples"] = [1 / it for it in cells["samples"]]
     with styled():
         figure = Figure(figsize=(7.5, 3.8), layout="constrained")
@@ -136,8 +136,8 @@ def shards_per_second(run: Run) -> Figure:
 
 def face_finding(run: Run, structure: str = "half_edge") -> Figure:
     """Finding the face under an impact in three ways: faces looked at, and time."""
-    cells = run.cells[run.cells["experiment"] == "bench_fracture"]
-    cells = cells[(cells["query"] == FIND) & (cells["structure"] == structure)]
+    cells = run.cases[run.cases["experiment"] == "bench_fracture"]
+    cells = cells[(cells["subject"] == FIND) & (cells["structure"] == structure)]
     looks = dict(
         zip(
             WAYS,

@@ -274,7 +274,7 @@ def _legend(history: History, brief: bool) -> str:
 def _profiles(history: History) -> str:
     names = list(dict.fromkeys(it["profile"] for it in history.runs))
     if len(names) == 1:
-        return f"Profile {names[0]}."
+        return f"Preset {names[0]}."
     return "Runs of different profiles are not compared; --profile shows one."
 
 

@@ -80,14 +80,14 @@ def _table(table: pd.DataFrame, cell: Callable[[dict[str, Any]], str], css: str 
 
 
 def _linked(row: dict[str, Any]) -> str:
-    key = key_of(row["table"], row["structure"], row["query"])
+    key = key_of(row["table"], row["structure"], row["subject"])
     return f'<a href="#{key}">{_glance(row)}</a>'
 
 
 def _glance(row: dict[str, Any]) -> str:
     outcome = row["outcome"]
     mark = f"<b>{OUTCOMES[outcome]} {escape(row['printed'])}</b>"
-    if row["query"] == MEMORY:
+    if row["subject"] == MEMORY:
         return f"{mark}<small>{outcome}: {found(row)} measured</small>"
     if row["printed"] == NO_CLAIM:
         return f"{mark}<small>nothing claimed, found {escape(found(row))}</small>"
@@ -95,7 +95,7 @@ def _glance(row: dict[str, Any]) -> str:
 
 
 def _behind(row: dict[str, Any]) -> str:
-    if row["query"] == MEMORY:
+    if row["subject"] == MEMORY:
         return _glance(row)
     head = f"<b>{OUTCOMES[row['outcome']]} {escape(row['printed'])}</b>"
     if row["printed"] == NO_CLAIM:

@@ -26,8 +26,8 @@ RENDERED = {
 
 def rendering(run: Run, structure: str = "half_edge") -> Figure:
     """What a render mesh adds to one edit from Python, by size."""
-    cells = run.cells[run.cells["experiment"] == "bench_operations"]
-    cells = cells[(cells["structure"] == structure) & (cells["query"] == "split_face")]
+    cells = run.cases[run.cases["experiment"] == "bench_operations"]
+    cells = cells[(cells["structure"] == structure) & (cells["subject"] == "split_face")]
     with styled():
         figure = Figure(figsize=(7.5, 3.6), layout="constrained")
         axes = figure.subplots()
@@ -47,7 +47,7 @@ def rendering(run: Run, structure: str = "half_edge") -> Figure:
 
 def workloads(run: Run) -> Figure:
     """Time per unit of every workload, by size."""
-    cells = run.cells[run.cells["experiment"] == "bench_workloads"]
+    cells = run.cases[run.cases["experiment"] == "bench_workloads"]
     with styled():
         figure = Figure(figsize=(11, 5.6), layout="constrained")
         panels = figure.subplots(2, 3, sharex=True)
@@ -55,7 +55,7 @@ def workloads(run: Run) -> Figure:
         for axes, (name, workload) in zip(panels.flat, WORKLOADS.items(), strict=False):
             axes.set(xscale="log", yscale="log", ylabel=f"time per {workload.unit}, µs")
             axes.set_title(workload.title)
-            ends.append(_lines(axes, cells[cells["query"] == name], "vertices", 1e6))
+            ends.append(_lines(axes, cells[cells["subject"] == name], "vertices", 1e6))
             axes.tick_params(labelbottom=True)
             axes.set_xlabel("vertices n_v")
             _plain_numbers(axes)

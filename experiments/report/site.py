@@ -164,10 +164,10 @@ def _back(run: Run) -> str:
 
 
 def _left_out(run: Run) -> str:
-    if run.left_out.empty:
+    if run.skipped.empty:
         return "<p>Nothing was left out.</p>"
     items = "".join(
-        f"<li>{escape(f'{row.experiment} {row.structure} {row.id}: {row.left_out}')}</li>"
-        for row in run.left_out.itertuples()
+        f"<li>{escape(f'{row.experiment} {row.structure} {row.id}: {row.skipped}')}</li>"
+        for row in run.skipped.itertuples()
     )
     return f"<p>Left out:</p><ul>{items}</ul>"

@@ -65,7 +65,7 @@ def markdown(run: Run, which: str = "queries") -> str:
 
 def found(row: dict[str, Any]) -> str:
     """What was measured in a cell, in the table's own terms, such as ``O(n_ev)``."""
-    if row["query"] == MEMORY:
+    if row["subject"] == MEMORY:
         return f"{row['bytes_per_vertex']:,.4g}"
     by_size = row["table"] == "listings"
     moved = {"faces": VARIABLES["faces"]} if by_size else VARIABLES
@@ -121,7 +121,7 @@ def _cell(row: dict[str, Any]) -> Text:
     text = Text(f"{row['printed']} {mark}", style=STYLES[row["outcome"]])
     if row["outcome"] != "consistent":
         text.append(f" {found(row)}", style="default")
-    if row["query"] == MEMORY:
+    if row["subject"] == MEMORY:
         return text
     for measure in ("work", "time"):
         outcome = row[f"outcome_{measure}"]
@@ -144,7 +144,7 @@ def _summary(table: pd.DataFrame) -> Text:
         counts = table[f"outcome_{measure}"].value_counts()
         parts = [f"{counts.get(outcome, 0)} {outcome}" for outcome in OUTCOMES]
         text.append(f"by {measure}: {', '.join(parts)}\n")
-    memory = table[table["query"] == MEMORY]["outcome"].value_counts()
+    memory = table[table["subject"] == MEMORY]["outcome"].value_counts()
     if memory.empty:
         return text
     text.append("by bytes: " + ", ".join(f"{count} {outcome}" for outcome, count in memory.items()))

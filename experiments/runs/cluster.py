@@ -2,7 +2,7 @@
 
 A process of the study, an experiment on a structure, is one task, so that the points of a curve are
 all measured on the same machine. Each machine has one task at a time, and a folder of its own in
-the run. What a machine has finished comes back cell by cell; a task whose machine is lost goes to
+the run. What a machine has finished comes back case by case; a task whose machine is lost goes to
 another one.
 """
 

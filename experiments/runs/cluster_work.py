@@ -43,7 +43,7 @@ class Work:
 
     @property
     def topic(self) -> str:
-        """Where machines tell of cells as they finish them."""
+        """Where machines tell of cases as they finish them."""
         return f"hem-{self.folder.name}"
 
     def add(self, every: list[Process]) -> None:
@@ -51,7 +51,7 @@ class Work:
         for process in every:
             done = max(process.done(place) for place in self.places())
             self.report(process, done)
-            if done < len(process.cells):
+            if done < len(process.cases):
                 self.waiting.append(process)
 
     def places(self) -> list[Path]:
@@ -59,7 +59,7 @@ class Work:
         return [self.folder, *sorted(self.folder.glob("machine-*/"))]
 
     def file(self, process: Process, machine: str) -> Path:
-        """Where the cells of a process on a machine are kept."""
+        """Where the cases of a process on a machine are kept."""
         place = self.folder / f"machine-{machine}"
         return place / f"{process.experiment}.{process.structure}.json"
 
@@ -91,7 +91,7 @@ class Work:
         """Keep what a task leaves; what is not complete has failed."""
         if outcome.text is not None:
             self.keep(it.process, it.machine, outcome.text)
-        if it.process.done(self.file(it.process, it.machine).parent) == len(it.process.cells):
+        if it.process.done(self.file(it.process, it.machine).parent) == len(it.process.cases):
             self._supersede(it)
         elif outcome.code == CANNOT_WRITE:
             self.lost(it, f"it has no room for results: {outcome.output}")

@@ -64,7 +64,7 @@ def perform(
     """Run a task in a folder of its own; no other one of this machine runs meanwhile.
 
     ``wanted()`` is asked a few times a second, AbandonedError raised as soon as it is not, and
-    ``send(text)`` is given the file each time there is another cell in it.
+    ``send(text)`` is given the file each time there is another case in it.
     """
 
     def require_wanted() -> None:

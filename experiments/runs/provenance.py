@@ -68,9 +68,9 @@ def in_words(run: Run) -> str:
     state = {True: " with changes that are not committed", False: "", None: ""}[meta.get("dirty")]
     finished = f"to {meta['finished']}" if "finished" in meta else "and not finished"
     return (
-        f"Profile {meta.get('profile')}, from {meta.get('started')} {finished}, at commit "
+        f"Preset {meta.get('profile')}, from {meta.get('started')} {finished}, at commit "
         f"{str(meta.get('commit'))[:10]}{state}. "
-        f"{_measured_by(run)}. {versions}. {len(run.cells):,} cells, each checked against the "
+        f"{_measured_by(run)}. {versions}. {len(run.cases):,} cases, each checked against the "
         f"triangle list before it was measured. {noise(run).words}"
     )
 

@@ -1,8 +1,8 @@
 """What a run leaves on disk, written and read in one place.
 
 A run is a folder: ``run.json`` says what ran where, and every process, that is one experiment on
-one structure, has a file ``<experiment>.<structure>.json`` with its cells. A file is written beside
-and renamed after each cell, so that whoever is killed loses the cell in flight and nothing else; it
+one structure, has a file ``<experiment>.<structure>.json`` with its cases. A file is written beside
+and renamed after each case, so that whoever is killed loses the case in flight and nothing else; it
 carries a checksum, so that what is damaged later is not read as measured. A run on several machines
 has a folder ``machine-…`` for each, with a ``run.json`` of its own. Raw samples are never
 rewritten; what is derived from them lives in ``derived/``.
@@ -38,27 +38,40 @@ RUNS = Path("results/runs")
 MACHINES = "machine-*"
 
 __all__ = [
-    "MACHINES", "READABLE", "RUNS", "SCHEMA", "CannotWriteError", "CellResult", "DamagedError",
-    "ResultFile", "ResultsError", "Run", "latest", "load", "read_json", "result_files",
-    "write_json", "write_sealed",
+    "MACHINES",
+    "READABLE",
+    "RUNS",
+    "SCHEMA",
+    "CannotWriteError",
+    "DamagedError",
+    "Measurement",
+    "ResultFile",
+    "ResultsError",
+    "Run",
+    "latest",
+    "load",
+    "read_json",
+    "result_files",
+    "write_json",
+    "write_sealed",
 ]  # fmt: skip
 
 
 @dataclass
-class CellResult:
-    """One measured cell.
+class Measurement:
+    """One measured case.
 
     ``samples``: seconds per query and round (``kind`` "time"), reads per query and handle ("work"),
     or bytes ("bytes"). ``handles``: queries per sample. ``working_set``: bytes of the structure's
     live records, or of the chased array in the latency experiment. ``valence``: that of the queried
     vertices where the experiment varies it. ``latency``: seconds per memory access in the working
-    set, measured beside the cell. ``left_out``: why nothing was measured, else empty. ``noise``:
-    what ``noise.Watch`` saw meanwhile, and how often the cell was ``measured``; empty in schema 1.
+    set, measured beside the case. ``skipped``: why nothing was measured, else empty. ``noise``:
+    what ``noise.Watch`` saw meanwhile, and how often the case was ``measured``; empty in schema 1.
     """
 
     id: str
     kind: str
-    query: str | None = None
+    subject: str | None = None
     order: str | None = None
     family: str | None = None
     seed: int = 0
@@ -73,13 +86,13 @@ class CellResult:
     checked: bool = False
     latency: float | None = None
     samples: list[float] = field(default_factory=list)
-    left_out: str = ""
+    skipped: str = ""
     detail: dict[str, Any] = field(default_factory=dict)
     noise: dict[str, Any] = field(default_factory=dict)
 
 
 class ResultFile:
-    """The cells of one process, kept on disk from one cell to the next.
+    """The cases of one process, kept on disk from one case to the next.
 
     Raises DamagedError where the file is not what was written.
     """
@@ -87,37 +100,37 @@ class ResultFile:
     def __init__(self, folder: Path, experiment: str, structure: str) -> None:
         self.path = folder / f"{experiment}.{structure}.json"
         self.head = {"schema": SCHEMA, "experiment": experiment, "structure": structure}
-        self.cells = _cells_of(self.path)["cells"] if self.path.exists() else []
+        self.cases = _cases_of(self.path)["cases"] if self.path.exists() else []
 
     @property
     def finished(self) -> set[str]:
-        """The ids of the cells that are on disk."""
-        return {cell["id"] for cell in self.cells}
+        """The ids of the cases that are on disk."""
+        return {case["id"] for case in self.cases}
 
-    def add(self, cell: CellResult) -> None:
-        """Keep one more cell, or another result of one. Raises CannotWriteError, and keeps less."""
-        others = [kept for kept in self.cells if kept["id"] != cell.id]
-        write_sealed(self.path, {**self.head, "cells": [*others, asdict(cell)]})
-        self.cells = [*others, asdict(cell)]
+    def add(self, case: Measurement) -> None:
+        """Keep one more case, or another result of one. Raises CannotWriteError, and keeps less."""
+        others = [kept for kept in self.cases if kept["id"] != case.id]
+        write_sealed(self.path, {**self.head, "cases": [*others, asdict(case)]})
+        self.cases = [*others, asdict(case)]
 
-    def get(self, cell_id: str) -> dict[str, Any] | None:
-        """A cell as it is on disk, None if it is not."""
-        return next((cell for cell in self.cells if cell["id"] == cell_id), None)
+    def get(self, case_id: str) -> dict[str, Any] | None:
+        """A case as it is on disk, None if it is not."""
+        return next((case for case in self.cases if case["id"] == case_id), None)
 
 
 @dataclass(frozen=True)
 class Run:
-    """A run as read: ``meta`` is run.json, ``cells`` has one row per measured cell.
+    """A run as read: ``meta`` is run.json, ``cases`` has one row per measured case.
 
-    ``cells`` has the fields of ``CellResult``, ``samples`` as an array, besides ``experiment``,
+    ``cases`` has the fields of ``Measurement``, ``samples`` as an array, besides ``experiment``,
     ``structure`` and ``machine``: the folder of the machine that measured it, empty where there was
-    only one. ``left_out``: the cells that were not measured, with the reason.
+    only one. ``skipped``: the cases that were not measured, with the reason.
     """
 
     folder: Path
     meta: dict[str, Any]
-    cells: pd.DataFrame
-    left_out: pd.DataFrame
+    cases: pd.DataFrame
+    skipped: pd.DataFrame
 
     @property
     def machines(self) -> list[str]:
@@ -139,19 +152,19 @@ def load(folder: Path | str) -> Run:
     _require_all(folder, meta)
     rows = []
     for path in result_files(folder):
-        content = _cells_of(path)
+        content = _cases_of(path)
         owner = {key: content[key] for key in ("experiment", "structure")}
         owner["machine"] = "" if path.parent == folder else path.parent.name
-        rows += [{**owner, "noise": {}, **cell} for cell in content["cells"]]
-    columns = ["experiment", "structure", "machine", *CellResult.__dataclass_fields__]
-    cells = pd.DataFrame(rows, columns=columns)
-    cells["samples"] = cells["samples"].map(lambda samples: np.asarray(samples, float))
-    measured = cells["left_out"] == ""
-    return Run(folder, meta, cells[measured].reset_index(drop=True), cells[~measured])
+        rows += [{**owner, "noise": {}, **case} for case in content["cases"]]
+    columns = ["experiment", "structure", "machine", *Measurement.__dataclass_fields__]
+    cases = pd.DataFrame(rows, columns=columns)
+    cases["samples"] = cases["samples"].map(lambda samples: np.asarray(samples, float))
+    measured = cases["skipped"] == ""
+    return Run(folder, meta, cases[measured].reset_index(drop=True), cases[~measured])
 
 
 def result_files(folder: Path) -> list[Path]:
-    """The files with the cells of a run, those of every machine; copies beside them are not."""
+    """The files with the cases of a run, those of every machine; copies beside them are not."""
     every = [*sorted(folder.glob("*.*.json")), *sorted(folder.glob(f"{MACHINES}/*.*.json"))]
     return [path for path in every if path.name.count(".") == 2]
 
@@ -174,12 +187,12 @@ def _of_this_schema(path: Path) -> dict[str, Any]:
     return content
 
 
-def _cells_of(path: Path) -> dict[str, Any]:
-    """A file of cells. Since schema 2 one that lost its checksum is damaged as well."""
+def _cases_of(path: Path) -> dict[str, Any]:
+    """A file of cases. Since schema 2 one that lost its checksum is damaged as well."""
     content = _of_this_schema(path)
     sealed = content["schema"] == 1 or SEAL in content
-    if not sealed or not {"experiment", "structure", "cells"} <= set(content):
-        way_out = f"measure its cells again with: {again(path)}"
+    if not sealed or not {"experiment", "structure", "cases"} <= set(content):
+        way_out = f"measure its cases again with: {again(path)}"
         raise DamagedError(f"{path} is not as it was written; {way_out}")
     return content
 
@@ -189,4 +202,4 @@ def _require_all(folder: Path, meta: dict[str, Any]) -> None:
     gone = [name for name in meta.get("files", ()) if not (folder / name).exists()]
     if gone:
         missing = folder / gone[0]
-        raise DamagedError(f"{missing} is missing; measure its cells again with: {again(missing)}")
+        raise DamagedError(f"{missing} is missing; measure its cases again with: {again(missing)}")

@@ -116,4 +116,4 @@ def again(path: Path) -> str:
 def _way_out(path: Path) -> str:
     if path.name == "run.json":
         return f"Move {path.parent} away, or put back a copy of that file"
-    return f"Set it aside and measure its cells again with: {again(path)}"
+    return f"Set it aside and measure its cases again with: {again(path)}"

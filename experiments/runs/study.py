@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from experiments.harness import steadiness
-from experiments.harness.presets import PROFILES
+from experiments.harness.presets import PRESETS
 from experiments.runs import worker
 from experiments.runs.locks import held
 from experiments.runs.provenance import describe, now, resumed, source
@@ -62,19 +62,19 @@ class Process:
 
     experiment: str
     structure: str
-    cells: frozenset[str]
+    cases: frozenset[str]
 
     def done(self, folder: Path) -> int:
-        """How many of its cells are on disk; none of a file that is damaged."""
+        """How many of its cases are on disk; none of a file that is damaged."""
         try:
             finished = ResultFile(folder, self.experiment, self.structure).finished
         except DamagedError:
             return 0
-        return len(self.cells & finished)
+        return len(self.cases & finished)
 
 
 class StudyFailedError(RuntimeError):
-    """Some cells failed; the message names the processes and shows what they printed."""
+    """Some cases failed; the message names the processes and shows what they printed."""
 
 
 def begin(
@@ -87,7 +87,7 @@ def begin(
 ) -> Path:
     """A new run folder, named by the time and the profile, with what is known before it runs.
 
-    ``structures``: just these; all of them for none. ``seed``: of the order of the cells; ``pin``:
+    ``structures``: just these; all of them for none. ``seed``: of the order of the cases; ``pin``:
     whether to stay on one core. Raises ValueError for a structure there is not, CannotWriteError.
     """
     for name in structures:
@@ -137,14 +137,14 @@ def how(folder: Path) -> How:
 
 
 def processes(profile: str, structures: Sequence[str] = ()) -> list[Process]:
-    """All processes of a profile, with the cells that each will leave behind."""
+    """All processes of a profile, with the cases that each will leave behind."""
     return [
-        Process(experiment, structure, frozenset(cell.id for cell in cells))
+        Process(experiment, structure, frozenset(case.id for case in cases))
         for experiment in EXPERIMENTS
         for module in [import_module(f"experiments.{experiment}")]
         for structure in module.STRUCTURES
         if not structures or structure in structures or structure not in NAMED
-        for cells in [module.cells(PROFILES[profile].of(structure), structure)]
+        for cases in [module.cases(PRESETS[profile].of(structure), structure)]
     ]
 
 
@@ -157,7 +157,7 @@ def run(
 ) -> None:
     """Run what the folder lacks, and mark it finished.
 
-    ``report(process, done)`` is called as cells come in; ``say``: for what was found damaged and
+    ``report(process, done)`` is called as cases come in; ``say``: for what was found damaged and
     set aside. Raises StudyFailedError when everything else has run, InUseError if another process
     measures into the folder, CannotWriteError once results cannot be kept, and KeyboardInterrupt as
     it comes; what is finished stays in any case.
@@ -165,9 +165,9 @@ def run(
     with prepared(folder, say):
         failures = []
         for process in processes(profile, structures):
-            if process.done(folder) < len(process.cells):
+            if process.done(folder) < len(process.cases):
                 output = _run_one(folder, process, report)
-                if process.done(folder) < len(process.cells):
+                if process.done(folder) < len(process.cases):
                     failures.append(f"{process.experiment} on {process.structure}:\n{output}")
             report(process, process.done(folder))
         if failures:
@@ -182,7 +182,7 @@ def prepared(folder: Path, say: Callable[[str], None]) -> Iterator[None]:
         require_room(folder)
         begun = bool(result_files(folder))
         for path in set_aside_damaged(folder):
-            say(f"{path.name} was damaged and is set aside; its cells are measured again")
+            say(f"{path.name} was damaged and is set aside; its cases are measured again")
         meta = read_json(folder / "run.json")
         if begun:
             _require_same_code(folder, meta)
@@ -219,7 +219,7 @@ def _steadiness(folder: Path) -> dict[str, Any]:
 
 
 def set_aside_damaged(folder: Path) -> list[Path]:
-    """Rename the damaged files of a run, so that their cells are measured again -> where they are.
+    """Rename the damaged files of a run, so that their cases are measured again -> where they are.
 
     Raises CannotWriteError.
     """

@@ -48,7 +48,7 @@ def measure(
     command = [sys.executable, "-m", "pytest", str(file), "-q", "--no-header", "--tb=short"]
     command += ["-p", "no:cacheprovider", "--benchmark-quiet", "--profile", how.profile]
     command += ["--structure", structure, "--run", str(folder.resolve())]
-    command += ["--study", str(os.getpid()), "--cell-seed", str(how.seed)]
+    command += ["--study", str(os.getpid()), "--case-seed", str(how.seed)]
     command += ["--pin"] if how.pin else []
     with _started(command, file.parent.parent) as child:
         log = _Log(child, folder / "logs" / f"{experiment}.{structure}.txt")

@@ -2,7 +2,7 @@
 
 ``python -m experiments.validation.a_against_a --pairs 20``:
 each run of a pair is some fresh processes, in
-turns with those of the other run. A cell is timed as the study times it, with a reading of the
+turns with those of the other run. A case is timed as the study times it, with a reading of the
 reference probe before every round. Takes about half a minute per pair.
 """
 
@@ -22,9 +22,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 import structures
-from experiments.harness.cases import Cell, pool
+from experiments.harness.cases import Case, pool
 from experiments.harness.operations import time_operations
-from experiments.harness.presets import PROFILES, Profile
+from experiments.harness.presets import PRESETS, Preset
 from experiments.harness.probe import reading
 from experiments.harness.timer import time_query
 from experiments.regression.significance import ALPHA, DRIFT, FACTOR, Comparison, compare
@@ -39,9 +39,9 @@ OPERATIONS = ("split_edge", "split_face", "flip_edge")
 SIZES = (1_000,)
 PROCESSES = 3
 """Processes that make up a run, in turns with those of the other: what makes one process slow in a
-cell from beginning to end is then seen as noise, and not taken for the code."""
+case from beginning to end is then seen as noise, and not taken for the code."""
 ROUNDS = 5
-PROFILE = replace(PROFILES["quick"], rounds=ROUNDS, round_seconds=0.0005, cell_seconds=1.0)
+PROFILE = replace(PRESETS["quick"], rounds=ROUNDS, round_seconds=0.0005, case_seconds=1.0)
 ALARMS = ("worse", "better")
 LARGEST_SHARE = 1e-3
 """False alarms per comparison that are borne."""
@@ -79,45 +79,45 @@ class Rounds:
 
 
 class Timed(NamedTuple):
-    """A cell's seconds per round, and the probe's beside them."""
+    """A case's seconds per round, and the probe's beside them."""
 
     samples: list[float]
     probe: list[float]
 
 
-def cells() -> Iterator[Cell]:
+def cases() -> Iterator[Case]:
     """Queries of random elements, operations, and building, on the compiled structures."""
     family = PROFILE.families[0]
     for name in STRUCTURES:
         for size in SIZES:
             for query in QUERIES:
-                yield Cell(name, family, size, query, "random")
+                yield Case(name, family, size, query, "random")
             for operation in OPERATIONS:
-                yield Cell(name, family, size, operation, "batched")
-        yield Cell(name, family, SIZES[-1], None, "consecutive")
+                yield Case(name, family, size, operation, "batched")
+        yield Case(name, family, SIZES[-1], None, "consecutive")
 
 
-def measure(chosen: Sequence[Cell], profile: Profile = PROFILE) -> dict[str, Timed]:
-    """Time cells, each as the study does -> by structure and cell."""
-    return {f"{cell.structure}/{cell.id}": _timed(cell, profile) for cell in chosen}
+def measure(chosen: Sequence[Case], profile: Preset = PROFILE) -> dict[str, Timed]:
+    """Time cases, each as the study does -> by structure and case."""
+    return {f"{case.structure}/{case.id}": _timed(case, profile) for case in chosen}
 
 
-def _timed(cell: Cell, profile: Profile) -> Timed:
-    s = cell.build()
+def _timed(case: Case, profile: Preset) -> Timed:
+    s = case.build()
     rounds = Rounds(reading)
-    if cell.query in QUERIES:
-        samples = time_query(rounds, s, str(cell.query), pool(cell, s), profile)["samples"]
-    elif cell.query:
-        samples = time_operations(rounds, cell, profile)["samples"]
+    if case.subject in QUERIES:
+        samples = time_query(rounds, s, str(case.subject), pool(case, s), profile)["samples"]
+    elif case.subject:
+        samples = time_operations(rounds, case, profile)["samples"]
     else:
-        arguments = cell.structure, cell.mesh(), cell.reference_bytes
+        arguments = case.structure, case.mesh(), case.reference_bytes
         rounds.pedantic(structures.build, arguments, rounds=profile.rounds, warmup_rounds=1)
         samples = np.array(rounds.stats.stats.data)
     return Timed(samples.tolist(), rounds.readings)
 
 
 def compared(before: dict[str, Timed], after: dict[str, Timed]) -> dict[str, Comparison]:
-    """Compare every cell of two runs."""
+    """Compare every case of two runs."""
     return {
         name: compare(old.samples, after[name].samples, old.probe, after[name].probe)
         for name, old in before.items()
@@ -161,7 +161,7 @@ def _pair(turned: bool) -> tuple[dict[str, Timed], dict[str, Timed]]:
 
 
 def joined(parts: Sequence[dict[str, Timed]]) -> dict[str, Timed]:
-    """One run from its processes: the rounds of each cell, one process after the other."""
+    """One run from its processes: the rounds of each case, one process after the other."""
     return {
         name: Timed(
             [seconds for part in parts for seconds in part[name].samples],
@@ -172,7 +172,7 @@ def joined(parts: Sequence[dict[str, Timed]]) -> dict[str, Timed]:
 
 
 def _process() -> dict[str, Timed]:
-    """All cells once, in a process of its own."""
+    """All cases once, in a process of its own."""
     command = [sys.executable, "-m", "experiments.validation.a_against_a", "--measure"]
     done = subprocess.run(command, capture_output=True, text=True)
     if done.returncode:
@@ -196,7 +196,7 @@ def main() -> None:
     parser.add_argument("--measure", action="store_true", help="one process, printed as JSON")
     given = parser.parse_args()
     if given.measure:
-        print(json.dumps(measure(list(cells()))))
+        print(json.dumps(measure(list(cases()))))
         return
     last: dict[str, Any] = {}
 

@@ -41,7 +41,7 @@ PROFILE = "quick"
 
 
 def timed(root: Path, seed: int) -> Measured:
-    """A run of what the gate compares by time, its cells in an order of their own."""
+    """A run of what the gate compares by time, its cases in an order of their own."""
     folder = study.begin(PROFILE, root, STRUCTURES, seed=seed)
     for experiment, structure in PROCESSES:
         how = study.how(folder)

@@ -37,7 +37,7 @@ ASKED = {
 """By part of the corpus: the least share to be named right, and the largest to be named wrong."""
 
 DETERMINED = {"work": 0.95, "time": 0.85}
-"""Share of table 1's cells that must be determined, by measure, on the standard profile."""
+"""Share of table 1's cases that must be determined, by measure, on the standard profile."""
 
 
 class Shares(NamedTuple):
@@ -82,9 +82,9 @@ def determined(table: pd.DataFrame) -> dict[str, Shares]:
     """By table, the shares of its claims with a verdict other than undetermined.
 
     table: a row per claim, as `experiments.claims.judged.judged` gives. Claims about memory are not
-    judged by growth, and cells that claim nothing are not counted.
+    judged by growth, and cases that claim nothing are not counted.
     """
-    table = table[(table["query"] != MEMORY) & (table["outcome"] != "no claim")]
+    table = table[(table["subject"] != MEMORY) & (table["outcome"] != "no claim")]
     return {
         str(name): Shares(
             len(rows),

@@ -89,9 +89,9 @@ def body_bars() -> list[Bar]:
     for count, asked, limit in ((100, "< 10 s", 10.0), (500, "memory for it", np.inf)):
         command = [sys.executable, "-c", BREAK_BUNNY, str(count)]
         done = subprocess.run(command, capture_output=True, text=True, check=True)
-        cells, shards, seconds, error, peak = json.loads(done.stdout)
+        cases, shards, seconds, error, peak = json.loads(done.stdout)
         measured = f"{seconds:.1f} s, {peak / 2**20:,.0f} MiB, volume {error:+.1e}"
-        what = f"bunny (28,088 vertices) in {cells} cells, {shards} shards"
+        what = f"bunny (28,088 vertices) in {cases} cases, {shards} shards"
         bars.append(Bar(what, asked, measured, seconds < limit and abs(error) < 1e-6))
     return bars
 

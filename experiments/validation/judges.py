@@ -68,7 +68,7 @@ def big_o(sizes: Array, samples: Sequence[Array], latency: Array | None = None) 
         complexities.Linearithmic: "O(n log n)",
         complexities.Quadratic: "O(n²)",
     }
-    least = np.array([np.min(cell) for cell in samples])
+    least = np.array([np.min(case) for case in samples])
     best, _ = infer_big_o_class(sizes, NANOSECONDS * least, classes=list(names))
     return names[type(best)] if best is not None else None
 
@@ -95,8 +95,8 @@ def bigo(sizes: Array, samples: Sequence[Array], latency: Array | None = None) -
 
 
 def _points(sizes: Array, samples: Sequence[Array]) -> tuple[Array, Array]:
-    n = np.repeat(sizes, [len(cell) for cell in samples])
-    return n, np.concatenate([np.asarray(cell, float) for cell in samples])
+    n = np.repeat(sizes, [len(case) for case in samples])
+    return n, np.concatenate([np.asarray(case, float) for case in samples])
 
 
 JUDGES: dict[str, Judge] = {

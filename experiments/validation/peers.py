@@ -258,8 +258,8 @@ def main(
             theirs = float(np.median(seconds[peer]))
             ratio = theirs / ours
             met = "✓" if ratio >= comparison.asked else "✗"
-            cells = f"{1e3 * ours:.1f}", peer, f"{1e3 * theirs:.1f}", f"{ratio:.2f}"
-            table.add_row(comparison.what, *cells, f"{comparison.asked:.3g}", met)
+            cases = f"{1e3 * ours:.1f}", peer, f"{1e3 * theirs:.1f}", f"{ratio:.2f}"
+            table.add_row(comparison.what, *cases, f"{comparison.asked:.3g}", met)
         table.add_section()
     console.print(table)
     edits = edits_by_size()

@@ -11,7 +11,7 @@ from experiments.claims.growth import MEMORY, load_claims
 from experiments.harness.presets import HUBS
 from experiments.harness.workloads import WORKLOADS
 from experiments.runs.provenance import describe
-from experiments.runs.results import CellResult, ResultFile, write_json
+from experiments.runs.results import Measurement, ResultFile, write_json
 from structures import NAMES
 
 ORDERS = ("consecutive", "random")
@@ -49,7 +49,7 @@ EXPERIMENTS = {
     ),
     "listings": (("bench_printed", "counted", "faces"), ("bench_printed", "timed", "faces")),
 }
-"""The experiment, the order of its cells and what varies in them, by table."""
+"""The experiment, the order of its cases and what varies in them, by table."""
 
 FINDING = {"walk": 1 / 2, "jump and walk": 1 / 3, "scan": 1}
 """The ways to find a face, and the power of n_t that they take in these runs."""
@@ -67,10 +67,10 @@ def write_run(folder: Path, law_of: Callable[[str, str, str], Law] | None = None
     write_json(folder / "run.json", {**describe("quick"), "finished": "2026-01-01T00:00:00Z"})
     files = {}
     for claim in load_claims():
-        if claim.what == MEMORY:
+        if claim.subject == MEMORY:
             _add(files, folder, "bench_memory", claim.structure, _memory(claim.bytes_per_vertex))
             continue
-        chosen = law_of and law_of(claim.structure, claim.what, claim.printed)
+        chosen = law_of and law_of(claim.structure, claim.subject, claim.printed)
         law = chosen or LAWS[claim.printed]
         for experiment, order, variable in EXPERIMENTS[claim.table]:
             points = (
@@ -79,10 +79,10 @@ def write_run(folder: Path, law_of: Callable[[str, str, str], Law] | None = None
             for n_t, n_ev in points:
                 kind = "work" if experiment.endswith("work") or order == "counted" else "time"
                 noise = 1 if kind == "work" else 1e-9 * rng.normal(1, 0.02, 9)
-                cell = CellResult(
-                    id=f"{claim.what}/{n_t}/{n_ev}/{order}",
+                case = Measurement(
+                    id=f"{claim.subject}/{n_t}/{n_ev}/{order}",
                     kind=kind,
-                    query=claim.what,
+                    subject=claim.subject,
                     order=order,
                     family=HUBS if variable == "valence" else "torus",
                     faces=n_t,
@@ -93,13 +93,13 @@ def write_run(folder: Path, law_of: Callable[[str, str, str], Law] | None = None
                     noise=STEADY if kind == "time" else {},
                     samples=np.atleast_1d(law(n_t, n_ev) * noise).tolist(),
                 )
-                _add(files, folder, experiment, claim.structure, cell)
+                _add(files, folder, experiment, claim.structure, case)
     for structure in NAMES:
         _add_times(files, folder, structure)
-    for (experiment, structure), cells in files.items():
+    for (experiment, structure), cases in files.items():
         file = ResultFile(folder, experiment, structure)
-        file.cells = cells[:-1]
-        file.add(CellResult(**cells[-1]))
+        file.cases = cases[:-1]
+        file.add(Measurement(**cases[-1]))
     return folder
 
 
@@ -121,27 +121,27 @@ def _add_times(files: dict, folder: Path, structure: str) -> None:
         every += [("bench_fracture", "shatter", None, 1e-6 * (n_t if slow else 1))]
         every += [("bench_fracture", "find_face", it, 1e-8 * n_t**k) for it, k in FINDING.items()]
         for experiment, what, order, seconds in every:
-            cell = CellResult(
-                id=f"{what}/{n_t}/{order}", query=what, order=order, samples=[seconds], handles=1,
+            case = Measurement(
+                id=f"{what}/{n_t}/{order}", subject=what, order=order, samples=[seconds], handles=1,
                 latency=2e-9, **about,
             )  # fmt: skip
-            _add(files, folder, experiment, structure, cell)
+            _add(files, folder, experiment, structure, case)
         for way, power in FINDING.items():
             order = f"{way}, faces looked at"
             counted = {**about, "kind": "work", "samples": [float(round(n_t**power))]}
-            cell = CellResult(id=f"{order}/{n_t}", query="find_face", order=order, **counted)
-            _add(files, folder, "bench_fracture", structure, cell)
+            case = Measurement(id=f"{order}/{n_t}", subject="find_face", order=order, **counted)
+            _add(files, folder, "bench_fracture", structure, case)
 
 
-def _memory(bytes_per_vertex: int | None) -> CellResult:
+def _memory(bytes_per_vertex: int | None) -> Measurement:
     size = 1000 * int(bytes_per_vertex or 0)
     fields = {"vertex.point": size}
     detail = {"fields": fields, "clr": fields, "traced": size, "peak": size}
-    return CellResult(
+    return Measurement(
         id="torus/1000", kind="bytes", family="torus", vertices=1000, reference_bytes=8,
         samples=[float(size)], detail=detail,
     )  # fmt: skip
 
 
-def _add(files: dict, folder: Path, experiment: str, structure: str, cell: CellResult) -> None:
-    files.setdefault((experiment, structure), []).append(cell.__dict__)
+def _add(files: dict, folder: Path, experiment: str, structure: str, case: Measurement) -> None:
+    files.setdefault((experiment, structure), []).append(case.__dict__)

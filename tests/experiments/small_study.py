@@ -26,12 +26,12 @@ def go_on(folder: Path, report: Callable = lambda process, done: None) -> list[s
 
 
 def samples(folder: Path) -> dict[str, list[float]]:
-    """What is on disk, by cell; every file must be whole."""
+    """What is on disk, by case; every file must be whole."""
     found = {}
     for path in study.result_files(folder):
         content = study.read_json(path)
         owner = f"{content['experiment']}.{content['structure']}"
-        found |= {f"{owner} {cell['id']}": cell["samples"] for cell in content["cells"]}
+        found |= {f"{owner} {case['id']}": case["samples"] for case in content["cases"]}
     return found
 
 

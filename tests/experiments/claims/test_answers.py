@@ -28,8 +28,8 @@ def table(run):
 
 
 def without(run, experiment: str):
-    cells = run.cells[~run.cells["experiment"].str.startswith(experiment)]
-    return type(run)(run.folder, run.meta, cells.reset_index(drop=True), run.left_out)
+    cases = run.cases[~run.cases["experiment"].str.startswith(experiment)]
+    return type(run)(run.folder, run.meta, cases.reset_index(drop=True), run.skipped)
 
 
 @pytest.mark.parametrize(
@@ -86,7 +86,7 @@ def test_what_does_not_hold_is_not_said(run, table, tmp_path):
     said = re.sub(r"\{.*", "", ROWS[4]["says"])
     assert answers.answers(run, table)[4].text.startswith(said)
     wrong = table.copy()
-    wrong.loc[wrong["query"] == "face_faces", "outcome"] = "violated"
+    wrong.loc[wrong["subject"] == "face_faces", "outcome"] = "violated"
     assert answers.answers(run, wrong)[4].text.startswith("Of ")
     assert " 6 violated" in answers.answers(run, wrong)[4].text
 

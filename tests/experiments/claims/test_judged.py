@@ -34,24 +34,24 @@ def sound(tmp_path_factory: pytest.TempPathFactory):
 
 
 def test_the_claims_are_table_1_as_it_is_printed():
-    claims = {(it.what, it.structure): it for it in load_claims() if it.table != "listings"}
+    claims = {(it.subject, it.structure): it for it in load_claims() if it.table != "listings"}
     every = (*PRINTED, "vertex_vertices", *OPERATIONS)
     assert set(claims) == {(what, name) for what in every for name in NAMES}
-    for what, cells in PRINTED.items():
-        assert [claims[what, name].printed for name in NAMES] == cells
+    for what, cases in PRINTED.items():
+        assert [claims[what, name].printed for name in NAMES] == cases
         assert all("table 1" in claims[what, name].source for name in NAMES)
 
 
 def test_what_grows_as_claimed_is_consistent_by_work_and_by_time(sound):
     table = judged(sound)
-    claimed = table[(table["printed"] != "N/A") & (table["query"] != "memory")]
+    claimed = table[(table["printed"] != "N/A") & (table["subject"] != "memory")]
     assert claimed["table"].value_counts().to_dict() == {
         "queries": 26 + 2 * 8,
         "operations": 16 + 2 * 4,
         "listings": 8,
     }
     assert set(claimed["outcome_work"]) == set(claimed["outcome_time"]) == {"consistent"}
-    memory = table[table["query"] == "memory"]["outcome"]
+    memory = table[table["subject"] == "memory"]["outcome"]
     assert memory.tolist() == 4 * ["consistent"] + 2 * ["no claim"]
     assert set(table[table["printed"] == "N/A"]["outcome"]) == {"no claim"}
 
@@ -83,9 +83,9 @@ def test_a_byte_too_many_is_a_violation(tmp_path):
     folder = write_run(tmp_path)
     path = folder / "bench_memory.half_edge.json"
     content = json.loads(path.read_text())
-    content["cells"][0]["samples"] = [228_001.0]
+    content["cases"][0]["samples"] = [228_001.0]
     write_sealed(path, content)
-    table = judged(load(folder)).query("query == 'memory'").set_index("structure")
+    table = judged(load(folder)).query("subject == 'memory'").set_index("structure")
     assert table.loc["half_edge", "outcome"] == "violated"
     assert table.loc["winged_edge", "outcome"] == "consistent"
 
@@ -96,14 +96,14 @@ def test_a_query_that_was_not_measured_is_undetermined_never_a_pass(tmp_path):
         path.unlink()
     table = judged(load(folder))
     rows = table[(table["structure"] == "half_edge") & (table["printed"] != "N/A")]
-    assert set(rows.query("query != 'memory'")["outcome"]) == {"undetermined"}
+    assert set(rows.query("subject != 'memory'")["outcome"]) == {"undetermined"}
 
 
 def test_the_class_found_names_its_variables(sound):
     table = judged(sound)
     for row in table.to_dict("records"):
         expected = {"N/A": "O(1)"}.get(row["printed"], row["printed"])
-        if row["query"] == "memory" and row["printed"] == "N/A":
+        if row["subject"] == "memory" and row["printed"] == "N/A":
             expected = "0"
         assert found(row) == expected
 

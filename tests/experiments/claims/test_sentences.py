@@ -72,9 +72,9 @@ def test_a_sentence_that_holds_in_part_is_undetermined(tmp_path):
     folder = write_run(tmp_path)
     path = folder / "bench_workloads.half_edge.json"
     content = json.loads(path.read_text())
-    for cell in content["cells"]:
-        if cell["query"] == "impacts" and cell["vertices"] > 10_000:
-            cell["samples"] = [1.0]
+    for case in content["cases"]:
+        if case["subject"] == "impacts" and case["vertices"] > 10_000:
+            case["samples"] = [1.0]
     write_sealed(path, content)
     assert outcome(load(folder), "dynamic") == "undetermined"
 

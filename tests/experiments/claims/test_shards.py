@@ -17,7 +17,7 @@ def run(tmp_path: Path) -> results.Run:
 
 def test_walks_and_scans_are_told_apart_by_their_growth(run):
     found = shards.found(run).set_index("way")
-    slopes = {way: float(cell.split()[0]) for way, cell in found["visited"].items()}
+    slopes = {way: float(case.split()[0]) for way, case in found["visited"].items()}
     assert slopes["walk"] == pytest.approx(0.5, abs=0.03)
     assert slopes["jump and walk"] == pytest.approx(1 / 3, abs=0.05)
     assert slopes["scan"] == pytest.approx(1, abs=0.01)
@@ -32,8 +32,8 @@ def test_structures_are_compared_with_the_indexed_mesh_at_its_size(run):
 
 
 def test_a_run_of_before_there_was_destruction_gives_empty_tables(run):
-    older = run.cells[run.cells["experiment"] != "bench_fracture"]
-    before = results.Run(run.folder, run.meta, older, run.left_out)
+    older = run.cases[run.cases["experiment"] != "bench_fracture"]
+    before = results.Run(run.folder, run.meta, older, run.skipped)
     assert shards.shattered(before).empty
     assert shards.found(before).empty
     assert shards.styled(shards.found(before), shards.FOUND)

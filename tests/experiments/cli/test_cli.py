@@ -14,7 +14,7 @@ from typer.testing import CliRunner
 
 from experiments import cli
 from experiments.cli import app
-from experiments.harness.presets import PROFILES
+from experiments.harness.presets import PRESETS
 from experiments.runs.results import load
 from experiments.runs.study import processes
 from structures import NAMES
@@ -91,13 +91,13 @@ def test_a_study_that_is_killed_goes_on_where_it_was_and_ends_complete(tmp_path)
     after = _cells(tmp_path)
     assert all(after[key] == cell for key, cell in before.items())
     every = processes("smoke", chosen)
-    assert set(after) == {(p.experiment, p.structure, cell) for p in every for cell in p.cells}
+    assert set(after) == {(p.experiment, p.structure, case) for p in every for case in p.cases}
     assert {p.structure for p in every} == {*chosen, "machine"}
 
     (folder,) = (path.parent for path in tmp_path.glob("*/run.json"))
     run = load(folder)
     assert run.meta["finished"] >= run.meta["started"]
-    assert run.cells.query("experiment != 'bench_latency'")["checked"].all()
+    assert run.cases.query("experiment != 'bench_latency'")["checked"].all()
     assert {"commit", "dirty", "machine", "versions", "schema"} <= set(run.meta)
     code, output = hem("table", str(folder))
     assert code == 0
@@ -115,5 +115,5 @@ def _cells(root: Path) -> dict[tuple[str, str, str], dict]:
 
 
 def test_profiles_reach_a_million_vertices_and_valence_4096():
-    assert max(PROFILES["standard"].sizes) == max(PROFILES["full"].sizes) == 1_000_000
-    assert all(set(p.valences) >= {4, 4096} for name, p in PROFILES.items() if name != "smoke")
+    assert max(PRESETS["standard"].sizes) == max(PRESETS["full"].sizes) == 1_000_000
+    assert all(set(p.valences) >= {4, 4096} for name, p in PRESETS.items() if name != "smoke")

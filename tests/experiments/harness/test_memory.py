@@ -1,4 +1,4 @@
-"""A cell that would not fit into memory is left out beforehand and says so."""
+"""A case that would not fit into memory is left out beforehand and says so."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import pytest
 import hem
 import structures
 from experiments.harness import memory
-from experiments.harness.cases import Cell
+from experiments.harness.cases import Case
 from experiments.harness.memory import VARIABLE, available, estimate, size_of, why_not
 from experiments.runs import study
 from experiments.runs.results import load
@@ -22,7 +22,7 @@ from tests.experiments.small_study import begin, go_on
 @pytest.mark.parametrize("reference_bytes", [4, 8])
 def test_what_building_takes_is_foreseen_and_not_by_far_too_much(name, reference_bytes):
     n = 4_000
-    foreseen = estimate(Cell(name, "torus", n, reference_bytes=reference_bytes), "bench_build")
+    foreseen = estimate(Case(name, "torus", n, reference_bytes=reference_bytes), "bench_build")
     structures.build(name, hem.generate("torus", n), reference_bytes)  # compiles
     tracemalloc.start()
     mesh = hem.generate("torus", n)
@@ -33,15 +33,15 @@ def test_what_building_takes_is_foreseen_and_not_by_far_too_much(name, reference
     assert peak <= foreseen <= 8 * peak
 
 
-def test_what_a_cell_takes_grows_with_its_mesh_and_with_its_structure():
+def test_what_a_case_takes_grows_with_its_mesh_and_with_its_structure():
     def of(name, size):
-        return estimate(Cell(name, "torus", size), "bench_operations")
+        return estimate(Case(name, "torus", size), "bench_operations")
 
     assert of("indexed", 10**6) > 9 * of("indexed", 10**5)
     assert of("half_edge_objects", 10**5) > of("half_edge", 10**5) > of("indexed", 10**5)
-    hubs = estimate(Cell("indexed", "hubs", 2_000, valence=8), "bench_valence")
-    assert hubs == estimate(Cell("indexed", "torus", 1_000), "bench_valence")
-    assert estimate(Cell("machine", "chase", 1 << 30), "bench_latency") > 1 << 30
+    hubs = estimate(Case("indexed", "hubs", 2_000, valence=8), "bench_valence")
+    assert hubs == estimate(Case("indexed", "torus", 1_000), "bench_valence")
+    assert estimate(Case("machine", "chase", 1 << 30), "bench_latency") > 1 << 30
 
 
 def test_what_is_available_is_the_least_that_anybody_allows(monkeypatch, tmp_path):
@@ -77,15 +77,15 @@ def test_a_size_that_is_none_is_refused_in_one_line(monkeypatch, tmp_path):
 def test_a_run_on_little_memory_leaves_out_what_does_not_fit_and_ends(monkeypatch, tmp_path):
     """Of the smoke profile's meshes one fits and another one does not."""
     small, large = (
-        estimate(Cell("indexed", family, size), "bench_memory")
+        estimate(Case("indexed", family, size), "bench_memory")
         for family, size in (("torus", 1000), ("teapot", 0))
     )
     monkeypatch.setenv(VARIABLE, str(int((small + large) / 2 / memory.SHARE)))
     monkeypatch.setattr(study, "EXPERIMENTS", ("bench_memory",))
     fits = {
-        cell.id: not why_not(cell, "bench_memory")
-        for cell in (
-            Cell("indexed", family, size, reference_bytes=k)
+        case.id: not why_not(case, "bench_memory")
+        for case in (
+            Case("indexed", family, size, reference_bytes=k)
             for family, size in (("torus", 1000), ("teapot", 0))
             for k in (4, 8)
         )
@@ -95,9 +95,7 @@ def test_a_run_on_little_memory_leaves_out_what_does_not_fit_and_ends(monkeypatc
     assert go_on(folder) == []
     run = load(folder)
     assert "finished" in run.meta
-    assert set(run.cells["id"]) == {cell for cell, it in fits.items() if it}
-    assert set(run.left_out["id"]) == {cell for cell, it in fits.items() if not it}
-    assert (
-        run.left_out["left_out"].str.contains("are available, of which a cell may take 70%").all()
-    )
-    assert (run.left_out["kind"] == "bytes").all()
+    assert set(run.cases["id"]) == {case for case, it in fits.items() if it}
+    assert set(run.skipped["id"]) == {case for case, it in fits.items() if not it}
+    assert run.skipped["skipped"].str.contains("are available, of which a case may take 70%").all()
+    assert (run.skipped["kind"] == "bytes").all()

@@ -8,19 +8,19 @@ import pytest
 import hem
 import structures
 from experiments.claims.growth import OPERATIONS
-from experiments.harness.cases import Cell
+from experiments.harness.cases import Case
 from experiments.harness.operations import Bench, arguments, faces_of
 from experiments.harness.presets import HUBS
 from experiments.harness.workloads import KEPT, WORKLOADS
 
 
-def cell(structure: str, family: str = "torus", valence: int | None = None) -> Cell:
-    return Cell(structure, family, 900 if family != HUBS else 2048, "split_face", valence=valence)
+def case(structure: str, family: str = "torus", valence: int | None = None) -> Case:
+    return Case(structure, family, 900 if family != HUBS else 2048, "split_face", valence=valence)
 
 
 @pytest.mark.parametrize("family", ["torus", "grid"])
 def test_chosen_elements_have_no_neighbor_in_common(family):
-    it = cell("half_edge", family)
+    it = case("half_edge", family)
     s, faces = it.build(), faces_of(it)
     rings = [set(s.vertex_vertices(s.face_vertices(int(f))).values.tolist()) for f in faces]
     assert len(faces) > 10
@@ -28,7 +28,7 @@ def test_chosen_elements_have_no_neighbor_in_common(family):
 
 
 def test_where_the_valence_varies_each_element_is_at_a_hub_of_its_own():
-    it = cell("half_edge", HUBS, valence=16)
+    it = case("half_edge", HUBS, valence=16)
     faces, hubs = faces_of(it), hem.valence_hubs(16, 2048)
     first = it.mesh().triangles[faces, 0]
     assert set(first) == set(hubs[::2])
@@ -37,7 +37,7 @@ def test_where_the_valence_varies_each_element_is_at_a_hub_of_its_own():
 @pytest.mark.parametrize("operation", OPERATIONS)
 @pytest.mark.parametrize("name", structures.NAMES)
 def test_a_bench_is_operated_on_and_restored(name, operation):
-    it = cell(name)
+    it = case(name)
     bench = Bench(it.build(), operation, faces_of(it))
     before = [array.copy() for array in bench.mesh.arrays]
     count, each = bench.mesh.n_faces, {"split_edge": 2, "split_face": 2, "collapse_edge": -2}
@@ -53,7 +53,7 @@ def test_a_bench_is_operated_on_and_restored(name, operation):
 
 
 def test_an_idle_call_takes_no_time_to_speak_of_and_does_nothing():
-    it = cell("half_edge")
+    it = case("half_edge")
     bench = Bench(it.build(), "split_face", faces_of(it))
     before = bench.mesh.n_faces
     assert 0 < bench.idle_seconds() < 1e-3
@@ -64,7 +64,7 @@ def test_an_idle_call_takes_no_time_to_speak_of_and_does_nothing():
 def test_all_structures_are_asked_for_the_same(monkeypatch):
     rows = []
     for name in structures.NAMES:
-        it = cell(name)
+        it = case(name)
         s = it.build().copy()
         args = arguments(s, "split_edge", faces_of(it))
         rows.append(s.edge_vertices(args[:, 0]).values.tolist())

@@ -13,9 +13,9 @@ import pytest
 
 from experiments.harness import affinity
 from experiments.harness import steadiness as noise_module
-from experiments.harness.cases import Cell, in_random_order
+from experiments.harness.cases import Case, in_random_order
 from experiments.harness.steadiness import BUSY, REPEATS, Watch, badness, disturbed, noise
-from experiments.runs.results import CellResult, ResultFile, load, write_sealed
+from experiments.runs.results import Measurement, ResultFile, load, write_sealed
 
 CALM = {"fastest": 1e-4, "before": 1e-4, "after": 1.01e-4, "stray": 0.01, "waited": 0.0}
 
@@ -24,11 +24,11 @@ def run_of(tmp_path, noises, kind="time"):
     write_sealed(tmp_path / "run.json", {"schema": 2})
     file = ResultFile(tmp_path, "bench_queries", "indexed")
     for k, it in enumerate(noises):
-        file.add(CellResult(str(k), kind, samples=[1.0], noise=it))
+        file.add(Measurement(str(k), kind, samples=[1.0], noise=it))
     return load(tmp_path)
 
 
-def test_a_slow_probe_and_a_long_wait_disturb_a_cell():
+def test_a_slow_probe_and_a_long_wait_disturb_a_case():
     assert not disturbed(CALM)
     assert not disturbed({})
     assert disturbed({**CALM, "stray": 0.3})
@@ -65,7 +65,7 @@ def _seconds_of(what):
 def test_a_run_says_when_its_machine_was_too_busy_to_judge_by_time(tmp_path, bad, too_busy):
     noises = [{**CALM, "waited": 0.5, "measured": 3}] * bad + [CALM] * (100 - bad)
     found = noise(run_of(tmp_path, noises))
-    assert (found.cells, found.disturbed, found.repeated) == (100, bad, bad)
+    assert (found.cases, found.disturbed, found.repeated) == (100, bad, bad)
     assert found.too_busy == too_busy == (found.share > BUSY)
     assert ("too busy to judge by time" in found.words) == too_busy
     assert ("bench_queries on indexed" in found.words) == too_busy
@@ -73,23 +73,23 @@ def test_a_run_says_when_its_machine_was_too_busy_to_judge_by_time(tmp_path, bad
 
 def test_counts_are_not_judged_by_noise_nor_runs_that_did_not_watch(tmp_path):
     counted = noise(run_of(tmp_path, [{**CALM, "waited": 0.5}], "work"))
-    assert (counted.cells, counted.too_busy) == (0, False)
+    assert (counted.cases, counted.too_busy) == (0, False)
     older = noise(run_of(tmp_path / "older", [{}, {}]))
-    assert (older.cells, older.words) == (0, "The run did not watch how steady the machine was.")
+    assert (older.cases, older.words) == (0, "The run did not watch how steady the machine was.")
 
 
 @pytest.mark.parametrize(("calm_from", "measured"), [(1, 2), (10**6, 1 + REPEATS)])
-def test_a_disturbed_cell_is_measured_again_and_no_more_often_than_it_may(
+def test_a_disturbed_case_is_measured_again_and_no_more_often_than_it_may(
     tmp_path, calm_from, measured
 ):
-    """All cells are disturbed the first time; then none, or all of them always."""
+    """All cases are disturbed the first time; then none, or all of them always."""
     script = (
         "import sys, pytest; from collections import Counter; from experiments import noise\n"
         "import experiments.conftest as conftest\n"
         "from experiments import results\n"
         "seen, add = Counter(), results.ResultFile.add\n"
-        "def counting(self, cell):\n"
-        "    seen[cell.id] += 1; add(self, cell)\n"
+        "def counting(self, case):\n"
+        "    seen[case.id] += 1; add(self, case)\n"
         "def says(self):\n"
         "    k = says.calls = says.calls + 1\n"
         f"    busy = k <= {calm_from} * 13\n"
@@ -105,14 +105,14 @@ def test_a_disturbed_cell_is_measured_again_and_no_more_often_than_it_may(
     ran = subprocess.run(command, capture_output=True, text=True, timeout=60)
     assert ran.returncode == 0, ran.stdout + ran.stderr
     assert f"[{measured}]" in ran.stdout
-    cells = json.loads((tmp_path / "bench_latency.machine.json").read_text())["cells"]
-    assert len(cells) == 13
-    assert {cell["noise"]["measured"] for cell in cells} == {measured}
-    assert {cell["noise"]["waited"] for cell in cells} == {0 if calm_from == 1 else 0.9}
+    cases = json.loads((tmp_path / "bench_latency.machine.json").read_text())["cases"]
+    assert len(cases) == 13
+    assert {case["noise"]["measured"] for case in cases} == {measured}
+    assert {case["noise"]["waited"] for case in cases} == {0 if calm_from == 1 else 0.9}
 
 
 CELLS = [
-    Cell("indexed", family, size, query, order)
+    Case("indexed", family, size, query, order)
     for family in ("torus", "grid")
     for size in (100, 400, 1600)
     for query in ("vertex_faces", "face_edges")
@@ -120,16 +120,16 @@ CELLS = [
 ]
 
 
-def test_the_order_of_cells_is_random_and_its_seed_gives_it_again():
+def test_the_order_of_cases_is_random_and_its_seed_gives_it_again():
     one, again, other = (in_random_order(CELLS, seed) for seed in (1, 1, 2))
     assert one == again != other
     assert sorted(one, key=repr) == sorted(other, key=repr) == sorted(CELLS, key=repr)
-    sizes = [cell.size for cell in one]
+    sizes = [case.size for case in one]
     assert sizes not in (sorted(sizes), sorted(sizes)[::-1])
 
 
 def test_what_is_asked_of_a_mesh_stays_together_so_that_it_is_built_once():
-    meshes = [(cell.family, cell.size) for cell in in_random_order(CELLS, 1)]
+    meshes = [(case.family, case.size) for case in in_random_order(CELLS, 1)]
     changes = sum(a != b for a, b in pairwise(meshes))
     assert changes == len(set(meshes)) - 1
 

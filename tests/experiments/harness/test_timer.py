@@ -1,4 +1,4 @@
-"""Laws of timing: a delay while a cell is calibrated does not decide what is timed."""
+"""Laws of timing: a delay while a case is calibrated does not decide what is timed."""
 
 from __future__ import annotations
 

@@ -43,7 +43,7 @@ def contents(folder: Path) -> dict[str, bytes]:
 
 def another_count(folder: Path) -> None:
     kept = baseline.load_exact(folder)
-    kept.cells[KEY] = [7, 7]
+    kept.cases[KEY] = [7, 7]
     baseline.save_exact(kept, folder)
 
 
@@ -60,7 +60,7 @@ def test_a_change_is_shown_on_both_sides_and_written_once_one_agrees(folder):
     code, output = update(folder, said="y\n")
     assert code == 0
     assert f"- {KEY}: [7, 7]" in output
-    assert f"+ {KEY}: {baseline.load_exact(COMMITTED).cells[KEY]}" in output
+    assert f"+ {KEY}: {baseline.load_exact(COMMITTED).cases[KEY]}" in output
     assert contents(folder) == good
 
 
@@ -77,7 +77,7 @@ def test_with_a_run_all_of_it_becomes_the_reference(folder, run):
     code, output = update(folder, str(run), "--yes")
     assert code == 0
     assert "± run.json, started:" in output
-    assert "cells anew" in output
+    assert "cases anew" in output
     kept = baseline.load_measured(folder)
     assert kept == baseline.measured(gate.load(run))
     assert update(folder, str(run)) == (0, f"{folder} says just this already.\n")
@@ -87,7 +87,7 @@ def test_a_reference_that_cannot_be_read_is_replaced(folder, run):
     for name in ("exact.json", "run.json", "times.json"):
         (folder / name).write_text("{")
     assert update(folder, str(run), "--yes")[0] == 0
-    assert baseline.load_exact(folder).cells == baseline.load_exact(COMMITTED).cells
+    assert baseline.load_exact(folder).cases == baseline.load_exact(COMMITTED).cases
     assert baseline.load_measured(folder).times
 
 

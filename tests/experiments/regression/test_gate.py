@@ -16,7 +16,7 @@ from experiments.regression import interleaved
 from experiments.regression.baseline import SCHEMA, load_exact, measured, save_exact, save_measured
 from experiments.regression.compare_runs import compare_runs
 from experiments.regression.counters import Exact, measure
-from experiments.regression.findings import Finding, claim_of, code, compare_cells, compare_exact
+from experiments.regression.findings import Finding, claim_of, code, compare_cases, compare_exact
 from experiments.regression.findings_shown import as_json, as_markdown
 from experiments.regression.significance import Comparison
 from experiments.runs.results import load
@@ -64,7 +64,7 @@ def test_work_and_bytes_are_those_of_the_reference():
 )
 def test_an_exact_value_is_compared_to_the_last_count(before, after, outcome):
     sides = ({KEY: it} if it is not None else {} for it in (before, after))
-    (found,) = compare_cells(*sides)
+    (found,) = compare_cases(*sides)
     assert found.outcome == outcome
     assert "Vertex → Faces: O(n_ev)" in found.claim
     assert code([found]) == {"worse": 1, "undetermined": 2}.get(outcome, 0)
@@ -159,7 +159,7 @@ def test_a_busy_machine_cannot_judge_by_time(before):
 CURVE = "bench_queries/half_edge/face_edges/"
 
 
-def random_cells(before) -> list[str]:
+def random_cases(before) -> list[str]:
     keys = [it for it in before.times if it.startswith(CURVE) and it.endswith("/random")]
     return sorted(keys, key=lambda key: before.times[key]["samples"])
 
@@ -172,7 +172,7 @@ def of_curve(before, times) -> Finding:
 
 @pytest.mark.parametrize("slower", [0, 1, 2])
 def test_a_curve_is_not_as_before_where_some_of_it_is_slower(before, slower):
-    keys = random_cells(before)
+    keys = random_cases(before)
     times = dict(before.times)
     for key in keys[len(keys) - slower :]:
         times[key] = {**times[key], "samples": [3 * it for it in times[key]["samples"]]}
@@ -181,7 +181,7 @@ def test_a_curve_is_not_as_before_where_some_of_it_is_slower(before, slower):
 
 @pytest.mark.parametrize(("times", "said"), [(1.6, "same"), (2.5, "worse"), (0.4, "better")])
 def test_from_run_to_run_a_curve_must_be_twice_as_slow(before, times, said):
-    keys = random_cells(before)
+    keys = random_cases(before)
     scaled = {
         key: {**it, "samples": [times * sample for sample in it["samples"]]} if key in keys else it
         for key, it in before.times.items()
@@ -189,8 +189,8 @@ def test_from_run_to_run_a_curve_must_be_twice_as_slow(before, times, said):
     assert of_curve(before, scaled).outcome == said
 
 
-def test_a_timed_cell_that_is_gone_is_missed(before):
-    lost = random_cells(before)[0]
+def test_a_timed_case_that_is_gone_is_missed(before):
+    lost = random_cases(before)[0]
     found = of_curve(before, {key: it for key, it in before.times.items() if key != lost})
     assert (found.outcome, "1 not measured" in found.why) == ("undetermined", True)
 
@@ -208,8 +208,8 @@ def test_chance_may_leave_a_tenth_open_and_nothing_else_may_be():
 
 
 def test_of_another_python_the_bytes_of_objects_are_left_out_in_runs_as_well():
-    cells = {"bench_memory/half_edge_objects/torus/100/8-byte references": [7]}
-    assert compare_cells(cells, {}, other_python=True) == []
+    cases = {"bench_memory/half_edge_objects/torus/100/8-byte references": [7]}
+    assert compare_cases(cases, {}, other_python=True) == []
 
 
 def test_what_is_not_compiled_cannot_be_timed_beside_a_tree():
@@ -233,7 +233,7 @@ def test_an_experiment_that_is_missing_cannot_be_told(before):
 
 def test_json_and_markdown_say_what_is_worse():
     before, after = {KEY: [19]}, {KEY: [20]}
-    found = compare_cells(before, after)
+    found = compare_cases(before, after)
     content = as_json(found, ["a note"])
     assert (content["code"], content["findings"][0]["where"]) == (1, KEY)
     text = as_markdown(found, ["a note"])
@@ -270,8 +270,8 @@ def test_a_mistake_is_one_line_and_never_a_pass(arguments, said, reference):
     ("text", "said"),
     [
         ("{", "exact.json cannot be read"),
-        ("[]", "exact.json holds no cells"),
-        ('{"schema": 99, "cells": {}}', f"has schema 99, this version reads {SCHEMA}"),
+        ("[]", "exact.json holds no cases"),
+        ('{"schema": 99, "cases": {}}', f"has schema 99, this version reads {SCHEMA}"),
     ],
 )
 def test_a_broken_reference_is_named_with_the_way_out(text, said, reference):
@@ -286,12 +286,12 @@ def test_an_empty_run_is_refused(reference, tmp_path):
     (tmp_path / "run.json").write_text('{"schema": 1, "profile": "quick"}')
     exit_code, output = hem("check", str(tmp_path), "--reference", str(reference))
     assert exit_code == 2
-    assert "holds no cell" in output
+    assert "holds no case" in output
 
 
 def test_a_worse_structure_fails_the_command_and_shows_the_numbers(reference, tmp_path):
     exact = load_exact(reference)
-    exact.cells["work/indexed/face_vertices/torus/100/random"] = [2, 2, 2]
+    exact.cases["work/indexed/face_vertices/torus/100/random"] = [2, 2, 2]
     save_exact(exact, reference)
     page = tmp_path / "summary.md"
     options = "--structure", "indexed", "--reference", str(reference), "--markdown", str(page)
@@ -359,7 +359,7 @@ def test_a_tree_that_cannot_be_timed_is_no_pass(reference, tmp_path):
     assert "could not be timed: RuntimeError: this one is broken" in output
 
 
-def test_a_saved_reference_reads_as_it_was_one_line_per_cell(sound, before, tmp_path):
+def test_a_saved_reference_reads_as_it_was_one_line_per_case(sound, before, tmp_path):
     from experiments.regression.baseline import load_measured
 
     save_measured(before, tmp_path)

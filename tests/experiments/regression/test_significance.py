@@ -114,7 +114,7 @@ def test_slower_code_is_found_on_a_faster_machine_whose_probe_is_as_much_faster(
     assert compare(*runs, least_share=1).outcome == "worse"
 
 
-def test_a_probe_that_changes_beside_a_cell_that_does_not_is_no_alarm() -> None:
+def test_a_probe_that_changes_beside_a_case_that_does_not_is_no_alarm() -> None:
     rng = np.random.default_rng(9)
     for change in (0.1, 0.5, 2, 10):
         old, new, probe = (np.exp(white(rng, 15, 0.03)) for _ in range(3))

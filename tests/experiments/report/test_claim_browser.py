@@ -27,7 +27,7 @@ def every(tmp_path_factory):
 
 def test_every_claim_has_one_entry_under_a_key_of_its_own(every):
     keys = [it.key for it in every]
-    cells = [key_of(it.table, it.structure, it.what) for it in load_claims()]
+    cells = [key_of(it.table, it.structure, it.subject) for it in load_claims()]
     assert len(keys) == len(set(keys))
     assert set(keys) == {*cells, *(f"sentence/{it}" for it in QUANTITIES)}
     assert {it.kind for it in every} == set(KINDS)

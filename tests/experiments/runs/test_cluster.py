@@ -53,7 +53,7 @@ def test_an_interrupted_study_goes_on_with_what_its_machines_have_measured(
     cluster.run(folder, "smoke", address, lambda process, done: None, ["indexed"], print)
     after = samples(folder)
     assert before.items() <= after.items()
-    assert len(after) == sum(len(it.cells) for it in study.processes("smoke", ["indexed"]))
+    assert len(after) == sum(len(it.cases) for it in study.processes("smoke", ["indexed"]))
     assert len(load(folder).meta["resumed"]) == 1
 
 
@@ -73,9 +73,9 @@ def test_work_is_spread_kept_apart_and_tried_elsewhere_when_a_machine_is_lost(
     cluster.run(folder, "smoke", address, lose_one, structures, said.append)
     run = load(folder)
     every = study.processes("smoke", structures)
-    found = run.cells.groupby(["experiment", "structure"])
-    assert {key: len(cells) for key, cells in found} == {
-        (it.experiment, it.structure): len(it.cells) for it in every
+    found = run.cases.groupby(["experiment", "structure"])
+    assert {key: len(cases) for key, cases in found} == {
+        (it.experiment, it.structure): len(it.cases) for it in every
     }
     assert (found["machine"].nunique() == 1).all()
     assert len(said) == 1
@@ -87,7 +87,7 @@ def test_work_is_spread_kept_apart_and_tried_elsewhere_when_a_machine_is_lost(
         assert about["profile"] == "smoke"
         assert about["machine"]["cores"] == os.cpu_count()
     assert "finished" in run.meta
-    used = {name.removeprefix("machine-") for name in run.cells["machine"]}
+    used = {name.removeprefix("machine-") for name in run.cases["machine"]}
     assert set(run.machines) == (used if len(used) > 1 else set())
 
 

@@ -15,8 +15,8 @@ import pytest
 from experiments.runs import locks, study, worker
 from experiments.runs.results import (
     CannotWriteError,
-    CellResult,
     DamagedError,
+    Measurement,
     ResultFile,
     ResultsError,
     load,
@@ -56,7 +56,7 @@ def run(finished, tmp_path):
 def made_up(tmp_path):
     write_sealed(tmp_path / "run.json", {"schema": 2, "profile": "smoke"})
     file = ResultFile(tmp_path, "bench_x", "indexed")
-    file.add(CellResult("a", "time", samples=[1.5, 2.5]))
+    file.add(Measurement("a", "time", samples=[1.5, 2.5]))
     return file.path
 
 
@@ -97,7 +97,7 @@ def test_a_damaged_file_is_named_with_what_to_do_and_never_read(made_up, how):
 
 def test_no_flipped_bit_changes_what_is_read(made_up):
     good = made_up.read_bytes()
-    before = load(made_up.parent).cells.to_dict("records")
+    before = load(made_up.parent).cases.to_dict("records")
     for bit in range(0, 8 * len(good), 7):
         flipped = bytearray(good)
         flipped[bit // 8] ^= 1 << bit % 8
@@ -107,7 +107,7 @@ def test_no_flipped_bit_changes_what_is_read(made_up):
             ResultFile(made_up.parent, "bench_x", "indexed")
         except ResultsError:
             continue
-        assert content["cells"][0]["samples"] == before[0]["samples"].tolist()
+        assert content["cases"][0]["samples"] == before[0]["samples"].tolist()
         assert [content[key] for key in ("experiment", "structure")] == ["bench_x", "indexed"]
 
 
@@ -121,7 +121,7 @@ def test_a_damaged_head_of_a_run_is_not_taken_for_another_run(made_up, tmp_path)
         study.resume(tmp_path / "runs")
 
 
-def test_resuming_sets_a_damaged_file_aside_and_measures_its_cells_again(run):
+def test_resuming_sets_a_damaged_file_aside_and_measures_its_cases_again(run):
     (path,) = study.result_files(run)
     before = samples(run)
     damage(path, "truncated")
@@ -143,15 +143,15 @@ def test_a_file_that_is_gone_from_a_finished_run_is_missed(run):
 
 def test_runs_of_the_schema_before_are_still_read(tmp_path):
     write_json(tmp_path / "run.json", {"schema": 1})
-    cell = {"id": "a", "kind": "time", "samples": [1.0], "left_out": ""}
+    case = {"id": "a", "kind": "time", "samples": [1.0], "skipped": ""}
     head = {"schema": 1, "experiment": "bench_x", "structure": "indexed"}
-    write_json(tmp_path / "bench_x.indexed.json", {**head, "cells": [cell]})
-    (row,) = load(tmp_path).cells.to_dict("records")
+    write_json(tmp_path / "bench_x.indexed.json", {**head, "cases": [case]})
+    (row,) = load(tmp_path).cases.to_dict("records")
     assert (row["samples"].tolist(), row["noise"], row["machine"]) == ([1.0], {}, "")
 
 
 def test_a_full_disk_stops_the_study_and_loses_nothing(small_disk):
-    """The disk fills up after some cells; there is room again; the run goes on and ends."""
+    """The disk fills up after some cases; there is room again; the run goes on and ends."""
     folder = begin(small_disk)
     kept: dict[str, list[float]] = {}
     filler = small_disk / "filler"
@@ -181,9 +181,9 @@ def test_a_file_that_cannot_be_written_stays_as_it_was(tmp_path):
         "import resource, signal, sys; from pathlib import Path\n"
         "from experiments.runs.results import *\n"
         "signal.signal(signal.SIGXFSZ, signal.SIG_IGN)\n"
-        "f = ResultFile(Path(sys.argv[1]), 'bench_x', 'indexed'); f.add(CellResult('a', 'time'))\n"
+        "f = ResultFile(Path(sys.argv[1]), 'bench_x', 'indexed'); f.add(Measurement('a', 'time'))\n"
         "resource.setrlimit(resource.RLIMIT_FSIZE, (4000, 4000))\n"
-        "f.add(CellResult('b', 'time', samples=[0.5] * 9000))"
+        "f.add(Measurement('b', 'time', samples=[0.5] * 9000))"
     )
     ran = subprocess.run(
         [sys.executable, "-c", script, str(tmp_path)], capture_output=True, text=True, check=False
@@ -239,9 +239,9 @@ def test_a_run_is_not_gone_on_with_by_other_code(run):
 
 
 def test_a_copy_of_a_file_beside_it_is_not_read(made_up):
-    before = len(load(made_up.parent).cells)
+    before = len(load(made_up.parent).cases)
     shutil.copy(made_up, made_up.with_name("bench_x.indexed.backup.json"))
-    assert len(load(made_up.parent).cells) == before
+    assert len(load(made_up.parent).cases) == before
 
 
 def test_a_folder_without_a_run_cannot_be_resumed(tmp_path):
@@ -279,14 +279,14 @@ def test_two_studies_begun_in_the_same_second_have_folders_of_their_own(tmp_path
     assert len({begin(tmp_path) for _ in range(3)}) == 3
 
 
-def test_a_process_that_is_killed_costs_no_finished_cell(tmp_path):
+def test_a_process_that_is_killed_costs_no_finished_case(tmp_path):
     folder = begin(tmp_path)
     kept: dict[str, list[float]] = {}
     child: list[int] = []
 
     def kill(process: study.Process, done: int) -> None:
         if not child:
-            child.extend(children_of(folder))  # which takes longer than some cells
+            child.extend(children_of(folder))  # which takes longer than some cases
         elif done and not kept:
             os.kill(child[0], signal.SIGKILL)
             kept.update(samples(folder))

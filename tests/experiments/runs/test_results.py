@@ -12,28 +12,28 @@ import time
 import numpy as np
 import pytest
 
-from experiments.runs.results import CellResult, ResultFile, ResultsError, latest, load, write_json
+from experiments.runs.results import Measurement, ResultFile, ResultsError, latest, load, write_json
 
 
-def test_cells_come_back_as_they_were(tmp_path):
+def test_cases_come_back_as_they_were(tmp_path):
     write_json(tmp_path / "run.json", {"schema": 1})
     file = ResultFile(tmp_path, "bench_queries", "half_edge")
-    file.add(CellResult("a", "time", query="vertex_faces", samples=[1.5, 2.5], latency=1e-9))
-    file.add(CellResult("b", "time", left_out="too slow"))
+    file.add(Measurement("a", "time", subject="vertex_faces", samples=[1.5, 2.5], latency=1e-9))
+    file.add(Measurement("b", "time", skipped="too slow"))
     run = load(tmp_path)
-    assert run.cells["id"].tolist() == ["a"]
-    assert run.cells["samples"][0].tolist() == [1.5, 2.5]
-    assert (run.cells["experiment"][0], run.cells["structure"][0]) == ("bench_queries", "half_edge")
-    assert run.left_out["left_out"].tolist() == ["too slow"]
+    assert run.cases["id"].tolist() == ["a"]
+    assert run.cases["samples"][0].tolist() == [1.5, 2.5]
+    assert (run.cases["experiment"][0], run.cases["structure"][0]) == ("bench_queries", "half_edge")
+    assert run.skipped["skipped"].tolist() == ["too slow"]
     assert ResultFile(tmp_path, "bench_queries", "half_edge").finished == {"a", "b"}
 
 
 def test_a_kill_at_any_moment_leaves_whole_files(tmp_path):
-    """A writer is killed many times over; what is on disk is always a prefix of its cells."""
+    """A writer is killed many times over; what is on disk is always a prefix of its cases."""
     script = (
         "import sys; from pathlib import Path; from experiments.runs.results import *\n"
         "f = ResultFile(Path(sys.argv[1]), 'bench_x', 'indexed')\n"
-        "for i in range(10**6): f.add(CellResult(str(i), 'time', samples=[0.0] * 2000))"
+        "for i in range(10**6): f.add(Measurement(str(i), 'time', samples=[0.0] * 2000))"
     )
     for delay in np.linspace(0.02, 0.25, 6):
         path = tmp_path / f"{delay:.2f}" / "bench_x.indexed.json"
@@ -43,7 +43,7 @@ def test_a_kill_at_any_moment_leaves_whole_files(tmp_path):
         time.sleep(delay)
         os.kill(child.pid, signal.SIGKILL)
         child.wait()
-        ids = [cell["id"] for cell in json.loads(path.read_text())["cells"]]
+        ids = [case["id"] for case in json.loads(path.read_text())["cases"]]
         assert ids == [str(i) for i in range(len(ids))]
         assert ids
 

@@ -16,7 +16,7 @@ from experiments.validation.a_against_a import (
     LARGEST_SHARE,
     Rounds,
     Timed,
-    cells,
+    cases,
     compared,
     joined,
     measure,
@@ -52,7 +52,7 @@ def test_a_sound_run_is_determined_and_one_without_data_is_not(tmp_path: Path) -
     run = load(write_run(tmp_path / "sound"))
     found = accuracy.determined(judged(run))
     assert found["queries"] == accuracy.Shares(42, 1.0, 1.0)
-    emptied = type(run)(run.folder, run.meta, run.cells.iloc[:0], run.left_out)
+    emptied = type(run)(run.folder, run.meta, run.cases.iloc[:0], run.skipped)
     assert accuracy.determined(judged(emptied))["queries"] == accuracy.Shares(42, 0.0, 0.0)
     shown = accuracy.determined_table(run)
     assert shown["determined by time"].iloc[0] == "100%"
@@ -62,16 +62,16 @@ def test_half_of_the_timed_curves_missing_is_half_of_the_claims_undetermined(
     tmp_path: Path,
 ) -> None:
     run = load(write_run(tmp_path / "run"))
-    timed = run.cells["experiment"].isin(["bench_queries", "bench_valence"])
-    kept = run.cells[~(timed & (run.cells["query"] == "vertex_faces"))]
-    without = type(run)(run.folder, run.meta, kept, run.left_out)
+    timed = run.cases["experiment"].isin(["bench_queries", "bench_valence"])
+    kept = run.cases[~(timed & (run.cases["subject"] == "vertex_faces"))]
+    without = type(run)(run.folder, run.meta, kept, run.skipped)
     found = accuracy.determined(judged(without))["queries"]
-    lost = run.cells[timed & (run.cells["query"] == "vertex_faces")]["structure"].nunique()
+    lost = run.cases[timed & (run.cases["subject"] == "vertex_faces")]["structure"].nunique()
     assert found.work == 1
     assert found.time == pytest.approx(1 - lost / found.claims)
 
 
-def test_the_reference_has_as_many_cells_of_table_1_determined_as_was_asked() -> None:
+def test_the_reference_has_as_many_cases_of_table_1_determined_as_was_asked() -> None:
     kept = load_measured(REFERENCE)
     found = accuracy.determined(pd.DataFrame(kept.verdicts.values()))["queries"]
     assert kept.head["profile"] == "standard"
@@ -129,8 +129,8 @@ def test_a_run_of_slower_code_is_an_alarm_and_exact_counts_are_left_out(tmp_path
     assert aa.totals([found])["alarms"] == len(found["alarms"])
 
 
-def test_a_cell_is_timed_with_a_probe_before_every_round() -> None:
-    first = next(iter(cells()))
+def test_a_case_is_timed_with_a_probe_before_every_round() -> None:
+    first = next(iter(cases()))
     found = joined([measure([first]), measure([first])])
     ((name, timed),) = found.items()
     assert name.startswith(first.structure)
@@ -153,14 +153,14 @@ def test_rounds_hand_over_what_was_set_up() -> None:
 
 def test_code_twice_as_slow_would_be_an_alarm() -> None:
     times = [1 + 0.01 * (i * 7 % 5) for i in range(15)]
-    before = {"cell": Timed(times, [1.0] * 15)}
-    after = {"cell": Timed([2 * it for it in times], [1.0] * 15)}
-    assert compared(before, after)["cell"].outcome == "worse"
+    before = {"case": Timed(times, [1.0] * 15)}
+    after = {"case": Timed([2 * it for it in times], [1.0] * 15)}
+    assert compared(before, after)["case"].outcome == "worse"
 
 
 def test_the_figures_draw() -> None:
     kept, table = accuracy.saved(REFERENCE / "rigour.json")
-    pairs = {"pairs": [{"ratios": [1.0, 1.3], "alarms": {"cell": 1.3}}]}
+    pairs = {"pairs": [{"ratios": [1.0, 1.3], "alarms": {"case": 1.3}}]}
     pairs |= {"factor": 1.15, "comparisons": 2, "alarms": 1}
     for figure in (
         accuracy_figures.who_names_what(table),

@@ -26,7 +26,7 @@ def test_a_curve_without_noise_and_rise_is_its_class(name: str) -> None:
     rng = np.random.default_rng(1)
     made = curve(rng, name, "none", 0.0, 0.0)
     growth = CURVES[name](made.sizes)
-    assert [np.median(cell) for cell in made.samples] == pytest.approx((3e-9 * growth).tolist())
+    assert [np.median(case) for case in made.samples] == pytest.approx((3e-9 * growth).tolist())
     assert made.latency is None
 
 
@@ -42,7 +42,7 @@ def test_the_same_seed_gives_the_same_curves_and_another_others() -> None:
 def test_a_rise_is_about_tenfold_and_its_latency_is_given_where_it_was_measured() -> None:
     for part in PARTS:
         for made in curves("O(1)", part, 60):
-            cost = np.array([np.median(cell) for cell in made.samples])
+            cost = np.array([np.median(case) for case in made.samples])
             rise = cost.max() / cost[0]
             assert rise < (14 if part in ("measured", "unmeasured") else 1.3)
             assert (made.latency is None) == (part in ("none", "unmeasured"))
