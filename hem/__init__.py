@@ -1,46 +1,64 @@
-"""Triangle meshes, their sources, and what every data structure for them shares."""
+"""Triangle meshes, their sources, and what every data structure for them shares.
+
+A name is imported when it is first asked for, so that ``import hem`` is quick and
+``hem.complexity`` needs NumPy alone.
+"""
 
 from importlib import import_module
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from hem.edit import Edit, Remapping
-from hem.errors import MeshError, NonManifoldError, TopologyError
-from hem.meshes.manifold import require_manifold, require_sound
-from hem.meshes.polygons import PolygonMesh
-from hem.meshes.triangles import MeshSummary, TriangleMesh
-from hem.rendering.render import RenderMesh, Upload, mesh_from_render
-from hem.sources.families import FAMILIES, generate
-from hem.sources.files import load, save
-from hem.sources.samples import SAMPLES, sample
-from hem.sources.valence import valence_hubs, valence_mesh
+if TYPE_CHECKING:  # what type checkers and editors see; the table below says it to Python
+    from hem.edit import Edit as Edit
+    from hem.edit import Remapping as Remapping
+    from hem.errors import MeshError as MeshError
+    from hem.errors import NonManifoldError as NonManifoldError
+    from hem.errors import TopologyError as TopologyError
+    from hem.meshes.manifold import require_manifold as require_manifold
+    from hem.meshes.manifold import require_sound as require_sound
+    from hem.meshes.polygons import PolygonMesh as PolygonMesh
+    from hem.meshes.triangles import MeshSummary as MeshSummary
+    from hem.meshes.triangles import TriangleMesh as TriangleMesh
+    from hem.rendering.render import RenderMesh as RenderMesh
+    from hem.rendering.render import Upload as Upload
+    from hem.rendering.render import mesh_from_render as mesh_from_render
+    from hem.sources.families import FAMILIES as FAMILIES
+    from hem.sources.families import generate as generate
+    from hem.sources.files import load as load
+    from hem.sources.files import save as save
+    from hem.sources.samples import SAMPLES as SAMPLES
+    from hem.sources.samples import sample as sample
+    from hem.sources.valence import valence_hubs as valence_hubs
+    from hem.sources.valence import valence_mesh as valence_mesh
 
-__all__ = [
-    "FAMILIES",
-    "SAMPLES",
-    "Edit",
-    "MeshError",
-    "MeshSummary",
-    "NonManifoldError",
-    "PolygonMesh",
-    "Remapping",
-    "RenderMesh",
-    "TopologyError",
-    "TriangleMesh",
-    "Upload",
-    "generate",
-    "load",
-    "mesh_from_render",
-    "require_manifold",
-    "require_sound",
-    "sample",
-    "save",
-    "valence_hubs",
-    "valence_mesh",
-]
+_NAMES = {
+    "hem.edit": ("Edit", "Remapping"),
+    "hem.errors": ("MeshError", "NonManifoldError", "TopologyError"),
+    "hem.meshes.manifold": ("require_manifold", "require_sound"),
+    "hem.meshes.polygons": ("PolygonMesh",),
+    "hem.meshes.triangles": ("MeshSummary", "TriangleMesh"),
+    "hem.rendering.render": ("RenderMesh", "Upload", "mesh_from_render"),
+    "hem.sources.families": ("FAMILIES", "generate"),
+    "hem.sources.files": ("load", "save"),
+    "hem.sources.samples": ("SAMPLES", "sample"),
+    "hem.sources.valence": ("valence_hubs", "valence_mesh"),
+}
+_MODULES = {name: module for module, names in _NAMES.items() for name in names}
+_ROOMS = ("complexity", "contract", "fracture", "meshes", "rendering", "sources")
+
+__all__ = sorted(_MODULES)
 
 
 def __getattr__(name: str) -> Any:
-    """``hem.fracture``, which brings a compiler along, when it is first asked for."""
-    if name == "fracture":
-        return import_module("hem.fracture")
-    raise AttributeError(f"module 'hem' has no attribute {name!r}")
+    """Import a public name, or a room such as ``hem.fracture``, on first use."""
+    if name in _MODULES:
+        value = getattr(import_module(_MODULES[name]), name)
+    elif name in _ROOMS:
+        value = import_module(f"hem.{name}")
+    else:
+        raise AttributeError(f"module 'hem' has no attribute {name!r}")
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__, *_ROOMS})

@@ -1,0 +1,21 @@
+"""Names for the arrays that meshes are made of."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[Any]
+
+Points = NDArray[np.float32]
+"""(n, 3): positions."""
+
+Triangles = NDArray[np.int32]
+"""(n, 3): the corners of triangles, counterclockwise from outside."""
+
+Indices = NDArray[np.int32]
+"""(n,): handles of vertices or faces."""
+
+Floats = NDArray[np.float64]
