@@ -16,7 +16,7 @@ if TYPE_CHECKING:  # what type checkers and editors see; the table below says it
     from hem.meshes.manifold import require_manifold as require_manifold
     from hem.meshes.manifold import require_sound as require_sound
     from hem.meshes.polygons import PolygonMesh as PolygonMesh
-    from hem.meshes.triangles import MeshSummary as MeshSummary
+    from hem.meshes.summary import MeshSummary as MeshSummary
     from hem.meshes.triangles import TriangleMesh as TriangleMesh
     from hem.rendering.render import RenderMesh as RenderMesh
     from hem.rendering.render import Upload as Upload
@@ -35,7 +35,8 @@ _NAMES = {
     "hem.errors": ("MeshError", "NonManifoldError", "TopologyError"),
     "hem.meshes.manifold": ("require_manifold", "require_sound"),
     "hem.meshes.polygons": ("PolygonMesh",),
-    "hem.meshes.triangles": ("MeshSummary", "TriangleMesh"),
+    "hem.meshes.summary": ("MeshSummary",),
+    "hem.meshes.triangles": ("TriangleMesh",),
     "hem.rendering.render": ("RenderMesh", "Upload", "mesh_from_render"),
     "hem.sources.families": ("FAMILIES", "generate"),
     "hem.sources.files": ("load", "save"),

@@ -8,6 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[Any]
+Bools = NDArray[np.bool_]
+Floats = NDArray[np.float64]
 
 Points = NDArray[np.float32]
 """(n, 3): positions."""
@@ -15,7 +17,5 @@ Points = NDArray[np.float32]
 Triangles = NDArray[np.int32]
 """(n, 3): the corners of triangles, counterclockwise from outside."""
 
-Indices = NDArray[np.int32]
-"""(n,): handles of vertices or faces."""
-
-Floats = NDArray[np.float64]
+Indices = NDArray[np.int64]
+"""Indices of elements, computed from a mesh."""

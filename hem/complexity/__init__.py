@@ -1,1 +1,10 @@
-"""Does a measured cost grow as claimed? NumPy alone is needed."""
+"""Does a measured cost grow as claimed? NumPy alone is needed.
+
+`judge(sizes, samples, "O(log n)")` gives a `Verdict`: consistent, violated or undetermined, and
+the reason.
+"""
+
+from hem.complexity.judge import Bound, Outcome, Verdict, judge
+from hem.complexity.models import MODELS, NAMES, canonical
+
+__all__ = ["MODELS", "NAMES", "Bound", "Outcome", "Verdict", "canonical", "judge"]

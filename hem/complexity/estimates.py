@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from hem.complexity.models import Array
 
@@ -18,24 +18,39 @@ class Costs:
 
     sizes: Array
     samples: list[Array]
+    latency: Array | None
+    """(a, k): what the memory took at each size, as any one of the rows has it."""
     cost: Array
     error: Array
     scatter: float
     """Relative standard deviation of single samples, as all sizes share it."""
 
+    def only(self, rows: NDArray[np.intp]) -> "Costs":
+        """The costs of some of the sizes, as if no other had been measured."""
+        latency = None if self.latency is None else self.latency[:, rows]
+        return summarize(self.sizes[rows], [self.samples[i] for i in rows], latency)
 
-def reduce(sizes: ArrayLike, samples: Sequence[ArrayLike]) -> Costs:
-    """Costs of k sizes from k arrays of samples; ValueError names what is malformed."""
+
+def summarize(
+    sizes: ArrayLike, samples: Sequence[ArrayLike], latency: ArrayLike | None = None
+) -> Costs:
+    """Costs of k sizes from k arrays of samples, and the latency (k,) or (a, k) beside them.
+
+    ValueError names what is malformed.
+    """
     n = np.asarray(sizes, dtype=np.float64)
     cells = [np.asarray(cell, dtype=np.float64).ravel() for cell in samples]
-    _check(n, cells)
+    waits = None if latency is None else np.atleast_2d(np.asarray(latency, dtype=np.float64))
+    _check(n, cells, waits)
     order = np.argsort(n, kind="stable")
-    n, cells = n[order], [cells[i] for i in order]
+    cells = [cells[i] for i in order]
     error, scatter = _errors(cells)
-    return Costs(n, cells, np.array([midmean(cell) for cell in cells]), error, scatter)
+    cost = np.array([midmean(cell) for cell in cells])
+    waits = None if waits is None else waits[:, order]
+    return Costs(n[order], cells, waits, cost, error, scatter)
 
 
-def _check(n: Array, cells: list[Array]) -> None:
+def _check(n: Array, cells: list[Array], waits: Array | None) -> None:
     if n.ndim != 1 or not n.size or not np.all(np.isfinite(n) & (n >= 1)):
         raise ValueError("sizes must be one row of numbers, each at least 1")
     if len(cells) != len(n):
@@ -43,6 +58,10 @@ def _check(n: Array, cells: list[Array]) -> None:
     for size, cell in zip(n, cells, strict=True):
         if not cell.size or not np.all(np.isfinite(cell) & (cell > 0)):
             raise ValueError(f"samples at size {size:g} must be there, finite and positive")
+    if waits is not None and (
+        waits.shape[1:] != n.shape or not np.all(np.isfinite(waits) & (waits > 0))
+    ):
+        raise ValueError("latency must be one positive number per size")
 
 
 def midmean(samples: Array) -> Array:

@@ -12,9 +12,14 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from hem.complexity.estimates import Costs, reduce, resample, slope
+from hem.complexity.estimates import Costs, resample, slope, summarize
 from hem.complexity.models import NAMES, Array, canonical, predict
-from hem.complexity.selection import LATENCY_ERROR, Comparison, account
+from hem.complexity.selection import (
+    LATENCY_ERROR,
+    Comparison,
+    account_for_memory,
+    compare_models,
+)
 
 Outcome = Literal["consistent", "violated", "undetermined"]
 Bound = Literal["tight", "upper"]
@@ -85,36 +90,29 @@ def judge(
     wait for memory to any degree, from not at all to entirely. Or (a, k): as any one row tells it.
     latency_error: how far, relatively, the latency may miss what the costs really waited for.
     exact: the costs are counts of work, which no cache slows. With neither latency nor exact, a
-    smooth rise of up to `evidence.HIGHEST_RISE` may have happened unseen: what it could explain
-    violates nothing, and where it explains the costs better, nothing is confirmed.
-    unseen: beside a latency, too, what such a rise could explain violates nothing; for costs of
-    what was found in the caches in another state than what the latency was measured on.
+    smooth slowdown of up to `selection.HIGHEST_SLOWDOWN` may have happened unseen: what it could
+    explain violates nothing, and where it explains the costs better, nothing is confirmed.
+    unseen: beside a latency, too, what such a slowdown could explain violates nothing; for costs
+    of what was found in the caches in another state than what the latency was measured on.
     bound: "tight" takes the claim for the class itself, as a table of growth classes means it;
     "upper" for a bound, which slower growth keeps too.
 
     A size whose own samples tell its cost worse than `MAX_ERROR` is left out, up to a quarter of
     the sizes: a neighbor who took the machine for some milliseconds spoils a cell, not the curve.
-    Growth below `evidence.GROWTH` over the sizes is taken for O(1): beside so large an intercept
+    Growth below `selection.GROWTH` over the sizes is taken for O(1): beside so large an intercept
     no class shows. Beside a tenfold slowdown by caches, growth below 1.5 may be missed as well.
-    Times that grow by less than `evidence.ACCUSING_GROWTH` violate no claim of slower growth.
+    Times that grow by less than `selection.ACCUSING_GROWTH` violate no claim of slower growth.
     The same input gives the same verdict. Takes milliseconds. Raises ValueError for malformed
     input; data that are too few or too noisy are "undetermined".
     """
     if bound not in ("tight", "upper"):
         raise ValueError(f'bound must be "tight" or "upper", not {bound!r}')
     claim = NAMES.index(canonical(expected))
-    measured = reduce(sizes, samples)
-    kept = _legible(measured)
-    if len(kept) < len(measured.sizes):
-        order = np.argsort(np.asarray(sizes, float), kind="stable")[kept]
-        sizes, samples = measured.sizes[kept], [measured.samples[i] for i in kept]
-        if latency is not None and np.shape(latency)[-1:] == measured.sizes.shape:
-            latency = np.asarray(latency, float)[..., order]
-        measured = reduce(sizes, samples)
-    costs, caches = account(measured, sizes, latency, exact, latency_error, unseen)
-    models = Comparison(costs, caches)
+    measured = _without_noisy_sizes(summarize(sizes, samples, latency))
+    costs, memory = account_for_memory(measured, exact, latency_error, unseen)
+    models = compare_models(costs, memory)
     outcome, reason = _decide(measured, models, claim, bound)
-    fitted, _ = predict(models.basis, models.fit)
+    fitted, _ = predict(models.design, models.fit)
     replicates = resample(costs, fitted[models.best], resamples, seed)
     tails = [(1 - confidence) / 2, (1 + confidence) / 2]
     low, high = np.quantile(slope(costs.sizes, models.steady(replicates)), tails)
@@ -152,17 +150,18 @@ def _decide(costs: Costs, models: Comparison, claim: int, bound: Bound) -> tuple
         if not rivals:
             return "violated", f"{NAMES[best]} explains the costs, {NAMES[claim]} does not."
     close = ", ".join(NAMES[m] for m in rivals)
-    bent = models.unmeasured and not (models.told and best in kept)
+    memory = models.memory
+    bent = memory.unmeasured is not None and not (memory.latency_known and best in kept)
     allowed = " once caches that no latency tells of are allowed for" if bent else ""
     reason = f"{NAMES[best]} explains the costs best, but {close} cannot be ruled out{allowed}."
     return "undetermined", reason
 
 
-def _legible(costs: Costs) -> list[int]:
-    """The sizes that are not drowned in noise, or all of them if too many are."""
-    clear = np.flatnonzero(costs.error <= MAX_ERROR).tolist()
+def _without_noisy_sizes(costs: Costs) -> Costs:
+    """The costs of the sizes that are not drowned in noise, or of all if too many are."""
+    clear = np.flatnonzero(costs.error <= MAX_ERROR)
     few_left_out = len(costs.sizes) - len(clear) <= MOST_LEFT_OUT * len(costs.sizes)
-    return clear if few_left_out else list(range(len(costs.sizes)))
+    return costs.only(clear) if few_left_out and len(clear) < len(costs.sizes) else costs
 
 
 def _doubt(costs: Costs, models: Comparison) -> str:
@@ -176,14 +175,14 @@ def _doubt(costs: Costs, models: Comparison) -> str:
         return f"Too noisy: the samples of a size scatter by {costs.scatter:.0%}."
     if not models.explained:
         unknown = ", and caches that no latency tells of might have bent them"
-        hint = unknown if models.unmeasured else ""
+        hint = unknown if models.memory.unmeasured is not None else ""
         return f"No class explains the costs: {NAMES[models.best]} comes closest{hint}."
     return ""
 
 
 def _coefficients(models: Comparison) -> dict[str, dict[str, float]]:
-    fixed, factor = _by_name(models.fit.fixed), _by_name(models.fit.factor)
-    rise = _by_name(models.basis.rises.growing[models.fit.rise].max(axis=1))
+    fixed, factor = _by_name(models.fit.intercept), _by_name(models.fit.factor)
+    rise = _by_name(models.design.slowdowns.scaling[models.fit.slowdown].max(axis=1))
     return {n: {"fixed": fixed[n], "factor": factor[n], "rise": rise[n]} for n in NAMES}
 
 

@@ -4,8 +4,8 @@ A model says that a cost is
 
     t(n) = c · r₁(n) + a · f(n) · r₂(n),      c, a ≥ 0
 
-with `f` from `MODELS` and `r` a *rise*: 1 where memory is fast, more where the working set has left
-the caches. Every model but O(1) must really grow: its intercept `c` may only be so large that
+with `f` from `MODELS` and `r` a *slowdown*: 1 where memory is fast, more where the working set has
+left the caches. Every model but O(1) must really grow: its intercept `c` may only be so large that
 c + a·f(n) still gains a given factor over the measured range. Without that bound every model would
 contain O(1), and no measurement could ever tell them apart.
 """
@@ -49,36 +49,37 @@ def canonical(claim: str) -> str:
 
 
 @dataclass(frozen=True)
-class Rises:
-    """Candidate rises, each (s, k): of the fixed part of a cost and of its growing part."""
+class Slowdowns:
+    """Candidates, each (s, k): of the intercept of a cost and of the part that scales."""
 
-    fixed: Array
-    growing: Array
+    intercept: Array
+    scaling: Array
 
 
-def no_rise(k: int) -> Rises:
+def no_slowdown(k: int) -> Slowdowns:
     """Memory does not matter: the cost is a count of work, or is taken at its word."""
-    return Rises(np.ones((1, k)), np.ones((1, k)))
+    return Slowdowns(np.ones((1, k)), np.ones((1, k)))
 
 
-def measured_rises(latency: Array, steps: int = 65) -> Rises:
-    """Every mixture of computing and waiting for memory, from none to all of the measured rise.
+def measured_slowdowns(latency: Array, steps: int = 65) -> Slowdowns:
+    """Every mixture of computing and waiting for memory, from none to all of the measured one.
 
-    The fixed part either waits as the growing part does, or not at all.
+    The intercept either waits as the scaling part does, or not at all.
     """
-    slowdown = latency / latency.min() - 1
-    top = max(float(slowdown.max()), 1e-9)
+    extra = latency / latency.min() - 1
+    top = max(float(extra.max()), 1e-9)
     share = (np.geomspace(1, 1 + top, steps) - 1) / top
-    mixed = 1 + share[:, None] * slowdown
-    return Rises(np.vstack([mixed, np.ones_like(mixed)]), np.vstack([mixed, mixed]))
+    mixed = 1 + share[:, None] * extra
+    return Slowdowns(np.vstack([mixed, np.ones_like(mixed)]), np.vstack([mixed, mixed]))
 
 
-def any_of(every: Sequence[Rises]) -> Rises:
-    """All candidates of several."""
-    return Rises(np.vstack([it.fixed for it in every]), np.vstack([it.growing for it in every]))
+def combined(parts: Sequence[Slowdowns]) -> Slowdowns:
+    """The candidates of all parts."""
+    intercept = np.vstack([part.intercept for part in parts])
+    return Slowdowns(intercept, np.vstack([part.scaling for part in parts]))
 
 
-def unknown_rises(sizes: Array, highest: float) -> Rises:
+def unknown_slowdowns(sizes: Array, highest: float) -> Slowdowns:
     """Smooth steps in the range, up to `highest`: what caches might do when nobody measured."""
     x = np.log(sizes)
     center = np.linspace(x.min(), x.max(), 9)[:, None, None, None]
@@ -86,16 +87,16 @@ def unknown_rises(sizes: Array, highest: float) -> Rises:
     height = np.geomspace(1.5, highest, 6)[:, None]
     step = 1 / (1 + np.exp((center - x) / width))
     low, high = step.min(-1, keepdims=True), step.max(-1, keepdims=True)
-    rise = (1 + (height - 1) * (step - low) / np.maximum(high - low, 1e-9)).reshape(-1, len(x))
-    return Rises(rise, rise)
+    slowdown = (1 + (height - 1) * (step - low) / np.maximum(high - low, 1e-9)).reshape(-1, len(x))
+    return Slowdowns(slowdown, slowdown)
 
 
 @dataclass(frozen=True)
-class Basis:
-    """Columns whose nonnegative sums are the costs of m models under s rises, at k sizes."""
+class DesignMatrix:
+    """Columns whose nonnegative sums are the costs of m models under s slowdowns, at k sizes."""
 
-    rises: Rises
-    growing: Array
+    slowdowns: Slowdowns
+    growth: Array
     """(m, k) f, of largest value 1."""
     intercept: Array
     """(m,) largest intercept beside it."""
@@ -104,23 +105,23 @@ class Basis:
 
     def columns(self) -> tuple[Array, Array]:
         """(m, s, k) f with no intercept, and with the largest: between them lie all others."""
-        pure = self.growing[:, None] * self.rises.growing
-        return pure, self.intercept[:, None, None] * self.rises.fixed + pure
+        pure = self.growth[:, None] * self.slowdowns.scaling
+        return pure, self.intercept[:, None, None] * self.slowdowns.intercept + pure
 
-    def only(self, model: int) -> "Basis":
-        """The basis of one model."""
+    def only(self, model: int) -> "DesignMatrix":
+        """The columns of one model."""
         one = slice(model, model + 1)
-        return Basis(self.rises, self.growing[one], self.intercept[one], self.scale[one])
+        return DesignMatrix(self.slowdowns, self.growth[one], self.intercept[one], self.scale[one])
 
 
-def basis(sizes: Array, rises: Rises, growth: float) -> Basis:
-    """Basis of every model in `MODELS`, which gains at least `growth` over the sizes, if it can."""
+def design(sizes: Array, slowdowns: Slowdowns, growth: float) -> DesignMatrix:
+    """Columns of every model, which gains at least `growth` over the sizes, if it can."""
     f = np.array([model(sizes) for model in MODELS.values()])
     scale = np.maximum(f.max(1), 1e-9)
     f /= scale[:, None]
     intercept = np.maximum((1 - growth * f.min(1)) / (growth - 1), 0)
     intercept[0] = 0.0
-    return Basis(rises, f, intercept, scale)
+    return DesignMatrix(slowdowns, f, intercept, scale)
 
 
 @dataclass(frozen=True)
@@ -129,16 +130,16 @@ class Fit:
 
     chi2: Array
     """Squared relative residuals over their variances."""
-    fixed: Array
-    """Intercept c, in the unit of the costs."""
+    intercept: Array
+    """The intercept c, in the unit of the costs."""
     factor: Array
     """Factor a of f(n)."""
-    rise: NDArray[np.intp]
-    """Row of the rises that served best."""
+    slowdown: NDArray[np.intp]
+    """Row of the slowdowns that served best."""
 
 
-def fit(models: Basis, costs: Array, weight: Array) -> Fit:
-    """Nonnegative least squares of weighted costs, in closed form, under the best rise each.
+def fit(models: DesignMatrix, costs: Array, weight: Array) -> Fit:
+    """Nonnegative least squares of weighted costs, in closed form, under the best slowdown each.
 
     costs: (..., k). weight: (k,), 1/(cost·relative error): a size counts for its precision, not
     for its magnitude. O(m·s·k) per row of costs.
@@ -163,10 +164,10 @@ def fit(models: Basis, costs: Array, weight: Array) -> Fit:
     return Fit(chi2, best[2] * models.intercept, factor, row)
 
 
-def predict(models: Basis, fitted: Fit) -> tuple[Array, Array]:
+def predict(models: DesignMatrix, fitted: Fit) -> tuple[Array, Array]:
     """(..., m, k) costs that the fitted models predict, and the same with memory at its fastest."""
-    growing = (fitted.factor * models.scale)[..., None] * models.growing
-    fixed = np.broadcast_to(fitted.fixed[..., None], growing.shape)
-    rises = models.rises
-    slowed = fixed * rises.fixed[fitted.rise] + growing * rises.growing[fitted.rise]
-    return slowed, fixed + growing
+    scaling = (fitted.factor * models.scale)[..., None] * models.growth
+    intercept = np.broadcast_to(fitted.intercept[..., None], scaling.shape)
+    slow, row = models.slowdowns, fitted.slowdown
+    slowed = intercept * slow.intercept[row] + scaling * slow.scaling[row]
+    return slowed, intercept + scaling

@@ -10,22 +10,25 @@ best that explains the costs about as well as the closest one does.
 """
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import NDArray
 
 from hem.complexity.estimates import Costs
 from hem.complexity.models import (
     NAMES,
     Array,
-    Rises,
-    any_of,
-    basis,
+    DesignMatrix,
+    Fit,
+    Slowdowns,
+    combined,
+    design,
     fit,
-    measured_rises,
-    no_rise,
+    measured_slowdowns,
+    no_slowdown,
     predict,
-    unknown_rises,
+    unknown_slowdowns,
 )
 
 LATENCY_ERROR = 0.03
@@ -47,7 +50,7 @@ CLEAR_GROWTH = 2.1
 ACCUSING_GROWTH = 2.0
 """Factor by which times must grow over the sizes to violate a claim of slower growth: cells of the
 same code were measured to differ by 1.8 where neighbors share the caches."""
-HIGHEST_RISE = 12.0
+HIGHEST_SLOWDOWN = 12.0
 """Slowdown over the sizes that unmeasured caches are reckoned with."""
 MISFIT = 2.5
 """χ² per degree of freedom that a model may have and still explain times without a latency …"""
@@ -56,99 +59,118 @@ MISFIT_EXPLAINED = 12.0
 
 
 @dataclass(frozen=True)
-class Caches:
+class Memory:
     """What caches may have done to costs."""
 
-    measured: Rises
-    """Rises that the measured latency, or its absence, allows."""
-    unmeasured: Rises | None
-    """Rises that are possible besides, because nobody measured them: they violate nothing."""
-    told: bool
-    """Whether a latency tells what to confirm, or none is needed; else `unmeasured` casts doubt."""
-    accusing: float
+    slowdowns: Slowdowns
+    """What the measured latency, or its absence, allows."""
+    unmeasured: Slowdowns | None
+    """What is possible besides, because nobody measured it: it violates nothing."""
+    latency_known: bool
+    """Whether nothing unmeasured casts doubt on what is confirmed."""
+    growth_to_reject: float
     """Growth over the sizes from which on a model violates a simpler claim."""
     misfit: float
     """χ² per degree of freedom up to which a model explains the costs."""
     parameters: int
-    """Free parameters of a model: intercept, factor, and the rise if there is one."""
+    """Free parameters of a model: intercept, factor, and the slowdown if there is one."""
+
+    @classmethod
+    def none(cls, sizes: Array) -> "Memory":
+        """Costs that are counts of work, which no cache slows."""
+        return cls(no_slowdown(len(sizes)), None, True, 1.0, MISFIT_EXPLAINED, 2)
+
+    @classmethod
+    def unknown(cls, sizes: Array) -> "Memory":
+        """Times without a latency: a smooth slowdown may have happened unseen."""
+        unseen = unknown_slowdowns(sizes, HIGHEST_SLOWDOWN)
+        return cls(no_slowdown(len(sizes)), unseen, False, ACCUSING_GROWTH, MISFIT, 2)
+
+    @classmethod
+    def measured(cls, sizes: Array, latency: Array, allow_unmeasured: bool) -> "Memory":
+        """Times beside a latency (a, k), as any one of its rows has it."""
+        slowdowns = combined([measured_slowdowns(row) for row in latency])
+        unseen = unknown_slowdowns(sizes, HIGHEST_SLOWDOWN) if allow_unmeasured else None
+        return cls(slowdowns, unseen, True, ACCUSING_GROWTH, MISFIT_EXPLAINED, 3)
 
 
-def account(
-    costs: Costs,
-    sizes: ArrayLike,
-    latency: ArrayLike | None,
-    exact: bool,
-    latency_error: float = LATENCY_ERROR,
-    unseen: bool = False,
-) -> tuple[Costs, Caches]:
+def account_for_memory(
+    costs: Costs, exact: bool, latency_error: float, allow_unmeasured: bool
+) -> tuple[Costs, Memory]:
     """The costs, with the latency's error added to theirs, and what caches may have done to them.
 
-    sizes: (k,) in the order of latency: (k,), or (a, k) for as many possibilities.
-    unseen: whether costs may besides have risen in a way that the latency misses.
+    exact: they are counts of work. allow_unmeasured: they may have slowed in a way that the latency
+    misses.
     """
-    unmeasured = None
-    if not exact and (latency is None or unseen):
-        unmeasured = unknown_rises(costs.sizes, HIGHEST_RISE)
-    if latency is None:
-        return costs, Caches(
-            no_rise(len(costs.sizes)),
-            unmeasured,
-            told=exact,
-            accusing=1.0 if exact else ACCUSING_GROWTH,
-            misfit=MISFIT_EXPLAINED if exact else MISFIT,
-            parameters=2,
-        )
+    if costs.latency is None:
+        return costs, Memory.none(costs.sizes) if exact else Memory.unknown(costs.sizes)
     if exact:
         raise ValueError("exact counts wait for no memory: give either latency or exact")
-    waits = np.atleast_2d(np.asarray(latency, dtype=np.float64))
-    if waits.shape[1:] != costs.sizes.shape or not np.all(np.isfinite(waits) & (waits > 0)):
-        raise ValueError("latency must be one positive number per size")
-    order = np.argsort(np.asarray(sizes, dtype=np.float64), kind="stable")
-    rises = any_of([measured_rises(row[order]) for row in waits])
     error = np.sqrt(costs.error**2 + latency_error**2)
-    return replace(costs, error=error), Caches(
-        rises,
-        unmeasured,
-        told=True,
-        accusing=ACCUSING_GROWTH,
-        misfit=MISFIT_EXPLAINED,
-        parameters=3,
-    )
+    memory = Memory.measured(costs.sizes, costs.latency, allow_unmeasured)
+    return replace(costs, error=error), memory
 
 
+@dataclass(frozen=True)
 class Comparison:
-    """All models fitted to the same costs. Models go by their indices in `NAMES`."""
+    """All models fitted to the same costs. Models go by their indices in `NAMES`.
 
-    def __init__(self, costs: Costs, caches: Caches) -> None:
-        self.costs = costs
-        self.freedom = max(len(costs.sizes) - caches.parameters, 1)
-        self.weight = 1 / (costs.cost * costs.error)
-        self.basis = basis(costs.sizes, caches.measured, GROWTH)
-        self.fit = fit(self.basis, costs.cost, self.weight)
-        self.chi2 = self.fit.chi2
-        _, steady = predict(self.basis, self.fit)
-        self.accuses = steady.max(axis=1) >= caches.accusing * steady.min(axis=1)
-        self.clear = self._misfit(caches.measured, CLEAR_GROWTH)
-        self.unmeasured, self.told = caches.unmeasured is not None, caches.told
-        self.excused, self.clear_excused = self.chi2, self.clear
-        if caches.unmeasured is not None:
-            excused = self._misfit(caches.unmeasured, GROWTH)
-            clear = self._misfit(caches.unmeasured, CLEAR_GROWTH)
-            self.excused = np.minimum(self.chi2, excused)
-            self.clear_excused = np.minimum(self.clear, clear)
+    What decides for a model f against another, g, is the evidence of chi2[f] against a χ² of g:
+
+    ============  ===============================  =========================================
+    ..            g simpler than f                 g more complex than f, and fits no better
+    ============  ===============================  =========================================
+    f is claimed  chi2                             chi2_at_clear_growth
+    g is claimed  chi2_if_slowed, and f must grow  chi2_at_clear_growth_if_slowed
+    ============  ===============================  =========================================
+    """
+
+    costs: Costs
+    memory: Memory
+    weight: Array
+    design: DesignMatrix
+    fit: Fit
+    chi2: Array
+    """(m,) misfit of each model with the slowdowns that are known of."""
+    chi2_if_slowed: Array
+    """… or with unmeasured ones, whichever fits better."""
+    chi2_at_clear_growth: Array
+    """… of each model that grows clearly over the sizes."""
+    chi2_at_clear_growth_if_slowed: Array
+    grows_enough_to_reject: NDArray[np.bool_]
+    """(m,) whether the fitted model grew enough to violate a simpler claim."""
+
+    @property
+    def freedom(self) -> int:
+        """Degrees of freedom of the residuals."""
+        return max(len(self.costs.sizes) - self.memory.parameters, 1)
+
+    @cached_property
+    def best(self) -> int:
+        """The simplest model that explains the costs about as well as the closest one."""
         closest = self.chi2.min()
         level = (self.evidence(closest, chi2) < NO_BETTER for chi2 in self.chi2)
-        self.best = list(level).index(True)
-        self.runner_up = min(set(range(len(NAMES))) - {self.best}, key=lambda m: self.chi2[m])
-        self.margin = self.evidence(self.chi2[self.best], self.chi2[self.runner_up])
-        self.explained = bool(self.chi2[self.best] <= caches.misfit * self.freedom)
+        return list(level).index(True)
 
-    def _misfit(self, rises: Rises, growth: float) -> Array:
-        return fit(basis(self.costs.sizes, rises, growth), self.costs.cost, self.weight).chi2
+    @cached_property
+    def runner_up(self) -> int:
+        """Of the other models the closest."""
+        others = set(range(len(NAMES))) - {self.best}
+        return min(others, key=lambda model: float(self.chi2[model]))
+
+    @property
+    def margin(self) -> float:
+        """Evidence of the best model against the runner-up."""
+        return self.evidence(self.chi2[self.best], self.chi2[self.runner_up])
+
+    @property
+    def explained(self) -> bool:
+        """Whether the best model explains the costs at all."""
+        return bool(self.chi2[self.best] <= self.memory.misfit * self.freedom)
 
     def steady(self, costs: Array) -> Array:
         """Costs (..., k) with the memory's part, as the best model sees it in each row, removed."""
-        best = self.basis.only(self.best)
+        best = self.design.only(self.best)
         slowed, fast = predict(best, fit(best, costs, self.weight))
         steady: Array = costs * (fast / slowed)[..., 0, :]
         return steady
@@ -158,23 +180,49 @@ class Comparison:
         return float((PRIOR + self.freedom) * np.log((PRIOR + worse) / (PRIOR + better)))
 
     def confirms(self, claimed: int, rival: int) -> bool:
-        """Whether a claim beats a rival that caches of no known latency do not make better."""
-        found = self.chi2[claimed]
+        """Whether a claim beats a rival that no unmeasured caches make better than the claim."""
+        own, known = self.chi2[claimed], self.memory.latency_known
         if rival < claimed:
-            ruled_out = self.evidence(found, self.chi2[rival]) >= AGAINST_SIMPLER
-            return ruled_out and (self.told or self.excused[rival] >= found)
-        ruled_out = self.evidence(found, self.clear[rival]) >= AGAINST_COMPLEX
-        unbent = self.told or self.clear_excused[rival] >= found
+            ruled_out = self.evidence(own, self.chi2[rival]) >= AGAINST_SIMPLER
+            return ruled_out and (known or self.chi2_if_slowed[rival] >= own)
+        ruled_out = self.evidence(own, self.chi2_at_clear_growth[rival]) >= AGAINST_COMPLEX
+        unbent = known or self.chi2_at_clear_growth_if_slowed[rival] >= own
         return ruled_out and unbent and self._no_better(rival, claimed)
 
     def refutes(self, favored: int, claimed: int) -> bool:
         """Whether a model rules out a claim, even one that unmeasured caches may have bent."""
-        found = self.chi2[favored]
+        own = self.chi2[favored]
         if claimed < favored:
-            ruled_out = self.evidence(found, self.excused[claimed]) >= AGAINST_SIMPLER
-            return ruled_out and bool(self.accuses[favored])
-        ruled_out = self.evidence(found, self.clear_excused[claimed]) >= AGAINST_COMPLEX_CLAIM
+            ruled_out = self.evidence(own, self.chi2_if_slowed[claimed]) >= AGAINST_SIMPLER
+            return ruled_out and bool(self.grows_enough_to_reject[favored])
+        clear = self.chi2_at_clear_growth_if_slowed[claimed]
+        ruled_out = self.evidence(own, clear) >= AGAINST_COMPLEX_CLAIM
         return ruled_out and self._no_better(claimed, favored)
 
     def _no_better(self, complex_: int, simpler: int) -> bool:
         return self.evidence(self.chi2[complex_], self.chi2[simpler]) < NO_BETTER
+
+
+def compare_models(costs: Costs, memory: Memory) -> Comparison:
+    """Fit every model to the costs, under every slowdown that may have happened."""
+    weight = 1 / (costs.cost * costs.error)
+
+    def misfit(slowdowns: Slowdowns, growth: float) -> Array:
+        return fit(design(costs.sizes, slowdowns, growth), costs.cost, weight).chi2
+
+    models = design(costs.sizes, memory.slowdowns, GROWTH)
+    fitted = fit(models, costs.cost, weight)
+    _, steady = predict(models, fitted)
+    clear = misfit(memory.slowdowns, CLEAR_GROWTH)
+    if_slowed, clear_if_slowed = fitted.chi2, clear
+    if memory.unmeasured is not None:
+        if_slowed = np.minimum(if_slowed, misfit(memory.unmeasured, GROWTH))
+        clear_if_slowed = np.minimum(clear, misfit(memory.unmeasured, CLEAR_GROWTH))
+    grows_enough = steady.max(axis=1) >= memory.growth_to_reject * steady.min(axis=1)
+    return Comparison(
+        costs, memory, weight, models, fitted, fitted.chi2,
+        chi2_if_slowed=if_slowed,
+        chi2_at_clear_growth=clear,
+        chi2_at_clear_growth_if_slowed=clear_if_slowed,
+        grows_enough_to_reject=grows_enough,
+    )  # fmt: skip

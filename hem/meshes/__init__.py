@@ -1,1 +1,36 @@
-"""Meshes as plain arrays: triangles and polygons, manifoldness, welding and repair."""
+"""Meshes as plain arrays: triangles and polygons, whether they are surfaces, and how large.
+
+`hem.meshes.measures` has bounds, lengths, areas, normals and volume; `hem.meshes.repair` needs
+pymeshlab.
+"""
+
+from hem.meshes.components import components, used_only
+from hem.meshes.edges import undirected_edges
+from hem.meshes.manifold import (
+    euler_number,
+    non_manifold_edges,
+    require_manifold,
+    require_sound,
+    same_way_edges,
+    split_vertices,
+)
+from hem.meshes.polygons import PolygonMesh, require_triangles
+from hem.meshes.summary import MeshSummary
+from hem.meshes.triangles import TriangleMesh, repeated_corners
+
+__all__ = [
+    "MeshSummary",
+    "PolygonMesh",
+    "TriangleMesh",
+    "components",
+    "euler_number",
+    "non_manifold_edges",
+    "repeated_corners",
+    "require_manifold",
+    "require_sound",
+    "require_triangles",
+    "same_way_edges",
+    "split_vertices",
+    "undirected_edges",
+    "used_only",
+]

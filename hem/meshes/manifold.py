@@ -1,80 +1,61 @@
 """Is it a surface? Diagnosis from the triangles alone, independent of every structure.
 
 A mesh is a surface when every edge is in at most two faces, two faces run along their common edge
-in opposite directions, and the faces around a vertex form one fan. "Half-edge" 3f + i runs from
-corner i of face f to its corner i + 1. Everything here is O(m log m).
+in opposite directions, and the faces around a vertex form one fan. Everything here is O(m log m).
 """
 
-from typing import TYPE_CHECKING
-
 import numpy as np
-from numpy.typing import NDArray
 
+from hem.arrays import Indices, Triangles
 from hem.errors import MeshError, NonManifoldError
-
-if TYPE_CHECKING:
-    from hem.meshes.triangles import TriangleMesh, Triangles
-
-Indices = NDArray[np.int64]
+from hem.meshes.components import components
+from hem.meshes.edges import edge_keys, half_edges, key_vertices, undirected_edges
+from hem.meshes.triangles import TriangleMesh
 
 
-def undirected_edges(triangles: "Triangles") -> tuple[Indices, Indices]:
-    """The (k, 2) edges, smaller vertex first and in ascending order, and the faces of each (k,)."""
-    keys, count = np.unique(_edge_keys(*_half_edges(triangles)), return_counts=True)
-    return _pairs(keys), count
-
-
-def non_manifold_edges(triangles: "Triangles") -> Indices:
+def non_manifold_edges(triangles: Triangles) -> Indices:
     """Edges in more than two faces: (k, 2) vertices."""
     edges, faces = undirected_edges(triangles)
     return edges[faces > 2]
 
 
-def same_way_edges(triangles: "Triangles") -> Indices:
+def same_way_edges(triangles: Triangles) -> Indices:
     """Edges in two faces that both run the same way along it: (k, 2) vertices."""
-    start, end = _half_edges(triangles)
-    keys = _edge_keys(start, end)
+    start, end = half_edges(triangles)
+    keys = edge_keys(start, end)
     order = np.argsort(keys, kind="stable")
     unique, first, count = np.unique(keys[order], return_index=True, return_counts=True)
     two = first[count == 2]
     same = start[order[two]] == start[order[two + 1]]
-    return _pairs(unique[count == 2][same])
+    return key_vertices(unique[count == 2][same])
 
 
-def split_vertices(triangles: "Triangles") -> Indices:
+def split_vertices(triangles: Triangles) -> Indices:
     """Vertices whose faces form more than one fan: (k,) vertices.
 
     Two corners at a vertex are in one fan when a chain of faces, each sharing with the next an
     edge at that vertex, leads from one to the other.
     """
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-
-    corners = triangles.size
-    if not corners:
-        return np.zeros(0, np.int64)
-    a, b = _joined_corners(triangles)
-    graph = coo_array((np.ones(len(a), bool), (a, b)), shape=(corners, corners))
-    fans, fan = connected_components(graph, directed=False)
+    fans, fan = components(triangles.size, _joined_corners(triangles))
     vertex_of_fan = np.empty(fans, np.int64)
     vertex_of_fan[fan] = triangles.ravel()
     return np.flatnonzero(np.bincount(vertex_of_fan) > 1)
 
 
-def repeated_faces(triangles: "Triangles") -> Indices:
+def repeated_faces(triangles: Triangles) -> Indices:
     """Faces with the same three corners as an earlier one, either way round: (k,) faces."""
     corners = np.sort(triangles, axis=1)
     _, first = np.unique(corners, axis=0, return_index=True)
     return np.setdiff1d(np.arange(len(triangles)), first)
 
 
-def euler_number(mesh: "TriangleMesh") -> int:
+def euler_number(mesh: TriangleMesh) -> int:
     """V - E + F over the vertices that have faces."""
     vertices = np.unique(mesh.triangles)
     return len(vertices) - len(undirected_edges(mesh.triangles)[0]) + len(mesh.triangles)
 
 
-def require_sound(mesh: "TriangleMesh", euler: int | None = None) -> None:
+def require_sound(mesh: TriangleMesh, euler: int | None = None) -> None:
     """What must hold after any operation, from the triangles alone, whatever structure made them.
 
     A manifold surface, no face twice, and Euler's number as predicted. Raises NonManifoldError or
@@ -88,7 +69,7 @@ def require_sound(mesh: "TriangleMesh", euler: int | None = None) -> None:
         raise MeshError(f"Euler's number is {euler_number(mesh)} instead of {euler}")
 
 
-def require_manifold(mesh: "TriangleMesh") -> None:
+def require_manifold(mesh: TriangleMesh) -> None:
     """Raise NonManifoldError, with all offending edges, vertices and faces, unless a surface."""
     crowded = non_manifold_edges(mesh.triangles)
     twisted = same_way_edges(mesh.triangles)
@@ -115,24 +96,10 @@ def require_manifold(mesh: "TriangleMesh") -> None:
     )
 
 
-def _half_edges(triangles: "Triangles") -> tuple[Indices, Indices]:
-    start = triangles.astype(np.int64)
-    return start.ravel(), start[:, [1, 2, 0]].ravel()
-
-
-def _edge_keys(start: Indices, end: Indices) -> Indices:
-    keys: Indices = (np.minimum(start, end) << 32) | np.maximum(start, end)
-    return keys
-
-
-def _pairs(keys: Indices) -> Indices:
-    return np.stack([keys >> 32, keys & 0xFFFFFFFF], axis=1)
-
-
-def _joined_corners(triangles: "Triangles") -> tuple[Indices, Indices]:
-    """Pairs of corners (3f + i) at the same vertex whose faces share an edge there."""
-    start, end = _half_edges(triangles)
-    keys = _edge_keys(start, end)
+def _joined_corners(triangles: Triangles) -> Indices:
+    """(k, 2): pairs of corners (3f + i) at the same vertex whose faces share an edge there."""
+    start, end = half_edges(triangles)
+    keys = edge_keys(start, end)
     corner = np.arange(len(keys))
     following = corner - corner % 3 + (corner + 1) % 3
     low = np.where(start < end, corner, following)
@@ -140,12 +107,12 @@ def _joined_corners(triangles: "Triangles") -> tuple[Indices, Indices]:
     order = np.argsort(keys, kind="stable")
     same = keys[order[1:]] == keys[order[:-1]]
     one, other = order[:-1][same], order[1:][same]
-    return np.concatenate([low[one], high[one]]), np.concatenate([low[other], high[other]])
+    return np.concatenate([np.stack([ends[one], ends[other]], axis=1) for ends in (low, high)])
 
 
-def _faces_at(triangles: "Triangles", edges: Indices, vertices: Indices) -> Indices:
+def _faces_at(triangles: Triangles, edges: Indices, vertices: Indices) -> Indices:
     """Faces that have one of these edges or vertices, ascending."""
-    bad = np.isin(_edge_keys(*_half_edges(triangles)), _edge_keys(edges[:, 0], edges[:, 1]))
+    bad = np.isin(edge_keys(*half_edges(triangles)), edge_keys(edges[:, 0], edges[:, 1]))
     at_edge = bad.reshape(-1, 3).any(axis=1)
     at_vertex = np.isin(triangles, vertices).any(axis=1)
     return np.flatnonzero(at_edge | at_vertex)

@@ -8,8 +8,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from hem.arrays import Bools, Indices, Points
 from hem.errors import MeshError
-from hem.meshes.triangles import MeshSummary, Points, TriangleMesh, summarized
+from hem.meshes.summary import MeshSummary, summarize
+from hem.meshes.triangles import TriangleMesh
 from hem.ragged import Ragged
 
 
@@ -42,7 +44,7 @@ class PolygonMesh:
         """The corners of the face that has the most; 3 for no faces."""
         return int(self.faces.counts.max(initial=3))
 
-    def sides(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    def sides(self) -> tuple[Indices, Indices]:
         """(corners,) of every side of every face the vertex where it starts and where it ends."""
         here = self.faces.values.astype(np.int64)
         following = np.arange(1, len(here) + 1)
@@ -53,7 +55,7 @@ class PolygonMesh:
         """Counts of elements, borders, components and valences. O(n log n)."""
         ends = np.sort(np.stack(self.sides(), axis=1), axis=1)
         edges, faces_per_edge = np.unique(ends, axis=0, return_counts=True)
-        return summarized(len(self.points), len(self.faces), edges, faces_per_edge)
+        return summarize(len(self.points), len(self.faces), edges, faces_per_edge)
 
     def triangulated(self) -> TriangleMesh:
         """Every face as the fan of its first corner, in order; exact for flat convex ones. O(n)."""
@@ -110,6 +112,6 @@ def _ragged(faces: Sequence[Sequence[int]]) -> Ragged:
     return Ragged(offsets, values)
 
 
-def _refuse(bad: NDArray[np.bool_], message: str) -> None:
+def _refuse(bad: Bools, message: str) -> None:
     if bad.any():
         raise MeshError(message, faces=np.flatnonzero(bad))

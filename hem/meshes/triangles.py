@@ -1,15 +1,15 @@
 """A mesh as points and triangles: what every source gives and every structure is built from."""
 
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from hem.arrays import Bools, Points, Triangles
 from hem.errors import MeshError
-
-Points = NDArray[np.float32]
-Triangles = NDArray[np.int32]
+from hem.meshes.edges import undirected_edges
+from hem.meshes.summary import MeshSummary, summarize
+from hem.meshes.weld import clusters
 
 _MOST_ELEMENTS = np.iinfo(np.int32).max
 
@@ -48,11 +48,9 @@ class TriangleMesh:
         vertices at most that far apart become one, at the first one's position. It is transitive:
         a chain of close vertices becomes one vertex however long it is.
 
-        Cost: O(n + m), and with a tolerance O(n log n + pairs of vertices that close) besides.
+        Cost: O(n log n + m), and with a tolerance the pairs of vertices that close besides.
         Source: thesis, construction of the mesh (one vertex per position).
         """
-        from hem.meshes.weld import clusters
-
         if not (np.isfinite(tolerance) and tolerance >= 0):
             raise MeshError(f"a weld tolerance is finite and not negative, not {tolerance}")
         first, cluster = clusters(self.points, tolerance)
@@ -63,75 +61,16 @@ class TriangleMesh:
         """The same faces seen from the other side: corners (a, b, c) become (a, c, b). O(m)."""
         return TriangleMesh(self.points, self.triangles[:, [0, 2, 1]])
 
-    def summary(self) -> "MeshSummary":
+    def summary(self) -> MeshSummary:
         """Counts of elements, borders, components and valences. O(m log m)."""
-        from hem.meshes.manifold import undirected_edges
-
-        return summarized(len(self.points), len(self.triangles), *undirected_edges(self.triangles))
+        return summarize(len(self.points), len(self.triangles), *undirected_edges(self.triangles))
 
 
-@dataclass(frozen=True)
-class MeshSummary:
-    """What a mesh consists of. Vertices without faces count in `vertices` and `unreferenced` only.
-
-    `euler` is V - E + F and `components` the connected parts, both of the vertices that have
-    faces. A vertex' valence is its number of edges; 0 for a mesh without faces.
-    """
-
-    vertices: int
-    edges: int
-    faces: int
-    border_edges: int
-    components: int
-    euler: int
-    unreferenced: int
-    valence_min: int
-    valence_mean: float
-    valence_max: int
-
-    def __str__(self) -> str:
-        rows = {
-            "vertices": f"{self.vertices:,} ({self.unreferenced:,} without faces)",
-            "edges": f"{self.edges:,} ({self.border_edges:,} on the border)",
-            "faces": f"{self.faces:,}",
-            "components": f"{self.components:,}",
-            "Euler number": f"{self.euler:,}",
-            "valence": f"{self.valence_min:,} … {self.valence_max:,}, mean {self.valence_mean:.2f}",
-        }
-        return "\n".join(f"{name:<13} {value}" for name, value in rows.items())
-
-
-def summarized(
-    n: int, n_faces: int, edges: NDArray[Any], faces_per_edge: NDArray[Any]
-) -> MeshSummary:
-    """The summary of n vertices and the faces that have these undirected edges (k, 2)."""
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-
-    valence = np.bincount(edges.ravel(), minlength=n)
-    unreferenced = int(np.count_nonzero(valence == 0))
-    graph = coo_array((np.ones(len(edges), bool), (edges[:, 0], edges[:, 1])), shape=(n, n))
-    label = connected_components(graph, directed=False)[1] if n else valence
-    used = valence[valence > 0] if len(edges) else np.zeros(1, np.int64)
-    return MeshSummary(
-        vertices=n,
-        edges=len(edges),
-        faces=n_faces,
-        border_edges=int(np.count_nonzero(faces_per_edge == 1)),
-        components=len(np.unique(label[valence > 0])),
-        euler=n - unreferenced - len(edges) + n_faces,
-        unreferenced=unreferenced,
-        valence_min=int(used.min()),
-        valence_mean=float(used.mean()),
-        valence_max=int(used.max()),
-    )
-
-
-def repeated_corners(triangles: Triangles) -> NDArray[np.bool_]:
+def repeated_corners(triangles: Triangles) -> Bools:
     """Which triangles use a vertex twice. (m,) bool, O(m)."""
     a, b, c = triangles.T
-    found: NDArray[np.bool_] = (a == b) | (b == c) | (c == a)
-    return found
+    repeated: Bools = (a == b) | (b == c) | (c == a)
+    return repeated
 
 
 def _validated_points(points: ArrayLike) -> Points:
@@ -182,7 +121,7 @@ def _out_of_range(given: NDArray[Any], n: int) -> str:
     return f"vertex indices are out of the range 0 … {n - 1:,}{beyond}{hint}"
 
 
-def _refuse(bad: NDArray[np.bool_], message: str) -> None:
+def _refuse(bad: Bools, message: str) -> None:
     if bad.any():
         rows = bad if bad.ndim == 1 else bad.any(axis=1)
         raise MeshError(message, rows=np.flatnonzero(rows))

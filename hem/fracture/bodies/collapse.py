@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from hem.meshes.manifold import undirected_edges
+from hem.meshes.edges import undirected_edges
 from hem.meshes.triangles import TriangleMesh
 
 

@@ -13,7 +13,8 @@ from hem.errors import MeshError
 from hem.fracture.bodies.collapse import collapsed
 from hem.fracture.bodies.inside import windings
 from hem.fracture.pieces import Floats, diagonal
-from hem.meshes.manifold import non_manifold_edges, same_way_edges, undirected_edges
+from hem.meshes.edges import undirected_edges
+from hem.meshes.manifold import non_manifold_edges, same_way_edges
 from hem.meshes.triangles import TriangleMesh
 
 _INSTEAD = (

@@ -9,7 +9,7 @@ import pytest
 from numpy.typing import NDArray
 
 from experiments.validation.synthetic import CURVES, PARTS, curve, curves
-from hem.complexity.judge import Verdict, judge
+from hem.complexity import Verdict, judge
 
 Array = NDArray[np.float64]
 

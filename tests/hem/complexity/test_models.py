@@ -3,7 +3,15 @@
 import numpy as np
 import pytest
 
-from hem.complexity.models import NAMES, basis, canonical, fit, measured_rises, no_rise, predict
+from hem.complexity.models import (
+    NAMES,
+    canonical,
+    design,
+    fit,
+    measured_slowdowns,
+    no_slowdown,
+    predict,
+)
 
 
 @pytest.mark.parametrize(
@@ -30,8 +38,8 @@ def test_fits_are_the_nonnegative_least_squares_of_scipy() -> None:
 
     rng = np.random.default_rng(0)
     sizes = np.geomspace(100, 1e5, 7)
-    rises = measured_rises(np.geomspace(1, 30, 7), steps=4)
-    models = basis(sizes, rises, 1.3)
+    slowdowns = measured_slowdowns(np.geomspace(1, 30, 7), steps=4)
+    models = design(sizes, slowdowns, 1.3)
     pure, mixed = models.columns()
     for _ in range(20):
         cost, error = rng.lognormal(0, 2, 7), rng.uniform(0.01, 0.1, 7)
@@ -47,9 +55,9 @@ def test_fits_are_the_nonnegative_least_squares_of_scipy() -> None:
 def test_predictions_have_the_misfit_of_their_fit() -> None:
     rng = np.random.default_rng(1)
     sizes = np.geomspace(4, 4096, 6)
-    rises = measured_rises(np.geomspace(1, 10, 6))
+    slowdowns = measured_slowdowns(np.geomspace(1, 10, 6))
     cost, error = sizes * rng.lognormal(0, 0.2, 6), np.full(6, 0.05)
-    models = basis(sizes, rises, 1.3)
+    models = design(sizes, slowdowns, 1.3)
     fitted = fit(models, cost, 1 / (cost * error))
     slowed, fast = predict(models, fitted)
     assert (((slowed / cost - 1) / error) ** 2).sum(1) == pytest.approx(fitted.chi2)
@@ -59,7 +67,7 @@ def test_predictions_have_the_misfit_of_their_fit() -> None:
 @pytest.mark.parametrize("growth", [1.3, 2.1])
 def test_no_model_but_constant_time_hides_its_growth_in_the_intercept(growth: float) -> None:
     sizes = np.geomspace(100, 1e6, 7)
-    models = basis(sizes, no_rise(7), growth)
+    models = design(sizes, no_slowdown(7), growth)
     _, fast = predict(models, fit(models, np.ones(7), np.ones(7)))
     assert fast[0] == pytest.approx(np.ones(7))
     assert fast[1:, -1] / fast[1:, 0] == pytest.approx(np.full(5, growth), rel=1e-6)
@@ -68,7 +76,7 @@ def test_no_model_but_constant_time_hides_its_growth_in_the_intercept(growth: fl
 def test_many_costs_are_fitted_as_each_alone() -> None:
     rng = np.random.default_rng(2)
     sizes = np.geomspace(4, 4096, 6)
-    models = basis(sizes, measured_rises(np.geomspace(1, 10, 6)), 1.3).only(3)
+    models = design(sizes, measured_slowdowns(np.geomspace(1, 10, 6)), 1.3).only(3)
     costs = sizes * rng.lognormal(0, 0.2, (5, 6))
     together = fit(models, costs, 1 / sizes)
     for i, cost in enumerate(costs):

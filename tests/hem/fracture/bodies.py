@@ -8,7 +8,8 @@ import trimesh
 
 import hem
 from hem.fracture.bodies.solid import Body, require_body, wrapped
-from hem.meshes.manifold import same_way_edges, undirected_edges
+from hem.meshes.edges import undirected_edges
+from hem.meshes.manifold import same_way_edges
 
 
 def box(*size, at=(0.0, 0.0, 0.0)):

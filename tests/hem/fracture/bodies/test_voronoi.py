@@ -12,7 +12,7 @@ from hem.fracture import material
 from hem.fracture.bodies.cells import cells
 from hem.fracture.bodies.solid import require_body
 from hem.fracture.bodies.voronoi import voronoi
-from hem.meshes.manifold import undirected_edges
+from hem.meshes.edges import undirected_edges
 from tests.hem.fracture.bodies import (
     NAMES,
     as_trimesh,

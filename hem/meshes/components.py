@@ -1,0 +1,29 @@
+"""What hangs together, and what is used."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hem.arrays import Array, Indices
+
+
+def components(n: int, pairs: Array) -> tuple[int, Indices]:
+    """How many parts n things form of which pairs (k, 2) are joined, and the part of each (n,).
+
+    Parts are numbered by their first thing. O(n + k).
+    """
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    if not n:
+        return 0, np.zeros(0, np.int64)
+    joined = coo_array((np.ones(len(pairs), bool), (pairs[:, 0], pairs[:, 1])), shape=(n, n))
+    count, label = connected_components(joined, directed=False)
+    return int(count), label.astype(np.int64)
+
+
+def used_only(points: NDArray[Any], triangles: Array) -> tuple[NDArray[Any], Indices]:
+    """The points that triangles (m, 3) use, in the order they had, and the triangles by them."""
+    used, renumbered = np.unique(triangles, return_inverse=True)
+    return points[used], renumbered.reshape(-1, 3)

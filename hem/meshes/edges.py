@@ -1,0 +1,28 @@
+"""The edges of a list of triangles. "Half-edge" 3f + i runs from corner i of face f to i + 1."""
+
+import numpy as np
+
+from hem.arrays import Indices, Triangles
+
+
+def half_edges(triangles: Triangles) -> tuple[Indices, Indices]:
+    """(3m,) vertices: where every half-edge starts and where it ends."""
+    start = triangles.astype(np.int64)
+    return start.ravel(), start[:, [1, 2, 0]].ravel()
+
+
+def edge_keys(start: Indices, end: Indices) -> Indices:
+    """(k,): one number per undirected edge, ascending as its vertices are, the smaller first."""
+    keys: Indices = (np.minimum(start, end) << 32) | np.maximum(start, end)
+    return keys
+
+
+def key_vertices(keys: Indices) -> Indices:
+    """(k, 2): the vertices of edges, the smaller first."""
+    return np.stack([keys >> 32, keys & 0xFFFFFFFF], axis=1)
+
+
+def undirected_edges(triangles: Triangles) -> tuple[Indices, Indices]:
+    """The (k, 2) edges, smaller vertex first and in ascending order, and the faces of each (k,)."""
+    keys, count = np.unique(edge_keys(*half_edges(triangles)), return_counts=True)
+    return key_vertices(keys), count

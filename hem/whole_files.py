@@ -1,0 +1,27 @@
+"""Files that are whole or not there: written beside their place, then renamed."""
+
+import os
+import secrets
+from contextlib import suppress
+from pathlib import Path
+
+
+def write_whole(path: str | os.PathLike[str], content: str | bytes) -> None:
+    """Put a file in place, or replace the one there, so that no reader ever meets half of it.
+
+    Text is written as UTF-8, with its line ends as they are; the folder is made if need be. When
+    this returns, the content is on the disk. Raises OSError, and leaves what was there as it was.
+    """
+    target = Path(path).absolute()
+    target.parent.mkdir(parents=True, exist_ok=True)
+    beside = target.with_name(f".{target.name[:80]}-{secrets.token_hex(4)}.part")
+    try:
+        with beside.open("xb") as file:
+            file.write(content.encode() if isinstance(content, str) else content)
+            file.flush()
+            os.fsync(file.fileno())
+        beside.replace(target)
+    except BaseException:
+        with suppress(OSError):
+            beside.unlink()
+        raise

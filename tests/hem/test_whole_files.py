@@ -1,0 +1,32 @@
+"""A file is whole or as it was."""
+
+import os
+from pathlib import Path
+
+import pytest
+
+from hem.whole_files import write_whole
+
+
+def test_a_file_is_written_replaced_and_nothing_is_left_beside(tmp_path: Path) -> None:
+    file = tmp_path / "new folder" / "file.txt"
+    write_whole(file, "first\n")
+    write_whole(file, "größer\n")
+    assert file.read_bytes() == "größer\n".encode()
+    write_whole(file, bytes(range(256)))
+    assert file.read_bytes() == bytes(range(256))
+    assert os.listdir(file.parent) == ["file.txt"]
+
+
+def test_what_fails_leaves_the_old_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    file = tmp_path / "file.txt"
+    write_whole(file, "old")
+
+    def full(_: int) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(os, "fsync", full)
+    with pytest.raises(OSError, match="No space left"):
+        write_whole(file, "new")
+    assert file.read_text() == "old"
+    assert os.listdir(tmp_path) == ["file.txt"]
