@@ -2,37 +2,38 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 import structures
-from experiments.conftest import Keep
-from experiments.harness.cases import Case
-from experiments.harness.presets import Preset
-from structures import NAMES as STRUCTURES
+from experiments.harness import BenchmarkTimer, Case, Experiment, Keep, Preset
 
 
-def cases(profile: Preset, structure: str) -> list[Case]:
+def cases(preset: Preset, structure: str) -> list[Case]:
     """The judged family by size, at both sizes of a reference."""
     return [
-        Case(structure, profile.families[0], size, None, order, None, reference_bytes)
-        for size in profile.build_sizes
-        for order in profile.orders
-        for reference_bytes in (4, 8)
+        Case(structure, preset.families[0], size, None, order, None, reference_bytes)
+        for size in preset.build_sizes
+        for order in preset.orders
+        for reference_bytes in preset.build_reference_bytes
     ]
 
 
-def test_build(case: Case, profile: Preset, benchmark: Any, keep: Keep) -> None:
+EXPERIMENT = Experiment(
+    title="Time to build",
+    kind="time",
+    cases=cases,
+    structures=structures.NAMES,
+    copies=3,
+    turn=50,
+)
+
+
+def test_build(case: Case, preset: Preset, timer: BenchmarkTimer, keep: Keep) -> None:
     """Check that what was built is valid and gives the mesh back, then time the building."""
     mesh = case.mesh()
-    s = structures.build(case.structure, mesh, case.reference_bytes)
+    given = case.structure, mesh, case.reference_bytes
+    s = structures.build(*given)
     s.validate()
     assert np.array_equal(np.sort(s.to_triangles().triangles), np.sort(mesh.triangles))
-    arguments = case.structure, mesh, case.reference_bytes
-    benchmark.pedantic(structures.build, arguments, rounds=profile.rounds, warmup_rounds=1)
-    samples = benchmark.stats.stats.data if benchmark.stats else []
-    keep(case.result("time", s, np.array(samples), handles=1, checked=True))
-
-
-__all__ = ["STRUCTURES", "cases", "test_build"]
+    timed = timer(structures.build, setup=lambda: (given, {}), rounds=preset.rounds)
+    keep(case.result("time", s, handles=1, checked=True, **timed.fields))

@@ -15,15 +15,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 import structures
-from experiments.conftest import Keep
-from experiments.harness.cases import Case
+from experiments.harness import BASE, BenchmarkTimer, Case, Experiment, Keep, Preset, why_too_slow
 from experiments.harness.latency import latency_now
-from experiments.harness.presets import Preset
-from hem.contract.structure import Structure
+from hem.contract import Structure
 from hem.fracture import MATERIALS, Material, nearest_face, scanned, shatter
 from hem.fracture.surface.breaking import JUMP
 from hem.fracture.surface.nearest import Found
-from structures import NAMES as STRUCTURES
 
 Array = NDArray[Any]
 
@@ -48,41 +45,51 @@ IMPACT_SEED = 31
 MARGIN = 1e-6
 """Nearer than this part of the mesh to where the scan ends is the same place."""
 
-COUNTED_ON = "half_edge"
+REFERENCE = "half_edge"
+"""The structure whose shards the others must give, and on which looks at faces are counted."""
 
 ASKED_PER_BREAK_POINT = 30
 """Neighbors are asked for at least so often; where that is a scan, it takes what follows."""
 
-SECONDS_PER_FACE = 1e-9
-LONGEST = 20
 FEWEST_ROUNDS = 3
 ROUNDS = FEWEST_ROUNDS + 2
 """With those to check it and to warm up."""
 
 
-def cases(profile: Preset, structure: str) -> list[Case]:
+def cases(preset: Preset, structure: str) -> list[Case]:
     """Both at every size; the faces that are looked at, which all structures share, on one."""
-    ways = [*WAYS, *(f"{way}, {VISITED}" for way in WAYS if structure == COUNTED_ON)]
-    family = profile.families[0]
+    ways = [*WAYS, *(f"{way}, {VISITED}" for way in WAYS if structure == REFERENCE)]
+    family = preset.families[0]
     return [
         Case(structure, family, size, query, order)
-        for size in profile.fracture_sizes
+        for size in preset.fracture_sizes
         for query, order in [(SHATTER, None), *((FIND, way) for way in ways)]
     ]
 
 
-def test_fracture(case: Case, profile: Preset, benchmark: Any, keep: Keep) -> None:
+EXPERIMENT = Experiment(
+    title="Breaking a surface",
+    kind="time",
+    cases=cases,
+    structures=structures.NAMES,
+    copies=10,
+    turn=70,
+    counted=tuple(f"{way}, {VISITED}" for way in WAYS),
+)
+
+
+def test_fracture(case: Case, preset: Preset, timer: BenchmarkTimer, keep: Keep) -> None:
     """Time a fracture, or the search for faces, after its outcome was checked."""
     s = case.build()
-    expected = _neighbors_asked(case, s) * s.n_faces * SECONDS_PER_FACE
-    if case.structure == "indexed" and ROUNDS * expected > LONGEST * profile.case_seconds:
-        benchmark.pedantic(lambda: None)
-        reason = f"takes {expected:.0f} s and more, which is too long for all rounds"
-        keep(case.result("time", s, np.zeros(0), skipped=reason))
+    scans = _neighbors_asked(case, s) if s.searches else 0
+    reason = why_too_slow(scans, s.n_faces, ROUNDS, preset)
+    if reason:
+        timer.nothing()
+        keep(case.result(EXPERIMENT.kind_of(case), s, (), skipped=reason))
     elif case.subject == SHATTER:
-        _shatter(case, s, profile, benchmark, keep)
+        _shatter(case, s, preset, timer, keep)
     else:
-        _find(case, s, profile, benchmark, keep)
+        _find(case, s, preset, timer, keep)
 
 
 def _neighbors_asked(case: Case, s: Structure) -> float:
@@ -93,28 +100,27 @@ def _neighbors_asked(case: Case, s: Structure) -> float:
     return float(IMPACTS * per_search[str(case.order).partition(",")[0]])
 
 
-def _shatter(case: Case, s: Structure, profile: Preset, benchmark: Any, keep: Keep) -> None:
+def _shatter(case: Case, s: Structure, preset: Preset, timer: BenchmarkTimer, keep: Keep) -> None:
     at, material = _impacts(s)[0], _material(s)
-    expected = shatter(structures.build("half_edge", case.mesh()), at, material).shards
+    expected = shatter(structures.build(REFERENCE, case.mesh()), at, material).shards
     begin, copy = perf_counter(), s.copy()
     shards = shatter(copy, at, material).shards
     seconds = perf_counter() - begin
     copy.validate()
     if not np.array_equal([it.points for it in shards], [it.points for it in expected]):
-        raise AssertionError(f"{case.structure} gives other shards than half_edge")
+        raise AssertionError(f"{case.structure} gives other shards than {REFERENCE}")
 
     def fresh() -> tuple[tuple[Structure, Array, Any], dict[str, Any]]:
         ready = s.copy()
         ready.reserve(2 * sum(material.circles))
         return (ready, at, material), {}
 
-    rounds = int(np.clip(profile.case_seconds / seconds, FEWEST_ROUNDS, profile.rounds))
-    benchmark.pedantic(shatter, setup=fresh, rounds=rounds, warmup_rounds=1)
-    data = benchmark.stats.stats.data if benchmark.stats else []
-    keep(case.result("time", s, np.array(data) / len(shards), handles=len(shards), checked=True))
+    rounds = int(np.clip(preset.case_seconds / seconds, FEWEST_ROUNDS, preset.rounds))
+    timed = timer(shatter, setup=fresh, rounds=rounds, per=len(shards))
+    keep(case.result("time", s, handles=len(shards), checked=True, **timed.fields))
 
 
-def _find(case: Case, s: Structure, profile: Preset, benchmark: Any, keep: Keep) -> None:
+def _find(case: Case, s: Structure, preset: Preset, timer: BenchmarkTimer, keep: Keep) -> None:
     way, _, counted = str(case.order).partition(", ")
     find, impacts = WAYS[way], _impacts(s)
     found = [find(s, at) for at in impacts]
@@ -122,7 +128,7 @@ def _find(case: Case, s: Structure, profile: Preset, benchmark: Any, keep: Keep)
     if not (np.abs(apart) < MARGIN * np.abs(s.points).max()).all():
         raise AssertionError(f"{case.id} on {case.structure}: a face that is not the nearest")
     if counted:
-        benchmark.pedantic(lambda: None)
+        timer.nothing()
         visited = [it.visited for it in found]
         keep(case.result("work", s, np.array(visited), handles=1, checked=True))
         return
@@ -132,10 +138,10 @@ def _find(case: Case, s: Structure, profile: Preset, benchmark: Any, keep: Keep)
             find(s, at)
 
     latency = latency_now(sum(s.memory().values()))
-    benchmark.pedantic(all_of_them, rounds=max(FEWEST_ROUNDS, profile.rounds // 2))
-    data = np.array(benchmark.stats.stats.data if benchmark.stats else [])
+    rounds = max(FEWEST_ROUNDS, preset.rounds // 2)
+    timed = timer(all_of_them, rounds=rounds, warmup=0, per=len(impacts))
     more = {"handles": len(impacts), "latency": latency, "checked": True}
-    keep(case.result("time", s, data / len(impacts), **more))
+    keep(case.result("time", s, **more, **timed.fields))
 
 
 def _material(s: Structure) -> Material:
@@ -149,6 +155,3 @@ def _impacts(s: Structure) -> NDArray[np.float64]:
     corners = s.points[np.sort(s.face_vertices(faces).values.reshape(-1, 3), axis=1)]
     weights = rng.dirichlet(np.ones(3), IMPACTS)
     return np.asarray((weights[:, :, None] * corners.astype(np.float64)).sum(axis=1))
-
-
-__all__ = ["STRUCTURES", "cases", "test_fracture"]

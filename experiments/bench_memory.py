@@ -7,21 +7,31 @@ import tracemalloc
 import numpy as np
 
 import structures
-from experiments.conftest import Keep
-from experiments.harness.cases import Case
-from experiments.harness.presets import Preset
-from structures import NAMES as STRUCTURES
+from experiments.harness import Case, Experiment, Keep, Preset
 from structures.half_edge_objects import HalfEdgeMesh
 
+SMALLEST = 1_000
+"""Vertices from which on a mesh is weighed."""
 
-def cases(profile: Preset, structure: str) -> list[Case]:
+
+def cases(preset: Preset, structure: str) -> list[Case]:
     """The judged family by size and the real models, at both sizes of a reference."""
-    sizes = [(profile.families[0], size) for size in profile.build_sizes if size >= 1_000]
+    sizes = [(preset.families[0], size) for size in preset.build_sizes if size >= SMALLEST]
     return [
         Case(structure, family, size, reference_bytes=reference_bytes)
-        for family, size in [*sizes, *((model, 0) for model in profile.models)]
+        for family, size in [*sizes, *((model, 0) for model in preset.models)]
         for reference_bytes in (4, 8)
     ]
+
+
+EXPERIMENT = Experiment(
+    title="Bytes",
+    kind="bytes",
+    cases=cases,
+    structures=structures.NAMES,
+    copies=2,
+    turn=20,
+)
 
 
 def test_memory(case: Case, keep: Keep) -> None:
@@ -45,6 +55,3 @@ def test_memory(case: Case, keep: Keep) -> None:
         detail["clr"] = s.clr_memory()
     model = np.array([sum(fields.values())])
     keep(case.result("bytes", s, model, checked=True, detail=detail))
-
-
-__all__ = ["STRUCTURES", "cases", "test_memory"]

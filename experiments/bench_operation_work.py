@@ -7,34 +7,51 @@ from __future__ import annotations
 
 import numpy as np
 
-from experiments.claims.growth import OPERATIONS
-from experiments.conftest import Keep
-from experiments.harness.cases import Case
-from experiments.harness.operations import arguments, faces_of, validate
-from experiments.harness.presets import Preset
-from structures import NAMES as STRUCTURES
+from experiments.harness import (
+    OPERATIONS,
+    OPERATIONS_TABLE,
+    Axis,
+    Case,
+    Experiment,
+    Keep,
+    Preset,
+    operation_arguments,
+    operation_faces,
+    validate_operated,
+)
+from structures import NAMES, REGISTRY
 
 REPETITIONS = 3
-SCANNED = 1  # one scan of a mesh reads as much as another
+SEARCHED = 1
+"""One search of the whole mesh reads as much as another."""
 
 
-def cases(profile: Preset, structure: str) -> list[Case]:
+def cases(preset: Preset, structure: str) -> list[Case]:
     """The judged family by size, then the hubs by valence."""
     return [
         Case(structure, family, size, operation, "counted", valence)
-        for family, size, valence in profile.work_points()
+        for family, size, valence in preset.work_points()
         for operation in OPERATIONS
     ]
+
+
+EXPERIMENT = Experiment(
+    title="Work of operations",
+    kind="work",
+    cases=cases,
+    structures=NAMES,
+    copies=3,
+    turn=11,
+    table=OPERATIONS_TABLE,
+    axes={Axis.WORK_FACES: "counted", Axis.WORK_VALENCE: "counted"},
+)
 
 
 def test_operation_work(case: Case, keep: Keep) -> None:
     """Count what operations read and write, and check what they make of the mesh."""
     s, operation = case.build().copy(), str(case.subject)
-    faces = faces_of(case, SCANNED if case.structure == "indexed" else REPETITIONS)
-    rows = arguments(s, operation, faces).tolist()
+    faces = operation_faces(case, SEARCHED if REGISTRY[case.structure].searches else REPETITIONS)
+    rows = operation_arguments(s, operation, faces).tolist()
     work = [s.operation_work(operation, *row) for row in rows]
-    validate(s)
+    validate_operated(s)
     keep(case.result("work", case.build(), np.array(work), handles=1, checked=True))
-
-
-__all__ = ["STRUCTURES", "cases", "test_operation_work"]

@@ -13,21 +13,31 @@ from typing import Any
 import numpy as np
 
 import hem
-from experiments.claims.growth import OPERATIONS
-from experiments.conftest import Keep
-from experiments.harness.cases import Case
-from experiments.harness.operations import NOT_SCANNED, arguments, faces_of, time_operations
-from experiments.harness.presets import HUBS, Preset
-from hem.contract.structure import Structure
-from structures import NAMES as STRUCTURES
+from experiments.harness import (
+    HUBS,
+    OPERATIONS,
+    OPERATIONS_TABLE,
+    RENDERED,
+    Axis,
+    BenchmarkTimer,
+    Case,
+    Experiment,
+    Keep,
+    Preset,
+    count_elements,
+    operation_arguments,
+    operation_faces,
+    time_operations,
+)
+from hem.contract import Structure
+from structures import NAMES
 
 FEWEST_HUBS = 64
 """In a mesh whose valence is varied; with fewer operations at a time they are not worth timing."""
 
 SINGLE_FACES = 50
-SCANNED_FACES = 5
-"""How many are operated on where every operation takes a scan of the mesh."""
 
+ANEW = "render mesh built anew"
 
 Ending = Callable[[], Any]
 
@@ -52,20 +62,17 @@ def _built_anew(s: Structure) -> Ending:
     return lambda: None
 
 
-RENDERED: dict[str, Callable[[Structure], Ending]] = {
-    "rendered": _rendered,
-    "in a transaction": _in_a_transaction,
-    "render mesh built anew": _built_anew,
-}
+SET_UP: dict[str, Callable[[Structure], Ending]] = dict(
+    zip(RENDERED, (_rendered, _in_a_transaction, _built_anew), strict=True)
+)
 """Ways to keep a render mesh up to date: the order of a case, and what is set up -> how it ends."""
 
 
-def cases(profile: Preset, structure: str) -> list[Case]:
+def cases(preset: Preset, structure: str) -> list[Case]:
     """Batched by size and by valence; one by one, and with a render mesh, at some of the sizes."""
-    family, faces = profile.families[0], profile.operation_faces
-    by_size = [(family, size, None) for size in profile.operation_sizes]
-    by_valence = [(HUBS, faces, k) for k in profile.valences if k <= faces // FEWEST_HUBS]
-    some = profile.operation_sizes[::2]
+    family, faces = preset.families[0], preset.operation_faces
+    by_size = [(family, size, None) for size in preset.operation_sizes]
+    by_valence = [(HUBS, faces, k) for k in preset.valences if k <= faces // FEWEST_HUBS]
     singly = [(operation, "one by one") for operation in OPERATIONS]
     rendered = [("split_face", order) for order in RENDERED]
     return [
@@ -76,38 +83,44 @@ def cases(profile: Preset, structure: str) -> list[Case]:
         ),
         *(
             Case(structure, family, size, operation, order)
-            for size in some
+            for size in preset.single_sizes
             for operation, order in (*singly, *rendered)
         ),
     ]
 
 
-def test_operation(case: Case, profile: Preset, benchmark: Any, keep: Keep) -> None:
+EXPERIMENT = Experiment(
+    title="Time of operations",
+    kind="time",
+    cases=cases,
+    structures=NAMES,
+    copies=18,
+    turn=42,
+    table=OPERATIONS_TABLE,
+    axes={Axis.TIME_FACES: "batched", Axis.TIME_VALENCE: "batched"},
+    just_written=frozenset({Axis.TIME_FACES}),
+    baseline_orders=("batched",),
+)
+
+
+def test_operation(case: Case, preset: Preset, timer: BenchmarkTimer, keep: Keep) -> None:
     """Time one case, and check what the operations make of the mesh."""
-    s = case.build()
-    if case.order == "batched":
-        timed = time_operations(benchmark, case, profile)
-    else:
-        timed = _time_one_by_one(benchmark, case, profile)
-    keep(case.result("time", s, checked=True, **timed))
+    timed = (time_operations if case.order == "batched" else _time_one_by_one)(case, preset, timer)
+    keep(case.result("time", case.build(), checked=True, **timed))
 
 
-def _single_faces(case: Case) -> list[int]:
-    scanned = case.structure == "indexed" and case.subject not in NOT_SCANNED
-    few = scanned or case.order == "render mesh built anew"
-    return faces_of(case, SCANNED_FACES if few else SINGLE_FACES).tolist()
-
-
-def _time_one_by_one(benchmark: Any, case: Case, profile: Preset) -> dict[str, Any]:
-    s, operation, (first, *faces) = case.build(), str(case.subject), _single_faces(case)
-    set_up = RENDERED.get(str(case.order), _alone)
+def _time_one_by_one(case: Case, preset: Preset, timer: BenchmarkTimer) -> dict[str, Any]:
+    s, operation = case.build(), str(case.subject)
+    few = count_elements(case, SINGLE_FACES, scanned=case.order == ANEW)
+    first, *faces = operation_faces(case, few).tolist()
+    set_up = SET_UP.get(str(case.order), _alone)
     given = 3 if operation == "add_face" else 1
     point = ((0.0, 0.0, 0.0),) if operation.startswith("split") else ()
 
     def fresh() -> tuple[tuple[Any, list[list[int]], Ending], dict[str, Any]]:
         copy = s.copy()
         copy.reserve(2 * SINGLE_FACES)
-        rows = arguments(copy, operation, np.array(faces))[:, :given].tolist()
+        rows = operation_arguments(copy, operation, np.array(faces))[:, :given].tolist()
         end = set_up(copy)
         copy.split_face(first, (0, 0, 0))  # makes room, here and in the render mesh
         return (getattr(copy, operation), rows, end), {}
@@ -117,9 +130,5 @@ def _time_one_by_one(benchmark: Any, case: Case, profile: Preset) -> dict[str, A
             method(*row, *point)
         end()
 
-    benchmark.pedantic(operate, setup=fresh, rounds=profile.rounds, warmup_rounds=1)
-    data = benchmark.stats.stats.data if benchmark.stats else []
-    return {"samples": np.array(data) / len(faces), "handles": len(faces)}
-
-
-__all__ = ["STRUCTURES", "cases", "test_operation"]
+    timed = timer(operate, setup=fresh, rounds=preset.rounds, per=len(faces))
+    return {**timed.fields, "handles": len(faces)}

@@ -14,23 +14,32 @@ import numpy as np
 from numpy.typing import NDArray
 
 import structures
-from experiments.conftest import Keep
-from experiments.harness.cases import Case
+from experiments.harness import (
+    OPERATIONS,
+    Axis,
+    BenchmarkTimer,
+    Case,
+    Experiment,
+    Keep,
+    Measurement,
+    Preset,
+    Table,
+    operation_faces,
+)
 from experiments.harness.latency import latency_now
-from experiments.harness.operations import faces_of
-from experiments.harness.presets import Preset
-from experiments.runs.results import Measurement
-from hem.meshes.triangles import TriangleMesh
+from hem.meshes import TriangleMesh
 from structures.as_printed import AsPrinted, render_arrays
 from structures.half_edge_objects import HalfEdgeMesh, HalfEdgeMeshBuilder, fields_accessed
 
 Array = NDArray[Any]
 
 MENDED = HalfEdgeMesh.name
-STRUCTURES = (AsPrinted.name, MENDED)
 
-LISTINGS = ("build", "split_edge", "split_face", "collapse_edge")
-ORDERS = ("counted", "timed")
+LISTINGS = {
+    "build": "Build from a render mesh",
+    **{name: OPERATIONS[name] for name in ("split_edge", "split_face", "collapse_edge")},
+}
+COUNTED, TIMED = "counted", "timed"
 """The kinds of cases: work, and time."""
 
 TIMED_OPERATIONS = 9
@@ -46,60 +55,75 @@ POINTS = [(9.0, 9.0, float(i)) for i in range(TIMED_OPERATIONS + WARM_UP)]
 Step = Callable[[], Any]
 
 
-def cases(profile: Preset, structure: str) -> list[Case]:
+def cases(preset: Preset, structure: str) -> list[Case]:
     """Every listing at every size."""
     return [
-        Case(structure, profile.families[0], size, listing, order)
-        for size in profile.printed_sizes
+        Case(structure, preset.families[0], size, listing, order)
+        for size in preset.printed_sizes
         for listing in LISTINGS
-        for order in ORDERS
+        for order in (COUNTED, TIMED)
     ]
 
 
-class Bench(NamedTuple):
+EXPERIMENT = Experiment(
+    title="The listings, published and corrected",
+    kind="time",
+    cases=cases,
+    structures=(AsPrinted.name, MENDED),
+    copies=3,
+    turn=43,
+    counted=(COUNTED,),
+    table=Table("listings", "The listings, as printed and mended", LISTINGS, "errata"),
+    axes={Axis.WORK_FACES: COUNTED, Axis.TIME_FACES: TIMED},
+    baseline_orders=(TIMED,),
+)
+
+
+class Steps(NamedTuple):
     """What is to be counted or timed, one after the other, on one mesh, and its faces by now."""
 
     steps: list[Step]
     faces: Callable[[], int]
 
 
-def test_listing(case: Case, profile: Preset, benchmark: Any, keep: Keep) -> None:
+def test_listing(case: Case, preset: Preset, timer: BenchmarkTimer, keep: Keep) -> None:
     """Count or time what a listing does, and check what it made by the number of faces."""
-    counted = case.order == "counted"
-    bench = _bench(case, COUNTED_OPERATIONS if counted else TIMED_OPERATIONS)
-    before, latency = bench.faces(), None
+    counted = case.order == COUNTED
+    todo = _steps(case, COUNTED_OPERATIONS if counted else TIMED_OPERATIONS)
+    before, fields = todo.faces(), {}
     if counted:
-        benchmark.pedantic(lambda: None)
-        samples: Any = [fields_accessed(step) for step in bench.steps]
+        timer.nothing()
+        fields = {"samples": [fields_accessed(step) for step in todo.steps]}
     else:
-        waiting, latency = iter(bench.steps), latency_now(500 * len(case.mesh().points))
-        benchmark.pedantic(
-            lambda step: step(), setup=lambda: ((next(waiting),), {}), rounds=len(bench.steps)
+        waiting, latency = iter(todo.steps), latency_now(500 * len(case.mesh().points))
+        timed = timer(
+            lambda step: step(),
+            setup=lambda: ((next(waiting),), {}),
+            rounds=len(todo.steps),
+            warmup=0,
         )
-        samples = benchmark.stats.stats.data if benchmark.stats else []
-    expected = before + MORE_FACES[str(case.subject)] * len(bench.steps)
-    if bench.faces() != expected:
-        raise AssertionError(
-            f"{case.id} on {case.structure}: {bench.faces()} faces, not {expected}"
-        )
-    keep(_result(case, "work" if counted else "time", samples, latency))
+        fields = {**timed.fields, "latency": latency}
+    expected = before + MORE_FACES[str(case.subject)] * len(todo.steps)
+    if todo.faces() != expected:
+        raise AssertionError(f"{case.id} on {case.structure}: {todo.faces()} faces, not {expected}")
+    keep(_measurement(case, EXPERIMENT.kind_of(case), fields))
 
 
-def _bench(case: Case, most: int) -> Bench:
+def _steps(case: Case, most: int) -> Steps:
     mesh = case.mesh()
     if case.subject == "build":
         times = 3 if most == TIMED_OPERATIONS else 1
-        return Bench([partial(_built, case.structure, mesh)] * times, lambda: len(mesh.triangles))
-    faces = faces_of(case, most + WARM_UP)
+        return Steps([partial(_built, case.structure, mesh)] * times, lambda: len(mesh.triangles))
+    faces = operation_faces(case, most + WARM_UP)
     steps, counted = _mended(case, faces) if case.structure == MENDED else _printed(case, faces)
     # The first ones bind methods and make room for many more, which takes a pass over the mesh.
     first = min(WARM_UP, len(steps) - 1)
     for step in steps[:first]:
         step()
-    return Bench(steps[first:], counted)
+    return Steps(steps[first:], counted)
 
 
-def _printed(case: Case, faces: Array) -> Bench:
+def _printed(case: Case, faces: Array) -> Steps:
     m = _built(case.structure, case.mesh())
     m.generate_render_mesh()
     targets = [m.faces[f] for f in faces.tolist()]
@@ -109,10 +133,10 @@ def _printed(case: Case, faces: Array) -> Bench:
         "split_face": (m.split_face, targets, POINTS),
         "collapse_edge": (m.collapse_edge, sides),
     }
-    return Bench(_calls(*calls[str(case.subject)]), lambda: len(m.faces))
+    return Steps(_calls(*calls[str(case.subject)]), lambda: len(m.faces))
 
 
-def _mended(case: Case, faces: Array) -> Bench:
+def _mended(case: Case, faces: Array) -> Steps:
     s = structures.build(MENDED, case.mesh())
     edges = s.face_edges(faces).values.reshape(-1, 3)[:, 0].tolist()
     calls: dict[str, tuple[Any, ...]] = {
@@ -125,7 +149,7 @@ def _mended(case: Case, faces: Array) -> Bench:
         s.validate()
         return s.n_faces
 
-    return Bench(_calls(*calls[str(case.subject)]), counted)
+    return Steps(_calls(*calls[str(case.subject)]), counted)
 
 
 def _calls(method: Callable[..., Any], *arguments: list[Any]) -> list[Step]:
@@ -144,7 +168,7 @@ def _built(structure: str, mesh: TriangleMesh) -> Any:
     return built
 
 
-def _result(case: Case, kind: str, samples: Any, latency: float | None = None) -> Measurement:
+def _measurement(case: Case, kind: str, fields: dict[str, Any]) -> Measurement:
     summary = case.mesh().summary()
     return Measurement(
         id=case.id,
@@ -159,9 +183,5 @@ def _result(case: Case, kind: str, samples: Any, latency: float | None = None) -
         reference_bytes=8,
         handles=1,
         checked=True,
-        latency=latency,
-        samples=np.asarray(samples, float).tolist(),
+        **{**fields, "samples": np.asarray(fields["samples"], float).tolist()},
     )
-
-
-__all__ = ["STRUCTURES", "cases", "test_listing"]

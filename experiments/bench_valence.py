@@ -2,28 +2,43 @@
 
 from __future__ import annotations
 
-from typing import Any
+from experiments.harness import (
+    HUBS,
+    QUERIES_TABLE,
+    Axis,
+    BenchmarkTimer,
+    Case,
+    Experiment,
+    Keep,
+    Preset,
+    time_checked_query,
+)
+from hem.contract import QUERIES
+from structures import NAMES
 
-from experiments.bench_queries import measure
-from experiments.conftest import Keep
-from experiments.harness.cases import Case
-from experiments.harness.presets import HUBS, Preset
-from hem.contract.queries import QUERIES
-from structures import NAMES as STRUCTURES
 
-
-def cases(profile: Preset, structure: str) -> list[Case]:
+def cases(preset: Preset, structure: str) -> list[Case]:
     """All cases of one structure; those on the same mesh follow each other."""
     return [
-        Case(structure, HUBS, profile.valence_faces, query, "random", valence)
-        for valence in profile.valences
+        Case(structure, HUBS, preset.valence_faces, query, "random", valence)
+        for valence in preset.valences
         for query in QUERIES
     ]
 
 
-def test_valence(case: Case, profile: Preset, benchmark: Any, keep: Keep) -> None:
+EXPERIMENT = Experiment(
+    title="Time of queries, by valence",
+    kind="time",
+    cases=cases,
+    structures=NAMES,
+    copies=2,
+    turn=41,
+    table=QUERIES_TABLE,
+    axes={Axis.TIME_VALENCE: "random"},
+    baseline_orders=("random",),
+)
+
+
+def test_valence(case: Case, preset: Preset, timer: BenchmarkTimer, keep: Keep) -> None:
     """Check the query at the hubs against the triangle list, then time it."""
-    measure(case, profile, benchmark, keep)
-
-
-__all__ = ["STRUCTURES", "cases", "test_valence"]
+    keep(time_checked_query(case, preset, timer))

@@ -6,31 +6,45 @@ are small; that is enough, as nothing disturbs them.
 
 from __future__ import annotations
 
-from experiments.bench_queries import CHECKED_HANDLES
-from experiments.conftest import Keep
-from experiments.harness.cases import Case, pool
-from experiments.harness.oracle import check
-from experiments.harness.presets import Preset
-from hem.contract.queries import QUERIES
-from structures import NAMES as STRUCTURES
+from experiments.harness import (
+    CHECKED_HANDLES,
+    QUERIES_TABLE,
+    Axis,
+    Case,
+    Experiment,
+    Keep,
+    Preset,
+    check_query,
+    queried_handles,
+)
+from hem.contract import QUERIES
+from structures import NAMES
 
 
-def cases(profile: Preset, structure: str) -> list[Case]:
+def cases(preset: Preset, structure: str) -> list[Case]:
     """The judged family by size, then the hubs by valence."""
     return [
         Case(structure, family, size, query, "random", valence)
-        for family, size, valence in profile.work_points()
+        for family, size, valence in preset.work_points()
         for query in QUERIES
     ]
+
+
+EXPERIMENT = Experiment(
+    title="Work of queries",
+    kind="work",
+    cases=cases,
+    structures=NAMES,
+    copies=1,
+    turn=10,
+    table=QUERIES_TABLE,
+    axes={Axis.WORK_FACES: "random", Axis.WORK_VALENCE: "random"},
+)
 
 
 def test_work(case: Case, keep: Keep) -> None:
     """Check the query against the triangle list, then count what it reads."""
     s = case.build()
-    handles = pool(case, s)[:CHECKED_HANDLES]
-    check(s, case.mesh(), case.query, handles)
-    reads = s.work(case.query.name, handles)
-    keep(case.result("work", s, reads, handles=1, checked=True))
-
-
-__all__ = ["STRUCTURES", "cases", "test_work"]
+    handles = queried_handles(case, s)[:CHECKED_HANDLES]
+    check_query(s, case.mesh(), case.query, handles)
+    keep(case.result("work", s, s.work(case.query.name, handles), handles=1, checked=True))

@@ -1,26 +1,15 @@
-"""Time of what people do with meshes, on every structure, by size; building is not included."""
+"""Time of what programs do with meshes, on every structure, by size; building is not included."""
 
 from __future__ import annotations
 
 from time import perf_counter
-from typing import Any
 
 import numpy as np
 
 import structures
-from experiments.conftest import Keep
-from experiments.harness.cases import Case
-from experiments.harness.presets import Preset
+from experiments.harness import BASE, BenchmarkTimer, Case, Experiment, Keep, Preset, why_too_slow
 from experiments.harness.workloads import IMPACTS, WORKLOADS
-from hem.contract.queries import QUERIES
-from hem.contract.structure import Structure
-from structures import NAMES as STRUCTURES
-
-SECONDS_PER_FACE = 1e-9
-"""What a scan takes at the least."""
-
-LONGEST = 20
-"""How many times the seconds of a case a workload may take in all."""
+from hem.contract import QUERIES, Structure
 
 SMALL = 400
 """Vertices of the mesh on which all structures must give the same."""
@@ -28,34 +17,43 @@ SMALL = 400
 FEWEST_ROUNDS = 3
 
 
-def cases(profile: Preset, structure: str) -> list[Case]:
-    """Every workload at every size."""
+def cases(preset: Preset, structure: str) -> list[Case]:
+    """Every workload of the preset at every size."""
     return [
-        Case(structure, profile.families[0], size, workload, "workload")
-        for size in profile.workload_sizes
-        for workload in WORKLOADS
+        Case(structure, preset.families[0], size, workload, "workload")
+        for size in preset.workload_sizes
+        for workload in preset.workloads or WORKLOADS
     ]
 
 
-def test_workload(case: Case, profile: Preset, benchmark: Any, keep: Keep) -> None:
+EXPERIMENT = Experiment(
+    title="Workloads",
+    kind="time",
+    cases=cases,
+    structures=structures.NAMES,
+    copies=4,
+    turn=60,
+)
+
+
+def test_workload(case: Case, preset: Preset, timer: BenchmarkTimer, keep: Keep) -> None:
     """Time a workload on copies of a mesh, if it can be done in the time there is."""
     s, workload = case.build(), WORKLOADS[str(case.subject)]
-    allowed = LONGEST * profile.case_seconds
-    expected = _least_seconds(s, case)
-    if FEWEST_ROUNDS * expected > allowed:
-        benchmark.pedantic(lambda: None)
-        reason = f"takes at least {expected:.0f} s, and {allowed:.0f} s are given to all rounds"
-        keep(case.result("time", s, np.zeros(0), skipped=reason))
+    reason = why_too_slow(_scans(s, case), s.n_faces, FEWEST_ROUNDS, preset)
+    if reason:
+        timer.nothing()
+        keep(case.result("time", s, (), skipped=reason))
         return
     _check(case)
     ready = _ready(s)
     begin = perf_counter()
     units = workload.run(ready)
     seconds = perf_counter() - begin
-    rounds = int(np.clip(profile.case_seconds / seconds, FEWEST_ROUNDS, profile.rounds))
-    benchmark.pedantic(workload.run, setup=lambda: ((_ready(s),), {}), rounds=rounds)
-    data = benchmark.stats.stats.data if benchmark.stats else []
-    keep(case.result("time", s, np.array(data) / units, handles=units, checked=True))
+    rounds = int(np.clip(preset.case_seconds / seconds, FEWEST_ROUNDS, preset.rounds))
+    timed = timer(
+        workload.run, setup=lambda: ((_ready(s),), {}), rounds=rounds, warmup=0, per=units
+    )
+    keep(case.result("time", s, handles=units, checked=True, **timed.fields))
 
 
 def _ready(s: Structure) -> Structure:
@@ -67,17 +65,18 @@ def _ready(s: Structure) -> Structure:
     return copy
 
 
-def _least_seconds(s: Structure, case: Case) -> float:
-    if s.name != "indexed":
+def _scans(s: Structure, case: Case) -> float:
+    """How often a round searches the whole mesh, at the least."""
+    if not s.searches:
         return 0
     times = IMPACTS if case.subject == "impacts" else s.n_vertices
-    return times * WORKLOADS[str(case.subject)].scans * s.n_faces * SECONDS_PER_FACE
+    return times * WORKLOADS[str(case.subject)].scans
 
 
 def _check(case: Case) -> None:
     """On a small mesh the outcome is the same on every structure."""
     mesh = Case(case.structure, case.family, SMALL).mesh()
-    mine, other = (structures.build(name, mesh) for name in (case.structure, "indexed"))
+    mine, other = (structures.build(name, mesh) for name in (case.structure, BASE))
     for s in (mine, other):
         WORKLOADS[str(case.subject)].run(s)
         s.validate()
@@ -86,7 +85,6 @@ def _check(case: Case) -> None:
     )
     same_points = np.allclose(mine.points, other.points, atol=1e-5, equal_nan=True)
     if not (np.array_equal(corners, expected) and same_points):
-        raise AssertionError(f"{case.subject} on {case.structure} gives another mesh than indexed")
-
-
-__all__ = ["STRUCTURES", "cases", "test_workload"]
+        raise AssertionError(
+            f"{case.subject} on {case.structure} gives another mesh than {BASE}"
+        )

@@ -21,13 +21,23 @@ from typing import Any, cast
 import pytest
 
 from experiments.harness import affinity, memory
-from experiments.harness.cases import Case, in_random_order
-from experiments.harness.presets import PRESETS, Preset
-from experiments.harness.steadiness import REPEATS, Watch, badness, disturbed
-from experiments.runs.results import CannotWriteError, Measurement, ResultFile
+from experiments.harness import (
+    CLOCK,
+    PRESETS,
+    BenchmarkTimer,
+    Case,
+    Keep,
+    Measurement,
+    Preset,
+    Watch,
+    badness,
+    disturbed,
+    in_random_order,
+)
+from experiments.harness.steadiness import REPEATS
+from experiments.runs.results import CannotWriteError, ResultFile
 from experiments.runs.worker import CANNOT_WRITE, DEFAULT_SEED, end_with
 
-Keep = Callable[[Measurement], None]
 
 CORE = pytest.StashKey[int | None]()
 FILES = pytest.StashKey[dict[tuple[str, str], ResultFile]]()
@@ -60,7 +70,7 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
     """One test per case of the experiment that the run does not have yet."""
     if "case" in metafunc.fixturenames:
         config, module = metafunc.config, metafunc.module
-        chosen = config.getoption("--structure") or module.STRUCTURES
+        chosen = config.getoption("--structure") or module.EXPERIMENT.structures
         profile = PRESETS[config.getoption("--profile")]
         seed = config.getoption("--case-seed")
         cases = [
@@ -93,9 +103,21 @@ def pytest_runtestloop(session: pytest.Session) -> Iterator[None]:
 
 
 @pytest.fixture
-def profile(request: pytest.FixtureRequest, case: Case) -> Preset:
+def preset(request: pytest.FixtureRequest, case: Case) -> Preset:
     """How much to measure."""
     return PRESETS[request.config.getoption("--profile")].of(case.structure)
+
+
+@pytest.fixture
+def timer(benchmark: Any) -> BenchmarkTimer:
+    """The timer that also feeds pytest-benchmark."""
+    return BenchmarkTimer(benchmark)
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """pytest-benchmark's statistics are per query or edit, see ``UnitClock``."""
+    for item in items:
+        item.add_marker(pytest.mark.benchmark(timer=CLOCK))
 
 
 @pytest.fixture
@@ -104,13 +126,13 @@ def keep(request: pytest.FixtureRequest, case: Case) -> Keep:
 
     Skips the test, and keeps the reason, where there is not enough memory for the case.
     """
-    experiment = request.module.__name__.rpartition(".")[2]
     kept = bool(request.config.getoption("--run"))
     file = _file(request.config, request.module.__name__, case.structure)
-    reason = memory.why_not(case, experiment)
+    declared = request.module.EXPERIMENT
+    reason = memory.why_too_large(case, declared.copies)
     if reason:
         if kept:
-            _add(file, case.not_measured(experiment, reason))
+            _add(file, case.not_measured(declared.kind_of(case), reason))
         pytest.skip(reason)
     watch = Watch()
 

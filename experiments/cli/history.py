@@ -24,7 +24,7 @@ def add(
 ) -> None:
     """Append a finished run. What is there already is not added again."""
     with user_errors():
-        from experiments.harness.steadiness import noise
+        from experiments.runs.steadiness import noise
         from experiments.regression.history import append, read
         from experiments.regression.snapshots import record
         from experiments.runs.results import latest, load

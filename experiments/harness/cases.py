@@ -15,12 +15,15 @@ from numpy.typing import ArrayLike, NDArray
 import hem
 import structures
 from experiments.harness.presets import HUBS
-from experiments.runs.results import Measurement
+from experiments.harness.measurement import Measurement
 from hem.contract.queries import QUERIES, Query
 from hem.contract.structure import Structure
 from hem.meshes.triangles import TriangleMesh
 
 Array = NDArray[Any]
+
+BASE = "indexed"
+"""The structure that the others are compared with: what a renderer stores."""
 
 SHUFFLE_SEED = 20
 HANDLE_SEED = 21
@@ -64,7 +67,9 @@ class Case:
             self.structure, self.family, self.size, self.valence, self.reference_bytes
         )
 
-    def result(self, kind: str, s: Structure, samples: ArrayLike, **more: Any) -> Measurement:
+    def result(
+        self, kind: str, s: Structure, samples: ArrayLike = (), **more: Any
+    ) -> Measurement:
         """The case as measured, with the facts of its mesh."""
         return Measurement(
             id=self.id,
@@ -83,12 +88,11 @@ class Case:
             **more,
         )
 
-    def not_measured(self, experiment: str, reason: str) -> Measurement:
+    def not_measured(self, kind: str, reason: str) -> Measurement:
         """The case where its mesh was not even made; its counts are about those asked for."""
-        counted = self.order == "counted" or experiment == "bench_work"
         return Measurement(
             id=self.id,
-            kind={"bench_memory": "bytes"}.get(experiment, "work" if counted else "time"),
+            kind=kind,
             subject=self.subject,
             order=self.order,
             family=self.family,
@@ -118,7 +122,7 @@ def in_random_order(cases: Sequence[Case], seed: int | str) -> list[Case]:
     return [case for block in blocks for case in block]
 
 
-def pool(case: Case, s: Structure) -> Array:
+def queried_handles(case: Case, s: Structure) -> Array:
     """The handles a case asks, each once: in ascending order, or all of them in random order.
 
     Where the valence varies they are the hubs, and the edges and faces at hubs; there are as many

@@ -31,17 +31,6 @@ OTHER_MESH_BYTES = 1_600
 OBJECTS_BYTES = 2_500
 """Bytes per vertex of what is as printed: objects, with the render mesh beside them."""
 
-COPIES = {
-    "bench_memory": 2, "bench_work": 1, "bench_build": 3, "bench_valence": 2, "bench_queries": 2,
-    "bench_operation_work": 3, "bench_operations": 18, "bench_workloads": 4, "bench_printed": 3,
-    "bench_fracture": 10,
-}  # fmt: skip
-"""How many structures' bytes an experiment takes at its peak, with snapshots and what it looks up.
-
-From peaks of the resident memory at 8,000 to 100,000 vertices, rounded up.
-"""
-MOST_COPIES = max(COPIES.values())
-
 BUILDING = 3
 """How much more than what remains of it a compiled structure takes while it is built."""
 
@@ -56,9 +45,9 @@ CGROUPS = (
 )
 
 
-def why_not(case: Case, experiment: str) -> str:
+def why_too_large(case: Case, copies: int) -> str:
     """Why a case had better be left out; empty if it fits."""
-    needed, there = estimate(case, experiment), available()
+    needed, there = estimate(case, copies), available()
     if needed <= SHARE * there:
         return ""
     return (
@@ -67,11 +56,14 @@ def why_not(case: Case, experiment: str) -> str:
     )
 
 
-def estimate(case: Case, experiment: str) -> int:
-    """Bytes that a case takes at its peak, about; more rather than less."""
-    if experiment == "bench_latency":
+def estimate(case: Case, copies: int) -> int:
+    """Bytes that a case takes at its peak, about; more rather than less.
+
+    ``copies``: how many structures' bytes its experiment holds at a time; 0 where a case is just so
+    many bytes.
+    """
+    if not copies:
         return CHASE_COPIES * case.size
-    copies = COPIES.get(experiment, MOST_COPIES)
     compiled = case.structure in REGISTRY and REGISTRY[case.structure].compiled
     each = per_vertex(case.structure, case.reference_bytes)
     building = BUILDING * each if compiled else each

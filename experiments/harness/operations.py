@@ -11,18 +11,24 @@ from numpy.typing import NDArray
 
 import hem
 import structures
-from experiments.harness.cases import Case
+from experiments.harness.cases import BASE, Case
 from experiments.harness.latency import latency_now
 from experiments.harness.presets import HUBS, Preset
+from experiments.harness.timer import Timer
 from hem.contract.structure import Structure
 from hem.engine.uses import END
+from structures import REGISTRY
 
 Array = NDArray[Any]
 
 ON_EDGES = ("split_edge", "collapse_edge", "flip_edge")
 
-NOT_SCANNED = ("split_face",)
+NOT_SEARCHED = ("split_face",)
 """What does not search the whole mesh even where nothing is known of neighbors."""
+
+SECONDS_PER_SCANNED_FACE = 5e-9
+SCANNED_ELEMENTS = 5
+"""How many are operated on one by one where each takes a scan of the mesh."""
 
 MOST_ELEMENTS = 2_000
 
@@ -41,7 +47,7 @@ SMALL = 20_000
 """Faces up to which the outcome is judged from its triangles, and against the indexed mesh."""
 
 
-def faces_of(case: Case, count: int = MOST_ELEMENTS) -> Array:
+def operation_faces(case: Case, count: int = MOST_ELEMENTS) -> Array:
     """Faces (k,) so far apart that what is done at one leaves the others as they are, ascending.
 
     Where the valence varies each has a hub as its first corner.
@@ -50,6 +56,16 @@ def faces_of(case: Case, count: int = MOST_ELEMENTS) -> Array:
     if len(chosen) > count:
         chosen = np.sort(np.random.default_rng(ELEMENT_SEED).choice(chosen, count, replace=False))
     return chosen
+
+
+def searches(case: Case) -> bool:
+    """Whether every operation of a case searches the whole mesh."""
+    return REGISTRY[case.structure].searches and case.subject not in NOT_SEARCHED
+
+
+def count_elements(case: Case, count: int, scanned: bool = False) -> int:
+    """How many elements to operate on one by one, fewer where each takes a scan of the mesh."""
+    return min(count, SCANNED_ELEMENTS) if scanned or searches(case) else count
 
 
 @lru_cache(maxsize=2)
@@ -75,7 +91,7 @@ def _apart(family: str, size: int, valence: int | None) -> Array:
     return np.sort(chosen)
 
 
-def arguments(s: Structure, operation: str, faces: Array) -> Array:
+def operation_arguments(s: Structure, operation: str, faces: Array) -> Array:
     """(k, 3) the handles of the operations at these faces: their first edges, or they themselves.
 
     To be added are faces that are not there yet: ``s`` loses them.
@@ -92,12 +108,12 @@ def arguments(s: Structure, operation: str, faces: Array) -> Array:
     return rows
 
 
-class Bench:
+class OperationBatch:
     """A copy of a structure to operate on over and over."""
 
     def __init__(self, s: Structure, operation: str, faces: Array) -> None:
         self.mesh = s.copy()
-        args = arguments(self.mesh, operation, faces)
+        args = operation_arguments(self.mesh, operation, faces)
         points = np.zeros((len(args), 3))
         args = args[self.mesh.prepare(operation, args, points).check()]
         self.operations = len(args)
@@ -127,26 +143,26 @@ class Bench:
         self.mesh.restore(self._fresh)
 
 
-def validate(operated: Structure) -> None:
+def validate_operated(operated: Structure) -> None:
     """Validate what operations made, by its records and where that is quick by its triangles."""
     operated.validate()
     if operated.n_faces <= SMALL:
         hem.require_sound(operated.to_triangles())
 
 
-def check(case: Case, operated: Structure, faces: Array) -> None:
+def check_operated(case: Case, operated: Structure, faces: Array) -> None:
     """Validate what operations made, and compare it with the indexed mesh where that is quick."""
-    validate(operated)
-    if operated.n_faces <= SMALL and case.structure != "indexed":
-        both = [_operated(name, case, faces[:20]) for name in (case.structure, "indexed")]
+    validate_operated(operated)
+    if operated.n_faces <= SMALL and case.structure != BASE:
+        both = [_operated(name, case, faces[:20]) for name in (case.structure, BASE)]
         if both[0] != both[1]:
-            raise AssertionError(f"{case.id} on {case.structure} gives another mesh than indexed")
+            raise AssertionError(f"{case.id} on {case.structure} gives another mesh than {BASE}")
 
 
 def _operated(name: str, case: Case, faces: Array) -> list[tuple[int, ...]]:
-    bench = Bench(structures.build(name, case.mesh()), str(case.subject), faces)
-    bench.operate()
-    return _triangles(bench.mesh)
+    batch = OperationBatch(structures.build(name, case.mesh()), str(case.subject), faces)
+    batch.operate()
+    return _triangles(batch.mesh)
 
 
 def _triangles(s: Structure) -> list[tuple[int, ...]]:
@@ -154,22 +170,28 @@ def _triangles(s: Structure) -> list[tuple[int, ...]]:
     return sorted(tuple(np.roll(row, -int(row.argmin())).tolist()) for row in rows)
 
 
-def time_operations(benchmark: Any, case: Case, profile: Preset) -> dict[str, Any]:
-    """Time operations in compiled loops -> samples, how many per sample, and latency."""
-    s, faces = case.build(), faces_of(case)
-    if case.structure == "indexed" and case.subject not in NOT_SCANNED:
-        faces = faces[: max(4, int(profile.round_seconds / (5e-9 * s.n_faces)))]
-    bench = Bench(s, str(case.subject), faces)
-    if bench.operate() < bench.operations:
+def time_operations(case: Case, preset: Preset, timer: Timer) -> dict[str, Any]:
+    """Time operations in compiled loops -> the fields of a measurement."""
+    s, faces = case.build(), operation_faces(case)
+    if searches(case):
+        faces = faces[: max(4, int(preset.round_seconds / (SECONDS_PER_SCANNED_FACE * s.n_faces)))]
+    batch = OperationBatch(s, str(case.subject), faces)
+    if batch.operate() < batch.operations:
         raise RuntimeError(f"{case.id}: there was no room for all operations")
-    check(case, bench.mesh, faces)
+    check_operated(case, batch.mesh, faces)
     most = MOST_TURNS if s.compiled else 1  # interpreted ones last long enough
-    turns = int(np.clip(FEWEST_OPERATIONS // bench.operations, 1, most))
+    turns = int(np.clip(FEWEST_OPERATIONS // batch.operations, 1, most))
     latency = latency_now(sum(s.memory().values()))
-    benchmark.pedantic(
-        bench.operate, setup=bench.restore, rounds=turns * profile.rounds, warmup_rounds=2
-    )
-    data = np.array(benchmark.stats.stats.data if benchmark.stats else [])
-    turned = data.reshape(-1, turns).mean(axis=1) - bench.idle_seconds()
-    samples = np.maximum(turned, LEAST_SECONDS) / bench.operations
-    return {"samples": samples, "handles": turns * bench.operations, "latency": latency}
+    timed = timer(
+        batch.operate,
+        setup=lambda: (batch.restore() or (), {}),
+        rounds=turns * preset.rounds,
+        warmup=2,
+    ).averaged(turns)
+    seconds = np.maximum(timed.samples - batch.idle_seconds(), LEAST_SECONDS) / batch.operations
+    return {
+        **timed.fields,
+        "samples": seconds,
+        "handles": turns * batch.operations,
+        "latency": latency,
+    }

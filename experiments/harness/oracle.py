@@ -5,6 +5,7 @@ Nothing of a structure is used here, so that a structure's mistake cannot confir
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -17,11 +18,14 @@ from hem.meshes.triangles import TriangleMesh
 Array = NDArray[Any]
 
 
+CHECKED_HANDLES = 3
+
+
 class CheckFailedError(AssertionError):
     """A structure's answer is not that of the triangle list."""
 
 
-def check(s: Structure, mesh: TriangleMesh, query: Query, handles: Array) -> None:
+def check_query(s: Structure, mesh: TriangleMesh, query: Query, handles: Array) -> None:
     """Compare the answers for ``handles`` (k,) with the triangle list. Cost O(k n_t).
 
     Raises CheckFailedError naming the structure, the query, the handle and both answers.
@@ -55,19 +59,38 @@ def neighbors(triangles: Array, query: Query, key: int) -> Array:
 
     ``key``: a vertex, a face, or an edge packed.
     """
-    if query.source == "face":
-        corners = triangles[key]
-    else:
-        corners = np.array([key] if query.source == "vertex" else [key >> 32, key & 0xFFFFFFFF])
-    shared = np.isin(triangles, corners).sum(axis=1)
-    if query.target == "face":
-        found = np.flatnonzero(shared >= min(len(corners), 2))
-    elif query.source == "vertex" or query.source == query.target:
-        near = triangles[shared > 0]
-        pairs = np.concatenate([near[:, [0, 1]], near[:, [1, 2]], near[:, [2, 0]]])
-        pairs = pairs[np.isin(pairs, corners).any(axis=1)]
-        found = pairs if query.target == "vertex" else pack(pairs)
-    else:
-        sides = np.stack([corners, np.roll(corners, -1)], axis=1)
-        found = corners if query.target == "vertex" else pack(sides)
-    return np.setdiff1d(found, [key] if query.source == query.target else [])
+    return np.unique(RULES[query.name](triangles, key))
+
+
+def _around(triangles: Array, v: int) -> Array:
+    """The vertices that share a face with v."""
+    return np.setdiff1d(triangles[(triangles == v).any(axis=1)], [v])
+
+
+def _spokes(triangles: Array, v: int) -> Array:
+    """The edges at v."""
+    ring = _around(triangles, v)
+    return pack(np.stack([np.full_like(ring, v), ring], axis=1))
+
+
+def _ends(edge: int) -> tuple[int, int]:
+    return edge >> 32, edge & 0xFFFFFFFF
+
+
+def _shared(triangles: Array, corners: Array) -> Array:
+    """How many of the corners each face has."""
+    return np.isin(triangles, corners).sum(axis=1)
+
+
+RULES: dict[str, Callable[[Array, int], Any]] = {
+    "vertex_vertices": _around,
+    "vertex_edges": _spokes,
+    "vertex_faces": lambda t, v: np.flatnonzero((t == v).any(axis=1)),
+    "edge_vertices": lambda t, e: _ends(e),
+    "edge_edges": lambda t, e: np.setdiff1d(np.concatenate([_spokes(t, v) for v in _ends(e)]), [e]),
+    "edge_faces": lambda t, e: np.flatnonzero(_shared(t, np.array(_ends(e))) == 2),
+    "face_vertices": lambda t, f: t[f],
+    "face_edges": lambda t, f: pack(np.stack([t[f], np.roll(t[f], -1)], axis=1)),
+    "face_faces": lambda t, f: np.setdiff1d(np.flatnonzero(_shared(t, t[f]) >= 2), [f]),
+}
+"""Each query as its definition."""

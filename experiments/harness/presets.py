@@ -1,4 +1,4 @@
-"""How much a study measures: the profiles, as data."""
+"""How much a study measures: the presets, as data."""
 
 from __future__ import annotations
 
@@ -10,14 +10,20 @@ HUBS = "hubs"
 """The family of ``hem.valence_mesh``: its size is a number of faces, its valence the hubs'."""
 
 
+ORDERS = ("random", "consecutive")
+VALENCES = tuple(2**k for k in range(2, 13))
+
+
 @dataclass(frozen=True)
 class Preset:
     """One extent of a study. Sizes are numbers of vertices, valences those of the asked vertices.
 
     ``families[0]`` is the judged one: its valence is the same at every size. Structures made of
     objects are operated on up to ``object_vertices``, asked and built of three times as many; what
-    the thesis prints is built of ``printed_sizes``. A round is one sample;
-    ``round_seconds`` is how long it should last, ``case_seconds`` what a case may take in all.
+    the thesis prints is built of ``printed_sizes``. Operations are done one by one at
+    ``single_sizes``. ``workloads``: those that are timed, all for none; ``skipped``: experiments
+    that are not part of it. A round is one sample; ``round_seconds`` is how long it should last,
+    ``case_seconds`` what a case may take in all.
     ``valence_faces`` stay in the caches that a core has to itself: beyond, neighbors on the machine
     make cases of one curve differ threefold.
     """
@@ -25,7 +31,6 @@ class Preset:
     what: str
     families: tuple[str, ...]
     sizes: tuple[int, ...]
-    orders: tuple[str, ...]
     valences: tuple[int, ...]
     valence_faces: int
     work_sizes: tuple[int, ...]
@@ -33,6 +38,7 @@ class Preset:
     build_sizes: tuple[int, ...]
     operation_sizes: tuple[int, ...]
     operation_faces: int
+    single_sizes: tuple[int, ...]
     workload_sizes: tuple[int, ...]
     fracture_sizes: tuple[int, ...]
     object_vertices: int
@@ -42,6 +48,10 @@ class Preset:
     round_seconds: float
     case_seconds: float
     latency_mib: int
+    orders: tuple[str, ...] = ORDERS
+    build_reference_bytes: tuple[int, ...] = (4, 8)
+    workloads: tuple[str, ...] = ()
+    skipped: tuple[str, ...] = ()
 
     def of(self, structure: str) -> Preset:
         """The profile for one structure: smaller meshes where it is made of objects."""
@@ -59,6 +69,7 @@ class Preset:
             build_sizes=up_to(self.build_sizes, 3 * most),
             operation_sizes=up_to(self.operation_sizes),
             operation_faces=min(self.operation_faces, most),
+            single_sizes=up_to(self.single_sizes),
             workload_sizes=up_to(self.workload_sizes),
             fracture_sizes=up_to(self.fracture_sizes),
         )
@@ -70,21 +81,18 @@ class Preset:
         return [*((self.families[0], size, None) for size in self.work_sizes), *hubs]
 
 
-def _geometric(first: int, last: int, per_decade: int) -> tuple[int, ...]:
+def _geometric(first: int, last: int, per_decade: float) -> tuple[int, ...]:
     sizes: list[int] = []
     while (size := round(first * 10 ** (len(sizes) / per_decade))) <= last:
         sizes.append(size)
     return tuple(sizes)
 
 
-VALENCES = tuple(2**k for k in range(2, 13))
-
 PRESETS = {
     "smoke": Preset(
-        what="a few small cases of everything, to see that it all works, some 3 minutes",
+        what="a few small cases of everything, to see that it all works, some 2 minutes",
         families=("torus",),
         sizes=(100, 400),
-        orders=("random", "consecutive"),
         valences=(4, 8),
         valence_faces=64,
         work_sizes=(100, 400),
@@ -92,6 +100,7 @@ PRESETS = {
         build_sizes=(100, 1_000),
         operation_sizes=(100, 400),
         operation_faces=256,
+        single_sizes=(100,),
         workload_sizes=(100, 400),
         fracture_sizes=(100, 400),
         object_vertices=400,
@@ -103,32 +112,34 @@ PRESETS = {
         latency_mib=1,
     ),
     "quick": Preset(
-        what="one family up to 100,000 vertices, some 15 minutes",
+        what="what decides the claims, on one family up to 100,000 vertices, some 3 minutes",
         families=("torus",),
-        sizes=_geometric(100, 100_000, 2),
-        orders=("random", "consecutive"),
-        valences=VALENCES,
+        sizes=_geometric(100, 100_000, 4 / 3),
+        valences=VALENCES[::2],
         valence_faces=65_536,
-        work_sizes=_geometric(100, 3_200, 2),
+        work_sizes=_geometric(100, 3_200, 4 / 3),
         work_faces=8_192,
-        build_sizes=_geometric(100, 100_000, 2),
-        operation_sizes=_geometric(100, 100_000, 2)[1:],
+        build_sizes=_geometric(100, 100_000, 1),
+        build_reference_bytes=(4,),
+        operation_sizes=_geometric(100, 100_000, 4 / 3),
         operation_faces=32_768,
-        workload_sizes=_geometric(100, 10_000, 1),
-        fracture_sizes=_geometric(100, 100_000, 2)[1:],
+        single_sizes=(1_000,),
+        workload_sizes=(1_000, 10_000),
+        workloads=("vertex_normals", "impacts"),
+        fracture_sizes=_geometric(100, 10_000, 1),
         object_vertices=3_200,
-        printed_sizes=_geometric(50, 500, 4),
+        printed_sizes=(50, 100, 200, 400),
         models=("teapot", "bunny"),
         rounds=9,
         round_seconds=0.002,
         case_seconds=0.25,
-        latency_mib=128,
+        latency_mib=64,
+        skipped=("bench_fracture",),
     ),
     "standard": Preset(
         what="one family of each kind up to 1,000,000 vertices, some 40 minutes",
         families=("torus", "sphere", "grid", "isosurface"),
         sizes=_geometric(100, 1_000_000, 2),
-        orders=("random", "consecutive"),
         valences=VALENCES,
         valence_faces=65_536,
         work_sizes=_geometric(100, 10_000, 2),
@@ -136,6 +147,7 @@ PRESETS = {
         build_sizes=_geometric(100, 1_000_000, 2),
         operation_sizes=_geometric(100, 1_000_000, 2)[1:],
         operation_faces=65_536,
+        single_sizes=_geometric(100, 1_000_000, 2)[1::2],
         workload_sizes=_geometric(100, 100_000, 2),
         fracture_sizes=_geometric(100, 100_000, 2)[1:],
         object_vertices=3_200,
@@ -150,7 +162,6 @@ PRESETS = {
         what="every family up to 1,000,000 vertices with finer steps, some two hours",
         families=("torus", "sphere", "grid", "cone", "terrain", "isosurface"),
         sizes=_geometric(100, 1_000_000, 4),
-        orders=("random", "consecutive"),
         valences=VALENCES,
         valence_faces=65_536,
         work_sizes=_geometric(100, 32_000, 4),
@@ -158,6 +169,7 @@ PRESETS = {
         build_sizes=_geometric(100, 1_000_000, 4),
         operation_sizes=_geometric(100, 1_000_000, 4),
         operation_faces=131_072,
+        single_sizes=_geometric(100, 1_000_000, 4)[::2],
         workload_sizes=_geometric(100, 100_000, 4),
         fracture_sizes=_geometric(100, 1_000_000, 2)[1:],
         object_vertices=10_000,

@@ -1,89 +1,180 @@
-"""Timing a query: as many handles per round as last long enough, and other ones every round."""
+"""The one timer: rounds of the same call, and a fixed loop beside each of them.
+
+A round is one sample. Before each round the calibration loop is timed, so that a machine that slows
+down is seen beside what it slowed. ``time_rounds`` needs nothing else; ``BenchmarkTimer`` does the
+same through pytest-benchmark, whose own command line then works on the experiments.
+"""
 
 from __future__ import annotations
 
-from itertools import count
+from collections.abc import Callable
+from dataclasses import dataclass
 from time import perf_counter
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
-from experiments.harness.latency import latency_now
 from experiments.harness.presets import Preset
-from hem.contract.structure import Structure
 
 Array = NDArray[Any]
+Setup = Callable[[], tuple[tuple[Any, ...], dict[str, Any]]]
 
-MOST_HANDLES = 1_000_000
-FEWEST_ROUNDS = 5
-CALIBRATIONS = 3
-"""Times that a number of handles is tried before it is believed to last long enough."""
-
-
-class TooSlowError(RuntimeError):
-    """A case would take longer than its profile allows."""
+WORDS = 2_048
+"""int64 in the table that the calibration loop walks: 16 KB, found in the first cache."""
+STEPS = 2_000
+WALKS = 5
 
 
-def time_query(
-    benchmark: Any, s: Structure, query: str, pool: Array, profile: Preset
-) -> dict[str, Any]:
-    """Time ``s.sweep(query, …)`` over the handles in ``pool`` -> samples, handles and latency.
+def calibration_loop() -> float:
+    """Seconds per step of a walk that reads and computes: the least of some, as delays only add.
 
-    Successive rounds take successive handles of the pool and begin again only when all have been
-    asked, so that a large mesh is not answered out of the caches by what the last round left there.
-    All are asked once before, so that a small one is. Raises TooSlowError before it takes long.
+    It slows as compiled queries do when the machine is busy. Takes some ten microseconds. The
+    memory's latency will not do: where the caches end, readings of it were measured to change by a
+    quarter to threefold from run to run, beside cases that stayed within a twentieth to a fifth.
     """
-    seconds = _seconds_per_query(s, query, pool, profile.round_seconds / 4)
-    handles = int(np.clip(profile.round_seconds / seconds, 1, MOST_HANDLES))
-    rounds = int(np.clip(profile.case_seconds / (seconds * handles), 0, profile.rounds))
-    if rounds < FEWEST_ROUNDS:
-        raise TooSlowError(
-            f"one query takes {seconds:.3g} s, a case may take {profile.case_seconds} s"
-        )
-    latency = latency_now(sum(s.memory().values()))
-    if seconds * len(pool) < profile.case_seconds:
-        s.sweep(query, pool)
-    windows = (np.arange(handles) + handles * k for k in count())
-
-    def successive() -> tuple[tuple[str, Array], dict[str, Any]]:
-        return (query, pool[next(windows) % len(pool)]), {}
-
-    benchmark.pedantic(s.sweep, setup=successive, rounds=rounds, warmup_rounds=1)
-    samples = _per_query(benchmark.stats, handles) if benchmark.stats else []  # --benchmark-disable
-    return {"samples": np.array(samples), "handles": handles, "latency": latency}
+    return min(_seconds(lambda: _walk(_TABLE, STEPS)) for _ in range(WALKS)) / STEPS
 
 
-def _per_query(stats: Any, handles: int) -> list[float]:
-    """Seconds per query, in pytest-benchmark's own statistics as well.
-
-    A round takes as many handles as last long enough, so that rounds last the same however slow a
-    query is: `--benchmark-compare` of rounds would find every regression to be none.
-    """
-    samples = [seconds / handles for seconds in stats.stats.data]
-    stats.stats.data[:], stats.iterations = samples, handles
-    return samples
-
-
-def _seconds_per_query(s: Structure, query: str, pool: Array, enough: float) -> float:
-    """The least of some tries: one that was delayed would leave a round with too few handles.
-
-    Then it is the call that is timed: asked of one handle a query of 6 ns takes 1.7 µs.
-    """
-    s.sweep(query, pool[:1])  # compiles
-    handles = 1
-    while True:
-        asked = pool[np.arange(handles) % len(pool)]
-        seconds = _seconds(s, query, asked)
-        for _ in range(CALIBRATIONS - 1):
-            if seconds >= enough:
-                seconds = min(seconds, _seconds(s, query, asked))
-        if seconds >= enough or handles >= MOST_HANDLES:
-            return max(seconds / handles, 1e-10)
-        handles *= 4
+@njit(cache=True)
+def _walk(table: NDArray[np.int64], steps: int) -> int:
+    """Four walks side by side, so that computing and waiting both count."""
+    a, b, c, d = 0, 1, 2, 3
+    for step in range(steps):
+        a = table[(a + step) % WORDS]
+        b = table[(b ^ a) % WORDS]
+        c = table[(c + 3) % WORDS]
+        d = table[(d ^ step) % WORDS]
+    return a + b + c + d
 
 
-def _seconds(s: Structure, query: str, handles: Array) -> float:
+_TABLE = np.random.default_rng(0).permutation(WORDS)
+
+
+def _seconds(call: Callable[[], Any]) -> float:
     begin = perf_counter()
-    s.sweep(query, handles)
+    call()
     return perf_counter() - begin
+
+
+@dataclass(frozen=True)
+class Timed:
+    """Rounds of a call: ``samples``, seconds per unit, and ``calibration``, seconds per step."""
+
+    samples: Array
+    calibration: Array
+
+    def averaged(self, together: int) -> Timed:
+        """Every so many successive rounds as one."""
+        return Timed(*(it.reshape(-1, together).mean(axis=1) for it in (self.samples, self.calibration)))
+
+    @property
+    def fields(self) -> dict[str, Any]:
+        """What of it a measurement keeps."""
+        return {"samples": self.samples, "calibration": self.calibration.tolist()}
+
+
+class Timer(Protocol):
+    """Times ``rounds`` of a call, after ``warmup`` rounds that do not count.
+
+    ``setup()`` gives the arguments of each round and is not timed. ``per``: how many units a round
+    does; samples are seconds per unit.
+    """
+
+    def __call__(
+        self,
+        call: Callable[..., Any],
+        *,
+        setup: Setup | None = None,
+        rounds: int,
+        warmup: int = 1,
+        per: float = 1,
+    ) -> Timed:
+        """The rounds, timed."""
+        ...
+
+
+def time_rounds(
+    call: Callable[..., Any],
+    *,
+    setup: Setup | None = None,
+    rounds: int,
+    warmup: int = 1,
+    per: float = 1,
+) -> Timed:
+    """As ``Timer`` says, with nothing but the clock."""
+    samples, calibration = [], []
+    for _ in range(warmup + rounds):
+        given, named = setup() if setup else ((), {})
+        calibration.append(calibration_loop())
+        begin = perf_counter()
+        call(*given, **named)
+        samples.append((perf_counter() - begin) / per)
+    return Timed(np.array(samples[warmup:]), np.array(calibration[warmup:]))
+
+
+class UnitClock:
+    """A clock in which a round of ``per`` units lasts as long as one of them.
+
+    pytest-benchmark's statistics are then per unit too: a round takes as many handles as last long
+    enough, and `--benchmark-compare` of whole rounds would find every regression to be none.
+    """
+
+    per = 1.0
+
+    def __call__(self) -> float:
+        """Seconds, divided by ``per``."""
+        return perf_counter() / self.per
+
+
+CLOCK = UnitClock()
+"""The clock that ``conftest`` gives to pytest-benchmark."""
+
+
+class BenchmarkTimer:
+    """The timer of an experiment: pytest-benchmark's, with calibration beside every round."""
+
+    def __init__(self, benchmark: Any) -> None:
+        self._benchmark = benchmark
+
+    def __call__(
+        self,
+        call: Callable[..., Any],
+        *,
+        setup: Setup | None = None,
+        rounds: int,
+        warmup: int = 1,
+        per: float = 1,
+    ) -> Timed:
+        """The rounds, timed; none with ``--benchmark-disable``."""
+        calibration: list[float] = []
+
+        def ready() -> tuple[tuple[Any, ...], dict[str, Any]]:
+            given = setup() if setup else ((), {})
+            calibration.append(calibration_loop())
+            return given
+
+        CLOCK.per = per
+        self._benchmark.pedantic(call, setup=ready, rounds=rounds, warmup_rounds=warmup)
+        stats = self._benchmark.stats
+        samples = np.array(stats.stats.data if stats else [], float)
+        return Timed(samples, np.array(calibration[len(calibration) - len(samples) :], float))
+
+    def nothing(self) -> None:
+        """Tell pytest-benchmark that a case is counted, or not measured at all."""
+        self._benchmark.pedantic(lambda: None)
+
+
+SECONDS_PER_FACE = 1e-9
+"""What a scan of the mesh takes at the least."""
+LONGEST = 20
+"""How many times the seconds of a case all its rounds may take, where each searches the mesh."""
+
+
+def why_too_slow(scans: float, faces: int, rounds: int, preset: Preset) -> str:
+    """Why a case that scans the mesh so often per round is skipped; empty if it can be afforded."""
+    seconds, allowed = scans * faces * SECONDS_PER_FACE, LONGEST * preset.case_seconds
+    if rounds * seconds <= allowed:
+        return ""
+    return f"takes {seconds:.0f} s and more a round, and {allowed:.0f} s are given to all rounds"

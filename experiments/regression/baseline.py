@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from experiments.harness.steadiness import noise
+from experiments.runs.steadiness import noise
 from experiments.regression.counters import Exact, Value
 from experiments.runs.results import ResultsError, Run
 

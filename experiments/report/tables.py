@@ -14,7 +14,7 @@ from rich.text import Text
 
 from experiments.claims.growth import MEMORY, TABLES, VARIABLES
 from experiments.claims.judged import OUTCOMES, judged, save
-from experiments.harness.steadiness import noise
+from experiments.runs.steadiness import noise
 from experiments.runs.results import CannotWriteError, Run, load
 from hem.complexity.judge import Verdict
 from structures import NAMED, THESIS

@@ -11,7 +11,7 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-from experiments.harness.steadiness import noise
+from experiments.runs.steadiness import noise
 from experiments.runs.results import SCHEMA, Run
 
 LIBRARIES = ("numpy", "numba", "scipy", "pandas", "pymeshlab", "pytest-benchmark")

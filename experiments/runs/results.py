@@ -10,11 +10,13 @@ rewritten; what is derived from them lives in ``derived/``.
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+
+from experiments.harness import Measurement
 
 from experiments.runs.storage import (
     SEAL,
@@ -57,40 +59,6 @@ __all__ = [
 ]  # fmt: skip
 
 
-@dataclass
-class Measurement:
-    """One measured case.
-
-    ``samples``: seconds per query and round (``kind`` "time"), reads per query and handle ("work"),
-    or bytes ("bytes"). ``handles``: queries per sample. ``working_set``: bytes of the structure's
-    live records, or of the chased array in the latency experiment. ``valence``: that of the queried
-    vertices where the experiment varies it. ``latency``: seconds per memory access in the working
-    set, measured beside the case. ``skipped``: why nothing was measured, else empty. ``noise``:
-    what ``noise.Watch`` saw meanwhile, and how often the case was ``measured``; empty in schema 1.
-    """
-
-    id: str
-    kind: str
-    subject: str | None = None
-    order: str | None = None
-    family: str | None = None
-    seed: int = 0
-    vertices: int = 0
-    edges: int = 0
-    faces: int = 0
-    valence_max: int = 0
-    valence: int | None = None
-    reference_bytes: int = 4
-    working_set: int = 0
-    handles: int = 0
-    checked: bool = False
-    latency: float | None = None
-    samples: list[float] = field(default_factory=list)
-    skipped: str = ""
-    detail: dict[str, Any] = field(default_factory=dict)
-    noise: dict[str, Any] = field(default_factory=dict)
-
-
 class ResultFile:
     """The cases of one process, kept on disk from one case to the next.
 
@@ -118,7 +86,7 @@ class ResultFile:
         return next((case for case in self.cases if case["id"] == case_id), None)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Run:
     """A run as read: ``meta`` is run.json, ``cases`` has one row per measured case.
 

@@ -14,7 +14,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
-from experiments.harness import steadiness
+from experiments.runs import steadiness
 from experiments.harness.presets import PRESETS
 from experiments.runs import worker
 from experiments.runs.locks import held
@@ -142,7 +142,7 @@ def processes(profile: str, structures: Sequence[str] = ()) -> list[Process]:
         Process(experiment, structure, frozenset(case.id for case in cases))
         for experiment in EXPERIMENTS
         for module in [import_module(f"experiments.{experiment}")]
-        for structure in module.STRUCTURES
+        for structure in module.EXPERIMENT.structures
         if not structures or structure in structures or structure not in NAMED
         for cases in [module.cases(PRESETS[profile].of(structure), structure)]
     ]
