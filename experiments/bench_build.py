@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 import structures
-from experiments.harness import BenchmarkTimer, Case, Experiment, Keep, Preset
+from experiments.harness import Case, Experiment, Keep, Measurement, Preset, Timer
 
 
 def cases(preset: Preset, structure: str) -> list[Case]:
@@ -18,17 +18,7 @@ def cases(preset: Preset, structure: str) -> list[Case]:
     ]
 
 
-EXPERIMENT = Experiment(
-    title="Time to build",
-    kind="time",
-    cases=cases,
-    structures=structures.NAMES,
-    copies=3,
-    turn=50,
-)
-
-
-def test_build(case: Case, preset: Preset, timer: BenchmarkTimer, keep: Keep) -> None:
+def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
     """Check that what was built is valid and gives the mesh back, then time the building."""
     mesh = case.mesh()
     given = case.structure, mesh, case.reference_bytes
@@ -36,4 +26,20 @@ def test_build(case: Case, preset: Preset, timer: BenchmarkTimer, keep: Keep) ->
     s.validate()
     assert np.array_equal(np.sort(s.to_triangles().triangles), np.sort(mesh.triangles))
     timed = timer(structures.build, setup=lambda: (given, {}), rounds=preset.rounds)
-    keep(case.result("time", s, handles=1, checked=True, **timed.fields))
+    return case.result("time", s, handles=1, checked=True, **timed.fields)
+
+
+EXPERIMENT = Experiment(
+    title="Time to build",
+    kind="time",
+    cases=cases,
+    measure=measure,
+    structures=structures.NAMES,
+    copies=3,
+    turn=50,
+)
+
+
+def test_build(case: Case, preset: Preset, timer: Timer, keep: Keep) -> None:
+    """Time one case."""
+    keep(measure(case, preset, timer))

@@ -15,9 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 import structures
-from experiments.harness import BASE, BenchmarkTimer, Case, Experiment, Keep, Preset, why_too_slow
+from experiments.harness import Case, Experiment, Keep, Measurement, Preset, Timer, why_too_slow
 from experiments.harness.latency import latency_now
-from hem.contract import Structure
+from hem.contract.structure import Structure
 from hem.fracture import MATERIALS, Material, nearest_face, scanned, shatter
 from hem.fracture.surface.breaking import JUMP
 from hem.fracture.surface.nearest import Found
@@ -67,29 +67,14 @@ def cases(preset: Preset, structure: str) -> list[Case]:
     ]
 
 
-EXPERIMENT = Experiment(
-    title="Breaking a surface",
-    kind="time",
-    cases=cases,
-    structures=structures.NAMES,
-    copies=10,
-    turn=70,
-    counted=tuple(f"{way}, {VISITED}" for way in WAYS),
-)
-
-
-def test_fracture(case: Case, preset: Preset, timer: BenchmarkTimer, keep: Keep) -> None:
+def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
     """Time a fracture, or the search for faces, after its outcome was checked."""
     s = case.build()
     scans = _neighbors_asked(case, s) if s.searches else 0
     reason = why_too_slow(scans, s.n_faces, ROUNDS, preset)
     if reason:
-        timer.nothing()
-        keep(case.result(EXPERIMENT.kind_of(case), s, (), skipped=reason))
-    elif case.subject == SHATTER:
-        _shatter(case, s, preset, timer, keep)
-    else:
-        _find(case, s, preset, timer, keep)
+        return case.result(EXPERIMENT.kind_of(case), s, skipped=reason)
+    return (_shatter if case.subject == SHATTER else _find)(case, s, preset, timer)
 
 
 def _neighbors_asked(case: Case, s: Structure) -> float:
@@ -100,7 +85,7 @@ def _neighbors_asked(case: Case, s: Structure) -> float:
     return float(IMPACTS * per_search[str(case.order).partition(",")[0]])
 
 
-def _shatter(case: Case, s: Structure, preset: Preset, timer: BenchmarkTimer, keep: Keep) -> None:
+def _shatter(case: Case, s: Structure, preset: Preset, timer: Timer) -> Measurement:
     at, material = _impacts(s)[0], _material(s)
     expected = shatter(structures.build(REFERENCE, case.mesh()), at, material).shards
     begin, copy = perf_counter(), s.copy()
@@ -117,10 +102,10 @@ def _shatter(case: Case, s: Structure, preset: Preset, timer: BenchmarkTimer, ke
 
     rounds = int(np.clip(preset.case_seconds / seconds, FEWEST_ROUNDS, preset.rounds))
     timed = timer(shatter, setup=fresh, rounds=rounds, per=len(shards))
-    keep(case.result("time", s, handles=len(shards), checked=True, **timed.fields))
+    return case.result("time", s, handles=len(shards), checked=True, **timed.fields)
 
 
-def _find(case: Case, s: Structure, preset: Preset, timer: BenchmarkTimer, keep: Keep) -> None:
+def _find(case: Case, s: Structure, preset: Preset, timer: Timer) -> Measurement:
     way, _, counted = str(case.order).partition(", ")
     find, impacts = WAYS[way], _impacts(s)
     found = [find(s, at) for at in impacts]
@@ -128,10 +113,8 @@ def _find(case: Case, s: Structure, preset: Preset, timer: BenchmarkTimer, keep:
     if not (np.abs(apart) < MARGIN * np.abs(s.points).max()).all():
         raise AssertionError(f"{case.id} on {case.structure}: a face that is not the nearest")
     if counted:
-        timer.nothing()
         visited = [it.visited for it in found]
-        keep(case.result("work", s, np.array(visited), handles=1, checked=True))
-        return
+        return case.result("work", s, np.array(visited), handles=1, checked=True)
 
     def all_of_them() -> None:
         for at in impacts:
@@ -141,7 +124,7 @@ def _find(case: Case, s: Structure, preset: Preset, timer: BenchmarkTimer, keep:
     rounds = max(FEWEST_ROUNDS, preset.rounds // 2)
     timed = timer(all_of_them, rounds=rounds, warmup=0, per=len(impacts))
     more = {"handles": len(impacts), "latency": latency, "checked": True}
-    keep(case.result("time", s, **more, **timed.fields))
+    return case.result("time", s, **more, **timed.fields)
 
 
 def _material(s: Structure) -> Material:
@@ -155,3 +138,20 @@ def _impacts(s: Structure) -> NDArray[np.float64]:
     corners = s.points[np.sort(s.face_vertices(faces).values.reshape(-1, 3), axis=1)]
     weights = rng.dirichlet(np.ones(3), IMPACTS)
     return np.asarray((weights[:, :, None] * corners.astype(np.float64)).sum(axis=1))
+
+
+EXPERIMENT = Experiment(
+    title="Breaking a surface",
+    kind="time",
+    cases=cases,
+    measure=measure,
+    structures=structures.NAMES,
+    copies=10,
+    turn=70,
+    counted=tuple(f"{way}, {VISITED}" for way in WAYS),
+)
+
+
+def test_fracture(case: Case, preset: Preset, timer: Timer, keep: Keep) -> None:
+    """Time or count one case."""
+    keep(measure(case, preset, timer))

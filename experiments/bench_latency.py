@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from experiments.harness import BenchmarkTimer, Case, Experiment, Keep, Measurement, Preset
+from experiments.harness import Case, Experiment, Keep, Measurement, Preset, Timer
 from experiments.harness.latency import LINE, WORDS, chase, random_cycle
 
 SMALLEST = 16 * 1024
@@ -22,17 +22,7 @@ def cases(preset: Preset, structure: str) -> list[Case]:
     return [Case(structure, "chase", size) for size in sizes]
 
 
-EXPERIMENT = Experiment(
-    title="Latency of the memory",
-    kind="time",
-    cases=cases,
-    structures=("machine",),
-    copies=0,
-    turn=30,
-)
-
-
-def test_latency(case: Case, preset: Preset, timer: BenchmarkTimer, keep: Keep) -> None:
+def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
     """Time the chase; every line must be visited before the first comes again."""
     chain = random_cycle(case.size // LINE)
     assert chase(chain, 0, len(chain) // WORDS) == 0
@@ -44,14 +34,28 @@ def test_latency(case: Case, preset: Preset, timer: BenchmarkTimer, keep: Keep) 
         place = chase(chain, place, STEPS)
 
     timed = timer(go_on, rounds=preset.rounds, per=STEPS)
-    keep(
-        Measurement(
-            id=case.id,
-            kind="time",
-            working_set=case.size,
-            handles=STEPS,
-            checked=True,
-            samples=timed.samples.tolist(),
-            calibration=timed.calibration.tolist(),
-        )
+    return Measurement(
+        id=case.id,
+        kind="time",
+        working_set=case.size,
+        handles=STEPS,
+        checked=True,
+        samples=timed.samples.tolist(),
+        calibration=timed.calibration.tolist(),
     )
+
+
+EXPERIMENT = Experiment(
+    title="Latency of the memory",
+    kind="time",
+    cases=cases,
+    measure=measure,
+    structures=("machine",),
+    copies=0,
+    turn=30,
+)
+
+
+def test_latency(case: Case, preset: Preset, timer: Timer, keep: Keep) -> None:
+    """Time one case."""
+    keep(measure(case, preset, timer))

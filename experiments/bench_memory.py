@@ -7,7 +7,7 @@ import tracemalloc
 import numpy as np
 
 import structures
-from experiments.harness import Case, Experiment, Keep, Preset
+from experiments.harness import Case, Experiment, Keep, Measurement, Preset, Timer, time_rounds
 from structures.half_edge_objects import HalfEdgeMesh
 
 SMALLEST = 1_000
@@ -24,17 +24,7 @@ def cases(preset: Preset, structure: str) -> list[Case]:
     ]
 
 
-EXPERIMENT = Experiment(
-    title="Bytes",
-    kind="bytes",
-    cases=cases,
-    structures=structures.NAMES,
-    copies=2,
-    turn=20,
-)
-
-
-def test_memory(case: Case, keep: Keep) -> None:
+def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
     """Weigh the structure; what the model counts must be just what the arrays hold.
 
     Where there are none but objects, it is about what Python has handed out.
@@ -54,4 +44,20 @@ def test_memory(case: Case, keep: Keep) -> None:
     if isinstance(s, HalfEdgeMesh):
         detail["clr"] = s.clr_memory()
     model = np.array([sum(fields.values())])
-    keep(case.result("bytes", s, model, checked=True, detail=detail))
+    return case.result("bytes", s, model, checked=True, detail=detail)
+
+
+EXPERIMENT = Experiment(
+    title="Bytes",
+    kind="bytes",
+    cases=cases,
+    measure=measure,
+    structures=structures.NAMES,
+    copies=2,
+    turn=20,
+)
+
+
+def test_memory(case: Case, preset: Preset, keep: Keep) -> None:
+    """Weigh one case."""
+    keep(measure(case, preset, time_rounds))

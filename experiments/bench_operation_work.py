@@ -14,9 +14,12 @@ from experiments.harness import (
     Case,
     Experiment,
     Keep,
+    Measurement,
     Preset,
+    Timer,
     operation_arguments,
     operation_faces,
+    time_rounds,
     validate_operated,
 )
 from structures import NAMES, REGISTRY
@@ -35,10 +38,21 @@ def cases(preset: Preset, structure: str) -> list[Case]:
     ]
 
 
+def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
+    """Count what operations read and write, and check what they make of the mesh."""
+    s, operation = case.build().copy(), str(case.subject)
+    faces = operation_faces(case, SEARCHED if REGISTRY[case.structure].searches else REPETITIONS)
+    rows = operation_arguments(s, operation, faces).tolist()
+    work = [s.operation_work(operation, *row) for row in rows]
+    validate_operated(s)
+    return case.result("work", case.build(), np.array(work), handles=1, checked=True)
+
+
 EXPERIMENT = Experiment(
     title="Work of operations",
     kind="work",
     cases=cases,
+    measure=measure,
     structures=NAMES,
     copies=3,
     turn=11,
@@ -47,11 +61,6 @@ EXPERIMENT = Experiment(
 )
 
 
-def test_operation_work(case: Case, keep: Keep) -> None:
-    """Count what operations read and write, and check what they make of the mesh."""
-    s, operation = case.build().copy(), str(case.subject)
-    faces = operation_faces(case, SEARCHED if REGISTRY[case.structure].searches else REPETITIONS)
-    rows = operation_arguments(s, operation, faces).tolist()
-    work = [s.operation_work(operation, *row) for row in rows]
-    validate_operated(s)
-    keep(case.result("work", case.build(), np.array(work), handles=1, checked=True))
+def test_operation_work(case: Case, preset: Preset, keep: Keep) -> None:
+    """Count one case."""
+    keep(measure(case, preset, time_rounds))

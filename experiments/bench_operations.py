@@ -19,17 +19,18 @@ from experiments.harness import (
     OPERATIONS_TABLE,
     RENDERED,
     Axis,
-    BenchmarkTimer,
     Case,
     Experiment,
     Keep,
+    Measurement,
     Preset,
+    Timer,
     count_elements,
     operation_arguments,
     operation_faces,
     time_operations,
 )
-from hem.contract import Structure
+from hem.contract.structure import Structure
 from structures import NAMES
 
 FEWEST_HUBS = 64
@@ -89,27 +90,13 @@ def cases(preset: Preset, structure: str) -> list[Case]:
     ]
 
 
-EXPERIMENT = Experiment(
-    title="Time of operations",
-    kind="time",
-    cases=cases,
-    structures=NAMES,
-    copies=18,
-    turn=42,
-    table=OPERATIONS_TABLE,
-    axes={Axis.TIME_FACES: "batched", Axis.TIME_VALENCE: "batched"},
-    just_written=frozenset({Axis.TIME_FACES}),
-    baseline_orders=("batched",),
-)
-
-
-def test_operation(case: Case, preset: Preset, timer: BenchmarkTimer, keep: Keep) -> None:
+def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
     """Time one case, and check what the operations make of the mesh."""
     timed = (time_operations if case.order == "batched" else _time_one_by_one)(case, preset, timer)
-    keep(case.result("time", case.build(), checked=True, **timed))
+    return case.result("time", case.build(), checked=True, **timed)
 
 
-def _time_one_by_one(case: Case, preset: Preset, timer: BenchmarkTimer) -> dict[str, Any]:
+def _time_one_by_one(case: Case, preset: Preset, timer: Timer) -> dict[str, Any]:
     s, operation = case.build(), str(case.subject)
     few = count_elements(case, SINGLE_FACES, scanned=case.order == ANEW)
     first, *faces = operation_faces(case, few).tolist()
@@ -132,3 +119,23 @@ def _time_one_by_one(case: Case, preset: Preset, timer: BenchmarkTimer) -> dict[
 
     timed = timer(operate, setup=fresh, rounds=preset.rounds, per=len(faces))
     return {**timed.fields, "handles": len(faces)}
+
+
+EXPERIMENT = Experiment(
+    title="Time of operations",
+    kind="time",
+    cases=cases,
+    measure=measure,
+    structures=NAMES,
+    copies=18,
+    turn=42,
+    table=OPERATIONS_TABLE,
+    axes={Axis.TIME_FACES: "batched", Axis.TIME_VALENCE: "batched"},
+    just_written=frozenset({Axis.TIME_FACES}),
+    baseline_orders=("batched",),
+)
+
+
+def test_operation(case: Case, preset: Preset, timer: Timer, keep: Keep) -> None:
+    """Time one case."""
+    keep(measure(case, preset, timer))

@@ -13,11 +13,14 @@ from experiments.harness import (
     Case,
     Experiment,
     Keep,
+    Measurement,
     Preset,
+    Timer,
     check_query,
     queried_handles,
+    time_rounds,
 )
-from hem.contract import QUERIES
+from hem.contract.queries import QUERIES
 from structures import NAMES
 
 
@@ -30,10 +33,19 @@ def cases(preset: Preset, structure: str) -> list[Case]:
     ]
 
 
+def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
+    """Check the query against the triangle list, then count what it reads."""
+    s = case.build()
+    handles = queried_handles(case, s)[:CHECKED_HANDLES]
+    check_query(s, case.mesh(), case.query, handles)
+    return case.result("work", s, s.work(case.query.name, handles), handles=1, checked=True)
+
+
 EXPERIMENT = Experiment(
     title="Work of queries",
     kind="work",
     cases=cases,
+    measure=measure,
     structures=NAMES,
     copies=1,
     turn=10,
@@ -42,9 +54,6 @@ EXPERIMENT = Experiment(
 )
 
 
-def test_work(case: Case, keep: Keep) -> None:
-    """Check the query against the triangle list, then count what it reads."""
-    s = case.build()
-    handles = queried_handles(case, s)[:CHECKED_HANDLES]
-    check_query(s, case.mesh(), case.query, handles)
-    keep(case.result("work", s, s.work(case.query.name, handles), handles=1, checked=True))
+def test_work(case: Case, preset: Preset, keep: Keep) -> None:
+    """Count one case."""
+    keep(measure(case, preset, time_rounds))

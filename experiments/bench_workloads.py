@@ -7,9 +7,19 @@ from time import perf_counter
 import numpy as np
 
 import structures
-from experiments.harness import BASE, BenchmarkTimer, Case, Experiment, Keep, Preset, why_too_slow
+from experiments.harness import (
+    BASE,
+    Case,
+    Experiment,
+    Keep,
+    Measurement,
+    Preset,
+    Timer,
+    why_too_slow,
+)
 from experiments.harness.workloads import IMPACTS, WORKLOADS
-from hem.contract import QUERIES, Structure
+from hem.contract.queries import QUERIES
+from hem.contract.structure import Structure
 
 SMALL = 400
 """Vertices of the mesh on which all structures must give the same."""
@@ -26,24 +36,12 @@ def cases(preset: Preset, structure: str) -> list[Case]:
     ]
 
 
-EXPERIMENT = Experiment(
-    title="Workloads",
-    kind="time",
-    cases=cases,
-    structures=structures.NAMES,
-    copies=4,
-    turn=60,
-)
-
-
-def test_workload(case: Case, preset: Preset, timer: BenchmarkTimer, keep: Keep) -> None:
+def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
     """Time a workload on copies of a mesh, if it can be done in the time there is."""
     s, workload = case.build(), WORKLOADS[str(case.subject)]
     reason = why_too_slow(_scans(s, case), s.n_faces, FEWEST_ROUNDS, preset)
     if reason:
-        timer.nothing()
-        keep(case.result("time", s, (), skipped=reason))
-        return
+        return case.result("time", s, skipped=reason)
     _check(case)
     ready = _ready(s)
     begin = perf_counter()
@@ -53,7 +51,7 @@ def test_workload(case: Case, preset: Preset, timer: BenchmarkTimer, keep: Keep)
     timed = timer(
         workload.run, setup=lambda: ((_ready(s),), {}), rounds=rounds, warmup=0, per=units
     )
-    keep(case.result("time", s, handles=units, checked=True, **timed.fields))
+    return case.result("time", s, handles=units, checked=True, **timed.fields)
 
 
 def _ready(s: Structure) -> Structure:
@@ -85,6 +83,20 @@ def _check(case: Case) -> None:
     )
     same_points = np.allclose(mine.points, other.points, atol=1e-5, equal_nan=True)
     if not (np.array_equal(corners, expected) and same_points):
-        raise AssertionError(
-            f"{case.subject} on {case.structure} gives another mesh than {BASE}"
-        )
+        raise AssertionError(f"{case.subject} on {case.structure} gives another mesh than {BASE}")
+
+
+EXPERIMENT = Experiment(
+    title="Workloads",
+    kind="time",
+    cases=cases,
+    measure=measure,
+    structures=structures.NAMES,
+    copies=4,
+    turn=60,
+)
+
+
+def test_workload(case: Case, preset: Preset, timer: Timer, keep: Keep) -> None:
+    """Time one case."""
+    keep(measure(case, preset, timer))

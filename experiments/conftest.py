@@ -12,7 +12,7 @@ badly; those that were disturbed are measured again at the end.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import asdict, replace
 from pathlib import Path
 from time import perf_counter
@@ -20,7 +20,6 @@ from typing import Any, cast
 
 import pytest
 
-from experiments.harness import affinity, memory
 from experiments.harness import (
     CLOCK,
     PRESETS,
@@ -30,14 +29,15 @@ from experiments.harness import (
     Measurement,
     Preset,
     Watch,
+    affinity,
     badness,
     disturbed,
     in_random_order,
+    memory,
 )
 from experiments.harness.steadiness import REPEATS
 from experiments.runs.results import CannotWriteError, ResultFile
 from experiments.runs.worker import CANNOT_WRITE, DEFAULT_SEED, end_with
-
 
 CORE = pytest.StashKey[int | None]()
 FILES = pytest.StashKey[dict[tuple[str, str], ResultFile]]()
@@ -109,9 +109,11 @@ def preset(request: pytest.FixtureRequest, case: Case) -> Preset:
 
 
 @pytest.fixture
-def timer(benchmark: Any) -> BenchmarkTimer:
+def timer(benchmark: Any) -> Iterator[BenchmarkTimer]:
     """The timer that also feeds pytest-benchmark."""
-    return BenchmarkTimer(benchmark)
+    timer = BenchmarkTimer(benchmark)
+    yield timer
+    timer.end()
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

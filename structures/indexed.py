@@ -261,6 +261,7 @@ class Indexed(PackedEdges):
     """The indexed mesh."""
 
     name, title, abbreviation = "indexed", "Indexed", "Indexed"
+    searches = True
     records_type = IndexedRecords
     fields = (
         Field("vertex.point", "vertex_point", 3, marks=True),

@@ -24,10 +24,10 @@ def add(
 ) -> None:
     """Append a finished run. What is there already is not added again."""
     with user_errors():
-        from experiments.runs.steadiness import noise
         from experiments.regression.history import append, read
         from experiments.regression.snapshots import record
         from experiments.runs.results import latest, load
+        from experiments.runs.steadiness import noise
 
         found = load(run or latest())
         line = record(found)

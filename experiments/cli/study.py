@@ -15,8 +15,8 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 from experiments.cli.console import console, errors, user_errors
 from experiments.harness import memory
 from experiments.harness.presets import PRESETS
-from experiments.runs.steadiness import noise
 from experiments.runs import results, study
+from experiments.runs.steadiness import noise
 from experiments.runs.worker import DEFAULT_SEED
 
 ProfileOption = Annotated[

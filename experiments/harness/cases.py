@@ -14,8 +14,8 @@ from numpy.typing import ArrayLike, NDArray
 
 import hem
 import structures
-from experiments.harness.presets import HUBS
 from experiments.harness.measurement import Measurement
+from experiments.harness.presets import HUBS
 from hem.contract.queries import QUERIES, Query
 from hem.contract.structure import Structure
 from hem.meshes.triangles import TriangleMesh
@@ -67,9 +67,7 @@ class Case:
             self.structure, self.family, self.size, self.valence, self.reference_bytes
         )
 
-    def result(
-        self, kind: str, s: Structure, samples: ArrayLike = (), **more: Any
-    ) -> Measurement:
+    def result(self, kind: str, s: Structure, samples: ArrayLike = (), **more: Any) -> Measurement:
         """The case as measured, with the facts of its mesh."""
         return Measurement(
             id=self.id,

@@ -11,7 +11,9 @@ from dataclasses import dataclass, field
 
 from experiments.harness.axes import Axis
 from experiments.harness.cases import Case
+from experiments.harness.measurement import Measurement
 from experiments.harness.presets import Preset
+from experiments.harness.timer import Timer
 from hem.contract.queries import QUERIES
 
 KINDS = ("time", "work", "bytes")
@@ -55,7 +57,8 @@ OPERATIONS_TABLE = Table("operations", "Operations", OPERATIONS, "operations")
 class Experiment:
     """One experiment.
 
-    ``kind``: what its cases measure, but for those in the orders ``counted``, which are work.
+    ``cases``: what there is to measure on one structure; ``measure``: checks and measures one.
+    ``kind``: what they measure, but for those in the orders ``counted``, which are work.
     ``structures``: the names it runs on. ``copies``: how many structures' bytes a case takes at its
     peak. ``turn``: its place in a study, early ones first. ``table`` and ``axes``: the table whose
     claims it decides, and the order of handles that holds the measurements along each axis.
@@ -68,6 +71,7 @@ class Experiment:
     title: str
     kind: str
     cases: Callable[[Preset, str], Sequence[Case]]
+    measure: Callable[[Case, Preset, Timer], Measurement]
     structures: tuple[str, ...]
     copies: int
     turn: int

@@ -142,6 +142,11 @@ class OperationBatch:
         """
         self.mesh.restore(self._fresh)
 
+    def restored(self) -> tuple[tuple[()], dict[str, Any]]:
+        """Restore it as the setup of a round."""
+        self.restore()
+        return (), {}
+
 
 def validate_operated(operated: Structure) -> None:
     """Validate what operations made, by its records and where that is quick by its triangles."""
@@ -184,7 +189,7 @@ def time_operations(case: Case, preset: Preset, timer: Timer) -> dict[str, Any]:
     latency = latency_now(sum(s.memory().values()))
     timed = timer(
         batch.operate,
-        setup=lambda: (batch.restore() or (), {}),
+        setup=batch.restored,
         rounds=turns * preset.rounds,
         warmup=2,
     ).averaged(turns)

@@ -67,7 +67,9 @@ class Timed:
 
     def averaged(self, together: int) -> Timed:
         """Every so many successive rounds as one."""
-        return Timed(*(it.reshape(-1, together).mean(axis=1) for it in (self.samples, self.calibration)))
+        return Timed(
+            *(it.reshape(-1, together).mean(axis=1) for it in (self.samples, self.calibration))
+        )
 
     @property
     def fields(self) -> dict[str, Any]:
@@ -137,6 +139,7 @@ class BenchmarkTimer:
 
     def __init__(self, benchmark: Any) -> None:
         self._benchmark = benchmark
+        self._used = False
 
     def __call__(
         self,
@@ -155,15 +158,16 @@ class BenchmarkTimer:
             calibration.append(calibration_loop())
             return given
 
-        CLOCK.per = per
+        self._used, CLOCK.per = True, per
         self._benchmark.pedantic(call, setup=ready, rounds=rounds, warmup_rounds=warmup)
         stats = self._benchmark.stats
         samples = np.array(stats.stats.data if stats else [], float)
         return Timed(samples, np.array(calibration[len(calibration) - len(samples) :], float))
 
-    def nothing(self) -> None:
-        """Tell pytest-benchmark that a case is counted, or not measured at all."""
-        self._benchmark.pedantic(lambda: None)
+    def end(self) -> None:
+        """Tell pytest-benchmark of a case that was counted, or not measured at all."""
+        if not self._used:
+            self._benchmark.pedantic(lambda: None)
 
 
 SECONDS_PER_FACE = 1e-9

@@ -13,9 +13,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from experiments.runs.steadiness import noise
 from experiments.regression.counters import Exact, Value
 from experiments.runs.results import ResultsError, Run
+from experiments.runs.steadiness import noise
 
 FOLDER = Path("results/reference")
 SCHEMA = 2

@@ -13,18 +13,16 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from functools import partial
 from pathlib import Path
-from types import ModuleType
 from typing import Any
 
 import numpy as np
 from numpy.lib import tracemalloc_domain
 
 import structures
-from experiments import bench_operation_work, bench_printed, bench_work
 from experiments.claims.growth import Claim, load_claims
-from experiments.harness.cases import Case
-from experiments.harness.presets import PRESETS
-from experiments.runs.results import Measurement, Run
+from experiments.harness import PRESETS, Case, Experiment, Measurement, time_rounds
+from experiments.runs.catalog import experiments
+from experiments.runs.results import Run
 from hem.contract.queries import QUERIES
 from hem.contract.structure import REFERENCE_TYPES, Structure
 
@@ -63,35 +61,17 @@ class Exact:
     python: str = ".".join(platform.python_version_tuple()[:2])
 
 
-class _Untimed:
-    """Stands in for pytest-benchmark where nothing is to be timed."""
-
-    def pedantic(self, *_: Any, **__: Any) -> None:
-        """Do nothing."""
-
-
-MEASURED: tuple[tuple[ModuleType, Callable[..., None]], ...] = (
-    (bench_work, lambda case, keep: bench_work.test_work(case, keep)),
-    (bench_operation_work, lambda case, keep: bench_operation_work.test_operation_work(case, keep)),
-    (
-        bench_printed,
-        lambda case, keep: bench_printed.test_listing(case, EXTENT, _Untimed(), keep),
-    ),
-)
-"""The experiments whose counts are exact, and how a case of theirs is counted."""
-
-
 def measure(chosen: Sequence[str] = ()) -> Exact:
     """Measure all that is exact, of these structures or of all: some ten seconds.
 
     What raises is not measured, and the reason kept: whoever compares must not pass it over.
     """
     found, rows = Exact(), []
-    for module, count in MEASURED:
-        for name in _wanted(module.STRUCTURES, chosen):
-            for case in module.cases(EXTENT.of(name), name):
-                if case.order != "timed":
-                    rows += _counted(found, module.__name__.rpartition(".")[2], case, count)
+    for experiment in experiments().values():
+        for name in _wanted(experiment.structures, chosen):
+            for case in experiment.cases(EXTENT.of(name), name):
+                if experiment.table is not None and experiment.kind_of(case) == "work":
+                    rows += _counted(found, experiment, case)
     for name in _wanted(structures.NAMES, chosen):
         _try(found, f"bytes/{name}", partial(_bytes, name))
         if structures.REGISTRY[name].compiled:
@@ -104,19 +84,19 @@ def _wanted(names: Sequence[str], chosen: Sequence[str]) -> list[str]:
     return [name for name in names if not chosen or name in chosen]
 
 
-def _counted(
-    found: Exact, experiment: str, case: Case, count: Callable[..., None]
-) -> list[dict[str, Any]]:
+def _counted(found: Exact, experiment: Experiment, case: Case) -> list[dict[str, Any]]:
     """Count one case -> its row as in a run, or none if it failed."""
-    table = "listing/" if experiment == "bench_printed" else ""
+    table = "listing/" if experiment.name == "bench_printed" else ""
     key, kept = f"work/{case.structure}/{table}{case.id}", list[Measurement]()
 
     def counted() -> dict[str, Value]:
-        count(case, kept.append)
+        kept.append(experiment.measure(case, EXTENT, time_rounds))
         return {key: [int(it) for it in kept[0].samples]}
 
     _try(found, key, counted)
-    return [{"experiment": experiment, "structure": case.structure, **asdict(it)} for it in kept]
+    return [
+        {"experiment": experiment.name, "structure": case.structure, **asdict(it)} for it in kept
+    ]
 
 
 def _try(found: Exact, key: str, measured: Callable[[], dict[str, Value]]) -> None:

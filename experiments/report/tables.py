@@ -14,8 +14,8 @@ from rich.text import Text
 
 from experiments.claims.growth import MEMORY, TABLES, VARIABLES
 from experiments.claims.judged import OUTCOMES, judged, save
-from experiments.runs.steadiness import noise
 from experiments.runs.results import CannotWriteError, Run, load
+from experiments.runs.steadiness import noise
 from hem.complexity.judge import Verdict
 from structures import NAMED, THESIS
 

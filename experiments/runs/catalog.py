@@ -35,5 +35,7 @@ def _declared(name: str) -> Experiment:
             "see experiments/harness/experiment.py"
         )
     if declared.module != module.__name__:
-        raise ValueError(f"{module.__file__}: the cases of EXPERIMENT are those of {declared.module}")
+        raise ValueError(
+            f"{module.__file__}: the cases of EXPERIMENT are those of {declared.module}"
+        )
     return declared

@@ -11,8 +11,8 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-from experiments.runs.steadiness import noise
 from experiments.runs.results import SCHEMA, Run
+from experiments.runs.steadiness import noise
 
 LIBRARIES = ("numpy", "numba", "scipy", "pandas", "pymeshlab", "pytest-benchmark")
 

@@ -17,7 +17,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from experiments.harness import Measurement
-
 from experiments.runs.storage import (
     SEAL,
     CannotWriteError,

@@ -14,9 +14,8 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
-from experiments.runs import steadiness
 from experiments.harness.presets import PRESETS
-from experiments.runs import worker
+from experiments.runs import steadiness, worker
 from experiments.runs.locks import held
 from experiments.runs.provenance import describe, now, resumed, source
 from experiments.runs.results import (

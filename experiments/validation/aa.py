@@ -1,10 +1,10 @@
-"""The gate against itself: how often ``hem check`` cries wolf over code that is the same.
+"""The A/A test of the gates: how often ``hem check`` raises an alarm over identical code.
 
-``python -m experiments.validation.aa``:
-seven runs of the queries of table 1, each compared with each
-other as by ``hem check RUN``, and twenty times the queries of one structure in this tree beside a
-copy of it, as by ``hem check --beside``. What is exact is left out, as it is the same each time.
-Takes twenty minutes of a machine's whole attention.
+``python -m experiments.validation.aa`` makes seven runs of the queries of table 1 and compares each
+with each other as ``hem check RUN`` does. Twenty times it times the queries of one structure in
+this tree and in a copy of it, interleaved, as ``hem check --beside`` does. Deterministic counters
+are not compared, as they are the same each time. Takes twenty minutes of a machine's whole
+attention.
 """
 
 from __future__ import annotations
@@ -27,85 +27,89 @@ from experiments.regression.interleaved import compare_trees
 from experiments.runs import study, worker
 from experiments.runs.provenance import describe
 from experiments.runs.results import load, write_json
-from experiments.validation.a_against_a import ALARMS, LARGEST_SHARE
-from experiments.validation.mutants import copied
+from experiments.validation.mutants import copied_tree
 from structures import THESIS as STRUCTURES
 
-RESULT = Path("results/reference/same_code.json")
-PROCESSES = (
+RESULT = Path("results/reference/aa.json")
+MEASURED = (
     ("bench_work", STRUCTURES[0]),  # tells which family verdicts are taken from
-    *((it, structure) for it in ("bench_queries", "bench_valence") for structure in STRUCTURES),
+    *((name, structure) for name in ("bench_queries", "bench_valence") for structure in STRUCTURES),
 )
-"""What is measured: what table 1 is judged by."""
-PROFILE = "quick"
+"""What a run measures: what table 1 is judged by."""
+PRESET = "quick"
+ALARMS = ("worse", "better")
+LARGEST_SHARE = 1e-3
+"""False alarms per comparison that are accepted."""
 
 
-def timed(root: Path, seed: int) -> Measured:
-    """A run of what the gate compares by time, its cases in an order of their own."""
-    folder = study.begin(PROFILE, root, STRUCTURES, seed=seed)
-    for experiment, structure in PROCESSES:
+def measure_run(root: Path, seed: int) -> Measured:
+    """Measure what the gate compares by time, the cases in an order of their own."""
+    folder = study.begin(PRESET, root, STRUCTURES, seed=seed)
+    for experiment, structure in MEASURED:
         how = study.how(folder)
-        code, output = worker.measure(folder, experiment, structure, how, lambda: None)
-        if code:
+        status, output = worker.measure(folder, experiment, structure, how, lambda: None)
+        if status:
             raise RuntimeError(f"{experiment} on {structure} failed:\n{output}")
     study.finish(folder)
     return measured(load(folder))
 
 
-def compared(before: Measured, after: Measured) -> dict[str, Any]:
-    """What the gate says of a pair of runs."""
-    return row(it for it in compare_runs(before, after).findings if _counts(it))
+def compare_pair(before: Measured, after: Measured) -> dict[str, Any]:
+    """Count what the gate says of two runs."""
+    findings = compare_runs(before, after).findings
+    return count_findings(finding for finding in findings if _is_random(finding))
 
 
-def beside_itself(copy: Path, repetition: int) -> dict[str, Any]:
-    """What the gate says of this tree beside a copy: each time the queries of another structure."""
-    return row(compare_trees(copy, HERE, [STRUCTURES[repetition % len(STRUCTURES)]]))
+def _is_random(finding: Finding) -> bool:
+    """Whether chance has a say in it, and there is a verdict to be lost or won."""
+    open_twice = finding.before == finding.after == "undetermined"
+    return finding.by_chance and not open_twice
 
 
-def row(findings: Iterable[Finding]) -> dict[str, Any]:
+def compare_with_copy(copy: Path, repetition: int) -> dict[str, Any]:
+    """Count what the gate says of this tree and a copy: each time of another structure."""
+    return count_findings(compare_trees(copy, HERE, [STRUCTURES[repetition % len(STRUCTURES)]]))
+
+
+def count_findings(findings: Iterable[Finding]) -> dict[str, Any]:
     """How often the gate said what, and its alarms in words."""
-    found = list(findings)
-    outcomes = Counter(it.outcome for it in found)
+    findings = list(findings)
+    outcomes = Counter(finding.outcome for finding in findings)
     return {
-        "comparisons": len(found),
+        "comparisons": len(findings),
         "same": outcomes["same"],
         "undetermined": outcomes["undetermined"],
-        "code": code(found),
-        "alarms": [f"{it.outcome}: {it}" for it in found if it.outcome in ALARMS],
+        "exit_code": code(findings),
+        "alarms": [f"{it.outcome}: {it}" for it in findings if it.outcome in ALARMS],
     }
 
 
-def _counts(finding: Finding) -> bool:
-    """Whether chance has a say in it, and there is a verdict to be lost or won."""
-    nothing = finding.before == finding.after == "undetermined"
-    return finding.by_chance and not nothing
-
-
-def totals(rows: Iterable[dict[str, Any]]) -> dict[str, int]:
-    """Of all together: comparisons, alarms, what is left open, and how often that was too much."""
-    every = list(rows)
+def sum_counts(rows: Iterable[dict[str, Any]]) -> dict[str, int]:
+    """Sum up rows: comparisons, alarms, those left open, and how often these were too many."""
+    rows = list(rows)
     return {
-        "comparisons": sum(row["comparisons"] for row in every),
-        "alarms": sum(len(row["alarms"]) for row in every),
-        "undetermined": sum(row["undetermined"] for row in every),
-        "not_told": sum(row["code"] == 2 for row in every),
+        "comparisons": sum(row["comparisons"] for row in rows),
+        "alarms": sum(len(row["alarms"]) for row in rows),
+        "undetermined": sum(row["undetermined"] for row in rows),
+        "indecisive": sum(row["exit_code"] == 2 for row in rows),
     }
 
 
-def words(kept: dict[str, Any]) -> str:
-    """What was kept, in a sentence or two."""
-    runs, turns = totals(kept["pairs"]), totals(kept["turns"])
+def in_words(kept: dict[str, Any]) -> str:
+    """Say what was kept in a sentence or two."""
+    pairs, interleaved = kept["pairs"], kept["interleaved"]
     return (
-        f"{kept['runs']} runs of the same code, each compared with each other, "
-        f"{len(kept['pairs'])} pairs: {_words(runs)} A tree timed by turns beside a copy of "
-        f"itself, {len(kept['turns'])} times: {_words(turns)}"
+        f"{kept['runs']} runs of the same code, each compared with each other, {len(pairs)} pairs: "
+        f"{_count_in_words(pairs)} A tree and a copy of it, interleaved, {len(interleaved)} times: "
+        f"{_count_in_words(interleaved)}"
     )
 
 
-def _words(found: dict[str, int]) -> str:
+def _count_in_words(rows: list[dict[str, Any]]) -> str:
+    total = sum_counts(rows)
     return (
-        f"{found['alarms']} false alarms in {found['comparisons']:,} comparisons, "
-        f"{found['undetermined']} left open, which was too many {found['not_told']} times."
+        f"{total['alarms']} false alarms in {total['comparisons']:,} comparisons, "
+        f"{total['undetermined']} left open, which was too many {total['indecisive']} times."
     )
 
 
@@ -113,32 +117,33 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Measure, compare, keep -> 1 if there are too many false alarms."""
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--runs", type=int, default=7)
-    parser.add_argument("--turns", type=int, default=20)
+    parser.add_argument("--interleaved", type=int, default=20)
     parser.add_argument("--output", type=Path, default=RESULT)
     given = parser.parse_args(arguments)
-    kept = {key: it for key, it in describe(PROFILE).items() if key != "schema"}
-    kept |= {"runs": given.runs, "pairs": [], "turns": []}
-    kept |= {"factor": RUN_FACTOR, "factor_by_turns": significance.FACTOR}
-    with copied() as copy:
-        for repetition in range(given.turns):
-            kept["turns"].append(told(beside_itself(copy, repetition), "turns"))
-    with tempfile.TemporaryDirectory(prefix="hem-same-") as root:
+    kept = {key: value for key, value in describe(PRESET).items() if key != "schema"}
+    kept |= {"runs": given.runs, "pairs": [], "interleaved": []}
+    kept |= {"factor": RUN_FACTOR, "factor_interleaved": significance.FACTOR}
+    with copied_tree() as copy:
+        for repetition in range(given.interleaved):
+            kept["interleaved"].append(
+                _print_row("interleaved", compare_with_copy(copy, repetition))
+            )
+    with tempfile.TemporaryDirectory(prefix="hem-aa-") as root:
         runs: list[Measured] = []
         for seed in range(given.runs):
-            run = timed(Path(root), seed)
-            kept["pairs"] += [told(compared(it, run), "runs") for it in runs]
+            run = measure_run(Path(root), seed)
+            kept["pairs"] += [_print_row("pair", compare_pair(other, run)) for other in runs]
             runs.append(run)
-    kept |= totals(kept["pairs"] + kept["turns"])
+    kept |= sum_counts(kept["pairs"] + kept["interleaved"])
     write_json(given.output, kept)
-    print(words(kept))
+    print(in_words(kept))
     return int(kept["alarms"] > LARGEST_SHARE * kept["comparisons"])
 
 
-def told(found: dict[str, Any], what: str) -> dict[str, Any]:
-    """Print a row as it comes."""
-    counts = f"{found['same']:4} same {found['undetermined']:4} undetermined"
-    print(f"{what:5} {counts}", *found["alarms"], sep="\n   ", flush=True)
-    return found
+def _print_row(kind: str, row: dict[str, Any]) -> dict[str, Any]:
+    counts = f"{row['same']:4} same {row['undetermined']:4} undetermined"
+    print(f"{kind:11} {counts}", *row["alarms"], sep="\n   ", flush=True)
+    return row
 
 
 if __name__ == "__main__":

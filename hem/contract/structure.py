@@ -51,6 +51,9 @@ class Structure(Editable):
     compiled: ClassVar[bool] = True
     """Whether kernels are compiled; what is not is slow, and measured on smaller meshes."""
 
+    searches: ClassVar[bool] = False
+    """Whether nothing is recorded of neighbors, so that they are searched for in the whole mesh."""
+
     def __init_subclass__(cls) -> None:
         """Derive the four uses of every kernel; abstract intermediates declare none."""
         super().__init_subclass__()
