@@ -1,7 +1,6 @@
 """Meshes as plain arrays: triangles and polygons, whether they are surfaces, and how large.
 
-`hem.meshes.measures` has bounds, lengths, areas, normals and volume; `hem.meshes.repair` needs
-pymeshlab.
+`hem.meshes.measures` has bounds, lengths, areas, normals and volume.
 """
 
 from hem.meshes.components import components, used_only

@@ -1,1 +1,21 @@
-"""Where meshes come from: families, models, files, and the cache of what was made."""
+"""Where meshes come from: families of any size, models, files, and the cache of what was made."""
+
+from hem.sources.cache import cache_folder
+from hem.sources.families import FAMILIES, Family, generate
+from hem.sources.files import load, save
+from hem.sources.samples import SAMPLES, Sample, sample
+from hem.sources.valence import valence_hubs, valence_mesh
+
+__all__ = [
+    "FAMILIES",
+    "SAMPLES",
+    "Family",
+    "Sample",
+    "cache_folder",
+    "generate",
+    "load",
+    "sample",
+    "save",
+    "valence_hubs",
+    "valence_mesh",
+]

@@ -1,7 +1,7 @@
 """Meshes kept on disk, so that what takes seconds to make is made once."""
 
+import io
 import os
-import tempfile
 import warnings
 import zipfile
 from collections.abc import Callable
@@ -9,7 +9,8 @@ from pathlib import Path
 
 import numpy as np
 
-from hem.meshes.triangles import TriangleMesh
+from hem.meshes import TriangleMesh
+from hem.whole_files import write_whole
 
 FORMAT = 1
 
@@ -34,21 +35,10 @@ def cached(key: str, make: Callable[[], TriangleMesh]) -> TriangleMesh:
             return TriangleMesh(kept["points"], kept["triangles"])
     except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile):
         mesh = make()
+    content = io.BytesIO()
+    np.savez(content, points=mesh.points, triangles=mesh.triangles)
     try:
-        _write(path, mesh)
+        write_whole(path, content.getvalue())
     except OSError as error:
         warnings.warn(f"cannot keep a mesh in {path.parent}: {error}", stacklevel=2)
     return mesh
-
-
-def _write(path: Path, mesh: TriangleMesh) -> None:
-    """Written beside and renamed, so that no reader ever meets half a file."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    handle, beside = tempfile.mkstemp(dir=path.parent, prefix=f".{path.stem}-", suffix=".npz")
-    try:
-        with os.fdopen(handle, "wb") as file:
-            np.savez(file, points=mesh.points, triangles=mesh.triangles)
-        os.replace(beside, path)
-    except BaseException:
-        os.unlink(beside)
-        raise

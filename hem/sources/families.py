@@ -1,16 +1,20 @@
 """Families of meshes that can be had at any size from 100 to 1,000,000 vertices."""
 
-import difflib
+import hashlib
 import operator
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from hem.errors import MeshError
-from hem.meshes.manifold import require_manifold
-from hem.meshes.triangles import TriangleMesh
+from hem.meshes import TriangleMesh, require_manifold
+from hem.naming import look_up
 from hem.sources.cache import cached
+from hem.sources.meshlab import apply, installed_version
 
 LARGEST = 2_000_000
 
@@ -45,7 +49,7 @@ def generate(family: str, n_vertices: int, seed: int = 0) -> TriangleMesh:
     Cost: O(n) or O(n log n) once, some 20 s at worst; afterwards that of reading a file. Raises
     MeshError for a family or a size that does not exist, naming those that do.
     """
-    chosen, n_vertices = _family(family), operator.index(n_vertices)
+    chosen, n_vertices = look_up(family, FAMILIES, "family"), operator.index(n_vertices)
     if not chosen.smallest <= n_vertices <= LARGEST:
         raise MeshError(
             f"no {family} of {n_vertices:,} vertices: reachable are {chosen.smallest} … "
@@ -53,17 +57,9 @@ def generate(family: str, n_vertices: int, seed: int = 0) -> TriangleMesh:
         )
     variant = seed if chosen.random else 0
     return cached(
-        f"{family}-{n_vertices}-{variant}-pymeshlab-{_meshlab_version()}",
+        f"{family}-{n_vertices}-{variant}-{_made_by()}",
         lambda: _made(chosen, n_vertices, variant),
     )
-
-
-def _family(name: str) -> Family:
-    if name in FAMILIES:
-        return FAMILIES[name]
-    near = difflib.get_close_matches(name, FAMILIES, n=1)
-    meant = f"; did you mean {near[0]!r}?" if near else ""
-    raise MeshError(f"no family {name!r} (there are {', '.join(FAMILIES)}){meant}")
 
 
 def _made(family: Family, n_vertices: int, seed: int) -> TriangleMesh:
@@ -72,10 +68,11 @@ def _made(family: Family, n_vertices: int, seed: int) -> TriangleMesh:
     return mesh
 
 
-def _meshlab_version() -> str:
-    from importlib.metadata import version
-
-    return version("pymeshlab")
+@cache
+def _made_by() -> str:
+    """What the meshes depend on: this file, and pymeshlab's version."""
+    digest = hashlib.sha256(Path(__file__).read_bytes()).hexdigest()[:12]
+    return f"{digest}-pymeshlab-{installed_version()}"
 
 
 def _sides(n: int, least: int, widest: float, ideal: float) -> tuple[int, int]:
@@ -91,23 +88,17 @@ def _sides(n: int, least: int, widest: float, ideal: float) -> tuple[int, int]:
 
 
 def _torus(n: int, seed: int) -> TriangleMesh:
-    from hem.sources.meshlab import apply
-
     around, across = _sides(n, least=3, widest=4, ideal=2)
     return apply("create_torus", hsubdiv=around, vsubdiv=across)
 
 
 def _sphere(n: int, seed: int) -> TriangleMesh:
-    from hem.sources.meshlab import apply
-
     levels = np.arange(10)
     off = abs(np.log((10 * 4.0**levels + 2) / n))
     return apply("create_sphere", subdiv=int(np.argmin(off)))
 
 
 def _grid(n: int, seed: int) -> TriangleMesh:
-    from hem.sources.meshlab import apply
-
     columns, rows = _sides(n, least=2, widest=2, ideal=1)
     cell = 1 / (columns - 1)
     width, height = 1.0, cell * (rows - 1)
@@ -115,18 +106,14 @@ def _grid(n: int, seed: int) -> TriangleMesh:
 
 
 def _cone(n: int, seed: int) -> TriangleMesh:
-    from hem.sources.meshlab import apply
-
     return apply("create_cone", r0=1, r1=0, h=2, subdiv=n - 2)
 
 
 def _terrain(n: int, seed: int) -> TriangleMesh:
     # pymeshlab's create_fractal_terrain reaches only (2^k + 1)^2 vertices; the same fractal on a
     # grid reaches any size.
-    from hem.sources.meshlab import apply, meshlab
-
-    height = meshlab().PercentageValue(15)
-    return apply("apply_coord_fractal_displacement", _grid(n, 0), maxheight=height, seed=seed)
+    percent = {"maxheight": 15.0}
+    return apply("apply_coord_fractal_displacement", _grid(n, 0), percent=percent, seed=seed)
 
 
 def _isosurface(n: int, seed: int) -> TriangleMesh:
@@ -153,14 +140,10 @@ def _waves(seed: int) -> str:
 
 def _contour(expression: str, voxel: float) -> TriangleMesh:
     """Marching cubes' vertices double where the surface meets a voxel's corner: hence the weld."""
-    from hem.sources.meshlab import apply
-
     reach = 1.1 + 3 * voxel  # the waves add at most 0.19 to the squared radius
-    low = {f"min{axis}": -reach for axis in "xyz"}
-    high = {f"max{axis}": reach for axis in "xyz"}
-    return apply(
-        "create_implicit_surface", voxelsize=voxel, expr=expression, **low, **high
-    ).welded()
+    box: dict[str, Any] = {f"min{axis}": -reach for axis in "xyz"}
+    box |= {f"max{axis}": reach for axis in "xyz"}
+    return apply("create_implicit_surface", voxelsize=voxel, expr=expression, **box).welded()
 
 
 FAMILIES: dict[str, Family] = {

@@ -1,26 +1,42 @@
-"""Meshes from files and into files, in the formats that pymeshlab knows."""
+"""Meshes from files and into files: ply, obj, off and stl read here, all else by pymeshlab."""
 
 import os
 import tempfile
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from pathlib import Path
-from typing import Any, Literal, overload
+from typing import Literal, overload
 
 import numpy as np
 
+from hem.arrays import Array, Points
 from hem.errors import MeshError
-from hem.meshes.polygons import PolygonMesh
-from hem.meshes.triangles import TriangleMesh, repeated_corners
-from hem.sources.contents import Contents, contents, off_polygons, without_stray_corners
+from hem.meshes import PolygonMesh, TriangleMesh
+from hem.meshes.polygons import repeats_a_corner
+from hem.ragged import Ragged
+from hem.sources.meshlab import MeshlabError, load_file, save_file
+from hem.sources.ply import read_ply, write_ply
+from hem.sources.repair import repaired
+from hem.sources.text import (
+    Parts,
+    cut_short,
+    read_obj,
+    read_off,
+    read_stl,
+    uniform,
+    write_obj,
+    write_off,
+    write_stl,
+)
+from hem.whole_files import write_whole
 
-_PLAIN = {"save_vertex_normal": False, "save_vertex_color": False}
-_SAVE_OPTIONS: dict[str, dict[str, bool]] = {
-    "ply": {**_PLAIN, "save_vertex_quality": False},
-    "obj": _PLAIN,
-}
-_SAYS_ONLY_WHERE = ("Unable to open file", "Error encountered while loading file", "File:", '"')
 _COMMON = "ply, obj, off, stl, 3ds, dae, wrl, x3d, ctm"
+_READERS: dict[str, Callable[[bytes], Parts]] = {
+    "ply": read_ply, "obj": read_obj, "off": read_off, "stl": read_stl,
+}  # fmt: skip
+_WRITERS: dict[str, Callable[[Points, Ragged], bytes]] = {
+    "ply": write_ply, "obj": write_obj, "off": write_off, "stl": write_stl,
+}  # fmt: skip
+_SAYS_ONLY_WHERE = ("Unable to open file", "Error encountered while loading file", "File:", '"')
 
 
 @overload
@@ -38,7 +54,7 @@ def load(
 def load(
     path: str | os.PathLike[str], repair: bool = False, triangulate: bool = False
 ) -> TriangleMesh | PolygonMesh:
-    """The mesh of a file, of any format that pymeshlab reads.
+    """The mesh of a file: ply, obj, off, stl, and of any other format that pymeshlab reads.
 
     A `PolygonMesh` if it has faces of more than three corners (ply, obj and off), which only some
     structures hold; with `triangulate`, or in other formats, these are cut into triangles.
@@ -47,32 +63,24 @@ def load(
     which has no shared vertices: there the ones of one position become one. Several meshes in one
     file become one mesh. With `repair`, elements that cannot be used (corners out of range or
     repeated, coordinates that are not finite) are left out, and pymeshlab's repair filters make
-    the mesh a surface (hem.meshes.repair).
+    the mesh a surface (hem.sources.repair).
 
     O(bytes). Raises MeshError, naming the file and what is wrong, for one that is missing, a
     folder, empty, cut short, of an unknown format, no mesh, or without faces, and without
-    `repair` for one with elements that cannot be used.
+    `repair` for one with elements that cannot be used; and where pymeshlab is needed, but missing.
     """
     file = Path(path).absolute()
     try:
-        data = _bytes(file)
-        held = contents(data, _extension(file))
-        sound, stray = without_stray_corners(data, _extension(file))
-        if stray and not repair:
-            raise MeshError(
-                f"{stray:,} of {held.faces or stray:,} faces have corners out of range; "
-                "repair=True leaves those out"
-            )
-        with _written(file, None if sound is data else sound) as readable:
-            found = _read(readable, sound, contents(sound, _extension(file)), repair)
-        if not repair:
-            _require_all(found, held)
-        if isinstance(found, PolygonMesh) and not (triangulate or repair):
-            return found
-        mesh = found.triangulated() if isinstance(found, PolygonMesh) else found
-        if not len(mesh.triangles):
-            raise MeshError(f"there are no triangles in it, only {len(mesh.points):,} points")
-        return _repaired(mesh) if repair else mesh
+        points, faces = _read(file)
+        if repair:
+            points, faces = _usable(points, faces)
+        mesh = _mesh(points, faces)
+        if isinstance(mesh, PolygonMesh) and not (triangulate or repair):
+            return mesh
+        triangles = mesh.triangulated() if isinstance(mesh, PolygonMesh) else mesh
+        if not len(triangles.triangles):
+            raise MeshError(f"there are no triangles in it, only {len(points):,} points")
+        return repaired(triangles) if repair else triangles
     except MeshError as error:
         raise type(error)(f"cannot load {file}: {error.reason}", **error.elements) from error
 
@@ -80,48 +88,54 @@ def load(
 def save(mesh: TriangleMesh | PolygonMesh, path: str | os.PathLike[str]) -> None:
     """Write the mesh in the format that the path's extension names; replaces what is there.
 
-    ply, off, obj and 3ds keep every float32 and every vertex; stl (binary) keeps only vertices
-    that have faces; text formats such as wrl, dae and x3d round the coordinates. Polygons are kept
-    by obj alone, where a face may begin with another corner. Written beside and renamed, so that
-    a broken run never leaves half a file. Raises MeshError where the format is unknown, or keeps
-    no polygons, or the folder cannot be written.
+    ply, off and obj keep every float32, every vertex and every polygon; 3ds keeps no polygons, and
+    stl (binary) only triangles and vertices that have faces; text formats such as wrl, dae and x3d
+    round the coordinates. A broken run never leaves half a file. Raises MeshError where the format
+    is unknown, or keeps no polygons, or the folder cannot be written.
     """
-    from hem.sources.meshlab import mesh_set, meshlab, undisturbed
-
     file = Path(path).absolute()
     if not file.parent.is_dir():
         raise MeshError(f"cannot save {file}: there is no folder {file.parent}")
-    options = _SAVE_OPTIONS.get(_extension(file), {})
-    if isinstance(mesh, PolygonMesh):
-        if _extension(file) != "obj":  # pymeshlab 2025.7 cuts them in ply, and turns faces in off
-            raise MeshError(
-                f"cannot save {file}: polygons are kept in obj files only; save it as one, or "
-                "mesh.triangulated()"
-            )
-        options = {**_PLAIN, "save_polygonal": True}
     try:
-        with tempfile.TemporaryDirectory(dir=file.parent, prefix=".hem-") as folder, undisturbed():
-            beside = Path(folder) / file.name
-            mesh_set(mesh).save_current_mesh(str(beside), **options)
-            os.replace(beside, file)
-    except (OSError, meshlab().PyMeshLabException) as error:
-        raise MeshError(f"cannot save {file}: {_words(error)}") from error
+        write_whole(file, encoded(mesh, _extension(file)))
+    except MeshError as error:
+        raise MeshError(f"cannot save {file}: {error.reason}") from error
+    except OSError as error:
+        raise MeshError(f"cannot save {file}: {error.strerror or error}") from error
 
 
-@contextmanager
-def _written(file: Path, data: bytes | None) -> Iterator[Path]:
-    """The file itself, or for a while one with this content instead."""
-    if data is None:
-        yield file
-        return
+def encoded(mesh: TriangleMesh | PolygonMesh, extension: str) -> bytes:
+    """The content of a file of this extension (lower case, no dot) that holds the mesh."""
+    if extension in _WRITERS:
+        faces = mesh.faces if isinstance(mesh, PolygonMesh) else uniform(mesh.triangles)
+        return _WRITERS[extension](mesh.points, faces)
+    if isinstance(mesh, PolygonMesh):
+        raise MeshError("polygons are kept by ply, obj and off; or take mesh.triangulated()")
     with tempfile.TemporaryDirectory(prefix="hem-") as folder:
-        other = Path(folder) / file.name
-        other.write_bytes(data)
-        yield other
+        beside = Path(folder) / f"mesh.{extension}"
+        try:
+            save_file(mesh, beside)
+        except MeshlabError as error:
+            raise MeshError(_words(error)) from error
+        return beside.read_bytes()
 
 
 def _extension(file: Path) -> str:
     return file.suffix.lower().removeprefix(".")
+
+
+def _read(file: Path) -> Parts:
+    data, extension = _bytes(file), _extension(file)
+    if extension in _READERS:
+        return _READERS[extension](data)
+    promised = int.from_bytes(data[2:6], "little")
+    if extension == "3ds" and len(data) < max(promised, 6):  # pymeshlab would read the half of it
+        raise cut_short(f"{len(data):,} of {promised:,} bytes")
+    try:
+        points, triangles = load_file(file)
+    except MeshlabError as error:
+        raise MeshError(_words(error)) from error
+    return points, uniform(triangles)
 
 
 def _bytes(file: Path) -> bytes:
@@ -140,77 +154,34 @@ def _bytes(file: Path) -> bytes:
     return data
 
 
-def _read(
-    file: Path, data: bytes, held: Contents, drop_unusable: bool
-) -> TriangleMesh | PolygonMesh:
-    from hem.sources.meshlab import mesh_set, meshlab, undisturbed
-
-    meshes = mesh_set()
+def _mesh(points: Array, faces: Ragged) -> TriangleMesh | PolygonMesh:
     try:
-        with undisturbed():
-            meshes.load_new_mesh(str(file))
-            several = meshes.mesh_number() > 1
-            if several:
-                meshes.generate_by_merging_visible_meshes(
-                    mergevertices=False, alsounreferenced=True
-                )
-    except meshlab().PyMeshLabException as error:
-        raise MeshError(f"{_words(error)}") from error
-    cut = held.faces is not None and meshes.current_mesh().face_number() > held.faces
-    if cut and not several:
-        return _polygons(meshes.current_mesh(), _extension(file), data, drop_unusable)
-    return _current(meshes, drop_unusable)
+        if (faces.counts == 3).all():
+            return TriangleMesh(points, faces.values.reshape(-1, 3))
+        return PolygonMesh(points, faces)
+    except MeshError as error:
+        hint = f"{error.reason}; or leave them out with repair=True"
+        raise MeshError(hint, **error.elements) from error
 
 
-def _polygons(current: Any, extension: str, data: bytes, drop_unusable: bool) -> PolygonMesh:
-    """The faces as they stand in the file; pymeshlab has cut them, and puts them together again."""
-    points: Any = current.transformed_vertex_matrix()
-    if extension == "off":  # of faces with five corners or more pymeshlab 2025.7 makes other ones
-        points, faces = off_polygons(data)
-    else:  # a polygon comes turned by one corner, a triangle does not
-        listed = current.polygonal_face_list()
-        faces = [np.roll(face, len(face) > 3).tolist() for face in listed]
-    if drop_unusable:
-        faces = [face for face in faces if len(set(face)) == len(face) > 2]
-    return PolygonMesh(points, faces)
+def _usable(points: Array, faces: Ragged) -> Parts:
+    """Without points that are not finite, and faces that have such corners or are no polygons."""
+    with np.errstate(over="ignore"):
+        finite = np.all(np.isfinite(np.asarray(points, np.float32)), axis=1)
+    corners, counts = faces.values, faces.counts
+    inside = (corners >= 0) & (corners < len(points))
+    inside[inside] = finite[corners[inside]]
+    face = np.repeat(np.arange(len(counts)), counts)
+    strays = np.bincount(face[~inside], minlength=len(counts)) > 0
+    good = ~strays & (counts >= 3) & ~repeats_a_corner(faces)
+    renumbered = np.cumsum(finite) - 1
+    offsets = np.concatenate([[0], np.cumsum(counts[good])])
+    return points[finite], Ragged(offsets, renumbered[corners[good[face]]])
 
 
-def _current(meshes: Any, drop_unusable: bool) -> TriangleMesh:
-    current = meshes.current_mesh()
-    points, triangles = current.transformed_vertex_matrix(), current.face_matrix()
-    if drop_unusable:
-        outside = ((triangles < 0) | (triangles >= len(points))).any(axis=1)
-        triangles = triangles[~outside & ~repeated_corners(triangles)]
-    return TriangleMesh(points, triangles)
-
-
-def _require_all(mesh: TriangleMesh | PolygonMesh, held: Contents) -> None:
-    """Hold the mesh against the file: pymeshlab silently leaves out what it cannot use."""
-    faces = len(mesh.faces) if isinstance(mesh, PolygonMesh) else len(mesh.triangles)
-    fewer_vertices = held.vertices is not None and len(mesh.points) < held.vertices
-    fewer_faces = held.faces is not None and faces < held.faces
-    if fewer_vertices or fewer_faces:
-        raise MeshError(
-            f"it holds {_counted(held)}, of which only {len(mesh.points):,} vertices and "
-            f"{faces:,} faces can be used: others have coordinates that are not "
-            "finite, or corners that are repeated or out of range; repair=True leaves those out"
-        )
-
-
-def _counted(held: Contents) -> str:
-    pairs = ((held.vertices, "vertices"), (held.faces, "faces"))
-    return " and ".join(f"{number:,} {kind}" for number, kind in pairs if number is not None)
-
-
-def _repaired(mesh: TriangleMesh) -> TriangleMesh:
-    from hem.meshes.repair import repaired
-
-    return repaired(mesh)
-
-
-def _words(error: Exception) -> str:
+def _words(error: MeshlabError) -> str:
     """The message of pymeshlab in one line, without the path, which the caller has named."""
-    lines = [line.strip() for line in str(error).splitlines() if line.strip()]
+    lines = [line.strip() for line in error.reason.splitlines() if line.strip()]
     said = [line for line in lines if not line.startswith(_SAYS_ONLY_WHERE)]
     message = " ".join(said or lines).replace("Error details: ", "")
     if "Unknown format" in message:

@@ -1,20 +1,23 @@
-"""The one door to pymeshlab: importing it, keeping it quiet, and meshes going in and out."""
+"""The one door to pymeshlab, which runs in a process of its own: filters, and its file formats.
 
+pymeshlab is under the GPL and optional: `pip install 'hem-mesh[study]'` brings it.
+"""
+
+import atexit
 import contextlib
-import ctypes
-import io
 import os
+import pickle
 import re
-from collections.abc import Iterator
-from functools import cache
-from types import ModuleType
+import subprocess
+import sys
+import threading
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
 from typing import Any
 
-import numpy as np
-
+from hem.arrays import Indices
 from hem.errors import MeshError
-from hem.meshes.polygons import PolygonMesh
-from hem.meshes.triangles import TriangleMesh
+from hem.meshes import TriangleMesh
 
 # Shared libraries that pymeshlab's wheel needs from the system (found with ldd), and the Debian
 # and Ubuntu packages that hold them.
@@ -30,92 +33,139 @@ _ALWAYS = ("libgl1", "libopengl0")
 _ABSENT = re.compile(r"(lib[\w+-]+\.so[.\d]*): cannot open shared object file")
 
 
-def meshlab() -> ModuleType:
-    """The pymeshlab module. ImportError names the system packages to install where some lack."""
-    module, problem = _imported()
-    if module is None:
-        raise ImportError(problem)
-    return module
+class MeshlabError(MeshError):
+    """What pymeshlab said when it refused."""
+
+
+class NoMeshlabError(MeshError):
+    """There is no pymeshlab that could be used; the message says what to install."""
+
+
+def apply(
+    filter_name: str,
+    mesh: TriangleMesh | None = None,
+    /,
+    percent: dict[str, float] | None = None,
+    **parameters: Any,
+) -> TriangleMesh:
+    """What a filter of pymeshlab makes of `mesh`, or of nothing.
+
+    `percent`: parameters in percent of the diagonal. Raises MeshError with pymeshlab's own words
+    when the filter refuses, and NoMeshlabError where there is no pymeshlab.
+    """
+    given = {"name": filter_name, "mesh": _arrays(mesh)}
+    try:
+        made = _WORKER.ask("apply", **given, percent=percent or {}, parameters=parameters)
+    except MeshlabError as error:
+        raise MeshError(
+            f"pymeshlab's {filter_name} failed: {' '.join(error.reason.split())}"
+        ) from error
+    return TriangleMesh(*made)
+
+
+def intersecting_faces(mesh: TriangleMesh) -> Indices:
+    """(k,): the faces that other faces go through."""
+    found: Indices = _WORKER.ask("crossing", mesh=_arrays(mesh))
+    return found
+
+
+def load_file(path: Path) -> tuple[Any, Any]:
+    """The points and the triangles of a file, all its meshes as one. Raises MeshlabError."""
+    return _WORKER.ask("load", path=str(path))
+
+
+def save_file(mesh: TriangleMesh, path: Path) -> None:
+    """Write a mesh in the format of the path's extension. Raises MeshlabError."""
+    _WORKER.ask("save", mesh=_arrays(mesh), path=str(path))
+
+
+def installed_version() -> str:
+    """Of pymeshlab. Raises NoMeshlabError where it is not installed."""
+    try:
+        return version("pymeshlab")
+    except PackageNotFoundError as error:
+        raise NoMeshlabError(_advice("it is not installed")) from error
 
 
 def problem() -> str:
     """What keeps pymeshlab from loading, and what to install; empty where nothing does."""
-    return _imported()[1]
-
-
-@cache
-def _imported() -> tuple[ModuleType | None, str]:
-    """The module, or what is wrong with it."""
-    said = io.StringIO()
     try:
-        with contextlib.redirect_stdout(said), undisturbed():
-            import pymeshlab
-    except ImportError as error:
-        return None, _advice(str(error))
-    # Plug-ins that cannot be loaded are only printed; without this one there are no file formats.
-    broken = "libio_base.so" in said.getvalue()
-    return (None, _advice(said.getvalue())) if broken else (pymeshlab, "")
+        apply("create_cube")
+    except NoMeshlabError as error:
+        return error.reason
+    return ""
 
 
-def mesh_set(mesh: TriangleMesh | PolygonMesh | None = None) -> Any:
-    """A pymeshlab MeshSet, holding `mesh` where one is given."""
-    module = meshlab()
-    found = module.MeshSet(verbose=False)
-    if mesh is not None:
-        points = mesh.points.astype(np.float64)
-        if isinstance(mesh, PolygonMesh):
-            faces = [np.array(face, np.int32) for face in mesh.faces]
-            found.add_mesh(module.Mesh(vertex_matrix=points, face_list_of_indices=faces))
-        else:
-            found.add_mesh(module.Mesh(points, mesh.triangles.astype(np.int32)))
-    return found
+def _arrays(mesh: TriangleMesh | None) -> Any:
+    return None if mesh is None else (mesh.points, mesh.triangles)
 
 
-def apply(filter_name: str, mesh: TriangleMesh | None = None, /, **parameters: Any) -> TriangleMesh:
-    """What a filter of pymeshlab makes of `mesh`, or of nothing.
+class _Worker:
+    """The process, begun when it is first asked, and anew when it has died or been forked."""
 
-    Raises MeshError with pymeshlab's own words when the filter refuses.
-    """
-    meshes = mesh_set(mesh)
-    try:
-        with undisturbed():
-            meshes.apply_filter(filter_name, **parameters)
-    except meshlab().PyMeshLabException as error:
-        raise MeshError(
-            f"pymeshlab's {filter_name} failed: {' '.join(str(error).split())}"
-        ) from error
-    current = meshes.current_mesh()
-    return TriangleMesh(current.vertex_matrix(), current.face_matrix())
+    def __init__(self) -> None:
+        self._process: Any = None
+        self._owner = 0
+        self._lock = threading.Lock()
+
+    def ask(self, what: str, **arguments: Any) -> Any:
+        """The answer to a job. Raises MeshlabError, or NoMeshlabError."""
+        with self._lock:
+            try:
+                outcome, value = self._answer(what, arguments)
+            except (EOFError, OSError) as error:
+                self.stop()
+                raise MeshlabError("it died of this") from error
+            except BaseException:  # an answer that nobody waits for any more must not come next
+                self.stop()
+                raise
+        if outcome == "absent":
+            raise NoMeshlabError(_advice(value))
+        if outcome == "refused":
+            raise MeshlabError(value)
+        return value
+
+    def _answer(self, what: str, arguments: dict[str, Any]) -> tuple[str, Any]:
+        if self._process is None or self._owner != os.getpid():
+            self._start()
+        pickle.dump((what, arguments), self._process.stdin)
+        self._process.stdin.flush()
+        answered: tuple[str, Any] = pickle.load(self._process.stdout)
+        return answered
+
+    def _start(self) -> None:
+        program = str(Path(__file__).with_name("meshlab_worker.py"))
+        self._process = subprocess.Popen(
+            [sys.executable, "-P", program],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL,
+            cwd=os.path.abspath(os.sep),
+            start_new_session=True,  # an interrupt from the keyboard is the caller's
+        )
+        self._owner = os.getpid()
+
+    def stop(self) -> None:
+        """End the process, if it is this one's."""
+        process, self._process = self._process, None
+        if process is None or self._owner != os.getpid():
+            return
+        process.kill()
+        for pipe in (process.stdin, process.stdout):
+            with contextlib.suppress(OSError):
+                pipe.close()
+        process.wait()
 
 
-@contextlib.contextmanager
-def undisturbed() -> Iterator[None]:
-    """Keep pymeshlab from writing to standard output and from changing the current folder.
-
-    Some filters report progress with printf, past pymeshlab's own verbosity and past sys.stdout,
-    so the file descriptor itself is pointed elsewhere. Loading and saving leave the process in the
-    file's folder. Both concern the whole process: not for threads that print or open files.
-    """
-    folder = os.getcwd()
-    flush = ctypes.CDLL(None if os.name == "posix" else "ucrtbase").fflush
-    flush(None)
-    kept, nowhere = os.dup(1), os.open(os.devnull, os.O_WRONLY)
-    os.dup2(nowhere, 1)
-    try:
-        yield
-    finally:
-        os.chdir(folder)
-        flush(None)
-        os.dup2(kept, 1)
-        os.close(kept)
-        os.close(nowhere)
+_WORKER = _Worker()
+atexit.register(_WORKER.stop)
 
 
 def _advice(problem: str) -> str:
     """What to install, from the words of a failed import or of plug-ins that failed to load."""
     absent = list(dict.fromkeys(_ABSENT.findall(problem)))
     if not absent:
-        return f"pymeshlab cannot be loaded: {problem}; python -m pip install pymeshlab brings it"
+        return f"pymeshlab cannot be loaded ({problem}): pip install 'hem-mesh[study]' brings it"
     packages = dict.fromkeys([*_ALWAYS, *(SYSTEM_LIBRARIES.get(name, name) for name in absent)])
     return (
         f"pymeshlab cannot be loaded, for want of the system library {', '.join(absent)}; "

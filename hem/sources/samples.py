@@ -1,6 +1,5 @@
 """Real models: those that come inside the pymeshlab package, and the Utah teapot."""
 
-import difflib
 from collections.abc import Callable
 from dataclasses import dataclass
 from importlib.util import find_spec
@@ -8,7 +7,9 @@ from pathlib import Path
 from typing import Any
 
 from hem.errors import MeshError
-from hem.meshes.triangles import TriangleMesh
+from hem.meshes import TriangleMesh
+from hem.naming import look_up
+from hem.sources.files import load
 from hem.sources.teapot import teapot
 
 
@@ -27,17 +28,11 @@ def sample(name: str, **options: Any) -> TriangleMesh:
     `welded=True` for the teapot. Raises MeshError for an unknown name, and where pymeshlab was
     installed without its sample files.
     """
-    if name not in SAMPLES:
-        near = difflib.get_close_matches(name, SAMPLES, n=1)
-        meant = f"; did you mean {near[0]!r}?" if near else ""
-        raise MeshError(f"no sample {name!r} (there are {', '.join(SAMPLES)}){meant}")
-    return SAMPLES[name].make(**options)
+    return look_up(name, SAMPLES, "sample").make(**options)
 
 
 def _from_file(name: str) -> Callable[..., TriangleMesh]:
     def make(repair: bool = False) -> TriangleMesh:
-        from hem.sources.files import load
-
         return load(_sample_file(name), repair=repair, triangulate=True)
 
     return make
@@ -46,7 +41,7 @@ def _from_file(name: str) -> Callable[..., TriangleMesh]:
 def _sample_file(name: str) -> Path:
     package = find_spec("pymeshlab")
     if package is None or package.origin is None:
-        raise MeshError("pymeshlab is not installed: python -m pip install pymeshlab")
+        raise MeshError("the models come with pymeshlab: pip install 'hem-mesh[study]'")
     file = Path(package.origin).parent / "tests" / "sample_meshes" / name
     if not file.exists():
         raise MeshError(f"this pymeshlab came without its sample meshes: there is no {file}")

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hem.errors import MeshError
-from hem.meshes.triangles import TriangleMesh
+from hem.meshes import TriangleMesh
 
 Numbers = NDArray[np.float64]
 Corners = NDArray[np.int64]

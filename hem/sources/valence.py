@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hem.errors import MeshError
-from hem.meshes.triangles import TriangleMesh
+from hem.meshes import TriangleMesh
 
 _LEAST = 3
 _SPACING = 3.0

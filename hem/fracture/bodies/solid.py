@@ -16,6 +16,7 @@ from hem.fracture.pieces import Floats, diagonal
 from hem.meshes.edges import undirected_edges
 from hem.meshes.manifold import non_manifold_edges, same_way_edges
 from hem.meshes.triangles import TriangleMesh
+from hem.sources.meshlab import apply, intersecting_faces
 
 _INSTEAD = (
     "wrap it in a body with hem.fracture.wrapped(mesh) (--wrap), or break it by the method surface"
@@ -80,7 +81,7 @@ def require_body(mesh: TriangleMesh) -> Body:
             if body.volume < 0
             else f"the mesh is flat and has no inside; {_INSTEAD}"
         )
-    crossing = _intersecting(body.mesh)
+    crossing = intersecting_faces(body.mesh)
     if len(crossing):
         raise MeshError(f"the mesh intersects itself; {_INSTEAD}", faces=crossing)
     _require_nested(body)
@@ -99,16 +100,12 @@ def wrapped(mesh: TriangleMesh, detail: float = 0.015, offset: float = 0.002) ->
 
     Source: Portaneri et al., Alpha wrapping with an offset, 2022, as pymeshlab has it from CGAL.
     """
-    from hem.sources.meshlab import apply, meshlab
-
     if not len(mesh.triangles):
         raise MeshError("an empty mesh cannot be wrapped")
     if not (0 < detail < 1 and 0 < offset < 1):
         raise MeshError(f"detail and offset are parts of the diagonal, not {detail} and {offset}")
-    percent = meshlab().PercentageValue
-    return apply(
-        "generate_alpha_wrap", mesh, alpha=percent(100 * detail), offset=percent(100 * offset)
-    )
+    percent = {"alpha": 100 * detail, "offset": 100 * offset}
+    return apply("generate_alpha_wrap", mesh, percent=percent)
 
 
 def to_manifold(points: Floats, triangles: NDArray[Any], labels: NDArray[Any]) -> Any:
@@ -165,16 +162,6 @@ def _trimmed(mesh: TriangleMesh) -> TriangleMesh:
     if len(used) == len(mesh.points):
         return mesh
     return TriangleMesh(mesh.points[used], triangles.reshape(-1, 3))
-
-
-def _intersecting(mesh: TriangleMesh) -> NDArray[np.int64]:
-    """The faces that other faces go through: (k,)."""
-    from hem.sources.meshlab import mesh_set, undisturbed
-
-    meshes = mesh_set(mesh)
-    with undisturbed():
-        meshes.apply_filter("compute_selection_by_self_intersections_per_face")
-    return np.flatnonzero(meshes.current_mesh().face_selection_array())
 
 
 def _require_nested(body: Body) -> None:

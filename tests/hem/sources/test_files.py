@@ -1,6 +1,9 @@
 """Files: what is saved comes back, and what is broken is refused by name and reason."""
 
 import os
+import struct
+import subprocess
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -9,6 +12,7 @@ import pytest
 
 import hem
 import structures
+from hem.sources import meshlab
 
 PLY = """ply
 format ascii 1.0
@@ -237,17 +241,48 @@ def test_polygons_stay_polygons_unless_triangles_are_asked_for(
     assert [tuple(row) for row in triangles.triangles] == fans
 
 
-def test_polygons_are_saved_and_come_back(tmp_path: Path) -> None:
+@pytest.mark.parametrize("extension", ["ply", "obj", "off"])
+def test_polygons_are_saved_and_come_back(tmp_path: Path, extension: str) -> None:
     mesh = hem.PolygonMesh(CORNERS, POLYGONS)
-    hem.save(mesh, tmp_path / "house.obj")
-    back = hem.load(tmp_path / "house.obj")
+    hem.save(mesh, tmp_path / f"house.{extension}")
+    back = hem.load(tmp_path / f"house.{extension}")
     assert isinstance(back, hem.PolygonMesh)
     assert np.array_equal(back.points, mesh.points)
-    for face, given in zip(back.faces, POLYGONS, strict=True):
-        assert given in [tuple(np.roll(face, k).tolist()) for k in range(len(given))]
-    with pytest.raises(hem.MeshError, match="obj files only"):
-        hem.save(mesh, tmp_path / "house.ply")
-    assert os.listdir(tmp_path) == ["house.obj"]
+    assert [tuple(face) for face in back.faces] == POLYGONS
+
+
+@pytest.mark.parametrize("extension", ["stl", "3ds"])
+def test_polygons_are_refused_where_they_would_be_cut(tmp_path: Path, extension: str) -> None:
+    with pytest.raises(hem.MeshError, match="ply, obj and off"):
+        hem.save(hem.PolygonMesh(CORNERS, POLYGONS), tmp_path / f"house.{extension}")
+    assert not os.listdir(tmp_path)
+
+
+@pytest.mark.parametrize("order", ["<", ">"])
+@pytest.mark.parametrize("faces", [[(0, 1, 2), (0, 2, 3)], [(0, 1, 2, 3), (0, 1, 2)]])
+def test_a_binary_ply_file_may_hold_more_than_a_mesh(
+    tmp_path: Path, order: str, faces: list[tuple[int, ...]]
+) -> None:
+    name = "little" if order == "<" else "big"
+    head = (
+        f"ply\nformat binary_{name}_endian 1.0\ncomment element vertex 7\nelement vertex 4\n"
+        "property uchar red\nproperty double x\nproperty double y\nproperty double z\n"
+        f"element face {len(faces)}\nproperty list ushort uint vertex_index\nproperty short part\n"
+        "element edge 1\nproperty int vertex1\nend_header\n"
+    )
+    rows = [struct.pack(f"{order}B3d", 255, *CORNERS[i]) for i in range(4)]
+    rows += [struct.pack(f"{order}H{len(f)}Ih", len(f), *f, -1) for f in faces]
+    file = written(tmp_path / "more.ply", head.encode() + b"".join(rows) + struct.pack("i", 1))
+    mesh = hem.load(file)
+    assert np.array_equal(mesh.points, np.array(CORNERS[:4], np.float32))
+    found = mesh.faces if isinstance(mesh, hem.PolygonMesh) else mesh.triangles
+    assert [tuple(face) for face in found] == faces
+
+
+@pytest.mark.parametrize("head", ["OFF 3 1 0\n", "COFF\n# colors\n3 1 0\n"])
+def test_an_off_file_may_have_colors_and_comments(tmp_path: Path, head: str) -> None:
+    text = head + "0 0 0 9 9 9\n1 0 0 9 9 9 # here\n\n0 1 0 9 9 9\n3 0 1 2 255 0 0\n"
+    assert hem.load(written(tmp_path / "a.off", text)).triangles.tolist() == [[0, 1, 2]]
 
 
 def test_what_an_obj_file_may_say_of_its_corners(tmp_path: Path) -> None:
@@ -292,13 +327,48 @@ def test_bad_polygons_are_refused(faces: Any, words: str) -> None:
         hem.PolygonMesh(np.eye(4)[:, :3], faces)
 
 
-def test_paths_may_be_relative_and_the_current_folder_stays(
+def test_paths_may_be_relative_and_nobody_notices_pymeshlab(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:
     (tmp_path / "sub ü").mkdir()
     monkeypatch.chdir(tmp_path)
     mesh = hem.TriangleMesh(np.eye(3), [[0, 1, 2]])
-    hem.save(mesh, "sub ü/mesh.ply")
-    assert len(hem.load("sub ü/mesh.ply").points) == 3
+    for extension in ("ply", "dae"):
+        hem.save(mesh, f"sub ü/mesh.{extension}")
+        assert len(hem.load(f"sub ü/mesh.{extension}").points) == 3
     assert Path.cwd() == tmp_path
     assert capfd.readouterr() == ("", "")
+
+
+def test_without_pymeshlab_common_files_are_read_and_others_say_what_to_install(
+    tmp_path: Path,
+) -> None:
+    written(tmp_path / "pymeshlab.py", "raise ImportError('No module named pymeshlab')")
+    mesh = hem.TriangleMesh(np.eye(3), [[0, 1, 2]])
+    for extension in ("ply", "obj", "off", "stl", "dae"):
+        hem.save(mesh, tmp_path / f"mesh.{extension}")
+    program = (
+        "import hem, sys\n"
+        "for end in ('ply', 'obj', 'off', 'stl'):\n"
+        "    hem.save(hem.load('mesh.' + end), 'again.' + end)\n"
+        "try:\n    hem.load('mesh.dae')\nexcept hem.MeshError as error:\n    print(error)"
+    )
+    path = os.pathsep.join([str(tmp_path), *sys.path])
+    done = subprocess.run(
+        [sys.executable, "-c", program], cwd=tmp_path, env={**os.environ, "PYTHONPATH": path},
+        capture_output=True, text=True, check=True,
+    )  # fmt: skip
+    assert "mesh.dae: pymeshlab cannot be loaded" in done.stdout
+    assert "pip install 'hem-mesh[study]'" in done.stdout
+
+
+def test_a_file_that_kills_pymeshlab_kills_nothing_else(
+    tmp_path: Path,
+) -> None:
+    hem.save(hem.TriangleMesh(np.eye(3), [[0, 1, 2]]), tmp_path / "mesh.dae")
+    process = meshlab._WORKER._process
+    process.kill()
+    process.wait()
+    with pytest.raises(hem.MeshError, match=r"mesh.dae: .*died of this"):
+        hem.load(tmp_path / "mesh.dae")
+    assert len(hem.load(tmp_path / "mesh.dae").points) == 3

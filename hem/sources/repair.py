@@ -1,8 +1,14 @@
 """Mending what keeps a mesh from being a surface, with pymeshlab's own repair filters."""
 
 from hem.errors import NonManifoldError
-from hem.meshes.manifold import non_manifold_edges, require_manifold, same_way_edges, split_vertices
-from hem.meshes.triangles import TriangleMesh
+from hem.meshes import (
+    TriangleMesh,
+    non_manifold_edges,
+    require_manifold,
+    same_way_edges,
+    split_vertices,
+)
+from hem.sources.meshlab import apply
 
 # Each filter is applied only where its fault is found: they leave a sound mesh as it is, but they
 # may renumber. In this order, since winding can only be made coherent along manifold edges.
@@ -22,8 +28,6 @@ def repaired(mesh: TriangleMesh) -> TriangleMesh:
     vertex of several fans becomes one vertex per fan; such new vertices come last, all others keep
     their index. Raises NonManifoldError for what no filter mends: a one-sided surface, say.
     """
-    from hem.sources.meshlab import apply
-
     for fault, filter_name in _REPAIRS:
         if len(fault(mesh.triangles)):
             mesh = apply(filter_name, mesh)

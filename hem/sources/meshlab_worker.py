@@ -1,0 +1,105 @@
+"""The process in which pymeshlab runs: jobs come in, and what became of them goes out.
+
+pymeshlab prints past sys.stdout, changes the current folder, and some broken files kill it; here it
+does so to nobody else. Nothing of hem is imported. A job is (what, arguments), its answer
+("done" | "refused" | "absent", value), both pickled.
+"""
+
+import contextlib
+import io
+import os
+import pickle
+import sys
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+
+def main() -> None:
+    """Answer jobs until there are no more."""
+    answers = os.fdopen(os.dup(1), "wb")
+    os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+    problem = import_problem()
+    while True:
+        try:
+            what, arguments = pickle.load(sys.stdin.buffer)
+        except EOFError:
+            return
+        pickle.dump(("absent", problem) if problem else answer(what, arguments), answers)
+        answers.flush()
+
+
+def import_problem() -> str:
+    """Why pymeshlab cannot be used; empty if it can."""
+    said = io.StringIO()
+    try:
+        with contextlib.redirect_stdout(said):
+            import pymeshlab  # noqa: F401
+    except ImportError as error:
+        return str(error) or "it cannot be imported"
+    # Plug-ins that cannot be loaded are only printed; without this one there are no file formats.
+    return said.getvalue() if "libio_base.so" in said.getvalue() else ""
+
+
+def answer(what: str, arguments: dict[str, Any]) -> tuple[str, Any]:
+    """What pymeshlab makes of one job, or says to it."""
+    import pymeshlab
+
+    try:
+        return "done", JOBS[what](pymeshlab, **arguments)
+    except pymeshlab.PyMeshLabException as error:
+        return "refused", str(error)
+
+
+def apply(
+    pymeshlab: Any, name: str, mesh: Any, percent: dict[str, float], parameters: dict[str, Any]
+) -> tuple[Any, Any]:
+    """The points and triangles that a filter makes."""
+    shares = {key: pymeshlab.PercentageValue(value) for key, value in percent.items()}
+    meshes = filled(pymeshlab, mesh)
+    meshes.apply_filter(name, **shares, **parameters)
+    current = meshes.current_mesh()
+    return current.vertex_matrix(), current.face_matrix()
+
+
+def crossing(pymeshlab: Any, mesh: Any) -> Any:
+    """The faces that intersect others, (k,)."""
+    meshes = filled(pymeshlab, mesh)
+    meshes.apply_filter("compute_selection_by_self_intersections_per_face")
+    return np.flatnonzero(meshes.current_mesh().face_selection_array())
+
+
+def load(pymeshlab: Any, path: str) -> tuple[Any, Any]:
+    """The points and triangles of a file, all its meshes as one."""
+    meshes = pymeshlab.MeshSet(verbose=False)
+    meshes.load_new_mesh(path)
+    if meshes.mesh_number() > 1:
+        meshes.generate_by_merging_visible_meshes(mergevertices=False, alsounreferenced=True)
+    current = meshes.current_mesh()
+    return current.transformed_vertex_matrix(), current.face_matrix()
+
+
+def save(pymeshlab: Any, mesh: Any, path: str) -> None:
+    """Write a mesh into a file."""
+    filled(pymeshlab, mesh).save_current_mesh(path)
+
+
+def filled(pymeshlab: Any, mesh: Any) -> Any:
+    """A MeshSet that holds (points, triangles), or nothing."""
+    meshes = pymeshlab.MeshSet(verbose=False)
+    if mesh is not None:
+        points, triangles = mesh
+        meshes.add_mesh(pymeshlab.Mesh(points.astype(np.float64), triangles.astype(np.int32)))
+    return meshes
+
+
+JOBS: dict[str, Callable[..., Any]] = {
+    "apply": apply,
+    "crossing": crossing,
+    "load": load,
+    "save": save,
+}
+
+if __name__ == "__main__":
+    main()

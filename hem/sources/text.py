@@ -1,0 +1,144 @@
+"""Reading and writing obj, off and stl: points, and faces of any number of corners.
+
+Readers are strict. What is cut short or no number is a MeshError; corners that are out of range are
+handed on, for the mesh to refuse by their rows.
+"""
+
+import re
+from itertools import chain, pairwise
+from typing import Any
+
+import numpy as np
+
+from hem.arrays import Array, Floats, Points
+from hem.errors import MeshError
+from hem.meshes.weld import clusters
+from hem.ragged import Ragged
+
+Parts = tuple[Array, Ragged]
+"""(n, 3) points, and a row of corners per face."""
+
+
+def as_ragged(rows: list[list[int]]) -> Ragged:
+    """Rows of corners in two arrays."""
+    offsets = np.cumsum([0, *map(len, rows)], dtype=np.int64)
+    return Ragged(offsets, np.fromiter(chain.from_iterable(rows), np.int64, offsets[-1]))
+
+
+def uniform(triangles: Array) -> Ragged:
+    """Faces (m, k) as rows."""
+    m, k = triangles.shape
+    return Ragged(np.arange(m + 1, dtype=np.int64) * k, triangles.ravel())
+
+
+def cut_short(holds: str) -> MeshError:
+    """What to raise for a file that is not all there."""
+    return MeshError(f"the file is cut short or broken: it has {holds}; get it anew")
+
+
+def read_obj(data: bytes) -> Parts:
+    """Points and faces of an obj file; corners may count backward, lines go on behind a backslash.
+
+    MeshLab, and `write_obj`, say at the head how many there are: the only way to know of an obj
+    file that it is whole.
+    """
+    points: list[list[float]] = []
+    faces: list[list[int]] = []
+    for line in re.sub(rb"\\\r?\n", b" ", data).splitlines():
+        kind, *words = line.partition(b"#")[0].split() or [b""]
+        try:
+            if kind == b"v":
+                points.append([float(word) for word in words[:3]])
+            elif kind == b"f":
+                corners = [int(word.partition(b"/")[0]) for word in words]
+                faces.append([v - 1 if v >= 0 else max(len(points) + v, -1) for v in corners])
+        except ValueError as error:
+            raise MeshError(f"a line is no {kind.decode()} line: {line[:60]!r}") from error
+    for name, found in ((b"Vertices", points), (b"Faces", faces)):
+        said = re.search(rb"(?m)^# " + name + rb": (\d+)", data[:2000])
+        if said and len(found) < int(said[1]):
+            raise cut_short(f"{len(found):,} of {int(said[1]):,} {name.decode().lower()}")
+    if faces and len(faces[-1]) < 3:
+        raise cut_short("a last line without all its numbers")
+    return _rows_of_three(points), as_ragged(faces)
+
+
+def read_off(data: bytes) -> Parts:
+    """Points and faces of an off file, without the colors and normals that it may have besides."""
+    lines = [line.split() for raw in data.splitlines() if (line := raw.partition(b"#")[0].strip())]
+    if len(lines) < 2 or not lines[0][0].endswith(b"OFF"):
+        raise MeshError("it does not begin as off files do, with OFF and how much it holds")
+    counts, *elements = lines[1:] if len(lines[0]) == 1 else [lines[0][1:], *lines[1:]]
+    try:
+        n, m = int(counts[0]), int(counts[1])
+        points = [[float(word) for word in line[:3]] for line in elements[:n]]
+        rows = [[int(word) for word in line[: int(line[0]) + 1]] for line in elements[n : n + m]]
+    except (ValueError, IndexError) as error:
+        raise MeshError(f"it has something else where a number belongs: {error}") from error
+    if len(rows) < m:
+        raise cut_short(f"{len(points) + len(rows):,} of {n + m:,} lines")
+    if any(len(row) <= row[0] for row in rows):
+        raise cut_short("a face without all its corners")
+    return _rows_of_three(points), as_ragged([row[1:] for row in rows])
+
+
+def read_stl(data: bytes) -> Parts:
+    """Points, one per position, and triangles of an stl file, binary or text."""
+    count = int.from_bytes(data[80:84], "little") if len(data) >= 84 else -1
+    if data.lstrip().startswith(b"solid") and len(data) != 84 + 50 * count:
+        numbers = re.findall(rb"\bvertex\s+(\S+)\s+(\S+)\s+(\S+)", data)
+        if b"endsolid" not in data[-500:] or len(numbers) != 3 * data.count(b"endfacet"):
+            raise cut_short("no 'endsolid' at its end, or a facet without three vertices")
+        try:
+            corners = np.array(numbers, np.bytes_).reshape(-1, 3).astype(np.float32)
+        except ValueError as error:
+            raise MeshError(f"a vertex has a coordinate that is no number: {error}") from error
+    elif count >= 0 and len(data) >= 84 + 50 * count:
+        facets = np.frombuffer(data, _FACET, count, offset=84)
+        corners = facets["corners"].reshape(-1, 3)
+    else:
+        raise cut_short(f"{len(data):,} bytes" + (f" of {84 + 50 * count:,}" if count >= 0 else ""))
+    first, cluster = clusters(corners, 0.0)
+    return corners[first], uniform(cluster.reshape(-1, 3))
+
+
+def write_obj(points: Points, faces: Ragged) -> bytes:
+    """Text with the counts at its head, every digit of float32 and all corners of every face."""
+    head = f"# Vertices: {len(points)}\n# Faces: {len(faces)}\n"
+    rows = ["f " + " ".join(map(str, row)) for row in _lists(faces, 1)]
+    return "\n".join([head, *_positions("v ", points), *rows, ""]).encode()
+
+
+def write_off(points: Points, faces: Ragged) -> bytes:
+    """Text with every digit of float32 and all corners of every face."""
+    head = f"OFF\n{len(points)} {len(faces)} 0"
+    rows = [" ".join(map(str, (len(row), *row))) for row in _lists(faces)]
+    return "\n".join([head, *_positions("", points), *rows, ""]).encode()
+
+
+def write_stl(points: Points, faces: Ragged) -> bytes:
+    """Binary. Raises MeshError for faces of more than three corners."""
+    if (faces.counts != 3).any():
+        raise MeshError("polygons are kept by ply, obj and off; or take mesh.triangulated()")
+    facets = np.zeros(len(faces), _FACET)
+    facets["corners"] = points[faces.values.reshape(-1, 3)]
+    return bytes(80) + len(faces).to_bytes(4, "little") + facets.tobytes()
+
+
+_FACET = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
+
+
+def _rows_of_three(points: list[list[float]]) -> Floats:
+    if any(len(point) != 3 for point in points):
+        raise cut_short("a vertex without three coordinates")
+    return np.array(points, np.float64).reshape(-1, 3)
+
+
+def _positions(before: str, points: Points) -> list[str]:
+    row = before + "%.9g %.9g %.9g"
+    return [row % tuple(point) for point in points.tolist()]
+
+
+def _lists(faces: Ragged, add: int = 0) -> Any:
+    values, ends = (faces.values + add).tolist(), faces.offsets.tolist()
+    return (values[start:end] for start, end in pairwise(ends))
