@@ -24,7 +24,7 @@ CHAPTERS = {
     "errata": "What the listings do",
     "fracture": "Destruction",
     "regression": "From commit to commit",
-    "rigour": "How far to trust it",
+    "accuracy": "How far to trust it",
 }
 """The notebooks in the order they are read. A new chapter is one notebook and one line here."""
 

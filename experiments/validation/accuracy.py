@@ -1,8 +1,7 @@
-"""How far verdicts can be trusted: judges on curves of known class; and how many are determined.
+"""How far verdicts can be trusted: judges on synthetic curves, and how many claims are determined.
 
-``python -m experiments.validation.accuracy`` asks every judge of
-`experiments.validation.judges` about the corpus,
-some minutes, and keeps how often each named what.
+``python -m experiments.validation.accuracy`` asks every judge of `experiments.validation.judges`
+about every synthetic curve, some minutes, and keeps how often each gave which answer.
 """
 
 from __future__ import annotations
@@ -20,109 +19,116 @@ from experiments.claims.growth import MEMORY, TABLES
 from experiments.claims.judged import judged
 from experiments.runs.provenance import describe
 from experiments.runs.results import Run, read_json, write_json
-from experiments.validation.judges import PACKAGES, Judge, installed
-from experiments.validation.synthetic import CURVES, PARTS, Curve, corpus
+from experiments.validation.judges import PACKAGES, Judge, installed_judges
+from experiments.validation.synthetic import CONDITIONS, GROWTH, SyntheticCurve, make_all_curves
 
-RESULT = Path("results/reference/rigour.json")
+RESULT = Path("results/reference/accuracy.json")
 UNDETERMINED = "undetermined"
+COLUMNS = ["judge", "condition", "growth", "answer", "count"]
 COUNT = 144
-"""Curves of each class and part."""
+"""Curves of each class and condition."""
 
 ASKED = {
-    "none": (0.95, 0.005),
+    "steady": (0.95, 0.005),
     "prefetched": (0.95, 0.005),
-    "measured": (0.90, 0.01),
-    "unmeasured": (0.0, 0.05),
+    "latency known": (0.90, 0.01),
+    "latency unknown": (0.0, 0.05),
 }
-"""By part of the corpus: the least share to be named right, and the largest to be named wrong."""
+"""By condition: the least share to be named right, and the largest to be named wrong."""
 
 DETERMINED = {"work": 0.95, "time": 0.85}
-"""Share of table 1's cases that must be determined, by measure, on the standard profile."""
+"""Share of table 1's claims that must be determined, by measure, on the standard preset."""
 
 
 class Shares(NamedTuple):
-    """Of the claims of a table, how many are determined, and out of how many, by measure."""
+    """How many claims a table has, and the share of them that is determined, by measure."""
 
     claims: int
     work: float
     time: float
 
 
-def named(judges: dict[str, Judge], curves: Iterable[Curve]) -> pd.DataFrame:
-    """Ask every judge about every curve -> columns judge, part, true, named, count."""
+def count_answers(judges: dict[str, Judge], curves: Iterable[SyntheticCurve]) -> pd.DataFrame:
+    """Ask every judge about every curve -> a row per judge, condition, true class and answer."""
     counts = Counter[tuple[str, str, str, str]]()
-    for it in curves:
+    for curve in curves:
         for name, judge in judges.items():
-            answer = judge(it.sizes, it.samples, it.latency) or UNDETERMINED
-            counts[name, it.part, it.name, answer] += 1
-    columns = ["judge", "part", "true", "named", "count"]
-    return pd.DataFrame([[*key, count] for key, count in counts.items()], columns=columns)
+            answer = judge(curve.sizes, curve.samples, curve.latency) or UNDETERMINED
+            counts[name, curve.condition, curve.growth, answer] += 1
+    return pd.DataFrame([[*key, count] for key, count in counts.items()], columns=COLUMNS)
 
 
-def shares(table: pd.DataFrame, by: tuple[str, ...] = ("judge", "part")) -> pd.DataFrame:
-    """Shares named right, wrong and left undetermined, from what ``named`` gives, a row per key."""
-    kind = pd.Series("wrong", table.index)
-    kind[table["named"] == table["true"]] = "right"
-    kind[table["named"] == UNDETERMINED] = UNDETERMINED
-    counts = table.assign(kind=kind).pivot_table(
-        index=list(by), columns="kind", values="count", aggfunc="sum", fill_value=0, sort=False
-    )
+def answer_shares(answers: pd.DataFrame) -> pd.DataFrame:
+    """Shares named right, wrong and left undetermined: a row per judge and condition."""
+    kind = pd.Series("wrong", answers.index)
+    kind[answers["answer"] == answers["growth"]] = "right"
+    kind[answers["answer"] == UNDETERMINED] = UNDETERMINED
+    counts = answers.assign(kind=kind).pivot_table(
+        index=["judge", "condition"], columns="kind", values="count", aggfunc="sum", fill_value=0,
+        sort=False,
+    )  # fmt: skip
     counts = counts.reindex(columns=["right", "wrong", UNDETERMINED], fill_value=0)
     return counts.div(counts.sum(axis=1), axis=0)
 
 
-def confusion(table: pd.DataFrame, judge: str, part: str) -> pd.DataFrame:
-    """How often one judge named what: a row per true class, a column per answer."""
-    own = table[(table["judge"] == judge) & (table["part"] == part)]
-    wide = own.pivot_table(index="true", columns="named", values="count", aggfunc="sum")
-    return wide.reindex(index=list(CURVES), columns=[*CURVES, UNDETERMINED]).fillna(0).astype(int)
+def confusions(answers: pd.DataFrame, condition: str) -> dict[str, pd.DataFrame]:
+    """How often each judge gave which answer: a row per true class, a column per answer."""
+    columns = [*GROWTH, UNDETERMINED]
+    asked = answers[answers["condition"] == condition]
+    return {
+        str(judge): rows.pivot_table(index="growth", columns="answer", values="count")
+        .reindex(index=list(GROWTH), columns=columns)
+        .fillna(0)
+        .astype(int)
+        for judge, rows in asked.groupby("judge", sort=False)
+    }
 
 
-def determined(table: pd.DataFrame) -> dict[str, Shares]:
+def determined_shares(claims: pd.DataFrame) -> dict[str, Shares]:
     """By table, the shares of its claims with a verdict other than undetermined.
 
-    table: a row per claim, as `experiments.claims.judged.judged` gives. Claims about memory are not
-    judged by growth, and cases that claim nothing are not counted.
+    Claims about memory are not judged by growth, and cases that claim nothing are not counted.
     """
-    table = table[(table["subject"] != MEMORY) & (table["outcome"] != "no claim")]
+    claims = claims[(claims["subject"] != MEMORY) & (claims["outcome"] != "no claim")]
     return {
         str(name): Shares(
             len(rows),
             *(float((rows[f"outcome_{it}"] != UNDETERMINED).mean()) for it in ("work", "time")),
         )
-        for name, rows in table.groupby("table", sort=False)
+        for name, rows in claims.groupby("table", sort=False)
     }
 
 
-def saved(path: Path = RESULT) -> tuple[dict[str, Any], pd.DataFrame]:
-    """What was measured when, and the counts. Raises ResultsError without the file."""
+def load_accuracy(path: Path = RESULT) -> tuple[dict[str, Any], pd.DataFrame]:
+    """What was measured when, and the answers. Raises ResultsError without the file."""
     kept = read_json(path)
     return kept, pd.DataFrame(kept["rows"], columns=kept["columns"])
 
 
-def table(named_: pd.DataFrame) -> pd.DataFrame:
-    """Shares by judge and part, in words, as a page shows them."""
-    found = shares(named_)
+def accuracy_table(answers: pd.DataFrame) -> pd.DataFrame:
+    """Shares by condition and judge, in words, as a page shows them; a missing judge says so."""
+    shares = answer_shares(answers).map("{:.1%}".format)
+    missing = [name for name in PACKAGES if name not in set(answers["judge"])]
     rows = [
-        {"curves": what, "judge": judge}
-        | {kind: f"{found.loc[(judge, part)][kind]:.1%}" for kind in found.columns}
-        for part, what in PARTS.items()
-        for judge in dict.fromkeys(named_["judge"])
+        {"curves": text, "judge": judge, **shares.loc[(judge, condition)]}
+        for condition, text in CONDITIONS.items()
+        for judge in answers["judge"].unique()
     ]
-    return pd.DataFrame(rows)
+    rows += [{"curves": "all", "judge": f"{name}: not installed"} for name in missing]
+    return pd.DataFrame(rows).fillna("")
 
 
 def determined_table(run: Run) -> pd.DataFrame:
     """Shares of claims that are determined in a run, in words, as a page shows them."""
     rows = [
-        {"table": TABLES[name], "claims": it.claims}
-        | {f"determined by {measure}": f"{getattr(it, measure):.0%}" for measure in DETERMINED}
-        for name, it in determined(judged(run)).items()
+        {"table": TABLES[name], "claims": shares.claims}
+        | {f"determined by {measure}": f"{getattr(shares, measure):.0%}" for measure in DETERMINED}
+        for name, shares in determined_shares(judged(run)).items()
     ]
     return pd.DataFrame(rows)
 
 
-def provenance(kept: dict[str, Any]) -> str:
+def describe_origin(kept: dict[str, Any]) -> str:
     """Where kept measurements come from, in a sentence."""
     versions = ", ".join(f"{name} {number}" for name, number in kept["versions"].items())
     machine = kept["machine"]
@@ -143,17 +149,16 @@ def _version(package: str) -> str:
 def main() -> None:
     """Run as a command."""
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("--count", type=int, default=COUNT, help="curves of each class and part")
+    parser.add_argument("--count", type=int, default=COUNT, help="curves of each class, condition")
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--output", type=Path, default=RESULT)
     given = parser.parse_args()
-    table = named(installed(), corpus(given.count, given.seed))
-    head = {key: value for key, value in describe("rigour").items() if key != "profile"}
+    answers = count_answers(installed_judges(), make_all_curves(given.count, given.seed))
+    head = {key: value for key, value in describe("accuracy").items() if key != "profile"}
     head["versions"] |= {package: _version(package) for package in PACKAGES}
-    drawn = {"curves": given.count * len(CURVES) * len(PARTS), "seed": given.seed}
-    rows = {"columns": list(table.columns), "rows": table.to_numpy().tolist()}
-    write_json(given.output, head | drawn | rows)
-    print(shares(table).to_string(float_format=lambda share: f"{share:.4f}"))
+    head |= {"curves": given.count * len(GROWTH) * len(CONDITIONS), "seed": given.seed}
+    write_json(given.output, head | {"columns": COLUMNS, "rows": answers.to_numpy().tolist()})
+    print(answer_shares(answers).to_string(float_format="{:.4f}".format))
 
 
 if __name__ == "__main__":

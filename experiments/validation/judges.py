@@ -1,4 +1,4 @@
-"""Other judges of growth, on the same curves: who names how many right.
+"""Rival judges of growth, on the same curves: who names how many right.
 
 Each takes sizes and samples and names a class of `hem.complexity.models`, or none. They are given
 nanoseconds, as some of them have thresholds in absolute units, and asked only about the classes
@@ -12,21 +12,20 @@ from collections.abc import Callable, Sequence
 from importlib.util import find_spec
 
 import numpy as np
-from numpy.typing import NDArray
 
-from hem.complexity.judge import judge
+from experiments.validation.synthetic import Array
+from hem.complexity import judge
 
-Array = NDArray[np.float64]
 Judge = Callable[[Array, Sequence[Array], Array | None], str | None]
 
 NANOSECONDS = 1e9
 
 
 def hem_judge(sizes: Array, samples: Sequence[Array], latency: Array | None) -> str | None:
-    """`hem.complexity.judge.judge`: the class that is consistent, of all it could be asked."""
+    """`hem.complexity.judge`: the class that is consistent, of all it could be asked."""
     best = judge(sizes, samples, latency=latency, resamples=2).best
-    found = judge(sizes, samples, best, latency, resamples=2)
-    return best if found.outcome == "consistent" else None
+    verdict = judge(sizes, samples, best, latency, resamples=2)
+    return best if verdict.outcome == "consistent" else None
 
 
 def google_benchmark(
@@ -35,8 +34,8 @@ def google_benchmark(
     """Google Benchmark's rule, src/complexity.cc: MinimalLeastSq with oAuto.
 
     Least squares of each curve without intercept over all points; the least root mean square error
-    relative to the mean wins, and O(1) where nothing beats it. It has no O(√n), and O(n³) is left
-    out.
+    relative to the mean wins, and O(1) where nothing beats it. It has no O(√n), and O(n³) is not
+    asked about.
     """
     n, t = _points(sizes, samples)
     curves = {
@@ -76,7 +75,7 @@ def big_o(sizes: Array, samples: Sequence[Array], latency: Array | None = None) 
 def bigo(sizes: Array, samples: Sequence[Array], latency: Array | None = None) -> str | None:
     """The package bigo (E. Berger, S. Freund): least squares with an intercept, Akaike's criterion.
 
-    It leaves out outliers by itself, and curves that it cannot fit.
+    It drops outliers by itself, and curves that it cannot fit.
     """
     from bigO import bigO, models
 
@@ -91,7 +90,7 @@ def bigo(sizes: Array, samples: Sequence[Array], latency: Array | None = None) -
     }
     n, t = _points(sizes, samples)
     fitted = models.infer_bound(n, NANOSECONDS * t).models
-    return next((names[it.model.name] for it in fitted if it.model.name in names), None)
+    return next((names[fit.model.name] for fit in fitted if fit.model.name in names), None)
 
 
 def _points(sizes: Array, samples: Sequence[Array]) -> tuple[Array, Array]:
@@ -105,12 +104,13 @@ JUDGES: dict[str, Judge] = {
     "big-o": big_o,
     "Google Benchmark": google_benchmark,
 }
-"""By name. Those of packages that are not installed fail when asked: see ``installed``."""
+"""By name. Those of packages that are not installed fail when asked: see ``installed_judges``."""
 
 PACKAGES = {"bigo": "bigO", "big-o": "big_o"}
+"""The judges that are packages of their own, and the module of each."""
 
 
-def installed() -> dict[str, Judge]:
-    """The judges that can be asked here: the extra ``rigour`` brings all of them."""
+def installed_judges() -> dict[str, Judge]:
+    """The judges that can be asked here. Not every package has a distribution for every Python."""
     missing = {name for name, module in PACKAGES.items() if find_spec(module) is None}
-    return {name: it for name, it in JUDGES.items() if name not in missing}
+    return {name: judge for name, judge in JUDGES.items() if name not in missing}

@@ -1,8 +1,7 @@
-"""Proof that the gate catches: faults injected into a copy of the sources, each to be caught.
+"""Mutation test of the gates: faults in a copy of the sources, each of which ``hem check`` catches.
 
-``python -m experiments.validation.mutants`` prints the table;
-``-k WORD`` tries those with a word in the name.
-The faults are data, see ``mutants.toml``. The copy without any fault must pass.
+``python -m experiments.validation.mutants`` prints the table; ``-k WORD`` tries those with a word
+in the name. The faults are data, see ``mutants.toml``. A copy without a fault must pass.
 """
 
 from __future__ import annotations
@@ -21,8 +20,6 @@ from pathlib import Path
 from time import perf_counter
 from typing import Any, NamedTuple
 
-from rich.console import Console
-
 HERE = Path(__file__).parents[2]
 COPIED = ("hem", "structures", "experiments", "results/reference")
 GATES = ("work", "bytes", "class", "time")
@@ -31,7 +28,7 @@ ROW = "{:<50} {:<18} {:<6} {:<7} {:>4}  {}"
 
 
 class MutantError(ValueError):
-    """A fault cannot be injected: its text is not there, or not once."""
+    """A fault cannot be injected, or names no gate."""
 
 
 @dataclass(frozen=True)
@@ -58,22 +55,21 @@ class Mutant:
         path.write_text(text, "utf-8")
 
 
-class Tried(NamedTuple):
-    """What the gate made of a tree: ``line`` is the first that it printed of this kind."""
+class Trial(NamedTuple):
+    """What the gate made of a tree: ``line`` is its first finding of the kind that was wanted."""
 
-    caught: bool
+    passed: bool
     line: str
     seconds: float
 
 
 def load_mutants(text: str | None = None) -> list[Mutant]:
-    """The faults of ``mutants.toml``, or of a text like it. Raises MutantError for a wrong one."""
+    """Read ``mutants.toml``, or a text like it. Raises MutantError for a wrong entry."""
     content = tomllib.loads(text or (Path(__file__).parent / "mutants.toml").read_text("utf-8"))
-    return [_mutant(entry) for entry in content["mutant"]]
+    return [_read_mutant(entry) for entry in content["mutant"]]
 
 
-def _mutant(entry: dict[str, Any]) -> Mutant:
-    # A text that begins on a line of its own must do so in the file as well.
+def _read_mutant(entry: dict[str, Any]) -> Mutant:
     changes = entry.get("changes") or [[entry.get("old", ""), entry.get("new", "")]]
     name, gate = entry.get("name", "?"), entry.get("gate")
     if gate not in GATES:
@@ -84,16 +80,16 @@ def _mutant(entry: dict[str, Any]) -> Mutant:
 
 
 @contextmanager
-def copied() -> Iterator[Path]:
-    """A copy of the sources and the reference, with the machine code that was cached for them."""
+def copied_tree() -> Iterator[Path]:
+    """A copy of the sources and the baseline, with the machine code that was cached for them."""
     with tempfile.TemporaryDirectory(prefix="hem-mutant-") as folder:
         for part in COPIED:
             shutil.copytree(HERE / part, Path(folder) / part)  # times stay, so the cache is valid
         yield Path(folder)
 
 
-def gate(tree: Path, structure: str = "", timed: bool = False) -> tuple[int, dict[str, Any]]:
-    """Run the gate in a tree -> its exit code, and what it printed as JSON."""
+def run_gate(tree: Path, structure: str = "", timed: bool = False) -> tuple[int, dict[str, Any]]:
+    """Run ``hem check`` in a tree -> its exit code, and what it printed as JSON."""
     command = [sys.executable, "-m", "experiments.cli", "check", "--json"]
     command += ["--structure", structure] if structure else []
     command += ["--beside", str(HERE)] if timed else []
@@ -106,66 +102,66 @@ def gate(tree: Path, structure: str = "", timed: bool = False) -> tuple[int, dic
     try:
         return done.returncode, json.loads(done.stdout)
     except ValueError:
-        said = done.stderr.strip().splitlines()
-        return done.returncode, {"findings": [], "error": said[-1] if said else "nothing was said"}
+        lines = done.stderr.strip().splitlines() or ["it printed nothing"]
+        return done.returncode, {"findings": [], "error": lines[-1]}
 
 
-def attempt(mutant: Mutant) -> Tried:
+def try_mutant(mutant: Mutant) -> Trial:
     """Inject one fault and run the gate. It is caught if the right part of the gate says worse."""
-    begun = perf_counter()
-    with copied() as tree:
+    begin = perf_counter()
+    with copied_tree() as tree:
         mutant.apply(tree)
-        exit_code, said = gate(tree, mutant.structure, mutant.gate == "time")
-    worse = [it for it in said["findings"] if it["outcome"] == "worse"]
-    of_kind = [it for it in worse if it["kind"] == mutant.gate]
-    caught = exit_code == 1 and bool(of_kind)
-    seconds = perf_counter() - begun
-    if of_kind:
-        return Tried(caught, line(of_kind[0]), seconds)
-    return Tried(False, said.get("error") or f"exit code {exit_code}, no {mutant.gate}", seconds)
+        status, report = run_gate(tree, mutant.structure, mutant.gate == "time")
+    caught = [it for it in _worse(report) if it["kind"] == mutant.gate]
+    line = _in_words(caught[0]) if caught else report.get("error", f"no {mutant.gate} is worse")
+    return Trial(status == 1 and bool(caught), line, perf_counter() - begin)
 
 
-def sound() -> Tried:
-    """Run the gate, times included, on a copy without any fault: nothing may be worse."""
-    begun = perf_counter()
-    with copied() as tree:
-        exact_code, exact = gate(tree)
-        timed_code, timed = gate(tree, "half_edge", timed=True)
-    told = timed.get("counts", {}).get("same", 0) > 0
-    passed = exact_code == 0 and timed_code != 1 and told
-    findings = [it for it in exact["findings"] + timed["findings"] if it["outcome"] == "worse"]
-    text = line(findings[0]) if findings else str(exact.get("error") or "nothing is worse")
-    return Tried(passed, text, perf_counter() - begun)
+def try_unchanged() -> Trial:
+    """Run the gate, times included, on a copy without a fault: nothing may be worse."""
+    begin = perf_counter()
+    with copied_tree() as tree:
+        status, counted = run_gate(tree)
+        timed_status, timed = run_gate(tree, "half_edge", timed=True)
+    decided = timed.get("counts", {}).get("same", 0) > 0
+    worse = _worse(counted) + _worse(timed)
+    line = _in_words(worse[0]) if worse else str(counted.get("error", "nothing is worse"))
+    passed = status == 0 and timed_status != 1 and decided
+    return Trial(passed, line, perf_counter() - begin)
 
 
-def line(finding: dict[str, Any]) -> str:
-    """What the gate says of one finding, without the claim."""
+def _worse(report: dict[str, Any]) -> list[dict[str, Any]]:
+    return [finding for finding in report["findings"] if finding["outcome"] == "worse"]
+
+
+def _in_words(finding: dict[str, Any]) -> str:
     why = f" ({finding['why']})" if finding["why"] else ""
     return f"{finding['where']}: {finding['before']} → {finding['after']}{why}"
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Try every mutant, print the table -> 0 if all were caught and the copy without passed."""
-    parser = ArgumentParser(description="Inject faults; each must be caught by the gate.")
+    parser = ArgumentParser(description="Inject faults; hem check must catch each.")
     parser.add_argument("-k", default="", metavar="WORD", help="just those with it in the name")
     word = parser.parse_args(arguments).k
-    console = Console()
-    chosen = [it for it in load_mutants() if word in it.name]
+    chosen = [mutant for mutant in load_mutants() if word in mutant.name]
     if not chosen:
-        console.print(f"no mutant has {word!r} in its name; see experiments/mutants.toml")
+        print(f"no mutant has {word!r} in its name; see experiments/validation/mutants.toml")
         return 2
-    good = True
     print(ROW.format("mutant", "structure", "gate", "caught", "s", "what the gate said"))
-    for mutant in (None, *chosen):
-        tried = attempt(mutant) if mutant else sound()
-        good &= tried.caught
-        words = ("yes", "NO") if mutant else ("passes", "FAILS")
-        names = (mutant.name, mutant.structure, mutant.gate) if mutant else ("none", "all", "all")
-        answer = words[0] if tried.caught else words[1]
-        row = ROW.format(*names, answer, f"{tried.seconds:.0f}", tried.line)
-        print(row, flush=True)
-    console.print("All caught." if good else "[bold red]Not all were caught.[/]")
-    return 0 if good else 1
+    _print_trial(unchanged := try_unchanged(), ("none", "all", "all"), ("passes", "FAILS"))
+    caught = 0
+    for mutant in chosen:
+        trial = try_mutant(mutant)
+        caught += trial.passed
+        _print_trial(trial, (mutant.name, mutant.structure, mutant.gate), ("yes", "NO"))
+    print(f"{caught} of {len(chosen)} caught")
+    return 0 if unchanged.passed and caught == len(chosen) else 1
+
+
+def _print_trial(trial: Trial, names: tuple[str, str, str], answers: tuple[str, str]) -> None:
+    answer = answers[not trial.passed]
+    print(ROW.format(*names, answer, f"{trial.seconds:.0f}", trial.line), flush=True)
 
 
 if __name__ == "__main__":

@@ -1,8 +1,8 @@
-"""Curves of known growth class, as a machine might measure them: what a judge is tried on.
+"""Synthetic curves of known growth class, as a machine might measure them, to try judges on.
 
-A curve is 5 to 9 sizes, faces of a mesh or valences of a vertex, and 5 to 30 samples at each: an
-intercept of nothing or as much as the smallest size costs, noise of 2, 5 or 10 %, and what the
-memory makes of it. Everything follows from a seed.
+A curve has 5 to 9 sizes, faces of a mesh or valences of a vertex, and 5 to 30 samples at each; an
+intercept of nothing or as much as the smallest size costs; noise of 2, 5 or 10 %; and the slowdown
+that the memory causes. Everything follows from a seed.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-CURVES: dict[str, Callable[[Array], Array]] = {
+GROWTH: dict[str, Callable[[Array], Array]] = {
     "O(1)": lambda n: n**0.0,
     "O(log n)": lambda n: np.log2(n),
     "O(√n)": lambda n: n**0.5,
@@ -25,27 +25,30 @@ CURVES: dict[str, Callable[[Array], Array]] = {
 }
 """Growth by class; spelled here and not taken from the judge's own models."""
 
-PARTS = {
-    "none": "no memory rise, no latency given",
-    "prefetched": "no memory rise, though a latency that rises is given",
-    "measured": "a tenfold memory rise, and the latency given",
-    "unmeasured": "a tenfold memory rise, and no latency given",
+CONDITIONS = {
+    "steady": "no slowdown, no latency given",
+    "prefetched": "no slowdown, though a latency that grows is given",
+    "latency known": "a tenfold slowdown, and the latency given",
+    "latency unknown": "a tenfold slowdown, and no latency given",
 }
-"""What the memory does to a curve, and whether it was measured."""
+"""What the memory does to a curve, and whether the judge is told its latency."""
+
+SLOWED = ("latency known", "latency unknown")
+TOLD = ("prefetched", "latency known")
 
 INTERCEPTS = (0.0, 1.0)
 NOISES = (0.02, 0.05, 0.1)
 
 
-class Curve(NamedTuple):
+class SyntheticCurve(NamedTuple):
     """A curve, and what it is.
 
     sizes: (k,). samples: k arrays of seconds. latency: (k,) nanoseconds per access in the working
     set, with an error of 2 to 5 %, or None.
     """
 
-    name: str
-    part: str
+    growth: str
+    condition: str
     sizes: Array
     samples: list[Array]
     latency: Array | None
@@ -61,44 +64,52 @@ def machine_latency(working_set: Array) -> Array:
     return latency
 
 
-def curve(
-    rng: np.random.Generator, name: str, part: str, intercept: float = 0.0, noise: float = 0.05
-) -> Curve:
-    """One curve of a class. Half of those with a rise have it in the intercept, too.
+def make_curve(
+    rng: np.random.Generator,
+    growth: str,
+    condition: str,
+    intercept: float = 0.0,
+    noise: float = 0.05,
+) -> SyntheticCurve:
+    """Make one curve of a class. Half of the slowed ones have a slowed intercept, too.
 
     intercept: in units of the growing part at the smallest size. noise: relative, of a sample.
     """
     sizes, size_bytes = _sizes(rng)
     latency = machine_latency(sizes * size_bytes)
-    growing = CURVES[name](sizes)
+    growing = GROWTH[growth](sizes)
     fixed = intercept * growing[0]
-    slow = _slowdown(latency, rng) if part in ("measured", "unmeasured") else np.ones_like(sizes)
+    slow = _slowdown(latency, rng) if condition in SLOWED else np.ones_like(sizes)
     cost = (fixed + growing) * slow if rng.random() < 0.5 else fixed + growing * slow
     count = rng.integers(5, 31)
     samples = [3e-9 * c * np.exp(rng.normal(0, noise, count)) for c in cost]
     seen = latency * np.exp(rng.normal(0, rng.uniform(0.02, 0.05), len(sizes)))
-    return Curve(name, part, sizes, samples, seen if part in ("measured", "prefetched") else None)
+    return SyntheticCurve(growth, condition, sizes, samples, seen if condition in TOLD else None)
 
 
-def curves(name: str, part: str, count: int = 144, seed: int = 0) -> Iterator[Curve]:
-    """``count`` curves of one class and part, as many of each intercept and noise.
+def make_curves(
+    growth: str, condition: str, count: int = 144, seed: int = 0
+) -> Iterator[SyntheticCurve]:
+    """Make ``count`` curves of one class and condition, as many of each intercept and noise.
 
     ``count`` must be a multiple of 6: ValueError else. The same seed gives the same curves.
     """
     kinds = [(intercept, noise) for intercept in INTERCEPTS for noise in NOISES]
     if count % len(kinds):
         raise ValueError(f"count must be a multiple of {len(kinds)}, not {count}")
-    rng = np.random.default_rng([seed, list(CURVES).index(name), list(PARTS).index(part)])
+    rng = np.random.default_rng(
+        [seed, list(GROWTH).index(growth), list(CONDITIONS).index(condition)]
+    )
     for intercept, noise in kinds:
         for _ in range(count // len(kinds)):
-            yield curve(rng, name, part, intercept, noise)
+            yield make_curve(rng, growth, condition, intercept, noise)
 
 
-def corpus(count: int = 144, seed: int = 0) -> Iterator[Curve]:
-    """``count`` curves of every class and part: 24 times as many in all."""
-    for part in PARTS:
-        for name in CURVES:
-            yield from curves(name, part, count, seed)
+def make_all_curves(count: int = 144, seed: int = 0) -> Iterator[SyntheticCurve]:
+    """Make ``count`` curves of every class and condition: 24 times as many in all."""
+    for condition in CONDITIONS:
+        for growth in GROWTH:
+            yield from make_curves(growth, condition, count, seed)
 
 
 def _sizes(rng: np.random.Generator) -> tuple[Array, float]:
@@ -111,7 +122,7 @@ def _sizes(rng: np.random.Generator) -> tuple[Array, float]:
 
 
 def _slowdown(latency: Array, rng: np.random.Generator) -> Array:
-    """What a query makes of a latency: about tenfold, or less where the latency rises less."""
+    """How a latency slows a query down: about tenfold, or less where the latency grows less."""
     own = latency / latency[0]
     share = min(rng.uniform(8, 12) - 1, own.max() - 1) / (own.max() - 1)
     slow: Array = 1 + share * (own - 1)

@@ -1,35 +1,35 @@
-"""Laws of the other judges: right on clean curves of the classes they know, as published."""
+"""Laws of the rival judges: right on clean curves of the classes they know, as published."""
 
 import numpy as np
 import pytest
 
-from experiments.validation.judges import JUDGES, PACKAGES, google_benchmark, installed
-from experiments.validation.synthetic import CURVES
+from experiments.validation.judges import JUDGES, PACKAGES, google_benchmark, installed_judges
+from experiments.validation.synthetic import GROWTH
 
 SIZES = np.geomspace(100, 1e5, 7).round()
 KNOWN = {
-    "hem": set(CURVES),
-    "bigo": set(CURVES),
-    "big-o": set(CURVES) - {"O(√n)"},
-    "Google Benchmark": set(CURVES) - {"O(√n)"},
+    "hem": set(GROWTH),
+    "bigo": set(GROWTH),
+    "big-o": set(GROWTH) - {"O(√n)"},
+    "Google Benchmark": set(GROWTH) - {"O(√n)"},
 }
 
 
 @pytest.mark.parametrize("name", JUDGES)
 def test_a_judge_names_clean_curves_of_the_classes_it_knows(name: str) -> None:
-    if name not in installed():
+    if name not in installed_judges():
         pytest.skip(f"the package {name} is not installed")
     rng = np.random.default_rng(1)
-    for growth in KNOWN[name]:
-        samples = [3e-9 * c * rng.lognormal(0, 1e-4, 5) for c in CURVES[growth](SIZES)]
+    for known in KNOWN[name]:
+        samples = [3e-9 * c * rng.lognormal(0, 1e-4, 5) for c in GROWTH[known](SIZES)]
         latency = np.ones_like(SIZES) if name == "hem" else None
-        assert JUDGES[name](SIZES, samples, latency) == growth
+        assert JUDGES[name](SIZES, samples, latency) == known
 
 
 def test_google_benchmarks_rule_has_no_intercept() -> None:
     n = np.array([1.0, 2, 3, 4, 5, 6])
-    assert google_benchmark(n, [np.array([it]) for it in 5 * n]) == "O(n)"
-    assert google_benchmark(n, [np.array([20 + it]) for it in n]) != "O(n)"
+    assert google_benchmark(n, [np.array([time]) for time in 5 * n]) == "O(n)"
+    assert google_benchmark(n, [np.array([20 + time]) for time in n]) != "O(n)"
 
 
 def test_google_benchmarks_rule_is_least_squares_over_all_points() -> None:
@@ -51,14 +51,14 @@ def test_google_benchmarks_rule_is_least_squares_over_all_points() -> None:
 
 def test_units_change_no_answer() -> None:
     rng = np.random.default_rng(2)
-    for growth in CURVES:
-        samples = [c * rng.lognormal(0, 0.01, 5) for c in CURVES[growth](SIZES)]
-        for name, judge in installed().items():
+    for growth in GROWTH:
+        samples = [c * rng.lognormal(0, 0.01, 5) for c in GROWTH[growth](SIZES)]
+        for name, judge in installed_judges().items():
             if name in ("hem", "Google Benchmark"):
-                scaled = [1e-9 * it for it in samples]
+                scaled = [1e-9 * case for case in samples]
                 assert judge(SIZES, samples, None) == judge(SIZES, scaled, None)
 
 
 def test_every_package_belongs_to_a_judge() -> None:
     assert set(PACKAGES) <= set(JUDGES)
-    assert set(JUDGES) - set(PACKAGES) <= set(installed())
+    assert set(JUDGES) - set(PACKAGES) <= set(installed_judges())

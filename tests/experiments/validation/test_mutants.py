@@ -1,4 +1,4 @@
-"""Faults to inject: each still fits the sources, and a wrong one is told."""
+"""Faults to inject: each still fits the sources, and a wrong one is an error."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ ENTRY = """
 name = "none"
 structure = "half_edge"
 gate = "{gate}"
-file = "hem/records.py"
+file = "hem/authoring/records.py"
 old = "{old}"
-new = "it is not there"
+new = "another text"
 """
 
 
-@pytest.mark.parametrize("mutant", load_mutants(), ids=lambda it: it.name)
+@pytest.mark.parametrize("mutant", load_mutants(), ids=lambda mutant: mutant.name)
 def test_every_fault_changes_the_source_it_is_for(mutant, tmp_path):
     path = tmp_path / mutant.file
     path.parent.mkdir(parents=True)
@@ -32,12 +32,12 @@ def test_every_fault_changes_the_source_it_is_for(mutant, tmp_path):
 
 
 def test_there_is_a_fault_for_every_gate():
-    assert {it.gate for it in load_mutants()} == set(GATES)
+    assert {mutant.gate for mutant in load_mutants()} == set(GATES)
 
 
 def test_a_fault_that_no_longer_fits_is_an_error(tmp_path):
     (mutant,) = load_mutants(ENTRY.format(gate="work", old="no such text"))
-    with pytest.raises(MutantError, match=r"0 times in hem/records\.py"):
+    with pytest.raises(MutantError, match=r"0 times in hem/authoring/records\.py"):
         mutant.apply(tmp_path)
 
 
