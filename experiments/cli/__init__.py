@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from importlib.metadata import version
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -23,6 +24,7 @@ app = typer.Typer(
     no_args_is_help=True,
     add_completion=False,
     pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
 )
 PAGES, DOCUMENT = Path("report/html"), Path("report/report.pdf")
 """Where the report goes."""
@@ -30,6 +32,23 @@ PAGES, DOCUMENT = Path("report/html"), Path("report/report.pdf")
 RunArgument = Annotated[
     Path | None, typer.Argument(help="The folder of a run; the newest if it is not given.")
 ]
+
+
+def _show_version(wanted: bool) -> None:
+    if wanted:
+        console.print(f"hem {version('hem-mesh')}", highlight=False)
+        raise typer.Exit
+
+
+@app.callback()
+def _options(
+    show_version: Annotated[
+        bool, typer.Option("--version", callback=_show_version, is_eager=True, help="Say which.")
+    ] = False,
+) -> None:
+    pass
+
+
 app.command("study")(run_study)
 
 

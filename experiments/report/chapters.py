@@ -11,9 +11,10 @@ from contextlib import closing, contextmanager
 from html import escape, unescape
 from pathlib import Path
 
+from experiments import carried
 from experiments.runs.results import ResultsError
 
-NOTEBOOKS = Path(__file__).parents[2] / "notebooks"
+NOTEBOOKS = carried("notebooks")
 CHAPTERS = {
     "comparison_table": "The comparison table",
     "query_scaling": "How queries scale",
