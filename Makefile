@@ -6,7 +6,8 @@ BIN := $(VENV)/bin
 STUDY := $(VENV)/installed-study
 DEV := $(VENV)/installed-dev
 STUDY_EXTRAS := study,fracture,viz
-TEST_EXTRAS := $(STUDY_EXTRAS),test
+# In the order of the files the slowest tests come first, and the cores end at the same time.
+PYTEST := -m pytest tests -n auto --dist loadfile --no-loadscope-reorder --durations=20
 
 # Installs the project with extras $(2) into the environment $(1), held by the constraints $(3).
 # uv takes a quarter of pip's time; where it cannot be had or does not get through, pip does the same.
@@ -40,9 +41,8 @@ study: $(STUDY)  ## measure for some 15 minutes, print table 1, write the report
 	@$(BIN)/hem table
 	@$(BIN)/hem report
 
-# In the order of the files the slowest tests come first, and the cores end at the same time.
 test: $(DEV)  ## run all tests, on every core
-	@$(BIN)/python -m pytest tests -n auto --dist loadfile --no-loadscope-reorder --durations=20
+	@$(BIN)/python $(PYTEST)
 
 demo: $(STUDY)  ## break some models, for two minutes, and make a page to watch it on
 	@$(BIN)/python -m experiments.cli.demo
@@ -64,13 +64,16 @@ format: $(DEV)  ## format the code
 	@$(BIN)/ruff format .
 	@$(BIN)/ruff check --fix .
 
+peers: export CMAKE_BUILD_PARALLEL_LEVEL := $(shell nproc) # OpenMesh comes as source
 peers: $(STUDY)  ## compare with OpenMesh, libigl, MeshLib, trimesh and COMPAS
 	$(call install,$(VENV),peers,constraints.txt)
 	@$(BIN)/python -m experiments.validation.peers
 
 test-floor:  ## run all tests with the oldest versions that are supported
-	$(call install,$(VENV)-floor,$(TEST_EXTRAS),constraints-floor.txt)
-	@$(VENV)-floor/bin/python -m pytest tests -n auto --dist loadfile --no-loadscope-reorder --durations=20
+	@test -x $(VENV)-floor/bin/python || $(PYTHON) -m venv $(VENV)-floor
+	@$(VENV)-floor/bin/python -m pip --disable-pip-version-check --quiet install uv --constraint constraints.txt
+	@$(VENV)-floor/bin/uv pip install --quiet --python $(VENV)-floor/bin/python --resolution lowest-direct --editable '.[$(STUDY_EXTRAS),test]'
+	@$(VENV)-floor/bin/python $(PYTEST)
 
 clean:  ## remove everything that was made here, runs excepted
 	rm -rf $(VENV) $(VENV)-floor build *.egg-info .mypy_cache .ruff_cache .pytest_cache report/html report/demo

@@ -12,8 +12,11 @@ from typing import Annotated
 import typer
 from rich.markup import escape
 
+from experiments import carried
 from experiments.cli.console import console, errors, user_errors
 
+HERE = Path("results/reference")
+BASELINE = HERE if HERE.is_dir() else carried("results/reference")
 Reference = Annotated[Path, typer.Option(help="The folder with what is compared with.")]
 
 FACTOR_HELP = (
@@ -38,7 +41,7 @@ def check(
     markdown: Annotated[
         Path | None, typer.Option(help="Write a summary for a pull request to this file.")
     ] = None,
-    reference: Reference = Path("results/reference"),
+    reference: Reference = BASELINE,
 ) -> None:
     """Compare with the reference. Exit code 0; 1: something got worse; 2: it cannot be told."""
     with could_not_measure(), user_errors():
@@ -86,7 +89,7 @@ def update(
         typer.Argument(help="The folder of a run. Without it only what is exact is updated."),
     ] = None,
     yes: Annotated[bool, typer.Option("--yes", help="Do not ask.")] = False,
-    reference: Reference = Path("results/reference"),
+    reference: Reference = HERE,
 ) -> None:
     """Measure what is exact, show what would change in the reference, and write it."""
     with user_errors():

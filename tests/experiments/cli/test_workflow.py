@@ -58,9 +58,14 @@ def test_hem_has_the_command_and_its_options_parse(arguments):
     assert not context.args
 
 
+def test_it_tests_every_python_that_is_promised():
+    job = yaml.safe_load(WORKFLOW.read_text())["jobs"]["test"]
+    classifiers = re.findall(r"Python :: (3\.\d+)", (ROOT / "pyproject.toml").read_text())
+    assert job["strategy"]["matrix"]["python-version"] == classifiers
+
+
 def test_what_is_cached_and_installed_is_there():
     caches = [it["with"] for it in steps() if "setup-python" in it.get("uses", "")]
     assert caches
     for it in caches:
         assert all((ROOT / name).exists() for name in it["cache-dependency-path"].split())
-        assert it["python-version"] == "3.11"

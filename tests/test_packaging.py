@@ -1,0 +1,147 @@
+"""The wheel holds what the checkout reads, and whatever is imported is declared."""
+
+from __future__ import annotations
+
+import ast
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tomllib
+from collections.abc import Iterator
+from importlib.metadata import packages_distributions
+from itertools import chain
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+PACKAGES = ("hem", "structures", "experiments")
+FOLDERS = ("notebooks", "results/reference")
+PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+
+
+def names(requirements: list[str]) -> set[str]:
+    """The distributions that requirements name, in the spelling of the index."""
+    return {normal(re.split(r"[\[<>=; ]", line)[0]) for line in requirements}
+
+
+def normal(name: str) -> str:
+    return re.sub(r"[-_.]+", "-", name).lower()
+
+
+CORE = names(PROJECT["dependencies"])
+EXTRAS = {extra: names(lines) for extra, lines in PROJECT["optional-dependencies"].items()}
+
+
+@pytest.fixture(scope="module")
+def site(tmp_path_factory) -> Path:
+    """A folder with the project as pip would install it, built from a copy without a checkout."""
+    source, built = tmp_path_factory.mktemp("source"), tmp_path_factory.mktemp("built")
+    for name in ("pyproject.toml", "setup.py", "README.md", "LICENSE"):
+        shutil.copy(ROOT / name, source)
+    for folder in (*PACKAGES, *FOLDERS):
+        ignored = shutil.ignore_patterns("__pycache__")
+        shutil.copytree(ROOT / folder, source / folder, ignore=ignored)
+    code = f"from setuptools.build_meta import build_wheel; build_wheel({str(built)!r})"
+    subprocess.run([sys.executable, "-c", code], cwd=source, check=True, capture_output=True)
+    shutil.unpack_archive(next(built.glob("*.whl")), built / "site", "zip")
+    return built / "site"
+
+
+def files(root: Path) -> set[str]:
+    found = (path for path in root.rglob("*") if path.is_file())
+    return {str(path.relative_to(root)) for path in found if "__pycache__" not in path.parts}
+
+
+@pytest.mark.parametrize("package", PACKAGES)
+def test_the_wheel_holds_every_file_of_the_packages(site, package):
+    assert files(site / package) >= files(ROOT / package)
+
+
+@pytest.mark.parametrize("folder", FOLDERS)
+def test_the_wheel_holds_the_notebooks_and_the_baseline(site, folder):
+    assert files(site / "experiments/carried" / folder) == files(ROOT / folder)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code", "said"),
+    [
+        (["--version"], 0, f"hem {PROJECT['version']}"),
+        (["-h"], 0, "Usage"),
+        (["table"], 1, "there is no run in results/runs; start one with: hem study"),
+        (["report"], 1, "there is no run in results/runs; start one with: hem study"),
+    ],
+)
+def test_an_installed_hem_runs_in_an_empty_folder(site, tmp_path, arguments, code, said):
+    command = [sys.executable, "-m", "experiments.cli", *arguments]
+    done = subprocess.run(
+        command, cwd=tmp_path, env=os.environ | {"PYTHONPATH": str(site)}, text=True,
+        capture_output=True,
+    )  # fmt: skip
+    assert done.returncode == code, done.stderr
+    assert said in " ".join((done.stdout + done.stderr).split())
+
+
+def test_an_installed_study_finds_its_notebooks_and_its_baseline(site, tmp_path):
+    code = (
+        "from experiments import carried; print(*map(carried, ['notebooks', 'results/reference']))"
+    )
+    found = subprocess.run(
+        [sys.executable, "-c", code], cwd=tmp_path, env=os.environ | {"PYTHONPATH": str(site)},
+        text=True, capture_output=True, check=True,
+    ).stdout.split()  # fmt: skip
+    assert found == [str(site / "experiments/carried" / folder) for folder in FOLDERS]
+
+
+def imported(folder: str, *, at_import: bool = False) -> Iterator[tuple[str, str]]:
+    """Every distribution that a package imports, lazily or only ``at_import``, with the file."""
+    owners = packages_distributions()
+    for path in (ROOT / folder).rglob("*.py"):
+        tree = ast.parse(path.read_text())
+        for node in tree.body if at_import else ast.walk(tree):
+            modules = [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
+            if isinstance(node, ast.ImportFrom) and node.level == 0:
+                modules = [node.module or ""]
+            for top in {module.partition(".")[0] for module in modules}:
+                if top not in sys.stdlib_module_names and top not in PACKAGES:
+                    yield normal(owners.get(top, [top])[0]), str(path.relative_to(ROOT))
+
+
+@pytest.mark.parametrize("package", ["hem", "structures"])
+def test_meshes_and_structures_need_the_core_alone(package):
+    outside = re.compile(r"hem/fracture/(show|bodies)/")  # asked for by name, with an extra
+    found = {(d, path) for d, path in imported(package, at_import=True) if not outside.match(path)}
+    assert {(name, path) for name, path in found if name not in CORE} == set()
+
+
+@pytest.mark.parametrize("package", PACKAGES)
+def test_whatever_is_imported_is_declared(package):
+    declared = CORE.union(*EXTRAS.values())
+    assert {(name, path) for name, path in imported(package) if name not in declared} == set()
+
+
+def test_whatever_is_declared_is_held_by_the_constraints():
+    lines = (ROOT / "constraints.txt").read_text().splitlines()
+    held = names([line for line in lines if line and not line.startswith("#")])
+    assert CORE.union(*EXTRAS.values()) - held - {"hem-mesh", "setuptools"} == set()
+
+
+def test_every_lower_bound_is_said_so_that_the_oldest_versions_can_be_tried():
+    lines = [*PROJECT["dependencies"], *chain(*PROJECT["optional-dependencies"].values())]
+    assert [line for line in lines if ">=" not in line and "hem-mesh[" not in line] == []
+
+
+def test_an_experiment_knows_how_to_measure_and_nothing_of_what_becomes_of_it():
+    grimp = pytest.importorskip("grimp")
+    graph = grimp.build_graph("experiments")
+    benches = {f"experiments.{path.stem}" for path in (ROOT / "experiments").glob("bench_*.py")}
+    for bench in benches:
+        rooms = {name.split(".")[1] for name in graph.find_modules_directly_imported_by(bench)}
+        assert rooms - {name.split(".")[1] for name in benches} <= ALLOWED, bench
+        users = {name.split(".")[1] for name in graph.find_modules_that_directly_import(bench)}
+        assert "harness" not in users
+
+
+ALLOWED = {"harness", "conftest", "runs", "claims"}  # runs and claims until these are mended
