@@ -95,6 +95,13 @@ def test_an_installed_study_finds_its_notebooks_and_its_baseline(site, tmp_path)
     assert found == [str(site / "experiments/carried" / folder) for folder in FOLDERS]
 
 
+def test_without_the_study_the_command_says_what_to_install():
+    code = "import sys; sys.modules['typer'] = None; import experiments.cli"
+    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, text=True, capture_output=True)
+    assert done.returncode == 1
+    assert done.stderr == "hem: the commands need more: pip install 'hem-mesh[study]'\n"
+
+
 def imported(folder: str, *, at_import: bool = False) -> Iterator[tuple[str, str]]:
     """Every distribution that a package imports, lazily or only ``at_import``, with the file."""
     owners = packages_distributions()

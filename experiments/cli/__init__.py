@@ -8,8 +8,11 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Annotated, Any
 
-import typer
-from rich.table import Table
+try:
+    import typer
+    from rich.table import Table
+except ModuleNotFoundError as error:  # the library alone was installed
+    raise SystemExit("hem: the commands need more: pip install 'hem-mesh[study]'") from error
 
 import hem
 from experiments.cli.check import check, reference_app
