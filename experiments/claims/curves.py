@@ -1,0 +1,186 @@
+"""Measurements along one variable: what plots draw and what claims are judged by."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from experiments.harness import HUBS, QUERIES_TABLE, Axis
+from experiments.runs.catalog import experiments, tables
+from experiments.runs.results import Run
+
+Array = NDArray[Any]
+
+PARTS = (4, 16)
+"""By how much less than its working set a query or an operation may touch: one of several arrays,
+or what was just copied. It then waits for memory as a smaller mesh does."""
+
+
+@dataclass(frozen=True, eq=False)
+class Curve:
+    """The cases of one structure and subject along one variable, ascending.
+
+    ``measure``: "work", whose center is the mean, or a time, whose center is the median.
+    """
+
+    measure: str
+    variable: str
+    cases: pd.DataFrame
+
+    def __len__(self) -> int:
+        return len(self.cases)
+
+    @property
+    def sizes(self) -> Array:
+        """(k,) the variable."""
+        return self.cases[self.variable].to_numpy(float)
+
+    @property
+    def samples(self) -> list[Array]:
+        """The samples of each case."""
+        return list(self.cases["samples"])
+
+    @cached_property
+    def centers(self) -> Array:
+        """(k,) the cost of each case: mean accesses, or median seconds."""
+        center = np.mean if self.measure == "work" else np.median
+        return np.array([float(center(it)) for it in self.samples])
+
+    def spread(self, part: float = 0.5) -> tuple[Array, Array]:
+        """(k,), (k,): between these lies the middle part of each case's samples."""
+        edges = (1 - part) / 2, (1 + part) / 2
+        low, high = np.array([np.quantile(it, edges) for it in self.samples]).reshape(-1, 2).T
+        return low, high
+
+    @property
+    def by_size(self) -> dict[int, float]:
+        """The cost of each case by its number of vertices."""
+        return dict(zip(self.cases["vertices"].astype(int), self.centers.tolist(), strict=True))
+
+    @property
+    def largest(self) -> float:
+        """The cost at the largest size, nan without any case."""
+        return float(self.centers[-1]) if len(self) else float("nan")
+
+
+class Curves:
+    """Every curve of a run."""
+
+    def __init__(self, run: Run) -> None:
+        self.cases = run.cases
+
+    @cached_property
+    def judged_family(self) -> str | None:
+        """The family whose valence is the same at every size: the first one that was measured.
+
+        A preset names it first, and everything but the valences is measured on it.
+        """
+        families = self.cases["family"]
+        counted = self.cases[(self.cases["kind"] == "work") & (families != HUBS)]["family"]
+        if len(counted):
+            return str(counted.iloc[0])
+        others = families[families.notna() & ~families.isin((HUBS, "chase"))]
+        return None if others.empty else str(others.mode().iloc[0])
+
+    def curve(self, axis: Axis, structure: str, subject: str, table: str = "") -> Curve:
+        """The cases along one axis: of the judged family, or of the hubs."""
+        source = _sources().get((table or table_of(subject), axis))
+        family = HUBS if axis.variable == "valence" else self.judged_family
+        rows = self._rows.get((*source, structure, subject, family), []) if source else []
+        cases = self.cases.iloc[rows].sort_values(axis.variable)
+        return Curve("work" if axis.exact else "time", axis.variable, cases)
+
+    def named(
+        self, experiment: str, structure: str, subject: str | None = None, order: str | None = None
+    ) -> Curve:
+        """The cases of one experiment by size, on the judged family, with references of 4 bytes."""
+        cases = self.cases[
+            (self.cases["experiment"] == experiment)
+            & (self.cases["structure"] == structure)
+            & (self.cases["family"] == self.judged_family)
+            & (self.cases["reference_bytes"] == 4)
+            & self.cases["valence"].isna()
+        ]
+        for column, value in (("subject", subject), ("order", order)):
+            cases = cases if value is None else cases[cases[column] == value]
+        kind = "work" if (cases["kind"] == "work").any() else "time"
+        return Curve(kind, "faces", cases.sort_values("faces"))
+
+    def latencies(self, curve: Curve) -> Array:
+        """(a, k): what each case may have waited for, beside it or in a part of its working set."""
+        beside = curve.cases["latency"].to_numpy(float)
+        sets = np.maximum(curve.cases["working_set"].to_numpy(float), 1)
+        within = [self.latency(sets / part) for part in PARTS]
+        return np.vstack([beside, *(it for it in within if it is not None)])
+
+    def latency(self, working_sets: Array) -> Array | None:
+        """Seconds per access at each working set, between those that were measured."""
+        sizes, seconds = self._latency
+        if len(sizes) == 0:
+            return None
+        return np.exp(np.interp(np.log(working_sets), np.log(sizes), np.log(seconds)))
+
+    def memory(self, structure: str, reference_bytes: int) -> pd.DataFrame:
+        """The judged family's cases of the memory experiment, by size."""
+        wanted = (
+            (self.cases["experiment"] == "bench_memory")
+            & (self.cases["structure"] == structure)
+            & (self.cases["family"] == self.judged_family)
+            & (self.cases["reference_bytes"] == reference_bytes)
+        )
+        return self.cases[wanted].sort_values("vertices")
+
+    def bytes_per_vertex(self, structure: str, reference_bytes: int = 8) -> float:
+        """Bytes in the arrays per vertex, at the largest size of the judged family."""
+        cases = self.memory(structure, reference_bytes)
+        if cases.empty:
+            return float("nan")
+        return float(cases["samples"].iloc[-1][0] / cases["vertices"].iloc[-1])
+
+    @cached_property
+    def _rows(self) -> dict[Any, Any]:
+        by = ["experiment", "order", "structure", "subject", "family"]
+        return self.cases.groupby(by).indices
+
+    @cached_property
+    def _latency(self) -> tuple[Array, Array]:
+        cases = self.cases[self.cases["experiment"] == "bench_latency"].sort_values("working_set")
+        seconds = [np.median(samples) for samples in cases["samples"]]
+        return cases["working_set"].to_numpy(float), np.array(seconds)
+
+
+@lru_cache(maxsize=4)
+def curves(run: Run) -> Curves:
+    """The curves of a run, the same object each time."""
+    return Curves(run)
+
+
+@lru_cache(maxsize=256)
+def table_of(subject: str) -> str:
+    """The first table that has a row for a subject."""
+    found = (it.name for it in tables().values() if subject in it.subjects)
+    return next(found, QUERIES_TABLE.name)
+
+
+@lru_cache(maxsize=1)
+def _sources() -> dict[tuple[str, Axis], tuple[str, str]]:
+    """By table and axis the experiment, and the order of its cases."""
+    return {(table, axis): source for table, axis, source in _declared()}
+
+
+def _declared() -> Iterator[tuple[str, Axis, tuple[str, str]]]:
+    for name, it in experiments().items():
+        for axis, order in it.axes.items():
+            if it.table is not None:
+                yield it.table.name, axis, (name, order)
+
+
+def axes_of(table: str) -> list[Axis]:
+    """The axes along which a table's claims are judged."""
+    return [axis for axis in Axis if (table, axis) in _sources()]
