@@ -4,7 +4,8 @@
 the reason.
 """
 
+from hem.complexity.estimates import slope
 from hem.complexity.judge import Bound, Outcome, Verdict, judge
 from hem.complexity.models import MODELS, NAMES, canonical
 
-__all__ = ["MODELS", "NAMES", "Bound", "Outcome", "Verdict", "canonical", "judge"]
+__all__ = ["MODELS", "NAMES", "Bound", "Outcome", "Verdict", "canonical", "judge", "slope"]

@@ -10,19 +10,20 @@ import hem
 import structures
 from experiments.harness import memory
 from experiments.harness.cases import Case
-from experiments.harness.memory import VARIABLE, available, estimate, size_of, why_not
-from experiments.runs import study
-from experiments.runs.results import load
+from experiments.harness.memory import VARIABLE, available, estimate, size_of
+from experiments.runs.catalog import experiments
 from structures import NAMES
-from tests.experiments.cli.test_cli import hem as hem_command
-from tests.experiments.small_study import begin, go_on
+
+COPIES = {name: experiment.copies for name, experiment in experiments().items()}
 
 
 @pytest.mark.parametrize("name", NAMES)
 @pytest.mark.parametrize("reference_bytes", [4, 8])
 def test_what_building_takes_is_foreseen_and_not_by_far_too_much(name, reference_bytes):
     n = 4_000
-    foreseen = estimate(Case(name, "torus", n, reference_bytes=reference_bytes), "bench_build")
+    foreseen = estimate(
+        Case(name, "torus", n, reference_bytes=reference_bytes), COPIES["bench_build"]
+    )
     structures.build(name, hem.generate("torus", n), reference_bytes)  # compiles
     tracemalloc.start()
     mesh = hem.generate("torus", n)
@@ -35,13 +36,15 @@ def test_what_building_takes_is_foreseen_and_not_by_far_too_much(name, reference
 
 def test_what_a_case_takes_grows_with_its_mesh_and_with_its_structure():
     def of(name, size):
-        return estimate(Case(name, "torus", size), "bench_operations")
+        return estimate(Case(name, "torus", size), COPIES["bench_operations"])
 
     assert of("indexed", 10**6) > 9 * of("indexed", 10**5)
     assert of("half_edge_objects", 10**5) > of("half_edge", 10**5) > of("indexed", 10**5)
-    hubs = estimate(Case("indexed", "hubs", 2_000, valence=8), "bench_valence")
-    assert hubs == estimate(Case("indexed", "torus", 1_000), "bench_valence")
-    assert estimate(Case("machine", "chase", 1 << 30), "bench_latency") > 1 << 30
+    hubs = estimate(Case("indexed", "hubs", 2_000, valence=8), COPIES["bench_valence"])
+    assert hubs == estimate(Case("indexed", "torus", 1_000), COPIES["bench_valence"])
+    assert (
+        estimate(Case("machine", "chase", 1 << 30), COPIES["bench_latency"]) > 1 << 30
+    )
 
 
 def test_what_is_available_is_the_least_that_anybody_allows(monkeypatch, tmp_path):
@@ -65,37 +68,3 @@ def test_what_is_available_is_the_least_that_anybody_allows(monkeypatch, tmp_pat
 )
 def test_sizes_are_read_as_people_write_them(text, size):
     assert size_of(text) == size
-
-
-def test_a_size_that_is_none_is_refused_in_one_line(monkeypatch, tmp_path):
-    monkeypatch.setenv(VARIABLE, "lots")
-    code, output = hem_command("study", "--output", str(tmp_path))
-    assert (code, output) == (1, "hem: HEM_MEMORY is a size such as 500M or 8G, not 'lots'")
-    assert list(tmp_path.iterdir()) == []
-
-
-def test_a_run_on_little_memory_leaves_out_what_does_not_fit_and_ends(monkeypatch, tmp_path):
-    """Of the smoke profile's meshes one fits and another one does not."""
-    small, large = (
-        estimate(Case("indexed", family, size), "bench_memory")
-        for family, size in (("torus", 1000), ("teapot", 0))
-    )
-    monkeypatch.setenv(VARIABLE, str(int((small + large) / 2 / memory.SHARE)))
-    monkeypatch.setattr(study, "EXPERIMENTS", ("bench_memory",))
-    fits = {
-        case.id: not why_not(case, "bench_memory")
-        for case in (
-            Case("indexed", family, size, reference_bytes=k)
-            for family, size in (("torus", 1000), ("teapot", 0))
-            for k in (4, 8)
-        )
-    }
-    assert set(fits.values()) == {True, False}
-    folder = begin(tmp_path)
-    assert go_on(folder) == []
-    run = load(folder)
-    assert "finished" in run.meta
-    assert set(run.cases["id"]) == {case for case, it in fits.items() if it}
-    assert set(run.skipped["id"]) == {case for case, it in fits.items() if not it}
-    assert run.skipped["skipped"].str.contains("are available, of which a case may take 70%").all()
-    assert (run.skipped["kind"] == "bytes").all()

@@ -7,11 +7,11 @@ import pytest
 
 import hem
 import structures
-from experiments.claims.growth import OPERATIONS
-from experiments.harness.cases import Case
-from experiments.harness.operations import Bench, arguments, faces_of
-from experiments.harness.presets import HUBS
-from experiments.harness.workloads import KEPT, WORKLOADS
+from experiments.harness import HUBS, OPERATIONS, WORKLOADS, Case
+from experiments.harness import operation_arguments as arguments
+from experiments.harness import operation_faces as faces_of
+from experiments.harness.operations import OperationBatch
+from experiments.harness.workloads import KEPT
 
 
 def case(structure: str, family: str = "torus", valence: int | None = None) -> Case:
@@ -36,29 +36,29 @@ def test_where_the_valence_varies_each_element_is_at_a_hub_of_its_own():
 
 @pytest.mark.parametrize("operation", OPERATIONS)
 @pytest.mark.parametrize("name", structures.NAMES)
-def test_a_bench_is_operated_on_and_restored(name, operation):
+def test_a_batch_is_operated_on_and_restored(name, operation):
     it = case(name)
-    bench = Bench(it.build(), operation, faces_of(it))
-    before = [array.copy() for array in bench.mesh.arrays]
-    count, each = bench.mesh.n_faces, {"split_edge": 2, "split_face": 2, "collapse_edge": -2}
+    batch = OperationBatch(it.build(), operation, faces_of(it))
+    before = [array.copy() for array in batch.mesh.arrays]
+    count, each = batch.mesh.n_faces, {"split_edge": 2, "split_face": 2, "collapse_edge": -2}
     each |= {"flip_edge": 0, "add_face": 1, "remove_face": -1}
     for _ in range(2):
-        assert bench.operate() == bench.operations > 10
-        assert bench.mesh.n_faces == count + each[operation] * bench.operations
-        bench.mesh.validate()
-        bench.restore()
-        now = bench.mesh.arrays
+        assert batch.operate() == batch.operations > 10
+        assert batch.mesh.n_faces == count + each[operation] * batch.operations
+        batch.mesh.validate()
+        batch.restore()
+        now = batch.mesh.arrays
         assert all(np.array_equal(a, b, equal_nan=True) for a, b in zip(now, before, strict=True))
     assert it.build().n_faces == 1800  # the mesh it was copied from is left alone
 
 
 def test_an_idle_call_takes_no_time_to_speak_of_and_does_nothing():
     it = case("half_edge")
-    bench = Bench(it.build(), "split_face", faces_of(it))
-    before = bench.mesh.n_faces
-    assert 0 < bench.idle_seconds() < 1e-3
-    assert bench.mesh.n_faces == before
-    assert bench.operate() == bench.operations
+    batch = OperationBatch(it.build(), "split_face", faces_of(it))
+    before = batch.mesh.n_faces
+    assert 0 < batch.idle_seconds() < 1e-3
+    assert batch.mesh.n_faces == before
+    assert batch.operate() == batch.operations
 
 
 def test_all_structures_are_asked_for_the_same(monkeypatch):

@@ -7,7 +7,7 @@ import pytest
 
 import hem
 import structures
-from experiments.harness.oracle import CheckFailedError, check, neighbors, pack
+from experiments.harness.oracle import CheckFailedError, check_query, neighbors, pack
 from hem.contract.queries import QUERIES
 
 # Two triangles (0, 1, 2) and (0, 2, 3) that share the edge 0-2.
@@ -41,10 +41,10 @@ def test_neighbors_are_those_found_by_hand(query):
 def test_a_wrong_answer_is_caught(name, query, monkeypatch):
     s = structures.build(name, hem.generate("torus", 100))
     handles = s.handles(QUERIES[query].source)[10:12]
-    check(s, hem.generate("torus", 100), QUERIES[query], handles)
+    check_query(s, hem.generate("torus", 100), QUERIES[query], handles)
     right = getattr(s, query)
     monkeypatch.setitem(s.__dict__, query, lambda handle: right(handle)[:-1])
     if query == "edge_vertices":
         return  # the names of edges themselves come from this query
     with pytest.raises(CheckFailedError, match=f"{name}.{query}"):
-        check(s, hem.generate("torus", 100), QUERIES[query], handles)
+        check_query(s, hem.generate("torus", 100), QUERIES[query], handles)

@@ -1,12 +1,21 @@
-"""Laws of timing: a delay while a case is calibrated does not decide what is timed."""
+"""Laws of timing: rounds are separate samples, and a delay while calibrating decides nothing."""
 
 from __future__ import annotations
 
 from time import perf_counter
 
 import numpy as np
+import pytest
 
-from experiments.harness.timer import _seconds_per_query
+from experiments.harness import PRESETS, BenchmarkTimer, time_rounds, why_too_slow
+from experiments.harness.queries import _seconds_per_query
+from experiments.harness.timer import UnitClock
+
+
+def busy(seconds: float) -> None:
+    end = perf_counter() + seconds
+    while perf_counter() < end:
+        pass
 
 
 class Delayed:
@@ -17,14 +26,50 @@ class Delayed:
         self.calls = 0
 
     def sweep(self, query: str, handles: np.ndarray) -> None:
-        end = perf_counter() + len(handles) * 1e-6 + (2e-3 if self.calls in self.slow else 0)
         self.calls += 1
-        while perf_counter() < end:
-            pass
+        busy(len(handles) * 1e-6 + (2e-3 if self.calls - 1 in self.slow else 0))
 
 
 def test_one_delayed_try_leaves_no_round_with_too_few_handles() -> None:
-    pool = np.arange(64)
+    handles = np.arange(64)
     for delayed in range(5):
-        seconds = _seconds_per_query(Delayed({delayed}), "vertex_faces", pool, 2e-4)
+        seconds = _seconds_per_query(Delayed({delayed}), "vertex_faces", handles, 2e-4)
         assert 1e-6 <= seconds < 1e-5
+
+
+@pytest.mark.parametrize("kind", ["alone", "pytest-benchmark"])
+def test_a_timer_gives_a_sample_and_a_calibration_per_round_and_per_unit(kind, benchmark) -> None:
+    timer, given = (time_rounds if kind == "alone" else BenchmarkTimer(benchmark)), []
+
+    def setup():
+        given.append(len(given))
+        return (given[-1],), {}
+
+    timed = timer(lambda k: busy(1e-3), setup=setup, rounds=4, warmup=2, per=10)
+    if kind == "alone":
+        benchmark.pedantic(lambda: None)
+    assert given == list(range(6)) or given == list(range(7))
+    assert timed.samples.shape == timed.calibration.shape == (4,)
+    assert (timed.samples >= 1e-4).all()
+    assert (timed.calibration > 0).all()
+
+
+def test_rounds_that_belong_together_become_one_sample() -> None:
+    timed = time_rounds(lambda: None, rounds=6)
+    together = timed.averaged(3)
+    assert together.samples.tolist() == [timed.samples[:3].mean(), timed.samples[3:].mean()]
+    assert together.calibration.shape == (2,)
+
+
+def test_a_round_of_many_units_lasts_as_long_as_one_of_them() -> None:
+    clock = UnitClock()
+    clock.per = 1e6
+    begin = clock()
+    busy(1e-2)
+    assert 1e-8 <= clock() - begin < 1e-6
+
+
+def test_a_case_that_would_search_for_too_long_says_so() -> None:
+    preset = PRESETS["quick"]
+    assert why_too_slow(10, 1_000, 3, preset) == ""
+    assert "given to all rounds" in why_too_slow(10**6, 10**6, 3, preset)

@@ -1,0 +1,47 @@
+"""A run on little memory skips what does not fit, says so, and ends."""
+
+from __future__ import annotations
+
+from experiments.harness import Case, memory
+from experiments.harness.memory import VARIABLE, estimate, why_too_large
+from experiments.runs import study
+from experiments.runs.catalog import experiments
+from experiments.runs.results import load
+from tests.experiments.cli.test_cli import hem as hem_command
+from tests.experiments.small_study import begin, go_on
+
+COPIES = experiments()["bench_memory"].copies
+
+
+def test_a_size_that_is_none_is_refused_in_one_line(monkeypatch, tmp_path):
+    monkeypatch.setenv(VARIABLE, "lots")
+    code, output = hem_command("study", "--output", str(tmp_path))
+    assert (code, output) == (1, "hem: HEM_MEMORY is a size such as 500M or 8G, not 'lots'")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_run_on_little_memory_skips_what_does_not_fit_and_ends(monkeypatch, tmp_path):
+    """Of the smoke profile's meshes one fits and another one does not."""
+    small, large = (
+        estimate(Case("indexed", family, size), COPIES)
+        for family, size in (("torus", 1000), ("teapot", 0))
+    )
+    monkeypatch.setenv(VARIABLE, str(int((small + large) / 2 / memory.SHARE)))
+    monkeypatch.setattr(study, "EXPERIMENTS", ("bench_memory",))
+    fits = {
+        case.id: not why_too_large(case, COPIES)
+        for case in (
+            Case("indexed", family, size, reference_bytes=k)
+            for family, size in (("torus", 1000), ("teapot", 0))
+            for k in (4, 8)
+        )
+    }
+    assert set(fits.values()) == {True, False}
+    folder = begin(tmp_path)
+    assert go_on(folder) == []
+    run = load(folder)
+    assert "finished" in run.meta
+    assert set(run.cases["id"]) == {case for case, it in fits.items() if it}
+    assert set(run.skipped["id"]) == {case for case, it in fits.items() if not it}
+    assert run.skipped["skipped"].str.contains("are available, of which a case may take 70%").all()
+    assert (run.skipped["kind"] == "bytes").all()
