@@ -33,7 +33,9 @@ def load_claims(text: str | None = None) -> list[Claim]:
 
     Raises ValueError naming the row for a subject, a structure or a class that does not exist.
     """
-    content = tomllib.loads(text or (files("experiments.claims") / "claims.toml").read_text("utf-8"))
+    content = tomllib.loads(
+        text or (files("experiments.claims") / "claims.toml").read_text("utf-8")
+    )
     classes = content["classes"]
     rows = [_completed(_checked(row)) for row in content["row"]]
     rows += [] if text else _of_experiments()
@@ -84,26 +86,30 @@ def _completed(row: Row) -> Row:
     """A row with what is claimed of the structures that the documents do not print."""
     if _table_of(row).name == "listings":
         return row
-    more = {
-        name: _own_claim(name, row)
-        for name, structure in REGISTRY.items()
-        if name not in row
-    }
+    more = {name: _own_claim(name, row) for name, structure in REGISTRY.items() if name not in row}
     return {**row, **more, DOCUMENTED: tuple(_printed(row))}
 
 
 def _own_claim(name: str, row: Row) -> str:
     """What a structure's own file claims of a subject."""
-    claims = REGISTRY[name].claims
+    claims = getattr(REGISTRY[name], "claims", None)
     if row["what"] == MEMORY:
         return NO_CLAIM
-    return str(claims.costs.get(row["what"]) or row.get(claims.like, NO_CLAIM))
+    return (
+        NO_CLAIM
+        if claims is None
+        else str(claims.costs.get(row["what"]) or row.get(claims.like, NO_CLAIM))
+    )
 
 
 def _source(row: Row, structure: str) -> str:
     """Who claims it: the document of the row, or the structure's own file."""
     kind = REGISTRY.get(structure)
-    if kind is None or kind.thesis or structure in row.get(DOCUMENTED, (structure,)):
+    if (
+        kind is None
+        or not hasattr(kind, "claims")
+        or structure in row.get(DOCUMENTED, (structure,))
+    ):
         return str(row["source"])
     return kind.claims.source
 
@@ -124,7 +130,9 @@ def _of_everyone(experiment: Experiment, claimed: Mapping[str, str]) -> dict[str
     return {name: claimed.get(name, default) for name in experiment.structures}
 
 
-def _claim(row: Row, structure: str, printed: Any, classes: Mapping[str, Mapping[str, str]]) -> Claim:
+def _claim(
+    row: Row, structure: str, printed: Any, classes: Mapping[str, Mapping[str, str]]
+) -> Claim:
     what, table = row["what"], _table_of(row)
     suffix = "" if table.name in ("queries", "operations") else f"/{table.name}"
     shared = {
@@ -137,13 +145,17 @@ def _claim(row: Row, structure: str, printed: Any, classes: Mapping[str, Mapping
     }
     if what == MEMORY:
         expects = Exactly(None if printed == NO_CLAIM else printed)
-        return Claim(text=_bytes_text(structure, printed), title=MEMORY_TITLE, expects=expects, **shared)
+        return Claim(
+            text=_bytes_text(structure, printed), title=MEMORY_TITLE, expects=expects, **shared
+        )
     if printed != NO_CLAIM and printed not in classes:
         raise ValueError(f"claims.toml, row {what}: {printed!r} is none of {', '.join(classes)}")
     measured = _axes()[table.name]
     growth = Growth({k: v for k, v in classes.get(printed, {}).items() if k in measured})
     title = table.subjects[what]
-    return Claim(text=_text(structure, title, printed, growth), title=title, expects=growth, **shared)
+    return Claim(
+        text=_text(structure, title, printed, growth), title=title, expects=growth, **shared
+    )
 
 
 def _bytes_text(structure: str, printed: Any) -> str:

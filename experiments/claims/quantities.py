@@ -26,7 +26,7 @@ from experiments.claims.verdicts import JudgedClaim
 from experiments.harness import BASE, OPERATIONS, Axis
 from experiments.runs.results import Run
 from hem.complexity import slope
-from hem.contract import QUERIES
+from hem.contract.queries import QUERIES
 from structures.half_edge_objects import HalfEdgeMeshBuilder
 from structures.plankton import Plankton
 
@@ -131,15 +131,15 @@ def _is_local(work: Array) -> bool:
 
 def _static(of_run: Curves) -> Iterable[float]:
     """Building a half-edge mesh by building an indexed one, in time; and the bytes of both."""
-    built = [of_run.named("bench_build", name, order="consecutive") for name in (HALF, BASE)]
-    yield from ratios(*built)
+    mine, base = (of_run.named("bench_build", it, order="consecutive") for it in (HALF, BASE))
+    yield from ratios(mine, base)
     yield from _bytes_ratio(of_run, HALF, BASE)
 
 
 def _dynamic(of_run: Curves) -> Iterable[float]:
     """The game-like mix of edits and queries, half-edge by indexed, on 1,000 vertices and more."""
-    hit = [of_run.named("bench_workloads", name, "impacts") for name in (HALF, BASE)]
-    yield from ratios(*hit, at_least=LARGER)
+    mine, base = (of_run.named("bench_workloads", it, "impacts") for it in (HALF, BASE))
+    yield from ratios(mine, base, at_least=LARGER)
 
 
 def _edits_per_build(of_run: Curves) -> Iterable[float]:
@@ -150,7 +150,9 @@ def _edits_per_build(of_run: Curves) -> Iterable[float]:
     yield from (mine["times"] / mine["vertices"]).tolist()
 
 
-def _slopes(of_run: Curves, names: Iterable[str], subjects: Iterable[str], table: str) -> Iterable[float]:
+def _slopes(
+    of_run: Curves, names: Iterable[str], subjects: Iterable[str], table: str
+) -> Iterable[float]:
     """The log-log slopes of work in the number of faces."""
     for name in names:
         for subject in subjects:

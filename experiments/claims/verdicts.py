@@ -71,7 +71,9 @@ def judge_cell(of_run: Curves, claim: Claim) -> JudgedClaim:
     found = {axis: _verdict(of_run, claim, claim.expects, axis) for axis in axes}
     verdicts = {axis: verdict for axis, verdict in found.items() if verdict is not None}
     outcomes = {
-        measure: _combined(claim.expects, [axis for axis in axes if axis.measure == measure], verdicts)
+        measure: _combined(
+            claim.expects, [axis for axis in axes if axis.measure == measure], verdicts
+        )
         for measure in ("work", "time")
     }
     counted = any(axis.exact for axis in axes)
@@ -80,7 +82,9 @@ def judge_cell(of_run: Curves, claim: Claim) -> JudgedClaim:
         claim=claim,
         outcome=outcomes["work" if counted else "time"],
         outcome_time=outcomes["time"],
-        found=_class_found([axis for axis in axes if axis.measure == ("work" if counted else "time")], verdicts),
+        found=_class_found(
+            [axis for axis in axes if axis.measure == ("work" if counted else "time")], verdicts
+        ),
         reason=" ".join(it.reason for axis, it in verdicts.items() if axis.exact == counted),
         verdicts=verdicts,
         work=of_run.curve(Axis.WORK_FACES, claim.structure, claim.subject, claim.table).largest,
