@@ -22,6 +22,7 @@ from experiments.claims.claim import (
     Shown,
 )
 from experiments.claims.curves import Curve, Curves, axes_of, curves
+from experiments.claims.kept import keep_judged, read_judged
 from experiments.claims.outcome import Outcome
 from experiments.claims.quantities import judge_sentences, ratios, sentence_claims, span
 from experiments.claims.verdicts import JudgedClaim, judge_cell, judge_cells
@@ -30,8 +31,18 @@ from experiments.runs.results import Run
 
 @lru_cache(maxsize=4)
 def judge_run(run: Run) -> list[JudgedClaim]:
-    """Every cell of every table, then every sentence; judged once, which takes some seconds."""
-    return [*judge_cells(run), *judge_sentences(run)]
+    """Every cell of every table, then every sentence.
+
+    A run is judged once, which takes some seconds; what a finished one gave is kept beside it.
+    """
+    claims = [*load_claims(), *sentence_claims()]
+    kept = read_judged(run.folder, claims)
+    if kept is not None:
+        return kept
+    judged = [*judge_cells(run), *judge_sentences(run)]
+    if "finished" in run.meta and run.folder.exists():
+        keep_judged(run.folder, judged)
+    return judged
 
 
 __all__ = [
