@@ -29,7 +29,7 @@ NUMBERS = ("work", "seconds", "bytes_per_vertex")
 
 
 def read_judged(folder: Path, claims: Iterable[Claim]) -> list[JudgedClaim] | None:
-    """What was kept of a run; None where there is nothing, or it is of other files or other code."""
+    """What was kept of a run; None where nothing was, or of other files or by other code."""
     try:
         content = json.loads((folder / "derived" / NAME).read_text("utf-8"))
         if content["of"] != _state(folder):
@@ -43,9 +43,9 @@ def keep_judged(folder: Path, judged: Iterable[JudgedClaim]) -> None:
     """Keep them; who may not write beside the run may read it all the same."""
     rows = {it.claim.key: _plain(it) for it in judged}
     with suppress(OSError):
-        path = folder / "derived" / NAME
-        path.parent.mkdir(exist_ok=True)
-        write_whole(path, json.dumps({"of": _state(folder), "claims": rows}, indent=1))
+        write_whole(
+            folder / "derived" / NAME, json.dumps({"of": _state(folder), "claims": rows}, indent=1)
+        )
 
 
 def _state(folder: Path) -> str:
