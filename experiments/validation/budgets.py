@@ -1,51 +1,32 @@
-"""How quickly things break, beside what was asked: ``python -m experiments.validation.budgets``."""
+"""Budgets: what was asked of the speed, what was measured, and whether that is enough."""
 
 from __future__ import annotations
 
-import json
-import subprocess
-import sys
-from dataclasses import replace
+import gc
+from collections.abc import Callable, Iterable, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass
+from multiprocessing import get_context
+from pathlib import Path
 from time import perf_counter
-from typing import Any, NamedTuple
+from typing import Any, TypeVar
 
 import numpy as np
-import typer
 from rich.console import Console
 from rich.table import Table
 
-import hem
-import structures
-from experiments.bench_fracture import BREAKING
-from hem.fracture import MATERIALS, Material, shatter
+from experiments.harness import time_rounds
 
-VERTICES = 100_000
-ROUNDS = 9
-WIDE = replace(BREAKING[True], scale=MATERIALS["glass"].scale)
-SEARCHES = 2
-"""Rounds on the indexed mesh, each of which takes seconds."""
+T = TypeVar("T")
 
-BREAK_BUNNY = (
-    "import json, sys, resource, hem\n"
-    "from time import perf_counter\n"
-    "import numpy as np\n"
-    "from hem.fracture import require_body, voronoi\n"
-    "body = require_body(hem.sample('bunny'))\n"
-    "random, count = np.random.default_rng(0), int(sys.argv[1])\n"
-    "low, high = body.mesh.points.min(axis=0), body.mesh.points.max(axis=0)\n"
-    "at = low + random.random((40 * count, 3)) * (high - low)\n"
-    "at = at[body.contains(at)][:count]\n"
-    "begin = perf_counter()\n"
-    "broken = voronoi(body, body.mesh.points[0], 'stone', sites=at)\n"
-    "seconds = perf_counter() - begin\n"
-    "error = broken.mass.volumes.sum() / body.volume - 1\n"
-    "peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024\n"
-    "print(json.dumps([len(at), len(broken.shards), seconds, error, peak]))\n"
-)
+ROUNDS = 5
+SECONDS = 6.0
+"""After so long no further round begins: what takes seconds is told apart by fewer of them."""
 
 
-class Bar(NamedTuple):
-    """One line: what, what was asked, what was measured, and whether that is enough."""
+@dataclass(frozen=True)
+class Budget:
+    """One line of a table."""
 
     what: str
     asked: str
@@ -53,56 +34,88 @@ class Bar(NamedTuple):
     met: bool
 
 
-def surface_bars() -> list[Bar]:
-    """A thousand break points on a torus of 100,000 vertices, on two structures by turns."""
-    mesh = hem.generate("torus", VERTICES)
-    seconds: dict[str, list[float]] = {}
-    for name, rounds in (("half_edge", ROUNDS), ("indexed", SEARCHES)):
-        original = structures.build(name, mesh)
-        shatter(original.copy(), mesh.points[0], BREAKING[True])  # compiles
-        seconds[name] = [_shattering(original, seed) for seed in range(rounds)]
-        if name == "half_edge":
-            apart = [_shattering(original, seed, WIDE) for seed in range(rounds)]
-    ours, searched = (float(np.median(it)) for it in seconds.values())
-    wide = float(np.median(apart))
-    what = f"1,000 break points, torus of {VERTICES:,} vertices"
-    return [
-        Bar(f"{what}, half-edge", "< 50 ms", f"{1e3 * ours:.1f} ms", ours < 0.05),
-        Bar("as far apart as in glass, half-edge", "< 50 ms", f"{1e3 * wide:.1f} ms", wide < 0.05),
-        Bar(
-            f"{what}, against indexed", ">= 20 x", f"{searched / ours:,.0f} x", searched > 20 * ours
-        ),
-    ]
+@dataclass(frozen=True)
+class Task:
+    """What is timed: ``call`` is given what ``setup``, which is not timed, makes for each round."""
+
+    call: Callable[..., Any]
+    setup: Callable[[], Any] | None = None
 
 
-def _shattering(original: Any, seed: int, material: Material = BREAKING[True]) -> float:
-    s = original.copy()
-    at = s.points[s.face_vertices(int(s.faces()[1_000 * seed]))].mean(axis=0)
-    begin = perf_counter()
-    shatter(s, at, material, seed)
-    return perf_counter() - begin
+@dataclass(frozen=True)
+class Comparison:
+    """One task, done by us and by a peer; ``asked``: how many times faster we are to be."""
+
+    what: str
+    asked: float
+    peer: str
+    ours: Task
+    theirs: Task
+
+    def measure(self) -> Budget:
+        """Time both, interleaved."""
+        ours, theirs = time_interleaved([self.ours, self.theirs])
+        ratio = theirs / ours
+        measured = f"{ratio:.2f} × ({_milliseconds(ours)}, theirs {_milliseconds(theirs)})"
+        met = ratio >= self.asked
+        return Budget(f"{self.what}, {self.peer}", f"≥ {self.asked:.3g} ×", measured, met)
 
 
-def body_bars() -> list[Bar]:
-    """The bunny in a process of its own, so that its memory can be told."""
-    bars = []
-    for count, asked, limit in ((100, "< 10 s", 10.0), (500, "memory for it", np.inf)):
-        command = [sys.executable, "-c", BREAK_BUNNY, str(count)]
-        done = subprocess.run(command, capture_output=True, text=True, check=True)
-        cases, shards, seconds, error, peak = json.loads(done.stdout)
-        measured = f"{seconds:.1f} s, {peak / 2**20:,.0f} MiB, volume {error:+.1e}"
-        what = f"bunny (28,088 vertices) in {cases} cases, {shards} shards"
-        bars.append(Bar(what, asked, measured, seconds < limit and abs(error) < 1e-6))
-    return bars
+def _milliseconds(seconds: float) -> str:
+    return f"{1e3 * seconds:,.1f} ms"
 
 
-def main() -> None:
-    """Measure, and print a table."""
-    table = Table("what", "asked", "measured", "", title="Destruction")
-    for bar in (*surface_bars(), *body_bars()):
-        table.add_row(bar.what, bar.asked, bar.measured, "✓" if bar.met else "✗")
+def print_budgets(title: str, budgets: Iterable[Budget]) -> None:
+    """Print a table, as wide as the terminal or 80 columns."""
+    table = Table("", "what", "measured", "asked", title=title, title_justify="left")
+    for row in budgets:
+        table.add_row("✓" if row.met else "✗", row.what, row.measured, row.asked)
     Console().print(table)
 
 
-if __name__ == "__main__":
-    typer.run(main)
+def time_interleaved(tasks: Sequence[Task], rounds: int = ROUNDS) -> list[float]:
+    """Median seconds of each task, a round of each after the other, after one that warms up.
+
+    A machine that slows down slows all of them. Freeing what a task returns is not timed.
+    """
+    samples: list[list[float]] = [[] for _ in tasks]
+    begin = perf_counter()
+    for turn in range(rounds + 1):
+        if turn > 1 and perf_counter() - begin > SECONDS:
+            break
+        for task, kept in zip(tasks, samples, strict=True):
+            kept.append(_time_once(task))
+    return [float(np.median(kept[1:])) for kept in samples]
+
+
+def _time_once(task: Task) -> float:
+    results: list[Any] = []
+
+    def setup() -> tuple[tuple[Any, ...], dict[str, Any]]:
+        given = (task.setup(),) if task.setup else ()
+        gc.collect()
+        return given, {}
+
+    timed = time_rounds(
+        lambda *given: results.append(task.call(*given)), setup=setup, rounds=1, warmup=0
+    )
+    return float(timed.samples[0])
+
+
+def run_in_new_process(function: Callable[..., T], *arguments: Any) -> T:
+    """Call a function of a module in a process of its own, whose memory is then its alone."""
+    with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as pool:
+        return pool.submit(function, *arguments).result()
+
+
+def peak_bytes(function: Callable[[], Any]) -> tuple[Any, int]:
+    """What a function returns, and the most resident bytes it added to this process. Linux only."""
+    Path("/proc/self/clear_refs").write_text("5")  # the peak begins anew
+    before = _status_bytes("VmRSS")
+    result = function()
+    return result, _status_bytes("VmHWM") - before
+
+
+def _status_bytes(key: str) -> int:
+    lines = Path("/proc/self/status").read_text().splitlines()
+    return 1024 * int(next(line for line in lines if line.startswith(key)).split()[1])

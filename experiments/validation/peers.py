@@ -1,278 +1,173 @@
 """How this project's half-edge mesh compares with other libraries, all measured in one run.
 
-``make peers`` installs them and runs this;
-``python -m experiments.validation.peers --help`` says what else.
-Competitors take turns, round by round, so that a machine that slows down slows all of them; a ratio
-is that of the medians.
+``make peers`` installs them and runs this. One that has no distribution for this Python is skipped,
+and said so. COMPAS, whose meshes are Python objects, is compared on a smaller mesh than the others.
 """
 
 from __future__ import annotations
 
-import gc
-import json
-import subprocess
-import sys
-from collections.abc import Callable
+import platform
+from collections.abc import Callable, Iterator
+from functools import partial
 from importlib import import_module
-from pathlib import Path
-from time import perf_counter
-from typing import Annotated, Any
+from typing import Any
 
 import numpy as np
-import typer
-from rich.console import Console
-from rich.table import Table
+from numpy.typing import NDArray
 
 import hem
 import structures
-from experiments.harness.cases import shuffled
-from experiments.validation.peer_operations import (
-    ROUNDS,
+from experiments.harness import shuffled
+from experiments.validation.budgets import (
+    Budget,
     Comparison,
     Task,
-    edits_by_size,
-    operated,
-    rendered_edits,
+    peak_bytes,
+    print_budgets,
+    run_in_new_process,
+    time_interleaved,
 )
-from hem.contract.queries import ELEMENTS, QUERIES, Query
-from hem.contract.structure import Structure
+from experiments.validation.peer_operations import compare_operations
 from hem.meshes.triangles import TriangleMesh
 
+Array = NDArray[Any]
+
+VERTICES = 1_000_000
+OBJECT_VERTICES = 20_000
 SINGLE_QUERIES = 100_000
 
+MODULES = {
+    "OpenMesh": "openmesh",
+    "MeshLib": "meshlib.mrmeshnumpy",
+    "libigl": "igl",
+    "trimesh": "trimesh",
+    "COMPAS": "compas.datastructures",
+}
 
-class Peers:
-    """The other libraries, imported, with what each builds of a mesh."""
+BUILDERS: dict[str, Callable[[Any, Array, Array], Any]] = {
+    "OpenMesh": lambda openmesh, points, triangles: openmesh.TriMesh(points, triangles),
+    "MeshLib": lambda meshlib, points, triangles: meshlib.meshFromFacesVerts(triangles, points),
+    "libigl": lambda igl, _, triangles: igl.triangle_triangle_adjacency(triangles),
+}
 
-    def __init__(self) -> None:
-        names = {
-            "openmesh": "openmesh",
-            "igl": "igl",
-            "meshlib": "meshlib.mrmeshnumpy",
-            "trimesh": "trimesh",
-            "compas": "compas.datastructures",
-        }
+
+def import_peers() -> dict[str, Any]:
+    """The libraries that are installed, by name."""
+    modules = {}
+    for name, module in MODULES.items():
         try:
-            self._modules = {name: import_module(module) for name, module in names.items()}
+            modules[name] = import_module(module)
         except ImportError as error:
-            raise ImportError(f"{error}; install the peers with: make peers") from error
-
-    def __getattr__(self, name: str) -> Any:
-        return self._modules[name]
-
-    def builders(self, mesh: TriangleMesh) -> dict[str, Task]:
-        """What each library does to know the neighbors in a mesh."""
-        points, faces = mesh.points.astype(np.float64), mesh.triangles.astype(np.int64)
-        triangles = np.array(mesh.triangles)
-        return {
-            "OpenMesh TriMesh": lambda: self.openmesh.TriMesh(points, triangles),
-            "MeshLib meshFromFacesVerts": lambda: self.meshlib.meshFromFacesVerts(
-                triangles, points
-            ),
-            "libigl triangle_triangle_adjacency": lambda: self.igl.triangle_triangle_adjacency(
-                faces
-            ),
-        }
+            print(f"{name} is skipped: {error} (Python {platform.python_version()})", flush=True)
+    return modules
 
 
-def comparisons(n_vertices: int) -> list[Comparison]:
-    """Everything that is compared, on a torus of so many vertices."""
-    peers, mesh = Peers(), hem.generate("torus", n_vertices)
-    mixed = shuffled(mesh)
+def compare_building(peers: dict[str, Any], mesh: TriangleMesh) -> Iterator[Comparison]:
+    """What each library does to know the neighbors in a mesh."""
+    cases = (
+        ("build", 5.0, "half_edge", mesh, BUILDERS),
+        ("build, renumbered at random", 1.5, "half_edge", shuffled(mesh), BUILDERS),
+        ("build Plankton's half-edges", 3.0, "plankton", mesh, ("OpenMesh",)),
+    )
+    for what, asked, structure, built, names in cases:
+        ours = Task(partial(structures.build, structure, built))
+        points, triangles = built.points.astype(np.float64), built.triangles.astype(np.int64)
+        for name in names:
+            if name in peers:
+                theirs = Task(partial(BUILDERS[name], peers[name], points, triangles))
+                yield Comparison(what, asked, name, ours, theirs)
+
+
+def compare_queries(peers: dict[str, Any], mesh: TriangleMesh) -> Iterator[Comparison]:
+    """Queries of all elements at once."""
     s = structures.build("half_edge", mesh)
-    om = peers.openmesh.TriMesh(mesh.points.astype(np.float64), np.array(mesh.triangles))
-    faces = mesh.triangles.astype(np.int64)
-    vertices, all_faces = s.vertices(), s.faces()
-    return [
-        Comparison(
-            "build",
-            5.0,
-            lambda: structures.build("half_edge", mesh),
-            peers.builders(mesh),
-        ),
-        Comparison(
-            "build, renumbered at random",
-            1.5,
-            lambda: structures.build("half_edge", mixed),
-            peers.builders(mixed),
-        ),
-        Comparison(
-            "vertex_faces of all",
-            1.5,
-            lambda: s.vertex_faces(vertices),
-            {
-                "OpenMesh vf_indices": om.vf_indices,
-                "trimesh vertex_faces": lambda: (
-                    peers.trimesh.Trimesh(mesh.points, mesh.triangles, process=False).vertex_faces
-                ),
-                "libigl vertex_triangle_adjacency": lambda: peers.igl.vertex_triangle_adjacency(
-                    faces, len(mesh.points)
-                ),
-            },
-        ),
-        Comparison(
-            "face_faces of all",
-            1.5,
-            lambda: s.face_faces(all_faces),
-            {"OpenMesh ff_indices": om.ff_indices},
-        ),
-        *_single_queries(peers, mesh, s, om),
-        Comparison(
-            "build Plankton's half-edges",
-            3.0,
-            lambda: structures.build("plankton", mesh),
-            {"OpenMesh TriMesh": peers.builders(mesh)["OpenMesh TriMesh"]},
-        ),
-        *_against_half_edges(mesh, s),
-        *operated(peers.openmesh),
-    ]
-
-
-def _against_half_edges(mesh: TriangleMesh, half_edge: Structure) -> list[Comparison]:
-    """Every query of all elements on Plankton's half-edges, beside those of the half-edge mesh."""
-    plankton = structures.build("plankton", mesh)
-    handles = {(s, source): s.handles(source) for s in (plankton, half_edge) for source in ELEMENTS}
-
-    def ask(s: Structure, query: Query) -> Task:
-        return lambda: getattr(s, query.name)(handles[s, query.source])
-
-    return [
-        Comparison(
-            f"{name} of all, Plankton",
-            1 / 1.5,
-            ask(plankton, query),
-            {"half-edge mesh": ask(half_edge, query)},
+    vertices, all_faces, faces = s.vertices(), s.faces(), mesh.triangles.astype(np.int64)
+    vertex_faces = Task(lambda: s.vertex_faces(vertices))
+    if openmesh := peers.get("OpenMesh"):
+        om = openmesh.TriMesh(mesh.points.astype(np.float64), np.array(mesh.triangles))
+        yield Comparison(
+            "vertex_faces of all", 1.5, "OpenMesh vf_indices", vertex_faces, Task(om.vf_indices)
         )
-        for name, query in QUERIES.items()
-    ]
+        ours, theirs = Task(lambda: s.face_faces(all_faces)), Task(om.ff_indices)
+        yield Comparison("face_faces of all", 1.5, "OpenMesh ff_indices", ours, theirs)
+        yield from _compare_single_queries(
+            "OpenMesh iterator", s, lambda v: [face.idx() for face in om.vf(om.vertex_handle(v))]
+        )
+    if trimesh := peers.get("trimesh"):
+        theirs = Task(lambda: trimesh.Trimesh(mesh.points, faces, process=False).vertex_faces)
+        yield Comparison("vertex_faces of all", 1.5, "trimesh", vertex_faces, theirs)
+    if igl := peers.get("libigl"):
+        theirs = Task(lambda: igl.vertex_triangle_adjacency(faces, len(mesh.points)))
+        yield Comparison("vertex_faces of all", 1.5, "libigl", vertex_faces, theirs)
 
 
-def seconds_to_build_objects(n_vertices: int = 100_000) -> float:
-    """The class model built of a torus: the median of three times."""
-    mesh, seconds = hem.generate("torus", n_vertices), []
-    for _ in range(3):
-        begin = perf_counter()
-        structures.build("half_edge_objects", mesh)
-        seconds.append(perf_counter() - begin)
-    return float(np.median(seconds))
+def compare_objects(peers: dict[str, Any]) -> Iterator[Comparison]:
+    """One query after the other, as COMPAS answers them."""
+    if compas := peers.get("COMPAS"):
+        mesh = hem.generate("torus", OBJECT_VERTICES)
+        s = structures.build("half_edge", mesh)
+        theirs = compas.Mesh.from_vertices_and_faces(mesh.points.tolist(), mesh.triangles.tolist())
+        what = f"COMPAS, torus of {OBJECT_VERTICES:,} vertices"
+        yield from _compare_single_queries(what, s, theirs.vertex_faces)
 
 
-def _single_queries(peers: Peers, mesh: TriangleMesh, s: Any, om: Any) -> list[Comparison]:
+def _compare_single_queries(peer: str, s: Any, ask: Callable[[int], Any]) -> Iterator[Comparison]:
     """One query after the other from a Python loop, in two orders of the vertices."""
-    compas = peers.compas.Mesh.from_vertices_and_faces(
-        mesh.points.tolist(), mesh.triangles.tolist()
-    )
-    random = np.random.default_rng(0).permutation(len(mesh.points))[:SINGLE_QUERIES]
-    orders = {"at random": random, "in order": np.arange(len(random))}
-    ask, ask_compas = s.vertex_faces, compas.vertex_faces
+    shuffled_vertices = np.random.default_rng(0).permutation(s.n_vertices)[:SINGLE_QUERIES]
+    count = len(shuffled_vertices)
+    for order, chosen in (("at random", shuffled_vertices), ("in order", np.arange(count))):
+        what = f"{count:,} single vertex_faces {order}"
+        yield Comparison(what, 1.0, peer, _ask_each(s.vertex_faces, chosen), _ask_each(ask, chosen))
 
-    def ask_openmesh(vertex: int) -> list[int]:
-        return [face.idx() for face in om.vf(om.vertex_handle(vertex))]
 
-    def loop(query: Callable[[int], Any], vertices: list[int]) -> Task:
-        def ask_all() -> None:
-            for vertex in vertices:
-                query(vertex)
+def _ask_each(ask: Callable[[int], Any], vertices: NDArray[np.int64]) -> Task:
+    handles = vertices.tolist()
 
-        return ask_all
+    def ask_each() -> None:
+        for vertex in handles:
+            ask(vertex)
 
+    return Task(ask_each)
+
+
+def measure_building() -> list[Budget]:
+    """The memory that building takes, in a process of its own, and how long objects take."""
+    size, peak = run_in_new_process(_build_and_weigh)
+    mesh = hem.generate("torus", 100_000)
+    (seconds,) = time_interleaved([Task(lambda: structures.build("half_edge_objects", mesh))], 1)
     return [
-        Comparison(
-            f"{len(vertices):,} single vertex_faces {name}",
-            1.0,
-            loop(ask, vertices.tolist()),
-            {
-                "OpenMesh iterator": loop(ask_openmesh, vertices.tolist()),
-                "COMPAS vertex_faces": loop(ask_compas, vertices.tolist()),
-            },
-        )
-        for name, vertices in orders.items()
+        Budget(
+            "peak while building, by what is built",
+            "< 3 ×",
+            f"{peak / size:.2f} ×",
+            peak < 3 * size,
+        ),
+        Budget("build objects of 100,000 vertices", "< 5 s", f"{seconds:.2f} s", seconds < 5),
     ]
 
 
-def measure(comparison: Comparison) -> dict[str, list[float]]:
-    """Seconds per round for us ("") and every peer, in turns, after one round for warming up."""
-    tasks = {"": comparison.ours, **comparison.theirs}
-    seconds: dict[str, list[float]] = {name: [] for name in tasks}
-    for turn in range(ROUNDS + 1):
-        for name, task in tasks.items():
-            fresh = comparison.fresh.get(name)
-            given = () if fresh is None else (fresh(),)
-            gc.collect()
-            begin = perf_counter()
-            result = task(*given)
-            took = perf_counter() - begin
-            del result, given
-            if turn:
-                seconds[name].append(took)
-    return seconds
+def _build_and_weigh() -> tuple[int, int]:
+    structures.build("half_edge", hem.generate("torus", 400))  # compiles
+    mesh = hem.generate("torus", VERTICES)
+    s, peak = peak_bytes(lambda: structures.build("half_edge", mesh))
+    return sum(s.memory().values()), peak
 
 
-def memory_while_building(n_vertices: int) -> dict[str, float]:
-    """Bytes in a process of its own: the finished structure, and the most while it was built."""
-    script = (
-        "import sys, json, tracemalloc, hem, structures\n"
-        "mesh = hem.generate('torus', int(sys.argv[1]))\n"
-        "structures.build('half_edge', hem.generate('torus', 400))\n"
-        "def status(key):\n"
-        "    lines = open('/proc/self/status').read().splitlines()\n"
-        "    return 1024 * int(next(l for l in lines if l.startswith(key)).split()[1])\n"
-        "open('/proc/self/clear_refs', 'w').write('5')\n"
-        "before = status('VmRSS')\n"
-        "s = structures.build('half_edge', mesh)\n"
-        "resident = status('VmHWM') - before\n"
-        "del s\n"
-        "tracemalloc.start()\n"
-        "s = structures.build('half_edge', mesh)\n"
-        "traced = tracemalloc.get_traced_memory()[1]\n"
-        "size = sum(s.memory().values())\n"
-        "print(json.dumps({'finished': size, 'traced': traced, 'resident': resident}))\n"
-    )
-    done = subprocess.run(
-        [sys.executable, "-c", script, str(n_vertices)], capture_output=True, text=True, check=True
-    )
-    sizes: dict[str, float] = json.loads(done.stdout)
-    return sizes
-
-
-def main(
-    vertices: Annotated[int, typer.Option(help="Size of the torus.")] = 1_000_000,
-    output: Annotated[Path | None, typer.Option("--json", help="Keep the rounds here.")] = None,
-) -> None:
-    """Compare with OpenMesh, libigl, MeshLib, trimesh and COMPAS, and print the ratios."""
-    console = Console()
-    table = Table(title=f"Half-edge mesh against its peers, torus of {vertices:,} vertices")
-    for head in ("what", "ours, ms", "peer", "peer's, ms", "times faster", "asked", ""):
-        right = head not in ("what", "peer", "")
-        table.add_column(head, justify="right" if right else "left")
-    kept = {}
-    try:
-        every = comparisons(vertices)
-    except ImportError as error:
-        console.print(f"[bold red]hem:[/] {error}")
-        raise typer.Exit(1) from error
-    for comparison in every:
-        seconds = kept[comparison.what] = measure(comparison)
-        ours = float(np.median(seconds[""]))
-        for peer in comparison.theirs:
-            theirs = float(np.median(seconds[peer]))
-            ratio = theirs / ours
-            met = "✓" if ratio >= comparison.asked else "✗"
-            cases = f"{1e3 * ours:.1f}", peer, f"{1e3 * theirs:.1f}", f"{ratio:.2f}"
-            table.add_row(comparison.what, *cases, f"{comparison.asked:.3g}", met)
-        table.add_section()
-    console.print(table)
-    edits = edits_by_size()
-    console.print(rendered_edits(edits))
-    sizes = memory_while_building(vertices)
-    for how in ("traced", "resident"):
-        ratio = sizes[how] / sizes["finished"]
-        console.print(f"Peak while building, {how}: {ratio:.2f} × the finished structure (under 3)")
-    objects = seconds_to_build_objects()
-    console.print(f"Objects of 100,000 vertices: built in {objects:.2f} s (under 5)")
-    if output:
-        output.write_text(json.dumps({"seconds": kept, "edits": edits, "bytes": sizes}, indent=1))
+def main() -> None:
+    """Compare with OpenMesh, MeshLib, libigl, trimesh and COMPAS; print a table after each part."""
+    peers, mesh = import_peers(), hem.generate("torus", VERTICES)
+    size = f"torus of {VERTICES:,} vertices"
+    parts: dict[str, Iterator[Comparison]] = {
+        f"Building, {size}": compare_building(peers, mesh),
+        f"Queries, {size}": compare_queries(peers, mesh),
+        "Queries of objects": compare_objects(peers),
+    }
+    if openmesh := peers.get("OpenMesh"):
+        parts["Operations, torus of 100,000 vertices"] = compare_operations(openmesh)
+    for title, comparisons in parts.items():
+        print_budgets(title, [comparison.measure() for comparison in comparisons])
+    print_budgets("Our own", measure_building())
 
 
 if __name__ == "__main__":
-    typer.run(main)
+    main()
