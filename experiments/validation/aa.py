@@ -10,6 +10,7 @@ attention.
 from __future__ import annotations
 
 import argparse
+import json
 import sys
 import tempfile
 from collections import Counter
@@ -26,7 +27,7 @@ from experiments.regression.gate import HERE
 from experiments.regression.interleaved import compare_trees
 from experiments.runs import study, worker
 from experiments.runs.provenance import describe
-from experiments.runs.results import load, write_json
+from experiments.runs.results import load
 from experiments.validation.mutants import copied_tree
 from structures import THESIS as STRUCTURES
 
@@ -95,6 +96,12 @@ def sum_counts(rows: Iterable[dict[str, Any]]) -> dict[str, int]:
     }
 
 
+def load_aa(path: Path = RESULT) -> dict[str, Any]:
+    """What was kept."""
+    kept: dict[str, Any] = json.loads(path.read_text("utf-8"))
+    return kept
+
+
 def in_words(kept: dict[str, Any]) -> str:
     """Say what was kept in a sentence or two."""
     pairs, interleaved = kept["pairs"], kept["interleaved"]
@@ -135,7 +142,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
             kept["pairs"] += [_print_row("pair", compare_pair(other, run)) for other in runs]
             runs.append(run)
     kept |= sum_counts(kept["pairs"] + kept["interleaved"])
-    write_json(given.output, kept)
+    given.output.write_text(json.dumps(kept, indent=1) + "\n", "utf-8")
     print(in_words(kept))
     return int(kept["alarms"] > LARGEST_SHARE * kept["comparisons"])
 

@@ -7,23 +7,23 @@ about every synthetic curve, some minutes, and keeps how often each gave which a
 from __future__ import annotations
 
 import argparse
+import json
 from collections import Counter
 from collections.abc import Iterable
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import pandas as pd
 
-from experiments.claims.growth import MEMORY, TABLES
-from experiments.claims.judged import judged
+from experiments.claims import Growth, JudgedClaim, Outcome
+from experiments.runs.catalog import tables
 from experiments.runs.provenance import describe
-from experiments.runs.results import Run, read_json, write_json
 from experiments.validation.judges import PACKAGES, Judge, installed_judges
 from experiments.validation.synthetic import CONDITIONS, GROWTH, SyntheticCurve, make_all_curves
 
 RESULT = Path("results/reference/accuracy.json")
-UNDETERMINED = "undetermined"
+UNDETERMINED = Outcome.UNDETERMINED.value
 COLUMNS = ["judge", "condition", "growth", "answer", "count"]
 COUNT = 144
 """Curves of each class and condition."""
@@ -38,14 +38,6 @@ ASKED = {
 
 DETERMINED = {"work": 0.95, "time": 0.85}
 """Share of table 1's claims that must be determined, by measure, on the standard preset."""
-
-
-class Shares(NamedTuple):
-    """How many claims a table has, and the share of them that is determined, by measure."""
-
-    claims: int
-    work: float
-    time: float
 
 
 def count_answers(judges: dict[str, Judge], curves: Iterable[SyntheticCurve]) -> pd.DataFrame:
@@ -84,48 +76,31 @@ def confusions(answers: pd.DataFrame, condition: str) -> dict[str, pd.DataFrame]
     }
 
 
-def determined_shares(claims: pd.DataFrame) -> dict[str, Shares]:
-    """By table, the shares of its claims with a verdict other than undetermined.
-
-    Claims about memory are not judged by growth, and cases that claim nothing are not counted.
-    """
-    claims = claims[(claims["subject"] != MEMORY) & (claims["outcome"] != "no claim")]
-    return {
-        str(name): Shares(
-            len(rows),
-            *(float((rows[f"outcome_{it}"] != UNDETERMINED).mean()) for it in ("work", "time")),
-        )
-        for name, rows in claims.groupby("table", sort=False)
-    }
+def determined_shares(judged: Iterable[JudgedClaim]) -> pd.DataFrame:
+    """By table: how many claims of growth it has, and the shares that work and time determine."""
+    rows = [
+        (it.claim.table, it.outcome != UNDETERMINED, it.outcome_time != UNDETERMINED)
+        for it in judged
+        if isinstance(it.claim.expects, Growth) and it.claim.claims_something
+    ]
+    by_table = pd.DataFrame(rows, columns=["table", "work", "time"]).groupby("table", sort=False)
+    shares = by_table.agg(claims=("work", "size"), work=("work", "mean"), time=("time", "mean"))
+    return shares.rename(index={name: table.title for name, table in tables().items()})
 
 
 def load_accuracy(path: Path = RESULT) -> tuple[dict[str, Any], pd.DataFrame]:
-    """What was measured when, and the answers. Raises ResultsError without the file."""
-    kept = read_json(path)
+    """What was measured when, and the answers."""
+    kept = json.loads(path.read_text("utf-8"))
     return kept, pd.DataFrame(kept["rows"], columns=kept["columns"])
 
 
 def accuracy_table(answers: pd.DataFrame) -> pd.DataFrame:
-    """Shares by condition and judge, in words, as a page shows them; a missing judge says so."""
-    shares = answer_shares(answers).map("{:.1%}".format)
+    """The shares as a page shows them; a judge that is not installed has a row that says so."""
+    table = answer_shares(answers).map("{:.1%}".format).reset_index()
+    table["condition"] = table["condition"].map(CONDITIONS)
     missing = [name for name in PACKAGES if name not in set(answers["judge"])]
-    rows = [
-        {"curves": text, "judge": judge, **shares.loc[(judge, condition)]}
-        for condition, text in CONDITIONS.items()
-        for judge in answers["judge"].unique()
-    ]
-    rows += [{"curves": "all", "judge": f"{name}: not installed"} for name in missing]
-    return pd.DataFrame(rows).fillna("")
-
-
-def determined_table(run: Run) -> pd.DataFrame:
-    """Shares of claims that are determined in a run, in words, as a page shows them."""
-    rows = [
-        {"table": TABLES[name], "claims": shares.claims}
-        | {f"determined by {measure}": f"{getattr(shares, measure):.0%}" for measure in DETERMINED}
-        for name, shares in determined_shares(judged(run)).items()
-    ]
-    return pd.DataFrame(rows)
+    rows = pd.DataFrame({"judge": missing, "condition": "not installed"})
+    return pd.concat([table, rows]).fillna("")
 
 
 def describe_origin(kept: dict[str, Any]) -> str:
@@ -157,8 +132,9 @@ def main() -> None:
     head = {key: value for key, value in describe("accuracy").items() if key != "profile"}
     head["versions"] |= {package: _version(package) for package in PACKAGES}
     head |= {"curves": given.count * len(GROWTH) * len(CONDITIONS), "seed": given.seed}
-    write_json(given.output, head | {"columns": COLUMNS, "rows": answers.to_numpy().tolist()})
-    print(answer_shares(answers).to_string(float_format="{:.4f}".format))
+    head |= {"columns": COLUMNS, "rows": answers.to_numpy().tolist()}
+    given.output.write_text(json.dumps(head, indent=1) + "\n", "utf-8")
+    print(accuracy_table(answers).to_string(index=False))
 
 
 if __name__ == "__main__":

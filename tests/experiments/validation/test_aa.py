@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from experiments.regression.baseline import measured
-from experiments.runs.results import load, read_json
+from experiments.runs.results import load
 from experiments.validation import aa
 from tests.experiments.made_runs import LAWS, write_run
 
@@ -13,7 +13,7 @@ ROOT = Path(__file__).parents[3]
 
 
 def test_the_kept_a_a_test_raised_few_alarms_and_readme_says_how_many() -> None:
-    kept = read_json(ROOT / "results" / "reference" / "aa.json")
+    kept = aa.load_aa(ROOT / "results" / "reference" / "aa.json")
     readme = " ".join((ROOT / "README.md").read_text().split())
     pairs, interleaved = aa.sum_counts(kept["pairs"]), aa.sum_counts(kept["interleaved"])
     assert kept["dirty"] is False
