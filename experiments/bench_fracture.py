@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 import structures
 from experiments.harness import Case, Experiment, Keep, Measurement, Preset, Timer, why_too_slow
 from experiments.harness.latency import latency_now
-from hem.contract.structure import Structure
+from hem.contract import Structure
 from hem.fracture import MATERIALS, Material, nearest_face, scanned, shatter
 from hem.fracture.surface.breaking import JUMP
 from hem.fracture.surface.nearest import Found

@@ -30,7 +30,7 @@ from experiments.harness import (
     operation_faces,
     time_operations,
 )
-from hem.contract.structure import Structure
+from hem.contract import Structure
 from structures import NAMES
 
 FEWEST_HUBS = 64

@@ -29,7 +29,8 @@ from experiments.harness import (
 from experiments.harness.latency import latency_now
 from hem.meshes import TriangleMesh
 from structures.as_printed import AsPrinted, render_arrays
-from structures.half_edge_objects import HalfEdgeMesh, HalfEdgeMeshBuilder, fields_accessed
+from structures.half_edge_objects import HalfEdgeMesh, fields_accessed
+from structures.object_tools import HalfEdgeMeshBuilder
 
 Array = NDArray[Any]
 

@@ -14,7 +14,7 @@ from experiments.harness import (
     Timer,
     time_checked_query,
 )
-from hem.contract.queries import QUERIES
+from hem.contract import QUERIES
 from structures import NAMES
 
 

@@ -20,7 +20,7 @@ from experiments.harness import (
     queried_handles,
     time_rounds,
 )
-from hem.contract.queries import QUERIES
+from hem.contract import QUERIES
 from structures import NAMES
 
 

@@ -18,8 +18,7 @@ from experiments.harness import (
     why_too_slow,
 )
 from experiments.harness.workloads import IMPACTS, WORKLOADS
-from hem.contract.queries import QUERIES
-from hem.contract.structure import Structure
+from hem.contract import QUERIES, Structure
 
 SMALL = 400
 """Vertices of the mesh on which all structures must give the same."""

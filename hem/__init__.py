@@ -13,14 +13,14 @@ if TYPE_CHECKING:  # what type checkers and editors see; the table below says it
     from hem.errors import MeshError as MeshError
     from hem.errors import NonManifoldError as NonManifoldError
     from hem.errors import TopologyError as TopologyError
-    from hem.meshes.manifold import require_manifold as require_manifold
-    from hem.meshes.manifold import require_sound as require_sound
-    from hem.meshes.polygons import PolygonMesh as PolygonMesh
-    from hem.meshes.summary import MeshSummary as MeshSummary
-    from hem.meshes.triangles import TriangleMesh as TriangleMesh
-    from hem.rendering.render import RenderMesh as RenderMesh
-    from hem.rendering.render import Upload as Upload
-    from hem.rendering.render import mesh_from_render as mesh_from_render
+    from hem.meshes import MeshSummary as MeshSummary
+    from hem.meshes import PolygonMesh as PolygonMesh
+    from hem.meshes import TriangleMesh as TriangleMesh
+    from hem.meshes import require_manifold as require_manifold
+    from hem.meshes import require_sound as require_sound
+    from hem.rendering import RenderMesh as RenderMesh
+    from hem.rendering import Upload as Upload
+    from hem.rendering import mesh_from_render as mesh_from_render
     from hem.sources.families import FAMILIES as FAMILIES
     from hem.sources.families import generate as generate
     from hem.sources.files import load as load
@@ -33,11 +33,14 @@ if TYPE_CHECKING:  # what type checkers and editors see; the table below says it
 _NAMES = {
     "hem.edit": ("Edit", "Remapping"),
     "hem.errors": ("MeshError", "NonManifoldError", "TopologyError"),
-    "hem.meshes.manifold": ("require_manifold", "require_sound"),
-    "hem.meshes.polygons": ("PolygonMesh",),
-    "hem.meshes.summary": ("MeshSummary",),
-    "hem.meshes.triangles": ("TriangleMesh",),
-    "hem.rendering.render": ("RenderMesh", "Upload", "mesh_from_render"),
+    "hem.meshes": (
+        "MeshSummary",
+        "PolygonMesh",
+        "TriangleMesh",
+        "require_manifold",
+        "require_sound",
+    ),
+    "hem.rendering": ("RenderMesh", "Upload", "mesh_from_render"),
     "hem.sources.families": ("FAMILIES", "generate"),
     "hem.sources.files": ("load", "save"),
     "hem.sources.samples": ("SAMPLES", "sample"),

@@ -19,3 +19,6 @@ Triangles = NDArray[np.int32]
 
 Indices = NDArray[np.int64]
 """Indices of elements, computed from a mesh."""
+
+Handles = NDArray[np.int32]
+"""Handles of vertices or faces, as queries answer them."""

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-Indices = NDArray[np.int32]
+from hem.arrays import Handles
 
 CREATED, CHANGED, REMOVED = range(3)
 VERTEX, FACE = 0, 3
@@ -19,10 +19,10 @@ VERTEX, FACE = 0, 3
 class Remapping(NamedTuple):
     """Where ``compact`` moved everything: new handles by old ones, -1 for what was dead."""
 
-    vertices: Indices
+    vertices: Handles
     """(old vertices, dead ones included): new vertex by old."""
 
-    faces: Indices
+    faces: Handles
     """(old faces, dead ones included): new face by old."""
 
     edges: Callable[[ArrayLike], NDArray[np.int64]]
@@ -63,37 +63,37 @@ class Edit:
         return f"Edit({self.kind}: {', '.join(parts) or 'nothing'})"
 
     @property
-    def created_vertices(self) -> Indices:
+    def created_vertices(self) -> Handles:
         """(k,) int32, ascending."""
         return self._found[VERTEX + CREATED]
 
     @property
-    def changed_vertices(self) -> Indices:
+    def changed_vertices(self) -> Handles:
         """(k,) int32, ascending: those at another position."""
         return self._found[VERTEX + CHANGED]
 
     @property
-    def removed_vertices(self) -> Indices:
+    def removed_vertices(self) -> Handles:
         """(k,) int32, ascending."""
         return self._found[VERTEX + REMOVED]
 
     @property
-    def created_faces(self) -> Indices:
+    def created_faces(self) -> Handles:
         """(k,) int32, ascending."""
         return self._found[FACE + CREATED]
 
     @property
-    def changed_faces(self) -> Indices:
+    def changed_faces(self) -> Handles:
         """(k,) int32, ascending: those with other corners."""
         return self._found[FACE + CHANGED]
 
     @property
-    def removed_faces(self) -> Indices:
+    def removed_faces(self) -> Handles:
         """(k,) int32, ascending."""
         return self._found[FACE + REMOVED]
 
     @cached_property
-    def _found(self) -> dict[int, Indices]:
+    def _found(self) -> dict[int, Handles]:
         """The net effect: for each element whether it was there before, and whether it is now."""
         found, log = {}, np.asarray(self.touched, np.int64)
         for kind in (VERTEX, FACE):

@@ -1,33 +1,52 @@
-"""The data structures, one file each, behind one contract."""
+"""The data structures, one file each, behind one contract.
+
+Whatever class in this folder fulfills ``hem.contract.Structure`` is found: a new structure is a new
+file, and nothing else.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from importlib import import_module
+from pkgutil import iter_modules
 from typing import Any
 
-from hem.contract.structure import REFERENCE_TYPES, Structure
-from hem.meshes.polygons import PolygonMesh, require_triangles
-from hem.meshes.triangles import TriangleMesh
-from structures.as_printed import AsPrinted
-from structures.half_edge import HalfEdge
-from structures.half_edge_objects import HalfEdgeMesh
-from structures.indexed import Indexed
-from structures.plankton import Plankton
-from structures.triangle_neighbor import TriangleNeighbor
-from structures.winged_edge import WingedEdge
+from hem.contract import REFERENCE_TYPES, Described, Structure
+from hem.meshes import PolygonMesh, TriangleMesh, require_triangles
+
+
+def find_described(folders: Iterable[str], package: str) -> dict[str, Any]:
+    """Every class with a name that a module in a package's folders defines, by name and in order.
+
+    Raises TypeError for a class that forgets a part, or has the name of another.
+    """
+    found = [
+        it
+        for module in iter_modules(folders, f"{package}.")
+        for it in vars(import_module(module.name)).values()
+        if isinstance(it, type) and issubclass(it, Described) and it.__module__ == module.name
+    ]
+    found.sort(key=lambda it: (it.order, it.name))
+    named: dict[str, Any] = {}
+    for it in found:
+        other = named.setdefault(it.name, it)
+        if other is not it:
+            raise TypeError(f"{it.__module__} and {other.__module__} are both called {it.name!r}")
+    return named
+
+
+NAMED: dict[str, Any] = find_described(__path__, __name__)
+"""Everything that has a name in a table; what is as printed is measured, and not to be used."""
 
 REGISTRY: dict[str, type[Structure]] = {
-    structure.name: structure
-    for structure in (Indexed, TriangleNeighbor, WingedEdge, HalfEdge, HalfEdgeMesh, Plankton)
+    name: it for name, it in NAMED.items() if issubclass(it, Structure)
 }
-"""Every structure by name, those of the thesis' table 1 first. A new one is one entry here."""
+"""Every structure by name, those of the thesis' table 1 first."""
 
 NAMES = tuple(REGISTRY)
 
-THESIS = ("indexed", "triangle_neighbor", "winged_edge", "half_edge")
+THESIS = tuple(name for name, it in NAMED.items() if it.thesis)
 """Those of the thesis' table 1."""
-
-NAMED: dict[str, Any] = {**REGISTRY, AsPrinted.name: AsPrinted}
-"""Everything that has a name in a table; what is as printed is measured, and not to be used."""
 
 __all__ = ["NAMED", "NAMES", "REGISTRY", "THESIS", "Structure", "build"]
 

@@ -18,6 +18,7 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from hem.contract import Claims, Described, Look
 from structures.class_model import Face, FaceList, HalfEdge, Point, Vertex
 
 
@@ -48,10 +49,12 @@ class RenderCache:
         self.commits += 1
 
 
-class AsPrinted:
+class AsPrinted(Described):
     """The half-edge mesh of the listings. Plain lists; the winding is that of the render mesh."""
 
     name, title, abbreviation = "as_printed", "As printed", "Printed"
+    look, order = Look("#c23b22", "X", "-"), 7
+    claims = Claims("thesis 3.3.2 to 5: the rows of the listings in experiments/claims/claims.toml")
 
     def __init__(self) -> None:
         self.vertices: list[Vertex] = []

@@ -15,13 +15,13 @@ A position of a list that is dead holds None until ``compact``; indices do not m
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from typing import Any, Generic, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from hem.contract.queries import ELEMENTS
+from hem.contract import ELEMENTS
 from hem.errors import MeshError
 
 Point = tuple[float, float, float]
@@ -268,3 +268,31 @@ def around(vertex: Vertex) -> tuple[list[HalfEdge], bool]:
         found.append(h)
         h = h.next.next.opposite
     return found, False
+
+
+CLR_HEADER, CLR_REFERENCE = 16, 8
+"""Bytes of an object's header (sync block index and type handle) and of a reference, on 64 bits."""
+
+CLR_CLASSES = {
+    "vertex": {"point": 12, "half_edge": 8, "index": 4, "position_changed": 8},
+    "half_edge": {"origin": 8, "face": 8, "next": 8, "opposite": 8, "index": 4},
+    "face": {"half_edge": 8, "index": 4},
+}
+"""The fields that the thesis declares (3.2.2), in bytes: Vector3, references, int, event."""
+
+
+def clr_memory(counts: Mapping[str, int]) -> dict[str, int]:
+    """Bytes per field as the runtime of the thesis would lay its classes out: a model.
+
+    ``counts``: how many objects there are, by class. See ``CLR_CLASSES``; in a list every element
+    takes one more reference.
+    """
+    taken: dict[str, int] = {}
+    for kind, n in counts.items():
+        fields = CLR_CLASSES[kind]
+        size = CLR_HEADER + sum(fields.values())
+        taken |= {f"{kind}.header": CLR_HEADER * n}
+        taken |= {f"{kind}.{field}": width * n for field, width in fields.items()}
+        taken |= {f"{kind}.padding": -size % CLR_REFERENCE * n}
+        taken |= {f"{kind}.list": CLR_REFERENCE * n}
+    return taken

@@ -23,39 +23,41 @@ the smaller index of its two half-edges. Bytes per vertex with 8-byte references
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple, Self
+from typing import NamedTuple, Self
 
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from hem.authoring.invariants import (
-    require,
-    require_counts,
-    require_distinct_edges,
-    require_one_fan,
-    require_points,
-    require_references,
-)
-from hem.authoring.kernels import (
+from hem.arrays import Array
+from hem.authoring import (
     EDGE_END,
     FACE_END,
+    LEFT,
+    REFERENCE_TYPES,
+    RIGHT,
+    A,
+    B,
+    C,
+    D,
+    Field,
     append_face,
     circulator,
+    counted,
     edges_at_both_ends,
     found_by_steps,
+    in_slices,
     joined_by_steps,
     kernel,
-    named,
+    live,
+    pair_half_edges,
+    require,
+    require_distinct_edges,
+    require_edge_count,
+    require_one_fan,
 )
-from hem.authoring.pairing import pair_half_edges
-from hem.authoring.records import Field, counted, live
-from hem.authoring.topology import LEFT, RIGHT, A, B, C, D
-from hem.contract.structure import REFERENCE_TYPES, Structure
-from hem.engine.slices import in_slices
-from hem.meshes.triangles import TriangleMesh
-
-Array = NDArray[Any]
+from hem.contract import Look, Structure
+from hem.meshes import TriangleMesh
 
 ORIGIN, FACE, NEXT, TWIN = range(4)  # the columns of a half-edge
 
@@ -188,7 +190,7 @@ def face_faces(m: HalfEdgeRecords, f: int, out: Array) -> int:
     return count
 
 
-# What operations need to know, and what they change (topology and operations in hem.authoring) ----
+# What operations need to know, and what they change (see hem.authoring.operations) --------------
 
 
 @kernel
@@ -248,15 +250,15 @@ def ends_at(m: HalfEdgeRecords, h: int, v: int, w: int) -> bool:
 
 
 # The half-edge that runs a → b, or -1; and one at a whose face has b.
-between = found_by_steps(first, clockwise, ends_at, counterclockwise)
+find_half_edge = found_by_steps(first, clockwise, ends_at, counterclockwise)
 with_edge = found_by_steps(first, clockwise, in_triangle, counterclockwise)
-joined = joined_by_steps(first, clockwise, ends_at, with_edge)
+are_joined = joined_by_steps(first, clockwise, ends_at, with_edge)
 
 
 @kernel
-def beside(m: HalfEdgeRecords, a: int, b: int) -> int:
+def face_left_of(m: HalfEdgeRecords, a: int, b: int) -> int:
     """The face that runs a → b, or -1. Cost O(n_ev)."""
-    h = between(m, a, b)
+    h = find_half_edge(m, a, b)
     return m.half_edge[h, FACE] if h >= 0 else -1
 
 
@@ -292,13 +294,13 @@ def set_vertices(m: HalfEdgeRecords, h: int) -> None:
 
 
 @kernel
-def isolate(m: HalfEdgeRecords, v: int) -> None:
+def clear_vertex(m: HalfEdgeRecords, v: int) -> None:
     """See to it that vertex v has no faces."""
     m.vertex_half_edge[v] = -1
 
 
 @kernel
-def cut_edge(m: HalfEdgeRecords, e: int, at: Array, v: int, f: int) -> None:
+def split_edge_records(m: HalfEdgeRecords, e: int, at: Array, v: int, f: int) -> None:
     """Cost O(1): two half-edges of each face stay, one moves on, and three are new."""
     left, right = left_and_right(m, e)  # they stay with a and v
     on_left, on_right = -1, -1  # the halves of the edge from v to b
@@ -325,7 +327,7 @@ def cut_edge(m: HalfEdgeRecords, e: int, at: Array, v: int, f: int) -> None:
 
 
 @kernel
-def cut_face(m: HalfEdgeRecords, face: int, v: int, f: int) -> None:
+def split_face_records(m: HalfEdgeRecords, face: int, v: int, f: int) -> None:
     """Cost O(1): each face keeps one half-edge of the old one and gets two."""
     ab = m.face_half_edge[face]
     other = ab
@@ -390,7 +392,7 @@ def unite(m: HalfEdgeRecords, gone: int, stays: int) -> None:
 
 
 @kernel
-def contract(
+def collapse_records(
     m: HalfEdgeRecords, e: int, at: Array, drop: int, keep: int, around: int, out: Array
 ) -> None:
     """Cost O(n_ev) for the half-edges that leave ``drop``."""
@@ -417,7 +419,7 @@ def contract(
 
 
 @kernel
-def turn(m: HalfEdgeRecords, e: int, at: Array, one: int, other: int) -> None:
+def flip_records(m: HalfEdgeRecords, e: int, at: Array, one: int, other: int) -> None:
     """Cost O(1)."""
     ab, ba = left_and_right(m, e)
     bc, ad = m.half_edge[ab, NEXT], m.half_edge[ba, NEXT]
@@ -429,10 +431,14 @@ def turn(m: HalfEdgeRecords, e: int, at: Array, one: int, other: int) -> None:
 
 
 @kernel
-def attach(m: HalfEdgeRecords, corners: Array, f: int) -> None:
+def add_records(m: HalfEdgeRecords, corners: Array, f: int) -> None:
     """Cost O(n_ev)."""
     a, b, c = corners[0], corners[1], corners[2]
-    ab, bc, ca = between(m, b, a), between(m, c, b), between(m, a, c)  # beyond the edges
+    ab, bc, ca = (
+        find_half_edge(m, b, a),
+        find_half_edge(m, c, b),
+        find_half_edge(m, a, c),
+    )  # beyond the edges
     g, h, i = new_half_edge(m, a), new_half_edge(m, b), new_half_edge(m, c)
     if ab >= 0:
         set_twins(m, g, ab)
@@ -446,7 +452,7 @@ def attach(m: HalfEdgeRecords, corners: Array, f: int) -> None:
 
 
 @kernel
-def detach(m: HalfEdgeRecords, f: int) -> None:
+def remove_records(m: HalfEdgeRecords, f: int) -> None:
     """Cost O(1)."""
     g = m.face_half_edge[f]
     h = m.half_edge[g, NEXT]
@@ -461,7 +467,7 @@ def detach(m: HalfEdgeRecords, f: int) -> None:
 
 
 @kernel
-def anchor(m: HalfEdgeRecords, v: int, f: int) -> None:
+def set_vertex_face(m: HalfEdgeRecords, v: int, f: int) -> None:
     """Let v know of the face f at it. Cost O(1)."""
     h = m.face_half_edge[f]
     for _ in range(3):
@@ -489,22 +495,16 @@ class HalfEdge(Structure):
     """The half-edge mesh."""
 
     name, title, abbreviation = "half_edge", "Half-Edge", "HEM"
+    look, thesis, order = Look("#e69f00", "D", "-"), True, 4
     records_type = HalfEdgeRecords
     fields = (
         Field("vertex.point", "vertex_point", 3, marks=True),
-        Field("vertex.half_edge", "vertex_half_edge", target="half_edge"),
+        Field("vertex.half_edge", "vertex_half_edge", target="half_edge", optional=True),
         Field("face.half_edge", "face_half_edge", target="half_edge", marks=True),
         Field("half_edge.origin", "half_edge", target="vertex"),
         Field("half_edge.face", "half_edge", target="face", marks=True),
         Field("half_edge.next", "half_edge", target="half_edge"),
-        Field("half_edge.twin", "half_edge", target="half_edge"),
-    )
-    kernels = named(
-        *(vertex_vertices, vertex_edges, vertex_faces),
-        *(edge_vertices, edge_edges, edge_faces),
-        *(face_vertices, face_edges, face_faces),
-        *(edge_exists, face_exists, diamond, joined, beside),
-        *(isolate, cut_edge, cut_face, contract, turn, attach, detach, anchor),
+        Field("half_edge.twin", "half_edge", target="half_edge", optional=True),
     )
 
     @classmethod
@@ -529,47 +529,35 @@ class HalfEdge(Structure):
         twin = self.records.half_edge[np.where(known, handles, 0), TWIN]
         return np.where(known & (twin >= 0), np.minimum(handles, twin), handles)
 
-    def validate(self) -> None:
-        """See ``Structure.validate``; the invariants stand at the top of this file."""
-        m, fields = self.records, self.fields
-        vertices, faces = live(m, fields, "vertex"), live(m, fields, "face")
-        half_edges = live(m, fields, "half_edge")
-        leaving, within = m.vertex_half_edge[: len(vertices)], m.face_half_edge[: len(faces)]
+    def _require_invariants(self) -> None:
+        """Those at the top of this file."""
+        m, half_edges = self.records, live(self.records, self.fields, "half_edge")
+        leaving, f = m.vertex_half_edge[: len(self.points)], self.faces()
         origin, face, following, twin = m.half_edge[: len(half_edges)].T
-        h, f, n = np.flatnonzero(half_edges), np.flatnonzero(faces), len(half_edges)
-        edges = h[(twin[h] < 0) | (h < twin[h])]
-        require_counts(m, fields, len(edges))
-        require_points(self.points)
-        require_references(origin[h], vertices, "origin", "half_edges", h)
-        require_references(face[h], faces, "face", "half_edges", h)
-        require_references(following[h], half_edges, "next", "half_edges", h)
-        require_references(twin[h], half_edges, "twin", "half_edges", h, least=-1)
-        require_references(leaving, half_edges, "half-edge", "vertices", least=-1)
-        require_references(within[f], half_edges, "half-edge", "faces", f)
-
-        after = following[h]
+        h, after = np.flatnonzero(half_edges), following[half_edges]
+        edges = self.edges()
+        require_edge_count(m, len(edges))
         require(after != h, "next is another half-edge", "half_edges", h)
         require(following[following[after]] == h, "three times next comes round", "half_edges", h)
         require(face[after] == face[h], "next lies in the same face", "half_edges", h)
-        require(face[within[f]] == f, "a face's half-edge lies in it", "faces", f)
-        sides = np.bincount(face[h], minlength=len(faces))[f]
+        require(face[m.face_half_edge[f]] == f, "a face's half-edge lies in it", "faces", f)
+        sides = np.bincount(face[h], minlength=self.face_end)[f]
         require(sides == 3, "a face has three half-edges", "faces", f)
 
         inner = h[twin[h] >= 0]
         other = twin[inner]
         paired = (other != inner) & (twin[other] == inner)
         require(paired, "twin of twin is the half-edge itself", "half_edges", inner)
-        opposite = (origin[other] == origin[following[inner]]) & (
-            origin[following[other]] == origin[inner]
-        )
+        opposite = origin[other] == origin[following[inner]]
+        opposite &= origin[following[other]] == origin[inner]
         words = "twins run opposite ways between the same vertices"
         require(opposite, words, "half_edges", inner)
 
-        used = np.bincount(origin[h], minlength=len(vertices)) > 0
+        used = np.bincount(origin[h], minlength=len(leaving)) > 0
         require((leaving >= 0) == used, "just the vertices with faces have a half-edge", "vertices")
         at = np.flatnonzero(used)
         require(origin[leaving[at]] == at, "a vertex' half-edge starts at it", "vertices", at)
-        clockwise = np.full(n, -1)
+        clockwise = np.full(len(half_edges), -1)
         clockwise[inner] = following[other]
         require_one_fan(origin, clockwise, h)
         require_distinct_edges(origin[edges], origin[following[edges]], "edges", edges)

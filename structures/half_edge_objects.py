@@ -23,39 +23,31 @@ Bytes per vertex: Python's own (``memory``), and those of the thesis' runtime (`
 
 from __future__ import annotations
 
-import gc
 import sys
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from functools import cached_property
-from typing import Any, NamedTuple, Self
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from hem.authoring.kernels import (
+from hem.arrays import Array
+from hem.authoring import (
     EDGE_END,
-    EDGE_ROOM,
     EDGES,
-    FACE_ROOM,
-    FACES,
+    LEFT,
+    RIGHT,
     VALENCE,
-    VERTEX_END,
-    VERTEX_ROOM,
-    VERTICES,
+    A,
+    C,
+    D,
     append_face,
     edges_at_both_ends,
-    named,
 )
-from hem.authoring.records import ENDLESS, counted
-from hem.authoring.topology import LEFT, RIGHT, A, C, D
-from hem.contract.queryable import HANDLE_TYPES
-from hem.contract.structure import Structure
-from hem.engine.interpreted import Held, InterpretedUses, counting
+from hem.contract import HANDLE_TYPES, Claims, Look, Structure
+from hem.engine import Held, InterpretedUses, counting
 from hem.errors import MeshError
-from hem.meshes.manifold import require_manifold
-from hem.meshes.triangles import TriangleMesh
-from hem.rendering.render import mesh_from_render
+from hem.meshes import TriangleMesh
 from structures.class_model import (
     ElementList,
     Face,
@@ -65,23 +57,20 @@ from structures.class_model import (
     Vertex,
     VertexList,
     around,
+    clr_memory,
 )
 from structures.half_edge import HalfEdge as HalfEdgeArrays
 from structures.half_edge import HalfEdgeRecords
-
-Array = NDArray[Any]
+from structures.object_records import (
+    ObjectRecords,
+    build_records,
+    count_records,
+    from_arrays,
+    to_arrays,
+)
 
 COUNTED = (Vertex, HalfEdge, Face, ElementList)
 """The classes whose fields count as work when they are read or written."""
-
-
-class ObjectRecords(NamedTuple):
-    """What the kernels are given: the lists that own everything."""
-
-    vertices: VertexList
-    half_edges: HalfEdgeList
-    faces: FaceList
-    counts: Array  # how many of them there are, see hem.authoring.kernels
 
 
 def vertex_vertices(m: ObjectRecords, v: int, out: Any) -> int:
@@ -170,7 +159,7 @@ def face_faces(m: ObjectRecords, f: int, out: Any) -> int:
     return count
 
 
-# What operations need to know, and what they change (topology and operations in hem.authoring) ----
+# What operations need to know, and what they change (see hem.authoring.operations) --------------
 
 
 def _exists(items: list[Any], index: int) -> bool:
@@ -198,7 +187,7 @@ def coordinate(m: ObjectRecords, v: int, i: int) -> float:
     return float("nan") if vertex is None else vertex.point[i]
 
 
-def place(m: ObjectRecords, v: int, point: Any) -> None:
+def set_point(m: ObjectRecords, v: int, point: Any) -> None:
     """Give a vertex its position, be it new or not."""
     position = float(point[0]), float(point[1]), float(point[2])
     if v == len(m.vertices.items):
@@ -207,12 +196,12 @@ def place(m: ObjectRecords, v: int, point: Any) -> None:
         m.vertices.items[v].point = position
 
 
-def bury(m: ObjectRecords, v: int) -> None:
+def kill_vertex(m: ObjectRecords, v: int) -> None:
     """Make a vertex dead."""
     m.vertices.items[v] = None
 
 
-def isolate(m: ObjectRecords, v: int) -> None:
+def clear_vertex(m: ObjectRecords, v: int) -> None:
     """See to it that vertex v has no faces."""
     m.vertices.items[v].half_edge = None
 
@@ -234,7 +223,7 @@ def diamond(m: ObjectRecords, e: int, at: Any) -> int:
     return (left is not None) + (right is not None)
 
 
-def between(m: ObjectRecords, a: int, b: int) -> HalfEdge | None:
+def find_half_edge(m: ObjectRecords, a: int, b: int) -> HalfEdge | None:
     """The half-edge that runs a → b, if there is one. Cost O(n_ev)."""
     for h in around(m.vertices.items[a])[0]:
         if h.end.index == b:
@@ -242,14 +231,14 @@ def between(m: ObjectRecords, a: int, b: int) -> HalfEdge | None:
     return None
 
 
-def joined(m: ObjectRecords, a: int, b: int) -> bool:
+def are_joined(m: ObjectRecords, a: int, b: int) -> bool:
     """Cost O(n_ev)."""
-    return between(m, a, b) is not None or between(m, b, a) is not None
+    return find_half_edge(m, a, b) is not None or find_half_edge(m, b, a) is not None
 
 
-def beside(m: ObjectRecords, a: int, b: int) -> int:
+def face_left_of(m: ObjectRecords, a: int, b: int) -> int:
     """The face that runs a → b, or -1. Cost O(n_ev)."""
-    h = between(m, a, b)
+    h = find_half_edge(m, a, b)
     return -1 if h is None else h.face.index
 
 
@@ -265,7 +254,7 @@ def lead_from_ends(h: HalfEdge) -> None:
     h.end.half_edge = h.next
 
 
-def cut_edge(m: ObjectRecords, e: int, at: Any, v: int, f: int) -> None:
+def split_edge_records(m: ObjectRecords, e: int, at: Any, v: int, f: int) -> None:
     """Cost O(1): two half-edges of each face stay, one moves on, and three are new."""
     left, right = left_and_right(m.half_edges.items[e])  # they stay with a and v
     middle = m.vertices.items[v]
@@ -291,7 +280,7 @@ def cut_edge(m: ObjectRecords, e: int, at: Any, v: int, f: int) -> None:
         m.half_edges.pair(on_left, on_right)
 
 
-def cut_face(m: ObjectRecords, face: int, v: int, f: int) -> None:
+def split_face_records(m: ObjectRecords, face: int, v: int, f: int) -> None:
     """Cost O(1): each face keeps one half-edge of the old one and gets two."""
     it, middle = m.faces.items[face], m.vertices.items[v]
     h = it.half_edge
@@ -337,7 +326,7 @@ def unite(m: ObjectRecords, gone: HalfEdge, stays: HalfEdge) -> None:
         lead_from_ends(alone)
 
 
-def contract(
+def collapse_records(
     m: ObjectRecords, e: int, at: Any, drop: int, keep: int, around: int, out: Any
 ) -> None:
     """Cost O(n_ev) for the half-edges that leave ``drop``."""
@@ -362,7 +351,7 @@ def contract(
             unite(m, following, last)
 
 
-def turn(m: ObjectRecords, e: int, at: Any, one: int, other: int) -> None:
+def flip_records(m: ObjectRecords, e: int, at: Any, one: int, other: int) -> None:
     """Cost O(1)."""
     ab, ba = left_and_right(m.half_edges.items[e])
     assert ab is not None  # at the border a flip is refused
@@ -375,10 +364,10 @@ def turn(m: ObjectRecords, e: int, at: Any, one: int, other: int) -> None:
     ad.origin.half_edge, bc.origin.half_edge = ad, bc
 
 
-def attach(m: ObjectRecords, corners: Any, f: int) -> None:
+def add_records(m: ObjectRecords, corners: Any, f: int) -> None:
     """Cost O(n_ev)."""
     a, b, c = (m.vertices.items[int(corner)] for corner in corners)
-    beyond = [between(m, q.index, p.index) for p, q in ((a, b), (b, c), (c, a))]
+    beyond = [find_half_edge(m, q.index, p.index) for p, q in ((a, b), (b, c), (c, a))]
     sides = [new_half_edge(m, corner) for corner in (a, b, c)]
     for side, opposite in zip(sides, beyond, strict=True):
         if opposite is not None:
@@ -388,7 +377,7 @@ def attach(m: ObjectRecords, corners: Any, f: int) -> None:
         corner.half_edge = side
 
 
-def detach(m: ObjectRecords, f: int) -> None:
+def remove_records(m: ObjectRecords, f: int) -> None:
     """Cost O(1)."""
     face = m.faces.items[f]
     sides = [face.half_edge, face.half_edge.next, face.half_edge.previous]
@@ -401,7 +390,7 @@ def detach(m: ObjectRecords, f: int) -> None:
             lead_from_ends(left)
 
 
-def anchor(m: ObjectRecords, v: int, f: int) -> None:
+def set_vertex_face(m: ObjectRecords, v: int, f: int) -> None:
     """Let v know of the face f at it. Cost O(1)."""
     h = m.faces.items[f].half_edge
     while h.origin.index != v:
@@ -419,22 +408,19 @@ class HalfEdgeMesh(Structure):
     """The half-edge mesh of the thesis' class model."""
 
     name, title, abbreviation = "half_edge_objects", "Half-Edge Objects", "Objects"
+    look, order = Look("#8c6bb1", "v", ":"), 5
+    claims = Claims(
+        "the class model of thesis 3.2, with the circulator that chapter 6 asks for",
+        like="half_edge",
+    )
     uses_type, pinning, compiled = ObjectUses, Held, False
     records_type = ObjectRecords
     fields = ()
-    kernels = named(
-        *(vertex_vertices, vertex_edges, vertex_faces),
-        *(edge_vertices, edge_edges, edge_faces),
-        *(face_vertices, face_edges, face_faces),
-        *(vertex_exists, edge_exists, face_exists, diamond, joined, beside),
-        *(coordinate, place, bury, isolate),
-        *(cut_edge, cut_face, contract, turn, attach, detach, anchor),
-    )
 
     @classmethod
     def build(cls, mesh: TriangleMesh, reference_bytes: int = 4) -> Self:
         """See ``Structure.build``; a reference takes what Python gives it."""
-        return cls(HalfEdgeMeshBuilder.records(mesh))
+        return cls(build_records(mesh))
 
     @classmethod
     def create(cls, a: ArrayLike, b: ArrayLike, c: ArrayLike) -> Self:
@@ -511,49 +497,25 @@ class HalfEdgeMesh(Structure):
             elements.items[:] = list(elements)
             for index, element in enumerate(elements.items):
                 element.index = index
-        count = _counted(m.vertices, m.half_edges, m.faces, int(m.counts[EDGES]))
+        count = count_records(m.vertices, m.half_edges, m.faces, int(m.counts[EDGES]))
         count[VALENCE] = m.counts[VALENCE]
         return m._replace(counts=count), number
 
     def copy(self) -> Self:
         """The same mesh in objects of its own, with the same indices and no subscribers."""
-        arrays = self.to_arrays()
-        return type(self)(_from_arrays(arrays))
+        return type(self)(from_arrays(self.snapshot()))
 
     def snapshot(self) -> HalfEdgeRecords:
-        """See ``Structure.snapshot``."""
-        return self.to_arrays()
+        """The same half-edges by index, see ``Structure.snapshot``. Cost O(n_v + n_t)."""
+        return to_arrays(self.records, self.points)
 
     def restore(self, snapshot: HalfEdgeRecords) -> None:
         """See ``Structure.restore``; the objects are new ones."""
-        fresh = _from_arrays(snapshot)
+        fresh = from_arrays(snapshot)
         self.vertices.items[:] = fresh.vertices.items
         self.half_edges.items[:] = fresh.half_edges.items
         self.faces.items[:] = fresh.faces.items
         np.copyto(self.records.counts, fresh.counts)
-
-    def to_arrays(self) -> HalfEdgeRecords:
-        """The same half-edges by index, as ``structures.half_edge`` has them. O(n_v + n_t)."""
-        m = self.records
-        index = _index_of
-        half_edge = [
-            (-1,) * 4
-            if h is None
-            else (h.origin.index, h.face.index, h.next.index, index(h.opposite))
-            for h in m.half_edges.items
-        ]
-        leaving = [-1 if v is None else index(v.half_edge) for v in m.vertices.items]
-        within = [-1 if f is None else f.half_edge.index for f in m.faces.items]
-        counts = m.counts.copy()
-        ends = VERTEX_ROOM, FACE_ROOM, EDGE_ROOM
-        counts[list(ends)] = len(leaving), len(within), len(half_edge)
-        return HalfEdgeRecords(
-            self.points,
-            np.array(leaving, np.int32),
-            np.array(within, np.int32),
-            np.array(half_edge, np.int32).reshape(-1, 4),
-            counts,
-        )
 
     @property
     def arrays(self) -> tuple[Array, ...]:
@@ -579,8 +541,18 @@ class HalfEdgeMesh(Structure):
         taken["vertex.point"] = position * len(self.vertices)
         return taken
 
+    def clr_memory(self) -> dict[str, int]:
+        """Bytes per field as the runtime of the thesis would lay its classes out: a model."""
+        counts = {it.kind: len(it) for it in self.records[:-1]}
+        return clr_memory(counts)
+
     def validate(self) -> None:
         """Check the objects themselves, then as arrays what ``structures.half_edge`` requires."""
+        self._require_invariants()
+        HalfEdgeArrays(self.snapshot()).validate()
+
+    def _require_invariants(self) -> None:
+        """Every element stands in its list, and every reference leads to one that does."""
         m = self.records
         known = {id(it) for elements in m[:-1] for it in elements}
         for elements in m[:-1]:
@@ -595,25 +567,6 @@ class HalfEdgeMesh(Structure):
                     optional = name == "opposite" or elements.kind == "vertex"
                     if id(target) not in known and not (target is None and optional):
                         raise _broken(f"{name} is a live element", many, index)
-        HalfEdgeArrays(self.to_arrays()).validate()
-
-    # To and from a render mesh, and the runtime of the thesis -----------------------------------
-
-    def clr_memory(self) -> dict[str, int]:
-        """Bytes per field as the runtime of the thesis would lay its classes out: a model.
-
-        See ``CLR_CLASSES``; in a list every element takes one more reference.
-        """
-        counts = {"vertex": self.n_vertices, "half_edge": self.n_half_edges, "face": self.n_faces}
-        taken: dict[str, int] = {}
-        for kind, n in counts.items():
-            fields = CLR_CLASSES[kind]
-            size = CLR_HEADER + sum(fields.values())
-            taken |= {f"{kind}.header": CLR_HEADER * n}
-            taken |= {f"{kind}.{field}": width * n for field, width in fields.items()}
-            taken |= {f"{kind}.padding": -size % CLR_REFERENCE * n}
-            taken |= {f"{kind}.list": CLR_REFERENCE * n}
-        return taken
 
 
 def fields_accessed(call: Callable[[], object]) -> int:
@@ -629,166 +582,6 @@ REFERENCES = {
     "face": ("half_edge",),
 }
 """Which fields of an element refer to another."""
-
-CLR_HEADER, CLR_REFERENCE = 16, 8
-"""Bytes of an object's header (sync block index and type handle) and of a reference, on 64 bits."""
-
-CLR_CLASSES = {
-    "vertex": {"point": 12, "half_edge": 8, "index": 4, "position_changed": 8},
-    "half_edge": {"origin": 8, "face": 8, "next": 8, "opposite": 8, "index": 4},
-    "face": {"half_edge": 8, "index": 4},
-}
-"""The fields that the thesis declares (3.2.2), in bytes: Vector3, references, int, event."""
-
-
-class HalfEdgeMeshBuilder:
-    """From points and triangles to objects and back (thesis 3.3)."""
-
-    @staticmethod
-    def records(mesh: TriangleMesh) -> ObjectRecords:
-        """One vertex per point, one half-edge per index, one face per three (thesis 3.3.2).
-
-        Every half-edge is looked up once by its two vertices, and met by its opposite: O(n_v + n_t)
-        expected. Raises NonManifoldError with the elements for what half-edges cannot represent.
-        """
-        require_manifold(mesh)
-        n = len(mesh.points)
-        open_sides: dict[int, HalfEdge] = {}
-        with _uncollected():
-            vertices = [Vertex(i, (x, y, z)) for i, (x, y, z) in enumerate(mesh.points.tolist())]
-            half_edges: list[Any] = []
-            faces: list[Any] = []
-            for f, corners in enumerate(mesh.triangles.tolist()):
-                h = 3 * f
-                a, b, c = corners
-                sides = ab, bc, ca = (
-                    HalfEdge(h, vertices[a]),
-                    HalfEdge(h + 1, vertices[b]),
-                    HalfEdge(h + 2, vertices[c]),
-                )
-                face = Face(f, ab)
-                ab.face = bc.face = ca.face = face
-                ab.next, bc.next, ca.next = bc, ca, ab
-                for side, origin, end in ((ab, a, b), (bc, b, c), (ca, c, a)):
-                    opposite = open_sides.pop(end * n + origin, None)
-                    if opposite is None:
-                        open_sides[origin * n + end] = side
-                    else:
-                        side.opposite, opposite.opposite = opposite, side
-                    if vertices[origin].half_edge is None:
-                        vertices[origin].half_edge = side
-                half_edges += sides
-                faces.append(face)
-        n_edges = (len(half_edges) + len(open_sides)) // 2
-        lists = VertexList([*vertices]), HalfEdgeList(half_edges), FaceList(faces)
-        return ObjectRecords(*lists, _counted(*lists, n_edges))
-
-    @staticmethod
-    def from_render_mesh(
-        points: ArrayLike, indices: ArrayLike, tolerance: float = 0.0
-    ) -> HalfEdgeMesh:
-        """The half-edge mesh behind a render mesh: welded, and its winding turned. O(n + m).
-
-        See ``hem.mesh_from_render``.
-        """
-        return HalfEdgeMesh.build(mesh_from_render(points, indices, tolerance))
-
-    @staticmethod
-    def to_render_mesh(mesh: HalfEdgeMesh) -> tuple[NDArray[np.float32], NDArray[np.int32]]:
-        """Flat points (3 n,) and clockwise indices (3 m,) by the face circulator. O(n_v + n_t)."""
-        number = {v.index: i for i, v in enumerate(mesh.vertices)}
-        points = [v.point for v in mesh.vertices]
-        indices = [number[h.origin.index] for f in mesh.faces for h in mesh.faces.circulator(f)]
-        return np.array(points, np.float32).reshape(-1), np.array(indices, np.int32)
-
-
-class EdgeSplittingBehaviour:
-    """Splits edges of a mesh, and remembers the faces that it made (thesis 4.1)."""
-
-    def __init__(self, mesh: HalfEdgeMesh) -> None:
-        self.mesh = mesh
-        self.created_faces: list[Face] = []
-
-    def split_half_edge(self, half_edge: HalfEdge, point: ArrayLike) -> Vertex:
-        """Put a new vertex on an edge -> the vertex. See ``Editable.split_edge``."""
-        edit = self.mesh.split_edge(half_edge.edge, point)
-        self.created_faces += [self.mesh.faces[f] for f in edit.created_faces.tolist()]
-        return self.mesh.vertices[edit.vertex]
-
-
-class FaceSplittingBehaviour:
-    """Splits faces of a mesh, and remembers the faces that it made (thesis 4.3)."""
-
-    def __init__(self, mesh: HalfEdgeMesh) -> None:
-        self.mesh = mesh
-        self.created_faces: list[Face] = []
-
-    def split_face(self, face: Face, point: ArrayLike) -> Vertex:
-        """Put a new vertex into a face -> the vertex. See ``Editable.split_face``."""
-        edit = self.mesh.split_face(face.index, point)
-        self.created_faces += [self.mesh.faces[f] for f in edit.created_faces.tolist()]
-        return self.mesh.vertices[edit.vertex]
-
-    def split_all_faces(self) -> list[Vertex]:
-        """Split every face at its centroid, as one edit -> the new vertices."""
-        end = self.mesh.face_end
-        made = self.mesh.split_all_faces()
-        self.created_faces += self.mesh.faces.items[end:]
-        return [self.mesh.vertices[v] for v in made.tolist()]
-
-
-def _index_of(element: Any) -> int:
-    return -1 if element is None else int(element.index)
-
-
-def _counted(
-    vertices: VertexList, half_edges: HalfEdgeList, faces: FaceList, n_edges: int
-) -> Array:
-    """The array ``counts`` for lists that grow by themselves."""
-    count = counted(len(vertices.items), n_edges, len(faces.items), len(half_edges.items))
-    count[[VERTEX_ROOM, EDGE_ROOM, FACE_ROOM]] = ENDLESS
-    count[VERTICES], count[FACES] = len(vertices), len(faces)
-    return count
-
-
-def _from_arrays(arrays: HalfEdgeRecords) -> ObjectRecords:
-    """Objects for records by index, dead ones included. Cost O(n_v + n_t)."""
-    with _uncollected():
-        rows = arrays.vertex_point[: arrays.counts[VERTEX_END]].tolist()
-        vertices: list[Any] = [
-            Vertex(i, (x, y, z)) if x == x else None for i, (x, y, z) in enumerate(rows)
-        ]
-        half_edge = arrays.half_edge.tolist()
-        half_edges: list[Any] = [
-            HalfEdge(i, vertices[row[0]]) if row[1] >= 0 else None
-            for i, row in enumerate(half_edge)
-        ]
-        faces: list[Any] = [
-            Face(f, half_edges[h]) if h >= 0 else None
-            for f, h in enumerate(arrays.face_half_edge.tolist())
-        ]
-        for h, (_, face, following, opposite) in zip(half_edges, half_edge, strict=True):
-            if h is not None:
-                h.face, h.next = faces[face], half_edges[following]
-                h.opposite = half_edges[opposite] if opposite >= 0 else None
-        for vertex, leaving in zip(vertices, arrays.vertex_half_edge.tolist(), strict=True):
-            if vertex is not None and leaving >= 0:
-                vertex.half_edge = half_edges[leaving]
-    counts = arrays.counts.copy()
-    counts[[VERTEX_ROOM, EDGE_ROOM, FACE_ROOM]] = ENDLESS
-    return ObjectRecords(VertexList(vertices), HalfEdgeList(half_edges), FaceList(faces), counts)
-
-
-@contextmanager
-def _uncollected() -> Iterator[None]:
-    """Make many objects without the garbage collector looking through all of them in between."""
-    enabled = gc.isenabled()
-    gc.disable()
-    try:
-        yield
-    finally:
-        if enabled:
-            gc.enable()
 
 
 def _broken(invariant: str, elements: str, index: int) -> MeshError:

@@ -17,28 +17,30 @@ the mesh from being non-manifold. An edge is named by its two vertices. Bytes pe
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple, Self
+from typing import NamedTuple, Self
 
 import numpy as np
-from numpy.typing import NDArray
 
-from hem.authoring.invariants import require, require_counts, require_points, require_references
-from hem.authoring.kernels import (
+from hem.arrays import Array
+from hem.authoring import (
     FACE_END,
+    LEFT,
+    RIGHT,
+    UNKNOWN,
+    A,
+    B,
+    C,
+    D,
+    Field,
+    counted,
     distinct,
-    edge_exists,
-    edge_vertices,
     edges_at_both_ends,
     kernel,
-    named,
-    pack,
+    packed,
+    require,
 )
-from hem.authoring.records import UNKNOWN, Field, counted, live
-from hem.authoring.topology import LEFT, RIGHT, A, B, C, D
-from hem.contract.packed import PackedEdges
-from hem.meshes.triangles import TriangleMesh
-
-Array = NDArray[Any]
+from hem.contract import Look, PackedEdges
+from hem.meshes import TriangleMesh
 
 
 class IndexedRecords(NamedTuple):
@@ -47,6 +49,10 @@ class IndexedRecords(NamedTuple):
     vertex_point: Array  # (n_v, 3) float32
     triangle: Array  # (n_t, 3) vertices
     counts: Array  # how many of them there are, see hem.authoring.kernels
+
+
+# Nothing is recorded of an edge.
+edge_exists, edge_vertices, pack = packed.edge_exists, packed.edge_vertices, packed.pack
 
 
 @kernel
@@ -135,7 +141,7 @@ def face_faces(m: IndexedRecords, f: int, out: Array) -> int:
     return count
 
 
-# What operations need to know, and what they change (topology and operations in hem.authoring) ----
+# What operations need to know, and what they change (see hem.authoring.operations) --------------
 
 
 @kernel
@@ -169,7 +175,7 @@ def follows(m: IndexedRecords, t: int, a: int, b: int) -> bool:
 
 
 @kernel
-def beside(m: IndexedRecords, a: int, b: int) -> int:
+def face_left_of(m: IndexedRecords, a: int, b: int) -> int:
     """The triangle that runs a → b, or -1. Cost O(n_t)."""
     for t in range(m.counts[FACE_END]):
         if follows(m, t, a, b):
@@ -178,7 +184,7 @@ def beside(m: IndexedRecords, a: int, b: int) -> int:
 
 
 @kernel
-def joined(m: IndexedRecords, a: int, b: int) -> bool:
+def are_joined(m: IndexedRecords, a: int, b: int) -> bool:
     """Cost O(n_t)."""
     for t in range(m.counts[FACE_END]):
         if has_corner(m, t, a) and has_corner(m, t, b):
@@ -201,7 +207,7 @@ def replace(m: IndexedRecords, t: int, old: int, new: int) -> None:
 
 
 @kernel
-def cut_edge(m: IndexedRecords, e: int, at: Array, v: int, f: int) -> None:
+def split_edge_records(m: IndexedRecords, e: int, at: Array, v: int, f: int) -> None:
     """Cost O(1) when the triangles are known, which takes a scan."""
     for side in (LEFT, RIGHT):
         t = at[side]
@@ -213,7 +219,7 @@ def cut_edge(m: IndexedRecords, e: int, at: Array, v: int, f: int) -> None:
 
 
 @kernel
-def cut_face(m: IndexedRecords, face: int, v: int, f: int) -> None:
+def split_face_records(m: IndexedRecords, face: int, v: int, f: int) -> None:
     """Cost O(1)."""
     i = 0
     for j in range(1, 3):
@@ -226,7 +232,7 @@ def cut_face(m: IndexedRecords, face: int, v: int, f: int) -> None:
 
 
 @kernel
-def contract(
+def collapse_records(
     m: IndexedRecords, e: int, at: Array, drop: int, keep: int, around: int, out: Array
 ) -> None:
     """Cost O(n_ev) when the triangles are known, which takes a scan."""
@@ -234,25 +240,25 @@ def contract(
         replace(m, out[i], drop, keep)
     for side in (LEFT, RIGHT):
         if at[side] >= 0:
-            detach(m, at[side])
+            remove_records(m, at[side])
 
 
 @kernel
-def turn(m: IndexedRecords, e: int, at: Array, one: int, other: int) -> None:
+def flip_records(m: IndexedRecords, e: int, at: Array, one: int, other: int) -> None:
     """Cost O(1) when the triangles are known, which takes a scan."""
     set_triangle(m, one, at[A], at[D], at[C])
     set_triangle(m, other, at[B], at[C], at[D])
 
 
 @kernel
-def attach(m: IndexedRecords, corners: Array, f: int) -> None:
+def add_records(m: IndexedRecords, corners: Array, f: int) -> None:
     """Cost O(1)."""
     a, b, c = corners[0], corners[1], corners[2]
     set_triangle(m, f, a, b, c)
 
 
 @kernel
-def detach(m: IndexedRecords, f: int) -> None:
+def remove_records(m: IndexedRecords, f: int) -> None:
     """Cost O(1)."""
     set_triangle(m, f, -1, -1, -1)
 
@@ -261,18 +267,12 @@ class Indexed(PackedEdges):
     """The indexed mesh."""
 
     name, title, abbreviation = "indexed", "Indexed", "Indexed"
+    look, thesis, order = Look("#111111", "s", "-"), True, 1
     searches = True
     records_type = IndexedRecords
     fields = (
         Field("vertex.point", "vertex_point", 3, marks=True),
         Field("triangle.vertex", "triangle", 3, target="vertex", marks=True),
-    )
-    kernels = named(
-        *(vertex_vertices, vertex_edges, vertex_faces),
-        *(edge_vertices, edge_edges, edge_faces),
-        *(face_vertices, face_edges, face_faces),
-        *(edge_exists, face_exists, diamond, joined, beside),
-        *(cut_edge, cut_face, contract, turn, attach, detach),
     )
 
     @classmethod
@@ -281,11 +281,8 @@ class Indexed(PackedEdges):
         count = counted(len(mesh.points), UNKNOWN, len(mesh.triangles))
         return cls(IndexedRecords(mesh.points.copy(), mesh.triangles.copy(), count))
 
-    def validate(self) -> None:
-        """See ``Structure.validate``; the invariants stand at the top of this file."""
-        m, faces = self.records, self.faces()
-        corner = m.triangle[faces]
-        require_counts(m, self.fields)
-        require_points(self.points)
-        require_references(corner, live(m, self.fields, "vertex"), "corner", "faces", of=faces)
+    def _require_invariants(self) -> None:
+        """Those at the top of this file."""
+        faces = self.faces()
+        corner = self.records.triangle[faces]
         require(corner != np.roll(corner, 1, axis=1), "corners differ", "faces", of=faces)

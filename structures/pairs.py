@@ -29,23 +29,27 @@ The mesh itself stands in ``structures.plankton``, what is done with polygons in
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+from numba import njit
 
-from hem.authoring.kernels import (
+from hem.arrays import Array
+from hem.authoring import (
     EDGE_END,
     FACE_END,
+    LEFT,
+    RIGHT,
+    A,
+    B,
+    C,
+    D,
     append_face,
     distinct,
     joined_by_steps,
     kernel,
     without,
 )
-from hem.authoring.topology import LEFT, RIGHT, A, B, C, D
-
-Array = NDArray[Any]
 
 START, FACE, NEXT, PREVIOUS = range(4)  # the columns of a half-edge
 
@@ -202,7 +206,7 @@ def face_faces(m: PlanktonRecords, f: int, out: Array) -> int:
             return count if sides == 3 else distinct(out, count)
 
 
-# What operations need to know, and what they change (topology and operations in hem.authoring) ----
+# What operations need to know, and what they change (see hem.authoring.operations) --------------
 
 
 @kernel
@@ -272,7 +276,7 @@ def ends_at(m: PlanktonRecords, h: int, v: int, w: int) -> bool:
 
 
 @kernel
-def between(m: PlanktonRecords, a: int, b: int) -> int:
+def find_half_edge(m: PlanktonRecords, a: int, b: int) -> int:
     """The half-edge that runs a → b, or -1. Cost O(n_ev)."""
     start = m.vertex_half_edge[a]
     h = start
@@ -285,13 +289,13 @@ def between(m: PlanktonRecords, a: int, b: int) -> int:
     return -1
 
 
-joined = joined_by_steps(first, clockwise, ends_at, between)
+are_joined = joined_by_steps(first, clockwise, ends_at, find_half_edge)
 
 
 @kernel
-def beside(m: PlanktonRecords, a: int, b: int) -> int:
+def face_left_of(m: PlanktonRecords, a: int, b: int) -> int:
     """The face that runs a → b, or -1. Cost O(n_ev)."""
-    h = between(m, a, b)
+    h = find_half_edge(m, a, b)
     return m.half_edge[h, FACE] if h >= 0 else -1
 
 
@@ -355,13 +359,13 @@ def insert(m: PlanktonRecords, h: int, v: int) -> int:
 
 
 @kernel
-def isolate(m: PlanktonRecords, v: int) -> None:
+def clear_vertex(m: PlanktonRecords, v: int) -> None:
     """See to it that vertex v has no faces."""
     m.vertex_half_edge[v] = -1
 
 
 @kernel
-def cut_edge(m: PlanktonRecords, e: int, at: Array, v: int, f: int) -> None:
+def split_edge_records(m: PlanktonRecords, e: int, at: Array, v: int, f: int) -> None:
     """Cost O(1): a vertex on the edge, and in each face a diagonal from it."""
     left = from_smaller(m, e)
     right = left ^ 1
@@ -384,7 +388,7 @@ def cut_edge(m: PlanktonRecords, e: int, at: Array, v: int, f: int) -> None:
 
 
 @kernel
-def cut_face(m: PlanktonRecords, face: int, v: int, f: int) -> None:
+def split_face_records(m: PlanktonRecords, face: int, v: int, f: int) -> None:
     """Cost O(1) for a triangle, O(n) for n corners: an edge from every corner to v."""
     smallest, count = m.face_half_edge[face], 1
     h = m.half_edge[smallest, NEXT]
@@ -440,7 +444,7 @@ def settle(m: PlanktonRecords, v: int, leaving: int) -> None:
 
 
 @kernel
-def contract(
+def collapse_records(
     m: PlanktonRecords, e: int, at: Array, drop: int, keep: int, around: int, out: Array
 ) -> None:
     """Cost O(n_ev) for the half-edges that leave both ends."""
@@ -478,7 +482,7 @@ def contract(
 
 
 @kernel
-def turn(m: PlanktonRecords, e: int, at: Array, one: int, other: int) -> None:
+def flip_records(m: PlanktonRecords, e: int, at: Array, one: int, other: int) -> None:
     """Cost O(1)."""
     ab = from_smaller(m, e)
     ba = ab ^ 1
@@ -494,13 +498,13 @@ def turn(m: PlanktonRecords, e: int, at: Array, one: int, other: int) -> None:
 
 
 @kernel
-def attach(m: PlanktonRecords, corners: Array, f: int) -> None:
+def add_records(m: PlanktonRecords, corners: Array, f: int) -> None:
     """Cost O(n_ev) per corner. Every corner is free or shares an edge with the surface."""
     n, old = len(corners), m.counts[EDGE_END]
     side = np.empty(n, np.int64)
     for i in range(n):
         a, b = corners[i], corners[(i + 1) % n]
-        h = between(m, a, b)
+        h = find_half_edge(m, a, b)
         side[i] = h if h >= 0 else new_pair(m, a, b)
     for i in range(n):  # around the outside, past each corner
         g, h = side[i], side[(i + 1) % n]
@@ -520,7 +524,7 @@ def attach(m: PlanktonRecords, corners: Array, f: int) -> None:
 
 
 @kernel
-def detach(m: PlanktonRecords, f: int) -> None:
+def remove_records(m: PlanktonRecords, f: int) -> None:
     """Cost O(1) for a triangle, O(n) for n corners."""
     begin = m.face_half_edge[f]
     m.face_half_edge[f] = -1
@@ -551,3 +555,75 @@ def detach(m: PlanktonRecords, f: int) -> None:
         h = following
     if m.half_edge[begin ^ 1, FACE] < 0:
         kill(m, begin)
+
+
+# Building ----------------------------------------------------------------------------------------
+
+
+@njit(cache=True, nogil=True)
+def number(corner_vertex: Array, twin: Array, half: Array, vertex: Array) -> None:
+    """Number the half-edge at every corner; an edge counts where it is first met.
+
+    So does Plankton when it adds the faces in order, and a vertex keeps the half-edge that it had
+    when its last face was added.
+    """
+    end = 0
+    for corner in range(len(twin)):
+        if twin[corner] < 0 or corner < twin[corner]:
+            half[corner] = end
+            end += 2
+        else:
+            half[corner] = half[twin[corner]] ^ 1
+        vertex[corner_vertex[corner]] = half[corner]
+
+
+@njit(cache=True, nogil=True)
+def fill(
+    begin: int, end: int, part: int, corners: Array, half: Array, face: Array, half_edge: Array
+) -> None:
+    """Half-edges of triangles."""
+    for f in range(begin, end):
+        face[f] = half[3 * f]
+        for i in range(3):
+            row = half_edge[half[3 * f + i]]
+            row[START] = corners[3 * f + i]
+            row[FACE] = f
+            row[NEXT] = half[3 * f + (i + 1) % 3]
+            row[PREVIOUS] = half[3 * f + (i + 2) % 3]
+
+
+@njit(cache=True, nogil=True)
+def fill_polygons(
+    begin: int,
+    end: int,
+    part: int,
+    corners: Array,
+    offsets: Array,
+    half: Array,
+    face: Array,
+    half_edge: Array,
+) -> None:
+    """Half-edges of faces with any number of corners."""
+    for f in range(begin, end):
+        first, last = offsets[f], offsets[f + 1] - 1
+        face[f] = half[first]
+        for i in range(first, last + 1):
+            row = half_edge[half[i]]
+            row[START] = corners[i]
+            row[FACE] = f
+            row[NEXT] = half[i + 1 if i < last else first]
+            row[PREVIOUS] = half[i - 1 if i > first else last]
+
+
+@njit(cache=True, nogil=True)
+def go_round_holes(inner: Array, vertex: Array, half_edge: Array) -> None:
+    """Fill in the half-edges beyond those in ``inner``: they lie on the border."""
+    for h in inner:
+        border = h ^ 1
+        half_edge[border, START] = half_edge[half_edge[h, NEXT], START]
+        half_edge[border, FACE] = OUTSIDE
+        vertex[half_edge[border, START]] = border
+    for h in inner:
+        border = h ^ 1
+        following = vertex[half_edge[h, START]]
+        half_edge[border, NEXT], half_edge[following, PREVIOUS] = following, border

@@ -19,133 +19,56 @@ from __future__ import annotations
 from typing import Any, Self
 
 import numpy as np
-from numba import njit
 from numpy.typing import ArrayLike, NDArray
 
-from hem.authoring.invariants import (
+from hem.arrays import Array
+from hem.authoring import (
+    EDGE_END,
+    OPERATIONS,
+    REFERENCE_TYPES,
+    SIDES,
+    Field,
+    counted,
+    in_slices,
+    kernels_of,
+    live,
+    pair_half_edges,
+    pair_polygons,
     require,
-    require_counts,
     require_distinct_edges,
+    require_edge_count,
     require_one_fan,
     require_one_loop,
-    require_points,
-    require_references,
 )
-from hem.authoring.kernels import EDGE_END, SIDES, Kernel, named
-from hem.authoring.operations import OPERATIONS
-from hem.authoring.pairing import pair_half_edges, pair_polygons
-from hem.authoring.records import Field, counted, live
-from hem.contract import arguments
-from hem.contract.structure import REFERENCE_TYPES, Structure
+from hem.contract import Claims, Look, Structure, arguments
 from hem.edit import Edit
-from hem.engine.slices import in_slices
 from hem.errors import MeshError, TopologyError
-from hem.meshes.polygons import PolygonMesh
-from hem.meshes.triangles import TriangleMesh
+from hem.meshes import PolygonMesh, TriangleMesh
 from hem.ragged import Ragged
 from structures import pairs
-from structures.pairs import FACE, NEXT, OUTSIDE, PREVIOUS, START, PlanktonRecords
-from structures.polygons import POLYGON_KERNELS, POLYGON_OPERATIONS
-
-Array = NDArray[Any]
-
-
-@njit(cache=True, nogil=True)
-def _number(corner_vertex: Array, twin: Array, half: Array, vertex: Array) -> None:
-    """Number the half-edge at every corner; an edge counts where it is first met.
-
-    So does Plankton when it adds the faces in order, and a vertex keeps the half-edge that it had
-    when its last face was added.
-    """
-    end = 0
-    for corner in range(len(twin)):
-        if twin[corner] < 0 or corner < twin[corner]:
-            half[corner] = end
-            end += 2
-        else:
-            half[corner] = half[twin[corner]] ^ 1
-        vertex[corner_vertex[corner]] = half[corner]
-
-
-@njit(cache=True, nogil=True)
-def _fill(
-    begin: int, end: int, part: int, corners: Array, half: Array, face: Array, half_edge: Array
-) -> None:
-    for f in range(begin, end):
-        face[f] = half[3 * f]
-        for i in range(3):
-            row = half_edge[half[3 * f + i]]
-            row[START] = corners[3 * f + i]
-            row[FACE] = f
-            row[NEXT] = half[3 * f + (i + 1) % 3]
-            row[PREVIOUS] = half[3 * f + (i + 2) % 3]
-
-
-@njit(cache=True, nogil=True)
-def _fill_polygons(
-    begin: int,
-    end: int,
-    part: int,
-    corners: Array,
-    offsets: Array,
-    half: Array,
-    face: Array,
-    half_edge: Array,
-) -> None:
-    for f in range(begin, end):
-        first, last = offsets[f], offsets[f + 1] - 1
-        face[f] = half[first]
-        for i in range(first, last + 1):
-            row = half_edge[half[i]]
-            row[START] = corners[i]
-            row[FACE] = f
-            row[NEXT] = half[i + 1 if i < last else first]
-            row[PREVIOUS] = half[i - 1 if i > first else last]
-
-
-@njit(cache=True, nogil=True)
-def _go_round_holes(inner: Array, vertex: Array, half_edge: Array) -> None:
-    """Fill in the half-edges beyond those in ``inner``: they lie on the border."""
-    for h in inner:
-        border = h ^ 1
-        half_edge[border, START] = half_edge[half_edge[h, NEXT], START]
-        half_edge[border, FACE] = OUTSIDE
-        vertex[half_edge[border, START]] = border
-    for h in inner:
-        border = h ^ 1
-        following = vertex[half_edge[h, START]]
-        half_edge[border, NEXT], half_edge[following, PREVIOUS] = following, border
+from structures.pairs import FACE, NEXT, PREVIOUS, START, PlanktonRecords
+from structures.polygons import POLYGON_OPERATIONS
 
 
 class Plankton(Structure):
     """The half-edge mesh of Plankton."""
 
     name, title, abbreviation = "plankton", "Plankton", "Plankton"
+    look, order = Look("#1b7f5c", "P", "--"), 6
+    claims = Claims("the article on Plankton: a half-edge mesh", like="half_edge")
     holds_polygons = True
     records_type = PlanktonRecords
     fields = (
         Field("vertex.point", "vertex_point", 3, marks=True),
-        Field("vertex.half_edge", "vertex_half_edge", target="half_edge"),
+        Field("vertex.half_edge", "vertex_half_edge", target="half_edge", optional=True),
         Field("face.half_edge", "face_half_edge", target="half_edge", marks=True),
         Field("half_edge.start", "half_edge", target="vertex", marks=True),
-        Field("half_edge.face", "half_edge", target="face"),
+        Field("half_edge.face", "half_edge", target="face", optional=True),
         Field("half_edge.next", "half_edge", target="half_edge"),
         Field("half_edge.previous", "half_edge", target="half_edge"),
     )
-    kernels = named(
-        *(pairs.vertex_vertices, pairs.vertex_edges, pairs.vertex_faces),
-        *(pairs.edge_vertices, pairs.edge_edges, pairs.edge_faces),
-        *(pairs.face_vertices, pairs.face_edges, pairs.face_faces),
-        *(pairs.edge_exists, pairs.face_exists, pairs.sides, pairs.diamond, pairs.beside),
-        *(pairs.isolate, pairs.cut_edge, pairs.cut_face, pairs.contract, pairs.turn),
-        *(pairs.attach, pairs.detach),
-    ) | {"joined": pairs.joined}
+    kernels = kernels_of(pairs.__name__)
     operations = OPERATIONS | POLYGON_OPERATIONS
-
-    @classmethod
-    def operation_kernels(cls) -> dict[str, Kernel]:
-        """Those of the contract and those of polygons."""
-        return super().operation_kernels() | POLYGON_KERNELS
 
     @classmethod
     def build(cls, mesh: TriangleMesh | PolygonMesh, reference_bytes: int = 4) -> Self:
@@ -165,13 +88,13 @@ class Plankton(Structure):
             room = np.empty((n_half_edges, 4), reference)
         half, face = np.empty(len(corners), np.int32), np.empty(n, reference)
         vertex = np.full(len(mesh.points), -1, reference)
-        _number(corners, pairing.twin, half, vertex)
+        pairs.number(corners, pairing.twin, half, vertex)
         if offsets is None:
-            in_slices(_fill, n, corners, half, face, room)
+            in_slices(pairs.fill, n, corners, half, face, room)
         else:
-            in_slices(_fill_polygons, n, corners, offsets, half, face, room)
+            in_slices(pairs.fill_polygons, n, corners, offsets, half, face, room)
         if n_half_edges > len(corners):
-            _go_round_holes(half[pairing.twin < 0], vertex, room)
+            pairs.go_round_holes(half[pairing.twin < 0], vertex, room)
         own = n_half_edges, 6, most
         count = counted(len(mesh.points), pairing.n_edges, n, *own)
         return cls(PlanktonRecords(mesh.points.copy(), vertex, face, room, count))
@@ -416,8 +339,8 @@ class Plankton(Structure):
         points = (1 - fraction) * self.points[vertex] + fraction * ends
         _, first = self._run("insert_vertex", arguments.rows(spokes), points.astype(np.float32))
         before = self._half_edges[spokes, PREVIOUS]  # from the next new vertex to this one
-        pairs_ = np.stack([self._half_edges[spokes, NEXT], before, before], axis=1)
-        _, second = self._run("cut_across", pairs_.astype(np.int64), arguments.NO_POINT)
+        ends = np.stack([self._half_edges[spokes, NEXT], before, before], axis=1)
+        _, second = self._run("cut_across", ends.astype(np.int64), arguments.NO_POINT)
         args = arguments.rows([vertex])
         found, third = self._run("erase_vertex", args, arguments.NO_POINT)
         self._publish(Edit("truncate_vertex", -1, np.concatenate([first, second, third])))
@@ -478,36 +401,30 @@ class Plankton(Structure):
     def _edge_names(self, handles: Array) -> Array:
         return handles - (handles & 1)
 
-    def validate(self) -> None:
-        """See ``Structure.validate``; the invariants stand at the top of this file."""
-        m, fields = self.records, self.fields
-        vertices, faces = live(m, fields, "vertex"), live(m, fields, "face")
-        half_edges = live(m, fields, "half_edge")
-        leaving, within = m.vertex_half_edge[: len(vertices)], m.face_half_edge[: len(faces)]
-        start, face, following, previous = m.half_edge[: len(half_edges)].T
-        h, f = np.flatnonzero(half_edges), np.flatnonzero(faces)
+    def _require_invariants(self) -> None:
+        """Those at the top of this file."""
+        m, half_edges = self.records, live(self.records, self.fields, "half_edge")
+        start, face, following, previous = self._half_edges.T
         paired = half_edges[0::2] == half_edges[1::2]
         require(np.repeat(paired, 2), "both half-edges of an edge are live or dead", "half_edges")
-        edges = h[0::2]
-        require_counts(m, fields, len(edges))
-        require_points(self.points)
-        require_references(start[h], vertices, "start", "half_edges", h)
-        require_references(face[h], faces, "face", "half_edges", h, least=OUTSIDE)
-        require_references(following[h], half_edges, "next", "half_edges", h)
-        require_references(previous[h], half_edges, "previous", "half_edges", h)
-        require_references(leaving, half_edges, "half-edge", "vertices", least=-1)
-        require_references(within[f], half_edges, "half-edge", "faces", f)
-
-        after = following[h]
+        h = np.flatnonzero(half_edges)
+        edges, after = h[0::2], following[h]
+        require_edge_count(m, len(edges))
         require(previous[after] == h, "previous of next is the half-edge itself", "half_edges", h)
         require(start[after] == start[h ^ 1], "next starts where the pair does", "half_edges", h)
         require(face[after] == face[h], "next lies in the same face", "half_edges", h)
         inhabited = (face[edges] >= 0) | (face[edges ^ 1] >= 0)
         require(inhabited, "an edge has a face on one side at least", "half_edges", edges)
         require(face[edges] != face[edges ^ 1], "an edge has two faces", "half_edges", edges)
-        require(face[within[f]] == f, "a face's half-edge lies in it", "faces", f)
-        inner = h[face[h] >= 0]
-        corners = np.bincount(face[inner], minlength=len(faces))[f]
+        require_distinct_edges(start[edges], start[edges ^ 1], "edges", edges)
+        self._require_faces(h[face[h] >= 0])
+        self._require_fans(h)
+
+    def _require_faces(self, inner: Array) -> None:
+        """What holds of the half-edges ``inner`` in faces."""
+        m, f, (start, face, following, _) = self.records, self.faces(), self._half_edges.T
+        require(face[m.face_half_edge[f]] == f, "a face's half-edge lies in it", "faces", f)
+        corners = np.bincount(face[inner], minlength=self.face_end)[f]
         require(corners >= 3, "a face has three corners or more", "faces", f)
         require(corners <= m.counts[SIDES], "no face has more corners than the most", "faces", f)
         require_one_loop(face, following, inner)
@@ -515,18 +432,19 @@ class Plankton(Structure):
         once = np.unique(at_corner, return_counts=True)
         require(once[1] == 1, "a face comes past a vertex once", "faces", once[0] >> 32)
 
-        used = np.bincount(start[h], minlength=len(vertices)) > 0
+    def _require_fans(self, h: Array) -> None:
+        """What holds around vertices, of the live half-edges ``h``."""
+        leaving, n = self.records.vertex_half_edge[: len(self.points)], len(self.points)
+        start, face, following, _ = self._half_edges.T
+        used = np.bincount(start[h], minlength=n) > 0
         require((leaving >= 0) == used, "just the vertices with faces have a half-edge", "vertices")
         at = np.flatnonzero(used)
         require(start[leaving[at]] == at, "a vertex' half-edge starts at it", "vertices", at)
-        holes = np.bincount(start[h[face[h] < 0]], minlength=len(vertices))
+        holes = np.bincount(start[h[face[h] < 0]], minlength=n)
         require(holes < 2, "one hole at most lies at a vertex", "vertices")
-        on_border = np.flatnonzero(holes)
-        along = face[leaving[on_border]] < 0
-        require(
-            along, "the half-edge of a vertex on the border runs along it", "vertices", on_border
-        )
-        around = np.full(len(half_edges), -1)
+        border = np.flatnonzero(holes)
+        words = "the half-edge of a vertex on the border runs along it"
+        require(face[leaving[border]] < 0, words, "vertices", border)
+        around = np.full(len(start), -1)
         around[h] = following[h ^ 1]
         require_one_fan(start, around, h)
-        require_distinct_edges(start[edges], start[edges ^ 1], "edges", edges)

@@ -21,44 +21,30 @@ from __future__ import annotations
 
 import numpy as np
 
-from hem.authoring.kernels import (
+from hem.arrays import Array
+from hem.authoring import (
+    ALLOWED,
     EDGES,
     FACE_END,
     FACES,
+    NEEDS_ROOM,
     SIDES,
     VALENCE,
     VERTICES,
-    Array,
-    bury,
-    distinct,
-    kernel,
-    named,
-    place,
-    vertex_exists,
-)
-from hem.authoring.operations import (
     Operation,
-    add_faces,
-    appending,
+    Refusal,
+    count_new,
+    distinct,
     has_room,
     has_scratch,
     is_point,
-    note,
-    note_faces,
-)
-from hem.authoring.topology import (
-    ALLOWED,
-    BORDER_EDGE,
-    BORDER_VERTEX,
-    JOINED,
-    NEEDS_ROOM,
-    NEIGHBORS,
-    NO_EDGE,
-    NO_VERTEX,
-    NOT_FINITE,
-    OTHER_FACE,
-    OTHER_VERTEX,
-    TOUCHING,
+    kernel,
+    kill_vertex,
+    log_element,
+    log_faces,
+    set_point,
+    vertex_exists,
+    vertex_maker,
 )
 from hem.edit import CHANGED, CREATED, FACE, REMOVED, VERTEX
 from structures.pairs import FACE as FACE_OF
@@ -67,10 +53,10 @@ from structures.pairs import (
     PREVIOUS,
     START,
     PlanktonRecords,
+    are_joined,
     counterclockwise,
     edge_exists,
     insert,
-    joined,
     kill,
     link,
     new_pair,
@@ -79,16 +65,7 @@ from structures.pairs import (
     tip,
 )
 
-POLYGON_OPERATIONS = {
-    "insert_vertex": Operation("edge", True, True, (1, 1)),
-    "cut_across": Operation("half-edge", growth=(0, 1)),
-    "merge_faces": Operation("half-edge"),
-    "split_vertex": Operation("half-edge", True, True, (1, 1)),
-    "erase_vertex": Operation("vertex"),
-}
-"""The operations of polygons that are compiled, by name; see ``hem.authoring.operations``."""
-
-new_vertex = appending(place)
+new_vertex = vertex_maker(set_point)
 
 
 @kernel
@@ -106,22 +83,48 @@ def insert_vertex(
     """Cost O(the corners of both faces), to keep the bound on them."""
     h = args[0]
     if not edge_exists(m, h):
-        return NO_EDGE
+        return Refusal.NO_EDGE
     if not is_point(point):
-        return NOT_FINITE
+        return Refusal.NOT_FINITE
     if dry:
         return ALLOWED
     if not has_room(m, 1, 1, log):
         return NEEDS_ROOM
     v = new_vertex(m, point)
     insert(m, h, v)
-    add_faces(m, 1, 0)
+    count_new(m, 1, 0)
     left, right = m.half_edge[h, FACE_OF], m.half_edge[h ^ 1, FACE_OF]
     more_corners(m, left)
     more_corners(m, right)
-    note(log, VERTEX + CREATED, v)
-    note_faces(log, CHANGED, left, right)
+    log_element(log, VERTEX + CREATED, v)
+    log_faces(log, CHANGED, left, right)
     return v
+
+
+@kernel
+def may_cut_across(m: PlanktonRecords, a: int, b: int) -> int:
+    """Whether the corners where two half-edges of one face start may be joined."""
+    if not edge_exists(m, a) or not edge_exists(m, b):
+        return Refusal.NO_EDGE
+    face = m.half_edge[a, FACE_OF]
+    if face < 0 or m.half_edge[b, FACE_OF] != face:
+        return Refusal.OTHER_FACE
+    if a == b or m.half_edge[a, NEXT] == b or m.half_edge[b, NEXT] == a:
+        return Refusal.NEIGHBORS
+    if are_joined(m, m.half_edge[a, START], m.half_edge[b, START]):
+        return Refusal.JOINED
+    return ALLOWED
+
+
+@kernel
+def set_loop_face(m: PlanktonRecords, h: int, f: int) -> None:
+    """Let all half-edges in the loop of h lie in face f."""
+    g = h
+    while True:
+        m.half_edge[g, FACE_OF] = f
+        g = m.half_edge[g, NEXT]
+        if g == h:
+            return
 
 
 @kernel
@@ -130,26 +133,19 @@ def cut_across(
 ) -> int:
     """From the start of one half-edge to that of another in the same face. O(corners + n_ev)."""
     a, b = args[0], args[1]
-    if not edge_exists(m, a) or not edge_exists(m, b):
-        return NO_EDGE
-    face = m.half_edge[a, FACE_OF]
-    if face < 0 or m.half_edge[b, FACE_OF] != face:
-        return OTHER_FACE
-    if a == b or m.half_edge[a, NEXT] == b or m.half_edge[b, NEXT] == a:
-        return NEIGHBORS
-    from_a, from_b = m.half_edge[a, START], m.half_edge[b, START]
-    if joined(m, from_a, from_b):
-        return JOINED
-    if dry:
-        return ALLOWED
+    refusal = may_cut_across(m, a, b)
+    if refusal != ALLOWED or dry:
+        return refusal
     if not has_room(m, 0, 1, log):
         return NEEDS_ROOM
+    face = m.half_edge[a, FACE_OF]
     first, with_a, h = m.face_half_edge[face], False, a
     while h != b:
         with_a = with_a or h == first
         h = m.half_edge[h, NEXT]
     before_a, before_b = m.half_edge[a, PREVIOUS], m.half_edge[b, PREVIOUS]
-    back = new_pair(m, from_b, from_a)  # closes the loop of a, its pair that of b
+    # Its half from b to a closes the loop of a, the other one that of b.
+    back = new_pair(m, m.half_edge[b, START], m.half_edge[a, START])
     link(m, before_b, back)
     link(m, back, a)
     link(m, before_a, back ^ 1)
@@ -158,14 +154,11 @@ def cut_across(
     f = m.counts[FACE_END]
     m.half_edge[kept, FACE_OF] = face
     m.face_half_edge[f] = kept ^ 1
-    h = kept ^ 1
-    while m.half_edge[h, FACE_OF] != f:
-        m.half_edge[h, FACE_OF] = f
-        h = m.half_edge[h, NEXT]
-    add_faces(m, 1, 1)
+    set_loop_face(m, kept ^ 1, f)
+    count_new(m, 1, 1)
     m.counts[VALENCE] += 1
-    note_faces(log, CHANGED, face, -1)
-    note_faces(log, CREATED, f, -1)
+    log_faces(log, CHANGED, face, -1)
+    log_faces(log, CREATED, f, -1)
     return int(kept)
 
 
@@ -188,15 +181,15 @@ def merge_faces(
     """The face of the half-edge takes in the one beyond. Cost O(corners of both)."""
     h = args[0]
     if not edge_exists(m, h):
-        return NO_EDGE
+        return Refusal.NO_EDGE
     stays, goes = m.half_edge[h, FACE_OF], m.half_edge[h ^ 1, FACE_OF]
     if stays < 0 or goes < 0:
-        return BORDER_EDGE
+        return Refusal.BORDER_EDGE
     if not has_room(m, 0, 0, log) or not has_scratch(m, out, log):
         return NEEDS_ROOM
     both = corners_into(m, h ^ 1, out, corners_into(m, h, out, 0))
     if both - distinct(out, both) != 2:
-        return TOUCHING
+        return Refusal.TOUCHING
     if dry:
         return ALLOWED
     after, before = m.half_edge[h, NEXT], m.half_edge[h, PREVIOUS]
@@ -218,9 +211,9 @@ def merge_faces(
     kill(m, h)
     take_away(m, 1, 1)
     more_corners(m, stays)
-    note_faces(log, CHANGED, stays, -1)
-    note_faces(log, REMOVED, goes, -1)
-    return int(stays)
+    log_faces(log, CHANGED, stays, -1)
+    log_faces(log, REMOVED, goes, -1)
+    return int(np.int64(stays))  # as wide as refusals
 
 
 @kernel
@@ -237,23 +230,23 @@ def split_vertex(
     """Cost O(n_ev + corners of both faces)."""
     first, second = args[0], args[1]
     if not edge_exists(m, first) or not edge_exists(m, second):
-        return NO_EDGE
+        return Refusal.NO_EDGE
     v = m.half_edge[first, START]
     if first == second or m.half_edge[second, START] != v:
-        return OTHER_VERTEX
+        return Refusal.OTHER_VERTEX
     if not is_point(point):
-        return NOT_FINITE
+        return Refusal.NOT_FINITE
     if dry:
         return ALLOWED
     if not has_room(m, 1, 1, log) or not has_scratch(m, out, log):
         return NEEDS_ROOM
     before_first = m.half_edge[first ^ 1, NEXT]
     w = new_vertex(m, point)
-    note(log, VERTEX + CREATED, w)
+    log_element(log, VERTEX + CREATED, w)
     last = first
     while True:
         m.half_edge[last, START] = w
-        note_faces(log, CHANGED, m.half_edge[last, FACE_OF], -1)
+        log_faces(log, CHANGED, m.half_edge[last, FACE_OF], -1)
         if counterclockwise(m, last) == second:
             break
         last = counterclockwise(m, last)
@@ -266,36 +259,29 @@ def split_vertex(
     link(m, h ^ 1, before_first)
     settle(m, v, h)
     settle(m, w, h ^ 1)
-    add_faces(m, 1, 0)
+    count_new(m, 1, 0)
     more_corners(m, left)
     more_corners(m, right)
-    note_faces(log, CHANGED, right, -1)
+    log_faces(log, CHANGED, right, -1)
     return w
 
 
 @kernel
-def erase_vertex(
-    m: PlanktonRecords, args: Array, point: Array, at: Array, out: Array, log: Array, dry: bool
-) -> int:
-    """Cost O(corners of all faces around)."""
-    v = args[0]
-    if not vertex_exists(m, v) or np.isnan(m.vertex_point[v, 0]):
-        return NO_VERTEX
-    first = m.vertex_half_edge[v]
-    if first < 0 or m.half_edge[first, FACE_OF] < 0:
-        return BORDER_VERTEX
+def corners_around(m: PlanktonRecords, first: int) -> int:
+    """How many corners the face will have that takes the place of a vertex, a half-edge of it."""
     corners, spoke = 0, first
     while True:
         corners += sides(m, m.half_edge[spoke, FACE_OF]) - 2
         spoke = counterclockwise(m, spoke)
         if spoke == first:
-            break
-    m.counts[SIDES] = max(m.counts[SIDES], corners)
-    m.counts[VALENCE] = max(m.counts[VALENCE], corners)
-    if not has_room(m, 0, 0, log) or not has_scratch(m, out, log):
-        return NEEDS_ROOM
-    count = 0
-    while True:  # the corners across, face by face, without the last of each
+            return corners
+
+
+@kernel
+def ring_into(m: PlanktonRecords, first: int, out: Array) -> int:
+    """Write the corners across from a vertex, face by face, without the last of each -> count."""
+    v, spoke, count = m.half_edge[first, START], first, 0
+    while True:
         h = m.half_edge[spoke, NEXT]
         while tip(m, h) != v:
             out[count] = m.half_edge[h, START]
@@ -303,14 +289,13 @@ def erase_vertex(
             h = m.half_edge[h, NEXT]
         spoke = counterclockwise(m, spoke)
         if spoke == first:
-            break
-    if distinct(out, count) != count or count < 3:
-        return TOUCHING
-    if dry:
-        return ALLOWED
-    stays = m.half_edge[first, FACE_OF]
-    ring = m.half_edge[first, NEXT]
-    edges = 0
+            return count
+
+
+@kernel
+def kill_spokes(m: PlanktonRecords, first: int, stays: int, log: Array) -> int:
+    """Take the edges at a vertex away, and the faces but for ``stays`` -> how many edges."""
+    spoke, edges = first, 0
     while True:
         edges += 1
         following, face = counterclockwise(m, spoke), m.half_edge[spoke, FACE_OF]
@@ -320,25 +305,52 @@ def erase_vertex(
         link(m, m.half_edge[spoke ^ 1, PREVIOUS], m.half_edge[spoke, NEXT])
         if face != stays:
             m.face_half_edge[face] = -1
-            note(log, FACE + REMOVED, face)
+            log_element(log, FACE + REMOVED, face)
         kill(m, spoke)
         spoke = following
         if spoke == first:
-            break
+            return edges
+
+
+@kernel
+def erase_vertex(
+    m: PlanktonRecords, args: Array, point: Array, at: Array, out: Array, log: Array, dry: bool
+) -> int:
+    """Cost O(corners of all faces around)."""
+    v = args[0]
+    if not vertex_exists(m, v) or np.isnan(m.vertex_point[v, 0]):
+        return Refusal.NO_VERTEX
+    first = m.vertex_half_edge[v]
+    if first < 0 or m.half_edge[first, FACE_OF] < 0:
+        return Refusal.BORDER_VERTEX
+    corners = corners_around(m, first)
+    m.counts[SIDES] = max(m.counts[SIDES], corners)
+    m.counts[VALENCE] = max(m.counts[VALENCE], corners)
+    if not has_room(m, 0, 0, log) or not has_scratch(m, out, log):
+        return NEEDS_ROOM
+    count = ring_into(m, first, out)
+    if distinct(out, count) != count or count < 3:
+        return Refusal.TOUCHING
+    if dry:
+        return ALLOWED
+    stays, ring = m.half_edge[first, FACE_OF], m.half_edge[first, NEXT]
+    edges = kill_spokes(m, first, stays, log)
     m.face_half_edge[stays] = ring
-    h = ring
-    while True:
-        m.half_edge[h, FACE_OF] = stays
-        h = m.half_edge[h, NEXT]
-        if h == ring:
-            break
+    set_loop_face(m, ring, stays)
     m.vertex_half_edge[v] = -1
-    bury(m, v)
+    kill_vertex(m, v)
     m.counts[VERTICES] -= 1
     take_away(m, edges, edges - 1)
-    note(log, VERTEX + REMOVED, v)
-    note_faces(log, CHANGED, stays, -1)
-    return int(stays)
+    log_element(log, VERTEX + REMOVED, v)
+    log_faces(log, CHANGED, stays, -1)
+    return int(np.int64(stays))  # as wide as refusals
 
 
-POLYGON_KERNELS = named(insert_vertex, cut_across, merge_faces, split_vertex, erase_vertex)
+POLYGON_OPERATIONS = {
+    "insert_vertex": Operation(lambda k: insert_vertex, "edge", True, True, (1, 1)),
+    "cut_across": Operation(lambda k: cut_across, "half-edge", growth=(0, 1)),
+    "merge_faces": Operation(lambda k: merge_faces, "half-edge"),
+    "split_vertex": Operation(lambda k: split_vertex, "half-edge", True, True, (1, 1)),
+    "erase_vertex": Operation(lambda k: erase_vertex, "vertex"),
+}
+"""The operations of polygons that are compiled, by name; see ``hem.authoring.operations``."""

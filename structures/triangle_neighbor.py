@@ -22,42 +22,40 @@ is named by its two vertices. Bytes per vertex with 8-byte references: 12 + 8 + 
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple, Self
+from typing import NamedTuple, Self
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
-from hem.authoring.invariants import (
-    require,
-    require_counts,
-    require_distinct_edges,
-    require_one_fan,
-    require_points,
-    require_references,
-)
-from hem.authoring.kernels import (
+from hem.arrays import Array
+from hem.authoring import (
     FACE_END,
+    LEFT,
+    REFERENCE_TYPES,
+    RIGHT,
+    A,
+    B,
+    C,
+    D,
+    Field,
     append_face,
     circulator,
-    edge_exists,
-    edge_vertices,
+    counted,
     edges_at_both_ends,
     found_by_steps,
+    in_slices,
     joined_by_steps,
     kernel,
-    named,
-    pack,
+    live,
+    packed,
+    pair_half_edges,
+    require,
+    require_distinct_edges,
+    require_edge_count,
+    require_one_fan,
 )
-from hem.authoring.pairing import pair_half_edges
-from hem.authoring.records import Field, counted, live
-from hem.authoring.topology import LEFT, RIGHT, A, B, C, D
-from hem.contract.packed import PackedEdges
-from hem.contract.structure import REFERENCE_TYPES
-from hem.engine.slices import in_slices
-from hem.meshes.triangles import TriangleMesh
-
-Array = NDArray[Any]
+from hem.contract import Look, PackedEdges
+from hem.meshes import TriangleMesh
 
 NEIGHBOR, CORNER = 0, 3  # the first of three columns each
 
@@ -69,6 +67,10 @@ class TriangleNeighborRecords(NamedTuple):
     vertex_triangle: Array  # (n_v,) one of the triangles at the vertex
     triangle: Array  # (n_t, 6) three neighbors, three corners
     counts: Array  # how many of them there are, see hem.authoring.kernels
+
+
+# Nothing is recorded of an edge.
+edge_exists, edge_vertices, pack = packed.edge_exists, packed.edge_vertices, packed.pack
 
 
 @kernel
@@ -167,7 +169,7 @@ def face_faces(m: TriangleNeighborRecords, f: int, out: Array) -> int:
     return count
 
 
-# What operations need to know, and what they change (topology and operations in hem.authoring) ----
+# What operations need to know, and what they change (see hem.authoring.operations) --------------
 
 
 @kernel
@@ -196,11 +198,11 @@ def leaves_for(m: TriangleNeighborRecords, t: int, v: int, w: int) -> bool:
 
 # A triangle that has edge a – b, or -1.
 with_edge = found_by_steps(first, clockwise, in_triangle, counterclockwise)
-joined = joined_by_steps(first, clockwise, leaves_for, with_edge)
+are_joined = joined_by_steps(first, clockwise, leaves_for, with_edge)
 
 
 @kernel
-def beside(m: TriangleNeighborRecords, a: int, b: int) -> int:
+def face_left_of(m: TriangleNeighborRecords, a: int, b: int) -> int:
     """The triangle that runs a → b, or -1. Cost O(n_ev)."""
     t = with_edge(m, a, b)
     if t < 0:
@@ -215,14 +217,14 @@ def beside(m: TriangleNeighborRecords, a: int, b: int) -> int:
 def diamond(m: TriangleNeighborRecords, e: int, at: Array) -> int:
     """Cost O(n_ev)."""
     edge_vertices(m, e, at)
-    at[LEFT], at[RIGHT] = beside(m, at[A], at[B]), -1
+    at[LEFT], at[RIGHT] = face_left_of(m, at[A], at[B]), -1
     at[C], at[D] = -1, -1
     if at[LEFT] >= 0:
         i = corner_of(m, at[LEFT], at[A])
         at[C] = m.triangle[at[LEFT], CORNER + (i + 2) % 3]
         at[RIGHT] = m.triangle[at[LEFT], NEIGHBOR + i]
     else:
-        at[RIGHT] = beside(m, at[B], at[A])
+        at[RIGHT] = face_left_of(m, at[B], at[A])
     if at[RIGHT] >= 0:
         i = corner_of(m, at[RIGHT], at[B])
         at[D] = m.triangle[at[RIGHT], CORNER + (i + 2) % 3]
@@ -260,13 +262,13 @@ def set_neighbors(m: TriangleNeighborRecords, t: int, ab: int, bc: int, ca: int)
 
 
 @kernel
-def isolate(m: TriangleNeighborRecords, v: int) -> None:
+def clear_vertex(m: TriangleNeighborRecords, v: int) -> None:
     """See to it that vertex v has no faces."""
     m.vertex_triangle[v] = -1
 
 
 @kernel
-def cut_edge(m: TriangleNeighborRecords, e: int, at: Array, v: int, f: int) -> None:
+def split_edge_records(m: TriangleNeighborRecords, e: int, at: Array, v: int, f: int) -> None:
     """Cost O(1) when the triangles are known, which takes O(n_ev)."""
     a, b, left, right = at[A], at[B], at[LEFT], at[RIGHT]
     bc, ca, ad, db, new_left, new_right = -1, -1, -1, -1, -1, -1
@@ -290,7 +292,7 @@ def cut_edge(m: TriangleNeighborRecords, e: int, at: Array, v: int, f: int) -> N
 
 
 @kernel
-def cut_face(m: TriangleNeighborRecords, face: int, v: int, f: int) -> None:
+def split_face_records(m: TriangleNeighborRecords, face: int, v: int, f: int) -> None:
     """Cost O(1)."""
     i = 0
     for j in range(1, 3):
@@ -332,7 +334,7 @@ def take_out(m: TriangleNeighborRecords, t: int, drop: int, keep: int) -> None:
 
 
 @kernel
-def contract(
+def collapse_records(
     m: TriangleNeighborRecords, e: int, at: Array, drop: int, keep: int, around: int, out: Array
 ) -> None:
     """Cost O(n_ev) for the triangles at ``drop``."""
@@ -346,7 +348,7 @@ def contract(
 
 
 @kernel
-def turn(m: TriangleNeighborRecords, e: int, at: Array, one: int, other: int) -> None:
+def flip_records(m: TriangleNeighborRecords, e: int, at: Array, one: int, other: int) -> None:
     """Cost O(1) when the triangles are known, which takes O(n_ev)."""
     a, b, c, d = at[A], at[B], at[C], at[D]
     bc, ca = beyond(m, at[LEFT], b), beyond(m, at[LEFT], c)
@@ -358,16 +360,16 @@ def turn(m: TriangleNeighborRecords, e: int, at: Array, one: int, other: int) ->
 
 
 @kernel
-def attach(m: TriangleNeighborRecords, corners: Array, f: int) -> None:
+def add_records(m: TriangleNeighborRecords, corners: Array, f: int) -> None:
     """Cost O(n_ev)."""
     a, b, c = corners[0], corners[1], corners[2]
-    ab, bc, ca = beside(m, b, a), beside(m, c, b), beside(m, a, c)
+    ab, bc, ca = face_left_of(m, b, a), face_left_of(m, c, b), face_left_of(m, a, c)
     set_triangle(m, f, a, b, c)
     set_neighbors(m, f, ab, bc, ca)
 
 
 @kernel
-def detach(m: TriangleNeighborRecords, f: int) -> None:
+def remove_records(m: TriangleNeighborRecords, f: int) -> None:
     """Cost O(1)."""
     for i in range(3):
         m.vertex_triangle[m.triangle[f, CORNER + i]] = -1
@@ -382,7 +384,7 @@ def detach(m: TriangleNeighborRecords, f: int) -> None:
 
 
 @kernel
-def anchor(m: TriangleNeighborRecords, v: int, f: int) -> None:
+def set_vertex_face(m: TriangleNeighborRecords, v: int, f: int) -> None:
     """Let v know of the face f at it. Cost O(1)."""
     m.vertex_triangle[v] = f
 
@@ -400,19 +402,13 @@ class TriangleNeighbor(PackedEdges):
     """The triangle-neighbor structure."""
 
     name, title, abbreviation = "triangle_neighbor", "Triangle-Neighbor", "TNS"
+    look, thesis, order = Look("#a8325e", "^", "--"), True, 2
     records_type = TriangleNeighborRecords
     fields = (
         Field("vertex.point", "vertex_point", 3, marks=True),
-        Field("vertex.triangle", "vertex_triangle", target="triangle"),
-        Field("triangle.neighbor", "triangle", 3, target="triangle"),
+        Field("vertex.triangle", "vertex_triangle", target="triangle", optional=True),
+        Field("triangle.neighbor", "triangle", 3, target="triangle", optional=True),
         Field("triangle.vertex", "triangle", 3, target="vertex", marks=True),
-    )
-    kernels = named(
-        *(vertex_vertices, vertex_edges, vertex_faces),
-        *(edge_vertices, edge_edges, edge_faces),
-        *(face_vertices, face_edges, face_faces),
-        *(edge_exists, face_exists, diamond, joined, beside),
-        *(isolate, cut_edge, cut_face, contract, turn, attach, detach, anchor),
     )
 
     @classmethod
@@ -426,23 +422,18 @@ class TriangleNeighbor(PackedEdges):
         count = counted(len(mesh.points), pairing.n_edges, len(triangle))
         return cls(TriangleNeighborRecords(mesh.points.copy(), vertex_triangle, triangle, count))
 
-    def validate(self) -> None:
-        """See ``Structure.validate``; the invariants stand at the top of this file."""
-        m, fields = self.records, self.fields
-        vertices, faces = live(m, fields, "vertex"), live(m, fields, "triangle")
-        f, of_vertex = np.flatnonzero(faces), m.vertex_triangle[: len(vertices)]
+    def _require_invariants(self) -> None:
+        """Those at the top of this file."""
+        m, faces = self.records, live(self.records, self.fields, "triangle")
+        f, of_vertex = np.flatnonzero(faces), m.vertex_triangle[: len(self.points)]
         corner = m.triangle[: len(faces), CORNER:]
         beyond = np.full_like(corner, -1)
         beyond[f] = m.triangle[f, NEIGHBOR:CORNER]
         once = (beyond < np.arange(len(faces))[:, None]) & faces[:, None]  # of two the later one
-        require_counts(m, fields, int(np.count_nonzero(once)))
-        require_points(self.points)
-        require_references(corner[f], vertices, "corner", "faces", f)
-        require_references(beyond[f], faces, "neighbor", "faces", f, least=-1)
-        require_references(of_vertex, faces, "triangle", "vertices", least=-1)
+        require_edge_count(m, int(np.count_nonzero(once)))
         require(corner[f] != np.roll(corner[f], 1, axis=1), "corners differ", "faces", f)
 
-        used = np.bincount(corner[f].ravel(), minlength=len(vertices)) > 0
+        used = np.bincount(corner[f].ravel(), minlength=len(of_vertex)) > 0
         require((of_vertex >= 0) == used, "just vertices with faces have one", "vertices")
         v = np.flatnonzero(used)
         at = (corner[of_vertex[v]] == v[:, None]).any(axis=1)

@@ -28,41 +28,45 @@ left-hand column gives the column to read. Bytes per vertex with 8-byte referenc
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple, Self
+from typing import NamedTuple, Self
 
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from hem.authoring.invariants import (
-    require,
-    require_counts,
-    require_distinct_edges,
-    require_one_fan,
-    require_points,
-    require_references,
-)
-from hem.authoring.kernels import (
+from hem.arrays import Array
+from hem.authoring import (
     EDGE_END,
     FACE_END,
+    REFERENCE_TYPES,
+    A,
+    B,
+    C,
+    D,
+    Field,
     append_face,
     circulator,
+    counted,
     edges_at_both_ends,
     found_by_steps,
+    in_slices,
     joined_by_steps,
     kernel,
-    named,
+    live,
+    pair_half_edges,
+    require,
+    require_distinct_edges,
+    require_edge_count,
+    require_one_fan,
 )
-from hem.authoring.pairing import pair_half_edges
-from hem.authoring.records import Field, counted, live
-from hem.authoring.topology import LEFT as LEFT_FACE
-from hem.authoring.topology import RIGHT as RIGHT_FACE
-from hem.authoring.topology import A, B, C, D
-from hem.contract.structure import REFERENCE_TYPES, Structure
-from hem.engine.slices import in_slices
-from hem.meshes.triangles import TriangleMesh
-
-Array = NDArray[Any]
+from hem.authoring import (
+    LEFT as LEFT_FACE,
+)
+from hem.authoring import (
+    RIGHT as RIGHT_FACE,
+)
+from hem.contract import Look, Structure
+from hem.meshes import TriangleMesh
 
 TAIL, HEAD, LEFT, RIGHT = range(4)
 LEFT_PREVIOUS, RIGHT_PREVIOUS, LEFT_NEXT, RIGHT_NEXT = range(4, 8)
@@ -201,7 +205,7 @@ def face_faces(m: WingedEdgeRecords, f: int, out: Array) -> int:
     return count
 
 
-# What operations need to know, and what they change (topology and operations in hem.authoring) ----
+# What operations need to know, and what they change (see hem.authoring.operations) --------------
 
 
 @kernel
@@ -260,14 +264,14 @@ def ends_at(m: WingedEdgeRecords, d: int, v: int, w: int) -> bool:
 
 
 # The directed edge a → b, or -1.
-between = found_by_steps(first, clockwise, ends_at, counterclockwise)
-joined = joined_by_steps(first, clockwise, ends_at, between)
+find_directed_edge = found_by_steps(first, clockwise, ends_at, counterclockwise)
+are_joined = joined_by_steps(first, clockwise, ends_at, find_directed_edge)
 
 
 @kernel
-def beside(m: WingedEdgeRecords, a: int, b: int) -> int:
+def face_left_of(m: WingedEdgeRecords, a: int, b: int) -> int:
     """The face that runs a → b, or -1. Cost O(n_ev)."""
-    d = between(m, a, b)
+    d = find_directed_edge(m, a, b)
     return left_of(m, d) if d >= 0 else -1
 
 
@@ -308,13 +312,13 @@ def new_edge(m: WingedEdgeRecords, tail: int, head: int) -> int:
 
 
 @kernel
-def isolate(m: WingedEdgeRecords, v: int) -> None:
+def clear_vertex(m: WingedEdgeRecords, v: int) -> None:
     """See to it that vertex v has no faces."""
     m.vertex_edge[v] = -1
 
 
 @kernel
-def cut_edge(m: WingedEdgeRecords, e: int, at: Array, v: int, f: int) -> None:
+def split_edge_records(m: WingedEdgeRecords, e: int, at: Array, v: int, f: int) -> None:
     """Cost O(1): the edge stays with a and v, and one edge is new on each side and beyond v."""
     a, b = at[A], at[B]
     av = directed_from(m, e, a)
@@ -337,7 +341,7 @@ def cut_edge(m: WingedEdgeRecords, e: int, at: Array, v: int, f: int) -> None:
 
 
 @kernel
-def cut_face(m: WingedEdgeRecords, face: int, v: int, f: int) -> None:
+def split_face_records(m: WingedEdgeRecords, face: int, v: int, f: int) -> None:
     """Cost O(1)."""
     e = m.face_edge[face]
     ab = 2 * e + side_of(m, e, face)
@@ -375,7 +379,7 @@ def unite(m: WingedEdgeRecords, gone: int, stays: int) -> None:
 
 
 @kernel
-def contract(
+def collapse_records(
     m: WingedEdgeRecords, e: int, at: Array, drop: int, keep: int, around: int, out: Array
 ) -> None:
     """Cost O(n_ev) for the edges at ``drop``."""
@@ -403,7 +407,7 @@ def contract(
 
 
 @kernel
-def turn(m: WingedEdgeRecords, e: int, at: Array, one: int, other: int) -> None:
+def flip_records(m: WingedEdgeRecords, e: int, at: Array, one: int, other: int) -> None:
     """Cost O(1)."""
     ab = directed_from(m, e, at[A])
     bc, ad = following(m, ab), following(m, ab ^ 1)
@@ -415,10 +419,14 @@ def turn(m: WingedEdgeRecords, e: int, at: Array, one: int, other: int) -> None:
 
 
 @kernel
-def attach(m: WingedEdgeRecords, corners: Array, f: int) -> None:
+def add_records(m: WingedEdgeRecords, corners: Array, f: int) -> None:
     """Cost O(n_ev)."""
     a, b, c = corners[0], corners[1], corners[2]
-    ab, bc, ca = between(m, a, b), between(m, b, c), between(m, c, a)
+    ab, bc, ca = (
+        find_directed_edge(m, a, b),
+        find_directed_edge(m, b, c),
+        find_directed_edge(m, c, a),
+    )
     ab = ab if ab >= 0 else new_edge(m, a, b)
     bc = bc if bc >= 0 else new_edge(m, b, c)
     ca = ca if ca >= 0 else new_edge(m, c, a)
@@ -426,7 +434,7 @@ def attach(m: WingedEdgeRecords, corners: Array, f: int) -> None:
 
 
 @kernel
-def detach(m: WingedEdgeRecords, f: int) -> None:
+def remove_records(m: WingedEdgeRecords, f: int) -> None:
     """Cost O(1)."""
     e = m.face_edge[f]
     ab = 2 * e + side_of(m, e, f)
@@ -444,7 +452,7 @@ def detach(m: WingedEdgeRecords, f: int) -> None:
 
 
 @kernel
-def anchor(m: WingedEdgeRecords, v: int, f: int) -> None:
+def set_vertex_face(m: WingedEdgeRecords, v: int, f: int) -> None:
     """Let v know of the face f at it. Cost O(1)."""
     e = m.face_edge[f]
     d = 2 * e + side_of(m, e, f)
@@ -488,26 +496,20 @@ class WingedEdge(Structure):
     """The winged-edge mesh."""
 
     name, title, abbreviation = "winged_edge", "Winged-Edge", "WEM"
+    look, thesis, order = Look("#2f7fc1", "o", "-"), True, 3
     records_type = WingedEdgeRecords
     fields = (
         Field("vertex.point", "vertex_point", 3, marks=True),
-        Field("vertex.edge", "vertex_edge", target="edge"),
+        Field("vertex.edge", "vertex_edge", target="edge", optional=True),
         Field("face.edge", "face_edge", target="edge", marks=True),
         Field("edge.tail", "edge", target="vertex", marks=True),
         Field("edge.head", "edge", target="vertex"),
-        Field("edge.left", "edge", target="face"),
-        Field("edge.right", "edge", target="face"),
-        Field("edge.left_previous", "edge", target="edge"),
-        Field("edge.right_previous", "edge", target="edge"),
-        Field("edge.left_next", "edge", target="edge"),
-        Field("edge.right_next", "edge", target="edge"),
-    )
-    kernels = named(
-        *(vertex_vertices, vertex_edges, vertex_faces),
-        *(edge_vertices, edge_edges, edge_faces),
-        *(face_vertices, face_edges, face_faces),
-        *(edge_exists, face_exists, diamond, joined, beside),
-        *(isolate, cut_edge, cut_face, contract, turn, attach, detach, anchor),
+        Field("edge.left", "edge", target="face", optional=True),
+        Field("edge.right", "edge", target="face", optional=True),
+        Field("edge.left_previous", "edge", target="edge", optional=True),
+        Field("edge.right_previous", "edge", target="edge", optional=True),
+        Field("edge.left_next", "edge", target="edge", optional=True),
+        Field("edge.right_next", "edge", target="edge", optional=True),
     )
 
     @classmethod
@@ -529,57 +531,48 @@ class WingedEdge(Structure):
         """(n_edges,) int64: the index of every live edge record."""
         return np.flatnonzero(live(self.records, self.fields, "edge"))
 
-    def validate(self) -> None:
-        """See ``Structure.validate``; the invariants stand at the top of this file."""
-        m, fields = self.records, self.fields
-        vertices, faces = live(m, fields, "vertex"), live(m, fields, "face")
-        edges = live(m, fields, "edge")
-        of_vertex, of_face = m.vertex_edge[: len(vertices)], m.face_edge[: len(faces)]
-        record, e, f = m.edge[: len(edges)], np.flatnonzero(edges), np.flatnonzero(faces)
-        require_counts(m, fields, len(e))
-        require_points(self.points)
-        require_references(record[e][:, [TAIL, HEAD]], vertices, "end", "edges", e)
-        require_references(record[e][:, [LEFT, RIGHT]], faces, "face", "edges", e, least=-1)
-        require_references(record[e][:, LEFT_PREVIOUS:], edges, "wing", "edges", e, least=-1)
-        require_references(of_vertex, edges, "edge", "vertices", least=-1)
-        require_references(of_face[f], edges, "edge", "faces", f)
+    def _require_invariants(self) -> None:
+        """Those at the top of this file."""
+        m, e, f = self.records, self.edges(), self.faces()
+        require_edge_count(m, len(e))
+        record = m.edge[: m.counts[EDGE_END]]
+        faces = record[e][:, [LEFT, RIGHT]].max(axis=1, initial=-1)
+        require(faces >= 0, "an edge has a face", "edges", e)
+        require_distinct_edges(record[e, TAIL], record[e, HEAD], "edges", e)
+        own = (record[m.face_edge[f]][:, [LEFT, RIGHT]] == f[:, None]).any(axis=1)
+        require(own, "the edge of a face borders it", "faces", f)
 
-        # As directed edges 2e + side: one row each, whichever way round the edge lies.
+        of_vertex = m.vertex_edge[: len(self.points)]
+        used = np.bincount(record[e][:, [TAIL, HEAD]].ravel(), minlength=len(of_vertex)) > 0
+        require((of_vertex >= 0) == used, "just the vertices with edges have one", "vertices")
+        v = np.flatnonzero(used)
+        ends = (record[of_vertex[v]][:, [TAIL, HEAD]] == v[:, None]).any(axis=1)
+        require(ends, "the edge of a vertex ends there", "vertices", v)
+        self._require_wings(record, e, f)
+
+    def _require_wings(self, record: Array, e: Array, f: Array) -> None:
+        """As directed edges 2e + side: one row each, whichever way round the edge lies."""
         tail, head = record[:, [TAIL, HEAD]].ravel(), record[:, [HEAD, TAIL]].ravel()
         face = record[:, [LEFT, RIGHT]].ravel()
         before = record[:, [LEFT_PREVIOUS, RIGHT_PREVIOUS]].ravel()
         after = record[:, [LEFT_NEXT, RIGHT_NEXT]].ravel()
-        d = np.flatnonzero(np.repeat(edges, 2))
+        d = np.stack([2 * e, 2 * e + 1], axis=1).ravel()
         inner = d[face[d] >= 0]
         owner = inner // 2
 
         missing = np.stack([face[d] < 0, before[d] < 0, after[d] < 0], axis=1).sum(axis=1)
         words = "an edge has the wings of its faces, and no others"
         require(np.isin(missing, (0, 3)), words, "edges", d // 2)
-        require(
-            face.reshape(-1, 2)[e].max(axis=1, initial=-1) >= 0, "an edge has a face", "edges", e
-        )
-        require_distinct_edges(tail[2 * e], head[2 * e], "edges", e)
-
         follower = np.full(len(face), -1)
         on_right = face[2 * after[inner]] != face[inner]
         follower[inner] = 2 * after[inner] + on_right
         then = follower[inner]
-        joined = (face[then] == face[inner]) & (tail[then] == head[inner])
         words = "next lies in the same face and starts at the end"
-        require(joined, words, "edges", owner)
+        require((face[then] == face[inner]) & (tail[then] == head[inner]), words, "edges", owner)
         require(before[then] == owner, "previous of next is the edge itself", "edges", owner)
         round_ = follower[follower[then]] == inner
         require(round_, "three times next comes round", "edges", owner)
-
-        sides = np.bincount(face[inner], minlength=len(faces))[f]
+        sides = np.bincount(face[inner], minlength=self.face_end)[f]
         require(sides == 3, "a face has three edges", "faces", f)
-        own = (record[of_face[f]][:, [LEFT, RIGHT]] == f[:, None]).any(axis=1)
-        require(own, "the edge of a face borders it", "faces", f)
-        used = np.bincount(tail[d], minlength=len(vertices)) > 0
-        require((of_vertex >= 0) == used, "just the vertices with edges have one", "vertices")
-        v = np.flatnonzero(used)
-        ends = (record[of_vertex[v]][:, [TAIL, HEAD]] == v[:, None]).any(axis=1)
-        require(ends, "the edge of a vertex ends there", "vertices", v)
         # Around its tail, clockwise of a directed edge comes the follower of its other direction.
         require_one_fan(tail, follower[np.arange(len(face)) ^ 1], d)

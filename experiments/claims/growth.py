@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from importlib.resources import files
 from typing import Any
 
-from hem.contract.queries import QUERIES
-from structures import NAMED
+from hem.contract import QUERIES, Claims
+from structures import NAMED, REGISTRY
 
 OPERATIONS = {
     "split_edge": "Split edge",
@@ -76,10 +76,26 @@ def load_claims(text: str | None = None) -> list[Claim]:
     content = tomllib.loads(text or (files("experiments.claims") / "claims.toml").read_text())
     return [
         _claim(row, structure, content["classes"])
-        for row in content["row"]
-        for structure in _checked(row)
+        for row in map(_completed, content["row"])
+        for structure in row
         if structure in NAMED
     ]
+
+
+def _completed(row: dict[str, Any]) -> dict[str, Any]:
+    """A checked row, with what structures claim that the thesis does not print."""
+    row = _checked(row)
+    if "table" in row:
+        return row
+    others = {name: it.claims for name, it in REGISTRY.items() if not it.thesis}
+    return row | {name: _claimed(it, row) for name, it in others.items()}
+
+
+def _claimed(claims: Claims, row: dict[str, Any]) -> str:
+    what = row["what"]
+    if what in claims.costs:
+        return claims.costs[what]
+    return NO_CLAIM if what == MEMORY else row.get(claims.like, NO_CLAIM)
 
 
 def _checked(row: dict[str, Any]) -> dict[str, Any]:
@@ -96,7 +112,7 @@ def _checked(row: dict[str, Any]) -> dict[str, Any]:
 
 
 def _claim(row: dict[str, Any], structure: str, classes: dict[str, dict[str, str]]) -> Claim:
-    what, printed, source = row["what"], row[structure], row["source"]
+    what, printed, source = row["what"], row[structure], _source(row, structure)
     table = row.get("table", "operations" if what in OPERATIONS else "queries")
     if table not in TABLES:
         raise ValueError(f"claims.toml, row {what}: no table is called {table!r}")
@@ -109,3 +125,8 @@ def _claim(row: dict[str, Any], structure: str, classes: dict[str, dict[str, str
     if table == "listings":  # measured by size alone
         expected = {variable: it for variable, it in expected.items() if variable == "faces"}
     return Claim(what, table, structure, printed, source, expected)
+
+
+def _source(row: dict[str, Any], structure: str) -> str:
+    own = structure in REGISTRY and not REGISTRY[structure].thesis and "table" not in row
+    return REGISTRY[structure].claims.source if own else row["source"]

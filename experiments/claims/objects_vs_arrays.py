@@ -8,7 +8,7 @@ import pandas as pd
 from experiments.claims.growth import OPERATIONS, title_of
 from experiments.claims.judged import Evidence
 from experiments.runs.results import Run
-from hem.contract.queries import QUERIES
+from hem.contract import QUERIES
 
 ARRAYS, OBJECTS = "half_edge", "half_edge_objects"
 

@@ -26,8 +26,8 @@ from experiments.claims.verdicts import JudgedClaim
 from experiments.harness import BASE, OPERATIONS, Axis
 from experiments.runs.results import Run
 from hem.complexity import slope
-from hem.contract.queries import QUERIES
-from structures.half_edge_objects import HalfEdgeMeshBuilder
+from hem.contract import QUERIES
+from structures.object_tools import HalfEdgeMeshBuilder
 from structures.plankton import Plankton
 
 Array = NDArray[np.float64]

@@ -24,8 +24,8 @@ from experiments.claims.breakeven import break_even
 from experiments.claims.growth import OPERATIONS
 from experiments.claims.judged import Evidence
 from experiments.runs.results import Run
-from hem.contract.queries import QUERIES
-from structures.half_edge_objects import HalfEdgeMeshBuilder
+from hem.contract import QUERIES
+from structures.object_tools import HalfEdgeMeshBuilder
 from structures.plankton import Plankton
 
 Array = NDArray[np.float64]

@@ -16,8 +16,7 @@ import hem
 import structures
 from experiments.harness.measurement import Measurement
 from experiments.harness.presets import HUBS
-from hem.contract.queries import QUERIES, Query
-from hem.contract.structure import Structure
+from hem.contract import QUERIES, Query, Structure
 from hem.meshes.triangles import TriangleMesh
 
 Array = NDArray[Any]

@@ -14,7 +14,7 @@ from experiments.harness.cases import Case
 from experiments.harness.measurement import Measurement
 from experiments.harness.presets import Preset
 from experiments.harness.timer import Timer
-from hem.contract.queries import QUERIES
+from hem.contract import QUERIES
 
 KINDS = ("time", "work", "bytes")
 ANYONE = "*"

@@ -15,8 +15,8 @@ from experiments.harness.cases import BASE, Case
 from experiments.harness.latency import latency_now
 from experiments.harness.presets import HUBS, Preset
 from experiments.harness.timer import Timer
-from hem.contract.structure import Structure
-from hem.engine.uses import END
+from hem.contract import Structure
+from hem.engine import END
 from structures import REGISTRY
 
 Array = NDArray[Any]

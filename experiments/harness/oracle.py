@@ -11,8 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from hem.contract.queries import Query
-from hem.contract.structure import Structure
+from hem.contract import Query, Structure
 from hem.meshes.triangles import TriangleMesh
 
 Array = NDArray[Any]

@@ -16,7 +16,7 @@ from experiments.harness.measurement import Measurement
 from experiments.harness.oracle import CHECKED_HANDLES, check_query
 from experiments.harness.presets import Preset
 from experiments.harness.timer import Timer
-from hem.contract.structure import Structure
+from hem.contract import Structure
 
 Array = NDArray[Any]
 

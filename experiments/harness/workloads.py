@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from hem.contract.structure import Structure
+from hem.contract import Structure
 
 Array = NDArray[np.float64]
 

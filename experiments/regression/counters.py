@@ -23,8 +23,7 @@ from experiments.claims.growth import Claim, load_claims
 from experiments.harness import PRESETS, Case, Experiment, Measurement, time_rounds
 from experiments.runs.catalog import experiments
 from experiments.runs.results import Run
-from hem.contract.queries import QUERIES
-from hem.contract.structure import REFERENCE_TYPES, Structure
+from hem.contract import QUERIES, REFERENCE_TYPES, Structure
 
 Value = list[int] | str
 """Counts, one per handle or field; or a growth class and what it says of the claim."""

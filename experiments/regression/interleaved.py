@@ -20,7 +20,7 @@ import numpy as np
 
 from experiments.regression.findings import Finding, claim_of
 from experiments.regression.significance import FACTOR, Comparison, compare
-from hem.contract.queries import QUERIES
+from hem.contract import QUERIES
 from structures import REGISTRY
 
 VERTICES = 1_000

@@ -14,7 +14,7 @@ from experiments.claims.growth import MEMORY, load_claims, title_of
 from experiments.claims.judged import Evidence
 from experiments.report.style import FADED, GRAY, LOOKS, label_ends, short, styled
 from experiments.runs.results import Run
-from hem.contract.queries import QUERIES
+from hem.contract import QUERIES
 from structures import NAMES, REGISTRY
 
 Ends = dict[str, tuple[float, float, str]]

@@ -14,7 +14,7 @@ from experiments.claims.growth import MEMORY, OPERATIONS, title_of
 from experiments.regression.history import History, Line
 from experiments.regression.trends import MEASURES, OUTCOMES, Change, Series, changes, series
 from experiments.report.style import LOOKS, label_ends, short, styled
-from hem.contract.queries import QUERIES
+from hem.contract import QUERIES
 from structures import NAMES, REGISTRY
 
 Ends = dict[str, tuple[float, float, str]]

@@ -15,7 +15,7 @@ import hem
 import structures
 from experiments.harness.workloads import simplify
 from experiments.report.style import styled
-from hem.contract.structure import Structure
+from hem.contract import Structure
 from structures.plankton import Plankton
 
 Array = NDArray[Any]

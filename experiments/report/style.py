@@ -3,34 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.transforms import ScaledTranslation
 
+from hem.contract import Look
 from structures import NAMED
 
-
-class Look(NamedTuple):
-    """A structure's line. The colors differ in lightness, so that they can be told in gray."""
-
-    color: str
-    marker: str
-    line: str
-
-
-LOOKS = {
-    "indexed": Look("#111111", "s", "-"),
-    "triangle_neighbor": Look("#a8325e", "^", "--"),
-    "winged_edge": Look("#2f7fc1", "o", "-"),
-    "half_edge": Look("#e69f00", "D", "-"),
-    "half_edge_objects": Look("#8c6bb1", "v", ":"),
-    "plankton": Look("#1b7f5c", "P", "--"),
-    "as_printed": Look("#c23b22", "X", "-"),
-}
-"""By structure, the same in every plot."""
+LOOKS: dict[str, Look] = {name: it.look for name, it in NAMED.items()}
+"""By structure, as each declares it: the same in every plot."""
 
 GRAY = "#8a8a8a"
 FADED = "#efefef"

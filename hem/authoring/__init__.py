@@ -1,1 +1,158 @@
-"""What a structure's file is written with: kernels, records, rules and operations, invariants."""
+"""What a structure's file is written with.
+
+- ``kernel``, the decorator; the columns of ``counts`` (``FACE_END`` …); small parts of kernels.
+- walks around a vertex: ``circulator``, ``found_by_steps``, ``joined_by_steps``;
+- ``Field`` and ``counted``, which declare and begin the records;
+- ``pair_half_edges`` and ``in_slices`` for the build;
+- ``require…``, which state invariants;
+- ``hem.authoring.operations``, what all structures do alike around their own changes.
+
+What a structure must offer is said by ``hem.contract.Structure``, of which it is a subclass.
+"""
+
+from hem.authoring import packed
+from hem.authoring.defaults import OF_ARRAYS, kill_vertex, set_point, sides, vertex_exists
+from hem.authoring.invariants import (
+    require,
+    require_distinct_edges,
+    require_edge_count,
+    require_one_fan,
+    require_one_loop,
+    require_records,
+)
+from hem.authoring.kernels import (
+    EDGE_END,
+    EDGE_GROWTH,
+    EDGE_ROOM,
+    EDGES,
+    FACE_END,
+    FACE_ROOM,
+    FACES,
+    SIDES,
+    VALENCE,
+    VERTEX_END,
+    VERTEX_ROOM,
+    VERTICES,
+    Kernel,
+    Kernels,
+    append_face,
+    distinct,
+    kernel,
+    kernels_of,
+    part,
+    without,
+)
+from hem.authoring.operations import (
+    ENTRIES,
+    LEFT,
+    OPERATIONS,
+    RIGHT,
+    WIDTH,
+    A,
+    B,
+    C,
+    D,
+    Operation,
+    count_new,
+    has_room,
+    has_scratch,
+    is_point,
+    log_element,
+    log_faces,
+    vertex_maker,
+)
+from hem.authoring.pairing import Pairing, pair_half_edges, pair_polygons
+from hem.authoring.queries import ELEMENTS, QUERIES, Query
+from hem.authoring.records import (
+    ENDLESS,
+    ENDS,
+    REFERENCE_TYPES,
+    UNKNOWN,
+    Field,
+    compacted,
+    copied,
+    counted,
+    grown,
+    live,
+)
+from hem.authoring.refusals import ALLOWED, NEEDS_ROOM, WORDS, Refusal
+from hem.authoring.slices import in_slices, slice_count
+from hem.authoring.walks import circulator, edges_at_both_ends, found_by_steps, joined_by_steps
+
+__all__ = [
+    "ALLOWED",
+    "EDGES",
+    "EDGE_END",
+    "EDGE_GROWTH",
+    "EDGE_ROOM",
+    "ELEMENTS",
+    "ENDLESS",
+    "ENDS",
+    "ENTRIES",
+    "FACES",
+    "FACE_END",
+    "FACE_ROOM",
+    "LEFT",
+    "NEEDS_ROOM",
+    "OF_ARRAYS",
+    "OPERATIONS",
+    "QUERIES",
+    "REFERENCE_TYPES",
+    "RIGHT",
+    "SIDES",
+    "UNKNOWN",
+    "VALENCE",
+    "VERTEX_END",
+    "VERTEX_ROOM",
+    "VERTICES",
+    "WIDTH",
+    "WORDS",
+    "A",
+    "B",
+    "C",
+    "D",
+    "Field",
+    "Kernel",
+    "Kernels",
+    "Operation",
+    "Pairing",
+    "Query",
+    "Refusal",
+    "append_face",
+    "circulator",
+    "compacted",
+    "copied",
+    "count_new",
+    "counted",
+    "distinct",
+    "edges_at_both_ends",
+    "found_by_steps",
+    "grown",
+    "has_room",
+    "has_scratch",
+    "in_slices",
+    "is_point",
+    "joined_by_steps",
+    "kernel",
+    "kernels_of",
+    "kill_vertex",
+    "live",
+    "log_element",
+    "log_faces",
+    "packed",
+    "pair_half_edges",
+    "pair_polygons",
+    "part",
+    "require",
+    "require_distinct_edges",
+    "require_edge_count",
+    "require_one_fan",
+    "require_one_loop",
+    "require_records",
+    "set_point",
+    "sides",
+    "slice_count",
+    "vertex_exists",
+    "vertex_maker",
+    "without",
+]

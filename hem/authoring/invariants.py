@@ -8,12 +8,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from hem.arrays import Array
 from hem.authoring.kernels import EDGES, FACES, VERTICES
-from hem.authoring.records import Field, live
-from hem.contract.queries import ELEMENTS
+from hem.authoring.queries import ELEMENTS
+from hem.authoring.records import Field, in_use, live
 from hem.errors import MeshError
 
-Array = NDArray[Any]
+RECORDS = {**ELEMENTS, "half_edge": "half_edges", "triangle": "faces"}
+"""How errors call the elements that records stand for."""
 
 
 def require(
@@ -29,49 +31,43 @@ def require(
         raise MeshError(f"broken invariant: {invariant}", **{elements: found})
 
 
-def require_references(
-    values: Array,
-    alive: NDArray[np.bool_],
-    field: str,
-    elements: str,
-    of: Array | None = None,
-    least: int = 0,
-) -> None:
-    """Require that every reference names a live record, or is ``least`` = -1 where it names none.
+def require_records(records: Any, fields: Sequence[Field]) -> None:
+    """Require what follows from the fields alone.
 
-    ``values``: (n,) or (n, k). ``alive``: (end,) of the records that are referred to.
+    Live vertices and faces are as many as the structure says, vertices have finite positions, and
+    every reference names a live record, or none where it is optional.
     """
+    alive = {kind: live(records, fields, kind) for kind in {it.element for it in fields}}
+    for field in fields:
+        values, kind = in_use(records, fields, field), field.element
+        if field.marks and kind in ("vertex", "face", "triangle"):
+            element, column = ("vertex", VERTICES) if kind == "vertex" else ("face", FACES)
+            _require_count(element, int(alive[kind].sum()), int(records.counts[column]))
+        if field.target:
+            rows = np.flatnonzero(alive[kind])
+            _require_references(field, values[rows], alive[field.target], rows)
+        else:
+            alike = np.isfinite(values).all(axis=1) == ~np.isnan(values).all(axis=1)
+            require(alike, "positions are finite", RECORDS[kind])
+
+
+def _require_references(field: Field, values: Array, alive: Array, rows: Array) -> None:
     named: NDArray[np.bool_] = (values >= 0) & (values < len(alive))
     named[named] = alive[values[named]]
-    if least < 0:
-        named |= values == least
-    require(named, f"{field} is a live record", elements, of)
-
-
-def require_points(points: Array) -> None:
-    """Require finite positions, of live vertices; a dead one has none at all."""
-    alike = np.isfinite(points).all(axis=1) == ~np.isnan(points).all(axis=1)
-    require(alike, "positions are finite", "vertices")
-
-
-def require_counts(records: Any, fields: Sequence[Field], edges: int | None = None) -> None:
-    """Require that the live elements are as many as the structure says.
-
-    ``edges``: how many there are, where it is known without a search.
-    """
-    count = records.counts
-    found = {VERTICES: "vertex", FACES: "face"}
-    for column, element in found.items():
-        alive = int(np.count_nonzero(live(records, fields, element)))
-        _require_count(element, alive, int(count[column]))
-    if edges is not None:
-        _require_count("edge", edges, int(count[EDGES]))
+    if field.optional:
+        named |= values == -1
+    require(named, f"{field.name} is a live {field.target}", RECORDS[field.element], rows)
 
 
 def _require_count(element: str, found: int, counted: int) -> None:
     if found != counted:
         many = ELEMENTS[element]
         raise MeshError(f"broken invariant: {counted:,} live {many} are counted, not {found:,}")
+
+
+def require_edge_count(records: Any, edges: int) -> None:
+    """Require that there are as many live edges as the structure says."""
+    _require_count("edge", edges, int(records.counts[EDGES]))
 
 
 def require_distinct_edges(a: Array, b: Array, elements: str, of: Array | None = None) -> None:

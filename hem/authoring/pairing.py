@@ -8,20 +8,17 @@ Each half-edge is put into the bucket of its smaller vertex (a counting sort), a
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from hem.arrays import Array
 from hem.authoring.invariants import require_one_fan
-from hem.engine.slices import in_slices, slice_count
+from hem.authoring.slices import in_slices, slice_count
 from hem.errors import MeshError, NonManifoldError
-from hem.meshes.manifold import require_manifold
-from hem.meshes.polygons import PolygonMesh
-from hem.meshes.triangles import TriangleMesh
-
-Array = NDArray[Any]
+from hem.meshes import PolygonMesh, TriangleMesh, require_manifold
 
 LARGE_BUCKET = 24
 """Entries from which on a bucket is sorted instead of compared pair by pair."""

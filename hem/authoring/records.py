@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from hem.arrays import Array
 from hem.authoring.kernels import (
     EDGE_END,
     EDGE_GROWTH,
@@ -28,7 +29,8 @@ from hem.authoring.kernels import (
     VERTICES,
 )
 
-Array = NDArray[Any]
+REFERENCE_TYPES = {4: np.int32, 8: np.int64}
+"""Bytes of a stored reference to the type that holds it. The thesis counts 8 (section 7)."""
 
 ENDS = {
     "vertex": VERTEX_END,
@@ -49,8 +51,9 @@ ENDLESS = 1 << 62
 class Field(NamedTuple):
     """One field of one record: ``half_edge.twin`` is 1 element wide in the array ``half_edge``.
 
-    ``target`` is the kind of record it refers to, empty for a position. Of each kind of record one
-    field ``marks`` the dead: it is negative there, and a vertex has no position (NaN).
+    ``target`` is the kind of record it refers to, empty for a position; where the reference is
+    ``optional``, -1 is none. Of each kind of record one field ``marks`` the dead: it is negative
+    there, and a vertex has no position (NaN).
     """
 
     name: str
@@ -58,6 +61,7 @@ class Field(NamedTuple):
     width: int = 1
     target: str = ""
     marks: bool = False
+    optional: bool = False
 
     @property
     def element(self) -> str:
@@ -90,10 +94,16 @@ def counted(
 def live(records: Any, fields: Sequence[Field], element: str) -> NDArray[np.bool_]:
     """(end,) bool: which of the records of a kind are live. Cost O(records)."""
     mark = next(it for it in fields if it.marks and ENDS[it.element] == ENDS[element])
-    used = getattr(records, mark.array)[: records.counts[ENDS[element]]]
-    values = used[:, _columns(fields)[mark.name]][:, 0] if used.ndim == 2 else used
+    values = in_use(records, fields, mark)[:, 0]
     alive: NDArray[np.bool_] = ~np.isnan(values) if element == "vertex" else values >= 0
     return alive
+
+
+def in_use(records: Any, fields: Sequence[Field], field: Field) -> Array:
+    """(end, width): a field of all records that are in use, dead ones included. A view."""
+    used = getattr(records, field.array)[: records.counts[ENDS[field.element]]]
+    values: Array = used[:, _columns(fields)[field.name]] if used.ndim == 2 else used[:, None]
+    return values
 
 
 def grown(records: Any, fields: Sequence[Field], vertices: int, faces: int) -> Any:

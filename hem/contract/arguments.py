@@ -6,12 +6,11 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from hem.authoring.topology import NOT_FINITE, REFUSALS
+from hem.arrays import Array
+from hem.authoring import Refusal
 from hem.errors import MeshError
-
-Array = NDArray[Any]
 
 NO_POINT = np.zeros((1, 3), np.float32)
 """The positions of operations that take none."""
@@ -48,7 +47,9 @@ def positions(called: str, points: ArrayLike, n: int) -> Array:
     with np.errstate(over="ignore"):
         kept = np.ascontiguousarray(given, np.float32)
     if not np.isfinite(kept).all():
-        raise MeshError(REFUSALS[NOT_FINITE], rows=np.flatnonzero(~np.isfinite(kept).all(axis=1)))
+        raise MeshError(
+            Refusal.NOT_FINITE.words, rows=np.flatnonzero(~np.isfinite(kept).all(axis=1))
+        )
     return kept
 
 

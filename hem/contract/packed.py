@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from hem.contract.queryable import refuse_handles
+from hem.contract.elements import refuse_handles
 from hem.contract.structure import Structure
 
 
-class PackedEdges(Structure):
+class PackedEdges(Structure, abstract=True):
     """A structure whose edge handle is the edge's two vertices packed into one int64.
 
     The smaller vertex stands in the upper 32 bits. Table 1 prints N/A for the queries from an edge;

@@ -6,18 +6,15 @@ would leave two parts that meet in a vertex, until the next one is gone.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from hem.authoring.kernels import EDGES, FACES, Array, Kernel, kernel
-from hem.authoring.operations import note
+from hem.arrays import Array
+from hem.authoring import EDGES, FACES, Kernel, Kernels, kernel, log_element
+from hem.contract.queryable import Queryable
 from hem.edit import FACE, REMOVED
-
-if TYPE_CHECKING:
-    from hem.contract.queryable import Queryable
 
 
 class Remaining(NamedTuple):
@@ -92,20 +89,20 @@ class Removal(NamedTuple):
     log: Array
 
 
-def removing(k: Mapping[str, Kernel], operations: Mapping[str, Kernel]) -> Kernel:
-    """Make ``remove(m, plan) -> 0``: detach all faces, then see that every vertex knows one.
+def removing(k: Kernels, operations: Kernels) -> Kernel:
+    """Make ``remove(m, plan) -> 0``: take all faces away, then see that every vertex knows one.
 
     In between there may be several fans in a vertex, which knows only one of them, or none.
     """
-    detach, anchor = k["detach"], k["anchor"]
+    remove_records, set_vertex_face = k["remove_records"], k["set_vertex_face"]
 
     @kernel
     def remove(m: Any, plan: Removal) -> int:
         for i in range(len(plan.faces)):
-            detach(m, plan.faces[i])
-            note(plan.log, FACE + REMOVED, plan.faces[i])
+            remove_records(m, plan.faces[i])
+            log_element(plan.log, FACE + REMOVED, plan.faces[i])
         for i in range(len(plan.anchors)):
-            anchor(m, plan.anchors[i, 0], plan.anchors[i, 1])
+            set_vertex_face(m, plan.anchors[i, 0], plan.anchors[i, 1])
         m.counts[FACES] -= len(plan.faces)
         m.counts[EDGES] -= plan.vanishing[0]
         return 0

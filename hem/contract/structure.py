@@ -1,50 +1,34 @@
-"""What every mesh data structure has in common: the contract, derived from its kernels.
-
-A structure is a subclass that declares its records (a ``NamedTuple`` of arrays), their fields, its
-kernels, how it is built and how it is validated. Its queries are derived in ``queryable``, its
-operations in ``editable``.
-"""
+"""What every mesh data structure has in common: the contract, derived from its kernels."""
 
 from __future__ import annotations
 
-from abc import abstractmethod
-from typing import Any, ClassVar, Self
+from abc import ABC, abstractmethod
+from typing import ClassVar, Self
 
 import numpy as np
-from numpy.typing import NDArray
 
-from hem.authoring.kernels import (
+from hem.authoring import (
+    OF_ARRAYS,
+    OPERATIONS,
+    QUERIES,
     Kernel,
-    anchor,
-    bury,
-    coordinate,
-    isolate,
-    named,
-    place,
-    sides,
-    vertex_exists,
+    copied,
+    kernels_of,
+    require_records,
 )
-from hem.authoring.operations import operations
-from hem.authoring.records import copied
-from hem.contract.editable import Editable
-from hem.contract.queries import QUERIES
-from hem.meshes.triangles import TriangleMesh
-
-Array = NDArray[Any]
-
-OF_ARRAYS = named(coordinate, place, bury, isolate, anchor, sides, vertex_exists)
-"""Kernels that are the same wherever vertices are rows of an array and faces triangles."""
-
-REFERENCE_TYPES = {4: np.int32, 8: np.int64}
-"""Bytes of a stored reference to the type that holds it. The thesis counts 8 (section 7)."""
+from hem.contract.description import place_of
+from hem.contract.measuring import Measuring
+from hem.meshes import TriangleMesh
 
 
-class Structure(Editable):
-    """A triangle mesh held in one data structure, interchangeable behind one contract."""
+class Structure(Measuring, ABC, abstract=True):
+    """A triangle mesh held in one data structure, interchangeable behind one contract.
 
-    name: ClassVar[str]
-    title: ClassVar[str]
-    abbreviation: ClassVar[str]
+    A subclass declares how it is called and looks (``Described``), its records (a ``NamedTuple`` of
+    arrays) and their fields, how it is built and what must hold; its kernels are those of the
+    module that it stands in. What it forgets is a TypeError that names the class and the part.
+    """
+
     holds_polygons: ClassVar[bool] = False
     """Whether faces may have more than three corners, and ``build`` takes a ``PolygonMesh``."""
 
@@ -54,22 +38,28 @@ class Structure(Editable):
     searches: ClassVar[bool] = False
     """Whether nothing is recorded of neighbors, so that they are searched for in the whole mesh."""
 
-    def __init_subclass__(cls) -> None:
-        """Derive the four uses of every kernel; abstract intermediates declare none."""
-        super().__init_subclass__()
-        if hasattr(cls, "kernels"):
-            cls.kernels = {**OF_ARRAYS, **cls.kernels}
-            derive, records = cls.uses_type, cls.records_type
-            cls._algorithms = {}
-            cls._uses = {name: derive(cls.kernels[name], records) for name in QUERIES}
-            cls._operation_uses = {
-                name: derive(kernel, records) for name, kernel in cls.operation_kernels().items()
-            }
-
-    @classmethod
-    def operation_kernels(cls) -> dict[str, Kernel]:
-        """The kernels of ``operations`` by name, see ``hem.authoring.operations``."""
-        return operations(cls.kernels)
+    def __init_subclass__(cls, abstract: bool = False) -> None:
+        """Derive the uses of every kernel."""
+        super().__init_subclass__(abstract)
+        if abstract:
+            return
+        missing = [it for it in ("records_type", "fields") if not hasattr(cls, it)]
+        methods = ("build", "_require_invariants")
+        missing += [
+            it for it in methods if getattr(getattr(cls, it), "__isabstractmethod__", False)
+        ]
+        if missing:
+            raise TypeError(f"{place_of(cls)} does not say: {', '.join(missing)}")
+        if "records_type" in cls.__dict__:
+            own = cls.__dict__.get("kernels") or kernels_of(cls.__module__)
+            cls.kernels = {**OF_ARRAYS, **own}
+        _require_claims(cls)
+        derive, records = cls.uses_type, cls.records_type
+        cls._algorithms = {}
+        cls._uses = {name: derive(_query(cls, name), records) for name in QUERIES}
+        cls._operation_uses = {
+            name: derive(_operation(cls, name), records) for name in cls.operations
+        }
 
     @classmethod
     @abstractmethod
@@ -80,12 +70,17 @@ class Structure(Editable):
         cannot represent.
         """
 
-    @abstractmethod
     def validate(self) -> None:
         """Check every invariant on the raw arrays; no query is used. Cost O(n_v + n_t).
 
         Raises MeshError that names the broken invariant and the elements that break it.
         """
+        require_records(self.records, self.fields)
+        self._require_invariants()
+
+    @abstractmethod
+    def _require_invariants(self) -> None:
+        """Check what must hold beside what follows from the fields (``require_records``)."""
 
     def to_triangles(self) -> TriangleMesh:
         """The same mesh as points and counterclockwise triangles. Cost O(n_v + n_t)."""
@@ -121,20 +116,28 @@ class Structure(Editable):
         """Number of live half-edges, one for each corner of a face; recorded or not."""
         return 3 * self.n_faces
 
-    def snapshot(self) -> Any:
-        """What ``restore`` needs to make the mesh what it is now. Cost O(n_v + n_t)."""
-        return copied(self.records)
 
-    def restore(self, snapshot: Any) -> None:
-        """Make the mesh what it was, in the same place; there must be as much room. For measuring.
+def _query(cls: type[Structure], name: str) -> Kernel:
+    if name not in cls.kernels:
+        raise TypeError(f"{place_of(cls)} has no kernel {name}(m, {name[0]}, out) -> count")
+    return cls.kernels[name]
 
-        Subscribers are not told. Cost O(n_v + n_t).
-        """
-        for array, fresh in zip(self.records, snapshot, strict=True):
-            np.copyto(array, fresh)
 
-    @property
-    def arrays(self) -> tuple[Array, ...]:
-        """The arrays of the records, room for more included, without the count of them."""
-        *arrays, _ = self.records
-        return tuple(arrays)
+def _operation(cls: type[Structure], name: str) -> Kernel:
+    operation = cls.operations[name]
+    try:
+        return operation.make(cls.kernels)
+    except KeyError as missing:
+        raise TypeError(
+            f"{place_of(cls)} has no kernel {missing.args[0]}, which {name} takes; see "
+            f"{operation.make.__module__}"
+        ) from None
+
+
+def _require_claims(cls: type[Structure]) -> None:
+    claimed = cls.claims.costs if hasattr(cls, "claims") else {}
+    unknown = set(claimed) - {*QUERIES, *OPERATIONS}
+    if unknown:
+        raise TypeError(
+            f"{place_of(cls)}: claims of what is no query and no operation: {sorted(unknown)}"
+        )

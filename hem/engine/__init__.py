@@ -1,1 +1,58 @@
-"""How kernels are run: single, batched, timed, counted, interpreted."""
+"""How kernels are run: single, batched, timed, counted, and by Python itself over objects.
+
+How a query runs
+----------------
+A structure's file says once how its records answer a query for one element::
+
+    @kernel
+    def vertex_faces(m, v, out):    # records, handle, scratch -> how many were written to out
+
+Everything else is derived. When the class is made, a ``Uses`` is put around each kernel; nothing is
+compiled yet. It binds its kernel into one of the ``templates``, small loops with free names, and
+compiles the two as one function, which Numba keeps on disk under a name with a digest of all files
+that it is made of. That happens the first time each of these is asked for:
+
+- *single*, ``s.vertex_faces(7)``. Records and scratch are ``Pinned`` in memory as one image that
+  compiled code reads by its address, so that a call hands over two integers instead of a dozen
+  arrays (70 ns each). ``templates.single`` checks the handle, and that the scratch holds any answer
+  to come, and calls the kernel; the answer is copied out of the scratch. Where it is not so, or the
+  handle is no plain ``int``, the slower way of a batch of one says what is wrong.
+- *batched*, ``s.vertex_faces(array)``. All handles are checked first. ``templates.batch`` then runs
+  in slices, one per core, each with its own room for the answers, which grows where it is too
+  small; the parts are put together as a ``Ragged``.
+- *timed*, ``s.sweep("vertex_faces", handles)``. ``templates.sweep`` asks for every handle, writes
+  every answer over the last and returns a checksum, so that nothing is optimized away. This is what
+  the experiments time: no check, no allocation, no Python.
+- *counted*, ``s.work("vertex_faces", handles)``. The kernel's Python source, and that of whatever
+  it calls, runs over ``CountingArray``s: exactly how many elements are read, on any machine.
+
+An operation runs likewise. ``templates.perform`` does one, or a whole row of them, until one is
+refused or there is no room; then Python makes room, pins the larger arrays at the same address and
+goes on. ``operation_work`` counts. An algorithm of one's own, made of a structure's queries and
+operations, is compiled by ``templates.run``.
+
+Structures made of objects (``InterpretedUses``, ``Held``) run the same templates uncompiled.
+"""
+
+from hem.engine.counting import CountingArray, interpreted
+from hem.engine.objects import Held, InterpretedUses, counting
+from hem.engine.pinned import Pinned
+from hem.engine.templates import BEGIN, CHECK, DO, END, MODE, PERSIST, move
+from hem.engine.uses import Uses
+
+__all__ = [
+    "BEGIN",
+    "CHECK",
+    "DO",
+    "END",
+    "MODE",
+    "PERSIST",
+    "CountingArray",
+    "Held",
+    "InterpretedUses",
+    "Pinned",
+    "Uses",
+    "counting",
+    "interpreted",
+    "move",
+]

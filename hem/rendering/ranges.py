@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 from numba import njit
 from numpy.typing import ArrayLike, NDArray
 
+from hem.arrays import Array
 from hem.edit import FACE
 
 Ranges = NDArray[np.int64]
@@ -27,7 +27,7 @@ def dirty_ranges(touched: Sequence[ArrayLike], nearby: int) -> tuple[Ranges, Ran
 
 
 @njit(cache=True)
-def _runs(log: NDArray[Any], nearby: int, ranges: NDArray[Any]) -> NDArray[Any]:
+def _runs(log: Array, nearby: int, ranges: Array) -> Array:
     count = np.zeros(2, np.int64)
     for entry in log:
         kind, index = (1 if entry & 7 >= FACE else 0), entry >> 3

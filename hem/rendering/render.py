@@ -10,21 +10,17 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from hem.arrays import Array, Handles, Points
+from hem.contract import Structure
 from hem.edit import Edit
 from hem.errors import MeshError
-from hem.meshes.triangles import TriangleMesh, repeated_corners
-
-if TYPE_CHECKING:
-    from hem.contract.structure import Structure
-
-Points = NDArray[np.float32]
-Indices = NDArray[np.int32]
-Ranges = NDArray[np.int64]
+from hem.meshes import TriangleMesh, repeated_corners
+from hem.rendering.ranges import Ranges, dirty_ranges
 
 NEARBY = 32
 """Elements that a range may include without need, so that there are fewer ranges to upload."""
@@ -66,7 +62,7 @@ class RenderMesh:
         return self._points[: self._n_vertices].reshape(-1)
 
     @property
-    def indices(self) -> Indices:
+    def indices(self) -> Handles:
         """(3 m,) int32: the corners of every triangle, clockwise from outside. A view."""
         return self._indices[: self._n_triangles].reshape(-1)
 
@@ -134,8 +130,6 @@ class RenderMesh:
         self._n_vertices, self._n_triangles = vertices, triangles
 
     def _commit(self) -> None:
-        from hem.rendering.ranges import dirty_ranges
-
         self.commits += 1
         if self._resized:
             everything = ([(0, n)] if n else [] for n in (self._n_vertices, self._n_triangles))
@@ -148,7 +142,7 @@ class RenderMesh:
             listener(upload)
 
 
-def _with_room(array: NDArray[Any], used: int, wanted: int) -> NDArray[Any]:
+def _with_room(array: Array, used: int, wanted: int) -> Array:
     """The array, or a larger one with the same first rows and zeros behind them."""
     if wanted <= len(array):
         return array
@@ -175,7 +169,7 @@ def mesh_from_render(points: ArrayLike, indices: ArrayLike, tolerance: float = 0
     return TriangleMesh(mesh.points[kept], number[mesh.triangles])
 
 
-def _rows(values: ArrayLike, name: str) -> NDArray[Any]:
+def _rows(values: ArrayLike, name: str) -> Array:
     given = np.asarray(values)
     if given.size % 3 or given.ndim > 2 or (given.ndim == 2 and given.shape[1] != 3):
         raise MeshError(f"{name} come in threes, not in shape {given.shape}")

@@ -46,5 +46,5 @@ def test_importing_hem_needs_no_other_package():
 
 
 def test_the_judge_needs_numpy_alone():
-    code = "from hem.complexity.judge import judge; print(judge.__name__)"
+    code = "from hem.complexity import judge; print(judge.__name__)"
     assert run_alone(code, "numpy") == "judge"

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 import hem
-from hem.contract.structure import Structure
+from hem.contract import Structure
 from hem.meshes.manifold import euler_number
 
 KINDS = (

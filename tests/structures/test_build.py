@@ -87,7 +87,7 @@ def test_a_renumbered_mesh_is_the_same_surface(name, reference_bytes):
 def test_slices_side_by_side_build_what_one_slice_builds(name, monkeypatch):
     mesh = shuffled(hem.generate("torus", 400))
     alone = structures.build(name, mesh).records
-    monkeypatch.setattr("hem.engine.slices.slice_count", lambda n: 3)
+    monkeypatch.setattr("hem.authoring.slices.slice_count", lambda n: 3)
     monkeypatch.setattr("hem.authoring.pairing.slice_count", lambda n: 3)
     for one, many in zip(alone, structures.build(name, mesh).records, strict=True):
         assert np.array_equal(one, many)

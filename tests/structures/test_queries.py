@@ -9,7 +9,7 @@ import pytest
 
 import hem
 import structures
-from hem.contract.queries import QUERIES
+from hem.contract import QUERIES
 
 ORDERED = tuple(name for name in structures.NAMES if name != "indexed")
 

@@ -7,8 +7,8 @@ import pytest
 
 import hem
 import structures
-from hem.contract.queries import QUERIES
-from hem.engine.uses import CountingArray
+from hem.contract import QUERIES
+from hem.engine import CountingArray
 
 SCANS = {
     "vertex_vertices",

@@ -20,7 +20,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from hem.contract.structure import Structure
+from hem.contract import Structure
 from hem.fracture.blow import Blow
 from hem.fracture.bodies.overlap import crossing, overlapping
 from hem.fracture.bodies.solid import require_body

@@ -21,8 +21,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from hem.authoring.kernels import FACE_END, FACES, Array, Kernel, kernel, part
-from hem.authoring.topology import ALLOWED, NEEDS_ROOM
+from hem.arrays import Array
+from hem.authoring import ALLOWED, FACE_END, FACES, NEEDS_ROOM, Kernel, kernel, part
 
 NOWHERE, ON_VERTEX, ON_EDGE, IN_FACE = -1, 0, 1, 2
 """What became of a break point: off the surface, on a vertex (no split), or splits of either."""

@@ -14,8 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from hem.contract.removal import Remaining, remaining
-from hem.contract.structure import Structure
+from hem.contract import Remaining, Structure, remaining
 from hem.fracture.islands import triangle_areas
 
 Array = NDArray[Any]

@@ -8,7 +8,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import ArrayLike, NDArray
 
-from hem.contract.structure import Structure
+from hem.contract import Structure
 from hem.errors import MeshError
 from hem.fracture.pieces import diagonal
 from hem.fracture.surface.breaking import JUMP, finding, plan

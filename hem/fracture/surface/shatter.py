@@ -16,7 +16,7 @@ from typing import Any, overload
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from hem.contract.structure import Structure
+from hem.contract import Structure
 from hem.edit import Edit
 from hem.errors import MeshError
 from hem.fracture.islands import islands

@@ -8,7 +8,7 @@ import pytest
 import hem
 import structures
 from experiments.harness.oracle import CheckFailedError, check_query, neighbors, pack
-from hem.contract.queries import QUERIES
+from hem.contract import QUERIES
 
 # Two triangles (0, 1, 2) and (0, 2, 3) that share the edge 0-2.
 SQUARE = hem.TriangleMesh([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], [[0, 1, 2], [0, 2, 3]])

@@ -20,7 +20,7 @@ from experiments.regression.findings import Finding, claim_of, code, compare_cas
 from experiments.regression.findings_shown import as_json, as_markdown
 from experiments.regression.significance import Comparison
 from experiments.runs.results import load
-from hem.contract.queries import QUERIES
+from hem.contract import QUERIES
 from tests.experiments.made_runs import LAWS, write_run
 
 HERE = Path(__file__).parents[3]

@@ -14,8 +14,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from hem.authoring.kernels import Array, Kernel
-from hem.engine.uses import Uses, interpreted
+from hem.arrays import Array
+from hem.authoring import Kernel
+from hem.engine.counting import interpreted
+from hem.engine.uses import Uses
 
 
 class Held:

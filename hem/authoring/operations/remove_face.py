@@ -1,0 +1,76 @@
+"""Take a face away; its vertices stay.
+
+A structure gives ``remove_records(m, f)``.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from hem.arrays import Array
+from hem.authoring.kernels import EDGES, FACES, Kernel, Kernels, kernel
+from hem.authoring.operations.parts import Operation, has_scratch, log_faces
+from hem.authoring.operations.rules import border, free_edges
+from hem.authoring.refusals import ALLOWED, NEEDS_ROOM, Refusal
+from hem.edit import REMOVED
+
+
+def rule(k: Kernels) -> Kernel:
+    """Make ``may_remove_face(m, f, out) -> refusal``.
+
+    Cost: that of ``vertex_vertices`` at the corners.
+    """
+    face_exists, face_vertices = k["face_exists"], k["face_vertices"]
+    face_left_of, vertex_vertices = k["face_left_of"], k["vertex_vertices"]
+    on_border = border(k["vertex_faces"])
+
+    @kernel
+    def lies_between(m: Any, v: int, before: int, after: int, out: Array) -> bool:
+        """Whether the face lies inside the open fan of v: with faces on both sides there."""
+        if before < 0 or after < 0:
+            return False
+        return on_border(m, v, vertex_vertices(m, v, out), out)
+
+    @kernel
+    def may_remove_face(m: Any, f: int, out: Array) -> int:
+        if not face_exists(m, f):
+            return Refusal.NO_FACE
+        n = face_vertices(m, f, out)
+        before = face_left_of(m, out[0], out[n - 1])
+        for i in range(n):
+            v = out[i]
+            after = face_left_of(m, out[(i + 1) % n], v)
+            if lies_between(m, v, before, after, out[n:]):
+                return Refusal.BETWEEN
+            before = after
+        return ALLOWED
+
+    return may_remove_face
+
+
+def make(k: Kernels) -> Kernel:
+    """The operation for one structure."""
+    may_remove_face, face_vertices = rule(k), k["face_vertices"]
+    remove_records, count_free_edges = k["remove_records"], free_edges(k["face_left_of"])
+
+    @kernel
+    def remove_face(
+        m: Any, args: Array, point: Array, at: Array, out: Array, log: Array, dry: bool
+    ) -> int:
+        face = args[0]
+        if not has_scratch(m, out, log):
+            return NEEDS_ROOM
+        refusal = may_remove_face(m, face, out)
+        if refusal != ALLOWED or dry:
+            return refusal
+        n = face_vertices(m, face, out)
+        m.counts[EDGES] -= count_free_edges(m, out, n)
+        remove_records(m, face)
+        m.counts[FACES] -= 1
+        log_faces(log, REMOVED, face, -1)
+        return ALLOWED
+
+    return remove_face
+
+
+OPERATION = Operation(make, "face")

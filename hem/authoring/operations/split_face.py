@@ -1,0 +1,67 @@
+"""Split a face at a new vertex, which is joined to all its corners.
+
+::
+
+           c                  c        a is the smallest corner. The face keeps its
+         ╱   ╲              ╱ │ ╲      index at (a, b, v); (b, c, v) and (c, a, v)
+       ╱       ╲          ╱   v   ╲    are new, in this order.
+      a─────────b        a ──╱─╲── b
+
+A structure gives ``split_face_records(m, face, v, f)``: the first new face is ``f``.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from hem.arrays import Array
+from hem.authoring.kernels import FACE_END, VALENCE, Kernel, Kernels, kernel
+from hem.authoring.operations.parts import (
+    ENTRIES,
+    Operation,
+    count_new,
+    has_room,
+    is_point,
+    log_element,
+    log_faces,
+    vertex_maker,
+)
+from hem.authoring.refusals import ALLOWED, NEEDS_ROOM, Refusal
+from hem.edit import CHANGED, CREATED, FACE, VERTEX
+
+
+def make(k: Kernels) -> Kernel:
+    """The operation for one structure."""
+    face_exists, sides_of = k["face_exists"], k["sides"]
+    new_vertex, split_face_records = vertex_maker(k["set_point"]), k["split_face_records"]
+
+    @kernel
+    def split_face(
+        m: Any, args: Array, point: Array, at: Array, out: Array, log: Array, dry: bool
+    ) -> int:
+        face = args[0]
+        if not face_exists(m, face):
+            return Refusal.NO_FACE
+        if not is_point(point):
+            return Refusal.NOT_FINITE
+        if dry:
+            return ALLOWED
+        sides = sides_of(m, face)
+        if not has_room(m, 1, sides - 1, log) or log[0] + sides + ENTRIES >= len(log):
+            return NEEDS_ROOM
+        f, v = m.counts[FACE_END], new_vertex(m, point)
+        split_face_records(m, face, v, f)
+        count_new(m, sides, sides - 1)
+        m.counts[VALENCE] += 1
+        log_element(log, VERTEX + CREATED, v)
+        log_faces(log, CHANGED, face, -1)
+        for i in range(sides - 1):
+            log_element(log, FACE + CREATED, f + i)
+        return v
+
+    return split_face
+
+
+OPERATION = Operation(
+    make, "face", takes_a_point=True, names_a_vertex=True, growth=(1, 2), grows_with_sides=True
+)

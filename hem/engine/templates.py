@@ -1,0 +1,127 @@
+"""What is compiled around a kernel, once for every kernel.
+
+The names in capitals are free: ``Uses`` makes a copy of a template's code in which they are bound
+to the kernels and records of one structure. So the copies are functions of a module, which Numba
+can keep on disk; closures over kernels it could not.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from numba import njit
+
+from hem.arrays import Array
+from hem.authoring import NEEDS_ROOM, VALENCE, WIDTH, Kernel
+from hem.edit import FACE
+
+MODE, BEGIN, END = range(3)
+"""The parts of a task."""
+
+DO, CHECK, PERSIST = range(3)
+"""What to do with operations: do them, only check them, or pass over those that are refused."""
+
+
+def unbound(*_: Any) -> Any:
+    """Stands where ``Uses`` puts a kernel."""
+    raise TypeError("a template is called that is not bound to a kernel")
+
+
+_KERNEL: Kernel = unbound
+_RECORDS: Callable[..., Any] = unbound
+_LOAD: Callable[..., Any] = unbound
+_EXISTS: Kernel = unbound
+_EDGE_VERTICES: Kernel = unbound
+_COORDINATE: Kernel = unbound
+
+
+def single(handle: int, address: int) -> int:
+    """One handle, called from Python; 0 where it names nothing or ``out`` is too small."""
+    arrays = _LOAD(address)
+    m, out = _RECORDS(*arrays[:-1]), arrays[-1]
+    if WIDTH * (m.counts[VALENCE] + 1) > len(out) or not _EXISTS(m, handle):
+        return 0
+    count: int = _KERNEL(m, handle, out)
+    return count
+
+
+def perform(address: int) -> int:
+    """One operation or many -> the end, or the place of the one that could not be done."""
+    arrays = _LOAD(address)
+    m = _RECORDS(*arrays[:-7])
+    task, args, points, results, at, out, log = arrays[-7:]
+    mode, end = task[MODE], task[END]
+    log[0] = 0
+    for i in range(task[BEGIN], end):
+        results[i] = _KERNEL(m, args[i], points[i % len(points)], at, out, log, mode == CHECK)
+        if results[i] == NEEDS_ROOM or (results[i] < 0 and mode == DO):
+            return i
+    return end
+
+
+def batch(handles: Array, offsets: Array, values: Array, width: int, *arrays: Array) -> Array:
+    """Many handles into offsets and values."""
+    m = _RECORDS(*arrays)
+    end = 0
+    for i in range(len(handles)):
+        offsets[i] = end
+        if end + width > len(values):
+            grown = np.empty(2 * len(values) + width, values.dtype)
+            grown[:end] = values[:end]
+            values = grown
+        end += _KERNEL(m, handles[i], values[end:])
+    return values[:end]
+
+
+def sweep(handles: Array, out: Array, *arrays: Array) -> int:
+    """Many handles with nothing kept, for timing -> a checksum."""
+    m = _RECORDS(*arrays)
+    checksum = 0
+    for i in range(len(handles)):
+        count = _KERNEL(m, handles[i], out)
+        checksum += count
+        if count > 0:
+            checksum ^= out[count - 1]
+    return checksum
+
+
+def copy_touched(touched: Array, points: Array, indices: Array, out: Array, *arrays: Array) -> None:
+    """Points and clockwise corners of what a log names; zeros for what is dead."""
+    m = _RECORDS(*arrays)
+    for entry in touched:
+        index = entry >> 3
+        if entry & 7 < FACE:
+            for i in range(3):
+                value = _COORDINATE(m, index, i)
+                points[index, i] = value if not np.isnan(value) else 0
+        elif _EXISTS(m, index):
+            _KERNEL(m, index, out)
+            indices[index, 0], indices[index, 1], indices[index, 2] = out[0], out[2], out[1]
+        else:
+            indices[index, 0], indices[index, 1], indices[index, 2] = 0, 0, 0
+
+
+def run(plan: Any, *arrays: Array) -> int:
+    """An algorithm."""
+    result: int = _KERNEL(_RECORDS(*arrays), plan)
+    return result
+
+
+def find_edge(a: int, b: int, out: Array, vertices: Array, *arrays: Array) -> int:
+    """The edge at vertex a that ends at b, or -1."""
+    m = _RECORDS(*arrays)
+    for i in range(_KERNEL(m, a, out)):
+        _EDGE_VERTICES(m, out[i], vertices)
+        if vertices[0] == b or vertices[1] == b:
+            found: int = out[i]
+            return found
+    return -1
+
+
+@njit(cache=True, nogil=True)
+def move(values: Array, target: Array, begin: int) -> None:
+    """Copy ``values`` to ``target[begin:]``, which may overlap them from below."""
+    for i in range(len(values)):
+        target[begin + i] = values[i]

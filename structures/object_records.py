@@ -1,0 +1,149 @@
+"""The lists of ``structures.half_edge_objects``: made of a mesh, and to and from arrays."""
+
+from __future__ import annotations
+
+import gc
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from hem.arrays import Array
+from hem.authoring import (
+    EDGE_ROOM,
+    ENDLESS,
+    FACE_ROOM,
+    FACES,
+    VERTEX_END,
+    VERTEX_ROOM,
+    VERTICES,
+    counted,
+)
+from hem.meshes import TriangleMesh, require_manifold
+from structures.class_model import Face, FaceList, HalfEdge, HalfEdgeList, Vertex, VertexList
+from structures.half_edge import HalfEdgeRecords
+
+
+class ObjectRecords(NamedTuple):
+    """What the kernels are given: the lists that own everything."""
+
+    vertices: VertexList
+    half_edges: HalfEdgeList
+    faces: FaceList
+    counts: Array  # how many of them there are, see hem.authoring.kernels
+
+
+def build_records(mesh: TriangleMesh) -> ObjectRecords:
+    """One vertex per point, one half-edge per index, one face per three (thesis 3.3.2).
+
+    Every half-edge is looked up once by its two vertices, and met by its opposite: O(n_v + n_t)
+    expected. Raises NonManifoldError with the elements for what half-edges cannot represent.
+    """
+    require_manifold(mesh)
+    n = len(mesh.points)
+    open_sides: dict[int, HalfEdge] = {}
+    with _uncollected():
+        vertices = [Vertex(i, (x, y, z)) for i, (x, y, z) in enumerate(mesh.points.tolist())]
+        half_edges: list[Any] = []
+        faces: list[Any] = []
+        for f, corners in enumerate(mesh.triangles.tolist()):
+            h = 3 * f
+            a, b, c = corners
+            sides = ab, bc, ca = (
+                HalfEdge(h, vertices[a]),
+                HalfEdge(h + 1, vertices[b]),
+                HalfEdge(h + 2, vertices[c]),
+            )
+            face = Face(f, ab)
+            ab.face = bc.face = ca.face = face
+            ab.next, bc.next, ca.next = bc, ca, ab
+            for side, origin, end in ((ab, a, b), (bc, b, c), (ca, c, a)):
+                opposite = open_sides.pop(end * n + origin, None)
+                if opposite is None:
+                    open_sides[origin * n + end] = side
+                else:
+                    side.opposite, opposite.opposite = opposite, side
+                if vertices[origin].half_edge is None:
+                    vertices[origin].half_edge = side
+            half_edges += sides
+            faces.append(face)
+    n_edges = (len(half_edges) + len(open_sides)) // 2
+    lists = VertexList([*vertices]), HalfEdgeList(half_edges), FaceList(faces)
+    return ObjectRecords(*lists, count_records(*lists, n_edges))
+
+
+def to_arrays(m: ObjectRecords, points: Array) -> HalfEdgeRecords:
+    """The same half-edges by index, as ``structures.half_edge`` has them. O(n_v + n_t)."""
+    half_edge = [
+        (-1,) * 4
+        if h is None
+        else (h.origin.index, h.face.index, h.next.index, _index_of(h.opposite))
+        for h in m.half_edges.items
+    ]
+    leaving = [-1 if v is None else _index_of(v.half_edge) for v in m.vertices.items]
+    within = [-1 if f is None else f.half_edge.index for f in m.faces.items]
+    counts = m.counts.copy()
+    ends = VERTEX_ROOM, FACE_ROOM, EDGE_ROOM
+    counts[list(ends)] = len(leaving), len(within), len(half_edge)
+    return HalfEdgeRecords(
+        points,
+        np.array(leaving, np.int32),
+        np.array(within, np.int32),
+        np.array(half_edge, np.int32).reshape(-1, 4),
+        counts,
+    )
+
+
+def _index_of(element: Any) -> int:
+    return -1 if element is None else int(element.index)
+
+
+def count_records(
+    vertices: VertexList, half_edges: HalfEdgeList, faces: FaceList, n_edges: int
+) -> Array:
+    """The array ``counts`` for lists that grow by themselves."""
+    count = counted(len(vertices.items), n_edges, len(faces.items), len(half_edges.items))
+    count[[VERTEX_ROOM, EDGE_ROOM, FACE_ROOM]] = ENDLESS
+    count[VERTICES], count[FACES] = len(vertices), len(faces)
+    return count
+
+
+def from_arrays(arrays: HalfEdgeRecords) -> ObjectRecords:
+    """Objects for records by index, dead ones included. Cost O(n_v + n_t)."""
+    with _uncollected():
+        rows = arrays.vertex_point[: arrays.counts[VERTEX_END]].tolist()
+        vertices: list[Any] = [
+            Vertex(i, (x, y, z)) if x == x else None for i, (x, y, z) in enumerate(rows)
+        ]
+        half_edge = arrays.half_edge.tolist()
+        half_edges: list[Any] = [
+            HalfEdge(i, vertices[row[0]]) if row[1] >= 0 else None
+            for i, row in enumerate(half_edge)
+        ]
+        faces: list[Any] = [
+            Face(f, half_edges[h]) if h >= 0 else None
+            for f, h in enumerate(arrays.face_half_edge.tolist())
+        ]
+        for h, (_, face, following, opposite) in zip(half_edges, half_edge, strict=True):
+            if h is not None:
+                h.face, h.next = faces[face], half_edges[following]
+                h.opposite = half_edges[opposite] if opposite >= 0 else None
+        for vertex, leaving in zip(vertices, arrays.vertex_half_edge.tolist(), strict=True):
+            if vertex is not None and leaving >= 0:
+                vertex.half_edge = half_edges[leaving]
+    counts = arrays.counts.copy()
+    counts[[VERTEX_ROOM, EDGE_ROOM, FACE_ROOM]] = ENDLESS
+    return ObjectRecords(VertexList(vertices), HalfEdgeList(half_edges), FaceList(faces), counts)
+
+
+@contextmanager
+def _uncollected() -> Iterator[None]:
+    """Make many objects without the garbage collector looking through all of them in between."""
+    enabled = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if enabled:
+            gc.enable()

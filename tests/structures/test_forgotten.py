@@ -1,0 +1,80 @@
+"""What a structure's file forgets is an error when it is imported, and names the part."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+import structures
+
+SOURCE = (Path(structures.__file__).parent / "half_edge.py").read_text("utf-8")
+
+
+def write(folder: Path, name: str, changes: dict[str, str]) -> str:
+    """A package with one structure in it: the half-edge mesh, changed -> the package's name."""
+    package = folder / name
+    package.mkdir()
+    (package / "__init__.py").touch()
+    text = SOURCE
+    for old, new in changes.items():
+        assert old in text
+        text = text.replace(old, new)
+    (package / "directed_edge.py").write_text(text, "utf-8")
+    return name
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "forgotten"),
+    [
+        ('name, title, abbreviation = "half_edge",', "title, abbreviation =", "name"),
+        ("look, thesis, order =", "_, thesis, order =", "look"),
+        ('"-"), True, 4', '"-"), False, 4', "claims"),
+        ("records_type = HalfEdgeRecords", "pass", "records_type"),
+        ("def _require_invariants(", "def _forgotten(", "_require_invariants"),
+        ("def face_faces(", "def face_neighbors(", "face_faces(m, f, out) -> count"),
+        ("def flip_records(", "def flip(", "flip_records, which flip_edge takes"),
+    ],
+)
+def test_a_forgotten_part_is_named(tmp_path, monkeypatch, old, new, forgotten):
+    package = write(tmp_path, f"forgotten_{forgotten.split('(')[0].split(',')[0]}", {old: new})
+    monkeypatch.syspath_prepend(tmp_path)
+    with pytest.raises(TypeError) as refused:
+        structures.find_described([str(tmp_path / package)], package)
+    assert forgotten in str(refused.value)
+    assert "directed_edge.py: HalfEdge" in str(refused.value)
+
+
+def test_two_structures_of_one_name_are_refused(tmp_path, monkeypatch):
+    package = write(tmp_path, "twice", {})
+    (tmp_path / "twice" / "again.py").write_text(SOURCE, "utf-8")
+    monkeypatch.syspath_prepend(tmp_path)
+    with pytest.raises(TypeError, match="are both called 'half_edge'"):
+        structures.find_described([str(tmp_path / package)], package)
+
+
+def test_a_claim_of_no_query_is_refused(tmp_path, monkeypatch):
+    claims = 'claims = Claims("a paper", {"vertex_rings": "O(1)"})'
+    changes = {
+        "records_type = HalfEdgeRecords": f"{claims}\n    records_type = HalfEdgeRecords",
+        "import Look, Structure": "import Claims, Look, Structure",
+    }
+    package = write(tmp_path, "claiming", changes)
+    monkeypatch.syspath_prepend(tmp_path)
+    with pytest.raises(TypeError, match="vertex_rings"):
+        structures.find_described([str(tmp_path / package)], package)
+
+
+def test_a_new_file_is_a_structure(tmp_path, monkeypatch):
+    changes = {
+        '"half_edge", "Half-Edge", "HEM"': '"directed_edge", "Directed Edge", "DEM"',
+        '"-"), True, 4': '"-"), False, 1000',
+        "records_type = HalfEdgeRecords": 'claims = Claims("", like="half_edge")\n'
+        "    records_type = HalfEdgeRecords",
+        "import Look, Structure": "import Claims, Look, Structure",
+    }
+    package = write(tmp_path, "found", changes)
+    monkeypatch.syspath_prepend(tmp_path)
+    found = structures.find_described([str(tmp_path / package)], package)
+    assert list(found) == ["directed_edge"]
+    assert found["directed_edge"].look == structures.NAMED["half_edge"].look
