@@ -15,9 +15,9 @@ errors = Console(stderr=True)
 
 @contextmanager
 def user_errors() -> Iterator[None]:
-    """Turn what a user can mend into one line and exit code 1."""
+    """Turn what a user can mend into one line and exit code 1: what is missing here, too."""
     try:
         yield
-    except (ValueError, OSError) as error:
+    except (ValueError, OSError, ImportError) as error:
         errors.print(f"[bold red]hem:[/] {escape(str(error))}", highlight=False, soft_wrap=True)
         raise typer.Exit(1) from error

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
+from html import escape
 from typing import Any
 
 import numpy as np
@@ -16,12 +18,13 @@ import structures
 from experiments.bench_fracture import FIND, SHATTER, VISITED, WAYS
 from experiments.report.figures import Ends, finish_panels
 from experiments.report.fracture_scenes import Broken, break_up, model
-from experiments.report.mesh_figures import INK, PAPER, STRONG
+from experiments.report.mesh_figures import INK, PAPER, STRONG, show_picture
 from experiments.report.operation_figures import _line, _lines, _plain_numbers
 from experiments.report.style import GRAY, LOOKS, styled
+from experiments.report.turnable import turnable_pieces
 from experiments.runs.results import Run
 from hem.fracture import MATERIALS, Fracture, material, shatter
-from hem.fracture.show.scene import still
+from hem.fracture.show import Image, PicturesMissingError
 
 Array = NDArray[Any]
 
@@ -103,13 +106,23 @@ def gallery(every: Sequence[Broken]) -> Figure:
         for axes, broken in zip(
             figure.subplots(len(every), squeeze=False)[:, 0], every, strict=True
         ):
-            axes.imshow(still(broken.stage(), (640, 480)))
-            axes.set_title(_told(broken))
-            axes.axis("off")
+            show_picture(axes, _title(broken), partial(_still, broken))
     return figure
 
 
-def _told(broken: Broken) -> str:
+def _still(broken: Broken) -> Image:
+    return broken.scene().still()
+
+
+def turnable(broken: Broken) -> str:
+    """The pieces to be turned with the mouse, as HTML; without PyVista what is missing."""
+    try:
+        return turnable_pieces(broken.scene(), _title(broken), broken.up)
+    except PicturesMissingError as missing:
+        return f"<p>{escape(str(missing))}</p>"
+
+
+def _title(broken: Broken) -> str:
     found = broken.fracture
     parts = found.mass.volumes / found.mass.volumes.sum()
     shards = parts[: len(found.shards)]

@@ -7,15 +7,30 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 import hem
-from hem.fracture import Fracture, Material
-from hem.fracture.show.camera import AXES, Camera, unit
-from hem.fracture.show.flight import GRAVITY, Flight, Ground, flight
-from hem.fracture.show.scene import AZIMUTH, ELEVATION, FRAMES_A_SECOND, Stage
-
-Array = NDArray[Any]
+import structures
+from hem.arrays import Array
+from hem.fracture import (
+    Blow,
+    Fracture,
+    Material,
+    motion,
+    shatter,
+    tetrahedra,
+    voronoi,
+    wrapped,
+)
+from hem.fracture.show import (
+    AXES,
+    FRAMES_PER_SECOND,
+    GRAVITY,
+    Flight,
+    FractureScene,
+    flight,
+    view_direction,
+)
 
 METHODS = ("voronoi", "tetra", "surface")
 
@@ -47,16 +62,16 @@ class Broken(NamedTuple):
         shards, rest = len(self.fracture.shards), len(self.fracture.rest)
         return [shards] if rest and not self.fracture.closed else []
 
-    def stage(self) -> Stage:
+    def scene(self) -> FractureScene:
         """How it is drawn."""
-        return Stage.of(self.fracture, self.mesh, self.up)
+        return FractureScene.build(self.fracture, self.mesh, self.up)
 
-    def flight(self, stage: Stage, seconds: float, play: float = 3.2) -> Flight:
+    def flight(self, scene: FractureScene, seconds: float, play: float = 3.2) -> Flight:
         """How the pieces fly for so many seconds, in pictures for ``play`` seconds."""
-        ground = Ground(stage.up, stage.height)
-        frames = round(play * FRAMES_A_SECOND)
+        frames = round(play * FRAMES_PER_SECOND)
+        place: dict[str, Any] = {"up": scene.up, "floor": scene.floor}
         return flight(
-            self.fracture, self.motion, seconds, frames, ground=ground, held=self.held, ease=EASE
+            self.fracture, self.motion, seconds, frames, **place, held=self.held, ease=EASE
         )
 
 
@@ -74,8 +89,6 @@ def model(
     if scale != 1:
         mesh = hem.TriangleMesh(mesh.points * np.float32(scale), mesh.triangles)
     if wrap:
-        from hem.fracture.bodies.solid import wrapped
-
         mesh = wrapped(mesh)
     return mesh, up
 
@@ -128,83 +141,55 @@ def break_up(
     which the force decides only how the shards fly. Raises MeshError for unknown methods and
     structures, and for what they refuse.
     """
-    from hem.fracture.blow import Blow, motion
-    from structures import NAMES
-
-    if structure not in NAMES:
-        raise hem.MeshError(f"there is no structure {structure!r}, only {', '.join(NAMES)}")
+    if structure not in structures.NAMES:
+        known = ", ".join(structures.NAMES)
+        raise hem.MeshError(f"there is no structure {structure!r}, only {known}")
     if method not in METHODS:
         raise hem.MeshError(f"there is no method {method!r}, only {', '.join(METHODS)}")
     if impact is None:
         impact, way = default_impact(mesh, up)
         direction = way if direction is None else direction
     # A blow is checked before anything is broken.
-    Blow(np.asarray(impact), np.asarray((0, 0, 1) if direction is None else direction), force)
-    fracture = _broken(mesh, method, material, force, impact, direction, seed, structure)
+    given = Blow(
+        np.asarray(impact), np.asarray((0, 0, 1) if direction is None else direction), force
+    )
+    if method == "voronoi":
+        fracture = voronoi(mesh, impact, material, force, seed, direction)
+    else:
+        held = structures.build(structure, mesh)
+        if method == "tetra":
+            fracture = tetrahedra(held, impact, material, force, seed)
+        else:
+            fracture = shatter(held, impact, material, seed)
+        if direction is not None:
+            fracture = replace(fracture, direction=given.direction)
     blow = Blow(fracture.impact, fracture.direction, force)
     return Broken(mesh, fracture, blow, motion(fracture, blow), up)
 
 
-def _broken(
-    mesh: hem.TriangleMesh,
-    method: str,
-    material: Material,
-    force: float,
-    impact: ArrayLike,
-    direction: ArrayLike | None,
-    seed: int,
-    structure: str,
-) -> Fracture:
-    if method != "voronoi":
-        from hem.fracture.bodies.tetrahedra import tetrahedra
-        from hem.fracture.surface.shatter import shatter
-        from structures import build
-
-        held = build(structure, mesh)
-        if method == "tetra":
-            found = tetrahedra(held, impact, material, force, seed)
-        else:
-            found = shatter(held, impact, material, seed)
-        way = found.direction if direction is None else unit(np.asarray(direction, float))
-        return replace(found, direction=way)
-    from hem.fracture.bodies.voronoi import voronoi
-
-    return voronoi(mesh, impact, material, force, seed, direction)
-
-
-def enough_seconds(stage: Stage) -> float:
+def enough_seconds(scene: FractureScene) -> float:
     """Until all has fallen and come to rest, more or less: four times a fall from the top."""
-    height = float((stage.points @ stage.up).max()) - stage.height
+    height = float((scene.points @ scene.up).max()) - scene.floor
     return float(np.clip(4 * np.sqrt(2 * height / GRAVITY), 0.4, 8.0))
 
 
 def default_impact(mesh: hem.TriangleMesh, up: str = "y") -> tuple[Array, Array]:
     """A point that the camera sees, to the left of the middle, and the way into it: two (3,)."""
-    top = np.array(AXES[up])
     used = mesh.points[np.unique(mesh.triangles)].astype(float)
     middle = (used.max(axis=0) + used.min(axis=0)) / 2
-    camera = Camera.around(used, AZIMUTH - 35, ELEVATION + 4, top)
-    return first_hit(mesh, camera.position, middle)
+    way = -view_direction(AXES[up], -5.0, 22.0)
+    return first_hit(mesh, middle - float(np.ptp(used, axis=0).sum()) * way, way), way
 
 
-def first_hit(mesh: hem.TriangleMesh, start: Array, through: Array) -> tuple[Array, Array]:
-    """Where a ray first meets a mesh, or else the vertex nearest to its way; and its direction."""
-    way = (through - start) / np.linalg.norm(through - start)
-    corners = mesh.points[mesh.triangles].astype(float) - start
-    a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
-    sides = np.stack([_triple(way, a, b), _triple(way, b, c), _triple(way, c, a)])
-    inside = ((sides >= 0).all(axis=0) | (sides <= 0).all(axis=0)) & (sides != 0).any(axis=0)
+def first_hit(mesh: hem.TriangleMesh, start: Array, way: Array) -> Array:
+    """Where a ray first meets a mesh, or else the vertex nearest to its way: (3,). O(m)."""
+    a, b, c = (mesh.points[mesh.triangles[:, i]].astype(float) - start for i in range(3))
+    sides = np.stack([np.cross(a, b) @ way, np.cross(b, c) @ way, np.cross(c, a) @ way])
     normal = np.cross(b - a, c - a)
     slope = normal @ way
-    far = np.einsum("ij,ij->i", normal, a) / np.where(slope == 0, np.inf, slope)
-    hits = far[inside & (slope != 0) & (far > 0)]
-    if len(hits):
-        return start + hits.min() * way, way
-    used = mesh.points[np.unique(mesh.triangles)].astype(float)
-    off = used - start
-    beside = np.linalg.norm(off - (off @ way)[:, None] * way, axis=1)
-    return used[beside.argmin()], way
-
-
-def _triple(way: Array, a: Array, b: Array) -> Array:
-    return np.cross(a, b) @ way
+    met = ((sides >= 0).all(axis=0) | (sides <= 0).all(axis=0)) & (slope != 0)
+    far = np.einsum("ij,ij->i", normal[met], a[met]) / slope[met]
+    if (far > 0).any():
+        return np.asarray(start + far[far > 0].min() * way)
+    off = mesh.points[np.unique(mesh.triangles)].astype(float) - start
+    return np.asarray(start + off[np.linalg.norm(np.cross(off, way), axis=1).argmin()])

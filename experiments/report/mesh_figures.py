@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from contextlib import closing
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -16,6 +18,7 @@ import structures
 from experiments.harness.workloads import simplify
 from experiments.report.style import styled
 from hem.contract import Structure
+from hem.fracture.show import AXES, Image, Picture, PicturesMissingError
 from structures.plankton import Plankton
 
 Array = NDArray[Any]
@@ -25,7 +28,7 @@ TOUCHED = "#f7d9a0"
 INK = "#333333"
 STRONG = "#c0392b"
 
-LIGHT = np.array([0.35, 0.45, 0.82])
+SAND = (0.96, 0.82, 0.55)
 
 Step = tuple[str, Structure, dict[str, Any]]
 """A title, a mesh, and what to point out in it: ``faces``, ``edges``, ``vertices``."""
@@ -282,41 +285,33 @@ def _touched(edit: hem.Edit) -> list[int]:
     return [*edit.created_faces.tolist(), *edit.changed_faces.tolist()]
 
 
-def shaded(meshes: dict[str, hem.TriangleMesh], turn: float = 30, tilt: float = 22) -> Figure:
-    """Meshes side by side, shaded by one lamp; ``turn`` and ``tilt`` of the view in degrees."""
+def shaded(
+    meshes: dict[str, hem.TriangleMesh], azimuth: float = -60, elevation: float = 22
+) -> Figure:
+    """Meshes side by side with their edges, z up, seen from ``azimuth`` and ``elevation`` (°)."""
+
+    def draw(mesh: hem.TriangleMesh) -> Image:
+        look: dict[str, Any] = {"up": AXES["z"], "wires": True}
+        with closing(Picture(mesh.points, mesh.triangles, SAND, (740, 560), **look)) as picture:
+            picture.look_at(mesh.points.astype(float), azimuth, elevation)
+            return picture.image()
+
     with styled():
         figure = Figure(figsize=(3.7 * len(meshes), 3.0), layout="constrained")
         panels = figure.subplots(1, len(meshes), squeeze=False)[0]
         for axes, (title, mesh) in zip(panels, meshes.items(), strict=True):
-            _shade(axes, mesh, turn, tilt)
-            axes.set_title(title)
+            show_picture(axes, title, partial(draw, mesh))
     return figure
 
 
-def _shade(axes: Axes, mesh: hem.TriangleMesh, turn: float, tilt: float) -> None:
-    points = mesh.points @ _camera(turn, tilt).T
-    corners = points[mesh.triangles]
-    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    lengths = np.linalg.norm(normals, axis=1)
-    facing = np.abs(normals @ LIGHT) / np.where(lengths > 0, lengths, 1)
-    order = np.argsort(corners[:, :, 2].mean(axis=1))
-    tone = (0.35 + 0.65 * facing)[order, None]
-    colors = tone * np.array([[0.96, 0.82, 0.55]])
-    lines = 0.5 * colors if len(order) < 20_000 else colors
-    far_first: Any = corners[order][:, :, :2]
-    shades: Any = {"facecolors": colors, "edgecolors": lines, "linewidths": 0.2}
-    axes.add_collection(PolyCollection(far_first, **shades))
-    axes.autoscale_view()
-    axes.set_aspect("equal")
+def show_picture(axes: Axes, title: str, draw: Callable[[], Image]) -> None:
+    """Put a picture into a panel; without PyVista what is missing is said there instead."""
+    axes.set_title(title)
     axes.axis("off")
-
-
-def _camera(turn: float, tilt: float) -> Array:
-    """Rows: right, up and towards the eye, for models that stand on the plane z = 0."""
-    a, b = np.radians(turn), np.radians(tilt)
-    around = np.array([[np.cos(a), np.sin(a), 0], [-np.sin(a), np.cos(a), 0], [0, 0, 1]])
-    down = np.array([[1, 0, 0], [0, np.sin(b), np.cos(b)], [0, -np.cos(b), np.sin(b)]])
-    return down @ around
+    try:
+        axes.imshow(draw())
+    except PicturesMissingError as missing:
+        axes.text(0.5, 0.5, str(missing), ha="center", va="center", wrap=True)
 
 
 def shrunk(mesh: hem.TriangleMesh, part: float, structure: str) -> hem.TriangleMesh:

@@ -2,235 +2,162 @@
 
 from __future__ import annotations
 
-import os
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-import hem
-from hem.fracture import Fracture
-from hem.fracture.show.camera import AXES, Camera, unit
+from hem.arrays import Array, Bools
+from hem.fracture.pieces import Fracture
 from hem.fracture.show.flight import Flight
-from hem.fracture.show.renderer import Floor, Shape, creased_normals, render, srgb
+from hem.fracture.show.picture import AXES, Image, Picture, Size, load_pyvista
+from hem.meshes import TriangleMesh
 
-Array = NDArray[Any]
-Image = NDArray[np.uint8]
-Size = tuple[int, int]
-
-AZIMUTH, ELEVATION = 30.0, 18.0
-FRAMES_A_SECOND = 25
-_CREASE = 40.0
+FRAMES_PER_SECOND = 25
 _GAP = 0.018
-_GLOSS = {"glass": 0.75, "ice": 0.6, "ceramic": 0.45, "stone": 0.05, "wood": 0.08}
+_GLOSS = {"glass": 0.5, "ice": 0.4, "ceramic": 0.3, "stone": 0.05, "wood": 0.05}
 
 
 @dataclass(frozen=True)
-class Stage:
-    """The pieces of a fracture as they are drawn, each in its own place, and what they stand on."""
+class FractureScene:
+    """The pieces of a fracture as they are drawn, all in one mesh, and the floor they stand on."""
 
     fracture: Fracture
     up: Array
-    height: float
+    floor: float
     points: Array
     triangles: Array
-    normals: Array
     colors: Array
-    gloss: Array
-    vertex_piece: Array
-    face_piece: Array
+    """(m, 3): sRGB in 0 … 1."""
+
+    piece: Array
+    """(n,): of each point."""
 
     @classmethod
-    def of(cls, fracture: Fracture, mesh: hem.TriangleMesh, up: str = "y") -> Stage:
-        """How the pieces of ``mesh`` look: its skin smooth, the walls of the cuts flat and darker.
-
-        Cost O(faces log faces).
-        """
+    def build(cls, fracture: Fracture, mesh: TriangleMesh, up: str = "y") -> FractureScene:
+        """How the pieces of ``mesh`` look: its skin in the material's color, cuts darker."""
         pieces = fracture.pieces
-        starts = np.cumsum([0, *(len(it.points) for it in pieces)])
-        points = np.concatenate([it.points for it in pieces]).astype(float)
+        counts = [len(each.points) for each in pieces]
+        starts = np.cumsum([0, *counts[:-1]])
+        points = np.concatenate([each.points for each in pieces]).astype(float)
         triangles = np.concatenate(
-            [it.triangles + start for it, start in zip(pieces, starts, strict=False)]
+            [each.triangles + start for each, start in zip(pieces, starts, strict=True)]
         )
-        vertex_piece = np.repeat(np.arange(len(pieces)), np.diff(starts))
-        face_piece = vertex_piece[triangles[:, 0]]
-        top = np.array(AXES[up])
-        used = mesh.points[np.unique(mesh.triangles)]
-        skin = np.ones(len(triangles), bool)
-        if fracture.closed:
-            skin = on_surface(points[triangles], mesh, fracture.diagonal)
-        return cls(
-            fracture=fracture,
-            up=top,
-            height=float((used @ top).min()),
-            points=points,
-            triangles=triangles,
-            normals=creased_normals(points, triangles, _CREASE),
-            colors=_colors(fracture, skin, face_piece),
-            gloss=_GLOSS.get(fracture.material.name, 0.25) * np.where(skin, 1.0, 0.35),
-            vertex_piece=vertex_piece,
-            face_piece=face_piece,
-        )
+        piece = np.repeat(np.arange(len(pieces)), counts)
+        skin = on_surface(points[triangles], mesh) if fracture.closed else True
+        floor = float((mesh.points[np.unique(mesh.triangles)] @ np.array(AXES[up])).min())
+        colors = _colors(fracture, np.broadcast_to(skin, len(triangles)), piece[triangles[:, 0]])
+        return cls(fracture, np.array(AXES[up]), floor, points, triangles, colors, piece)
 
-    def shape(self, positions: Array, rotations: Array | None = None, shrink: float = 0.0) -> Shape:
-        """All pieces with their centers of mass (n, 3) elsewhere, turned and perhaps shrunken."""
-        piece, faces = self.vertex_piece, self.face_piece
-        arms = (self.points - self.fracture.mass.centers[piece]) * (1 - shrink)
-        normals = self.normals
+    def placed(
+        self, positions: Array, rotations: Array | None = None, shrink: float = 0.0
+    ) -> Array:
+        """The points (n, 3) of pieces whose centers of mass (p, 3) are elsewhere, turned so."""
+        arms = (self.points - self.fracture.mass.centers[self.piece]) * (1 - shrink)
         if rotations is not None:
-            arms = np.einsum("nij,nj->ni", rotations[piece], arms)
-            normals = np.einsum("nij,ncj->nci", rotations[faces], normals)
-        return Shape(positions[piece] + arms, self.triangles, self.colors, normals, self.gloss)
+            arms = np.einsum("nij,nj->ni", rotations[self.piece], arms)
+        return np.asarray(positions[self.piece] + arms)
 
     def exploded(self, factor: float = 0.4) -> Array:
-        """Centers (n, 3) moved apart: each away from the middle of all, none below the floor."""
-        mass, found = self.fracture.mass, self.fracture
-        if not found.closed:  # shards come out of a surface toward whom it is struck by
-            moved = mass.centers + factor * (mass.centers - found.impact)
-            moved -= factor * 0.4 * found.diagonal * found.direction
-            moved[len(found.shards) :] = mass.centers[len(found.shards) :]
+        """Centers (p, 3) moved apart: each away from the middle of all, none below the floor."""
+        mass, broken = self.fracture.mass, self.fracture
+        if not broken.closed:  # shards come out of a surface toward whom it is struck by
+            moved = mass.centers + factor * (mass.centers - broken.impact)
+            moved -= factor * 0.4 * broken.diagonal * broken.direction
+            moved[len(broken.shards) :] = mass.centers[len(broken.shards) :]
             return moved
         middle = np.average(mass.centers, axis=0, weights=np.maximum(mass.masses, 1e-12))
         moved = mass.centers + factor * (mass.centers - middle)
-        below = self.height - np.minimum.reduceat(
-            (self.shape(moved).points @ self.up), self._first_vertices()
+        lowest = np.full(len(moved), np.inf)
+        np.minimum.at(lowest, self.piece, self.placed(moved) @ self.up)
+        return np.asarray(moved + np.maximum(self.floor - lowest, 0)[:, None] * self.up)
+
+    def still(self, size: Size = (640, 480)) -> Image:
+        """Two pictures of a size side by side: where it broke, and the pieces moved apart."""
+        images = []
+        with closing(self._picture(size)) as picture:
+            for points in (self._whole(_GAP), self.placed(self.exploded())):
+                picture.move(points)
+                picture.look_at(points)
+                images.append(picture.image())
+        return np.hstack(images)
+
+    def frames(self, flight: Flight, size: Size = (640, 480), caption: str = "") -> Iterator[Image]:
+        """A picture of each frame of a flight, all by one camera that sees where pieces end up."""
+        with closing(self._picture(size)) as picture:
+            picture.look_at(self._stays(flight))
+            for time, positions, rotations in zip(*flight[:3], strict=True):
+                moved = self.placed(positions, rotations, _GAP / 3)
+                picture.move(moved, rotations[self.piece])
+                picture.draw_text(f"{caption}, {time:.2f} s after the blow" if caption else "")
+                yield picture.image()
+
+    def _whole(self, shrink: float = 0.0) -> Array:
+        return self.placed(self.fracture.mass.centers, shrink=shrink)
+
+    def _picture(self, size: Size) -> Picture:
+        gloss = _GLOSS.get(self.fracture.material.name, 0.2)
+        return Picture(
+            self.points, self.triangles, self.colors, size, self.up, self.floor, gloss=gloss
         )
-        return np.asarray(moved + max(float(below.max()), 0.0) * self.up)
 
-    def _first_vertices(self) -> Array:
-        return np.searchsorted(self.vertex_piece, np.arange(len(self.fracture.pieces)))
+    def _stays(self, flight: Flight) -> Array:
+        """The model and the ways of its pieces, as far as they stay near: what the camera shows.
 
-
-def on_surface(corners: Array, mesh: hem.TriangleMesh, diagonal: float) -> NDArray[np.bool_]:
-    """Which triangles (m, 3, 3) lie on the surface of a mesh, facing as it does: (m,).
-
-    A ray from just above the middle of each must meet the surface just below. O(m log faces).
-    """
-    from embreex import rtcore_scene
-    from embreex.mesh_construction import TriangleMesh
-
-    middle = (mesh.points.max(axis=0) + mesh.points.min(axis=0)) / 2.0
-    scene = rtcore_scene.EmbreeScene()
-    TriangleMesh(
-        scene, np.ascontiguousarray(((mesh.points - middle) / diagonal)[mesh.triangles], np.float32)
-    )
-    placed = (corners - middle) / diagonal
-    normal = np.cross(placed[:, 1] - placed[:, 0], placed[:, 2] - placed[:, 0])
-    length = np.linalg.norm(normal, axis=1, keepdims=True)
-    normal = normal / np.where(length > 0, length, 1)
-    lifted = 5e-4
-    hit = scene.run(
-        np.ascontiguousarray(placed.mean(axis=1) + lifted * normal, np.float32),
-        np.ascontiguousarray(-normal, np.float32),
-        query="INTERSECT",
-        output=True,
-    )
-    met = hit["primID"] >= 0
-    facing = np.einsum("ij,ij->i", unit(hit["Ng"]), normal)
-    found: NDArray[np.bool_] = met & (hit["tfar"] < 2 * lifted) & (np.abs(facing) > 0.9)
-    return found
+        It follows the pieces that make up most of the mass farther than it does crumbs.
+        """
+        masses = self.fracture.mass.masses
+        order = np.argsort(-masses)
+        most = np.searchsorted(np.cumsum(masses[order]), 0.95 * masses.sum())
+        heavy = np.isin(self.piece, order[: 1 + most])
+        low, high = self.points.min(axis=0), self.points.max(axis=0)
+        poses = zip(flight.positions[::8], flight.rotations[::8], strict=True)
+        ways = np.stack([self.placed(at, turned) for at, turned in poses])
+        kept = [self.points]
+        for part, room in ((heavy, 0.36), (~heavy, 0.16)):
+            far = room * float(np.linalg.norm(high - low))
+            near = np.clip(
+                ways[:, part], low - far * (1 - self.up), high + far * (1 - 0.6 * self.up)
+            )
+            kept.append(near.reshape(-1, 3))
+        return np.vstack(kept)
 
 
-def still(stage: Stage, size: Size = (640, 480)) -> Image:
-    """Two pictures of a size side by side: where it broke, and the pieces moved apart."""
-    floor = Floor(stage.height, stage.up)
-    pictures = []
-    for shape in (
-        stage.shape(stage.fracture.mass.centers, shrink=_GAP),
-        stage.shape(stage.exploded()),
-    ):
-        camera = _camera(shape.points, stage.up, size)
-        pictures.append(render([shape], camera, size, floor))
-    return np.hstack(pictures)
+def on_surface(corners: Array, mesh: TriangleMesh) -> Bools:
+    """Which triangles (m, 3, 3) lie on the surface of a mesh, and as it does: (m,)."""
+    pyvista = load_pyvista()
+    surface = pyvista.PolyData.from_regular_faces(mesh.points.astype(float), mesh.triangles)
+    face, nearest = surface.find_closest_cell(corners.mean(axis=1), return_closest_point=True)
+    normals = pyvista.PolyData.from_regular_faces(
+        corners.reshape(-1, 3), np.arange(3 * len(corners)).reshape(-1, 3)
+    ).face_normals
+    near = np.linalg.norm(nearest - corners.mean(axis=1), axis=1) < 3e-4 * surface.length
+    facing = np.abs(np.einsum("ij,ij->i", surface.face_normals[face], normals)) > 0.9
+    return np.asarray(near & facing)
 
 
-def frames(stage: Stage, flight: Flight, size: Size = (640, 480)) -> Iterator[Image]:
-    """A picture of every frame of a flight, all by one camera that sees where pieces end up."""
-    from concurrent.futures import ThreadPoolExecutor
-
-    camera = _camera(_stays(stage, flight), stage.up, size)
-    floor = Floor(stage.height, stage.up)
-
-    def picture(frame: int) -> Image:
-        shape = stage.shape(flight.positions[frame], flight.rotations[frame], _GAP / 3)
-        return render([shape], camera, size, floor)
-
-    # Casting rays lets other threads run.
-    with ThreadPoolExecutor(os.cpu_count()) as pool:
-        yield from pool.map(picture, range(len(flight.times)))
-
-
-def _camera(points: Array, up: Array, size: Size) -> Camera:
-    return Camera.around(points, AZIMUTH, ELEVATION, up, aspect=size[0] / size[1])
-
-
-def _stays(stage: Stage, flight: Flight) -> Array:
-    """The model and the ways of its pieces, as far as they stay near: what the camera shows.
-
-    It follows the pieces that make up most of the mass farther than it does crumbs.
-    """
-    masses = stage.fracture.mass.masses
-    order = np.argsort(-masses)
-    heavy = np.zeros(len(masses), bool)
-    heavy[order[: 1 + np.searchsorted(np.cumsum(masses[order]), 0.95 * masses.sum())]] = True
-    low, high = stage.points.min(axis=0), stage.points.max(axis=0)
-    poses = zip(flight.positions[::8], flight.rotations[::8], strict=True)
-    moments = np.stack([stage.shape(*pose).points for pose in poses])
-    kept = [stage.points]
-    for pieces, room in ((heavy, 0.36), (~heavy, 0.16)):
-        far = room * float(np.linalg.norm(high - low))
-        ways = moments[:, pieces[stage.vertex_piece]].reshape(-1, 3)
-        ways = np.clip(ways, low - far, high + far * (1 - 0.6 * np.abs(stage.up)))
-        sunk = np.maximum(stage.height - ways @ stage.up, 0)
-        kept.append(ways + sunk[:, None] * stage.up)
-    return np.vstack(kept)
-
-
-def caption(image: Image, text: str) -> Image:
-    """The picture with a line of text in its lower left corner."""
-    import matplotlib
-    from PIL import Image as Pillow
-    from PIL import ImageDraw, ImageFont
-
-    picture = Pillow.fromarray(image)
-    size = max(11, image.shape[0] // 30)
-    place = (size, image.shape[0] - 2 * size)
-    file = Path(matplotlib.get_data_path()) / "fonts" / "ttf" / "DejaVuSans.ttf"
-    font = ImageFont.truetype(str(file), size)
-    ImageDraw.Draw(picture).text(place, text, fill=(90, 88, 84), font=font)
-    return np.asarray(picture)
-
-
-def save_gif(images: Sequence[Image], path: Path, hold: tuple[float, float] = (0.5, 1.2)) -> None:
-    """An animation of one palette, 25 pictures a second, held for seconds at start and end."""
+def save_animation(
+    images: Sequence[Image], path: Path, hold: tuple[float, float] = (0.5, 1.2)
+) -> None:
+    """Write pictures as a gif of one palette, or as webp; held for seconds at start and end."""
     from PIL import Image as Pillow
 
-    every = [Pillow.fromarray(it) for it in images]
-    sample = np.hstack(images[:: max(1, len(images) // 6)])
-    palette = Pillow.fromarray(sample).quantize(255, method=Pillow.Quantize.MEDIANCUT)
-    flat = [it.quantize(palette=palette, dither=Pillow.Dither.NONE) for it in every]
-    spans = [1000 // FRAMES_A_SECOND] * len(flat)
+    frames = [Pillow.fromarray(image) for image in images]
+    if path.suffix == ".gif":
+        sample = Pillow.fromarray(np.hstack(images[:: max(1, len(images) // 6)]))
+        palette = sample.quantize(255, method=Pillow.Quantize.MEDIANCUT)
+        frames = [frame.quantize(palette=palette, dither=Pillow.Dither.NONE) for frame in frames]
+    spans = [1000 // FRAMES_PER_SECOND] * len(frames)
     spans[0], spans[-1] = int(hold[0] * 1000), int(hold[1] * 1000)
-    flat[0].save(path, save_all=True, append_images=flat[1:], duration=spans, loop=0, disposal=1)
+    frames[0].save(
+        path, save_all=True, append_images=frames[1:], duration=spans, loop=0, quality=80,
+    )  # fmt: skip
 
 
-def made(
-    stage: Stage, flight: Flight, size: Size, text: str, report: Callable[[int], None]
-) -> list[Image]:
-    """The pictures of a flight with a caption each; ``report`` hears how many are done."""
-    images = []
-    for image, time in zip(frames(stage, flight, size), flight.times, strict=True):
-        images.append(caption(image, f"{text}, {time:.2f} s after the blow"))
-        report(len(images))
-    return images
-
-
-def _colors(fracture: Fracture, skin: Array, face_piece: Array) -> Array:
+def _colors(fracture: Fracture, skin: Array, piece: Array) -> Array:
     """(m, 3): the material's, darker and richer inside, every piece a little different."""
-    base = srgb(fracture.material.color)
-    inside = base**1.4 * 0.9
-    tint = 1 + (0.07 if fracture.closed else 0.25) * (((face_piece * 0.6180339887) % 1) - 0.5)
-    return np.clip(np.where(skin[:, None], base, inside) * tint[:, None], 0, 1)
+    base = np.array([int(fracture.material.color[i : i + 2], 16) for i in (1, 3, 5)]) / 255
+    tint = 1 + (0.07 if fracture.closed else 0.25) * ((piece * 0.6180339887) % 1 - 0.5)
+    return np.clip(np.where(skin[:, None], base, 0.8 * base**1.4) * tint[:, None], 0, 1)

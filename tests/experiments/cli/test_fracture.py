@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 import signal
 import subprocess
 import sys
@@ -16,18 +15,21 @@ from PIL import Image
 from typer.testing import CliRunner
 
 import hem as package
-from experiments.cli import app, console, demo
+from experiments.cli import app, demo
+from experiments.cli.console import console, errors
 from experiments.report.fracture_scenes import break_up, default_impact, model
 from hem.fracture import MATERIALS
 from hem.fracture.show.scene import on_surface
+
+pytest.importorskip("pyvista", reason="pictures need the extra viz")
 
 runner = CliRunner()
 
 
 def hem(*arguments: str) -> tuple[int, str]:
-    console.console.width = console.errors.width = 200
+    console.width = errors.width = 200
     result = runner.invoke(app, ("fracture", *arguments))
-    return result.exit_code, " ".join((result.stdout + result.stderr).split())
+    return result.exit_code, " ".join((result.stdout + result.stderr).replace("│", "").split())
 
 
 @pytest.mark.parametrize(
@@ -38,40 +40,40 @@ def hem(*arguments: str) -> tuple[int, str]:
         (["empty.ply"], "the file is empty"),
         (["sphere:many"], "after the colon stands a number of vertices"),
         (["sphere:3"], "reachable are 12"),
-        (["sphere", "--impact", "a,b"], "--impact is three numbers"),
-        (["sphere", "--impact", "1,2"], "--impact is three numbers"),
-        (["sphere", "--impact", "nan,0,0"], "--impact is three finite numbers"),
+        (["sphere", "--impact", "a,b"], "three numbers with commas"),
+        (["sphere", "--impact", "1,2"], "three numbers with commas"),
+        (["sphere", "--impact", "nan,0,0"], "three numbers with commas"),
         (["sphere", "--impact", "40,0,0"], "more than half the diagonal"),
         (["plate", "--impact", "40,0,0"], "more than half of its size"),
-        (["sphere", "--direction", "0,0"], "--direction is three numbers"),
+        (["sphere", "--direction", "0,0"], "three numbers with commas"),
         (["sphere", "--direction", "0,0,0"], "a direction has some length"),
-        (["sphere", "--force", "0"], "--force is a positive number"),
-        (["sphere", "--force", "-1"], "--force is a positive number"),
-        (["sphere", "--force", "inf"], "--force is a positive number"),
+        (["sphere", "--force", "0"], "Invalid value for '--force'"),
+        (["sphere", "--force", "-1"], "Invalid value for '--force'"),
+        (["sphere", "--force", "inf"], "Invalid value for '--force'"),
         (["sphere", "--material", "glas"], "did you mean 'glass'?"),
         (["sphere", "--materials", "none.toml"], "cannot read materials from none.toml"),
-        (["sphere", "--method", "hammer"], "there is no method 'hammer', only voronoi, tetra"),
+        (["sphere", "--method", "hammer"], "'hammer' is not one of"),
         (["sphere", "--structure", "heap"], "there is no structure 'heap', only indexed"),
-        (["sphere", "--format", "glb", "--format", "stl"], "formats are glb, obj, ply"),
-        (["sphere", "--seed", "-1"], "a seed is a whole number from 0 on"),
-        (["sphere", "--size", "640"], "--size is a width and a height"),
+        (
+            ["sphere", "--format", "glb", "--format", "stl"],
+            "'stl' is not one of",
+        ),
+        (["sphere", "--seed", "-1"], "Invalid value for '--seed'"),
+        (["sphere", "--size", "640"], "a width and a height"),
         (["sphere", "--size", "64x9999"], "64 … 4096"),
-        (["sphere", "--seconds", "0"], "--seconds is more than 0"),
-        (["sphere", "--up", "w"], "--up is x, y or z"),
-        (["sphere", "--scale", "0"], "--scale is a positive number"),
+        (["sphere", "--seconds", "0"], "Invalid value for '--seconds'"),
+        (["sphere", "--up", "w"], "'w' is not one of"),
+        (["sphere", "--scale", "0"], "Invalid value for '--scale'"),
         (["sphere", "--out", "empty.ply"], "is a file, not a folder"),
         (["plate", "--method", "voronoi"], "the mesh is open"),
         (["plate", "--method", "tetra"], "the mesh is open"),
     ],
 )
-def test_a_mistake_gets_one_clear_line_and_nothing_is_written(
-    arguments, said, tmp_path, monkeypatch
-):
+def test_a_mistake_is_explained_and_nothing_is_written(arguments, said, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     Path("empty.ply").touch()
     code, output = hem(*arguments)
-    assert code == 1
-    assert output.startswith("hem:")
+    assert code in (1, 2)
     assert said in output
     assert [path.name for path in tmp_path.iterdir()] == ["empty.ply"]
 
@@ -177,30 +179,28 @@ def test_skin_is_told_from_the_walls_of_cuts():
     for piece in broken.fracture.pieces:
         corners = piece.points[piece.triangles].astype(float)
         far = np.linalg.norm(corners, axis=2).min(axis=1)
-        skin = on_surface(corners, mesh, broken.fracture.diagonal)
+        skin = on_surface(corners, mesh)
         assert (far[skin] > 0.98).all()
         assert (~skin[far < 0.9]).all()
 
 
 def test_the_demo_is_one_page_that_needs_no_network(tmp_path):
-    scene = demo.SCENES[-1]._replace(forces=(0.5, 2))
-    page = demo.write(tmp_path / "demo", (scene,), size=(64, 48), seconds=0.4)
+    case = demo.CASES[-1]._replace(forces=(0.5, 2))
+    page = demo.write(tmp_path / "demo", (case,), size=(64, 48), seconds=0.4)
     text = page.read_text(encoding="utf-8")
-    assert "://" not in text.replace("http://www.w3.org", "")
-    assert "__TOLD__" not in text
-    told = json.loads(text[text.index("const told = ") + 13 : text.index(";\nconst at")])
-    for take in told["scenes"][0]["takes"]:
-        with Image.open(page.parent / take["frames"]) as sheet:
-            rows = -(-len(take["times"]) // demo.COLUMNS)
-            assert sheet.size == (64 * demo.COLUMNS, 48 * rows)
-        assert take["energy"] <= take["given"]
-    assert sorted(os.listdir(page.parent))[0] == "index.html"
+    assert "://" not in text
+    for force in ("0_5", "2"):
+        assert f'src="plate-{force}.webp"' in text
+        with Image.open(page.parent / f"plate-{force}.webp") as film:
+            assert film.size == (64, 48)
+            assert film.n_frames > 5
 
 
 def test_importing_the_package_stays_light():
     code = (
         "import sys, hem, experiments.cli.fracture; "
-        "print([m for m in ('embreex', 'trimesh', 'PIL', 'manifold3d') if m in sys.modules])"
+        "heavy = 'pyvista', 'trimesh', 'PIL', 'manifold3d', 'hem.fracture'; "
+        "print([module for module in heavy if module in sys.modules])"
     )
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert run.stdout.strip() == "[]"

@@ -1,0 +1,244 @@
+"""Shaded pictures of meshes, drawn off-screen by PyVista: no display is needed, and no GPU."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from hem.arrays import Array, Floats
+
+Image = NDArray[np.uint8]
+Size = tuple[int, int]
+
+AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
+AZIMUTH, ELEVATION = 30.0, 18.0
+
+PAPER = (244, 243, 241)
+"""The floor far away, and what is behind everything: a warm near-white, sRGB."""
+
+_CREASE = 30.0
+"""Degrees. Sharper edges stay sharp; across all others the shading is smooth."""
+
+_FIELD_OF_VIEW = 26.0
+_CELLS, _SAMPLES = 400, 60_000
+
+
+class PicturesMissingError(ImportError):
+    """PyVista, which draws the pictures, is not installed."""
+
+
+def load_pyvista() -> Any:
+    """The module pyvista. Raises PicturesMissingError, with the way out, where it is not."""
+    try:
+        import pyvista
+    except ImportError as missing:
+        raise PicturesMissingError(
+            f"PyVista draws the pictures, and cannot be imported ({missing}): "
+            "pip install 'hem-mesh[viz]'"
+        ) from missing
+    return pyvista
+
+
+class Picture:
+    """A mesh on a floor, seen by a camera. It holds a window off-screen until it is closed.
+
+    points     (n, 3); they may move from one image to the next
+    triangles  (m, 3) indices of points
+    colors     (3,) for all, or (m, 3) for each face: sRGB in 0 … 1
+    up, floor  the floor lies across ``up`` (3,) at this height and shows shadows; none: no floor
+    """
+
+    def __init__(
+        self,
+        points: Array,
+        triangles: Array,
+        colors: ArrayLike,
+        size: Size,
+        up: ArrayLike = AXES["y"],
+        floor: float | None = None,
+        gloss: float = 0.2,
+        wires: bool = False,
+    ) -> None:
+        pyvista = load_pyvista()
+        self.size, self.up, self.floor = size, np.asarray(up, float), floor
+        self.points, self.triangles = np.asarray(points, float), triangles
+        mesh = pyvista.PolyData.from_regular_faces(self.points, triangles)
+        mesh.point_data["vertex"] = np.arange(len(points))
+        mesh.cell_data["color"] = np.rint(
+            255 * np.broadcast_to(np.asarray(colors, float), (len(triangles), 3))
+        ).astype(np.uint8)
+        self.mesh = mesh.compute_normals(
+            feature_angle=0.0 if wires else _CREASE, split_vertices=True, consistent_normals=False
+        )
+        self.length = float(np.linalg.norm(np.ptp(points[np.unique(triangles)], axis=0)))
+        self.vertex = np.array(self.mesh.point_data["vertex"])
+        self.normals = np.array(self.mesh.point_data["Normals"])
+        self.plotter = pyvista.Plotter(off_screen=True, window_size=list(size), lighting="none")
+        self.plotter.set_background("white" if floor is None else PAPER)
+        self.plotter.add_mesh(
+            self.mesh, scalars="color", rgb=True, show_edges=wires, edge_opacity=0.6,
+            interpolation="Flat" if wires else "Phong", ambient=0.45, diffuse=0.8,
+            specular=gloss, specular_power=30,
+        )  # fmt: skip
+        self.plotter.enable_anti_aliasing("ssaa")
+
+    def close(self) -> None:
+        """Give back the window."""
+        self.plotter.close()
+
+    def move(self, points: Array, rotations: Array | None = None) -> None:
+        """Put the points elsewhere (n, 3); each has been turned by its rotation (n, 3, 3)."""
+        self.points = points
+        self.mesh.points = points[self.vertex]
+        if rotations is not None:
+            turned = np.einsum("nij,nj->ni", rotations[self.vertex], self.normals)
+            self.mesh.point_data["Normals"] = turned.astype(np.float32)
+
+    def look_at(
+        self, points: Array, azimuth: float = AZIMUTH, elevation: float = ELEVATION
+    ) -> None:
+        """Stand the camera and the lamps where all points (k, 3) are seen, and as near as can be.
+
+        ``azimuth`` turns the camera around ``up``, ``elevation`` lifts it; both in degrees. O(k).
+        """
+        pyvista = load_pyvista()
+        toward = view_direction(self.up, azimuth, elevation)
+        right = unit(np.cross(self.up, toward))
+        above = np.cross(toward, right)
+        slope = np.tan(np.radians(_FIELD_OF_VIEW) / 2) * (0.84 if self.floor is not None else 0.96)
+        depth = points @ -toward
+        x, far_x = _apex(points @ right, depth, slope * self.size[0] / self.size[1])
+        y, far_y = _apex(points @ above, depth, slope)
+        eye = x * right + y * above - min(far_x, far_y) * toward
+        flat = points @ _plane(self.up)
+        self.low, self.high = flat.min(axis=0) - self.length, flat.max(axis=0) + self.length
+        camera = self.plotter.camera
+        camera.position, camera.up, camera.view_angle = eye, self.up, _FIELD_OF_VIEW
+        camera.focal_point = eye - toward * (depth.mean() - min(far_x, far_y))
+        far = float(
+            np.linalg.norm(np.ptp(points, axis=0)) + np.linalg.norm(eye - points.mean(axis=0))
+        )
+        camera.clipping_range = (0.01 * far, 10 * far)
+        self.light = unit(1.25 * self.up - 0.75 * right + 0.55 * unit(_level(toward, self.up)))
+        self.plotter.remove_all_lights()
+        for way, strength in ((self.light, 0.62), (self.up, 0.2), (toward, 0.24)):
+            lamp = pyvista.Light(position=way, focal_point=(0, 0, 0), intensity=strength)
+            lamp.positional = False
+            self.plotter.add_light(lamp)
+        self.plotter.enable_ssao(
+            radius=0.07 * self.length, bias=0.008 * self.length, kernel_size=24
+        )
+
+    def draw_text(self, text: str) -> None:
+        """Put a line of text into the lower left corner, in the place of the one before."""
+        self.plotter.add_text(
+            text, position=(12, 10), font_size=max(6, self.size[1] // 50), color=(90, 88, 84),
+            name="text", render=False,
+        )  # fmt: skip
+
+    def image(self) -> Image:
+        """What the camera sees: (height, width, 3)."""
+        if self.floor is not None:
+            self._lay_floor(self.floor)
+        self.plotter.render()
+        return np.asarray(self.plotter.screenshot(None, return_img=True))[:, :, :3]
+
+    def _lay_floor(self, floor: float) -> None:
+        pyvista = load_pyvista()
+        low, high, plane = self.low, self.high, _plane(self.up)
+        points = _spread(self.points[self.triangles], _SAMPLES)
+        dark = shadow(points, self.up, floor, self.light, low, high, self.length)
+        tone = np.rint((1 - dark)[..., None] * PAPER).astype(np.uint8)
+        corners = np.array([low, (high[0], low[1]), high, (low[0], high[1])]) @ plane.T
+        below = floor - 0.003 * self.length  # what lies flat on the floor is seen
+        sheet = pyvista.PolyData.from_regular_faces(corners + below * self.up, [(0, 1, 2, 3)])
+        sheet.active_texture_coordinates = np.array([(0, 0), (1, 0), (1, 1), (0, 1)], np.float32)
+        texture = pyvista.Texture(np.ascontiguousarray(tone.transpose(1, 0, 2)[::-1]))
+        texture.interpolate = True
+        self.plotter.add_mesh(
+            sheet, texture=texture, lighting=False, name="floor", reset_camera=False, render=False
+        )
+
+
+def shadow(
+    points: Array, up: Array, floor: float, light: Array, low: Array, high: Array, size: float
+) -> Floats:
+    """How dark the floor is in each cell of a grid from ``low`` to ``high``: (cells, cells), 0 … 1.
+
+    The points (k, 3) of a thing of this size fall along some directions of the key light and of
+    the sky: it is dark where something stands, and softer the higher it is. ``low`` and ``high``
+    are (2,), along the two axes after ``up``. O(k + cells²).
+    """
+    from scipy.ndimage import gaussian_filter
+
+    plane = _plane(up)
+    flat, height = points @ plane, np.maximum(points @ up - floor, 0)
+    cell = (high - low) / _CELLS
+    dark = np.zeros((_CELLS, _CELLS))
+    for axis, spread, count, blur in ((light, 0.1, 8, 0.008), (up, 0.95, 14, 0.015)):
+        hits = np.zeros(_CELLS**2)
+        for way in _cone(axis, spread, count):
+            fallen = flat - height[:, None] * (way @ plane) / (way @ up)
+            at = np.floor((fallen - low) / cell).astype(int)
+            at = at[((at >= 0) & (at < _CELLS)).all(axis=1)]
+            hits += np.bincount(at @ (_CELLS, 1), minlength=_CELLS**2) > 0
+        dark += 0.4 * gaussian_filter(hits.reshape(_CELLS, _CELLS) / count, blur * size / cell)
+    edge = np.minimum(np.arange(_CELLS), np.arange(_CELLS)[::-1]) / (0.18 * _CELLS)
+    fade = np.clip(edge, 0, 1)
+    return np.asarray(dark * np.minimum.outer(fade, fade))
+
+
+def _plane(up: Array) -> Array:
+    """The two axes across ``up``: the columns of (3, 2)."""
+    return np.stack([np.roll(up, 1), np.roll(up, 2)], axis=1)
+
+
+def _spread(corners: Array, count: int) -> Array:
+    """Points (count, 3) spread over triangles (m, 3, 3), as many on each as its area has part."""
+    a, b, c = corners.transpose(1, 0, 2)
+    areas = np.cumsum(np.linalg.norm(np.cross(b - a, c - a), axis=1))
+    face = np.searchsorted(areas, areas[-1] * (np.arange(count) + 0.5) / count)
+    u, v = np.random.default_rng(0).random((2, count, 1))
+    u, v = np.where(u + v > 1, 1 - u, u), np.where(u + v > 1, 1 - v, v)
+    return np.asarray(a[face] + u * (b - a)[face] + v * (c - a)[face])
+
+
+def view_direction(up: ArrayLike, azimuth: float = AZIMUTH, elevation: float = ELEVATION) -> Floats:
+    """From what is seen toward the camera: (3,) of length 1. ``up`` is an axis.
+
+    At azimuth 0 it is the axis that follows next but one: z for y, y for x, x for z.
+    """
+    top = np.asarray(up, float)
+    around, lifted = np.radians(azimuth), np.radians(elevation)
+    start = np.roll(top, 1)
+    level = np.cos(around) * start + np.sin(around) * np.cross(top, start)
+    return np.asarray(np.cos(lifted) * level + np.sin(lifted) * top)
+
+
+def unit(vectors: Array) -> Floats:
+    """Vectors (…, 3) of length 1; those of no length stay."""
+    length = np.linalg.norm(vectors, axis=-1, keepdims=True)
+    return np.asarray(vectors / np.where(length > 0, length, 1))
+
+
+def _apex(across: Array, depth: Array, slope: float) -> tuple[float, float]:
+    """Where the apex of a wedge of this slope stands that just holds all points."""
+    left, right = (across - slope * depth).max(), (-across - slope * depth).max()
+    return float(left - right) / 2, float(-(left + right) / (2 * slope))
+
+
+def _level(way: Array, up: Array) -> Array:
+    return way - (way @ up) * up
+
+
+def _cone(axis: Array, spread: float, count: int) -> Array:
+    """Directions around an axis within a sine of ``spread``, even over its disk: a sunflower."""
+    first = unit(np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))]))
+    k = np.arange(count) + 0.5
+    r, turn = spread * np.sqrt(k / count), k * np.pi * (3 - np.sqrt(5))
+    x, y = r * np.cos(turn), r * np.sin(turn)
+    return (
+        x[:, None] * first + y[:, None] * np.cross(axis, first) + np.sqrt(1 - r * r)[:, None] * axis
+    )
