@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import json
-
 import numpy as np
 import pytest
 
-from experiments.claims import sentences
-from experiments.claims.breakeven import break_even
-from experiments.runs.results import load, write_sealed
-from tests.experiments.made_runs import BUILD, SIZES, write_run
+from experiments.claims import break_even, curves, judge_sentences, sentence_claims
+from experiments.claims.quantities import QUANTITIES
+from experiments.runs import load
+from tests.experiments.made_runs import BUILD, SIZES, rewrite, write_run
 
 SOURCES = ("thesis", "article", "claim", "the")
 """The documents, a claim that is mended here, and the question that a document leaves open."""
@@ -22,15 +20,14 @@ def run(tmp_path_factory: pytest.TempPathFactory):
 
 
 def outcome(run, quantity: str) -> str:
-    every = dict(zip(sentences.QUANTITIES, sentences.judged(run), strict=True))
-    return every[quantity].outcome
+    return next(it for it in judge_sentences(run) if it.claim.expects.quantity == quantity).outcome
 
 
-def test_every_sentence_has_a_quantity_of_its_own_and_a_source(run):
-    every = sentences.judged(run)
-    assert len(every) == len(sentences.QUANTITIES)
+def test_every_sentence_has_a_quantity_of_its_own_and_a_source():
+    every = sentence_claims()
+    assert [it.expects.quantity for it in every] == list(QUANTITIES)
     assert all(it.source.partition(" ")[0].strip(",") in SOURCES for it in every)
-    assert all(it.low > -np.inf or it.high < np.inf for it in every)
+    assert all(it.expects.low > -np.inf or it.expects.high < np.inf for it in every)
 
 
 def test_what_lies_within_its_bounds_is_consistent(run):
@@ -65,22 +62,21 @@ def test_where_nothing_was_measured_nothing_is_told(tmp_path):
         path.unlink()
     run = load(folder)
     assert outcome(run, "dynamic") == "undetermined"
-    assert sentences.span(sentences.judged(run)[5]) == "–"
+    assert judge_sentences(run)[5].found == "–"
+
+
+def slow_on_large_meshes(case) -> dict:
+    return {"samples": [1.0]} if case.vertices > 10_000 else {}
 
 
 def test_a_sentence_that_holds_in_part_is_undetermined(tmp_path):
     folder = write_run(tmp_path)
-    path = folder / "bench_workloads.half_edge.json"
-    content = json.loads(path.read_text())
-    for case in content["cases"]:
-        if case["subject"] == "impacts" and case["vertices"] > 10_000:
-            case["samples"] = [1.0]
-    write_sealed(path, content)
+    rewrite(folder, "bench_workloads", "half_edge", slow_on_large_meshes)
     assert outcome(load(folder), "dynamic") == "undetermined"
 
 
-def test_bounds_and_spans_are_told_in_words(run):
-    told = [(sentences.bounds(it), sentences.span(it)) for it in sentences.judged(run)]
+def test_bounds_and_spans_are_given_in_words(run):
+    told = [(it.claim.expects.words, it.found) for it in judge_sentences(run)]
     assert told[0] == ("at least 6", "6.33")
     assert told[1] == ("1", "1")
     assert told[2][0] == "0.5 to 2"
@@ -88,8 +84,8 @@ def test_bounds_and_spans_are_told_in_words(run):
 
 
 def test_break_even_is_where_building_and_asking_cost_the_same(run):
-    table = break_even(run)
-    asked = table[(table["what"] == "vertex_faces") & (table["structure"] == "half_edge")]
+    table = break_even(curves(run))
+    asked = table[(table["subject"] == "vertex_faces") & (table["structure"] == "half_edge")]
     assert asked["vertices"].tolist() == [n // 2 for n in SIZES]
     for n_t, times in zip(SIZES, asked["times"], strict=True):
         mine = BUILD["half_edge"] * n_t + times * 1e-9 * (2 + 3 * 6)
@@ -100,6 +96,6 @@ def test_break_even_is_where_building_and_asking_cost_the_same(run):
 def test_who_never_catches_up_does_so_after_infinitely_many(tmp_path):
     law = {"half_edge": lambda n_t, n_ev: 1e9}
     run = load(write_run(tmp_path, lambda s, q, p: law.get(s)))
-    table = break_even(run)
+    table = break_even(curves(run))
     assert np.isinf(table[table["structure"] == "half_edge"]["times"]).all()
     assert np.isfinite(table[table["structure"] == "winged_edge"]["times"]).all()

@@ -1,0 +1,132 @@
+"""Verdicts on runs that follow a known law: what holds is consistent, what does not is violated."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from experiments.claims import (
+    MEMORY,
+    NO_CLAIM,
+    JudgedClaim,
+    Outcome,
+    judge_cells,
+    judge_run,
+    load_claims,
+)
+from experiments.runs import Run, load
+from structures import NAMES
+from tests.experiments.made_runs import LAWS, SIZES, rewrite, write_run
+
+
+@pytest.fixture(scope="module")
+def sound(tmp_path_factory: pytest.TempPathFactory) -> Run:
+    return load(write_run(tmp_path_factory.mktemp("sound")))
+
+
+def cells(run: Run, **fields: str) -> list[JudgedClaim]:
+    """The judged cells of a run whose claims have these fields."""
+    claims = [c for c in load_claims() if all(getattr(c, k) == v for k, v in fields.items())]
+    return judge_cells(run, claims)
+
+
+def claimed(judged: list[JudgedClaim]) -> list[JudgedClaim]:
+    return [it for it in judged if it.claim.printed != NO_CLAIM and it.claim.subject != MEMORY]
+
+
+def test_what_grows_as_claimed_is_consistent_by_work_and_by_time(sound):
+    every = cells(sound)
+    for table, count in {"queries": 26 + 2 * 8, "operations": 16 + 2 * 4, "listings": 8}.items():
+        of_table = [it for it in claimed(every) if it.claim.table == table]
+        assert len(of_table) == count
+        assert {it.outcome for it in of_table} == {Outcome.CONSISTENT}
+        assert {it.outcome_time for it in of_table} == {Outcome.CONSISTENT}
+    memory = [it.outcome for it in every if it.claim.subject == MEMORY]
+    assert memory == 4 * [Outcome.CONSISTENT] + 2 * [Outcome.NO_CLAIM]
+    assert {it.outcome for it in every if it.claim.printed == NO_CLAIM} == {Outcome.NO_CLAIM}
+
+
+@pytest.mark.parametrize("printed", ["O(1)", "O(n_ev)", "O(n_t)"])
+@pytest.mark.parametrize("really", ["O(1)", "O(n_ev)", "O(n_t)", "O(n_t n_ev)"])
+def test_what_grows_otherwise_is_violated(tmp_path, printed, really):
+    laws = {**LAWS, "O(n_t n_ev)": lambda n_t, n_ev: 1.0 * n_t * n_ev**2}
+    run = load(write_run(tmp_path, lambda s, q, p: laws[really] if p == printed else None))
+    rows = [it for it in cells(run, printed=printed) if it.claim.table != "listings"]
+    expected = Outcome.CONSISTENT if printed == really else Outcome.VIOLATED
+    assert {it.outcome for it in rows} == {expected}
+
+
+@pytest.mark.parametrize(
+    ("table", "said"), [("queries", Outcome.VIOLATED), ("operations", Outcome.UNDETERMINED)]
+)
+def test_a_slowdown_beyond_the_latency_is_held_against_queries_and_not_against_batches(
+    tmp_path, table, said
+):
+    """Whose mesh was written just before: no chase of it tells what they wait for."""
+    slowed = dict(zip(SIZES, [5, 5, 5, 5, 5.5, 12, 30], strict=True))
+    run = load(write_run(tmp_path, lambda s, q, p: lambda n_t, n_ev: slowed.get(n_t, 5.0)))
+    rows = cells(run, printed="O(1)", table=table)
+    assert {it.outcome_time for it in rows} == {said}
+
+
+def test_a_byte_too_many_is_a_violation(tmp_path):
+    folder = write_run(tmp_path)
+    rewrite(folder, "bench_memory", "half_edge", lambda it: {"samples": [228_001.0]})
+    judged = {it.claim.structure: it.outcome for it in cells(load(folder), subject=MEMORY)}
+    assert judged["half_edge"] == Outcome.VIOLATED
+    assert judged["winged_edge"] == Outcome.CONSISTENT
+
+
+def test_a_query_that_was_not_measured_is_undetermined_never_a_pass(tmp_path):
+    folder = write_run(tmp_path)
+    for path in folder.glob("bench_*work.half_edge.*"):
+        path.unlink()
+    rows = claimed(cells(load(folder), structure="half_edge"))
+    listings = [it for it in rows if it.claim.table == "listings"]
+    assert {it.outcome for it in rows if it not in listings} == {Outcome.UNDETERMINED}
+
+
+def test_the_class_found_names_its_variables(sound):
+    for it in cells(sound):
+        if it.claim.subject != MEMORY:
+            expected = "O(1)" if it.claim.printed == NO_CLAIM else it.claim.printed
+            assert it.found == expected
+
+
+def test_a_run_is_judged_once_and_what_was_kept_is_the_same(sound, monkeypatch):
+    judged = judge_run(sound)
+    assert judge_run(sound) is judged
+    monkeypatch.setattr("experiments.claims.judge_cells", lambda run: pytest.fail("judged again"))
+    again = judge_run(load(sound.folder))
+    assert [it.claim for it in again] == [it.claim for it in judged]
+    assert [it.outcome for it in again] == [it.outcome for it in judged]
+    assert [it.verdicts for it in again] == [it.verdicts for it in judged]
+    for kept, first in zip(again, judged, strict=True):
+        assert np.array_equal(kept.values, first.values)
+
+
+def test_what_was_kept_of_other_measurements_is_not_read(tmp_path):
+    folder = write_run(tmp_path)
+    before = {it.claim.key: it.outcome for it in judge_run(load(folder))}
+    rewrite(folder, "bench_memory", "half_edge", lambda it: {"samples": [228_001.0]})
+    after = {it.claim.key: it.outcome for it in judge_run(load(folder))}
+    assert {key for key in before if before[key] != after[key]} == {
+        "half_edge/memory",
+        "sentence/bytes_winged_half",
+    }
+
+
+def test_one_entry_adds_a_claim(sound):
+    text = """
+        [classes]
+        "O(1)" = { faces = "O(1)", valence = "O(1)" }
+        [[row]]
+        what = "vertex_vertices"
+        source = "another document"
+        half_edge = "O(1)"
+    """
+    claim = next(it for it in load_claims(text) if it.printed == "O(1)")
+    (judged,) = judge_cells(sound, [claim])
+    assert judged.outcome == Outcome.CONSISTENT
+    assert np.isfinite(judged.work)
+    assert len(load_claims(text)) == len(NAMES)

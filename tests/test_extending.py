@@ -1,0 +1,125 @@
+"""A structure is one file, an experiment is one file: both are found by table, report and check."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+COPIED = ("hem", "structures", "experiments", "notebooks", "results/reference", "tests")
+
+STRUCTURE = '''
+"""A half-edge mesh under another name: what a new structure's file declares."""
+
+from hem.contract import Claims, Look
+from structures.half_edge import HalfEdge
+
+
+class DirectedEdge(HalfEdge):
+    """As a half-edge mesh."""
+
+    name, title, abbreviation = "directed_edge", "Directed-Edge", "DEM"
+    look, thesis, order = Look("#7b2d8b", "D", ":"), False, 10
+    claims = Claims("a test: as a half-edge mesh", like="half_edge")
+'''
+
+EXPERIMENT = '''
+"""Work of a random walk over faces: what a new experiment's file declares."""
+
+import numpy as np
+
+from experiments.harness import Axis, Case, Experiment, Keep, Preset, Table, time_rounds
+from structures import NAMES
+
+STEPS = 5
+
+
+def cases(preset, structure):
+    """The judged family by size."""
+    family = preset.families[0]
+    return [Case(structure, family, size, "random_walk", "walked") for size in preset.work_sizes]
+
+
+def measure(case, preset, timer):
+    """Count a walk from face to face."""
+    s, rng = case.build(), np.random.default_rng(0)
+    face, work = int(s.faces()[0]), 0
+    for _ in range(STEPS):
+        work += int(s.work("face_faces", np.array([face]))[0])
+        face = int(rng.choice(s.face_faces(face)))
+    return case.result("work", s, [work], handles=1, checked=True)
+
+
+EXPERIMENT = Experiment(
+    title="Random walk",
+    kind="work",
+    cases=cases,
+    measure=measure,
+    structures=NAMES,
+    copies=1,
+    turn=12,
+    table=Table("walks", "Random walks", {"random_walk": "Walk over faces"}, "query_scaling"),
+    axes={Axis.WORK_FACES: "walked"},
+    claims={"random_walk": {"*": "O(1)", "indexed": "O(n_t)"}},
+    source="a test",
+)
+
+
+def test_walk(case: Case, preset: Preset, keep: Keep) -> None:
+    """Count one case."""
+    keep(measure(case, preset, time_rounds))
+'''
+
+
+@pytest.fixture(scope="module")
+def extended(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A copy of the project with one more structure and one more experiment, and a run of it."""
+    tree = tmp_path_factory.mktemp("extended")
+    for part in COPIED:
+        shutil.copytree(ROOT / part, tree / part, symlinks=True)  # times stay: the cache is valid
+    (tree / "structures" / "directed_edge.py").write_text(STRUCTURE)
+    (tree / "experiments" / "bench_random_walk.py").write_text(EXPERIMENT)
+    made = "from pathlib import Path; from tests.experiments.made_runs import write_run; "
+    python(tree, "-c", made + "write_run(Path('run'))")
+    return tree
+
+
+def python(tree: Path, *arguments: str, code: int = 0) -> str:
+    command = [sys.executable, *arguments]
+    ran = subprocess.run(command, cwd=tree, capture_output=True, text=True, timeout=600)
+    assert ran.returncode == code, ran.stdout + ran.stderr
+    return ran.stdout + ran.stderr
+
+
+def test_the_table_shows_a_new_structure_and_a_new_experiment(extended):
+    printed = python(extended, "-m", "experiments.cli", "table", "run", "--all")
+    assert "DEM" in printed
+    assert "Random walks" in printed
+    assert "Walk over faces" in printed
+
+
+def test_the_check_measures_them_and_says_what_is_next(extended):
+    command = ("-m", "experiments.cli", "check", "--structure", "directed_edge")
+    said = python(extended, *command, code=1)
+    assert "random_walk" in said
+    assert "directed_edge" in said
+    assert "hem baseline update" in said
+
+
+def test_a_structure_or_an_experiment_that_forgets_something_is_an_error_that_names_it(extended):
+    for path, text, named in [
+        ("structures/half_done.py", STRUCTURE.replace("look, thesis", "looks, thesis"), "look"),
+        ("experiments/bench_half_done.py", '"""Nothing."""\n', "EXPERIMENT"),
+    ]:
+        file = extended / path
+        file.write_text(text.replace("directed_edge", "half_done"))
+        try:
+            said = python(extended, "-m", "experiments.cli", "table", "run", code=1)
+        finally:
+            file.unlink()
+        assert "half_done" in said
+        assert named in said
