@@ -15,6 +15,7 @@ from typing import Any
 from experiments.claims.claim import BOUND, MEMORY, NO_CLAIM, Claim, Exactly, Growth
 from experiments.harness import ANYONE, Axis, Experiment, Table
 from experiments.runs.catalog import experiments, tables
+from hem.contract import Claims
 from structures import NAMED, REGISTRY
 
 MEMORY_TITLE = "Bytes per vertex"
@@ -90,28 +91,22 @@ def _completed(row: Row) -> Row:
     return {**row, **more, DOCUMENTED: tuple(_printed(row))}
 
 
+def _own_claims(name: str) -> Claims:
+    """What a structure's own file claims; nothing where the thesis prints it."""
+    return getattr(REGISTRY[name], "claims", Claims("not claimed"))
+
+
 def _own_claim(name: str, row: Row) -> str:
-    """What a structure's own file claims of a subject."""
-    claims = getattr(REGISTRY[name], "claims", None)
     if row["what"] == MEMORY:
         return NO_CLAIM
-    return (
-        NO_CLAIM
-        if claims is None
-        else str(claims.costs.get(row["what"]) or row.get(claims.like, NO_CLAIM))
-    )
+    claims = _own_claims(name)
+    return str(claims.costs.get(row["what"]) or row.get(claims.like, NO_CLAIM))
 
 
 def _source(row: Row, structure: str) -> str:
     """Who claims it: the document of the row, or the structure's own file."""
-    kind = REGISTRY.get(structure)
-    if (
-        kind is None
-        or not hasattr(kind, "claims")
-        or structure in row.get(DOCUMENTED, (structure,))
-    ):
-        return str(row["source"])
-    return kind.claims.source
+    documented = structure in row.get(DOCUMENTED, (structure,))
+    return str(row["source"]) if documented else _own_claims(structure).source
 
 
 def _of_experiments() -> Iterator[Row]:
