@@ -4,7 +4,6 @@ pymeshlab is under the GPL and optional: `pip install 'hem-mesh[study]'` brings 
 """
 
 import atexit
-import contextlib
 import os
 import pickle
 import re
@@ -101,18 +100,20 @@ def _arrays(mesh: TriangleMesh | None) -> Any:
 
 
 class _Worker:
-    """The process, begun when it is first asked, and anew when it has died or been forked."""
+    """The process, begun when it is first asked, and anew when it has died."""
 
     def __init__(self) -> None:
         self._process: Any = None
-        self._owner = 0
         self._lock = threading.Lock()
 
     def ask(self, what: str, **arguments: Any) -> Any:
         """The answer to a job. Raises MeshlabError, or NoMeshlabError."""
         with self._lock:
             try:
-                outcome, value = self._answer(what, arguments)
+                self._process = self._process or _started()
+                pickle.dump((what, arguments), self._process.stdin)
+                self._process.stdin.flush()
+                outcome, value = pickle.load(self._process.stdout)
             except (EOFError, OSError) as error:
                 self.stop()
                 raise MeshlabError("it died of this") from error
@@ -125,40 +126,39 @@ class _Worker:
             raise MeshlabError(value)
         return value
 
-    def _answer(self, what: str, arguments: dict[str, Any]) -> tuple[str, Any]:
-        if self._process is None or self._owner != os.getpid():
-            self._start()
-        pickle.dump((what, arguments), self._process.stdin)
-        self._process.stdin.flush()
-        answered: tuple[str, Any] = pickle.load(self._process.stdout)
-        return answered
-
-    def _start(self) -> None:
-        program = str(Path(__file__).with_name("meshlab_worker.py"))
-        self._process = subprocess.Popen(
-            [sys.executable, "-P", program],
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.DEVNULL,
-            cwd=os.path.abspath(os.sep),
-            start_new_session=True,  # an interrupt from the keyboard is the caller's
-        )
-        self._owner = os.getpid()
-
     def stop(self) -> None:
-        """End the process, if it is this one's."""
+        """End the process."""
         process, self._process = self._process, None
-        if process is None or self._owner != os.getpid():
-            return
-        process.kill()
-        for pipe in (process.stdin, process.stdout):
-            with contextlib.suppress(OSError):
-                pipe.close()
-        process.wait()
+        if process:
+            process.kill()
+            process.communicate()
+
+
+def _started() -> Any:
+    return subprocess.Popen(
+        [sys.executable, "-P", str(Path(__file__).with_name("meshlab_worker.py"))],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.DEVNULL,
+        cwd=os.path.abspath(os.sep),
+        start_new_session=True,  # an interrupt from the keyboard is the caller's
+    )
 
 
 _WORKER = _Worker()
-atexit.register(_WORKER.stop)
+atexit.register(lambda: _WORKER.stop())
+
+
+def _forget() -> None:
+    """In a forked process, to which the other's worker does not belong."""
+    global _WORKER
+    _INHERITED.append(_WORKER)  # whoever closed its pipes would speak to it
+    _WORKER = _Worker()
+
+
+_INHERITED: list[_Worker] = []
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_forget)
 
 
 def _advice(problem: str) -> str:

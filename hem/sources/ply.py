@@ -36,21 +36,17 @@ class _Element(NamedTuple):
 
 def read_ply(data: bytes) -> Parts:
     """Points and faces of a ply file; all that it holds besides is passed over."""
-    order, elements, at = _header(data)
-    rest: Any = data[at:] if order else data[at:].split()
-    read = _read_binary if order else _read_text
-    found: dict[str, dict[str, Any]] = {}
-    at = 0
+    order, elements, begin = _header(data)
+    numbers = _Numbers(data[begin:], order)
     try:
-        for element in elements:
-            found[element.name], at = read(rest, at, element, order)
+        found = {element.name: numbers.columns(element) for element in elements}
     except (struct.error, IndexError, ValueError) as error:
         raise cut_short(f"fewer or other numbers than its head says, {error}") from error
     try:
-        vertices, faces = found["vertex"], found.get("face", {})
-        points = np.stack([vertices[axis] for axis in "xyz"], axis=1).reshape(-1, 3)
+        points = np.stack([found["vertex"][axis] for axis in "xyz"], axis=1).reshape(-1, 3)
     except KeyError as error:
         raise MeshError(f"its head names no {error} of vertices") from error
+    faces = found.get("face", {})
     rows: Any = next((faces[name] for name in _CORNERS if name in faces), [])
     return points, as_ragged(rows) if isinstance(rows, list) else uniform(rows)
 
@@ -98,62 +94,52 @@ def _header(data: bytes) -> tuple[str, list[_Element], int]:
     return order, elements, begin
 
 
-def _read_text(
-    words: list[bytes], at: int, element: _Element, _: str
-) -> tuple[dict[str, Any], int]:
-    names = [prop.name for prop in element.properties]
-    if not any(prop.length for prop in element.properties):
-        end = at + element.rows * len(names)
-        table = np.array(words[at:end]).astype(np.float64).reshape(element.rows, len(names))
-        return dict(zip(names, table.T, strict=True)), end
-    columns: dict[str, list[Any]] = {name: [] for name in names}
-    for _row in range(element.rows):
+class _Numbers:
+    """The numbers behind the head, handed out one after another."""
+
+    def __init__(self, data: bytes, order: str) -> None:
+        self.data, self.order, self.at = data, order, 0
+        self.words = [] if order else data.split()
+
+    def columns(self, element: _Element) -> dict[str, Any]:
+        """The next element's properties by name: a number or a list of numbers for each row."""
+        table = self._table(element) if self.order and element.rows else None
+        if table is not None:
+            return {prop.name: table[prop.name] for prop in element.properties}
+        columns: dict[str, list[Any]] = {prop.name: [] for prop in element.properties}
+        for _ in range(element.rows):
+            for prop in element.properties:
+                k = self._take(prop.length, 1)[0] if prop.length else 1
+                columns[prop.name].append(self._take(prop.kind, k))
+        return columns
+
+    def _take(self, kind: str, k: int) -> Any:
+        start = self.at
+        if self.order:
+            self.at += struct.calcsize(f"{self.order}{k}{kind}")
+            return struct.unpack_from(f"{self.order}{k}{kind}", self.data, start)
+        self.at += k
+        if self.at > len(self.words):
+            raise IndexError("it ends too early")
+        number = float if kind in "fd" else int
+        return [number(word) for word in self.words[start : self.at]]
+
+    def _table(self, element: _Element) -> Array | None:
+        """All rows at once, where every list is as long as that of the first row; else None."""
+        start = self.at
+        columns: list[Any] = []
         for prop in element.properties:
-            k = int(words[at]) if prop.length else 1
-            values = words[at + 1 : at + 1 + k] if prop.length else words[at : at + 1]
-            if len(values) < k:
-                raise IndexError("a face without all its corners")
-            number = float if prop.kind in "fd" else int
-            columns[prop.name].append([number(value) for value in values])
-            at += k + bool(prop.length)
-    return columns, at
-
-
-def _read_binary(data: bytes, at: int, element: _Element, order: str) -> tuple[dict[str, Any], int]:
-    table = _table(data, at, element, order) if element.rows else None
-    if table is not None:
-        columns = {prop.name: table[prop.name] for prop in element.properties}
-        return columns, at + table.nbytes
-    lists: dict[str, list[Any]] = {prop.name: [] for prop in element.properties}
-    for _ in range(element.rows):
-        for prop in element.properties:
-            k = 1
-            if prop.length:
-                (k,) = struct.unpack_from(order + prop.length, data, at)
-                at += struct.calcsize(order + prop.length)
-            row = struct.unpack_from(f"{order}{k}{prop.kind}", data, at)
-            at += struct.calcsize(f"{order}{k}{prop.kind}")
-            lists[prop.name].append(list(row))
-    return lists, at
-
-
-def _table(data: bytes, at: int, element: _Element, order: str) -> Array | None:
-    """All rows at once, where every list is as long as that of the first row; else None."""
-    columns: list[Any] = []
-    first = at
-    for prop in element.properties:
-        k = 1
-        if prop.length:
-            (k,) = struct.unpack_from(order + prop.length, data, first)
-            columns.append((f"{prop.name} count", order + prop.length))
-            first += struct.calcsize(order + prop.length)
-        columns.append((prop.name, order + prop.kind, (k,) if prop.length else ()))
-        first += struct.calcsize(f"{order}{k}{prop.kind}")
-    kind = np.dtype(columns)
-    if len(data) < at + element.rows * kind.itemsize:
-        return None
-    table = np.frombuffer(data, kind, element.rows, offset=at)
-    for name in kind.names or ():
-        if name.endswith(" count") and (table[name] != table[name][:1]).any():
+            k = self._take(prop.length, 1)[0] if prop.length else 1
+            self._take(prop.kind, k)
+            columns += [(f"{prop.name} length", self.order + prop.length)] if prop.length else []
+            columns += [(prop.name, self.order + prop.kind, (k,) if prop.length else ())]
+        self.at = start
+        size = element.rows * np.dtype(columns).itemsize
+        if len(self.data) < start + size:
             return None
-    return table
+        table = np.frombuffer(self.data[start : start + size], columns)
+        lengths = [table[f"{prop.name} length"] for prop in element.properties if prop.length]
+        if any((length != length[0]).any() for length in lengths):
+            return None
+        self.at += size
+        return table
