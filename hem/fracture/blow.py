@@ -8,11 +8,13 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hem.arrays import Bools, Floats
 from hem.errors import MeshError
+from hem.fracture.mass import Mass
 from hem.fracture.material import Material
-from hem.fracture.pieces import Floats, Fracture, Mass
+from hem.fracture.pieces import Fracture
+from hem.meshes.measures import direction, dot, length, position
 
 MOST_SITES = 1000
 """However strong a blow is, it makes no more cells than this."""
@@ -52,7 +54,7 @@ class Blow:
             raise MeshError(f"a force is positive and finite, in J/kg, not {force!r}")
         object.__setattr__(self, "force", float(force))
         object.__setattr__(self, "impact", position(self.impact, "an impact"))
-        object.__setattr__(self, "direction", unit(position(self.direction, "a direction")))
+        object.__setattr__(self, "direction", direction(self.direction))
 
     def count(self, material: Material) -> int:
         """How many sites: material.sites × √force, at least 2 and at most MOST_SITES."""
@@ -98,7 +100,7 @@ def sites(
     blow: Blow,
     material: Material,
     diagonal: float,
-    inside: Callable[[Floats], NDArray[np.bool_]],
+    inside: Callable[[Floats], Bools],
     seed: int,
 ) -> Sites:
     """Break points inside a body, gathered round the impact.
@@ -113,7 +115,7 @@ def sites(
     Source: Müller, Chentanez & Kim, Real time dynamic fracture with volumetric approximate convex
     decompositions, 2013, for a pattern that is denser toward the impact.
     """
-    random = _generator(seed)
+    random = generator(seed)
     reach, tight = blow.reach(material, diagonal), blow.tightness()
     anchors = blow.impact + _directions(random, ANCHORS) * (
         reach * (1.1 + 0.4 * random.random(ANCHORS))[:, None]
@@ -149,7 +151,7 @@ def motion(fracture: Fracture, blow: Blow, seed: int | None = None) -> Motion:
     if not mass.masses.sum() > 0:
         raise MeshError("the pieces weigh nothing, and no blow moves them")
     whole = _whole(mass)
-    random = _generator(fracture.seed if seed is None else seed)
+    random = generator(fracture.seed if seed is None else seed)
     thrown = _thrown(fracture, blow, random)
     burst = _without_momentum(mass, whole, thrown)
     part = min(fracture.material.burst, 0.75) * float(whole.masses[0])
@@ -170,31 +172,17 @@ def momentum(mass: Mass, motion: Motion, about: Floats) -> tuple[Floats, Floats]
     return linear.sum(axis=0), (np.cross(mass.centers - about, linear) + spun).sum(axis=0)
 
 
+def kinetic_energies(mass: Mass, motion: Motion) -> Floats:
+    """(n,) joules: of each piece."""
+    moving = mass.masses * dot(motion.velocities, motion.velocities)
+    turning = np.einsum("ni,nij,nj->n", motion.spins, mass.inertias, motion.spins)
+    energies: Floats = (moving + turning) / 2
+    return energies
+
+
 def kinetic_energy(mass: Mass, motion: Motion) -> float:
     """In joules, of all pieces."""
-    moving = mass.masses * (motion.velocities**2).sum(axis=1)
-    turning = np.einsum("ni,nij,nj->n", motion.spins, mass.inertias, motion.spins)
-    return float((moving + turning).sum() / 2)
-
-
-def position(given: object, what: str) -> Floats:
-    """Three finite numbers as (3,) float64, or MeshError."""
-    try:
-        at = np.array(given, np.float64)
-    except (TypeError, ValueError):
-        at = np.zeros(0)
-    if at.shape != (3,) or not np.isfinite(at).all():
-        raise MeshError(f"{what} is three finite numbers, not {given!r}")
-    return at
-
-
-def unit(vector: Floats) -> Floats:
-    """Of length 1, (3,). Raises MeshError for one of no length."""
-    largest = float(np.abs(vector).max())
-    if not largest > 0:
-        raise MeshError("a direction has some length, and this one has none")
-    x, y, z = vector / largest  # so that no square overflows or vanishes
-    return np.array([x, y, z]) / math.sqrt(x * x + y * y + z * z)
+    return float(kinetic_energies(mass, motion).sum())
 
 
 def cube_root(value: float) -> float:
@@ -205,8 +193,9 @@ def cube_root(value: float) -> float:
     return root
 
 
-def _generator(seed: int) -> np.random.Generator:
-    if not isinstance(seed, int | np.integer) or seed < 0:
+def generator(seed: int) -> np.random.Generator:
+    """Random numbers, the same on every machine. MeshError for what is no seed."""
+    if isinstance(seed, bool) or not isinstance(seed, int | np.integer) or seed < 0:
         raise MeshError(f"a seed is a whole number from 0 on, not {seed!r}")
     return np.random.Generator(np.random.PCG64(int(seed)))
 
@@ -216,7 +205,7 @@ def _directions(random: np.random.Generator, n: int) -> Floats:
     found = np.zeros((0, 3))
     while len(found) < n:
         cast = 2 * random.random((2 * n, 3)) - 1
-        square = cast[:, 0] * cast[:, 0] + cast[:, 1] * cast[:, 1] + cast[:, 2] * cast[:, 2]
+        square = dot(cast, cast)
         good = (square <= 1) & (square > 1e-4)
         found = np.concatenate([found, cast[good] / np.sqrt(square[good])[:, None]])
     return found[:n]
@@ -227,7 +216,7 @@ def _whole(mass: Mass) -> Mass:
     total = mass.masses.sum()
     center = (mass.masses[:, None] * mass.centers).sum(axis=0) / total
     from_center = mass.centers - center
-    squares = (from_center**2).sum(axis=1)[:, None, None] * np.eye(3)
+    squares = dot(from_center, from_center)[:, None, None] * np.eye(3)
     outer = from_center[:, :, None] * from_center[:, None]
     moved = mass.inertias + mass.masses[:, None, None] * (squares - outer)
     return Mass(mass.volumes.sum()[None], total[None], center[None], moved.sum(axis=0)[None])
@@ -250,7 +239,7 @@ def _thrown(fracture: Fracture, blow: Blow, random: np.random.Generator) -> Moti
     mass = fracture.mass
     reach = blow.reach(fracture.material, fracture.diagonal)
     away = mass.centers - (blow.impact - 0.02 * fracture.diagonal * blow.direction)
-    far = np.sqrt((away**2).sum(axis=1))[:, None]
+    far = length(away)[:, None]
     outward = away / np.maximum(far, 1e-9 * fracture.diagonal)
     speed = 1 / (1 + (far / reach) ** 2)
     size = np.sqrt(np.trace(mass.inertias, axis1=1, axis2=2) / np.maximum(mass.masses, 1e-300))

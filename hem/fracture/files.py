@@ -6,6 +6,7 @@ import os
 import tempfile
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +14,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from hem.errors import MeshError
+from hem.fracture.blow import Blow, Motion, kinetic_energies, kinetic_energy
 from hem.fracture.pieces import Fracture
+from hem.sources.files import encoded
 
 SCHEMA = 1
 
@@ -90,26 +93,19 @@ def require_writable(folder: str | os.PathLike[str]) -> Path:
 
 
 def _move(beside: Path, target: Path, aside: Path) -> None:
-    target.mkdir(parents=True, exist_ok=True)
-    every = sorted(beside.iterdir())
-    for path in every:
-        if (target / path.name).is_dir() != path.is_dir() and (target / path.name).exists():
-            raise MeshError(f"cannot write {target / path.name}: something else has this name")
-    for path in every:
-        if path.is_dir():
-            _merge(path, target / path.name, aside)
-        else:
-            os.replace(path, target / path.name)
-
-
-def _merge(new: Path, old: Path, aside: Path) -> None:
-    """Put the files of a folder into another, whose own of the kind go first."""
-    old.mkdir(exist_ok=True)
-    for path in old.iterdir():
-        if path.name.startswith(("shard_", "rest.", "island_")) and path.suffix == ".ply":
+    files = [path for path in sorted(beside.rglob("*")) if path.is_file()]
+    for path in files:
+        place = target / path.relative_to(beside)
+        if place.is_dir() or (place.parent.exists() and not place.parent.is_dir()):
+            raise MeshError(f"cannot write {place}: something else has this name")
+    before = (target / "pieces").glob("*.ply") if (beside / "pieces").is_dir() else []
+    for path in list(before):
+        if path.name.startswith(("shard_", "rest.", "island_")):
             os.replace(path, aside / path.name)
-    for path in sorted(new.iterdir()):
-        os.replace(path, old / path.name)
+    for path in files:
+        place = target / path.relative_to(beside)
+        place.parent.mkdir(parents=True, exist_ok=True)
+        os.replace(path, place)
 
 
 def _save_glb(fracture: Fracture, folder: Path, up: ArrayLike) -> list[Path]:
@@ -161,13 +157,11 @@ def _save_obj(fracture: Fracture, folder: Path, up: ArrayLike) -> list[Path]:
 
 
 def _save_ply(fracture: Fracture, folder: Path, up: ArrayLike) -> list[Path]:
-    from hem.sources.files import save
-
     inner = folder / "pieces"
     inner.mkdir()
     paths = [inner / f"{name}.ply" for name in names(fracture)]
     for path, piece in zip(paths, fracture.pieces, strict=True):
-        save(piece, path)
+        path.write_bytes(encoded(piece, "ply"))
     return paths
 
 
@@ -178,41 +172,18 @@ FORMATS: dict[str, Callable[[Fracture, Path, ArrayLike], list[Path]]] = {
 }
 
 
-def describe(fracture: Fracture, blow: Any, motion: Any, model: str = "") -> dict[str, Any]:
+def describe(fracture: Fracture, blow: Blow, motion: Motion, model: str = "") -> dict[str, Any]:
     """A fracture in numbers, as JSON holds them: units are in the names of the entries.
 
     A unit of the model is taken as a meter. ``neighbors`` are indices of pieces. Cost: that of
     ``fracture.mass`` and ``fracture.neighbors``.
     """
     mass = fracture.mass
-    velocities, spins = np.asarray(motion.velocities, float), np.asarray(motion.spins, float)
-    kinetic = _kinetic(mass, velocities, spins)
-    beside: list[list[int]] = [[] for _ in fracture.pieces]
-    for a, b in fracture.neighbors.tolist():
-        beside[a].append(b)
-        beside[b].append(a)
-    pieces = []
-    for i, (name, piece) in enumerate(zip(names(fracture), fracture.pieces, strict=True)):
-        entry = {
-            "name": name,
-            "vertices": len(np.unique(piece.triangles)),
-            "faces": len(piece.triangles),
-            "volume_m3": float(mass.volumes[i]),
-            "mass_kg": float(mass.masses[i]),
-            "center_m": mass.centers[i].tolist(),
-            "velocity_m_s": velocities[i].tolist(),
-            "spin_rad_s": spins[i].tolist(),
-            "kinetic_energy_J": float(kinetic[i]),
-            "neighbors": sorted(beside[i]),
-        }
-        if not fracture.closed:
-            entry["area_m2"] = float(mass.volumes[i]) / _thickness(fracture)
-        pieces.append(entry)
     return {
         "schema": SCHEMA,
         "model": model,
         "method": fracture.method,
-        "material": _numbers(fracture),
+        "material": asdict(fracture.material) | {"circles": list(fracture.material.circles)},
         "force_J_kg": float(blow.force),
         "seed": int(fracture.seed),
         "impact_m": np.asarray(fracture.impact, float).tolist(),
@@ -224,24 +195,35 @@ def describe(fracture: Fracture, blow: Any, motion: Any, model: str = "") -> dic
             "shards": len(fracture.shards),
             "volume_m3": float(mass.volumes.sum()),
             "mass_kg": float(mass.masses.sum()),
-            "momentum_kg_m_s": (mass.masses[:, None] * velocities).sum(axis=0).tolist(),
-            "kinetic_energy_J": float(kinetic.sum()),
+            "momentum_kg_m_s": (mass.masses[:, None] * motion.velocities).sum(axis=0).tolist(),
+            "kinetic_energy_J": kinetic_energy(mass, motion),
         },
-        "pieces": pieces,
+        "pieces": _described_pieces(fracture, motion),
     }
+
+
+def _described_pieces(fracture: Fracture, motion: Motion) -> list[dict[str, Any]]:
+    mass = fracture.mass
+    beside: list[list[int]] = [[] for _ in fracture.pieces]
+    for a, b in fracture.neighbors.tolist():
+        beside[a].append(b)
+        beside[b].append(a)
+    columns = {
+        "name": names(fracture),
+        "vertices": [len(np.unique(piece.triangles)) for piece in fracture.pieces],
+        "faces": [len(piece.triangles) for piece in fracture.pieces],
+        "volume_m3": mass.volumes.tolist(),
+        "mass_kg": mass.masses.tolist(),
+        "center_m": mass.centers.tolist(),
+        "velocity_m_s": motion.velocities.tolist(),
+        "spin_rad_s": motion.spins.tolist(),
+        "kinetic_energy_J": kinetic_energies(mass, motion).tolist(),
+        "neighbors": [sorted(indices) for indices in beside],
+    }
+    if not fracture.closed:
+        columns["area_m2"] = (mass.volumes / _thickness(fracture)).tolist()
+    return [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
 
 
 def _thickness(fracture: Fracture) -> float:
     return float(fracture.material.thickness * fracture.diagonal)
-
-
-def _numbers(fracture: Fracture) -> dict[str, Any]:
-    from dataclasses import asdict
-
-    numbers = asdict(fracture.material)
-    return numbers | {"circles": list(fracture.material.circles)}
-
-
-def _kinetic(mass: Any, velocities: Any, spins: Any) -> Any:
-    turning = np.einsum("ni,nij,nj->n", spins, mass.inertias, spins)
-    return (mass.masses * (velocities * velocities).sum(axis=1) + turning) / 2

@@ -10,15 +10,30 @@ all pieces are worked through together: O(faces), whatever the number of pieces.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hem.arrays import Floats, Indices
 from hem.errors import MeshError
-from hem.fracture.pieces import Floats, Mass
-from hem.meshes.triangles import TriangleMesh
+from hem.meshes import TriangleMesh
+from hem.meshes.measures import areas, dot
 
-Owners = NDArray[np.int64]
+
+class Mass(NamedTuple):
+    """How heavy pieces are, and where: what decides how they move. All float64."""
+
+    volumes: Floats
+    """(n,): of closed pieces, or area × thickness of pieces of a sheet."""
+
+    masses: Floats
+    """(n,) kg."""
+
+    centers: Floats
+    """(n, 3): the centers of mass."""
+
+    inertias: Floats
+    """(n, 3, 3) kg m²: about the centers."""
 
 
 def of_bodies(meshes: Sequence[TriangleMesh], density: float) -> Mass:
@@ -28,7 +43,7 @@ def of_bodies(meshes: Sequence[TriangleMesh], density: float) -> Mass:
     MeshError for a density that is not positive and finite.
     """
     corners, owner, origins = _corners(meshes)
-    volumes = _dot(corners[:, 0], np.cross(corners[:, 1], corners[:, 2])) / 6
+    volumes = dot(corners[:, 0], np.cross(corners[:, 1], corners[:, 2])) / 6
     return _mass(corners, owner, origins, volumes, (4, 20), _positive(density, "a density"))
 
 
@@ -39,8 +54,7 @@ def of_sheets(meshes: Sequence[TriangleMesh], density: float, thickness: float) 
     Raises MeshError for a density or a thickness that is not positive and finite.
     """
     corners, owner, origins = _corners(meshes)
-    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    volumes = np.sqrt(_dot(normals, normals)) / 2 * _positive(thickness, "a thickness")
+    volumes = areas(corners) * _positive(thickness, "a thickness")
     return _mass(corners, owner, origins, volumes, (3, 12), _positive(density, "a density"))
 
 
@@ -50,7 +64,7 @@ def _positive(value: float, what: str) -> float:
     return float(value)
 
 
-def _corners(meshes: Sequence[TriangleMesh]) -> tuple[Floats, Owners, Floats]:
+def _corners(meshes: Sequence[TriangleMesh]) -> tuple[Floats, Indices, Floats]:
     """(m, 3, 3) corners of all triangles from their piece's origin, whose they are, the origins."""
     points = np.concatenate([np.zeros((0, 3)), *(mesh.points for mesh in meshes)])
     starts = np.cumsum([0, *(len(mesh.points) for mesh in meshes)])
@@ -69,7 +83,7 @@ def _corners(meshes: Sequence[TriangleMesh]) -> tuple[Floats, Owners, Floats]:
 
 def _mass(
     corners: Floats,
-    owner: Owners,
+    owner: Indices,
     origins: Floats,
     volumes: Floats,
     parts: tuple[int, int],
@@ -94,15 +108,10 @@ def _mass(
     return Mass(total, density * total, origins + centers, inertias)
 
 
-def _sums(owner: Owners, values: Floats, n: int) -> Floats:
+def _sums(owner: Indices, values: Floats, n: int) -> Floats:
     """The values (m, …) of each of n owners added up: (n, …)."""
     columns = values.reshape(len(values), int(np.prod(values.shape[1:])))
     summed = np.zeros((n, columns.shape[1]))
     for i, column in enumerate(columns.T):
         summed[:, i] = np.bincount(owner, column, n)
     return summed.reshape(n, *values.shape[1:])
-
-
-def _dot(a: Floats, b: Floats) -> Floats:
-    """Row by row, (m,)."""
-    return (a * b).sum(axis=1)

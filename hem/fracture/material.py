@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import os
 import tomllib
 from collections.abc import Mapping
@@ -11,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from hem.errors import MeshError
+from hem.naming import look_up
 
 _OWN = Path(__file__).parent / "materials.toml"
 
@@ -66,12 +66,7 @@ def materials(path: str | os.PathLike[str] = _OWN) -> dict[str, Material]:
 
 def material(name: str, known: Mapping[str, Material] | None = None) -> Material:
     """The material of a name, of those that are ``known``. Raises MeshError where there is none."""
-    known = MATERIALS if known is None else known
-    if name not in known:
-        near = difflib.get_close_matches(name, known, n=1)
-        meant = f"; did you mean {near[0]!r}?" if near else ""
-        raise MeshError(f"no material {name!r} (there are {', '.join(known)}){meant}")
-    return known[name]
+    return look_up(name, MATERIALS if known is None else known, "material")
 
 
 def _material(name: str, entry: Any, path: Any) -> Material:

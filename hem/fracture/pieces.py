@@ -5,35 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, NamedTuple
 
-import numpy as np
-from numba import njit
-from numpy.typing import NDArray
-
+from hem.arrays import Floats, Indices
+from hem.fracture.mass import Mass, of_bodies, of_sheets
 from hem.fracture.material import Material
-from hem.meshes.triangles import TriangleMesh
-
-Floats = NDArray[np.float64]
+from hem.meshes import TriangleMesh
 
 
-class Mass(NamedTuple):
-    """How heavy pieces are, and where: what decides how they move. All float64."""
-
-    volumes: Floats
-    """(n,): of closed pieces, or area × thickness of pieces of a sheet."""
-
-    masses: Floats
-    """(n,) kg."""
-
-    centers: Floats
-    """(n, 3): the centers of mass."""
-
-    inertias: Floats
-    """(n, 3, 3) kg m²: about the centers."""
-
-
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Fracture:
     """What a blow made of a mesh: shards, and the rest of it.
 
@@ -56,7 +35,7 @@ class Fracture:
     diagonal: float
     """Of the bounding box of what was struck; what the material's lengths are parts of."""
 
-    find_neighbors: Callable[[], NDArray[np.int64]]
+    find_neighbors: Callable[[], Indices]
 
     @property
     def closed(self) -> bool:
@@ -69,34 +48,14 @@ class Fracture:
         return [*self.shards, *self.rest]
 
     @cached_property
-    def neighbors(self) -> NDArray[np.int64]:
+    def neighbors(self) -> Indices:
         """(k, 2): the pieces that touch along more than a point, each pair once and ascending."""
         return self.find_neighbors()
 
     @cached_property
     def mass(self) -> Mass:
         """What the pieces weigh. Cost O(faces)."""
-        from hem.fracture.mass import of_bodies, of_sheets
-
         density = self.material.density
         if self.closed:
             return of_bodies(self.pieces, density)
         return of_sheets(self.pieces, density, self.material.thickness * self.diagonal)
-
-
-def diagonal(points: NDArray[Any]) -> float:
-    """The length of the diagonal of the bounding box of points (n, 3), the dead (NaN) aside."""
-    low, high = box(points)
-    x, y, z = high - low
-    return float(np.sqrt(x * x + y * y + z * z))
-
-
-@njit(cache=True)
-def box(points: NDArray[Any]) -> tuple[Floats, Floats]:
-    """The lower and the upper corner (3,) of the bounding box of points (n, 3), NaN aside. O(n)."""
-    low, high = np.full(3, np.inf), np.full(3, -np.inf)
-    for i in range(len(points)):
-        for j in range(3):
-            low[j] = min(low[j], points[i, j])
-            high[j] = max(high[j], points[i, j])
-    return low, high

@@ -11,10 +11,10 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hem.arrays import Bools, Floats, Indices
 from hem.fracture.bodies.solid import to_manifold
-from hem.fracture.pieces import Floats
+from hem.meshes import used_only
 
 _FAR = 4.0
 """How far off the six sites are that close the outer cells, in radii of all that matters."""
@@ -34,12 +34,12 @@ class Cells:
 
     sites: Floats  # (n, 3)
     vertices: Floats  # (v, 3)
-    triangles: NDArray[np.int64]  # (t, 3) vertices
-    walls: NDArray[np.int64]  # (t,): the wall a triangle is a part of
-    front: NDArray[np.int64]  # (t,): the site before it; those of the six are n …
-    back: NDArray[np.int64]  # (t,): the site behind it
+    triangles: Indices  # (t, 3) vertices
+    walls: Indices  # (t,): the wall a triangle is a part of
+    front: Indices  # (t,): the site before it; those of the six are n …
+    back: Indices  # (t,): the site behind it
 
-    def union(self, chosen: NDArray[np.bool_], first_label: int = 0) -> Any:
+    def union(self, chosen: Bools, first_label: int = 0) -> Any:
         """Some of the n cells together, as a body for manifold3d. O(t).
 
         Its faces are labeled ``first_label`` + wall. Raises MeshError where they meet in an edge or
@@ -49,8 +49,7 @@ class Cells:
         outward, inward = of[self.front] & ~of[self.back], of[self.back] & ~of[self.front]
         triangles = np.concatenate([self.triangles[outward], self.triangles[inward][:, ::-1]])
         labels = np.concatenate([self.walls[outward], self.walls[inward]]) + first_label
-        used, corners = np.unique(triangles, return_inverse=True)
-        return to_manifold(self.vertices[used], corners.reshape(-1, 3), labels)
+        return to_manifold(*used_only(self.vertices, triangles), labels)
 
     def cell(self, site: int, first_label: int = 0) -> Any:
         """One cell, as a body for manifold3d. O(t)."""
@@ -80,7 +79,7 @@ def cells(sites: Floats, center: Floats, radius: float) -> Cells:
     return Cells(sites, diagram.vertices, np.array(triangles, np.int64), of, front, back)
 
 
-def _outward(diagram: Any, pairs: NDArray[np.int64]) -> NDArray[np.bool_]:
+def _outward(diagram: Any, pairs: Indices) -> Bools:
     """Which walls run counterclockwise as seen from the second of their two sites."""
     found = np.zeros(len(pairs), bool)
     across = diagram.points[pairs[:, 1]] - diagram.points[pairs[:, 0]]

@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
-from numpy.typing import NDArray
 
-from hem.meshes.edges import undirected_edges
-from hem.meshes.triangles import TriangleMesh
+from hem.arrays import Array, Bools
+from hem.meshes import TriangleMesh, undirected_edges, used_only
 
 
-def collapsed(mesh: TriangleMesh, labels: NDArray[Any]) -> tuple[TriangleMesh, NDArray[Any]]:
+def collapsed(mesh: TriangleMesh, labels: Array) -> tuple[TriangleMesh, Array]:
     """The mesh with edges of no length collapsed, and the labels (m,) of the faces that are left.
 
     One vertex, three edges and two faces fewer each time; the shape is the same. An edge stays
@@ -28,11 +25,10 @@ def collapsed(mesh: TriangleMesh, labels: NDArray[Any]) -> tuple[TriangleMesh, N
             found |= _collapse(triangles, alive, keep, drop)
     if alive.all():
         return mesh, labels
-    used, corners = np.unique(triangles[alive], return_inverse=True)
-    return TriangleMesh(points[used], corners.reshape(-1, 3)), labels[alive]
+    return TriangleMesh(*used_only(points, triangles[alive])), labels[alive]
 
 
-def _collapse(triangles: NDArray[Any], alive: NDArray[np.bool_], keep: int, drop: int) -> bool:
+def _collapse(triangles: Array, alive: Bools, keep: int, drop: int) -> bool:
     """Put one vertex in place of another -> whether they were joined by an edge that may go."""
     of_keep = alive & (triangles == keep).any(axis=1)
     of_drop = alive & (triangles == drop).any(axis=1)

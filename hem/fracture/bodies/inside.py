@@ -7,17 +7,15 @@ Triangles are given as their corners, (m, 3, 3) float64.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-from hem.fracture.pieces import Floats
-
-Counts = NDArray[np.int64]
+from hem.arrays import Floats, Indices
+from hem.meshes.measures import dot, normals
 
 
-def windings(corners: Floats, at: Floats) -> Counts:
+def windings(corners: Floats, at: Floats) -> Indices:
     """How many times a closed surface winds around each of k positions: (k,), 0 outside.
 
-    Counts the faces above each position, those that look up less those that look down. Two faces
+    Indices the faces above each position, those that look up less those that look down. Two faces
     decide on which side of their common edge a position is by the same numbers, so that one of
     them is hit and never both. Positions within rounding of the surface may go either way.
     Cost O(m) for each position.
@@ -29,12 +27,12 @@ def windings(corners: Floats, at: Floats) -> Counts:
         near &= (p[1] <= high[:, 1]) & (p[2] <= high[:, 2])
         faces = corners[near]
         turn = _turns(faces, p)
-        above = _dot(normals(faces), faces[:, 0] - p) * turn > 0
+        above = dot(normals(faces), faces[:, 0] - p) * turn > 0
         found[i] = turn[above].sum()
     return found
 
 
-def _turns(faces: Floats, p: Floats) -> Counts:
+def _turns(faces: Floats, p: Floats) -> Indices:
     """+1 for the faces over or under p that look up, -1 for those that look down, else 0: (m,).
 
     Each is a triangle in the plane, and is wound around p as often as its sides to the right of p
@@ -50,14 +48,3 @@ def _turns(faces: Floats, p: Floats) -> Counts:
         right = side[:, 0] * (p[1] - lower[:, 1]) - side[:, 1] * (p[0] - lower[:, 0]) > 0
         turn += (up & right).astype(np.int64) - (down & right)
     return turn
-
-
-def normals(corners: Floats) -> Floats:
-    """Outward, of twice the area's length: (m, 3)."""
-    return np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-
-
-def _dot(a: Floats, b: Floats) -> Floats:
-    """Row by row, in one order of summation: (m,)."""
-    product = a * b
-    return product[:, 0] + product[:, 1] + product[:, 2]

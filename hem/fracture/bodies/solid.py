@@ -7,15 +7,21 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from hem.arrays import Array, Bools, Floats, Indices
 from hem.errors import MeshError
 from hem.fracture.bodies.collapse import collapsed
 from hem.fracture.bodies.inside import windings
-from hem.fracture.pieces import Floats, diagonal
-from hem.meshes.edges import undirected_edges
-from hem.meshes.manifold import non_manifold_edges, same_way_edges
-from hem.meshes.triangles import TriangleMesh
+from hem.meshes import (
+    TriangleMesh,
+    components,
+    non_manifold_edges,
+    same_way_edges,
+    undirected_edges,
+    used_only,
+)
+from hem.meshes.measures import corners, diagonal, volume
 from hem.sources.meshlab import apply, intersecting_faces
 
 _INSTEAD = (
@@ -35,14 +41,12 @@ class Body:
     @cached_property
     def corners(self) -> Floats:
         """(m, 3, 3): of the faces, in float64."""
-        return self.mesh.points.astype(np.float64)[self.mesh.triangles]
+        return corners(self.mesh.points, self.mesh.triangles)
 
     @cached_property
     def volume(self) -> float:
         """In the units of the points, cubed."""
-        from hem.fracture.mass import of_bodies
-
-        return float(of_bodies([self.mesh], 1.0).volumes[0])
+        return volume(self.corners)
 
     @cached_property
     def diagonal(self) -> float:
@@ -55,10 +59,10 @@ class Body:
         points = self.mesh.points.astype(np.float64)
         return to_manifold(points, self.mesh.triangles, np.arange(len(self.mesh.triangles)))
 
-    def contains(self, points: ArrayLike) -> NDArray[np.bool_]:
+    def contains(self, points: ArrayLike) -> Bools:
         """Which of k positions (k, 3) are inside: (k,). Cost O(faces) each."""
         at = np.asarray(points, np.float64).reshape(-1, 3)
-        inside: NDArray[np.bool_] = windings(self.corners, at) > 0
+        inside: Bools = windings(self.corners, at) > 0
         return inside
 
 
@@ -74,7 +78,7 @@ def require_body(mesh: TriangleMesh) -> Body:
     if not len(mesh.triangles):
         raise MeshError("an empty mesh has no inside that could be broken")
     _require_closed(mesh)
-    body = Body(_trimmed(mesh))
+    body = Body(TriangleMesh(*used_only(mesh.points, mesh.triangles)))
     if not body.volume > 0:
         raise MeshError(
             f"the mesh is inside out: its volume is {body.volume:.6g}; turn it with mesh.flipped()"
@@ -108,7 +112,7 @@ def wrapped(mesh: TriangleMesh, detail: float = 0.015, offset: float = 0.002) ->
     return apply("generate_alpha_wrap", mesh, percent=percent)
 
 
-def to_manifold(points: Floats, triangles: NDArray[Any], labels: NDArray[Any]) -> Any:
+def to_manifold(points: Floats, triangles: Array, labels: Array) -> Any:
     """A closed mesh for manifold3d, whose faces keep their labels (m,) through all operations.
 
     Raises MeshError where manifold3d does not take it for closed.
@@ -125,7 +129,7 @@ def to_manifold(points: Floats, triangles: NDArray[Any], labels: NDArray[Any]) -
     return made
 
 
-def from_manifold(made: Any) -> tuple[TriangleMesh, NDArray[np.int64]]:
+def from_manifold(made: Any) -> tuple[TriangleMesh, Indices]:
     """A mesh from manifold3d, rounded to float32, and the labels of its faces (m,).
 
     Edges that have no length then are collapsed. Vertices that coincide otherwise, where a surface
@@ -156,29 +160,15 @@ def _require_closed(mesh: TriangleMesh) -> None:
         )
 
 
-def _trimmed(mesh: TriangleMesh) -> TriangleMesh:
-    """Without the vertices that have no faces; the others keep their order."""
-    used, triangles = np.unique(mesh.triangles, return_inverse=True)
-    if len(used) == len(mesh.points):
-        return mesh
-    return TriangleMesh(mesh.points[used], triangles.reshape(-1, 3))
-
-
 def _require_nested(body: Body) -> None:
     """Raise MeshError unless each component is outward in the open, or a hollow inside another."""
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-
-    a, b, c = body.mesh.triangles.T
-    n = len(body.mesh.points)
-    joined = coo_array((np.ones(2 * len(a), bool), (np.r_[a, a], np.r_[b, c])), shape=(n, n))
-    count, component = connected_components(joined, directed=False)
+    triangles = body.mesh.triangles
+    sides = np.concatenate([triangles[:, :2], triangles[:, 1:]])
+    count, component = components(len(body.mesh.points), sides)
     for i in range(count if count > 1 else 0):
-        own = component[a] == i
-        origin = body.corners[own][0, 0]
-        about = body.corners[own] - origin
-        outward = (about[:, 0] * np.cross(about[:, 1], about[:, 2])).sum() > 0
-        around = windings(body.corners[~own], origin[None])[0]
+        own = component[triangles[:, 0]] == i
+        outward = volume(body.corners[own]) > 0
+        around = windings(body.corners[~own], body.corners[own][:1, 0])[0]
         if around != (0 if outward else 1):
             raise MeshError(
                 "a component lies inside another one that it is no hollow of, or is inside out; "

@@ -18,21 +18,20 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from hem.arrays import Array, Bools, Floats
 from hem.contract import Structure
-from hem.fracture.blow import Blow
+from hem.fracture.blow import Blow, generator
 from hem.fracture.bodies.overlap import crossing, overlapping
 from hem.fracture.bodies.solid import require_body
-from hem.fracture.islands import triangle_areas
 from hem.fracture.material import Material
 from hem.fracture.material import material as named
 from hem.fracture.pieces import Fracture
-from hem.fracture.surface.nearest import corner_vertices
-from hem.fracture.surface.shatter import break_surface, in_place, random_numbers
-from hem.meshes.triangles import TriangleMesh
-
-Array = NDArray[Any]
+from hem.fracture.surface.nearest import face_corners
+from hem.fracture.surface.shatter import break_surface, in_place
+from hem.meshes import TriangleMesh
+from hem.meshes.measures import areas, dot, length, normals, unit
 
 SLENDER = 3.0
 """A shard is at most so many times as deep as its face is wide."""
@@ -75,8 +74,8 @@ def tetrahedra(
     more = np.sqrt(blow.force)
     scattered = replace(chosen, circles=tuple(round(it * more) for it in chosen.circles))
     broken, faces, size = break_surface(structure, impact, scattered, seed)
-    random = random_numbers(seed)
-    corners = _corners(structure, faces)
+    random = generator(seed).random
+    corners = face_corners(structure, faces)
     fourth = _fourth_points(structure, faces, corners, chosen.scale * size * more, random)
     solids = np.concatenate([corners, fourth[:, None]], axis=1)
     deep = _free(structure, faces, solids, size)
@@ -90,54 +89,49 @@ def tetrahedra(
     )  # fmt: skip
 
 
-def _corners(structure: Structure, faces: Array) -> NDArray[np.float64]:
-    return structure.points[corner_vertices(structure, faces)].astype(np.float64)
-
-
 def _fourth_points(
     structure: Structure, faces: Array, corners: Array, depth: float, random: Any
-) -> NDArray[np.float64]:
+) -> Floats:
     """(k, 3): one under the middle of each face, as deep as the angles at its sides allow."""
-    sides = np.stack([_length(corners[:, (i + 1) % 3] - corners[:, (i + 2) % 3]) for i in range(3)])
+    sides = np.stack([length(corners[:, (i + 1) % 3] - corners[:, (i + 2) % 3]) for i in range(3)])
     around = sides.sum(axis=0)
-    middle = (sides.T[:, :, None] * corners).sum(axis=1) / around[
-        :, None
-    ]  # of the inscribed circle
-    radius = 2 * triangle_areas(corners) / around
-    wanted = np.minimum(depth, SLENDER * np.sqrt(triangle_areas(corners)))
+    # Of the inscribed circle.
+    middle = (sides.T[:, :, None] * corners).sum(axis=1) / around[:, None]
+    radius = 2 * areas(corners) / around
+    wanted = np.minimum(depth, SLENDER * np.sqrt(areas(corners)))
     wanted = wanted * (0.5 + 0.5 * random(len(faces)))
     allowed = radius * _steepest(structure, faces, corners)
-    down = -_normals(corners) * np.minimum(wanted, allowed)[:, None]
+    down = -_units(corners) * np.minimum(wanted, allowed)[:, None]
     return (middle + down).astype(np.float32).astype(np.float64)
 
 
-def _steepest(structure: Structure, faces: Array, corners: Array) -> NDArray[np.float64]:
+def _steepest(structure: Structure, faces: Array, corners: Array) -> Floats:
     """(k,): the tangent of the angle at which the sides of a shard may go down."""
     beyond = structure.face_faces(faces)
-    mine = np.repeat(_normals(corners), beyond.counts, axis=0)
-    others = _corners(structure, beyond.values)
+    mine = np.repeat(_units(corners), beyond.counts, axis=0)
+    others = face_corners(structure, beyond.values)
     middle = np.repeat(corners.mean(axis=1), beyond.counts, axis=0)
-    theirs = _normals(others)
+    theirs = _units(others)
     # Convex edges, at which the other face falls off, leave less than half a turn inside.
-    falls = ((others.mean(axis=1) - middle) * mine).sum(axis=1) < 0
-    cosine = np.clip((mine * theirs).sum(axis=1), -1, 1)
+    falls = dot(others.mean(axis=1) - middle, mine) < 0
+    cosine = np.clip(dot(mine, theirs), -1, 1)
     half_tangent = np.sqrt((1 + cosine) / np.maximum(1 - cosine, 1e-12))  # of half the inner angle
     steep = np.where(falls, LEAN * half_tangent, np.inf)
     return np.minimum.reduceat(steep, beyond.offsets[:-1])
 
 
-def _free(structure: Structure, faces: Array, solids: Array, size: float) -> NDArray[np.bool_]:
+def _free(structure: Structure, faces: Array, solids: Array, size: float) -> Bools:
     """Raise the fourth points, in place, until nothing is in the way -> (k,) which have a depth."""
     least = 1e-7 * size
     middle = solids[:, :3].mean(axis=1)
     low, high = solids.min(axis=(0, 1)), solids.max(axis=(0, 1))
-    others = _corners(structure, np.setdiff1d(structure.faces(), faces))
+    others = face_corners(structure, np.setdiff1d(structure.faces(), faces))
     near = ((others.max(axis=1) > low) & (others.min(axis=1) < high)).all(axis=1)
     skin = np.concatenate([others[near], solids[:, :3]])
-    width = np.sqrt(triangle_areas(solids[:, :3]))
+    width = np.sqrt(areas(solids[:, :3]))
     deep = np.ones(len(solids), np.bool_)
     while True:
-        height = -((solids[:, 3] - middle) * _normals(solids[:, :3])).sum(axis=1)
+        height = -dot(solids[:, 3] - middle, _units(solids[:, :3]))
         deep &= height > np.maximum(SHALLOW * width, 4 * least)
         inside = np.flatnonzero(deep)
         blocked = overlapping(solids[inside], least) | crossing(solids[inside], skin, least)
@@ -148,10 +142,10 @@ def _free(structure: Structure, faces: Array, solids: Array, size: float) -> NDA
         solids[raised, 3] = up.astype(np.float32)
 
 
-def _split_inside(solids: Array, impact: Array, force: float, random: Any) -> NDArray[np.float64]:
+def _split_inside(solids: Array, impact: Array, force: float, random: Any) -> Floats:
     """(n, 4, 3): the tetrahedra, those nearest to the impact as four each."""
     count = round(len(solids) * (1 - 1 / (1 + force / 10)))
-    far = _length(solids.mean(axis=1) - impact)
+    far = length(solids.mean(axis=1) - impact)
     nearest = np.argsort(far, kind="stable")[:count]
     weights = 0.1 + random((len(solids), 4))
     at = (weights[:, :, None] * solids).sum(axis=1) / weights.sum(axis=1)[:, None]
@@ -173,11 +167,6 @@ def _mesh(solid: Array) -> TriangleMesh:
     return TriangleMesh(solid, [(0, 1, 2), (0, 3, 1), (1, 3, 2), (2, 3, 0)])
 
 
-def _normals(corners: Array) -> NDArray[np.float64]:
-    """(k, 3), of length 1, of triangles (k, 3, 3)."""
-    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    return np.asarray(normal / _length(normal)[:, None])
-
-
-def _length(vectors: Array) -> NDArray[np.float64]:
-    return np.asarray(np.sqrt((vectors * vectors).sum(axis=-1)))
+def _units(corners: Array) -> Floats:
+    """(k, 3): the normals of triangles, of length 1."""
+    return unit(normals(corners))

@@ -5,20 +5,22 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from hem.arrays import Floats, Indices
 from hem.errors import MeshError
-from hem.fracture.blow import Blow, position
+from hem.fracture.blow import Blow
 from hem.fracture.blow import sites as sites_of
 from hem.fracture.bodies.cells import Cells, cells
-from hem.fracture.bodies.inside import normals, windings
+from hem.fracture.bodies.inside import windings
 from hem.fracture.bodies.solid import Body, from_manifold, require_body
 from hem.fracture.bodies.walls import touching
 from hem.fracture.material import Material
 from hem.fracture.material import material as named
-from hem.fracture.pieces import Floats, Fracture
+from hem.fracture.pieces import Fracture
 from hem.fracture.surface.nearest import closest
-from hem.meshes.triangles import TriangleMesh
+from hem.meshes import TriangleMesh
+from hem.meshes.measures import bounds, corners, length, normals, position
 
 VANISHING = 1e-9
 """A piece of less than this part of the body's volume is dropped."""
@@ -102,7 +104,7 @@ class _Plan(NamedTuple):
 
 class _Piece(NamedTuple):
     mesh: TriangleMesh
-    walls: NDArray[np.int64]  # (m,): the wall that each face is on, or negative
+    walls: Indices  # (m,): the wall that each face is on, or negative
 
 
 class _Grain(NamedTuple):
@@ -126,7 +128,7 @@ def _aimed(body: Body, at: Floats, direction: ArrayLike | None, force: float) ->
     faces = np.flatnonzero(across.any(axis=1))  # those without area look nowhere
     face, spot = closest(body.corners[faces], at)
     with np.errstate(over="ignore"):
-        far = float(np.sqrt(((spot - at) ** 2).sum()))
+        far = float(length(spot - at))
     if not far <= body.diagonal / 2:
         raise MeshError(
             f"the impact is {far:.6g} away from the mesh, more than half the diagonal of "
@@ -168,9 +170,8 @@ def _distinct(points: Floats, diagonal: float) -> tuple[Floats, int]:
 
 def _cut(body: Body, plan: _Plan) -> _Made:
     """Cut the body at the walls of the cells."""
-    points = body.mesh.points.astype(np.float64)
-    center = (points.min(axis=0) + points.max(axis=0)) / 2
-    cut = cells(plan.sites, center, body.diagonal / 2)
+    low, high = bounds(body.mesh.points)
+    cut = cells(plan.sites, (low + high) / 2, body.diagonal / 2)
     thin = _THIN * float(np.spacing(np.abs(body.mesh.points).max()))
     grain = _Grain(VANISHING * body.volume, thin, len(body.mesh.triangles))
     shards: list[_Piece] = []
@@ -236,14 +237,14 @@ def _hollowed(outer: _Piece, inner: _Piece) -> _Piece:
 
 
 def _corners(mesh: TriangleMesh) -> Floats:
-    return mesh.points.astype(np.float64)[mesh.triangles]
+    return corners(mesh.points, mesh.triangles)
 
 
 def _volume(made: Any) -> float:
     return float(made.volume())
 
 
-def _neighbors(made: _Made, diagonal: float) -> NDArray[np.int64]:
+def _neighbors(made: _Made, diagonal: float) -> Indices:
     pieces = made.shards + made.rest
     return touching(
         [piece.mesh for piece in pieces], [piece.walls for piece in pieces], _TOUCH * diagonal**2

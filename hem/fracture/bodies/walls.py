@@ -6,13 +6,10 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from hem.fracture.bodies.inside import normals
-from hem.fracture.pieces import Floats
-from hem.meshes.triangles import TriangleMesh
-
-Indices = NDArray[np.int64]
+from hem.arrays import Floats, Indices
+from hem.meshes import TriangleMesh
+from hem.meshes.measures import corners, length, normals
 
 
 class _Walls(NamedTuple):
@@ -51,16 +48,14 @@ def _gathered(pieces: Sequence[TriangleMesh], labels: Sequence[Indices]) -> _Wal
     wall = np.concatenate(
         [np.zeros(0, np.int64), *(x[on] for x, on in zip(labels, on_wall, strict=True))]
     )
-    corners = [
-        mesh.points.astype(np.float64)[mesh.triangles[on]]
-        for mesh, on in zip(pieces, on_wall, strict=True)
+    each = [
+        corners(mesh.points, mesh.triangles[on]) for mesh, on in zip(pieces, on_wall, strict=True)
     ]
-    all_corners = np.concatenate([np.zeros((0, 3, 3)), *corners])
-    piece = np.repeat(np.arange(len(pieces)), [len(found) for found in corners])
+    all_corners = np.concatenate([np.zeros((0, 3, 3)), *each])
+    piece = np.repeat(np.arange(len(pieces)), [len(found) for found in each])
     order = np.argsort(wall, kind="stable")
     across = normals(all_corners[order])
-    areas = np.sqrt((across * across).sum(axis=1)) / 2
-    return _Walls(wall[order], piece[order], all_corners[order], across, areas)
+    return _Walls(wall[order], piece[order], all_corners[order], across, length(across) / 2)
 
 
 def _sides(walls: _Walls, of_wall: Indices) -> tuple[Indices, Indices]:

@@ -16,7 +16,6 @@ A face is measured in its own plane, its corners taken from the smallest one on:
 from __future__ import annotations
 
 from collections.abc import Mapping
-from types import SimpleNamespace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -58,9 +57,9 @@ class Plan(NamedTuple):
     log: Array  # what was touched
 
 
-def plan(target: Array, tolerance: float, out: Array, log: Array, **told: Array) -> Plan:
+def make_plan(target: Array, tolerance: float, out: Array, log: Array, **given: Array) -> Plan:
     """A plan with scratch of its own."""
-    k = len(told.get("offsets", ()))
+    k = len(given.get("offsets", ()))
     own = {
         "target": np.array(target, np.float64),
         "tolerance": np.array([tolerance]),
@@ -80,7 +79,7 @@ def plan(target: Array, tolerance: float, out: Array, log: Array, **told: Array)
         "args": np.full(3, -1),
         "point": np.zeros(3, np.float32),
     }
-    return Plan(**(own | told), out=out, log=log)
+    return Plan(**(own | given), out=out, log=log)
 
 
 @kernel
@@ -111,13 +110,36 @@ def length(a: Array) -> float:
     return float(np.sqrt(dot(a, a)))
 
 
-def surveying(k: Mapping[str, Kernel]) -> Any:
-    """What all of it takes: ``measure``, ``across`` and ``lowest``, for one structure."""
-    face_vertices, face_faces, coordinate = k["face_vertices"], k["face_faces"], k["coordinate"]
+@kernel
+def lowest_side(plan: Plan) -> int:
+    """The side that the measured point lies farthest beyond, or the least inside."""
+    side = 0
+    for i in range(1, 3):
+        if plan.heights[i] < plan.heights[side]:
+            side = i
+    return side
+
+
+class Survey(NamedTuple):
+    """What all of it takes, made of the queries of one structure."""
+
+    measure: Kernel
+    across: Kernel
+    walk: Kernel
+
+
+def surveying(k: Mapping[str, Kernel]) -> Survey:
+    """Make the kernels that measure a face, cross one of its sides, and walk toward a point."""
+    measure, across = measuring(k), crossing(k)
+    return Survey(measure, across, walking(measure, across))
+
+
+def measuring(k: Mapping[str, Kernel]) -> Kernel:
+    """Make ``measure(m, f, p, plan)``: a face and a point above it -> whether it has an area."""
+    face_vertices, coordinate = k["face_vertices"], k["coordinate"]
 
     @part
     def measure(m: Any, f: int, p: Array, plan: Plan) -> bool:
-        """Measure a face and a point above it -> whether the face has an area."""
         out, corners = plan.out, plan.corners
         face_vertices(m, f, out)
         first = 0
@@ -144,9 +166,15 @@ def surveying(k: Mapping[str, Kernel]) -> Any:
             plan.longest[0] = max(plan.longest[0], long)
         return True
 
+    return measure
+
+
+def crossing(k: Mapping[str, Kernel]) -> Kernel:
+    """Make ``across(m, f, a, b, out)``: the face beyond the side (a, b) of f, -1 at the border."""
+    face_vertices, face_faces = k["face_vertices"], k["face_faces"]
+
     @part
     def across(m: Any, f: int, a: int, b: int, out: Array) -> int:
-        """The face beyond the side (a, b) of a face, or -1 at the border."""
         count = face_faces(m, f, out)
         for i in range(count):
             g, has = out[i], 0
@@ -157,27 +185,24 @@ def surveying(k: Mapping[str, Kernel]) -> Any:
                 return int(g)
         return -1
 
-    @kernel
-    def lowest(plan: Plan) -> int:
-        """The side that the point lies farthest beyond, or the least inside."""
-        side = 0
-        for i in range(1, 3):
-            if plan.heights[i] < plan.heights[side]:
-                side = i
-        return side
+    return across
+
+
+def walking(measure: Kernel, across: Kernel) -> Kernel:
+    """Make ``walk(m, f, p, plan)``: from face f toward a point -> the face where the walk ends.
+
+    It ends above or below the point, at the border, and where it would turn back: the point is
+    then nearest to the edge.
+    """
 
     @part
     def walk(m: Any, f: int, p: Array, plan: Plan) -> int:
-        """From face to face toward a point -> the face it lies above, or where the walk ends.
-
-        It ends at the border, and where it would turn back: the point is then nearest to the edge.
-        """
         most = CROSSINGS_PER_ROOT * int(np.sqrt(1.0 * m.counts[FACES])) + 64
         last = -1
         for _ in range(most):
             if not measure(m, f, p, plan):
                 return f
-            side = lowest(plan)
+            side = lowest_side(plan)
             if plan.heights[side] >= 0:
                 return f
             g = across(m, f, plan.corners[side], plan.corners[(side + 1) % 3], plan.out)
@@ -192,7 +217,7 @@ def surveying(k: Mapping[str, Kernel]) -> Any:
             last, f = f, g
         return f
 
-    return SimpleNamespace(measure=measure, across=across, lowest=lowest, walk=walk)
+    return walk
 
 
 def finding(k: Mapping[str, Kernel], operations: Mapping[str, Kernel]) -> Kernel:
@@ -200,8 +225,7 @@ def finding(k: Mapping[str, Kernel], operations: Mapping[str, Kernel]) -> Kernel
 
     -1 where there is no face to begin at, or the walk ends in one without area.
     """
-    survey = surveying(k)
-    walk, measure = survey.walk, survey.measure
+    measure, _, walk = surveying(k)
     face_vertices, face_exists, coordinate = k["face_vertices"], k["face_exists"], k["coordinate"]
 
     @part
@@ -233,7 +257,25 @@ def finding(k: Mapping[str, Kernel], operations: Mapping[str, Kernel]) -> Kernel
     return find
 
 
-def landing(k: Mapping[str, Kernel]) -> Kernel:
+@kernel
+def exit_side(plan: Plan, toward: Array, far: float, a: int, b: int) -> tuple[float, int]:
+    """How far the way goes on in the measured face, and the side where it leaves; -1 for none.
+
+    (a, b) is the side where it came in.
+    """
+    step, side = far, -1
+    for i in range(3):
+        c, d = plan.corners[i], plan.corners[(i + 1) % 3]
+        if (c == a and d == b) or (c == b and d == a):
+            continue
+        along = minus(plan.xyz[(i + 1) % 3], plan.xyz[i])
+        rate = dot(cross(plan.normal, along), toward) / length(along)
+        if rate < 0 and max(plan.heights[i], 0.0) / -rate < step:
+            step, side = max(plan.heights[i], 0.0) / -rate, i
+    return step, side
+
+
+def landing(survey: Survey) -> Kernel:
     """Make ``land(m, f, at, toward, far, plan) -> face``: go straight over the surface.
 
     From position ``at`` in face f, along the unit vector ``toward`` in its plane, ``far`` units on;
@@ -241,71 +283,64 @@ def landing(k: Mapping[str, Kernel]) -> Kernel:
     on polyhedral surfaces, 1998), so that in a plane it is a straight line. ``at`` and ``toward``
     move along. -1: over the border, or into a face without area.
     """
-    survey = surveying(k)
     measure, across = survey.measure, survey.across
 
     @part
     def land(m: Any, f: int, at: Array, toward: Array, far: float, plan: Plan) -> int:
-        entered_a, entered_b = -1, -1
+        a, b = -1, -1
         most = CROSSINGS_PER_ROOT * int(np.sqrt(1.0 * m.counts[FACES])) + 64
         for _ in range(most):
             if not measure(m, f, at, plan):
                 return -1
-            step, side = far, -1
-            for i in range(3):
-                a, b = plan.corners[i], plan.corners[(i + 1) % 3]
-                if (a == entered_a and b == entered_b) or (a == entered_b and b == entered_a):
-                    continue
-                along = minus(plan.xyz[(i + 1) % 3], plan.xyz[i])
-                rate = dot(cross(plan.normal, along), toward) / length(along)
-                if rate < 0 and max(plan.heights[i], 0.0) / -rate < step:
-                    step, side = max(plan.heights[i], 0.0) / -rate, i
+            step, side = exit_side(plan, toward, far, a, b)
             for j in range(3):
                 at[j] += step * toward[j]
             if side < 0:
                 return f
             far -= step
-            entered_a, entered_b = plan.corners[side], plan.corners[(side + 1) % 3]
+            a, b = plan.corners[side], plan.corners[(side + 1) % 3]
             along = minus(plan.xyz[(side + 1) % 3], plan.xyz[side])
             long = length(along)
             forth = dot(along, toward) / long
             over = -dot(cross(plan.normal, along), toward) / long
-            g = across(m, f, entered_a, entered_b, plan.out)
-            if g < 0 or not measure(m, g, at, plan):
+            f = across(m, f, a, b, plan.out)
+            if f < 0 or not measure(m, f, at, plan):
                 return -1
             # The next face has the side the other way round, and its inside beyond.
             inward = cross(along, plan.normal)
             for j in range(3):
                 toward[j] = (forth * along[j] + over * inward[j]) / long
-            f = g
         return -1
 
     return land
 
 
-def splitting(k: Mapping[str, Kernel], operations: Mapping[str, Kernel]) -> Kernel:
+def edge_finding(k: Mapping[str, Kernel]) -> Kernel:
+    """Make ``edge_between(m, f, a, b, out)``: the edge of f that joins two of its corners."""
+    face_edges, edge_vertices = k["face_edges"], k["edge_vertices"]
+
+    @kernel
+    def edge_between(m: Any, f: int, a: int, b: int, out: Array) -> int:
+        count = face_edges(m, f, out)
+        for i in range(count):
+            e = out[i]
+            edge_vertices(m, e, out[count:])
+            low, high = min(out[count], out[count + 1]), max(out[count], out[count + 1])
+            if min(a, b) == low and max(a, b) == high:
+                return int(e)
+        return -1
+
+    return edge_between
+
+
+def splitting(k: Mapping[str, Kernel], operations: Mapping[str, Kernel], measure: Kernel) -> Kernel:
     """Make ``split(m, f, p, plan) -> outcome``: split a face at a point of it, or its edge there.
 
     Within the tolerance of an edge, the edge is split where the point is nearest to it; within that
     of a vertex nothing is. ``plan.args[1]`` becomes the vertex in any case.
     """
-    survey = surveying(k)
-    measure, lowest = survey.measure, survey.lowest
     split_face, split_edge = operations["split_face"], operations["split_edge"]
-    face_edges, edge_vertices = k["face_edges"], k["edge_vertices"]
-
-    @kernel
-    def edge_between(m: Any, f: int, a: int, b: int, out: Array) -> int:
-        """The edge of a face that joins two of its corners."""
-        count = face_edges(m, f, out)
-        for i in range(count):
-            e = out[i]
-            edge_vertices(m, e, out[count:])
-            if min(a, b) == min(out[count], out[count + 1]) and max(a, b) == max(
-                out[count], out[count + 1]
-            ):
-                return int(e)
-        return -1
+    edge_between = edge_finding(k)
 
     @part
     def split(m: Any, f: int, p: Array, plan: Plan) -> int:
@@ -316,7 +351,7 @@ def splitting(k: Mapping[str, Kernel], operations: Mapping[str, Kernel]) -> Kern
             if length(minus(p, plan.xyz[i])) < tolerance:
                 args[1] = plan.corners[i]
                 return ON_VERTEX
-        side = lowest(plan)
+        side = lowest_side(plan)
         for j in range(3):
             point[j] = p[j]
         if plan.heights[side] >= tolerance:
@@ -326,9 +361,9 @@ def splitting(k: Mapping[str, Kernel], operations: Mapping[str, Kernel]) -> Kern
         a, b = plan.corners[side], plan.corners[(side + 1) % 3]
         start = plan.xyz[side]
         along = minus(plan.xyz[(side + 1) % 3], start)
-        part = dot(minus(p, start), along) / dot(along, along)
+        share = dot(minus(p, start), along) / dot(along, along)
         for j in range(3):
-            point[j] = start[j] + part * along[j]
+            point[j] = start[j] + share * along[j]
         args[0] = edge_between(m, f, a, b, plan.out)
         args[1] = split_edge(m, args, point, plan.at, plan.out, plan.log, False)
         return ON_EDGE
@@ -336,18 +371,14 @@ def splitting(k: Mapping[str, Kernel], operations: Mapping[str, Kernel]) -> Kern
     return split
 
 
-def breaking(k: Mapping[str, Kernel], operations: Mapping[str, Kernel]) -> Kernel:
-    """Make ``break_up(m, plan) -> result``: break the surface around the target (thesis 4.4).
+def sending(land: Kernel) -> Kernel:
+    """Make ``send_out(m, f, plan, toward)``: carry the break points onto the surface, still whole.
 
-    ``plan.start`` is the face under it. There must be room for everything beforehand. The
-    result is negative if there was not.
+    They come from the tangent plane of face f; ``toward`` (3,) is scratch.
     """
-    survey, land, split = surveying(k), landing(k), splitting(k, operations)
-    measure, walk = survey.measure, survey.walk
 
     @kernel
     def send_out(m: Any, f: int, plan: Plan, toward: Array) -> None:
-        """Carry every break point from the tangent plane onto the surface, still whole."""
         for i in range(len(plan.offsets)):
             far = np.sqrt(plan.offsets[i, 0] ** 2 + plan.offsets[i, 1] ** 2)
             for j in range(3):
@@ -362,13 +393,23 @@ def breaking(k: Mapping[str, Kernel], operations: Mapping[str, Kernel]) -> Kerne
                 plan.point[j] = plan.landed_at[i, j]
                 plan.landed_at[i, j] = plan.point[j]
 
+    return send_out
+
+
+def breaking(k: Mapping[str, Kernel], operations: Mapping[str, Kernel]) -> Kernel:
+    """Make ``break_up(m, plan) -> result``: break the surface around the target (thesis 4.4).
+
+    ``plan.start`` is the face under it. There must be room for everything beforehand. The
+    result is negative if there was not.
+    """
+    survey = surveying(k)
+    measure, walk = survey.measure, survey.walk
+    split, send_out = splitting(k, operations, measure), sending(landing(survey))
+
     @kernel
-    def split_middle(m: Any, f: int, a: int, b: int, middle: Array, plan: Plan) -> int:
-        """Split the side (a, b) of a face, if the face still has it."""
-        for j in range(3):
-            plan.point[j] = middle[j]
-            middle[j] = plan.point[j]
-        return split(m, walk(m, f, middle, plan), middle, plan)
+    def split_near(m: Any, f: int, p: Array, plan: Plan) -> int:
+        """Split what lies under a point not far from a face."""
+        return split(m, walk(m, f, p, plan), p, plan)
 
     @kernel
     def break_up(m: Any, plan: Plan) -> int:
@@ -376,17 +417,17 @@ def breaking(k: Mapping[str, Kernel], operations: Mapping[str, Kernel]) -> Kerne
         send_out(m, face, plan, toward)
         if not measure(m, face, plan.target, plan):
             return NEEDS_ROOM
-        ends, middles = plan.corners.copy(), np.zeros((3, 3))
+        middles = np.zeros((3, 3))
         for i in range(3):
             for j in range(3):
-                middles[i, j] = (plan.xyz[i, j] + plan.xyz[(i + 1) % 3, j]) / 2
+                plan.point[j] = (plan.xyz[i, j] + plan.xyz[(i + 1) % 3, j]) / 2
+                middles[i, j] = plan.point[j]
         split(m, face, plan.target, plan)
         for i in range(3):
-            split_middle(m, face, ends[i], ends[(i + 1) % 3], middles[i], plan)
+            split_near(m, face, middles[i], plan)
         for i in range(len(plan.offsets)):
             if plan.landed_on[i] >= 0:
-                f = walk(m, plan.landed_on[i], plan.landed_at[i], plan)
-                plan.outcome[i] = split(m, f, plan.landed_at[i], plan)
+                plan.outcome[i] = split_near(m, plan.landed_on[i], plan.landed_at[i], plan)
         return ALLOWED
 
     return break_up

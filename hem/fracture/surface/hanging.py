@@ -9,18 +9,15 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
-from numpy.typing import NDArray
 
+from hem.arrays import Array, Indices
 from hem.contract import Remaining, Structure, remaining
-from hem.fracture.islands import triangle_areas
+from hem.meshes import components
+from hem.meshes.measures import areas, corners
 
-Array = NDArray[Any]
 
-
-def hanging(structure: Structure, gone: Array) -> NDArray[np.int64]:
+def hanging(structure: Structure, gone: Array) -> Indices:
     """The faces that come off besides those that are ``gone`` (k,), in the order they do.
 
     Cost: ``vertex_faces`` of the vertices of all of these.
@@ -35,11 +32,11 @@ def hanging(structure: Structure, gone: Array) -> NDArray[np.int64]:
         off.append(fresh)
 
 
-def _loose(structure: Structure, left: Remaining) -> NDArray[np.int64]:
+def _loose(structure: Structure, left: Remaining) -> Indices:
     """The faces in fans that are not the largest at their vertex; of equal ones the first stays."""
     fan = _fans(left)
-    corners = np.sort(structure.face_vertices(left.face).values.reshape(-1, 3), axis=1)
-    area = np.bincount(fan, triangle_areas(structure.points[corners]))
+    vertices = np.sort(structure.face_vertices(left.face).values.reshape(-1, 3), axis=1)
+    area = np.bincount(fan, areas(corners(structure.points, vertices)))
     first, largest = np.full(len(area), left.face.max()), np.zeros(left.vertex.max() + 1)
     np.minimum.at(first, fan, left.face)
     np.maximum.at(largest, left.vertex, area[fan])
@@ -52,12 +49,7 @@ def _loose(structure: Structure, left: Remaining) -> NDArray[np.int64]:
 
 def _fans(left: Remaining) -> Array:
     """(k,): the fan of each corner, of those whose faces share no edge at the vertex."""
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-
     k = len(left.vertex)
     _, edge = np.unique(left.edges.ravel(), return_inverse=True)
-    graph = coo_array((np.ones(2 * k, bool), (np.tile(np.arange(k), 2), k + edge)), (3 * k, 3 * k))
-    _, label = connected_components(graph, directed=False)
-    _, fan = np.unique(label[:k], return_inverse=True)
-    return np.asarray(fan)
+    _, label = components(3 * k, np.stack([np.tile(np.arange(k), 2), k + edge], axis=1))
+    return np.unique(label[:k], return_inverse=True)[1]

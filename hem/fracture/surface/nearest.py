@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from hem.arrays import Array, Floats
 from hem.contract import Structure
 from hem.errors import MeshError
-from hem.fracture.pieces import diagonal
-from hem.fracture.surface.breaking import JUMP, finding, plan
-
-Array = NDArray[Any]
+from hem.fracture.surface.breaking import JUMP, dot, finding, make_plan
+from hem.meshes.measures import corners, diagonal, length
+from hem.meshes.measures import position as as_position
 
 NEAR = 0.05
 """How far from its face a walk may end and be believed; a part of the face's longest side."""
@@ -26,7 +26,7 @@ class Found(NamedTuple):
     """The face nearest to a position, and how it was found."""
 
     face: int
-    point: NDArray[np.float64]
+    point: Floats
     """(3,): where on the face."""
 
     visited: int
@@ -47,41 +47,31 @@ def nearest_face(structure: Structure, position: ArrayLike, start: int = JUMP) -
     MeshError for no position, one farther from the surface than half the diagonal of the bounding
     box, and a mesh without faces.
     """
-    p = _position(position)
+    p = as_position(position)
     out, log = structure.scratch(0)
-    told = plan(p, 0.0, out, log, start=np.array([start]))
-    face = structure.run(finding, told)
+    plan = make_plan(p, 0.0, out, log, start=np.array([start]))
+    face = structure.run(finding, plan)
     if face >= 0:
-        corners = _corners(structure, np.array([face]))
-        _, point = closest(corners, p)
-        if _distance(point, p) <= NEAR * told.longest[0]:
-            return Found(face, point, int(told.visited[0]), False)
+        _, point = closest(face_corners(structure, np.array([face])), p)
+        if length(point - p) <= NEAR * plan.longest[0]:
+            return Found(face, point, int(plan.visited[0]), False)
     found, size = scanned(structure, p), diagonal(structure.points)
-    if _distance(found.point, p) > FAR * size:
+    far = length(found.point - p)
+    if far > FAR * size:
         raise MeshError(
-            f"{_words(p)} is {_distance(found.point, p):.4g} from the mesh, more than half of "
-            f"its size {size:.4g}; the nearest point on it is {_words(found.point)}"
+            f"{_words(p)} is {far:.4g} from the mesh, more than half of its size {size:.4g}; "
+            f"the nearest point on it is {_words(found.point)}"
         )
     return found
 
 
 def scanned(structure: Structure, position: ArrayLike) -> Found:
     """The same by looking at every face, the first of those that are equally near. Cost O(n_t)."""
-    p, faces = _position(position), structure.faces()
+    p, faces = as_position(position), structure.faces()
     if not len(faces):
         raise MeshError("there are no faces that could be near to anything")
-    nearest, point = closest(_corners(structure, faces), p)
+    nearest, point = closest(face_corners(structure, faces), p)
     return Found(int(faces[nearest]), point, len(faces), True)
-
-
-def _position(position: ArrayLike) -> NDArray[np.float64]:
-    try:
-        p = np.array(position, np.float64)
-    except (TypeError, ValueError) as error:
-        raise MeshError(f"a position is three numbers, not {position!r}") from error
-    if p.shape != (3,) or not np.isfinite(p).all():
-        raise MeshError(f"a position is three finite numbers, not {position!r}")
-    return p
 
 
 def corner_vertices(structure: Structure, faces: Array) -> Array:
@@ -91,13 +81,9 @@ def corner_vertices(structure: Structure, faces: Array) -> Array:
     return np.take_along_axis(vertices, turned, axis=1)
 
 
-def _corners(structure: Structure, faces: Array) -> NDArray[np.float64]:
-    return structure.points[corner_vertices(structure, faces)].astype(np.float64)
-
-
-def _distance(a: Array, b: Array) -> float:
-    d = a - b
-    return float(np.sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]))
+def face_corners(structure: Structure, faces: Array) -> Floats:
+    """(k, 3, 3): where the corners of faces are, from the smallest vertex on."""
+    return corners(structure.points, corner_vertices(structure, faces))
 
 
 def _words(p: Array) -> str:
@@ -129,11 +115,11 @@ def closest(corners: Array, p: Array) -> tuple[int, Array]:
 def _weights(t: Array, p: Array) -> tuple[float, float, float]:
     """The barycentric weights of the point of a triangle that is nearest to p."""
     ab, ac, ap = t[1] - t[0], t[2] - t[0], p - t[0]
-    d1, d2 = _dot(ab, ap), _dot(ac, ap)
+    d1, d2 = dot(ab, ap), dot(ac, ap)
     if d1 <= 0 and d2 <= 0:
         return 1.0, 0.0, 0.0
     bp = p - t[1]
-    d3, d4 = _dot(ab, bp), _dot(ac, bp)
+    d3, d4 = dot(ab, bp), dot(ac, bp)
     if d3 >= 0 and d4 <= d3:
         return 0.0, 1.0, 0.0
     c = d1 * d4 - d3 * d2
@@ -141,7 +127,7 @@ def _weights(t: Array, p: Array) -> tuple[float, float, float]:
         v = d1 / (d1 - d3) if d1 > d3 else 0.0  # both corners in one place
         return 1 - v, v, 0.0
     cp = p - t[2]
-    d5, d6 = _dot(ab, cp), _dot(ac, cp)
+    d5, d6 = dot(ab, cp), dot(ac, cp)
     if d6 >= 0 and d5 <= d6:
         return 0.0, 0.0, 1.0
     b = d5 * d2 - d1 * d6
@@ -157,8 +143,3 @@ def _weights(t: Array, p: Array) -> tuple[float, float, float]:
     if not total > 0:  # no area: between the first corner and the one that is farther from it
         return 1.0, 0.0, 0.0
     return a / total, b / total, c / total
-
-
-@njit(cache=True)
-def _dot(a: Array, b: Array) -> float:
-    return float(a[0] * b[0] + a[1] * b[1] + a[2] * b[2])

@@ -14,15 +14,17 @@ from functools import cached_property
 from typing import Any, overload
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from hem.arrays import Floats, Indices, Points
 from hem.contract import Structure
 from hem.edit import Edit
 from hem.errors import MeshError
+from hem.fracture.blow import generator
 from hem.fracture.islands import islands
 from hem.fracture.material import Material
 from hem.fracture.material import material as named
-from hem.fracture.pieces import Fracture, box, diagonal
+from hem.fracture.pieces import Fracture
 from hem.fracture.surface.breaking import (
     IN_FACE,
     NOWHERE,
@@ -30,13 +32,12 @@ from hem.fracture.surface.breaking import (
     ON_VERTEX,
     Plan,
     breaking,
-    plan,
+    make_plan,
 )
 from hem.fracture.surface.hanging import hanging
-from hem.fracture.surface.nearest import corner_vertices, nearest_face
-from hem.meshes.triangles import TriangleMesh
-
-Array = NDArray[Any]
+from hem.fracture.surface.nearest import corner_vertices, face_corners, nearest_face
+from hem.meshes import TriangleMesh
+from hem.meshes.measures import bounds, length, normals, unit
 
 TOLERANCE = 1e-5
 """What is nearer than this to a vertex or an edge lies on it; a part of the diagonal."""
@@ -56,7 +57,7 @@ OUTCOMES = {
 class Shards(Sequence[TriangleMesh]):
     """Triangles (k, 3, 3) float32 that came out, each a mesh when it is asked for."""
 
-    def __init__(self, corners: NDArray[np.float32]) -> None:
+    def __init__(self, corners: Points) -> None:
         self.corners = corners
 
     def __len__(self) -> int:
@@ -157,24 +158,24 @@ def break_surface(
     material: Material,
     seed: int,
     scale: float | None = None,
-) -> tuple[Plan, NDArray[np.int64], float]:
+) -> tuple[Plan, Indices, float]:
     """Split all that ``shatter`` splits -> what became of it, the split faces, the diagonal."""
     _require_triangles(structure)
     found = nearest_face(structure, impact)
-    low, high = box(structure.points)
-    size = diagonal(structure.points)
+    low, high = bounds(structure.points)
+    size = float(length(high - low))
     tolerance = max(TOLERANCE * size, ROUNDING * float(np.abs([low, high]).max()))
     offsets = break_points(material, seed, material.scale * size if scale is None else scale)
     frame, start = tangent(structure, found.face), np.array([found.face])
     out, log = structure.scratch(len(offsets) + 4)
-    told = plan(found.point, tolerance, out, log, start=start, frame=frame, offsets=offsets)
-    if structure.run(breaking, told) < 0:
+    plan = make_plan(found.point, tolerance, out, log, start=start, frame=frame, offsets=offsets)
+    if structure.run(breaking, plan) < 0:
         raise RuntimeError("there was not enough room for the splits")
     touched = log[1 : log[0] + 1]
     structure.tell("break_surface", touched)
     split = Edit("break_surface", -1, touched)
     new = np.union1d(split.created_faces, split.changed_faces).astype(np.int64)
-    return told, new, size
+    return plan, new, size
 
 
 def outcomes(broken: Plan) -> dict[str, int]:
@@ -194,7 +195,7 @@ def _require_triangles(structure: Structure) -> None:
             )
 
 
-def break_points(material: Material, seed: int, step: float) -> NDArray[np.float64]:
+def break_points(material: Material, seed: int, step: float) -> Floats:
     """(k, 2) float64: break points around 0, circle by circle, uniform in each (thesis 4.4).
 
     Circle i, from 0, has the radius (i + 0.5) · ``step``. By rejection, so that nothing but exact
@@ -203,7 +204,7 @@ def break_points(material: Material, seed: int, step: float) -> NDArray[np.float
     """
     if not (np.isfinite(step) and step > 0):
         raise MeshError(f"the scale of the circles is a positive length, not {step}")
-    random = random_numbers(seed)
+    random = generator(seed).random
     circles = [np.zeros((0, 2))]
     for i, count in enumerate(material.circles):
         within = np.zeros((0, 2))
@@ -215,33 +216,19 @@ def break_points(material: Material, seed: int, step: float) -> NDArray[np.float
     return np.concatenate(circles)
 
 
-def random_numbers(seed: int) -> Any:
-    """Uniform numbers in [0, 1) by shape, the same on every machine; MeshError for no seed."""
-    if isinstance(seed, bool) or not isinstance(seed, int | np.integer) or seed < 0:
-        raise MeshError(f"a seed is a whole number from 0 on, not {seed!r}")
-    return np.random.Generator(np.random.PCG64(int(seed))).random
-
-
-def tangent(structure: Structure, face: int) -> NDArray[np.float64]:
+def tangent(structure: Structure, face: int) -> Floats:
     """(2, 3): two axes in the plane of a face, as near to x, y or z as can be."""
-    corners = corner_vertices(structure, np.array([face]))[0]
-    a, b, c = structure.points[corners].astype(np.float64)
-    normal = np.cross(b - a, c - a)
+    (normal,) = normals(face_corners(structure, np.array([face])))
     if not normal.any():
         raise MeshError("the face under the impact has no area; strike beside it", faces=[face])
-    normal = _unit(normal)
+    normal = unit(normal)
     axis = np.zeros(3)
     axis[np.abs(normal).argmin()] = 1
-    first = _unit(axis - normal * normal[np.abs(normal).argmin()])
+    first = unit(axis - normal * normal[np.abs(normal).argmin()])
     return np.stack([first, np.cross(normal, first)])
 
 
-def _unit(vector: Array) -> Array:
-    x, y, z = vector
-    return np.asarray(vector / np.sqrt(x * x + y * y + z * z))
-
-
-def sharing_edges(pieces: Sequence[TriangleMesh]) -> NDArray[np.int64]:
+def sharing_edges(pieces: Sequence[TriangleMesh]) -> Indices:
     """(k, 2): the pieces that share an edge, by position, each pair once and ascending.
 
     Cost O(faces log faces).
