@@ -13,7 +13,7 @@ from rich.progress import track
 
 import structures
 from hem.fracture import MATERIALS, Fracture, require_body, shatter
-from hem.fracture.bodies import tetrahedra, voronoi
+from hem.fracture import tetrahedra, voronoi
 from hem.fracture.surface.shatter import TOLERANCE
 from tests.hem.fracture.laws import (
     MODELS,

@@ -16,7 +16,7 @@ from hem.fracture.blow import (
     sites,
 )
 from hem.fracture.bodies.voronoi import voronoi
-from tests.hem.fracture.bodies import NAMES, body, box, spot
+from tests.hem.fracture.solids import NAMES, body, box, spot
 
 GLASS, STONE = MATERIALS["glass"], MATERIALS["stone"]
 TRIALS = [(name, seed) for name in NAMES for seed in range({"bunny": 4}.get(name, 32))]

@@ -3,7 +3,7 @@ import pytest
 
 import hem
 from hem.fracture.mass import of_bodies, of_sheets
-from tests.hem.fracture.bodies import NAMES, as_trimesh, body, box
+from tests.hem.fracture.solids import NAMES, as_trimesh, body, box
 
 
 @pytest.mark.parametrize("name", NAMES)

@@ -4,7 +4,7 @@ import pytest
 import hem
 from hem.fracture.bodies.solid import Body, from_manifold, require_body, to_manifold, wrapped
 from hem.meshes.manifold import require_manifold
-from tests.hem.fracture.bodies import (
+from tests.hem.fracture.solids import (
     NAMES,
     as_trimesh,
     body,

@@ -13,7 +13,7 @@ from hem.fracture.bodies.cells import cells
 from hem.fracture.bodies.solid import require_body
 from hem.fracture.bodies.voronoi import voronoi
 from hem.meshes.edges import undirected_edges
-from tests.hem.fracture.bodies import (
+from tests.hem.fracture.solids import (
     NAMES,
     as_trimesh,
     body,

@@ -6,7 +6,7 @@ from scipy.spatial import cKDTree
 import hem
 from hem.fracture.bodies.solid import require_body
 from hem.fracture.bodies.voronoi import voronoi
-from tests.hem.fracture.bodies import (
+from tests.hem.fracture.solids import (
     body,
     dumbbell,
     holders,
