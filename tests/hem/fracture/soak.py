@@ -12,8 +12,7 @@ from rich.console import Console
 from rich.progress import track
 
 import structures
-from hem.fracture import MATERIALS, Fracture, require_body, shatter
-from hem.fracture import tetrahedra, voronoi
+from hem.fracture import MATERIALS, Fracture, require_body, shatter, tetrahedra, voronoi
 from hem.fracture.surface.shatter import TOLERANCE
 from tests.hem.fracture.laws import (
     MODELS,

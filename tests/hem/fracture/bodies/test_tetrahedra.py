@@ -5,8 +5,7 @@ import pytest
 
 import hem
 import structures
-from hem.fracture import MATERIALS, require_body
-from hem.fracture import tetrahedra
+from hem.fracture import MATERIALS, require_body, tetrahedra
 from hem.fracture.bodies.overlap import crossing, overlapping
 from tests.hem.fracture.laws import body, holders, require_body_laws, struck
 
