@@ -1,8 +1,8 @@
-"""``hem study``: measure every structure, go on after anything, say whether time can be judged."""
+"""``hem study``: measure every structure, resume after anything, say whether time can be judged."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from time import perf_counter
@@ -13,20 +13,27 @@ from rich.markup import escape
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
 from experiments.cli.console import console, errors, user_errors
-from experiments.harness import memory
-from experiments.harness.presets import PRESETS
-from experiments.runs import results, study
-from experiments.runs.steadiness import noise
-from experiments.runs.worker import DEFAULT_SEED
+from experiments.harness import PRESETS, memory
+from experiments.runs import RUNS, CannotWriteError, load, noise, read_meta, study
+from experiments.runs.worker import DEFAULT_SEED, Job
 
-ProfileOption = Annotated[
-    str | None,
-    typer.Option(
-        help="How much to measure: " + "; ".join(f"{k}: {p.what}" for k, p in PRESETS.items())
-    ),
+EXTENTS = "; ".join(f"{name}: {preset.what}" for name, preset in PRESETS.items())
+PresetOption = Annotated[
+    str | None, typer.Option("--preset", "--profile", help=f"How much to measure: {EXTENTS}")
+]
+ResumeOption = Annotated[bool, typer.Option("--resume", help="Resume the newest unfinished run.")]
+RunOption = Annotated[
+    Path | None, typer.Option(help="With --resume: the run to resume, finished or not.")
+]
+OutputOption = Annotated[Path, typer.Option(help="Where the runs are kept.")]
+StructureOption = Annotated[
+    list[str] | None, typer.Option(help="Measure just this one; may be repeated.")
+]
+ExperimentOption = Annotated[
+    list[str] | None, typer.Option(help="Run just this one; may be repeated.")
 ]
 SeedOption = Annotated[
-    int | None, typer.Option(help=f"Of the order of the cells; {DEFAULT_SEED} if not given.")
+    int | None, typer.Option(help=f"Of the order of the cases; {DEFAULT_SEED} if not given.")
 ]
 PinOption = Annotated[
     bool,
@@ -41,124 +48,147 @@ WorkersOption = Annotated[
 
 
 def run_study(
-    profile: ProfileOption = None,
-    resume: Annotated[
-        bool, typer.Option("--resume", help="Go on with the newest unfinished run.")
-    ] = False,
-    run: Annotated[
-        Path | None, typer.Option(help="With --resume: the run to go on with, finished or not.")
-    ] = None,
-    output: Annotated[Path, typer.Option(help="Where the runs are kept.")] = results.RUNS,
-    structure: Annotated[
-        list[str] | None, typer.Option(help="Measure just this one; may be repeated.")
-    ] = None,
+    preset: PresetOption = None,
+    resume: ResumeOption = False,
+    run: RunOption = None,
+    output: OutputOption = RUNS,
+    structure: StructureOption = None,
+    experiment: ExperimentOption = None,
     seed: SeedOption = None,
     pin: PinOption = True,
     workers: WorkersOption = None,
 ) -> None:
-    """Measure every structure; the results go to a new folder, cell by cell.
+    """Measure every structure. The results go to a new folder, case by case.
 
-    A cell that would not fit into memory is left out and says so; HEM_MEMORY=8G pretends that there
+    A case that would not fit into memory is skipped and says so; HEM_MEMORY=8G pretends that there
     is so much.
     """
     with user_errors():
-        if profile is not None and profile not in PRESETS:
-            raise ValueError(f"no profile is called {profile!r}; there are {', '.join(PRESETS)}")
         memory.available()  # whether HEM_MEMORY can be read
         if workers:
-            _require_cluster(workers)
-        chosen = structure or []
+            from experiments.runs import cluster
+
+            cluster.require(workers)
         if resume:
-            folder, kept, chosen = study.resume(output, run)
-            if profile not in (None, kept):
-                raise ValueError(f"{folder} was begun as {kept}; resume it without --profile")
-            profile = kept
-            if not workers and any(folder.glob(results.MACHINES)):
-                raise ValueError(f"{folder} is of a cluster; resume it with --workers tcp://…")
-            _require_nothing_new(folder, structure, seed, pin)
+            folder = study.resume(output, run)
+            given = {
+                "--preset": preset, "--structure": structure, "--experiment": experiment,
+                "--seed": seed, "--no-pin": not pin,
+            }  # fmt: skip
+            _require_as_begun(folder, given, workers)
+        elif run:
+            raise ValueError(f"to resume {run}, say --resume as well")
         else:
-            if run:
-                raise ValueError(f"to go on with {run}, say --resume as well")
-            profile = profile or "quick"
-            order = DEFAULT_SEED if seed is None else seed
-            folder = study.begin(profile, output, chosen, seed=order, pin=pin)
-        _run_with_progress(folder, profile, chosen, workers)
+            folder = study.begin(
+                preset or "quick", output, structure or (), experiments=experiment or (),
+                seed=DEFAULT_SEED if seed is None else seed, pin=pin,
+            )  # fmt: skip
+        _measure(folder, workers)
 
 
-def _require_cluster(workers: str) -> None:
-    from experiments.runs import cluster
-
-    cluster.require(workers)
-
-
-def _require_nothing_new(
-    folder: Path, structure: list[str] | None, seed: int | None, pin: bool
-) -> None:
-    """A run goes on as it was begun."""
-    how = study.how(folder)
-    given = {
-        "--structure": bool(structure),
-        "--seed": seed not in (None, how.seed),
-        "--no-pin": how.pin and not pin,
-    }
-    for option, differs in given.items():
-        if differs:
-            raise ValueError(f"{folder} goes on as it was begun; resume it without {option}")
+def _require_as_begun(folder: Path, given: Mapping[str, object], workers: str | None) -> None:
+    """Raise ValueError for options that would change how a run was begun."""
+    meta = read_meta(folder)
+    begun = {
+        "--preset": meta["preset"], "--structure": meta["structures"],
+        "--experiment": meta["experiments"], "--seed": meta["seed"], "--no-pin": not meta["pin"],
+    }  # fmt: skip
+    for option, value in given.items():
+        if value not in (None, False, [], begun[option]):
+            raise ValueError(f"{folder} is resumed as it was begun: leave out {option}")
+    if not workers and any(folder.glob("machine-*")):
+        raise ValueError(f"{folder} is of a cluster: resume it with --workers tcp://…")
 
 
-def _run_with_progress(folder: Path, profile: str, chosen: list[str], workers: str | None) -> None:
-    begun = perf_counter()
-    console.print(f"Measuring into {folder} (profile {profile}: {PRESETS[profile].what})")
-    go_on = f"hem study --resume --run {folder}" + (f" --workers {workers}" if workers else "")
+def _measure(folder: Path, workers: str | None) -> None:
+    """Measure what a run lacks, and say how it went and what to do now."""
+    begin, preset = perf_counter(), read_meta(folder)["preset"]
+    resuming = f"hem study --resume --run {folder}" + (f" --workers {workers}" if workers else "")
+    console.print(f"Measuring into {folder} (preset {preset}: {PRESETS[preset].what})")
     try:
-        with _progress(study.processes(profile, chosen), folder) as report:
+        with _progress(study.plan(folder), folder) as observer:
             if workers:
                 from experiments.runs import cluster
 
-                cluster.run(folder, profile, workers, report, chosen, say=_warn)
+                cluster.run(folder, workers, observer)
             else:
-                study.run(folder, profile, report, chosen, say=_warn)
+                study.run(folder, observer)
     except KeyboardInterrupt:
-        errors.print(f"Stopped. What is finished is in {folder}; go on with: {go_on}")
+        errors.print(f"Stopped. What is finished is in {folder}; resume with: {resuming}")
         raise typer.Exit(130) from None
     except study.StudyFailedError as failure:
-        errors.print(f"[bold red]Some cells failed.[/] Try them again with: {go_on}\n")
-        _warn(str(failure))
+        errors.print(f"[bold red]Some cases failed.[/] Try them again with: {resuming}\n")
+        errors.print(escape(str(failure)), highlight=False, soft_wrap=True)
         raise typer.Exit(1) from None
-    except results.CannotWriteError as error:
-        raise ValueError(f"{error}. What is finished is kept; then go on with: {go_on}") from error
-    _conclude(folder, perf_counter() - begun)
-
-
-def _conclude(folder: Path, seconds: float) -> None:
-    """Say how it went: what was left out, how steady the machine was, what to do now."""
-    run = results.load(folder)
+    except CannotWriteError as error:
+        raise ValueError(f"{error}. What is finished is kept; resume with: {resuming}") from error
+    run = load(folder)
     if len(run.skipped):
-        console.print(f"{len(run.skipped)} cells were left out; hem report says which and why.")
+        console.print(f"{len(run.skipped)} cases were skipped; hem report says which and why.")
     seen = noise(run)
     console.print(f"[yellow]{seen.words}[/]" if seen.too_busy else seen.words, highlight=False)
-    console.print(f"Done in {seconds:.0f} s. Now: hem table, hem report")
-
-
-def _warn(text: str) -> None:
-    errors.print(escape(text), highlight=False, soft_wrap=True)
+    console.print(f"Done in {perf_counter() - begin:.0f} s. Now: hem table, hem report")
 
 
 @contextmanager
-def _progress(
-    every: list[study.Process], folder: Path
-) -> Iterator[Callable[[study.Process, int], None]]:
+def _progress(jobs: list[Job], folder: Path) -> Iterator[study.Observer]:
+    """Bars on a terminal; else a line for every finished job."""
+    total = sum(len(job.ids) for job in jobs)
+    done = {job: len(job.ids) - len(job.left(folder)) for job in jobs}
+    if not console.is_terminal:
+        yield Lines(done, total)
+        return
     columns = TextColumn("{task.description:<32}"), BarColumn(), MofNCompleteColumn()
-    done = {process: process.done(folder) for process in every}
-    with Progress(
-        *columns, TextColumn("cells, left"), TimeRemainingColumn(), console=console
-    ) as bar:
-        task = bar.add_task("", total=sum(len(process.cases) for process in every))
-        bar.update(task, completed=sum(done.values()))
+    with Progress(*columns, TextColumn("left"), TimeRemainingColumn(), console=console) as bars:
+        yield Bars(done, total, bars)
 
-        def report(process: study.Process, count: int) -> None:
-            done[process] = count
-            what = f"{process.experiment.removeprefix('bench_')} · {process.structure}"
-            bar.update(task, completed=sum(done.values()), description=what)
 
-        yield report
+class Lines(study.Observer):
+    """A line for every finished job, with the time that is left."""
+
+    def __init__(self, done: dict[Job, int], total: int) -> None:
+        self.done, self.total = done, total
+        self.begin, self.before = perf_counter(), sum(done.values())
+
+    def compiled(self, structure: str, done: int, total: int) -> None:
+        """Say it."""
+        self._print(f"compiled {structure} ({done} of {total})")
+        if done == total:
+            self.begin = perf_counter()
+
+    def measured(self, job: Job, done: int) -> None:
+        """Say it of the last case."""
+        self.done[job] = done
+        if done < len(job.ids):
+            return
+        finished, seconds = sum(self.done.values()), perf_counter() - self.begin
+        left = seconds * (self.total - finished) / max(finished - self.before, 1)
+        self._print(f"{job}: {finished} of {self.total} cases, some {left:.0f} s left")
+
+    def say(self, text: str) -> None:
+        """On standard error."""
+        errors.print(escape(text), highlight=False, soft_wrap=True)
+
+    def _print(self, text: str) -> None:
+        seconds = perf_counter() - self.begin
+        console.print(f"{seconds:5.0f} s  {text}", highlight=False, soft_wrap=True)
+
+
+class Bars(Lines):
+    """A bar for compiling, and one for all cases."""
+
+    def __init__(self, done: dict[Job, int], total: int, bars: Progress) -> None:
+        super().__init__(done, total)
+        self.bars = bars
+        self.compiling = bars.add_task("compiling", total=None, visible=False)
+        self.measuring = bars.add_task("", total=total, completed=self.before, start=False)
+
+    def compiled(self, structure: str, done: int, total: int) -> None:
+        """Move the bar of compiling."""
+        self.bars.update(self.compiling, total=total, completed=done, visible=done < total)
+
+    def measured(self, job: Job, done: int) -> None:
+        """Move the bar of the cases."""
+        self.done[job] = done
+        self.bars.start_task(self.measuring)
+        self.bars.update(self.measuring, completed=sum(self.done.values()), description=str(job))

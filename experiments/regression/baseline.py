@@ -28,7 +28,7 @@ TIMED = {
 }
 """Whose times are compared: those that claims are judged by, in these orders."""
 
-HEAD = ("profile", "structures", "commit", "dirty", "machine", "versions", "started")
+HEAD = ("preset", "structures", "commit", "dirty", "machine", "versions", "started")
 """What is kept of the head of a run, besides its name, and whether it can be judged by time."""
 
 LEAST_ROUNDS = 9

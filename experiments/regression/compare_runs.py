@@ -77,7 +77,7 @@ def compare_runs(before: Measured, after: Measured, factor: float = FACTOR) -> C
 
 
 def _profile(run: Measured) -> Any:
-    return run.head.get("profile")
+    return run.head.get("preset", run.head.get("profile"))
 
 
 def _too_busy(before: dict[str, Any], after: dict[str, Any]) -> str:

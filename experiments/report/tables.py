@@ -106,7 +106,7 @@ def _structures(table: pd.DataFrame) -> list[str]:
 
 def _rendered(table: pd.DataFrame, what: str, run: Run) -> Table:
     meta = run.meta
-    title = f"{what}, printed and measured · {run.folder.name} · profile {meta.get('profile')}"
+    title = f"{what}, printed and measured · {run.folder.name} · preset {meta.get('preset')}"
     rendered = Table(title=title, show_lines=True, pad_edge=False)
     rendered.add_column("", style="bold")
     for name in _structures(table):

@@ -1,49 +1,58 @@
 """A study spread over the machines of a Dask cluster.
 
-A process of the study, an experiment on a structure, is one task, so that the points of a curve are
-all measured on the same machine. Each machine has one task at a time, and a folder of its own in
-the run. What a machine has finished comes back case by case; a task whose machine is lost goes to
-another one.
+A job, an experiment on a structure, is one task, so that the points of a curve are all measured on
+the same machine. Workers are started with ``--resources machine=1``, one on each machine, so that a
+machine has one task at a time; Dask places the tasks, and gives those of a lost worker to another.
+What a machine has measured comes back job by job, into a folder of its own in the run.
 """
 
 from __future__ import annotations
 
+import os
 import re
-import warnings
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
-from dataclasses import asdict
+import socket
+import tempfile
+from collections.abc import Callable, Iterator
+from contextlib import closing, contextmanager
+from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
-from time import monotonic, sleep
 from typing import TYPE_CHECKING, Any
 
-from experiments.runs.cluster_work import Running, Work
-from experiments.runs.machine_task import Outcome, Task, perform, who
-from experiments.runs.provenance import source
-from experiments.runs.results import read_json, result_files, write_sealed
-from experiments.runs.study import (
-    Process,
-    Report,
-    StudyFailedError,
-    finish,
-    how,
-    prepared,
-    processes,
-)
+from filelock import FileLock
 
-if TYPE_CHECKING:
+from experiments.runs.compiling import compile_kernels
+from experiments.runs.provenance import describe, machine_id
+from experiments.runs.store import META, CaseFile, cannot_write, case_files, read_meta, write_meta
+from experiments.runs.study import Observer, StudyFailedError, finish, plan, prepared
+from experiments.runs.worker import Job, end_of_log, log_of, perform
+from hem.whole_files import write_whole
+
+if TYPE_CHECKING:  # it is an extra
     from distributed import Client
 
 ADDRESS = re.compile(r"[a-z]+://.+:\d+")
 CONNECT_SECONDS = 10
-POLL_SECONDS = 0.25
 LONELY_SECONDS = 60
 """How long to wait for a machine when all are gone."""
+RETRIES = 2
+"""On how many more machines a job is tried that did not end."""
+VARIABLE = "HEM_MACHINE"
+"""Environment variable of a worker that tells machines apart which look alike."""
+START = "dask worker {} --nthreads 1 --resources machine=1"
 
 
 class ClusterError(ValueError):
     """There is no such cluster, or its machines cannot measure; the message says what to do."""
+
+
+@dataclass(frozen=True)
+class Returned:
+    """What a machine returns of a job: its file, the end of its log, and what machine it is."""
+
+    content: bytes
+    log: str
+    about: dict[str, Any]
 
 
 def require(address: str) -> None:
@@ -51,48 +60,132 @@ def require(address: str) -> None:
     if find_spec("distributed") is None:
         raise ClusterError(
             "--workers needs Dask, which is not installed; install it with: "
-            "pip install 'hem[cluster]'"
+            "pip install 'hem-mesh[cluster]'"
         )
     with _client(address) as client:
-        if not client.ncores():
+        workers = client.scheduler_info(n_workers=-1)["workers"].values()
+        if not any("machine" in worker["resources"] for worker in workers):
             raise ClusterError(
-                f"{address} has no workers; on each machine start one with: dask worker {address}"
+                f"{address} has no workers for it; on each machine start one with: "
+                f"{START.format(address)}"
             )
 
 
-def run(
-    folder: Path,
-    profile: str,
-    address: str,
-    report: Report,
-    structures: Sequence[str] = (),
-    say: Callable[[str], None] = warnings.warn,
-) -> None:
-    """Run what the folder lacks on the machines of a cluster, and mark it finished.
+def run(folder: Path, address: str, observer: Observer | None = None) -> None:
+    """Measure what the folder lacks on the machines of a cluster, and mark the run finished.
 
-    As ``study.run``, and raises ClusterError if the cluster is not there, or runs other code.
+    As ``study.run``; raises ClusterError if the cluster is not there.
     """
-    with prepared(folder, say), _client(address) as client:
-        work = Work(folder, how(folder), report, say)
-        work.add(processes(profile, structures))
-        client.subscribe_topic(work.topic, work.hear)
+    observer = observer or Observer()
+    with prepared(folder, observer.say), _client(address) as client, client.as_current():
+        jobs = [job for job in plan(folder) if all(map(job.left, _places(folder)))]
+        commit = read_meta(folder)["commit"]
+        running = {_submit(client, job, commit): job for job in jobs}
+        failures = []
         try:
-            _spread(client, work)
+            while running:
+                for future in _finished(client, list(running)):
+                    failures += _take(folder, running.pop(future), future, observer)
         finally:
-            client.cancel([it.future for it in work.running.values()], force=True)
-            client.unsubscribe_topic(work.topic)
-        if work.failures:
-            raise StudyFailedError("\n\n".join(work.failures))
+            client.cancel(list(running), force=True)
+        if failures:
+            raise StudyFailedError("\n\n".join(failures))
         finish(folder, together(folder))
 
 
 def together(folder: Path) -> dict[str, Any]:
     """What measured a run: its one machine, or that there were several, whose times do not mix."""
-    used = sorted({path.parent for path in result_files(folder)} - {folder})
+    used = sorted({path.parent for path in case_files(folder)} - {folder})
     if len(used) == 1:
-        return dict(read_json(used[0] / "run.json")["machine"])
+        return dict(read_meta(used[0])["machine"])
     names = [path.name.removeprefix("machine-") for path in used]
     return {"cpu": f"{len(names)} machines", "machines": names}
+
+
+def measure_here(job: Job, commit: str) -> Returned:
+    """Measure a job where this is called, on a worker of the cluster.
+
+    Raises ClusterError if other code runs here, or nobody wants the job any more.
+    """
+    from distributed import get_worker
+
+    worker: Any = get_worker()
+    key = worker.get_current_task()
+
+    def require_wanted() -> None:
+        task = worker.state.tasks.get(key)
+        if task is None or task.state != "executing":
+            raise ClusterError(f"{job} is not wanted any more")
+
+    return measure_alone(job, commit, require_wanted)
+
+
+def measure_alone(job: Job, commit: str, require_wanted: Callable[[], None]) -> Returned:
+    """Measure a job in a folder of its own, while nothing else of this machine is measured."""
+    host = os.environ.get(VARIABLE) or socket.gethostname()
+    about = describe(job.options.preset)
+    about = {**about, "machine": {**about["machine"], "host": host}}
+    if about["commit"] != commit:
+        raise ClusterError(
+            f"{host} runs commit {about['commit'][:12]}, the study {commit[:12]}: "
+            "bring them to the same and resume"
+        )
+    lock = Path(tempfile.gettempdir()) / f"hem-{machine_id(about['machine'])}.lock"
+    with FileLock(lock), tempfile.TemporaryDirectory(prefix="hem-") as name:
+        place = Path(name)
+        require_wanted()
+        compile_kernels(place, [job], lambda *_: require_wanted())
+        with closing(perform(place, [job])) as finished:
+            for _ in finished:
+                require_wanted()
+        path = CaseFile(place, job.experiment, job.structure).path
+        content = path.read_bytes() if path.exists() else b""
+        return Returned(content, end_of_log(log_of(place, job)), about)
+
+
+def _submit(client: Client, job: Job, commit: str) -> Any:
+    return client.submit(
+        measure_here, job, commit, resources={"machine": 1}, retries=RETRIES, pure=False
+    )
+
+
+def _finished(client: Client, running: list[Any]) -> list[Any]:
+    """What has ended. Raises ClusterError if all machines are gone."""
+    from distributed import wait
+
+    while True:
+        try:
+            done = wait(running, timeout=LONELY_SECONDS, return_when="FIRST_COMPLETED").done
+        except TimeoutError:
+            if not client.ncores():
+                raise ClusterError(
+                    "all machines of the cluster are gone; start one and resume the run"
+                ) from None
+        else:
+            return list(done)
+
+
+def _take(folder: Path, job: Job, future: Any, observer: Observer) -> list[str]:
+    """Keep what a machine returned of a job -> why it failed, if it did."""
+    if future.status != "finished":
+        return [f"{job}: {future.exception()}"]
+    returned: Returned = future.result()
+    place = folder / f"machine-{machine_id(returned.about['machine'])}"
+    path = CaseFile(place, job.experiment, job.structure).path
+    try:
+        if not (place / META).exists():
+            write_meta(place, returned.about)
+        write_whole(path, returned.content)
+    except OSError as error:
+        raise cannot_write(path, error) from error
+    left = job.left(place)
+    observer.measured(job, len(job.ids) - len(left))
+    return [f"{job}, {place.name}:\n{returned.log}"] if left else []
+
+
+def _places(folder: Path) -> list[Path]:
+    """The folders with results: the run's own, and its machines'."""
+    return [folder, *sorted(folder.glob("machine-*/"))]
 
 
 @contextmanager
@@ -112,101 +205,3 @@ def _client(address: str) -> Iterator[Client]:
         yield client
     finally:
         client.close(timeout=CONNECT_SECONDS)
-
-
-def _spread(client: Client, work: Work) -> None:
-    """Keep every machine at one task until there are none left."""
-    known: dict[str, str] = {}
-    seen = monotonic()
-    while work.waiting or work.running:
-        workers = _machines(client, work, known)
-        work.keep_news()
-        seen = monotonic() if workers else seen
-        if monotonic() - seen > LONELY_SECONDS:
-            raise ClusterError("all machines of the cluster are gone; start one and resume the run")
-        for it in list(work.running.values()):
-            _look_after(work, it, set(workers.values()))
-        for machine, worker in workers.items():
-            process = None
-            if machine not in work.running:
-                process = work.next_for(machine, others=len(workers) > 1)
-            if process:
-                work.waiting.remove(process)
-                work.running[machine] = _submit(client, work, process, machine, worker)
-        sleep(POLL_SECONDS)
-
-
-def _look_after(work: Work, it: Running, workers: set[str]) -> None:
-    """Take what a task gave, if it has ended or its worker is lost."""
-    if it.future.status == "pending" and it.worker in workers:
-        return
-    if it.future.status == "finished":
-        work.ended(it, it.future.result())
-    else:
-        gone = it.worker not in workers
-        error = None if gone else it.future.exception(timeout=CONNECT_SECONDS)
-        it.future.cancel(force=True)
-        work.lost(it, "its worker was lost" if gone else repr(error))
-    del work.running[it.machine]
-
-
-def _submit(client: Client, work: Work, process: Process, machine: str, worker: str) -> Running:
-    task = work.task(process, machine)
-    future = client.submit(
-        measured_here, task, machine, work.topic, workers=[worker], pure=False, retries=0
-    )
-    return Running(process, machine, worker, future)
-
-
-def measured_here(task: Task, machine: str, topic: str) -> Outcome:
-    """Run a task where this is called, a worker of the cluster."""
-    from distributed import get_worker
-
-    worker: Any = get_worker()
-    key = worker.get_current_task()
-
-    def wanted() -> bool:
-        state = worker.state.tasks.get(key)
-        return state is not None and state.state == "executing"
-
-    def send(text: str) -> None:
-        worker.log_event(topic, (machine, task.experiment, task.structure, text))
-
-    return perform(task, machine, wanted, send)
-
-
-def _machines(client: Client, work: Work, known: dict[str, str]) -> dict[str, str]:
-    """By machine one of its workers, the same as before where it is still there.
-
-    ``known``: by worker its machine; new ones are asked who they are and get a folder.
-    """
-    workers = list(client.ncores())
-    new = [worker for worker in workers if worker not in known]
-    answers = client.run(who, work.how.profile, workers=new, on_error="return") if new else {}
-    for worker, answer in answers.items():
-        if isinstance(answer, OSError):
-            continue  # it is gone again
-        _require_same_code(worker, answer)
-        known[worker] = answer["digest"]
-        path = work.folder / f"machine-{answer['digest']}" / "run.json"
-        if not path.exists():
-            write_sealed(path, {**answer["about"], **asdict(work.how)})
-    here = {known[worker]: worker for worker in reversed(workers) if worker in known}
-    return here | {it.machine: it.worker for it in work.running.values() if it.worker in workers}
-
-
-def _require_same_code(worker: str, answer: Any) -> None:
-    if isinstance(answer, Exception):
-        raise ClusterError(
-            f"the worker {worker} cannot measure ({answer!r}): install there what is installed here"
-        )
-    mine, its = _named(source()), _named(answer["about"])
-    if its != mine:
-        raise ClusterError(
-            f"the worker {worker} runs commit {its}, here it is {mine}: "
-            "bring them to the same and begin again"
-        )
-
-
-def _named(about: dict[str, Any]) -> str:
-    return str(about["commit"])[:12] + (" with changes" if about["dirty"] else "")

@@ -2,46 +2,51 @@
 
 from __future__ import annotations
 
+import json
 import os
 import platform
 import subprocess
 import sys
 from datetime import UTC, datetime
-from importlib.metadata import version
+from hashlib import sha256
+from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
-from experiments.runs.results import SCHEMA, Run
+import psutil
+
+from experiments.runs.run import Run
 from experiments.runs.steadiness import noise
+from experiments.runs.store import SCHEMA
 
 LIBRARIES = ("numpy", "numba", "scipy", "pandas", "pymeshlab", "pytest-benchmark")
 
 
-def describe(profile: str) -> dict[str, Any]:
-    """The head of a run: schema, profile, time, commit, machine and versions."""
-    return {
-        "schema": SCHEMA,
-        "profile": profile,
-        "started": now(),
-        **source(),
-        "machine": machine(),
-        "versions": {
-            "python": platform.python_version(),
-            **{library: version(library) for library in LIBRARIES},
-        },
-    }
+def describe(preset: str) -> dict[str, Any]:
+    """The head of a run: schema, preset, time, commit, machine and versions."""
+    head = {"schema": SCHEMA, "preset": preset, "started": now(), **source()}
+    return {**head, "machine": machine(), "versions": _versions()}
 
 
 def source() -> dict[str, Any]:
     """The commit that is run, and whether anything was changed since."""
-    commit = _git("rev-parse", "HEAD")
-    dirty = bool(_git("status", "--porcelain")) if commit else None
-    return {"commit": commit or "unknown", "dirty": dirty}
+    commit = git("rev-parse", "HEAD")
+    return {
+        "commit": commit or "unknown",
+        "dirty": bool(git("status", "--porcelain")) if commit else None,
+    }
 
 
-def resumed() -> dict[str, Any]:
-    """When a run is gone on with, and by which commit."""
-    return {"at": now(), **source()}
+def git(*arguments: str) -> str:
+    """What git says of the checkout this runs in; empty where it says nothing."""
+    try:
+        done = subprocess.run(
+            ["git", *arguments], cwd=Path(__file__).parent, capture_output=True, text=True,
+            check=True, timeout=10,
+        )  # fmt: skip
+    except (OSError, subprocess.SubprocessError):
+        return ""
+    return done.stdout.strip()
 
 
 def now() -> str:
@@ -54,22 +59,40 @@ def machine() -> dict[str, Any]:
     return {
         "cpu": _cpu(),
         "cores": os.cpu_count(),
-        "memory_bytes": os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES"),
+        "memory_bytes": psutil.virtual_memory().total,
         "caches": _caches(),
         "platform": f"{platform.system()} {platform.release()} {platform.machine()}",
         "python": sys.implementation.name,
     }
 
 
+def machine_id(machine: dict[str, Any]) -> str:
+    """Eight hexadecimal digits that are the same as long as the machine is.
+
+    Of processor, cores, caches, GiB of memory, system and architecture; not of what an update or a
+    restart changes, such as the release of the kernel or some reserved megabytes.
+    """
+    system = str(machine.get("platform", "")).split()
+    facts = {
+        "cpu": machine.get("cpu"),
+        "cores": machine.get("cores"),
+        "memory_gib": round((machine.get("memory_bytes") or 0) / 2**30),
+        "caches": machine.get("caches"),
+        "platform": [*system[:1], *system[-1:]],
+        **{key: machine[key] for key in ("machines", "host") if machine.get(key)},
+    }
+    return sha256(json.dumps(facts, sort_keys=True).encode()).hexdigest()[:8]
+
+
 def in_words(run: Run) -> str:
     """What a run was, where it was measured, and how calm it was there."""
     meta = run.meta
     versions = ", ".join(f"{name} {number}" for name, number in meta.get("versions", {}).items())
-    state = {True: " with changes that are not committed", False: "", None: ""}[meta.get("dirty")]
+    changes = " with changes that are not committed" if meta.get("dirty") else ""
     finished = f"to {meta['finished']}" if "finished" in meta else "and not finished"
     return (
-        f"Preset {meta.get('profile')}, from {meta.get('started')} {finished}, at commit "
-        f"{str(meta.get('commit'))[:10]}{state}. "
+        f"Preset {meta.get('preset')}, from {meta.get('started')} {finished}, at commit "
+        f"{str(meta.get('commit'))[:10]}{changes}. "
         f"{_measured_by(run)}. {versions}. {len(run.cases):,} cases, each checked against the "
         f"triangle list before it was measured. {noise(run).words}"
     )
@@ -86,31 +109,30 @@ def _measured_by(run: Run) -> str:
     )
 
 
+def _versions() -> dict[str, str]:
+    versions = {"python": platform.python_version()}
+    for name in LIBRARIES:
+        try:
+            versions[name] = version(name)
+        except PackageNotFoundError:  # some are optional
+            continue
+    return versions
+
+
 def _cpu() -> str:
     try:
         lines = Path("/proc/cpuinfo").read_text().splitlines()
     except OSError:
-        return platform.processor() or "unknown"
+        lines = []
     names = [line.partition(":")[2].strip() for line in lines if line.startswith("model name")]
     return names[0] if names else platform.processor() or "unknown"
 
 
 def _caches() -> dict[str, str]:
     """Data caches of the first core by level, such as ``{"L1": "32K"}``; Linux only."""
-    found = {}
+    caches = {}
     for cache in sorted(Path("/sys/devices/system/cpu/cpu0/cache").glob("index*")):
         if (cache / "type").read_text().strip() != "Instruction":
             level = (cache / "level").read_text().strip()
-            found[f"L{level}"] = (cache / "size").read_text().strip()
-    return found
-
-
-def _git(*arguments: str) -> str:
-    here = Path(__file__).parent
-    try:
-        done = subprocess.run(
-            ["git", *arguments], cwd=here, capture_output=True, text=True, check=True, timeout=10
-        )
-    except (OSError, subprocess.SubprocessError):
-        return ""
-    return done.stdout.strip()
+            caches[f"L{level}"] = (cache / "size").read_text().strip()
+    return caches

@@ -9,7 +9,7 @@ import numpy as np
 
 from experiments.harness import disturbed
 from experiments.harness.steadiness import BUSY
-from experiments.runs.results import Run
+from experiments.runs.run import Run
 
 
 @dataclass(frozen=True)

@@ -1,106 +1,109 @@
-"""A study: every experiment on every structure, one process each, into one run folder.
+"""A study: every experiment on every structure, into one run folder.
 
-The processes run one after the other, because what runs beside a measurement is measured with it.
+First what the experiments need is compiled, on all cores. Then workers measure, one structure
+after the other, because what runs beside a measurement is measured with it.
 """
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager, suppress
-from dataclasses import asdict, dataclass
+from contextlib import closing, contextmanager, suppress
+from dataclasses import asdict
 from datetime import UTC, datetime
-from importlib import import_module
 from pathlib import Path
+from time import monotonic
 from typing import Any
 
-from experiments.harness.presets import PRESETS
-from experiments.runs import steadiness, worker
-from experiments.runs.locks import held
-from experiments.runs.provenance import describe, now, resumed, source
-from experiments.runs.results import (
-    RUNS,
+from experiments.harness import PRESETS
+from experiments.harness.steadiness import REPEATS
+from experiments.runs.catalog import experiments
+from experiments.runs.compiling import compile_kernels
+from experiments.runs.provenance import describe, now, source
+from experiments.runs.run import RUNS, latest, load
+from experiments.runs.steadiness import noise
+from experiments.runs.store import (
     CannotWriteError,
-    DamagedError,
-    ResultFile,
+    CaseFile,
     ResultsError,
-    latest,
-    load,
-    read_json,
-    result_files,
-    write_sealed,
+    cannot_write,
+    case_files,
+    lock_run,
+    read_meta,
+    require_room,
+    set_aside_damaged,
+    write_meta,
 )
-from experiments.runs.storage import cannot_write, set_aside
-from experiments.runs.worker import CANNOT_WRITE, DEFAULT_SEED, How
+from experiments.runs.worker import (
+    AGAIN,
+    DEFAULT_SEED,
+    Job,
+    Options,
+    WorkerDiedError,
+    end_of_log,
+    log_of,
+    perform,
+)
 from structures import NAMED
 
-EXPERIMENTS = (
-    "bench_latency",
-    "bench_memory",
-    "bench_work",
-    "bench_build",
-    "bench_valence",
-    "bench_queries",
-    "bench_operation_work",
-    "bench_operations",
-    "bench_workloads",
-    "bench_printed",
-    "bench_fracture",
-)
-"""The experiments in the order they run. A new one is a file of this name beside this one."""
-
-ROOM_BYTES = 1 << 16
-"""What must be free in a folder for it to be worth measuring into."""
-
-Report = Callable[["Process", int], None]
+REPEATING_SHARE = 0.5
+"""Disturbed cases are measured again for at most this part of the time that all cases took."""
 
 
-@dataclass(frozen=True)
-class Process:
-    """One experiment on one structure."""
+class Observer:
+    """Is told how a study goes on; this one keeps it to itself."""
 
-    experiment: str
-    structure: str
-    cases: frozenset[str]
+    def compiled(self, structure: str, done: int, total: int) -> None:
+        """The kernels of a structure are compiled, of ``done`` out of ``total`` by now."""
 
-    def done(self, folder: Path) -> int:
-        """How many of its cases are on disk; none of a file that is damaged."""
-        try:
-            finished = ResultFile(folder, self.experiment, self.structure).finished
-        except DamagedError:
-            return 0
-        return len(self.cases & finished)
+    def measured(self, job: Job, done: int) -> None:
+        """So many cases of a job are finished."""
+
+    def say(self, text: str) -> None:
+        """Something a user should know."""
 
 
 class StudyFailedError(RuntimeError):
-    """Some cases failed; the message names the processes and shows what they printed."""
+    """Some cases failed; the message names the jobs and shows what they printed."""
 
 
 def begin(
-    profile: str,
+    preset: str,
     root: Path = RUNS,
     structures: Sequence[str] = (),
     *,
+    experiments: Sequence[str] = (),
     seed: int = DEFAULT_SEED,
     pin: bool = True,
 ) -> Path:
-    """A new run folder, named by the time and the profile, with what is known before it runs.
+    """A new run folder, named by the time and the preset, with what is known before it runs.
 
-    ``structures``: just these; all of them for none. ``seed``: of the order of the cases; ``pin``:
-    whether to stay on one core. Raises ValueError for a structure there is not, CannotWriteError.
+    ``structures``, ``experiments``: just these; all of them for none. ``seed``: of the order of the
+    cases; ``pin``: whether to stay on one core. Raises ValueError for a name that there is not,
+    CannotWriteError.
     """
+    chosen = {"structures": list(structures), "experiments": [_full_name(it) for it in experiments]}
     for name in structures:
         if name not in NAMED:
             raise ValueError(f"no structure is called {name!r}; there are {', '.join(NAMED)}")
-    folder = _new_folder(root, f"{datetime.now(UTC).strftime('%Y%m%d-%H%M%S')}-{profile}")
-    about = {"structures": list(structures), "seed": seed, "pin": pin}
+    if preset not in PRESETS:
+        raise ValueError(f"no preset is called {preset!r}; there are {', '.join(PRESETS)}")
+    folder = _new_folder(root, f"{datetime.now(UTC).strftime('%Y%m%d-%H%M%S')}-{preset}")
     try:
-        write_sealed(folder / "run.json", {**describe(profile), **about})
+        write_meta(folder, {**describe(preset), **chosen, "seed": seed, "pin": pin})
     except CannotWriteError:
         with suppress(OSError):
             folder.rmdir()
         raise
     return folder
+
+
+def _full_name(experiment: str) -> str:
+    """The name of an experiment's module, given with or without ``bench_``."""
+    known = {name.removeprefix("bench_"): name for name in experiments()}
+    short = experiment.removeprefix("bench_")
+    if short not in known:
+        raise ValueError(f"no experiment is called {short!r}; there are {', '.join(known)}")
+    return known[short]
 
 
 def _new_folder(root: Path, name: str) -> Path:
@@ -116,86 +119,114 @@ def _new_folder(root: Path, name: str) -> Path:
     raise CannotWriteError(f"{root} has a thousand runs called {name}: clear it up")
 
 
-def resume(root: Path = RUNS, folder: Path | None = None) -> tuple[Path, str, list[str]]:
-    """The newest unfinished run, its profile and structures. Raises ResultsError without any.
-
-    ``folder``: this one instead, finished or not.
-    """
-    folder = folder or latest(root, unfinished=True)
-    if not (folder / "run.json").exists():
-        raise ResultsError(f"{folder} holds no run to go on with: there is no run.json in it")
-    meta = read_json(folder / "run.json")
-    return folder, str(meta["profile"]), list(meta.get("structures", ()))
-
-
-def how(folder: Path) -> How:
+def options_of(meta: dict[str, Any]) -> Options:
     """How a run was begun, and is to go on."""
-    meta = read_json(folder / "run.json")
-    seed, pin = meta.get("seed", DEFAULT_SEED), meta.get("pin", True)
-    return How(str(meta["profile"]), int(seed), bool(pin))
+    return Options(str(meta["preset"]), int(meta["seed"]), bool(meta["pin"]))
 
 
-def processes(profile: str, structures: Sequence[str] = ()) -> list[Process]:
-    """All processes of a profile, with the cases that each will leave behind."""
-    return [
-        Process(experiment, structure, frozenset(case.id for case in cases))
-        for experiment in EXPERIMENTS
-        for module in [import_module(f"experiments.{experiment}")]
-        for structure in module.EXPERIMENT.structures
-        if not structures or structure in structures or structure not in NAMED
-        for cases in [module.cases(PRESETS[profile].of(structure), structure)]
+def plan(folder: Path) -> list[Job]:
+    """All jobs of a run, in the order of the experiments."""
+    meta = read_meta(folder)
+    chosen, options = meta["structures"], options_of(meta)
+    jobs = [
+        Job(name, structure, options)
+        for name, declared in experiments().items()
+        if not meta["experiments"] or name in meta["experiments"]
+        for structure in declared.structures
+        if not chosen or structure in chosen or structure not in NAMED
     ]
+    return [job for job in jobs if job.ids]
 
 
-def run(
-    folder: Path,
-    profile: str,
-    report: Report,
-    structures: Sequence[str] = (),
-    say: Callable[[str], None] = warnings.warn,
-) -> None:
-    """Run what the folder lacks, and mark it finished.
+def run(folder: Path, observer: Observer | None = None) -> None:
+    """Measure what the folder lacks, and mark the run finished.
 
-    ``report(process, done)`` is called as cases come in; ``say``: for what was found damaged and
-    set aside. Raises StudyFailedError when everything else has run, InUseError if another process
-    measures into the folder, CannotWriteError once results cannot be kept, and KeyboardInterrupt as
-    it comes; what is finished stays in any case.
+    Raises StudyFailedError when everything else is measured, InUseError if another process measures
+    into the folder, CannotWriteError once results cannot be kept, and KeyboardInterrupt as it
+    comes; what is finished stays in any case.
     """
-    with prepared(folder, say):
-        failures = []
-        for process in processes(profile, structures):
-            if process.done(folder) < len(process.cases):
-                output = _run_one(folder, process, report)
-                if process.done(folder) < len(process.cases):
-                    failures.append(f"{process.experiment} on {process.structure}:\n{output}")
-            report(process, process.done(folder))
+    observer = observer or Observer()
+    with prepared(folder, observer.say):
+        jobs = [job for job in plan(folder) if job.left(folder)]
+        compile_kernels(folder, jobs, observer.compiled)
+        failures = [
+            failure
+            for structure in dict.fromkeys(job.structure for job in jobs)
+            for failure in _measure(
+                folder, [job for job in jobs if job.structure == structure], observer
+            )
+        ]
         if failures:
             raise StudyFailedError("\n\n".join(failures))
         finish(folder)
 
 
+def _measure(folder: Path, jobs: list[Job], observer: Observer) -> list[str]:
+    """Measure jobs of one structure -> which failed, and why."""
+    begin, failures, left = monotonic(), [], jobs
+    while left:
+        try:
+            _measure_once(folder, left, observer)
+        except WorkerDiedError as error:
+            left = [job for job in left if job.left(folder)]
+            failures += [f"{job}:\n{error}" for job in left[:1]]
+            left = left[
+                1:
+            ]  # whoever killed the worker does not keep the others from being measured
+        else:
+            names = ", ".join(str(job) for job in left if job.left(folder))
+            failures += [f"{names}:\n{end_of_log(log_of(folder, left[0]))}"] if names else []
+            left = []
+    now = monotonic()
+    with suppress(WorkerDiedError):
+        _measure_again(folder, jobs, now + REPEATING_SHARE * (now - begin))
+    return failures
+
+
+def _measure_once(folder: Path, jobs: list[Job], observer: Observer) -> None:
+    done = {job: len(job.ids) - len(job.left(folder)) for job in jobs}
+    by_name = {job.experiment: job for job in jobs}
+    with closing(perform(folder, jobs)) as finished:
+        for experiment in finished:
+            job = by_name[experiment]
+            done[job] += 1
+            observer.measured(job, done[job])
+
+
+def _measure_again(folder: Path, jobs: list[Job], until: float) -> None:
+    """Measure disturbed cases once more, each time in a new process, while there is time."""
+    for _ in range(REPEATS):
+        again = [job for job in jobs if job.disturbed(folder)]
+        if not again:
+            return
+        with closing(perform(folder, again, AGAIN)) as finished:
+            for _ in finished:
+                if monotonic() > until:
+                    return
+
+
 @contextmanager
 def prepared(folder: Path, say: Callable[[str], None]) -> Iterator[None]:
     """Have a folder for oneself, with room in it and nothing damaged."""
-    with held(folder):
+    with lock_run(folder):
         require_room(folder)
-        begun = bool(result_files(folder))
+        begun = bool(case_files(folder))
         for path in set_aside_damaged(folder):
             say(f"{path.name} was damaged and is set aside; its cases are measured again")
-        meta = read_json(folder / "run.json")
+        meta = read_meta(folder)
         if begun:
             _require_same_code(folder, meta)
-            meta = {**meta, "resumed": [*meta.get("resumed", []), resumed()]}
-            write_sealed(folder / "run.json", meta)
+            again = {"at": now(), **source()}
+            write_meta(folder, {**meta, "resumed": [*meta.get("resumed", []), again]})
         yield
 
 
 def _require_same_code(folder: Path, meta: dict[str, Any]) -> None:
-    """Raise ResultsError if a run would be gone on with by other code than it was begun with."""
-    was, now = meta.get("commit"), source()["commit"]
-    if was and was != now:
+    """Raise ResultsError if a run would be resumed by other code than it was begun with."""
+    was, here = meta.get("commit"), source()["commit"]
+    if was and was != here:
         raise ResultsError(
-            f"{folder} was begun at commit {was[:12]}, and this is {now[:12]}: what they measure "
+            f"{folder} was begun at commit {was[:12]}, and this is {here[:12]}: what they measure "
             "does not belong together; check that commit out, or begin a new run"
         )
 
@@ -205,55 +236,19 @@ def finish(folder: Path, machine: dict[str, Any] | None = None) -> None:
 
     ``machine``: what measured it, if it was not this one.
     """
-    files = [str(path.relative_to(folder)) for path in result_files(folder)]
-    cores = {name: read_json(folder / name).get("core") for name in files}
-    more = {"finished": now(), "files": files, "cores": cores, "noise": _steadiness(folder)}
-    meta = {**read_json(folder / "run.json"), **more}
-    write_sealed(folder / "run.json", {**meta, "machine": machine or meta["machine"]})
+    files = {
+        str(path.relative_to(folder)): len(CaseFile.at(path).measurements)
+        for path in case_files(folder)
+    }
+    seen = noise(load(folder))
+    steadiness = {**asdict(seen), "share": seen.share, "too_busy": seen.too_busy}
+    meta = read_meta(folder)
+    more = {"finished": now(), "files": files, "noise": steadiness}
+    write_meta(folder, {**meta, **more, "machine": machine or meta["machine"]})
 
 
-def _steadiness(folder: Path) -> dict[str, Any]:
-    found = steadiness.noise(load(folder))
-    return {**asdict(found), "share": found.share, "too_busy": found.too_busy}
-
-
-def set_aside_damaged(folder: Path) -> list[Path]:
-    """Rename the damaged files of a run, so that their cases are measured again -> where they are.
-
-    Raises CannotWriteError.
-    """
-    kept = []
-    for path in result_files(folder):
-        experiment, structure, _ = path.name.split(".")
-        try:
-            ResultFile(path.parent, experiment, structure)
-        except DamagedError:
-            kept.append(set_aside(path))
-    return kept
-
-
-def require_room(folder: Path) -> None:
-    """Raise CannotWriteError unless something can be written into a folder."""
-    trial = folder / ".room"
-    try:
-        trial.write_bytes(bytes(ROOM_BYTES))
-    except OSError as error:
-        raise cannot_write(folder, error) from error
-    finally:
-        with suppress(OSError):
-            trial.unlink()
-
-
-def _run_one(folder: Path, process: Process, report: Report) -> str:
-    """Run one process to its end -> the end of what it printed."""
-    code, output = worker.measure(
-        folder,
-        process.experiment,
-        process.structure,
-        how(folder),
-        lambda: report(process, process.done(folder)),
-    )
-    if code == CANNOT_WRITE:
-        require_room(folder)
-        raise CannotWriteError(f"{folder}: {output}")
-    return output
+def resume(root: Path = RUNS, folder: Path | None = None) -> Path:
+    """The newest unfinished run, or ``folder``, finished or not. Raises ResultsError."""
+    folder = folder or latest(root, unfinished=True)
+    read_meta(folder)
+    return folder

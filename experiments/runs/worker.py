@@ -1,127 +1,175 @@
-"""One process of a study: an experiment on a structure, measured by a pytest of its own."""
+"""A worker: one process that measures experiments on one structure, and says when a case is done.
+
+It writes a line to its standard output after every case, so that the study need not look into what
+is being measured, and ends when its standard input does: with the study, however that ends. What
+pytest prints goes to a log.
+"""
 
 from __future__ import annotations
 
-import ctypes
+import json
 import os
-import signal
 import subprocess
 import sys
-from collections import deque
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from collections.abc import Generator, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from importlib import import_module
 from pathlib import Path
 from threading import Thread
+from typing import Any, TextIO
 
-POLL_SECONDS = 0.25
-PATIENCE_SECONDS = 5
-LINES_KEPT = 15
+from experiments.harness import PRESETS, Experiment
+from experiments.runs.catalog import experiments
+from experiments.runs.store import CaseFile, cannot_write, require_room
 
-CANNOT_WRITE = 74
-"""Exit code of a process that could not keep its results; then no other can, either."""
-
+ENDING_SECONDS = 5
+"""How long a worker may take to end before it is killed."""
+LINES_SHOWN = 15
 DEFAULT_SEED = 1
-DIE_WITH_PARENT = 1
-"""PR_SET_PDEATHSIG of Linux."""
+MEASURE, AGAIN, COMPILE = "measure", "again", "compile"
+"""What a worker does with a case: measure what is missing, or what was disturbed; or just compile
+what one case of each kind needs."""
 
 
 @dataclass(frozen=True)
-class How:
-    """How a study measures: its profile, the seed of its order, and whether on one core."""
+class Options:
+    """How a study measures: its preset, the seed of the order of cases, and whether on one core."""
 
-    profile: str
+    preset: str
     seed: int = DEFAULT_SEED
     pin: bool = True
 
 
-def measure(
-    folder: Path, experiment: str, structure: str, how: How, poll: Callable[[], None]
-) -> tuple[int, str]:
-    """Measure what ``folder`` lacks of one process -> exit code, and the end of what it printed.
+@dataclass(frozen=True)
+class Job:
+    """One experiment on one structure."""
 
-    ``poll()`` is called a few times a second. Whatever it raises, KeyboardInterrupt above all, ends
-    the process before it goes on.
+    experiment: str
+    structure: str
+    options: Options
+
+    def __str__(self) -> str:
+        return f"{self.experiment.removeprefix('bench_')} on {self.structure}"
+
+    @cached_property
+    def ids(self) -> frozenset[str]:
+        """The ids of the cases that it leaves behind."""
+        declared: Experiment = experiments()[self.experiment]
+        preset = PRESETS[self.options.preset].of(self.structure)
+        return frozenset(case.id for case in declared.cases(preset, self.structure))
+
+    def left(self, folder: Path) -> frozenset[str]:
+        """The ids of the cases that a folder lacks."""
+        return self.ids - CaseFile(folder, self.experiment, self.structure).cases.keys()
+
+    def disturbed(self, folder: Path) -> bool:
+        """Whether cases were disturbed that may be measured again."""
+        return bool(CaseFile(folder, self.experiment, self.structure).disturbed)
+
+
+class WorkerDiedError(RuntimeError):
+    """A worker ended before its time; the message is the end of its log."""
+
+
+def perform(folder: Path, jobs: Sequence[Job], action: str = MEASURE) -> Generator[str]:
+    """Perform jobs on one structure in a process of their own -> after each case its experiment.
+
+    Closing the iterator ends the process. Raises WorkerDiedError if it dies, CannotWriteError if
+    there is no more room for results.
     """
-    file = Path(str(import_module(f"experiments.{experiment}").__file__))
-    command = [sys.executable, "-m", "pytest", str(file), "-q", "--no-header", "--tb=short"]
-    command += ["-p", "no:cacheprovider", "--benchmark-quiet", "--profile", how.profile]
-    command += ["--structure", structure, "--run", str(folder.resolve())]
-    command += ["--study", str(os.getpid()), "--case-seed", str(how.seed)]
-    command += ["--pin"] if how.pin else []
-    with _started(command, file.parent.parent) as child:
-        log = _Log(child, folder / "logs" / f"{experiment}.{structure}.txt")
-        for _ in _until_it_ends(child):
-            poll()
-        return child.returncode, log.end()
-
-
-def end_with(study: int) -> None:
-    """Have this process ended as soon as the study that started it is gone; Linux only."""
-    if sys.platform == "linux":
-        with suppress(OSError, AttributeError):
-            ctypes.CDLL(None).prctl(DIE_WITH_PARENT, signal.SIGKILL)
-    if os.getppid() != study:
-        raise SystemExit("the study that began this was killed")
-
-
-@contextmanager
-def _started(command: list[str], cwd: Path) -> Iterator[subprocess.Popen[str]]:
-    """A process that does not outlive the block."""
-    child = subprocess.Popen(
-        command, cwd=cwd, env=_own(), text=True, errors="replace",
-        stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
-    )  # fmt: skip
+    log = log_of(folder, jobs[0], action)
+    task = {
+        "experiments": [job.experiment for job in jobs],
+        "structure": jobs[0].structure,
+        "run": str(folder.resolve()),
+        "action": action,
+        **vars(jobs[0].options),
+    }
     try:
-        yield child
+        log.parent.mkdir(exist_ok=True)
+        with log.open("ab") as output:
+            child = _start(task, output)
+    except OSError as error:
+        raise cannot_write(log, error) from error
+    try:
+        for line in child.stdout or ():
+            yield json.loads(line)["experiment"]
+        code = child.wait()
     finally:
         _end(child)
+    require_room(folder)
+    if code not in (0, 1):  # pytest's: all passed, and some failed
+        raise WorkerDiedError(end_of_log(log) or f"it ended with exit code {code}")
+
+
+def log_of(folder: Path, job: Job, action: str = MEASURE) -> Path:
+    """Where the workers of a job's structure print."""
+    return folder / "logs" / f"{job.structure}.{action}.txt"
+
+
+def end_of_log(log: Path) -> str:
+    """The last lines of what a worker printed."""
+    text = log.read_text(errors="replace") if log.exists() else ""
+    return "".join(text.splitlines(keepends=True)[-LINES_SHOWN:])
+
+
+def _start(task: dict[str, Any], output: Any) -> subprocess.Popen[str]:
+    """A worker for a task, without what concerns another pytest."""
+    clean = {key: value for key, value in os.environ.items() if not key.startswith("PYTEST_")}
+    return subprocess.Popen(
+        [sys.executable, "-m", "experiments.runs", json.dumps(task)],
+        cwd=Path(str(import_module("experiments").__file__)).parent.parent,
+        env={**clean, "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1"},
+        stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=output, text=True,
+    )  # fmt: skip
 
 
 def _end(child: subprocess.Popen[str]) -> None:
     if child.poll() is None:
         child.terminate()
         try:
-            child.wait(PATIENCE_SECONDS)
+            child.wait(ENDING_SECONDS)
         except subprocess.TimeoutExpired:
             child.kill()
             child.wait()
+    for pipe in (child.stdin, child.stdout):
+        if pipe:
+            pipe.close()
 
 
-class _Log:
-    """What a process prints: in a file as far as there is room for it, its end in memory."""
+class _Progress:
+    """A plugin of pytest that says which experiment a finished case belongs to."""
 
-    def __init__(self, child: subprocess.Popen[str], path: Path) -> None:
-        self._last: deque[str] = deque(maxlen=LINES_KEPT)
-        self._reader = Thread(target=self._read, args=(child, path), daemon=True)
-        self._reader.start()
+    def __init__(self, study: TextIO) -> None:
+        self._study = study
 
-    def end(self) -> str:
-        self._reader.join(PATIENCE_SECONDS)
-        return "".join(self._last)
-
-    def _read(self, child: subprocess.Popen[str], path: Path) -> None:
-        output = iter(child.stdout or ())
-        with suppress(OSError):
-            path.parent.mkdir(exist_ok=True)
-            with path.open("w", buffering=1) as file:
-                for line in output:
-                    self._last.append(line)
-                    file.write(line)
-        self._last.extend(output)
+    def pytest_runtest_logfinish(self, location: tuple[str, int | None, str]) -> None:
+        print(json.dumps({"experiment": Path(location[0]).stem}), file=self._study, flush=True)
 
 
-def _own() -> dict[str, str]:
-    """The environment without what concerns another pytest, which might turn measuring off."""
-    return {key: value for key, value in os.environ.items() if not key.startswith("PYTEST_")}
+def main(task: dict[str, Any]) -> int:
+    """Run pytest on a task -> its exit code."""
+    import pytest
+
+    Thread(target=_end_with_study, args=(os.dup(0),), daemon=True).start()
+    study = os.fdopen(os.dup(1), "w")
+    os.dup2(2, 1)  # what is printed goes to the log
+    here = Path(str(import_module("experiments").__file__)).parent
+    command = [str(here / f"{name}.py") for name in task["experiments"]]
+    command += ["-p", "pytest_benchmark.plugin", "-p", "no:cacheprovider", "--benchmark-quiet"]
+    command += ["-q", "--no-header", "--tb=short", "--benchmark-disable-gc"]
+    command += ["--preset", task["preset"], "--structure", task["structure"]]
+    command += ["--case-seed", str(task["seed"]), "--action", task["action"]]
+    command += ["--pin"] if task["pin"] else []
+    if task["action"] == COMPILE:
+        command += ["--benchmark-disable"]
+    else:
+        command += ["--run", task["run"]]
+    return int(pytest.main(command, plugins=[_Progress(study)]))
 
 
-def _until_it_ends(child: subprocess.Popen[str]) -> Iterator[None]:
-    while True:
-        try:
-            child.wait(POLL_SECONDS)
-        except subprocess.TimeoutExpired:
-            yield
-        else:
-            return
+def _end_with_study(study: int) -> None:
+    """End this process when the one that began it has ended, and its end of the pipe is closed."""
+    os.read(study, 1)
+    os._exit(1)

@@ -25,7 +25,7 @@ from experiments.regression.compare_runs import compare_runs
 from experiments.regression.findings import Finding, code
 from experiments.regression.gate import HERE
 from experiments.regression.interleaved import compare_trees
-from experiments.runs import study, worker
+from experiments.runs import study
 from experiments.runs.provenance import describe
 from experiments.runs.results import load
 from experiments.validation.mutants import copied_tree
@@ -45,13 +45,9 @@ LARGEST_SHARE = 1e-3
 
 def measure_run(root: Path, seed: int) -> Measured:
     """Measure what the gate compares by time, the cases in an order of their own."""
-    folder = study.begin(PRESET, root, STRUCTURES, seed=seed)
-    for experiment, structure in MEASURED:
-        how = study.how(folder)
-        status, output = worker.measure(folder, experiment, structure, how, lambda: None)
-        if status:
-            raise RuntimeError(f"{experiment} on {structure} failed:\n{output}")
-    study.finish(folder)
+    chosen = dict.fromkeys(experiment for experiment, _ in MEASURED)
+    folder = study.begin(PRESET, root, STRUCTURES, experiments=list(chosen), seed=seed)
+    study.run(folder)
     return measured(load(folder))
 
 

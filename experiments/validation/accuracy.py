@@ -129,7 +129,7 @@ def main() -> None:
     parser.add_argument("--output", type=Path, default=RESULT)
     given = parser.parse_args()
     answers = count_answers(installed_judges(), make_all_curves(given.count, given.seed))
-    head = {key: value for key, value in describe("accuracy").items() if key != "profile"}
+    head = {key: value for key, value in describe("accuracy").items() if key != "preset"}
     head["versions"] |= {package: _version(package) for package in PACKAGES}
     head |= {"curves": given.count * len(GROWTH) * len(CONDITIONS), "seed": given.seed}
     head |= {"columns": COLUMNS, "rows": answers.to_numpy().tolist()}

@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from experiments.claims.growth import MEMORY, load_claims
-from experiments.harness.presets import HUBS
-from experiments.harness.workloads import WORKLOADS
-from experiments.runs.provenance import describe
-from experiments.runs.results import Measurement, ResultFile, write_json
+from experiments.harness import HUBS, WORKLOADS, Measurement
+from experiments.runs import CaseFile, describe, write_meta
 from structures import NAMES
 
 ORDERS = ("consecutive", "random")
@@ -20,7 +19,7 @@ SIZES = [200, 630, 2000, 6324, 20000, 63246, 200000]
 VALENCES = [2**k for k in range(2, 13)]
 FACES = 131_072
 
-STEADY = {"fastest": 1e-4, "before": 1e-4, "after": 1e-4, "stray": 0.0, "waited": 0.0}
+STEADY = {"fastest": 1e-4, "before": 1e-4, "after": 1e-4, "slowdown": 0.0, "off_cpu": 0.0}
 """What a machine that does nothing else shows."""
 
 Law = Callable[[int, int], float]
@@ -64,7 +63,7 @@ BUILD = {
 def write_run(folder: Path, law_of: Callable[[str, str, str], Law] | None = None) -> Path:
     """A finished run in which every claim holds, unless ``law_of(structure, query, printed)``."""
     rng = np.random.default_rng(3)
-    write_json(folder / "run.json", {**describe("quick"), "finished": "2026-01-01T00:00:00Z"})
+    write_meta(folder, {**describe("quick"), "finished": "2026-01-01T00:00:00Z"})
     files = {}
     for claim in load_claims():
         if claim.subject == MEMORY:
@@ -97,9 +96,7 @@ def write_run(folder: Path, law_of: Callable[[str, str, str], Law] | None = None
     for structure in NAMES:
         _add_times(files, folder, structure)
     for (experiment, structure), cases in files.items():
-        file = ResultFile(folder, experiment, structure)
-        file.cases = cases[:-1]
-        file.add(Measurement(**cases[-1]))
+        CaseFile(folder, experiment, structure).add(*(Measurement(**case) for case in cases))
     return folder
 
 
@@ -145,3 +142,12 @@ def _memory(bytes_per_vertex: int | None) -> Measurement:
 
 def _add(files: dict, folder: Path, experiment: str, structure: str, case: Measurement) -> None:
     files.setdefault((experiment, structure), []).append(case.__dict__)
+
+
+def rewrite(folder: Path, experiment: str, structure: str, changed: Callable) -> None:
+    """Replace fields of measurements in a run: what ``changed(measurement)`` says."""
+    file = CaseFile(folder, experiment, structure)
+    file.path.unlink()
+    CaseFile(folder, experiment, structure).add(
+        *(replace(it, **changed(it)) for it in file.measurements)
+    )

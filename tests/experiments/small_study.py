@@ -2,50 +2,57 @@
 
 from __future__ import annotations
 
-import json
 import os
-import subprocess
 import time
 from collections.abc import Callable
 from pathlib import Path
 
-from experiments.runs import study
+import psutil
 
-STRUCTURES = ["indexed"]
+from experiments.runs import CaseFile, study
+from experiments.runs.store import case_files
+
+PATIENCE_SECONDS = 300
 
 
-def begin(root: Path, **more) -> Path:
-    return study.begin("smoke", root, STRUCTURES, **more)
+class Recorder(study.Observer):
+    """Keeps what is said, and calls ``measured`` if it is given."""
+
+    def __init__(self, measured: Callable | None = None) -> None:
+        self.said: list[str] = []
+        self.measured = measured or super().measured
+
+    def say(self, text: str) -> None:
+        self.said.append(text)
 
 
-def go_on(folder: Path, report: Callable = lambda process, done: None) -> list[str]:
+def begin(root: Path, *experiments: str, structures=("indexed",), **more) -> Path:
+    return study.begin("smoke", root, structures, experiments=experiments or ("memory",), **more)
+
+
+def go_on(folder: Path, measured: Callable | None = None) -> list[str]:
     """Run what is left -> what was said."""
-    said: list[str] = []
-    study.run(folder, "smoke", report, STRUCTURES, say=said.append)
-    return said
+    observer = Recorder(measured)
+    study.run(folder, observer)
+    return observer.said
 
 
 def samples(folder: Path) -> dict[str, list[float]]:
-    """What is on disk, by case; every file must be whole."""
-    found = {}
-    for path in study.result_files(folder):
-        content = study.read_json(path)
-        owner = f"{content['experiment']}.{content['structure']}"
-        found |= {f"{owner} {case['id']}": case["samples"] for case in content["cases"]}
-    return found
+    """What is on disk, by case."""
+    files = [CaseFile.at(path) for path in case_files(folder)]
+    return {f"{it.path.stem} {key}": case.samples for it in files for key, case in it.cases.items()}
 
 
-def children_of(folder: Path) -> list[int]:
+def workers_of(folder: Path) -> list[psutil.Process]:
     """Processes that measure into a folder."""
-    listed = subprocess.run(
-        ["ps", "-eww", "-o", "pid,args"], capture_output=True, text=True, check=True
-    )
-    lines = [line for line in listed.stdout.splitlines() if f"--run {folder.resolve()}" in line]
-    return [int(line.split()[0]) for line in lines if "defunct" not in line]
+    running = psutil.process_iter(["cmdline", "status"])
+    alive = (it for it in running if it.info["status"] != psutil.STATUS_ZOMBIE)
+    return [it for it in alive if str(folder.resolve()) in "".join(it.info["cmdline"] or ())[-999:]]
 
 
-def wait_for(what: Callable[[], object], seconds: float = 30) -> None:
-    until = time.monotonic() + seconds
+def wait_for(what: Callable[[], object]) -> None:
+    """Wait until something is so; as long as it takes on a busy machine."""
+    until = time.monotonic() + PATIENCE_SECONDS
     while not what():
         assert time.monotonic() < until, "it did not happen"
         time.sleep(0.05)
@@ -53,17 +60,15 @@ def wait_for(what: Callable[[], object], seconds: float = 30) -> None:
 
 def damage(path: Path, how: str) -> None:
     content = path.read_bytes()
-    if how == "truncated":
-        path.write_bytes(content[: len(content) // 2])
-    elif how == "emptied":
-        path.write_bytes(b"")
-    elif how == "overwritten":
-        path.write_bytes(os.urandom(len(content)))
-    elif how == "another number":
-        path.write_bytes(content.replace(b'"samples": [\n    1', b'"samples": [\n    3'))
-    elif how == "without its checksum":
-        bare = {key: value for key, value in json.loads(content).items() if key != "checksum"}
-        path.write_text(json.dumps(bare))
-    else:
-        path.write_text("[]")
-    assert path.read_bytes() != content
+    lines = content.splitlines(keepends=True)
+    changed = {
+        "truncated": content[: len(content) // 2],
+        "emptied": b"",
+        "overwritten": os.urandom(len(content)),
+        "another number": content.replace(b'"samples":[1', b'"samples":[3'),
+        "without its checksum": content.replace(b',"checksum":', b',"summary":'),
+        "a line less": b"".join(lines[:1] + lines[2:]),
+        "a list": b"[]\n",
+    }[how]
+    assert changed != content
+    path.write_bytes(changed)

@@ -2,12 +2,8 @@
 
 from __future__ import annotations
 
-import json
-import signal
 import subprocess
 import sys
-import time
-from pathlib import Path
 
 import pytest
 from typer.testing import CliRunner
@@ -15,9 +11,10 @@ from typer.testing import CliRunner
 from experiments import cli
 from experiments.cli import app
 from experiments.harness.presets import PRESETS
-from experiments.runs.results import load
-from experiments.runs.study import processes
+from experiments.runs import experiments, load
+from experiments.runs.study import plan
 from structures import NAMES
+from tests.experiments.small_study import samples
 
 runner = CliRunner()
 
@@ -31,7 +28,7 @@ def hem(*arguments: str) -> tuple[int, str]:
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        (["study", "--profile", "fast"], "no profile is called 'fast'; there are smoke, quick"),
+        (["study", "--profile", "fast"], "no preset is called 'fast'; there are smoke, quick"),
         (["study", "--resume"], "there is no unfinished run"),
         (["table"], "there is no run"),
         (["table", "nowhere"], "nowhere holds no run"),
@@ -72,46 +69,29 @@ def test_meshes_lists_every_family_and_model():
     assert all(name in output for name in ("torus", "isosurface", "bunny", "28,088", "teapot"))
 
 
-def test_a_study_that_is_killed_goes_on_where_it_was_and_ends_complete(tmp_path):
+def test_a_study_that_is_killed_is_resumed_where_it_was_and_ends_complete(tmp_path):
     command = [sys.executable, "-m", "experiments.cli", "study", "--output", str(tmp_path)]
-    chosen = "indexed", "half_edge_objects", "as_printed"
-    options = [it for name in chosen for it in ("--structure", name)]
-    begun = [*command, "--profile", "smoke", *options]
-    child = subprocess.Popen(begun, stdout=subprocess.DEVNULL)
-    while not list(tmp_path.glob("*/bench_work.indexed.json")):
-        assert child.poll() is None
-        time.sleep(0.05)
-    child.send_signal(signal.SIGKILL)
-    child.wait()
-    before = _cells(tmp_path)
+    chosen = ["--preset", "smoke", "--structure", "indexed", "--structure", "as_printed"]
+    with subprocess.Popen([*command, *chosen], stdout=subprocess.PIPE, text=True) as child:
+        assert child.stdout is not None
+        for line in child.stdout:  # one for every job
+            if "work on indexed" in line:
+                break
+        child.kill()
+    (folder,) = tmp_path.iterdir()
+    before = samples(folder)
     assert before
 
-    resumed = subprocess.run([*command, "--resume"], capture_output=True, text=True, timeout=300)
+    resumed = subprocess.run([*command, "--resume"], capture_output=True, text=True)
     assert resumed.returncode == 0, resumed.stdout + resumed.stderr
-    after = _cells(tmp_path)
-    assert all(after[key] == cell for key, cell in before.items())
-    every = processes("smoke", chosen)
-    assert set(after) == {(p.experiment, p.structure, case) for p in every for case in p.cases}
-    assert {p.structure for p in every} == {*chosen, "machine"}
-
-    (folder,) = (path.parent for path in tmp_path.glob("*/run.json"))
-    run = load(folder)
-    assert run.meta["finished"] >= run.meta["started"]
-    assert run.cases.query("experiment != 'bench_latency'")["checked"].all()
-    assert {"commit", "dirty", "machine", "versions", "schema"} <= set(run.meta)
-    code, output = hem("table", str(folder))
-    assert code == 0
-    assert "36 ✓" in output
-
-
-def _cells(root: Path) -> dict[tuple[str, str, str], dict]:
-    found = {}
-    for path in root.glob("*/bench_*.json"):
-        content = json.loads(path.read_text())
-        owner = content["experiment"], content["structure"]
-        assert len({cell["id"] for cell in content["cells"]}) == len(content["cells"])
-        found |= {(*owner, cell["id"]): cell for cell in content["cells"]}
-    return found
+    jobs, after = plan(folder), samples(folder)
+    assert before.items() <= after.items()
+    assert {f"{job.experiment}.{job.structure} {key}" for job in jobs for key in job.ids} == set(
+        after
+    )
+    assert {job.experiment for job in jobs} == set(experiments())
+    assert {job.structure for job in jobs} == {"indexed", "as_printed", "machine"}
+    assert load(folder).cases.query("experiment != 'bench_latency'")["checked"].all()
 
 
 def test_profiles_reach_a_million_vertices_and_valence_4096():

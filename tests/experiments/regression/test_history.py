@@ -13,8 +13,8 @@ import pytest
 from experiments.regression import history
 from experiments.regression.history import LineError, append, migrated, read
 from experiments.regression.snapshots import committed, machine_id, record
+from experiments.runs import ResultsError, load, read_meta, write_meta
 from experiments.runs.provenance import machine as this_machine
-from experiments.runs.results import ResultsError, load, read_json, write_json
 from tests.experiments.histories import CLAIM, line, lines
 from tests.experiments.made_runs import write_run
 
@@ -64,9 +64,9 @@ def test_a_line_has_the_verdicts_and_figures_of_its_run(base):
 
 def test_a_run_that_is_not_finished_is_refused(tmp_path):
     folder = write_run(tmp_path / "run")
-    meta = read_json(folder / "run.json")
+    meta = read_meta(folder)
     del meta["finished"]
-    write_json(folder / "run.json", meta)
+    write_meta(folder, meta)
     with pytest.raises(ResultsError, match="not finished; go on with: hem study --resume"):
         record(load(folder))
 

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from experiments.harness import Case, memory
 from experiments.harness.memory import VARIABLE, estimate, why_too_large
-from experiments.runs import study
-from experiments.runs.catalog import experiments
-from experiments.runs.results import load
+from experiments.runs import experiments, load
 from tests.experiments.cli.test_cli import hem as hem_command
 from tests.experiments.small_study import begin, go_on
 
@@ -27,7 +25,6 @@ def test_a_run_on_little_memory_skips_what_does_not_fit_and_ends(monkeypatch, tm
         for family, size in (("torus", 1000), ("teapot", 0))
     )
     monkeypatch.setenv(VARIABLE, str(int((small + large) / 2 / memory.SHARE)))
-    monkeypatch.setattr(study, "EXPERIMENTS", ("bench_memory",))
     fits = {
         case.id: not why_too_large(case, COPIES)
         for case in (

@@ -1,0 +1,276 @@
+"""What a run leaves on disk: lines that are appended, each with its checksum, and one lock.
+
+``run.json`` says what ran where. Each experiment on each structure has a file of JSON lines,
+``<experiment>.<structure>.jsonl``: a head, then a line per finished measurement, appended and
+synced, so that whoever is killed loses the case in flight and nothing else. A case that was
+disturbed may have several lines; the calmest counts. A last line that is torn is a case to measure
+again; anything else that is not as it was written raises DamagedError.
+"""
+
+from __future__ import annotations
+
+import errno
+import hashlib
+import json
+import os
+import socket
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from dataclasses import MISSING, asdict, fields, replace
+from pathlib import Path
+from typing import Any
+
+from filelock import FileLock, Timeout
+
+from experiments.harness import Measurement, badness, disturbed
+from experiments.harness.steadiness import REPEATS
+from hem.whole_files import write_whole
+
+SCHEMA = 3
+META = "run.json"
+
+CHOOSE = "choose another folder, or make this one writable"
+IN_PLACE = "choose another folder: a file is in its place"
+ROOM = "make room there"
+HINTS = {
+    **dict.fromkeys((errno.ENOSPC, errno.EDQUOT), ROOM),
+    **dict.fromkeys((errno.EROFS, errno.EACCES, errno.EPERM), CHOOSE),
+    **dict.fromkeys((errno.ENOTDIR, errno.EEXIST), IN_PLACE),
+    errno.EFBIG: "allow for larger files there",
+}
+ROOM_BYTES = 1 << 16
+"""What must be free in a folder for it to be worth measuring into."""
+
+DEFAULTS = {
+    it.name: it.default if it.default_factory is MISSING else it.default_factory()
+    for it in fields(Measurement)
+}
+
+
+class ResultsError(ValueError):
+    """A run folder is missing, incomplete, damaged, in use or of another schema."""
+
+
+class DamagedError(ResultsError):
+    """A file of a run is not what was written."""
+
+
+class InUseError(ResultsError):
+    """Another process measures into the folder."""
+
+
+class CannotWriteError(OSError):
+    """A file of a run cannot be written; the message says which, why, and what to do."""
+
+
+class CaseFile:
+    """The measurements of one experiment on one structure.
+
+    Raises DamagedError where the file is not what was written, ResultsError for another schema.
+    """
+
+    def __init__(self, folder: Path, experiment: str, structure: str) -> None:
+        self.path = folder / f"{experiment}.{structure}.jsonl"
+        self.experiment, self.structure = experiment, structure
+        self.measurements: list[Measurement] = []
+        self._bytes = 0
+        if self.path.exists():
+            self._read()
+
+    @classmethod
+    def at(cls, path: Path) -> CaseFile:
+        """The file of that path."""
+        return cls(path.parent, *path.stem.split("."))
+
+    @property
+    def cases(self) -> dict[str, Measurement]:
+        """By id the calmest measurement of every case; its noise says how often it was measured."""
+        by_id: dict[str, list[Measurement]] = {}
+        for it in self.measurements:
+            by_id.setdefault(it.id, []).append(it)
+        calmest = {
+            key: min(every, key=lambda it: badness(it.noise)) for key, every in by_id.items()
+        }
+        return {
+            key: replace(it, noise=it.noise and {**it.noise, "measured": len(by_id[key])})
+            for key, it in calmest.items()
+        }
+
+    @property
+    def disturbed(self) -> set[str]:
+        """The ids of timed cases that were disturbed each time, and may be measured once more."""
+        return {
+            key
+            for key, it in self.cases.items()
+            if it.kind == "time" and disturbed(it.noise) and it.noise["measured"] <= REPEATS
+        }
+
+    def add(self, *measurements: Measurement) -> None:
+        """Append measurements. Raises CannotWriteError, and leaves the file as it was."""
+        head = [] if self._bytes else [self._head()]
+        data = "".join(map(_sealed_line, [*head, *map(_compact, measurements)])).encode()
+        try:
+            self.path.parent.mkdir(parents=True, exist_ok=True)
+            with self.path.open("ab", buffering=0) as file:
+                file.truncate(self._bytes)
+                _append(file.fileno(), data, self._bytes)
+        except OSError as error:
+            raise cannot_write(self.path, error) from error
+        self._bytes += len(data)
+        self.measurements += measurements
+
+    def _head(self) -> dict[str, Any]:
+        return {"schema": SCHEMA, "experiment": self.experiment, "structure": self.structure}
+
+    def _read(self) -> None:
+        *lines, _torn = self.path.read_bytes().split(b"\n")
+        for number, line in enumerate(lines):
+            where = f"{self.path}, line {number + 1},"
+            content = _unsealed(line, where, f"measure its cases again with: {resuming(self.path)}")
+            if number:
+                self.measurements.append(Measurement(**content))
+            elif content != self._head():
+                raise ResultsError(
+                    f"{where} is the head of another file, {content}: move the file away"
+                )
+            self._bytes += len(line) + 1
+
+
+def write_meta(folder: Path, meta: dict[str, Any]) -> None:
+    """Write a run's ``run.json`` whole, with its checksum. Raises CannotWriteError."""
+    try:
+        write_whole(folder / META, json.dumps(_sealed(meta), indent=1) + "\n")
+    except OSError as error:
+        raise cannot_write(folder / META, error) from error
+
+
+def read_meta(folder: Path) -> dict[str, Any]:
+    """What ``run.json`` says. Raises ResultsError if there is none, is damaged, or of old times."""
+    path = folder / META
+    if not path.exists():
+        raise ResultsError(f"{folder} holds no run: there is no {META} in it")
+    meta = _unsealed(path.read_bytes(), str(path), f"move {folder} away, or put back a copy")
+    if meta.get("schema") != SCHEMA:
+        raise ResultsError(
+            f"{path} has schema {meta.get('schema')}, this version reads {SCHEMA}: "
+            "measure it again with: hem study"
+        )
+    return meta
+
+
+def case_files(folder: Path) -> list[Path]:
+    """The files with the cases of a run, those of every machine; copies beside them are not."""
+    every = [*sorted(folder.glob("*.jsonl")), *sorted(folder.glob("machine-*/*.jsonl"))]
+    return [path for path in every if path.name.count(".") == 2]
+
+
+def set_aside_damaged(folder: Path) -> Iterator[Path]:
+    """Rename the damaged files of a run, so that their cases are measured again -> what they were.
+
+    Raises CannotWriteError.
+    """
+    for path in case_files(folder):
+        try:
+            CaseFile.at(path)
+        except DamagedError:
+            names = (path.with_name(f"{path.name}.damaged{k or ''}") for k in range(1_000))
+            try:
+                path.rename(next(name for name in names if not name.exists()))
+            except OSError as error:
+                raise cannot_write(path, error) from error
+            yield path
+
+
+@contextmanager
+def lock_run(folder: Path) -> Iterator[None]:
+    """Keep a run folder for this process. Raises InUseError naming the process that has it.
+
+    The lock is the operating system's: it goes when its process ends, however that was.
+    """
+    lock, holder = FileLock(folder / ".lock", timeout=0), folder / ".holder"
+    try:
+        lock.acquire()
+        holder.write_text(f"process {os.getpid()} on {socket.gethostname()}")
+    except Timeout:
+        name = holder.read_text() if holder.exists() else "another process"
+        raise InUseError(
+            f"{folder} is being measured into by {name}: wait until that has ended, "
+            "or end it; or begin a run of its own with: hem study"
+        ) from None
+    except OSError as error:
+        raise cannot_write(folder, error) from error
+    with lock:
+        yield
+
+
+def require_room(folder: Path) -> None:
+    """Raise CannotWriteError unless something can be written into a folder."""
+    trial = folder / ".room"
+    try:
+        trial.write_bytes(bytes(ROOM_BYTES))
+    except OSError as error:
+        raise cannot_write(folder, error) from error
+    finally:
+        with suppress(OSError):
+            trial.unlink()
+
+
+def cannot_write(path: Path, error: OSError) -> CannotWriteError:
+    """What to raise for an error at writing ``path``."""
+    hint = HINTS.get(error.errno or 0, "see to the disk")
+    return CannotWriteError(f"{path} cannot be written ({error.strerror or error}): {hint}")
+
+
+def resuming(path: Path) -> str:
+    """The command that measures again what a file of a run should hold."""
+    folder = path.parent.parent if path.parent.name.startswith("machine-") else path.parent
+    return f"hem study --resume --run {folder}"
+
+
+def _calmest(measurements: list[Measurement]) -> Measurement:
+    calmest = min(measurements, key=lambda it: badness(it.noise))
+    return replace(
+        calmest, noise=calmest.noise and {**calmest.noise, "measured": len(measurements)}
+    )
+
+
+def _compact(measurement: Measurement) -> dict[str, Any]:
+    """What of a measurement is not as it is by default."""
+    return {key: it for key, it in asdict(measurement).items() if it != DEFAULTS[key]}
+
+
+def _sealed(content: dict[str, Any]) -> dict[str, Any]:
+    return {**content, "checksum": _checksum(content)}
+
+
+def _sealed_line(content: dict[str, Any]) -> str:
+    return json.dumps(_sealed(content), separators=(",", ":")) + "\n"
+
+
+def _unsealed(text: bytes, where: str, hint: str) -> dict[str, Any]:
+    """The content of a sealed object. Raises DamagedError unless it is as it was written."""
+    try:
+        content: dict[str, Any] = json.loads(text)
+        if content.pop("checksum") != _checksum(content):
+            raise ValueError("its checksum does not fit")
+    except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
+        raise DamagedError(f"{where} is damaged ({error}): {hint}") from error
+    return content
+
+
+def _checksum(content: dict[str, Any]) -> str:
+    """Of everything but itself: 32 hexadecimal digits."""
+    text = json.dumps(content, separators=(",", ":"))
+    return hashlib.sha256(text.encode()).hexdigest()[:32]
+
+
+def _append(file: int, data: bytes, begin: int) -> None:
+    """Write all of it and have it on the disk, or nothing."""
+    try:
+        while data:
+            data = data[os.write(file, data) :]
+        os.fsync(file)
+    except OSError:
+        with suppress(OSError):
+            os.ftruncate(file, begin)
+        raise

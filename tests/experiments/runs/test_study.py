@@ -1,0 +1,256 @@
+"""Whatever happens to a study, nothing finished is lost."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from experiments.harness.steadiness import REPEATS
+from experiments.runs import (
+    CannotWriteError,
+    CaseFile,
+    DamagedError,
+    InUseError,
+    ResultsError,
+    load,
+    read_meta,
+    study,
+    write_meta,
+)
+from experiments.runs.store import case_files, lock_run
+from experiments.runs.worker import AGAIN, perform
+from tests.experiments.cli.test_cli import hem
+from tests.experiments.made_runs import STEADY
+from tests.experiments.small_study import begin, damage, go_on, samples, wait_for, workers_of
+
+
+@pytest.fixture
+def small_disk(tmp_path):
+    """A file system of 1 MB, where one may be mounted."""
+    place = tmp_path / "disk"
+    place.mkdir()
+    mount = ["mount", "-t", "tmpfs", "-o", "size=1m", "none", str(place)]
+    if not shutil.which("mount") or subprocess.run(mount, capture_output=True).returncode:
+        pytest.skip("no file system may be mounted here")
+    yield place
+    subprocess.run(["umount", "-l", str(place)], check=True)
+
+
+def fill(disk: Path) -> None:
+    """Leave not a byte of a file system."""
+    with (disk / "filler").open("wb", buffering=0) as file:
+        for size in (1 << 16, 1 << 12, 1):
+            try:
+                while True:
+                    file.write(bytes(size))
+            except OSError:
+                continue
+
+
+def test_a_study_of_some_experiments_on_some_structures_is_a_run(finished):
+    run = load(finished)
+    assert set(run.cases["experiment"]) == {"bench_memory"}
+    assert set(run.cases["structure"]) == {"indexed"}
+    assert set(run.cases["id"]) == set().union(*(job.ids for job in study.plan(finished)))
+    assert run.meta["files"] == {"bench_memory.indexed.jsonl": len(run.cases)}
+    assert run.meta["finished"] >= run.meta["started"]
+    assert {"commit", "dirty", "machine", "versions", "preset"} <= set(run.meta)
+
+
+def test_names_that_there_are_not_are_told_with_those_there_are(tmp_path):
+    with pytest.raises(ValueError, match=r"no experiment is called 'nothing'; there are .*memory"):
+        begin(tmp_path, "nothing")
+    with pytest.raises(ValueError, match="no structure is called 'nothing'; there are indexed"):
+        begin(tmp_path, structures=["nothing"])
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_resuming_sets_a_damaged_file_aside_and_measures_its_cases_again(run):
+    (path,) = case_files(run)
+    before = samples(run)
+    damage(path, "another number")
+    broken = path.read_bytes()
+    assert "was damaged and is set aside" in go_on(run)[0]
+    assert samples(run) == before  # bytes are the same each time
+    assert path.with_name(f"{path.name}.damaged").read_bytes() == broken
+    assert len(load(run).meta["resumed"]) == 1
+
+
+def test_a_file_that_is_gone_from_a_finished_run_is_missed(run):
+    (path,) = case_files(run)
+    path.unlink()
+    with pytest.raises(DamagedError, match=r"bench_memory\.indexed\.jsonl is missing"):
+        load(run)
+    code, output = hem("table", str(run))
+    assert (code, output.count("hem study --resume --run")) == (1, 1)
+
+
+def test_disturbed_cases_are_measured_again_by_a_new_process(run):
+    file = CaseFile(run, "bench_memory", "indexed")
+    busy = {**STEADY, "off_cpu": 0.9}
+    first, *others = file.measurements
+    first.kind, first.noise = "time", busy
+    file.path.unlink()
+    CaseFile(run, "bench_memory", "indexed").add(first, *others)
+    jobs = study.plan(run)
+    assert [job.disturbed(run) for job in jobs] == [True]
+    assert list(perform(run, jobs, AGAIN)) == ["bench_memory"]
+    again = CaseFile(run, "bench_memory", "indexed").measurements
+    assert [it.id for it in again] == [it.id for it in (first, *others, first)]
+
+
+def test_disturbed_cases_are_measured_again_no_more_often_than_they_may(run, monkeypatch):
+    actions = []
+    monkeypatch.setattr(study.Job, "disturbed", lambda job, folder: True)
+    monkeypatch.setattr(study, "perform", lambda *given: (actions.append(given[2:]) for _ in "a"))
+    study._measure_again(run, study.plan(run), until=float("inf"))
+    assert actions == [(AGAIN,)] * REPEATS
+    study._measure_again(run, study.plan(run), until=0)
+    assert len(actions) == REPEATS + 1
+
+
+def test_a_full_disk_stops_the_study_and_loses_nothing(small_disk):
+    """The disk fills up after some cases; there is room again; the run is resumed and ends."""
+    folder = begin(small_disk, "work")
+    kept: dict[str, list[float]] = {}
+    filler = small_disk / "filler"
+
+    def fill_up(job: study.Job, done: int) -> None:
+        if not filler.exists():
+            fill(small_disk)
+            kept.update(samples(folder))
+
+    with pytest.raises(CannotWriteError, match=r"No space left on device.*make room"):
+        go_on(folder, fill_up)
+    assert kept
+    assert kept.items() <= samples(folder).items()
+    with pytest.raises(CannotWriteError, match="make room"):
+        go_on(folder)
+    filler.unlink()
+    assert go_on(folder) == []
+    assert kept.items() <= samples(folder).items()
+    assert "finished" in load(folder).meta
+
+
+@pytest.fixture
+def read_only(tmp_path, request):
+    """A folder that nobody may write to: by its mode, which root need not mind, or by its mount."""
+    if os.geteuid() == 0:
+        place = request.getfixturevalue("small_disk")
+        subprocess.run(["mount", "-o", "remount,ro", str(place)], check=True)
+        return place
+    place = tmp_path / "read only"
+    place.mkdir(mode=0o555)
+    return place
+
+
+def require_named(place: Path, said: str) -> None:
+    code, output = hem("study", "--preset", "smoke", "--output", str(place))
+    assert code == 1
+    assert output.startswith("hem:")
+    assert str(place) in output
+    assert "choose another folder" in output
+    assert said in output
+
+
+def test_a_folder_that_cannot_be_written_is_named_in_one_line(read_only):
+    require_named(read_only, "writable")
+
+
+def test_a_file_in_the_place_of_a_folder_is_named_in_one_line(tmp_path):
+    (tmp_path / "file").write_text("")
+    require_named(tmp_path / "file" / "runs", "a file")
+
+
+def test_a_run_is_not_resumed_by_other_code(run):
+    write_meta(run, {**read_meta(run), "commit": "0123456789abcdef"})
+    with pytest.raises(ResultsError, match=r"was begun at commit 0123456789ab.*check that commit"):
+        go_on(run)
+
+
+def test_a_folder_without_a_run_cannot_be_resumed(tmp_path):
+    code, output = hem("study", "--resume", "--run", str(tmp_path))
+    assert (code, "holds no run" in output) == (1, True)
+
+
+def test_a_run_is_resumed_as_it_was_begun(run):
+    code, output = hem("study", "--resume", "--run", str(run), "--seed", "5")
+    assert (code, "leave out --seed" in output) == (1, True)
+    code, output = hem("study", "--run", str(run))
+    assert (code, "say --resume as well" in output) == (1, True)
+    code, output = hem("study", "--resume", "--run", str(run), "--preset", "smoke", "--seed", "1")
+    assert (code, "The machine was" in output or "did not watch" in output) == (0, True)
+
+
+def test_of_two_studies_in_one_folder_the_second_is_told_who_has_it(run):
+    script = (
+        "import sys, time; from pathlib import Path\n"
+        "from experiments.runs.store import lock_run\n"
+        "with lock_run(Path(sys.argv[1])): print('held', flush=True); time.sleep(600)"
+    )
+    command = [sys.executable, "-c", script, str(run)]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as holder:
+        assert holder.stdout is not None
+        assert holder.stdout.readline() == "held\n"
+        with pytest.raises(InUseError, match=rf"process {holder.pid} on .*wait"):
+            go_on(run)
+        code, output = hem("study", "--resume", "--run", str(run))
+        assert (code, f"process {holder.pid}" in output) == (1, True)
+        holder.kill()
+    assert go_on(run) == []  # a lock that is left behind is nobody's
+
+
+def test_two_studies_begun_in_the_same_second_have_folders_of_their_own(tmp_path):
+    assert len({begin(tmp_path) for _ in range(3)}) == 3
+
+
+def test_a_worker_that_is_killed_costs_no_finished_case_and_stops_no_other_job(tmp_path):
+    folder = begin(tmp_path, "work", "memory")
+    kept: dict[str, list[float]] = {}
+
+    def kill(job: study.Job, done: int) -> None:
+        if job.experiment == "bench_work" and not kept:
+            kept.update(samples(folder))
+            for worker in workers_of(folder):
+                worker.kill()
+
+    with pytest.raises(study.StudyFailedError, match=r"^work on indexed"):
+        go_on(folder, kill)
+    after = samples(folder)
+    assert kept.items() <= after.items()
+    work, memory = sorted(study.plan(folder), key=lambda job: job.experiment, reverse=True)
+    assert work.left(folder)
+    assert not memory.left(folder)
+
+
+@pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGKILL])
+def test_whoever_stops_a_study_leaves_no_process_behind(tmp_path, how):
+    """As an interrupt in a notebook: the signal reaches the one who called, and nobody else."""
+    script = (
+        "import sys; from pathlib import Path; from experiments.runs import study\n"
+        "class Prints(study.Observer):\n"
+        "    def measured(self, job, done): print(done, flush=True)\n"
+        "study.run(Path(sys.argv[1]), Prints())"
+    )
+    folder = begin(tmp_path, "work")
+    command = [sys.executable, "-c", script, str(folder)]
+    with subprocess.Popen(
+        command, start_new_session=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE
+    ) as caller:
+        assert caller.stdout is not None
+        caller.stdout.readline()
+        before = samples(folder)
+        caller.send_signal(how)
+        _, said = caller.communicate()
+    wait_for(lambda: not workers_of(folder))
+    assert before
+    assert before.items() <= samples(folder).items()
+    assert (b"KeyboardInterrupt" in said) == (how == signal.SIGINT)
+    with lock_run(folder):
+        pass
