@@ -25,7 +25,7 @@ if TYPE_CHECKING:  # it takes half a second, and a study has no need of it
 RUNS = Path("results/runs")
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)  # judged once per run object
 class Run:
     """A run as read: ``meta`` is run.json, ``cases`` has one row per measured case.
 
