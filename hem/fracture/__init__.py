@@ -6,7 +6,7 @@
 
 from hem.fracture.blow import Blow, Motion, kinetic_energy, motion
 from hem.fracture.bodies import Body, require_body, tetrahedra, voronoi, wrapped
-from hem.fracture.files import describe, names, require_writable, save_pieces, whole, writer
+from hem.fracture.files import describe, names, require_writable, save_pieces, whole
 from hem.fracture.islands import islands
 from hem.fracture.mass import Mass
 from hem.fracture.material import MATERIALS, Material, material, materials
@@ -40,5 +40,4 @@ __all__ = [
     "voronoi",
     "whole",
     "wrapped",
-    "writer",
 ]

@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike
 from hem.errors import MeshError
 from hem.fracture.blow import Blow, Motion, kinetic_energies, kinetic_energy
 from hem.fracture.pieces import Fracture
-from hem.sources.files import encoded
+from hem.sources import encoded
 
 SCHEMA = 1
 
@@ -45,17 +45,11 @@ def save_pieces(
     into place when it is complete; other files stay. Cost O(vertices + faces). Raises MeshError for
     another format, and where the folder cannot be written.
     """
-    write = writer(format)
-    with whole(folder) as beside:
-        made = [path.relative_to(beside) for path in write(fracture, beside, up)]
-    return [Path(folder) / path for path in made]
-
-
-def writer(format: str) -> Callable[[Fracture, Path, ArrayLike], list[Path]]:
-    """What writes a format. Raises MeshError where there is none."""
     if format not in FORMATS:
         raise MeshError(f"pieces cannot be saved as {format!r}; formats are {', '.join(FORMATS)}")
-    return FORMATS[format]
+    with whole(folder) as beside:
+        made = [path.relative_to(beside) for path in FORMATS[format](fracture, beside, up)]
+    return [Path(folder) / path for path in made]
 
 
 @contextmanager

@@ -13,18 +13,21 @@ from hem.meshes.manifold import (
     same_way_edges,
     split_vertices,
 )
-from hem.meshes.polygons import PolygonMesh, require_triangles
+from hem.meshes.polygons import PolygonMesh, repeats_a_corner, require_triangles
 from hem.meshes.summary import MeshSummary
 from hem.meshes.triangles import TriangleMesh, repeated_corners
+from hem.meshes.weld import clusters
 
 __all__ = [
     "MeshSummary",
     "PolygonMesh",
     "TriangleMesh",
+    "clusters",
     "components",
     "euler_number",
     "non_manifold_edges",
     "repeated_corners",
+    "repeats_a_corner",
     "require_manifold",
     "require_sound",
     "require_triangles",

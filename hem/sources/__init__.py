@@ -2,7 +2,7 @@
 
 from hem.sources.cache import cache_folder
 from hem.sources.families import FAMILIES, Family, generate
-from hem.sources.files import load, save
+from hem.sources.files import encoded, load, save
 from hem.sources.samples import SAMPLES, Sample, sample
 from hem.sources.valence import valence_hubs, valence_mesh
 
@@ -12,6 +12,7 @@ __all__ = [
     "Family",
     "Sample",
     "cache_folder",
+    "encoded",
     "generate",
     "load",
     "sample",

@@ -10,8 +10,7 @@ import numpy as np
 
 from hem.arrays import Array, Points
 from hem.errors import MeshError
-from hem.meshes import PolygonMesh, TriangleMesh
-from hem.meshes.polygons import repeats_a_corner
+from hem.meshes import PolygonMesh, TriangleMesh, repeats_a_corner
 from hem.ragged import Ragged
 from hem.sources.meshlab import MeshlabError, load_file, save_file
 from hem.sources.ply import read_ply, write_ply

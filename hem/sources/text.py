@@ -12,7 +12,7 @@ import numpy as np
 
 from hem.arrays import Array, Floats, Points
 from hem.errors import MeshError
-from hem.meshes.weld import clusters
+from hem.meshes import clusters
 from hem.ragged import Ragged
 
 Parts = tuple[Array, Ragged]

@@ -9,14 +9,14 @@ that the rest is a sound mesh.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import cached_property
 from typing import Any, overload
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from hem.arrays import Floats, Indices, Points
+from hem.arrays import Floats, Indices
 from hem.contract import Structure
 from hem.edit import Edit
 from hem.errors import MeshError
@@ -54,46 +54,26 @@ OUTCOMES = {
 """What became of the break points, in words: the first two split, the others are dropped."""
 
 
-class Shards(Sequence[TriangleMesh]):
-    """Triangles (k, 3, 3) float32 that came out, each a mesh when it is asked for."""
+class LazyMeshes(Sequence[TriangleMesh]):
+    """Meshes that are made when the first of them is asked for."""
 
-    def __init__(self, corners: Points) -> None:
-        self.corners = corners
-
-    def __len__(self) -> int:
-        return len(self.corners)
-
-    @overload
-    def __getitem__(self, index: int) -> TriangleMesh: ...
-    @overload
-    def __getitem__(self, index: slice) -> Shards: ...
-    def __getitem__(self, index: int | slice) -> TriangleMesh | Shards:
-        """The mesh of one shard, one face; or some of the shards."""
-        if isinstance(index, slice):
-            return Shards(self.corners[index])
-        return TriangleMesh(self.corners[index], [(0, 1, 2)])
-
-
-class Rest(Sequence[TriangleMesh]):
-    """What is left of a structure, the largest part first; made when it is first asked for."""
-
-    def __init__(self, structure: Structure) -> None:
-        self.structure = structure
+    def __init__(self, make: Callable[[], list[TriangleMesh]]) -> None:
+        self._make = make
 
     @cached_property
-    def _parts(self) -> list[TriangleMesh]:
-        return islands(self.structure.to_triangles())
+    def _meshes(self) -> list[TriangleMesh]:
+        return self._make()
 
     def __len__(self) -> int:
-        return len(self._parts)
+        return len(self._meshes)
 
     @overload
     def __getitem__(self, index: int) -> TriangleMesh: ...
     @overload
     def __getitem__(self, index: slice) -> list[TriangleMesh]: ...
     def __getitem__(self, index: int | slice) -> TriangleMesh | list[TriangleMesh]:
-        """One part, or some."""
-        return self._parts[index]
+        """One mesh, or some."""
+        return self._meshes[index]
 
 
 def shatter(
@@ -124,7 +104,8 @@ def shatter(
     broken, new, size = break_surface(structure, impact, chosen, seed, scale)
     loose = hanging(structure, new)
     faces = np.concatenate([new, loose])
-    shards = Shards(structure.points[corner_vertices(structure, faces)])
+    corners = structure.points[corner_vertices(structure, faces)]
+    shards = LazyMeshes(lambda: [TriangleMesh(one, [(0, 1, 2)]) for one in corners])
     structure.remove_faces(faces)
     return in_place(
         structure, broken, shards, {"broken off": len(loose)},
@@ -140,7 +121,7 @@ def in_place(
     **told: Any,
 ) -> Fracture:
     """The fracture of what ``break_surface`` broke; the structure keeps the rest."""
-    rest = Rest(structure)
+    rest = LazyMeshes(lambda: islands(structure.to_triangles()))
     return Fracture(
         impact=broken.target,
         direction=-np.cross(broken.frame[0], broken.frame[1]),

@@ -29,6 +29,10 @@ def diagonal(mesh: hem.TriangleMesh) -> float:
     return float(np.linalg.norm(np.ptp(mesh.points.astype(float), axis=0)))
 
 
+def corners(shards) -> np.ndarray:
+    return np.stack([shard.points for shard in shards])
+
+
 @pytest.mark.parametrize("model", MODELS)
 def test_shards_and_rest_make_up_the_surface_again(model):
     mesh = surface(model)
@@ -51,7 +55,7 @@ def test_all_structures_give_the_same_shards(model, seeds):
         at, material = struck(mesh, seed), NAMES[seed % len(NAMES)]
         broken = [shatter(it.copy(), at, material, seed) for it in originals]
         for other in broken[1:]:
-            assert np.array_equal(other.shards.corners, broken[0].shards.corners)
+            assert np.array_equal(corners(other.shards), corners(broken[0].shards))
             assert other.counts == broken[0].counts
             assert len(other.rest) == len(broken[0].rest)
             assert all(
@@ -62,7 +66,7 @@ def test_all_structures_give_the_same_shards(model, seeds):
 
 def test_the_shards_of_a_seed_are_the_same_on_every_machine():
     shards = shatter(structures.build("half_edge", sheet()), (3.2, 4.1, 0), "glass", 7).shards
-    told = hashlib.sha256(shards.corners.astype("<f4").tobytes()).hexdigest()
+    told = hashlib.sha256(corners(shards).astype("<f4").tobytes()).hexdigest()
     assert (len(shards), told[:16]) == DIGEST
 
 
