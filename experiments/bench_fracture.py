@@ -18,9 +18,7 @@ import structures
 from experiments.harness import Case, Experiment, Keep, Measurement, Preset, Timer, why_too_slow
 from experiments.harness.latency import latency_now
 from hem.contract import Structure
-from hem.fracture import MATERIALS, Material, nearest_face, scanned, shatter
-from hem.fracture.surface.breaking import JUMP
-from hem.fracture.surface.nearest import Found
+from hem.fracture import JUMP, MATERIALS, Found, Material, nearest_face, scanned, shatter
 
 Array = NDArray[Any]
 

@@ -25,7 +25,7 @@ from experiments.claims.growth import (
 )
 from experiments.harness.presets import HUBS
 from experiments.runs.results import Run, write_json
-from hem.complexity.judge import Bound, Verdict, judge
+from hem.complexity import Bound, Verdict, judge
 
 Array = NDArray[Any]
 

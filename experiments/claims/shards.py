@@ -7,7 +7,7 @@ import pandas as pd
 
 from experiments.bench_fracture import FIND, SHATTER, VISITED, WAYS
 from experiments.runs.results import Run
-from hem.complexity.judge import Verdict, judge
+from hem.complexity import Verdict, judge
 from structures import NAMES, REGISTRY
 
 ASKED = "indexed"

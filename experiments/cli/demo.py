@@ -86,7 +86,7 @@ def write(
     """
     from jinja2 import Environment
 
-    from hem.fracture.files import whole
+    from hem.fracture import whole
 
     shown = []
     with whole(folder) as beside:
@@ -118,7 +118,7 @@ def _animate(
     case: DemoCase, broken: Broken, size: tuple[int, int], seconds: float, folder: Path
 ) -> dict[str, Any]:
     """Write the animation of one blow -> what the page says of it."""
-    from hem.fracture.blow import kinetic_energy
+    from hem.fracture import kinetic_energy
     from hem.fracture.show import save_animation
 
     scene, force, mass = broken.scene(), broken.blow.force, broken.fracture.mass

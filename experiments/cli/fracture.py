@@ -82,10 +82,9 @@ def fracture(
     """Break a model: pieces, a picture, an animation of them flying, and all in numbers."""
     with user_errors():
         from experiments.report import fracture_scenes
-        from hem.fracture import MATERIALS
+        from hem.fracture import MATERIALS, require_writable
         from hem.fracture import material as material_of
         from hem.fracture import materials as read_materials
-        from hem.fracture.files import require_writable
 
         # What can be wrong at a glance is told before anything is computed.
         known = material_of(material, MATERIALS | (read_materials(materials) if materials else {}))
@@ -121,7 +120,7 @@ def _write(
     from PIL import Image
 
     from experiments.report.fracture_scenes import enough_seconds
-    from hem.fracture.files import describe, save_pieces, whole
+    from hem.fracture import describe, save_pieces, whole
 
     with whole(folder) as beside:
         scene = broken.scene()

@@ -17,7 +17,7 @@ import structures
 from experiments.harness.measurement import Measurement
 from experiments.harness.presets import HUBS
 from hem.contract import QUERIES, Query, Structure
-from hem.meshes.triangles import TriangleMesh
+from hem.meshes import TriangleMesh
 
 Array = NDArray[Any]
 

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hem.contract import Query, Structure
-from hem.meshes.triangles import TriangleMesh
+from hem.meshes import TriangleMesh
 
 Array = NDArray[Any]
 

@@ -14,7 +14,7 @@ from typing import Literal
 
 from experiments.claims.growth import NO_CLAIM, TABLES, load_claims
 from experiments.regression.counters import Exact, Value
-from hem.complexity.models import NAMES as CLASSES
+from hem.complexity import NAMES as CLASSES
 
 Outcome = Literal["worse", "better", "undetermined", "same"]
 

@@ -28,7 +28,7 @@ from experiments.validation.budgets import (
     time_interleaved,
 )
 from experiments.validation.peer_operations import compare_operations
-from hem.meshes.triangles import TriangleMesh
+from hem.meshes import TriangleMesh
 
 Array = NDArray[Any]
 

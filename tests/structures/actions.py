@@ -12,7 +12,7 @@ import numpy as np
 
 import hem
 from hem.contract import Structure
-from hem.meshes.manifold import euler_number
+from hem.meshes import euler_number
 
 KINDS = (
     *("split_edge", "split_face", "collapse_edge", "collapse_edge", "collapse_edge", "flip_edge"),

@@ -241,7 +241,7 @@ def test_materials_of_ones_own(tmp_path):
     [
         (lambda s: shatter(s, (1, 2)), "three finite numbers"),
         (lambda s: shatter(s, (1, 2, np.nan)), "three finite numbers"),
-        (lambda s: shatter(s, "here"), "three numbers"),
+        (lambda s: shatter(s, "here"), "three finite numbers"),
         (lambda s: shatter(s, (1, 2, 99)), "more than half of its size"),
         (lambda s: shatter(s, (1, 2, 0), "glas"), "did you mean 'glass'"),
         (lambda s: shatter(s, (1, 2, 0), seed=-1), "a seed is a whole number"),
