@@ -4,12 +4,9 @@ from __future__ import annotations
 
 import gc
 from collections.abc import Callable, Iterable, Sequence
-from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
-from multiprocessing import get_context
-from pathlib import Path
 from time import perf_counter
-from typing import Any, TypeVar
+from typing import Any
 
 import numpy as np
 from rich.console import Console
@@ -17,11 +14,9 @@ from rich.table import Table
 
 from experiments.harness import time_rounds
 
-T = TypeVar("T")
-
 ROUNDS = 5
-SECONDS = 6.0
-"""After so long no further round begins: what takes seconds is told apart by fewer of them."""
+SECONDS = 4.0
+"""After so long no further round begins: fewer of them tell apart what takes seconds."""
 
 
 @dataclass(frozen=True)
@@ -36,33 +31,10 @@ class Budget:
 
 @dataclass(frozen=True)
 class Task:
-    """What is timed: ``call`` is given what ``setup``, which is not timed, makes for each round."""
+    """What is timed: ``call`` gets what ``setup``, which is not timed, makes for each round."""
 
     call: Callable[..., Any]
     setup: Callable[[], Any] | None = None
-
-
-@dataclass(frozen=True)
-class Comparison:
-    """One task, done by us and by a peer; ``asked``: how many times faster we are to be."""
-
-    what: str
-    asked: float
-    peer: str
-    ours: Task
-    theirs: Task
-
-    def measure(self) -> Budget:
-        """Time both, interleaved."""
-        ours, theirs = time_interleaved([self.ours, self.theirs])
-        ratio = theirs / ours
-        measured = f"{ratio:.2f} × ({_milliseconds(ours)}, theirs {_milliseconds(theirs)})"
-        met = ratio >= self.asked
-        return Budget(f"{self.what}, {self.peer}", f"≥ {self.asked:.3g} ×", measured, met)
-
-
-def _milliseconds(seconds: float) -> str:
-    return f"{1e3 * seconds:,.1f} ms"
 
 
 def print_budgets(title: str, budgets: Iterable[Budget]) -> None:
@@ -76,7 +48,7 @@ def print_budgets(title: str, budgets: Iterable[Budget]) -> None:
 def time_interleaved(tasks: Sequence[Task], rounds: int = ROUNDS) -> list[float]:
     """Median seconds of each task, a round of each after the other, after one that warms up.
 
-    A machine that slows down slows all of them. Freeing what a task returns is not timed.
+    A machine that slows down slows all of them.
     """
     samples: list[list[float]] = [[] for _ in tasks]
     begin = perf_counter()
@@ -89,33 +61,14 @@ def time_interleaved(tasks: Sequence[Task], rounds: int = ROUNDS) -> list[float]
 
 
 def _time_once(task: Task) -> float:
-    results: list[Any] = []
+    results: list[Any] = []  # kept, so that freeing them is not timed
 
     def setup() -> tuple[tuple[Any, ...], dict[str, Any]]:
         given = (task.setup(),) if task.setup else ()
         gc.collect()
         return given, {}
 
-    timed = time_rounds(
-        lambda *given: results.append(task.call(*given)), setup=setup, rounds=1, warmup=0
-    )
-    return float(timed.samples[0])
+    def call(*given: Any) -> None:
+        results.append(task.call(*given))
 
-
-def run_in_new_process(function: Callable[..., T], *arguments: Any) -> T:
-    """Call a function of a module in a process of its own, whose memory is then its alone."""
-    with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as pool:
-        return pool.submit(function, *arguments).result()
-
-
-def peak_bytes(function: Callable[[], Any]) -> tuple[Any, int]:
-    """What a function returns, and the most resident bytes it added to this process. Linux only."""
-    Path("/proc/self/clear_refs").write_text("5")  # the peak begins anew
-    before = _status_bytes("VmRSS")
-    result = function()
-    return result, _status_bytes("VmHWM") - before
-
-
-def _status_bytes(key: str) -> int:
-    lines = Path("/proc/self/status").read_text().splitlines()
-    return 1024 * int(next(line for line in lines if line.startswith(key)).split()[1])
+    return float(time_rounds(call, setup=setup, rounds=1, warmup=0).samples[0])

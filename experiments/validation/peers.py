@@ -1,13 +1,13 @@
 """How this project's half-edge mesh compares with other libraries, all measured in one run.
 
-``make peers`` installs them and runs this. One that has no distribution for this Python is skipped,
-and said so. COMPAS, whose meshes are Python objects, is compared on a smaller mesh than the others.
+``make peers`` installs them and runs this. A library that has no distribution for this Python is
+skipped, and said so. COMPAS' meshes are Python objects, and compared on a smaller torus.
 """
 
 from __future__ import annotations
 
 import platform
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from functools import partial
 from importlib import import_module
 from typing import Any
@@ -18,23 +18,15 @@ from numpy.typing import NDArray
 import hem
 import structures
 from experiments.harness import shuffled
-from experiments.validation.budgets import (
-    Budget,
-    Comparison,
-    Task,
-    peak_bytes,
-    print_budgets,
-    run_in_new_process,
-    time_interleaved,
-)
-from experiments.validation.peer_operations import compare_operations
-from hem.meshes import TriangleMesh
+from experiments.validation.budgets import Budget, Task, print_budgets, time_interleaved
 
 Array = NDArray[Any]
 
 VERTICES = 1_000_000
+OPERATED_VERTICES = 100_000
 OBJECT_VERTICES = 20_000
-SINGLE_QUERIES = 100_000
+COUNT = 20_000
+"""Single queries, and operations."""
 
 MODULES = {
     "OpenMesh": "openmesh",
@@ -49,6 +41,18 @@ BUILDERS: dict[str, Callable[[Any, Array, Array], Any]] = {
     "MeshLib": lambda meshlib, points, triangles: meshlib.meshFromFacesVerts(triangles, points),
     "libigl": lambda igl, _, triangles: igl.triangle_triangle_adjacency(triangles),
 }
+"""What each library does to know the neighbors in a mesh."""
+
+OPERATIONS = {
+    ("split_face", "split_faces"): 10.0,
+    ("split_edge", "split_edges"): 10.0,
+    ("collapse_edge", "collapse_edges"): 5.0,
+    ("split_face", ""): 1.0,
+    ("split_edge", ""): 1.0,
+    ("collapse_edge", ""): 1.0,
+    ("flip_edge", ""): 1.0,
+}
+"""How many times faster an operation is to be: by its name and that of its batch, if batched."""
 
 
 def import_peers() -> dict[str, Any]:
@@ -62,111 +66,157 @@ def import_peers() -> dict[str, Any]:
     return modules
 
 
-def compare_building(peers: dict[str, Any], mesh: TriangleMesh) -> Iterator[Comparison]:
-    """What each library does to know the neighbors in a mesh."""
-    cases = (
+def compare(what: str, asked: float, ours: Task, theirs: Task) -> Budget:
+    """Time both, interleaved; ``asked``: how many times faster we are to be."""
+    seconds = time_interleaved([ours, theirs])
+    ratio = seconds[1] / seconds[0]
+    measured = f"{ratio:.2f} × ({1e3 * seconds[0]:,.1f} ms, theirs {1e3 * seconds[1]:,.1f} ms)"
+    return Budget(what, f"≥ {asked:.3g} ×", measured, ratio >= asked)
+
+
+def compare_building(peers: dict[str, Any], mesh: hem.TriangleMesh) -> Iterator[Budget]:
+    """Build what knows the neighbors in a mesh."""
+    cases: Iterable[tuple[str, float, str, hem.TriangleMesh, Iterable[str]]] = (
         ("build", 5.0, "half_edge", mesh, BUILDERS),
         ("build, renumbered at random", 1.5, "half_edge", shuffled(mesh), BUILDERS),
-        ("build Plankton's half-edges", 3.0, "plankton", mesh, ("OpenMesh",)),
+        ("build Plankton's half-edges", 3.0, "plankton", mesh, ["OpenMesh"]),
     )
     for what, asked, structure, built, names in cases:
         ours = Task(partial(structures.build, structure, built))
-        points, triangles = built.points.astype(np.float64), built.triangles.astype(np.int64)
         for name in names:
             if name in peers:
+                triangles = built.triangles.astype(np.int64 if name == "libigl" else np.int32)
+                points = built.points.astype(np.float64)
                 theirs = Task(partial(BUILDERS[name], peers[name], points, triangles))
-                yield Comparison(what, asked, name, ours, theirs)
+                yield compare(f"{what}, {name}", asked, ours, theirs)
 
 
-def compare_queries(peers: dict[str, Any], mesh: TriangleMesh) -> Iterator[Comparison]:
-    """Queries of all elements at once."""
-    s = structures.build("half_edge", mesh)
-    vertices, all_faces, faces = s.vertices(), s.faces(), mesh.triangles.astype(np.int64)
-    vertex_faces = Task(lambda: s.vertex_faces(vertices))
+def compare_queries(peers: dict[str, Any], mesh: hem.TriangleMesh) -> Iterator[Budget]:
+    """Query all elements at once, and one after the other as OpenMesh's iterators do."""
+    s: Any = structures.build("half_edge", mesh)
+    vertices, faces, triangles = s.vertices(), s.faces(), mesh.triangles.astype(np.int64)
+    ours = Task(lambda: s.vertex_faces(vertices))
+    what = "vertex_faces of all"
     if openmesh := peers.get("OpenMesh"):
-        om = openmesh.TriMesh(mesh.points.astype(np.float64), np.array(mesh.triangles))
-        yield Comparison(
-            "vertex_faces of all", 1.5, "OpenMesh vf_indices", vertex_faces, Task(om.vf_indices)
+        om = openmesh.TriMesh(mesh.points.astype(np.float64), triangles)
+        yield compare(f"{what}, OpenMesh vf_indices", 1.5, ours, Task(om.vf_indices))
+        face_faces = Task(lambda: s.face_faces(faces))
+        yield compare(
+            "face_faces of all, OpenMesh ff_indices", 1.5, face_faces, Task(om.ff_indices)
         )
-        ours, theirs = Task(lambda: s.face_faces(all_faces)), Task(om.ff_indices)
-        yield Comparison("face_faces of all", 1.5, "OpenMesh ff_indices", ours, theirs)
-        yield from _compare_single_queries(
-            "OpenMesh iterator", s, lambda v: [face.idx() for face in om.vf(om.vertex_handle(v))]
+        yield _compare_single(
+            "OpenMesh", s, lambda vertex: [it.idx() for it in om.vf(om.vertex_handle(vertex))]
         )
     if trimesh := peers.get("trimesh"):
-        theirs = Task(lambda: trimesh.Trimesh(mesh.points, faces, process=False).vertex_faces)
-        yield Comparison("vertex_faces of all", 1.5, "trimesh", vertex_faces, theirs)
+        theirs = Task(lambda: trimesh.Trimesh(mesh.points, triangles, process=False).vertex_faces)
+        yield compare(f"{what}, trimesh", 1.5, ours, theirs)
     if igl := peers.get("libigl"):
-        theirs = Task(lambda: igl.vertex_triangle_adjacency(faces, len(mesh.points)))
-        yield Comparison("vertex_faces of all", 1.5, "libigl", vertex_faces, theirs)
+        theirs = Task(lambda: igl.vertex_triangle_adjacency(triangles, len(mesh.points)))
+        yield compare(f"{what}, libigl", 1.5, ours, theirs)
 
 
-def compare_objects(peers: dict[str, Any]) -> Iterator[Comparison]:
-    """One query after the other, as COMPAS answers them."""
+def compare_objects(peers: dict[str, Any]) -> Iterator[Budget]:
+    """Query COMPAS' objects."""
     if compas := peers.get("COMPAS"):
         mesh = hem.generate("torus", OBJECT_VERTICES)
-        s = structures.build("half_edge", mesh)
         theirs = compas.Mesh.from_vertices_and_faces(mesh.points.tolist(), mesh.triangles.tolist())
-        what = f"COMPAS, torus of {OBJECT_VERTICES:,} vertices"
-        yield from _compare_single_queries(what, s, theirs.vertex_faces)
+        yield _compare_single("COMPAS", structures.build("half_edge", mesh), theirs.vertex_faces)
 
 
-def _compare_single_queries(peer: str, s: Any, ask: Callable[[int], Any]) -> Iterator[Comparison]:
-    """One query after the other from a Python loop, in two orders of the vertices."""
-    shuffled_vertices = np.random.default_rng(0).permutation(s.n_vertices)[:SINGLE_QUERIES]
-    count = len(shuffled_vertices)
-    for order, chosen in (("at random", shuffled_vertices), ("in order", np.arange(count))):
-        what = f"{count:,} single vertex_faces {order}"
-        yield Comparison(what, 1.0, peer, _ask_each(s.vertex_faces, chosen), _ask_each(ask, chosen))
+def _compare_single(peer: str, s: Any, ask: Callable[[int], Any]) -> Budget:
+    """One query after the other from a Python loop, at random."""
+    chosen = np.random.default_rng(0).permutation(s.n_vertices)[:COUNT].tolist()
+
+    def ask_each(query: Callable[[int], Any]) -> None:
+        for vertex in chosen:
+            query(vertex)
+
+    ours, theirs = Task(partial(ask_each, s.vertex_faces)), Task(partial(ask_each, ask))
+    return compare(f"{COUNT:,} single vertex_faces, {peer}", 1.0, ours, theirs)
 
 
-def _ask_each(ask: Callable[[int], Any], vertices: NDArray[np.int64]) -> Task:
-    handles = vertices.tolist()
-
-    def ask_each() -> None:
-        for vertex in handles:
-            ask(vertex)
-
-    return Task(ask_each)
-
-
-def measure_building() -> list[Budget]:
-    """The memory that building takes, in a process of its own, and how long objects take."""
-    size, peak = run_in_new_process(_build_and_weigh)
-    mesh = hem.generate("torus", 100_000)
-    (seconds,) = time_interleaved([Task(lambda: structures.build("half_edge_objects", mesh))], 1)
-    return [
-        Budget(
-            "peak while building, by what is built",
-            "< 3 ×",
-            f"{peak / size:.2f} ×",
-            peak < 3 * size,
-        ),
-        Budget("build objects of 100,000 vertices", "< 5 s", f"{seconds:.2f} s", seconds < 5),
-    ]
+def compare_operations(peers: dict[str, Any]) -> Iterator[Budget]:
+    """Operate at random, batched and one by one, on OpenMesh's meshes one by one."""
+    if not (openmesh := peers.get("OpenMesh")):
+        return
+    mesh, rng = hem.generate("torus", OPERATED_VERTICES), np.random.default_rng(1)
+    s, places = structures.build("half_edge", mesh), rng.random((COUNT, 3))
+    points, triangles = mesh.points.astype(np.float64), np.array(mesh.triangles)
+    for (operation, batch), asked in OPERATIONS.items():
+        every = s.faces() if operation == "split_face" else s.edges()
+        chosen = rng.choice(len(every), COUNT, replace=False)
+        handles = every[chosen]
+        arguments = (handles, places) if operation.startswith("split") else (handles,)
+        operate = _operate_batched if batch else _operate_each
+        ours = partial(operate, batch or operation, arguments)
+        theirs = partial(OPENMESH[operation], chosen.tolist(), list(places))
+        yield compare(
+            f"{COUNT:,} {operation}, {'batched' if batch else 'one by one'}, OpenMesh",
+            asked,
+            Task(ours, lambda: _copy_with_room(s)),
+            Task(theirs, lambda: openmesh.TriMesh(points, triangles)),
+        )
 
 
-def _build_and_weigh() -> tuple[int, int]:
-    structures.build("half_edge", hem.generate("torus", 400))  # compiles
-    mesh = hem.generate("torus", VERTICES)
-    s, peak = peak_bytes(lambda: structures.build("half_edge", mesh))
-    return sum(s.memory().values()), peak
+def _copy_with_room(s: Any) -> Any:
+    copy = s.copy()
+    copy.reserve(COUNT)
+    copy.split_face(0, (0, 0, 0))  # binds the operations
+    return copy
+
+
+def _operate_batched(batch: str, arguments: Iterable[Array], s: Any) -> None:
+    getattr(s, batch)(*arguments)
+
+
+def _operate_each(operation: str, arguments: Iterable[Array], s: Any) -> None:
+    operate = getattr(s, operation)
+    handles, *places = arguments
+    for given in zip(handles.tolist(), *places, strict=True):
+        try:
+            operate(*given)
+        except hem.TopologyError:
+            continue
+
+
+def _split_faces(faces: list[int], places: list[Array], mesh: Any) -> None:
+    for face, place in zip(faces, places, strict=True):
+        mesh.split(mesh.face_handle(face), mesh.add_vertex(place))
+
+
+def _split_edges(edges: list[int], places: list[Array], mesh: Any) -> None:
+    for edge, place in zip(edges, places, strict=True):
+        mesh.split(mesh.edge_handle(edge), mesh.add_vertex(place))
+
+
+def _collapse_edges(edges: list[int], _: list[Array], mesh: Any) -> None:
+    for edge in map(mesh.edge_handle, edges):
+        half_edge = mesh.halfedge_handle(edge, 0)
+        if not mesh.is_deleted(edge) and mesh.is_collapse_ok(half_edge):
+            mesh.collapse(half_edge)
+
+
+def _flip_edges(edges: list[int], _: list[Array], mesh: Any) -> None:
+    for edge in map(mesh.edge_handle, edges):
+        if mesh.is_flip_ok(edge):
+            mesh.flip(edge)
+
+
+OPENMESH: dict[str, Callable[[list[int], list[Array], Any], None]] = {
+    "split_face": _split_faces,
+    "split_edge": _split_edges,
+    "collapse_edge": _collapse_edges,
+    "flip_edge": _flip_edges,
+}
 
 
 def main() -> None:
-    """Compare with OpenMesh, MeshLib, libigl, trimesh and COMPAS; print a table after each part."""
+    """Compare with every library that is installed; print a table after each part."""
     peers, mesh = import_peers(), hem.generate("torus", VERTICES)
-    size = f"torus of {VERTICES:,} vertices"
-    parts: dict[str, Iterator[Comparison]] = {
-        f"Building, {size}": compare_building(peers, mesh),
-        f"Queries, {size}": compare_queries(peers, mesh),
-        "Queries of objects": compare_objects(peers),
-    }
-    if openmesh := peers.get("OpenMesh"):
-        parts["Operations, torus of 100,000 vertices"] = compare_operations(openmesh)
-    for title, comparisons in parts.items():
-        print_budgets(title, [comparison.measure() for comparison in comparisons])
-    print_budgets("Our own", measure_building())
+    print_budgets(f"Building, torus of {VERTICES:,} vertices", compare_building(peers, mesh))
+    print_budgets(f"Queries, torus of {VERTICES:,} vertices", compare_queries(peers, mesh))
+    print_budgets(f"Queries, torus of {OBJECT_VERTICES:,} vertices", compare_objects(peers))
+    print_budgets(f"Operations, torus of {OPERATED_VERTICES:,}", compare_operations(peers))
 
 
 if __name__ == "__main__":

@@ -35,7 +35,7 @@ def test_right_wrong_and_undetermined_are_told_apart() -> None:
 def test_a_sound_run_is_determined_and_one_without_data_is_not(tmp_path: Path) -> None:
     run = load(write_run(tmp_path / "sound"))
     assert accuracy.determined_shares(judge_run(run)).loc["Table 1"].tolist() == [42, 1, 1]
-    emptied = judge_run(type(run)(run.folder, run.meta, run.cases.iloc[:0], run.skipped))
+    emptied = judge_run(type(run)(tmp_path / "empty", run.meta, run.cases.iloc[:0], run.skipped))
     assert accuracy.determined_shares(emptied).loc["Table 1"].tolist() == [42, 0, 0]
 
 
@@ -45,7 +45,7 @@ def test_half_of_the_timed_curves_missing_is_half_of_the_claims_undetermined(
     run = load(write_run(tmp_path / "run"))
     timed = run.cases["experiment"].isin(["bench_queries", "bench_valence"])
     lost = timed & (run.cases["subject"] == "vertex_faces")
-    without = type(run)(run.folder, run.meta, run.cases[~lost], run.skipped)
+    without = type(run)(tmp_path / "without", run.meta, run.cases[~lost], run.skipped)
     shares = accuracy.determined_shares(judge_run(without)).loc["Table 1"]
     assert shares.work == 1
     assert shares.time == pytest.approx(1 - run.cases[lost]["structure"].nunique() / shares.claims)
