@@ -11,22 +11,20 @@ import json
 from collections import Counter
 from collections.abc import Iterable
 from importlib.metadata import PackageNotFoundError, version
+from itertools import product
 from pathlib import Path
 from typing import Any
 
 import pandas as pd
 
 from experiments.claims import Growth, JudgedClaim, Outcome
-from experiments.runs.catalog import tables
-from experiments.runs.provenance import describe
+from experiments.runs import describe, tables
 from experiments.validation.judges import PACKAGES, Judge, installed_judges
-from experiments.validation.synthetic import CONDITIONS, GROWTH, SyntheticCurve, make_all_curves
+from experiments.validation.synthetic import CONDITIONS, GROWTH, SyntheticCurve, make_curves
 
 RESULT = Path("results/reference/accuracy.json")
 UNDETERMINED = Outcome.UNDETERMINED.value
 COLUMNS = ["judge", "condition", "growth", "answer", "count"]
-COUNT = 144
-"""Curves of each class and condition."""
 
 ASKED = {
     "steady": (0.95, 0.005),
@@ -124,16 +122,15 @@ def _version(package: str) -> str:
 def main() -> None:
     """Run as a command."""
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("--count", type=int, default=COUNT, help="curves of each class, condition")
-    parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--output", type=Path, default=RESULT)
     given = parser.parse_args()
-    answers = count_answers(installed_judges(), make_all_curves(given.count, given.seed))
-    head = {key: value for key, value in describe("accuracy").items() if key != "preset"}
+    kinds = product(CONDITIONS, GROWTH)
+    curves = [it for condition, growth in kinds for it in make_curves(growth, condition)]
+    answers = count_answers(installed_judges(), curves)
+    head = describe("accuracy")
     head["versions"] |= {package: _version(package) for package in PACKAGES}
-    head |= {"curves": given.count * len(GROWTH) * len(CONDITIONS), "seed": given.seed}
-    head |= {"columns": COLUMNS, "rows": answers.to_numpy().tolist()}
-    given.output.write_text(json.dumps(head, indent=1) + "\n", "utf-8")
+    kept = {"curves": len(curves), "columns": COLUMNS, "rows": answers.to_numpy().tolist()}
+    given.output.write_text(json.dumps(head | kept, indent=1) + "\n", "utf-8")
     print(accuracy_table(answers).to_string(index=False))
 
 

@@ -13,12 +13,14 @@ from importlib.util import find_spec
 
 import numpy as np
 
-from experiments.validation.synthetic import Array
+from experiments.validation.synthetic import GROWTH, Array
 from hem.complexity import judge
 
 Judge = Callable[[Array, Sequence[Array], Array | None], str | None]
 
 NANOSECONDS = 1e9
+ROOTLESS = [name for name in GROWTH if name != "O(√n)"]
+"""What those know that have no O(√n)."""
 
 
 def hem_judge(sizes: Array, samples: Sequence[Array], latency: Array | None) -> str | None:
@@ -38,14 +40,7 @@ def google_benchmark(
     asked about.
     """
     n, t = _points(sizes, samples)
-    curves = {
-        "O(1)": np.ones_like(n),
-        "O(log n)": np.log2(n),
-        "O(n)": n,
-        "O(n log n)": n * np.log2(n),
-        "O(n²)": n * n,
-    }
-    return min(curves, key=lambda name: _normalized_rms(curves[name], t))
+    return min(ROOTLESS, key=lambda name: _normalized_rms(GROWTH[name](n), t))
 
 
 def _normalized_rms(curve: Array, t: Array) -> float:
@@ -60,13 +55,8 @@ def big_o(sizes: Array, samples: Sequence[Array], latency: Array | None = None) 
     """
     from big_o import complexities, infer_big_o_class
 
-    names = {
-        complexities.Constant: "O(1)",
-        complexities.Logarithmic: "O(log n)",
-        complexities.Linear: "O(n)",
-        complexities.Linearithmic: "O(n log n)",
-        complexities.Quadratic: "O(n²)",
-    }
+    theirs = "Constant", "Logarithmic", "Linear", "Linearithmic", "Quadratic"
+    names = {getattr(complexities, own): name for own, name in zip(theirs, ROOTLESS, strict=True)}
     least = np.array([np.min(case) for case in samples])
     best, _ = infer_big_o_class(sizes, NANOSECONDS * least, classes=list(names))
     return names[type(best)] if best is not None else None
@@ -80,14 +70,8 @@ def bigo(sizes: Array, samples: Sequence[Array], latency: Array | None = None) -
     from bigO import bigO, models
 
     atexit.unregister(bigO.save_performance_data)  # or it leaves a file where one happens to be
-    names = {
-        "O(1)": "O(1)",
-        "O(log(n))": "O(log n)",
-        "O(sqrt(n))": "O(√n)",
-        "O(n)": "O(n)",
-        "O(n*log(n))": "O(n log n)",
-        "O(n**2)": "O(n²)",
-    }
+    theirs = "O(1)", "O(log(n))", "O(sqrt(n))", "O(n)", "O(n*log(n))", "O(n**2)"
+    names = dict(zip(theirs, GROWTH, strict=True))
     n, t = _points(sizes, samples)
     fitted = models.infer_bound(n, NANOSECONDS * t).models
     return next((names[fit.model.name] for fit in fitted if fit.model.name in names), None)

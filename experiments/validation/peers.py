@@ -179,14 +179,9 @@ def _operate_each(operation: str, arguments: Iterable[Array], s: Any) -> None:
             continue
 
 
-def _split_faces(faces: list[int], places: list[Array], mesh: Any) -> None:
-    for face, place in zip(faces, places, strict=True):
-        mesh.split(mesh.face_handle(face), mesh.add_vertex(place))
-
-
-def _split_edges(edges: list[int], places: list[Array], mesh: Any) -> None:
-    for edge, place in zip(edges, places, strict=True):
-        mesh.split(mesh.edge_handle(edge), mesh.add_vertex(place))
+def _split(kind: str, handles: list[int], places: list[Array], mesh: Any) -> None:
+    for handle, place in zip(map(getattr(mesh, kind), handles), places, strict=True):
+        mesh.split(handle, mesh.add_vertex(place))
 
 
 def _collapse_edges(edges: list[int], _: list[Array], mesh: Any) -> None:
@@ -203,8 +198,8 @@ def _flip_edges(edges: list[int], _: list[Array], mesh: Any) -> None:
 
 
 OPENMESH: dict[str, Callable[[list[int], list[Array], Any], None]] = {
-    "split_face": _split_faces,
-    "split_edge": _split_edges,
+    "split_face": partial(_split, "face_handle"),
+    "split_edge": partial(_split, "edge_handle"),
     "collapse_edge": _collapse_edges,
     "flip_edge": _flip_edges,
 }

@@ -41,35 +41,34 @@ NOISES = (0.02, 0.05, 0.1)
 
 
 class SyntheticCurve(NamedTuple):
-    """A curve, and what it is.
-
-    sizes: (k,). samples: k arrays of seconds. latency: (k,) nanoseconds per access in the working
-    set, with an error of 2 to 5 %, or None.
-    """
+    """A curve, and what it is."""
 
     growth: str
     condition: str
-    sizes: Array
-    samples: list[Array]
-    latency: Array | None
+    sizes: Array  # (k,)
+    samples: list[Array]  # k times seconds
+    latency: Array | None  # (k,) nanoseconds per access, with an error of 2 to 5 %
 
 
-def machine_latency(working_set: Array) -> Array:
-    """Nanoseconds per dependent load: steps at 32 KB, 1 MB and 30 MB, smooth in the logarithm."""
-    steps = ((32e3, 4 / 1.2), (1e6, 15 / 4), (30e6, 100 / 15))
-    x = np.log(working_set)
-    latency = np.full_like(x, 1.2)
-    for at, factor in steps:
-        latency *= factor ** (1 / (1 + np.exp((np.log(at) - x) / 0.35)))
-    return latency
+def make_curves(
+    growth: str, condition: str, count: int = 144, seed: int = 0
+) -> Iterator[SyntheticCurve]:
+    """Make ``count`` curves of one class and condition, as many of each intercept and noise.
+
+    ``count`` must be a multiple of 6: ValueError else. The same seed gives the same curves.
+    """
+    kinds = [(intercept, noise) for intercept in INTERCEPTS for noise in NOISES]
+    if count % len(kinds):
+        raise ValueError(f"count must be a multiple of {len(kinds)}, not {count}")
+    place = list(GROWTH).index(growth), list(CONDITIONS).index(condition)
+    rng = np.random.default_rng([seed, *place])
+    for intercept, noise in kinds:
+        for _ in range(count // len(kinds)):
+            yield make_curve(rng, growth, condition, intercept, noise)
 
 
 def make_curve(
-    rng: np.random.Generator,
-    growth: str,
-    condition: str,
-    intercept: float = 0.0,
-    noise: float = 0.05,
+    rng: np.random.Generator, growth: str, condition: str, intercept: float, noise: float
 ) -> SyntheticCurve:
     """Make one curve of a class. Half of the slowed ones have a slowed intercept, too.
 
@@ -87,29 +86,13 @@ def make_curve(
     return SyntheticCurve(growth, condition, sizes, samples, seen if condition in TOLD else None)
 
 
-def make_curves(
-    growth: str, condition: str, count: int = 144, seed: int = 0
-) -> Iterator[SyntheticCurve]:
-    """Make ``count`` curves of one class and condition, as many of each intercept and noise.
-
-    ``count`` must be a multiple of 6: ValueError else. The same seed gives the same curves.
-    """
-    kinds = [(intercept, noise) for intercept in INTERCEPTS for noise in NOISES]
-    if count % len(kinds):
-        raise ValueError(f"count must be a multiple of {len(kinds)}, not {count}")
-    rng = np.random.default_rng(
-        [seed, list(GROWTH).index(growth), list(CONDITIONS).index(condition)]
-    )
-    for intercept, noise in kinds:
-        for _ in range(count // len(kinds)):
-            yield make_curve(rng, growth, condition, intercept, noise)
-
-
-def make_all_curves(count: int = 144, seed: int = 0) -> Iterator[SyntheticCurve]:
-    """Make ``count`` curves of every class and condition: 24 times as many in all."""
-    for condition in CONDITIONS:
-        for growth in GROWTH:
-            yield from make_curves(growth, condition, count, seed)
+def machine_latency(working_set: Array) -> Array:
+    """Nanoseconds per dependent load: steps at 32 KB, 1 MB and 30 MB, smooth in the logarithm."""
+    x = np.log(working_set)
+    latency = np.full_like(x, 1.2)
+    for at, factor in ((32e3, 4 / 1.2), (1e6, 15 / 4), (30e6, 100 / 15)):
+        latency *= factor ** (1 / (1 + np.exp((np.log(at) - x) / 0.35)))
+    return latency
 
 
 def _sizes(rng: np.random.Generator) -> tuple[Array, float]:
@@ -125,5 +108,4 @@ def _slowdown(latency: Array, rng: np.random.Generator) -> Array:
     """How a latency slows a query down: about tenfold, or less where the latency grows less."""
     own = latency / latency[0]
     share = min(rng.uniform(8, 12) - 1, own.max() - 1) / (own.max() - 1)
-    slow: Array = 1 + share * (own - 1)
-    return slow
+    return np.asarray(1 + share * (own - 1))

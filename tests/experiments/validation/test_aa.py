@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from experiments.regression.baseline import measured
-from experiments.runs.results import load
+from experiments.runs import load
 from experiments.validation import aa
 from tests.experiments.made_runs import LAWS, write_run
 

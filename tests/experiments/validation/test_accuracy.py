@@ -8,7 +8,7 @@ import pytest
 
 from experiments.claims import judge_run
 from experiments.report import accuracy_figures
-from experiments.runs.results import load
+from experiments.runs import load
 from experiments.validation import accuracy
 from experiments.validation.synthetic import CONDITIONS, GROWTH, make_curves
 from tests.experiments.made_runs import write_run
