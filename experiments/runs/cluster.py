@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, Any
 
 from filelock import FileLock
 
-from experiments.runs.compiling import compile_kernels
+from experiments.runs.compiling import compile_and_count
 from experiments.runs.provenance import describe, machine_id
 from experiments.runs.store import META, CaseFile, cannot_write, case_files, read_meta, write_meta
 from experiments.runs.study import Observer, StudyFailedError, finish, plan, prepared
@@ -134,7 +134,7 @@ def measure_alone(job: Job, commit: str, require_wanted: Callable[[], None]) -> 
     with FileLock(lock), tempfile.TemporaryDirectory(prefix="hem-") as name:
         place = Path(name)
         require_wanted()
-        compile_kernels(place, [job], lambda *_: require_wanted())
+        compile_and_count(place, [job], lambda *_: require_wanted(), lambda *_: None)
         with closing(perform(place, [job])) as finished:
             for _ in finished:
                 require_wanted()

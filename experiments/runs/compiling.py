@@ -1,7 +1,8 @@
-"""Compiling what a study needs, before anything is timed, on all cores.
+"""Compiling and counting, before anything is timed, on all cores.
 
-One case of each kind is run once, on its smallest mesh, in a process per structure. Numba keeps
-what it compiles on disk, and a stamp beside it says what was compiled of which sources.
+What is counted does not depend on what runs beside it. To compile, one case of each kind is run
+once, on its smallest mesh, in a process per structure. Numba keeps what it compiles on disk, and a
+stamp beside it says what was compiled of which sources.
 """
 
 from __future__ import annotations
@@ -26,27 +27,40 @@ from structures import REGISTRY
 ROOTS = tuple(Path(str(it.__file__)).parent for it in (hem, structures, harness))
 
 
-def compile_kernels(
-    folder: Path, jobs: Sequence[Job], compiled: Callable[[str, int, int], None]
+def compile_and_count(
+    folder: Path,
+    jobs: Sequence[Job],
+    compiled: Callable[[str, int, int], None],
+    count: Callable[[list[Job], Event], None],
 ) -> None:
-    """Compile what jobs need and what is not compiled yet, and tell ``compiled`` of each structure.
+    """Compile what timed jobs need, and do those that only count, on all cores.
 
-    What cannot be compiled is left to be told by its measurement.
+    ``compiled`` is told of each structure whose kernels are ready; ``count`` does the jobs of one
+    structure, until the event is set. What cannot be compiled, its measurement will tell.
     """
-    names = dict.fromkeys(job.structure for job in jobs)
-    groups = [[job for job in jobs if job.structure == name] for name in names]
-    groups = sorted((it for it in groups if not _stamp(it).exists()), key=_urgency)
+    timed = [it for it in _by_structure(jobs, timed=True) if not _stamp(it).exists()]
+    timed.sort(key=_urgency)
     stop = Event()
     with ThreadPoolExecutor(len(affinity.allowed()) or os.cpu_count()) as pool:
-        running = {pool.submit(_compile, folder, group, stop): group for group in groups}
+        running = {pool.submit(_compile, folder, group, stop): group for group in timed}
+        counting = [pool.submit(count, group, stop) for group in _by_structure(jobs, timed=False)]
         try:
             for done, future in enumerate(as_completed(running), 1):
                 _keep_stamp(future, _stamp(running[future]))
-                compiled(running[future][0].structure, done, len(groups))
+                compiled(running[future][0].structure, done, len(timed))
+            for future in as_completed(counting):
+                future.result()
         except BaseException:
             stop.set()
             pool.shutdown(cancel_futures=True)
             raise
+
+
+def _by_structure(jobs: Sequence[Job], timed: bool) -> list[list[Job]]:
+    """The jobs that take times, or those that only count, a group per structure."""
+    chosen = [job for job in jobs if job.timed == timed]
+    names = dict.fromkeys(job.structure for job in chosen)
+    return [[job for job in chosen if job.structure == name] for name in names]
 
 
 def _urgency(jobs: list[Job]) -> tuple[bool, bool]:

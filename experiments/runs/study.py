@@ -1,7 +1,7 @@
 """A study: every experiment on every structure, into one run folder.
 
-First what the experiments need is compiled, on all cores. Then workers measure, one structure
-after the other, because what runs beside a measurement is measured with it.
+First what the experiments need is compiled, and what is only counted is counted, on all cores. Then
+workers take times, one structure after the other, because what runs beside is timed with it.
 """
 
 from __future__ import annotations
@@ -11,13 +11,14 @@ from contextlib import closing, contextmanager, suppress
 from dataclasses import asdict
 from datetime import UTC, datetime
 from pathlib import Path
+from threading import Event
 from time import monotonic
 from typing import Any
 
 from experiments.harness import PRESETS
 from experiments.harness.steadiness import REPEATS
 from experiments.runs.catalog import experiments
-from experiments.runs.compiling import compile_kernels
+from experiments.runs.compiling import compile_and_count
 from experiments.runs.provenance import describe, now, source
 from experiments.runs.run import RUNS, latest, load
 from experiments.runs.steadiness import noise
@@ -131,11 +132,16 @@ def plan(folder: Path) -> list[Job]:
     jobs = [
         Job(name, structure, options)
         for name, declared in experiments().items()
-        if not meta["experiments"] or name in meta["experiments"]
+        if name in (meta["experiments"] or _usual(options.preset))
         for structure in declared.structures
         if not chosen or structure in chosen or structure not in NAMED
     ]
     return [job for job in jobs if job.ids]
+
+
+def _usual(preset: str) -> list[str]:
+    """The experiments of a preset, where none are asked for by name."""
+    return [name for name in experiments() if name not in PRESETS[preset].skipped]
 
 
 def run(folder: Path, observer: Observer | None = None) -> None:
@@ -148,42 +154,43 @@ def run(folder: Path, observer: Observer | None = None) -> None:
     observer = observer or Observer()
     with prepared(folder, observer.say):
         jobs = [job for job in plan(folder) if job.left(folder)]
-        compile_kernels(folder, jobs, observer.compiled)
-        failures = [
-            failure
-            for structure in dict.fromkeys(job.structure for job in jobs)
-            for failure in _measure(
-                folder, [job for job in jobs if job.structure == structure], observer
-            )
-        ]
+        failures: list[str] = []
+
+        def measure(group: list[Job], stop: Event) -> None:
+            failures.extend(_measure(folder, group, observer, stop))
+
+        compile_and_count(folder, jobs, observer.compiled, measure)
+        timed = [job for job in jobs if job.timed]
+        for structure in dict.fromkeys(job.structure for job in timed):
+            measure([job for job in timed if job.structure == structure], Event())
         if failures:
             raise StudyFailedError("\n\n".join(failures))
         finish(folder)
 
 
-def _measure(folder: Path, jobs: list[Job], observer: Observer) -> list[str]:
+def _measure(folder: Path, jobs: list[Job], observer: Observer, stop: Event) -> list[str]:
     """Measure jobs of one structure -> which failed, and why."""
     begin, failures, left = monotonic(), [], jobs
     while left:
         try:
-            _measure_once(folder, left, observer)
+            _measure_once(folder, left, observer, stop)
         except WorkerDiedError as error:
             left = [job for job in left if job.left(folder)]
             failures += [f"{job}:\n{error}" for job in left[:1]]
-            left = left[
-                1:
-            ]  # whoever killed the worker does not keep the others from being measured
+            left = left[1:]  # what killed the worker does not keep the others from being measured
         else:
             names = ", ".join(str(job) for job in left if job.left(folder))
             failures += [f"{names}:\n{end_of_log(log_of(folder, left[0]))}"] if names else []
             left = []
     now = monotonic()
+    if stop.is_set():
+        return []
     with suppress(WorkerDiedError):
         _measure_again(folder, jobs, now + REPEATING_SHARE * (now - begin))
     return failures
 
 
-def _measure_once(folder: Path, jobs: list[Job], observer: Observer) -> None:
+def _measure_once(folder: Path, jobs: list[Job], observer: Observer, stop: Event) -> None:
     done = {job: len(job.ids) - len(job.left(folder)) for job in jobs}
     by_name = {job.experiment: job for job in jobs}
     with closing(perform(folder, jobs)) as finished:
@@ -191,6 +198,8 @@ def _measure_once(folder: Path, jobs: list[Job], observer: Observer) -> None:
             job = by_name[experiment]
             done[job] += 1
             observer.measured(job, done[job])
+            if stop.is_set():
+                return
 
 
 def _measure_again(folder: Path, jobs: list[Job], until: float) -> None:

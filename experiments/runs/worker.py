@@ -52,6 +52,11 @@ class Job:
     def __str__(self) -> str:
         return f"{self.experiment.removeprefix('bench_')} on {self.structure}"
 
+    @property
+    def timed(self) -> bool:
+        """Whether it takes times; what is only counted does not mind what runs beside it."""
+        return experiments()[self.experiment].kind == "time"
+
     @cached_property
     def ids(self) -> frozenset[str]:
         """The ids of the cases that it leaves behind."""
@@ -85,6 +90,7 @@ def perform(folder: Path, jobs: Sequence[Job], action: str = MEASURE) -> Generat
         "run": str(folder.resolve()),
         "action": action,
         **vars(jobs[0].options),
+        "pin": jobs[0].options.pin and jobs[0].timed and action != COMPILE,
     }
     try:
         log.parent.mkdir(exist_ok=True)
@@ -105,7 +111,8 @@ def perform(folder: Path, jobs: Sequence[Job], action: str = MEASURE) -> Generat
 
 def log_of(folder: Path, job: Job, action: str = MEASURE) -> Path:
     """Where the workers of a job's structure print."""
-    return folder / "logs" / f"{job.structure}.{action}.txt"
+    what = action if action != MEASURE or job.timed else "count"
+    return folder / "logs" / f"{job.structure}.{what}.txt"
 
 
 def end_of_log(log: Path) -> str:
