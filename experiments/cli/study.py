@@ -44,6 +44,7 @@ def run_study(
     with user_errors():
         from experiments.harness import memory
         from experiments.runs import study
+        from experiments.runs.worker import DEFAULT_SEED
 
         memory.available()  # whether HEM_MEMORY can be read
         if workers:
@@ -60,7 +61,7 @@ def run_study(
         elif run:
             raise ValueError(f"to resume {run}, say --resume as well")
         else:
-            order = study.DEFAULT_SEED if seed is None else seed
+            order = DEFAULT_SEED if seed is None else seed
             some = structure or (), experiment or ()
             folder = study.begin(preset or "quick", output, *some, seed=order, pin=pin)
         _measure(folder, workers)
