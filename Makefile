@@ -64,12 +64,9 @@ format: $(DEV)  ## format the code
 	@$(BIN)/ruff format .
 	@$(BIN)/ruff check --fix .
 
-# OpenMesh comes as source, and not for every Python. What cannot be installed is not compared.
-peers: export CMAKE_BUILD_PARALLEL_LEVEL := $(shell getconf _NPROCESSORS_ONLN)
+peers: export CMAKE_BUILD_PARALLEL_LEVEL := $(shell nproc) # OpenMesh comes as source
 peers: $(STUDY)  ## compare with OpenMesh, libigl, MeshLib, trimesh and COMPAS
-	@for peer in openmesh libigl meshlib compas; do \
-		$(BIN)/python -m pip --disable-pip-version-check --quiet install $$peer --constraint constraints.txt >/dev/null 2>&1 \
-		|| echo "$$peer cannot be installed here; pip install $$peer says why"; done
+	$(call install,$(VENV),peers,constraints.txt)
 	@$(BIN)/python -m experiments.validation.peers
 
 test-floor:  ## run all tests with the oldest versions that are supported

@@ -15,7 +15,7 @@ except ModuleNotFoundError as error:  # the library alone was installed
     raise SystemExit("hem: the commands need more: pip install 'hem-mesh[study]'") from error
 
 import hem
-from experiments.cli.check import check, reference_app
+from experiments.cli.check import baseline_app, check
 from experiments.cli.console import console, errors, user_errors
 from experiments.cli.fracture import fracture
 from experiments.cli.history import history
@@ -182,6 +182,7 @@ def _holders(mesh: hem.TriangleMesh | hem.PolygonMesh) -> tuple[Table, list[str]
 app.command()(fracture)
 app.add_typer(history, name="history")
 app.command()(check)
-app.add_typer(reference_app, name="reference")
+app.add_typer(baseline_app, name="baseline")
+app.add_typer(baseline_app, name="reference", hidden=True)
 
 __all__ = ["app", "console", "errors"]

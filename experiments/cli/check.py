@@ -1,4 +1,4 @@
-"""The commands ``hem check`` and ``hem reference update``."""
+"""The commands ``hem check`` and ``hem baseline update``."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 from rich.markup import escape
@@ -15,23 +15,30 @@ from rich.markup import escape
 from experiments import carried
 from experiments.cli.console import console, errors, user_errors
 
+if TYPE_CHECKING:  # takes a second to import, and `hem --help` has no need of it
+    from experiments.regression import Compared, Measured
+    from experiments.runs import Run
+
+Baseline = Annotated[
+    Path, typer.Option("--baseline", "--reference", help="The folder with what is compared with.")
+]
 HERE = Path("results/reference")
 BASELINE = HERE if HERE.is_dir() else carried("results/reference")
-Reference = Annotated[Path, typer.Option(help="The folder with what is compared with.")]
 
 FACTOR_HELP = (
-    "How many times slower counts as worse; less passes. Default: 2 from run to run, 1.15 by turns."
+    "How many times slower counts as worse; less passes. Default: 2 from run to run, "
+    "1.15 interleaved."
 )
 
 
 def check(
     run: Annotated[
         Path | None,
-        typer.Argument(help="The folder of a run. Without it only what is exact, in seconds."),
+        typer.Argument(help="The folder of a run. Without it only the counters, in seconds."),
     ] = None,
     beside: Annotated[
         Path | None,
-        typer.Option(help="Another checkout: time the queries there and here by turns."),
+        typer.Option(help="Another checkout: time the queries there and here, interleaved."),
     ] = None,
     structure: Annotated[
         list[str] | None, typer.Option(help="Measure just this one; may be repeated.")
@@ -41,25 +48,65 @@ def check(
     markdown: Annotated[
         Path | None, typer.Option(help="Write a summary for a pull request to this file.")
     ] = None,
-    reference: Reference = BASELINE,
+    baseline: Baseline = BASELINE,
 ) -> None:
-    """Compare with the reference. Exit code 0; 1: something got worse; 2: it cannot be told."""
+    """Compare with the baseline. Exit code 0; 1: something got worse; 2: it cannot be told."""
     with could_not_measure(), user_errors():
         if factor is not None and not factor > 1:
             raise ValueError(f"--factor is more than 1, such as 1.5, not {factor:g}")
-        from experiments.regression import findings_shown
-        from experiments.regression.findings import code
-        from experiments.regression.gate import compare_all
+        from experiments.regression import exit_code
+        from experiments.report import findings as shown
 
-        findings, notes = compare_all(run, beside, structure or [], factor, reference)
+        compared = _compare(run, beside, structure or [], factor, baseline)
         if as_json:
-            content = findings_shown.as_json(findings, notes)
+            content = shown.as_json(*compared)
             sys.stdout.write(json.dumps(content, indent=1, ensure_ascii=False) + "\n")
         else:
-            findings_shown.show(findings, notes, console)
+            shown.show(*compared, console)
         if markdown is not None:
-            markdown.write_text(findings_shown.as_markdown(findings, notes), "utf-8")
-    raise typer.Exit(code(findings))
+            markdown.write_text(shown.as_markdown(*compared), "utf-8")
+    raise typer.Exit(exit_code(compared.findings))
+
+
+def _compare(
+    run: Path | None, beside: Path | None, structures: list[str], factor: float | None, folder: Path
+) -> Compared:
+    """All that was asked for. Raises ValueError for what a user can mend."""
+    from experiments import regression
+    from structures import NAMED
+
+    for name in structures:
+        if name not in NAMED:
+            raise ValueError(f"no structure is called {name!r}; there are {', '.join(NAMED)}")
+    before = regression.load_baseline(regression.COUNTERS, folder)  # before anything is measured
+    held = regression.load_baseline(regression.RUN, folder) if run else None
+    given = regression.reduce_run(_load(run)) if run else None
+    factors: dict[str, Any] = {} if factor is None else {"factor": factor}
+    after = regression.measure_counters(structures)
+    findings, notes = regression.compare_counters(
+        before.only(structures) if structures else before, after
+    )
+    if structures:
+        notes.append(f"just {', '.join(structures)} was measured")
+    if held and given:
+        compared = regression.compare_runs(held, given, **factors)
+        findings, notes = findings + compared.findings, notes + compared.notes
+    else:
+        notes.append("just the counters were compared; all of a run with: hem check RUN")
+    if beside:
+        findings += regression.compare_trees(beside, structures=structures, **factors)
+    return regression.Compared(findings, notes)
+
+
+def _load(folder: Path) -> Run:
+    from experiments.runs import load
+
+    run = load(folder)
+    if run.cases.empty:
+        raise ValueError(
+            f"{folder} holds no case; resume it with: hem study --resume --run {folder}"
+        )
+    return run
 
 
 @contextmanager
@@ -74,39 +121,84 @@ def could_not_measure() -> Iterator[None]:
         raise typer.Exit(2) from error
 
 
-reference_app = typer.Typer(no_args_is_help=True, help="What hem check compares with.")
+DOUBTS = {
+    "dirty": "the run was made with changes that are not committed",
+    "too_busy": "the machine was too busy to judge the run by time",
+}
+"""What speaks against a run as a baseline."""
+
+baseline_app = typer.Typer(no_args_is_help=True, help="What hem check compares with.")
 
 
-@reference_app.callback()
-def _reference() -> None:
+@baseline_app.callback()
+def _baseline() -> None:
     """What hem check compares with."""
 
 
-@reference_app.command("update")
+@baseline_app.command("update")
 def update(
     run: Annotated[
         Path | None,
-        typer.Argument(help="The folder of a run. Without it only what is exact is updated."),
+        typer.Argument(help="The folder of a run. Without it only the counters are updated."),
     ] = None,
     yes: Annotated[bool, typer.Option("--yes", help="Do not ask.")] = False,
-    reference: Reference = HERE,
+    baseline: Baseline = HERE,
 ) -> None:
-    """Measure what is exact, show what would change in the reference, and write it."""
+    """Measure the counters, show what would change in the baseline, and write it."""
     with user_errors():
-        from experiments.regression.gate import Update
+        from experiments import regression
 
-        fresh = Update.prepare(run, reference)
-        lines = fresh.difference()
-        for sign, line in lines:
-            color = {"+": "green", "-": "red"}.get(sign, "cyan")
-            console.print(f"[{color}]{sign}[/] {escape(line)}", highlight=False, soft_wrap=True)
-        if not lines:
-            console.print(f"{reference} says just this already.")
+        fresh = {regression.COUNTERS: _complete(regression.measure_counters())}
+        if run:
+            fresh[regression.RUN] = _finished(run)
+        changed = {
+            part: measured
+            for part, measured in fresh.items()
+            if _print_difference(part, measured, baseline)
+        }
+        if not changed:
+            console.print(f"{baseline} says just this already.")
             return
-        for doubt in fresh.doubts():
-            console.print(f"[yellow]Mind that {doubt}.[/]")
-        if not yes and not typer.confirm(f"Write this to {reference}?"):
+        for key, words in DOUBTS.items():
+            if regression.RUN in changed and changed[regression.RUN].run.meta.get(key):
+                console.print(f"[yellow]Mind that {words}.[/]")
+        if not yes and not typer.confirm(f"Write this to {baseline}?"):
             errors.print("Nothing was written.")
             raise typer.Exit(1)
-        fresh.write()
-        console.print(f"Written to {reference}; look at it with: git diff --stat {reference}")
+        for part, measured in changed.items():
+            regression.save_baseline(part, measured, baseline)
+        console.print(f"Written to {baseline}; look at it with: git diff --stat {baseline}")
+
+
+def _complete(counters: Measured) -> Measured:
+    for case in counters.run.skipped.to_dict("records"):
+        where = f"{case['experiment']}/{case['structure']}/{case['id']}"
+        raise ValueError(f"{where} could not be measured, so nothing is kept: {case['skipped']}")
+    return counters
+
+
+def _finished(folder: Path) -> Measured:
+    from experiments.regression import reduce_run
+
+    run = _load(folder)
+    if "finished" not in run.meta:
+        raise ValueError(f"{folder} is not finished; resume it with: hem study --resume")
+    measured = reduce_run(run)
+    if not (measured.run.cases["kind"] == "time").any():
+        raise ValueError(f"{folder} has no times to compare with: measure a larger preset")
+    return measured
+
+
+def _print_difference(part: str, fresh: Measured, folder: Path) -> bool:
+    """Print what would change in a part of the baseline -> whether anything would."""
+    from experiments.regression import describe_difference, load_baseline
+
+    try:
+        before = load_baseline(part, folder)
+    except ValueError:
+        console.print(f"[green]+[/] {part}: {len(fresh.run.cases):,} cases")
+        return True  # what cannot be read is replaced
+    lines = describe_difference(before, fresh)
+    for line in lines:
+        console.print(f"[cyan]±[/] {escape(line)}", highlight=False, soft_wrap=True)
+    return bool(lines)

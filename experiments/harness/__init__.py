@@ -4,6 +4,7 @@ Experiments import from here; what each of them measures stands in its ``bench_*
 """
 
 from experiments.harness.axes import Axis
+from experiments.harness.calibration import calibration_loop
 from experiments.harness.cases import BASE, Case, in_random_order, queried_handles, shuffled
 from experiments.harness.experiment import (
     ANYONE,
@@ -33,7 +34,6 @@ from experiments.harness.timer import (
     BenchmarkTimer,
     Timed,
     Timer,
-    calibration_loop,
     time_rounds,
     why_too_slow,
 )

@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from experiments.harness.timer import calibration_loop
+from experiments.harness.calibration import calibration_loop
 
 READINGS = 5
 FIRST_READINGS = 50

@@ -13,49 +13,13 @@ from time import perf_counter
 from typing import Any, Protocol
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from experiments.harness.calibration import calibration_loop
 from experiments.harness.presets import Preset
 
 Array = NDArray[Any]
 Setup = Callable[[], tuple[tuple[Any, ...], dict[str, Any]]]
-
-WORDS = 2_048
-"""int64 in the table that the calibration loop walks: 16 KB, found in the first cache."""
-STEPS = 2_000
-WALKS = 5
-
-
-def calibration_loop() -> float:
-    """Seconds per step of a walk that reads and computes: the least of some, as delays only add.
-
-    It slows as compiled queries do when the machine is busy. Takes some ten microseconds. The
-    memory's latency will not do: where the caches end, readings of it were measured to change by a
-    quarter to threefold from run to run, beside cases that stayed within a twentieth to a fifth.
-    """
-    return min(_seconds(lambda: _walk(_TABLE, STEPS)) for _ in range(WALKS)) / STEPS
-
-
-@njit(cache=True)
-def _walk(table: NDArray[np.int64], steps: int) -> int:
-    """Four walks side by side, so that computing and waiting both count."""
-    a, b, c, d = 0, 1, 2, 3
-    for step in range(steps):
-        a = table[(a + step) % WORDS]
-        b = table[(b ^ a) % WORDS]
-        c = table[(c + 3) % WORDS]
-        d = table[(d ^ step) % WORDS]
-    return a + b + c + d
-
-
-_TABLE = np.random.default_rng(0).permutation(WORDS)
-
-
-def _seconds(call: Callable[[], Any]) -> float:
-    begin = perf_counter()
-    call()
-    return perf_counter() - begin
 
 
 @dataclass(frozen=True)

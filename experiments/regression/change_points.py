@@ -45,7 +45,7 @@ class Step:
         return self.after / self.before - 1 if self.before else float("inf")
 
 
-def steps(values: ArrayLike, *, exact: bool = False) -> list[Step]:
+def find_steps(values: ArrayLike, *, exact: bool = False) -> list[Step]:
     """The steps in ``values``: (n,) in the order of the commits, none of them missing.
 
     exact: the values have no noise, and may be anything. Else they are positive, and their noise is
@@ -60,14 +60,14 @@ def steps(values: ArrayLike, *, exact: bool = False) -> list[Step]:
     if not len(series):
         return []
     starts = np.flatnonzero(np.diff(series)) + 1 if exact else _noisy(np.log(series))
-    return [step for step in _told(series, [int(it) for it in starts]) if exact or _matters(step)]
+    return [step for step in _levels(series, [int(it) for it in starts]) if exact or _matters(step)]
 
 
 def _matters(step: Step) -> bool:
     return abs(log(step.after / step.before)) >= log(1 + SMALLEST)
 
 
-def _told(series: Array, starts: Sequence[int]) -> list[Step]:
+def _levels(series: Array, starts: Sequence[int]) -> list[Step]:
     bounds = [0, *starts, len(series)]
     levels = [float(np.median(it)) for it in np.split(series, list(starts))]
     return [Step(bounds[k], levels[k - 1], levels[k]) for k in range(1, len(levels))]
@@ -78,18 +78,18 @@ def _noisy(series: Array) -> list[int]:
 
     One step more is tried and then two, as what goes up and comes down again shows only whole.
     """
-    series = _without_spikes(series)
+    series = _hampel(series)
     segmentations = _best(series)
     chosen, more = 0, 1
     while more <= 2 and chosen + more < len(segmentations):
-        if _by_chance(series, segmentations[chosen], segmentations[chosen + more]) < ALARM / 2:
+        if _chance(series, segmentations[chosen], segmentations[chosen + more]) < ALARM / 2:
             chosen, more = chosen + more, 1
         else:
             more += 1
     return segmentations[chosen]
 
 
-def _without_spikes(series: Array) -> Array:
+def _hampel(series: Array) -> Array:
     """The series, with what stands out of its surroundings cut off: one slow run is no level."""
     around = np.array([np.median(series[max(k - 2, 0) : k + 3]) for k in range(len(series))])
     off = series - around
@@ -106,7 +106,7 @@ def _best(series: Array) -> list[list[int]]:
     return [[], *(search.predict(count)[:-1] for count in range(1, most + 1))]
 
 
-def _by_chance(series: Array, fewer: list[int], more: list[int]) -> float:
+def _chance(series: Array, fewer: list[int], more: list[int]) -> float:
     """A bound on the chance that noise gains as much from as many more steps, placed at best."""
     extra, left = len(more) - len(fewer), len(series) - len(more) - 1
     rest = _squares(series, more)

@@ -4,39 +4,34 @@ Lines are JSON. A line of an older schema is migrated as it is read, and stays a
 
 schema 2, this one
     ``run, commit, committed, dirty, started, profile, structures, machine, versions, claims``, as
-    `experiments.regression.snapshots` makes them: claims are named ``table/structure/what``.
+    `experiments.regression.snapshots` makes them: claims are named ``table/structure/subject``.
 schema 1
     ``date`` for ``committed``; a machine without ``id``; no ``run`` and no ``structures``; claims
-    named ``structure.what``, with ``outcome``, ``work`` at ``faces``, ``bytes``, and the ``slope``
-    in n_t by work, without time.
+    named ``structure.subject``, with ``outcome``, ``work`` at ``faces``, ``bytes``, and the
+    ``slope`` in n_t by work, without time.
 """
 
 from __future__ import annotations
 
-import fcntl
 import json
 import os
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
-from experiments.claims.growth import OPERATIONS
-from experiments.regression.snapshots import SCHEMA, identified
+from filelock import FileLock
+
+from experiments.harness import OPERATIONS
+from experiments.regression.snapshots import SCHEMA
+from experiments.runs import machine_id
 
 HISTORY = Path("results/history.jsonl")
 
 Line = dict[str, Any]
 
-HEAD = {
-    "commit": str,
-    "started": str,
-    "profile": str,
-    "machine": dict,
-    "claims": dict,
-}
+REQUIRED = {"commit": str, "started": str, "profile": str, "machine": dict, "claims": dict}
 """What every line has, and of what type."""
 
 
@@ -53,31 +48,30 @@ class History:
     faults: list[str]
 
 
-def read(path: Path = HISTORY) -> History:
-    """Read a history; without the file it is empty. Damaged lines are told of and left out.
+def read_history(path: Path = HISTORY) -> History:
+    """Read a history; without the file it is empty. Damaged lines are named and skipped.
 
     Raises OSError if there is something that cannot be read.
     """
     try:
-        with _locked(path, os.O_RDONLY, fcntl.LOCK_SH) as file:
-            content = _whole(file)
+        runs, faults = _parse(path.read_bytes(), path)
     except FileNotFoundError:
         return History(path, [], [])
-    runs, faults = _parsed(content, path)
-    return History(path, sorted(runs, key=when), faults)
+    return History(path, sorted(runs, key=_times), faults)
 
 
-def append(line: Line, path: Path = HISTORY) -> bool:
+def append_run(line: Line, path: Path = HISTORY) -> bool:
     """Add a run -> False if it is there already.
 
     Who adds at the same time waits. The line goes in whole and reaches the disk, or, where there is
     no room, not at all; what is there stays, a line that another crash cut short included.
     """
     path.parent.mkdir(parents=True, exist_ok=True)
-    with _locked(path, os.O_RDWR | os.O_CREAT | os.O_APPEND, fcntl.LOCK_EX) as file:
-        content = _whole(file)
-        runs, _ = _parsed(content, path)
-        if identity(line) in map(identity, runs):
+    with FileLock(f"{path}.lock"), path.open("a+b", buffering=0) as file:
+        file.seek(0)
+        content = file.readall()
+        runs, _ = _parse(content, path)
+        if _identity(line) in map(_identity, runs):
             return False
         cut_short = content and not content.endswith(b"\n")
         text = json.dumps(line, separators=(",", ":"), allow_nan=False)
@@ -85,12 +79,22 @@ def append(line: Line, path: Path = HISTORY) -> bool:
     return True
 
 
-def identity(line: Line) -> tuple[str, ...]:
+def _write(file: BinaryIO, content: bytes, before: int) -> None:
+    try:
+        while content:
+            content = content[file.write(content) :]
+        os.fsync(file.fileno())
+    except OSError:
+        file.truncate(before)
+        raise
+
+
+def _identity(line: Line) -> tuple[str, ...]:
     """What two lines of the same run have in common."""
     return line["started"], line["commit"], line["profile"], line["machine"]["id"]
 
 
-def when(line: Line) -> tuple[datetime, datetime]:
+def _times(line: Line) -> tuple[datetime, datetime]:
     """The time of the commit, as far as it is known, and that of the run."""
     started = _time(line["started"])
     return _time(line["committed"]) if line.get("committed") else started, started
@@ -101,55 +105,27 @@ def _time(text: str) -> datetime:
     return time if time.tzinfo else time.replace(tzinfo=UTC)
 
 
-@contextmanager
-def _locked(path: Path, flags: int, lock: int) -> Iterator[int]:
-    file = os.open(path, flags, 0o644)
-    try:
-        fcntl.flock(file, lock)
-        yield file
-    finally:
-        os.close(file)
-
-
-def _whole(file: int) -> bytes:
-    content = bytearray()
-    while part := os.pread(file, 1 << 20, len(content)):
-        content += part
-    return bytes(content)
-
-
-def _write(file: int, content: bytes, before: int) -> None:
-    try:
-        while content:
-            content = content[os.write(file, content) :]
-        os.fsync(file)
-    except OSError:
-        os.ftruncate(file, before)
-        raise
-
-
-def _parsed(content: bytes, path: Path) -> tuple[list[Line], list[str]]:
+def _parse(content: bytes, path: Path) -> tuple[list[Line], list[str]]:
     runs, faults = [], []
     for number, raw in enumerate(content.split(b"\n"), 1):
-        if not raw.strip():
-            continue
-        try:
-            runs.append(_line(raw))
-        except LineError as error:
-            faults.append(f"{path}, line {number} {error}; it is left out")
+        if raw.strip():
+            try:
+                runs.append(_line(raw))
+            except LineError as error:
+                faults.append(f"{path}, line {number} {error}; it is skipped")
     return runs, faults
 
 
 def _line(raw: bytes) -> Line:
     """A line as this version has it. Raises LineError with what it is instead."""
     try:
-        line = json.loads(raw, parse_constant=_no_number)
+        line = json.loads(raw, parse_constant=_refuse)
     except (ValueError, RecursionError):
         raise LineError("is cut short or damaged") from None
     if not isinstance(line, dict) or "schema" not in line:
         raise LineError("is no run: it has no schema")
     try:
-        line = migrated(line)
+        line = migrate(line)
         _require_run(line)
     except LineError:
         raise
@@ -159,19 +135,19 @@ def _line(raw: bytes) -> Line:
 
 
 def _require_run(line: Line) -> None:
-    for key, kind in HEAD.items():
+    for key, kind in REQUIRED.items():
         if not isinstance(line.get(key), kind):
             raise LineError(f"is no run: its {key} is {line.get(key)!r:.40}")
-    identity(line), when(line)
+    _identity(line), _times(line)
     if not all(isinstance(claim, dict) for claim in line["claims"].values()):
         raise LineError("is no run: not all of its claims have figures")
 
 
-def _no_number(text: str) -> None:
-    raise ValueError(text)
+def _refuse(text: str) -> None:
+    raise ValueError(text)  # NaN and Infinity are no JSON
 
 
-def migrated(line: Line) -> Line:
+def migrate(line: Line) -> Line:
     """A line of any known schema in the present one. Raises LineError for an unknown schema."""
     while line["schema"] != SCHEMA:
         if line["schema"] not in MIGRATIONS:
@@ -192,7 +168,7 @@ def _from_1(old: Line) -> Line:
         "run": "",
         "structures": [],
         "committed": old["date"],
-        "machine": identified(old["machine"]),
+        "machine": {"id": machine_id(old["machine"]), **old["machine"]},
         "claims": claims,
     }
 

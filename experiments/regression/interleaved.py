@@ -1,27 +1,33 @@
-"""Two trees timed by turns, so that whatever slows the machine slows both.
+"""Two trees timed interleaved, so that whatever slows the machine slows both.
 
-Each tree has a process of its own, some one after another; a pair of them answers the same query a
-round at a time, one after the other, with a fixed piece of work timed beside every round. That
-tells a slow-down of a fifth that no two runs apart could show.
+Each tree has a worker process, some one after another; a pair of them answers the same query a
+round at a time, ABBA, with the calibration loop beside every round. That tells a slowdown of a
+fifth that no two runs apart could show.
 """
 
 from __future__ import annotations
 
 import json
+import os
 import subprocess
 import sys
-from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from experiments.regression.findings import Finding, claim_of
-from experiments.regression.significance import FACTOR, Comparison, compare
+from experiments.harness import calibration
+from experiments.regression.findings import CaseKey, Change, Finding, Kind, count_votes, vote
+from experiments.regression.pairs import claim_of
+from experiments.regression.significance import FACTOR, Comparison, compare_rounds
 from hem.contract import QUERIES
 from structures import REGISTRY
+
+HERE = Path(__file__).parents[2]
+"""The tree that this is."""
+WORKER = Path(__file__).with_name("interleaved_worker.py")
 
 VERTICES = 1_000
 ROUNDS = 24
@@ -35,43 +41,24 @@ as before. Where a process happens to lie in memory alone was measured to make a
 without doing anything obviously wrong, ASPLOS 2009): so a tree is slower only if no pair says
 otherwise."""
 
-STRAYS = 1
-"""Pairs that may say otherwise where most say that a query is as before."""
+Case = tuple[str, str]
+"""A structure and a query."""
 
-WORKER = """
-import json, sys
-from time import perf_counter
-import numpy as np
-import hem, structures
 
-probed = np.random.default_rng(0).random(20_000)
-mesh = hem.generate("torus", {vertices})
+class PairTimed(NamedTuple):
+    """What two processes, one of each tree, say of a query; their median seconds per handle.
 
-def seconds(work, *given):
-    begin = perf_counter()
-    work(*given)
-    return perf_counter() - begin
+    ``error``: why they could not say anything.
+    """
 
-for line in sys.stdin:
-    asked = json.loads(line)
-    if "structure" in asked:
-        s = structures.build(asked["structure"], mesh)
-        handles = s.handles(asked["query"].split("_")[0])
-        s.sweep(asked["query"], handles)  # compiles
-        answer = min(seconds(s.sweep, asked["query"], handles) for _ in range(5))
-    elif "times" in asked:
-        many = np.tile(handles, asked["times"])
-        answer = s.sweep(asked["query"], many)
-    else:
-        probe = seconds(np.sort, probed)
-        answer = seconds(s.sweep, asked["query"], many), probe
-    print(json.dumps(answer), flush=True)
-"""
-"""What runs in either tree; it holds on to nothing but the contract, so that old trees do, too."""
+    compared: Comparison = Comparison(Change.UNDETERMINED, np.nan, 0, np.inf)
+    before: float = np.nan
+    after: float = np.nan
+    error: str = ""
 
 
 def compare_trees(
-    before: Path, after: Path, structures: Sequence[str] = (), factor: float = FACTOR
+    before: Path, after: Path = HERE, structures: Collection[str] = (), factor: float = FACTOR
 ) -> list[Finding]:
     """Time every query of the compiled structures in both trees, usually in a minute or two.
 
@@ -87,128 +74,112 @@ def compare_trees(
         if kind.compiled and (not structures or name in structures)
     ]
     if not wanted:
-        why = f"none of {', '.join(structures)} is compiled, so there is nothing to time by turns"
-        return [Finding("undetermined", "time", "turns", "", "", why)]
-    pairs: dict[tuple[str, str], list[Pair | str]] = {it: [] for it in wanted}
-    for _ in range(PAIRS):
-        for it, pair in _in_new_processes(before, after, wanted, factor):
-            pairs[it].append(pair)
-    doubtful = [it for it in wanted if _in_doubt(pairs[it])]
-    for _ in range(FURTHER):
-        for it, pair in _in_new_processes(before, after, doubtful, factor):
-            pairs[it].append(pair)
-    return [_judged(*it, pairs[it]) for it in wanted]
+        why = (
+            f"none of {', '.join(structures)} is compiled, so there is nothing to time interleaved"
+        )
+        return [Finding(Change.UNDETERMINED, Kind.TIME, CaseKey("interleaved"), why=why)]
+    timed: dict[Case, list[PairTimed]] = {case: [] for case in wanted}
+    for k in range(PAIRS + FURTHER):
+        still = wanted if k < PAIRS else [case for case in wanted if _is_in_doubt(timed[case])]
+        for case, pair in time_in_new_processes(before, after, still, factor):
+            timed[case].append(pair)
+    return [_judge(*case, timed[case]) for case in wanted]
 
 
-class Pair(NamedTuple):
-    """What two processes, one of each tree, say of a query; their median seconds per handle."""
-
-    compared: Comparison
-    before: float
-    after: float
-
-
-def _in_doubt(pairs: Sequence[Pair | str]) -> bool:
+def _is_in_doubt(pairs: Sequence[PairTimed]) -> bool:
     """Whether further pairs could tell more: not where one could not be timed."""
-    timed = [it for it in pairs if not isinstance(it, str)]
-    return len(timed) == len(pairs) and any(it.compared.outcome != "same" for it in timed)
+    if any(pair.error for pair in pairs):
+        return False
+    return any(pair.compared.change != Change.SAME for pair in pairs[:PAIRS])
 
 
-def _judged(name: str, query: str, pairs: Sequence[Pair | str]) -> Finding:
-    """What more than half of the pairs say, if not too many others say another thing.
-
-    Others may be undetermined. One that could not be timed is not passed over.
-    """
-    where = f"turns/{name}/{query}/torus/{VERTICES}/consecutive"
-    errors = [it for it in pairs if isinstance(it, str)]
-    if errors:
-        why = f"could not be timed: {errors[0]}"
-        return Finding("undetermined", "time", where, "", "", why, claim_of(where))
-    timed = sorted((it for it in pairs if isinstance(it, Pair)), key=lambda it: it.compared.ratio)
-    said = Counter(it.compared.outcome for it in timed)
-    outcome, most = said.most_common(1)[0]
-    others = len(timed) - most - said["undetermined"]
-    agreed = others <= (STRAYS if outcome == "same" else 0) and 2 * most > len(timed)
-    decided = outcome if agreed else "undetermined"
-    middle = timed[len(timed) // 2]
-    old, new = (f"{1e9 * it:.3g} ns" for it in (middle.before, middle.after))
-    it = middle.compared
-    why = f"× {it.ratio:.3f}, 95 % [{it.low:.3f}, {it.high:.3f}], p = {it.p:.1g}; pairs: "
-    why += ", ".join(f"{count} {it}" for it, count in said.most_common())
-    return Finding(decided, "time", where, old, new, why, claim_of(where))
+def _judge(name: str, query: str, pairs: Sequence[PairTimed]) -> Finding:
+    """The pairs' vote. One that could not be timed is not passed over."""
+    key = CaseKey("interleaved", name, query, "torus", 2 * VERTICES, order="consecutive")
+    error = next((pair.error for pair in pairs if pair.error), "")
+    if error:
+        why, claim = f"could not be timed: {error}", _claim(key)
+        return Finding(Change.UNDETERMINED, Kind.TIME, key, why=why, claim=claim)
+    middle = sorted(pairs, key=lambda pair: pair.compared.ratio)[len(pairs) // 2]
+    old, new = (_nanoseconds(seconds) for seconds in (middle.before, middle.after))
+    _, ratio, low, high = middle.compared
+    changes = [pair.compared.change for pair in pairs]
+    why = f"× {ratio:.2f} [{low:.2f}, {high:.2f}]; {count_votes(changes)}"
+    change = vote(changes, unanimous=True)
+    return Finding(change, Kind.TIME, key, old, new, why, claim=_claim(key), random=True)
 
 
-def _in_new_processes(
-    before: Path, after: Path, wanted: Sequence[tuple[str, str]], factor: float
-) -> Iterator[tuple[tuple[str, str], Pair | str]]:
+def _nanoseconds(seconds: float) -> str:
+    return f"{1e9 * seconds:,.0f} ns" if seconds >= 1e-7 else f"{1e9 * seconds:.3g} ns"
+
+
+def _claim(key: CaseKey) -> str:
+    return claim_of(key._replace(experiment="bench_queries"))
+
+
+def time_in_new_processes(
+    before: Path, after: Path, wanted: Sequence[Case], factor: float
+) -> Iterator[tuple[Case, PairTimed]]:
     """Time in a new process of each tree -> by query what they say, or why they could not."""
     with ExitStack() as stack:
         workers = [stack.enter_context(_worker(tree)) for tree in (before, after) if wanted]
-        for name, query in wanted:
+        for case in wanted:
             try:
-                found: Pair | str = _by_turns(workers, name, query, factor)
+                yield case, _time_pair(workers, *case, factor)
             except (OSError, ValueError) as error:
-                found = str(error)
-            yield (name, query), found
+                yield case, PairTimed(error=str(error))
 
 
-def _by_turns(workers: Sequence[Worker], name: str, query: str, factor: float) -> Pair:
+def _time_pair(workers: Sequence[Worker], name: str, query: str, factor: float) -> PairTimed:
     """More rounds as long as they cannot tell, ``MOST_ROUNDS`` at most."""
-    once = min(it.ask(structure=name, query=query) for it in workers)
+    once = min(worker.ask(structure=name, query=query) for worker in workers)
     times = max(1, round(ROUND_SECONDS / once))
-    for worker in workers:
-        worker.ask(times=times, query=query)
-    samples: list[list[float]] = [[], []]
-    probes: list[list[float]] = [[], []]
+    handles = [worker.ask(times=times) for worker in workers]
+    rounds: list[list[Any]] = [[], []]
     while True:
         for k in range(2 * ROUNDS):
             which = (k + k // 2) % 2  # neither is always the first: 0 1 1 0
-            sample, probe = workers[which].ask(query=query)
-            samples[which].append(sample / (times * _handles(query)))
-            probes[which].append(probe)
-        found = compare(samples[0], samples[1], probes[0], probes[1], factor)
-        if found.outcome != "undetermined" or len(samples[0]) >= MOST_ROUNDS:
-            return Pair(found, *(float(np.median(it)) for it in samples))
-
-
-def _handles(query: str) -> int:
-    return VERTICES * {"vertex": 1, "edge": 3, "face": 2}[QUERIES[query].source]
+            rounds[which].append(workers[which].ask())
+        samples, loops = zip(*(np.transpose(them).tolist() for them in rounds), strict=True)
+        compared = compare_rounds(samples[0], samples[1], loops[0], loops[1], factor)
+        if compared.change != Change.UNDETERMINED or len(rounds[0]) >= MOST_ROUNDS:
+            old, new = (np.median(it) / k for it, k in zip(samples, handles, strict=True))
+            return PairTimed(compared, float(old), float(new))
 
 
 class Worker:
     """A process that times in one tree."""
 
     def __init__(self, process: subprocess.Popen[str]) -> None:
-        self.process = process
+        pipes = process.stdin, process.stdout, process.stderr
+        self._pipes = [pipe for pipe in pipes if pipe is not None]
 
     def ask(self, **question: Any) -> Any:
         """Ask and wait for the answer. Raises OSError with what it said if it has ended."""
-        assert self.process.stdin is not None
-        assert self.process.stdout is not None
-        assert self.process.stderr is not None
-        try:
-            self.process.stdin.write(json.dumps(question) + "\n")
-            self.process.stdin.flush()
-        except BrokenPipeError:
-            pass
-        answer = self.process.stdout.readline()
+        stdin, stdout, stderr = self._pipes
+        with suppress(BrokenPipeError):
+            stdin.write(json.dumps(question) + "\n")
+            stdin.flush()
+        answer = stdout.readline()
         if not answer:
-            said = self.process.stderr.read().strip().splitlines()
+            said = stderr.read().strip().splitlines()
             raise OSError(said[-1] if said else "the process ended")
         return json.loads(answer)
 
 
 @contextmanager
 def _worker(tree: Path) -> Iterator[Worker]:
-    command = [sys.executable, "-c", WORKER.replace("{vertices}", str(VERTICES))]
+    command = [sys.executable, str(WORKER), str(calibration.__file__), str(VERTICES)]
+    # The tree alone is on its path, not the folder of the worker's own file.
+    environment = {**os.environ, "PYTHONPATH": str(tree.resolve()), "PYTHONSAFEPATH": "1"}
     pipe = subprocess.PIPE
     with subprocess.Popen(
-        command, cwd=tree, stdin=pipe, stdout=pipe, stderr=pipe, text=True
+        command, cwd=tree, env=environment, stdin=pipe, stdout=pipe, stderr=pipe, text=True
     ) as process:
         try:
             yield Worker(process)
         finally:
             process.kill()
-            if process.stdin:
-                with suppress(BrokenPipeError):  # it ended before it was asked
+            with suppress(BrokenPipeError):  # it ended before it was asked
+                if process.stdin:
                     process.stdin.close()

@@ -1,24 +1,23 @@
 """Whether a case became slower: significant by rank *and* large by an interval, or not said.
 
 Rounds of one run are not independent, and two runs of the same code differ by more than their
-rounds tell. So times are taken relative to a probe of the same run, as far as they may
-have followed it; ranks are compared after a
-tolerated drift between runs is granted; and the interval is widened by how much each round
-resembles the one before.
+rounds tell. So rounds are divided by the calibration loop read beside them, as far as they may have
+followed it; ranks are compared after a tolerated drift between runs is granted; and the interval of
+the trimmed means (Yuen, Biometrika 61, 1974) is widened by how much each round resembles the last.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from math import comb
-from typing import Literal, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
-from scipy.stats import mannwhitneyu, rankdata, t
+from numpy.typing import ArrayLike
+from scipy.stats import mannwhitneyu, rankdata, ttest_ind
 
-Array = NDArray[np.float64]
-Outcome = Literal["worse", "better", "same", "undetermined"]
+from experiments.regression.findings import Change
+from hem.arrays import Array
 
 FACTOR = 1.15
 """How much slower is worth telling."""
@@ -28,131 +27,105 @@ CONFIDENCE = 0.95
 """That the ratio lies above the interval's lower end, and, apart, below the upper one."""
 DRIFT = 1.05
 """Factor by which the level of a run may differ from that of the next for no reason in the code."""
-SINGLE_ERROR = 0.03
-"""Relative error of a probe that was read once."""
-TRIMMED = 5
-"""One in so many samples is left out at either end: what a neighbor delayed moves nothing."""
+TRIMMED = 0.2
+"""Share of the rounds left out at either end: what another tenant delayed moves nothing."""
+FEWEST = 3
+"""Rounds below which nothing is computed."""
 LARGEST_EXACT = 2500
-"""Pairs of samples up to which the rank test is exact, if no two samples are equal."""
+"""Pairs of rounds up to which the rank test is exact, if no two rounds are equal."""
 
 
 class Comparison(NamedTuple):
     """What two runs say about one case.
 
-    ratio: time after over time before, each relative to its probe. low, high: the ends of its
-    interval, each crossed with a chance of 1 - `CONFIDENCE`. p: of the rank test, two-sided.
+    ratio: time after over time before, both over the calibration loop. low, high: the ends of its
+    interval, each crossed with a chance of 1 - `CONFIDENCE`.
     """
 
-    outcome: Outcome
+    change: Change
     ratio: float
     low: float
     high: float
-    p: float
 
 
-def compare(
-    before: Sequence[float],
-    after: Sequence[float],
-    probe_before: Sequence[float],
-    probe_after: Sequence[float],
+def compare_rounds(
+    before: ArrayLike,
+    after: ArrayLike,
+    loop_before: ArrayLike,
+    loop_after: ArrayLike,
     factor: float = FACTOR,
-    alpha: float = ALPHA,
-    least_share: float = 0.0,
 ) -> Comparison:
     """Compare the rounds of one case in two runs.
 
-    before, after: seconds per round, in the order they were measured; 9 rounds each can decide at
-    the default `alpha`. probe_before, probe_after: seconds of a reference in the same run, taken
-    beside the case; of a single reading the error is taken to be `SINGLE_ERROR`. Any unit will do.
-    least_share: how much of the probe's change the case must at least have followed, from 0 to 1. A
-    memory latency can change tenfold beside a case that never waits for it, so by default a case
-    may have followed to any degree, and is worse only if it is so at every one of them. Give 1 for
-    a probe that surely slows as the case does, as between two machines.
+    before, after: seconds per round, in the order they were measured; 9 rounds each can decide.
+    loop_before, loop_after: readings of the calibration loop of the same run, one beside each round
+    or evenly between the first and the last. Any unit will do.
 
-    "worse": the ranks differ by more than `DRIFT` explains (Mann-Whitney, p < alpha), and the
-    interval of the ratio lies above `factor`; "better" is its mirror image. "same": the interval
-    lies within a factor. All else is "undetermined": too few rounds, too noisy, or in between.
-    The trimmed mean's error is Tukey and McLaughlin's (Sankhyā A 25, 1963), in logarithms; it grows
-    with the rounds' autocorrelation. Raises ValueError for what is no positive time, an empty
-    probe, a factor of at most 1 or a share beyond 0 and 1. O(n log n), a millisecond.
+    The loop may slow down beside a case that does not follow it. So a case is worse only if it is
+    so both as measured and relative to the loop: its ranks differ by more than `DRIFT` explains
+    (Mann-Whitney, p < `ALPHA`), and both intervals lie above ``factor``. "better" is the mirror
+    image. "same": both intervals lie within a factor. All else is "undetermined".
+
+    Raises ValueError for what is no positive time, a loop without readings, or a factor of at most
+    1. O(n log n), some milliseconds.
     """
-    if not (factor > 1 and 0 <= least_share <= 1):
-        raise ValueError(f"factor must be over 1, a share in 0 to 1: {factor}, {least_share}")
+    if not factor > 1:
+        raise ValueError(f"factor must be over 1, not {factor}")
     old, new = _logs("before", before), _logs("after", after)
-    old_probe, new_probe = _logs("probe_before", probe_before), _logs("probe_after", probe_after)
-    if not old_probe.size or not new_probe.size:
-        raise ValueError("a probe was never read: times of two runs compare only beside one")
-    if min(len(old), len(new)) < 3:
-        return Comparison("undetermined", np.nan, 0.0, np.inf, 1.0)
-    changes = [_change(old, new, old_probe, new_probe, share) for share in (1.0, least_share)]
-    low = float(np.exp(min(change - margin for change, margin in changes)))
-    high = float(np.exp(max(change + margin for change, margin in changes)))
-    faster = float(np.median(new_probe) - np.median(old_probe))
-    p = max(_rank_p(old, new - share * faster) for share in (1.0, least_share))
-    decidable = 2 / comb(len(old) + len(new), len(old)) < alpha
-    outcome = _outcome(low, high, factor, p < alpha) if decidable else "undetermined"
-    return Comparison(outcome, float(np.exp(changes[0][0])), low, high, p)
+    loops = _logs("loop_before", loop_before), _logs("loop_after", loop_after)
+    if not all(len(loop) for loop in loops):
+        raise ValueError("no calibration loop was read: times of two runs compare only beside one")
+    if min(len(old), len(new)) < FEWEST:
+        return Comparison(Change.UNDETERMINED, np.nan, 0.0, np.inf)
+    relative = old - _beside(loops[0], len(old)), new - _beside(loops[1], len(new))
+    ends = np.exp(_intervals(*zip(relative, (old, new), strict=True)))
+    ratio, low, high = float(np.sqrt(ends[0].prod())), float(ends.min()), float(ends.max())
+    change = Change.SAME if 1 / factor < low and high < factor else Change.UNDETERMINED
+    if low > factor or high < 1 / factor:
+        significant = all(_rank_p(*pair) < ALPHA for pair in (relative, (old, new)))
+        beyond = Change.WORSE if low > factor else Change.BETTER
+        change = beyond if significant else Change.UNDETERMINED
+    decidable = 2 / comb(len(old) + len(new), len(old)) < ALPHA
+    return Comparison(change if decidable else Change.UNDETERMINED, ratio, low, high)
 
 
-def _outcome(low: float, high: float, factor: float, significant: bool) -> Outcome:
-    if significant and low > factor:
-        return "worse"
-    if significant and high < 1 / factor:
-        return "better"
-    return "same" if 1 / factor < low and high < factor else "undetermined"
-
-
-def _logs(name: str, times: Sequence[float]) -> Array:
+def _logs(name: str, times: ArrayLike) -> Array:
     values = np.asarray(times, dtype=np.float64).ravel()
     if not np.all(np.isfinite(values) & (values > 0)):
         raise ValueError(f"{name} must be positive, finite times")
-    logs: Array = np.log(values)
-    return logs
+    return np.log(values)
 
 
-def _change(
-    old: Array, new: Array, old_probe: Array, new_probe: Array, share: float
-) -> tuple[float, float]:
-    """Logarithm of the ratio, less that share of the probe's, and the margin on either side."""
-    signs, total, spread = (-1, 1, share, -share), 0.0, 0.0
-    ties = [_tie([old, new])] * 2 + [_tie([old_probe, new_probe])] * 2
-    change = 0.0
-    for logs, sign, tie in zip((old, new, old_probe, new_probe), signs, ties, strict=True):
-        center, variance, freedom = _center(logs)
-        change += sign * center
-        total += sign**2 * variance * tie
-        spread += (sign**2 * variance * tie) ** 2 / freedom
-    margin = float(t.ppf(CONFIDENCE, total**2 / spread)) * float(np.sqrt(total))
-    return change, margin
+def _beside(loop: Array, rounds: int) -> Array:
+    """The readings of the loop at each round, between those that were taken."""
+    return np.interp(np.linspace(0, 1, rounds), np.linspace(0, 1, len(loop)), loop)
 
 
-def _center(logs: Array) -> tuple[float, float, int]:
-    """Trimmed mean, the variance of that mean, and its degrees of freedom."""
-    n = len(logs)
-    if n < 3:
-        return float(logs.mean()), SINGLE_ERROR**2, 10
-    cut = n // TRIMMED
-    ranked = np.sort(logs)
-    kept = n - 2 * cut
-    winsorized = np.clip(logs, ranked[cut], ranked[n - cut - 1])
-    variance = winsorized.var(ddof=1) / n * (n / kept) ** 2
-    least = 1e-12  # where all rounds took as long
-    return float(ranked[cut : n - cut].mean()), max(variance, least), kept - 1
+def _intervals(old: Sequence[Array], new: Sequence[Array]) -> Array:
+    """(k, 2): of k pairs the ends of the difference of the trimmed means."""
+    first, second = np.array(old), np.array(new)
+    shift = np.median(second, axis=1) - np.median(first, axis=1)
+    first, second = (it - np.median(it, axis=1, keepdims=True) for it in (first, second))
+    test = ttest_ind(second, first, axis=1, equal_var=False, trim=TRIMMED)
+    ends = np.nan_to_num(test.confidence_interval(2 * CONFIDENCE - 1))  # where all took as long
+    center, margin = ends.mean(axis=0), (ends[1] - ends[0]) / 2
+    margin = margin * np.sqrt([_rounds_in_one(*pair) for pair in zip(old, new, strict=True)])
+    return np.stack([shift + center - margin, shift + center + margin], axis=1)
 
 
-def _tie(pair: list[Array]) -> float:
+def _rounds_in_one(*pair: Array) -> float:
     """How many rounds count as one, from how much each resembles the one before: (1+r)/(1-r).
 
     Ranks stand for the rounds, as a single delayed round would hide what the others share. So few
     of them tell r too low, by (1+3r)/n (Kendall, Biometrika 41, 1954), and badly: what chance alone
     would show is taken off.
     """
-    off = [rankdata(rounds) - (len(rounds) + 1) / 2 for rounds in pair if len(rounds) > 2]
-    power = sum(float(it @ it) for it in off)
+    off = [rankdata(rounds) - (len(rounds) + 1) / 2 for rounds in pair]
+    power = sum(float(ranks @ ranks) for ranks in off)
     if power == 0:
         return 1.0
-    count = sum(len(it) for it in off)
-    r = sum(float(it[1:] @ it[:-1]) for it in off) / power
+    count = sum(len(ranks) for ranks in off)
+    r = sum(float(ranks[1:] @ ranks[:-1]) for ranks in off) / power
     r += (1 + 3 * r) * len(off) / count - 1 / np.sqrt(count)
     r = float(np.clip(r, 0, 0.9))
     return (1 + r) / (1 - r)
@@ -162,8 +135,10 @@ def _rank_p(old: Array, new: Array) -> float:
     """Mann-Whitney's p that one run's rounds are larger by more than the drift, two-sided."""
     few = len(old) * len(new) <= LARGEST_EXACT
     tied = len(np.unique(np.concatenate([old, new]))) < len(old) + len(new)
-    method: Literal["exact", "asymptotic"] = "exact" if few and not tied else "asymptotic"
     drift = np.log(DRIFT) * np.sign(np.median(new) - np.median(old))
-    alternative: Literal["greater", "less"] = "greater" if drift >= 0 else "less"
-    one_sided = mannwhitneyu(new - drift, old, alternative=alternative, method=method).pvalue
+    one_sided = mannwhitneyu(
+        new - drift, old,
+        alternative="greater" if drift >= 0 else "less",
+        method="exact" if few and not tied else "asymptotic",
+    ).pvalue  # fmt: skip
     return float(min(2 * one_sided, 1.0))

@@ -1,31 +1,44 @@
-"""From a run to the one line that the history keeps of it: a claim, a few figures."""
+"""From a run to the few figures of each claim that the history and the baseline keep."""
 
 from __future__ import annotations
 
-import json
-import subprocess
-from hashlib import sha256
-from pathlib import Path
+from functools import cache
 from typing import Any
 
 import numpy as np
 
-from experiments.claims.growth import MEMORY, Claim, load_claims
-from experiments.claims.judged import SOURCES, Evidence, judged, short
-from experiments.runs.results import ResultsError, Run
+from experiments.claims import (
+    NO_CLAIM,
+    Curves,
+    Growth,
+    JudgedClaim,
+    Outcome,
+    curves,
+    judge_cells,
+    load_claims,
+)
+from experiments.harness import Axis
+from experiments.runs import ResultsError, Run, git, machine_id, tables
 
 SCHEMA = 2
 
+LEAST_SLOPE = 0.01
+"""Slopes of counts that differ by less are the same one: not even they come out alike everywhere,
+to the last digit."""
 
-def record(run: Run) -> dict[str, Any]:
-    """The line of a run. Raises ResultsError if it is not finished.
+LEAST_SIZES = 4
+"""Sizes below which counts show no class."""
 
-    Of each claim, as far as it was measured: ``outcome`` by work, which decides (of memory: by
-    bytes), and ``outcome_time``; ``slopes`` with their intervals, by measure and variable;
-    ``work``, accesses at ``work_faces``, the largest mesh; ``seconds`` at ``time_faces``, the
-    largest one that was timed, of ``time_sizes``; ``relative``: the time in memory accesses, which
-    take what they took beside the measurement; ``bytes`` per vertex.
-    """
+DIGITS = 5
+NOTHING = 1e-12
+"""What rounding leaves of nothing."""
+
+Figures = dict[str, Any]
+"""What is kept of a claim, see `claim_figures`."""
+
+
+def record_run(run: Run) -> dict[str, Any]:
+    """The line that the history keeps of a run. Raises ResultsError if it is not finished."""
     meta = run.meta
     if "finished" not in meta:
         raise ResultsError(f"{run.folder} is not finished; go on with: hem study --resume")
@@ -33,111 +46,126 @@ def record(run: Run) -> dict[str, Any]:
         "schema": SCHEMA,
         "run": run.folder.resolve().name,
         "commit": meta["commit"],
-        "committed": committed(meta["commit"]),
-        **{key: meta[key] for key in ("dirty", "started")},
+        "committed": commit_date(meta["commit"]),
+        "dirty": meta["dirty"],
+        "started": meta["started"],
         "profile": meta["preset"],
         "structures": list(meta.get("structures", ())),
-        "machine": identified(meta["machine"]),
+        "machine": {"id": machine_id(meta["machine"]), **meta["machine"]},
         "versions": meta["versions"],
-        "claims": _claims(run),
+        "claims": claim_figures(run),
     }
 
 
-def identified(machine: dict[str, Any]) -> dict[str, Any]:
-    """A machine as a run describes it, with its ``id``."""
-    return {"id": machine_id(machine), **machine}
-
-
-def machine_id(machine: dict[str, Any]) -> str:
-    """Eight hexadecimal digits that are the same as long as the machine is.
-
-    Of processor, cores, caches, GiB of memory, system and architecture; not of what an update or a
-    restart changes, such as the release of the kernel or some reserved megabytes.
-    """
-    platform = str(machine.get("platform", "")).split()
-    facts = {
-        "cpu": machine.get("cpu"),
-        "cores": machine.get("cores"),
-        "memory_gib": round((machine.get("memory_bytes") or 0) / 2**30),
-        "caches": machine.get("caches"),
-        "platform": [*platform[:1], *platform[-1:]],
-    }
-    if machine.get("machines"):
-        facts["machines"] = machine["machines"]
-    return sha256(json.dumps(facts, sort_keys=True).encode()).hexdigest()[:8]
-
-
-def committed(commit: str) -> str | None:
+def commit_date(commit: str) -> str | None:
     """The date of a commit of this repository, ISO 8601, or None where it is not known."""
-    command = ["git", "show", "--no-patch", "--format=%cI", f"{commit}^{{commit}}"]
-    try:
-        done = subprocess.run(
-            command, cwd=Path(__file__).parent, capture_output=True, text=True, check=True,
-            timeout=10,
-        )  # fmt: skip
-    except (OSError, subprocess.SubprocessError):
-        return None
-    return done.stdout.strip() or None
+    return git("show", "--no-patch", "--format=%cI", f"{commit}^{{commit}}") or None
 
 
-def _claims(run: Run) -> dict[str, Any]:
-    evidence, claims = Evidence(run), load_claims()
-    rows = judged(run, claims).to_dict("records")
-    figures = {
-        f"{it.table}/{it.structure}/{it.subject}": _figures(run, evidence, it, row)
-        for it, row in zip(claims, rows, strict=True)
-    }
-    return {name: found for name, found in figures.items() if found}
+def claim_figures(run: Run) -> dict[str, Figures]:
+    """The figures of every claim by ``table/structure/subject``, as far as it was measured.
+
+    ``outcome`` by work, which decides (of memory: by bytes), and ``outcome_time``; ``slopes`` with
+    their intervals, by axis; ``work``, accesses at ``work_faces``, the largest mesh; ``seconds`` at
+    ``time_faces``, the largest one that was timed, of ``time_sizes``; ``relative``: the time in
+    memory accesses, which take what they took beside the measurement; ``bytes`` per vertex.
+    Judges the run, which takes some seconds.
+    """
+    figures = {name_claim(it): _figures(run, it) for it in judge_cells(run)}
+    return {name: kept for name, kept in figures.items() if kept}
 
 
-def _figures(run: Run, evidence: Evidence, claim: Claim, row: dict[Any, Any]) -> dict[str, Any]:
-    if claim.subject == MEMORY:
-        size = row["bytes_per_vertex"]
-        return {"outcome": row["outcome"], "bytes": short(size)} if np.isfinite(size) else {}
-    verdicts = {
-        f"{measure}_{variable}": row[f"{measure}_{variable}"]
-        for measure, variable in SOURCES
-        if row[f"{measure}_{variable}"]
-    }
-    if not verdicts:
+def class_figures(run: Run) -> dict[str, Figures]:
+    """Of every claim the ``classes`` that its counts show, by axis, and what becomes of it."""
+    figures = {name_claim(judged): _classes(curves(run), judged) for judged in judge_cells(run)}
+    return {name: {"classes": classes} for name, classes in figures.items() if classes}
+
+
+def _classes(of_run: Curves, judged: JudgedClaim) -> Figures:
+    claim, classes = judged.claim, Figures()
+    for axis, verdict in judged.verdicts.items():
+        curve = of_run.curve(axis, claim.structure, claim.subject, claim.table)
+        if len(curve) >= LEAST_SIZES:
+            classes[axis.key] = [verdict.best, _outcome(judged, axis)]
+    return classes
+
+
+def _outcome(judged: JudgedClaim, axis: Axis) -> str:
+    """What becomes of a claim along one axis."""
+    expects = judged.claim.expects
+    claimed = isinstance(expects, Growth) and axis.variable in expects.classes
+    return judged.verdicts[axis].outcome if claimed else Outcome.NO_CLAIM
+
+
+def name_claim(judged: JudgedClaim) -> str:
+    """The name of a claim in files: ``table/structure/subject``."""
+    claim = judged.claim
+    return f"{claim.table}/{claim.structure}/{claim.subject}"
+
+
+@cache
+def describe_claim(name: str) -> str:
+    """A claim in words, as in "Table 1, Vertex → Faces: O(n_ev); thesis 3.1"; empty if unknown."""
+    return _described().get(name, "")
+
+
+@cache
+def _described() -> dict[str, str]:
+    texts = {}
+    for claim in load_claims():
+        printed = "nothing claimed" if claim.printed == NO_CLAIM else claim.printed
+        text = f"{tables()[claim.table].title}, {claim.title}: {printed}; {claim.source}"
+        texts[f"{claim.table}/{claim.structure}/{claim.subject}"] = text
+    return texts
+
+
+def _figures(run: Run, judged: JudgedClaim) -> Figures:
+    if np.isfinite(judged.bytes_per_vertex):
+        return {"outcome": judged.outcome, "bytes": _short(judged.bytes_per_vertex)}
+    if not judged.verdicts:
         return {}
     slopes = {
-        name: [short(it) for it in (found.slope, found.slope_low, found.slope_high)]
-        for name, found in verdicts.items()
+        axis.key: [_short(it) for it in (verdict.slope, verdict.slope_low, verdict.slope_high)]
+        for axis, verdict in judged.verdicts.items()
     }
-    outcomes = {"outcome": row["outcome"], "outcome_time": row["outcome_time"]}
-    times = {} if run.machines else _time(evidence, claim)
-    return outcomes | {"slopes": slopes} | _work(evidence, claim) | times
+    outcomes = {"outcome": judged.outcome, "outcome_time": judged.outcome_time}
+    times = {} if run.machines else _time(curves(run), judged)
+    return {**outcomes, "slopes": slopes, **_work(curves(run), judged), **times}
 
 
-def _work(evidence: Evidence, claim: Claim) -> dict[str, Any]:
-    cases = evidence.curve("work", "faces", claim.structure, claim.subject, claim.table)
-    if cases.empty:
+def _work(of_run: Curves, judged: JudgedClaim) -> Figures:
+    claim = judged.claim
+    curve = of_run.curve(Axis.WORK_FACES, claim.structure, claim.subject, claim.table)
+    if not len(curve):
         return {}
-    case = cases.iloc[-1]
-    return {"work": short(np.mean(case["samples"])), "work_faces": int(case["faces"])}
+    return {"work": _short(curve.largest), "work_faces": int(curve.sizes[-1])}
 
 
-def _time(evidence: Evidence, claim: Claim) -> dict[str, Any]:
+def _time(of_run: Curves, judged: JudgedClaim) -> Figures:
     """Seconds at the largest size, and the median over all sizes of seconds per memory access.
 
     At any one size where the caches end, the latency differs between runs by a factor of two or
     more; the median over the sizes came back within 2 % (standard deviation, nine runs).
     """
-    measure = "random" if claim.table == "queries" else "time"
-    cases = evidence.curve(measure, "faces", claim.structure, claim.subject, claim.table)
-    if cases.empty:
+    claim = judged.claim
+    axis = Axis.RANDOM_FACES if claim.table == "queries" else Axis.TIME_FACES
+    curve = of_run.curve(axis, claim.structure, claim.subject, claim.table)
+    if not len(curve):
         return {}
-    seconds = np.array([np.median(samples) for samples in cases["samples"]])
-    found = {
-        "seconds": short(seconds[-1]),
-        "time_faces": int(cases["faces"].iloc[-1]),
-        "time_sizes": len(cases),
+    figures = {
+        "seconds": _short(curve.largest),
+        "time_faces": int(curve.sizes[-1]),
+        "time_sizes": len(curve),
     }
-    latency = cases["latency"].to_numpy(float)
+    latency = curve.cases["latency"].to_numpy(float)
     if np.isnan(latency).any():
-        between = evidence.latency(cases["working_set"].to_numpy(float))
+        between = of_run.latency(curve.cases["working_set"].to_numpy(float))
         if between is None:
-            return found
+            return figures
         latency = np.where(np.isnan(latency), between, latency)
-    return found | {"relative": short(np.exp(np.median(np.log(seconds / latency))))}
+    return {**figures, "relative": _short(np.exp(np.median(np.log(curve.centers / latency))))}
+
+
+def _short(value: float) -> float:
+    """Five digits, and none of next to nothing."""
+    return float(f"{value:.{DIGITS}g}") if abs(value) > NOTHING else 0.0

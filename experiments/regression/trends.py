@@ -1,4 +1,4 @@
-"""What a history says of a claim from commit to commit, and where it changed.
+"""What a history says of every claim from commit to commit, and where it changed.
 
 Work, bytes and outcomes by work are comparable between machines, times are not: a series of times
 is of one machine. All series are of one profile, as the profile sets the sizes.
@@ -6,16 +6,17 @@ is of one machine. All series are of one profile, as the profile sets the sizes.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass, field
-from itertools import pairwise
+from collections.abc import Collection, Iterator
+from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
+import pandas as pd
 
-from experiments.claims.judged import LEAST_SLOPE
-from experiments.regression.change_points import Step, steps
+from experiments.regression.change_points import Step, find_steps
 from experiments.regression.history import History, Line
+from experiments.regression.snapshots import LEAST_SLOPE
 
 
 @dataclass(frozen=True)
@@ -28,17 +29,11 @@ class Measure:
     at: tuple[str, ...] = ()
     slope: bool = False
 
-    def value(self, claim: dict[str, Any]) -> float | None:
-        """The figure, or None where there is none."""
+    def values(self, claim: dict[str, Any]) -> list[float] | None:
+        """The figure, of a slope with the ends of its interval; None where there is none."""
         if self.slope:
-            found = claim.get("slopes", {}).get(self.key)
-            return None if found is None else float(found[0])
-        return claim.get(self.key)
-
-    def bounds(self, claim: dict[str, Any]) -> tuple[float, float] | None:
-        """The interval of a slope."""
-        found = claim.get("slopes", {}).get(self.key) if self.slope else None
-        return (float(found[1]), float(found[2])) if found and len(found) == 3 else None
+            return claim.get("slopes", {}).get(self.key)
+        return [claim[self.key]] if self.key in claim else None
 
 
 MEASURES = {
@@ -49,150 +44,134 @@ MEASURES = {
     "slope_time": Measure("slope n_t, time", "time_faces", False, slope=True),
     "time": Measure("time", "relative", False, ("time_faces", "time_sizes")),
 }
-"""What is drawn. What is exact is comparable between machines."""
+"""What is followed. What is exact is comparable between machines."""
 
 OUTCOMES = {"outcome": "verdict by work", "outcome_time": "verdict by time"}
 """The verdicts of a claim; that by work is comparable between machines, and of memory by bytes."""
 
-
-@dataclass(frozen=True)
-class Series:
-    """One figure of one claim; ``machine`` is None where machines are comparable.
-
-    ``at``: indices into the history's runs; ``values``: the figures there. ``steps``: where a new
-    level begins, indices into ``at``.
-    """
-
-    claim: str
-    measure: str
-    profile: str
-    machine: str | None
-    at: list[int]
-    values: list[float]
-    steps: list[Step] = field(default_factory=list)
+SERIES = ["claim", "measure", "profile", "machine"]
+"""What the figures of a series have in common; the machine is empty where any will do."""
 
 
-@dataclass(frozen=True)
-class Change:
-    """Something that is not as it was: ``run`` is an index into the history's runs."""
+class Trends:
+    """A history as one table of figures and one of verdicts; each is worked out once."""
 
-    claim: str
-    what: str
-    run: int
-    before: str
-    after: str
-    machine: str | None
+    def __init__(self, history: History) -> None:
+        self.history = history
+        self.runs = history.runs
 
-    @property
-    def is_verdict(self) -> bool:
-        """Whether it is a verdict that changed, and no figure."""
-        return self.what in OUTCOMES.values()
+    def only(self, machine: str | None = None, profile: str | None = None) -> Trends:
+        """The runs of one machine, by its first digits, or of one profile.
+
+        Raises ValueError that says which there are, if there are none or several machines.
+        """
+        runs = self.runs
+        if machine is not None:
+            known = {run["machine"]["id"]: run["machine"].get("cpu") for run in runs}
+            matched = [name for name in known if machine and name.startswith(machine)]
+            if len(matched) != 1:
+                there = ", ".join(f"{name} ({cpu})" for name, cpu in known.items())
+                fault = "several runs' machines begin with" if matched else "no run is of machine"
+                raise ValueError(f"{fault} {machine!r}; there are {there}")
+            runs = [run for run in runs if run["machine"]["id"] == matched[0]]
+        if profile is not None:
+            there = ", ".join(dict.fromkeys(run["profile"] for run in runs))
+            runs = [run for run in runs if run["profile"] == profile]
+            if not runs:
+                raise ValueError(f"no run is of preset {profile!r}; there are {there}")
+        return Trends(replace(self.history, runs=runs))
+
+    def claims(self, text: str | None = None) -> list[str]:
+        """The claims, in the newest run's order, that ``text`` names; None: all.
+
+        ``text``: a structure, a query, or ``structure/query``. Raises ValueError for another.
+        """
+        every = list(dict.fromkeys(name for run in reversed(self.runs) for name in run["claims"]))
+        wanted = f"/{(text or '').strip('/')}/"
+        chosen = [name for name in every if text is None or wanted in f"/{name}/"]
+        if not chosen and self.runs:
+            parts = [dict.fromkeys(name.split("/")[k] for name in every) for k in (1, 2)]
+            raise ValueError(
+                f"the history has no claim {text!r}; say a structure ({', '.join(parts[0])}), what "
+                f"it is asked ({', '.join(parts[1])}), or both, as in half_edge/vertex_faces"
+            )
+        return chosen
+
+    @cached_property
+    def figures(self) -> pd.DataFrame:
+        """A row per run, claim and measure, in the order of the commits.
+
+        ``run``: index into ``runs``. ``value``, ``low``, ``high``: the figure and its interval.
+        ``comparable``: it is of the same meshes as the newest of its series. ``before``, ``after``:
+        the levels where a new one begins with this row, else NaN.
+        """
+        rows = [row for k, run in enumerate(self.runs) for row in _figures(k, run)]
+        columns = ["run", *SERIES, "at", "value", "low", "high"]
+        figures = pd.DataFrame(rows, columns=columns)
+        newest = figures.groupby(SERIES)["at"].transform("last")
+        figures["comparable"] = figures["at"] == newest
+        figures[["before", "after"]] = np.nan
+        for _, part in figures[figures["comparable"]].groupby(SERIES):
+            for step in _steps(MEASURES[part["measure"].iloc[0]], part["value"].to_numpy(float)):
+                row = part.index[step.index]
+                figures.loc[row, ["before", "after"]] = step.before, step.after
+        return figures
+
+    @cached_property
+    def verdicts(self) -> pd.DataFrame:
+        """A row per run, claim and measure: its ``outcome``, and the one ``before``, if any."""
+        rows = [
+            (k, name, what, run["profile"], _machine(run, key == "outcome"), claim[key])
+            for k, run in enumerate(self.runs)
+            for name, claim in run["claims"].items()
+            for key, what in OUTCOMES.items()
+            if key in claim
+        ]
+        verdicts = pd.DataFrame(rows, columns=["run", *SERIES, "outcome"])
+        verdicts["before"] = verdicts.groupby(SERIES)["outcome"].shift()
+        return verdicts
+
+    @cached_property
+    def changes(self) -> pd.DataFrame:
+        """All verdicts and figures that changed, by commit: run, claim, measure, before, after."""
+        columns = ["run", "claim", "measure", "machine", "before", "after"]
+        seen = self.verdicts.rename(columns={"outcome": "after"})
+        seen = seen[seen["before"].notna() & (seen["before"] != seen["after"])][columns]
+        steps = self.figures[self.figures["before"].notna()][columns].astype(object)
+        steps["measure"] = steps["measure"].map(lambda name: MEASURES[name].title)
+        for level in ("before", "after"):
+            steps[level] = steps[level].map(lambda value: f"{value:.4g}")
+        both = pd.concat([seen.assign(verdict=True), steps.assign(verdict=False)])
+        return both.sort_values(["run", "verdict"], ascending=[True, False], kind="stable")
 
 
-def claims(history: History) -> list[str]:
-    """The names of all claims, in the order of the newest run that has them."""
-    found: dict[str, None] = {}
-    for run in reversed(history.runs):
-        found |= dict.fromkeys(run["claims"])
-    return list(found)
+def is_of(claims: Collection[str], rows: pd.DataFrame) -> pd.DataFrame:
+    """The rows of some claims."""
+    return rows[rows["claim"].isin(list(claims))]
 
 
-def chosen(history: History, text: str | None) -> list[str]:
-    """The claims that ``text`` names: a structure, a query, or ``structure/query``; None: all.
-
-    Raises ValueError that says what there is.
-    """
-    every = claims(history)
-    if text is None:
-        return every
-    wanted = text.strip("/").split("/")
-    found = [name for name in every if _within(wanted, name.split("/"))]
-    if not found and history.runs:
-        parts = [dict.fromkeys(name.split("/")[k] for name in every) for k in (1, 2)]
-        raise ValueError(
-            f"the history has no claim {text!r}; say a structure ({', '.join(parts[0])}), what it "
-            f"is asked ({', '.join(parts[1])}), or both, as in half_edge/vertex_faces"
-        )
-    return found
+def _figures(k: int, run: Line) -> Iterator[tuple[Any, ...]]:
+    for name, claim in run["claims"].items():
+        for key, measure in MEASURES.items():
+            values = measure.values(claim)
+            if values is not None:
+                at = str([claim.get(field) for field in measure.at])
+                low, high = values[1:] or (np.nan, np.nan)
+                series = name, key, run["profile"], _machine(run, measure.exact)
+                yield k, *series, at, values[0], low, high
 
 
-def _within(wanted: list[str], parts: list[str]) -> bool:
-    return any(parts[k : k + len(wanted)] == wanted for k in range(len(parts)))
+def _machine(run: Line, exact: bool) -> str:
+    return "" if exact else str(run["machine"]["id"])
 
 
-def series(history: History, claim: str, measure: str) -> list[Series]:
-    """All series of a figure, with their steps; one per profile, and machine if it is a time.
-
-    Of meshes of several sizes those that were measured last: others have nothing to compare with.
-    """
-    it = MEASURES[measure]
-    groups: dict[tuple[str, str | None], list[int]] = {}
-    for k, run in enumerate(history.runs):
-        if it.value(run["claims"].get(claim, {})) is not None:
-            machine = None if it.exact else run["machine"]["id"]
-            groups.setdefault((run["profile"], machine), []).append(k)
-    return [
-        _series(history, claim, measure, profile, machine, runs)
-        for (profile, machine), runs in groups.items()
-    ]
-
-
-def _series(
-    history: History, claim: str, measure: str, profile: str, machine: str | None, runs: list[int]
-) -> Series:
-    it = MEASURES[measure]
-    sizes = [tuple(history.runs[k]["claims"][claim].get(key) for key in it.at) for k in runs]
-    at = [k for k, size in zip(runs, sizes, strict=True) if size == sizes[-1]]
-    values = [float(it.value(history.runs[k]["claims"][claim]) or 0) for k in at]
-    return Series(claim, measure, profile, machine, at, values, _steps(it, values))
-
-
-def _steps(measure: Measure, values: list[float]) -> list[Step]:
+def _steps(measure: Measure, values: np.ndarray[Any, Any]) -> list[Step]:
     if not measure.slope:
-        positive = measure.exact or min(values) > 0
-        return steps(values, exact=measure.exact) if positive else []
+        return find_steps(values, exact=measure.exact) if measure.exact or values.min() > 0 else []
     if measure.exact:
         held = [values[0]]
         for value in values[1:]:
             held.append(held[-1] if abs(value - held[-1]) < LEAST_SLOPE else value)
-        return steps(held, exact=True)
-    found = steps(np.exp(values))  # of slopes the noise is absolute
-    return [Step(it.index, float(np.log(it.before)), float(np.log(it.after))) for it in found]
-
-
-def changes(history: History, names: list[str] | None = None) -> list[Change]:
-    """All verdicts and figures that changed, in the order of the commits."""
-    found = [
-        change
-        for claim in (claims(history) if names is None else names)
-        for change in (*_verdicts(history, claim), *_figures(history, claim))
-    ]
-    return sorted(found, key=lambda it: (it.run, not it.is_verdict))
-
-
-def _verdicts(history: History, claim: str) -> Iterator[Change]:
-    for key, what in OUTCOMES.items():
-        groups: dict[tuple[str, str | None], list[int]] = {}
-        for k, run in enumerate(history.runs):
-            if key in run["claims"].get(claim, {}):
-                machine = run["machine"]["id"] if key == "outcome_time" else None
-                groups.setdefault((run["profile"], machine), []).append(k)
-        for (_, machine), runs in groups.items():
-            for before, after in pairwise(runs):
-                was, now = (_claim(history.runs[k], claim)[key] for k in (before, after))
-                if was != now:
-                    yield Change(claim, what, after, was, now, machine)
-
-
-def _figures(history: History, claim: str) -> Iterator[Change]:
-    for measure, it in MEASURES.items():
-        for line in series(history, claim, measure):
-            for step in line.steps:
-                before, after = (f"{value:.4g}" for value in (step.before, step.after))
-                run = line.at[step.index]
-                yield Change(claim, it.title, run, before, after, line.machine)
-
-
-def _claim(run: Line, claim: str) -> dict[str, Any]:
-    found: dict[str, Any] = run["claims"][claim]
-    return found
+        return find_steps(held, exact=True)
+    steps = find_steps(np.exp(values))  # of slopes the noise is absolute
+    return [Step(it.index, float(np.log(it.before)), float(np.log(it.after))) for it in steps]

@@ -2,23 +2,18 @@
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Iterable
-from typing import Any
-
 import pandas as pd
 
-from experiments.claims.judged import OUTCOMES as MARKS
-from experiments.regression.history import History
-from experiments.regression.trends import OUTCOMES, changes
+from experiments.regression import OUTCOMES, Trends
+from experiments.report.history_tables import count_outcomes, short_commit
 
 SHOWN = 40
 """Changes on a page, the newest."""
 
 
-def told(history: History) -> str:
+def describe_history(trends: Trends) -> str:
     """What the chapter says first: how many runs there are, and what to do if they are few."""
-    count, machines = len(history.runs), {it["machine"]["id"] for it in history.runs}
+    count, machines = len(trends.runs), {run["machine"]["id"] for run in trends.runs}
     if not count:
         return (
             "There is no history yet. Measure and keep what was found with "
@@ -38,56 +33,41 @@ def _plural(count: int, what: str) -> str:
     return f"one {what}" if count == 1 else f"{count} {what}s"
 
 
-def runs(history: History) -> str:
+def runs_table(trends: Trends) -> str:
     """A table of the runs, the newest first: what they found, and how many verdicts changed."""
-    found = Counter((it.run, it.what) for it in changes(history) if it.is_verdict)
+    counts = trends.changes.groupby(["run", "measure"]).size().to_dict()
     rows = [
         {
-            "commit": run["commit"][:10] + ("*" if run.get("dirty") else ""),
+            "commit": short_commit(run),
             "of": (run.get("committed") or "unknown")[:10],
             "measured": run["started"][:16].replace("T", " "),
             "profile": run["profile"],
             "machine": run["machine"]["id"],
-            **{
-                what.replace("verdict ", ""): _counts(run["claims"].values(), key)
-                for key, what in OUTCOMES.items()
-            },
-            "changed by work": found[k, OUTCOMES["outcome"]] or "",
-            "by time ": found[k, OUTCOMES["outcome_time"]] or "",
+            "by work": count_outcomes(run, "outcome"),
+            "by time": count_outcomes(run, "outcome_time"),
+            "changed by work": counts.get((k, OUTCOMES["outcome"]), ""),
+            "by time ": counts.get((k, OUTCOMES["outcome_time"]), ""),
         }
-        for k, run in enumerate(history.runs)
+        for k, run in enumerate(trends.runs)
     ]
-    return _table(rows[::-1])
+    return _table(pd.DataFrame(rows[::-1]))
 
 
-def changed(history: History) -> str:
+def changes_table(trends: Trends) -> str:
     """A table of the figures and verdicts by work that changed, the newest first."""
-    found = [it for it in changes(history) if it.what != OUTCOMES["outcome_time"]]
-    found.sort(key=lambda it: -it.run)
-    if not found:
+    found = trends.changes[trends.changes["measure"] != OUTCOMES["outcome_time"]]
+    found = found.sort_values("run", ascending=False, kind="stable")
+    if found.empty:
         return "<p>Nothing changed so far.</p>"
-    rows = [
-        {
-            "at": history.runs[it.run]["commit"][:10],
-            "claim": it.claim,
-            "figure": it.what,
-            "before": it.before,
-            "after": it.after,
-            "machine": it.machine or "any",
-        }
-        for it in found[:SHOWN]
-    ]
     older = len(found) - SHOWN
     more = f"<p>And {older} older ones: <code>hem history show</code>.</p>" if older > 0 else ""
-    return _table(rows) + more
+    found = found.assign(
+        at=found["run"].map(lambda k: short_commit(trends.runs[k])),
+        machine=found["machine"].replace("", "any"),
+    ).rename(columns={"measure": "figure"})
+    return _table(found[["at", "claim", "figure", "before", "after", "machine"]][:SHOWN]) + more
 
 
-def _counts(claims: Iterable[dict[str, Any]], key: str) -> str:
-    counts = Counter(it[key] for it in claims if key in it)
-    shown = ("consistent", "violated", "undetermined")
-    return " ".join(f"{counts[it]}{MARKS[it]}" for it in shown if counts[it])
-
-
-def _table(rows: list[dict[str, Any]]) -> str:
-    html: str = pd.DataFrame(rows).to_html(index=False, border=0, classes="numbers")
+def _table(rows: pd.DataFrame) -> str:
+    html: str = rows.to_html(index=False, border=0, classes="numbers")
     return f'<div class="wide">{html}</div>'

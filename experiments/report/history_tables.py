@@ -1,234 +1,212 @@
-"""The history as tables: runs in brief, a claim from run to run, or many claims at a glance."""
+"""The history as tables for a terminal: runs in brief, a claim by run, or many at a glance.
+
+A line per run, change or claim, and 80 columns wide: structures by their abbreviations, figures
+to five digits, the last runs as bars.
+"""
 
 from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import asdict, replace
 from typing import Any
 
+import pandas as pd
+from rich import box
 from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from experiments.claims.judged import OUTCOMES as MARKS
-from experiments.regression.history import History, Line
-from experiments.regression.trends import (
-    MEASURES,
-    OUTCOMES,
-    Change,
-    Series,
-    changes,
-    series,
-)
-from experiments.report.tables import STYLES
+from experiments.claims import Outcome
+from experiments.regression import MEASURES, OUTCOMES, Trends, is_of
+from experiments.regression.history import Line
+from structures import NAMED
 
 FEW = 6
 """Claims that get a table each; more of them share one."""
-WIDE = 110
-"""Columns of a terminal from which on intervals are shown."""
 BARS = "▁▂▃▄▅▆▇█"
-
-
-def of(history: History, machine: str | None, profile: str | None) -> History:
-    """The runs of one machine, of one profile, or both. Raises ValueError if there are none."""
-    runs = history.runs
-    if machine is not None:
-        runs = [it for it in runs if machine and it["machine"]["id"].startswith(machine)]
-        if not runs:
-            known = {it["machine"]["id"]: it["machine"].get("cpu") for it in history.runs}
-            there = ", ".join(f"{key} ({cpu})" for key, cpu in known.items())
-            raise ValueError(f"no run is of machine {machine!r}; there are {there}")
-        matched = sorted({it["machine"]["id"] for it in runs})
-        if len(matched) > 1:
-            raise ValueError(f"machine {machine!r} might be {' or '.join(matched)}: say more of it")
-    if profile is not None:
-        runs, before = [it for it in runs if it["profile"] == profile], runs
-        if not runs:
-            there = ", ".join(dict.fromkeys(it["profile"] for it in before))
-            raise ValueError(f"no run is of profile {profile!r}; there are {there}")
-    return replace(history, runs=runs)
+WIDEST = 500
+RECENT = 8
+"""Runs that bars are drawn of."""
+COLUMNS = ["run", "claim", "measure", "before", "after"]
+SHORT = {title: title.replace("verdict by ", "by ") for title in OUTCOMES.values()}
 
 
 def show(
-    history: History, names: list[str], console: Console, last: int | None, brief: bool
+    trends: Trends, claim: str | None, console: Console, last: int | None, slopes: bool
 ) -> None:
-    """Print the history of some claims; ``last``: just so many runs. ``brief``: the runs first."""
-    shown = range(len(history.runs))[-(last or len(history.runs)) :]
-    found = [it for it in changes(history, names) if it.run in shown]
-    if brief:
-        console.print(_runs(history, shown, found))
-        _print_changes(
-            history, [it for it in found if it.what != OUTCOMES["outcome_time"]], console
-        )
+    """Print the history of some claims, or all in brief; ``last``: just so many runs."""
+    names = trends.claims(claim)
+    shown = range(len(trends.runs))[-(last or len(trends.runs)) :]
+    changes = is_of(names, trends.changes)
+    changes = changes[changes["run"].isin(shown)]
+    if claim is None:
+        tables = [_runs(trends, shown, changes), _changes(trends, changes)]
     elif len(names) <= FEW:
-        for name in names:
-            console.print(_claim(history, name, shown, found, console.width >= WIDE))
+        tables = [_claim(trends, name, shown, changes, slopes) for name in names]
     else:
-        console.print(_glance(history, names, shown, found))
-    console.print(_legend(history, brief), style="dim", highlight=False)
+        tables = [_glance(trends, names, shown, changes)]
+    for table in tables:
+        if table.row_count:  # a figure that is cut is a wrong one
+            wide = console.measure(table, options=console.options.update(max_width=WIDEST))
+            console.print(table, width=max(console.width, wide.maximum), crop=False)
+    console.print(_legend(trends, claim is None), style="dim", highlight=False)
 
 
-def _runs(history: History, shown: Sequence[int], found: list[Change]) -> Table:
-    table = _headed(history, f"{len(history.runs)} runs in {history.path}")
-    for head in ("by work", "by time"):
-        table.add_column(head, no_wrap=True)
-    for head in ("verdicts changed", "figures changed"):
-        table.add_column(head, justify="right")
-    for k in shown:
-        mine = [it for it in found if it.run == k]
-        verdicts = [sum(it.what == what for it in mine) for what in OUTCOMES.values()]
-        changed = " + ".join(map(str, verdicts)) if any(verdicts) else ""
-        figures = sum(not it.is_verdict for it in mine)
-        table.add_row(
-            *_head(history, k),
-            *(_counts(history.runs[k], key) for key in OUTCOMES),
-            Text(changed, style="bold yellow" if verdicts[0] else ""),
-            str(figures or ""),
-        )
-    return table
-
-
-def _headed(history: History, title: str) -> Table:
-    """A table with the columns of ``_head``."""
-    table = Table(title=title, pad_edge=False)
-    for head in ("commit", "measured", *_told_apart(history)):
+def _table(title: str, *heads: str) -> Table:
+    table = Table(
+        title=title, title_justify="left", box=box.SIMPLE_HEAD, padding=(0, 1), pad_edge=False
+    )
+    for head in heads:
         table.add_column(head, no_wrap=True)
     return table
 
 
-def _head(history: History, k: int) -> list[str]:
-    run = history.runs[k]
-    facts = {"profile": run["profile"], "machine": run["machine"]["id"]}
-    return [short(run), run["started"][:10], *(facts[it] for it in _told_apart(history))]
-
-
-def _told_apart(history: History) -> list[str]:
+def _told_apart(trends: Trends) -> list[str]:
     """What of profile and machine is not the same in all runs."""
-    several = {
-        "profile": len({it["profile"] for it in history.runs}) > 1,
-        "machine": len({it["machine"]["id"] for it in history.runs}) > 1,
-    }
-    return [name for name, needed in several.items() if needed]
+    facts = {"profile": "profile", "machine": "machine"}
+    return [it for it in facts if len({_facts(run)[it] for run in trends.runs}) > 1]
 
 
-def short(run: Line) -> str:
+def _facts(run: Line) -> dict[str, str]:
+    return {"profile": run["profile"], "machine": run["machine"]["id"]}
+
+
+def _head(trends: Trends, k: int) -> list[str]:
+    run, facts = trends.runs[k], _facts(trends.runs[k])
+    return [short_commit(run), *(facts[it] for it in _told_apart(trends))]
+
+
+def short_commit(run: Line) -> str:
     """The commit of a run, with a star where there were changes besides."""
     return str(run["commit"][:7]) + ("*" if run.get("dirty") else "")
 
 
-def _counts(run: Line, key: str) -> Text:
-    counts = Counter(it[key] for it in run["claims"].values() if key in it)
-    text = Text()
-    for outcome in ("consistent", "violated", "undetermined"):
-        if counts[outcome]:
-            text.append(f"{counts[outcome]}{MARKS[outcome]} ", style=STYLES[outcome])
-    return text
+def short_claim(name: str) -> str:
+    """A claim with its structure's abbreviation: ``HEM vertex_faces``."""
+    table, structure, subject = name.split("/")
+    short = NAMED[structure].abbreviation if structure in NAMED else structure
+    return f"{short} {subject}" + (" (listing)" if table == "listings" else "")
 
 
-def _print_changes(history: History, found: list[Change], console: Console) -> None:
-    if not found:
-        return
-    machines = "machine" in _told_apart(history)
-    table = Table(title="What changed", pad_edge=False)
-    for head in ("at", "claim", "figure", "before → after", *(["machine"] if machines else [])):
-        table.add_column(head, no_wrap=head in ("at", "claim"))
-    for it in found:
-        after = Text(f"{it.before} → {it.after}", style=STYLES.get(it.after, ""))
-        claim = _without_table(it.claim)
-        where = [it.machine or "any"] if machines else []
-        table.add_row(short(history.runs[it.run]), claim, it.what, after, *where)
-    console.print(table)
+def count_outcomes(run: Line, key: str) -> str:
+    """How many claims of a run have each outcome, such as ``85✓ 3✗``."""
+    counts = Counter(claim[key] for claim in run["claims"].values() if key in claim)
+    shown = (Outcome.CONSISTENT, Outcome.VIOLATED, Outcome.UNDETERMINED)
+    return " ".join(f"{counts[it]}{it.mark}" for it in shown if counts[it])
 
 
-def _without_table(claim: str) -> str:
-    return claim.removeprefix("queries/").removeprefix("operations/")
+def _runs(trends: Trends, shown: Sequence[int], changes: pd.DataFrame) -> Table:
+    heads = "commit", *_told_apart(trends), "measured", "by work", "by time", "changed"
+    table = _table(f"{len(trends.runs)} runs in {trends.history.path}", *heads)
+    for k in shown:
+        mine = changes[changes["run"] == k]
+        verdicts = [int((mine["measure"] == what).sum()) for what in OUTCOMES.values()]
+        changed = [*verdicts, int((~mine["verdict"].astype(bool)).sum())]
+        text = Text("/".join(map(str, changed)) if any(changed) else "")
+        text.stylize("bold yellow" if verdicts[0] else "")
+        outcomes = (count_outcomes(trends.runs[k], key) for key in OUTCOMES)
+        measured = trends.runs[k]["started"][:10]
+        table.add_row(*_head(trends, k), measured, *outcomes, text)
+    return table
+
+
+def _changes(trends: Trends, changes: pd.DataFrame) -> Table:
+    table = _table("What changed", "at", "claim", "figure", "before → after")
+    rows = changes[changes["measure"] != OUTCOMES["outcome_time"]]
+    for at, claim, what, before, after in rows[COLUMNS].itertuples(index=False, name=None):
+        text = Text.assemble(_mark(before), " → ", _mark(after))
+        table.add_row(
+            short_commit(trends.runs[at]), short_claim(claim), SHORT.get(what, what), text
+        )
+    return table
 
 
 def _claim(
-    history: History, name: str, shown: Sequence[int], found: list[Change], wide: bool
+    trends: Trends, name: str, shown: Sequence[int], changes: pd.DataFrame, slopes: bool
 ) -> Table:
-    """A row per run, a column per figure; below each column how it went."""
-    table = _headed(history, name)
+    """A row per run, a column per figure, and below how it went."""
+    figures = is_of([name], trends.figures)
+    measures = [it for it in figures["measure"].unique() if MEASURES[it].slope == slopes]
+    table = _table(name, "commit", *_told_apart(trends), "verdict")
     table.show_footer = True
-    table.add_column("verdict", no_wrap=True)
-    lines = {it: series(history, name, it) for it in MEASURES}
-    lines = {it: each for it, each in lines.items() if each}
-    for measure, each in lines.items():
-        newest = max(each, key=lambda it: it.at[-1])
-        spark = sparkline([dict(zip(newest.at, newest.values, strict=True)).get(k) for k in shown])
-        table.add_column(MEASURES[measure].title, footer=spark, justify="right")
+    for measure in measures:
+        bars = _bars(figures[figures["measure"] == measure], shown)
+        table.add_column(MEASURES[measure].title, footer=bars, justify="right", no_wrap=True)
+    changed = set(changes[changes["claim"] == name][["run", "measure"]].itertuples(index=False))
     for k in shown:
-        claim = history.runs[k]["claims"].get(name)
-        if claim is None:
-            continue
-        changed = {it.what for it in found if it.run == k and it.claim == name}
-        cells = [_figure(measure, each, claim, k, wide) for measure, each in lines.items()]
-        table.add_row(*_head(history, k), _verdict(claim, changed), *cells)
+        claim = trends.runs[k]["claims"].get(name)
+        if claim is not None:
+            rows = figures[figures["run"] == k].set_index("measure")
+            cells = [_figure(it, rows.loc[it] if it in rows.index else None) for it in measures]
+            verdict = _verdict(claim, {what for run, what in changed if run == k})
+            table.add_row(*_head(trends, k), verdict, *cells)
     return table
+
+
+def _mark(outcome: str) -> Text:
+    """A verdict's mark in its color, or any other text as it is."""
+    if outcome not in set(Outcome):
+        return Text(outcome)
+    return Text(Outcome(outcome).mark, style=Outcome(outcome).color)
 
 
 def _verdict(claim: dict[str, Any], changed: set[str]) -> Text:
     text = Text()
     for key, what in OUTCOMES.items():
         if key in claim:
-            mark = MARKS.get(claim[key], claim[key]) + ("≠" if what in changed else " ")
-            text.append(f"{mark} ", style=STYLES.get(claim[key], ""))
+            text.append_text(_mark(claim[key])).append("≠ " if what in changed else "  ")
     return text
 
 
-def _figure(measure: str, lines: list[Series], claim: dict[str, Any], run: int, wide: bool) -> Text:
-    """A figure with its interval or, where it is not comparable, in gray; marked where it steps."""
-    it = MEASURES[measure]
-    value = it.value(claim)
-    if value is None:
+def _figure(name: str, row: Any) -> Text:
+    """A figure, a slope with its interval, gray where not comparable, marked where it steps."""
+    if row is None:
         return Text("–", style="dim")
-    text = Text(f"{round(value, 3) + 0:.3f}" if it.slope else f"{value:,.5g}")
-    bounds = it.bounds(claim)
-    if bounds and wide and not it.exact:
-        text.append(f" [{bounds[0]:.2f}, {bounds[1]:.2f}]", style="dim")
-    if not any(run in line.at for line in lines):
+    measure = MEASURES[name]
+    text = Text(_slope(row.value) if measure.slope else f"{row.value:,.5g}")
+    if measure.slope and not measure.exact:
+        text.append(f" [{_slope(row.low)}, {_slope(row.high)}]", style="dim")
+    if not row.comparable:
         text.stylize("dim")
-    for line in lines:
-        for step in line.steps:
-            if line.at[step.index] == run:
-                text.append(_mark(measure, step.before, step.after), style="bold yellow")
+    if pd.notna(row.before):
+        ratio = measure.slope or not row.before
+        step = f"{row.after - row.before:+.2f}" if ratio else f"{row.after / row.before - 1:+.1%}"
+        text.append(f" {'▲' if row.after > row.before else '▼'}{step}", style="bold yellow")
     return text
 
 
-def _mark(measure: str, before: float, after: float) -> str:
-    arrow = " ▲" if after > before else " ▼"
-    if MEASURES[measure].slope:
-        return f"{arrow}{after - before:+.2f}"
-    return arrow + (f"{after / before - 1:+.1%}" if before else "")
+def _slope(value: float) -> str:
+    return f"{round(value, 2) + 0:.2f}"
 
 
-def _glance(history: History, names: list[str], shown: Sequence[int], found: list[Change]) -> Table:
+def _glance(trends: Trends, names: list[str], shown: Sequence[int], changes: pd.DataFrame) -> Table:
     """A row per claim: how its figures went, where they are now, and when they changed last."""
-    table = Table(title=f"{len(names)} claims in {history.path}", pad_edge=False)
-    table.add_column("claim", no_wrap=True)
-    table.add_column("verdict", no_wrap=True)
-    for head in ("work or bytes", "time"):
-        table.add_column(head, no_wrap=True)
-    table.add_column("changed", min_width=10, no_wrap=True)
+    heads = "claim", "verdict", "work or bytes", "time", "changed"
+    table = _table(f"{len(names)} claims in {trends.history.path}", *heads)
+    figures = dict(list(is_of(names, trends.figures).groupby(["claim", "measure"])))
+    changes = changes[changes["measure"] != OUTCOMES["outcome_time"]]
     for name in names:
-        work = series(history, name, "bytes") or series(history, name, "work")
-        cells = [_course(it, shown) for it in (work, series(history, name, "time"))]
-        mine = [it for it in found if it.claim == name and it.what != OUTCOMES["outcome_time"]]
-        at = list(dict.fromkeys(short(history.runs[it.run]) for it in mine))
-        changed = (at[-1] if at else "") + (f" +{len(at) - 1}" if len(at) > 1 else "")
-        newest = next(it["claims"][name] for it in reversed(history.runs) if name in it["claims"])
-        claim = _without_table(name)
-        table.add_row(claim, _verdict(newest, set()), *cells, changed)
+        work = figures.get((name, "bytes"), figures.get((name, "work")))
+        cells = [_course(rows, shown) for rows in (work, figures.get((name, "time")))]
+        at = list(dict.fromkeys(changes[changes["claim"] == name]["run"]))
+        changed = short_commit(trends.runs[at[-1]]) if at else ""
+        newest = next(it["claims"][name] for it in reversed(trends.runs) if name in it["claims"])
+        table.add_row(short_claim(name), _verdict(newest, set()), *cells, changed)
     return table
 
 
-def _course(lines: list[Series], shown: Sequence[int]) -> Text:
-    if not lines:
+def _course(rows: pd.DataFrame | None, shown: Sequence[int]) -> Text:
+    if rows is None:
         return Text("–", style="dim")
-    line = max(lines, key=lambda it: it.at[-1])
-    values = dict(zip(line.at, line.values, strict=True))
-    return Text(f"{sparkline([values.get(k) for k in shown])} {line.values[-1]:,.5g}")
+    return Text(f"{_bars(rows, shown)} {rows['value'].iloc[-1]:,.5g}")
+
+
+def _bars(rows: pd.DataFrame, shown: Sequence[int]) -> str:
+    """The newest series of a figure as bars, the last runs of it."""
+    newest = rows.iloc[-1]
+    same = rows["comparable"] & (rows["profile"] == newest["profile"])
+    values = dict(rows[same & (rows["machine"] == newest["machine"])][["run", "value"]].to_numpy())
+    return sparkline([values.get(k) for k in list(shown)[-RECENT:]])
 
 
 def sparkline(values: Sequence[float | None]) -> str:
@@ -241,60 +219,63 @@ def sparkline(values: Sequence[float | None]) -> str:
         return ""
     low, high = min(there), max(there)
     flat = high - low <= 0.02 * max(abs(low), abs(high), 1e-9)
-    span = (high - low) or 1.0
-    top = len(BARS) - 1
-    bars = [
+    span, top = (high - low) or 1.0, len(BARS) - 1
+    return "".join(
         " " if value is None else BARS[3] if flat else BARS[round(top * (value - low) / span)]
         for value in values
-    ]
-    return "".join(bars)
-
-
-def _legend(history: History, brief: bool) -> str:
-    machines = {it["machine"]["id"]: it["machine"] for it in history.runs}
-    text = "✓ consistent, ✗ violated, ? undetermined; first by work, which decides, then by time. "
-    if brief:
-        text += "Verdicts changed: by work + by time. "
-    else:
-        text += "≠ not the verdict before, ▲▼ a step to a new level. "
-    text += "* with changes that were not committed."
-    told = "; ".join(
-        f"{key}: {it.get('cores')} cores of {it.get('cpu')}" for key, it in machines.items()
     )
-    text += "\nWork: elements accessed; bytes: per vertex; time: in memory accesses."
-    text += f"\nMachine {told}. {_profiles(history)}"
+
+
+def _legend(trends: Trends, brief: bool) -> str:
+    marks = "✓ consistent, ✗ violated, ? undetermined; by work, which decides, and by time."
+    changed = "Changed: verdicts by work/by time/figures." if brief else (
+        "≠ not the verdict before, ▲▼ a step to a new level. Slopes and intervals: --slopes."
+    )  # fmt: skip
+    lines = [f"{marks} {changed} * with changes that were not committed."]
+    lines.append("Work: elements accessed; bytes: per vertex; time: in memory accesses.")
+    machines = {run["machine"]["id"]: run["machine"] for run in trends.runs}
+    told = (f"{key}: {it.get('cores')} cores of {it.get('cpu')}" for key, it in machines.items())
+    lines.append(f"Machine {'; '.join(told)}.")
     if len(machines) > 1:
-        text += (
-            "\nWork, bytes and verdicts by work are compared between the machines, times are not: "
-            "each machine has its own; --machine shows one."
+        lines.append(
+            "Work, bytes and verdicts by work are compared between the machines, times are not; "
+            "--machine shows one."
         )
-    return text
+    if "profile" in _told_apart(trends):
+        lines.append("Runs of different presets are not compared; --preset shows one.")
+    return "\n".join(lines)
 
 
-def _profiles(history: History) -> str:
-    names = list(dict.fromkeys(it["profile"] for it in history.runs))
-    if len(names) == 1:
-        return f"Preset {names[0]}."
-    return "Runs of different profiles are not compared; --profile shows one."
-
-
-def as_json(history: History, names: list[str], last: int | None) -> dict[str, Any]:
+def as_json(trends: Trends, claim: str | None, last: int | None) -> dict[str, Any]:
     """Everything that is shown; ``at`` and ``run`` are indices into ``runs``."""
-    first = len(history.runs) - min(last or len(history.runs), len(history.runs))
-    heads = [
-        {key: value for key, value in run.items() if key != "claims"} | {"index": k}
-        for k, run in enumerate(history.runs)
-    ]
+    names, count = trends.claims(claim), len(trends.runs)
+    first = count - min(last or count, count)
+    figures = is_of(names, trends.figures)
+    keys = ["claim", "measure", "profile", "machine"]
+    changes = is_of(names, trends.changes).rename(columns={"measure": "what"})
     return {
-        "file": str(history.path),
-        "faults": history.faults,
-        "runs": heads,
+        "file": str(trends.history.path),
+        "faults": trends.history.faults,
+        "runs": [
+            {key: value for key, value in run.items() if key != "claims"} | {"index": k}
+            for k, run in enumerate(trends.runs)
+        ],
         "series": [
-            asdict(line) for name in names for it in MEASURES for line in series(history, name, it)
+            {**dict(zip(keys, (*key[:-1], key[-1] or None), strict=True)), **_series(part)}
+            for key, part in figures[figures["comparable"]].groupby(keys, sort=False)
         ],
         "changes": [
-            {**asdict(it), "commit": history.runs[it.run]["commit"]}
-            for it in changes(history, names)
-            if it.run >= first
+            {**row, "commit": trends.runs[row["run"]]["commit"]}
+            for row in changes[changes["run"] >= first].to_dict("records")
         ],
+    }
+
+
+def _series(part: pd.DataFrame) -> dict[str, Any]:
+    steps = part.reset_index(drop=True)
+    steps = steps[steps["before"].notna()][["before", "after"]].reset_index()
+    return {
+        "at": part["run"].tolist(),
+        "values": part["value"].tolist(),
+        "steps": steps.to_dict("records"),
     }

@@ -18,13 +18,18 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
-from experiments.regression import significance
-from experiments.regression.baseline import Measured, measured
-from experiments.regression.compare_runs import FACTOR as RUN_FACTOR
-from experiments.regression.compare_runs import compare_runs
-from experiments.regression.findings import Finding, code
-from experiments.regression.gate import HERE
-from experiments.regression.interleaved import compare_trees
+from experiments.regression import (
+    HERE,
+    INTERLEAVED_FACTOR,
+    RUN_FACTOR,
+    Change,
+    Finding,
+    Measured,
+    compare_runs,
+    compare_trees,
+    exit_code,
+    reduce_run,
+)
 from experiments.runs import describe, load, study
 from experiments.validation.mutants import copied_tree
 from structures import THESIS as STRUCTURES
@@ -33,7 +38,7 @@ RESULT = Path("results/reference/aa.json")
 MEASURED = ("bench_work", "bench_queries", "bench_valence")
 """What a run measures: what table 1 is judged by. The work tells the family that is judged."""
 PRESET = "quick"
-ALARMS = ("worse", "better")
+ALARMS = (Change.WORSE, Change.BETTER)
 LARGEST_SHARE = 1e-3
 """False alarms per comparison that are accepted."""
 
@@ -42,7 +47,7 @@ def measure_run(root: Path, seed: int) -> Measured:
     """Measure what the gate compares by time, the cases in an order of their own."""
     folder = study.begin(PRESET, root, STRUCTURES, experiments=MEASURED, seed=seed)
     study.run(folder)
-    return measured(load(folder))
+    return reduce_run(load(folder))
 
 
 def compare_pair(before: Measured, after: Measured) -> dict[str, Any]:
@@ -54,7 +59,7 @@ def compare_pair(before: Measured, after: Measured) -> dict[str, Any]:
 def _is_random(finding: Finding) -> bool:
     """Whether chance has a say in it, and there is a verdict to be lost or won."""
     open_twice = finding.before == finding.after == "undetermined"
-    return finding.by_chance and not open_twice
+    return finding.random and not open_twice
 
 
 def compare_with_copy(copy: Path, repetition: int) -> dict[str, Any]:
@@ -65,13 +70,17 @@ def compare_with_copy(copy: Path, repetition: int) -> dict[str, Any]:
 def count_findings(findings: Iterable[Finding]) -> dict[str, Any]:
     """How often the gate said what, and its alarms in words."""
     findings = list(findings)
-    outcomes = Counter(finding.outcome for finding in findings)
+    outcomes = Counter(finding.change for finding in findings)
     return {
         "comparisons": len(findings),
-        "same": outcomes["same"],
-        "undetermined": outcomes["undetermined"],
-        "exit_code": code(findings),
-        "alarms": [f"{it.outcome}: {it}" for it in findings if it.outcome in ALARMS],
+        "same": outcomes[Change.SAME],
+        "undetermined": outcomes[Change.UNDETERMINED],
+        "exit_code": exit_code(findings),
+        "alarms": [
+            f"{it.change}: {it.kind} {it.where} {it.difference}"
+            for it in findings
+            if it.change in ALARMS
+        ],
     }
 
 
@@ -119,7 +128,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     given = parser.parse_args(arguments)
     kept = {key: value for key, value in describe(PRESET).items() if key != "schema"}
     kept |= {"runs": given.runs, "pairs": [], "interleaved": []}
-    kept |= {"factor": RUN_FACTOR, "factor_interleaved": significance.FACTOR}
+    kept |= {"factor": RUN_FACTOR, "factor_interleaved": INTERLEAVED_FACTOR}
     with copied_tree() as copy:
         for repetition in range(given.interleaved):
             kept["interleaved"].append(

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from experiments.regression.snapshots import record
-from experiments.runs.results import load
+from experiments.regression import record_run
+from experiments.runs import load
 from tests.experiments.made_runs import write_run
 
 
@@ -18,4 +18,4 @@ def base_folder(tmp_path_factory):
 @pytest.fixture(scope="session")
 def base(base_folder):
     """The line of that run."""
-    return record(load(base_folder))
+    return record_run(load(base_folder))

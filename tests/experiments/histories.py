@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from experiments.regression.history import append
+from experiments.regression import append_run
 
 CLAIM = "queries/half_edge/vertex_faces"
 MACHINES = ("aaaa1111", "bbbb2222")
@@ -38,7 +38,7 @@ def stepped(path: Path, base: dict[str, Any], count: int = 30, step: int = 15) -
             made["claims"][CLAIM]["work"] += 4
             made["claims"][CLAIM]["relative"] *= 1.3
             made["claims"][CLAIM]["outcome"] = "violated"
-        append(made, path)
+        append_run(made, path)
     return path
 
 

@@ -90,6 +90,7 @@ def write_run(folder: Path, law_of: Callable[[str, str, str], Law] | None = None
                     working_set=60 * n_t,
                     latency=2e-9,
                     noise=STEADY if kind == "time" else {},
+                    calibration=[1e-9] * 9 if kind == "time" else [],
                     samples=np.atleast_1d(law(n_t, n_ev) * noise).tolist(),
                 )
                 _add(files, folder, experiment, claim.structure, case)

@@ -74,4 +74,4 @@ def make(k: Kernels) -> Kernel:
     return add_face
 
 
-OPERATIONS = {"add_face": Operation(make, "vertex", growth=(0, 1))}
+OPERATION = Operation(make, "vertex", growth=(0, 1))

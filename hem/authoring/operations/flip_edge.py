@@ -70,4 +70,4 @@ def make(k: Kernels) -> Kernel:
     return flip_edge
 
 
-OPERATIONS = {"flip_edge": Operation(make, "edge")}
+OPERATION = Operation(make, "edge")

@@ -73,4 +73,4 @@ def make(k: Kernels) -> Kernel:
     return remove_face
 
 
-OPERATIONS = {"remove_face": Operation(make, "face")}
+OPERATION = Operation(make, "face")

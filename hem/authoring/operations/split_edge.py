@@ -61,6 +61,4 @@ def make(k: Kernels) -> Kernel:
     return split_edge
 
 
-OPERATIONS = {
-    "split_edge": Operation(make, "edge", takes_a_point=True, names_a_vertex=True, growth=(1, 2))
-}
+OPERATION = Operation(make, "edge", takes_a_point=True, names_a_vertex=True, growth=(1, 2))

@@ -6,14 +6,14 @@ import json
 
 import pytest
 from matplotlib.figure import Figure
+from rich.console import Console
 from typer.testing import CliRunner
 
 from experiments import cli
-from experiments.regression.history import append, read
-from experiments.regression.trends import changes, series
+from experiments.regression import Trends, append_run, read_history
 from experiments.report import history_figures, history_page, history_tables
 from experiments.report.history_tables import sparkline
-from experiments.runs import results
+from experiments.runs import load
 from tests.experiments.histories import CLAIM, MACHINES, line, stepped
 
 runner = CliRunner()
@@ -41,7 +41,7 @@ def mixed(base, tmp_path_factory):
         for claim in made["claims"].values():
             if "relative" in claim:
                 claim["relative"] *= 1 + k % 2
-        append(made, path)
+        append_run(made, path)
     return path
 
 
@@ -52,7 +52,7 @@ def mixed(base, tmp_path_factory):
         (["show", "--last", "0", "--file", "KEPT"], "--last is at least 1, not 0"),
         (["show", "half_edgy", "--file", "KEPT"], "no claim 'half_edgy'; say a structure (indexed"),
         (["show", "--machine", "ffff", "--file", "KEPT"], "no run is of machine 'ffff'; there are"),
-        (["show", "--profile", "slow", "--file", "KEPT"], "no run is of profile 'slow'"),
+        (["show", "--profile", "slow", "--file", "KEPT"], "no run is of preset 'slow'"),
         (["show", "--file", "."], "Is a directory"),
         (["add"], "there is no run in results/runs; start one with: hem study"),
         (["add", "nowhere"], "nowhere holds no run"),
@@ -76,15 +76,15 @@ def test_a_run_is_added_once_and_is_there_then(base_folder, tmp_path):
     assert code == 0
     assert "Already there" in output
     assert "has 1 runs" not in output
-    assert len(read(tmp_path / "history.jsonl").runs) == 1
+    assert len(read_history(tmp_path / "history.jsonl").runs) == 1
     code, output = hem("show", "--file", path)
     assert code == 0
-    assert results.load(base_folder).meta["commit"][:7] in output
+    assert load(base_folder).meta["commit"][:7] in output
 
 
 def test_damage_is_told_of_beside_what_is_whole(base, tmp_path):
     path = tmp_path / "history.jsonl"
-    append(line(base, 1), path)
+    append_run(line(base, 1), path)
     with path.open("a") as file:
         file.write('{"schema": 2, "comm')
     code, output = hem("show", "--file", str(path))
@@ -94,12 +94,13 @@ def test_damage_is_told_of_beside_what_is_whole(base, tmp_path):
 
 
 def test_the_changes_are_those_that_were_made_and_no_others(kept):
-    found = {(it.claim, it.what, it.run) for it in changes(read(kept)) if it.claim == CLAIM}
-    assert {(CLAIM, "verdict by work", 15), (CLAIM, "work", 15)} <= found
-    times = [it for it in changes(read(kept)) if it.what == "time"]
-    assert [(it.claim, it.machine) for it in times] == [(CLAIM, MACHINES[0])]
-    assert abs(times[0].run - 15) <= 1
-    assert all(it.claim == CLAIM for it in changes(read(kept)))
+    changes = Trends(read_history(kept)).changes
+    assert set(changes["claim"]) == {CLAIM}
+    exact = changes[changes["machine"] == ""][["measure", "run"]]
+    assert set(exact.itertuples(index=False, name=None)) == {("verdict by work", 15), ("work", 15)}
+    (time,) = changes[changes["measure"] == "time"].to_dict("records")
+    assert time["machine"] == MACHINES[0]
+    assert abs(time["run"] - 15) <= 1
 
 
 def test_show_marks_the_commit_at_which_work_time_and_verdict_changed(kept, base):
@@ -107,16 +108,15 @@ def test_show_marks_the_commit_at_which_work_time_and_verdict_changed(kept, base
     assert code == 0
     assert output.count("≠") == 2  # once in the legend
     assert "24 ▲+20.0%" in output
-    row = next(it for it in output.split("│ ") if "✗≠" in it)
-    assert row
+    assert "✗≠" in output
     code, output = hem("show", "--file", str(kept))
     assert code == 0
-    assert "consistent → violated" in output
+    assert "✓ → ✗" in output
     assert "20 → 24" in output
     code, output = hem("show", "half_edge", "--file", str(kept))
     assert code == 0
-    assert f"│ {line(base, 15)['commit'][:7]}" in output
-    assert f"│ {line(base, 14)['commit'][:7]}" not in output
+    assert line(base, 15)["commit"][:7] in output
+    assert line(base, 14)["commit"][:7] not in output
 
 
 def test_last_shows_the_newest_and_judges_by_all(kept):
@@ -139,13 +139,12 @@ def test_json_has_every_series_whole(kept):
 
 
 def test_times_of_two_machines_are_two_series_and_their_difference_is_no_step(mixed):
-    history = read(mixed)
-    assert changes(history) == []
-    times = series(history, CLAIM, "time")
-    assert {it.machine for it in times} == set(MACHINES)
-    assert [len(it.at) for it in times] == [12, 12]
-    (work,) = series(history, CLAIM, "work")
-    assert len(work.at) == 24
+    trends = Trends(read_history(mixed))
+    assert trends.changes.empty
+    mine = trends.figures[trends.figures["claim"] == CLAIM]
+    runs = mine.groupby(["measure", "machine"])["run"].size().to_dict()
+    assert [runs["time", machine] for machine in MACHINES] == [12, 12]
+    assert runs["work", ""] == 24
     code, output = hem("show", "--file", str(mixed))
     assert code == 0
     assert "Work, bytes and verdicts by work are compared between the machines, times are" in output
@@ -161,14 +160,15 @@ def test_what_was_measured_on_other_sizes_is_not_compared(base, tmp_path):
         made = line(base, k)
         made["claims"][CLAIM]["work_faces"] = 1000 if k < 2 else 2000
         made["claims"][CLAIM]["work"] = 10.0 if k < 2 else 20.0
-        append(made, path)
+        append_run(made, path)
     for k in (4, 5):
-        append(line(base, k) | {"profile": "smoke"}, path)
-    found = {it.profile: it for it in series(read(path), CLAIM, "work")}
-    assert found["quick"].at == [2, 3]
-    assert found["smoke"].at == [4, 5]
-    assert changes(read(path)) == []
-    assert "different profiles are not compared" in hem("show", "--file", str(path))[1]
+        append_run(line(base, k) | {"profile": "smoke"}, path)
+    trends = Trends(read_history(path))
+    work = trends.figures.query("claim == @CLAIM and measure == 'work' and comparable")
+    assert work[work["profile"] == "quick"]["run"].tolist() == [2, 3]
+    assert work[work["profile"] == "smoke"]["run"].tolist() == [4, 5]
+    assert trends.changes.empty
+    assert "different presets are not compared" in hem("show", "--file", str(path))[1]
 
 
 def test_a_sparkline_has_a_bar_per_value_and_none_where_none_is():
@@ -181,16 +181,16 @@ def test_a_sparkline_has_a_bar_per_value_and_none_where_none_is():
 
 @pytest.mark.parametrize("count", [1, 2, 30])
 def test_figures_and_page_are_there_for_any_number_of_runs(base, tmp_path, count):
-    history = read(stepped(tmp_path / "history.jsonl", base, count))
-    figure = history_figures.by_commit(history, "vertex_faces")
+    trends = Trends(read_history(stepped(tmp_path / "history.jsonl", base, count)))
+    figure = history_figures.by_commit(trends, "vertex_faces")
     _require_labels(figure)
     rings = [it for axes in figure.axes for it in axes.lines if it.get_gid() == "step"]
     crosses = [it for axes in figure.axes for it in axes.lines if it.get_gid() == "verdict"]
     assert bool(rings) == bool(crosses) == (count == 30)
-    history_figures.departures(history).draw_without_rendering()
-    assert ("three at least" in history_page.told(history)) == (count < 3)
-    assert ("consistent" in history_page.changed(history)) == (count == 30)
-    assert history_page.runs(history).count("<tr") == count + 1
+    history_figures.departures(trends).draw_without_rendering()
+    assert ("three at least" in history_page.describe_history(trends)) == (count < 3)
+    assert ("consistent" in history_page.changes_table(trends)) == (count == 30)
+    assert history_page.runs_table(trends).count("<tr") == count + 1
 
 
 def _require_labels(figure: Figure) -> None:
@@ -204,15 +204,16 @@ def _require_labels(figure: Figure) -> None:
 
 
 def test_without_a_history_there_is_no_figure_but_what_to_do(tmp_path):
-    history = read(tmp_path / "none.jsonl")
-    assert "hem history add" in history_page.told(history)
+    trends = Trends(read_history(tmp_path / "none.jsonl"))
+    assert "hem history add" in history_page.describe_history(trends)
     with pytest.raises(ValueError, match="begin with: hem history add"):
-        history_figures.by_commit(history, "vertex_faces")
+        history_figures.by_commit(trends, "vertex_faces")
 
 
-def test_the_tables_are_as_wide_as_a_terminal(kept, capsys):
-    from rich.console import Console
-
-    console = Console(width=80)
-    history_tables.show(read(kept), [CLAIM], console, 5, brief=False)
-    assert max(map(len, capsys.readouterr().out.splitlines())) <= 80
+@pytest.mark.parametrize("claim", [None, CLAIM, "half_edge"])
+@pytest.mark.parametrize("slopes", [False, True])
+def test_the_tables_fit_80_columns_and_cut_no_figure(kept, capsys, claim, slopes):
+    history_tables.show(Trends(read_history(kept)), claim, Console(width=80), 5, slopes)
+    output = capsys.readouterr().out
+    assert max(map(len, output.splitlines())) <= 80
+    assert "…" not in output

@@ -1,50 +1,48 @@
-"""The reference: it changes only when somebody says so, who has seen what would change."""
+"""The baseline: it changes only when somebody says so, who has seen what would change."""
 
 from __future__ import annotations
 
+import json
 import shutil
 from pathlib import Path
 
 import pytest
 from typer.testing import CliRunner
 
-from experiments import cli
-from experiments.regression import baseline, counters, gate
-from experiments.runs.results import write_json
-from tests.experiments.made_runs import write_run
+from experiments import cli, regression
+from experiments.regression import COUNTERS, RUN, load_baseline, reduce_run, save_baseline
+from experiments.runs import load, read_meta, write_meta
 
 COMMITTED = Path(__file__).parents[3] / "results/reference"
-KEY = "work/half_edge/vertex_faces/torus/100/random"
-
-
-@pytest.fixture(scope="module")
-def run(tmp_path_factory) -> Path:
-    return write_run(tmp_path_factory.mktemp("run"))
 
 
 @pytest.fixture
 def folder(tmp_path, monkeypatch) -> Path:
-    """A copy of the committed reference, with nothing to measure for it."""
-    measured = baseline.load_exact(COMMITTED)
-    monkeypatch.setattr(counters, "measure", lambda: measured)
-    return Path(shutil.copytree(COMMITTED, tmp_path / "reference"))
+    """A copy of the committed counters, with nothing to measure for it."""
+    measured = load_baseline(COUNTERS, COMMITTED)
+    monkeypatch.setattr(regression, "measure_counters", lambda *_: measured)
+    shutil.copytree(COMMITTED / COUNTERS, tmp_path / "baseline" / COUNTERS)
+    return tmp_path / "baseline"
 
 
 def update(folder: Path, *arguments: str, said: str | None = None) -> tuple[int, str]:
     cli.console.width = cli.errors.width = 400
-    command = ["reference", "update", *arguments, "--reference", str(folder)]
+    command = ["baseline", "update", *arguments, "--baseline", str(folder)]
     result = CliRunner().invoke(cli.app, command, input=said)
     return result.exit_code, result.stdout + result.stderr
 
 
 def contents(folder: Path) -> dict[str, bytes]:
-    return {path.name: path.read_bytes() for path in folder.iterdir()}
+    return {str(it.relative_to(folder)): it.read_bytes() for it in folder.rglob("*.json*")}
 
 
 def another_count(folder: Path) -> None:
-    kept = baseline.load_exact(folder)
-    kept.cases[KEY] = [7, 7]
-    baseline.save_exact(kept, folder)
+    measured = load_baseline(COUNTERS, folder)
+    (row,) = measured.run.cases.query(
+        "structure == 'half_edge' and id == 'vertex_faces/torus/100/random'"
+    ).index
+    measured.run.cases.at[row, "samples"] = [7, 7]
+    save_baseline(COUNTERS, measured, folder)
 
 
 def test_where_nothing_changed_nothing_is_asked_and_nothing_written(folder):
@@ -54,13 +52,13 @@ def test_where_nothing_changed_nothing_is_asked_and_nothing_written(folder):
     assert "says just this already" in output
 
 
-def test_a_change_is_shown_on_both_sides_and_written_once_one_agrees(folder):
+def test_a_change_is_shown_and_written_once_one_agrees(folder):
     good = contents(folder)
     another_count(folder)
     code, output = update(folder, said="y\n")
     assert code == 0
-    assert f"- {KEY}: [7, 7]" in output
-    assert f"+ {KEY}: {baseline.load_exact(COMMITTED).cases[KEY]}" in output
+    assert "half_edge/vertex_faces/torus/200/random" in output
+    assert "7, 7 →" in output
     assert contents(folder) == good
 
 
@@ -68,42 +66,46 @@ def test_a_change_is_shown_on_both_sides_and_written_once_one_agrees(folder):
 def test_who_does_not_agree_keeps_what_there_is(folder, answer):
     another_count(folder)
     before = contents(folder)
-    code, output = update(folder, said=answer)
-    assert (code, contents(folder)) == (1, before)
-    assert f"- {KEY}: [7, 7]" in output
+    assert (update(folder, said=answer)[0], contents(folder)) == (1, before)
 
 
-def test_with_a_run_all_of_it_becomes_the_reference(folder, run):
-    code, output = update(folder, str(run), "--yes")
+def test_with_a_run_all_of_it_becomes_the_baseline_a_line_per_case(folder, base_folder):
+    code, output = update(folder, str(base_folder), "--yes")
     assert code == 0
-    assert "± run.json, started:" in output
-    assert "cases anew" in output
-    kept = baseline.load_measured(folder)
-    assert kept == baseline.measured(gate.load(run))
-    assert update(folder, str(run)) == (0, f"{folder} says just this already.\n")
+    assert "+ run:" in output
+    kept, measured = load_baseline(RUN, folder), reduce_run(load(base_folder))
+    assert kept.claims == json.loads(json.dumps(measured.claims))
+    assert len(kept.run.cases) == len(measured.run.cases)
+    lines = [it for path in (folder / RUN).glob("*.*.jsonl") for it in path.open()]
+    assert sum('"id"' in line for line in lines) == len(measured.run.cases)
+    assert update(folder, str(base_folder)) == (0, f"{folder} says just this already.\n")
 
 
-def test_a_reference_that_cannot_be_read_is_replaced(folder, run):
-    for name in ("exact.json", "run.json", "times.json"):
-        (folder / name).write_text("{")
-    assert update(folder, str(run), "--yes")[0] == 0
-    assert baseline.load_exact(folder).cases == baseline.load_exact(COMMITTED).cases
-    assert baseline.load_measured(folder).times
+def test_a_baseline_that_cannot_be_read_is_replaced(folder):
+    good = contents(folder)
+    (folder / COUNTERS / "run.json").write_text("{")
+    assert update(folder, "--yes")[0] == 0
+    assert contents(folder) == good
 
 
 def test_what_cannot_be_measured_replaces_nothing(folder, monkeypatch):
-    monkeypatch.setattr(
-        counters, "measure", lambda: counters.Exact({}, {KEY: "ValueError: broken"})
-    )
+    measured = load_baseline(COUNTERS, COMMITTED)
+    broken = measured.run.cases[:1].assign(skipped="ValueError: broken")
+    run = type(measured.run)(measured.run.folder, {}, measured.run.cases, broken)
+    failed = regression.Measured(run, measured.claims)
+    monkeypatch.setattr(regression, "measure_counters", lambda *_: failed)
     before = contents(folder)
     code, output = update(folder, "--yes")
     assert (code, contents(folder)) == (1, before)
-    assert f"hem: {KEY} could not be measured" in output
+    assert "could not be measured" in output
+    assert "ValueError: broken" in output
 
 
-def test_a_run_that_is_not_finished_is_no_reference(folder, tmp_path):
-    unfinished = tmp_path / "run"
-    write_json(unfinished / "run.json", {"schema": 1, "profile": "quick"})
+def test_a_run_that_is_not_finished_is_no_baseline(folder, base_folder, tmp_path):
+    unfinished = Path(shutil.copytree(base_folder, tmp_path / "run"))
+    meta = read_meta(unfinished)
+    del meta["finished"]
+    write_meta(unfinished, meta)
     code, output = update(folder, str(unfinished), "--yes")
     assert code == 1
     assert "hem study --resume" in output

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from experiments.regression.change_points import SHORTEST, steps
+from experiments.regression.change_points import SHORTEST, find_steps
 
 SERIES = 500
 NOISES = {
@@ -19,7 +19,7 @@ NOISES = {
 @pytest.mark.parametrize("runs", [8, 30])
 def test_noise_alone_has_no_steps_but_in_one_series_of_a_hundred(noise, runs):
     rng = np.random.default_rng(5)
-    alarms = sum(bool(steps(np.exp(NOISES[noise](rng, runs)))) for _ in range(SERIES))
+    alarms = sum(bool(find_steps(np.exp(NOISES[noise](rng, runs)))) for _ in range(SERIES))
     assert alarms <= 0.01 * SERIES
 
 
@@ -30,7 +30,7 @@ def test_a_tenth_more_or_less_in_noise_of_three_percent_is_found_to_within_a_com
         start = int(rng.integers(10, 31))
         values = 4e-8 * rng.normal(1, 0.03, 40)
         values[start:] *= rng.choice([1.1, 1 / 1.1])
-        told = steps(values)
+        told = find_steps(values)
         alone += len(told) == 1
         found += any(abs(step.index - start) <= 1 for step in told)
     assert found >= 0.95 * SERIES
@@ -39,7 +39,7 @@ def test_a_tenth_more_or_less_in_noise_of_three_percent_is_found_to_within_a_com
 
 def test_a_step_says_from_where_to_where():
     values = np.repeat([2.0, 3.0], 8) * np.tile([0.99, 1.01], 8)
-    (step,) = steps(values)
+    (step,) = find_steps(values)
     assert step.index == 8
     assert step.before == pytest.approx(2, rel=0.02)
     assert step.after == pytest.approx(3, rel=0.02)
@@ -49,16 +49,16 @@ def test_a_step_says_from_where_to_where():
 def test_what_goes_up_and_comes_down_again_is_two_steps():
     rng = np.random.default_rng(3)
     values = np.repeat([1.0, 1.3, 1.0], 8) * rng.normal(1, 0.02, 24)
-    assert [step.index for step in steps(values)] == [8, 16]
+    assert [step.index for step in find_steps(values)] == [8, 16]
 
 
 def test_the_unit_does_not_matter_and_time_backwards_mirrors_the_steps():
     rng = np.random.default_rng(4)
     values = np.repeat([1.0, 1.4, 1.1], 9) * rng.normal(1, 0.02, 27)
-    found = [step.index for step in steps(values)]
+    found = [step.index for step in find_steps(values)]
     assert len(found) == 2
-    assert [step.index for step in steps(1e-9 * values)] == found
-    assert sorted(27 - step.index for step in steps(values[::-1])) == found
+    assert [step.index for step in find_steps(1e-9 * values)] == found
+    assert sorted(27 - step.index for step in find_steps(values[::-1])) == found
 
 
 def test_one_slow_run_is_no_level():
@@ -66,34 +66,34 @@ def test_one_slow_run_is_no_level():
     for at in range(12):
         values = rng.normal(1, 0.02, 12)
         values[at] *= 3
-        assert steps(values) == []
+        assert find_steps(values) == []
 
 
 def test_a_step_that_is_certain_but_small_is_not_told():
     rng = np.random.default_rng(6)
     values = np.repeat([1.0, 1.03], 20) * rng.normal(1, 1e-3, 40)
-    assert steps(values) == []
-    assert len(steps(np.repeat([1.0, 1.08], 20) * rng.normal(1, 1e-3, 40))) == 1
+    assert find_steps(values) == []
+    assert len(find_steps(np.repeat([1.0, 1.08], 20) * rng.normal(1, 1e-3, 40))) == 1
 
 
 def test_every_other_exact_value_is_a_step():
-    found = steps([19, 19, 20, 20, 20, 7], exact=True)
+    found = find_steps([19, 19, 20, 20, 20, 7], exact=True)
     assert [(it.index, it.before, it.after) for it in found] == [(2, 19, 20), (5, 20, 7)]
-    assert steps([0, 0, 3], exact=True)[0].ratio == np.inf
-    assert steps([19.0], exact=True) == steps([], exact=True) == []
+    assert find_steps([0, 0, 3], exact=True)[0].ratio == np.inf
+    assert find_steps([19.0], exact=True) == find_steps([], exact=True) == []
 
 
 @pytest.mark.parametrize("count", range(2 * SHORTEST))
 def test_few_noisy_values_have_no_steps(count):
-    assert steps(np.arange(1, count + 1) ** 3.0) == []
+    assert find_steps(np.arange(1, count + 1) ** 3.0) == []
 
 
 def test_values_without_any_noise_are_told_apart_as_well():
-    assert steps(np.ones(20)) == []
-    assert [it.index for it in steps(np.repeat([1.0, 2.0], 10))] == [10]
+    assert find_steps(np.ones(20)) == []
+    assert [it.index for it in find_steps(np.repeat([1.0, 2.0], 10))] == [10]
 
 
 @pytest.mark.parametrize("values", [[[1.0, 2.0]], [1.0, np.nan], [1.0, 0.0], [1.0, -2.0]])
 def test_what_is_no_series_is_refused(values):
     with pytest.raises(ValueError, match=r"row|positive"):
-        steps(values)
+        find_steps(values)

@@ -10,11 +10,10 @@ import os
 
 import pytest
 
-from experiments.regression import history
-from experiments.regression.history import LineError, append, migrated, read
-from experiments.regression.snapshots import committed, machine_id, record
-from experiments.runs import ResultsError, load, read_meta, write_meta
-from experiments.runs.provenance import machine as this_machine
+from experiments.regression import append_run, read_history, record_run
+from experiments.regression.history import LineError, migrate
+from experiments.regression.snapshots import commit_date
+from experiments.runs import ResultsError, load, machine, machine_id, read_meta, write_meta
 from tests.experiments.histories import CLAIM, line, lines
 from tests.experiments.made_runs import write_run
 
@@ -68,36 +67,36 @@ def test_a_run_that_is_not_finished_is_refused(tmp_path):
     del meta["finished"]
     write_meta(folder, meta)
     with pytest.raises(ResultsError, match="not finished; go on with: hem study --resume"):
-        record(load(folder))
+        record_run(load(folder))
 
 
 def test_what_is_added_is_read_again_in_the_order_of_the_commits(base, tmp_path):
     path = tmp_path / "deep" / "history.jsonl"
     for k in (4, 1, 3):
-        assert append(line(base, k), path)
-    kept = read(path)
+        assert append_run(line(base, k), path)
+    kept = read_history(path)
     assert kept.runs == [line(base, k) for k in (1, 3, 4)]
     assert kept.faults == []
     assert [it["commit"] for it in lines(path)] == [line(base, k)["commit"] for k in (4, 1, 3)]
 
 
 def test_without_a_file_the_history_is_empty(tmp_path):
-    assert read(tmp_path / "none.jsonl").runs == []
+    assert read_history(tmp_path / "none.jsonl").runs == []
     assert list(tmp_path.iterdir()) == []
 
 
 def test_the_same_run_is_kept_once(base, tmp_path):
     path = tmp_path / "history.jsonl"
-    assert append(line(base, 1), path)
+    assert append_run(line(base, 1), path)
     before = path.read_bytes()
-    assert not append(line(base, 1), path)
+    assert not append_run(line(base, 1), path)
     assert path.read_bytes() == before
-    assert append(line(base, 1, "another"), path)
+    assert append_run(line(base, 1, "another"), path)
 
 
 def _add(base, path, numbers):
     for k in numbers:
-        append(line(base, k), path)
+        append_run(line(base, k), path)
 
 
 def test_who_writes_at_the_same_time_loses_nothing_and_adds_nothing_twice(base, tmp_path):
@@ -110,55 +109,52 @@ def test_who_writes_at_the_same_time_loses_nothing_and_adds_nothing_twice(base, 
     for writer in writers:
         writer.join()
         assert writer.exitcode == 0
-    kept = read(path)
+    kept = read_history(path)
     assert kept.faults == []
     assert kept.runs == [line(base, k) for k in range(25)]
     assert len(lines(path)) == 25
 
 
 @pytest.mark.parametrize("share", [0.0001, 0.1, 0.5, 0.9, 0.9999])
-def test_a_line_that_a_crash_cut_short_is_told_of_and_hides_nothing_else(base, tmp_path, share):
+def test_a_line_that_a_crash_cut_short_is_named_and_hides_nothing_else(base, tmp_path, share):
     path = tmp_path / "history.jsonl"
-    append(line(base, 1), path)
+    append_run(line(base, 1), path)
     whole = path.read_bytes()
-    append(line(base, 2), path)
+    append_run(line(base, 2), path)
     second = path.read_bytes()[len(whole) :]
     path.write_bytes(whole + second[: max(int(share * len(second)), 1)])
 
-    kept = read(path)
+    kept = read_history(path)
     assert kept.runs == [line(base, 1)]
-    assert kept.faults == [f"{path}, line 2 is cut short or damaged; it is left out"]
+    assert kept.faults == [f"{path}, line 2 is cut short or damaged; it is skipped"]
 
-    assert append(line(base, 2), path)
+    assert append_run(line(base, 2), path)
     assert path.read_bytes().startswith(whole)
-    kept = read(path)
+    kept = read_history(path)
     assert kept.runs == [line(base, 1), line(base, 2)]
     assert len(kept.faults) == 1
 
 
 def test_a_line_that_lacks_nothing_but_its_end_is_whole(base, tmp_path):
     path = tmp_path / "history.jsonl"
-    append(line(base, 1), path)
+    append_run(line(base, 1), path)
     path.write_bytes(path.read_bytes().removesuffix(b"\n"))
-    assert len(read(path).runs) == 1
-    append(line(base, 2), path)
-    assert [len(read(path).runs), read(path).faults] == [2, []]
+    assert len(read_history(path).runs) == 1
+    append_run(line(base, 2), path)
+    assert [len(read_history(path).runs), read_history(path).faults] == [2, []]
 
 
 def test_where_there_is_no_room_the_file_stays_as_it_was(base, tmp_path, monkeypatch):
     path = tmp_path / "history.jsonl"
-    append(line(base, 1), path)
-    before, write, calls = path.read_bytes(), os.write, []
+    append_run(line(base, 1), path)
+    before = path.read_bytes()
 
-    def full(file, content):
-        calls.append(content)
-        if len(calls) > 1:
-            raise OSError(errno.ENOSPC, "No space left on device")
-        return write(file, content[:100])
+    def full(file):
+        raise OSError(errno.ENOSPC, "No space left on device")
 
-    monkeypatch.setattr(history.os, "write", full)
+    monkeypatch.setattr(os, "fsync", full)
     with pytest.raises(OSError, match="No space"):
-        append(line(base, 2), path)
+        append_run(line(base, 2), path)
     assert path.read_bytes() == before
 
 
@@ -175,13 +171,13 @@ def test_where_there_is_no_room_the_file_stays_as_it_was(base, tmp_path, monkeyp
         ("[" * 100_000, "is cut short or damaged"),
     ],
 )
-def test_a_line_that_is_no_run_is_told_of_and_left_out(base, tmp_path, text, said):
+def test_a_line_that_is_no_run_is_named_and_skipped(base, tmp_path, text, said):
     path = tmp_path / "history.jsonl"
-    append(line(base, 1), path)
+    append_run(line(base, 1), path)
     with path.open("a") as file:
         file.write(text + "\n")
-    append(line(base, 2), path)
-    kept = read(path)
+    append_run(line(base, 2), path)
+    kept = read_history(path)
     assert len(kept.runs) == 2
     assert len(kept.faults) == 1
     assert f"line 2 {said}" in kept.faults[0]
@@ -190,8 +186,8 @@ def test_a_line_that_is_no_run_is_told_of_and_left_out(base, tmp_path, text, sai
 def test_a_line_of_the_first_schema_says_the_same_in_the_present_one(base, tmp_path):
     path = tmp_path / "history.jsonl"
     path.write_text(json.dumps(OLD) + "\n")
-    append(line(base, 1), path)
-    kept = read(path)
+    append_run(line(base, 1), path)
+    kept = read_history(path)
     assert kept.faults == []
     new = kept.runs[0]
     assert new["schema"] == 2
@@ -213,10 +209,10 @@ def test_a_line_of_the_first_schema_says_the_same_in_the_present_one(base, tmp_p
     }
     assert lines(path)[0] == OLD
     untouched = copy.deepcopy(OLD)
-    migrated(OLD)
+    migrate(OLD)
     assert untouched == OLD
     with pytest.raises(LineError, match="schema 7"):
-        migrated({"schema": 7})
+        migrate({"schema": 7})
 
 
 def test_a_machine_is_the_same_after_an_update_and_another_with_another_processor():
@@ -227,13 +223,13 @@ def test_a_machine_is_the_same_after_an_update_and_another_with_another_processo
         "python": "other",
     }
     assert machine_id(here) == machine_id(updated)
-    assert machine_id(this_machine()) == machine_id(this_machine())
+    assert machine_id(machine()) == machine_id(machine())
     assert len(machine_id(here)) == 8
     for key, other in (("cpu", "another"), ("cores", 99), ("caches", {}), ("memory_bytes", 2**40)):
         assert machine_id(here | {key: other}) != machine_id(here)
 
 
 def test_a_commit_that_is_not_here_has_no_date():
-    assert committed("unknown") is None
-    assert committed("--help") is None
-    assert committed(40 * "0") is None
+    assert commit_date("unknown") is None
+    assert commit_date("--help") is None
+    assert commit_date(40 * "0") is None

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from experiments.regression.baseline import measured
+from experiments.regression import reduce_run
 from experiments.runs import load
 from experiments.validation import aa
 from tests.experiments.made_runs import LAWS, write_run
@@ -31,8 +31,8 @@ def test_a_run_of_slower_code_is_an_alarm_and_deterministic_counters_are_not_com
     def law_of(structure, query, printed):
         return LAWS["O(n_t)"] if (structure, query) == ("half_edge", "face_faces") else None
 
-    sound = measured(load(write_run(tmp_path / "sound")))
-    slow = measured(load(write_run(tmp_path / "slow", law_of)))
+    sound = reduce_run(load(write_run(tmp_path / "sound")))
+    slow = reduce_run(load(write_run(tmp_path / "slow", law_of)))
     assert aa.compare_pair(sound, sound)["alarms"] == []
     row = aa.compare_pair(sound, slow)
     assert len(row["alarms"]) >= 3

@@ -1,0 +1,69 @@
+"""Times queries in the tree that is first on its path, a round whenever it is asked for one.
+
+``python interleaved_worker.py CALIBRATION VERTICES`` reads questions from standard input, JSON line
+by line, and writes the answers likewise. Of the tree it knows the contract alone, so that old trees
+answer, too; the calibration loop is that of the file ``CALIBRATION``, the same beside every tree.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Callable
+from importlib.util import module_from_spec, spec_from_file_location
+from time import perf_counter
+from typing import Any
+
+import numpy as np
+from numba import njit
+
+import hem
+import structures
+
+TRIES = 5
+
+
+def main(calibration: str, vertices: int) -> None:
+    """Answer until nobody asks any more.
+
+    A ``structure`` and a ``query`` are made ready -> seconds that all its elements take; ``times``
+    asks them so often in each round from now on -> how many that are; anything else times a round
+    -> its seconds, and those of the calibration loop.
+    """
+    calibrate = _load(calibration).calibration_loop
+    mesh = hem.generate("torus", vertices)
+    for line in sys.stdin:
+        question = json.loads(line)
+        if "structure" in question:
+            s, query = structures.build(question["structure"], mesh), question["query"]
+            handles = s.handles(query.split("_")[0])
+            s.sweep(query, handles)  # compiles
+            answer: Any = min(_seconds(s.sweep, query, handles) for _ in range(TRIES))
+        elif "times" in question:
+            many = np.tile(handles, question["times"])
+            s.sweep(query, many)
+            answer = len(many)
+        else:
+            reading = calibrate()
+            answer = _seconds(s.sweep, query, many), reading
+        print(json.dumps(answer), flush=True)
+
+
+def _load(path: str) -> Any:
+    spec = spec_from_file_location("calibration", path)
+    assert spec is not None
+    assert spec.loader is not None
+    module: Any = module_from_spec(spec)
+    spec.loader.exec_module(module)
+    module.compiled_walk = njit(module.walk)  # Numba's cache knows it by its own module's name
+    return module
+
+
+def _seconds(call: Callable[..., Any], *given: Any) -> float:
+    begin = perf_counter()
+    call(*given)
+    return perf_counter() - begin
+
+
+if __name__ == "__main__":
+    main(sys.argv[1], int(sys.argv[2]))

@@ -1,0 +1,114 @@
+"""How findings are told: in a terminal, as JSON, and for a pull request."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict
+from itertools import groupby
+from typing import Any
+
+from rich.console import Console
+from rich.markup import escape
+
+from experiments.regression import Change, Finding, exit_code
+from structures import NAMED
+
+TITLES = {
+    Change.WORSE: "Worse",
+    Change.UNDETERMINED: "Cannot be told",
+    Change.BETTER: "Better",
+}
+"""What is told of, in the order that a reader needs it; what is as before is counted."""
+
+COLORS = {Change.WORSE: "red", Change.UNDETERMINED: "yellow", Change.BETTER: "green"}
+
+MOST = 40
+"""Findings of one title that a terminal and a pull request show; JSON has all."""
+
+WIDTH = 42
+"""Columns of the case in a line of a terminal."""
+
+SUMMARY = {
+    0: "Nothing got worse.",
+    1: "Something got worse.",
+    2: "Too much of it cannot be told, so this is no pass.",
+}
+"""What the exit codes mean."""
+
+
+def show(findings: Sequence[Finding], notes: Sequence[str], console: Console) -> None:
+    """Print what is not as before, worst first, a line each under its claim; then the counts."""
+    for change, chosen in _by_change(findings):
+        console.print(f"[bold {COLORS[change]}]{TITLES[change]}: {len(chosen):,}[/]")
+        for claim, part in groupby(chosen[:MOST], lambda finding: finding.claim):
+            if claim:
+                console.print(f"[dim]{escape(claim)}[/]", highlight=False)
+            for finding in part:
+                console.print(escape(line(finding)), highlight=False, soft_wrap=True)
+        if len(chosen) > MOST:
+            console.print(f"  … and {len(chosen) - MOST:,} more; all of them with --json")
+    for note in notes:
+        console.print(f"Note: {escape(note)}", highlight=False)
+    console.print(f"Compared: {count_same(findings)}", highlight=False)
+    if any(finding.change == Change.BETTER for finding in findings):
+        console.print("What got better becomes the baseline with: hem baseline update")
+    for command in dict.fromkeys(finding.next for finding in findings if finding.next):
+        console.print(f"Next: {command}", highlight=False)
+    console.print(f"[bold]{SUMMARY[exit_code(findings)]}[/]")
+
+
+def line(finding: Finding) -> str:
+    """One line: the kind, the case with its structure abbreviated, and what changed."""
+    case = finding.case
+    if case.structure in NAMED:
+        abbreviated = case._replace(structure=NAMED[case.structure].abbreviation)
+        case = abbreviated._replace(experiment="")
+    where = f"{case} {finding.axis}".strip()
+    return f"  {finding.kind:<5} {where:<{WIDTH}} {finding.difference}"
+
+
+def count_same(findings: Sequence[Finding]) -> str:
+    """How many of each kind, and how many of them are as before."""
+    every = Counter(finding.kind for finding in findings)
+    same = Counter(finding.kind for finding in findings if finding.change == Change.SAME)
+    parts = (f"{kind} {same[kind]:,} of {count:,}" for kind, count in every.items())
+    return ("as before are " + ", ".join(parts)) if every else "nothing"
+
+
+def as_json(findings: Sequence[Finding], notes: Sequence[str]) -> dict[str, Any]:
+    """All findings that are not as before, how many there are of each, and the exit code."""
+    return {
+        "code": exit_code(findings),
+        "counts": dict(Counter(finding.change for finding in findings)),
+        "notes": list(notes),
+        "findings": [
+            {**asdict(finding), "outcome": finding.change, "where": finding.where,
+             "case": finding.case._asdict()}
+            for finding in findings
+            if finding.change != Change.SAME
+        ],
+    }  # fmt: skip
+
+
+def as_markdown(findings: Sequence[Finding], notes: Sequence[str]) -> str:
+    """A summary for a pull request: a table for each title."""
+    summary = SUMMARY[exit_code(findings)]
+    lines = [f"## hem check: {summary}", "", f"Compared: {count_same(findings)}.", ""]
+    for change, chosen in _by_change(findings):
+        lines += [f"### {TITLES[change]}: {len(chosen):,}", ""]
+        lines += ["| what | where | before | after | claim |", "|---|---|---|---|---|"]
+        for it in chosen[:MOST]:
+            after = f"{it.after} ({it.why})" if it.why else it.after
+            cells = it.kind, f"`{it.where}`", it.before, after.strip(), it.claim
+            lines.append("| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |")
+        more = len(chosen) - MOST
+        lines += [f"\n… and {more:,} more.", ""] if more > 0 else [""]
+    return "\n".join([*lines, *(f"- {note}" for note in notes)]).rstrip() + "\n"
+
+
+def _by_change(findings: Sequence[Finding]) -> Iterator[tuple[Change, list[Finding]]]:
+    for change in TITLES:
+        chosen = [finding for finding in findings if finding.change == change]
+        if chosen:
+            yield change, chosen

@@ -1,0 +1,80 @@
+"""`hem check`: a mistake is one line and never a pass, and what is worse fails the command."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from experiments import cli
+from experiments.regression import COUNTERS, load_baseline, save_baseline
+from experiments.runs import read_meta, write_meta
+
+REFERENCE = Path(__file__).parents[3] / "results/reference"
+
+
+def hem(*arguments: str, width: int = 400) -> tuple[int, str]:
+    cli.console.width = cli.errors.width = width
+    result = CliRunner().invoke(cli.app, arguments)
+    return result.exit_code, result.stdout + result.stderr
+
+
+@pytest.fixture
+def baseline(tmp_path: Path) -> Path:
+    return Path(shutil.copytree(REFERENCE / COUNTERS, tmp_path / "baseline" / COUNTERS)).parent
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["nowhere"], "run"),
+        (["--factor", "0.5"], "--factor is more than 1"),
+        (["--structure", "halfedge"], "no structure is called 'halfedge'"),
+        (["--baseline", "nowhere"], "nowhere/counters holds no run"),
+        (["--beside", "nowhere", "--structure", "indexed"], "nowhere is no checkout"),
+    ],
+)
+def test_a_mistake_is_one_line_and_never_a_pass(arguments, said, baseline):
+    options = [] if "--baseline" in arguments else ["--baseline", str(baseline)]
+    exit_code, output = hem("check", *arguments, *options)
+    assert exit_code == 2
+    assert output.startswith("hem:")
+    assert said in output
+
+
+@pytest.mark.parametrize("text", ["{", "[]", '{"schema": 99}'])
+def test_a_broken_baseline_is_named_with_the_way_out(text, baseline):
+    (baseline / COUNTERS / "run.json").write_text(text)
+    exit_code, output = hem("check", "--baseline", str(baseline))
+    assert exit_code == 2
+    assert f"{baseline}/counters/run.json" in output
+    assert "Make it anew: hem baseline update" in output
+
+
+def test_an_empty_run_is_refused(tmp_path, base_folder):
+    write_meta(tmp_path / "run", read_meta(base_folder) | {"files": {}})
+    exit_code, output = hem("check", str(tmp_path / "run"), "--reference", str(REFERENCE))
+    assert exit_code == 2
+    assert "holds no case" in output
+
+
+def test_a_worse_structure_fails_the_command_and_shows_the_numbers_in_80_columns(
+    baseline, tmp_path
+):
+    measured = load_baseline(COUNTERS, baseline)
+    (row,) = measured.run.cases.query(
+        "structure == 'indexed' and id == 'face_vertices/torus/100/random'"
+    ).index
+    measured.run.cases.at[row, "samples"] = [2, 2, 2]
+    save_baseline(COUNTERS, measured, baseline)
+    page = tmp_path / "summary.md"
+    options = "--structure", "indexed", "--baseline", str(baseline), "--markdown", str(page)
+    exit_code, output = hem("check", *options, width=80)
+    assert exit_code == 1
+    (line,) = [it for it in output.splitlines() if "2, 2, 2 → 3, 3, 3" in it]
+    assert "face_vertices/torus/200/random" in line
+    assert max(map(len, output.splitlines())) <= 80
+    assert "Table 1, Face → Vertices: O(1)" in output
+    assert "Something got worse" in page.read_text()

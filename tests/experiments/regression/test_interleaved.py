@@ -1,0 +1,69 @@
+"""Two trees timed interleaved: identical code is not slower, and one that cannot run no pass."""
+
+from __future__ import annotations
+
+import pytest
+
+from experiments.regression import HERE, Change, compare_trees, exit_code, interleaved
+from experiments.regression.interleaved import PairTimed
+from experiments.regression.significance import Comparison
+from hem.contract import QUERIES
+
+
+def pair(change: str, ratio: float = 1.0) -> PairTimed:
+    return PairTimed(Comparison(Change(change), ratio, ratio, ratio), 1e-8, 1e-8 * ratio)
+
+
+AS_BEFORE, OPEN = pair("same"), pair("undetermined", 1.1)
+SLOWER, FASTER = pair("worse", 1.6), pair("better", 0.6)
+ENDED = PairTimed(error="it ended")
+
+
+@pytest.mark.parametrize(
+    ("pairs", "change"),
+    [
+        ([AS_BEFORE, AS_BEFORE, SLOWER, SLOWER, SLOWER], "same"),  # the last ones are not asked
+        ([SLOWER] * 5, "worse"),
+        ([FASTER] * 5, "better"),
+        ([SLOWER, OPEN, SLOWER, SLOWER, OPEN], "worse"),
+        ([SLOWER, OPEN, SLOWER, OPEN, OPEN], "undetermined"),
+        ([SLOWER, SLOWER, SLOWER, SLOWER, AS_BEFORE], "undetermined"),
+        ([SLOWER, SLOWER, FASTER, SLOWER, SLOWER], "undetermined"),
+        ([SLOWER, AS_BEFORE, AS_BEFORE, OPEN, AS_BEFORE], "same"),
+        ([SLOWER, AS_BEFORE, AS_BEFORE, SLOWER, AS_BEFORE], "undetermined"),
+        ([AS_BEFORE, ENDED, *[AS_BEFORE] * 3], "undetermined"),
+    ],
+)
+def test_a_tree_is_slower_only_if_no_pair_of_processes_says_otherwise(pairs, change, monkeypatch):
+    """A process may be slow by where it lies in memory, and slow code is so in all of them."""
+    rest = iter(pairs)
+
+    def time_in_new_processes(before, after, wanted, factor):
+        timed = next(rest)
+        return [(case, timed) for case in wanted]
+
+    monkeypatch.setattr(interleaved, "time_in_new_processes", time_in_new_processes)
+    findings = compare_trees(HERE, HERE, ["indexed"])
+    assert {finding.change for finding in findings} == {change}
+    assert ENDED not in pairs or "could not be timed: it ended" in findings[0].why
+
+
+def test_a_tree_beside_itself_is_timed_and_not_worse(monkeypatch):
+    # One pair takes seconds; what several say together has its own test.
+    monkeypatch.setattr(interleaved, "PAIRS", 1)
+    monkeypatch.setattr(interleaved, "FURTHER", 0)
+    findings = compare_trees(HERE, HERE, ["indexed"])
+    assert [finding.case.subject for finding in findings] == list(QUERIES)
+    assert all(it.before.endswith(" ns") and it.after.endswith(" ns") for it in findings)
+
+
+def test_what_is_not_compiled_cannot_be_timed_beside_a_tree():
+    assert exit_code(compare_trees(HERE, HERE, ["half_edge_objects"])) == 2
+
+
+def test_a_tree_that_does_not_run_is_no_pass_and_says_why(tmp_path):
+    (tmp_path / "hem").mkdir()
+    (tmp_path / "hem" / "__init__.py").write_text("raise RuntimeError('this one is broken')")
+    findings = compare_trees(tmp_path, HERE, ["indexed"])
+    assert exit_code(findings) == 2
+    assert "could not be timed: RuntimeError: this one is broken" in findings[0].why
