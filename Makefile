@@ -64,9 +64,12 @@ format: $(DEV)  ## format the code
 	@$(BIN)/ruff format .
 	@$(BIN)/ruff check --fix .
 
-peers: export CMAKE_BUILD_PARALLEL_LEVEL := $(shell nproc) # OpenMesh comes as source
+# OpenMesh comes as source, and not for every Python. What cannot be installed is not compared.
+peers: export CMAKE_BUILD_PARALLEL_LEVEL := $(shell getconf _NPROCESSORS_ONLN)
 peers: $(STUDY)  ## compare with OpenMesh, libigl, MeshLib, trimesh and COMPAS
-	$(call install,$(VENV),peers,constraints.txt)
+	@for peer in openmesh libigl meshlib compas; do \
+		$(BIN)/python -m pip --disable-pip-version-check --quiet install $$peer --constraint constraints.txt >/dev/null 2>&1 \
+		|| echo "$$peer cannot be installed here; pip install $$peer says why"; done
 	@$(BIN)/python -m experiments.validation.peers
 
 test-floor:  ## run all tests with the oldest versions that are supported

@@ -26,7 +26,7 @@ from experiments.claims.kept import keep_judged, read_judged
 from experiments.claims.outcome import Outcome
 from experiments.claims.quantities import judge_sentences, ratios, sentence_claims, span
 from experiments.claims.verdicts import JudgedClaim, judge_cell, judge_cells
-from experiments.runs.results import Run
+from experiments.runs import Run
 
 
 @lru_cache(maxsize=4)

@@ -12,8 +12,8 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from experiments.harness import HUBS, QUERIES_TABLE, Axis
+from experiments.runs import Run
 from experiments.runs.catalog import experiments, tables
-from experiments.runs.results import Run
 
 Array = NDArray[Any]
 

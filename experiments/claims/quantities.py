@@ -24,7 +24,7 @@ from experiments.claims.curves import Curve, Curves, curves
 from experiments.claims.outcome import Outcome
 from experiments.claims.verdicts import JudgedClaim
 from experiments.harness import BASE, OPERATIONS, Axis
-from experiments.runs.results import Run
+from experiments.runs import Run
 from hem.complexity import slope
 from hem.contract import QUERIES
 from structures.object_tools import HalfEdgeMeshBuilder

@@ -19,8 +19,8 @@ from experiments.claims.claim import BOUND, Claim, Exactly, Growth
 from experiments.claims.curves import Curves, axes_of, curves
 from experiments.claims.outcome import Outcome
 from experiments.harness import Axis
+from experiments.runs import Run
 from experiments.runs.catalog import experiments
-from experiments.runs.results import Run
 from hem.complexity import Bound, Verdict, judge
 
 CASE_ERROR = 0.15

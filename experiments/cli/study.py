@@ -2,61 +2,39 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Mapping
 from pathlib import Path
 from time import perf_counter
 from typing import Annotated
 
 import typer
 from rich.markup import escape
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+from typer import Option
 
 from experiments.cli.console import console, errors, user_errors
-from experiments.harness import PRESETS, memory
-from experiments.runs import RUNS, CannotWriteError, load, noise, read_meta, study
-from experiments.runs.worker import DEFAULT_SEED, Job
-
-EXTENTS = "; ".join(f"{name}: {preset.what}" for name, preset in PRESETS.items())
-PresetOption = Annotated[
-    str | None, typer.Option("--preset", "--profile", help=f"How much to measure: {EXTENTS}")
-]
-ResumeOption = Annotated[bool, typer.Option("--resume", help="Resume the newest unfinished run.")]
-RunOption = Annotated[
-    Path | None, typer.Option(help="With --resume: the run to resume, finished or not.")
-]
-OutputOption = Annotated[Path, typer.Option(help="Where the runs are kept.")]
-StructureOption = Annotated[
-    list[str] | None, typer.Option(help="Measure just this one; may be repeated.")
-]
-ExperimentOption = Annotated[
-    list[str] | None, typer.Option(help="Run just this one; may be repeated.")
-]
-SeedOption = Annotated[
-    int | None, typer.Option(help=f"Of the order of the cases; {DEFAULT_SEED} if not given.")
-]
-PinOption = Annotated[
-    bool,
-    typer.Option("--pin/--no-pin", help="Keep each process on one core, where that is allowed."),
-]
-WorkersOption = Annotated[
-    str | None,
-    typer.Option(
-        help="The scheduler of a Dask cluster, tcp://host:port: spread the work over its machines."
-    ),
-]
 
 
 def run_study(
-    preset: PresetOption = None,
-    resume: ResumeOption = False,
-    run: RunOption = None,
-    output: OutputOption = RUNS,
-    structure: StructureOption = None,
-    experiment: ExperimentOption = None,
-    seed: SeedOption = None,
-    pin: PinOption = True,
-    workers: WorkersOption = None,
+    preset: Annotated[
+        str | None,
+        Option("--preset", "--profile", help="How much: smoke, quick (default), standard, full."),
+    ] = None,
+    resume: Annotated[bool, Option("--resume", help="Resume the newest unfinished run.")] = False,
+    run: Annotated[
+        Path | None, Option(help="With --resume: the run to resume, finished or not.")
+    ] = None,
+    output: Annotated[Path, Option(help="Where the runs are kept.")] = Path("results/runs"),
+    structure: Annotated[
+        list[str] | None, Option(help="Measure just this one; may be repeated.")
+    ] = None,
+    experiment: Annotated[
+        list[str] | None, Option(help="Run just this one; may be repeated.")
+    ] = None,
+    seed: Annotated[int | None, Option(help="Of the order of the cases.")] = None,
+    pin: Annotated[bool, Option(help="Keep each process on one core, where possible.")] = True,
+    workers: Annotated[
+        str | None, Option(help="A Dask scheduler, tcp://host:port: measure on its machines.")
+    ] = None,
 ) -> None:
     """Measure every structure. The results go to a new folder, case by case.
 
@@ -64,6 +42,10 @@ def run_study(
     is so much.
     """
     with user_errors():
+        from experiments.harness import memory
+        from experiments.runs import study
+        from experiments.runs.worker import DEFAULT_SEED
+
         memory.available()  # whether HEM_MEMORY can be read
         if workers:
             from experiments.runs import cluster
@@ -79,15 +61,16 @@ def run_study(
         elif run:
             raise ValueError(f"to resume {run}, say --resume as well")
         else:
-            folder = study.begin(
-                preset or "quick", output, structure or (), experiments=experiment or (),
-                seed=DEFAULT_SEED if seed is None else seed, pin=pin,
-            )  # fmt: skip
+            order = DEFAULT_SEED if seed is None else seed
+            some = structure or (), experiment or ()
+            folder = study.begin(preset or "quick", output, *some, seed=order, pin=pin)
         _measure(folder, workers)
 
 
 def _require_as_begun(folder: Path, given: Mapping[str, object], workers: str | None) -> None:
     """Raise ValueError for options that would change how a run was begun."""
+    from experiments.runs import read_meta
+
     meta = read_meta(folder)
     begun = {
         "--preset": meta["preset"], "--structure": meta["structures"],
@@ -102,11 +85,14 @@ def _require_as_begun(folder: Path, given: Mapping[str, object], workers: str | 
 
 def _measure(folder: Path, workers: str | None) -> None:
     """Measure what a run lacks, and say how it went and what to do now."""
-    begin, preset = perf_counter(), read_meta(folder)["preset"]
+    from experiments.cli.progress import show_progress
+    from experiments.runs import CannotWriteError, load, noise, study
+
+    begin = perf_counter()
     resuming = f"hem study --resume --run {folder}" + (f" --workers {workers}" if workers else "")
-    console.print(f"Measuring into {folder} (preset {preset}: {PRESETS[preset].what})")
+    console.print(f"Measuring into {folder}", soft_wrap=True)
     try:
-        with _progress(study.plan(folder), folder) as observer:
+        with show_progress(study.plan(folder), folder) as observer:
             if workers:
                 from experiments.runs import cluster
 
@@ -128,67 +114,3 @@ def _measure(folder: Path, workers: str | None) -> None:
     seen = noise(run)
     console.print(f"[yellow]{seen.words}[/]" if seen.too_busy else seen.words, highlight=False)
     console.print(f"Done in {perf_counter() - begin:.0f} s. Now: hem table, hem report")
-
-
-@contextmanager
-def _progress(jobs: list[Job], folder: Path) -> Iterator[study.Observer]:
-    """Bars on a terminal; else a line for every finished job."""
-    total = sum(len(job.ids) for job in jobs)
-    done = {job: len(job.ids) - len(job.left(folder)) for job in jobs}
-    if not console.is_terminal:
-        yield Lines(done, total)
-        return
-    columns = TextColumn("{task.description:<32}"), BarColumn(), MofNCompleteColumn()
-    with Progress(*columns, TextColumn("left"), TimeRemainingColumn(), console=console) as bars:
-        yield Bars(done, total, bars)
-
-
-class Lines(study.Observer):
-    """A line for every finished job, with the time that is left."""
-
-    def __init__(self, done: dict[Job, int], total: int) -> None:
-        self.done, self.total = done, total
-        self.begin, self.before = perf_counter(), sum(done.values())
-
-    def compiled(self, structure: str, done: int, total: int) -> None:
-        """Say it."""
-        self._print(f"compiled {structure} ({done} of {total})")
-        if done == total:
-            self.begin = perf_counter()
-
-    def measured(self, job: Job, done: int) -> None:
-        """Say it of the last case."""
-        self.done[job] = done
-        if done < len(job.ids):
-            return
-        finished, seconds = sum(self.done.values()), perf_counter() - self.begin
-        left = seconds * (self.total - finished) / max(finished - self.before, 1)
-        self._print(f"{job}: {finished} of {self.total} cases, some {left:.0f} s left")
-
-    def say(self, text: str) -> None:
-        """On standard error."""
-        errors.print(escape(text), highlight=False, soft_wrap=True)
-
-    def _print(self, text: str) -> None:
-        seconds = perf_counter() - self.begin
-        console.print(f"{seconds:5.0f} s  {text}", highlight=False, soft_wrap=True)
-
-
-class Bars(Lines):
-    """A bar for compiling, and one for all cases."""
-
-    def __init__(self, done: dict[Job, int], total: int, bars: Progress) -> None:
-        super().__init__(done, total)
-        self.bars = bars
-        self.compiling = bars.add_task("compiling", total=None, visible=False)
-        self.measuring = bars.add_task("", total=total, completed=self.before, start=False)
-
-    def compiled(self, structure: str, done: int, total: int) -> None:
-        """Move the bar of compiling."""
-        self.bars.update(self.compiling, total=total, completed=done, visible=done < total)
-
-    def measured(self, job: Job, done: int) -> None:
-        """Move the bar of the cases."""
-        self.done[job] = done
-        self.bars.start_task(self.measuring)
-        self.bars.update(self.measuring, completed=sum(self.done.values()), description=str(job))

@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING, Any
 from filelock import FileLock
 
 from experiments.runs.compiling import compile_and_count
-from experiments.runs.provenance import describe, machine_id
+from experiments.runs.provenance import describe
 from experiments.runs.store import META, CaseFile, cannot_write, case_files, read_meta, write_meta
 from experiments.runs.study import Observer, StudyFailedError, finish, plan, prepared
 from experiments.runs.worker import Job, end_of_log, log_of, perform
@@ -33,12 +33,10 @@ if TYPE_CHECKING:  # it is an extra
 
 ADDRESS = re.compile(r"[a-z]+://.+:\d+")
 CONNECT_SECONDS = 10
-LONELY_SECONDS = 60
-"""How long to wait for a machine when all are gone."""
-RETRIES = 2
-"""On how many more machines a job is tried that did not end."""
+LONELY_SECONDS = 60  # how long to wait for a machine when all are gone
 VARIABLE = "HEM_MACHINE"
-"""Environment variable of a worker that tells machines apart which look alike."""
+"""Environment variable of a worker that names its machine, if its host's name is not enough."""
+TASK = {"resources": {"machine": 1}, "retries": 2, "pure": False}
 START = "dask worker {} --nthreads 1 --resources machine=1"
 
 
@@ -78,10 +76,11 @@ def run(folder: Path, address: str, observer: Observer | None = None) -> None:
     """
     observer = observer or Observer()
     with prepared(folder, observer.say), _client(address) as client, client.as_current():
-        jobs = [job for job in plan(folder) if all(map(job.left, _places(folder)))]
+        places = [folder, *folder.glob("machine-*/")]
+        jobs = [job for job in plan(folder) if all(map(job.left, places))]
         commit = read_meta(folder)["commit"]
-        running = {_submit(client, job, commit): job for job in jobs}
-        failures = []
+        running = {client.submit(measure_here, job, commit, **TASK): job for job in jobs}
+        failures: list[str] = []
         try:
             while running:
                 for future in _finished(client, list(running)):
@@ -103,38 +102,37 @@ def together(folder: Path) -> dict[str, Any]:
 
 
 def measure_here(job: Job, commit: str) -> Returned:
-    """Measure a job where this is called, on a worker of the cluster.
-
-    Raises ClusterError if other code runs here, or nobody wants the job any more.
-    """
+    """Measure a job where this is called, on a worker of the cluster."""
     from distributed import get_worker
 
     worker: Any = get_worker()
     key = worker.get_current_task()
-
-    def require_wanted() -> None:
-        task = worker.state.tasks.get(key)
-        if task is None or task.state != "executing":
-            raise ClusterError(f"{job} is not wanted any more")
-
-    return measure_alone(job, commit, require_wanted)
+    tasks = worker.state.tasks
+    return measure_alone(job, commit, lambda: key in tasks and tasks[key].state == "executing")
 
 
-def measure_alone(job: Job, commit: str, require_wanted: Callable[[], None]) -> Returned:
-    """Measure a job in a folder of its own, while nothing else of this machine is measured."""
+def measure_alone(job: Job, commit: str, wanted: Callable[[], bool]) -> Returned:
+    """Measure a job in a folder of its own, while nothing else of this machine is measured.
+
+    Raises ClusterError if other code runs here, or as soon as nobody wants the job any more.
+    """
     host = os.environ.get(VARIABLE) or socket.gethostname()
-    about = describe(job.options.preset)
-    about = {**about, "machine": {**about["machine"], "host": host}}
+    about = {**describe(job.options.preset), "host": host}
     if about["commit"] != commit:
         raise ClusterError(
             f"{host} runs commit {about['commit'][:12]}, the study {commit[:12]}: "
             "bring them to the same and resume"
         )
-    lock = Path(tempfile.gettempdir()) / f"hem-{machine_id(about['machine'])}.lock"
-    with FileLock(lock), tempfile.TemporaryDirectory(prefix="hem-") as name:
+
+    def require_wanted(*_: Any) -> None:
+        if not wanted():
+            raise ClusterError(f"{job} is not wanted any more")
+
+    lock = FileLock(Path(tempfile.gettempdir()) / f"hem-{host}.lock")
+    with lock, tempfile.TemporaryDirectory(prefix="hem-") as name:
         place = Path(name)
         require_wanted()
-        compile_and_count(place, [job], lambda *_: require_wanted(), lambda *_: None)
+        compile_and_count(place, [job], require_wanted, lambda *_: None)
         with closing(perform(place, [job])) as finished:
             for _ in finished:
                 require_wanted()
@@ -143,26 +141,16 @@ def measure_alone(job: Job, commit: str, require_wanted: Callable[[], None]) -> 
         return Returned(content, end_of_log(log_of(place, job)), about)
 
 
-def _submit(client: Client, job: Job, commit: str) -> Any:
-    return client.submit(
-        measure_here, job, commit, resources={"machine": 1}, retries=RETRIES, pure=False
-    )
-
-
 def _finished(client: Client, running: list[Any]) -> list[Any]:
-    """What has ended. Raises ClusterError if all machines are gone."""
+    """What has ended, if anything. Raises ClusterError if all machines are gone."""
     from distributed import wait
 
-    while True:
-        try:
-            done = wait(running, timeout=LONELY_SECONDS, return_when="FIRST_COMPLETED").done
-        except TimeoutError:
-            if not client.ncores():
-                raise ClusterError(
-                    "all machines of the cluster are gone; start one and resume the run"
-                ) from None
-        else:
-            return list(done)
+    try:
+        return list(wait(running, timeout=LONELY_SECONDS, return_when="FIRST_COMPLETED").done)
+    except TimeoutError:
+        if client.ncores():
+            return []
+        raise ClusterError("all machines are gone; start one and resume the run") from None
 
 
 def _take(folder: Path, job: Job, future: Any, observer: Observer) -> list[str]:
@@ -170,7 +158,7 @@ def _take(folder: Path, job: Job, future: Any, observer: Observer) -> list[str]:
     if future.status != "finished":
         return [f"{job}: {future.exception()}"]
     returned: Returned = future.result()
-    place = folder / f"machine-{machine_id(returned.about['machine'])}"
+    place = folder / f"machine-{returned.about['host']}"
     path = CaseFile(place, job.experiment, job.structure).path
     try:
         if not (place / META).exists():
@@ -181,11 +169,6 @@ def _take(folder: Path, job: Job, future: Any, observer: Observer) -> list[str]:
     left = job.left(place)
     observer.measured(job, len(job.ids) - len(left))
     return [f"{job}, {place.name}:\n{returned.log}"] if left else []
-
-
-def _places(folder: Path) -> list[Path]:
-    """The folders with results: the run's own, and its machines'."""
-    return [folder, *sorted(folder.glob("machine-*/"))]
 
 
 @contextmanager

@@ -79,7 +79,7 @@ def machine_id(machine: dict[str, Any]) -> str:
         "memory_gib": round((machine.get("memory_bytes") or 0) / 2**30),
         "caches": machine.get("caches"),
         "platform": [*system[:1], *system[-1:]],
-        **{key: machine[key] for key in ("machines", "host") if machine.get(key)},
+        **{key: machine[key] for key in ("machines",) if machine.get(key)},
     }
     return sha256(json.dumps(facts, sort_keys=True).encode()).hexdigest()[:8]
 

@@ -41,7 +41,7 @@ class Noise:
     def words(self) -> str:
         """All that in a sentence or two."""
         if not self.cases:
-            return "The run did not watch how steady the machine was."
+            return "The run timed nothing that could be disturbed."
         found = (
             f"{self.disturbed:,} of {self.cases:,} timed cases ({self.share:.0%}) were disturbed, "
             f"{self.repeated:,} were repeated; a fixed loop took up to {self.probe_spread:.0%} "

@@ -71,8 +71,8 @@ def begin(
     preset: str,
     root: Path = RUNS,
     structures: Sequence[str] = (),
-    *,
     experiments: Sequence[str] = (),
+    *,
     seed: int = DEFAULT_SEED,
     pin: bool = True,
 ) -> Path:

@@ -50,6 +50,14 @@ class Operating(Following, abstract=True):
 
     _operation_uses: ClassVar[dict[str, Uses]]
 
+    def operate(self, operation: str, *handles: int, point: ArrayLike | None = None) -> Edit:
+        """Do an operation by its name, as the method of that name does where there is one.
+
+        ``handles``: one to three. Raises KeyError for no operation.
+        """
+        first, *more = handles or (-1,)
+        return self._do[operation](first, point, *more)
+
     @cached_property
     def _at(self) -> Any:
         """Scratch for the parts of a diamond."""

@@ -280,3 +280,15 @@ def test_every_edit_reaches_the_subscribers(name):
     s.subscribe(heard.append)
     edit = s.split_face(3, [0, 0, 0])
     assert heard == [edit] or (len(heard) == 1 and heard[0] is edit)
+
+
+def test_an_operation_by_its_name_does_what_the_method_does(name):
+    one, other = (structures.build(name, hem.generate("torus", n_vertices=100)) for _ in range(2))
+    edge = int(one.edges()[7])
+    assert (
+        one.operate("split_edge", edge, point=(1, 2, 3)).vertex
+        == other.split_edge(edge, (1, 2, 3)).vertex
+    )
+    assert faces_of(one) == faces_of(other)
+    with pytest.raises(KeyError):
+        one.operate("split_edges", edge)

@@ -1,9 +1,9 @@
 """The operations, compiled: what every structure does alike around its own surgery.
 
-One module per operation: what it does to the faces, its rule (``may_flip_edge``), and the operation
-itself (``flip_edge``), which checks the rule, sees to it that there is room, has the structure
-change its records (``flip_records``), counts, and logs what it touched. All structures number new
-elements alike, because each module says which index is whose.
+One module per operation, found in this folder: what it does to the faces, its rule
+(``may_flip_edge``), and the operation itself (``flip_edge``), which checks the rule, sees to it
+that there is room, has the structure change its records (``flip_records``), counts, and logs what
+it touched. All structures number new elements alike, because each module says which index is whose.
 
 An operation is a kernel ``(m, args, point, at, out, log, dry) -> result``. ``args`` are the
 handles, ``point`` (3,) is a position where one is asked for, ``at`` (6,) and ``out`` are scratch.
@@ -24,15 +24,9 @@ What a structure gives for it, beside its queries:
 
 from __future__ import annotations
 
-from hem.authoring.operations import (
-    add_face,
-    collapse_edge,
-    flip_edge,
-    remove_face,
-    split_edge,
-    split_face,
-    vertices,
-)
+from importlib import import_module
+from pkgutil import iter_modules
+
 from hem.authoring.operations.parts import (
     ENTRIES,
     WIDTH,
@@ -48,16 +42,11 @@ from hem.authoring.operations.parts import (
 from hem.authoring.operations.rules import LEFT, RIGHT, A, B, C, D
 
 OPERATIONS: dict[str, Operation] = {
-    "split_edge": split_edge.OPERATION,
-    "split_face": split_face.OPERATION,
-    "collapse_edge": collapse_edge.OPERATION,
-    "flip_edge": flip_edge.OPERATION,
-    "add_face": add_face.OPERATION,
-    "remove_face": remove_face.OPERATION,
-    "move_vertex": vertices.MOVE_VERTEX,
-    "add_vertex": vertices.ADD_VERTEX,
+    name: operation
+    for module in iter_modules(__path__, f"{__name__}.")
+    for name, operation in getattr(import_module(module.name), "OPERATIONS", {}).items()
 }
-"""Every operation of the contract, by name."""
+"""Every operation of the contract by name: what the modules of this folder declare."""
 
 __all__ = [
     "ENTRIES",

@@ -74,4 +74,4 @@ def make(k: Kernels) -> Kernel:
     return add_face
 
 
-OPERATION = Operation(make, "vertex", growth=(0, 1))
+OPERATIONS = {"add_face": Operation(make, "vertex", growth=(0, 1))}

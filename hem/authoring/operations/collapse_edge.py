@@ -133,4 +133,4 @@ def make(k: Kernels) -> Kernel:
     return collapse_edge
 
 
-OPERATION = Operation(make, "edge", names_a_vertex=True)
+OPERATIONS = {"collapse_edge": Operation(make, "edge", names_a_vertex=True)}

@@ -70,4 +70,4 @@ def make(k: Kernels) -> Kernel:
     return flip_edge
 
 
-OPERATION = Operation(make, "edge")
+OPERATIONS = {"flip_edge": Operation(make, "edge")}

@@ -73,4 +73,4 @@ def make(k: Kernels) -> Kernel:
     return remove_face
 
 
-OPERATION = Operation(make, "face")
+OPERATIONS = {"remove_face": Operation(make, "face")}

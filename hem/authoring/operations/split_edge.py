@@ -61,4 +61,6 @@ def make(k: Kernels) -> Kernel:
     return split_edge
 
 
-OPERATION = Operation(make, "edge", takes_a_point=True, names_a_vertex=True, growth=(1, 2))
+OPERATIONS = {
+    "split_edge": Operation(make, "edge", takes_a_point=True, names_a_vertex=True, growth=(1, 2))
+}

@@ -62,6 +62,8 @@ def make(k: Kernels) -> Kernel:
     return split_face
 
 
-OPERATION = Operation(
-    make, "face", takes_a_point=True, names_a_vertex=True, growth=(1, 2), grows_with_sides=True
-)
+OPERATIONS = {
+    "split_face": Operation(
+        make, "face", takes_a_point=True, names_a_vertex=True, growth=(1, 2), grows_with_sides=True
+    )
+}

@@ -66,7 +66,9 @@ def make_add_vertex(k: Kernels) -> Kernel:
     return add_vertex
 
 
-MOVE_VERTEX = Operation(make_move_vertex, "vertex", takes_a_point=True, names_a_vertex=True)
-ADD_VERTEX = Operation(
-    make_add_vertex, "vertex", takes_a_point=True, names_a_vertex=True, growth=(1, 0)
-)
+OPERATIONS = {
+    "move_vertex": Operation(make_move_vertex, "vertex", takes_a_point=True, names_a_vertex=True),
+    "add_vertex": Operation(
+        make_add_vertex, "vertex", takes_a_point=True, names_a_vertex=True, growth=(1, 0)
+    ),
+}

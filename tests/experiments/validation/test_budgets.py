@@ -1,0 +1,39 @@
+"""Laws of comparing with peers: rounds are interleaved, and who is missing is skipped."""
+
+from __future__ import annotations
+
+from time import sleep
+
+import pytest
+
+from experiments.validation import budgets, peers
+from experiments.validation.budgets import Task, time_interleaved
+
+
+def test_rounds_are_interleaved_and_each_has_its_own_setup() -> None:
+    calls: list[str] = []
+    made = iter(range(100))
+    first = Task(lambda given: calls.append(f"first {given}"), lambda: next(made))
+    time_interleaved([first, Task(lambda: calls.append("second"))], rounds=2)
+    assert calls == ["first 0", "second", "first 1", "second", "first 2", "second"]
+
+
+def test_what_takes_long_is_timed_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(budgets, "SECONDS", 0.0)
+    calls: list[None] = []
+    time_interleaved([Task(lambda: calls.append(None))])
+    assert len(calls) == 2  # the first one warms up
+
+
+def test_a_budget_is_met_by_the_ratio_of_the_medians() -> None:
+    slow, fast = Task(lambda: sleep(0.02)), Task(lambda: None)
+    assert peers.compare("sleep", 2.0, fast, slow).met
+    assert not peers.compare("sleep", 2.0, slow, fast).met
+
+
+def test_a_peer_that_is_not_installed_is_skipped_and_said_so(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(peers, "MODULES", {"here": "json", "absent": "no_such_module"})
+    assert list(peers.import_peers()) == ["here"]
+    assert "absent is skipped: No module named 'no_such_module'" in capsys.readouterr().out
