@@ -44,7 +44,7 @@ study: $(STUDY)  ## measure for some 15 minutes, print table 1, write the report
 test: $(DEV)  ## run all tests, on every core
 	@$(BIN)/python $(PYTEST)
 
-demo: $(STUDY)  ## break some models, for two minutes, and make a page to watch it on
+demo: $(STUDY)  ## break some models, for some minutes, and make a page to watch it on
 	@$(BIN)/python -m experiments.cli.demo
 
 soak: $(DEV)  ## operate at random on every structure, 100,000 times; break a hundred times

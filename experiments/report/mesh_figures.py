@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from contextlib import closing
 from functools import partial
+from io import BytesIO
 from typing import Any
 
 import numpy as np
@@ -312,6 +313,16 @@ def show_picture(axes: Axes, title: str, draw: Callable[[], Image]) -> None:
         axes.imshow(draw())
     except PicturesMissingError as missing:
         axes.text(0.5, 0.5, str(missing), ha="center", va="center", wrap=True)
+
+
+def jpeg(figure: Figure) -> Any:
+    """A figure of shaded pictures as a notebook shows it, in a tenth of the bytes of a PNG."""
+    from IPython.display import Image as Displayed
+
+    data = BytesIO()
+    figure.savefig(data, format="jpeg", dpi=130, pil_kwargs={"quality": 85})
+    width = round(float(figure.get_size_inches()[0]) * 80)
+    return Displayed(data.getvalue(), format="jpeg", width=width)  # type: ignore[no-untyped-call]
 
 
 def shrunk(mesh: hem.TriangleMesh, part: float, structure: str) -> hem.TriangleMesh:

@@ -59,7 +59,7 @@ def _figure(
         "ways": _packed((ways / reach)[:, order], "<f4"),
         "wires": wires,
     }
-    slider = '<input type="range" min="0" max="100" value="0" aria-label="How far apart">'
+    slider = '<br><label>apart <input type="range" min="0" max="100" value="0"></label>'
     script = (files("experiments.report") / "static" / "turnable.js").read_text("utf-8")
     return (
         '<figure class="turnable"><canvas tabindex="0" style="width:100%;max-width:640px;'

@@ -11,6 +11,7 @@ from hem.fracture.show.picture import (
     Picture,
     PicturesMissingError,
     Size,
+    load_pyvista,
     view_direction,
 )
 from hem.fracture.show.scene import FRAMES_PER_SECOND, FractureScene, save_animation
@@ -26,6 +27,7 @@ __all__ = [
     "PicturesMissingError",
     "Size",
     "flight",
+    "load_pyvista",
     "save_animation",
     "view_direction",
 ]

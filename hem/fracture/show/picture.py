@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -22,15 +25,28 @@ _CREASE = 30.0
 """Degrees. Sharper edges stay sharp; across all others the shading is smooth."""
 
 _FIELD_OF_VIEW = 26.0
-_CELLS, _SAMPLES = 400, 60_000
+_CELLS, _SAMPLES = 400, 40_000
+
+
+_TRIAL = """
+import vtkmodules.vtkRenderingOpenGL2
+from vtkmodules.vtkRenderingCore import vtkRenderWindow
+window = vtkRenderWindow()
+window.SetOffScreenRendering(1)
+window.Render()
+"""
 
 
 class PicturesMissingError(ImportError):
-    """PyVista, which draws the pictures, is not installed."""
+    """PyVista, which draws the pictures, is not installed, or finds nothing to draw with."""
 
 
+@cache
 def load_pyvista() -> Any:
-    """The module pyvista. Raises PicturesMissingError, with the way out, where it is not."""
+    """The module pyvista. Raises PicturesMissingError, with the way out, where it cannot draw.
+
+    Without drivers VTK ends the process, so that the first time another one tries it: a second.
+    """
     try:
         import pyvista
     except ImportError as missing:
@@ -38,6 +54,13 @@ def load_pyvista() -> Any:
             f"PyVista draws the pictures, and cannot be imported ({missing}): "
             "pip install 'hem-mesh[viz]'"
         ) from missing
+    trial = subprocess.run([sys.executable, "-c", _TRIAL], capture_output=True, check=False)
+    if trial.returncode:
+        raise PicturesMissingError(
+            "PyVista draws the pictures, and the system has no OpenGL for it; on Debian or Ubuntu: "
+            "apt-get install libegl1 libgl1 libgl1-mesa-dri"
+        )
+    pyvista.vtk_verbosity("error")  # that there is no display is no news
     return pyvista
 
 
@@ -177,7 +200,7 @@ def shadow(
     flat, height = points @ plane, np.maximum(points @ up - floor, 0)
     cell = (high - low) / _CELLS
     dark = np.zeros((_CELLS, _CELLS))
-    for axis, spread, count, blur in ((light, 0.1, 8, 0.008), (up, 0.95, 14, 0.015)):
+    for axis, spread, count, blur in ((light, 0.1, 8, 0.008), (up, 0.95, 12, 0.015)):
         hits = np.zeros(_CELLS**2)
         for way in _cone(axis, spread, count):
             fallen = flat - height[:, None] * (way @ plane) / (way @ up)

@@ -20,8 +20,9 @@ from experiments.cli.console import console, errors
 from experiments.report.fracture_scenes import break_up, default_impact, model
 from hem.fracture import MATERIALS
 from hem.fracture.show.scene import on_surface
+from tests.pictures import require_pictures
 
-pytest.importorskip("pyvista", reason="pictures need the extra viz")
+require_pictures()
 
 runner = CliRunner()
 

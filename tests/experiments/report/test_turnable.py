@@ -8,11 +8,11 @@ import json
 import re
 
 import numpy as np
-import pytest
 
 import hem
 from experiments.report.fracture_figures import tetrahedra, turnable
 from experiments.report.turnable import turnable_mesh
+from tests.pictures import require_pictures
 
 
 def packed(html: str, name: str, kind: str) -> np.ndarray:
@@ -37,7 +37,7 @@ def test_a_page_holds_the_whole_mesh_upright_and_asks_for_nothing_else():
 
 
 def test_pieces_are_moved_apart_by_a_slider():
-    pytest.importorskip("pyvista", reason="pictures need the extra viz")
+    require_pictures()
     broken = tetrahedra()
     html = turnable(broken)
     assert '<input type="range"' in html

@@ -12,8 +12,9 @@ import pytest
 import hem
 from hem.fracture.show import Picture
 from hem.fracture.show.picture import shadow
+from tests.pictures import require_pictures
 
-pytest.importorskip("pyvista", reason="pictures need the extra viz")
+require_pictures()
 
 SIZE = 96, 72
 RED = (0.8, 0.1, 0.1)
