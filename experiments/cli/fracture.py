@@ -82,14 +82,13 @@ def fracture(
     """Break a model: pieces, a picture, an animation of them flying, and all in numbers."""
     with user_errors():
         from experiments.report import fracture_scenes
-        from hem.fracture import MATERIALS, require_writable
-        from hem.fracture import material as material_of
-        from hem.fracture import materials as read_materials
+        from hem import fracture as breaking
 
         # What can be wrong at a glance is told before anything is computed.
-        known = material_of(material, MATERIALS | (read_materials(materials) if materials else {}))
+        own = breaking.materials(materials) if materials else {}
+        known = breaking.material(material, breaking.MATERIALS | own)
         folder = out or Path("fractured") / Path(model.replace(":", "-")).stem
-        require_writable(folder)
+        breaking.require_writable(folder)
         mesh, axis = fracture_scenes.model(model, wrap, scale, repair)
         closed = mesh.summary().border_edges == 0
         broken = fracture_scenes.break_up(
@@ -108,14 +107,9 @@ def fracture(
 
 
 def _write(
-    broken: Any,
-    model: str,
-    folder: Path,
-    formats: Sequence[str],
-    seconds: float | None,
-    size: Size,
-    animation: bool,
-) -> list[str]:
+    broken: Any, model: str, folder: Path, formats: Sequence[str], seconds: float | None,
+    size: Size, animation: bool,
+) -> list[str]:  # fmt: skip
     """Make everything beside the folder and move it there at the end -> the files' names."""
     from PIL import Image
 
@@ -130,11 +124,9 @@ def _write(
         numbers |= {"up": broken.up, "held": broken.held}
         Image.fromarray(scene.still(size)).save(beside / "fracture.png", optimize=True)
         if animation:
-            numbers["animation"] = _animate(
-                broken, scene, seconds or enough_seconds(scene), size, beside
-            )
-        text = json.dumps(numbers, indent=1, allow_nan=False)
-        (beside / "fracture.json").write_text(text + "\n")
+            lasting = seconds or enough_seconds(scene)
+            numbers["animation"] = _animate(broken, scene, lasting, size, beside)
+        (beside / "fracture.json").write_text(json.dumps(numbers, indent=1, allow_nan=False) + "\n")
         return sorted(path.name for path in beside.iterdir())
 
 
@@ -145,8 +137,7 @@ def _animate(broken: Any, scene: Any, seconds: float, size: Size, folder: Path) 
 
     flight = broken.flight(scene, seconds)
     caption = f"{broken.fracture.material.name}, {broken.blow.force:g} J/kg"
-    frames = scene.frames(flight, size, caption)
-    count = len(flight.times)
+    frames, count = scene.frames(flight, size, caption), len(flight.times)
     images = list(track(frames, "Animation", count, console=console, transient=True))
     save_animation(images, folder / "fracture.gif")
     return {
@@ -172,7 +163,5 @@ def _print_summary(broken: Any, folder: Path, files: list[str]) -> None:
         f"Struck at {x:.4g},{y:.4g},{z:.4g} with {broken.blow.force:g} J/kg; "
         f"break points: {points}\n"
         f"In {folder}: {', '.join(files)}",
-        highlight=False,
-        soft_wrap=True,
-        markup=False,
-    )
+        highlight=False, soft_wrap=True, markup=False,
+    )  # fmt: skip

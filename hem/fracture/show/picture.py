@@ -200,7 +200,7 @@ def shadow(
     flat, height = points @ plane, np.maximum(points @ up - floor, 0)
     cell = (high - low) / _CELLS
     dark = np.zeros((_CELLS, _CELLS))
-    for axis, spread, count, blur in ((light, 0.1, 8, 0.008), (up, 0.95, 12, 0.015)):
+    for axis, spread, count, blur in ((light, 0.1, 8, 0.012), (up, 0.9, 16, 0.04)):
         hits = np.zeros(_CELLS**2)
         for way in _cone(axis, spread, count):
             fallen = flat - height[:, None] * (way @ plane) / (way @ up)

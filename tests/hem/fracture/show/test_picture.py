@@ -87,7 +87,8 @@ def test_normals_turn_with_the_pieces():
 def test_the_shadow_lies_under_what_stands_and_away_from_the_light():
     up, light = np.array([0.0, 1, 0]), np.array([1.0, 2, 0]) / np.sqrt(5)
     low, high = np.array([-4.0, -4]), np.array([4.0, 4])
-    dark = shadow(sphere().points.astype(float), up, -1.0, light, low, high, 2.0)
+    points = hem.generate("sphere", 40_962).points.astype(float)
+    dark = shadow(points, up, -1.0, light, low, high, 2.0)
     assert dark.max() > 0.1
     assert np.abs(dark[[0, -1]]).max() == np.abs(dark[:, [0, -1]]).max() == 0
     z, x = np.meshgrid(*np.linspace(low, high, len(dark)).T, indexing="ij")
