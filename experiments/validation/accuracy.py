@@ -127,7 +127,7 @@ def main() -> None:
     kinds = product(CONDITIONS, GROWTH)
     curves = [it for condition, growth in kinds for it in make_curves(growth, condition)]
     answers = count_answers(installed_judges(), curves)
-    head = describe("accuracy")
+    head = {key: value for key, value in describe("").items() if key != "preset"}
     head["versions"] |= {package: _version(package) for package in PACKAGES}
     kept = {"curves": len(curves), "columns": COLUMNS, "rows": answers.to_numpy().tolist()}
     given.output.write_text(json.dumps(head | kept, indent=1) + "\n", "utf-8")
