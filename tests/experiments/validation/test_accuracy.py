@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from experiments.claims import judge_run
+from experiments.regression import RUN, load_baseline
 from experiments.report import accuracy_figures
 from experiments.runs import load
 from experiments.validation import accuracy
@@ -49,6 +50,23 @@ def test_half_of_the_timed_curves_missing_is_half_of_the_claims_undetermined(
     shares = accuracy.determined_shares(judge_run(without)).loc["Table 1"]
     assert shares.work == 1
     assert shares.time == pytest.approx(1 - run.cases[lost]["structure"].nunique() / shares.claims)
+
+
+def test_the_baseline_has_as_many_claims_of_table_1_determined_as_was_asked() -> None:
+    baseline = load_baseline(RUN)
+    assert baseline.run.meta["preset"] == "standard"
+    assert baseline.run.meta["dirty"] is False
+    claims = [
+        claim
+        for name, claim in baseline.claims.items()
+        if name.startswith("queries/")
+        and "outcome_time" in claim
+        and claim["outcome"] != "no claim"
+    ]
+    assert len(claims) == 42
+    for key, asked in zip(("outcome", "outcome_time"), accuracy.DETERMINED.values(), strict=True):
+        determined = [claim[key] != "undetermined" for claim in claims]
+        assert sum(determined) >= asked * len(determined)
 
 
 def test_the_kept_answers_are_as_many_right_and_as_few_wrong_as_asked() -> None:
