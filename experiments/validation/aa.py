@@ -51,15 +51,12 @@ def measure_run(root: Path, seed: int) -> Measured:
 
 
 def compare_pair(before: Measured, after: Measured) -> dict[str, Any]:
-    """Count what the gate says of two runs."""
+    """Count what the gate says of two runs, where there is a verdict to be lost or won."""
     findings = compare_runs(before, after).findings
-    return count_findings(finding for finding in findings if _is_random(finding))
-
-
-def _is_random(finding: Finding) -> bool:
-    """Whether chance has a say in it, and there is a verdict to be lost or won."""
-    open_twice = finding.before == finding.after == "undetermined"
-    return finding.random and not open_twice
+    open_twice = (Change.UNDETERMINED, Change.UNDETERMINED)
+    return count_findings(
+        it for it in findings if it.random and (it.before, it.after) != open_twice
+    )
 
 
 def compare_with_copy(copy: Path, repetition: int) -> dict[str, Any]:
@@ -95,12 +92,6 @@ def sum_counts(rows: Iterable[dict[str, Any]]) -> dict[str, int]:
     }
 
 
-def load_aa(path: Path = RESULT) -> dict[str, Any]:
-    """What was kept."""
-    kept: dict[str, Any] = json.loads(path.read_text("utf-8"))
-    return kept
-
-
 def in_words(kept: dict[str, Any]) -> str:
     """Say what was kept in a sentence or two."""
     pairs, interleaved = kept["pairs"], kept["interleaved"]
@@ -131,9 +122,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     kept |= {"factor": RUN_FACTOR, "factor_interleaved": INTERLEAVED_FACTOR}
     with copied_tree() as copy:
         for repetition in range(given.interleaved):
-            kept["interleaved"].append(
-                _print_row("interleaved", compare_with_copy(copy, repetition))
-            )
+            row = compare_with_copy(copy, repetition)
+            kept["interleaved"].append(_print_row("interleaved", row))
     with tempfile.TemporaryDirectory(prefix="hem-aa-") as root:
         runs: list[Measured] = []
         for seed in range(given.runs):

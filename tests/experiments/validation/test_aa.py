@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 from experiments.regression import reduce_run
@@ -13,7 +14,7 @@ ROOT = Path(__file__).parents[3]
 
 
 def test_the_kept_a_a_test_raised_few_alarms() -> None:
-    kept = aa.load_aa(ROOT / "results" / "reference" / "aa.json")
+    kept = json.loads((ROOT / aa.RESULT).read_text())
     pairs, interleaved = aa.sum_counts(kept["pairs"]), aa.sum_counts(kept["interleaved"])
     assert kept["dirty"] is False
     assert len(kept["pairs"]) >= 20
