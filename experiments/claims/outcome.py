@@ -21,7 +21,7 @@ class Outcome(StrEnum):
 
     @property
     def color(self) -> str:
-        """A color's name that terminals and style sheets know."""
+        """A color's name that terminals know."""
         return COLORS[self]
 
     @property
@@ -46,5 +46,5 @@ COLORS = {
     Outcome.CONSISTENT: "green",
     Outcome.VIOLATED: "red",
     Outcome.UNDETERMINED: "yellow",
-    Outcome.NO_CLAIM: "grey",
+    Outcome.NO_CLAIM: "bright_black",
 }

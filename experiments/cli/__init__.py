@@ -20,7 +20,7 @@ from experiments.cli.console import console, errors, user_errors
 from experiments.cli.fracture import fracture
 from experiments.cli.history import history
 from experiments.cli.study import run_study
-from experiments.runs import results
+from experiments.runs import latest
 
 app = typer.Typer(
     help="Triangle-mesh data structures, measured and held against what a thesis claims of them.",
@@ -59,14 +59,17 @@ app.command("study")(run_study)
 def show_table(
     run: RunArgument = None,
     every: Annotated[
-        bool, typer.Option("--all", help="All six structures, and the thesis' listings.")
+        bool, typer.Option("--all", help="All structures, and the thesis' listings.")
+    ] = False,
+    slopes: Annotated[
+        bool, typer.Option("--slopes", help="Instead the slopes with their intervals.")
     ] = False,
 ) -> None:
-    """Print the thesis' table 1 as printed beside as measured, with the verdicts."""
+    """Print what the thesis claims of each structure, with the verdicts of a run."""
     with user_errors():
-        from experiments.report.tables import show
+        from experiments.report import show_claims
 
-        show(run or results.latest(), console, every)
+        show_claims(run or latest(), console, every, slopes)
 
 
 @app.command("report")
@@ -87,17 +90,17 @@ def write_report(
 ) -> None:
     """Run the notebooks on a run and write the report: pages that open from disk."""
     with user_errors():
-        from experiments.report import readme, site
+        from experiments.report import write_pdf, write_readme, write_report
 
-        folder = run or results.latest()
+        folder = run or latest()
         if page:
-            written = readme.write(folder, Path("report"))
+            written = write_readme(folder, Path("report"))
             console.print(f"Page written: {written}")
         elif pdf:
-            written = site.write_pdf(folder, output or DOCUMENT)
+            written = write_pdf(folder, output or DOCUMENT)
             console.print(f"Document written: {written}", soft_wrap=True)
         else:
-            front = site.write(folder, output or PAGES)
+            front = write_report(folder, output or PAGES)
             console.print(f"Report written. Open {front.resolve().as_uri()}", soft_wrap=True)
 
 

@@ -1,1 +1,38 @@
-"""A run in; figures, tables and pages out."""
+"""A run in; figures, tables and pages out.
+
+The chapters are the notebooks: they open a run with ``open_run`` and show the figures and tables of
+this room. ``write_report`` executes them all and writes the pages, ``write_pdf`` one document,
+``write_readme`` the page that is committed, and ``show_claims`` prints the claims in a terminal.
+Everything is imported when it is first asked for: to draw takes heavy packages.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import Any
+
+_PLACES = {
+    "claim_browser": ("browser",),
+    "pages": (
+        "about_run", "answer", "chapter_list", "claim_tables", "digits", "duration", "errata",
+        "numbers", "reasons", "sentences", "slopes", "verdicts",
+    ),
+    "readme": ("write_readme",),
+    "session": (
+        "MissingError", "Session", "claim_link", "link", "open_run", "project_file", "require",
+    ),
+    "site": ("write_pdf", "write_report"),
+    "style": ("show_figures",),
+    "tables": ("show_claims",),
+}  # fmt: skip
+"""The public names by their file."""
+
+__all__ = [name for names in _PLACES.values() for name in names]
+
+
+def __getattr__(name: str) -> Any:
+    """A public name, imported now."""
+    for file, names in _PLACES.items():
+        if name in names:
+            return getattr(import_module(f"experiments.report.{file}"), name)
+    raise AttributeError(f"experiments.report has no {name!r}")

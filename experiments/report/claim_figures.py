@@ -1,176 +1,189 @@
-"""The plot and the data of every claim: what was measured against what is claimed."""
+"""The figure and the data of every claim: what was measured against what is claimed."""
 
 from __future__ import annotations
 
 import csv
 import io
 from collections.abc import Iterator
-from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
-import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.ticker import FuncFormatter, NullLocator
+from numpy.typing import NDArray
 
-from experiments.claims.growth import VARIABLES, Claim
-from experiments.claims.judged import SOURCES, Evidence
-from experiments.claims.sentences import Statement, bounds
-from experiments.report import svg
-from experiments.report.style import LOOKS
-from hem.complexity.judge import Verdict
-from hem.complexity.models import MODELS
+from experiments.claims import Between, Curve, Exactly, JudgedClaim, curves
+from experiments.harness import Axis
+from experiments.report.pages import was_measured
+from experiments.report.session import Session, open_run
+from experiments.report.style import GRAY, LOOKS, RED, Plot, compact, short_numbers, styled, svg
+from hem.complexity import MODELS, Verdict
 
-MEASURES = {
-    "work": ("work", "accesses each", 1.0),
-    "time": ("time", "ns each", 1e9),
-    "random": ("time at random", "ns each", 1e9),
-}
-"""By measure: its name, its unit in a plot, and how many of those one sample is."""
+Array = NDArray[np.float64]
 
-ACROSS = {"faces": "faces n_t", "valence": "valence n_ev"}
+FOLDER = "claims"
+"""The folder beside the pages that holds the figures and the data of the claims."""
 
+WIDTH, HEIGHT, COLUMNS = 3.2, 2.3, 5
+"""Of one panel, in inches; and how many stand beside each other."""
+
+VARIABLES = {"faces": "faces n_t", "valence": "valence n_ev"}
 STEPS = 60
 """Points of a curve that is drawn smoothly."""
 
-
-@dataclass(frozen=True)
-class Panel:
-    """One plot of a claim: a measure along one variable, and the verdict on it."""
-
-    measure: str
-    variable: str
-    cells: pd.DataFrame
-    verdict: Verdict
-
-    @property
-    def name(self) -> str:
-        """What names its file."""
-        return f"{self.measure}_{self.variable}"
-
-    @property
-    def title(self) -> str:
-        """What stands above it."""
-        return f"{MEASURES[self.measure][0]} against {VARIABLES[self.variable]}"
+INK = "#111111"
 
 
-def panels(evidence: Evidence, claim: Claim, row: dict[str, Any]) -> Iterator[Panel]:
-    """The plots of a cell of a table, of all that was measured."""
-    for measure, variable in SOURCES:
-        verdict = row.get(f"{measure}_{variable}")
-        if isinstance(verdict, Verdict):
-            cells = evidence.curve(measure, variable, claim.structure, claim.subject, claim.table)
-            yield Panel(measure, variable, cells, verdict)
+def file_name(judged: JudgedClaim) -> str:
+    """How the names of a claim's files begin."""
+    return judged.claim.key.replace("/", ".")
 
 
-def growth(panel: Panel, structure: str, claimed: bool) -> str:
+def write_claims(keys: list[str], folder: Path) -> None:
+    """Write the figure and the data of these claims of the open run to ``folder``."""
+    session = open_run()
+    for judged in session.claims:
+        if judged.claim.key in keys:
+            write(session, judged, folder)
+
+
+def write(session: Session, judged: JudgedClaim, folder: Path) -> None:
+    """Write the figure of a claim, if anything was measured, and its data."""
+    plot = draw(session, judged)
+    if plot is not None:
+        (folder / f"{file_name(judged)}.svg").write_text(svg(plot), "utf-8")
+    (folder / f"{file_name(judged)}.csv").write_text(data(session, judged), "utf-8")
+
+
+def draw(session: Session, judged: JudgedClaim) -> Plot | None:
+    """The figure of a claim: a panel per axis, the bytes by size, or values beside bounds."""
+    with styled():
+        if judged.verdicts:
+            plot = Plot(figsize=(WIDTH * len(judged.verdicts), HEIGHT))
+            _place(plot)
+            for panel, axis in zip(
+                plot.subplots(1, len(judged.verdicts), squeeze=False)[0],
+                judged.verdicts,
+                strict=True,
+            ):
+                _growth(panel, _curve(session, judged, axis), judged, axis)
+            return plot
+        if isinstance(judged.claim.expects, Exactly) and was_measured(judged):
+            return _bytes(session, judged)
+        if isinstance(judged.claim.expects, Between) and len(judged.values):
+            return _values(judged, judged.claim.expects)
+    return None
+
+
+def _curve(session: Session, judged: JudgedClaim, axis: Axis) -> Curve:
+    claim = judged.claim
+    return curves(session.run).curve(axis, claim.structure, claim.subject, claim.table)
+
+
+def _place(plot: Plot) -> None:
+    """Room around the panels, the same in every figure: to search for it takes longest."""
+    width, height = (float(it) for it in plot.get_size_inches())
+    plot.subplots_adjust(0.55 / width, 0.48 / height, 1 - 0.08 / width, 1 - 0.3 / height, 0.3)
+
+
+def _growth(axes: Axes, curve: Curve, judged: JudgedClaim, axis: Axis) -> None:
     """Costs on logarithmic axes, and the class that is claimed, as it fits them best.
 
     The gray band is what waiting for memory can add to it. Where another class explains the costs,
     that one is drawn as well.
     """
-    _, unit, scale = MEASURES[panel.measure]
-    sizes = panel.cells[panel.variable].to_numpy(float)
-    center, low, high = (scale * it for it in summary(panel.cells, panel.measure))
-    smooth = np.geomspace(sizes.min(), sizes.max(), STEPS)
-    curves = {name: scale * _fitted(panel.verdict, name, smooth) for name in _drawn(panel, claimed)}
-    x = svg.logarithmic(sizes, svg.LEFT, svg.WIDTH - svg.RIGHT)
-    y = svg.logarithmic(np.r_[low, high], svg.HEIGHT - svg.BOTTOM, svg.TOP, decades=1.6)
-    css, color = _color(structure)
-    parts = list(svg.axes(x, y, ACROSS[panel.variable], unit))
-    for name, curve in curves.items():
-        rise = panel.verdict.coefficients[name]["rise"]
-        is_claim = claimed and name == panel.verdict.expected
+    verdict, claimed = judged.verdicts[axis], judged.claim.claims_something
+    smooth = np.geomspace(curve.sizes.min(), curve.sizes.max(), STEPS)
+    for name in _classes(verdict, claimed):
+        costs = axis.scale * _fitted(verdict, name, smooth)
+        is_claim = claimed and name == verdict.expected
+        rise = verdict.coefficients[name]["rise"]
         if rise > 1.01 and (is_claim or not claimed):
-            parts.append(svg.band(x(smooth), y(curve), np.maximum(y(rise * curve), svg.TOP)))
-        parts.append(svg.line(x(smooth), y(curve), f"dash {'claim' if is_claim else 'found'}"))
-    parts += [
-        svg.whiskers(x(sizes), y(low), y(high), css, f"stroke:{color}" if color else ""),
-        svg.dots(x(sizes), y(center), f"{css}-fill", f"fill:{color}" if color else ""),
-    ]
-    return svg.document(parts, panel.title)
+            axes.fill_between(smooth, costs, rise * costs, color=GRAY, alpha=0.16, linewidth=0)
+        axes.plot(smooth, costs, "--", color=GRAY if is_claim else RED)
+    color = LOOKS[judged.claim.structure].color if judged.claim.structure else INK
+    low, center, high = (axis.scale * it for it in _summary(curve))
+    axes.vlines(curve.sizes, low, high, color=color, linewidth=1.2)
+    axes.plot(curve.sizes, center, "o", color=color)
+    unit = f"{axis.label}, {axis.unit}" if axis.unit else axis.label
+    axes.set_title(unit, fontsize=9, fontweight="normal", color=GRAY)
+    axes.set_xlabel(VARIABLES[axis.variable])
+    _logarithmic(axes, curve.sizes, np.r_[low, high][np.r_[low, high] > 0])
 
 
-def _drawn(panel: Panel, claimed: bool) -> list[str]:
+def _summary(curve: Curve) -> tuple[Array, Array, Array]:
+    """The smallest sample, the center and the largest of each case; no access counts as one."""
+    least = 1.0 if curve.measure == "work" else 0.0
+    low, high = curve.spread(1.0)
+    return tuple(np.maximum(it, least) for it in (low, curve.centers, high))  # type: ignore[return-value]
+
+
+def _classes(verdict: Verdict, claimed: bool) -> list[str]:
     """The classes to draw: what is claimed, and what was found where that is another."""
-    verdict = panel.verdict
     if not claimed:
         return [verdict.best]
     kept = verdict.outcome == "consistent" or verdict.best == verdict.expected
     return [verdict.expected] if kept else [verdict.expected, verdict.best]
 
 
-def _fitted(verdict: Verdict, name: str, sizes: svg.Array) -> svg.Array:
+def _fitted(verdict: Verdict, name: str, sizes: Array) -> Array:
     """The cost that a fitted class gives, with memory at its fastest."""
     it = verdict.coefficients[name]
     return np.asarray(it["fixed"] + it["factor"] * MODELS[name](sizes), float)
 
 
-def _color(structure: str) -> tuple[str, str]:
-    """The class and the color of a structure's marks: black turns white in the dark."""
-    return ("ink", "") if structure in ("", "indexed") else ("own", LOOKS[structure].color)
+def _logarithmic(axes: Axes, x: Array, y: Array) -> None:
+    """Both axes logarithmic; upright at least 1.6 decades, so that noise stays small."""
+    axes.set(xscale="log", yscale="log")
+    logs = np.log10(y if len(y) else np.ones(1))
+    middle, half = (logs.min() + logs.max()) / 2, max(np.ptp(logs) / 2 * 1.1 + 0.05, 0.8)
+    axes.set_ylim(10 ** (middle - half), 10 ** (middle + half))
+    short_numbers(axes)
 
 
-def summary(cells: pd.DataFrame, measure: str) -> tuple[svg.Array, svg.Array, svg.Array]:
-    """Per cell the mean of counts or the median of times, the smallest and the largest."""
-    center = np.mean if measure == "work" else np.median
-    samples = [np.maximum(it, 1) if measure == "work" else it for it in cells["samples"]]
-    return (
-        np.array([float(center(it)) for it in samples]),
-        np.array([float(np.min(it)) for it in samples]),
-        np.array([float(np.max(it)) for it in samples]),
-    )
+def _bytes(session: Session, judged: JudgedClaim) -> Plot:
+    """Bytes per vertex against size, and what is claimed."""
+    cases = curves(session.run).memory(judged.claim.structure, 8)
+    each = [it[0] / n for it, n in zip(cases["samples"], cases["vertices"], strict=True)]
+    plot = Plot(figsize=(WIDTH, HEIGHT))
+    _place(plot)
+    axes = plot.subplots()
+    axes.plot(cases["vertices"], each, "o", color=LOOKS[judged.claim.structure].color)
+    value = judged.claim.expects.value if isinstance(judged.claim.expects, Exactly) else None
+    if value:
+        axes.axhline(float(value), color=GRAY, linestyle="--")
+    axes.set(xscale="log", ylim=(0, 1.25 * max([*each, float(value or 1)])))
+    axes.set_xlabel("vertices n_v")
+    axes.set_title("bytes per vertex", fontsize=9, fontweight="normal", color=GRAY)
+    axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: compact(value)))
+    axes.xaxis.set_minor_locator(NullLocator())
+    return plot
 
 
-def memory(cells: pd.DataFrame, structure: str, printed: int | None) -> str:
-    """Bytes per vertex against size, and what is printed."""
-    vertices = cells["vertices"].to_numpy(float)
-    each = np.array([it[0] for it in cells["samples"]]) / vertices
-    x = svg.logarithmic(vertices, svg.LEFT, svg.WIDTH - svg.RIGHT)
-    top = max([*each, float(printed or 0)]) or 1.0
-    y = svg.Axis(0, 1.25 * top, svg.HEIGHT - svg.BOTTOM, svg.TOP, logarithmic=False)
-    css, color = _color(structure)
-    parts = list(svg.axes(x, y, "vertices n_v", "bytes per vertex"))
-    if printed:
-        ends = np.array([x.start, x.end])
-        parts.append(svg.line(ends, y([printed, printed]), "dash claim"))
-    parts.append(
-        svg.dots(x(vertices), y(each), f"{css}-fill", f"fill:{color}" if color else "", radius=3.5)
-    )
-    return svg.document(parts, "bytes per vertex")
-
-
-def quantity(statement: Statement) -> str:
-    """The values of a sentence on one axis, and the bounds they must keep."""
-    height = 86
-    values, limits = statement.values, [it for it in (statement.low, statement.high) if _finite(it)]
-    every = np.r_[values, limits, [0.0] if min([*values, *limits]) > 0 else []]
-    room = 0.08 * (every.max() - every.min()) or 0.5
-    wide = len(values) > 0 and every.min() >= 0 and values.max() > 30 * max(values.min(), 1e-9)
-    if wide and values.min() > 0:
-        x = svg.logarithmic(np.r_[values, limits], svg.RIGHT, svg.WIDTH - svg.RIGHT)
+def _values(judged: JudgedClaim, bounds: Between) -> Plot:
+    """The values of a sentence on one axis, and the bounds that they must keep."""
+    plot = Plot(figsize=(WIDTH * 1.3, 1.1))
+    axes = plot.subplots()
+    plot.subplots_adjust(0.06, 0.34, 0.94, 0.78)
+    values = np.asarray(judged.values, float)
+    limits = [it for it in (bounds.low, bounds.high) if np.isfinite(it)]
+    every = np.r_[values, limits]
+    if every.min() > 0 and every.max() > 30 * every.min():
+        axes.set_xscale("log")
+        room = (every.min() / 1.5, every.max() * 1.5)
     else:
-        ends = svg.RIGHT, svg.WIDTH - svg.RIGHT
-        x = svg.Axis(every.min() - room, every.max() + room, *ends, logarithmic=False)
-    parts = [_tick(x, value) for value in x.ticks()]
-    low, high = (float(np.clip(it, x.low, x.high)) for it in (statement.low, statement.high))
-    start, end = x([low, high])
-    parts += [
-        svg.bar(start, 20, max(end - start, 3), 36),
-        svg.text(svg.RIGHT, 13, f"claimed: {bounds(statement)}"),
-        f'<path class="frame" d="M{svg.RIGHT} 56H{svg.WIDTH - svg.RIGHT}"/>',
-        svg.dots(x(values), np.full(len(values), 38.0), "ink-fill", "fill-opacity:.75", 4),
-    ]
-    return svg.document(parts, "what was found, and what is claimed", height=height)
-
-
-def _finite(value: float) -> bool:
-    return bool(np.isfinite(value))
-
-
-def _tick(x: svg.Axis, value: float) -> str:
-    at = float(x([value])[0])
-    return f'<path class="grid" d="M{at:.1f} 20V56"/>' + svg.text(
-        at, 71, svg.short(value), "middle"
-    )
+        low, high = min(every.min(), 0), every.max()
+        room = (low - 0.08 * (high - low or 1), high + 0.08 * (high - low or 1))
+    axes.set(xlim=room, ylim=(-1, 1), yticks=[])
+    low, high = np.clip([bounds.low, bounds.high], *axes.get_xlim())
+    axes.axvspan(low, high, color=GRAY, alpha=0.2, linewidth=2)
+    axes.plot(values, np.zeros(len(values)), "o", color=INK, alpha=0.75, markersize=6)
+    axes.spines["left"].set_visible(False)
+    axes.set_title(f"claimed: {bounds.words}", fontsize=9, fontweight="normal", color=GRAY)
+    axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: compact(round(value, 9) + 0)))
+    axes.xaxis.set_minor_locator(NullLocator())
+    return plot
 
 
 HEAD = (
@@ -179,39 +192,43 @@ HEAD = (
 )  # fmt: skip
 
 
-def table(every: list[Panel]) -> str:
-    """The cells behind a claim's plots as comma-separated values, times in seconds."""
+def data(session: Session, judged: JudgedClaim) -> str:
+    """What a claim was judged by as comma-separated values; times in seconds."""
     file = io.StringIO()
     writer = csv.writer(file, lineterminator="\n")
-    writer.writerow(HEAD)
-    for panel in every:
-        unit = "accesses" if panel.measure == "work" else "seconds"
-        numbers = zip(*summary(panel.cells, panel.measure), strict=True)
-        for cell, each in zip(panel.cells.to_dict("records"), numbers, strict=True):
-            known = [cell[key] for key in ("experiment", "order", "family", "vertices", "faces")]
-            known += [cell["valence"] if _known(cell["valence"]) else cell["valence_max"] or ""]
-            found = [len(cell["samples"]), *(f"{it:.6g}" for it in each), unit]
-            late = [f"{cell['latency']:.4g}" if _known(cell["latency"]) else ""]
-            writer.writerow([panel.measure, panel.variable, *known, *found, *late])
+    if judged.verdicts:
+        writer.writerow(HEAD)
+        for axis in judged.verdicts:
+            writer.writerows(_cases(_curve(session, judged, axis), axis))
+    elif isinstance(judged.claim.expects, Between):
+        writer.writerow(("value", "low", "high"))
+        bounds = judged.claim.expects
+        writer.writerows(
+            (f"{it:.6g}", f"{bounds.low:g}", f"{bounds.high:g}") for it in judged.values
+        )
+    else:
+        writer.writerow(("vertices", "reference_bytes", "field", "bytes"))
+        cases = curves(session.run).memory(judged.claim.structure, 8)
+        for case in cases.to_dict("records"):
+            fields = case["detail"].get("fields", {}) | {"all": int(case["samples"][0])}
+            head = (case["vertices"], case["reference_bytes"])
+            writer.writerows((*head, name, size) for name, size in fields.items())
     return file.getvalue()
 
 
+def _cases(curve: Curve, axis: Axis) -> Iterator[list[Any]]:
+    low, center, high = _summary(curve)
+    summary = zip(center, low, high, strict=True)
+    for case, found in zip(curve.cases.to_dict("records"), summary, strict=True):
+        valence = case["valence"] if _known(case["valence"]) else case["valence_max"] or ""
+        yield [
+            axis.measure, axis.variable,
+            *(case[key] for key in ("experiment", "order", "family", "vertices", "faces")),
+            valence, len(case["samples"]), *(f"{it:.6g}" for it in found),
+            "accesses" if axis.exact else "seconds",
+            f"{case['latency']:.4g}" if _known(case["latency"]) else "",
+        ]  # fmt: skip
+
+
 def _known(value: Any) -> bool:
-    return value is not None and not pd.isna(value)
-
-
-def bytes_table(cells: pd.DataFrame) -> str:
-    """The bytes of every field, by size, as comma-separated values."""
-    lines = ["vertices,reference_bytes,field,bytes"]
-    for cell in cells.to_dict("records"):
-        head = f"{cell['vertices']},{cell['reference_bytes']}"
-        fields = cell["detail"].get("fields", {})
-        lines += [f"{head},{name},{size}" for name, size in fields.items()]
-        lines.append(f"{head},all,{cell['samples'][0]:.0f}")
-    return "\n".join(lines) + "\n"
-
-
-def values_table(statement: Statement) -> str:
-    """The values of a sentence and its bounds, one per line."""
-    lines = [f"{it:.6g},{statement.low:g},{statement.high:g}" for it in statement.values]
-    return "\n".join(["value,low,high", *lines]) + "\n"
+    return value is not None and value == value  # not nan

@@ -15,14 +15,10 @@ from numpy.typing import NDArray
 
 import hem
 import structures
-from experiments.bench_fracture import FIND, SHATTER, VISITED, WAYS
-from experiments.report.figures import Ends, finish_panels
 from experiments.report.fracture_scenes import Broken, break_up, model
 from experiments.report.mesh_figures import INK, PAPER, STRONG, show_picture
-from experiments.report.operation_figures import _line, _lines, _plain_numbers
-from experiments.report.style import GRAY, LOOKS, styled
+from experiments.report.style import styled
 from experiments.report.turnable import turnable_pieces
-from experiments.runs.results import Run
 from hem.fracture import MATERIALS, Fracture, material, shatter
 from hem.fracture.show import Image, PicturesMissingError
 
@@ -130,49 +126,3 @@ def _title(broken: Broken) -> str:
         f"{found.material.name.capitalize()}, {broken.blow.force:g} J/kg: {len(shards):,} shards, "
         f"{shards.sum():.0%} of the volume, the median one {100 * np.median(shards):.2g}%"
     )
-
-
-def shards_per_second(run: Run) -> Figure:
-    """How many shards each structure makes a second, by size."""
-    cells = run.cases[(run.cases["experiment"] == "bench_fracture")]
-    cells = cells[cells["subject"] == SHATTER].copy()
-    cells["samples"] = [1 / it for it in cells["samples"]]
-    with styled():
-        figure = Figure(figsize=(7.5, 3.8), layout="constrained")
-        axes = figure.subplots()
-        axes.set(xscale="log", yscale="log", xlabel="faces n_t", ylabel="shards per second")
-        axes.set_title("Breaking a surface around an impact")
-        ends = _lines(axes, cells, "faces", 1.0)
-        finish_panels(figure, [axes], [ends], room=0.2)
-    return figure
-
-
-def face_finding(run: Run, structure: str = "half_edge") -> Figure:
-    """Finding the face under an impact in three ways: faces looked at, and time."""
-    cells = run.cases[run.cases["experiment"] == "bench_fracture"]
-    cells = cells[(cells["subject"] == FIND) & (cells["structure"] == structure)]
-    looks = dict(
-        zip(
-            WAYS,
-            ((LOOKS["winged_edge"].color, "o"), (LOOKS[structure].color, "D"), (GRAY, "s")),
-            strict=True,
-        )
-    )
-    with styled():
-        figure = Figure(figsize=(10.5, 3.7), layout="constrained")
-        panels = figure.subplots(1, 2)
-        every: list[Ends] = []
-        for axes, suffix, scale, label in (
-            (panels[0], f", {VISITED}", 1.0, VISITED),
-            (panels[1], "", 1e6, "time each, µs"),
-        ):
-            axes.set(xscale="log", yscale="log", xlabel="faces n_t", ylabel=label)
-            every.append({})
-            for way, (color, marker) in looks.items():
-                x, y = _line(cells[cells["order"] == way + suffix], "faces")
-                axes.plot(x, scale * y, color=color, marker=marker)
-                if len(x):
-                    every[-1][way] = (x[-1], scale * y[-1], color)
-            _plain_numbers(axes)
-        finish_panels(figure, panels, every, room=0.45)
-    return figure

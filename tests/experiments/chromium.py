@@ -14,7 +14,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
-from experiments.report.pdf import FLAGS, browser
+from experiments.report.pdf import FLAGS, require_browser
 
 PATIENCE = 120.0
 """Seconds until an answer that does not come is given up."""
@@ -116,7 +116,7 @@ def started() -> Iterator[Browser]:
         # The browser reads from 3 and writes to 4; whatever numbers our pipes have, go there.
         script = f'exec "$@" 3<&{there} 4>&{here}'
         process = subprocess.Popen(
-            ["bash", "-c", script, "browser", browser(), *flags, "about:blank"],
+            ["bash", "-c", script, "browser", require_browser(), *flags, "about:blank"],
             pass_fds=(there, here),
             stderr=subprocess.DEVNULL,
             stdout=subprocess.DEVNULL,

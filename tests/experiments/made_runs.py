@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from experiments.claims.growth import MEMORY, load_claims
+from experiments.claims import Exactly, load_claims
 from experiments.harness import HUBS, WORKLOADS, Measurement
 from experiments.runs import CaseFile, describe, write_meta
 from structures import NAMES
@@ -60,14 +60,23 @@ BUILD = {
 """Seconds per face to build, in these runs."""
 
 
-def write_run(folder: Path, law_of: Callable[[str, str, str], Law] | None = None) -> Path:
-    """A finished run in which every claim holds, unless ``law_of(structure, query, printed)``."""
+def write_run(
+    folder: Path,
+    law_of: Callable[[str, str, str], Law] | None = None,
+    only: Callable[[str, str], bool] = lambda experiment, structure: True,
+) -> Path:
+    """A finished run in which every claim holds, unless ``law_of(structure, query, printed)``.
+
+    ``only``: the experiments on structures that the run has.
+    """
     rng = np.random.default_rng(3)
     write_meta(folder, {**describe("quick"), "finished": "2026-01-01T00:00:00Z"})
     files = {}
     for claim in load_claims():
-        if claim.subject == MEMORY:
-            _add(files, folder, "bench_memory", claim.structure, _memory(claim.bytes_per_vertex))
+        if isinstance(claim.expects, Exactly):
+            for size in (4, 8):
+                case = _memory(claim.expects.value, size)
+                _add(files, folder, "bench_memory", claim.structure, case)
             continue
         chosen = law_of and law_of(claim.structure, claim.subject, claim.printed)
         law = chosen or LAWS[claim.printed]
@@ -97,7 +106,8 @@ def write_run(folder: Path, law_of: Callable[[str, str, str], Law] | None = None
     for structure in NAMES:
         _add_times(files, folder, structure)
     for (experiment, structure), cases in files.items():
-        CaseFile(folder, experiment, structure).add(*(Measurement(**case) for case in cases))
+        if only(experiment, structure):
+            CaseFile(folder, experiment, structure).add(*(Measurement(**case) for case in cases))
     return folder
 
 
@@ -131,13 +141,13 @@ def _add_times(files: dict, folder: Path, structure: str) -> None:
             _add(files, folder, "bench_fracture", structure, case)
 
 
-def _memory(bytes_per_vertex: int | None) -> Measurement:
-    size = 1000 * int(bytes_per_vertex or 0)
+def _memory(bytes_per_vertex: float | None, reference_bytes: int) -> Measurement:
+    size = 1000 * int(bytes_per_vertex or 0) * reference_bytes // 8
     fields = {"vertex.point": size}
     detail = {"fields": fields, "clr": fields, "traced": size, "peak": size}
     return Measurement(
-        id="torus/1000", kind="bytes", family="torus", vertices=1000, reference_bytes=8,
-        samples=[float(size)], detail=detail,
+        id=f"torus/1000/{reference_bytes}", kind="bytes", family="torus", vertices=1000,
+        reference_bytes=reference_bytes, samples=[float(size)], detail=detail,
     )  # fmt: skip
 
 

@@ -62,8 +62,8 @@
   document.getElementById("all").addEventListener("click", reset);
   window.addEventListener("hashchange", open);
   document.addEventListener("click", (event) => { // the same link again
-    const link = event.target.closest('a[href^="#"]');
-    if (link && link.getAttribute("href") === location.hash) open();
+    const link = event.target.closest("a");
+    if (link && link.href === location.href) open();
   });
   form.hidden = false;
   update();

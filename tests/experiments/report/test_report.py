@@ -8,96 +8,145 @@ import subprocess
 import sys
 from pathlib import Path
 
+import nbformat
 import numpy as np
 import pytest
 
-from experiments.claims.growth import OPERATIONS
-from experiments.report import figures, operation_figures, readme
-from experiments.report.site import write
+from experiments.claims import judge_run
+from experiments.harness import OPERATIONS, Axis
+from experiments.report import figures, notebooks, readme, site
+from experiments.report.session import Session, share
+from experiments.report.site import write_report
 from experiments.report.style import spread_apart
-from experiments.runs.results import ResultsError, load
-from tests.experiments.made_runs import write_run
+from experiments.runs import ResultsError, load
 from tests.experiments.small_study import wait_for
 
 
-@pytest.fixture(scope="module")
-def run_folder(tmp_path_factory: pytest.TempPathFactory):
-    return write_run(tmp_path_factory.mktemp("run"))
-
-
 @pytest.mark.parametrize("there", ["a file", "a folder of others"])
-def test_nothing_but_a_report_is_replaced(run_folder, tmp_path, there):
+def test_nothing_but_a_report_is_replaced(base_folder, tmp_path, there):
     if there == "a file":
         output = kept = tmp_path / "thesis.txt"
     else:
         output, kept = tmp_path, tmp_path / "thesis.txt"
     kept.write_text("years of work")
     with pytest.raises(ResultsError, match=r"is no report.*choose a folder"):
-        write(run_folder, output)
+        write_report(base_folder, output)
     assert kept.read_text() == "years of work"
 
 
-def test_a_report_that_fails_leaves_the_old_one(run_folder, tmp_path, monkeypatch):
+def test_a_report_that_fails_leaves_the_old_one(base_folder, tmp_path, monkeypatch):
     (tmp_path / "html").mkdir()
     (tmp_path / "html" / "index.html").write_text("old")
-    monkeypatch.setattr("experiments.report.chapters.CHAPTERS", {"no_such": "No such chapter"})
+    titles = {"index": "Front", "no_such": "No such chapter"}
+    monkeypatch.setattr(site, "page_titles", lambda: titles)
     with pytest.raises((OSError, ResultsError)):
-        write(run_folder, tmp_path / "html")
+        write_report(base_folder, tmp_path / "html")
     assert (tmp_path / "html" / "index.html").read_text() == "old"
     assert [path.name for path in tmp_path.iterdir()] == ["html"]
 
 
-def test_an_interrupt_in_a_notebook_leaves_the_old_report_and_no_kernel(run_folder, tmp_path):
-    """A notebook has a loop running, and the signal reaches it alone."""
+def test_an_interrupt_leaves_the_old_report_and_no_process(base_folder, tmp_path):
     (tmp_path / "html").mkdir()
     (tmp_path / "html" / "index.html").write_text("old")
     script = (
-        "import asyncio, sys; from pathlib import Path; from experiments import chapters, report\n"
-        "chapters.CHAPTERS = {'memory': 'Memory', 'errata': 'Errata', 'fracture': 'Fracture'}\n"
-        "async def cell(): report.write(Path(sys.argv[1]), Path(sys.argv[2]) / 'html')\n"
-        "asyncio.new_event_loop().run_until_complete(cell())"
+        "import sys; from pathlib import Path; from experiments.report import write_report\n"
+        "write_report(Path(sys.argv[1]), Path(sys.argv[2]) / 'html')"
     )
-    command = [sys.executable, "-c", script, str(run_folder), str(tmp_path)]
+    command = [sys.executable, "-c", script, str(base_folder), str(tmp_path)]
     caller = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
-    wait_for(lambda: kernels_of(caller.pid))
-    kernels = kernels_of(caller.pid)
+    wait_for(lambda: len(descendants(caller.pid)) > 2)  # a fork server and what it forked
+    workers = descendants(caller.pid)
     caller.send_signal(signal.SIGINT)
-    _, said = caller.communicate(timeout=20)
+    _, said = caller.communicate(timeout=120)
     assert "KeyboardInterrupt" in said
-    assert not any(Path(f"/proc/{kernel}").exists() for kernel in kernels)
+    wait_for(lambda: not any(Path(f"/proc/{worker}/fd").exists() for worker in workers))
     assert (tmp_path / "html" / "index.html").read_text() == "old"
     assert [path.name for path in tmp_path.iterdir()] == ["html"]
 
 
-def kernels_of(process: int) -> list[int]:
-    command = ["ps", "--ppid", str(process), "-o", "pid=,args="]
+def descendants(process: int) -> list[int]:
+    command = ["ps", "--ppid", str(process), "-o", "pid="]
     listed = subprocess.run(command, capture_output=True, text=True, check=False).stdout
-    return [int(line.split()[0]) for line in listed.splitlines() if "ipykernel" in line]
+    children = [int(line) for line in listed.split()]
+    return [*children, *(it for child in children for it in descendants(child))]
 
 
-def test_the_committed_page_has_the_table_and_its_pictures(run_folder, tmp_path):
-    page = readme.write(run_folder, tmp_path / "report")
+def test_every_notebook_says_its_title_and_its_place(tmp_path, monkeypatch):
+    titles = notebooks.page_titles()
+    assert next(iter(titles)) == "index"
+    monkeypatch.setattr(notebooks, "carried", lambda folder: tmp_path)
+    nbformat.write(nbformat.v4.new_notebook(), tmp_path / "forgotten.ipynb")
+    with pytest.raises(ResultsError, match=r"forgotten\.ipynb: .* a title and an order"):
+        notebooks.page_titles.__wrapped__()
+
+
+def executed(*sources: str) -> list[list[dict]]:
+    cells = [nbformat.v4.new_code_cell(source) for source in sources]
+    notebook = nbformat.v4.new_notebook(cells=cells)
+    notebooks.execute(notebook, "chapter")
+    return [cell.outputs for cell in notebook.cells]
+
+
+def test_a_cell_shows_its_value_what_it_prints_and_what_it_displays():
+    source = "from IPython.display import display\ndisplay(1)\nprint('two')\n3"
+    outputs = executed("x = 1", source)
+    assert outputs[0] == []
+    assert [it.get("text") or it["data"]["text/plain"] for it in outputs[1]] == ["1", "3", "two\n"]
+
+
+def test_a_cell_that_lacks_something_says_so_and_the_next_is_run():
+    fails = "from experiments.report import require\nrequire('no_such_package', 'viz')"
+    first, second = executed(fails, "4")
+    assert "pip install 'hem-mesh[viz]'" in first[0]["data"]["text/plain"]
+    assert first[0]["metadata"]["missing"]
+    assert second[0]["data"]["text/plain"] == "4"
+
+
+def test_a_cell_that_fails_names_its_notebook():
+    with pytest.raises(ResultsError, match=r"notebooks/chapter\.ipynb .*ZeroDivisionError"):
+        executed("1 / 0")
+
+
+def test_the_answers_are_numbers_of_the_run(base_folder):
+    run = load(base_folder)
+    share(Session(run, judge_run(run)))
+    body = notebooks.body("index")
+    share(None)
+    assert body.count('class="answer"') == 5
+    assert "600 µs at 200,000 triangles" in body
+    assert "takes 228 bytes per vertex and an indexed mesh 36: 6.33 times" in body
+    assert "A pass over all faces takes a half-edge mesh 1.0 times as long" in body
+    assert ", 0 violated, 0 undetermined" in body
+
+
+def test_the_committed_page_has_the_tables_and_its_pictures(base_folder, tmp_path, monkeypatch):
+    drawn = {name: readme.DRAWN[name] for name in ("overview", "memory", "overtaking")}
+    monkeypatch.setattr(readme, "DRAWN", drawn)
+    page = readme.write_readme(base_folder, tmp_path / "report")
+    share(None)
     text = page.read_text()
     assert "| Bytes per vertex | 36 ✓ | 116 ✓ | 228 ✓ | 228 ✓ |" in text
     assert "| Split face | O(n_t) ✓ | O(1) ✓ | O(1) ✓ | O(1) ✓ |" in text
     assert "6.33 | ✓ consistent |" in text
-    for picture in re.findall(r"\((\w+\.png)\)", text):
+    pictures = re.findall(r"\((\w+\.png)\)", text)
+    assert len(pictures) == 3
+    for picture in pictures:
         assert (page.parent / picture).stat().st_size > 10_000
 
 
 FIGURES = {
-    "queries by time": lambda run: figures.scaling(run, "time", "faces"),
-    "queries by work": lambda run: figures.scaling(run, "work", "valence"),
-    "operations": lambda run: figures.scaling(run, "time", "faces", OPERATIONS),
-    "workloads": operation_figures.workloads,
-    "overtaking": operation_figures.overtaking,
-    "rendering": operation_figures.rendering,
+    "queries by time": lambda run: figures.scaling(run, Axis.TIME_FACES),
+    "queries by work": lambda run: figures.scaling(run, Axis.WORK_VALENCE),
+    "operations": lambda run: figures.scaling(run, Axis.TIME_FACES, OPERATIONS),
+    "workloads": figures.workloads,
+    "overtaking": figures.overtaking,
+    "rendering": figures.rendering,
 }
 
 
 @pytest.mark.parametrize("name", FIGURES)
-def test_labels_do_not_overlap_and_stay_inside_the_figure(run_folder, name):
-    figure = FIGURES[name](load(run_folder))
+def test_labels_do_not_overlap_and_stay_inside_the_figure(base_folder, name):
+    figure = FIGURES[name](load(base_folder))
     figure.draw_without_rendering()
     for axes in (it for it in figure.axes if it.get_visible()):
         boxes = [text.get_window_extent() for text in axes.texts]

@@ -6,27 +6,25 @@ import re
 from pathlib import Path
 from urllib.parse import unquote, urldefrag, urlparse
 
-import numpy as np
 import pytest
 
-from experiments.cli import demo
-from experiments.report.chapters import CHAPTERS
+from experiments.claims import judge_run
+from experiments.report.notebooks import page_titles
 from experiments.report.pdf import BROWSER_VARIABLE, find_browser
-from experiments.report.site import write
+from experiments.report.site import write_report
+from experiments.runs import load
 from tests.experiments.chromium import Browser, started
-from tests.experiments.made_runs import write_run
 
-PAGES = ("index", *CHAPTERS)
+PAGES = tuple(page_titles())
 SHOWN = "[...document.querySelectorAll('.entry')].filter(it => it.checkVisibility())"
 KEYS = f"{SHOWN}.map(it => it.id)"
 COUNT = "document.getElementById('shown').textContent"
 
 
 @pytest.fixture(scope="module")
-def report(tmp_path_factory) -> Path:
+def report(tmp_path_factory, base_folder) -> Path:
     """The pages of a whole report."""
-    folder = tmp_path_factory.mktemp("report")
-    return write(write_run(folder / "run"), folder / "html").parent
+    return write_report(base_folder, tmp_path_factory.mktemp("report") / "html").parent
 
 
 @pytest.fixture(scope="module")
@@ -57,18 +55,20 @@ def search(browser: Browser, words: str) -> list[str]:
     )
 
 
-def test_the_pages_are_whole_and_need_nothing_from_elsewhere(report):
-    pages = {page.name: page.read_text() for page in report.glob("*.html")}
-    assert set(pages) == {"index.html", *(f"{name}.html" for name in CHAPTERS)}
+def test_the_pages_are_whole_and_need_nothing_from_elsewhere(report, base_folder):
+    pages = {page.name: page.read_text("utf-8") for page in report.glob("*.html")}
+    assert set(pages) == {f"{name}.html" for name in PAGES}
     assert {path.suffix for path in (report / "claims").iterdir()} == {".svg", ".csv"}
-    for name, text in pages.items():
+    for text in pages.values():
         assert not re.search(r'(src|href)="(?!data:|claims/|[\w.]+\.html|#)', text)
-        assert text.count("<script") == (name == "index.html")
         assert "No description" not in text
-    assert pages["index.html"].count('class="consistent"') >= 26 + 4 + 16 + 3
-    assert pages["operations.html"].count("data:image/png") == 12
-    assert pages["half_edge_or_indexed.html"].count("data:image/png") == 2
-    assert pages["query_scaling.html"].count("data:image/png") == 5
+    tables = sum(judged.claim.structure != "" for judged in judge_run(load(base_folder)))
+    assert len(re.findall(r'<td class="(consistent|no-claim)">', pages["index.html"])) == tables
+    for name, plots, pictures in (
+        ("operations", 5, 7), ("half_edge_or_indexed", 2, 0), ("query_scaling", 5, 0)
+    ):  # fmt: skip
+        assert pages[f"{name}.html"].count('class="plot wide"') == plots
+        assert pages[f"{name}.html"].count('class="picture wide"') == pictures
     assert "1.00" in pages["comparison_table.html"]
 
 
@@ -105,7 +105,7 @@ def test_every_link_leads_to_a_file_and_a_place_that_exist(chromium, report):
             )
             if not it.startswith("data:")
         }
-    assert len(links) > 700
+    assert len(links) > 450
     for page, link in links:
         target, place = urldefrag(link)
         assert target.startswith("file:"), (page.name, link)
@@ -174,7 +174,7 @@ def test_search_finds_the_claims_that_have_all_the_words(front):
 
 def test_a_deep_link_opens_its_claim_even_if_it_is_filtered_out(front, report):
     press(front, "structure", "indexed")
-    front.run("document.querySelector('a[href=\"#plankton/vertex_faces\"]').click()")
+    front.run("document.querySelector('a[href=\"index.html#plankton/vertex_faces\"]').click()")
     front.run("new Promise(done => setTimeout(done, 100))")
     opened = "[...document.querySelectorAll('.entry[open]')].map(it => it.id)"
     assert front.run(opened) == ["plankton/vertex_faces"]
@@ -189,7 +189,7 @@ def test_every_plot_is_drawn_and_described(front):
     front.run("document.querySelectorAll('.entry').forEach(it => { it.open = true; })")
     pictures = "[...document.querySelectorAll('.entry img')]"
     assert front.run(f"Promise.all({pictures}.map(it => it.decode())).then(() => true)")
-    assert front.run(f"{pictures}.length") > 400
+    assert front.run(f"{pictures}.length") > 100
     assert front.run(f"{pictures}.every(it => it.naturalWidth > 100 && it.alt.length > 10)")
 
 
@@ -219,19 +219,3 @@ def test_without_scripts_everything_is_shown(chromium, report):
         assert not chromium.run("document.getElementById('filters').checkVisibility()")
     finally:
         chromium.call("Emulation.setScriptExecutionDisabled", value=False)
-
-
-def test_the_demo_opens_without_an_error_and_fits_on_a_phone(chromium, tmp_path):
-    scene, size = demo.SCENES[0], (56, 40)
-    numbers = ("mass", "largest", "smallest", "energy", "given", "fastest")
-    take = {"force": 1, "frames": "it.webp", "times": [0, 0.1, 0.2], "pieces": 3}
-    told = {**demo._told(scene), "takes": [take | dict.fromkeys(numbers, 1.5)]}
-    demo._save(np.full((size[1], 6 * size[0], 3), 200, np.uint8), tmp_path / "it.webp")
-    page = tmp_path / "index.html"
-    page.write_text(demo._page([told], size), "utf-8")
-    chromium.size(390)
-    chromium.errors.clear()
-    chromium.open(page.as_uri())
-    assert chromium.run("document.querySelectorAll('button').length") > 2
-    assert chromium.run("document.documentElement.scrollWidth") <= 390
-    assert chromium.errors == []

@@ -1,0 +1,78 @@
+"""What a chapter works with: the run it reports, and where its links lead."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from importlib.util import find_spec
+from pathlib import Path
+
+from experiments.claims import JudgedClaim, judge_run
+from experiments.report.style import show_figures
+from experiments.runs import Run, latest, load
+
+RUN_VARIABLE = "HEM_RUN"
+"""The environment variable that tells a notebook which run to read."""
+
+
+class MissingError(ValueError):
+    """What a cell would show was not measured, or cannot be shown here; the page says so."""
+
+
+@dataclass
+class Session:
+    """A run, its judged claims, and whether all pages are printed as one document."""
+
+    run: Run
+    claims: list[JudgedClaim]
+    printed: bool = False
+
+
+_current: Session | None = None
+
+
+def share(session: Session | None) -> None:
+    """Make this the run of all chapters that are executed in this process."""
+    global _current
+    _current = session
+
+
+def open_run() -> Session:
+    """The run of this report; in a notebook of its own the one of ``HEM_RUN``, or the newest.
+
+    Raises ResultsError where there is none.
+    """
+    show_figures()
+    if _current is None:
+        run = load(os.environ.get(RUN_VARIABLE) or latest())
+        share(Session(run, judge_run(run)))
+    assert _current is not None
+    return _current
+
+
+def link(page: str, anchor: str = "") -> str:
+    """Where a link to a page, or to a place on it, leads: printed all pages are one."""
+    if _current and _current.printed:
+        return f"#{anchor or page}"
+    return f"{page}.html" + (f"#{anchor}" if anchor else "")
+
+
+def claim_link(key: str) -> str:
+    """Where a link to a claim leads."""
+    return link("index", key)
+
+
+def require(module: str, extra: str) -> None:
+    """Raise MissingError unless an optional package is installed."""
+    if find_spec(module) is None:
+        raise MissingError(
+            f"This needs {module}, which is not installed: pip install 'hem-mesh[{extra}]'"
+        )
+
+
+def project_file(path: str) -> Path:
+    """A file that comes with the checkout. Raises MissingError where the package is installed."""
+    found = Path(__file__).parents[2] / path
+    if not found.exists():
+        raise MissingError(f"This needs {path}, which comes with the source repository.")
+    return found

@@ -1,0 +1,90 @@
+"""A run of some structures, or of one experiment, is a run: pages show what there is."""
+
+from __future__ import annotations
+
+from contextlib import suppress
+
+import pytest
+from rich.console import Console
+
+from experiments.claims import break_even, curves, judge_run
+from experiments.harness import OPERATIONS, Axis
+from experiments.report import comparisons, figures, memory_figures, notebooks, pages
+from experiments.report.session import MissingError, Session, share
+from experiments.report.tables import show_claims
+from experiments.runs import experiments, load, tables
+from structures import NAMES
+from tests.experiments.made_runs import write_run
+
+SHOWN = {
+    **{axis.key: lambda run, claims, axis=axis: figures.scaling(run, axis) for axis in Axis},
+    "operations": lambda run, claims: figures.scaling(run, Axis.TIME_FACES, OPERATIONS),
+    "overview": lambda run, claims: figures.overview(run),
+    "listings": lambda run, claims: figures.listings(run),
+    "building": lambda run, claims: figures.building(run),
+    "rendering": lambda run, claims: figures.rendering(run),
+    "workloads": lambda run, claims: figures.workloads(run),
+    "overtaking": lambda run, claims: figures.overtaking(run),
+    "shards": lambda run, claims: figures.shards_per_second(run),
+    "face finding": lambda run, claims: figures.face_finding(run),
+    "memory": lambda run, claims: memory_figures.memory(run),
+    "references": lambda run, claims: memory_figures.references(run),
+    "objects": lambda run, claims: comparisons.objects_against_arrays(run),
+    "shattering": lambda run, claims: comparisons.shattering(run),
+    "finding": lambda run, claims: comparisons.face_finding(run),
+    "break even": lambda run, claims: comparisons.overtaking(break_even(curves(run))),
+    "sentences": lambda run, claims: pages.sentences(claims),
+    "reasons": lambda run, claims: pages.reasons(claims, "queries"),
+    **{
+        f"{kind.__name__} of {name}": lambda run, claims, kind=kind, name=name: kind(claims, name)
+        for kind in (pages.verdicts, pages.slopes)
+        for name in tables()
+    },
+}
+"""What the chapters show of a run."""
+
+EVERYWHERE = {"sentences", "reasons"}
+PARTS = [*NAMES, *experiments()]
+
+
+@pytest.fixture(autouse=True)
+def _no_run_is_left():
+    yield
+    share(None)
+
+
+def open_part(tmp_path, part: str) -> Session:
+    folder = write_run(tmp_path, only=lambda experiment, structure: part in (experiment, structure))
+    run = load(folder)
+    session = Session(run, judge_run(run))
+    share(session)
+    return session
+
+
+@pytest.mark.parametrize("part", [part for part in PARTS if part != "bench_latency"])
+def test_what_was_measured_is_shown_and_the_rest_is_named_as_missing(tmp_path, monkeypatch, part):
+    monkeypatch.setattr("experiments.report.style.label_ends", lambda *given: None)
+    session = open_part(tmp_path, part)
+    shown = set()
+    for name, show in SHOWN.items():
+        with suppress(MissingError):
+            assert show(session.run, session.claims) is not None
+            shown.add(name)
+    assert shown > EVERYWHERE
+    assert len(shown) < len(SHOWN)
+
+
+@pytest.mark.parametrize("part", ["winged_edge", "bench_memory", "bench_latency"])
+def test_the_front_page_says_what_was_not_measured(tmp_path, part):
+    open_part(tmp_path, part)
+    body = notebooks.body("index")
+    assert body.count('class="answer missing"') == 5
+    assert body.count("<details") > 100
+
+
+@pytest.mark.parametrize("part", ["plankton", "bench_work"])
+@pytest.mark.parametrize("slopes", [False, True])
+def test_the_table_in_a_terminal_shows_what_there_is(tmp_path, capsys, part, slopes):
+    session = open_part(tmp_path, part)
+    show_claims(session.run.folder, Console(width=80), every=True, slopes=slopes)
+    assert all(len(line) <= 80 for line in capsys.readouterr().out.splitlines())
