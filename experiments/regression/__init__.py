@@ -20,7 +20,7 @@ from experiments.regression.compare_runs import FACTOR as RUN_FACTOR
 from experiments.regression.compare_runs import compare_runs, describe_difference
 from experiments.regression.counters import measure_counters
 from experiments.regression.findings import CaseKey, Change, Finding, Kind, exit_code
-from experiments.regression.history import HISTORY, History, append_run, read_history
+from experiments.regression.history import HISTORY, History, Line, append_run, read_history
 from experiments.regression.interleaved import HERE, compare_trees
 from experiments.regression.significance import FACTOR as INTERLEAVED_FACTOR
 from experiments.regression.snapshots import record_run
@@ -42,6 +42,7 @@ __all__ = [
     "Finding",
     "History",
     "Kind",
+    "Line",
     "Measured",
     "Trends",
     "append_run",

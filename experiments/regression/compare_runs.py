@@ -18,16 +18,18 @@ from experiments.harness import Axis
 from experiments.regression.baseline import RUN, UPDATE, Measured
 from experiments.regression.compare_counters import (
     Compared,
+    Pair,
     Said,
+    claim_of,
     compare_classes,
     compare_counters,
     compare_counts,
     compare_presence,
     key_of_claim,
+    pair_cases,
 )
-from experiments.regression.findings import CaseKey, Change, Finding, Kind, count_votes, vote
-from experiments.regression.pairs import Pair, Row, claim_of, pair_cases, skip_objects
-from experiments.regression.significance import Comparison, compare_rounds
+from experiments.regression.findings import CaseKey, Change, Finding, Kind, vote
+from experiments.regression.significance import compare_rounds
 from experiments.regression.snapshots import LEAST_SLOPE, Figures, describe_claim
 
 FACTOR = 2.0
@@ -41,15 +43,13 @@ were measured to differ by up to 0.17, where one of them took a rise for the mem
 did not; a query that becomes linear moves its slope by 1. Where nothing is claimed they are not
 compared."""
 
-DECIDED = (Change.WORSE, Change.BETTER)
-
-MACHINE = {"machine": ("cpu", "cores", "caches"), "versions": ("numba",)}
+MACHINE = {"machine": ("cpu", "cores", "caches", "machines"), "versions": ("numba",)}
 """What must be the same for times to be comparable."""
 
 
 def compare_runs(before: Measured, after: Measured, factor: float = FACTOR) -> Compared:
     """All that two runs can be compared in. Raises ValueError for a factor of at most 1."""
-    pairs, notes = skip_objects(pair_cases(before.run, after.run), before.run, after.run)
+    pairs, notes = pair_cases(before.run, after.run)
     old, new = before.run.meta, after.run.meta
     alike = old.get("preset") == new.get("preset")
     pairs, findings = _find_gone(pairs)
@@ -60,12 +60,13 @@ def compare_runs(before: Measured, after: Measured, factor: float = FACTOR) -> C
             f"{count - len(pairs):,} are not, nor are slopes, which are over other sizes"
         )
     findings += compare_counts((it for it in pairs if it.kind != Kind.TIME), RUN)
-    claims = [it for it in compare_claims(before, after) if alike or it.kind != Kind.SLOPE]
-    busy, other = _too_busy(old, new), _other_machine(old, new)
-    if busy:
+    claims = [it for it in _compare_claims(before, after) if alike or it.kind != Kind.SLOPE]
+    busy = {"the run": new.get("too_busy"), "the baseline": old.get("too_busy")}
+    if any(busy.values()):
+        which = next(name for name in busy if busy[name])
         claims = [it for it in claims if not it.random]
-        findings.append(_no_times(busy))
-    elif other:
+        findings.append(_no_times(f"the machine was too busy to judge {which} by time"))
+    elif other := _other_machine(old, new):
         notes.append(f"times are not compared: {other}")
     else:
         findings += _compare_times([it for it in pairs if it.kind == Kind.TIME], factor)
@@ -74,14 +75,13 @@ def compare_runs(before: Measured, after: Measured, factor: float = FACTOR) -> C
 
 def describe_difference(before: Measured, after: Measured) -> list[str]:
     """What would change if the second became the baseline, a line each; times are just counted."""
-    findings = [*compare_counters(before, after).findings, *compare_claims(before, after)]
+    findings = [*compare_counters(before, after).findings, *_compare_claims(before, after)]
     changed = [it for it in findings if it.change != Change.SAME]
     lines = [f"{it.kind} {it.where}: {it.difference}" for it in changed]
-    pairs = [it for it in pair_cases(before.run, after.run) if it.kind == Kind.TIME]
-    rounds = [[list(row["samples"]) if row else [] for row in it[2:4]] for it in pairs]
-    if anew := sum(old != new for old, new in rounds):
-        lines.append(f"times: {anew:,} of {len(pairs):,} cases anew")
-    return lines
+    times = [it for it in pair_cases(before.run, after.run)[0] if it.kind == Kind.TIME]
+    rounds = [[list(row["samples"]) if row else [] for row in it[2:4]] for it in times]
+    anew = sum(old != new for old, new in rounds)
+    return [*lines, f"times: {anew:,} of {len(times):,} cases anew"] if anew else lines
 
 
 def _find_gone(pairs: list[Pair]) -> tuple[list[Pair], list[Finding]]:
@@ -97,18 +97,10 @@ def _find_gone(pairs: list[Pair]) -> tuple[list[Pair], list[Finding]]:
     ]
 
 
-def _too_busy(before: dict[str, Any], after: dict[str, Any]) -> str:
-    """Why nothing can be judged by time; empty if it can."""
-    for which, meta in (("the run", after), ("the baseline", before)):
-        if meta.get("too_busy"):
-            return f"the machine was too busy to judge {which} by time; measure it again"
-    return ""
-
-
 def _other_machine(before: dict[str, Any], after: dict[str, Any]) -> str:
     """Why times of these two runs cannot be compared; empty if they can."""
-    if any((meta.get("machine") or {}).get("machines") for meta in (before, after)):
-        return "they were measured by several machines"
+    if (after.get("machine") or {}).get("machines"):
+        return "the run was measured by several machines"
     for part, keys in MACHINE.items():
         for key in keys:
             old, new = ((meta.get(part) or {}).get(key) for meta in (before, after))
@@ -117,7 +109,7 @@ def _other_machine(before: dict[str, Any], after: dict[str, Any]) -> str:
     return ""
 
 
-def compare_claims(before: Measured, after: Measured) -> Iterator[Finding]:
+def _compare_claims(before: Measured, after: Measured) -> Iterator[Finding]:
     """Per claim: whether its slopes overlap, and what became of it by work and by time.
 
     Work is exact. By time a claim is lost or won only where a slope says so, too.
@@ -126,49 +118,43 @@ def compare_claims(before: Measured, after: Measured) -> Iterator[Finding]:
         key, text = key_of_claim(name), describe_claim(name)
         old, new = before.claims.get(name), after.claims.get(name)
         if old is None or new is None:
-            change, why, command = compare_presence(old, new, RUN) or Said(Change.SAME)
-            yield Finding(change, Kind.CLASS, key, why=why, next=command, claim=text)
+            said = compare_presence(old, new, RUN) or Said(Change.SAME)
+            yield Finding(said.change, Kind.CLASS, key, "", "", *said[1:], claim=text)
             continue
         slopes = list(_compare_slopes(key, old, new, text))
         yield from slopes
         for outcome, axis in (("outcome", "by work"), ("outcome_time", "by time")):
-            if outcome not in old or outcome not in new:
-                continue
-            change, why = compare_classes(("", old[outcome]), ("", new[outcome])), ""
-            random = outcome == "outcome_time"
-            if random and change in DECIDED and not any(it.change == change for it in slopes):
-                change, why = Change.UNDETERMINED, "its slopes are as before"
-            shown = old[outcome], new[outcome]
-            yield Finding(
-                change, Kind.CLASS, key, *shown, why, axis=axis, claim=text, random=random
-            )
+            if outcome in old and outcome in new:
+                was, now, random = old[outcome], new[outcome], outcome == "outcome_time"
+                change, why = compare_classes(("", was), ("", now)), ""
+                told = [it.change for it in slopes if it.random]
+                if random and change in (Change.WORSE, Change.BETTER) and change not in told:
+                    change, why = Change.UNDETERMINED, "its slopes are as before"
+                yield Finding(change, Kind.CLASS, key, was, now, why, "", axis, text, random)
 
 
 def _compare_slopes(key: CaseKey, old: Figures, new: Figures, claim: str) -> Iterator[Finding]:
     """Slopes are apart where their intervals, a drift wider, have nothing in common."""
     for axis in Axis:
         was, now = (it.get("slopes", {}).get(axis.key) for it in (old, new))
-        if not was or not now or (not axis.exact and old["outcome"] == Outcome.NO_CLAIM):
-            continue
-        drift = LEAST_SLOPE if axis.exact else SLOPE_DRIFT
-        change = Change.SAME
-        if now[1] > was[2] + drift:
-            change = Change.WORSE
-        elif now[2] < was[1] - drift:
-            change = Change.BETTER
-        before, after = ("{:.3f} [{:.3f}, {:.3f}]".format(*it) for it in (was, now))
-        where = f"{axis.symbol}, {axis.label}"
-        random = not axis.exact
-        yield Finding(
-            change, Kind.SLOPE, key, before, after, axis=where, claim=claim, random=random
-        )
+        if was and now and (axis.exact or old["outcome"] != Outcome.NO_CLAIM):
+            drift = LEAST_SLOPE if axis.exact else SLOPE_DRIFT
+            change = Change.WORSE if now[1] > was[2] + drift else Change.SAME
+            change = Change.BETTER if now[2] < was[1] - drift else change
+            before, after = ("{:.3f} [{:.3f}, {:.3f}]".format(*it) for it in (was, now))
+            where, random = f"{axis.symbol}, {axis.label}", not axis.exact
+            yield Finding(change, Kind.SLOPE, key, before, after, "", "", where, claim, random)
+
+
+def _no_times(why: str, command: str = "hem study") -> Finding:
+    return Finding(Change.UNDETERMINED, Kind.TIME, CaseKey("all times"), "", "", why, command)
 
 
 def _compare_times(pairs: Sequence[Pair], factor: float) -> list[Finding]:
     if not any(it.before and it.before["calibration"] for it in pairs):
         return [_no_times("the baseline has no times that can be compared", UPDATE[RUN])]
     if not any(it.after for it in pairs):
-        return [_no_times("the run has no times that can be compared", "hem study")]
+        return [_no_times("the run has no times that can be compared")]
     curves: dict[tuple[CaseKey, str], list[Pair]] = {}
     for pair in pairs:
         axis = Axis.TIME_VALENCE if pair.case.valence else Axis.TIME_FACES
@@ -177,21 +163,20 @@ def _compare_times(pairs: Sequence[Pair], factor: float) -> list[Finding]:
     return [_compare_curve(*key, cases, factor) for key, cases in curves.items()]
 
 
-def _no_times(why: str, command: str = "") -> Finding:
-    key = CaseKey(subject="all that is timed")
-    return Finding(Change.UNDETERMINED, Kind.TIME, key, why=why, next=command)
-
-
 def _compare_curve(key: CaseKey, axis: str, pairs: list[Pair], factor: float) -> Finding:
     """One curve: decided where more than half of its cases say the same, and none is lost."""
-    cases = [_compare_case(it.before, it.after, factor) for it in pairs if it.before and it.after]
-    claim = claim_of(key)
-    if not cases:
+    claim, both = claim_of(key), [(it.before, it.after) for it in pairs if it.before and it.after]
+    if not both:
         absent = compare_presence(pairs[0].before, pairs[0].after, RUN, pairs[0].why)
-        change, why, command = absent or Said(Change.UNDETERMINED)
-        return Finding(change, Kind.TIME, key, "", "", why, command, axis, claim)
-    changes = [case.change for case in cases]
-    change, why = vote(changes), count_votes(changes)
+        said = absent or Said(Change.UNDETERMINED)
+        return Finding(said.change, Kind.TIME, key, "", "", *said[1:], axis, claim)
+    cases = [
+        compare_rounds(
+            old["samples"], new["samples"], old["calibration"], new["calibration"], factor
+        )
+        for old, new in both
+    ]
+    change, why = vote(case.change for case in cases)
     if lost := sum(it.after is None for it in pairs):
         # Perhaps just the largest are slower.
         change = Change.UNDETERMINED if change == Change.SAME else change
@@ -199,9 +184,4 @@ def _compare_curve(key: CaseKey, axis: str, pairs: list[Pair], factor: float) ->
     ratios = [case.ratio for case in cases]
     middle = np.exp(np.nanmedian(np.log(ratios)))
     ratio = f"× {middle:.2f} ({min(ratios):.2f} … {max(ratios):.2f})"
-    return Finding(change, Kind.TIME, key, "", ratio, why, axis=axis, claim=claim, random=True)
-
-
-def _compare_case(before: Row, after: Row, factor: float) -> Comparison:
-    loops = before["calibration"], after["calibration"]
-    return compare_rounds(before["samples"], after["samples"], *loops, factor=factor)
+    return Finding(change, Kind.TIME, key, "", ratio, why, "", axis, claim, random=True)

@@ -49,7 +49,7 @@ class CaseKey(NamedTuple):
     def __str__(self) -> str:
         valence = f"valence {self.valence}" if self.valence else ""
         references = "8-byte references" if self.reference_bytes == 8 else ""
-        parts = (*self[:4], self.size or "", valence, self.order, references)
+        parts = (*self[:5], valence, self.order, references)
         return "/".join(str(part) for part in parts if part)
 
 
@@ -57,10 +57,10 @@ class CaseKey(NamedTuple):
 class Finding:
     """One thing that was compared.
 
-    ``axis``: what the cost was judged by, such as "n_t, by time"; empty for a single case.
     ``before``, ``after``: the figures as text, empty where there is none. ``why``: in words, and
-    ``next``: the command that mends it, where they are needed. ``claim``: what it touches.
-    ``random``: it was measured on both sides and chance has a say in it.
+    ``next``: the command that mends it, where they are needed. ``axis``: what a cost was judged by,
+    such as "n_t, by time". ``claim``: what it touches. ``random``: it was measured on both sides
+    and chance has a say in it.
     """
 
     change: Change
@@ -106,22 +106,18 @@ def exit_code(findings: Collection[Finding]) -> int:
     return 2 if by_chance < len(doubtful) or too_many else 0
 
 
-def vote(changes: Iterable[Change], *, unanimous: bool = False) -> Change:
-    """What more than half say, if at all.
+def vote(changes: Iterable[Change], *, unanimous: bool = False) -> tuple[Change, str]:
+    """What more than half say, and how many said what, such as "5 same, 1 worse".
 
     All is as before only if at most `STRAYS` say slower. ``unanimous``: it changed only if none
     says otherwise, though some may not know.
     """
     said = Counter(changes)
-    change, most = said.most_common(1)[0]
-    if 2 * most <= said.total():
-        return Change.UNDETERMINED
-    if change == Change.SAME:
-        return Change.SAME if said[Change.WORSE] <= STRAYS else Change.UNDETERMINED
+    (change, most), *_ = ranked = said.most_common()
     otherwise = said.total() - most - said[Change.UNDETERMINED]
-    return Change.UNDETERMINED if unanimous and otherwise else change
-
-
-def count_votes(changes: Iterable[Change]) -> str:
-    """How many said what, such as "5 same, 1 worse"."""
-    return ", ".join(f"{count} {change}" for change, count in Counter(changes).most_common())
+    agreed = not (unanimous and otherwise)
+    if change == Change.SAME:
+        agreed = said[Change.WORSE] <= STRAYS
+    decided = agreed and 2 * most > said.total()
+    words = ", ".join(f"{count} {it}" for it, count in ranked)
+    return change if decided else Change.UNDETERMINED, words

@@ -14,13 +14,13 @@ import sys
 from collections.abc import Collection, Iterator, Sequence
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import IO, Any, NamedTuple
 
 import numpy as np
 
 from experiments.harness import calibration
-from experiments.regression.findings import CaseKey, Change, Finding, Kind, count_votes, vote
-from experiments.regression.pairs import claim_of
+from experiments.regression.compare_counters import claim_of
+from experiments.regression.findings import CaseKey, Change, Finding, Kind, vote
 from experiments.regression.significance import FACTOR, Comparison, compare_rounds
 from hem.contract import QUERIES
 from structures import REGISTRY
@@ -96,25 +96,18 @@ def _is_in_doubt(pairs: Sequence[PairTimed]) -> bool:
 def _judge(name: str, query: str, pairs: Sequence[PairTimed]) -> Finding:
     """The pairs' vote. One that could not be timed is not passed over."""
     key = CaseKey("interleaved", name, query, "torus", 2 * VERTICES, order="consecutive")
-    error = next((pair.error for pair in pairs if pair.error), "")
-    if error:
-        why, claim = f"could not be timed: {error}", _claim(key)
-        return Finding(Change.UNDETERMINED, Kind.TIME, key, why=why, claim=claim)
+    claim = claim_of(key._replace(experiment="bench_queries"))
+    for pair in pairs:
+        if pair.error:
+            why = f"could not be timed: {pair.error}"
+            return Finding(Change.UNDETERMINED, Kind.TIME, key, why=why, claim=claim)
     middle = sorted(pairs, key=lambda pair: pair.compared.ratio)[len(pairs) // 2]
-    old, new = (_nanoseconds(seconds) for seconds in (middle.before, middle.after))
+    seconds = middle.before, middle.after
+    old, new = (f"{1e9 * it:,.{0 if it >= 1e-7 else 2}f} ns" for it in seconds)
+    change, said = vote((pair.compared.change for pair in pairs), unanimous=True)
     _, ratio, low, high = middle.compared
-    changes = [pair.compared.change for pair in pairs]
-    why = f"× {ratio:.2f} [{low:.2f}, {high:.2f}]; {count_votes(changes)}"
-    change = vote(changes, unanimous=True)
-    return Finding(change, Kind.TIME, key, old, new, why, claim=_claim(key), random=True)
-
-
-def _nanoseconds(seconds: float) -> str:
-    return f"{1e9 * seconds:,.0f} ns" if seconds >= 1e-7 else f"{1e9 * seconds:.3g} ns"
-
-
-def _claim(key: CaseKey) -> str:
-    return claim_of(key._replace(experiment="bench_queries"))
+    why = f"× {ratio:.2f} [{low:.2f}, {high:.2f}]; {said}"
+    return Finding(change, Kind.TIME, key, old, new, why, claim=claim, random=True)
 
 
 def time_in_new_processes(
@@ -148,10 +141,9 @@ def _time_pair(workers: Sequence[Worker], name: str, query: str, factor: float) 
 
 
 class Worker:
-    """A process that times in one tree."""
+    """A process that times in one tree, by its pipes."""
 
-    def __init__(self, process: subprocess.Popen[str]) -> None:
-        pipes = process.stdin, process.stdout, process.stderr
+    def __init__(self, *pipes: IO[str] | None) -> None:
         self._pipes = [pipe for pipe in pipes if pipe is not None]
 
     def ask(self, **question: Any) -> Any:
@@ -177,9 +169,8 @@ def _worker(tree: Path) -> Iterator[Worker]:
         command, cwd=tree, env=environment, stdin=pipe, stdout=pipe, stderr=pipe, text=True
     ) as process:
         try:
-            yield Worker(process)
+            yield Worker(process.stdin, process.stdout, process.stderr)
         finally:
             process.kill()
             with suppress(BrokenPipeError):  # it ended before it was asked
-                if process.stdin:
-                    process.stdin.close()
+                process.communicate()

@@ -10,7 +10,7 @@ from __future__ import annotations
 import json
 import sys
 from collections.abc import Callable
-from importlib.util import module_from_spec, spec_from_file_location
+from pathlib import Path
 from time import perf_counter
 from typing import Any
 
@@ -30,7 +30,9 @@ def main(calibration: str, vertices: int) -> None:
     asks them so often in each round from now on -> how many that are; anything else times a round
     -> its seconds, and those of the calibration loop.
     """
-    calibrate = _load(calibration).calibration_loop
+    loop: dict[str, Any] = {"__name__": "calibration"}
+    exec(compile(Path(calibration).read_text("utf-8"), calibration, "exec"), loop)
+    loop["compiled_walk"] = njit(loop["walk"])  # Numba's cache knows it by its own module's name
     mesh = hem.generate("torus", vertices)
     for line in sys.stdin:
         question = json.loads(line)
@@ -44,19 +46,9 @@ def main(calibration: str, vertices: int) -> None:
             s.sweep(query, many)
             answer = len(many)
         else:
-            reading = calibrate()
+            reading = loop["calibration_loop"]()
             answer = _seconds(s.sweep, query, many), reading
         print(json.dumps(answer), flush=True)
-
-
-def _load(path: str) -> Any:
-    spec = spec_from_file_location("calibration", path)
-    assert spec is not None
-    assert spec.loader is not None
-    module: Any = module_from_spec(spec)
-    spec.loader.exec_module(module)
-    module.compiled_walk = njit(module.walk)  # Numba's cache knows it by its own module's name
-    return module
 
 
 def _seconds(call: Callable[..., Any], *given: Any) -> float:

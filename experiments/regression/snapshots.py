@@ -9,12 +9,14 @@ import numpy as np
 
 from experiments.claims import (
     NO_CLAIM,
+    Claim,
     Curves,
     Growth,
     JudgedClaim,
     Outcome,
     curves,
     judge_cells,
+    judge_run,
     load_claims,
 )
 from experiments.harness import Axis
@@ -71,52 +73,44 @@ def claim_figures(run: Run) -> dict[str, Figures]:
     memory accesses, which take what they took beside the measurement; ``bytes`` per vertex.
     Judges the run, which takes some seconds.
     """
-    figures = {name_claim(it): _figures(run, it) for it in judge_cells(run)}
+    cells = [judged for judged in judge_run(run) if judged.claim.structure]
+    figures = {name_claim(judged.claim): _figures(run, judged) for judged in cells}
     return {name: kept for name, kept in figures.items() if kept}
 
 
 def class_figures(run: Run) -> dict[str, Figures]:
     """Of every claim the ``classes`` that its counts show, by axis, and what becomes of it."""
-    figures = {name_claim(judged): _classes(curves(run), judged) for judged in judge_cells(run)}
+    figures = {name_claim(it.claim): _classes(curves(run), it) for it in judge_cells(run)}
     return {name: {"classes": classes} for name, classes in figures.items() if classes}
 
 
 def _classes(of_run: Curves, judged: JudgedClaim) -> Figures:
     claim, classes = judged.claim, Figures()
+    claimed = claim.expects.classes if isinstance(claim.expects, Growth) else {}
     for axis, verdict in judged.verdicts.items():
-        curve = of_run.curve(axis, claim.structure, claim.subject, claim.table)
-        if len(curve) >= LEAST_SIZES:
-            classes[axis.key] = [verdict.best, _outcome(judged, axis)]
+        if len(of_run.curve(axis, claim.structure, claim.subject, claim.table)) >= LEAST_SIZES:
+            outcome = verdict.outcome if axis.variable in claimed else Outcome.NO_CLAIM
+            classes[axis.key] = [verdict.best, outcome]
     return classes
 
 
-def _outcome(judged: JudgedClaim, axis: Axis) -> str:
-    """What becomes of a claim along one axis."""
-    expects = judged.claim.expects
-    claimed = isinstance(expects, Growth) and axis.variable in expects.classes
-    return judged.verdicts[axis].outcome if claimed else Outcome.NO_CLAIM
-
-
-def name_claim(judged: JudgedClaim) -> str:
+def name_claim(claim: Claim) -> str:
     """The name of a claim in files: ``table/structure/subject``."""
-    claim = judged.claim
     return f"{claim.table}/{claim.structure}/{claim.subject}"
 
 
-@cache
 def describe_claim(name: str) -> str:
     """A claim in words, as in "Table 1, Vertex → Faces: O(n_ev); thesis 3.1"; empty if unknown."""
-    return _described().get(name, "")
+    claim = _claims().get(name)
+    if claim is None:
+        return ""
+    printed = "nothing claimed" if claim.printed == NO_CLAIM else claim.printed
+    return f"{tables()[claim.table].title}, {claim.title}: {printed}; {claim.source}"
 
 
 @cache
-def _described() -> dict[str, str]:
-    texts = {}
-    for claim in load_claims():
-        printed = "nothing claimed" if claim.printed == NO_CLAIM else claim.printed
-        text = f"{tables()[claim.table].title}, {claim.title}: {printed}; {claim.source}"
-        texts[f"{claim.table}/{claim.structure}/{claim.subject}"] = text
-    return texts
+def _claims() -> dict[str, Claim]:
+    return {name_claim(claim): claim for claim in load_claims()}
 
 
 def _figures(run: Run, judged: JudgedClaim) -> Figures:
@@ -124,39 +118,34 @@ def _figures(run: Run, judged: JudgedClaim) -> Figures:
         return {"outcome": judged.outcome, "bytes": _short(judged.bytes_per_vertex)}
     if not judged.verdicts:
         return {}
+    claim = judged.claim
     slopes = {
         axis.key: [_short(it) for it in (verdict.slope, verdict.slope_low, verdict.slope_high)]
         for axis, verdict in judged.verdicts.items()
     }
-    outcomes = {"outcome": judged.outcome, "outcome_time": judged.outcome_time}
-    times = {} if run.machines else _time(curves(run), judged)
-    return {**outcomes, "slopes": slopes, **_work(curves(run), judged), **times}
+    figures: Figures = {
+        "outcome": judged.outcome,
+        "outcome_time": judged.outcome_time,
+        "slopes": slopes,
+    }
+    work = curves(run).curve(Axis.WORK_FACES, claim.structure, claim.subject, claim.table)
+    if len(work):
+        figures |= {"work": _short(work.largest), "work_faces": int(work.sizes[-1])}
+    return figures if run.machines else {**figures, **_time(curves(run), claim)}
 
 
-def _work(of_run: Curves, judged: JudgedClaim) -> Figures:
-    claim = judged.claim
-    curve = of_run.curve(Axis.WORK_FACES, claim.structure, claim.subject, claim.table)
-    if not len(curve):
-        return {}
-    return {"work": _short(curve.largest), "work_faces": int(curve.sizes[-1])}
-
-
-def _time(of_run: Curves, judged: JudgedClaim) -> Figures:
+def _time(of_run: Curves, claim: Claim) -> Figures:
     """Seconds at the largest size, and the median over all sizes of seconds per memory access.
 
     At any one size where the caches end, the latency differs between runs by a factor of two or
     more; the median over the sizes came back within 2 % (standard deviation, nine runs).
     """
-    claim = judged.claim
     axis = Axis.RANDOM_FACES if claim.table == "queries" else Axis.TIME_FACES
     curve = of_run.curve(axis, claim.structure, claim.subject, claim.table)
     if not len(curve):
         return {}
-    figures = {
-        "seconds": _short(curve.largest),
-        "time_faces": int(curve.sizes[-1]),
-        "time_sizes": len(curve),
-    }
+    faces, sizes = int(curve.sizes[-1]), len(curve)
+    figures = {"seconds": _short(curve.largest), "time_faces": faces, "time_sizes": sizes}
     latency = curve.cases["latency"].to_numpy(float)
     if np.isnan(latency).any():
         between = of_run.latency(curve.cases["working_set"].to_numpy(float))

@@ -60,25 +60,21 @@ class Trends:
         self.history = history
         self.runs = history.runs
 
-    def only(self, machine: str | None = None, profile: str | None = None) -> Trends:
-        """The runs of one machine, by its first digits, or of one profile.
+    def only(self, machine: str | None = None, preset: str | None = None) -> Trends:
+        """The runs of one machine, by its first digits, or of one preset.
 
         Raises ValueError that says which there are, if there are none or several machines.
         """
         runs = self.runs
-        if machine is not None:
-            known = {run["machine"]["id"]: run["machine"].get("cpu") for run in runs}
-            matched = [name for name in known if machine and name.startswith(machine)]
-            if len(matched) != 1:
-                there = ", ".join(f"{name} ({cpu})" for name, cpu in known.items())
-                fault = "several runs' machines begin with" if matched else "no run is of machine"
-                raise ValueError(f"{fault} {machine!r}; there are {there}")
-            runs = [run for run in runs if run["machine"]["id"] == matched[0]]
-        if profile is not None:
-            there = ", ".join(dict.fromkeys(run["profile"] for run in runs))
-            runs = [run for run in runs if run["profile"] == profile]
-            if not runs:
-                raise ValueError(f"no run is of preset {profile!r}; there are {there}")
+        for what, wanted, key in (("machine", machine, _machine_id), ("preset", preset, _preset)):
+            if wanted is not None:
+                known = list(dict.fromkeys(map(key, runs)))
+                named = [it for it in known if wanted and it.startswith(wanted)]
+                if len(named) != 1:
+                    which = "several runs are" if named else "no run is"
+                    there = ", ".join(known)
+                    raise ValueError(f"{which} of {what} {wanted!r}; there are {there}")
+                runs = [run for run in runs if key(run) == named[0]]
         return Trends(replace(self.history, runs=runs))
 
     def claims(self, text: str | None = None) -> list[str]:
@@ -121,7 +117,14 @@ class Trends:
     def verdicts(self) -> pd.DataFrame:
         """A row per run, claim and measure: its ``outcome``, and the one ``before``, if any."""
         rows = [
-            (k, name, what, run["profile"], _machine(run, key == "outcome"), claim[key])
+            (
+                k,
+                name,
+                what,
+                run["profile"],
+                "" if key == "outcome" else _machine_id(run),
+                claim[key],
+            )
             for k, run in enumerate(self.runs)
             for name, claim in run["claims"].items()
             for key, what in OUTCOMES.items()
@@ -157,12 +160,16 @@ def _figures(k: int, run: Line) -> Iterator[tuple[Any, ...]]:
             if values is not None:
                 at = str([claim.get(field) for field in measure.at])
                 low, high = values[1:] or (np.nan, np.nan)
-                series = name, key, run["profile"], _machine(run, measure.exact)
+                series = name, key, run["profile"], "" if measure.exact else _machine_id(run)
                 yield k, *series, at, values[0], low, high
 
 
-def _machine(run: Line, exact: bool) -> str:
-    return "" if exact else str(run["machine"]["id"])
+def _machine_id(run: Line) -> str:
+    return str(run["machine"]["id"])
+
+
+def _preset(run: Line) -> str:
+    return str(run["profile"])
 
 
 def _steps(measure: Measure, values: np.ndarray[Any, Any]) -> list[Step]:

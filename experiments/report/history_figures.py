@@ -12,8 +12,7 @@ from matplotlib.figure import Figure
 
 from experiments.claims import MEMORY
 from experiments.harness import OPERATIONS, QUERIES_TABLE
-from experiments.regression import OUTCOMES, Trends, is_of
-from experiments.regression.history import Line
+from experiments.regression import OUTCOMES, Line, Trends, is_of
 from experiments.report.history_tables import short_commit
 from experiments.report.style import LOOKS, label_ends, short, styled
 from structures import NAMES, REGISTRY

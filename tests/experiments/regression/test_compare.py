@@ -184,7 +184,7 @@ def test_of_another_preset_no_slopes_are_compared_and_that_is_said(before):
 def test_a_busy_machine_cannot_judge_by_time(before):
     findings = compare_runs(before, meta(before, too_busy=True)).findings
     timed = [finding for finding in findings if finding.random or finding.kind == Kind.TIME]
-    assert [finding.case.subject for finding in timed] == ["all that is timed"]
+    assert [finding.case.experiment for finding in timed] == ["all times"]
     assert exit_code(findings) == 2
 
 
