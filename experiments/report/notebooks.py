@@ -110,7 +110,7 @@ def _outputs(shell: Any, source: str, heading: str, name: str) -> list[Any]:
 def _output(data: Any, metadata: Any, heading: str, **_: Any) -> Any:
     """A displayed value as a notebook keeps it; a picture has the alternative text it needs."""
     metadata = dict(metadata or {})
-    for kind in {"image/png", "image/svg+xml"} & set(data):
+    for kind in {"image/jpeg", "image/png", "image/svg+xml"} & set(data):
         metadata[kind] = {"alt": f"Plot: {heading}", **metadata.get(kind, {})}
     return nbformat.v4.new_output("display_data", data=_text(data), metadata=metadata)
 
