@@ -62,7 +62,7 @@ def execute(notebook: Any, name: str) -> None:
 
     A cell that lacks a measurement or a package says so and the next one is run.
     """
-    InteractiveShell.clear_instance()
+    _Shell.clear_instance()
     shell: Any = _Shell.instance(config=Config({"HistoryManager": {"enabled": False}}))
     heading = name
     for cell in notebook.cells:

@@ -10,7 +10,7 @@ import numpy as np
 
 from experiments.claims import Exactly, load_claims
 from experiments.harness import HUBS, WORKLOADS, Measurement
-from experiments.runs import CaseFile, describe, write_meta
+from experiments.runs import CaseFile, describe, experiments, write_meta
 from structures import NAMES
 
 ORDERS = ("consecutive", "random")
@@ -32,23 +32,15 @@ LAWS: dict[str, Law] = {
 }
 
 
-EXPERIMENTS = {
-    "queries": (
-        ("bench_work", "random", "faces"),
-        ("bench_work", "random", "valence"),
-        ("bench_queries", "consecutive", "faces"),
-        ("bench_queries", "random", "faces"),
-        ("bench_valence", "random", "valence"),
-    ),
-    "operations": (
-        ("bench_operation_work", "counted", "faces"),
-        ("bench_operation_work", "counted", "valence"),
-        ("bench_operations", "batched", "faces"),
-        ("bench_operations", "batched", "valence"),
-    ),
-    "listings": (("bench_printed", "counted", "faces"), ("bench_printed", "timed", "faces")),
-}
-"""The experiment, the order of its cases and what varies in them, by table."""
+def experiments_of(table: str) -> list[tuple[str, str, str]]:
+    """The experiment, the order of its cases and what varies in them, for a table's claims."""
+    return [
+        (name, order, axis.variable)
+        for name, it in experiments().items()
+        if it.table is not None and it.table.name == table
+        for axis, order in it.axes.items()
+    ]
+
 
 FINDING = {"walk": 1 / 2, "jump and walk": 1 / 3, "scan": 1}
 """The ways to find a face, and the power of n_t that they take in these runs."""
@@ -80,7 +72,7 @@ def write_run(
             continue
         chosen = law_of and law_of(claim.structure, claim.subject, claim.printed)
         law = chosen or LAWS[claim.printed]
-        for experiment, order, variable in EXPERIMENTS[claim.table]:
+        for experiment, order, variable in experiments_of(claim.table):
             points = (
                 [(n, 6) for n in SIZES] if variable == "faces" else [(FACES, k) for k in VALENCES]
             )
@@ -117,7 +109,10 @@ def _add_times(files: dict, folder: Path, structure: str) -> None:
     orders = ("one by one", "rendered", "in a transaction", "render mesh built anew")
     for n_t in SIZES:
         about = {"kind": "time", "family": "torus", "faces": n_t, "vertices": n_t // 2}
-        every = [("bench_build", None, order, BUILD[structure] * n_t) for order in ORDERS]
+        every = [
+            ("bench_build", None, order, BUILD.get(structure, BUILD["half_edge"]) * n_t)
+            for order in ORDERS
+        ]
         every += [
             ("bench_workloads", name, "workload", 1e-6 * (n_t if slow and it.scans else 1))
             for name, it in WORKLOADS.items()

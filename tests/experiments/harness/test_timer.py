@@ -48,8 +48,9 @@ def test_a_timer_gives_a_sample_and_a_calibration_per_round_and_per_unit(kind, b
     timed = timer(lambda k: busy(1e-3), setup=setup, rounds=4, warmup=2, per=10)
     if kind == "alone":
         benchmark.pedantic(lambda: None)
-    assert given == list(range(6)) or given == list(range(7))
-    assert timed.samples.shape == timed.calibration.shape == (4,)
+    rounds = 4 if kind == "alone" or benchmark.enabled else 0  # off where tests run side by side
+    assert timed.samples.shape == timed.calibration.shape == (rounds,)
+    assert not rounds or given[:6] == list(range(6))
     assert (timed.samples >= 1e-4).all()
     assert (timed.calibration > 0).all()
 

@@ -50,7 +50,7 @@ def test_what_is_saved_is_per_query_and_says_what_it_is_of(saved):
     for benchmark in found["benchmarks"]:
         about, stats = benchmark["extra_info"], benchmark["stats"]
         assert benchmark["name"] == f"test_query[half_edge/{about['id']}]"
-        assert about["handles"] == stats["iterations"] > 10
+        assert about["handles"] > 10
         assert about["checked"]
         assert stats["median"] < 5e-6  # one query; a round of them lasts 0.2 ms
 

@@ -8,36 +8,36 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from experiments.validation.synthetic import CURVES, PARTS, curve, curves
+from experiments.validation.synthetic import CONDITIONS, GROWTH, make_curve, make_curves
 from hem.complexity import Verdict, judge
 
 Array = NDArray[np.float64]
 
 
-def outcomes(name: str, rise: str) -> tuple[Counter[str], Counter[str]]:
+def outcomes(name: str, condition: str) -> tuple[Counter[str], Counter[str]]:
     """Outcomes of the true claim, and of two false ones each."""
     true, false = Counter[str](), Counter[str]()
-    others = [other for other in CURVES if other != name]
-    for i, c in enumerate(curves(name, rise)):
+    others = [other for other in GROWTH if other != name]
+    for i, c in enumerate(make_curves(name, condition)):
         for claim in (name, others[i % 5], others[(i + 1 + i // 5) % 5]):
             verdict = judge(c.sizes, c.samples, claim, c.latency, resamples=8)
             (true if claim == name else false)[verdict.outcome] += 1
     return true, false
 
 
-@pytest.mark.parametrize("name", CURVES)
+@pytest.mark.parametrize("name", GROWTH)
 def test_curves_of_known_class_are_judged_right_and_hardly_ever_wrong(name: str) -> None:
     wrong = judged = 0
-    for rise in PARTS:
-        true, false = outcomes(name, rise)
+    for condition in CONDITIONS:
+        true, false = outcomes(name, condition)
         print(
-            f"\n{name:11} rise {rise:11} true claim {dict(true)}, false claims {dict(false)}",
+            f"\n{name:11} {condition:15} true claim {dict(true)}, false claims {dict(false)}",
             end="",
         )
         wrong += true["violated"] + false["consistent"]
         judged += true.total() + false.total()
-        if rise != "unmeasured":
-            assert true["consistent"] >= 0.85 * true.total(), rise
+        if condition != "latency unknown":
+            assert true["consistent"] >= 0.85 * true.total(), condition
     assert wrong <= 0.01 * judged
 
 
@@ -56,19 +56,19 @@ def test_pure_noise_is_undetermined(kind: str, latency: Array | None) -> None:
     sizes = np.geomspace(100, 1e6, 7)
     decided = 0
     for i in range(150):
-        claim = list(CURVES)[i % 6]
+        claim = list(GROWTH)[i % 6]
         verdict = judge(sizes, noise_alone(rng, kind), claim, latency, resamples=8)
         decided += verdict.outcome != "undetermined"
     assert decided <= 1
 
 
-@pytest.mark.parametrize("name", CURVES)
+@pytest.mark.parametrize("name", GROWTH)
 @pytest.mark.parametrize("fixed", [0, 7])
 @pytest.mark.parametrize("sizes", [2.0 ** np.arange(2, 13), np.geomspace(200, 20000, 5).round()])
 def test_exact_counts_confirm_their_class_alone(name: str, fixed: int, sizes: Array) -> None:
-    counts = np.round(fixed + 10 * CURVES[name](sizes))
+    counts = np.round(fixed + 10 * GROWTH[name](sizes))
     samples = [[count] for count in counts]
-    for claim in CURVES:
+    for claim in GROWTH:
         outcome = judge(sizes, samples, claim, exact=True).outcome
         assert outcome == ("consistent" if claim == name else "violated"), claim
 
@@ -150,7 +150,7 @@ def test_small_valences_with_an_intercept_are_linear() -> None:
 def test_a_fifth_of_samples_delayed_changes_no_verdict() -> None:
     rng = np.random.default_rng(4)
     sizes = np.geomspace(100, 1e5, 7)
-    for name, growth in CURVES.items():
+    for name, growth in GROWTH.items():
         samples = [c * rng.lognormal(0, 0.03, 20) for c in growth(sizes)]
         for cost in samples:
             cost[rng.choice(20, 4, replace=False)] *= rng.uniform(2, 20, 4)
@@ -161,7 +161,7 @@ def test_an_upper_bound_is_kept_by_slower_growth_and_by_no_faster() -> None:
     rng = np.random.default_rng(5)
     sizes = np.geomspace(100, 1e6, 8)
     samples = [c * s for c, s in zip(np.sqrt(sizes), flat(rng, sizes), strict=True)]
-    names = list(CURVES)
+    names = list(GROWTH)
     for claim in names:
         outcome = judge(sizes, samples, claim, bound="upper", exact=True).outcome
         slower = names.index(claim) < names.index("O(√n)")
@@ -216,7 +216,7 @@ def test_the_slope_interval_holds_the_exponent_as_often_as_it_says(exponent: flo
 
 def test_verdicts_repeat_and_know_neither_unit_nor_order() -> None:
     rng = np.random.default_rng(7)
-    c = curve(rng, "O(√n)", "measured", 1.0)
+    c = make_curve(rng, "O(√n)", "latency known", 1.0, 0.05)
     assert c.latency is not None
     first = judge(c.sizes, c.samples, "O(√n)", c.latency)
     assert judge(c.sizes, c.samples, "O(√n)", c.latency) == first
