@@ -103,7 +103,7 @@ def test_the_table_shows_a_new_structure_and_a_new_experiment(extended):
 
 
 def test_the_check_measures_them_and_says_what_is_next(extended):
-    command = ("-m", "experiments.cli", "check", "--structure", "directed_edge")
+    command = ("-m", "experiments.cli", "check", "--json", "--structure", "directed_edge")
     said = python(extended, *command, code=2)  # what the baseline lacks cannot be told
     assert "random_walk" in said
     assert "directed_edge" in said
@@ -112,7 +112,7 @@ def test_the_check_measures_them_and_says_what_is_next(extended):
 
 def test_a_structure_or_an_experiment_that_forgets_something_is_an_error_that_names_it(extended):
     for path, text, named in [
-        ("structures/half_done.py", STRUCTURE.replace("look, thesis", "looks, thesis"), "look"),
+        ("structures/half_done.py", STRUCTURE.replace("claims =", "claimed ="), "claims"),
         ("experiments/bench_half_done.py", '"""Nothing."""\n', "EXPERIMENT"),
     ]:
         file = extended / path
