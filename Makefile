@@ -36,7 +36,7 @@ $(DEV): pyproject.toml constraints.txt
 	$(call install,$(VENV),dev,constraints.txt)
 	@touch $(STUDY) $@
 
-study: $(STUDY)  ## measure for some 15 minutes, print table 1, write the report
+study: $(STUDY)  ## measure what decides the claims, print table 1, write the report
 	@$(BIN)/hem study --profile quick
 	@$(BIN)/hem table
 	@$(BIN)/hem report
