@@ -1,28 +1,32 @@
 """The command line: ``hem study``, ``table``, ``report``, ``meshes``, ``info``, ``fracture``,
-``check``, ``reference update``, ``history``.
+``check``, ``baseline update``, ``history``.
+
+A command imports what it needs when it is run, so that help and mistakes are quick.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from importlib.metadata import version
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 try:
     import typer
     from rich.table import Table
+    from typer import Argument, Option
 except ModuleNotFoundError as error:  # the library alone was installed
     raise SystemExit("hem: the commands need more: pip install 'hem-mesh[study]'") from error
 
 import hem
 from experiments.cli.check import baseline_app, check
-from experiments.cli.console import console, errors, user_errors
+from experiments.cli.console import Commands, RunArgument, console, errors, run_folder
 from experiments.cli.fracture import fracture
 from experiments.cli.history import history
 from experiments.cli.study import run_study
-from experiments.runs import latest
 
 app = typer.Typer(
+    cls=Commands,
     help="Triangle-mesh data structures, measured and held against what a thesis claims of them.",
     no_args_is_help=True,
     add_completion=False,
@@ -32,21 +36,17 @@ app = typer.Typer(
 PAGES, DOCUMENT = Path("report/html"), Path("report/report.pdf")
 """Where the report goes."""
 
-RunArgument = Annotated[
-    Path | None, typer.Argument(help="The folder of a run; the newest if it is not given.")
-]
-
 
 def _show_version(wanted: bool) -> None:
     if wanted:
-        console.print(f"hem {version('hem-mesh')}", highlight=False)
+        console.print(f"hem {version('hem-mesh')}")
         raise typer.Exit
 
 
 @app.callback()
 def _options(
     show_version: Annotated[
-        bool, typer.Option("--version", callback=_show_version, is_eager=True, help="Say which.")
+        bool, Option("--version", callback=_show_version, is_eager=True, help="Say which.")
     ] = False,
 ) -> None:
     pass
@@ -58,128 +58,104 @@ app.command("study")(run_study)
 @app.command("table")
 def show_table(
     run: RunArgument = None,
-    every: Annotated[
-        bool, typer.Option("--all", help="All structures, and the thesis' listings.")
-    ] = False,
-    slopes: Annotated[
-        bool, typer.Option("--slopes", help="Instead the slopes with their intervals.")
-    ] = False,
+    every: Annotated[bool, Option("--all", help="All structures, and the listings.")] = False,
+    slopes: Annotated[bool, Option("--slopes", help="The slopes and their intervals.")] = False,
 ) -> None:
     """Print what the thesis claims of each structure, with the verdicts of a run."""
-    with user_errors():
-        from experiments.report import show_claims
+    folder = run_folder(run)
+    from experiments.report import show_claims
 
-        show_claims(run or latest(), console, every, slopes)
+    show_claims(folder, console, every, slopes)
 
 
 @app.command("report")
 def write_report(
     run: RunArgument = None,
     output: Annotated[
-        Path | None,
-        typer.Option(
-            help=f"Where the pages go ({PAGES} if it is not given), or the document ({DOCUMENT})."
-        ),
+        Path | None, Option(help=f"Where it goes. Default: {PAGES}, with --pdf {DOCUMENT}.")
     ] = None,
-    page: Annotated[
-        bool, typer.Option("--page", help="Instead write the page and the table to commit.")
-    ] = False,
-    pdf: Annotated[
-        bool, typer.Option("--pdf", help="Instead write one document to print; needs Chromium.")
-    ] = False,
+    page: Annotated[bool, Option("--page", help="Just the page that is committed.")] = False,
+    pdf: Annotated[bool, Option("--pdf", help="One document to print; needs Chromium.")] = False,
 ) -> None:
     """Run the notebooks on a run and write the report: pages that open from disk."""
-    with user_errors():
-        from experiments.report import write_pdf, write_readme, write_report
+    folder = run_folder(run)
+    from experiments import report
 
-        folder = run or latest()
-        if page:
-            written = write_readme(folder, Path("report"))
-            console.print(f"Page written: {written}")
-        elif pdf:
-            written = write_pdf(folder, output or DOCUMENT)
-            console.print(f"Document written: {written}", soft_wrap=True)
-        else:
-            front = write_report(folder, output or PAGES)
-            console.print(f"Report written. Open {front.resolve().as_uri()}", soft_wrap=True)
+    if page:
+        done = f"Page written: {report.write_readme(folder, Path('report'))}"
+    elif pdf:
+        done = f"Document written: {report.write_pdf(folder, output or DOCUMENT)}"
+    else:
+        front = report.write_report(folder, output or PAGES)
+        done = f"Report written. Open {front.resolve().as_uri()}"
+    console.print(done, soft_wrap=True)
 
 
 @app.command()
 def meshes(
-    size: Annotated[int, typer.Option(help="Number of vertices to make the families with.")] = 1000,
+    size: Annotated[int, Option(help="Number of vertices to make the families with.")] = 1000,
 ) -> None:
     """List the families and the real models, with their counts."""
-    with user_errors():
-        table = _mesh_table("Families, made by hem.generate(name, n_vertices)", "sizes")
-        for name, family in hem.FAMILIES.items():
-            table.add_row(name, *_counts(hem.generate(name, size)), family.what, family.sizes)
-        console.print(table)
-        table = _mesh_table("Models, read by hem.sample(name)")
-        for name, model in hem.SAMPLES.items():
-            table.add_row(name, *_counts(hem.sample(name)), model.what)
-        console.print(table)
+    _show_meshes(
+        "Families, made by hem.generate(name, n_vertices)",
+        (
+            (name, hem.generate(name, size), (it.what, it.sizes))
+            for name, it in hem.FAMILIES.items()
+        ),
+    )
+    _show_meshes(
+        "Models, read by hem.sample(name)",
+        ((name, hem.sample(name), (it.what,)) for name, it in hem.SAMPLES.items()),
+    )
 
 
-def _mesh_table(title: str, *more: str) -> Table:
-    table = Table(title=title)
-    table.add_column("name", style="bold")
-    for head in ("vertices", "edges", "faces", "border", "valence"):
-        table.add_column(head, justify="right")
-    for head in ("what", *more):
-        table.add_column(head)
-    return table
-
-
-def _counts(mesh: hem.TriangleMesh) -> list[str]:
-    s = mesh.summary()
-    counts = [f"{count:,}" for count in (s.vertices, s.edges, s.faces, s.border_edges)]
-    return [*counts, f"{s.valence_min}…{s.valence_max}"]
+def _show_meshes(title: str, made: Iterable[tuple[str, hem.TriangleMesh, tuple[str, ...]]]) -> None:
+    """Print the counts of meshes, and below what they are and which sizes they have."""
+    table = _numbers("name", "vertices", "edges", "faces", "border", "valence", title=title)
+    notes = Table.grid(padding=(0, 2, 0, 0))
+    for name, mesh, words in made:
+        s = mesh.summary()
+        counts = [f"{count:,}" for count in (s.vertices, s.edges, s.faces, s.border_edges)]
+        table.add_row(name, *counts, f"{s.valence_min}…{s.valence_max}")
+        for head, text in zip((name, "sizes"), words, strict=False):
+            notes.add_row(head, text)
+    console.print(table, notes, "")
 
 
 @app.command()
 def info(
-    mesh: Annotated[
-        str, typer.Argument(help="A mesh file, or the name of a model (see hem meshes).")
-    ],
-    repair: Annotated[
-        bool, typer.Option("--repair", help="Mend what is not manifold first.")
-    ] = False,
+    mesh: Annotated[str, Argument(help="A mesh file, or the name of a model (see hem meshes).")],
+    repair: Annotated[bool, Option("--repair", help="Mend what is not manifold first.")] = False,
 ) -> None:
     """Say what a mesh consists of, and which structure can hold it in how many bytes."""
-    with user_errors():
-        found = _read(mesh, repair)
-        console.print(f"[bold]{mesh}[/]\n{found.summary()}\n", highlight=False)
-        table, refusals = _holders(found)
-        console.print(table)
-        for refusal in refusals:
-            console.print(f"Why: {refusal}", highlight=False)
-
-
-def _read(mesh: str, repair: bool) -> hem.TriangleMesh | hem.PolygonMesh:
-    if mesh in hem.SAMPLES and not Path(mesh).exists():
-        options: dict[str, Any] = {"repair": True} if repair else {}
-        return hem.sample(mesh, **options)
-    return hem.load(mesh, repair=repair)
-
-
-def _holders(mesh: hem.TriangleMesh | hem.PolygonMesh) -> tuple[Table, list[str]]:
-    """What each structure takes to hold the mesh, and why some cannot, each reason once."""
     from structures import REGISTRY, build
 
-    table = Table("structure", "bytes", "per vertex", "with 8-byte references", "per vertex")
-    for column in table.columns[1:]:
-        column.justify = "right"
-    refusals: dict[str, None] = {}
+    if mesh in hem.SAMPLES and not Path(mesh).exists():
+        found = hem.sample(mesh, **({"repair": True} if repair else {}))
+    else:
+        found = hem.load(mesh, repair=repair)
+    console.print(f"[bold]{mesh}[/]\n{found.summary()}\n")
+    table = _numbers("structure", "bytes", "per vertex", "with 8-byte references", "per vertex")
+    refusals = []
     for name, structure in REGISTRY.items():
         try:
-            sizes = [sum(build(name, mesh, k).memory().values()) for k in (4, 8)]
+            sizes = [sum(build(name, found, k).memory().values()) for k in (4, 8)]
+            each = [(f"{size:,}", f"{size / max(len(found.points), 1):.1f}") for size in sizes]
+            table.add_row(structure.title, *each[0], *each[1])
         except hem.MeshError as refusal:
             table.add_row(structure.title, "[red]cannot hold it[/]")
-            refusals[str(refusal)] = None
-            continue
-        each = [(f"{size:,}", f"{size / max(len(mesh.points), 1):.1f}") for size in sizes]
-        table.add_row(structure.title, *each[0], *each[1])
-    return table, list(refusals)
+            refusals.append(f"Why: {refusal}")
+    console.print(table)
+    for refusal in dict.fromkeys(refusals):
+        console.print(refusal, markup=False)
+
+
+def _numbers(*heads: str, title: str | None = None) -> Table:
+    """A table of names with numbers beside them."""
+    table = Table(*heads, title=title)
+    for column in table.columns[1:]:
+        column.justify = "right"
+    return table
 
 
 app.command()(fracture)

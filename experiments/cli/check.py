@@ -11,53 +11,41 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 from rich.markup import escape
+from typer import Argument, Option
 
 from experiments import carried
-from experiments.cli.console import console, errors, user_errors
+from experiments.cli.console import Structures, console, errors, run_folder, user_errors
 
 if TYPE_CHECKING:  # takes a second to import, and `hem --help` has no need of it
     from experiments.regression import Compared, Measured
     from experiments.runs import Run
 
 Baseline = Annotated[
-    Path, typer.Option("--baseline", "--reference", help="The folder with what is compared with.")
+    Path, Option("--baseline", "--reference", help="The folder with what is compared with.")
 ]
 HERE = Path("results/reference")
 BASELINE = HERE if HERE.is_dir() else carried("results/reference")
 
-FACTOR_HELP = (
-    "How many times slower counts as worse; less passes. Default: 2 from run to run, "
-    "1.15 interleaved."
-)
+FACTOR_HELP = "How many times slower is worse. Default: 2 from run to run, 1.15 interleaved."
 
 
 def check(
-    run: Annotated[
-        Path | None,
-        typer.Argument(help="The folder of a run. Without it only the counters, in seconds."),
-    ] = None,
-    beside: Annotated[
-        Path | None,
-        typer.Option(help="Another checkout: time the queries there and here, interleaved."),
-    ] = None,
-    structure: Annotated[
-        list[str] | None, typer.Option(help="Measure just this one; may be repeated.")
-    ] = None,
-    factor: Annotated[float | None, typer.Option(help=FACTOR_HELP)] = None,
-    as_json: Annotated[bool, typer.Option("--json", help="Print JSON instead.")] = False,
-    markdown: Annotated[
-        Path | None, typer.Option(help="Write a summary for a pull request to this file.")
-    ] = None,
+    run: Annotated[Path | None, Argument(help="A run; without it only what is counted.")] = None,
+    beside: Annotated[Path | None, Option(help="Another checkout, to be timed beside.")] = None,
+    structure: Structures = None,
+    factor: Annotated[float | None, Option(help=FACTOR_HELP)] = None,
+    as_json: Annotated[bool, Option("--json", help="Print JSON instead.")] = False,
+    markdown: Annotated[Path | None, Option(help="A summary, for a pull request.")] = None,
     baseline: Baseline = BASELINE,
 ) -> None:
     """Compare with the baseline. Exit code 0; 1: something got worse; 2: it cannot be told."""
-    with could_not_measure(), user_errors():
+    with could_not_measure():
         if factor is not None and not factor > 1:
             raise ValueError(f"--factor is more than 1, such as 1.5, not {factor:g}")
+        compared = _compare(run, beside, structure or [], factor, baseline)
         from experiments.regression import exit_code
         from experiments.report import findings as shown
 
-        compared = _compare(run, beside, structure or [], factor, baseline)
         if as_json:
             content = shown.as_json(*compared)
             sys.stdout.write(json.dumps(content, indent=1, ensure_ascii=False) + "\n")
@@ -72,30 +60,30 @@ def _compare(
     run: Path | None, beside: Path | None, structures: list[str], factor: float | None, folder: Path
 ) -> Compared:
     """All that was asked for. Raises ValueError for what a user can mend."""
-    from experiments import regression
+    chosen = run_folder(run) if run else None
+    from experiments import regression as gate
     from structures import NAMED
 
     for name in structures:
         if name not in NAMED:
             raise ValueError(f"no structure is called {name!r}; there are {', '.join(NAMED)}")
-    before = regression.load_baseline(regression.COUNTERS, folder)  # before anything is measured
-    held = regression.load_baseline(regression.RUN, folder) if run else None
-    given = regression.reduce_run(_load(run)) if run else None
+    before = gate.load_baseline(gate.COUNTERS, folder)  # before anything is measured
+    runs = chosen and (gate.load_baseline(gate.RUN, folder), gate.reduce_run(_load(chosen)))
     factors: dict[str, Any] = {} if factor is None else {"factor": factor}
-    after = regression.measure_counters(structures)
-    findings, notes = regression.compare_counters(
+    after = gate.measure_counters(structures)
+    findings, notes = gate.compare_counters(
         before.only(structures) if structures else before, after
     )
     if structures:
         notes.append(f"just {', '.join(structures)} was measured")
-    if held and given:
-        compared = regression.compare_runs(held, given, **factors)
-        findings, notes = findings + compared.findings, notes + compared.notes
+    if runs:
+        of_runs = gate.compare_runs(*runs, **factors)
+        findings, notes = findings + of_runs.findings, notes + of_runs.notes
     else:
         notes.append("just the counters were compared; all of a run with: hem check RUN")
     if beside:
-        findings += regression.compare_trees(beside, structures=structures, **factors)
-    return regression.Compared(findings, notes)
+        findings += gate.compare_trees(beside, structures=structures, **factors)
+    return gate.Compared(findings, notes)
 
 
 def _load(folder: Path) -> Run:
@@ -113,11 +101,12 @@ def _load(folder: Path) -> Run:
 def could_not_measure() -> Iterator[None]:
     """Exit with 2 instead of 1 whatever goes wrong: 1 says that something got worse."""
     try:
-        yield
-    except typer.Exit as error:
-        raise typer.Exit(2 if error.exit_code == 1 else error.exit_code) from error
+        with user_errors(2):
+            yield
+    except typer.Exit:
+        raise
     except Exception as error:
-        errors.print(f"hem: it could not be measured: {error!r}", highlight=False, markup=False)
+        errors.print(f"hem: it could not be measured: {error!r}", markup=False)
         raise typer.Exit(2) from error
 
 
@@ -127,7 +116,7 @@ DOUBTS = {
 }
 """What speaks against a run as a baseline."""
 
-baseline_app = typer.Typer(no_args_is_help=True, help="What hem check compares with.")
+baseline_app = typer.Typer(no_args_is_help=True)
 
 
 @baseline_app.callback()
@@ -137,37 +126,31 @@ def _baseline() -> None:
 
 @baseline_app.command("update")
 def update(
-    run: Annotated[
-        Path | None,
-        typer.Argument(help="The folder of a run. Without it only the counters are updated."),
-    ] = None,
-    yes: Annotated[bool, typer.Option("--yes", help="Do not ask.")] = False,
+    run: Annotated[Path | None, Argument(help="A run; without it only what is counted.")] = None,
+    yes: Annotated[bool, Option("--yes", help="Do not ask.")] = False,
     baseline: Baseline = HERE,
 ) -> None:
     """Measure the counters, show what would change in the baseline, and write it."""
-    with user_errors():
-        from experiments import regression
+    chosen = run_folder(run) if run else None
+    from experiments import regression
 
-        fresh = {regression.COUNTERS: _complete(regression.measure_counters())}
-        if run:
-            fresh[regression.RUN] = _finished(run)
-        changed = {
-            part: measured
-            for part, measured in fresh.items()
-            if _print_difference(part, measured, baseline)
-        }
-        if not changed:
-            console.print(f"{baseline} says just this already.")
-            return
+    fresh = {regression.COUNTERS: _complete(regression.measure_counters())}
+    if chosen:
+        fresh[regression.RUN] = _finished(chosen)
+    changed = {part: it for part, it in fresh.items() if _print_difference(part, it, baseline)}
+    if not changed:
+        console.print(f"{baseline} says just this already.")
+        return
+    if regression.RUN in changed:
         for key, words in DOUBTS.items():
-            if regression.RUN in changed and changed[regression.RUN].run.meta.get(key):
+            if changed[regression.RUN].run.meta.get(key):
                 console.print(f"[yellow]Mind that {words}.[/]")
-        if not yes and not typer.confirm(f"Write this to {baseline}?"):
-            errors.print("Nothing was written.")
-            raise typer.Exit(1)
-        for part, measured in changed.items():
-            regression.save_baseline(part, measured, baseline)
-        console.print(f"Written to {baseline}; look at it with: git diff --stat {baseline}")
+    if not yes and not typer.confirm(f"Write this to {baseline}?"):
+        errors.print("Nothing was written.")
+        raise typer.Exit(1)
+    for part, measured in changed.items():
+        regression.save_baseline(part, measured, baseline)
+    console.print(f"Written to {baseline}; look at it with: git diff --stat {baseline}")
 
 
 def _complete(counters: Measured) -> Measured:
@@ -200,5 +183,5 @@ def _print_difference(part: str, fresh: Measured, folder: Path) -> bool:
         return True  # what cannot be read is replaced
     lines = describe_difference(before, fresh)
     for line in lines:
-        console.print(f"[cyan]±[/] {escape(line)}", highlight=False, soft_wrap=True)
+        console.print(f"[cyan]±[/] {escape(line)}", soft_wrap=True)
     return bool(lines)

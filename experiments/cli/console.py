@@ -1,23 +1,54 @@
-"""Where the commands print, and how they tell a user's mistakes."""
+"""What the commands share: where they print, which run they mean, how they tell mistakes."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
+from typing import Annotated, Any
 
 import typer
 from rich.console import Console
 from rich.markup import escape
+from typer import Argument, Option
+from typer.core import TyperGroup
 
-console = Console()
-errors = Console(stderr=True)
+console = Console(highlight=False)
+errors = Console(stderr=True, highlight=False, soft_wrap=True)
+
+RunArgument = Annotated[
+    Path | None, Argument(help="The folder of a run; the newest if it is not given.")
+]
+Structures = Annotated[
+    list[str] | None, Option("--structure", help="Measure just this one; may be repeated.")
+]
+
+
+def run_folder(run: Path | None) -> Path:
+    """The folder that was given, or the newest run's. Raises ValueError if there is none."""
+    if run is None:
+        from experiments.runs import latest
+
+        return latest()
+    if not run.is_dir():  # told before anything heavy is imported
+        raise ValueError(f"{run} holds no run: there is no such folder")
+    return run
 
 
 @contextmanager
-def user_errors() -> Iterator[None]:
-    """Turn what a user can mend into one line and exit code 1: what is missing here, too."""
+def user_errors(code: int = 1) -> Iterator[None]:
+    """Turn what a user can mend, a missing package too, into one line and an exit code."""
     try:
         yield
     except (ValueError, OSError, ImportError) as error:
-        errors.print(f"[bold red]hem:[/] {escape(str(error))}", highlight=False, soft_wrap=True)
-        raise typer.Exit(1) from error
+        errors.print(f"[bold red]hem:[/] {escape(str(error))}")
+        raise typer.Exit(code) from error
+
+
+class Commands(TyperGroup):
+    """Commands that tell a user's mistakes in one line."""
+
+    def invoke(self, ctx: Any) -> Any:
+        """Run the chosen command."""
+        with user_errors():
+            return super().invoke(ctx)

@@ -11,7 +11,7 @@ from typing import Annotated, Any
 import typer
 from typer import Argument, Option
 
-from experiments.cli.console import console, errors, user_errors
+from experiments.cli.console import console, errors
 
 Method = StrEnum("Method", ["voronoi", "tetra", "surface"])
 Format = StrEnum("Format", ["glb", "obj", "ply"])
@@ -45,64 +45,64 @@ def pixels(text: str) -> Size:
 
 
 # fmt: off
+POINT: Any = {"parser": vector, "metavar": "X,Y,Z"}
+PIXELS: Any = {"parser": pixels, "metavar": "WIDTHxHEIGHT"}
+Model = Annotated[str, Argument(
+    help="A mesh file, a model (bunny), or a family and size (sphere:2000).")]
+Impact = Annotated[Any, Option(**POINT, help="Where it is struck. Default: in view, to the left.")]
+Direction = Annotated[Any, Option(**POINT, help="Where the blow goes. Default: into the surface.")]
+OfMaterial = Annotated[str, Option(help="What it is of: glass, ceramic, stone, wood, ice.")]
+Materials = Annotated[Path | None, Option(help="A toml file of other materials to choose from.")]
+Force = Annotated[float, Option(min=1e-9, max=1e9, help="How hard it is struck, in J/kg.")]
+HowBroken = Annotated[Method | None, Option(
+    help="How it breaks. Default: voronoi, or surface if open.")]
+Holder = Annotated[str, Option(help="What holds the mesh, for tetra and surface.")]
+Seed = Annotated[int, Option(min=0, help="Other seeds, other shards.")]
+Scale = Annotated[float, Option(min=1e-9, max=1e9,
+    help="Multiply the model first; its unit is taken as a meter.")]
+Repair = Annotated[bool, Option("--repair", help="Mend what is not manifold first.")]
+Wrap = Annotated[bool, Option("--wrap", help="Make a body around the model first.")]
+Up = Annotated[Axis | None, Option(help="Which axis points up. Default: the model's.")]
+Formats = Annotated[list[Format] | None, Option(
+    help="Of the pieces' files; may be repeated. Default: glb.")]
+Out = Annotated[Path | None, Option(help="The folder to write to. Default: fractured/MODEL.")]
+Seconds = Annotated[float | None, Option(min=0.01, max=60,
+    help="How long the pieces fly. Default: until they rest.")]
+Animation = Annotated[bool, Option(help="Whether to make the animation, which takes the longest.")]
+Pixels = Annotated[Any, Option(**PIXELS,
+    help="Of the animation, and of each half of the picture, in pixels.")]
+
+
 def fracture(
-    model: Annotated[str, Argument(
-        help="A mesh file, a model (bunny), or a family and size (sphere:2000).")],
-    impact: Annotated[Any, Option(parser=vector, metavar="X,Y,Z",
-        help="Where it is struck. Default: left of the middle, in view.")] = None,
-    direction: Annotated[Any, Option(parser=vector, metavar="X,Y,Z",
-        help="Where the blow goes. Default: into the surface.")] = None,
-    material: Annotated[str, Option(
-        help="What it is of: glass, ceramic, stone, wood, ice.")] = "glass",
-    materials: Annotated[Path | None, Option(
-        help="A toml file of other materials to choose from.")] = None,
-    force: Annotated[float, Option(min=1e-9, max=1e9,
-        help="How hard it is struck, in J/kg.")] = 10.0,
-    method: Annotated[Method | None, Option(
-        help="How it breaks. Default: voronoi, or surface if open.")] = None,
-    structure: Annotated[str, Option(
-        help="What holds the mesh, for tetra and surface.")] = "half_edge",
-    seed: Annotated[int, Option(min=0, help="Other seeds, other shards.")] = 0,
-    scale: Annotated[float, Option(min=1e-9, max=1e9,
-        help="Multiply the model first; its unit is taken as a meter.")] = 1.0,
-    repair: Annotated[bool, Option("--repair", help="Mend what is not manifold first.")] = False,
-    wrap: Annotated[bool, Option("--wrap", help="Make a body around the model first.")] = False,
-    up: Annotated[Axis | None, Option(help="Which axis points up. Default: the model's.")] = None,
-    format: Annotated[list[Format] | None, Option(
-        help="Of the pieces' files; may be repeated. Default: glb.")] = None,
-    out: Annotated[Path | None, Option(
-        help="The folder to write to. Default: fractured/MODEL.")] = None,
-    seconds: Annotated[float | None, Option(min=0.01, max=60,
-        help="How long the pieces fly. Default: until they rest.")] = None,
-    animation: Annotated[bool, Option(
-        help="Whether to make the animation, which takes the longest.")] = True,
-    size: Annotated[Any, Option(parser=pixels, metavar="WIDTHxHEIGHT",
-        help="Of the animation, and of each half of the picture, in pixels.")] = "640x480",
+    model: Model, impact: Impact = None, direction: Direction = None,
+    material: OfMaterial = "glass", materials: Materials = None, force: Force = 10.0,
+    method: HowBroken = None, structure: Holder = "half_edge", seed: Seed = 0, scale: Scale = 1.0,
+    repair: Repair = False, wrap: Wrap = False, up: Up = None, format: Formats = None,
+    out: Out = None, seconds: Seconds = None, animation: Animation = True, size: Pixels = "640x480",
 ) -> None:
     """Break a model: pieces, a picture, an animation of them flying, and all in numbers."""
-    with user_errors():
-        from experiments.report import fracture_scenes
-        from hem import fracture as breaking
+    from experiments.report import fracture_scenes
+    from hem import fracture as breaking
 
-        # What can be wrong at a glance is told before anything is computed.
-        own = breaking.materials(materials) if materials else {}
-        known = breaking.material(material, breaking.MATERIALS | own)
-        folder = out or Path("fractured") / Path(model.replace(":", "-")).stem
-        breaking.require_writable(folder)
-        mesh, axis = fracture_scenes.model(model, wrap, scale, repair)
-        closed = mesh.summary().border_edges == 0
-        broken = fracture_scenes.break_up(
-            mesh, method or (Method.voronoi if closed else Method.surface), known, force,
-            impact=impact, direction=direction, seed=seed, structure=structure, up=up or axis,
-        )
-        if method is None and not closed:
-            console.print(f"{model} is open: its surface is broken (or a body of it, with --wrap)")
-        try:
-            files = _write(broken, model, folder, format or [Format.glb], seconds, size, animation)
-        except KeyboardInterrupt:
-            errors.print("Stopped; nothing was written.")
-            raise typer.Exit(130) from None
-        _print_summary(broken, folder, files)
+    # What can be wrong at a glance is told before anything is computed.
+    own = breaking.materials(materials) if materials else {}
+    known = breaking.material(material, breaking.MATERIALS | own)
+    folder = out or Path("fractured") / Path(model.replace(":", "-")).stem
+    breaking.require_writable(folder)
+    mesh, axis = fracture_scenes.model(model, wrap, scale, repair)
+    usual = Method.surface if mesh.summary().border_edges else Method.voronoi
+    broken = fracture_scenes.break_up(
+        mesh, method or usual, known, force,
+        impact=impact, direction=direction, seed=seed, structure=structure, up=up or axis,
+    )
+    if method is None and usual is Method.surface:
+        console.print(f"{model} is open: its surface is broken (or a body of it, with --wrap)")
+    try:
+        files = _write(broken, model, folder, format or [Format.glb], seconds, size, animation)
+    except KeyboardInterrupt:
+        errors.print("Stopped; nothing was written.")
+        raise typer.Exit(130) from None
+    _print_summary(broken, folder, files)
 # fmt: on
 
 
@@ -163,5 +163,5 @@ def _print_summary(broken: Any, folder: Path, files: list[str]) -> None:
         f"Struck at {x:.4g},{y:.4g},{z:.4g} with {broken.blow.force:g} J/kg; "
         f"break points: {points}\n"
         f"In {folder}: {', '.join(files)}",
-        highlight=False, soft_wrap=True, markup=False,
+        soft_wrap=True, markup=False,
     )  # fmt: skip

@@ -18,62 +18,43 @@ from experiments.runs.worker import Job
 @contextmanager
 def show_progress(jobs: list[Job], folder: Path) -> Iterator[study.Observer]:
     """Bars on a terminal; else a line for every finished job."""
-    total = sum(len(job.ids) for job in jobs)
-    done = {job: len(job.ids) - len(job.left(folder)) for job in jobs}
-    if not console.is_terminal:
-        yield Lines(done, total)
-        return
     columns = TextColumn("{task.description:<32}"), BarColumn(), MofNCompleteColumn()
-    with Progress(*columns, TextColumn("left"), TimeRemainingColumn(), console=console) as bars:
-        yield Bars(done, total, bars)
+    left = TextColumn("left"), TimeRemainingColumn()
+    with Progress(*columns, *left, console=console, disable=not console.is_terminal) as bars:
+        yield StudyProgress(bars, {job: len(job.ids) - len(job.left(folder)) for job in jobs})
 
 
-class Lines(study.Observer):
-    """A line for every finished job, with the time that is left."""
+class StudyProgress(study.Observer):
+    """A bar for compiling and one for all cases, or lines with the time that is left."""
 
-    def __init__(self, done: dict[Job, int], total: int) -> None:
-        self.done, self.total = done, total
+    def __init__(self, bars: Progress, done: dict[Job, int]) -> None:
+        self.bars, self.done = bars, done
         self.begin, self.before = perf_counter(), sum(done.values())
+        self.total = sum(len(job.ids) for job in done)
+        self.compiling = bars.add_task("compiling", total=None, visible=False)
+        self.measuring = bars.add_task("", start=False, total=self.total, completed=self.before)
 
     def compiled(self, structure: str, done: int, total: int) -> None:
-        """Say it."""
+        """Move the bar of compiling."""
+        self.bars.update(self.compiling, total=total, completed=done, visible=done < total)
         self._print(f"compiled {structure} ({done} of {total})")
         if done == total:
             self.begin = perf_counter()
 
     def measured(self, job: Job, done: int) -> None:
-        """Say it of the last case."""
+        """Move the bar of the cases; a line is for the last case of a job."""
         self.done[job] = done
-        if done < len(job.ids):
-            return
         finished, seconds = sum(self.done.values()), perf_counter() - self.begin
-        left = seconds * (self.total - finished) / max(finished - self.before, 1)
-        self._print(f"{job}: {finished} of {self.total} cases, some {left:.0f} s left")
+        self.bars.start_task(self.measuring)
+        self.bars.update(self.measuring, completed=finished, description=str(job))
+        if done == len(job.ids):
+            left = seconds * (self.total - finished) / max(finished - self.before, 1)
+            self._print(f"{job}: {finished} of {self.total} cases, some {left:.0f} s left")
 
     def say(self, text: str) -> None:
         """On standard error."""
-        errors.print(escape(text), highlight=False, soft_wrap=True)
+        errors.print(escape(text))
 
     def _print(self, text: str) -> None:
-        seconds = perf_counter() - self.begin
-        console.print(f"{seconds:5.0f} s  {text}", highlight=False, soft_wrap=True)
-
-
-class Bars(Lines):
-    """A bar for compiling, and one for all cases."""
-
-    def __init__(self, done: dict[Job, int], total: int, bars: Progress) -> None:
-        super().__init__(done, total)
-        self.bars = bars
-        self.compiling = bars.add_task("compiling", total=None, visible=False)
-        self.measuring = bars.add_task("", total=total, completed=self.before, start=False)
-
-    def compiled(self, structure: str, done: int, total: int) -> None:
-        """Move the bar of compiling."""
-        self.bars.update(self.compiling, total=total, completed=done, visible=done < total)
-
-    def measured(self, job: Job, done: int) -> None:
-        """Move the bar of the cases."""
-        self.done[job] = done
-        self.bars.start_task(self.measuring)
-        self.bars.update(self.measuring, completed=sum(self.done.values()), description=str(job))
+        if not console.is_terminal:
+            console.print(f"{perf_counter() - self.begin:5.0f} s  {text}", soft_wrap=True)
