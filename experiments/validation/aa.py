@@ -9,14 +9,15 @@ attention.
 
 from __future__ import annotations
 
-import argparse
 import json
-import sys
 import tempfile
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
+from itertools import combinations
 from pathlib import Path
 from typing import Any
+
+import typer
 
 from experiments.regression import (
     HERE,
@@ -52,32 +53,24 @@ def measure_run(root: Path, seed: int) -> Measured:
 
 def compare_pair(before: Measured, after: Measured) -> dict[str, Any]:
     """Count what the gate says of two runs, where there is a verdict to be lost or won."""
-    findings = compare_runs(before, after).findings
     open_twice = (Change.UNDETERMINED, Change.UNDETERMINED)
+    findings = compare_runs(before, after).findings
     return count_findings(
         it for it in findings if it.random and (it.before, it.after) != open_twice
     )
-
-
-def compare_with_copy(copy: Path, repetition: int) -> dict[str, Any]:
-    """Count what the gate says of this tree and a copy: each time of another structure."""
-    return count_findings(compare_trees(copy, HERE, [STRUCTURES[repetition % len(STRUCTURES)]]))
 
 
 def count_findings(findings: Iterable[Finding]) -> dict[str, Any]:
     """How often the gate said what, and its alarms in words."""
     findings = list(findings)
     outcomes = Counter(finding.change for finding in findings)
+    alarms = (it for it in findings if it.change in ALARMS)
     return {
         "comparisons": len(findings),
         "same": outcomes[Change.SAME],
         "undetermined": outcomes[Change.UNDETERMINED],
         "exit_code": exit_code(findings),
-        "alarms": [
-            f"{it.change}: {it.kind} {it.where} {it.difference}"
-            for it in findings
-            if it.change in ALARMS
-        ],
+        "alarms": [f"{it.change}: {it.kind} {it.where} {it.difference}" for it in alarms],
     }
 
 
@@ -95,52 +88,38 @@ def sum_counts(rows: Iterable[dict[str, Any]]) -> dict[str, int]:
 def in_words(kept: dict[str, Any]) -> str:
     """Say what was kept in a sentence or two."""
     pairs, interleaved = kept["pairs"], kept["interleaved"]
+    of_pairs, of_interleaved = (
+        "{alarms} false alarms in {comparisons:,} comparisons, {undetermined} left open, which "
+        "was too many {indecisive} times.".format(**sum_counts(rows))
+        for rows in (pairs, interleaved)
+    )
     return (
         f"{kept['runs']} runs of the same code, each compared with each other, {len(pairs)} pairs: "
-        f"{_count_in_words(pairs)} A tree and a copy of it, interleaved, {len(interleaved)} times: "
-        f"{_count_in_words(interleaved)}"
+        f"{of_pairs} A tree and a copy of it, interleaved, {len(interleaved)} times: "
+        f"{of_interleaved}"
     )
 
 
-def _count_in_words(rows: list[dict[str, Any]]) -> str:
-    total = sum_counts(rows)
-    return (
-        f"{total['alarms']} false alarms in {total['comparisons']:,} comparisons, "
-        f"{total['undetermined']} left open, which was too many {total['indecisive']} times."
-    )
-
-
-def main(arguments: Sequence[str] | None = None) -> int:
-    """Measure, compare, keep -> 1 if there are too many false alarms."""
-    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("--runs", type=int, default=7)
-    parser.add_argument("--interleaved", type=int, default=20)
-    parser.add_argument("--output", type=Path, default=RESULT)
-    given = parser.parse_args(arguments)
+def main(runs: int = 7, interleaved: int = 20, output: Path = RESULT) -> None:
+    """Measure, compare, keep; exit with 1 if there are too many false alarms."""
     kept = {key: value for key, value in describe(PRESET).items() if key != "schema"}
-    kept |= {"runs": given.runs, "pairs": [], "interleaved": []}
+    kept |= {"runs": runs, "pairs": [], "interleaved": []}
     kept |= {"factor": RUN_FACTOR, "factor_interleaved": INTERLEAVED_FACTOR}
     with copied_tree() as copy:
-        for repetition in range(given.interleaved):
-            row = compare_with_copy(copy, repetition)
-            kept["interleaved"].append(_print_row("interleaved", row))
+        for k in range(interleaved):
+            findings = compare_trees(copy, HERE, [STRUCTURES[k % len(STRUCTURES)]])
+            kept["interleaved"].append(count_findings(findings))
+            print("interleaved", kept["interleaved"][-1], flush=True)
     with tempfile.TemporaryDirectory(prefix="hem-aa-") as root:
-        runs: list[Measured] = []
-        for seed in range(given.runs):
-            run = measure_run(Path(root), seed)
-            kept["pairs"] += [_print_row("pair", compare_pair(other, run)) for other in runs]
-            runs.append(run)
+        measured = [measure_run(Path(root), seed) for seed in range(runs)]
+        for pair in combinations(measured, 2):
+            kept["pairs"].append(compare_pair(*pair))
+            print("pair", kept["pairs"][-1], flush=True)
     kept |= sum_counts(kept["pairs"] + kept["interleaved"])
-    given.output.write_text(json.dumps(kept, indent=1) + "\n", "utf-8")
+    output.write_text(json.dumps(kept, indent=1) + "\n", "utf-8")
     print(in_words(kept))
-    return int(kept["alarms"] > LARGEST_SHARE * kept["comparisons"])
-
-
-def _print_row(kind: str, row: dict[str, Any]) -> dict[str, Any]:
-    counts = f"{row['same']:4} same {row['undetermined']:4} undetermined"
-    print(f"{kind:11} {counts}", *row["alarms"], sep="\n   ", flush=True)
-    return row
+    raise SystemExit(int(kept["alarms"] > LARGEST_SHARE * kept["comparisons"]))
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    typer.run(main)

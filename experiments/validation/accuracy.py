@@ -1,26 +1,31 @@
 """How far verdicts can be trusted: judges on synthetic curves, and how many claims are determined.
 
-``python -m experiments.validation.accuracy`` asks every judge of `experiments.validation.judges`
-about every synthetic curve, some minutes, and keeps how often each gave which answer.
+``python -m experiments.validation.accuracy`` asks every judge about every synthetic curve, some
+minutes, and keeps how often each gave which answer. A judge takes sizes, samples and a latency and
+names a class of `hem.complexity.models`, or none. The rivals know of no latency; they are given
+nanoseconds, as some of them have thresholds in absolute units.
 """
 
 from __future__ import annotations
 
-import argparse
+import atexit
 import json
 from collections import Counter
-from collections.abc import Iterable
-from importlib.metadata import PackageNotFoundError, version
+from collections.abc import Callable, Iterable, Sequence
+from importlib.metadata import version
+from importlib.util import find_spec
 from itertools import product
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pandas as pd
+import typer
 
 from experiments.claims import Growth, JudgedClaim, Outcome
 from experiments.runs import describe, tables
-from experiments.validation.judges import PACKAGES, Judge, installed_judges
-from experiments.validation.synthetic import CONDITIONS, GROWTH, SyntheticCurve, make_curves
+from experiments.validation.synthetic import CONDITIONS, GROWTH, Array, SyntheticCurve, make_curves
+from hem.complexity import judge
 
 RESULT = Path("results/reference/accuracy.json")
 UNDETERMINED = Outcome.UNDETERMINED.value
@@ -37,13 +42,96 @@ ASKED = {
 DETERMINED = {"work": 0.95, "time": 0.85}
 """Share of table 1's claims that must be determined, by measure, on the standard preset."""
 
+Judge = Callable[[Array, Sequence[Array], Array | None], str | None]
+
+NANOSECONDS = 1e9
+ROOTLESS = [name for name in GROWTH if name != "O(√n)"]
+"""What those know that have no O(√n)."""
+
+
+def hem_judge(sizes: Array, samples: Sequence[Array], latency: Array | None) -> str | None:
+    """`hem.complexity.judge`: the class that is consistent, of all it could be asked."""
+    best = judge(sizes, samples, latency=latency, resamples=2).best
+    verdict = judge(sizes, samples, best, latency, resamples=2)
+    return best if verdict.outcome == "consistent" else None
+
+
+def google_benchmark(
+    sizes: Array, samples: Sequence[Array], latency: Array | None = None
+) -> str | None:
+    """Google Benchmark's rule, src/complexity.cc: MinimalLeastSq with oAuto.
+
+    Least squares of each curve without intercept over all points; the least root mean square error
+    relative to the mean wins, and O(1) where nothing beats it. It has no O(√n), and O(n³) is not
+    asked about.
+    """
+    n, t = _points(sizes, samples)
+
+    def square_error(name: str) -> float:
+        curve = GROWTH[name](n)
+        return float(np.mean((t - (t @ curve) / (curve @ curve) * curve) ** 2))
+
+    return min(ROOTLESS, key=square_error)
+
+
+def big_o(sizes: Array, samples: Sequence[Array], latency: Array | None = None) -> str | None:
+    """The package big-o (P. Berkes): least squares with an intercept, least residuals win.
+
+    It is given the least time of each size, as it measures. It has no O(√n).
+    """
+    from big_o import complexities, infer_big_o_class
+
+    theirs = "Constant", "Logarithmic", "Linear", "Linearithmic", "Quadratic"
+    names = {getattr(complexities, own): name for own, name in zip(theirs, ROOTLESS, strict=True)}
+    least = np.array([np.min(case) for case in samples])
+    best, _ = infer_big_o_class(sizes, NANOSECONDS * least, classes=list(names))
+    return names[type(best)] if best is not None else None
+
+
+def bigo(sizes: Array, samples: Sequence[Array], latency: Array | None = None) -> str | None:
+    """The package bigo (E. Berger, S. Freund): least squares with an intercept, Akaike's criterion.
+
+    It drops outliers by itself, and curves that it cannot fit.
+    """
+    from bigO import bigO, models
+
+    atexit.unregister(bigO.save_performance_data)  # or it leaves a file where one happens to be
+    theirs = "O(1)", "O(log(n))", "O(sqrt(n))", "O(n)", "O(n*log(n))", "O(n**2)"
+    names = dict(zip(theirs, GROWTH, strict=True))
+    n, t = _points(sizes, samples)
+    fitted = models.infer_bound(n, NANOSECONDS * t).models
+    return next((names[fit.model.name] for fit in fitted if fit.model.name in names), None)
+
+
+def _points(sizes: Array, samples: Sequence[Array]) -> tuple[Array, Array]:
+    n = np.repeat(sizes, [len(case) for case in samples])
+    return n, np.concatenate([np.asarray(case, float) for case in samples])
+
+
+JUDGES: dict[str, Judge] = {
+    "hem": hem_judge,
+    "bigo": bigo,
+    "big-o": big_o,
+    "Google Benchmark": google_benchmark,
+}
+"""By name. Those of packages that are not installed fail when asked: see ``installed_judges``."""
+
+PACKAGES = {"bigo": "bigO", "big-o": "big_o"}
+"""The judges that are packages of their own, and the module of each."""
+
+
+def installed_judges() -> dict[str, Judge]:
+    """The judges that can be asked here. Not every package has a distribution for every Python."""
+    missing = {name for name, module in PACKAGES.items() if find_spec(module) is None}
+    return {name: it for name, it in JUDGES.items() if name not in missing}
+
 
 def count_answers(judges: dict[str, Judge], curves: Iterable[SyntheticCurve]) -> pd.DataFrame:
     """Ask every judge about every curve -> a row per judge, condition, true class and answer."""
     counts = Counter[tuple[str, str, str, str]]()
     for curve in curves:
-        for name, judge in judges.items():
-            answer = judge(curve.sizes, curve.samples, curve.latency) or UNDETERMINED
+        for name, ask in judges.items():
+            answer = ask(curve.sizes, curve.samples, curve.latency) or UNDETERMINED
             counts[name, curve.condition, curve.growth, answer] += 1
     return pd.DataFrame([[*key, count] for key, count in counts.items()], columns=COLUMNS)
 
@@ -63,12 +151,10 @@ def answer_shares(answers: pd.DataFrame) -> pd.DataFrame:
 
 def confusions(answers: pd.DataFrame, condition: str) -> dict[str, pd.DataFrame]:
     """How often each judge gave which answer: a row per true class, a column per answer."""
-    columns = [*GROWTH, UNDETERMINED]
     asked = answers[answers["condition"] == condition]
     return {
-        str(judge): rows.pivot_table(index="growth", columns="answer", values="count")
-        .reindex(index=list(GROWTH), columns=columns)
-        .fillna(0)
+        str(judge): rows.pivot_table("count", "growth", "answer", aggfunc="sum", fill_value=0)
+        .reindex(index=list(GROWTH), columns=[*GROWTH, UNDETERMINED], fill_value=0)
         .astype(int)
         for judge, rows in asked.groupby("judge", sort=False)
     }
@@ -112,27 +198,19 @@ def describe_origin(kept: dict[str, Any]) -> str:
     )
 
 
-def _version(package: str) -> str:
-    try:
-        return version(package)
-    except PackageNotFoundError:
-        return "not installed"
-
-
-def main() -> None:
-    """Run as a command."""
-    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("--output", type=Path, default=RESULT)
-    given = parser.parse_args()
+def main(output: Path = RESULT) -> None:
+    """Ask every judge about every curve, keep the answers, and print the shares."""
     kinds = product(CONDITIONS, GROWTH)
     curves = [it for condition, growth in kinds for it in make_curves(growth, condition)]
-    answers = count_answers(installed_judges(), curves)
-    head = {key: value for key, value in describe("").items() if key != "preset"}
-    head["versions"] |= {package: _version(package) for package in PACKAGES}
-    kept = {"curves": len(curves), "columns": COLUMNS, "rows": answers.to_numpy().tolist()}
-    given.output.write_text(json.dumps(head | kept, indent=1) + "\n", "utf-8")
+    judges = installed_judges()
+    answers = count_answers(judges, curves)
+    kept = {key: value for key, value in describe("").items() if key != "preset"}
+    for package in PACKAGES:
+        kept["versions"][package] = version(package) if package in judges else "not installed"
+    kept |= {"curves": len(curves), "columns": COLUMNS, "rows": answers.to_numpy().tolist()}
+    output.write_text(json.dumps(kept, indent=1) + "\n", "utf-8")
     print(accuracy_table(answers).to_string(index=False))
 
 
 if __name__ == "__main__":
-    main()
+    typer.run(main)

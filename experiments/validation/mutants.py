@@ -12,19 +12,19 @@ import subprocess
 import sys
 import tempfile
 import tomllib
-from argparse import ArgumentParser
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from time import perf_counter
-from typing import Any, NamedTuple
+from typing import Annotated, Any
+
+import typer
 
 HERE = Path(__file__).parents[2]
 COPIED = ("hem", "structures", "experiments", "results/reference")
 GATES = ("work", "bytes", "class", "time")
 LONGEST_SECONDS = 900
-ROW = "{:<50} {:<18} {:<6} {:<7} {:>4}  {}"
+ROW = "{:<50} {:<18} {:<6} {:<7} {}"
 
 
 class MutantError(ValueError):
@@ -33,50 +33,41 @@ class MutantError(ValueError):
 
 @dataclass(frozen=True)
 class Mutant:
-    """A fault: texts in one file and what they become, and the gate that must catch it."""
+    """A fault: texts in one file and what they become, and the gate that must catch it.
+
+    ``changes``: pairs of old and new texts, where it is more than one.
+    """
 
     name: str
     structure: str
     gate: str
     file: str
-    changes: tuple[tuple[str, str], ...]
+    old: str = ""
+    new: str = ""
+    changes: Sequence[Sequence[str]] = ()
+
+    def __post_init__(self) -> None:
+        if self.gate not in GATES:
+            raise MutantError(f"{self.name!r}: no gate is called {self.gate!r}; there are {GATES}")
 
     def apply(self, tree: Path) -> None:
         """Inject it. Raises MutantError unless each old text is there just once."""
         path = tree / self.file
         text = path.read_text("utf-8") if path.exists() else ""
-        for old, new in self.changes:
-            if text.count(old) != 1:
+        for old, new in self.changes or [(self.old, self.new)]:
+            if text.count(old) != 1 or old == new:
                 raise MutantError(
-                    f"mutants.toml, {self.name!r}: its old text is {text.count(old)} times "
-                    f"in {self.file}, not once; bring it in line with the source:\n{old}"
+                    f"{self.name!r}: its old text is {text.count(old)} times in {self.file}, not "
+                    f"once, or does not change; bring it in line with the source:\n{old}"
                 )
             text = text.replace(old, new)
         path.write_text(text, "utf-8")
 
 
-class Trial(NamedTuple):
-    """Whether the gate said what it must, the first such finding, and how long it took."""
-
-    passed: bool
-    line: str
-    seconds: float
-
-
 def load_mutants(text: str | None = None) -> list[Mutant]:
-    """Read ``mutants.toml``, or a text like it. Raises MutantError for a wrong entry."""
+    """Read ``mutants.toml``, or a text like it. Raises MutantError for a gate that there is not."""
     content = tomllib.loads(text or (Path(__file__).parent / "mutants.toml").read_text("utf-8"))
-    return [_read_mutant(entry) for entry in content["mutant"]]
-
-
-def _read_mutant(entry: dict[str, Any]) -> Mutant:
-    changes = entry.get("changes") or [[entry.get("old", ""), entry.get("new", "")]]
-    name, gate = entry.get("name", "?"), entry.get("gate")
-    if gate not in GATES:
-        raise MutantError(f"mutants.toml, {name!r}: no gate is called {gate!r}; there are {GATES}")
-    if any(old == new or not old for old, new in changes):
-        raise MutantError(f"mutants.toml, {name!r}: it changes nothing")
-    return Mutant(name, entry["structure"], gate, entry["file"], tuple(map(tuple, changes)))
+    return [Mutant(**entry) for entry in content["mutant"]]
 
 
 @contextmanager
@@ -98,68 +89,58 @@ def run_gate(tree: Path, structure: str = "", timed: bool = False) -> dict[str, 
             command, cwd=tree, capture_output=True, text=True, timeout=LONGEST_SECONDS
         )
         report = json.loads(done.stdout)
-    except subprocess.TimeoutExpired:
-        return {"status": 2, "worse": [], "error": f"took longer than {LONGEST_SECONDS} s"}
+    except subprocess.TimeoutExpired as error:
+        return {"status": 2, "worse": [], "error": str(error)}
     except ValueError:
         return {"status": done.returncode, "worse": [], "error": done.stderr.strip()[-200:]}
     worse = [finding for finding in report["findings"] if finding["outcome"] == "worse"]
     return {"status": done.returncode, "worse": worse, "counts": report["counts"]}
 
 
-def try_mutant(mutant: Mutant) -> Trial:
-    """Inject one fault and run the gate. It is caught if the right part of the gate says worse."""
-    begin = perf_counter()
+def try_mutant(mutant: Mutant) -> tuple[bool, str]:
+    """Inject one fault -> whether the right part of the gate says worse, and what it says."""
     with copied_tree() as tree:
         mutant.apply(tree)
         report = run_gate(tree, mutant.structure, mutant.gate == "time")
     caught = [finding for finding in report["worse"] if finding["kind"] == mutant.gate]
     line = _in_words(caught) or report.get("error", f"no {mutant.gate} is worse")
-    return Trial(report["status"] == 1 and bool(caught), line, perf_counter() - begin)
+    return report["status"] == 1 and bool(caught), line
 
 
-def try_unchanged() -> Trial:
-    """Run the gate, times included, on a copy without a fault: nothing may be worse."""
-    begin = perf_counter()
+def try_unchanged() -> tuple[bool, str]:
+    """Run the gate, times included, without a fault -> whether nothing is worse, and what is."""
     with copied_tree() as tree:
         counted, timed = run_gate(tree), run_gate(tree, "half_edge", timed=True)
     decided = timed.get("counts", {}).get("same", 0) > 0
     passed = counted["status"] == 0 and timed["status"] != 1 and decided
     line = _in_words(counted["worse"] + timed["worse"]) or counted.get("error", "nothing is worse")
-    return Trial(passed, line, perf_counter() - begin)
+    return passed, line
 
 
 def _in_words(findings: list[dict[str, Any]]) -> str:
     return next((f"{it['where']}: {it['before']} → {it['after']}" for it in findings), "")
 
 
-def main(arguments: Sequence[str] | None = None) -> int:
-    """Try every mutant, print the table -> 0 if all were caught and the copy without passed."""
-    parser = ArgumentParser(description="Inject faults; hem check must catch each.")
-    parser.add_argument("-k", default="", metavar="WORD", help="just those with it in the name")
-    word = parser.parse_args(arguments).k
+def main(word: Annotated[str, typer.Option("-k", help="Just those named so.")] = "") -> None:
+    """Inject faults; hem check must catch each. Exits with 1 if one was missed."""
     chosen = [mutant for mutant in load_mutants() if word in mutant.name]
     if not chosen:
-        print(f"no mutant has {word!r} in its name; see experiments/validation/mutants.toml")
-        return 2
-    print(ROW.format("mutant", "structure", "gate", "caught", "s", "what the gate said"))
-    _print_trial(unchanged := try_unchanged(), "none", "all", "all", "passes")
+        raise MutantError(f"no name in experiments/validation/mutants.toml has {word!r} in it")
+    print(ROW.format("mutant", "structure", "gate", "caught", "what the gate said"))
+    unchanged, line = try_unchanged()
+    print(ROW.format("none", "all", "all", "passes" if unchanged else "NO", line), flush=True)
     caught = 0
     for mutant in chosen:
-        trial = try_mutant(mutant)
-        caught += trial.passed
-        _print_trial(trial, mutant.name, mutant.structure, mutant.gate, "yes")
+        passed, line = try_mutant(mutant)
+        caught += passed
+        answer = mutant.name, mutant.structure, mutant.gate, "yes" if passed else "NO", line
+        print(ROW.format(*answer), flush=True)
     print(f"{caught} of {len(chosen)} caught")
-    return 0 if unchanged.passed and caught == len(chosen) else 1
-
-
-def _print_trial(trial: Trial, *texts: str) -> None:
-    *names, passed = texts
-    answer = passed if trial.passed else "NO"
-    print(ROW.format(*names, answer, f"{trial.seconds:.0f}", trial.line), flush=True)
+    raise SystemExit(not (unchanged and caught == len(chosen)))
 
 
 if __name__ == "__main__":
     try:
-        sys.exit(main())
+        typer.run(main)
     except MutantError as error:
         sys.exit(f"hem: {error}")

@@ -95,24 +95,22 @@ def compare_queries(peers: dict[str, Any], mesh: hem.TriangleMesh) -> Iterator[B
     """Query all elements at once, and one after the other as OpenMesh's iterators do."""
     s: Any = structures.build("half_edge", mesh)
     vertices, faces, triangles = s.vertices(), s.faces(), mesh.triangles.astype(np.int64)
-    ours = Task(lambda: s.vertex_faces(vertices))
-    what = "vertex_faces of all"
+    theirs: dict[str, Callable[[], Any]] = {}
     if openmesh := peers.get("OpenMesh"):
         om = openmesh.TriMesh(mesh.points.astype(np.float64), triangles)
-        yield compare(f"{what}, OpenMesh vf_indices", 1.5, ours, Task(om.vf_indices))
-        face_faces = Task(lambda: s.face_faces(faces))
-        yield compare(
-            "face_faces of all, OpenMesh ff_indices", 1.5, face_faces, Task(om.ff_indices)
-        )
+        ours, what = Task(lambda: s.face_faces(faces)), "face_faces of all, OpenMesh ff_indices"
+        yield compare(what, 1.5, ours, Task(om.ff_indices))
         yield _compare_single(
             "OpenMesh", s, lambda vertex: [it.idx() for it in om.vf(om.vertex_handle(vertex))]
         )
-    if trimesh := peers.get("trimesh"):
-        theirs = Task(lambda: trimesh.Trimesh(mesh.points, triangles, process=False).vertex_faces)
-        yield compare(f"{what}, trimesh", 1.5, ours, theirs)
+        theirs["OpenMesh vf_indices"] = om.vf_indices
+    if tri := peers.get("trimesh"):
+        theirs["trimesh"] = lambda: tri.Trimesh(mesh.points, triangles, process=False).vertex_faces
     if igl := peers.get("libigl"):
-        theirs = Task(lambda: igl.vertex_triangle_adjacency(triangles, len(mesh.points)))
-        yield compare(f"{what}, libigl", 1.5, ours, theirs)
+        theirs["libigl"] = lambda: igl.vertex_triangle_adjacency(triangles, len(mesh.points))
+    ours = Task(lambda: s.vertex_faces(vertices))
+    for name, query in theirs.items():
+        yield compare(f"vertex_faces of all, {name}", 1.5, ours, Task(query))
 
 
 def compare_objects(peers: dict[str, Any]) -> Iterator[Budget]:
@@ -147,14 +145,13 @@ def compare_operations(peers: dict[str, Any]) -> Iterator[Budget]:
         chosen = rng.choice(len(every), COUNT, replace=False)
         handles = every[chosen]
         arguments = (handles, places) if operation.startswith("split") else (handles,)
-        operate = _operate_batched if batch else _operate_each
-        ours = partial(operate, batch or operation, arguments)
+        ours = partial(_operate, batch or operation, bool(batch), arguments)
         theirs = partial(OPENMESH[operation], chosen.tolist(), list(places))
         yield compare(
             f"{COUNT:,} {operation}, {'batched' if batch else 'one by one'}, OpenMesh",
             asked,
-            Task(ours, lambda: _copy_with_room(s)),
-            Task(theirs, lambda: openmesh.TriMesh(points, triangles)),
+            Task(ours, partial(_copy_with_room, s)),
+            Task(theirs, partial(openmesh.TriMesh, points, triangles)),
         )
 
 
@@ -165,14 +162,10 @@ def _copy_with_room(s: Any) -> Any:
     return copy
 
 
-def _operate_batched(batch: str, arguments: Iterable[Array], s: Any) -> None:
-    getattr(s, batch)(*arguments)
-
-
-def _operate_each(operation: str, arguments: Iterable[Array], s: Any) -> None:
-    operate = getattr(s, operation)
+def _operate(name: str, batched: bool, arguments: tuple[Array, ...], s: Any) -> None:
+    operate = getattr(s, name)
     handles, *places = arguments
-    for given in zip(handles.tolist(), *places, strict=True):
+    for given in [arguments] if batched else zip(handles.tolist(), *places, strict=True):
         try:
             operate(*given)
         except hem.TopologyError:
