@@ -182,7 +182,7 @@ EXPERIMENT = Experiment(
     copies=3,
     turn=43,
     counted=(COUNTED,),
-    table=Table("listings", "The listings, as printed and mended", LISTINGS, "errata"),
+    table=Table("listings", "The listings, as published and corrected", LISTINGS, "errata"),
     axes={Axis.WORK_FACES: COUNTED, Axis.TIME_FACES: TIMED},
     baseline_orders=(TIMED,),
 )

@@ -36,7 +36,7 @@ def find_described(folders: Iterable[str], package: str) -> dict[str, Any]:
 
 
 NAMED: dict[str, Any] = find_described(__path__, __name__)
-"""Everything that has a name in a table; what is as printed is measured, and not to be used."""
+"""Everything that has a name in a table; what is as published is measured, and not to be used."""
 
 REGISTRY: dict[str, type[Structure]] = {
     name: it for name, it in NAMED.items() if issubclass(it, Structure)

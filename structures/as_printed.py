@@ -52,7 +52,7 @@ class RenderCache:
 class AsPrinted(Described):
     """The half-edge mesh of the listings. Plain lists; the winding is that of the render mesh."""
 
-    name, title, abbreviation = "as_printed", "As printed", "Printed"
+    name, title, abbreviation = "as_printed", "As published", "Published"
     look, order = Look("#c23b22", "X", "-"), 7
     claims = Claims("thesis 3.3.2 to 5: the rows of the listings in experiments/claims/claims.toml")
 

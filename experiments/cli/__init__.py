@@ -125,7 +125,7 @@ def _show_meshes(title: str, made: Iterable[tuple[str, hem.TriangleMesh, tuple[s
 @app.command()
 def info(
     mesh: Annotated[str, Argument(help="A mesh file, or the name of a model (see hem meshes).")],
-    repair: Annotated[bool, Option("--repair", help="Mend what is not manifold first.")] = False,
+    repair: Annotated[bool, Option("--repair", help="Repair what is not manifold first.")] = False,
 ) -> None:
     """Say what a mesh consists of, and which structure can hold it in how many bytes."""
     from structures import REGISTRY, build

@@ -60,7 +60,7 @@ Holder = Annotated[str, Option(help="What holds the mesh, for tetra and surface.
 Seed = Annotated[int, Option(min=0, help="Other seeds, other shards.")]
 Scale = Annotated[float, Option(min=1e-9, max=1e9,
     help="Multiply the model first; its unit is taken as a meter.")]
-Repair = Annotated[bool, Option("--repair", help="Mend what is not manifold first.")]
+Repair = Annotated[bool, Option("--repair", help="Repair what is not manifold first.")]
 Wrap = Annotated[bool, Option("--wrap", help="Make a body around the model first.")]
 Up = Annotated[Axis | None, Option(help="Which axis points up. Default: the model's.")]
 Formats = Annotated[list[Format] | None, Option(

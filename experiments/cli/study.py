@@ -37,7 +37,7 @@ def run_study(
     if run and not resume:
         raise ValueError(f"to resume {run}, say --resume as well")
     from experiments.harness import memory
-    from experiments.runs import cluster, study
+    from experiments.runs import cluster, latest, study
 
     memory.available()  # whether HEM_MEMORY can be read
     if workers:
@@ -46,7 +46,7 @@ def run_study(
     options |= {"structures": structure, "experiments": experiment}
     given = {key: it for key, it in options.items() if it not in (None, [])}
     if resume:
-        folder = study.resume(output, run)
+        folder = run or latest(output, unfinished=True)
         _require_as_begun(folder, given, workers)
     else:
         folder = study.begin(given.pop("preset", "quick"), output, **given)

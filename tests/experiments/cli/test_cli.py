@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import os
+import shutil
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 from typer.testing import CliRunner
@@ -45,6 +48,53 @@ def test_a_mistake_gets_one_clear_line_and_an_exit_code(arguments, said, tmp_pat
     assert output.startswith("hem:")
     assert said in output
     assert list(tmp_path.iterdir()) == []
+
+
+QUICK = [
+    ["--version"], ["-h"], ["history", "show", "-h"], ["stdy"], ["study", "--seed", "many"],
+    ["study", "--run", "nowhere"], ["table", "nowhere"], ["report", "nowhere"],
+    ["history", "add", "nowhere"], ["check", "nowhere"], ["check", "--factor", "1"],
+    ["baseline", "update", "nowhere"], ["fracture", "sphere", "--up", "w"],
+]  # fmt: skip
+
+
+def test_help_and_wrong_arguments_are_told_before_anything_heavy_is_imported():
+    heavy = "numpy", "numba", "pandas", "matplotlib", "experiments.harness", "structures"
+    code = (
+        "import sys; from experiments.cli import app\n"
+        f"for arguments in {QUICK}:\n"
+        "    try: app(arguments)\n"
+        "    except SystemExit: pass\n"
+        f"    found = [it for it in {heavy} if it in sys.modules]\n"
+        "    assert not found, (arguments, found)\n"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    assert done.stderr.count("nowhere holds no run") == 5
+
+
+@pytest.fixture
+def read_only(base_folder, tmp_path):
+    """A run that nobody may write beside: by its mode, which root need not mind, or by a mount."""
+    unjudged = shutil.ignore_patterns("derived")
+    place = Path(shutil.copytree(base_folder, tmp_path / "run", ignore=unjudged))
+    if os.geteuid():
+        place.chmod(0o555)
+        yield place
+        place.chmod(0o755)
+        return
+    mount = ["mount", "--bind", "-o", "ro", str(place), str(place)]
+    if not shutil.which("mount") or subprocess.run(mount, capture_output=True).returncode:
+        pytest.skip("nothing may be mounted here")
+    yield place
+    subprocess.run(["umount", "-l", str(place)], check=True)
+
+
+def test_a_run_that_cannot_be_written_beside_has_its_table(read_only):
+    code, output = hem("table", str(read_only))
+    assert code == 0, output
+    assert "Table 1" in output
+    assert not (read_only / "derived").exists()
 
 
 def test_info_says_which_structure_can_hold_a_mesh_and_why_another_cannot(tmp_path):

@@ -187,13 +187,14 @@ def test_skin_is_told_from_the_walls_of_cuts():
 
 def test_the_demo_is_one_page_that_needs_no_network(tmp_path):
     case = demo.CASES[-1]._replace(forces=(0.5, 2))
-    page = demo.write(tmp_path / "demo", (case,), size=(64, 48), seconds=0.4)
+    page = demo.write(tmp_path / "demo", (case,), size=(64, 64))
     text = page.read_text(encoding="utf-8")
     assert "://" not in text
+    assert "hem fracture plate:144 --material glass --method surface --force 0.5" in text
     for force in ("0_5", "2"):
-        assert f'src="plate-{force}.webp"' in text
-        with Image.open(page.parent / f"plate-{force}.webp") as film:
-            assert film.size == (64, 48)
+        assert f'src="glass-plate-{force}/fracture.gif"' in text
+        with Image.open(page.parent / f"glass-plate-{force}" / "fracture.gif") as film:
+            assert film.size == (64, 64)
             assert film.n_frames > 5
 
 

@@ -48,7 +48,6 @@ def mixed(base, tmp_path_factory):
     ("arguments", "said"),
     [
         (["show", "--file", "none.jsonl"], "there is no run in none.jsonl; begin with: hem study"),
-        (["show", "--last", "0", "--file", "KEPT"], "--last is at least 1, not 0"),
         (["show", "half_edgy", "--file", "KEPT"], "no claim 'half_edgy'; say a structure (indexed"),
         (["show", "--machine", "ffff", "--file", "KEPT"], "no run is of machine 'ffff'; there are"),
         (["show", "--profile", "slow", "--file", "KEPT"], "no run is of preset 'slow'"),
@@ -66,6 +65,12 @@ def test_a_mistake_gets_one_clear_line_and_an_exit_code(
     assert output.startswith("hem:")
     assert said in output
     assert list(tmp_path.iterdir()) == []
+
+
+def test_of_a_history_at_least_one_run_is_shown(kept):
+    code, output = hem("show", "--last", "0", "--file", str(kept))
+    assert code == 2
+    assert "Invalid value for '--last'" in output
 
 
 def test_a_run_is_added_once_and_is_there_then(base_folder, tmp_path):

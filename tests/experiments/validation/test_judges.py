@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from experiments.validation.judges import JUDGES, PACKAGES, google_benchmark, installed_judges
+from experiments.validation.accuracy import JUDGES, PACKAGES, google_benchmark, installed_judges
 from experiments.validation.synthetic import GROWTH
 
 SIZES = np.geomspace(100, 1e5, 7).round()

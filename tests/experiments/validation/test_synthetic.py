@@ -3,8 +3,13 @@
 import numpy as np
 import pytest
 
-from experiments.validation.accuracy import ASKED, UNDETERMINED, answer_shares, count_answers
-from experiments.validation.judges import JUDGES
+from experiments.validation.accuracy import (
+    ASKED,
+    JUDGES,
+    UNDETERMINED,
+    answer_shares,
+    count_answers,
+)
 from experiments.validation.synthetic import (
     CONDITIONS,
     GROWTH,
