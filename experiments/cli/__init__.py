@@ -6,7 +6,6 @@ A command imports what it needs when it is run, so that help and mistakes are qu
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from importlib.metadata import version
 from pathlib import Path
 from typing import Annotated
@@ -96,30 +95,22 @@ def meshes(
     size: Annotated[int, Option(help="Number of vertices to make the families with.")] = 1000,
 ) -> None:
     """List the families and the real models, with their counts."""
-    _show_meshes(
-        "Families, made by hem.generate(name, n_vertices)",
-        (
-            (name, hem.generate(name, size), (it.what, it.sizes))
-            for name, it in hem.FAMILIES.items()
-        ),
-    )
-    _show_meshes(
-        "Models, read by hem.sample(name)",
-        ((name, hem.sample(name), (it.what,)) for name, it in hem.SAMPLES.items()),
-    )
-
-
-def _show_meshes(title: str, made: Iterable[tuple[str, hem.TriangleMesh, tuple[str, ...]]]) -> None:
-    """Print the counts of meshes, and below what they are and which sizes they have."""
-    table = _numbers("name", "vertices", "edges", "faces", "border", "valence", title=title)
-    notes = Table.grid(padding=(0, 2, 0, 0))
-    for name, mesh, words in made:
-        s = mesh.summary()
-        counts = [f"{count:,}" for count in (s.vertices, s.edges, s.faces, s.border_edges)]
-        table.add_row(name, *counts, f"{s.valence_min}…{s.valence_max}")
-        for head, text in zip((name, "sizes"), words, strict=False):
-            notes.add_row(head, text)
-    console.print(table, notes, "")
+    families = {
+        name: (hem.generate(name, size), it.what, it.sizes) for name, it in hem.FAMILIES.items()
+    }
+    models = {name: (hem.sample(name), it.what, "") for name, it in hem.SAMPLES.items()}
+    titles = "Families, made by hem.generate(name, n_vertices)", "Models, read by hem.sample(name)"
+    for title, made in zip(titles, (families, models), strict=True):
+        table = _numbers("name", "vertices", "edges", "faces", "border", "valence", title=title)
+        notes = Table.grid(padding=(0, 2, 0, 0))
+        for name, (mesh, what, sizes) in made.items():
+            s = mesh.summary()
+            counts = (s.vertices, s.edges, s.faces, s.border_edges)
+            table.add_row(name, *map("{:,}".format, counts), f"{s.valence_min}…{s.valence_max}")
+            notes.add_row(name, what)
+            if sizes:
+                notes.add_row("", f"sizes: {sizes}")
+        console.print(table, notes, "")
 
 
 @app.command()

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from contextlib import suppress
 from enum import StrEnum
+from math import isfinite
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -17,36 +19,30 @@ Method = StrEnum("Method", ["voronoi", "tetra", "surface"])
 Format = StrEnum("Format", ["glb", "obj", "ply"])
 Axis = StrEnum("Axis", ["x", "y", "z"])
 Size = tuple[int, int]
-Vector = tuple[float, float, float]
 
 
-def vector(text: str) -> Vector:
-    """Three finite numbers, as in ``0.1,0.2,0.3``. Raises BadParameter for other texts."""
-    try:
-        x, y, z = (float(part) for part in text.split(","))
-    except ValueError:
-        x = y = z = float("nan")
-    if not all(abs(part) < float("inf") for part in (x, y, z)):
-        raise typer.BadParameter(f"three numbers with commas between, as in 0.1,0.2,0.3: {text!r}")
-    return x, y, z
+def _parser(
+    kind: Callable[[str], Any], separator: str, fits: Callable[..., bool], words: str
+) -> Callable[[str], tuple[Any, ...]]:
+    """What reads numbers that ``fits`` accepts, or raises BadParameter with the words."""
 
+    def parse(text: str) -> tuple[Any, ...]:
+        with suppress(TypeError, ValueError):
+            values = tuple(kind(part) for part in text.lower().split(separator))
+            if fits(*values):
+                return values
+        raise typer.BadParameter(f"{words}: {text!r}")
 
-def pixels(text: str) -> Size:
-    """A width and a height, as in ``640x480``. Raises BadParameter for other texts."""
-    try:
-        width, height = (int(part) for part in text.lower().split("x"))
-    except ValueError:
-        width = height = 0
-    if not (64 <= width <= 4096 and 64 <= height <= 4096 and 0.25 <= width / height <= 4):
-        raise typer.BadParameter(
-            f"a width and a height of 64 … 4096 pixels, not too narrow, as in 640x480: {text!r}"
-        )
-    return width, height
+    return parse
 
 
 # fmt: off
-POINT: Any = {"parser": vector, "metavar": "X,Y,Z"}
-PIXELS: Any = {"parser": pixels, "metavar": "WIDTHxHEIGHT"}
+POINT: Any = {"metavar": "X,Y,Z", "parser": _parser(
+    float, ",", lambda x, y, z: isfinite(x + y + z),
+    "three numbers with commas between, as in 0.1,0.2,0.3")}
+PIXELS: Any = {"metavar": "WIDTHxHEIGHT", "parser": _parser(
+    int, "x", lambda w, h: min(w, h) >= 64 and max(w, h) <= 4096 and 0.25 <= w / h <= 4,
+    "a width and a height of 64 … 4096 pixels, not too narrow, as in 640x480")}
 Model = Annotated[str, Argument(
     help="A mesh file, a model (bunny), or a family and size (sphere:2000).")]
 Impact = Annotated[Any, Option(**POINT, help="Where it is struck. Default: in view, to the left.")]

@@ -19,18 +19,8 @@ from typing import Any
 
 import typer
 
-from experiments.regression import (
-    HERE,
-    INTERLEAVED_FACTOR,
-    RUN_FACTOR,
-    Change,
-    Finding,
-    Measured,
-    compare_runs,
-    compare_trees,
-    exit_code,
-    reduce_run,
-)
+from experiments import regression
+from experiments.regression import Change, Finding, Measured
 from experiments.runs import describe, load, study
 from experiments.validation.mutants import copied_tree
 from structures import THESIS as STRUCTURES
@@ -48,13 +38,13 @@ def measure_run(root: Path, seed: int) -> Measured:
     """Measure what the gate compares by time, the cases in an order of their own."""
     folder = study.begin(PRESET, root, STRUCTURES, experiments=MEASURED, seed=seed)
     study.run(folder)
-    return reduce_run(load(folder))
+    return regression.reduce_run(load(folder))
 
 
 def compare_pair(before: Measured, after: Measured) -> dict[str, Any]:
     """Count what the gate says of two runs, where there is a verdict to be lost or won."""
     open_twice = (Change.UNDETERMINED, Change.UNDETERMINED)
-    findings = compare_runs(before, after).findings
+    findings = regression.compare_runs(before, after).findings
     return count_findings(
         it for it in findings if it.random and (it.before, it.after) != open_twice
     )
@@ -69,7 +59,7 @@ def count_findings(findings: Iterable[Finding]) -> dict[str, Any]:
         "comparisons": len(findings),
         "same": outcomes[Change.SAME],
         "undetermined": outcomes[Change.UNDETERMINED],
-        "exit_code": exit_code(findings),
+        "exit_code": regression.exit_code(findings),
         "alarms": [f"{it.change}: {it.kind} {it.where} {it.difference}" for it in alarms],
     }
 
@@ -104,10 +94,12 @@ def main(runs: int = 7, interleaved: int = 20, output: Path = RESULT) -> None:
     """Measure, compare, keep; exit with 1 if there are too many false alarms."""
     kept = {key: value for key, value in describe(PRESET).items() if key != "schema"}
     kept |= {"runs": runs, "pairs": [], "interleaved": []}
-    kept |= {"factor": RUN_FACTOR, "factor_interleaved": INTERLEAVED_FACTOR}
+    kept |= {"factor": regression.RUN_FACTOR, "factor_interleaved": regression.INTERLEAVED_FACTOR}
     with copied_tree() as copy:
         for k in range(interleaved):
-            findings = compare_trees(copy, HERE, [STRUCTURES[k % len(STRUCTURES)]])
+            findings = regression.compare_trees(
+                copy, regression.HERE, [STRUCTURES[k % len(STRUCTURES)]]
+            )
             kept["interleaved"].append(count_findings(findings))
             print("interleaved", kept["interleaved"][-1], flush=True)
     with tempfile.TemporaryDirectory(prefix="hem-aa-") as root:
