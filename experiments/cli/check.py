@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import json
 import sys
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -39,7 +37,7 @@ def check(
     baseline: Baseline = BASELINE,
 ) -> None:
     """Compare with the baseline. Exit code 0; 1: something got worse; 2: it cannot be told."""
-    with could_not_measure():
+    with user_errors(2):  # 1 says that something got worse
         if factor is not None and not factor > 1:
             raise ValueError(f"--factor is more than 1, such as 1.5, not {factor:g}")
         compared = _compare(run, beside, structure or [], factor, baseline)
@@ -95,19 +93,6 @@ def _load(folder: Path) -> Run:
             f"{folder} holds no case; resume it with: hem study --resume --run {folder}"
         )
     return run
-
-
-@contextmanager
-def could_not_measure() -> Iterator[None]:
-    """Exit with 2 instead of 1 whatever goes wrong: 1 says that something got worse."""
-    try:
-        with user_errors(2):
-            yield
-    except typer.Exit:
-        raise
-    except Exception as error:
-        errors.print(f"hem: it could not be measured: {error!r}", markup=False)
-        raise typer.Exit(2) from error
 
 
 DOUBTS = {

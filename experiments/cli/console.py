@@ -37,11 +37,19 @@ def run_folder(run: Path | None) -> Path:
 
 @contextmanager
 def user_errors(code: int = 1) -> Iterator[None]:
-    """Turn what a user can mend, a missing package too, into one line and an exit code."""
+    """Turn what a user can mend, a missing package too, into one line and an exit code.
+
+    Where that is not 1, whatever else goes wrong as well: 1 has a meaning of its own there.
+    """
     try:
         yield
     except (ValueError, OSError, ImportError) as error:
         errors.print(f"[bold red]hem:[/] {escape(str(error))}")
+        raise typer.Exit(code) from error
+    except Exception as error:
+        if code == 1 or isinstance(error, typer.Exit):
+            raise
+        errors.print(f"hem: it could not be done: {error!r}", markup=False)
         raise typer.Exit(code) from error
 
 
