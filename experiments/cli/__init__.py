@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from importlib.metadata import version
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 try:
     import typer
@@ -121,10 +121,9 @@ def info(
     """Say what a mesh consists of, and which structure can hold it in how many bytes."""
     from structures import REGISTRY, build
 
-    if mesh in hem.SAMPLES and not Path(mesh).exists():
-        found = hem.sample(mesh, **({"repair": True} if repair else {}))
-    else:
-        found = hem.load(mesh, repair=repair)
+    by_name = mesh in hem.SAMPLES and not Path(mesh).exists()
+    options: dict[str, Any] = {"repair": True} if repair else {}
+    found = hem.sample(mesh, **options) if by_name else hem.load(mesh, **options)
     console.print(f"[bold]{mesh}[/]\n{found.summary()}\n")
     table = _numbers("structure", "bytes", "per vertex", "with 8-byte references", "per vertex")
     refusals = []
@@ -137,8 +136,8 @@ def info(
             table.add_row(structure.title, "[red]cannot hold it[/]")
             refusals.append(f"Why: {refusal}")
     console.print(table)
-    for refusal in dict.fromkeys(refusals):
-        console.print(refusal, markup=False)
+    for reason in dict.fromkeys(refusals):
+        console.print(reason, markup=False)
 
 
 def _numbers(*heads: str, title: str | None = None) -> Table:
