@@ -6,24 +6,19 @@ this room. ``write_report`` executes them all and writes the pages, ``write_pdf`
 Everything is imported when it is first asked for: to draw takes heavy packages.
 """
 
-from __future__ import annotations
-
 from importlib import import_module
 from typing import Any
 
 _PLACES = {
-    "claim_browser": ("browser",),
     "pages": (
-        "about_run", "answer", "chapter_list", "claim_tables", "digits", "duration", "errata",
-        "numbers", "reasons", "sentences", "slopes", "verdicts",
+        "about_run", "answer", "browser", "chapter_list", "claim_tables", "errata", "frame_table",
+        "reasons", "sentences", "slopes", "verdicts",
     ),
     "readme": ("write_readme",),
-    "session": (
-        "MissingError", "Session", "claim_link", "link", "open_run", "project_file", "require",
-    ),
+    "session": ("MissingError", "claim_link", "link", "open_run", "project_file"),
     "site": ("write_pdf", "write_report"),
     "style": ("show_figures",),
-    "tables": ("show_claims",),
+    "tables": ("digits", "duration", "show_claims"),
 }  # fmt: skip
 """The public names by their file."""
 

@@ -1,7 +1,5 @@
 """How findings are told: in a terminal, as JSON, and for a pull request."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict
@@ -12,22 +10,18 @@ from rich.console import Console
 from rich.markup import escape
 
 from experiments.regression import Change, Finding, exit_code
+from experiments.report.tables import markdown_rows
 from structures import NAMED
 
 TITLES = {
-    Change.WORSE: "Worse",
-    Change.UNDETERMINED: "Cannot be told",
-    Change.BETTER: "Better",
+    Change.WORSE: ("Worse", "red"),
+    Change.UNDETERMINED: ("Cannot be told", "yellow"),
+    Change.BETTER: ("Better", "green"),
 }
-"""What is told of, in the order that a reader needs it; what is as before is counted."""
+"""What is told of, in the order that a reader needs it, and its color; the rest is counted."""
 
-COLORS = {Change.WORSE: "red", Change.UNDETERMINED: "yellow", Change.BETTER: "green"}
-
-MOST = 40
-"""Findings of one title that a terminal and a pull request show; JSON has all."""
-
-WIDTH = 42
-"""Columns of the case in a line of a terminal."""
+MOST = 40  # findings of one title that a terminal and a pull request show; JSON has all
+WIDTH = 42  # columns of the case in a line of a terminal
 
 SUMMARY = {
     0: "Nothing got worse.",
@@ -39,22 +33,21 @@ SUMMARY = {
 
 def show(findings: Sequence[Finding], notes: Sequence[str], console: Console) -> None:
     """Print what is not as before, worst first, a line each under its claim; then the counts."""
-    for change, chosen in _by_change(findings):
-        console.print(f"[bold {COLORS[change]}]{TITLES[change]}: {len(chosen):,}[/]")
+    for title, color, chosen in _by_change(findings):
+        console.print(f"[bold {color}]{title}: {len(chosen):,}[/]")
         for claim, part in groupby(chosen[:MOST], lambda finding: finding.claim):
             if claim:
                 console.print(f"[dim]{escape(claim)}[/]", highlight=False)
             for finding in part:
-                console.print(escape(line(finding)), highlight=False, soft_wrap=True)
+                console.print(escape(line(finding)), highlight=False)
         if len(chosen) > MOST:
             console.print(f"  … and {len(chosen) - MOST:,} more; all of them with --json")
-    for note in notes:
-        console.print(f"Note: {escape(note)}", highlight=False)
-    console.print(f"Compared: {count_same(findings)}", highlight=False)
+    last = [f"Note: {note}" for note in notes] + [f"Compared: {count_same(findings)}"]
     if any(finding.change == Change.BETTER for finding in findings):
-        console.print("What got better becomes the baseline with: hem baseline update")
-    for command in dict.fromkeys(finding.next for finding in findings if finding.next):
-        console.print(f"Next: {command}", highlight=False)
+        last.append("What got better becomes the baseline with: hem baseline update")
+    commands = dict.fromkeys(finding.next for finding in findings if finding.next)
+    for text in (*last, *(f"Next: {command}" for command in commands)):
+        console.print(escape(text), highlight=False)
     console.print(f"[bold]{SUMMARY[exit_code(findings)]}[/]")
 
 
@@ -62,8 +55,7 @@ def line(finding: Finding) -> str:
     """One line: the kind, the case with its structure abbreviated, and what changed."""
     case = finding.case
     if case.structure in NAMED:
-        abbreviated = case._replace(structure=NAMED[case.structure].abbreviation)
-        case = abbreviated._replace(experiment="")
+        case = case._replace(structure=NAMED[case.structure].abbreviation, experiment="")
     where = f"{case} {finding.axis}".strip()
     return f"  {finding.kind:<5} {where:<{WIDTH}} {finding.difference}"
 
@@ -83,32 +75,31 @@ def as_json(findings: Sequence[Finding], notes: Sequence[str]) -> dict[str, Any]
         "counts": dict(Counter(finding.change for finding in findings)),
         "notes": list(notes),
         "findings": [
-            {**asdict(finding), "outcome": finding.change, "where": finding.where,
-             "case": finding.case._asdict()}
-            for finding in findings
-            if finding.change != Change.SAME
+            {**asdict(it), "outcome": it.change, "where": it.where, "case": it.case._asdict()}
+            for it in findings
+            if it.change != Change.SAME
         ],
-    }  # fmt: skip
+    }
 
 
 def as_markdown(findings: Sequence[Finding], notes: Sequence[str]) -> str:
     """A summary for a pull request: a table for each title."""
     summary = SUMMARY[exit_code(findings)]
-    lines = [f"## hem check: {summary}", "", f"Compared: {count_same(findings)}.", ""]
-    for change, chosen in _by_change(findings):
-        lines += [f"### {TITLES[change]}: {len(chosen):,}", ""]
-        lines += ["| what | where | before | after | claim |", "|---|---|---|---|---|"]
+    parts = [f"## hem check: {summary}", f"Compared: {count_same(findings)}."]
+    for title, _, chosen in _by_change(findings):
+        rows = [["what", "where", "before", "after", "claim"]]
         for it in chosen[:MOST]:
             after = f"{it.after} ({it.why})" if it.why else it.after
             cells = it.kind, f"`{it.where}`", it.before, after.strip(), it.claim
-            lines.append("| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |")
-        more = len(chosen) - MOST
-        lines += [f"\n… and {more:,} more.", ""] if more > 0 else [""]
-    return "\n".join([*lines, *(f"- {note}" for note in notes)]).rstrip() + "\n"
+            rows.append([cell.replace("|", "\\|") for cell in cells])
+        parts += [f"### {title}: {len(chosen):,}", markdown_rows(rows)]
+        if len(chosen) > MOST:
+            parts.append(f"… and {len(chosen) - MOST:,} more.")
+    return "\n\n".join([*parts, "\n".join(f"- {note}" for note in notes)]).rstrip() + "\n"
 
 
-def _by_change(findings: Sequence[Finding]) -> Iterator[tuple[Change, list[Finding]]]:
-    for change in TITLES:
+def _by_change(findings: Sequence[Finding]) -> Iterator[tuple[str, str, list[Finding]]]:
+    for change, (title, color) in TITLES.items():
         chosen = [finding for finding in findings if finding.change == change]
         if chosen:
-            yield change, chosen
+            yield title, color, chosen

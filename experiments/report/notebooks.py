@@ -3,28 +3,23 @@
 No kernels: to start one and import everything anew takes longer than most chapters.
 """
 
-from __future__ import annotations
-
+import sys
+from base64 import b64encode
 from functools import cache
 from pathlib import Path
 from typing import Any
 
 import nbformat
-from IPython.core.displayhook import DisplayHook
-from IPython.core.displaypub import CapturingDisplayPublisher
 from IPython.core.interactiveshell import InteractiveShell
 from IPython.utils.capture import capture_output
 from nbconvert import HTMLExporter
-from traitlets import Type
 from traitlets.config import Config
 
 from experiments import carried
 from experiments.report.session import MissingError
 from experiments.runs import ResultsError
 
-HERE = Path(__file__).parent
-FRONT = "index"
-"""The notebook of the front page."""
+FRONT = "index"  # the notebook of the front page
 
 
 @cache
@@ -51,7 +46,7 @@ def body(name: str) -> str:
     execute(notebook, name)
     exporter = HTMLExporter(
         template_name="chapter",
-        extra_template_basedirs=[str(HERE / "templates")],
+        extra_template_basedirs=[str(Path(__file__).parent / "templates")],
         exclude_anchor_links=True,
     )
     return str(exporter.from_notebook_node(notebook)[0])
@@ -62,8 +57,8 @@ def execute(notebook: Any, name: str) -> None:
 
     A cell that lacks a measurement or a package says so and the next one is run.
     """
-    _Shell.clear_instance()
-    shell: Any = _Shell.instance(config=Config({"HistoryManager": {"enabled": False}}))
+    InteractiveShell.clear_instance()
+    shell: Any = InteractiveShell.instance(config=Config({"HistoryManager": {"enabled": False}}))
     heading = name
     for cell in notebook.cells:
         if cell.cell_type == "markdown":
@@ -73,52 +68,30 @@ def execute(notebook: Any, name: str) -> None:
             cell.outputs = _outputs(shell, cell.source, heading, name)
 
 
-class _Hook(DisplayHook):
-    """Publishes the value of a cell instead of printing it."""
-
-    shell: Any
-
-    def __call__(self, result: Any = None) -> None:
-        if result is not None:
-            self.shell.display_pub.publish(*self.shell.display_formatter.format(result))
-
-
-class _Shell(InteractiveShell):
-    """An interpreter that collects what cells show."""
-
-    displayhook_class = Type(_Hook)
-    display_pub_class = Type(CapturingDisplayPublisher)
-
-
 def _outputs(shell: Any, source: str, heading: str, name: str) -> list[Any]:
-    shell.display_pub.outputs = []
-    with capture_output(display=False) as printed:
+    with capture_output() as captured:
+        shell.display_trap.hook = sys.displayhook  # the value of a cell is captured, too
         done = shell.run_cell(source)
     error = done.error_before_exec or done.error_in_exec
-    outputs = [_output(**shown, heading=heading) for shown in shell.display_pub.outputs]
-    if printed.stdout and not error:
-        outputs.append(nbformat.v4.new_output("stream", text=printed.stdout))
+    outputs = [_output(shown.data, shown.metadata, heading) for shown in captured.outputs]
+    if captured.stdout and not error:
+        outputs.append(nbformat.v4.new_output("stream", text=captured.stdout))
     if isinstance(error, MissingError):
-        outputs.append(nbformat.v4.new_output("display_data", {"text/plain": str(error)}))
-        outputs[-1].metadata["missing"] = True
+        missing = {"metadata": {"missing": True}, "data": {"text/plain": str(error)}}
+        outputs.append(nbformat.v4.new_output("display_data", **missing))
     elif error:
         what = f"{type(error).__name__}: {error}"
         raise ResultsError(f"notebooks/{name}.ipynb cannot report this run: {what}") from error
     return outputs
 
 
-def _output(data: Any, metadata: Any, heading: str, **_: Any) -> Any:
+def _output(data: Any, metadata: Any, heading: str) -> Any:
     """A displayed value as a notebook keeps it; a picture has the alternative text it needs."""
     metadata = dict(metadata or {})
     for kind in {"image/jpeg", "image/png", "image/svg+xml"} & set(data):
         metadata[kind] = {"alt": f"Plot: {heading}", **metadata.get(kind, {})}
-    return nbformat.v4.new_output("display_data", data=_text(data), metadata=metadata)
-
-
-def _text(data: Any) -> Any:
-    from base64 import b64encode
-
-    return {
+    texts = {
         kind: b64encode(value).decode() if isinstance(value, bytes) else value
         for kind, value in data.items()
     }
+    return nbformat.v4.new_output("display_data", data=texts, metadata=metadata)

@@ -1,6 +1,4 @@
-"""HTML from the templates: whole pages, and the tables that chapters show."""
-
-from __future__ import annotations
+"""HTML from the templates: whole pages, the claim browser, and the tables that chapters show."""
 
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -9,13 +7,16 @@ from html import escape
 from importlib.resources import files
 from typing import Any
 
+import pandas as pd
 from jinja2 import Environment, PackageLoader, StrictUndefined
+from markupsafe import Markup
 
 from experiments.claims import SENTENCES, JudgedClaim, Outcome
 from experiments.claims.errata import Erratum
-from experiments.harness import Axis
+from experiments.harness import Axis, Table
 from experiments.report import session
 from experiments.report.notebooks import page_titles
+from experiments.report.tables import by_subject, duration, two_digits
 from experiments.runs import Run, in_words, tables
 from structures import NAMED
 
@@ -23,13 +24,10 @@ Heads = Mapping[str, Callable[[Any], str]]
 """What stands above the columns of a table of numbers, and how their values are written."""
 
 
-class Html(str):
+class Html(Markup):
     """A piece of a page, which notebooks show as it is."""
 
     def _repr_html_(self) -> str:
-        return str(self)
-
-    def __html__(self) -> str:
         return str(self)
 
 
@@ -45,21 +43,52 @@ def _templates() -> Environment:
         "heads": lambda columns: ["", *(NAMED[it].title for it in columns)],
         "link": session.link,
         "claim_link": session.claim_link,
+        "claim_file": lambda judged: f"{session.CLAIMS}/{session.claim_file(judged)}",
+        "was_measured": session.was_measured,
         "static": lambda name: Html((files("experiments.report") / "static" / name).read_text()),
     }
     environment.filters |= {"time": duration, "two_digits": two_digits}
     return environment
 
 
-def page(template: str, **content: Any) -> str:
+def page(template: str, **content: Any) -> Html:
     """A whole page, or a part of one, from a template."""
-    return _templates().get_template(template).render(**content)
+    return Html(_templates().get_template(template).render(**content))
 
 
 def table(macro: str, *content: Any) -> Html:
     """A table by the name of its macro in ``tables.html.j2``."""
     module: Any = _templates().get_template("tables.html.j2").module
     return Html(getattr(module, macro)(*content))
+
+
+def browser(shown: session.Session) -> Html:
+    """Every claim with what it rests on, to filter and to search; without scripts just unfolded."""
+    facts = {"claims": shown.claims, "printed": shown.printed, "tables": groups_of_claims()}
+    return page("claim_browser.html.j2", filters=filters(shown.claims), **facts)
+
+
+def groups_of_claims() -> dict[str, Table]:
+    """The tables, and the sentences."""
+    return {**tables(), SENTENCES: Table(SENTENCES, "In sentences", {}, "half_edge_or_indexed")}
+
+
+def filters(claims: Sequence[JudgedClaim]) -> dict[str, dict[str, tuple[str, int]]]:
+    """By group the choices: value -> its title, and how many claims it has."""
+    counts = {
+        "outcome": Counter(it.outcome.value for it in claims),
+        "structure": Counter(it.claim.structure for it in claims if it.claim.structure),
+        "kind": Counter(it.claim.table for it in claims),
+    }
+    titles: dict[str, dict[str, str]] = {
+        "outcome": {it.value: f"{it.mark} {it.value}" for it in Outcome},
+        "structure": {name: NAMED[name].title for name in counts["structure"]},
+        "kind": {name: it.title for name, it in groups_of_claims().items()},
+    }
+    return {
+        group: {value: (title, counts[group][value]) for value, title in offered.items()}
+        for group, offered in titles.items()
+    }
 
 
 def verdicts(claims: Iterable[JudgedClaim], name: str) -> Html:
@@ -79,22 +108,21 @@ def sentences(claims: Iterable[JudgedClaim]) -> Html:
 
 def claim_tables(claims: Iterable[JudgedClaim]) -> Html:
     """Every table at a glance, each under its title."""
-    parts = []
-    for name, it in tables().items():
-        if any(judged.claim.structure and judged.claim.table == name for judged in claims):
-            parts.append(
-                f"<h3>{escape(it.title)}</h3>{or_missing(partial(verdicts, claims, name))}"
-            )
-    return Html("\n".join(parts))
+    named = {it.claim.table for it in claims if it.claim.structure}
+    shown = {
+        it.title: or_missing(partial(verdicts, claims, name))
+        for name, it in tables().items()
+        if name in named
+    }
+    return Html("\n".join(f"<h3>{escape(title)}</h3>{text}" for title, text in shown.items()))
 
 
 def reasons(claims: Iterable[JudgedClaim], name: str) -> Html:
     """Why time leaves claims of a table undetermined."""
-    mine = (it for it in claims if it.claim.table == name)
     rows = [
         (it.claim.title, NAMED[it.claim.structure].title, axis.label, verdict.reason)
-        for it in mine
-        if it.outcome_time is Outcome.UNDETERMINED
+        for it in claims
+        if it.claim.table == name and it.outcome_time is Outcome.UNDETERMINED
         for axis, verdict in it.verdicts.items()
         if not axis.exact and verdict.outcome == it.outcome_time.value
     ]
@@ -116,68 +144,28 @@ def chapter_list() -> Html:
     return table("chapter_list", page_titles())
 
 
-def or_missing(part: Callable[[], str]) -> str:
+def or_missing(part: Callable[[], str], otherwise: str = '<p class="missing">{}</p>') -> str:
     """A part of a page, or a word on why it is not there."""
     try:
         return part()
     except session.MissingError as missing:
-        return f'<p class="missing">{escape(str(missing))}</p>'
+        return otherwise.format(escape(str(missing), quote=False))
 
 
-def numbers(rows: Sequence[Sequence[Any]], heads: Heads) -> Html:
+def numbers(rows: Iterable[Sequence[Any]], heads: Heads) -> Html:
     """A table of numbers; ``heads``: what stands above a column, and how its values are written.
 
     Raises MissingError where there is no row.
     """
-    if not rows:
+    written = [[how(it) for it, how in zip(row, heads.values(), strict=True)] for row in rows]
+    if not written:
         raise session.MissingError("This run has not measured what would stand here.")
-    formatted = [[how(it) for it, how in zip(row, heads.values(), strict=True)] for row in rows]
-    return table("numbers", list(heads), formatted)
+    return table("numbers", list(heads), written)
 
 
-def by_subject(
-    claims: Iterable[JudgedClaim], name: str
-) -> tuple[list[str], dict[str, dict[str, JudgedClaim]]]:
-    """The columns and the rows of a table of claims: structures; title -> structure -> claim.
-
-    A structure of which nothing was measured has no column. Raises MissingError if none is left.
-    """
-    mine = [it for it in claims if it.claim.table == name and it.claim.structure]
-    columns = list(dict.fromkeys(it.claim.structure for it in mine if was_measured(it)))
-    if not columns:
-        raise session.MissingError("This run has measured nothing of this table.")
-    rows: dict[str, dict[str, JudgedClaim]] = {}
-    for it in mine:
-        if it.claim.structure in columns:
-            rows.setdefault(it.claim.title, {})[it.claim.structure] = it
-    return columns, rows
-
-
-def was_measured(judged: JudgedClaim) -> bool:
-    """Whether a run has anything to say about a claim."""
-    known = judged.bytes_per_vertex == judged.bytes_per_vertex  # not nan
-    return bool(judged.verdicts) or len(judged.values) > 0 or known
-
-
-def duration(seconds: float) -> str:
-    """A time with two digits that count: 3.1 µs, 250 ms."""
-    units = ((1.0, "s"), (1e-3, "ms"), (1e-6, "µs"), (1e-9, "ns"))
-    size, unit = next((it for it in units if seconds >= 0.995 * it[0]), units[-1])
-    return f"{digits(seconds / size)} {unit}"
-
-
-def digits(value: float, count: int = 2) -> str:
-    """So many digits that count, without powers: 0.036, 5.1, 64, 12,000."""
-    if not 0 < abs(value) < float("inf"):
-        return "0" if value == 0 else "–"
-    rounded = float(f"{value:.{count - 1}e}")
-    behind = count - 1 - int(f"{abs(rounded):e}".partition("e")[2])
-    return f"{rounded:,.{max(behind, 0)}f}"
-
-
-def two_digits(value: float) -> str:
-    """A slope: 1.00, never -0.00."""
-    return f"{round(value, 2) + 0:.2f}"
+def frame_table(frame: pd.DataFrame) -> Html:
+    """A table of what is text already. Raises MissingError where there is no row."""
+    return numbers(frame.to_numpy(), dict.fromkeys(frame.columns, str))
 
 
 def answer(text: str, rests: Mapping[str, str], needs: Sequence[float], missing: str) -> Html:

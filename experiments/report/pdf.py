@@ -1,7 +1,5 @@
 """The report as one document to print: the browser prints a page with all pages on it."""
 
-from __future__ import annotations
-
 import os
 import shutil
 import subprocess
@@ -9,9 +7,7 @@ import tempfile
 from pathlib import Path
 
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome")
-BROWSER_VARIABLE = "HEM_BROWSER"
-"""The environment variable that names another program."""
-
+BROWSER_VARIABLE = "HEM_BROWSER"  # the environment variable that names another program
 FLAGS = (
     "--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run",
     "--disable-background-networking", "--disable-component-update", "--disable-sync",
@@ -19,8 +15,7 @@ FLAGS = (
 )  # fmt: skip
 """A browser without a window that keeps to itself. What it opens are our own files."""
 
-PATIENCE = 300
-"""Seconds until a browser that does not print is given up."""
+PATIENCE = 300  # seconds until a browser that does not print is given up
 
 
 class PrintError(ValueError):

@@ -1,7 +1,6 @@
 """The page that is committed of a run: tables, sentences and the main plots, in Markdown."""
 
-from __future__ import annotations
-
+import re
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
@@ -9,38 +8,42 @@ from pathlib import Path
 from matplotlib.figure import Figure
 
 from experiments.claims import judge_run
-from experiments.harness import OPERATIONS, Axis
-from experiments.report import figures, fracture_figures, memory_figures, mesh_figures
-from experiments.report.session import MissingError, Session, share
+from experiments.harness import OPERATIONS, QUERIES_TABLE, Axis
+from experiments.report.figures import fracture, growth, memory, meshes
+from experiments.report.pages import or_missing
+from experiments.report.session import Session, share
 from experiments.report.tables import markdown, sentences_markdown
 from experiments.runs import Run, in_words, load, tables
 
 DRAWN: dict[str, tuple[str, Callable[[Run], Figure]]] = {
-    "overview": ("The faces around a vertex, by work and by time", figures.overview),
-    "time": ("Time of the nine queries", lambda run: figures.scaling(run, Axis.TIME_FACES)),
-    "work": ("Work of the nine queries", lambda run: figures.scaling(run, Axis.WORK_FACES)),
-    "memory": ("Bytes per vertex", memory_figures.memory),
-    "building": ("Time to build", figures.building),
+    "overview": ("The faces around a vertex, by work and by time", growth.overview),
+    "time": ("Time of the nine queries", lambda run: growth.scaling(run, Axis.TIME_FACES)),
+    "work": ("Work of the nine queries", lambda run: growth.scaling(run, Axis.WORK_FACES)),
+    "memory": ("Bytes per vertex", memory.by_field),
+    "building": ("Time to build", growth.building),
     "operations": (
         "Time of the operations",
-        lambda run: figures.scaling(run, Axis.TIME_FACES, OPERATIONS),
+        lambda run: growth.scaling(run, Axis.TIME_FACES, OPERATIONS),
     ),
-    "workloads": ("What people do with meshes", figures.workloads),
-    "references": ("A half-edge mesh in arrays and in objects", memory_figures.references),
-    "listings": ("The thesis' listings, as published and as corrected", figures.listings),
-    "plankton": ("The article's walk around a vertex", lambda run: mesh_figures.plankton_walk()),
-    "impacts": ("A plate struck in several places", lambda run: fracture_figures.impacts()),
+    "workloads": ("What people do with meshes", growth.workloads),
+    "references": ("A half-edge mesh in arrays and in objects", memory.references),
+    "listings": ("The thesis' listings, as published and as corrected", growth.listings),
+    "plankton": ("The article's walk around a vertex", lambda run: meshes.plankton_walk()),
+    "impacts": ("A plate struck in several places", lambda run: fracture.impacts()),
     "broken": (
         "A bunny broken at three forces",
-        lambda run: fracture_figures.gallery(fracture_figures.broken_by_force("bunny", "ceramic")),
+        lambda run: fracture.gallery(fracture.broken_by_force("bunny", "ceramic")),
     ),
-    "shards": ("Breaking a surface", figures.shards_per_second),
+    "shards": ("Breaking a surface", growth.shards_per_second),
     "overtaking": (
         "Queries and edits per build until the indexed mesh is overtaken",
-        figures.overtaking,
+        growth.overtaking,
     ),
 }
 """The pictures of the page: by file the title and how it is drawn."""
+
+MARKED = "(?s)(<!-- table -->).*?(<!-- end of table -->)"  # where the README has table 1
+MISSING = "*{}*"  # how the page says what was not measured
 
 
 def write_readme(run_folder: Path, folder: Path) -> Path:
@@ -52,40 +55,27 @@ def write_readme(run_folder: Path, folder: Path) -> Path:
     claims = judge_run(run)
     share(Session(run, claims))
     folder.mkdir(parents=True, exist_ok=True)
-    parts = [f"# The thesis, measured\n\n{in_words(run)}"]
-    for name, table in tables().items():
-        if any(it.claim.structure and it.claim.table == name for it in claims):
-            parts.append(f"## {table.title}\n\n{_or_missing(partial(markdown, claims, name))}")
-    parts.append(f"## In sentences\n\n{sentences_markdown(claims)}")
-    parts += [f"## {title}\n\n{_picture(run, name, folder)}" for name, (title, _) in DRAWN.items()]
+    named = {it.claim.table for it in claims if it.claim.structure}
+    parts = {
+        it.title: or_missing(partial(markdown, claims, name), MISSING)
+        for name, it in tables().items()
+        if name in named
+    }
+    parts["In sentences"] = sentences_markdown(claims)
+    for name, (title, draw) in DRAWN.items():
+        picture = partial(_draw, run, draw, folder / f"{name}.png", title)
+        parts[title] = or_missing(picture, MISSING)
+    text = "\n\n".join(f"## {title}\n\n{part}" for title, part in parts.items())
     page = folder / "README.md"
-    page.write_text("\n\n".join(parts) + "\n", "utf-8")
-    _fill_in(folder.parent / "README.md", _or_missing(partial(markdown, claims, "queries")))
+    page.write_text(f"# The thesis, measured\n\n{in_words(run)}\n\n{text}\n", "utf-8")
+    readme = folder.parent / "README.md"
+    if readme.exists():
+        table = parts[QUERIES_TABLE.title]
+        text = re.sub(MARKED, lambda it: f"{it[1]}\n{table}\n{it[2]}", readme.read_text("utf-8"))
+        readme.write_text(text, "utf-8")
     return page
 
 
-def _picture(run: Run, name: str, folder: Path) -> str:
-    title, draw = DRAWN[name]
-
-    def drawn() -> str:
-        draw(run).savefig(folder / f"{name}.png")
-        return f"![{title}]({name}.png)"
-
-    return _or_missing(drawn)
-
-
-def _or_missing(part: Callable[[], str]) -> str:
-    """A part of the page, or a word on why it is not there."""
-    try:
-        return part()
-    except MissingError as missing:
-        return f"*{missing}*"
-
-
-def _fill_in(readme: Path, table: str) -> None:
-    """Put the table between the two marks of a README that has them."""
-    text = readme.read_text("utf-8") if readme.exists() else ""
-    before, begin, rest = text.partition("<!-- table -->")
-    _, end, after = rest.partition("<!-- end of table -->")
-    if end:
-        readme.write_text(f"{before}{begin}\n{table}\n{end}{after}", "utf-8")
+def _draw(run: Run, draw: Callable[[Run], Figure], file: Path, title: str) -> str:
+    draw(run).savefig(file)
+    return f"![{title}]({file.name})"

@@ -1,18 +1,14 @@
 """What a chapter works with: the run it reports, and where its links lead."""
 
-from __future__ import annotations
-
 import os
 from dataclasses import dataclass
-from importlib.util import find_spec
 from pathlib import Path
 
 from experiments.claims import JudgedClaim, judge_run
-from experiments.report.style import show_figures
 from experiments.runs import Run, latest, load
 
-RUN_VARIABLE = "HEM_RUN"
-"""The environment variable that tells a notebook which run to read."""
+RUN_VARIABLE = "HEM_RUN"  # the environment variable that tells a notebook which run to read
+CLAIMS = "claims"  # the folder beside the pages that holds the claims' figures and data
 
 
 class MissingError(ValueError):
@@ -42,6 +38,8 @@ def open_run() -> Session:
 
     Raises ResultsError where there is none.
     """
+    from experiments.report.style import show_figures  # which a terminal does not wait for
+
     show_figures()
     if _current is None:
         run = load(os.environ.get(RUN_VARIABLE) or latest())
@@ -62,12 +60,15 @@ def claim_link(key: str) -> str:
     return link("index", key)
 
 
-def require(module: str, extra: str) -> None:
-    """Raise MissingError unless an optional package is installed."""
-    if find_spec(module) is None:
-        raise MissingError(
-            f"This needs {module}, which is not installed: pip install 'hem-mesh[{extra}]'"
-        )
+def claim_file(judged: JudgedClaim) -> str:
+    """How the names of a claim's files begin."""
+    return judged.claim.key.replace("/", ".")
+
+
+def was_measured(judged: JudgedClaim) -> bool:
+    """Whether a run has anything to say about a claim."""
+    known = judged.bytes_per_vertex == judged.bytes_per_vertex  # not nan
+    return bool(judged.verdicts) or len(judged.values) > 0 or known
 
 
 def project_file(path: str) -> Path:

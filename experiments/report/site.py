@@ -1,24 +1,25 @@
 """The report of a run: its pages, which open from disk, or all of them as one document."""
 
-from __future__ import annotations
-
+import multiprocessing
+import os
+import signal
 import tempfile
 from collections.abc import Iterator
-from concurrent.futures import Future, as_completed
+from concurrent.futures import Future, ProcessPoolExecutor, as_completed
 from contextlib import contextmanager
 from pathlib import Path
+from threading import Thread
 from typing import Any
 
 from experiments.claims import judge_run
-from experiments.report import chapters, pdf
-from experiments.report.claim_figures import FOLDER, write_claims
-from experiments.report.notebooks import FRONT, page_titles
+from experiments.report import pdf
+from experiments.report.figures.claims import write_claims
+from experiments.report.notebooks import FRONT, body, page_titles
 from experiments.report.pages import page
-from experiments.report.session import Session
+from experiments.report.session import CLAIMS, Session, share
 from experiments.runs import ResultsError, load
 
-BATCH = 10
-"""Claims whose figures a process draws at a time."""
+BATCH = 10  # claims whose figures a process draws at a time
 
 
 def write_report(run_folder: Path, output: Path) -> Path:
@@ -27,11 +28,11 @@ def write_report(run_folder: Path, output: Path) -> Path:
     The pages replace what was there all at once. Raises ResultsError where the run cannot be read
     or a notebook fails, naming it; then what was there stays.
     """
-    session = _judged(run_folder, printed=False)
+    session = Session(run := load(run_folder), judge_run(run))
     _require_replaceable(output)
     with _beside(output) as fresh:
-        for name, body in _write_parts(session, fresh).items():
-            content = page("page.html.j2", titles=page_titles(), here=name, front=FRONT, body=body)
+        for name, text in _write_parts(session, fresh).items():
+            content = page("page.html.j2", titles=page_titles(), here=name, front=FRONT, body=text)
             (fresh / f"{name}.html").write_text(content, "utf-8")
         _require_replaceable(output)
         if output.exists():
@@ -46,7 +47,7 @@ def write_pdf(run_folder: Path, output: Path) -> Path:
     Raises ResultsError as ``write_report`` does, and PrintError without a browser to print it.
     """
     pdf.require_browser()  # rather now than after the notebooks
-    session = _judged(run_folder, printed=True)
+    session = Session(run := load(run_folder), judge_run(run), printed=True)
     with _beside(output) as fresh:
         bodies = _write_parts(session, fresh)
         content = page("print.html.j2", titles=page_titles(), front=FRONT, bodies=bodies)
@@ -55,30 +56,55 @@ def write_pdf(run_folder: Path, output: Path) -> Path:
     return output
 
 
-def _judged(run_folder: Path, printed: bool) -> Session:
-    run = load(run_folder)
-    return Session(run, judge_run(run), printed)
-
-
 def _write_parts(session: Session, folder: Path) -> dict[str, str]:
     """Write the files beside the pages -> the bodies of the pages, in the order they are read."""
-    (folder / FOLDER).mkdir()
+    (folder / CLAIMS).mkdir()
     keys = [it.claim.key for it in session.claims]
-    with chapters.workers(session) as pool:
-        bodies = chapters.bodies(pool, page_titles())
+    with _workers(session) as pool:
+        bodies = {name: pool.submit(body, name) for name in page_titles()}
         drawn = [
-            pool.submit(write_claims, keys[start : start + BATCH], folder / FOLDER)
+            pool.submit(write_claims, keys[start : start + BATCH], folder / CLAIMS)
             for start in range(0, len(keys), BATCH)
         ]
         every: list[Future[Any]] = [*drawn, *bodies.values()]
         for part in as_completed(every):
             part.result()  # the first that fails ends all
-        return {name: body.result() for name, body in bodies.items()}
+        return {name: text.result() for name, text in bodies.items()}
+
+
+@contextmanager
+def _workers(session: Session) -> Iterator[ProcessPoolExecutor]:
+    """Processes that know the run, one per core; an interrupt or an error ends them.
+
+    They share what takes long to import where the system can fork them.
+    """
+    methods = multiprocessing.get_all_start_methods()
+    context: Any = multiprocessing.get_context("forkserver" if "forkserver" in methods else "spawn")
+    if "forkserver" in methods:
+        context.set_forkserver_preload([__name__])
+    others = set(multiprocessing.active_children())
+    pool = ProcessPoolExecutor(len(os.sched_getaffinity(0)), context, _begin, (session,))
+    try:
+        yield pool
+    except BaseException:
+        pool.shutdown(wait=False, cancel_futures=True)
+        for worker in set(multiprocessing.active_children()) - others:
+            worker.terminate()
+        raise
+    pool.shutdown()
+
+
+def _begin(session: Session) -> None:
+    """What a process does first. It ends with its parent, who alone hears an interrupt."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    parent: Any = multiprocessing.parent_process()
+    Thread(target=lambda: (parent.join(), os._exit(1)), daemon=True).start()
+    share(session)
 
 
 def _require_replaceable(output: Path) -> None:
     """Raise ResultsError unless there is nothing at ``output``, or a report, to be replaced."""
-    known = {f"{name}.html" for name in page_titles()} | {FOLDER}
+    known = {f"{name}.html" for name in page_titles()} | {CLAIMS}
     if output.exists() and not (
         output.is_dir() and all(path.name in known for path in output.iterdir())
     ):

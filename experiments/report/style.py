@@ -1,64 +1,48 @@
 """How every plot looks: one color, line and marker per structure, labels at the lines."""
 
-from __future__ import annotations
-
 import io
-from collections.abc import Iterable, Mapping, Sequence
+from collections import defaultdict
+from collections.abc import Sequence
+from pathlib import Path
 from typing import Any
 
 import numpy as np
-from matplotlib import rc_context
+from matplotlib import rc_context, rc_params_from_file
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
-from matplotlib.transforms import ScaledTranslation
 from scipy.optimize import isotonic_regression
 
-from hem.contract import Look
+from experiments.harness import OPERATIONS, QUERIES_TABLE, Axis
 from structures import NAMED
 
-Ends = dict[str, tuple[float, float, str]]
-"""Where lines end: label -> (x, y, color) in data coordinates."""
+STYLES: dict[str, dict[str, Any]] = {
+    name: {
+        "label": it.abbreviation,
+        "color": it.look.color,
+        "marker": it.look.marker,
+        "linestyle": it.look.line,
+    }
+    for name, it in NAMED.items()
+}
+"""How Matplotlib draws the line of a structure, as each declares it: the same in every plot."""
 
+TITLES = {**QUERIES_TABLE.subjects, **OPERATIONS}
+"""The queries and the operations, and what a panel or a row of them is called."""
 
-LOOKS: dict[str, Look] = {name: it.look for name, it in NAMED.items()}
-"""By structure, as each declares it: the same in every plot."""
-
+VARIABLES = {"faces": "faces n_t", "valence": "valence n_ev", "vertices": "vertices n_v"}
 GRAY = "#8a8a8a"
 FADED = "#efefef"
 RED = "#c23b22"
+BLUE = "#2f7fc1"
 
-APART = 40.0
-"""Points between the ends of two lines from which on their labels cannot meet."""
-
-RC: Any = {
-    "font.family": "sans-serif",
-    "font.size": 9,
-    "axes.titlesize": 10,
-    "axes.titleweight": "bold",
-    "axes.titlelocation": "left",
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "axes.grid": True,
-    "grid.color": "#e6e6e6",
-    "grid.linewidth": 0.6,
-    "axes.axisbelow": True,
-    "lines.linewidth": 1.6,
-    "lines.markersize": 4,
-    "figure.dpi": 110,
-    "savefig.dpi": 150,
-    "svg.fonttype": "none",
-    "svg.hashsalt": "hem",
-}
+APART = 40.0  # points between the ends of two lines from which on their labels cannot meet
+RC = rc_params_from_file(Path(__file__).parent / "static" / "hem.mplstyle", False, False)
 
 
 class Plot(Figure):
     """A figure of lines, bars and words, which a page shows as SVG; pictures are PNG."""
-
-
-def short(structure: str) -> str:
-    """The name of a structure that stands at its line."""
-    return str(NAMED[structure].abbreviation)
 
 
 def styled() -> Any:
@@ -119,71 +103,71 @@ def compact(value: float) -> str:
     return f"{value:g}"
 
 
-def fit_heights(shared: Iterable[Axes]) -> None:
-    """One height axis for all these panels: that of their lines, with room above and below."""
-    shared = list(shared)
-    lines = [np.ravel(np.asarray(it.get_ydata(), float)) for axes in shared for it in axes.lines]
-    heights = np.concatenate(lines or [np.ones(1)])
-    for axes in shared:
-        axes.set_ylim(heights.min() / 2.2, heights.max() * 2.2)
+def axis_label(axis: Axis) -> str:
+    """What is measured along an axis, with its unit."""
+    return f"{axis.label}, {axis.unit}" if axis.unit else axis.label
 
 
-def finish_panels(
-    figure: Figure, every: Iterable[Axes], ends: Sequence[Ends], room: float = 0.17
-) -> None:
+def labeled(axes: Axes) -> list[Line2D]:
+    """The lines that have a label."""
+    return [line for line in axes.lines if not str(line.get_label()).startswith("_")]
+
+
+def finish_panels(figure: Figure, every: Sequence[Axes], room: float = 0.17) -> None:
     """Label the lines. They need room beside the last point, and a settled layout before that."""
-    shared = list(every)
-    for axes, labels in zip(shared, ends, strict=True):
-        if not labels:
-            axes.text(0.5, 0.5, "not measured", transform=axes.transAxes, ha="center", color=GRAY)
-    drawn = [axes for axes, labels in zip(shared, ends, strict=True) if labels]
-    limits = np.array([axes.get_xlim() for axes in drawn])
+    limits = np.array([axes.get_xlim() for axes in every if labeled(axes)])
     low, high = limits[:, 0].min(), limits[:, 1].max()
-    for axes in shared:
+    for axes in every:
         axes.set_xlim(low, high * (high / low) ** room)
+        if not labeled(axes):
+            axes.text(0.5, 0.5, "not measured", transform=axes.transAxes, ha="center", color=GRAY)
     layout = figure.get_layout_engine()
     if layout:
         layout.execute(figure)
         figure.set_layout_engine("none")
-    for axes, labels in zip(shared, ends, strict=True):
-        label_ends(axes, labels)
+    for axes in every:
+        label_ends(axes)
 
 
-def plain_numbers(axes: Axes) -> None:
-    """Upright numbers also between the decades, where there is no whole one to be seen."""
-    axes.margins(y=0.18)
-    low, high = axes.get_ylim()
-    marks = (1.0,) if high / low > 30 else (1.0, 2.0, 5.0)
-    axes.yaxis.set_major_locator(LogLocator(subs=marks))
-
-
-def label_ends(axes: Axes, ends: Mapping[str, tuple[float, float, str]], gap: float = 10.5) -> None:
-    """Write each label to the right of its line's end, pushed apart to ``gap`` points.
+def label_ends(axes: Axes, gap: float = 10.5) -> None:
+    """Write each line's label to the right of its end, pushed apart to ``gap`` points.
 
     Lines that end elsewhere, by more than ``APART`` points, are not in each other's way. Call it
     when the axes' limits stand.
     """
     figure = axes.get_figure(root=True)
     assert figure is not None
-    places = {
-        label: axes.transData.transform((x, y)) * 72 / figure.dpi
-        for label, (x, y, _) in ends.items()
-    }
-    groups: dict[int, list[str]] = {}
-    for label in sorted(places, key=lambda label: float(places[label][1])):
-        groups.setdefault(round(places[label][0] / APART), []).append(label)
-    for labels in groups.values():
-        heights = [float(places[label][1]) for label in labels]
-        for label, old, new in zip(labels, heights, spread_apart(heights, gap), strict=True):
-            x, y, color = ends[label]
-            shift = ScaledTranslation(5 / 72, (new - old) / 72, figure.dpi_scale_trans)
-            axes.text(
-                x, y, label, color=color, va="center", fontsize=8,
-                transform=axes.transData + shift, clip_on=False,
+    groups: dict[int, list[tuple[float, Line2D]]] = defaultdict(list)
+    for line in labeled(axes):
+        x, y = axes.transData.transform(_end(line)) * 72 / figure.dpi
+        groups[round(x / APART)].append((y, line))
+    for ends in groups.values():
+        ends.sort(key=lambda end: end[0])
+        places = spread_apart([height for height, _ in ends], gap)
+        for (height, line), place in zip(ends, places, strict=True):
+            axes.annotate(
+                str(line.get_label()), _end(line), (5, place - height),
+                textcoords="offset points", annotation_clip=False,
+                color=line.get_color(), va="center", fontsize=8,
             )  # fmt: skip
+
+
+def _end(line: Line2D) -> Any:
+    return np.asarray(line.get_xydata())[-1]
 
 
 def spread_apart(heights: list[float], gap: float) -> list[float]:
     """Ascending heights moved as little as need be to stand at least ``gap`` apart."""
     steps = gap * np.arange(len(heights))
     return [float(it) for it in isotonic_regression(np.array(heights) - steps).x + steps]
+
+
+def side_by_side(
+    titles: Sequence[str], width: float, height: float, **shared: Any
+) -> tuple[Figure, list[Axes]]:
+    """A figure with a titled panel for each of ``titles``, in inches."""
+    figure = Figure(figsize=(width * len(titles), height), layout="constrained")
+    every = list(figure.subplots(1, len(titles), squeeze=False, **shared)[0])
+    for axes, title in zip(every, titles, strict=True):
+        axes.set_title(title)
+    return figure, every

@@ -1,11 +1,8 @@
-"""The tables of claims for a terminal, in 80 columns, and as Markdown."""
-
-from __future__ import annotations
+"""Rows as a table for a terminal, in 80 columns, or in Markdown; and so the tables of claims."""
 
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
-from typing import Any
 
 from rich import box
 from rich.console import Console
@@ -13,19 +10,83 @@ from rich.table import Table
 from rich.text import Text
 
 from experiments.claims import Between, JudgedClaim, Outcome, judge_run
-from experiments.harness import Axis
-from experiments.report.pages import by_subject, two_digits, was_measured
-from experiments.report.session import MissingError
+from experiments.report.session import MissingError, was_measured
 from experiments.runs import load, noise, tables
 from structures import NAMED, THESIS
 
-COMPACT: Any = {"box": box.SIMPLE_HEAD, "pad_edge": False, "padding": (0, 1, 0, 0)}
-ABREAST = 4
-"""Structures in one table: more do not fit into 80 columns without cutting a figure."""
+COLORS = {
+    rf"\{Outcome.CONSISTENT.mark}": Outcome.CONSISTENT.color,
+    rf"\{Outcome.VIOLATED.mark}": Outcome.VIOLATED.color,
+    rf"\{Outcome.UNDETERMINED.mark}": Outcome.UNDETERMINED.color,
+    rf"^{Outcome.NO_CLAIM.mark}.*": Outcome.NO_CLAIM.color,
+    "[▲▼][^ ]+|≠": "bold yellow",
+}
+"""What is colored in a terminal, as regular expressions."""
+
+WIDEST = 500  # columns of a table that a terminal does not cut
 
 LEGEND = """Each cell: what is claimed, the verdict by work (memory accesses) and that by time.
 ✓ consistent, ✗ violated, ? undetermined, – nothing claimed. The work decides.
 Where the claim is not confirmed, what was found stands beside it."""
+
+
+def show_rows(
+    console: Console, rows: Iterable[Sequence[str]], title: str = "", numbers: Sequence[str] = ()
+) -> None:
+    """Print a table, however wide it is: a figure that is cut is a wrong one.
+
+    rows: its heads first. numbers: the heads of the columns that are flush right.
+    """
+    heads, *body = rows
+    table = Table(title=title or None, title_justify="left", box=box.SIMPLE_HEAD, pad_edge=False)
+    table.padding = (0, 1, 0, 0)
+    for head in heads:
+        table.add_column(head, style="" if head else "bold", no_wrap=True)
+        table.columns[-1].justify = "right" if head in numbers else "left"
+    for row in body:
+        cells = [Text(cell) for cell in row]
+        for cell in cells:
+            for pattern, color in COLORS.items():
+                cell.highlight_regex(pattern, color)
+        table.add_row(*cells)
+    wide = console.measure(table, options=console.options.update(max_width=WIDEST))
+    console.print(table, width=max(console.width, wide.maximum), crop=False)
+
+
+def markdown_rows(rows: Iterable[Sequence[str]]) -> str:
+    """A table for a page in Markdown; rows: its heads first."""
+    heads, *body = rows
+    return "\n".join(f"| {' | '.join(it)} |" for it in (heads, ["---"] * len(heads), *body))
+
+
+def by_subject(
+    claims: Iterable[JudgedClaim], name: str
+) -> tuple[list[str], dict[str, dict[str, JudgedClaim]]]:
+    """The columns and the rows of a table of claims: structures; title -> structure -> claim.
+
+    A structure of which nothing was measured has no column. Raises MissingError if none is left.
+    """
+    mine = [it for it in claims if it.claim.table == name and it.claim.structure]
+    columns = list(dict.fromkeys(it.claim.structure for it in mine if was_measured(it)))
+    if not columns:
+        raise MissingError("This run has measured nothing of this table.")
+    rows: dict[str, dict[str, JudgedClaim]] = {}
+    for it in mine:
+        if it.claim.structure in columns:
+            rows.setdefault(it.claim.title, {})[it.claim.structure] = it
+    return columns, rows
+
+
+def _texts(
+    claims: Iterable[JudgedClaim], name: str, head: str, cell: Callable[[JudgedClaim], str]
+) -> list[list[str]]:
+    """The same as texts, the heads first; ``head``: the attribute that names a structure."""
+    columns, rows = by_subject(claims, name)
+    body = [
+        [title, *(cell(row[it]) if it in row else "" for it in columns)]
+        for title, row in rows.items()
+    ]
+    return [["", *(getattr(NAMED[it], head) for it in columns)], *body]
 
 
 def show_claims(
@@ -41,106 +102,105 @@ def show_claims(
     for name, table in tables().items():
         mine = [it for it in claims if it.claim.table == name]
         if mine:
-            console.print()
-            console.print(f"[bold]{table.title}[/]", highlight=False)
-            for part in _slopes(mine) if slopes else _verdicts(mine, name):
-                console.print(part)
-            console.print(_summary(mine))
+            console.print(f"\n[bold]{table.title}[/]", highlight=False)
+            (_show_slopes if slopes else _show_verdicts)(console, mine)
+            console.print(_summary(mine), highlight=False)
     seen = noise(run)
     if seen.too_busy:
         console.print(f"[yellow]{seen.words}[/]", highlight=False)
     console.print(LEGEND, style="dim", highlight=False)
 
 
-def _verdicts(claims: Sequence[JudgedClaim], name: str) -> Iterable[Table]:
-    columns, rows = by_subject(claims, name)
-    for start in range(0, len(columns), ABREAST):
-        shown = columns[start : start + ABREAST]
-        table = Table(**COMPACT)
-        table.add_column("", style="bold", no_wrap=True)
-        for structure in shown:
-            table.add_column(NAMED[structure].abbreviation, no_wrap=True)
-        for title, row in rows.items():
-            cells = [_cell(row[it]) if it in row else Text() for it in shown]
-            if any(cells):
-                table.add_row(title, *cells)
-        yield table
+def _show_verdicts(console: Console, claims: Sequence[JudgedClaim]) -> None:
+    """As many structures beside each other as there is room for."""
+    rows = _texts(claims, claims[0].claim.table, "abbreviation", _cell)
+    widths = [max(map(len, column)) + 2 for column in zip(*rows, strict=True)]
+    start = 1
+    while start < len(widths):
+        stop = start + 1
+        while stop < len(widths) and widths[0] + sum(widths[start : stop + 1]) <= console.width:
+            stop += 1
+        part = [[row[0], *row[start:stop]] for row in rows]
+        show_rows(console, [row for row in part if any(row[1:])])
+        start = stop
 
 
-def _cell(judged: JudgedClaim) -> Text:
+def _cell(judged: JudgedClaim) -> str:
     """What is claimed, the marks by work and by time, and what was found where it differs."""
-    text = Text(judged.claim.printed)
     if judged.outcome is Outcome.NO_CLAIM:
-        return Text(f"– {judged.found}", style=Outcome.NO_CLAIM.color)
-    text.append(f" {judged.outcome.mark}", style=judged.outcome.color)
-    if judged.verdicts:
-        text.append(judged.outcome_time.mark, style=judged.outcome_time.color)
-    if judged.outcome is not Outcome.CONSISTENT:
-        text.append(f" {judged.found}")
-    return text
+        return f"– {judged.found}"
+    marks = judged.outcome.mark + (judged.outcome_time.mark if judged.verdicts else "")
+    found = "" if judged.outcome is Outcome.CONSISTENT else f" {judged.found}"
+    return f"{judged.claim.printed} {marks}{found}"
 
 
-def _slopes(claims: Sequence[JudgedClaim]) -> Iterable[Table]:
+def _show_slopes(console: Console, claims: Sequence[JudgedClaim]) -> None:
     """By structure a line per claim and axis: slope, interval, the class found, the verdict."""
     for structure in dict.fromkeys(judged.claim.structure for judged in claims):
-        table = Table(title=NAMED[structure].title, title_justify="left", **COMPACT)
-        for head in ("", "axis", "slope", "interval", "claimed", "found", ""):
-            table.add_column(head, no_wrap=True, justify="right" if head == "slope" else "left")
-        for judged in claims:
-            if judged.claim.structure == structure:
-                for axis in judged.verdicts:
-                    table.add_row(judged.claim.title, *_slope(judged, axis))
-        if table.row_count:
-            yield table
+        rows = [("", "axis", "slope", "interval", "claimed", "found", "")]
+        for judged in (it for it in claims if it.claim.structure == structure):
+            for axis, it in judged.verdicts.items():
+                low, slope, high = map(two_digits, (it.slope_low, it.slope, it.slope_high))
+                claimed = judged.claim.claims_something
+                outcome = Outcome(it.outcome) if claimed else Outcome.NO_CLAIM
+                found = (it.expected if claimed else "", it.best, outcome.mark)
+                measured = (f"{axis.measure} {axis.symbol}", slope, f"{low}…{high}")
+                rows.append((judged.claim.title, *measured, *found))
+        if len(rows) > 1:
+            show_rows(console, rows, NAMED[structure].title, numbers=["slope"])
 
 
-def _slope(judged: JudgedClaim, axis: Axis) -> tuple[str | Text, ...]:
-    verdict, claimed = judged.verdicts[axis], judged.claim.claims_something
-    low, slope, high = map(two_digits, (verdict.slope_low, verdict.slope, verdict.slope_high))
-    outcome = Outcome(verdict.outcome) if claimed else Outcome.NO_CLAIM
-    mark = Text(outcome.mark, style=outcome.color)
-    expected = verdict.expected if claimed else ""
-    return f"{axis.measure} {axis.symbol}", slope, f"{low}…{high}", expected, verdict.best, mark
-
-
-def _summary(claims: Sequence[JudgedClaim]) -> Text:
+def _summary(claims: Sequence[JudgedClaim]) -> str:
     grown = [it for it in claims if it.verdicts]
     counted = {
         "by work": Counter(it.outcome for it in grown),
         "by time": Counter(it.outcome_time for it in grown),
         "by bytes": Counter(it.outcome for it in claims if not it.verdicts),
     }
-    lines = (
+    return "\n".join(
         f"{how}: " + ", ".join(f"{counts[it]} {it.value}" for it in Outcome if counts[it])
         for how, counts in counted.items()
         if counts
     )
-    return Text("\n".join(lines))
 
 
 def markdown(claims: Iterable[JudgedClaim], name: str) -> str:
     """A table for a page: what is claimed, the mark, and what was found."""
-    columns, rows = by_subject(claims, name)
-    lines = ["| | " + " | ".join(NAMED[it].title for it in columns) + " |"]
-    lines.append("|---" * (len(columns) + 1) + "|")
-    for title, row in rows.items():
-        cells = [_markdown_cell(row[it]) if it in row else "" for it in columns]
-        lines.append(f"| {title} | " + " | ".join(cells) + " |")
-    return "\n".join(lines)
 
+    def cell(judged: JudgedClaim) -> str:
+        mark = "" if judged.outcome is Outcome.NO_CLAIM else f" {judged.outcome.mark}"
+        found = "" if judged.outcome is Outcome.CONSISTENT else f", found {judged.found}"
+        return f"{judged.claim.printed}{mark}{found}"
 
-def _markdown_cell(judged: JudgedClaim) -> str:
-    if judged.outcome is Outcome.CONSISTENT:
-        return f"{judged.claim.printed} {judged.outcome.mark}"
-    mark = "" if judged.outcome is Outcome.NO_CLAIM else f" {judged.outcome.mark}"
-    return f"{judged.claim.printed}{mark}, found {judged.found}"
+    return markdown_rows(_texts(claims, name, "title", cell))
 
 
 def sentences_markdown(claims: Iterable[JudgedClaim]) -> str:
     """The claims that are sentences, as a table for a page."""
-    lines = ["| what is said | measured by | claimed | found | |", "|---|---|---|---|---|"]
-    for it in claims:
-        if isinstance(it.claim.expects, Between):
-            found = (it.claim.expects.words, it.found, f"{it.outcome.mark} {it.outcome.value}")
-            lines.append(f"| {it.claim.text} | {it.claim.expects.measured} | {' | '.join(found)} |")
-    return "\n".join(lines)
+    rows = [
+        (it.claim.text, bounds.measured, bounds.words, it.found, f"{it.outcome.mark} {it.outcome}")
+        for it in claims
+        if isinstance(bounds := it.claim.expects, Between)
+    ]
+    return markdown_rows([("what is said", "measured by", "claimed", "found", ""), *rows])
+
+
+def duration(seconds: float) -> str:
+    """A time with two digits that count: 3.1 µs, 250 ms."""
+    units = ((1.0, "s"), (1e-3, "ms"), (1e-6, "µs"), (1e-9, "ns"))
+    size, unit = next((it for it in units if seconds >= 0.995 * it[0]), units[-1])
+    return f"{digits(seconds / size)} {unit}"
+
+
+def digits(value: float, count: int = 2) -> str:
+    """So many digits that count, without powers: 0.036, 5.1, 64, 12,000."""
+    if not 0 < abs(value) < float("inf"):
+        return "0" if value == 0 else "–"
+    rounded = float(f"{value:.{count - 1}e}")
+    behind = count - 1 - int(f"{abs(rounded):e}".partition("e")[2])
+    return f"{rounded:,.{max(behind, 0)}f}"
+
+
+def two_digits(value: float) -> str:
+    """A slope: 1.00, never -0.00."""
+    return f"{round(value, 2) + 0:.2f}"

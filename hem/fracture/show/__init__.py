@@ -1,9 +1,11 @@
 """Pictures and animations of a fracture, drawn by PyVista; asked for by name, never by hem itself.
 
 `Picture` draws any mesh off-screen, `FractureScene` the pieces of a fracture, and `flight` says
-where they are while they fly. PyVista is loaded when the first picture is drawn.
+where they are while they fly; `default_impact` is where a camera sees a mesh struck. PyVista is
+loaded when the first picture is drawn.
 """
 
+from hem.fracture.show.aim import default_impact
 from hem.fracture.show.flight import GRAVITY, Flight, flight
 from hem.fracture.show.picture import (
     AXES,
@@ -26,6 +28,7 @@ __all__ = [
     "Picture",
     "PicturesMissingError",
     "Size",
+    "default_impact",
     "flight",
     "load_pyvista",
     "save_animation",

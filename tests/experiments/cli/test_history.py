@@ -11,7 +11,8 @@ from typer.testing import CliRunner
 
 from experiments import cli
 from experiments.regression import Trends, append_run, read_history
-from experiments.report import history_figures, history_tables
+from experiments.report import frame_table, history_tables
+from experiments.report.figures import history as history_figures
 from experiments.runs import load
 from tests.experiments.histories import CLAIM, MACHINES, line, stepped
 
@@ -185,7 +186,7 @@ def test_figures_and_page_are_there_for_any_number_of_runs(base, tmp_path, count
     history_figures.departures(trends).draw_without_rendering()
     assert ("three at least" in history_tables.describe_history(trends)) == (count < 3)
     assert ("✓ → ✗" in set(history_tables.changes_frame(trends)["before → after"])) == (count == 30)
-    page = history_tables.as_html(history_tables.runs_frame(trends))
+    page = frame_table(history_tables.runs_frame(trends))
     assert page.count("<tr") == count + 1
 
 

@@ -9,8 +9,9 @@ from xml.etree import ElementTree
 import pytest
 
 from experiments.claims import MEMORY, judge_run, load_claims, sentence_claims
-from experiments.report import claim_browser, claim_figures
-from experiments.report.session import Session, share
+from experiments.report import pages
+from experiments.report.figures import claims as figures
+from experiments.report.session import Session, claim_file, share
 from experiments.runs import load
 from tests.experiments.made_runs import SIZES, write_run
 
@@ -30,7 +31,7 @@ def claims(session):
 
 
 def test_every_claim_stands_in_the_browser_once_with_its_data(session):
-    shown = claim_browser.browser(session)
+    shown = pages.browser(session)
     keys = [claim.key for claim in (*load_claims(), *sentence_claims())]
     assert shown.count("<details") == shown.count('class="words"') == len(keys)
     for key in keys:
@@ -39,15 +40,21 @@ def test_every_claim_stands_in_the_browser_once_with_its_data(session):
 
 
 def test_every_filter_counts_the_claims_that_it_leaves(session):
-    for group, choices in claim_browser.filters(session.claims).items():
-        values = [claim_browser.groups(judged)[group] for judged in session.claims]
+    values = {
+        "outcome": [str(judged.outcome) for judged in session.claims],
+        "structure": [judged.claim.structure for judged in session.claims],
+        "kind": [judged.claim.table for judged in session.claims],
+    }
+    offered = pages.filters(session.claims)
+    assert offered.keys() == values.keys()
+    for group, choices in offered.items():
         assert {value: count for value, (_, count) in choices.items()} == {
-            value: values.count(value) for value in choices
+            value: values[group].count(value) for value in choices
         }
 
 
 def test_the_data_of_a_claim_are_the_cases_it_was_judged_by(session, claims):
-    data = claim_figures.data(session, claims["half_edge/vertex_faces"])
+    data = figures.data(session, claims["half_edge/vertex_faces"])
     rows = list(csv.DictReader(io.StringIO(data)))
     work = [row for row in rows if (row["measure"], row["variable"]) == ("work", "faces")]
     assert [int(row["faces"]) for row in work] == SIZES
@@ -56,7 +63,7 @@ def test_the_data_of_a_claim_are_the_cases_it_was_judged_by(session, claims):
 
 
 def test_bytes_are_given_by_field(session, claims):
-    data = claim_figures.data(session, claims[f"indexed/{MEMORY}"])
+    data = figures.data(session, claims[f"indexed/{MEMORY}"])
     assert data.splitlines()[1] == "1000,8,vertex.point,36000"
 
 
@@ -64,15 +71,15 @@ def test_bytes_are_given_by_field(session, claims):
     ("key", "count"), [("half_edge/vertex_faces", 5), ("half_edge/split_edge", 4)]
 )
 def test_a_cell_has_a_panel_for_each_of_its_verdicts(session, claims, key, count):
-    figure = claim_figures.draw(session, claims[key])
+    figure = figures.draw(session, claims[key])
     assert len(claims[key].verdicts) == len(figure.axes) == count
 
 
 def test_every_measured_claim_has_a_figure_that_is_whole(session, tmp_path):
     some = session.claims[:: len(session.claims) // 12]
-    claim_figures.write_claims([judged.claim.key for judged in some], tmp_path)
+    figures.write_claims([judged.claim.key for judged in some], tmp_path)
     for judged in some:
-        name = claim_figures.file_name(judged)
+        name = claim_file(judged)
         assert (tmp_path / f"{name}.csv").read_text()
         root = ElementTree.parse(tmp_path / f"{name}.svg").getroot()
         assert float(root.get("width", "0").rstrip("pt")) > 100
@@ -82,4 +89,4 @@ def test_what_was_not_measured_has_no_figure(tmp_path):
     run = load(write_run(tmp_path, only=lambda experiment, structure: experiment == "bench_work"))
     session = Session(run, judge_run(run))
     judged = next(it for it in session.claims if it.claim.subject == MEMORY)
-    assert claim_figures.draw(session, judged) is None
+    assert figures.draw(session, judged) is None

@@ -9,7 +9,8 @@ from rich.console import Console
 
 from experiments.claims import break_even, curves, judge_run
 from experiments.harness import OPERATIONS, Axis
-from experiments.report import comparisons, figures, memory_figures, notebooks, pages
+from experiments.report import comparisons, notebooks, pages
+from experiments.report.figures import growth, memory
 from experiments.report.session import MissingError, Session, share
 from experiments.report.tables import show_claims
 from experiments.runs import experiments, load, tables
@@ -17,18 +18,18 @@ from structures import NAMES
 from tests.experiments.made_runs import write_run
 
 SHOWN = {
-    **{axis.key: lambda run, claims, axis=axis: figures.scaling(run, axis) for axis in Axis},
-    "operations": lambda run, claims: figures.scaling(run, Axis.TIME_FACES, OPERATIONS),
-    "overview": lambda run, claims: figures.overview(run),
-    "listings": lambda run, claims: figures.listings(run),
-    "building": lambda run, claims: figures.building(run),
-    "rendering": lambda run, claims: figures.rendering(run),
-    "workloads": lambda run, claims: figures.workloads(run),
-    "overtaking": lambda run, claims: figures.overtaking(run),
-    "shards": lambda run, claims: figures.shards_per_second(run),
-    "face finding": lambda run, claims: figures.face_finding(run),
-    "memory": lambda run, claims: memory_figures.memory(run),
-    "references": lambda run, claims: memory_figures.references(run),
+    **{axis.key: lambda run, claims, axis=axis: growth.scaling(run, axis) for axis in Axis},
+    "operations": lambda run, claims: growth.scaling(run, Axis.TIME_FACES, OPERATIONS),
+    "overview": lambda run, claims: growth.overview(run),
+    "listings": lambda run, claims: growth.listings(run),
+    "building": lambda run, claims: growth.building(run),
+    "rendering": lambda run, claims: growth.rendering(run),
+    "workloads": lambda run, claims: growth.workloads(run),
+    "overtaking": lambda run, claims: growth.overtaking(run),
+    "shards": lambda run, claims: growth.shards_per_second(run),
+    "face finding": lambda run, claims: growth.face_finding(run),
+    "memory": lambda run, claims: memory.by_field(run),
+    "references": lambda run, claims: memory.references(run),
     "objects": lambda run, claims: comparisons.objects_against_arrays(run),
     "shattering": lambda run, claims: comparisons.shattering(run),
     "finding": lambda run, claims: comparisons.face_finding(run),

@@ -14,7 +14,8 @@ import pytest
 
 from experiments.claims import judge_run
 from experiments.harness import OPERATIONS, Axis
-from experiments.report import figures, notebooks, readme, site
+from experiments.report import notebooks, readme, site
+from experiments.report.figures import growth
 from experiments.report.session import Session, share
 from experiments.report.site import write_report
 from experiments.report.style import spread_apart
@@ -95,9 +96,9 @@ def test_a_cell_shows_its_value_what_it_prints_and_what_it_displays():
 
 
 def test_a_cell_that_lacks_something_says_so_and_the_next_is_run():
-    fails = "from experiments.report import require\nrequire('no_such_package', 'viz')"
+    fails = "from experiments.report import project_file\nproject_file('no/such/file')"
     first, second = executed(fails, "4")
-    assert "pip install 'hem-mesh[viz]'" in first[0]["data"]["text/plain"]
+    assert "This needs no/such/file" in first[0]["data"]["text/plain"]
     assert first[0]["metadata"]["missing"]
     assert second[0]["data"]["text/plain"] == "4"
 
@@ -135,12 +136,12 @@ def test_the_committed_page_has_the_tables_and_its_pictures(base_folder, tmp_pat
 
 
 FIGURES = {
-    "queries by time": lambda run: figures.scaling(run, Axis.TIME_FACES),
-    "queries by work": lambda run: figures.scaling(run, Axis.WORK_VALENCE),
-    "operations": lambda run: figures.scaling(run, Axis.TIME_FACES, OPERATIONS),
-    "workloads": figures.workloads,
-    "overtaking": figures.overtaking,
-    "rendering": figures.rendering,
+    "queries by time": lambda run: growth.scaling(run, Axis.TIME_FACES),
+    "queries by work": lambda run: growth.scaling(run, Axis.WORK_VALENCE),
+    "operations": lambda run: growth.scaling(run, Axis.TIME_FACES, OPERATIONS),
+    "workloads": growth.workloads,
+    "overtaking": growth.overtaking,
+    "rendering": growth.rendering,
 }
 
 

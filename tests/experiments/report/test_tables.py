@@ -9,9 +9,9 @@ from rich.console import Console
 
 from experiments.claims import judge_run
 from experiments.report import comparisons
-from experiments.report.pages import digits, duration, verdicts
+from experiments.report.pages import verdicts
 from experiments.report.session import share
-from experiments.report.tables import markdown, show_claims
+from experiments.report.tables import digits, duration, markdown, show_claims
 from experiments.runs import load
 from structures import NAMED, NAMES
 

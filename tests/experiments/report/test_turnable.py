@@ -10,8 +10,8 @@ import re
 import numpy as np
 
 import hem
-from experiments.report.fracture_figures import tetrahedra, turnable
-from experiments.report.turnable import turnable_mesh
+from experiments.report.figures.fracture import broken_by_force, turnable_pieces
+from experiments.report.figures.meshes import turnable
 from tests.pictures import require_pictures
 
 
@@ -22,7 +22,7 @@ def packed(html: str, name: str, kind: str) -> np.ndarray:
 
 def test_a_page_holds_the_whole_mesh_upright_and_asks_for_nothing_else():
     mesh = hem.sample("teapot")
-    html = turnable_mesh(mesh, "A <teapot>", up="z")
+    html = turnable(mesh, "A <teapot>", up="z")
     assert "://" not in html
     assert "src=" not in html
     assert "A &lt;teapot&gt;" in html
@@ -38,8 +38,8 @@ def test_a_page_holds_the_whole_mesh_upright_and_asks_for_nothing_else():
 
 def test_pieces_are_moved_apart_by_a_slider():
     require_pictures()
-    broken = tetrahedra()
-    html = turnable(broken)
+    (broken,) = broken_by_force("sphere:162", "stone", 2.0, method="tetra")
+    html = turnable_pieces(broken)
     assert '<input type="range"' in html
     pieces = len(broken.fracture.pieces)
     assert len(packed(html, "ways", "<f4")) == 3 * pieces

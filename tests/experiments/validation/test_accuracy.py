@@ -8,7 +8,7 @@ import pytest
 
 from experiments.claims import judge_run
 from experiments.regression import RUN, load_baseline
-from experiments.report import accuracy_figures
+from experiments.report.figures import accuracy as accuracy_figures
 from experiments.runs import load
 from experiments.validation import accuracy
 from experiments.validation.synthetic import CONDITIONS, GROWTH, make_curves

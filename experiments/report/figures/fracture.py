@@ -1,53 +1,45 @@
 """The figures of the chapter on destruction: the thesis' figure 11, bodies, what it costs."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
-from functools import partial
 from html import escape
-from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
 import hem
 import structures
+from experiments.report.figures.meshes import INK, PAPER, STRONG, show_picture, turnable
 from experiments.report.fracture_scenes import Broken, break_up, model
-from experiments.report.mesh_figures import INK, PAPER, STRONG, show_picture
-from experiments.report.style import styled
-from experiments.report.turnable import turnable_pieces
+from experiments.report.style import side_by_side, styled
 from hem.fracture import MATERIALS, Fracture, material, shatter
-from hem.fracture.show import Image, PicturesMissingError
+from hem.fracture.show import PicturesMissingError
 
-Array = NDArray[Any]
-
-APART = 0.4
-"""How far shards are drawn from where they came out; a part of their distance to the impact."""
-
-IMPACTS = ((0.5, 0.5), (0.3, 0.72), (0.86, 0.5), (0.06, 0.06))
-"""Where a plate of side 1 is struck: about the middle, off it, near a side, in a corner."""
-
+APART = 0.4  # how far shards are drawn from their places, as part of the way to the impact
 FORCES = (1.0, 10.0, 50.0)
 CENTER = (0.47, 0.52)
+IMPACTS = {
+    "About the middle": (0.5, 0.5),
+    "Off the middle": (0.3, 0.72),
+    "Near a side": (0.86, 0.5),
+    "In a corner": (0.06, 0.06),
+}
+"""Where a plate of side 1 is struck."""
 
 
 def plate(squares: int = 5) -> hem.TriangleMesh:
     """A flat plate of side 1, of squares cut in two, as the thesis breaks it."""
     n = squares + 1
-    at = np.arange(n * n).reshape(n, n)
-    a, b, c, d = (it.ravel() for it in (at[:-1, :-1], at[:-1, 1:], at[1:, 1:], at[1:, :-1]))
+    a = (np.arange(squares) + n * np.arange(squares)[:, None]).ravel()
     y, x = np.divmod(np.arange(n * n), n) / np.array([[squares], [squares]])
-    faces = np.concatenate([np.stack([a, b, c], axis=1), np.stack([a, c, d], axis=1)])
-    return hem.TriangleMesh(np.stack([x, y, 0 * x], axis=1), faces)
+    faces = [np.stack(it, axis=1) for it in ((a, a + 1, a + n + 1), (a, a + n + 1, a + n))]
+    return hem.TriangleMesh(np.stack([x, y, 0 * x], axis=1), np.concatenate(faces))
 
 
 def impacts(name: str = "glass") -> Figure:
     """Figure 11: a plate, struck in several places."""
-    titles = "About the middle", "Off the middle", "Near a side", "In a corner"
-    return _plates([(it, name, at) for it, at in zip(titles, IMPACTS, strict=True)])
+    return _plates([(title, name, at) for title, at in IMPACTS.items()])
 
 
 def materials() -> Figure:
@@ -57,11 +49,9 @@ def materials() -> Figure:
 
 def _plates(every: Sequence[tuple[str, str, tuple[float, float]]]) -> Figure:
     with styled():
-        figure = Figure(figsize=(3.3 * len(every), 3.6), layout="constrained")
-        panels = figure.subplots(1, len(every), squeeze=False)[0]
+        figure, panels = side_by_side([title for title, _, _ in every], 3.3, 3.6)
         for axes, (title, name, at) in zip(panels, every, strict=True):
-            s = structures.build("half_edge", plate())
-            broken = shatter(s, (*at, 0), name, seed=4)
+            broken = shatter(structures.build("half_edge", plate()), (*at, 0), name, seed=4)
             _draw_plate(axes, broken)
             axes.set_title(f"{title}: {len(broken.shards)} shards")
     return figure
@@ -81,39 +71,28 @@ def _draw_plate(axes: Axes, broken: Fracture) -> None:
 
 
 def broken_by_force(
-    name: str, material_name: str, forces: Sequence[float] = FORCES, wrap: bool = False
+    name: str, of: str, *forces: float, method: str = "voronoi", wrap: bool = False
 ) -> list[Broken]:
-    """A model under Voronoi fracture by blows of several forces, J/kg, in the same place."""
+    """A model of a material, struck in the same place with several forces, J/kg."""
     mesh, up = model(name, wrap)
-    chosen = material(material_name)
-    return [break_up(mesh, "voronoi", chosen, force, up=up) for force in forces]
-
-
-def tetrahedra(name: str = "sphere:162", force: float = 2.0) -> Broken:
-    """A model of few and therefore large faces, broken into tetrahedra."""
-    mesh, up = model(name)
-    return break_up(mesh, "tetra", material("stone"), force, up=up)
+    return [break_up(mesh, method, material(of), it, up=up) for it in forces or FORCES]
 
 
 def gallery(every: Sequence[Broken]) -> Figure:
     """Each fracture in a row of its own: in place on the left, exploded on the right."""
     with styled():
         figure = Figure(figsize=(9.6, 3.75 * len(every)), layout="constrained")
-        for axes, broken in zip(
-            figure.subplots(len(every), squeeze=False)[:, 0], every, strict=True
-        ):
-            show_picture(axes, _title(broken), partial(_still, broken))
+        panels = figure.subplots(len(every), squeeze=False)[:, 0]
+        for axes, broken in zip(panels, every, strict=True):
+            axes.set_title(_title(broken))
+            show_picture(axes, lambda it: it.scene().still(), broken)
     return figure
 
 
-def _still(broken: Broken) -> Image:
-    return broken.scene().still()
-
-
-def turnable(broken: Broken) -> str:
+def turnable_pieces(broken: Broken) -> str:
     """The pieces to be turned with the mouse, as HTML; without PyVista what is missing."""
     try:
-        return turnable_pieces(broken.scene(), _title(broken), broken.up)
+        return turnable(broken.scene(), _title(broken), broken.up)
     except PicturesMissingError as missing:
         return f"<p>{escape(str(missing))}</p>"
 

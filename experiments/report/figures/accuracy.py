@@ -1,9 +1,6 @@
 """The figures on accuracy: how many synthetic curves each judge names right, and what for what."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
-from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -11,17 +8,12 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
-from experiments.report.style import FADED, GRAY, LOOKS, styled
+from experiments.report.style import BLUE, FADED, GRAY, RED, styled
 
-KINDS = {
-    "right": LOOKS["winged_edge"].color,
-    "undetermined": "#d5d5d5",
-    "wrong": LOOKS["as_printed"].color,
-}
+KINDS = {"right": BLUE, "undetermined": "#d5d5d5", "wrong": RED}
 """What can be said of an answer, and its color in every figure here."""
 
-LEAST_WRITTEN = 0.045
-"""A share from which on there is room for its number."""
+LEAST_WRITTEN = 0.045  # a share from which on there is room for its number
 
 
 def plot_answer_shares(shares: pd.DataFrame, titles: Mapping[str, str]) -> Figure:
@@ -29,16 +21,19 @@ def plot_answer_shares(shares: pd.DataFrame, titles: Mapping[str, str]) -> Figur
 
     shares: a row per judge and condition, a column per kind of answer. titles: by condition.
     """
-    judges = list(shares.index.unique("judge"))
     with styled():
         figure = Figure(figsize=(9.6, 4.6), layout="constrained")
         panels = figure.subplots(2, 2, sharex=True, sharey=True)
         for axes, (condition, title) in zip(panels.flat, titles.items(), strict=True):
-            axes.set_title(title)
-            for row, judge in enumerate(judges):
-                _draw_bar(axes, row, shares.loc[(judge, condition)])
-            axes.set_yticks(range(len(judges)), judges)
-            axes.set(xlim=(0, 1), ylim=(len(judges) - 0.5, -0.5))
+            mine = shares.xs(condition, level="condition").loc[shares.index.unique("judge")]
+            left = np.zeros(len(mine))
+            for kind, color in KINDS.items():
+                bars = axes.barh(list(mine.index), mine[kind], 0.72, left, color=color)
+                words = [f"{it:.0%}" if it >= LEAST_WRITTEN else "" for it in mine[kind]]
+                ink = "#333333" if kind == "undetermined" else "white"
+                axes.bar_label(bars, words, label_type="center", color=ink, fontsize=8)
+                left = left + mine[kind].to_numpy()
+            axes.set(xlim=(0, 1), ylim=(len(mine) - 0.5, -0.5), title=title)
             axes.xaxis.set_major_formatter(lambda share, _: f"{share:.0%}")
             _hide_frame(axes)
         for axes in panels[-1]:
@@ -46,17 +41,6 @@ def plot_answer_shares(shares: pd.DataFrame, titles: Mapping[str, str]) -> Figur
         handles = [Rectangle((0, 0), 1, 1, color=color) for color in KINDS.values()]
         figure.legend(handles, list(KINDS), loc="outside lower center", ncols=3, frameon=False)
     return figure
-
-
-def _draw_bar(axes: Axes, row: int, shares: pd.Series[Any]) -> None:
-    left = 0.0
-    for kind, color in KINDS.items():
-        bar = axes.barh(row, float(shares[kind]), 0.72, left, color=color)
-        if shares[kind] >= LEAST_WRITTEN:
-            ink = "#333333" if kind == "undetermined" else "white"
-            label = f"{shares[kind]:.0%}"
-            axes.bar_label(bar, [label], label_type="center", color=ink, fontsize=8)
-        left += float(shares[kind])
 
 
 def plot_confusions(confusions: Mapping[str, pd.DataFrame]) -> Figure:

@@ -1,0 +1,5 @@
+"""Every figure of the report: a run in, a figure out. A module for each kind, asked for by name.
+
+``growth`` draws costs by size and ``claims`` a figure per claim; ``memory``, ``history`` and
+``accuracy`` are plots as well; ``meshes`` and ``fracture`` are pictures.
+"""

@@ -1,0 +1,214 @@
+"""Costs by the size of the mesh: a run in, a figure out. Nothing is computed but medians."""
+
+from collections.abc import Callable, Iterable, Mapping
+from functools import partial
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.ticker import FuncFormatter, LogLocator
+
+from experiments.bench_fracture import FIND, SHATTER, VISITED, WAYS
+from experiments.bench_printed import EXPERIMENT as PRINTED
+from experiments.claims import MIXES, break_even, curves
+from experiments.harness import WORKLOADS, Axis
+from experiments.report import style
+from experiments.report.session import MissingError
+from experiments.report.style import BLUE, GRAY, RED, STYLES, Plot
+from experiments.runs import Run
+from hem.contract import QUERIES
+from structures import NAMED
+
+RENDERED = {
+    "one by one": {"label": "no render mesh", "linestyle": "-"},
+    "in a transaction": {"label": "followed, one commit at the end", "linestyle": "--"},
+    "rendered": {"label": "followed, a commit per edit", "linestyle": "-."},
+    "render mesh built anew": {"label": "built anew after every edit", "linestyle": ":"},
+}
+"""The ways to keep a render mesh up to date, by the order of their cases, and their lines."""
+
+
+def draw_lines(
+    axes: Axes, cases: pd.DataFrame, x: str, by: str, styles: Mapping[str, Any], **look: Any
+) -> None:
+    """A line of ``cost`` against ``x`` for each value of the column ``by`` that has a style."""
+    cases = cases[cases["cost"] > 0].sort_values(x)  # nothing is read to unpack a handle
+    for name in styles:
+        mine = cases[cases[by] == name]
+        if len(mine):
+            axes.plot(mine[x].to_numpy(float), mine["cost"].to_numpy(float), **styles[name] | look)
+
+
+def _draw(
+    cases: pd.DataFrame, titles: Mapping[str, str], x: str, what: str, ylabel: str = "", *,
+    panel: str = "subject", by: str = "structure", styles: Mapping[str, Any] = STYLES,
+    also: Callable[[Axes, str], None] | None = None, room: float = 0.17, plain: bool = False,
+    **layout: Any,
+) -> Plot:  # fmt: skip
+    """A panel per title, of the cases with its value in the column ``panel``: lines as above.
+
+    ``also``: draws what else is in a panel. Raises MissingError if none has anything to draw.
+    """
+    with style.styled():
+        figure, every = style.panels(list(titles.values()), **layout)
+        for axes, name in zip(every, titles, strict=True):
+            at: Any = axes.get_subplotspec()
+            axes.set(xlabel=style.VARIABLES[x], ylabel=ylabel if at.is_first_col() else "")
+            draw_lines(axes, cases[cases[panel] == name], x, by, styles)
+            if also:
+                also(axes, name)
+            if layout.get("sharex"):
+                axes.label_outer()
+            if plain:  # numbers also between the decades, where there is no whole one to be seen
+                axes.margins(y=0.18)
+                low, high = axes.get_ylim()
+                marks = (1.0,) if high / low > 30 else (1.0, 2.0, 5.0)
+                axes.yaxis.set_major_locator(LogLocator(subs=marks))
+        if not any(map(style.labeled, every)):
+            raise MissingError(f"This run has not measured {what}.")
+        if layout.get("sharey"):  # what lies below the lines does not count
+            heights = np.concatenate([line.get_ydata() for axes in every for line in axes.lines])
+            every[0].set_ylim(heights.min() / 2.2, heights.max() * 2.2)
+        style.finish_panels(figure, every, room)
+    return figure
+
+
+def _costs(run: Run, axis: Axis, subjects: Iterable[str], table: str = "") -> pd.DataFrame:
+    """The cases of all structures along an axis, each with its ``cost`` in the axis' unit."""
+    every = [(name, subject) for subject in subjects for name in NAMED]
+    found = (curves(run).curve(axis, name, subject, table) for name, subject in every)
+    return pd.concat([it.cases.assign(cost=axis.scale * it.centers) for it in found])
+
+
+def _timed(run: Run, experiment: str, scale: float) -> pd.DataFrame:
+    """The cases of an experiment, each with the median of its times as ``cost``."""
+    cases = run.cases[run.cases["experiment"] == experiment]
+    return cases.assign(cost=scale * cases["samples"].map(np.median).astype(float))
+
+
+def scaling(run: Run, axis: Axis, subjects: Iterable[str] = QUERIES) -> Plot:
+    """Cost along an axis: a panel per query or operation, a line per structure.
+
+    Time of queries against size has random handles in bold, consecutive ones thin, and in gray
+    below them the latency of the memory at the working set that a half-edge mesh of that size has.
+    """
+    titles = {name: style.TITLES[name] for name in subjects}
+    in_both_orders = axis is Axis.TIME_FACES and titles.keys() <= QUERIES.keys()
+    costs = _costs(run, Axis.RANDOM_FACES if in_both_orders else axis, titles)
+    also = partial(_draw_order_and_latency, run) if in_both_orders else None
+    what, label = f"{axis.label} by {axis.variable}", style.axis_label(axis)
+    shape: dict[str, Any] = {"also": also, "sharex": True, "sharey": True}
+    return _draw(costs, titles, axis.variable, what, label, **shape)
+
+
+def overview(run: Run) -> Plot:
+    """The study in one picture: the faces around a vertex, by work and by time."""
+    subject, work, time = "vertex_faces", Axis.WORK_FACES, Axis.TIME_FACES
+    titles = {axis.key: f"Vertex → Faces, {axis.label}" for axis in (work, time)}
+    sources = {work: work, time: Axis.RANDOM_FACES}
+    costs = [_costs(run, it, [subject]).assign(axis=axis.key) for axis, it in sources.items()]
+
+    def also(axes: Axes, key: str) -> None:
+        if key == time.key:
+            _draw_order_and_latency(run, axes, subject)
+
+    shape: dict[str, Any] = {"panel": "axis", "also": also, "size": (4.5, 3.1)}
+    return _draw(pd.concat(costs), titles, "faces", "the faces around a vertex", **shape)
+
+
+def _draw_order_and_latency(run: Run, axes: Axes, subject: str) -> None:
+    """Thin lines for queries in order, and in gray the latency below them."""
+    thin = {"label": "_", "marker": "", "linewidth": 0.7}
+    draw_lines(axes, _costs(run, Axis.TIME_FACES, [subject]), "faces", "structure", STYLES, **thin)
+    cases = curves(run).curve(Axis.RANDOM_FACES, "half_edge", subject).cases
+    latency = curves(run).latency(cases["working_set"].to_numpy(float))
+    if len(cases) and latency is not None:
+        x, y = cases["faces"].to_numpy(float), 1e9 * latency
+        axes.fill_between(x, y, 1e-3, color=style.FADED, linewidth=0, zorder=0)
+        axes.plot(x, y, color=GRAY, linewidth=1, label="latency")
+
+
+def listings(run: Run, axis: Axis = Axis.WORK_FACES) -> Plot:
+    """What the thesis' listings cost as published and as corrected: a panel each, against size."""
+    table = PRINTED.table
+    assert table is not None
+    costs = _costs(run, axis, table.subjects, table.name)
+    label, scale = (axis.label, 1.0) if axis.exact else (f"{axis.label}, µs", 1e-3)
+    costs = costs.assign(cost=scale * costs["cost"])
+    shape: dict[str, Any] = {"room": 0.45, "columns": 4, "size": (2.75, 2.7)}
+    return _draw(costs, table.subjects, "faces", "the thesis' listings", label, **shape)
+
+
+def building(run: Run) -> Plot:
+    """Time to build, per vertex, against size: meshes as generated, and renumbered at random."""
+    cases = _timed(run, "bench_build", 1e9).query("reference_bytes == 4")
+    cases = cases.assign(cost=cases["cost"] / cases["vertices"])
+    titles = {"consecutive": "Building, as generated", "random": "Building, renumbered at random"}
+    shape: dict[str, Any] = {"panel": "order", "plain": True, "size": (4.3, 2.9), "sharey": True}
+    return _draw(cases, titles, "vertices", "building", "time per vertex, ns", **shape)
+
+
+def rendering(run: Run, structure: str = "half_edge") -> Plot:
+    """What a render mesh adds to one edit from Python, by size."""
+    cases = _timed(run, "bench_operations", 1e6)
+    cases = cases[cases["structure"] == structure]
+    colors = dict.fromkeys(RENDERED, STYLES[structure]["color"]) | {"one by one": GRAY}
+    styles = {it: RENDERED[it] | {"color": colors[it], "marker": "o"} for it in RENDERED}
+    titles = {"split_face": f"Splitting a face from Python, {NAMED[structure].title.lower()} mesh"}
+    shape: dict[str, Any] = {"room": 0.75, "plain": True, "size": (7.5, 3.3)}
+    shape |= {"by": "order", "styles": styles}
+    what = "operations with a render mesh"
+    return _draw(cases, titles, "faces", what, "time per edit, µs", **shape)
+
+
+def workloads(run: Run) -> Plot:
+    """Time per unit of every workload, by size."""
+
+    def also(axes: Axes, name: str) -> None:
+        axes.set_ylabel(f"time per {WORKLOADS[name].unit}, µs")
+
+    titles = {name: workload.title for name, workload in WORKLOADS.items()}
+    cases = _timed(run, "bench_workloads", 1e6)
+    return _draw(cases, titles, "vertices", "any workload", also=also, plain=True)
+
+
+def overtaking(run: Run) -> Plot:
+    """After how many queries or edits per build each structure overtakes the indexed mesh."""
+    table = break_even(curves(run))
+    table = table[np.isfinite(table["times"].astype(float))]
+    table = table.assign(cost=table["times"].clip(lower=1e-9))
+
+    def also(axes: Axes, _: str) -> None:
+        axes.set_yscale("symlog")
+        axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+        axes.set_ylim(0, 2 * max(table["times"], default=1.0))
+
+    titles = {name: title.capitalize() for name, title in MIXES.items()}
+    what = "building and queries or operations of the same meshes, beside an indexed mesh"
+    shape: dict[str, Any] = {"also": also, "room": 0.3, "columns": 4, "size": (2.75, 2.9)}
+    return _draw(table, titles, "vertices", what, "how many per build", **shape)
+
+
+def shards_per_second(run: Run) -> Plot:
+    """How many shards each structure makes a second, by size."""
+    cases = _timed(run, "bench_fracture", 1.0)
+    cases = cases.assign(cost=1 / cases["cost"])
+    titles, label = {SHATTER: "Breaking a surface around an impact"}, "shards per second"
+    return _draw(cases, titles, "faces", "how a surface breaks", label, size=(7.5, 3.5))
+
+
+def face_finding(run: Run, structure: str = "half_edge") -> Plot:
+    """Finding the face under an impact in three ways: faces looked at, and time."""
+    looks = zip(WAYS, ((BLUE, "o"), (RED, "D"), (GRAY, "s")), strict=True)
+    styles = {way: {"label": way, "color": color, "marker": it} for way, (color, it) in looks}
+    titles = {VISITED: VISITED.capitalize(), "": "Time each, µs"}
+    found = []
+    for way in WAYS:
+        for measure, order in ((VISITED, f"{way}, {VISITED}"), ("", way)):
+            curve = curves(run).named("bench_fracture", structure, FIND, order)
+            cost = (1.0 if measure else 1e6) * curve.centers
+            found.append(curve.cases.assign(cost=cost, way=way, measure=measure))
+    shape: dict[str, Any] = {"room": 0.45, "plain": True, "size": (5.2, 3.2)}
+    shape |= {"panel": "measure", "by": "way", "styles": styles}
+    return _draw(pd.concat(found), titles, "faces", "how a face is found", **shape)

@@ -1,0 +1,159 @@
+"""The figures of the chapter on regressions: a history in, a figure out."""
+
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.colors import TwoSlopeNorm
+from matplotlib.figure import Figure
+
+from experiments.claims import MEMORY
+from experiments.regression import OUTCOMES, Trends, is_of
+from experiments.report.history_tables import short_commit
+from experiments.report.style import STYLES, TITLES, label_ends, styled
+from structures import NAMES, REGISTRY
+
+PANELS = {
+    "slope_time": "Slope in n_t, by time",
+    "work": "Work at the largest size",
+    "bytes": "Bytes per vertex",
+    "time": "Time, in memory accesses",
+}
+"""What is drawn of a query by commit, and its title."""
+FROM_ZERO = ("slope_time",)
+LABELS = 12  # commits that are named below a panel, at most
+SPREAD = 0.03  # how far apart structures' intervals are drawn, as part of the width, to ten runs
+STRONGEST = 1.5  # the ratio to its usual time from which on a color is as strong as can be
+
+
+def by_commit(trends: Trends, subject: str) -> Figure:
+    """Slope, work, bytes and time of a query or operation by commit: a line per structure.
+
+    Runs of the newest one's profile. Times of its machine have full lines, those of others dotted
+    ones, each machine a line of its own. A ring is a step to a new level, a cross a verdict by work
+    that changed.
+    """
+    rows = _of_newest(trends)
+    with styled():
+        figure = Figure(figsize=(11, 5.8), layout="constrained")
+        panels = figure.subplots(2, 2, sharex=True)
+        for axes, (measure, title) in zip(panels.flat, PANELS.items(), strict=True):
+            whole = measure == "bytes"
+            axes.set_title(title if whole else f"{title}: {TITLES[subject]}")
+            axes.set_yscale("linear" if measure in FROM_ZERO else "log")
+            mine = rows[rows["subject"] == (MEMORY if whole else subject)]
+            for _, line in mine[mine["measure"] == measure].groupby(["structure", "machine"]):
+                _draw_line(axes, trends, line)
+            _leave_room(axes, measure)
+            _name_commits(axes, trends, room=0.2)
+        figure.draw_without_rendering()
+        for axes in panels.flat:
+            label_ends(axes)
+    return figure
+
+
+def _of_newest(trends: Trends) -> pd.DataFrame:
+    """What is comparable in runs of the newest one's profile, by structure and subject.
+
+    ``here``: it is of the newest one's machine, or of any. Raises ValueError without a run.
+    """
+    if not trends.runs:
+        raise ValueError(f"there is no run in {trends.history.path}; begin with: hem history add")
+    rows, newest = trends.figures, trends.runs[-1]
+    names = rows["claim"].str.split("/", expand=True)
+    here = rows["machine"].isin(("", newest["machine"]["id"]))
+    rows = rows.assign(structure=names[1], subject=names[2], here=here)
+    wanted = rows["comparable"] & (rows["profile"] == newest["profile"])
+    return rows[wanted & (names[0] != "listings") & rows["structure"].isin(NAMES)]
+
+
+def _draw_line(axes: Axes, trends: Trends, line: pd.DataFrame) -> None:
+    """One structure on one machine; slopes with their intervals, a bit beside each other's."""
+    last = line.iloc[-1]
+    look, sloped = STYLES[last["structure"]], last["measure"] in FROM_ZERO
+    width = SPREAD * min(len(trends.runs), 10) if sloped else 0.0
+    part = NAMES.index(last["structure"]) / max(len(NAMES) - 1, 1)
+    x, y = line["run"].to_numpy() + width * (part - 0.5), line["value"].to_numpy(float)
+    other = {"label": "_"} if last["here"] else {"label": "_", "linestyle": ":", "alpha": 0.5}
+    axes.plot(x, y, **(look | other))
+    if sloped:
+        axes.vlines(x, line["low"], line["high"], color=look["color"], linewidth=1, alpha=0.6)
+    stepped = line["before"].notna().to_numpy()
+    _mark(axes, x[stepped], y[stepped], "step", look["color"], 11)
+    changes = is_of([last["claim"]], trends.changes)
+    verdicts = changes[changes["measure"] == OUTCOMES["outcome"]]
+    changed = line["run"].isin(verdicts["run"]).to_numpy()
+    _mark(axes, x[changed], y[changed], "verdict", look["color"], 10)
+    if last["here"] and (sloped or y[-1] > 0):
+        end: Any = last["run"] + width / 2, y[-1]
+        axes.plot(*end, label=look["label"], color=look["color"])
+
+
+def _mark(axes: Axes, x: Any, y: Any, what: str, color: str, size: int) -> None:
+    """Rings where a new level begins, crosses where a verdict changed."""
+    if len(x):
+        marker, fill = ("o", "none") if what == "step" else ("x", color)
+        axes.plot(x, y, marker, color=color, ms=size, markerfacecolor=fill, gid=what)
+
+
+def _leave_room(axes: Axes, measure: str) -> None:
+    """Room above and below, and no axis so narrow that noise looks like news."""
+    low = axes.dataLim.y0 if measure in FROM_ZERO else axes.dataLim.minposy
+    high = axes.dataLim.y1
+    if axes.lines and np.isfinite([low, high]).all():
+        sloped = min(low, 0) - 0.25, max(high, 1) + 0.15
+        axes.set_ylim(sloped if measure in FROM_ZERO else (low / 2.5, high * 2.5))
+
+
+def _name_commits(axes: Axes, trends: Trends, room: float = 0.0) -> None:
+    """The runs along the axis, by commit; every so many if there are many."""
+    count = len(trends.runs)
+    at = list(range(count - 1, -1, count // -LABELS))
+    names = [short_commit(trends.runs[k]) for k in at]
+    turned: dict[str, Any] = {"rotation": 45, "ha": "right"} if count > 4 else {}
+    axes.set_xticks(at, names, **turned)
+    axes.set_xlim(-0.5, count - 0.5 + room * max(count, 1))
+
+
+def departures(trends: Trends, measure: str = "time") -> Figure:
+    """How far every claim of every structure is from its usual figure, run by run, as colors.
+
+    Of the newest run's profile and, for times, its machine. A ring is a step to a new level, a
+    cross a verdict by work that changed.
+    """
+    rows = _of_newest(trends)
+    rows = rows[rows["here"] & (rows["measure"] == measure) & (rows["value"] > 0)]
+    ends = {1 / STRONGEST: f"{1 / STRONGEST - 1:+.0%}", 1.0: "as usual"}
+    ends[STRONGEST] = f"{STRONGEST - 1:+.0%}"
+    ticks = np.log(list(ends))
+    with styled():
+        figure = Figure(figsize=(11, 7.0), layout="constrained")
+        panels = figure.subplots(-(-len(NAMES) // 3), 3, sharex=True, sharey=True, squeeze=False)
+        for axes, structure in zip(panels.flat, NAMES, strict=False):
+            image = _departures(axes, trends, rows[rows["structure"] == structure])
+            axes.set_title(REGISTRY[structure].title)
+            norm = TwoSlopeNorm(0.0, ticks[0], ticks[-1])
+            drawn = axes.imshow(image, cmap="RdBu_r", norm=norm, aspect="auto")
+        for axes in panels.flat[len(NAMES) :]:
+            axes.set_visible(False)
+        bar = figure.colorbar(drawn, ax=panels, shrink=0.5, ticks=ticks)
+        bar.ax.set_yticklabels(list(ends.values()))
+        bar.set_label(PANELS[measure])
+    return figure
+
+
+def _departures(axes: Axes, trends: Trends, rows: pd.DataFrame) -> np.ndarray:
+    """(subjects, runs): logarithms of the figures over their medians; the marks drawn on top."""
+    subjects = list(TITLES)
+    usual = rows.groupby("subject")["value"].transform("median")
+    table = rows.assign(off=np.log(rows["value"] / usual)).pivot_table("off", "subject", "run")
+    changed = is_of(rows["claim"], trends.changes)
+    changed = changed[changed["measure"] == OUTCOMES["outcome"]]
+    for part, what in ((rows[rows["before"].notna()], "step"), (changed, "verdict")):
+        heights = part["claim"].str.split("/").str[-1].map(subjects.index)
+        _mark(axes, part["run"].to_numpy(), heights.to_numpy(), what, "black", 6)
+    axes.set_yticks(range(len(subjects)), list(TITLES.values()), fontsize=7)
+    axes.grid(visible=False)
+    _name_commits(axes, trends)
+    return table.reindex(index=subjects, columns=range(len(trends.runs))).to_numpy(float)

@@ -1,0 +1,117 @@
+"""Bytes per vertex as stacked bars: by field, and by what they are for."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import pandas as pd
+from matplotlib.axes import Axes
+
+from experiments.claims import Exactly, curves
+from experiments.report.session import MissingError, open_run
+from experiments.report.style import STYLES, Plot, styled
+from experiments.runs import Run
+from structures import NAMED, REGISTRY
+
+PARTS = {
+    "positions": ("vertex.point",),
+    "references": ("half_edge", "origin", "face", "next", "opposite", "twin"),
+    "indices": ("index",),
+    "event": ("position_changed",),
+    "headers": ("header",),
+    "padding": ("padding",),
+    "lists": ("list",),
+    "objects": ("object",),
+}
+"""What bytes are for, by the names of their fields."""
+
+
+def by_field(run: Run) -> Plot:
+    """Bytes per vertex, stacked by field: as printed, modeled with 8 and 4 bytes, and as traced.
+
+    Of what is made of arrays; ``references`` has the objects.
+    """
+    names = [name for name, structure in REGISTRY.items() if structure.compiled]
+    cases = [(name, curves(run).memory(name, size).tail(1)) for name in names for size in (8, 4)]
+    measured = [(name, case.iloc[0]) for name, case in cases if len(case)]
+    rows = list(dict.fromkeys(name for name, _ in measured))
+    with styled():
+        plot, axes = _rows([NAMED[name].title for name in rows], 1.25, 1.1)
+        for name, case in measured:
+            height = rows.index(name) + (-0.19 if case["reference_bytes"] == 8 else 0.19)
+            sizes = case["detail"]["fields"].items()
+            fields = {field: size / case["vertices"] for field, size in sizes}
+            traced, peak = (case["detail"][key] / case["vertices"] for key in ("traced", "peak"))
+            note = f"{sum(fields.values()):g} B with {case['reference_bytes']}-byte references"
+            note += f" · {traced:.1f} traced · {peak:.0f} at the peak"
+            _bar(axes, height, 0.36, fields, STYLES[name]["color"], note)
+        for it in open_run().claims:
+            name, claimed = it.claim.structure, it.claim.expects
+            if name in rows and isinstance(claimed, Exactly) and claimed.value:
+                top, value = rows.index(name) - 0.42, float(claimed.value)
+                axes.plot([value, value], [top, top + 0.44], color="black", linewidth=2.5)
+                words = "printed in the thesis" if name == rows[0] else ""
+                axes.text(value, top - 0.04, words, ha="center", fontsize=8, fontweight="bold")
+        axes.set_xlim(0, 350)
+    return plot
+
+
+def references(run: Run) -> Plot:
+    """Bytes per vertex of one half-edge mesh by what holds it: arrays, and objects."""
+    arrays, objects = "half_edge", "half_edge_objects"
+    held = {
+        "arrays, 8-byte references": (arrays, 8, "fields"),
+        "arrays, 4-byte references": (arrays, 4, "fields"),
+        "objects, as the thesis' runtime lays them out (model)": (objects, 8, "clr"),
+        "objects, in Python (measured)": (objects, 8, "fields"),
+    }
+    bars = {
+        title: (name, _parts(curves(run).memory(name, size), kind))
+        for title, (name, size, kind) in held.items()
+    }
+    bars = {title: (name, parts) for title, (name, parts) in bars.items() if parts}
+    with styled():
+        plot, axes = _rows(list(bars), 0.6, 0.5)
+        for row, (name, parts) in enumerate(bars.values()):
+            total = f"{sum(parts.values()):,.0f}"
+            _bar(axes, row, 0.62, parts, STYLES[name]["color"], total, fontweight="bold")
+        axes.margins(x=0.08)
+    return plot
+
+
+def _rows(names: list[str], height: float, more: float) -> tuple[Plot, Axes]:
+    """A row for each name. Raises MissingError if there is none."""
+    if not names:
+        raise MissingError("This run has not measured memory.")
+    plot = Plot(figsize=(11, height * len(names) + more), layout="constrained")
+    axes = plot.subplots()
+    axes.set_yticks(range(len(names)), names)
+    axes.set(xlabel="bytes per vertex", ylim=(len(names) - 0.45, -0.75))
+    axes.grid(axis="y", visible=False)
+    return plot, axes
+
+
+def _bar(
+    axes: Axes, height: float, thickness: float, parts: Mapping[str, float], color: str, note: str,
+    **look: Any,
+) -> None:  # fmt: skip
+    """A stacked bar whose parts are named where there is room, and a note beside it."""
+    start = 0.0
+    for k, (part, size) in enumerate(parts.items()):
+        name = part.rpartition(".")[2].replace("_", " ")
+        shade = 0.28 if k % 2 else 0.48
+        axes.barh(height, size, thickness, start, color=color, alpha=shade, edgecolor="white")
+        if size > 2.2 * len(name):
+            axes.text(start + size / 2, height, name, ha="center", va="center", fontsize=6.5)
+        start += size
+    axes.text(start + 4, height, note, va="center", **{"fontsize": 8, **look})
+
+
+def _parts(cases: pd.DataFrame, kind: str) -> dict[str, float]:
+    """Bytes per vertex by what they are for, at the largest size."""
+    sums = dict.fromkeys(PARTS, 0.0)
+    for case in cases.tail(1).to_dict("records"):
+        for field, size in case["detail"][kind].items():
+            known = {field, field.split(".")[1]}
+            part = next(part for part, names in PARTS.items() if known & set(names))
+            sums[part] += size / case["vertices"]
+    return {part: size for part, size in sums.items() if size}
