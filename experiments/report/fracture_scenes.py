@@ -44,9 +44,9 @@ class Broken(NamedTuple):
         """How it is drawn."""
         return FractureScene.build(self.fracture, self.mesh, self.up)
 
-    def flight(self, scene: FractureScene, seconds: float, play: float = 3.2) -> Flight:
-        """How the pieces fly for so many seconds, in pictures for ``play`` seconds."""
-        frames = round(play * FRAMES_PER_SECOND)
+    def flight(self, scene: FractureScene, seconds: float) -> Flight:
+        """How the pieces fly for so many seconds, in pictures for some more."""
+        frames = round(3.2 * FRAMES_PER_SECOND)
         options: Any = {"up": scene.up, "floor": scene.floor, "held": self.held, "ease": EASE}
         return flight(self.fracture, self.motion, seconds, frames, **options)
 
