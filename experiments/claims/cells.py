@@ -8,25 +8,27 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Iterator, Mapping
-from functools import lru_cache
 from importlib.resources import files
 from typing import Any
 
 from experiments.claims.claim import BOUND, MEMORY, NO_CLAIM, Claim, Exactly, Growth
-from experiments.harness import ANYONE, Axis, Experiment, Table
-from experiments.runs.catalog import experiments, tables
+from experiments.claims.curves import axes_of, table_of
+from experiments.harness import ANYONE, Axis, Table
+from experiments.runs import experiments, tables
 from hem.contract import Claims
-from structures import NAMED, REGISTRY
+from structures import NAMED
 
 MEMORY_TITLE = "Bytes per vertex"
-MEMORY_TABLE = "queries"
-"""The table whose first row are the bytes."""
-
 SYMBOLS = {axis.variable: axis.symbol for axis in Axis}
+HOW = {
+    "O(1)": "the same at every",
+    "O(n)": "in proportion to",
+    f"{BOUND}O(n)": "at most in proportion to",
+    "O(n²)": "with the square of",
+}
+"""How a cost of a class moves with its variable."""
 
-Row = dict[str, Any]
-DOCUMENTED = "documented"
-"""Under it a row names the structures that the documents themselves speak of."""
+Row = Mapping[str, Any]
 
 
 def load_claims(text: str | None = None) -> list[Claim]:
@@ -37,143 +39,76 @@ def load_claims(text: str | None = None) -> list[Claim]:
     content = tomllib.loads(
         text or (files("experiments.claims") / "claims.toml").read_text("utf-8")
     )
-    classes = content["classes"]
-    rows = [_completed(_checked(row)) for row in content["row"]]
-    rows += [] if text else _of_experiments()
-    return [
-        _claim(row, structure, printed, classes)
-        for row in rows
-        for structure, printed in _printed(row).items()
-    ]
+    cells = [cell for row in content["row"] for cell in _of_row(_checked(row))]
+    cells += [] if text else _of_experiments()
+    return [_claim(*cell, content["classes"]) for cell in cells]
 
 
-@lru_cache(maxsize=1)
-def _axes() -> dict[str, set[str]]:
-    """By table the variables that claims are judged in."""
-    variables: dict[str, set[str]] = {}
-    for it in experiments().values():
-        if it.table is not None:
-            variables.setdefault(it.table.name, set()).update(axis.variable for axis in it.axes)
-    return variables
-
-
-def _table_of(row: Row) -> Table:
-    name = row.get("table") or next(
-        (it.name for it in tables().values() if row["what"] in it.subjects), MEMORY_TABLE
-    )
-    if name not in tables():
-        raise ValueError(f"claims.toml, row {row['what']}: no table is called {name!r}")
-    return tables()[name]
+Cell = tuple[Table, str, str, Any, str]
+"""The table, the subject, the structure, what is printed, and who claims it."""
 
 
 def _checked(row: Row) -> Row:
     known = [MEMORY, *dict.fromkeys(it for table in tables().values() for it in table.subjects)]
-    if row.get("what") not in known:
-        raise ValueError(
-            f"claims.toml: no query is called {row.get('what')!r}; there are {', '.join(known)}"
-        )
-    unknown = set(row) - {"what", "table", "source", *NAMED}
+    what, unknown = row.get("what"), set(row) - {"what", "table", "source", *NAMED}
+    if what not in known:
+        raise ValueError(f"claims.toml: no query is called {what!r}; there are {', '.join(known)}")
     if unknown or "source" not in row:
         fault = f"no structure is called {min(unknown)!r}" if unknown else "no source is given"
-        raise ValueError(f"claims.toml, row {row['what']}: {fault}")
+        raise ValueError(f"claims.toml, row {what}: {fault}")
+    if row.get("table", table_of(what)) not in tables():
+        raise ValueError(f"claims.toml, row {what}: no table is called {row['table']!r}")
     return row
 
 
-def _printed(row: Row) -> dict[str, Any]:
-    return {name: row[name] for name in NAMED if name in row}
+def _of_row(row: Row) -> Iterator[Cell]:
+    """What a document prints, and what the files of the other structures say of the subject."""
+    what = row["what"]
+    table = tables()[row.get("table") or table_of(what)]
+    measured = [
+        name for it in experiments().values() if it.table is table for name in it.structures
+    ]
+    for name in NAMED:
+        own = getattr(NAMED[name], "claims", Claims("not claimed"))
+        if name in row:
+            yield table, what, name, row[name], row["source"]
+        elif name in measured:
+            claimed = None if what == MEMORY else own.costs.get(what) or row.get(own.like)
+            yield table, what, name, claimed or NO_CLAIM, own.source
 
 
-def _completed(row: Row) -> Row:
-    """A row with what is claimed of the structures that the documents do not print."""
-    if _table_of(row).name == "listings":
-        return row
-    more = {name: _own_claim(name, row) for name, structure in REGISTRY.items() if name not in row}
-    return {**row, **more, DOCUMENTED: tuple(_printed(row))}
-
-
-def _own_claims(name: str) -> Claims:
-    """What a structure's own file claims; nothing where the thesis prints it."""
-    return getattr(REGISTRY[name], "claims", Claims("not claimed"))
-
-
-def _own_claim(name: str, row: Row) -> str:
-    if row["what"] == MEMORY:
-        return NO_CLAIM
-    claims = _own_claims(name)
-    return str(claims.costs.get(row["what"]) or row.get(claims.like, NO_CLAIM))
-
-
-def _source(row: Row, structure: str) -> str:
-    """Who claims it: the document of the row, or the structure's own file."""
-    documented = structure in row.get(DOCUMENTED, (structure,))
-    return str(row["source"]) if documented else _own_claims(structure).source
-
-
-def _of_experiments() -> Iterator[Row]:
-    for experiment in experiments().values():
-        for subject, claimed in experiment.claims.items():
-            yield {
-                "what": subject,
-                "table": experiment.table.name if experiment.table else "",
-                "source": experiment.source,
-                **_of_everyone(experiment, claimed),
-            }
-
-
-def _of_everyone(experiment: Experiment, claimed: Mapping[str, str]) -> dict[str, str]:
-    default = claimed.get(ANYONE, NO_CLAIM)
-    return {name: claimed.get(name, default) for name in experiment.structures}
+def _of_experiments() -> Iterator[Cell]:
+    for it in experiments().values():
+        for what, claimed in it.claims.items():
+            assert it.table is not None  # it declares none without
+            default = claimed.get(ANYONE, NO_CLAIM)
+            for name in it.structures:
+                yield it.table, what, name, claimed.get(name, default), it.source
 
 
 def _claim(
-    row: Row, structure: str, printed: Any, classes: Mapping[str, Mapping[str, str]]
-) -> Claim:
-    what, table = row["what"], _table_of(row)
+    table: Table, what: str, structure: str, printed: Any, source: str,
+    classes: Mapping[str, Mapping[str, str]],
+) -> Claim:  # fmt: skip
     suffix = "" if table.name in ("queries", "operations") else f"/{table.name}"
-    shared = {
-        "key": f"{structure}/{what}{suffix}",
-        "source": _source(row, structure),
-        "table": table.name,
-        "structure": structure,
-        "subject": what,
-        "printed": str(printed),
-    }
+    name, title = NAMED[structure].title, table.subjects.get(what, MEMORY_TITLE)
+    expects: Exactly | Growth
     if what == MEMORY:
         expects = Exactly(None if printed == NO_CLAIM else printed)
-        return Claim(
-            text=_bytes_text(structure, printed), title=MEMORY_TITLE, expects=expects, **shared
-        )
-    if printed != NO_CLAIM and printed not in classes:
+        text = f"{name} takes {printed} bytes per vertex, with references of 8 bytes."
+        if printed == NO_CLAIM:
+            text = f"Of the bytes of {name}, nothing is claimed."
+    elif printed != NO_CLAIM and printed not in classes:
         raise ValueError(f"claims.toml, row {what}: {printed!r} is none of {', '.join(classes)}")
-    measured = _axes()[table.name]
-    growth = Growth({k: v for k, v in classes.get(printed, {}).items() if k in measured})
-    title = table.subjects[what]
+    else:
+        measured = {axis.variable for axis in axes_of(table.name)}
+        grown = {k: v for k, v in classes.get(printed, {}).items() if k in measured}
+        expects = Growth(grown)
+        words = [f"{HOW.get(it, f'as {it} in')} {SYMBOLS[k]}" for k, it in grown.items()]
+        text = f"{title} on {name} costs {printed}: {' and '.join(words)}."
+        if not grown:
+            text = f"Of {title} on {name}, nothing is claimed. The class that was found is shown."
     return Claim(
-        text=_text(structure, title, printed, growth), title=title, expects=growth, **shared
-    )
-
-
-def _bytes_text(structure: str, printed: Any) -> str:
-    name = NAMED[structure].title
-    if printed == NO_CLAIM:
-        return f"Of the bytes of {name}, nothing is claimed."
-    return f"{name} takes {printed} bytes per vertex, with references of 8 bytes."
-
-
-def _text(structure: str, title: str, printed: str, growth: Growth) -> str:
-    name = NAMED[structure].title
-    if not growth.classes:
-        return f"Of {title} on {name}, nothing is claimed. The class that was found is shown."
-    grown = [f"{_how(it)} {SYMBOLS[variable]}" for variable, it in growth.classes.items()]
-    return f"{title} on {name} costs {printed}: {' and '.join(grown)}."
-
-
-def _how(growth: str) -> str:
-    """How a cost of a class moves with its variable."""
-    words = {
-        "O(1)": "the same at every",
-        "O(n)": "in proportion to",
-        f"{BOUND}O(n)": "at most in proportion to",
-        "O(n²)": "with the square of",
-    }
-    return words.get(growth, f"as {growth} in")
+        f"{structure}/{what}{suffix}", text, source, table.name, title, expects,
+        structure, what, str(printed),
+    )  # fmt: skip

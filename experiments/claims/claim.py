@@ -1,11 +1,17 @@
-"""What is claimed: one type for cells of tables, sentences and errata."""
+"""What is claimed in a cell of a table or in a sentence, and what became of it."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
+from enum import StrEnum
+from typing import Self
 
 import numpy as np
+from numpy.typing import NDArray
+
+from experiments.harness import Axis
+from hem.complexity import Verdict
 
 MEMORY = "memory"
 """The subject of the claims about bytes."""
@@ -15,8 +21,39 @@ BOUND = "≤ "
 """What a class begins with that is claimed as a bound only."""
 
 SENTENCES = "sentences"
-ERRATA = "errata"
-"""The tables of what is not a cell."""
+"""The table of what is not a cell."""
+
+
+class Outcome(StrEnum):
+    """What can become of a claim. Too little or too noisy data is undetermined, never a pass.
+
+    ``mark``: one character that stands for it; ``color``: a color's name that terminals know.
+    """
+
+    mark: str
+    color: str
+
+    VIOLATED = "violated", "✗", "red"
+    UNDETERMINED = "undetermined", "?", "yellow"
+    CONSISTENT = "consistent", "✓", "green"
+    NO_CLAIM = "no claim", "–", "bright_black"
+
+    def __new__(cls, value: str, mark: str, color: str) -> Self:
+        """A text that has a mark and a color."""
+        outcome = str.__new__(cls, value)
+        outcome._value_, outcome.mark, outcome.color = value, mark, color
+        return outcome
+
+    @property
+    def css(self) -> str:
+        """The class of elements that show it."""
+        return self.value.replace(" ", "-")
+
+    @classmethod
+    def worst(cls, outcomes: Iterable[str]) -> Outcome:
+        """The worst of some; no claim where there are none."""
+        given = set(outcomes)
+        return next((it for it in cls if it in given), cls.NO_CLAIM)
 
 
 @dataclass(frozen=True)
@@ -53,13 +90,6 @@ class Between:
 
 
 @dataclass(frozen=True)
-class Shown:
-    """A run of what is published shows it beside a run of what is corrected."""
-
-    number: int
-
-
-@dataclass(frozen=True)
 class Claim:
     """One claim.
 
@@ -74,7 +104,7 @@ class Claim:
     source: str
     table: str
     title: str
-    expects: Growth | Exactly | Between | Shown
+    expects: Growth | Exactly | Between
     structure: str = ""
     subject: str = ""
     printed: str = ""
@@ -88,3 +118,26 @@ class Claim:
             case Exactly(value):
                 return value is not None
         return True
+
+
+@dataclass(frozen=True, eq=False)
+class JudgedClaim:
+    """A claim, what became of it, and why.
+
+    ``outcome``: by what is exact where there is such a measure, else by time; ``outcome_time``: by
+    time. ``found``: short, such as ``O(n_ev)`` or ``6.33``; ``reason``: a sentence. ``verdicts``:
+    of a growth, by axis. ``values``: of a quantity. ``work`` and ``seconds``: per query at the
+    largest size, at random handles where that was measured. ``bytes_per_vertex``: of a claim about
+    memory.
+    """
+
+    claim: Claim
+    outcome: Outcome
+    found: str
+    reason: str = ""
+    outcome_time: Outcome = Outcome.NO_CLAIM
+    verdicts: Mapping[Axis, Verdict] = field(default_factory=dict)
+    values: NDArray[np.float64] = field(default_factory=lambda: np.zeros(0))
+    work: float = np.nan
+    seconds: float = np.nan
+    bytes_per_vertex: float = np.nan

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from typing import Any
@@ -12,8 +11,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from experiments.harness import HUBS, QUERIES_TABLE, Axis
-from experiments.runs import Run
-from experiments.runs.catalog import experiments, tables
+from experiments.runs import Run, experiments, tables
 
 Array = NDArray[Any]
 
@@ -24,12 +22,8 @@ or what was just copied. It then waits for memory as a smaller mesh does."""
 
 @dataclass(frozen=True, eq=False)
 class Curve:
-    """The cases of one structure and subject along one variable, ascending.
+    """The cases of one structure and subject along one variable, ascending."""
 
-    ``measure``: "work", whose center is the mean, or a time, whose center is the median.
-    """
-
-    measure: str
     variable: str
     cases: pd.DataFrame
 
@@ -49,7 +43,7 @@ class Curve:
     @cached_property
     def centers(self) -> Array:
         """(k,) the cost of each case: mean accesses, or median seconds."""
-        center = np.mean if self.measure == "work" else np.median
+        center = np.mean if (self.cases["kind"] == "work").any() else np.median
         return np.array([float(center(it)) for it in self.samples])
 
     def spread(self, part: float = 0.5) -> tuple[Array, Array]:
@@ -94,23 +88,39 @@ class Curves:
         family = HUBS if axis.variable == "valence" else self.judged_family
         rows = self._rows.get((*source, structure, subject, family), []) if source else []
         cases = self.cases.iloc[rows].sort_values(axis.variable)
-        return Curve("work" if axis.exact else "time", axis.variable, cases)
+        return Curve(axis.variable, cases)
 
     def named(
         self, experiment: str, structure: str, subject: str | None = None, order: str | None = None
     ) -> Curve:
         """The cases of one experiment by size, on the judged family, with references of 4 bytes."""
-        cases = self.cases[
-            (self.cases["experiment"] == experiment)
-            & (self.cases["structure"] == structure)
-            & (self.cases["family"] == self.judged_family)
-            & (self.cases["reference_bytes"] == 4)
-            & self.cases["valence"].isna()
-        ]
-        for column, value in (("subject", subject), ("order", order)):
-            cases = cases if value is None else cases[cases[column] == value]
-        kind = "work" if (cases["kind"] == "work").any() else "time"
-        return Curve(kind, "faces", cases.sort_values("faces"))
+        cases = self._of_family(
+            experiment=experiment, structure=structure, subject=subject, order=order,
+            reference_bytes=4,
+        )  # fmt: skip
+        return Curve("faces", cases[cases["valence"].isna()].sort_values("faces"))
+
+    def memory(self, structure: str, reference_bytes: int) -> pd.DataFrame:
+        """The judged family's cases of the memory experiment, by size."""
+        cases = self._of_family(
+            experiment="bench_memory", structure=structure, reference_bytes=reference_bytes
+        )
+        return cases.sort_values("vertices")
+
+    def _of_family(self, **columns: Any) -> pd.DataFrame:
+        """The judged family's cases with these values; None: with any."""
+        wanted = self.cases["family"] == self.judged_family
+        for name, value in columns.items():
+            if value is not None:
+                wanted &= self.cases[name] == value
+        return self.cases[wanted]
+
+    def bytes_per_vertex(self, structure: str, reference_bytes: int = 8) -> float:
+        """Bytes in the arrays per vertex, at the largest size of the judged family."""
+        cases = self.memory(structure, reference_bytes)
+        if cases.empty:
+            return float("nan")
+        return float(cases["samples"].iloc[-1][0] / cases["vertices"].iloc[-1])
 
     def latencies(self, curve: Curve) -> Array:
         """(a, k): what each case may have waited for, beside it or in a part of its working set."""
@@ -126,33 +136,16 @@ class Curves:
             return None
         return np.exp(np.interp(np.log(working_sets), np.log(sizes), np.log(seconds)))
 
-    def memory(self, structure: str, reference_bytes: int) -> pd.DataFrame:
-        """The judged family's cases of the memory experiment, by size."""
-        wanted = (
-            (self.cases["experiment"] == "bench_memory")
-            & (self.cases["structure"] == structure)
-            & (self.cases["family"] == self.judged_family)
-            & (self.cases["reference_bytes"] == reference_bytes)
-        )
-        return self.cases[wanted].sort_values("vertices")
-
-    def bytes_per_vertex(self, structure: str, reference_bytes: int = 8) -> float:
-        """Bytes in the arrays per vertex, at the largest size of the judged family."""
-        cases = self.memory(structure, reference_bytes)
-        if cases.empty:
-            return float("nan")
-        return float(cases["samples"].iloc[-1][0] / cases["vertices"].iloc[-1])
-
-    @cached_property
-    def _rows(self) -> dict[Any, Any]:
-        by = ["experiment", "order", "structure", "subject", "family"]
-        return self.cases.groupby(by).indices
-
     @cached_property
     def _latency(self) -> tuple[Array, Array]:
         cases = self.cases[self.cases["experiment"] == "bench_latency"].sort_values("working_set")
         seconds = [np.median(samples) for samples in cases["samples"]]
         return cases["working_set"].to_numpy(float), np.array(seconds)
+
+    @cached_property
+    def _rows(self) -> dict[Any, Any]:
+        by = ["experiment", "order", "structure", "subject", "family"]
+        return self.cases.groupby(by).indices
 
 
 @lru_cache(maxsize=4)
@@ -163,7 +156,7 @@ def curves(run: Run) -> Curves:
 
 @lru_cache(maxsize=256)
 def table_of(subject: str) -> str:
-    """The first table that has a row for a subject."""
+    """The first table that has a row for a subject; of the bytes that of the queries."""
     found = (it.name for it in tables().values() if subject in it.subjects)
     return next(found, QUERIES_TABLE.name)
 
@@ -171,14 +164,12 @@ def table_of(subject: str) -> str:
 @lru_cache(maxsize=1)
 def _sources() -> dict[tuple[str, Axis], tuple[str, str]]:
     """By table and axis the experiment, and the order of its cases."""
-    return {(table, axis): source for table, axis, source in _declared()}
-
-
-def _declared() -> Iterator[tuple[str, Axis, tuple[str, str]]]:
-    for name, it in experiments().items():
-        for axis, order in it.axes.items():
-            if it.table is not None:
-                yield it.table.name, axis, (name, order)
+    return {
+        (it.table.name, axis): (name, order)
+        for name, it in experiments().items()
+        if it.table is not None
+        for axis, order in it.axes.items()
+    }
 
 
 def axes_of(table: str) -> list[Axis]:

@@ -1,14 +1,17 @@
-"""The errata of the thesis and of the article, each shown by running what is printed.
+"""The errata of the thesis and of the article, each shown by running what is published.
 
-One to nine are those that were known from reading; the others were found by running. ``show`` of an
-erratum runs the listing (``structures.as_printed``) beside the sound version and tells what each
-gives. How costs grow as printed is measured by ``bench_printed``.
+Their texts stand in ``errata.toml``. A function for each runs the listing
+(``structures.as_printed``) beside the sound version. ``bench_printed`` measures how costs grow.
 """
 
 from __future__ import annotations
 
+import tomllib
+from collections import Counter
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
+from importlib.resources import files
 from typing import NamedTuple, cast
 
 import numpy as np
@@ -19,15 +22,32 @@ from structures.as_printed import AsPrinted, render_arrays
 from structures.half_edge_objects import HalfEdgeMesh, fields_accessed
 from structures.plankton import Plankton
 
+KNOWN = 9
+"""The first so many errata were found by reading, the others by running."""
+
+POINTS = np.vstack([np.eye(3), -np.eye(3)])
+OCTAHEDRON = hem.TriangleMesh(
+    POINTS, [(0, 1, 2), (1, 3, 2), (3, 4, 2), (4, 0, 2), (1, 0, 5), (3, 1, 5), (4, 3, 5), (0, 4, 5)]
+)
+TETRAHEDRON = hem.TriangleMesh(POINTS[:4], [(0, 2, 1), (0, 1, 3), (1, 2, 3), (2, 0, 3)])
+TRIANGLE = hem.TriangleMesh(POINTS[:3], [(0, 1, 2)])
+BOOK = hem.TriangleMesh(POINTS[:5], [(0, 1, 2), (1, 0, 3), (0, 1, 4)])
+"""Three faces at one edge."""
+
 MIDDLE = (0.25, 0.25, 0.5)
 """A position in the octahedron where nothing is yet."""
 
 GIVES_UP = 999
 """After so many steps Plankton's circulator takes a vertex for a runaway (quoted in thesis 5)."""
 
+SMALLER, LARGER = 100, 400
+"""Vertices of the two tori whose work is compared: four times as many."""
+
+MISPLACED = "corners of the render mesh at another position"
+
 
 class Shown(NamedTuple):
-    """What a run gave: of what is printed, of the sound version, and whether it is an erratum."""
+    """What a run gave: of what is published, of the sound version; whether it is an erratum."""
 
     printed: str
     sound: str
@@ -35,46 +55,66 @@ class Shown(NamedTuple):
 
 
 class Erratum(NamedTuple):
-    """One erratum, and how it is shown."""
+    """What the text or the listing says, what it really does, and how that is shown."""
 
     title: str
     source: str
     says: str
-    """What the text or the listing says."""
-
     does: str
-    """What it really does."""
-
     show: Callable[[], Shown]
 
 
-def octahedron() -> hem.TriangleMesh:
-    """Six vertices, twelve edges, eight faces."""
-    points = np.vstack([np.eye(3), -np.eye(3)])
-    faces = [(0, 1, 2), (1, 3, 2), (3, 4, 2), (4, 0, 2), (1, 0, 5), (3, 1, 5), (4, 3, 5), (0, 4, 5)]
-    return hem.TriangleMesh(points, faces)
-
-
-def printed(mesh: hem.TriangleMesh | None = None, whole: bool = True) -> AsPrinted:
-    """The mesh as the listings build it, an octahedron unless another is given."""
-    mesh = mesh or octahedron()
+def printed(mesh: hem.TriangleMesh = OCTAHEDRON, whole: bool = True) -> AsPrinted:
+    """The mesh as the listings build it."""
     built = AsPrinted.build(*render_arrays(mesh.points, mesh.triangles), whole=whole)
     built.generate_render_mesh()
     return built
 
 
-def sound(mesh: hem.TriangleMesh | None = None) -> HalfEdgeMesh:
+def sound(mesh: hem.TriangleMesh = OCTAHEDRON) -> HalfEdgeMesh:
     """The same mesh as the sound version builds it."""
-    return cast(HalfEdgeMesh, structures.build("half_edge_objects", mesh or octahedron()))
+    return cast(HalfEdgeMesh, structures.build("half_edge_objects", mesh))
 
 
-def _said(faults: dict[str, int]) -> str:
-    return "; ".join(f"{often} {what}" for what, often in faults.items()) or "nothing wrong"
+def _faults(m: AsPrinted, about: str = "") -> tuple[Counter[str], str]:
+    """What does not hold together, of what has ``about`` in its name; and the same in words."""
+    faults = Counter({what: often for what, often in m.faults().items() if about in what})
+    return faults, "; ".join(f"{often} {what}" for what, often in faults.items()) or "nothing wrong"
 
 
 def _valid(s: HalfEdgeMesh) -> str:
     s.validate()
     return f"valid: {s.n_faces} faces, {s.n_edges} edges"
+
+
+def _attempt(call: Callable[[], object]) -> str:
+    """What becomes of a call that should be refused."""
+    try:
+        call()
+    except (hem.NonManifoldError, hem.TopologyError) as error:
+        return f"refused: {error.reason}"
+    except AttributeError as error:
+        return f"a null reference: {error}"
+    return "done"
+
+
+def _grows(
+    as_printed: Callable[[hem.TriangleMesh, AsPrinted], object],
+    as_sound: Callable[[hem.TriangleMesh, HalfEdgeMesh], object],
+    at_least: float,
+    at_most: float,
+) -> Shown:
+    """How the work of a call on a mesh and what is built of it grows from torus to torus."""
+    work: tuple[list[int], list[int]] = ([], [])
+    for n in (SMALLER, LARGER):
+        mesh = hem.generate("torus", n)
+        m, s = printed(mesh), sound(mesh)
+        s.move_vertex(0, s.points[0])  # binds the operations
+        work[0].append(fields_accessed(partial(as_printed, mesh, m)))
+        work[1].append(fields_accessed(partial(as_sound, mesh, s)))
+    one, other = (large / small for small, large in work)
+    words = f"× the work in a mesh of {LARGER // SMALLER} × the vertices"
+    return Shown(f"{one:.1f} {words}", f"{other:.1f} {words}", one > at_least and other < at_most)
 
 
 def _last_triangle() -> Shown:
@@ -87,99 +127,56 @@ def _last_triangle() -> Shown:
     )
 
 
-SMALLER, LARGER = 100, 400
-"""Vertices of the two tori whose work is compared: four times as many."""
-
-
-def _growth(call: Callable[[hem.TriangleMesh], Callable[[], object]]) -> float:
-    """How many times the work that a call does grows from the smaller torus to the larger."""
-    one, other = (fields_accessed(call(hem.generate("torus", n))) for n in (SMALLER, LARGER))
-    return other / one
-
-
-def _times(growth: float) -> str:
-    return f"{growth:.1f} × the work in a mesh of {LARGER // SMALLER} × the vertices"
-
-
-def _grows(
-    as_printed: Callable[[hem.TriangleMesh], Callable[[], object]],
-    as_mended: Callable[[hem.TriangleMesh], Callable[[], object]],
-    at_least: float,
-    at_most: float,
-) -> Shown:
-    one, other = _growth(as_printed), _growth(as_mended)
-    return Shown(_times(one), _times(other), one > at_least and other < at_most)
-
-
 def _quadratic_builder() -> Shown:
-    return _grows(lambda mesh: lambda: printed(mesh), lambda mesh: lambda: sound(mesh), 12, 5)
+    return _grows(lambda mesh, m: printed(mesh), lambda mesh, s: sound(mesh), 12, 5)
 
 
 def _foreign_face() -> Shown:
     m, s = printed(), sound()
     m.split_half_edge(m.half_edges[0], MIDDLE)
     s.split_edge(s.half_edges[0].edge, MIDDLE)
-    faults = m.faults()
-    wrong = faults.get("half-edges with another face than the next one")
-    return Shown(_said(faults), _valid(s), wrong == 4)
+    faults, words = _faults(m)
+    return Shown(words, _valid(s), faults["half-edges with another face than the next one"] == 4)
 
 
 def _cleared_pairs() -> Shown:
     m, s = printed(), sound()
     m.collapse_edge(m.half_edges[0])
     s.collapse_edge(s.half_edges[0].edge)
-    faults = {what: often for what, often in m.faults().items() if "render" not in what}
-    wrong = faults.get("half-edges without an opposite, though there is one")
-    return Shown(_said(faults), _valid(s), wrong == 4)
+    faults, words = _faults(m, "half-edge")
+    cleared = faults["half-edges without an opposite, though there is one"]
+    return Shown(words, _valid(s), cleared == 4)
 
 
 def _kept_half_edge() -> Shown:
-    kept = 0
-    for i in range(24):
-        m = printed()
+    meshes = [printed() for _ in range(24)]
+    for i, m in enumerate(meshes):
         m.collapse_edge(m.half_edges[i])
-        kept += "vertices with a half-edge that is gone" in m.faults()
+    kept = sum("vertices with a half-edge that is gone" in m.faults() for m in meshes)
     s = sound()
     s.collapse_edge(s.half_edges[0].edge)
     return Shown(f"after {kept} of 24 collapses a vertex keeps one", _valid(s), kept > 0)
 
 
 def _border_collapse() -> Shown:
-    mesh = hem.TriangleMesh(np.eye(3), [(0, 1, 2)])
-    m, s = printed(mesh), sound(mesh)
-    try:
-        m.collapse_edge(m.half_edges[0])
-        words = "done"
-    except AttributeError as error:
-        words = f"a null reference: {error}"
-    try:
-        s.collapse_edge(0)
-        refusal = "done"
-    except hem.TopologyError as error:
-        refusal = f"refused: {error.reason}"
+    m, s = printed(TRIANGLE), sound(TRIANGLE)
+    words = _attempt(lambda: m.collapse_edge(m.half_edges[0]))
+    refusal = _attempt(lambda: s.collapse_edge(0))
     return Shown(words, refusal, "null" in words and "refused" in refusal)
 
 
 def _no_link_condition() -> Shown:
-    points = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
-    mesh = hem.TriangleMesh(points, [(0, 2, 1), (0, 1, 3), (1, 2, 3), (2, 0, 3)])
-    m, s = printed(mesh), sound(mesh)
+    m, s = printed(TETRAHEDRON), sound(TETRAHEDRON)
     m.collapse_edge(m.half_edges[0])
     corners = [frozenset(h.origin.index for h in m.face_circulator(f)) for f in m.faces]
-    try:
-        s.collapse_edge(0)
-        refusal = "done"
-    except hem.TopologyError as error:
-        refusal = f"refused: {error.reason}"
     coincident = len(corners) == 2 and len(set(corners)) == 1
+    refusal = _attempt(lambda: s.collapse_edge(0))
     return Shown("two coincident faces are left of a tetrahedron", refusal, coincident)
 
 
 def _inverted_commit() -> Shown:
-    m = printed()
-    alone: list[int] = []
-    within: list[int] = []
-    for is_transaction, commits in ((False, alone), (True, within)):
+    m, commits = printed(), []
+    for is_transaction in (False, True):
         before = m.render.commits
         m.split_face(m.faces[0], (9.0, 9.0, float(is_transaction)), is_transaction)
         commits.append(m.render.commits - before)
@@ -188,25 +185,29 @@ def _inverted_commit() -> Shown:
     single = render.commits
     with render.transaction():
         s.split_face(1, (9, 9, 1))
-        within_sound = render.commits - single
+        within = render.commits - single
     return Shown(
-        f"{alone[0]} commits outside a transaction, {within[0]} inside",
-        f"{single} outside, {within_sound} inside",
-        (alone, within, single, within_sound) == ([0], [1], 1, 0),
+        f"{commits[0]} commits outside a transaction, {commits[1]} inside",
+        f"{single} outside, {within} inside",
+        (*commits, single, within) == (0, 1, 1, 0),
     )
 
 
 def _search_for_duplicates() -> Shown:
-    def split(mesh: hem.TriangleMesh) -> Callable[[], object]:
-        m = printed(mesh)
-        return lambda: m.split_face(m.faces[0], (9.0, 9.0, 9.0))
+    there = (9.0, 9.0, 9.0)
+    return _grows(
+        lambda mesh, m: m.split_face(m.faces[0], there),
+        lambda mesh, s: s.split_face(0, there),
+        2, 1.1,
+    )  # fmt: skip
 
-    def mended(mesh: hem.TriangleMesh) -> Callable[[], object]:
-        s = sound(mesh)
-        s.move_vertex(0, s.points[0])  # binds the operations
-        return lambda: s.split_face(0, (9, 9, 9))
 
-    return _grows(split, mended, 2, 1.1)
+def _scanning_circulator() -> Shown:
+    return _grows(
+        lambda mesh, m: m.vertex_circulator(m.vertices[0]),
+        lambda mesh, s: s.vertices.circulator(s.vertices[0]),
+        3.9, 1.1,
+    )  # fmt: skip
 
 
 def _silent_weld() -> Shown:
@@ -222,14 +223,13 @@ def _silent_weld() -> Shown:
 
 
 def _full_commit() -> Shown:
-    sizes = []
+    sizes: list[int] = []
+    uploads: list[int] = []
     for n in (SMALLER, LARGER):
-        m = printed(hem.generate("torus", n))
+        mesh = hem.generate("torus", n)
+        m, s = printed(mesh), sound(mesh)
         m.split_half_edge(m.half_edges[0], (9.0, 9.0, 9.0))
         sizes.append(len(m.render.committed))
-    uploads = []
-    for n in (SMALLER, LARGER):
-        s = sound(hem.generate("torus", n))
         s.split_face(0, (9, 9, 9))
         render = hem.RenderMesh(s)
         s.split_edge(s.half_edges[0].edge, (9, 9, 9))  # makes room
@@ -240,18 +240,6 @@ def _full_commit() -> Shown:
         f"it touches {uploads[0]} and {uploads[1]} triangles",
         sizes[1] > 3.5 * sizes[0] and max(uploads) <= 40,
     )
-
-
-def _scanning_circulator() -> Shown:
-    def scan(mesh: hem.TriangleMesh) -> Callable[[], object]:
-        m = printed(mesh)
-        return lambda: m.vertex_circulator(m.vertices[0])
-
-    def circulate(mesh: hem.TriangleMesh) -> Callable[[], object]:
-        s = sound(mesh)
-        return lambda: s.vertices.circulator(s.vertices[0])
-
-    return _grows(scan, circulate, 3.9, 1.1)
 
 
 def _twice_as_many() -> Shown:
@@ -273,8 +261,8 @@ def _colliding_indices() -> Shown:
     m.split_face(m.faces[0], MIDDLE)
     s.remove_face(0)
     s.split_face(1, MIDDLE)
-    faults = {what: often for what, often in m.faults().items() if "index" in what}
-    return Shown(_said(faults), _valid(s), bool(faults))
+    faults, words = _faults(m, "index")
+    return Shown(words, _valid(s), bool(faults))
 
 
 def _shifted_render_mesh() -> Shown:
@@ -282,7 +270,7 @@ def _shifted_render_mesh() -> Shown:
     m.collapse_edge(m.half_edges[0])
     render = hem.RenderMesh(s)
     s.collapse_edge(s.half_edges[0].edge)
-    wrong = m.faults().get("corners of the render mesh at another position", 0)
+    wrong = m.faults().get(MISPLACED, 0)
     beyond = max(m.render.committed) >= len(m.render.points)
     words = ", some beyond the last point" if beyond else ""
     kept = render.to_triangles()
@@ -298,8 +286,7 @@ def _doubled_render_point() -> Shown:
     for i, z in enumerate((0.5, 0.25)):
         m.split_half_edge(m.half_edges[i], (0.25, 0.25, z))
         s.split_edge(s.half_edges[i].edge, (0.25, 0.25, z))
-    points, wrong = len(m.render.points), m.faults()
-    misplaced = wrong.get("corners of the render mesh at another position", 0)
+    points, misplaced = len(m.render.points), m.faults().get(MISPLACED, 0)
     return Shown(
         f"{points} points for {len(m.vertices)} vertices, {misplaced} corners at another position",
         f"{len(hem.RenderMesh(s).points) // 3} points for {s.n_vertices} vertices",
@@ -308,10 +295,8 @@ def _doubled_render_point() -> Shown:
 
 
 def _lonely_vertices() -> Shown:
-    mesh = hem.TriangleMesh(np.eye(3), [(0, 1, 2)])
-    m = printed(mesh)
+    m, s = printed(TRIANGLE), sound(TRIANGLE)
     m.remove_face(m.faces[0])
-    s = sound(mesh)
     s.remove_face(0)
     s.validate()
     return Shown(
@@ -322,17 +307,9 @@ def _lonely_vertices() -> Shown:
 
 
 def _stolen_partner() -> Shown:
-    mesh = hem.TriangleMesh(
-        np.random.default_rng(0).random((5, 3)), [(0, 1, 2), (1, 0, 3), (0, 1, 4)]
-    )
-    m = printed(mesh)
-    try:
-        sound(mesh)
-        refusal = "built"
-    except hem.NonManifoldError as error:
-        refusal = f"refused: {error.reason}"
-    faults = {what: often for what, often in m.faults().items() if "opposite has" in what}
-    return Shown(_said(faults), refusal, bool(faults) and refusal.startswith("refused"))
+    faults, words = _faults(printed(BOOK), "opposite has")
+    refusal = _attempt(lambda: sound(BOOK))
+    return Shown(words, refusal, bool(faults) and refusal.startswith("refused"))
 
 
 def _runaway() -> Shown:
@@ -340,12 +317,9 @@ def _runaway() -> Shown:
     s = cast(Plankton, structures.build("plankton", hem.valence_mesh(valence, 2 * valence)))
     hub = int(hem.valence_hubs(valence, 2 * valence)[0])
     start = s.outgoing_half_edge(hub)
-    h, steps = start, 0
-    while True:  # as quoted in thesis 5
-        h = s.next_half_edge(s.pair(h))
-        if steps > GIVES_UP or h == start:
-            break
-        steps += 1
+    h, steps = s.next_half_edge(s.pair(start)), 0
+    while steps <= GIVES_UP and h != start:  # as quoted in thesis 5
+        h, steps = s.next_half_edge(s.pair(h)), steps + 1
     return Shown(
         f"gives up after {steps:,} of {valence:,} half-edges",
         f"{s.valence(hub):,} half-edges",
@@ -365,7 +339,7 @@ def _needs_no_closed_mesh() -> Shown:
 
 
 def _left_behind() -> Shown:
-    m, s = printed(), structures.build("half_edge", octahedron())
+    m, s = printed(), structures.build("half_edge", OCTAHEDRON)
     before = list(m.faces)
     m.split_face(m.faces[0], MIDDLE)
     created = [face for face in m.faces if not any(face is it for it in before)]
@@ -379,141 +353,9 @@ def _left_behind() -> Shown:
     )
 
 
-ERRATA = (
-    Erratum(
-        "The builder loses the last triangle", "thesis 3.3.2",
-        "for i = 0; i < triangles.Length − 3; i += 3: a face for every three indices.",
-        "The loop ends one triangle early, so that its neighbors stay without partners.",
-        _last_triangle,
-    ),
-    Erratum(
-        "The builder is quadratic", "thesis 3.3.2",
-        "Half-edges to pair are found by a scan of all, duplicates by a scan of all vertices.",
-        "Twice the mesh takes four times the work; looking sides up takes twice.",
-        _quadratic_builder,
-    ),
-    Erratum(
-        "A split moves a half-edge into a face that it does not know of", "thesis 4.1",
-        "The half-edge before the split one becomes part of the new face.",
-        "Its Next is set, its Face is not: it still names the old face.",
-        _foreign_face,
-    ),
-    Erratum(
-        "A collapse clears the very pairs it has just made", "thesis 4.2",
-        "First the outer half-edges are paired, then both faces are removed.",
-        "RemoveFace sets the opposite's opposite to null, which is the new pairing by then.",
-        _cleared_pairs,
-    ),
-    Erratum(
-        "Split face commits when it should not", "thesis 4.3",
-        "if (isTransaction) CommitMeshTriangles()",
-        "The condition is inverted: alone nothing is committed, in a transaction every step is.",
-        _inverted_commit,
-    ),
-    Erratum(
-        "The constant splits are linear", "thesis 4.1, 4.3 and 5",
-        "SplitHalfEdge and SplitFace take constant time.",
-        "Both create a vertex, and that searches all positions for a duplicate.",
-        _search_for_duplicates,
-    ),
-    Erratum(
-        "The vertex circulator is a scan", "thesis 5, table 1",
-        "Table 1 gives O(n_ev) for the queries from a vertex.",
-        "GetVertexCirculator looks at every half-edge of the mesh.",
-        _scanning_circulator,
-    ),
-    Erratum(
-        "Twice as many vertices as triangles", "thesis 7",
-        "“ungefähr doppelt so viele Eckpunkte wie Dreiecke”",
-        "It is the other way round, as the formula n_t ≈ 2 n_v and Euler say.",
-        _twice_as_many,
-    ),
-    Erratum(
-        "The bytes leave out what the classes have", "thesis 7.4 and 3.2.2",
-        "228 bytes per vertex.",
-        "There are an index per element, the event, the headers of the objects and the lists.",
-        _bytes_left_out,
-    ),
-    Erratum(
-        "A vertex keeps a half-edge that is gone", "thesis 4.2 (of erratum 4)",
-        "All references are set from one vertex to the other.",
-        "The half-edge of a vertex is not set anew when it is removed.",
-        _kept_half_edge,
-    ),
-    Erratum(
-        "A border edge cannot be collapsed", "thesis 4.2 (of erratum 4)",
-        "The pair's face is taken apart as well.",
-        "At the border there is no pair.",
-        _border_collapse,
-    ),
-    Erratum(
-        "No link condition", "thesis 4.2 (of erratum 4)",
-        "Any half-edge can be collapsed.",
-        "Of a tetrahedron two faces are left that lie on each other.",
-        _no_link_condition,
-    ),
-    Erratum(
-        "A split at an existing position welds", "thesis 3.3.2 and 4.3 (of erratum 6)",
-        "CreateVertex gives the first vertex at the position.",
-        "The new faces are joined to a vertex elsewhere in the mesh.",
-        _silent_weld,
-    ),
-    Erratum(
-        "Every split hands over the whole render mesh", "thesis 3.3.1 and 4.1 (of erratum 6)",
-        "Local changes do not generate the whole net anew.",
-        "CommitMeshTriangles turns the whole dictionary into a list.",
-        _full_commit,
-    ),
-    Erratum(
-        "Indices collide after a removal", "thesis 3.2.3; found here",
-        "A new element gets the count of its list as its index.",
-        "After a removal another element has that index, and in the cache of triangles its place.",
-        _colliding_indices,
-    ),
-    Erratum(
-        "After a collapse the render mesh shows other points", "thesis 3.3.1 and 4.2; found here",
-        "Triangles name points by the index of the vertex, points are listed in order.",
-        "Removing a vertex moves the points behind it up, and no index with them.",
-        _shifted_render_mesh,
-    ),
-    Erratum(
-        "A split adds its point to the render mesh twice", "thesis 4.1; found here",
-        "AddMeshVertex(newPoint.Point), once per side of the edge.",
-        "From the second split on the indices of new vertices lead to other points.",
-        _doubled_render_point,
-    ),
-    Erratum(
-        "Vertices without faces are never removed", "thesis 4.2; found here",
-        "RemoveFace removes a vertex that has no half-edges left.",
-        "It asks while the half-edges are still there, so the answer is never none.",
-        _lonely_vertices,
-    ),
-    Erratum(
-        "A third face at an edge steals the partner", "thesis 3.3.2; found here",
-        "Half-edges between the same vertices are paired.",
-        "Nothing asks whether they have a partner: his stays paired with a stranger.",
-        _stolen_partner,
-    ),
-    Erratum(
-        "Plankton's circulator takes many edges for a runaway", "quoted in thesis 5; found here",
-        "if (count++ > 999) throw “Runaway vertex circulator”",
-        "A vertex of more than a thousand half-edges is legal, and is not answered.",
-        _runaway,
-    ),
-    Erratum(
-        "Plankton's circulator does not need a closed mesh", "thesis 5; found here",
-        "It works only on the assumption that no half-edge lacks its neighbor.",
-        "In Plankton none does: the border has half-edges of its own.",
-        _needs_no_closed_mesh,
-    ),
-    Erratum(
-        "Breaking leaves a part of every split face behind", "thesis 4.3 and 4.4; found here",
-        "The new faces are cut out of the mesh and become shards.",
-        "The first part of a split face is no new one: it keeps its face, and stays in the hole.",
-        _left_behind,
-    ),
-)  # fmt: skip
+_TEXTS = tomllib.loads((files("experiments.claims") / "errata.toml").read_text("utf-8"))
+ERRATA = tuple(
+    Erratum(it["title"], it["source"], it["says"], it["does"], globals()[f"_{it['show']}"])
+    for it in _TEXTS["erratum"]
+)
 """All of them, in the order in which they are numbered from 1."""
-
-KNOWN = 9
-"""The first so many were found by reading; some of the others are further parts of them."""

@@ -1,4 +1,4 @@
-"""Judged claims kept beside a run, so that a table, a report and a check judge it once.
+"""A run judged once: what follows from it is kept beside it for tables, report and check.
 
 ``derived/judged.json`` holds what follows from the measurements and from the code that judges; it
 is read only as long as both are what they were, and written anew otherwise.
@@ -8,44 +8,46 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Iterable
 from contextlib import suppress
 from dataclasses import asdict
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 import hem.complexity
-from experiments.claims.claim import Claim
-from experiments.claims.outcome import Outcome
-from experiments.claims.verdicts import JudgedClaim
+from experiments.claims.cells import load_claims
+from experiments.claims.claim import Claim, JudgedClaim, Outcome
+from experiments.claims.quantities import judge_sentences, sentence_claims
+from experiments.claims.verdicts import judge_cells
 from experiments.harness import Axis
+from experiments.runs import Run
 from hem.complexity import Verdict
 from hem.whole_files import write_whole
 
-NAME = "judged.json"
-NUMBERS = ("work", "seconds", "bytes_per_vertex")
+PLAIN = ("outcome", "outcome_time", "found", "reason", "work", "seconds", "bytes_per_vertex")
 
 
-def read_judged(folder: Path, claims: Iterable[Claim]) -> list[JudgedClaim] | None:
-    """What was kept of a run; None where nothing was, or of other files or by other code."""
-    try:
-        content = json.loads((folder / "derived" / NAME).read_text("utf-8"))
-        if content["of"] != _state(folder):
-            return None
-        return [_judged(claim, content["claims"][claim.key]) for claim in claims]
-    except (OSError, ValueError, KeyError, TypeError):
-        return None
+@lru_cache(maxsize=4)
+def judge_run(run: Run) -> list[JudgedClaim]:
+    """Every cell of every table, then every sentence.
 
-
-def keep_judged(folder: Path, judged: Iterable[JudgedClaim]) -> None:
-    """Keep them; who may not write beside the run may read it all the same."""
-    rows = {it.claim.key: _plain(it) for it in judged}
-    with suppress(OSError):
-        write_whole(
-            folder / "derived" / NAME, json.dumps({"of": _state(folder), "claims": rows}, indent=1)
-        )
+    A run is judged once, which takes some seconds; what a finished one gave is kept beside it, if
+    that may be written to.
+    """
+    path, state = run.folder / "derived" / "judged.json", _state(run.folder)
+    with suppress(OSError, ValueError, KeyError, TypeError):
+        content = json.loads(path.read_text("utf-8"))
+        if content["of"] == state:
+            claims = [*load_claims(), *sentence_claims()]
+            return [_judged(claim, content["claims"][claim.key]) for claim in claims]
+    judged = [*judge_cells(run), *judge_sentences(run)]
+    if "finished" in run.meta and run.folder.exists():
+        rows = {it.claim.key: _plain(it) for it in judged}
+        with suppress(OSError):
+            write_whole(path, json.dumps({"of": state, "claims": rows}, indent=1))
+    return judged
 
 
 def _state(folder: Path) -> str:
@@ -60,29 +62,14 @@ def _state(folder: Path) -> str:
 
 
 def _plain(judged: JudgedClaim) -> dict[str, Any]:
-    return {
-        "outcome": judged.outcome,
-        "outcome_time": judged.outcome_time,
-        "found": judged.found,
-        "reason": judged.reason,
-        "verdicts": {axis.key: asdict(verdict) for axis, verdict in judged.verdicts.items()},
-        "values": judged.values.tolist(),
-        **{name: getattr(judged, name) for name in NUMBERS},
-    }
+    verdicts = {axis.key: asdict(verdict) for axis, verdict in judged.verdicts.items()}
+    values = {"verdicts": verdicts, "values": judged.values.tolist()}
+    return {**{name: getattr(judged, name) for name in PLAIN}, **values}
 
 
 def _judged(claim: Claim, row: dict[str, Any]) -> JudgedClaim:
-    return JudgedClaim(
-        claim=claim,
-        outcome=Outcome(row["outcome"]),
-        outcome_time=Outcome(row["outcome_time"]),
-        found=row["found"],
-        reason=row["reason"],
-        verdicts={
-            axis: Verdict(**row["verdicts"][axis.key])
-            for axis in Axis
-            if axis.key in row["verdicts"]
-        },
-        values=np.array(row["values"], float),
-        **{name: row[name] for name in NUMBERS},
-    )
+    kept = row["verdicts"]
+    verdicts = {axis: Verdict(**kept[axis.key]) for axis in Axis if axis.key in kept}
+    outcomes = {name: Outcome(row[name]) for name in ("outcome", "outcome_time")}
+    values = {"verdicts": verdicts, "values": np.array(row["values"], float)}
+    return JudgedClaim(claim, **{**row, **outcomes, **values})

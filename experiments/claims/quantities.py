@@ -11,18 +11,17 @@ import tomllib
 from collections.abc import Callable, Iterable
 from contextlib import suppress
 from importlib.resources import files
-from typing import Any, cast
+from typing import cast
 
 import numpy as np
+import pandas as pd
 from numpy.typing import NDArray
 
 import hem
 import structures
-from experiments.claims.break_even import break_even
-from experiments.claims.claim import SENTENCES, Between, Claim
-from experiments.claims.curves import Curve, Curves, curves
-from experiments.claims.outcome import Outcome
-from experiments.claims.verdicts import JudgedClaim
+from experiments.claims.claim import SENTENCES, Between, Claim, JudgedClaim, Outcome
+from experiments.claims.curves import Curves, curves
+from experiments.claims.errata import BOOK
 from experiments.harness import BASE, OPERATIONS, Axis
 from experiments.runs import Run
 from hem.complexity import slope
@@ -38,40 +37,38 @@ LARGER = 990
 
 HALF, WINGED = "half_edge", "winged_edge"
 HALF_EDGES = (HALF, "half_edge_objects", "plankton")
-SPLITS = ("split_edge", "split_face")
+SPLITS, COLLAPSE = ("split_edge", "split_face"), ("collapse_edge",)
+
+MIXES = {
+    "vertex_faces": "faces around a vertex",
+    "face_faces": "faces beside a face",
+    "split_edge": "edge splits",
+    "collapse_edge": "edge collapses",
+}
+"""What is done after building, one query or operation each."""
 
 
 def sentence_claims() -> list[Claim]:
     """Every sentence. Raises ValueError naming one whose quantity nobody measures."""
     content = tomllib.loads((files("experiments.claims") / "sentences.toml").read_text("utf-8"))
-    return [_claim(row) for row in content["statement"]]
-
-
-def _claim(row: dict[str, Any]) -> Claim:
-    name = row["quantity"]
-    if name not in QUANTITIES:
-        raise ValueError(
-            f"sentences.toml: {row['says']!r} rests on {name!r}; there are {', '.join(QUANTITIES)}"
-        )
-    low, high = float(row.get("low", -np.inf)), float(row.get("high", np.inf))
-    return Claim(
-        key=f"sentence/{name}",
-        text=row["says"],
-        source=row["source"],
-        table=SENTENCES,
-        title=row["says"],
-        expects=Between(name, row["measured"], low, high),
-    )
+    claims = []
+    for row in content["statement"]:
+        name, says = row["quantity"], row["says"]
+        if name not in QUANTITIES:
+            known = ", ".join(QUANTITIES)
+            raise ValueError(f"sentences.toml: {says!r} rests on {name!r}; there are {known}")
+        bounds = {end: float(row[end]) for end in ("low", "high") if end in row}
+        expects = Between(name, row["measured"], **bounds)
+        claims.append(Claim(f"sentence/{name}", says, row["source"], SENTENCES, says, expects))
+    return claims
 
 
 def judge_sentences(run: Run) -> list[JudgedClaim]:
-    """Every sentence, judged."""
-    return [judge_sentence(curves(run), claim) for claim in sentence_claims()]
+    """Every sentence: consistent if every value lies within its bounds, violated if none does."""
+    return [_judge(curves(run), claim, cast(Between, claim.expects)) for claim in sentence_claims()]
 
 
-def judge_sentence(of_run: Curves, claim: Claim) -> JudgedClaim:
-    """One sentence: consistent if every value lies within the bounds, violated if none does."""
-    expects = cast(Between, claim.expects)
+def _judge(of_run: Curves, claim: Claim, expects: Between) -> JudgedClaim:
     measured = np.array(list(QUANTITIES[expects.quantity](of_run)), float)
     values = measured[~np.isnan(measured)]
     inside = (values >= expects.low) & (values <= expects.high)
@@ -80,10 +77,10 @@ def judge_sentence(of_run: Curves, claim: Claim) -> JudgedClaim:
     else:
         outcome = Outcome.CONSISTENT if inside.all() else Outcome.VIOLATED
     reason = f"{inside.sum()} of {len(values)} values are {expects.words}."
-    return JudgedClaim(claim, outcome, span(values), reason, values=values)
+    return JudgedClaim(claim, outcome, _span(values), reason, values=values)
 
 
-def span(values: Array) -> str:
+def _span(values: Array) -> str:
     """What was found: one value, or the smallest and the largest."""
     if not len(values):
         return "–"
@@ -92,10 +89,32 @@ def span(values: Array) -> str:
     return low if low == high else f"{low} … {high}"
 
 
-def ratios(mine: Curve, other: Curve, at_least: int = 0) -> list[float]:
-    """Cost by cost at every size that both were measured at."""
-    costs, others = mine.by_size, other.by_size
-    return [costs[n] / others[n] for n in sorted(costs.keys() & others.keys()) if n >= at_least]
+def break_even(of_run: Curves) -> pd.DataFrame:
+    """After how many queries or edits per build a structure overtakes the base structure.
+
+    It takes longer to build and answers faster. After k it has caught up where build + k · cost is
+    the base's build + k · its cost. Columns: subject, structure, vertices, times: 0 where the
+    structure is ahead from the beginning, infinite where it never catches up.
+    """
+    rows = []
+    for subject in MIXES:
+        base = _costs(of_run, BASE, subject)
+        for structure in structures.NAMES:
+            if structure != BASE and structures.REGISTRY[structure].compiled:
+                more = (_costs(of_run, structure, subject) - base).dropna().sort_index()
+                times = more["build"].clip(lower=0) / -more["each"]
+                times = times.where(more["each"] < 0, np.inf)
+                rows += [(subject, structure, n, k) for n, k in times.items()]
+    return pd.DataFrame(rows, columns=["subject", "structure", "vertices", "times"])
+
+
+def _costs(of_run: Curves, structure: str, subject: str) -> pd.DataFrame:
+    """Seconds to build and per query or edit, by number of vertices."""
+    build = of_run.named("bench_build", structure, order="consecutive").by_size
+    asked = of_run.named("bench_queries", structure, subject, "random").by_size
+    edited = of_run.named("bench_operations", structure, subject, "batched").by_size
+    costs = {"build": build, "each": {**asked, **edited}}
+    return pd.DataFrame({name: pd.Series(it, dtype=float) for name, it in costs.items()})
 
 
 def _work(of_run: Curves, structure: str, subject: str) -> Array:
@@ -117,29 +136,23 @@ def _bytes_ratio(of_run: Curves, mine: str, other: str) -> Iterable[float]:
 
 def _answers(of_run: Curves) -> Iterable[float]:
     """How many more queries a triangle-neighbor structure answers without searching the mesh."""
-    local = {
-        name: sum(_is_local(_work(of_run, name, query)) for query in QUERIES)
-        for name in ("triangle_neighbor", BASE)
-    }
-    if all(local.values()):
-        yield local["triangle_neighbor"] - local[BASE]
+    local = []
+    for name in ("triangle_neighbor", BASE):
+        work = [_work(of_run, name, query) for query in QUERIES]
+        local.append(sum(len(it) > 1 and bool(it[-1] < 2 * it[0] + 2) for it in work))
+    if all(local):
+        yield local[0] - local[1]
 
 
-def _is_local(work: Array) -> bool:
-    return bool(len(work) > 1 and work[-1] < 2 * work[0] + 2)
+def _time_ratios(of_run: Curves, at_least: int, experiment: str, *case: str | None) -> list[float]:
+    """The time at every size that both were measured at, half-edge by indexed."""
+    mine, base = (of_run.named(experiment, it, *case).by_size for it in (HALF, BASE))
+    return [mine[n] / base[n] for n in sorted(mine.keys() & base.keys()) if n >= at_least]
 
 
 def _static(of_run: Curves) -> Iterable[float]:
-    """Building a half-edge mesh by building an indexed one, in time; and the bytes of both."""
-    mine, base = (of_run.named("bench_build", it, order="consecutive") for it in (HALF, BASE))
-    yield from ratios(mine, base)
+    yield from _time_ratios(of_run, 0, "bench_build", None, "consecutive")
     yield from _bytes_ratio(of_run, HALF, BASE)
-
-
-def _dynamic(of_run: Curves) -> Iterable[float]:
-    """The game-like mix of edits and queries, half-edge by indexed, on 1,000 vertices and more."""
-    mine, base = (of_run.named("bench_workloads", it, "impacts") for it in (HALF, BASE))
-    yield from ratios(mine, base, at_least=LARGER)
 
 
 def _edits_per_build(of_run: Curves) -> Iterable[float]:
@@ -161,22 +174,12 @@ def _slopes(
                 yield float(slope(curve.sizes, curve.centers))
 
 
-def _published(subjects: Iterable[str]) -> Quantity:
-    return lambda of_run: _slopes(of_run, ("as_printed",), subjects, "listings")
-
-
-def _corrected(subjects: Iterable[str]) -> Quantity:
-    return lambda of_run: _slopes(of_run, HALF_EDGES, subjects, "operations")
-
-
 def _books_built(of_run: Curves) -> Iterable[float]:
     """How many half-edge meshes accept three faces at one edge."""
-    points = np.random.default_rng(0).random((5, 3))
-    mesh = hem.TriangleMesh(points, [(0, 1, 2), (1, 0, 3), (0, 1, 4)])
     built = 0
     for name in HALF_EDGES:
         with suppress(hem.NonManifoldError):
-            built += bool(structures.build(name, mesh))
+            built += bool(structures.build(name, BOOK))
     yield built
 
 
@@ -220,12 +223,12 @@ QUANTITIES: dict[str, Quantity] = {
     "winged_half": lambda of_run: _work_ratios(of_run, WINGED, HALF, (*QUERIES, *OPERATIONS)),
     "answers": _answers,
     "static": _static,
-    "dynamic": _dynamic,
+    "dynamic": lambda of_run: _time_ratios(of_run, LARGER, "bench_workloads", "impacts"),
     "edits_per_build": _edits_per_build,
-    "printed_splits": _published(SPLITS),
-    "mended_splits": _corrected(SPLITS),
-    "printed_collapse": _published(["collapse_edge"]),
-    "mended_collapse": _corrected(["collapse_edge"]),
+    "printed_splits": lambda of_run: _slopes(of_run, ("as_printed",), SPLITS, "listings"),
+    "mended_splits": lambda of_run: _slopes(of_run, HALF_EDGES, SPLITS, "operations"),
+    "printed_collapse": lambda of_run: _slopes(of_run, ("as_printed",), COLLAPSE, "listings"),
+    "mended_collapse": lambda of_run: _slopes(of_run, HALF_EDGES, COLLAPSE, "operations"),
     "half_winged_operations": lambda of_run: _work_ratios(of_run, HALF, WINGED, OPERATIONS),
     "books_built": _books_built,
     "polygon_corners": _polygon_corners,

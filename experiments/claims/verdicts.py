@@ -7,21 +7,16 @@ memory, which is slower the larger the mesh. Both are judged against the latency
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
-from functools import lru_cache
+from collections.abc import Mapping, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from experiments.claims.cells import load_claims
-from experiments.claims.claim import BOUND, Claim, Exactly, Growth
-from experiments.claims.curves import Curves, axes_of, curves
-from experiments.claims.outcome import Outcome
+from experiments.claims.claim import BOUND, Claim, Exactly, Growth, JudgedClaim, Outcome
+from experiments.claims.curves import Curve, Curves, axes_of, curves
 from experiments.harness import Axis
-from experiments.runs import Run
-from experiments.runs.catalog import experiments
-from hem.complexity import Bound, Verdict, judge
+from experiments.runs import Run, experiments
+from hem.complexity import Verdict, judge
 
 CASE_ERROR = 0.15
 """How far cases of one curve stray, beyond what their own rounds tell: each is measured within some
@@ -30,92 +25,69 @@ milliseconds, and other tenants of the machine slow its caches for longer than t
 FLAT = 0.5
 """Slope in n_ev below which what grows comes on top of a larger part that does not."""
 
-NAN = float("nan")
 
-
-@dataclass(frozen=True, eq=False)
-class JudgedClaim:
-    """A claim, what became of it, and why.
-
-    ``outcome``: by what is exact where there is such a measure, else by time; ``outcome_time``: by
-    time. ``found``: short, such as ``O(n_ev)`` or ``6.33``; ``reason``: a sentence. ``verdicts``:
-    of a growth, by axis. ``values``: of a quantity. ``work`` and ``seconds``: per query at the
-    largest size, at random handles where that was measured. ``bytes_per_vertex``: of a claim about
-    memory.
-    """
-
-    claim: Claim
-    outcome: Outcome
-    found: str
-    reason: str = ""
-    outcome_time: Outcome = Outcome.NO_CLAIM
-    verdicts: Mapping[Axis, Verdict] = field(default_factory=dict)
-    values: NDArray[np.float64] = field(default_factory=lambda: np.zeros(0))
-    work: float = NAN
-    seconds: float = NAN
-    bytes_per_vertex: float = NAN
-
-
-def judge_cells(run: Run, claims: list[Claim] | None = None) -> list[JudgedClaim]:
+def judge_cells(run: Run, claims: Sequence[Claim] | None = None) -> list[JudgedClaim]:
     """Every cell of every table, or these."""
-    every = load_claims() if claims is None else claims
-    return [judge_cell(curves(run), claim) for claim in every]
+    of_run, every = curves(run), load_claims() if claims is None else claims
+    return [
+        _judge_growth(of_run, claim, claim.expects.classes)
+        if isinstance(claim.expects, Growth)
+        else _judge_bytes(of_run, claim)
+        for claim in every
+    ]
 
 
-def judge_cell(of_run: Curves, claim: Claim) -> JudgedClaim:
-    """One cell of a table."""
-    if isinstance(claim.expects, Exactly):
-        return _judge_bytes(of_run, claim, claim.expects.value)
-    assert isinstance(claim.expects, Growth), claim.key
-    axes = axes_of(claim.table)
-    found = {axis: _verdict(of_run, claim, claim.expects, axis) for axis in axes}
-    verdicts = {axis: verdict for axis, verdict in found.items() if verdict is not None}
-    outcomes = {
-        measure: _combined(
-            claim.expects, [axis for axis in axes if axis.measure == measure], verdicts
-        )
-        for measure in ("work", "time")
-    }
-    counted = any(axis.exact for axis in axes)
-    timed = Axis.RANDOM_FACES if Axis.RANDOM_FACES in axes else Axis.TIME_FACES
-    return JudgedClaim(
-        claim=claim,
-        outcome=outcomes["work" if counted else "time"],
-        outcome_time=outcomes["time"],
-        found=_class_found(
-            [axis for axis in axes if axis.measure == ("work" if counted else "time")], verdicts
-        ),
-        reason=" ".join(it.reason for axis, it in verdicts.items() if axis.exact == counted),
-        verdicts=verdicts,
-        work=of_run.curve(Axis.WORK_FACES, claim.structure, claim.subject, claim.table).largest,
-        seconds=of_run.curve(timed, claim.structure, claim.subject, claim.table).largest,
-    )
-
-
-def _judge_bytes(of_run: Curves, claim: Claim, printed: float | None) -> JudgedClaim:
+def _judge_bytes(of_run: Curves, claim: Claim) -> JudgedClaim:
     found = of_run.bytes_per_vertex(claim.structure)
-    if printed is None:
+    if not claim.claims_something:
         outcome = Outcome.NO_CLAIM
     elif np.isnan(found):
         outcome = Outcome.UNDETERMINED
     else:
-        outcome = Outcome.CONSISTENT if found == printed else Outcome.VIOLATED
+        outcome = Outcome.CONSISTENT if Exactly(found) == claim.expects else Outcome.VIOLATED
     shown = "?" if np.isnan(found) else f"{found:,.4g}"
     return JudgedClaim(claim, outcome, shown, bytes_per_vertex=found)
 
 
-def _verdict(of_run: Curves, claim: Claim, growth: Growth, axis: Axis) -> Verdict | None:
-    """Judge one claim along one axis; None without any cases.
+def _judge_growth(of_run: Curves, claim: Claim, classes: Mapping[str, str]) -> JudgedClaim:
+    axes = axes_of(claim.table)
+    cases = {axis: of_run.curve(axis, claim.structure, claim.subject, claim.table) for axis in Axis}
+    verdicts = {
+        axis: _verdict(of_run, claim.table, axis, cases[axis], classes.get(axis.variable, "O(1)"))
+        for axis in axes
+        if len(cases[axis])
+    }
+    outcomes = {
+        measure: Outcome.worst(
+            verdicts[axis].outcome if axis in verdicts else Outcome.UNDETERMINED
+            for axis in axes
+            if axis.measure == measure and axis.variable in classes
+        )
+        for measure in ("work", "time")
+    }
+    counted = any(axis.exact for axis in axes)
+    measure = "work" if counted else "time"
+    timed = Axis.RANDOM_FACES if Axis.RANDOM_FACES in axes else Axis.TIME_FACES
+    return JudgedClaim(
+        claim=claim,
+        outcome=outcomes[measure],
+        outcome_time=outcomes["time"],
+        found=_class_found([axis for axis in axes if axis.measure == measure], verdicts),
+        reason=" ".join(it.reason for axis, it in verdicts.items() if axis.exact == counted),
+        verdicts=verdicts,
+        work=cases[Axis.WORK_FACES].largest,
+        seconds=cases[timed].largest,
+    )
+
+
+def _verdict(of_run: Curves, table: str, axis: Axis, curve: Curve, expected: str) -> Verdict:
+    """Judge one claim along one axis.
 
     Where nothing is claimed the class found is what matters, and O(1) is asked about.
     """
-    curve = of_run.curve(axis, claim.structure, claim.subject, claim.table)
-    if not len(curve):
-        return None
     # What reads nothing at all costs something all the same: the call.
     samples = [np.maximum(it, 1) if axis.exact else it for it in curve.samples]
-    expected = growth.classes.get(axis.variable, "O(1)")
-    bound: Bound = "upper" if expected.startswith(BOUND) else "tight"
+    every = [it for it in experiments().values() if it.table and it.table.name == table]
     return judge(
         curve.sizes,
         samples,
@@ -123,35 +95,16 @@ def _verdict(of_run: Curves, claim: Claim, growth: Growth, axis: Axis) -> Verdic
         None if axis.exact else of_run.latencies(curve),
         exact=axis.exact,
         latency_error=CASE_ERROR,
-        unseen=(claim.table, axis) in _just_written(),
-        bound=bound,
+        unseen=any(axis in it.just_written for it in every),
+        bound="upper" if expected.startswith(BOUND) else "tight",
     )
 
 
-@lru_cache(maxsize=1)
-def _just_written() -> set[tuple[str, Axis]]:
-    """Tables and axes whose cases run on a mesh that was copied just before."""
-    every = experiments().values()
-    return {(it.table.name, axis) for it in every if it.table for axis in it.just_written}
-
-
-def _combined(growth: Growth, axes: list[Axis], verdicts: Mapping[Axis, Verdict]) -> Outcome:
-    """The worst of the verdicts in the variables that are claimed."""
-    claimed = [axis for axis in axes if axis.variable in growth.classes]
-    return Outcome.worst(
-        verdicts[axis].outcome if axis in verdicts else Outcome.UNDETERMINED for axis in claimed
-    )
-
-
-def _class_found(axes: list[Axis], verdicts: Mapping[Axis, Verdict]) -> str:
+def _class_found(axes: Sequence[Axis], verdicts: Mapping[Axis, Verdict]) -> str:
     """What was measured in the table's own terms, such as ``O(n_ev)``; ``?`` where it was not."""
     if not axes or any(axis not in verdicts for axis in axes):
         return "?"
-    factors = [
-        verdicts[axis].best[2:-1].replace("n", axis.symbol)
-        for axis in axes
-        if verdicts[axis].best != "O(1)"
-    ]
-    by_valence = [verdicts[axis].slope for axis in axes if axis.variable == "valence"]
-    joint = " + " if by_valence and by_valence[0] < FLAT else " · "
-    return f"O({joint.join(factors) or '1'})"
+    grown = [axis for axis in axes if verdicts[axis].best != "O(1)"]
+    factors = [verdicts[axis].best[2:-1].replace("n", axis.symbol) for axis in grown]
+    flat = any(axis.variable == "valence" and verdicts[axis].slope < FLAT for axis in axes)
+    return f"O({(' + ' if flat else ' · ').join(factors) or '1'})"
