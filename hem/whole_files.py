@@ -1,8 +1,9 @@
-"""Files that are whole or not there: written beside their place, then renamed."""
+"""Files that are whole or not there, and lines that are appended whole or not at all."""
 
 import os
 import secrets
 from contextlib import suppress
+from io import RawIOBase
 from pathlib import Path
 
 
@@ -24,4 +25,19 @@ def write_whole(path: str | os.PathLike[str], content: str | bytes) -> None:
     except BaseException:
         with suppress(OSError):
             beside.unlink()
+        raise
+
+
+def append_whole(file: RawIOBase, content: bytes, before: int) -> None:
+    """Append to an open file of ``before`` bytes, and have it on the disk.
+
+    Raises OSError, and leaves the file as it was.
+    """
+    try:
+        while content:
+            content = content[file.write(content) :]
+        os.fsync(file.fileno())
+    except OSError:
+        with suppress(OSError):
+            file.truncate(before)
         raise

@@ -22,23 +22,7 @@ from experiments.claims.quantities import MIXES, break_even, judge_sentences, se
 from experiments.claims.verdicts import judge_cells
 
 __all__ = [
-    "MEMORY",
-    "MIXES",
-    "NO_CLAIM",
-    "SENTENCES",
-    "Between",
-    "Claim",
-    "Curve",
-    "Curves",
-    "Exactly",
-    "Growth",
-    "JudgedClaim",
-    "Outcome",
-    "break_even",
-    "curves",
-    "judge_cells",
-    "judge_run",
-    "judge_sentences",
-    "load_claims",
-    "sentence_claims",
-]
+    "MEMORY", "MIXES", "NO_CLAIM", "SENTENCES", "Between", "Claim", "Curve", "Curves", "Exactly",
+    "Growth", "JudgedClaim", "Outcome", "break_even", "curves", "judge_cells", "judge_run",
+    "judge_sentences", "load_claims", "sentence_claims",
+]  # fmt: skip

@@ -4,8 +4,6 @@ What the thesis prints stands in ``claims.toml``; what is expected of a structur
 print, in that structure's file; what is expected of an experiment's own subjects, in its file.
 """
 
-from __future__ import annotations
-
 import tomllib
 from collections.abc import Iterator, Mapping
 from importlib.resources import files

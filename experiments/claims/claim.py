@@ -1,7 +1,5 @@
 """What is claimed in a cell of a table or in a sentence, and what became of it."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
@@ -50,7 +48,7 @@ class Outcome(StrEnum):
         return self.value.replace(" ", "-")
 
     @classmethod
-    def worst(cls, outcomes: Iterable[str]) -> Outcome:
+    def worst(cls, outcomes: Iterable[str]) -> "Outcome":
         """The worst of some; no claim where there are none."""
         given = set(outcomes)
         return next((it for it in cls if it in given), cls.NO_CLAIM)

@@ -1,7 +1,5 @@
 """Measurements along one variable: what plots draw and what claims are judged by."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from typing import Any
@@ -31,6 +29,11 @@ class Curve:
         return len(self.cases)
 
     @property
+    def measure(self) -> str:
+        """``work``, whose center is the mean, or ``time``, whose center is the median."""
+        return "work" if (self.cases["kind"] == "work").any() else "time"
+
+    @property
     def sizes(self) -> Array:
         """(k,) the variable."""
         return self.cases[self.variable].to_numpy(float)
@@ -43,7 +46,7 @@ class Curve:
     @cached_property
     def centers(self) -> Array:
         """(k,) the cost of each case: mean accesses, or median seconds."""
-        center = np.mean if (self.cases["kind"] == "work").any() else np.median
+        center = np.mean if self.measure == "work" else np.median
         return np.array([float(center(it)) for it in self.samples])
 
     def spread(self, part: float = 0.5) -> tuple[Array, Array]:

@@ -4,8 +4,6 @@ Their texts stand in ``errata.toml``. A function for each runs the listing
 (``structures.as_printed``) beside the sound version. ``bench_printed`` measures how costs grow.
 """
 
-from __future__ import annotations
-
 import tomllib
 from collections import Counter
 from collections.abc import Callable

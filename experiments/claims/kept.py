@@ -4,8 +4,6 @@
 is read only as long as both are what they were, and written anew otherwise.
 """
 
-from __future__ import annotations
-
 import hashlib
 import json
 from contextlib import suppress

@@ -5,8 +5,6 @@ the like, and the claim holds if all of them lie within its bounds. It is violat
 between, or where nothing was measured, it is undetermined.
 """
 
-from __future__ import annotations
-
 import tomllib
 from collections.abc import Callable, Iterable
 from contextlib import suppress

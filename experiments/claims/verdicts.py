@@ -5,8 +5,6 @@ query finds what it needs in the caches, and time shows its steps. Asked at rand
 memory, which is slower the larger the mesh. Both are judged against the latency measured beside.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 
 import numpy as np

@@ -8,54 +8,30 @@ what became of every claim.
 
 from experiments.regression.baseline import (
     COUNTERS,
-    FOLDER,
     RUN,
     Measured,
     load_baseline,
     reduce_run,
     save_baseline,
 )
-from experiments.regression.compare_counters import Compared, compare_counters
-from experiments.regression.compare_runs import FACTOR as RUN_FACTOR
-from experiments.regression.compare_runs import compare_runs, describe_difference
+from experiments.regression.compare import FACTOR as RUN_FACTOR
+from experiments.regression.compare import (
+    Compared,
+    compare_counters,
+    compare_runs,
+    describe_difference,
+)
 from experiments.regression.counters import measure_counters
 from experiments.regression.findings import CaseKey, Change, Finding, Kind, exit_code
-from experiments.regression.history import HISTORY, History, Line, append_run, read_history
+from experiments.regression.history import History, Line, append_run, read_history, record_run
 from experiments.regression.interleaved import HERE, compare_trees
 from experiments.regression.significance import FACTOR as INTERLEAVED_FACTOR
-from experiments.regression.snapshots import record_run
 from experiments.regression.trends import MEASURES, OUTCOMES, Trends, is_of
 
 __all__ = [
-    "COUNTERS",
-    "FOLDER",
-    "HERE",
-    "HISTORY",
-    "INTERLEAVED_FACTOR",
-    "MEASURES",
-    "OUTCOMES",
-    "RUN",
-    "RUN_FACTOR",
-    "CaseKey",
-    "Change",
-    "Compared",
-    "Finding",
-    "History",
-    "Kind",
-    "Line",
-    "Measured",
-    "Trends",
-    "append_run",
-    "compare_counters",
-    "compare_runs",
-    "compare_trees",
-    "describe_difference",
-    "exit_code",
-    "is_of",
-    "load_baseline",
-    "measure_counters",
-    "read_history",
-    "record_run",
-    "reduce_run",
-    "save_baseline",
-]
+    "COUNTERS", "HERE", "INTERLEAVED_FACTOR", "MEASURES", "OUTCOMES", "RUN", "RUN_FACTOR",
+    "CaseKey", "Change", "Compared", "Finding", "History", "Kind", "Line", "Measured", "Trends",
+    "append_run", "compare_counters", "compare_runs", "compare_trees", "describe_difference",
+    "exit_code", "is_of", "load_baseline", "measure_counters", "read_history", "record_run",
+    "reduce_run", "save_baseline",
+]  # fmt: skip

@@ -5,16 +5,15 @@ Two reduced runs in the run's own format: ``counters``, what `regression.counter
 they said of every claim when they were measured, a line per claim.
 """
 
-from __future__ import annotations
-
 import json
 import shutil
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
+import pandas as pd
 
 from experiments.harness import Measurement
 from experiments.regression.snapshots import Figures, claim_figures
@@ -46,12 +45,12 @@ class Measured:
     run: Run
     claims: dict[str, Figures]
 
-    def only(self, structures: list[str]) -> Measured:
+    def only(self, structures: list[str]) -> Self:
         """What is of these structures."""
         run = self.run
         parts = (rows[rows["structure"].isin(structures)] for rows in (run.cases, run.skipped))
         claims = {name: it for name, it in self.claims.items() if name.split("/")[1] in structures}
-        return Measured(Run(run.folder, run.meta, *parts), claims)
+        return type(self)(Run(run.folder, run.meta, *parts), claims)
 
 
 def reduce_run(run: Run) -> Measured:
@@ -69,12 +68,17 @@ def reduce_run(run: Run) -> Measured:
     return Measured(kept, claim_figures(run))
 
 
-def _is_comparable(case: dict[Any, Any]) -> bool:
+def _is_comparable(case: Mapping[Any, Any]) -> bool:
     if case["kind"] != "time":
         return True
     declared = experiments().get(case["experiment"])
     wanted = declared is not None and case["order"] in declared.baseline_orders
     return wanted and len(case["calibration"]) > 0 and len(case["samples"]) >= LEAST_ROUNDS
+
+
+def _short(seconds: Iterable[float]) -> list[float]:
+    """Four digits, which is more than a clock tells."""
+    return [float(f"{it:.4g}") for it in seconds]
 
 
 def load_baseline(part: str, folder: Path = FOLDER) -> Measured:
@@ -97,27 +101,20 @@ def save_baseline(part: str, measured: Measured, folder: Path = FOLDER) -> None:
         file = CaseFile(beside, str(experiment), str(structure))
         file.add(*map(_reduced, rows.sort_values("id").to_dict("records")))
     write_meta(beside, measured.run.meta)
-    lines = [
-        json.dumps({"claim": name, **figures}) + "\n" for name, figures in measured.claims.items()
-    ]
+    lines = (json.dumps({"claim": name, **it}) + "\n" for name, it in measured.claims.items())
     write_whole(beside / CLAIMS, "".join(lines))
     shutil.rmtree(folder / part, ignore_errors=True)
     beside.rename(folder / part)
 
 
-def _reduced(case: dict[Any, Any]) -> Measurement:
+def _reduced(case: Mapping[Any, Any]) -> Measurement:
     """A row of a run as a line of the baseline."""
-    values = {key: case[key] for key in KEPT}
-    values["valence"] = None if np.isnan(case["valence"] or np.nan) else int(case["valence"])
-    values = {key: None if value != value else value for key, value in values.items()}  # NaN
+    values = {key: None if pd.isna(case[key]) else case[key] for key in KEPT}
+    if values["valence"] is not None:
+        values["valence"] = int(values["valence"])
     return Measurement(
         **values,
         reference_bytes=int(case["reference_bytes"]),
         samples=[it if case["kind"] == "time" else int(it) for it in case["samples"]],
         calibration=list(case["calibration"]),
     )
-
-
-def _short(seconds: Iterable[float]) -> list[float]:
-    """Four digits, which is more than a clock tells."""
-    return [float(f"{it:.4g}") for it in seconds]

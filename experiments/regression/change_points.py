@@ -5,18 +5,16 @@ places for any number of steps, and an F test says how many the noise does not e
 the noise from the series itself, and pays for the number of places there were to choose from.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
-from dataclasses import dataclass
 from math import comb, log
+from typing import NamedTuple
 
 import numpy as np
 import ruptures
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.stats import f as f_distribution
 
-Array = NDArray[np.float64]
+from hem.arrays import Floats
 
 ALARM = 2e-3
 """The share of series of nothing but normal noise in which a step may be found, at most. A run is
@@ -31,18 +29,12 @@ MOST = 6
 """Steps in one series."""
 
 
-@dataclass(frozen=True)
-class Step:
+class Step(NamedTuple):
     """A new level. ``index``: its first value; ``before``, ``after``: the levels' medians."""
 
     index: int
     before: float
     after: float
-
-    @property
-    def ratio(self) -> float:
-        """By how much it changed, relative to what was before: 0.1 for a tenth more."""
-        return self.after / self.before - 1 if self.before else float("inf")
 
 
 def find_steps(values: ArrayLike, *, exact: bool = False) -> list[Step]:
@@ -60,36 +52,32 @@ def find_steps(values: ArrayLike, *, exact: bool = False) -> list[Step]:
     if not len(series):
         return []
     starts = np.flatnonzero(np.diff(series)) + 1 if exact else _noisy(np.log(series))
-    return [step for step in _levels(series, [int(it) for it in starts]) if exact or _matters(step)]
+    levels = [float(np.median(it)) for it in np.split(series, starts)]
+    steps = map(Step, map(int, starts), levels, levels[1:])
+    return [it for it in steps if exact or abs(log(it.after / it.before)) >= log(1 + SMALLEST)]
 
 
-def _matters(step: Step) -> bool:
-    return abs(log(step.after / step.before)) >= log(1 + SMALLEST)
-
-
-def _levels(series: Array, starts: Sequence[int]) -> list[Step]:
-    bounds = [0, *starts, len(series)]
-    levels = [float(np.median(it)) for it in np.split(series, list(starts))]
-    return [Step(bounds[k], levels[k - 1], levels[k]) for k in range(1, len(levels))]
-
-
-def _noisy(series: Array) -> list[int]:
+def _noisy(series: Floats) -> list[int]:
     """The first indices of the levels: more of them as long as the noise does not explain it.
 
     One step more is tried and then two, as what goes up and comes down again shows only whole.
     """
     series = _hampel(series)
-    segmentations = _best(series)
+    most = min(MOST, len(series) // SHORTEST - 1)
+    best: list[list[int]] = [[]]  # places for 0, 1, 2 … steps: of the least squares around them
+    if most >= 1:
+        search = ruptures.KernelCPD(kernel="linear", min_size=SHORTEST).fit(series[:, None])
+        best += [search.predict(count)[:-1] for count in range(1, most + 1)]
     chosen, more = 0, 1
-    while more <= 2 and chosen + more < len(segmentations):
-        if _chance(series, segmentations[chosen], segmentations[chosen + more]) < ALARM / 2:
+    while more <= 2 and chosen + more < len(best):
+        if _chance(series, best[chosen], best[chosen + more]) < ALARM / 2:
             chosen, more = chosen + more, 1
         else:
             more += 1
-    return segmentations[chosen]
+    return best[chosen]
 
 
-def _hampel(series: Array) -> Array:
+def _hampel(series: Floats) -> Floats:
     """The series, with what stands out of its surroundings cut off: one slow run is no level."""
     around = np.array([np.median(series[max(k - 2, 0) : k + 3]) for k in range(len(series))])
     off = series - around
@@ -97,16 +85,7 @@ def _hampel(series: Array) -> Array:
     return around + np.clip(off, -reach, reach) if reach else series
 
 
-def _best(series: Array) -> list[list[int]]:
-    """The best places for 0, 1, 2 … steps: of the least squares around the levels."""
-    most = min(MOST, len(series) // SHORTEST - 1)
-    if most < 1:
-        return [[]]
-    search = ruptures.KernelCPD(kernel="linear", min_size=SHORTEST).fit(series[:, None])
-    return [[], *(search.predict(count)[:-1] for count in range(1, most + 1))]
-
-
-def _chance(series: Array, fewer: list[int], more: list[int]) -> float:
+def _chance(series: Floats, fewer: Sequence[int], more: Sequence[int]) -> float:
     """A bound on the chance that noise gains as much from as many more steps, placed at best."""
     extra, left = len(more) - len(fewer), len(series) - len(more) - 1
     rest = _squares(series, more)
@@ -117,5 +96,5 @@ def _chance(series: Array, fewer: list[int], more: list[int]) -> float:
     return float(places * f_distribution.sf(gained / extra / (rest / left), extra, left))
 
 
-def _squares(series: Array, starts: list[int]) -> float:
+def _squares(series: Floats, starts: Sequence[int]) -> float:
     return float(sum(((it - it.mean()) ** 2).sum() for it in np.split(series, starts)))

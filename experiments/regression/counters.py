@@ -5,10 +5,8 @@ after every query was asked, and allocated while a mesh grows; and the classes t
 show. No time is taken.
 """
 
-from __future__ import annotations
-
 import tracemalloc
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Collection, Iterable, Iterator
 from dataclasses import asdict, replace
 from functools import partial
 from pathlib import Path
@@ -37,17 +35,14 @@ EXTENT = replace(
 BYTES = "bytes"
 """What stands for an experiment where bytes are counted here."""
 
-WEIGHED = 1_000
-"""Vertices of the mesh whose bytes are counted."""
-
-GROWING = 100
-"""Vertices of the mesh that is made to grow."""
+WEIGHED, GROWING = 1_000, 100
+"""Vertices of the mesh whose bytes are counted, and of the one that is made to grow."""
 
 SPLITS = 500
 """How often one of its faces is split."""
 
-Counted = tuple[str, str, Measurement]
-"""An experiment, a structure, and what was counted."""
+Task = tuple[str, str, Measurement, Callable[[], Iterable[Measurement]]]
+"""An experiment, a structure, what is kept if nothing can be measured, and how it is."""
 
 
 def measure_counters(chosen: Collection[str] = ()) -> Measured:
@@ -55,19 +50,16 @@ def measure_counters(chosen: Collection[str] = ()) -> Measured:
 
     What raises is skipped with the reason: whoever compares must not pass it over.
     """
-    counted = [
-        (experiment.name, name, _count(experiment, case))
-        for experiment in experiments().values()
-        if experiment.table is not None
-        for name in _wanted(experiment.structures, chosen)
-        for case in experiment.cases(EXTENT.of(name), name)
-        if experiment.kind_of(case) == "work"
-    ]
-    for name in _wanted(structures.NAMES, chosen):
-        counted += _try(name, _bytes)
-        if structures.REGISTRY[name].compiled:
-            counted += _try(name, _growing)
-    rows = [{"experiment": name, "structure": of, **asdict(it)} for name, of, it in counted]
+    rows = []
+    for experiment, structure, failed, measure in _tasks(chosen):
+        try:
+            measured = list(measure())
+        except Exception as error:  # whatever a broken structure does is a finding, not an end
+            reason = f"{type(error).__name__}: {error}".splitlines()[0]
+            measured = [replace(failed, skipped=reason)]
+        rows += [
+            {"experiment": experiment, "structure": structure, **asdict(it)} for it in measured
+        ]
     cases = pd.DataFrame(rows, columns=["experiment", "structure", *Measurement.__annotations__])
     cases["samples"] = cases["samples"].map(lambda samples: np.asarray(samples, float))
     skipped = cases["skipped"] != ""
@@ -75,27 +67,21 @@ def measure_counters(chosen: Collection[str] = ()) -> Measured:
     return Measured(run, class_figures(run))
 
 
-def _wanted(names: Collection[str], chosen: Collection[str]) -> list[str]:
-    return [name for name in names if not chosen or name in chosen]
+def _tasks(chosen: Collection[str]) -> Iterator[Task]:
+    for it in experiments().values():
+        for name in it.structures if it.table else ():
+            for case in it.cases(EXTENT.of(name), name) if not chosen or name in chosen else ():
+                if it.kind_of(case) == "work":
+                    yield it.name, name, case.not_measured("work", ""), partial(_work, it, case)
+    for name in structures.NAMES:
+        if not chosen or name in chosen:
+            for measure in (_bytes, _growing) if structures.REGISTRY[name].compiled else (_bytes,):
+                failed = Measurement(measure.__name__.strip("_"), "bytes")
+                yield BYTES, name, failed, partial(measure, name)
 
 
-def _count(experiment: Experiment, case: Case) -> Measurement:
-    try:
-        return experiment.measure(case, EXTENT, time_rounds)
-    except Exception as error:  # whatever a broken structure does is a finding, not an end
-        return case.not_measured("work", _words(error))
-
-
-def _try(name: str, measure: Callable[[str], Iterator[Measurement]]) -> list[Counted]:
-    try:
-        return [(BYTES, name, measurement) for measurement in measure(name)]
-    except Exception as error:
-        failed = Measurement(measure.__name__.strip("_"), "bytes", skipped=_words(error))
-        return [(BYTES, name, failed)]
-
-
-def _words(error: Exception) -> str:
-    return f"{type(error).__name__}: {error}".splitlines()[0]
+def _work(experiment: Experiment, case: Case) -> Iterator[Measurement]:
+    yield experiment.measure(case, EXTENT, time_rounds)
 
 
 def _bytes(name: str) -> Iterator[Measurement]:
@@ -113,17 +99,30 @@ def _bytes(name: str) -> Iterator[Measurement]:
     yield _weighed(case, "arrays once asked", [asked])
 
 
+def _growing(name: str) -> Iterator[Measurement]:
+    """Bytes of the arrays each time they are made anew while faces are split one by one."""
+    case = Case(name, EXTENT.families[0], GROWING)
+    s = structures.build(name, case.mesh())
+    sizes = [_size(s)]
+    for face in range(SPLITS):
+        s.split_face(face, (0.0, 0.0, 0.0))
+        if _size(s) != sizes[-1]:
+            sizes.append(_size(s))
+    s.validate()
+    yield _weighed(case, f"arrays while {SPLITS} faces are split", sizes)
+
+
+def _size(s: Structure) -> int:
+    return sum(array.nbytes for array in s.arrays)
+
+
 def _weighed(case: Case, part: str, sizes: list[int], reference_bytes: int = 0) -> Measurement:
     references = [f"{reference_bytes}-byte references"] if reference_bytes else []
     return Measurement(
-        "/".join([case.family, str(case.size), *references, part]),
-        "bytes",
-        subject=part,
-        family=case.family,
-        faces=len(case.mesh().triangles),
-        reference_bytes=reference_bytes,
-        samples=list(map(float, sizes)),
-    )
+        "/".join([case.family, str(case.size), *references, part]), "bytes",
+        subject=part, family=case.family, faces=len(case.mesh().triangles),
+        reference_bytes=reference_bytes, samples=list(map(float, sizes)),
+    )  # fmt: skip
 
 
 def _ask(s: Structure) -> Structure:
@@ -153,20 +152,3 @@ def _in_arrays() -> int:
     only = tracemalloc.DomainFilter(inclusive=True, domain=tracemalloc_domain)
     snapshot = tracemalloc.take_snapshot().filter_traces([only])
     return sum(trace.size for trace in snapshot.traces)
-
-
-def _growing(name: str) -> Iterator[Measurement]:
-    """Bytes of the arrays each time they are made anew while faces are split one by one."""
-    case = Case(name, EXTENT.families[0], GROWING)
-    s = structures.build(name, case.mesh())
-    sizes = [_size(s)]
-    for face in range(SPLITS):
-        s.split_face(face, (0.0, 0.0, 0.0))
-        if _size(s) != sizes[-1]:
-            sizes.append(_size(s))
-    s.validate()
-    yield _weighed(case, f"arrays while {SPLITS} faces are split", sizes)
-
-
-def _size(s: Structure) -> int:
-    return sum(array.nbytes for array in s.arrays)

@@ -3,8 +3,6 @@
 Nothing passes because nobody looked: what is not there to be compared is a finding as well.
 """
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Collection, Iterable
 from dataclasses import dataclass

@@ -3,39 +3,36 @@
 Lines are JSON. A line of an older schema is migrated as it is read, and stays as it is in the file.
 
 schema 2, this one
-    ``run, commit, committed, dirty, started, profile, structures, machine, versions, claims``, as
-    `experiments.regression.snapshots` makes them: claims are named ``table/structure/subject``.
+    What `record_run` gives: claims are named ``table/structure/subject``.
 schema 1
     ``date`` for ``committed``; a machine without ``id``; no ``run`` and no ``structures``; claims
     named ``structure.subject``, with ``outcome``, ``work`` at ``faces``, ``bytes``, and the
     ``slope`` in n_t by work, without time.
 """
 
-from __future__ import annotations
-
 import json
-import os
 from collections.abc import Callable
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import Any, BinaryIO
+from typing import Any
 
 from filelock import FileLock
 
 from experiments.harness import OPERATIONS
-from experiments.regression.snapshots import SCHEMA
-from experiments.runs import machine_id
+from experiments.regression.snapshots import claim_figures
+from experiments.runs import ResultsError, Run, git, machine_id
+from hem.whole_files import append_whole
 
-HISTORY = Path("results/history.jsonl")
-
-Line = dict[str, Any]
+SCHEMA = 2
 
 REQUIRED = {"commit": str, "started": str, "profile": str, "machine": dict, "claims": dict}
 """What every line has, and of what type."""
 
+Line = dict[str, Any]
 
-class LineError(ValueError):
+
+class LineError(Exception):
     """A line is no run, or of a schema that this version does not know."""
 
 
@@ -48,19 +45,41 @@ class History:
     faults: list[str]
 
 
-def read_history(path: Path = HISTORY) -> History:
+def record_run(run: Run) -> Line:
+    """The line that the history keeps of a run. Raises ResultsError if it is not finished."""
+    meta = run.meta
+    if "finished" not in meta:
+        raise ResultsError(f"{run.folder} is not finished; go on with: hem study --resume")
+    return {
+        "schema": SCHEMA,
+        "run": run.folder.resolve().name,
+        "commit": meta["commit"],
+        "committed": commit_date(meta["commit"]),
+        "dirty": meta["dirty"],
+        "started": meta["started"],
+        "profile": meta["preset"],
+        "structures": list(meta.get("structures", ())),
+        "machine": {"id": machine_id(meta["machine"]), **meta["machine"]},
+        "versions": meta["versions"],
+        "claims": claim_figures(run),
+    }
+
+
+def commit_date(commit: str) -> str | None:
+    """The date of a commit of this repository, ISO 8601, or None where it is not known."""
+    return git("show", "--no-patch", "--format=%cI", f"{commit}^{{commit}}") or None
+
+
+def read_history(path: Path) -> History:
     """Read a history; without the file it is empty. Damaged lines are named and skipped.
 
     Raises OSError if there is something that cannot be read.
     """
-    try:
-        runs, faults = _parse(path.read_bytes(), path)
-    except FileNotFoundError:
-        return History(path, [], [])
+    runs, faults = _parse(path.read_bytes(), path) if path.exists() else ([], [])
     return History(path, sorted(runs, key=_times), faults)
 
 
-def append_run(line: Line, path: Path = HISTORY) -> bool:
+def append_run(line: Line, path: Path) -> bool:
     """Add a run -> False if it is there already.
 
     Who adds at the same time waits. The line goes in whole and reaches the disk, or, where there is
@@ -75,18 +94,8 @@ def append_run(line: Line, path: Path = HISTORY) -> bool:
             return False
         cut_short = content and not content.endswith(b"\n")
         text = json.dumps(line, separators=(",", ":"), allow_nan=False)
-        _write(file, (b"\n" if cut_short else b"") + text.encode() + b"\n", len(content))
+        append_whole(file, (b"\n" if cut_short else b"") + text.encode() + b"\n", len(content))
     return True
-
-
-def _write(file: BinaryIO, content: bytes, before: int) -> None:
-    try:
-        while content:
-            content = content[file.write(content) :]
-        os.fsync(file.fileno())
-    except OSError:
-        file.truncate(before)
-        raise
 
 
 def _identity(line: Line) -> tuple[str, ...]:
@@ -94,15 +103,11 @@ def _identity(line: Line) -> tuple[str, ...]:
     return line["started"], line["commit"], line["profile"], line["machine"]["id"]
 
 
-def _times(line: Line) -> tuple[datetime, datetime]:
+def _times(line: Line) -> tuple[datetime, ...]:
     """The time of the commit, as far as it is known, and that of the run."""
-    started = _time(line["started"])
-    return _time(line["committed"]) if line.get("committed") else started, started
-
-
-def _time(text: str) -> datetime:
-    time = datetime.fromisoformat(text)
-    return time if time.tzinfo else time.replace(tzinfo=UTC)
+    texts = line.get("committed") or line["started"], line["started"]
+    times = map(datetime.fromisoformat, texts)
+    return tuple(it if it.tzinfo else it.replace(tzinfo=UTC) for it in times)
 
 
 def _parse(content: bytes, path: Path) -> tuple[list[Line], list[str]]:
@@ -126,21 +131,15 @@ def _line(raw: bytes) -> Line:
         raise LineError("is no run: it has no schema")
     try:
         line = migrate(line)
-        _require_run(line)
-    except LineError:
-        raise
+        for key, kind in REQUIRED.items():
+            if not isinstance(line.get(key), kind):
+                raise LineError(f"is no run: its {key} is {line.get(key)!r:.40}")
+        _identity(line), _times(line)
     except (KeyError, TypeError, ValueError, AttributeError) as error:
         raise LineError(f"is no run: {type(error).__name__} {error}") from None
-    return line
-
-
-def _require_run(line: Line) -> None:
-    for key, kind in REQUIRED.items():
-        if not isinstance(line.get(key), kind):
-            raise LineError(f"is no run: its {key} is {line.get(key)!r:.40}")
-    _identity(line), _times(line)
     if not all(isinstance(claim, dict) for claim in line["claims"].values()):
         raise LineError("is no run: not all of its claims have figures")
+    return line
 
 
 def _refuse(text: str) -> None:
@@ -157,26 +156,17 @@ def migrate(line: Line) -> Line:
 
 
 def _from_1(old: Line) -> Line:
-    claims = {
-        f"{'operations' if what in OPERATIONS else 'queries'}/{structure}/{what}": _claim_of_1(it)
-        for name, it in old["claims"].items()
-        for structure, _, what in [name.partition(".")]
-    }
-    return {
-        **{key: value for key, value in old.items() if key != "date"},
-        "schema": 2,
-        "run": "",
-        "structures": [],
-        "committed": old["date"],
-        "machine": {"id": machine_id(old["machine"]), **old["machine"]},
-        "claims": claims,
-    }
-
-
-def _claim_of_1(old: Line) -> Line:
-    renamed = {"outcome": "outcome", "work": "work", "faces": "work_faces", "bytes": "bytes"}
-    claim: Line = {new: old[key] for key, new in renamed.items() if key in old}
-    return claim | ({"slopes": {"work_faces": old["slope"]}} if "slope" in old else {})
+    line = {key: value for key, value in old.items() if key != "date"}
+    line |= {"schema": 2, "run": "", "structures": [], "committed": old["date"], "claims": {}}
+    line["machine"] = {"id": machine_id(old["machine"]), **old["machine"]}
+    for name, figures in old["claims"].items():
+        structure, _, what = name.partition(".")
+        table = "operations" if what in OPERATIONS else "queries"
+        renamed = {"work_faces" if key == "faces" else key: it for key, it in figures.items()}
+        if "slope" in renamed:
+            renamed["slopes"] = {"work_faces": renamed.pop("slope")}
+        line["claims"][f"{table}/{structure}/{what}"] = renamed
+    return line
 
 
 MIGRATIONS: dict[int, Callable[[Line], Line]] = {1: _from_1}

@@ -5,21 +5,19 @@ round at a time, ABBA, with the calibration loop beside every round. That tells 
 fifth that no two runs apart could show.
 """
 
-from __future__ import annotations
-
 import json
 import os
-import subprocess
 import sys
 from collections.abc import Collection, Iterator, Sequence
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
-from typing import IO, Any, NamedTuple
+from subprocess import PIPE, Popen
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from experiments.harness import calibration
-from experiments.regression.compare_counters import claim_of
+from experiments.regression.compare import claim_of
 from experiments.regression.findings import CaseKey, Change, Finding, Kind, vote
 from experiments.regression.significance import FACTOR, Comparison, compare_rounds
 from hem.contract import QUERIES
@@ -67,11 +65,9 @@ def compare_trees(
     """
     if not (before / "hem" / "__init__.py").exists():
         raise ValueError(f"--beside {before} is no checkout: there is no hem/__init__.py in it")
+    names = [name for name, it in REGISTRY.items() if it.compiled]
     wanted = [
-        (name, query)
-        for name, kind in REGISTRY.items()
-        for query in QUERIES
-        if kind.compiled and (not structures or name in structures)
+        (it, query) for it in names for query in QUERIES if not structures or it in structures
     ]
     if not wanted:
         why = (
@@ -88,19 +84,17 @@ def compare_trees(
 
 def _is_in_doubt(pairs: Sequence[PairTimed]) -> bool:
     """Whether further pairs could tell more: not where one could not be timed."""
-    if any(pair.error for pair in pairs):
-        return False
-    return any(pair.compared.change != Change.SAME for pair in pairs[:PAIRS])
+    as_before = all(pair.compared.change == Change.SAME for pair in pairs[:PAIRS])
+    return not as_before and not any(pair.error for pair in pairs)
 
 
 def _judge(name: str, query: str, pairs: Sequence[PairTimed]) -> Finding:
     """The pairs' vote. One that could not be timed is not passed over."""
     key = CaseKey("interleaved", name, query, "torus", 2 * VERTICES, order="consecutive")
     claim = claim_of(key._replace(experiment="bench_queries"))
-    for pair in pairs:
-        if pair.error:
-            why = f"could not be timed: {pair.error}"
-            return Finding(Change.UNDETERMINED, Kind.TIME, key, why=why, claim=claim)
+    if errors := [pair.error for pair in pairs if pair.error]:
+        why = f"could not be timed: {errors[0]}"
+        return Finding(Change.UNDETERMINED, Kind.TIME, key, why=why, claim=claim)
     middle = sorted(pairs, key=lambda pair: pair.compared.ratio)[len(pairs) // 2]
     seconds = middle.before, middle.after
     old, new = (f"{1e9 * it:,.{0 if it >= 1e-7 else 2}f} ns" for it in seconds)
@@ -123,53 +117,44 @@ def time_in_new_processes(
                 yield case, PairTimed(error=str(error))
 
 
-def _time_pair(workers: Sequence[Worker], name: str, query: str, factor: float) -> PairTimed:
+def _time_pair(workers: Sequence[Popen[str]], name: str, query: str, factor: float) -> PairTimed:
     """More rounds as long as they cannot tell, ``MOST_ROUNDS`` at most."""
-    once = min(worker.ask(structure=name, query=query) for worker in workers)
+    once = min(_ask(worker, structure=name, query=query) for worker in workers)
     times = max(1, round(ROUND_SECONDS / once))
-    handles = [worker.ask(times=times) for worker in workers]
+    handles = [_ask(worker, times=times) for worker in workers]
     rounds: list[list[Any]] = [[], []]
     while True:
         for k in range(2 * ROUNDS):
             which = (k + k // 2) % 2  # neither is always the first: 0 1 1 0
-            rounds[which].append(workers[which].ask())
+            rounds[which].append(_ask(workers[which]))
         samples, loops = zip(*(np.transpose(them).tolist() for them in rounds), strict=True)
-        compared = compare_rounds(samples[0], samples[1], loops[0], loops[1], factor)
+        compared = compare_rounds(*samples, *loops, factor)
         if compared.change != Change.UNDETERMINED or len(rounds[0]) >= MOST_ROUNDS:
             old, new = (np.median(it) / k for it, k in zip(samples, handles, strict=True))
             return PairTimed(compared, float(old), float(new))
 
 
-class Worker:
-    """A process that times in one tree, by its pipes."""
-
-    def __init__(self, *pipes: IO[str] | None) -> None:
-        self._pipes = [pipe for pipe in pipes if pipe is not None]
-
-    def ask(self, **question: Any) -> Any:
-        """Ask and wait for the answer. Raises OSError with what it said if it has ended."""
-        stdin, stdout, stderr = self._pipes
-        with suppress(BrokenPipeError):
-            stdin.write(json.dumps(question) + "\n")
-            stdin.flush()
-        answer = stdout.readline()
-        if not answer:
-            said = stderr.read().strip().splitlines()
-            raise OSError(said[-1] if said else "the process ended")
-        return json.loads(answer)
+def _ask(worker: Any, **question: Any) -> Any:
+    """Ask and wait for the answer. Raises OSError with what it said if it has ended."""
+    with suppress(BrokenPipeError):
+        worker.stdin.write(json.dumps(question) + "\n")
+        worker.stdin.flush()
+    answer = worker.stdout.readline()
+    if not answer:
+        said = worker.stderr.read().strip().splitlines()
+        raise OSError(said[-1] if said else "the process ended")
+    return json.loads(answer)
 
 
 @contextmanager
-def _worker(tree: Path) -> Iterator[Worker]:
+def _worker(tree: Path) -> Iterator[Popen[str]]:
     command = [sys.executable, str(WORKER), str(calibration.__file__), str(VERTICES)]
     # The tree alone is on its path, not the folder of the worker's own file.
     environment = {**os.environ, "PYTHONPATH": str(tree.resolve()), "PYTHONSAFEPATH": "1"}
-    pipe = subprocess.PIPE
-    with subprocess.Popen(
-        command, cwd=tree, env=environment, stdin=pipe, stdout=pipe, stderr=pipe, text=True
-    ) as process:
+    pipes: dict[str, Any] = {"stdin": PIPE, "stdout": PIPE, "stderr": PIPE}
+    with Popen(command, cwd=tree, env=environment, text=True, **pipes) as process:
         try:
-            yield Worker(process.stdin, process.stdout, process.stderr)
+            yield process
         finally:
             process.kill()
             with suppress(BrokenPipeError):  # it ended before it was asked

@@ -6,8 +6,6 @@ followed it; ranks are compared after a tolerated drift between runs is granted;
 the trimmed means (Yuen, Biometrika 61, 1974) is widened by how much each round resembles the last.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from math import comb
 from typing import NamedTuple

@@ -1,7 +1,5 @@
 """From a run to the few figures of each claim that the history and the baseline keep."""
 
-from __future__ import annotations
-
 from functools import cache
 from typing import Any
 
@@ -20,9 +18,7 @@ from experiments.claims import (
     load_claims,
 )
 from experiments.harness import Axis
-from experiments.runs import ResultsError, Run, git, machine_id, tables
-
-SCHEMA = 2
+from experiments.runs import Run, tables
 
 LEAST_SLOPE = 0.01
 """Slopes of counts that differ by less are the same one: not even they come out alike everywhere,
@@ -39,31 +35,6 @@ Figures = dict[str, Any]
 """What is kept of a claim, see `claim_figures`."""
 
 
-def record_run(run: Run) -> dict[str, Any]:
-    """The line that the history keeps of a run. Raises ResultsError if it is not finished."""
-    meta = run.meta
-    if "finished" not in meta:
-        raise ResultsError(f"{run.folder} is not finished; go on with: hem study --resume")
-    return {
-        "schema": SCHEMA,
-        "run": run.folder.resolve().name,
-        "commit": meta["commit"],
-        "committed": commit_date(meta["commit"]),
-        "dirty": meta["dirty"],
-        "started": meta["started"],
-        "profile": meta["preset"],
-        "structures": list(meta.get("structures", ())),
-        "machine": {"id": machine_id(meta["machine"]), **meta["machine"]},
-        "versions": meta["versions"],
-        "claims": claim_figures(run),
-    }
-
-
-def commit_date(commit: str) -> str | None:
-    """The date of a commit of this repository, ISO 8601, or None where it is not known."""
-    return git("show", "--no-patch", "--format=%cI", f"{commit}^{{commit}}") or None
-
-
 def claim_figures(run: Run) -> dict[str, Figures]:
     """The figures of every claim by ``table/structure/subject``, as far as it was measured.
 
@@ -74,29 +45,14 @@ def claim_figures(run: Run) -> dict[str, Figures]:
     Judges the run, which takes some seconds.
     """
     cells = [judged for judged in judge_run(run) if judged.claim.structure]
-    figures = {name_claim(judged.claim): _figures(run, judged) for judged in cells}
+    figures = {_name(judged.claim): _figures(run, judged) for judged in cells}
     return {name: kept for name, kept in figures.items() if kept}
 
 
 def class_figures(run: Run) -> dict[str, Figures]:
     """Of every claim the ``classes`` that its counts show, by axis, and what becomes of it."""
-    figures = {name_claim(it.claim): _classes(curves(run), it) for it in judge_cells(run)}
+    figures = {_name(it.claim): _classes(curves(run), it) for it in judge_cells(run)}
     return {name: {"classes": classes} for name, classes in figures.items() if classes}
-
-
-def _classes(of_run: Curves, judged: JudgedClaim) -> Figures:
-    claim, classes = judged.claim, Figures()
-    claimed = claim.expects.classes if isinstance(claim.expects, Growth) else {}
-    for axis, verdict in judged.verdicts.items():
-        if len(of_run.curve(axis, claim.structure, claim.subject, claim.table)) >= LEAST_SIZES:
-            outcome = verdict.outcome if axis.variable in claimed else Outcome.NO_CLAIM
-            classes[axis.key] = [verdict.best, outcome]
-    return classes
-
-
-def name_claim(claim: Claim) -> str:
-    """The name of a claim in files: ``table/structure/subject``."""
-    return f"{claim.table}/{claim.structure}/{claim.subject}"
 
 
 def describe_claim(name: str) -> str:
@@ -110,7 +66,22 @@ def describe_claim(name: str) -> str:
 
 @cache
 def _claims() -> dict[str, Claim]:
-    return {name_claim(claim): claim for claim in load_claims()}
+    return {_name(claim): claim for claim in load_claims()}
+
+
+def _name(claim: Claim) -> str:
+    """The name of a claim in files: ``table/structure/subject``."""
+    return f"{claim.table}/{claim.structure}/{claim.subject}"
+
+
+def _classes(of_run: Curves, judged: JudgedClaim) -> Figures:
+    claim, classes = judged.claim, Figures()
+    claimed = claim.expects.classes if isinstance(claim.expects, Growth) else {}
+    for axis, verdict in judged.verdicts.items():
+        if len(of_run.curve(axis, claim.structure, claim.subject, claim.table)) >= LEAST_SIZES:
+            outcome = verdict.outcome if axis.variable in claimed else Outcome.NO_CLAIM
+            classes[axis.key] = [verdict.best, outcome]
+    return classes
 
 
 def _figures(run: Run, judged: JudgedClaim) -> Figures:
@@ -118,16 +89,12 @@ def _figures(run: Run, judged: JudgedClaim) -> Figures:
         return {"outcome": judged.outcome, "bytes": _short(judged.bytes_per_vertex)}
     if not judged.verdicts:
         return {}
-    claim = judged.claim
     slopes = {
         axis.key: [_short(it) for it in (verdict.slope, verdict.slope_low, verdict.slope_high)]
         for axis, verdict in judged.verdicts.items()
     }
-    figures: Figures = {
-        "outcome": judged.outcome,
-        "outcome_time": judged.outcome_time,
-        "slopes": slopes,
-    }
+    outcomes = {"outcome": judged.outcome, "outcome_time": judged.outcome_time}
+    claim, figures = judged.claim, Figures(**outcomes, slopes=slopes)
     work = curves(run).curve(Axis.WORK_FACES, claim.structure, claim.subject, claim.table)
     if len(work):
         figures |= {"work": _short(work.largest), "work_faces": int(work.sizes[-1])}

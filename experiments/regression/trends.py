@@ -4,18 +4,16 @@ Work, bytes and outcomes by work are comparable between machines, times are not:
 is of one machine. All series are of one profile, as the profile sets the sizes.
 """
 
-from __future__ import annotations
-
-from collections.abc import Collection, Iterator
+from collections.abc import Callable, Collection, Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 import pandas as pd
 
 from experiments.regression.change_points import Step, find_steps
-from experiments.regression.history import History, Line
+from experiments.regression.history import History
 from experiments.regression.snapshots import LEAST_SLOPE
 
 
@@ -28,12 +26,6 @@ class Measure:
     exact: bool
     at: tuple[str, ...] = ()
     slope: bool = False
-
-    def values(self, claim: dict[str, Any]) -> list[float] | None:
-        """The figure, of a slope with the ends of its interval; None where there is none."""
-        if self.slope:
-            return claim.get("slopes", {}).get(self.key)
-        return [claim[self.key]] if self.key in claim else None
 
 
 MEASURES = {
@@ -52,6 +44,8 @@ OUTCOMES = {"outcome": "verdict by work", "outcome_time": "verdict by time"}
 SERIES = ["claim", "measure", "profile", "machine"]
 """What the figures of a series have in common; the machine is empty where any will do."""
 
+Rows = Iterator[tuple[Any, ...]]
+
 
 class Trends:
     """A history as one table of figures and one of verdicts; each is worked out once."""
@@ -60,22 +54,24 @@ class Trends:
         self.history = history
         self.runs = history.runs
 
-    def only(self, machine: str | None = None, preset: str | None = None) -> Trends:
+    def only(self, machine: str | None = None, preset: str | None = None) -> Self:
         """The runs of one machine, by its first digits, or of one preset.
 
         Raises ValueError that says which there are, if there are none or several machines.
         """
-        runs = self.runs
-        for what, wanted, key in (("machine", machine, _machine_id), ("preset", preset, _preset)):
+        runs = [
+            (run, {"machine": run["machine"]["id"], "preset": run["profile"]}) for run in self.runs
+        ]
+        for what, wanted in (("machine", machine), ("preset", preset)):
             if wanted is not None:
-                known = list(dict.fromkeys(map(key, runs)))
+                known = list(dict.fromkeys(about[what] for _, about in runs))
                 named = [it for it in known if wanted and it.startswith(wanted)]
                 if len(named) != 1:
                     which = "several runs are" if named else "no run is"
                     there = ", ".join(known)
                     raise ValueError(f"{which} of {what} {wanted!r}; there are {there}")
-                runs = [run for run in runs if key(run) == named[0]]
-        return Trends(replace(self.history, runs=runs))
+                runs = [(run, about) for run, about in runs if about[what] == named[0]]
+        return type(self)(replace(self.history, runs=[run for run, _ in runs]))
 
     def claims(self, text: str | None = None) -> list[str]:
         """The claims, in the newest run's order, that ``text`` names; None: all.
@@ -101,36 +97,19 @@ class Trends:
         ``comparable``: it is of the same meshes as the newest of its series. ``before``, ``after``:
         the levels where a new one begins with this row, else NaN.
         """
-        rows = [row for k, run in enumerate(self.runs) for row in _figures(k, run)]
-        columns = ["run", *SERIES, "at", "value", "low", "high"]
-        figures = pd.DataFrame(rows, columns=columns)
+        figures = self._table(_figures, ["at", "value", "low", "high"])
         newest = figures.groupby(SERIES)["at"].transform("last")
         figures["comparable"] = figures["at"] == newest
         figures[["before", "after"]] = np.nan
-        for _, part in figures[figures["comparable"]].groupby(SERIES):
-            for step in _steps(MEASURES[part["measure"].iloc[0]], part["value"].to_numpy(float)):
-                row = part.index[step.index]
-                figures.loc[row, ["before", "after"]] = step.before, step.after
+        for series, part in figures[figures["comparable"]].groupby(SERIES):
+            for step in _steps(MEASURES[series[1]], part["value"].to_numpy(float)):
+                figures.loc[part.index[step.index], ["before", "after"]] = step.before, step.after
         return figures
 
     @cached_property
     def verdicts(self) -> pd.DataFrame:
         """A row per run, claim and measure: its ``outcome``, and the one ``before``, if any."""
-        rows = [
-            (
-                k,
-                name,
-                what,
-                run["profile"],
-                "" if key == "outcome" else _machine_id(run),
-                claim[key],
-            )
-            for k, run in enumerate(self.runs)
-            for name, claim in run["claims"].items()
-            for key, what in OUTCOMES.items()
-            if key in claim
-        ]
-        verdicts = pd.DataFrame(rows, columns=["run", *SERIES, "outcome"])
+        verdicts = self._table(_verdicts, ["outcome"])
         verdicts["before"] = verdicts.groupby(SERIES)["outcome"].shift()
         return verdicts
 
@@ -147,29 +126,31 @@ class Trends:
         both = pd.concat([seen.assign(verdict=True), steps.assign(verdict=False)])
         return both.sort_values(["run", "verdict"], ascending=[True, False], kind="stable")
 
+    def _table(self, of_claim: Callable[[Any], Rows], columns: list[str]) -> pd.DataFrame:
+        """A row for each figure of a claim: its measure, whether it is exact, and the rest."""
+        rows = [
+            (k, name, measure, run["profile"], "" if exact else run["machine"]["id"], *values)
+            for k, run in enumerate(self.runs)
+            for name, claim in run["claims"].items()
+            for measure, exact, *values in of_claim(claim)
+        ]
+        return pd.DataFrame(rows, columns=["run", *SERIES, *columns])
+
 
 def is_of(claims: Collection[str], rows: pd.DataFrame) -> pd.DataFrame:
     """The rows of some claims."""
     return rows[rows["claim"].isin(list(claims))]
 
 
-def _figures(k: int, run: Line) -> Iterator[tuple[Any, ...]]:
-    for name, claim in run["claims"].items():
-        for key, measure in MEASURES.items():
-            values = measure.values(claim)
-            if values is not None:
-                at = str([claim.get(field) for field in measure.at])
-                low, high = values[1:] or (np.nan, np.nan)
-                series = name, key, run["profile"], "" if measure.exact else _machine_id(run)
-                yield k, *series, at, values[0], low, high
+def _figures(claim: dict[str, Any]) -> Rows:
+    for name, it in MEASURES.items():
+        if it.key in (figures := claim.get("slopes", {}) if it.slope else claim):
+            values = figures[it.key] if it.slope else (figures[it.key], np.nan, np.nan)
+            yield name, it.exact, str([claim.get(field) for field in it.at]), *values
 
 
-def _machine_id(run: Line) -> str:
-    return str(run["machine"]["id"])
-
-
-def _preset(run: Line) -> str:
-    return str(run["profile"])
+def _verdicts(claim: dict[str, Any]) -> Rows:
+    yield from ((it, key == "outcome", claim[key]) for key, it in OUTCOMES.items() if key in claim)
 
 
 def _steps(measure: Measure, values: np.ndarray[Any, Any]) -> list[Step]:

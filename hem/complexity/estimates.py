@@ -67,8 +67,7 @@ def _check(n: Array, cells: list[Array], waits: Array | None) -> None:
 def midmean(samples: Array) -> Array:
     """Mean of the middle half along the last axis: nearly a mean's precision, deaf to outliers."""
     cut = samples.shape[-1] // 4
-    middle: Array = np.sort(samples, axis=-1)[..., cut : samples.shape[-1] - cut].mean(-1)
-    return middle
+    return np.sort(samples, axis=-1)[..., cut : samples.shape[-1] - cut].mean(-1)
 
 
 def _errors(cells: list[Array]) -> tuple[Array, float]:
@@ -88,8 +87,7 @@ def _errors(cells: list[Array]) -> tuple[Array, float]:
 def slope(sizes: Array, cost: Array) -> Array:
     """Log-log slope along the last axis of costs (..., k), all sizes counting alike."""
     x = np.log(sizes) - np.log(sizes).mean()
-    fitted: Array = np.log(cost) @ x / max(float(x @ x), 1e-12)
-    return fitted
+    return np.log(cost) @ x / max(float(x @ x), 1e-12)
 
 
 def resample(costs: Costs, fitted: Array, count: int, seed: int) -> Array:
@@ -101,5 +99,4 @@ def resample(costs: Costs, fitted: Array, count: int, seed: int) -> Array:
     cells = (c[rng.integers(len(c), size=(count, len(c)))] for c in costs.samples)
     drawn = np.stack([midmean(cell) for cell in cells], axis=1)
     sign = rng.choice([-1.0, 1.0], size=drawn.shape)
-    replicates: Array = drawn * (costs.cost / fitted) ** (sign - 1)
-    return replicates
+    return drawn * (costs.cost / fitted) ** (sign - 1)

@@ -6,14 +6,14 @@ no model explains the costs, the verdict is "undetermined".
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
-from typing import Any, Literal
+from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from hem.complexity.estimates import Costs, resample, slope, summarize
-from hem.complexity.models import NAMES, Array, canonical, predict
+from hem.complexity.models import NAMES, canonical, predict
 from hem.complexity.selection import (
     LATENCY_ERROR,
     Comparison,
@@ -62,10 +62,6 @@ class Verdict:
     errors: Mapping[str, float]
     reason: str
 
-    def as_dict(self) -> dict[str, Any]:
-        """The verdict in what JSON knows: strings, numbers and objects."""
-        return asdict(self)
-
 
 def judge(
     sizes: ArrayLike,
@@ -113,6 +109,7 @@ def judge(
     models = compare_models(costs, memory)
     outcome, reason = _decide(measured, models, claim, bound)
     fitted, _ = predict(models.design, models.fit)
+    errors = np.sqrt(np.mean((fitted / costs.cost - 1) ** 2, axis=1))
     replicates = resample(costs, fitted[models.best], resamples, seed)
     tails = [(1 - confidence) / 2, (1 + confidence) / 2]
     low, high = np.quantile(slope(costs.sizes, models.steady(replicates)), tails)
@@ -130,7 +127,7 @@ def judge(
         confidence=confidence,
         noise=costs.scatter,
         coefficients=_coefficients(models),
-        errors=_by_name(np.sqrt(np.mean((fitted / costs.cost - 1) ** 2, axis=1))),
+        errors=dict(zip(NAMES, errors.tolist(), strict=True)),
         reason=reason,
     )
 
@@ -181,10 +178,7 @@ def _doubt(costs: Costs, models: Comparison) -> str:
 
 
 def _coefficients(models: Comparison) -> dict[str, dict[str, float]]:
-    fixed, factor = _by_name(models.fit.intercept), _by_name(models.fit.factor)
-    rise = _by_name(models.design.slowdowns.scaling[models.fit.slowdown].max(axis=1))
-    return {n: {"fixed": fixed[n], "factor": factor[n], "rise": rise[n]} for n in NAMES}
-
-
-def _by_name(values: Array) -> dict[str, float]:
-    return dict(zip(NAMES, values.tolist(), strict=True))
+    rise = models.design.slowdowns.scaling[models.fit.slowdown].max(axis=1)
+    values = (it.tolist() for it in (models.fit.intercept, models.fit.factor, rise))
+    rows = zip(NAMES, *values, strict=True)
+    return {name: {"fixed": c, "factor": a, "rise": r} for name, c, a, r in rows}

@@ -11,7 +11,7 @@ contain O(1), and no measurement could ever tell them apart.
 """
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -64,19 +64,18 @@ def no_slowdown(k: int) -> Slowdowns:
 def measured_slowdowns(latency: Array, steps: int = 65) -> Slowdowns:
     """Every mixture of computing and waiting for memory, from none to all of the measured one.
 
-    The intercept either waits as the scaling part does, or not at all.
+    latency: (k,), or (a, k) as any one of its rows has it. The intercept either waits as the
+    scaling part does, or not at all.
     """
-    extra = latency / latency.min() - 1
-    top = max(float(extra.max()), 1e-9)
-    share = (np.geomspace(1, 1 + top, steps) - 1) / top
-    mixed = 1 + share[:, None] * extra
-    return Slowdowns(np.vstack([mixed, np.ones_like(mixed)]), np.vstack([mixed, mixed]))
-
-
-def combined(parts: Sequence[Slowdowns]) -> Slowdowns:
-    """The candidates of all parts."""
-    intercept = np.vstack([part.intercept for part in parts])
-    return Slowdowns(intercept, np.vstack([part.scaling for part in parts]))
+    intercept, scaling = [], []
+    for row in np.atleast_2d(latency):
+        extra = row / row.min() - 1
+        top = max(float(extra.max()), 1e-9)
+        share = (np.geomspace(1, 1 + top, steps) - 1) / top
+        mixed = 1 + share[:, None] * extra
+        intercept += [mixed, np.ones_like(mixed)]
+        scaling += [mixed, mixed]
+    return Slowdowns(np.vstack(intercept), np.vstack(scaling))
 
 
 def unknown_slowdowns(sizes: Array, highest: float) -> Slowdowns:

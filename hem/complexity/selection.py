@@ -22,7 +22,6 @@ from hem.complexity.models import (
     DesignMatrix,
     Fit,
     Slowdowns,
-    combined,
     design,
     fit,
     measured_slowdowns,
@@ -75,40 +74,26 @@ class Memory:
     parameters: int
     """Free parameters of a model: intercept, factor, and the slowdown if there is one."""
 
-    @classmethod
-    def none(cls, sizes: Array) -> "Memory":
-        """Costs that are counts of work, which no cache slows."""
-        return cls(no_slowdown(len(sizes)), None, True, 1.0, MISFIT_EXPLAINED, 2)
-
-    @classmethod
-    def unknown(cls, sizes: Array) -> "Memory":
-        """Times without a latency: a smooth slowdown may have happened unseen."""
-        unseen = unknown_slowdowns(sizes, HIGHEST_SLOWDOWN)
-        return cls(no_slowdown(len(sizes)), unseen, False, ACCUSING_GROWTH, MISFIT, 2)
-
-    @classmethod
-    def measured(cls, sizes: Array, latency: Array, allow_unmeasured: bool) -> "Memory":
-        """Times beside a latency (a, k), as any one of its rows has it."""
-        slowdowns = combined([measured_slowdowns(row) for row in latency])
-        unseen = unknown_slowdowns(sizes, HIGHEST_SLOWDOWN) if allow_unmeasured else None
-        return cls(slowdowns, unseen, True, ACCUSING_GROWTH, MISFIT_EXPLAINED, 3)
-
 
 def account_for_memory(
     costs: Costs, exact: bool, latency_error: float, allow_unmeasured: bool
 ) -> tuple[Costs, Memory]:
     """The costs, with the latency's error added to theirs, and what caches may have done to them.
 
-    exact: they are counts of work. allow_unmeasured: they may have slowed in a way that the latency
-    misses.
+    exact: they are counts of work, which no cache slows. Times without a latency may have slowed
+    smoothly and unseen; with ``allow_unmeasured`` those beside a latency, too.
     """
+    nothing = no_slowdown(len(costs.sizes))
+    unseen = unknown_slowdowns(costs.sizes, HIGHEST_SLOWDOWN)
     if costs.latency is None:
-        return costs, Memory.none(costs.sizes) if exact else Memory.unknown(costs.sizes)
+        if exact:
+            return costs, Memory(nothing, None, True, 1.0, MISFIT_EXPLAINED, 2)
+        return costs, Memory(nothing, unseen, False, ACCUSING_GROWTH, MISFIT, 2)
     if exact:
         raise ValueError("exact counts wait for no memory: give either latency or exact")
-    error = np.sqrt(costs.error**2 + latency_error**2)
-    memory = Memory.measured(costs.sizes, costs.latency, allow_unmeasured)
-    return replace(costs, error=error), memory
+    slowdowns, beside = measured_slowdowns(costs.latency), unseen if allow_unmeasured else None
+    memory = Memory(slowdowns, beside, True, ACCUSING_GROWTH, MISFIT_EXPLAINED, 3)
+    return replace(costs, error=np.sqrt(costs.error**2 + latency_error**2)), memory
 
 
 @dataclass(frozen=True)
@@ -172,8 +157,7 @@ class Comparison:
         """Costs (..., k) with the memory's part, as the best model sees it in each row, removed."""
         best = self.design.only(self.best)
         slowed, fast = predict(best, fit(best, costs, self.weight))
-        steady: Array = costs * (fast / slowed)[..., 0, :]
-        return steady
+        return costs * (fast / slowed)[..., 0, :]
 
     def evidence(self, better: float, worse: float) -> float:
         """Evidence of a model with misfit `better` against one with misfit `worse`."""

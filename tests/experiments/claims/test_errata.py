@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import hem
-from experiments.claims.errata import ERRATA, KNOWN, octahedron, printed, sound
+from experiments.claims.errata import ERRATA, KNOWN, OCTAHEDRON, printed, sound
 from structures.as_printed import AsPrinted, render_arrays
 
 
@@ -31,7 +31,7 @@ def test_what_the_listings_build_is_sound_but_for_the_last_triangle():
 
 
 def test_the_builder_welds_as_the_sound_one_does():
-    mesh = octahedron()
+    mesh = OCTAHEDRON
     apart = np.arange(24).reshape(8, 3)  # every face has corners of its own
     soup = AsPrinted.build(*render_arrays(mesh.points[mesh.triangles.ravel()], apart), whole=True)
     assert (len(soup.vertices), len(soup.faces)) == (6, 8)

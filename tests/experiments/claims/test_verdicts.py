@@ -96,7 +96,9 @@ def test_the_class_found_names_its_variables(sound):
 def test_a_run_is_judged_once_and_what_was_kept_is_the_same(sound, monkeypatch):
     judged = judge_run(sound)
     assert judge_run(sound) is judged
-    monkeypatch.setattr("experiments.claims.judge_cells", lambda run: pytest.fail("judged again"))
+    monkeypatch.setattr(
+        "experiments.claims.kept.judge_cells", lambda run: pytest.fail("judged again")
+    )
     again = judge_run(load(sound.folder))
     assert [it.claim for it in again] == [it.claim for it in judged]
     assert [it.outcome for it in again] == [it.outcome for it in judged]

@@ -11,8 +11,7 @@ import os
 import pytest
 
 from experiments.regression import append_run, read_history, record_run
-from experiments.regression.history import LineError, migrate
-from experiments.regression.snapshots import commit_date
+from experiments.regression.history import LineError, commit_date, migrate
 from experiments.runs import ResultsError, load, machine, machine_id, read_meta, write_meta
 from tests.experiments.histories import CLAIM, line, lines
 from tests.experiments.made_runs import write_run

@@ -2,6 +2,7 @@
 
 import json
 from collections import Counter
+from dataclasses import asdict
 from typing import Any
 
 import numpy as np
@@ -230,7 +231,7 @@ def test_verdicts_repeat_and_know_neither_unit_nor_order() -> None:
 
 def test_a_verdict_survives_json() -> None:
     verdict = judge([4, 8, 16, 32, 64], [[3, 3.1], [3], [3], [3.1], [3]])
-    assert Verdict(**json.loads(json.dumps(verdict.as_dict()))) == verdict
+    assert Verdict(**json.loads(json.dumps(asdict(verdict)))) == verdict
 
 
 @pytest.mark.parametrize(

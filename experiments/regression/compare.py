@@ -1,0 +1,313 @@
+"""Two measured runs compared: every count and class exactly, slopes by intervals, times by curve.
+
+Rounds of a case are milliseconds apart, so what they differ by within a case says nothing about
+what two runs differ by. A curve, one query of one structure at all sizes, is therefore judged as a
+whole: it got slower only if most of its cases say so, each by significance and by size, relative to
+the calibration loop that ran beside its rounds.
+"""
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from experiments.claims import Outcome
+from experiments.harness import Axis
+from experiments.regression.baseline import COUNTERS, RUN, UPDATE, Measured
+from experiments.regression.findings import CaseKey, Change, Finding, Kind, vote
+from experiments.regression.significance import compare_rounds
+from experiments.regression.snapshots import LEAST_SLOPE, Figures, describe_claim
+from experiments.runs import Run, experiments
+from hem.complexity import NAMES as CLASSES
+from structures import NAMED
+
+FACTOR = 2.0
+"""How much slower a curve must be from run to run. Curves of the same code were measured to differ
+between runs by up to 1.65 at all sizes, by where the process lies in memory, and by 1.8 at most of
+them, by another tenant of the same caches. Two trees timed interleaved show far smaller changes."""
+
+SLOPE_DRIFT = 0.25
+"""How far beyond their intervals slopes of times may differ. Between runs of the same code they
+were measured to differ by up to 0.17, where one of them took a rise for the memory's and the other
+did not; a query that becomes linear moves its slope by 1. Where nothing is claimed they are not
+compared."""
+
+MACHINE = {"machine": ("cpu", "cores", "caches", "machines"), "versions": ("numba",)}
+"""What must be the same for times to be comparable."""
+
+Row = Mapping[Any, Any]
+"""A case as a row of a run."""
+
+
+class Pair(NamedTuple):
+    """A case of two runs; None where one of them has none of it. ``why``: the reason, if known."""
+
+    case: CaseKey
+    kind: Kind
+    before: Row | None
+    after: Row | None
+    why: str = ""
+
+
+class Compared(NamedTuple):
+    """The findings, and what could not be compared at all and need not be, in words."""
+
+    findings: list[Finding]
+    notes: list[str]
+
+
+def compare_counters(before: Measured, after: Measured) -> Compared:
+    """All counters, exactly; what only one of them has cannot be told."""
+    pairs, notes = _pair_cases(before.run, after.run)
+    return Compared([*_compare_counts(pairs, COUNTERS), *_compare_classes(before, after)], notes)
+
+
+def compare_runs(before: Measured, after: Measured, factor: float = FACTOR) -> Compared:
+    """All that two runs can be compared in. Raises ValueError for a factor of at most 1."""
+    pairs, notes = _pair_cases(before.run, after.run)
+    old, new = before.run.meta, after.run.meta
+    alike = old.get("preset") == new.get("preset")
+    present = {it.case[:2] for it in pairs if it.after is not None}
+    findings = _find_gone(it for it in pairs if it.case[:2] not in present)
+    pairs = [it for it in pairs if it.case[:2] in present]
+    if not alike:
+        count, pairs = len(pairs), [it for it in pairs if it.before and it.after]
+        notes.append(
+            f"of two presets {len(pairs):,} cases are compared that both have, "
+            f"{count - len(pairs):,} are not, nor are slopes, which are over other sizes"
+        )
+    findings += _compare_counts(pairs, RUN)
+    claims = [it for it in _compare_claims(before, after) if alike or it.kind != Kind.SLOPE]
+    busy = [name for name, it in (("run", new), ("baseline", old)) if it.get("too_busy")]
+    if busy:
+        claims = [it for it in claims if not it.random]
+        findings.append(_no_times(f"the machine was too busy to judge the {busy[0]} by time"))
+    elif other := _other_machine(old, new):
+        notes.append(f"times are not compared: {other}")
+    else:
+        findings += _compare_times([it for it in pairs if it.kind == Kind.TIME], factor)
+    return Compared(findings + claims, notes)
+
+
+def describe_difference(before: Measured, after: Measured) -> list[str]:
+    """What would change if the second became the baseline, a line each; times are just counted."""
+    findings = [*compare_counters(before, after).findings, *_compare_claims(before, after)]
+    changed = [it for it in findings if it.change != Change.SAME]
+    lines = [f"{it.kind} {it.where}: {it.difference}" for it in changed]
+    times = [it for it in _pair_cases(before.run, after.run)[0] if it.kind == Kind.TIME]
+    rounds = [[list(row["samples"]) if row else [] for row in it[2:4]] for it in times]
+    anew = sum(old != new for old, new in rounds)
+    return [*lines, f"times: {anew:,} of {len(times):,} cases anew"] if anew else lines
+
+
+def _pair_cases(before: Run, after: Run) -> tuple[list[Pair], list[str]]:
+    """A pair for every case of either, or that the second run skipped; and notes.
+
+    Python's own objects take other bytes in another Python, so these are not compared then.
+    """
+    old, new, skipped = (
+        {(row["experiment"], row["structure"], row["id"]): row for row in rows.to_dict("records")}
+        for rows in (before.cases, after.cases, after.skipped)
+    )
+    was, now = (str((it.meta.get("versions") or {}).get("python", "")) for it in (before, after))
+    other = was.rpartition(".")[0] != now.rpartition(".")[0]
+    objects = {name for name, it in NAMED.items() if other and not it.compiled}
+    pairs = []
+    for key in sorted({*old, *new, *skipped}):
+        row = new.get(key) or old.get(key) or skipped[key]
+        why = str(skipped[key]["skipped"]) if key in skipped else ""
+        if not (row["kind"] == Kind.BYTES and row["structure"] in objects):
+            pairs.append(Pair(_key_of(row), Kind(row["kind"]), old.get(key), new.get(key), why))
+    note = f"Python {now}, the baseline has {was}: the bytes of its objects are not compared"
+    return pairs, [note] if other else []
+
+
+def _key_of(row: Row) -> CaseKey:
+    columns = ("experiment", "structure", "subject", "family", "faces", "valence", "order")
+    known = {name: row[name] for name in columns if row[name] and row[name] == row[name]}  # no NaN
+    size, valence = (int(known.pop(name, 0)) for name in ("faces", "valence"))
+    return CaseKey(**known, size=size, valence=valence, reference_bytes=int(row["reference_bytes"]))
+
+
+def claim_of(case: CaseKey) -> str:
+    """The claim that a case bears on, in words: of its table, or on its structure's memory."""
+    declared = experiments().get(case.experiment)
+    if declared is None or declared.table is None:
+        return describe_claim(f"queries/{case.structure}/memory")
+    return describe_claim(f"{declared.table.name}/{case.structure}/{case.subject}")
+
+
+def _finding(
+    kind: Kind, case: CaseKey, old: Any, new: Any, part: str, why: str = "", **more: str
+) -> Finding:
+    """One thing compared exactly; what only one side has cannot be told.
+
+    ``part``: of the baseline. ``why``: why there is nothing new, if known.
+    """
+    change, command = Change.UNDETERMINED, ""
+    if new is None:
+        why = why or "was not measured"
+    elif old is None:
+        why, command = "not in the baseline", UPDATE[part]
+    else:
+        change, why = (compare_classes if kind == Kind.CLASS else compare_values)(old, new)
+    return Finding(change, kind, case, _show(old), _show(new), why, command, **more)
+
+
+def _show(values: Sequence[Any] | None) -> str:
+    values = values or ()
+    few = ", ".join(it if isinstance(it, str) else f"{it:,}" for it in values)
+    return few if len(values) <= 3 else f"{sum(values):,} in {len(values)}"
+
+
+def _compare_counts(pairs: Iterable[Pair], part: str) -> Iterator[Finding]:
+    """Work and bytes, to the last count."""
+    for case, kind, before, after, why in pairs:
+        if kind != Kind.TIME:
+            old, new = (row and [int(it) for it in row["samples"]] for row in (before, after))
+            yield _finding(kind, case, old, new, part, why, claim=claim_of(case))
+
+
+def compare_values(old: Sequence[int], new: Sequence[int]) -> tuple[Change, str]:
+    """Any count that is larger is worse -> what became of them, and why.
+
+    Of storage that grows: room in excess shows in one step, growth by a constant in their sum.
+    """
+    if old == new:
+        return Change.SAME, ""
+    more = any(before < after for before, after in zip(old, new, strict=False))
+    if len(old) == len(new):
+        return Change.WORSE if more else Change.BETTER, ""
+    more |= sum(new) > sum(old)
+    return Change.WORSE if more else Change.BETTER, f"{len(new)} instead of {len(old)} values"
+
+
+def _pair_claims(before: Measured, after: Measured) -> Iterator[tuple[CaseKey, str, Any, Any]]:
+    """Every claim of either: what it is about, in words, and the figures of both."""
+    for name in dict.fromkeys((*before.claims, *after.claims)):
+        key = CaseKey("", *name.split("/")[1:])
+        yield key, describe_claim(name), before.claims.get(name), after.claims.get(name)
+
+
+def _compare_classes(before: Measured, after: Measured) -> Iterator[Finding]:
+    for case, claim, *figures in _pair_claims(before, after):
+        old, new = ((it or {}).get("classes", {}) for it in figures)
+        for key in dict.fromkeys((*old, *new)):
+            axis, both = Axis[key.upper()].symbol, (old.get(key), new.get(key))
+            yield _finding(Kind.CLASS, case, *both, COUNTERS, axis=axis, claim=claim)
+
+
+def compare_classes(before: Sequence[str], after: Sequence[str]) -> tuple[Change, str]:
+    """By what became of the claim, and where that is the same by the rank of the class.
+
+    Either is a class and an outcome. A query that got faster than it is claimed to be breaks the
+    claim, too: so does an index that is hidden in a structure without one.
+    """
+    (old, was), (new, now) = before, after
+    change = Change.UNDETERMINED
+    if (old, was) == (new, now):
+        change = Change.SAME
+    elif was != now:
+        decided = {Outcome.VIOLATED: Change.WORSE, Outcome.CONSISTENT: Change.BETTER}
+        change = change if was == Outcome.NO_CLAIM else decided.get(now, change)
+    elif was != Outcome.UNDETERMINED and old in CLASSES and new in CLASSES:
+        worse = CLASSES.index(new) > CLASSES.index(old)
+        change = Change.WORSE if worse else Change.BETTER
+    return change, ""
+
+
+def _compare_claims(before: Measured, after: Measured) -> Iterator[Finding]:
+    """Per claim: whether its slopes overlap, and what became of it by work and by time.
+
+    Work is exact. By time a claim is lost or won only where a slope says so, too.
+    """
+    for key, text, old, new in _pair_claims(before, after):
+        if old is None or new is None:
+            both = (None if it is None else () for it in (old, new))
+            yield _finding(Kind.CLASS, key, *both, RUN, claim=text)
+            continue
+        slopes = list(_compare_slopes(key, old, new, text))
+        yield from slopes
+        for outcome, axis in (("outcome", "by work"), ("outcome_time", "by time")):
+            if outcome in old and outcome in new:
+                was, now, random = old[outcome], new[outcome], outcome == "outcome_time"
+                change, why = compare_classes(("", was), ("", now))
+                told = [it.change for it in slopes if it.random]
+                if random and change in (Change.WORSE, Change.BETTER) and change not in told:
+                    change, why = Change.UNDETERMINED, "its slopes are as before"
+                yield Finding(change, Kind.CLASS, key, was, now, why, "", axis, text, random)
+
+
+def _compare_slopes(key: CaseKey, old: Figures, new: Figures, claim: str) -> Iterator[Finding]:
+    """Slopes are apart where their intervals, a drift wider, have nothing in common."""
+    for axis in Axis:
+        was, now = (it.get("slopes", {}).get(axis.key) for it in (old, new))
+        if was and now and (axis.exact or old["outcome"] != Outcome.NO_CLAIM):
+            drift = LEAST_SLOPE if axis.exact else SLOPE_DRIFT
+            change = Change.WORSE if now[1] > was[2] + drift else Change.SAME
+            change = Change.BETTER if now[2] < was[1] - drift else change
+            before, after = ("{:.3f} [{:.3f}, {:.3f}]".format(*it) for it in (was, now))
+            where, random = f"{axis.symbol}, {axis.label}", not axis.exact
+            yield Finding(change, Kind.SLOPE, key, before, after, "", "", where, claim, random)
+
+
+def _find_gone(pairs: Iterable[Pair]) -> list[Finding]:
+    """One finding for all cases of an experiment on a structure of which the run has none."""
+    gone: dict[CaseKey, list[Kind]] = {}
+    for pair in pairs:
+        gone.setdefault(CaseKey(*pair.case[:2]), []).append(pair.kind)
+    return [
+        Finding(Change.UNDETERMINED, kinds[0], key, f"{len(kinds):,} cases", "none")
+        for key, kinds in gone.items()
+    ]
+
+
+def _other_machine(before: Row, after: Row) -> str:
+    """Why times of two runs with these heads cannot be compared; empty if they can."""
+    if (after.get("machine") or {}).get("machines"):
+        return "the run was measured by several machines"
+    for part, keys in MACHINE.items():
+        for key in keys:
+            old, new = ((meta.get(part) or {}).get(key) for meta in (before, after))
+            if old != new:
+                return f"another machine or compiler ({key}: {new}, the baseline has {old})"
+    return ""
+
+
+def _no_times(why: str, command: str = "hem study") -> Finding:
+    return Finding(Change.UNDETERMINED, Kind.TIME, CaseKey("all times"), "", "", why, command)
+
+
+def _compare_times(pairs: Sequence[Pair], factor: float) -> list[Finding]:
+    if not any(it.before and it.before["calibration"] for it in pairs):
+        return [_no_times("the baseline has no times that can be compared", UPDATE[RUN])]
+    if not any(it.after for it in pairs):
+        return [_no_times("the run has no times that can be compared")]
+    curves: dict[tuple[CaseKey, str], list[Pair]] = {}
+    for pair in pairs:
+        axis = Axis.TIME_VALENCE if pair.case.valence else Axis.TIME_FACES
+        key = CaseKey(*pair.case[:3], order=pair.case.order)
+        curves.setdefault((key, axis.symbol), []).append(pair)
+    return [_compare_curve(*key, cases, factor) for key, cases in curves.items()]
+
+
+def _compare_curve(key: CaseKey, axis: str, pairs: list[Pair], factor: float) -> Finding:
+    """One curve: decided where more than half of its cases say the same, and none is lost."""
+    claim, both = claim_of(key), [(it.before, it.after) for it in pairs if it.before and it.after]
+    if not both:
+        gone = (None if it is None else () for it in pairs[0][2:4])
+        return _finding(Kind.TIME, key, *gone, RUN, pairs[0].why, axis=axis, claim=claim)
+    columns = ("samples", "calibration")
+    cases = [
+        compare_rounds(*(it[column] for column in columns for it in sides), factor)
+        for sides in both
+    ]
+    change, why = vote(case.change for case in cases)
+    if lost := sum(it.after is None for it in pairs):
+        # Perhaps just the largest are slower.
+        change = Change.UNDETERMINED if change == Change.SAME else change
+        why += f", {lost} not measured"
+    ratios = [case.ratio for case in cases]
+    middle = np.exp(np.nanmedian(np.log(ratios)))
+    ratio = f"× {middle:.2f} ({min(ratios):.2f} … {max(ratios):.2f})"
+    return Finding(change, Kind.TIME, key, "", ratio, why, "", axis, claim, random=True)
