@@ -36,7 +36,7 @@ class Outcome(StrEnum):
     CONSISTENT = "consistent", "✓", "green"
     NO_CLAIM = "no claim", "–", "bright_black"
 
-    def __new__(cls, value: str, mark: str, color: str) -> Self:
+    def __new__(cls, value: str, mark: str = "", color: str = "") -> Self:
         """A text that has a mark and a color."""
         outcome = str.__new__(cls, value)
         outcome._value_, outcome.mark, outcome.color = value, mark, color

@@ -109,7 +109,7 @@ def save_baseline(part: str, measured: Measured, folder: Path = FOLDER) -> None:
 
 def _reduced(case: Mapping[Any, Any]) -> Measurement:
     """A row of a run as a line of the baseline."""
-    values = {key: None if pd.isna(case[key]) else case[key] for key in KEPT}
+    values: dict[str, Any] = {key: None if pd.isna(case[key]) else case[key] for key in KEPT}
     if values["valence"] is not None:
         values["valence"] = int(values["valence"])
     return Measurement(

@@ -6,8 +6,8 @@ the noise from the series itself, and pays for the number of places there were t
 """
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from math import comb, log
-from typing import NamedTuple
 
 import numpy as np
 import ruptures
@@ -29,7 +29,8 @@ MOST = 6
 """Steps in one series."""
 
 
-class Step(NamedTuple):
+@dataclass(frozen=True)
+class Step:
     """A new level. ``index``: its first value; ``before``, ``after``: the levels' medians."""
 
     index: int

@@ -138,7 +138,7 @@ def claim_of(case: CaseKey) -> str:
 
 
 def _finding(
-    kind: Kind, case: CaseKey, old: Any, new: Any, part: str, why: str = "", **more: str
+    kind: Kind, case: CaseKey, old: Any, new: Any, part: str, why: str = "", **more: Any
 ) -> Finding:
     """One thing compared exactly; what only one side has cannot be told.
 
@@ -185,7 +185,8 @@ def compare_values(old: Sequence[int], new: Sequence[int]) -> tuple[Change, str]
 def _pair_claims(before: Measured, after: Measured) -> Iterator[tuple[CaseKey, str, Any, Any]]:
     """Every claim of either: what it is about, in words, and the figures of both."""
     for name in dict.fromkeys((*before.claims, *after.claims)):
-        key = CaseKey("", *name.split("/")[1:])
+        _, structure, subject = name.split("/")
+        key = CaseKey("", structure, subject)
         yield key, describe_claim(name), before.claims.get(name), after.claims.get(name)
 
 
@@ -208,7 +209,7 @@ def compare_classes(before: Sequence[str], after: Sequence[str]) -> tuple[Change
     if (old, was) == (new, now):
         change = Change.SAME
     elif was != now:
-        decided = {Outcome.VIOLATED: Change.WORSE, Outcome.CONSISTENT: Change.BETTER}
+        decided = {"violated": Change.WORSE, "consistent": Change.BETTER}
         change = change if was == Outcome.NO_CLAIM else decided.get(now, change)
     elif was != Outcome.UNDETERMINED and old in CLASSES and new in CLASSES:
         worse = CLASSES.index(new) > CLASSES.index(old)
@@ -223,8 +224,8 @@ def _compare_claims(before: Measured, after: Measured) -> Iterator[Finding]:
     """
     for key, text, old, new in _pair_claims(before, after):
         if old is None or new is None:
-            both = (None if it is None else () for it in (old, new))
-            yield _finding(Kind.CLASS, key, *both, RUN, claim=text)
+            was, now = (None if it is None else () for it in (old, new))
+            yield _finding(Kind.CLASS, key, was, now, RUN, claim=text)
             continue
         slopes = list(_compare_slopes(key, old, new, text))
         yield from slopes
@@ -295,12 +296,13 @@ def _compare_curve(key: CaseKey, axis: str, pairs: list[Pair], factor: float) ->
     """One curve: decided where more than half of its cases say the same, and none is lost."""
     claim, both = claim_of(key), [(it.before, it.after) for it in pairs if it.before and it.after]
     if not both:
-        gone = (None if it is None else () for it in pairs[0][2:4])
-        return _finding(Kind.TIME, key, *gone, RUN, pairs[0].why, axis=axis, claim=claim)
-    columns = ("samples", "calibration")
+        was, now = (None if it is None else () for it in pairs[0][2:4])
+        return _finding(Kind.TIME, key, was, now, RUN, pairs[0].why, axis=axis, claim=claim)
     cases = [
-        compare_rounds(*(it[column] for column in columns for it in sides), factor)
-        for sides in both
+        compare_rounds(
+            old["samples"], new["samples"], old["calibration"], new["calibration"], factor
+        )
+        for old, new in both
     ]
     change, why = vote(case.change for case in cases)
     if lost := sum(it.after is None for it in pairs):

@@ -128,7 +128,7 @@ def _time_pair(workers: Sequence[Popen[str]], name: str, query: str, factor: flo
             which = (k + k // 2) % 2  # neither is always the first: 0 1 1 0
             rounds[which].append(_ask(workers[which]))
         samples, loops = zip(*(np.transpose(them).tolist() for them in rounds), strict=True)
-        compared = compare_rounds(*samples, *loops, factor)
+        compared = compare_rounds(samples[0], samples[1], loops[0], loops[1], factor)
         if compared.change != Change.UNDETERMINED or len(rounds[0]) >= MOST_ROUNDS:
             old, new = (np.median(it) / k for it, k in zip(samples, handles, strict=True))
             return PairTimed(compared, float(old), float(new))

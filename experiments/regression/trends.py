@@ -101,8 +101,9 @@ class Trends:
         newest = figures.groupby(SERIES)["at"].transform("last")
         figures["comparable"] = figures["at"] == newest
         figures[["before", "after"]] = np.nan
-        for series, part in figures[figures["comparable"]].groupby(SERIES):
-            for step in _steps(MEASURES[series[1]], part["value"].to_numpy(float)):
+        for _, part in figures[figures["comparable"]].groupby(SERIES):
+            measure = MEASURES[part["measure"].iloc[0]]
+            for step in _steps(measure, part["value"].to_numpy(float)):
                 figures.loc[part.index[step.index], ["before", "after"]] = step.before, step.after
         return figures
 
