@@ -19,7 +19,7 @@ from experiments.regression.significance import compare_rounds
 from experiments.regression.snapshots import LEAST_SLOPE, Figures, describe_claim
 from experiments.runs import Run, experiments
 from hem.complexity import NAMES as CLASSES
-from structures import NAMED
+from structures import REGISTRY
 
 FACTOR = 2.0
 """How much slower a curve must be from run to run. Curves of the same code were measured to differ
@@ -111,7 +111,7 @@ def _pair_cases(before: Run, after: Run) -> tuple[list[Pair], list[str]]:
     )
     was, now = (str((it.meta.get("versions") or {}).get("python", "")) for it in (before, after))
     other = was.rpartition(".")[0] != now.rpartition(".")[0]
-    objects = {name for name, it in NAMED.items() if other and not it.compiled}
+    objects = {name for name, it in REGISTRY.items() if other and not it.compiled}
     pairs = []
     for key in sorted({*old, *new, *skipped}):
         row = new.get(key) or old.get(key) or skipped[key]
