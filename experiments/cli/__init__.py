@@ -109,7 +109,7 @@ def meshes(
             table.add_row(name, *map("{:,}".format, counts), f"{s.valence_min}…{s.valence_max}")
             notes.add_row(name, what)
             if sizes:
-                notes.add_row("", f"sizes: {sizes}")
+                notes.add_row("  sizes", sizes)
         console.print(table, notes, "")
 
 
