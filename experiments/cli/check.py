@@ -59,12 +59,13 @@ def _compare(
 ) -> Compared:
     """All that was asked for. Raises ValueError for what a user can mend."""
     chosen = run_folder(run) if run else None
-    from experiments import regression as gate
     from structures import NAMED
 
     for name in structures:
         if name not in NAMED:
             raise ValueError(f"no structure is called {name!r}; there are {', '.join(NAMED)}")
+    from experiments import regression as gate
+
     before = gate.load_baseline(gate.COUNTERS, folder)  # before anything is measured
     runs = chosen and (gate.load_baseline(gate.RUN, folder), gate.reduce_run(_load(chosen)))
     factors: dict[str, Any] = {} if factor is None else {"factor": factor}
