@@ -81,9 +81,11 @@ def compare_runs(before: Measured, after: Measured, factor: float = FACTOR) -> C
     busy = [name for name, it in (("run", new), ("baseline", old)) if it.get("too_busy")]
     if busy:
         claims = [it for it in claims if not it.random]
-        findings.append(_no_times(f"the machine was too busy to judge the {busy[0]} by time"))
+        command = UPDATE[RUN] if busy == ["baseline"] else "hem study"
+        why = f"the machine was too busy to judge the {busy[0]} by time"
+        findings.append(_no_times(why, command))
     elif other := _other_machine(old, new):
-        notes.append(f"times are not compared: {other}")
+        notes.append(f"times are not compared: {other}; from now on they are: {UPDATE[RUN]}")
     else:
         findings += _compare_times([it for it in pairs if it.kind == Kind.TIME], factor)
     return Compared(findings + claims, notes)

@@ -3,14 +3,24 @@
 from __future__ import annotations
 
 import shutil
+from dataclasses import replace
+from io import StringIO
 from pathlib import Path
 
 import pytest
+from rich.console import Console
 from typer.testing import CliRunner
 
 from experiments import cli
-from experiments.regression import COUNTERS, load_baseline, save_baseline
-from experiments.runs import read_meta, write_meta
+from experiments.regression import (
+    COUNTERS,
+    compare_runs,
+    load_baseline,
+    reduce_run,
+    save_baseline,
+)
+from experiments.report import findings
+from experiments.runs import load, read_meta, write_meta
 
 REFERENCE = Path(__file__).parents[3] / "results/reference"
 
@@ -78,3 +88,12 @@ def test_a_worse_structure_fails_the_command_and_shows_the_numbers_in_80_columns
     assert max(map(len, output.splitlines())) <= 80
     assert "Table 1, Face → Vertices: O(1)" in output
     assert "Something got worse" in page.read_text()
+
+
+@pytest.mark.parametrize("differs", [{"machine": {"cpu": "another"}}, {"too_busy": True}])
+def test_where_no_times_can_be_compared_the_next_step_is_named(differs, base_folder):
+    measured = reduce_run(load(base_folder))
+    before = replace(measured, run=replace(measured.run, meta=measured.run.meta | differs))
+    console = Console(width=80, record=True, file=StringIO())
+    findings.show(*compare_runs(before, measured), console)
+    assert "hem baseline update RUN" in " ".join(console.export_text().split())
