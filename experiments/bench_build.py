@@ -1,11 +1,9 @@
 """Time to build each structure, by size, from meshes as generated and renumbered at random."""
 
-from __future__ import annotations
-
 import numpy as np
 
 import structures
-from experiments.harness import Case, Experiment, Keep, Measurement, Preset, Timer
+from experiments.harness import ORDERS, Case, Experiment, Measurement, Preset, Timer
 
 
 def cases(preset: Preset, structure: str) -> list[Case]:
@@ -13,7 +11,7 @@ def cases(preset: Preset, structure: str) -> list[Case]:
     return [
         Case(structure, preset.families[0], size, None, order, None, reference_bytes)
         for size in preset.build_sizes
-        for order in preset.orders
+        for order in ORDERS
         for reference_bytes in preset.build_reference_bytes
     ]
 
@@ -29,17 +27,5 @@ def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
     return case.result("time", s, handles=1, checked=True, **timed.fields)
 
 
-EXPERIMENT = Experiment(
-    title="Time to build",
-    kind="time",
-    cases=cases,
-    measure=measure,
-    structures=structures.NAMES,
-    copies=3,
-    turn=50,
-)
-
-
-def test_build(case: Case, preset: Preset, timer: Timer, keep: Keep) -> None:
-    """Time one case."""
-    keep(measure(case, preset, timer))
+EXPERIMENT = Experiment(title="Time to build", cases=cases, measure=measure, copies=3, turn=50)
+test_build = EXPERIMENT.test

@@ -4,23 +4,19 @@ A face is found by walking from the first one, by walking from the nearest of n_
 by looking at every face: timed, and counted in faces looked at.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 from time import perf_counter
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 import structures
-from experiments.harness import Case, Experiment, Keep, Measurement, Preset, Timer, why_too_slow
-from experiments.harness.latency import latency_now
+from experiments.harness import Case, Experiment, Measurement, Preset, Timer, why_too_slow
+from experiments.harness.calibration import latency_now
+from hem.arrays import Array, Floats
 from hem.contract import Structure
-from hem.fracture import JUMP, MATERIALS, Found, Material, nearest_face, scanned, shatter
-
-Array = NDArray[Any]
+from hem.fracture import JUMP, MATERIALS, Found, nearest_face, scanned, shatter
 
 SHATTER, FIND = "shatter", "find_face"
 
@@ -78,13 +74,13 @@ def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
 def _neighbors_asked(case: Case, s: Structure) -> float:
     """How often neighbors are asked for in a round, at the least."""
     if case.subject == SHATTER:
-        return ASKED_PER_BREAK_POINT * sum(_material(s).circles)
+        return ASKED_PER_BREAK_POINT * sum(BREAKING[s.compiled].circles)
     per_search = {"walk": np.sqrt(s.n_faces), "jump and walk": np.cbrt(s.n_faces), "scan": 0.0}
     return float(IMPACTS * per_search[str(case.order).partition(",")[0]])
 
 
 def _shatter(case: Case, s: Structure, preset: Preset, timer: Timer) -> Measurement:
-    at, material = _impacts(s)[0], _material(s)
+    at, material = _impacts(s)[0], BREAKING[s.compiled]
     expected = shatter(structures.build(REFERENCE, case.mesh()), at, material).shards
     begin, copy = perf_counter(), s.copy()
     shards = shatter(copy, at, material).shards
@@ -121,15 +117,11 @@ def _find(case: Case, s: Structure, preset: Preset, timer: Timer) -> Measurement
     latency = latency_now(sum(s.memory().values()))
     rounds = max(FEWEST_ROUNDS, preset.rounds // 2)
     timed = timer(all_of_them, rounds=rounds, warmup=0, per=len(impacts))
-    more = {"handles": len(impacts), "latency": latency, "checked": True}
-    return case.result("time", s, **more, **timed.fields)
+    units = len(impacts)
+    return case.result("time", s, handles=units, latency=latency, checked=True, **timed.fields)
 
 
-def _material(s: Structure) -> Material:
-    return BREAKING[s.compiled]
-
-
-def _impacts(s: Structure) -> NDArray[np.float64]:
+def _impacts(s: Structure) -> Floats:
     """(IMPACTS, 3): positions on faces chosen at random."""
     rng = np.random.default_rng(IMPACT_SEED)
     faces = s.faces()[rng.integers(0, s.n_faces, IMPACTS)]
@@ -140,16 +132,10 @@ def _impacts(s: Structure) -> NDArray[np.float64]:
 
 EXPERIMENT = Experiment(
     title="Breaking a surface",
-    kind="time",
     cases=cases,
     measure=measure,
-    structures=structures.NAMES,
     copies=10,
     turn=70,
     counted=tuple(f"{way}, {VISITED}" for way in WAYS),
 )
-
-
-def test_fracture(case: Case, preset: Preset, timer: Timer, keep: Keep) -> None:
-    """Time or count one case."""
-    keep(measure(case, preset, timer))
+test_fracture = EXPERIMENT.test

@@ -3,12 +3,10 @@
 The whole curve, for the plots; a query is judged against the latency measured beside it.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
-from experiments.harness import Case, Experiment, Keep, Measurement, Preset, Timer
-from experiments.harness.latency import LINE, WORDS, chase, random_cycle
+from experiments.harness import Case, Experiment, Measurement, Preset, Timer
+from experiments.harness.calibration import LINE, LINE_WORDS, chase, random_cycle
 
 SMALLEST = 16 * 1024
 STEPS = 50_000
@@ -25,7 +23,7 @@ def cases(preset: Preset, structure: str) -> list[Case]:
 def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
     """Time the chase; every line must be visited before the first comes again."""
     chain = random_cycle(case.size // LINE)
-    assert chase(chain, 0, len(chain) // WORDS) == 0
+    assert chase(chain, 0, len(chain) // LINE_WORDS) == 0
 
     place = 0
 
@@ -35,27 +33,16 @@ def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
 
     timed = timer(go_on, rounds=preset.rounds, per=STEPS)
     return Measurement(
-        id=case.id,
-        kind="time",
-        working_set=case.size,
-        handles=STEPS,
-        checked=True,
-        samples=timed.samples.tolist(),
-        calibration=timed.calibration.tolist(),
+        case.id, "time", working_set=case.size, handles=STEPS, checked=True, **timed.fields
     )
 
 
 EXPERIMENT = Experiment(
     title="Latency of the memory",
-    kind="time",
     cases=cases,
     measure=measure,
     structures=("machine",),
     copies=0,
     turn=30,
 )
-
-
-def test_latency(case: Case, preset: Preset, timer: Timer, keep: Keep) -> None:
-    """Time one case."""
-    keep(measure(case, preset, timer))
+test_latency = EXPERIMENT.test

@@ -1,13 +1,11 @@
 """Bytes of each structure: by the thesis' model, by its arrays, and as the process sees them."""
 
-from __future__ import annotations
-
 import tracemalloc
 
 import numpy as np
 
 import structures
-from experiments.harness import Case, Experiment, Keep, Measurement, Preset, Timer, time_rounds
+from experiments.harness import Case, Experiment, Measurement, Preset, Timer
 from structures.half_edge_objects import HalfEdgeMesh
 
 SMALLEST = 1_000
@@ -48,16 +46,6 @@ def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
 
 
 EXPERIMENT = Experiment(
-    title="Bytes",
-    kind="bytes",
-    cases=cases,
-    measure=measure,
-    structures=structures.NAMES,
-    copies=2,
-    turn=20,
+    title="Bytes", kind="bytes", cases=cases, measure=measure, copies=2, turn=20
 )
-
-
-def test_memory(case: Case, preset: Preset, keep: Keep) -> None:
-    """Weigh one case."""
-    keep(measure(case, preset, time_rounds))
+test_memory = EXPERIMENT.test

@@ -3,8 +3,6 @@
 Each is done uncompiled on a copy of the mesh. The counts are exact and the same on every machine.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from experiments.harness import (
@@ -13,16 +11,13 @@ from experiments.harness import (
     Axis,
     Case,
     Experiment,
-    Keep,
     Measurement,
     Preset,
     Timer,
     operation_arguments,
     operation_faces,
-    time_rounds,
     validate_operated,
 )
-from structures import NAMES, REGISTRY
 
 REPETITIONS = 3
 SEARCHED = 1
@@ -41,7 +36,7 @@ def cases(preset: Preset, structure: str) -> list[Case]:
 def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
     """Count what operations read and write, and check what they make of the mesh."""
     s, operation = case.build().copy(), str(case.subject)
-    faces = operation_faces(case, SEARCHED if REGISTRY[case.structure].searches else REPETITIONS)
+    faces = operation_faces(case, SEARCHED if s.searches else REPETITIONS)
     rows = operation_arguments(s, operation, faces).tolist()
     work = [s.operation_work(operation, *row) for row in rows]
     validate_operated(s)
@@ -53,14 +48,9 @@ EXPERIMENT = Experiment(
     kind="work",
     cases=cases,
     measure=measure,
-    structures=NAMES,
     copies=3,
     turn=11,
     table=OPERATIONS_TABLE,
     axes={Axis.WORK_FACES: "counted", Axis.WORK_VALENCE: "counted"},
 )
-
-
-def test_operation_work(case: Case, preset: Preset, keep: Keep) -> None:
-    """Count one case."""
-    keep(measure(case, preset, time_rounds))
+test_operation_work = EXPERIMENT.test

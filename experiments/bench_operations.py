@@ -5,8 +5,6 @@ from Python and its ``Edit``. The render mesh is followed edit by edit, in one t
 anew after every edit, as the thesis prints it.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 
@@ -17,56 +15,31 @@ from experiments.harness import (
     HUBS,
     OPERATIONS,
     OPERATIONS_TABLE,
-    RENDERED,
     Axis,
     Case,
     Experiment,
-    Keep,
     Measurement,
     Preset,
     Timer,
-    count_elements,
     operation_arguments,
     operation_faces,
+    searches,
     time_operations,
 )
 from hem.contract import Structure
-from structures import NAMES
 
 FEWEST_HUBS = 64
 """In a mesh whose valence is varied; with fewer operations at a time they are not worth timing."""
 
 SINGLE_FACES = 50
-
-ANEW = "render mesh built anew"
+SCANNED_FACES = 5
+"""How many are operated on one by one where each takes a scan of the mesh."""
 
 Ending = Callable[[], Any]
 
 
-def _alone(s: Structure) -> Ending:
-    return lambda: None
-
-
-def _rendered(s: Structure) -> Ending:
-    hem.RenderMesh(s)
-    return lambda: None
-
-
-def _in_a_transaction(s: Structure) -> Ending:
-    transaction = hem.RenderMesh(s).transaction()
-    transaction.__enter__()
-    return lambda: transaction.__exit__(None, None, None)
-
-
-def _built_anew(s: Structure) -> Ending:
-    s.subscribe(lambda edit: hem.RenderMesh(s).close())
-    return lambda: None
-
-
-SET_UP: dict[str, Callable[[Structure], Ending]] = dict(
-    zip(RENDERED, (_rendered, _in_a_transaction, _built_anew), strict=True)
-)
-"""Ways to keep a render mesh up to date: the order of a case, and what is set up -> how it ends."""
+RENDERED = EACH, TOGETHER, ANEW = "rendered", "in a transaction", "render mesh built anew"
+"""Ways to keep a render mesh up to date, by the name of the order in a case."""
 
 
 def cases(preset: Preset, structure: str) -> list[Case]:
@@ -96,11 +69,23 @@ def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
     return case.result("time", case.build(), checked=True, **timed)
 
 
+def _follow(order: str, s: Structure) -> Ending:
+    """Have a render mesh follow what is done, in some orders -> how that ends."""
+    if order == EACH:
+        hem.RenderMesh(s)
+    elif order == ANEW:
+        s.subscribe(lambda edit: hem.RenderMesh(s).close())
+    elif order == TOGETHER:
+        transaction = hem.RenderMesh(s).transaction()
+        transaction.__enter__()
+        return lambda: transaction.__exit__(None, None, None)
+    return lambda: None
+
+
 def _time_one_by_one(case: Case, preset: Preset, timer: Timer) -> dict[str, Any]:
-    s, operation = case.build(), str(case.subject)
-    few = count_elements(case, SINGLE_FACES, scanned=case.order == ANEW)
+    s, operation, order = case.build(), str(case.subject), str(case.order)
+    few = SCANNED_FACES if order == ANEW or searches(case) else SINGLE_FACES
     first, *faces = operation_faces(case, few).tolist()
-    set_up = SET_UP.get(str(case.order), _alone)
     given = 3 if operation == "add_face" else 1
     point = ((0.0, 0.0, 0.0),) if operation.startswith("split") else ()
 
@@ -108,7 +93,7 @@ def _time_one_by_one(case: Case, preset: Preset, timer: Timer) -> dict[str, Any]
         copy = s.copy()
         copy.reserve(2 * SINGLE_FACES)
         rows = operation_arguments(copy, operation, np.array(faces))[:, :given].tolist()
-        end = set_up(copy)
+        end = _follow(order, copy)
         copy.split_face(first, (0, 0, 0))  # makes room, here and in the render mesh
         return (getattr(copy, operation), rows, end), {}
 
@@ -123,10 +108,8 @@ def _time_one_by_one(case: Case, preset: Preset, timer: Timer) -> dict[str, Any]
 
 EXPERIMENT = Experiment(
     title="Time of operations",
-    kind="time",
     cases=cases,
     measure=measure,
-    structures=NAMES,
     copies=18,
     turn=42,
     table=OPERATIONS_TABLE,
@@ -134,8 +117,4 @@ EXPERIMENT = Experiment(
     just_written=frozenset({Axis.TIME_FACES}),
     baseline_orders=("batched",),
 )
-
-
-def test_operation(case: Case, preset: Preset, timer: Timer, keep: Keep) -> None:
-    """Time one case."""
-    keep(measure(case, preset, timer))
+test_operation = EXPERIMENT.test

@@ -4,14 +4,9 @@ Building, splitting and collapsing, in Python objects on both sides. The sizes a
 the printed builder is quadratic. Work is the number of fields of objects that are read or written.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from functools import partial
-from typing import Any, NamedTuple
-
-import numpy as np
-from numpy.typing import NDArray
+from typing import Any
 
 import structures
 from experiments.harness import (
@@ -19,20 +14,17 @@ from experiments.harness import (
     Axis,
     Case,
     Experiment,
-    Keep,
     Measurement,
     Preset,
     Table,
     Timer,
     operation_faces,
 )
-from experiments.harness.latency import latency_now
+from experiments.harness.calibration import latency_now
 from hem.meshes import TriangleMesh
 from structures.as_printed import AsPrinted, render_arrays
 from structures.half_edge_objects import HalfEdgeMesh, fields_accessed
 from structures.object_tools import HalfEdgeMeshBuilder
-
-Array = NDArray[Any]
 
 MENDED = HalfEdgeMesh.name
 
@@ -66,83 +58,63 @@ def cases(preset: Preset, structure: str) -> list[Case]:
     ]
 
 
-class Steps(NamedTuple):
-    """What is to be counted or timed, one after the other, on one mesh, and its faces by now."""
-
-    steps: list[Step]
-    faces: Callable[[], int]
-
-
 def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
     """Count or time what a listing does, and check what it made by the number of faces."""
     counted = case.order == COUNTED
-    todo = _steps(case, COUNTED_OPERATIONS if counted else TIMED_OPERATIONS)
-    before = todo.faces()
+    steps, faces = _steps(case, COUNTED_OPERATIONS if counted else TIMED_OPERATIONS)
+    before = faces()
     if counted:
-        fields: dict[str, Any] = {"samples": [fields_accessed(step) for step in todo.steps]}
+        fields: dict[str, Any] = {"samples": [fields_accessed(step) for step in steps]}
     else:
-        waiting, latency = iter(todo.steps), latency_now(500 * len(case.mesh().points))
-        timed = timer(
-            lambda step: step(),
-            setup=lambda: ((next(waiting),), {}),
-            rounds=len(todo.steps),
-            warmup=0,
-        )
+        waiting: Any = iter([((step,), {}) for step in steps])
+        latency = latency_now(500 * len(case.mesh().points))
+        timed = timer(lambda step: step(), setup=waiting.__next__, rounds=len(steps), warmup=0)
         fields = {**timed.fields, "latency": latency}
-    expected = before + MORE_FACES[str(case.subject)] * len(todo.steps)
-    if todo.faces() != expected:
-        raise AssertionError(f"{case.id} on {case.structure}: {todo.faces()} faces, not {expected}")
-    return _measurement(case, "work" if counted else "time", fields)
+    expected = before + MORE_FACES[str(case.subject)] * len(steps)
+    if faces() != expected:
+        raise AssertionError(f"{case.id} on {case.structure}: {faces()} faces, not {expected}")
+    kind = EXPERIMENT.kind_of(case)
+    return case.result(kind, None, reference_bytes=8, handles=1, checked=True, **fields)
 
 
-def _steps(case: Case, most: int) -> Steps:
+def _steps(case: Case, most: int) -> tuple[list[Step], Callable[[], int]]:
+    """What is to be counted or timed on one mesh, one after the other; and its faces by now."""
     mesh = case.mesh()
     if case.subject == "build":
         times = 3 if most == TIMED_OPERATIONS else 1
-        return Steps([partial(_built, case.structure, mesh)] * times, lambda: len(mesh.triangles))
+        return [partial(_build, case.structure, mesh)] * times, lambda: len(mesh.triangles)
     faces = operation_faces(case, most + WARM_UP)
-    steps, counted = _mended(case, faces) if case.structure == MENDED else _printed(case, faces)
+    if case.structure == MENDED:
+        m: Any = structures.build(MENDED, mesh)
+        edges, targets = m.face_edges(faces).values.reshape(-1, 3)[:, 0].tolist(), faces.tolist()
+        split_edge = m.split_edge
+    else:
+        m = _build(case.structure, mesh)
+        m.generate_render_mesh()
+        targets = [m.faces[f] for f in faces.tolist()]
+        edges, split_edge = [face.half_edge for face in targets], m.split_half_edge
+    calls: dict[str, tuple[Any, ...]] = {
+        "split_edge": (split_edge, edges, POINTS),
+        "split_face": (m.split_face, targets, POINTS),
+        "collapse_edge": (m.collapse_edge, edges),
+    }
+    method, *arguments = calls[str(case.subject)]
+    steps: list[Step] = [partial(method, *given) for given in zip(*arguments, strict=False)]
     # The first ones bind methods and make room for many more, which takes a pass over the mesh.
     first = min(WARM_UP, len(steps) - 1)
     for step in steps[:first]:
         step()
-    return Steps(steps[first:], counted)
+    return steps[first:], partial(_count_faces, m)
 
 
-def _printed(case: Case, faces: Array) -> Steps:
-    m = _built(case.structure, case.mesh())
-    m.generate_render_mesh()
-    targets = [m.faces[f] for f in faces.tolist()]
-    sides = [face.half_edge for face in targets]
-    calls: dict[str, tuple[Any, ...]] = {
-        "split_edge": (m.split_half_edge, sides, POINTS),
-        "split_face": (m.split_face, targets, POINTS),
-        "collapse_edge": (m.collapse_edge, sides),
-    }
-    return Steps(_calls(*calls[str(case.subject)]), lambda: len(m.faces))
+def _count_faces(m: Any) -> int:
+    if isinstance(m, HalfEdgeMesh):
+        m.validate()
+        return m.n_faces
+    return len(m.faces)
 
 
-def _mended(case: Case, faces: Array) -> Steps:
-    s = structures.build(MENDED, case.mesh())
-    edges = s.face_edges(faces).values.reshape(-1, 3)[:, 0].tolist()
-    calls: dict[str, tuple[Any, ...]] = {
-        "split_edge": (s.split_edge, edges, POINTS),
-        "split_face": (s.split_face, faces.tolist(), POINTS),
-        "collapse_edge": (s.collapse_edge, edges),
-    }
-
-    def counted() -> int:
-        s.validate()
-        return s.n_faces
-
-    return Steps(_calls(*calls[str(case.subject)]), counted)
-
-
-def _calls(method: Callable[..., Any], *arguments: list[Any]) -> list[Step]:
-    return [partial(method, *given) for given in zip(*arguments, strict=False)]
-
-
-def _built(structure: str, mesh: TriangleMesh) -> Any:
+def _build(structure: str, mesh: TriangleMesh) -> Any:
     if structure == MENDED:
         built: Any = HalfEdgeMeshBuilder.records(mesh)
     else:
@@ -154,28 +126,8 @@ def _built(structure: str, mesh: TriangleMesh) -> Any:
     return built
 
 
-def _measurement(case: Case, kind: str, fields: dict[str, Any]) -> Measurement:
-    summary = case.mesh().summary()
-    return Measurement(
-        id=case.id,
-        kind=kind,
-        subject=case.subject,
-        order=case.order,
-        family=case.family,
-        vertices=summary.vertices,
-        edges=summary.edges,
-        faces=summary.faces,
-        valence_max=summary.valence_max,
-        reference_bytes=8,
-        handles=1,
-        checked=True,
-        **{**fields, "samples": np.asarray(fields["samples"], float).tolist()},
-    )
-
-
 EXPERIMENT = Experiment(
     title="The listings, published and corrected",
-    kind="time",
     cases=cases,
     measure=measure,
     structures=(AsPrinted.name, MENDED),
@@ -186,8 +138,4 @@ EXPERIMENT = Experiment(
     axes={Axis.WORK_FACES: COUNTED, Axis.TIME_FACES: TIMED},
     baseline_orders=(TIMED,),
 )
-
-
-def test_listing(case: Case, preset: Preset, timer: Timer, keep: Keep) -> None:
-    """Count or time one case."""
-    keep(measure(case, preset, timer))
+test_listing = EXPERIMENT.test

@@ -3,21 +3,8 @@
 Along one family the valence stays, so the sizes show how a query depends on the number of faces.
 """
 
-from __future__ import annotations
-
-from experiments.harness import (
-    QUERIES_TABLE,
-    Axis,
-    Case,
-    Experiment,
-    Keep,
-    Measurement,
-    Preset,
-    Timer,
-    time_checked_query,
-)
+from experiments.harness import ORDERS, QUERIES_TABLE, Axis, Case, Experiment, Preset, time_query
 from hem.contract import QUERIES
-from structures import NAMES
 
 
 def cases(preset: Preset, structure: str) -> list[Case]:
@@ -27,29 +14,18 @@ def cases(preset: Preset, structure: str) -> list[Case]:
         for family in preset.families
         for size in preset.sizes
         for query in QUERIES
-        for order in preset.orders
+        for order in ORDERS
     ]
-
-
-def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
-    """Check the query on this mesh against the triangle list, then time it."""
-    return time_checked_query(case, preset, timer)
 
 
 EXPERIMENT = Experiment(
     title="Time of queries, by size",
-    kind="time",
     cases=cases,
-    measure=measure,
-    structures=NAMES,
+    measure=time_query,
     copies=2,
     turn=40,
     table=QUERIES_TABLE,
     axes={Axis.TIME_FACES: "consecutive", Axis.RANDOM_FACES: "random"},
     baseline_orders=("consecutive", "random"),
 )
-
-
-def test_query(case: Case, preset: Preset, timer: Timer, keep: Keep) -> None:
-    """Time one case."""
-    keep(measure(case, preset, timer))
+test_query = EXPERIMENT.test

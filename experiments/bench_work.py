@@ -4,24 +4,18 @@ The counts are exact and the same on every machine. They come from uncompiled co
 are small; that is enough, as nothing disturbs them.
 """
 
-from __future__ import annotations
-
 from experiments.harness import (
     CHECKED_HANDLES,
     QUERIES_TABLE,
     Axis,
     Case,
     Experiment,
-    Keep,
     Measurement,
     Preset,
     Timer,
-    check_query,
-    queried_handles,
-    time_rounds,
+    checked_handles,
 )
 from hem.contract import QUERIES
-from structures import NAMES
 
 
 def cases(preset: Preset, structure: str) -> list[Case]:
@@ -35,10 +29,9 @@ def cases(preset: Preset, structure: str) -> list[Case]:
 
 def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
     """Check the query against the triangle list, then count what it reads."""
-    s = case.build()
-    handles = queried_handles(case, s)[:CHECKED_HANDLES]
-    check_query(s, case.mesh(), case.query, handles)
-    return case.result("work", s, s.work(case.query.name, handles), handles=1, checked=True)
+    s, handles = checked_handles(case)
+    work = s.work(case.query.name, handles[:CHECKED_HANDLES])
+    return case.result("work", s, work, handles=1, checked=True)
 
 
 EXPERIMENT = Experiment(
@@ -46,14 +39,9 @@ EXPERIMENT = Experiment(
     kind="work",
     cases=cases,
     measure=measure,
-    structures=NAMES,
     copies=1,
     turn=10,
     table=QUERIES_TABLE,
     axes={Axis.WORK_FACES: "random", Axis.WORK_VALENCE: "random"},
 )
-
-
-def test_work(case: Case, preset: Preset, keep: Keep) -> None:
-    """Count one case."""
-    keep(measure(case, preset, time_rounds))
+test_work = EXPERIMENT.test

@@ -32,8 +32,7 @@ EXPERIMENT = '''
 
 import numpy as np
 
-from experiments.harness import Axis, Case, Experiment, Keep, Preset, Table, time_rounds
-from structures import NAMES
+from experiments.harness import Axis, Case, Experiment, Table
 
 STEPS = 5
 
@@ -59,7 +58,6 @@ EXPERIMENT = Experiment(
     kind="work",
     cases=cases,
     measure=measure,
-    structures=NAMES,
     copies=1,
     turn=12,
     table=Table("walks", "Random walks", {"random_walk": "Walk over faces"}, "query_scaling"),
@@ -67,11 +65,7 @@ EXPERIMENT = Experiment(
     claims={"random_walk": {"*": "O(1)", "indexed": "O(n_t)"}},
     source="a test",
 )
-
-
-def test_walk(case: Case, preset: Preset, keep: Keep) -> None:
-    """Count one case."""
-    keep(measure(case, preset, time_rounds))
+test_walk = EXPERIMENT.test
 '''
 
 

@@ -3,81 +3,33 @@
 Experiments import from here; what each of them measures stands in its ``bench_*.py``.
 """
 
-from experiments.harness.axes import Axis
-from experiments.harness.calibration import calibration_loop
-from experiments.harness.cases import BASE, Case, in_random_order, queried_handles, shuffled
+from experiments.harness.cases import BASE, Case, Measurement, in_random_order, shuffled
 from experiments.harness.experiment import (
     ANYONE,
-    KINDS,
     OPERATIONS,
     OPERATIONS_TABLE,
     QUERIES_TABLE,
-    RENDERED,
+    Axis,
     Experiment,
+    Keep,
     Table,
 )
-from experiments.harness.latency import latency_now
-from experiments.harness.measurement import Keep, Measurement
 from experiments.harness.operations import (
-    count_elements,
     operation_arguments,
     operation_faces,
+    searches,
     time_operations,
     validate_operated,
 )
-from experiments.harness.oracle import CHECKED_HANDLES, check_query
-from experiments.harness.presets import HUBS, PRESETS, Preset
-from experiments.harness.queries import time_checked_query
+from experiments.harness.presets import HUBS, ORDERS, PRESETS, Preset
+from experiments.harness.queries import CHECKED_HANDLES, checked_handles, time_query
 from experiments.harness.steadiness import Watch, badness, disturbed
-from experiments.harness.timer import (
-    CLOCK,
-    BenchmarkTimer,
-    Timed,
-    Timer,
-    time_rounds,
-    why_too_slow,
-)
-from experiments.harness.workloads import WORKLOADS, Workload
+from experiments.harness.timer import CLOCK, BenchmarkTimer, Timer, time_rounds, why_too_slow
 
 __all__ = [
-    "ANYONE",
-    "BASE",
-    "CHECKED_HANDLES",
-    "CLOCK",
-    "HUBS",
-    "KINDS",
-    "OPERATIONS",
-    "OPERATIONS_TABLE",
-    "PRESETS",
-    "QUERIES_TABLE",
-    "RENDERED",
-    "WORKLOADS",
-    "Axis",
-    "BenchmarkTimer",
-    "Case",
-    "Experiment",
-    "Keep",
-    "Measurement",
-    "Preset",
-    "Table",
-    "Timed",
-    "Timer",
-    "Watch",
-    "Workload",
-    "badness",
-    "calibration_loop",
-    "check_query",
-    "count_elements",
-    "disturbed",
-    "in_random_order",
-    "latency_now",
-    "operation_arguments",
-    "operation_faces",
-    "queried_handles",
-    "shuffled",
-    "time_checked_query",
-    "time_operations",
-    "time_rounds",
-    "validate_operated",
-    "why_too_slow",
-]
+    "ANYONE", "BASE", "CHECKED_HANDLES", "CLOCK", "HUBS", "OPERATIONS", "OPERATIONS_TABLE",
+    "ORDERS", "PRESETS", "QUERIES_TABLE", "Axis", "BenchmarkTimer", "Case", "Experiment", "Keep",
+    "Measurement", "Preset", "Table", "Timer", "Watch", "badness", "checked_handles", "disturbed",
+    "in_random_order", "operation_arguments", "operation_faces", "searches", "shuffled",
+    "time_operations", "time_query", "time_rounds", "validate_operated", "why_too_slow",
+]  # fmt: skip

@@ -1,10 +1,9 @@
-"""A fixed loop that slows as compiled queries do when the machine is busy.
+"""Two fixed loops that tell how fast the machine is now: one computes, one waits for the memory.
 
-It needs NumPy and Numba alone, so that it can be read beside code of any other checkout.
+They need NumPy and Numba alone, so that they can be read beside code of any other checkout.
 """
 
-from __future__ import annotations
-
+from functools import lru_cache
 from time import perf_counter
 
 import numpy as np
@@ -16,13 +15,19 @@ WORDS = 2_048
 STEPS = 2_000
 WALKS = 5
 
+LINE = 64
+LINE_WORDS = LINE // 8
+"""A cache line in bytes, and in int64."""
+CHASE_STEPS = 4_000
+SAMPLES = 5
+MOST_WARMING = 1_000_000
+
 
 def calibration_loop() -> float:
     """Seconds per step of a walk that reads and computes: the least of some, as delays only add.
 
-    Takes some ten microseconds. The memory's latency will not do: where the caches end, readings of
-    it were measured to change by a quarter to threefold from run to run, beside cases that stayed
-    within a twentieth to a fifth.
+    Takes some ten microseconds. The memory's latency will not do: where the caches end it changes
+    up to threefold from run to run, beside cases that stay within a fifth.
     """
     return min(_seconds() for _ in range(WALKS)) / STEPS
 
@@ -46,3 +51,40 @@ def walk(table: NDArray[np.int64], steps: int) -> int:
 
 compiled_walk = njit(cache=True)(walk)
 _TABLE = np.random.default_rng(0).permutation(WORDS)
+
+
+def latency_now(working_set: int) -> float:
+    """Seconds per access in a working set of so many bytes, as the machine is at this moment.
+
+    On a shared machine the caches are as large as the other tenants leave them, and that changes
+    within seconds: a case is compared with the latency measured right beside it.
+    """
+    chain = random_cycle(max(working_set // LINE, 2))
+    place = chase(chain, 0, min(len(chain) // LINE_WORDS, MOST_WARMING))
+    seconds = []
+    for _ in range(SAMPLES):
+        begin = perf_counter()
+        place = chase(chain, place, CHASE_STEPS)
+        seconds.append((perf_counter() - begin) / CHASE_STEPS)
+    return float(np.median(seconds))
+
+
+@lru_cache(maxsize=1)
+def random_cycle(lines: int) -> NDArray[np.int64]:
+    """(8 · lines,) int64: the first word of each line names the line to visit after it.
+
+    Every line once, in random order: each access waits for the one before, as a query does that
+    goes from record to record.
+    """
+    order = np.random.default_rng(0).permutation(lines)
+    chain = np.zeros(LINE_WORDS * lines, np.int64)
+    chain[LINE_WORDS * order] = np.roll(order, -1)
+    return chain
+
+
+@njit(cache=True)
+def chase(chain: NDArray[np.int64], line: int, steps: int) -> int:
+    """The line reached from ``line`` after so many steps."""
+    for _ in range(steps):
+        line = chain[LINE_WORDS * line]
+    return line

@@ -1,31 +1,63 @@
-"""What the experiments measure: cases, the meshes and structures they name, and whom they ask."""
-
-from __future__ import annotations
+"""What the experiments measure: cases, the meshes and structures they name, and the outcome."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import lru_cache
 from itertools import groupby
 from random import Random
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 import hem
 import structures
-from experiments.harness.measurement import Measurement
 from experiments.harness.presets import HUBS
+from hem.arrays import Array
 from hem.contract import QUERIES, Query, Structure
-from hem.meshes import TriangleMesh
-
-Array = NDArray[Any]
+from hem.meshes import MeshSummary, TriangleMesh
 
 BASE = "indexed"
 """The structure that the others are compared with: what a renderer stores."""
 
 SHUFFLE_SEED = 20
 HANDLE_SEED = 21
+
+
+@dataclass
+class Measurement:
+    """One measured case, as a run keeps it.
+
+    ``samples``: seconds per query and round (``kind`` "time"), accesses per query and handle
+    ("work"), or bytes ("bytes"). ``handles``: queries per sample. ``working_set``: bytes of the
+    structure's live records, or of the chased array in the latency experiment. ``valence``: that of
+    the queried vertices where the experiment varies it. ``latency``: seconds per memory access in
+    the working set, measured beside the case. ``calibration``: seconds per step of the calibration
+    loop before each round. ``skipped``: why nothing was measured, else empty.
+    ``noise``: how steady the machine was meanwhile, and how often the case was ``measured``.
+    """
+
+    id: str
+    kind: str
+    subject: str | None = None
+    order: str | None = None
+    family: str | None = None
+    seed: int = 0
+    vertices: int = 0
+    edges: int = 0
+    faces: int = 0
+    valence_max: int = 0
+    valence: int | None = None
+    reference_bytes: int = 4
+    working_set: int = 0
+    handles: int = 0
+    checked: bool = False
+    latency: float | None = None
+    samples: list[float] = field(default_factory=list)
+    skipped: str = ""
+    detail: dict[str, Any] = field(default_factory=dict)
+    calibration: list[float] = field(default_factory=list)
+    noise: dict[str, Any] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -44,10 +76,8 @@ class Case:
     def id(self) -> str:
         """Readable and unique within an experiment and a structure."""
         valence = None if self.valence is None else f"valence {self.valence}"
-        references = (
-            None if self.reference_bytes == 4 else f"{self.reference_bytes}-byte references"
-        )
-        parts = self.subject, self.family, self.size, valence, self.order, references
+        wide = None if self.reference_bytes == 4 else f"{self.reference_bytes}-byte references"
+        parts = self.subject, self.family, self.size, valence, self.order, wide
         return "/".join(str(part) for part in parts if part is not None)
 
     @property
@@ -55,10 +85,15 @@ class Case:
         """The query of a case that has one."""
         return QUERIES[str(self.subject)]
 
+    @property
+    def vertices(self) -> int:
+        """How many vertices its mesh is asked for; 0 for a sample, which has as many as it has."""
+        return self.size // 2 if self.family == HUBS else self.size
+
     def mesh(self) -> TriangleMesh:
         """The mesh, renumbered at random where the case says so and asks nothing."""
-        shuffled = self.order == "random" and self.subject is None
-        return _mesh(self.family, self.size, self.valence, shuffled)
+        renumbered = self.order == "random" and self.subject is None
+        return _mesh(self.family, self.size, self.valence, renumbered)
 
     def build(self) -> Structure:
         """The structure on the mesh; the last one built is kept."""
@@ -66,39 +101,30 @@ class Case:
             self.structure, self.family, self.size, self.valence, self.reference_bytes
         )
 
-    def result(self, kind: str, s: Structure, samples: ArrayLike = (), **more: Any) -> Measurement:
-        """The case as measured, with the facts of its mesh."""
-        return Measurement(
-            id=self.id,
-            kind=kind,
-            subject=self.subject,
-            order=self.order,
-            family=self.family,
-            vertices=s.n_vertices,
-            edges=s.n_edges,
-            faces=s.n_faces,
-            valence_max=_largest_valence(self.family, self.size, self.valence),
-            valence=self.valence,
-            reference_bytes=self.reference_bytes,
-            working_set=sum(s.memory().values()),
+    def result(
+        self, kind: str, s: Structure | None, samples: ArrayLike = (), **more: Any
+    ) -> Measurement:
+        """The case as measured, with the facts of its mesh and the bytes of the structure."""
+        mesh = _summary(self.family, self.size, self.valence)
+        return self._measurement(
+            kind,
+            vertices=mesh.vertices,
+            edges=mesh.edges,
+            faces=mesh.faces,
+            valence_max=mesh.valence_max,
+            working_set=0 if s is None else sum(s.memory().values()),
             samples=np.asarray(samples, float).tolist(),
             **more,
         )
 
     def not_measured(self, kind: str, reason: str) -> Measurement:
         """The case where its mesh was not even made; its counts are about those asked for."""
-        return Measurement(
-            id=self.id,
-            kind=kind,
-            subject=self.subject,
-            order=self.order,
-            family=self.family,
-            vertices=self.size // 2 if self.family == HUBS else self.size,
-            faces=self.size if self.family == HUBS else 2 * self.size,
-            valence=self.valence,
-            reference_bytes=self.reference_bytes,
-            skipped=reason,
-        )
+        faces = self.size if self.family == HUBS else 2 * self.size
+        return self._measurement(kind, vertices=self.vertices, faces=faces, skipped=reason)
+
+    def _measurement(self, kind: str, **fields: Any) -> Measurement:
+        names = "id", "subject", "order", "family", "valence", "reference_bytes"
+        return Measurement(kind=kind, **{**{name: getattr(self, name) for name in names}, **fields})
 
 
 def in_random_order(cases: Sequence[Case], seed: int | str) -> list[Case]:
@@ -126,7 +152,7 @@ def queried_handles(case: Case, s: Structure) -> Array:
     of these at every valence.
     """
     source = case.query.source
-    handles = _all_handles(case.structure, case.family, case.size, case.valence, source)
+    handles = s.handles(source)
     if case.valence is not None:
         if source == "vertex":
             corners = handles
@@ -139,9 +165,9 @@ def queried_handles(case: Case, s: Structure) -> Array:
     return handles
 
 
-def shuffled(mesh: TriangleMesh, seed: int = SHUFFLE_SEED) -> TriangleMesh:
+def shuffled(mesh: TriangleMesh) -> TriangleMesh:
     """The same surface with its vertices and faces renumbered at random."""
-    rng = np.random.default_rng(seed)
+    rng = np.random.default_rng(SHUFFLE_SEED)
     number = rng.permutation(len(mesh.points)).astype(np.int32)
     points = np.empty_like(mesh.points)
     points[number] = mesh.points
@@ -164,11 +190,6 @@ def _structure(
     return structures.build(name, _mesh(family, size, valence, False), reference_bytes)
 
 
-@lru_cache(maxsize=3)
-def _all_handles(name: str, family: str, size: int, valence: int | None, source: str) -> Array:
-    return _structure(name, family, size, valence, 4).handles(source)
-
-
 @lru_cache(maxsize=4)
-def _largest_valence(family: str, size: int, valence: int | None) -> int:
-    return _mesh(family, size, valence, False).summary().valence_max
+def _summary(family: str, size: int, valence: int | None) -> MeshSummary:
+    return _mesh(family, size, valence, False).summary()

@@ -1,24 +1,55 @@
 """What an experiment declares of itself: everything about it stands in its one file.
 
-Every ``bench_*.py`` has an ``EXPERIMENT``. The study, the tables, the judge, the baseline and the
-report read it; nothing else needs to know of the experiment.
+Every ``bench_*.py`` has an ``EXPERIMENT``, which study, tables, judge, baseline and report read.
 """
-
-from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from enum import Enum
 
-from experiments.harness.axes import Axis
-from experiments.harness.cases import Case
-from experiments.harness.measurement import Measurement
+from experiments.harness.cases import Case, Measurement
 from experiments.harness.presets import Preset
-from experiments.harness.timer import Timer
+from experiments.harness.timer import Timer, time_rounds
 from hem.contract import QUERIES
+from structures import NAMES
+
+Keep = Callable[[Measurement], None]
+"""What a measurement is handed to."""
 
 KINDS = ("time", "work", "bytes")
 ANYONE = "*"
 """In an experiment's claims: every structure that is not named."""
+
+MEASURED = "split_edge", "split_face", "collapse_edge", "flip_edge", "add_face", "remove_face"
+OPERATIONS = {name: name.replace("_", " ").capitalize() for name in MEASURED}
+"""The operations that are measured, and how a table calls them."""
+
+SYMBOLS = {"faces": "n_t", "valence": "n_ev"}
+LABELS = {"work": "memory accesses", "time": "time in order", "random": "time in random order"}
+
+
+class Axis(Enum):
+    """What a claim is judged along: one measure by one variable, the other variable held.
+
+    ``WORK_…`` counts memory accesses, ``TIME_…`` is time in the order that finds most in the
+    caches, ``RANDOM_…`` time in random order. ``key``: the name in files, ``work_faces``.
+    ``symbol``: the variable's in the thesis. ``exact``: whether values are counted, and so the same
+    on every machine. ``label`` and ``unit``: how a plot names the measure, and the unit that values
+    are shown in, multiplied by ``scale``.
+    """
+
+    WORK_FACES = "work", "faces"
+    WORK_VALENCE = "work", "valence"
+    TIME_FACES = "time", "faces"
+    TIME_VALENCE = "time", "valence"
+    RANDOM_FACES = "random", "faces"
+
+    def __init__(self, measure: str, variable: str) -> None:
+        self.measure, self.variable = measure, variable
+        self.key = f"{measure}_{variable}"
+        self.symbol, self.label = SYMBOLS[variable], LABELS[measure]
+        self.exact = measure == "work"
+        self.unit, self.scale = ("", 1.0) if self.exact else ("ns", 1e9)
 
 
 @dataclass(frozen=True)
@@ -34,19 +65,6 @@ class Table:
     chapter: str = ""
 
 
-OPERATIONS = {
-    "split_edge": "Split edge",
-    "split_face": "Split face",
-    "collapse_edge": "Collapse edge",
-    "flip_edge": "Flip edge",
-    "add_face": "Add face",
-    "remove_face": "Remove face",
-}
-"""The operations that are measured, and how a table calls them."""
-
-RENDERED = ("rendered", "in a transaction", "render mesh built anew")
-"""The orders in which operations are followed by a render mesh."""
-
 QUERIES_TABLE = Table(
     "queries", "Table 1", {name: query.title for name, query in QUERIES.items()}, "query_scaling"
 )
@@ -58,10 +76,10 @@ class Experiment:
     """One experiment.
 
     ``cases``: what there is to measure on one structure; ``measure``: checks and measures one.
-    ``kind``: what they measure, but for those in the orders ``counted``, which are work.
-    ``structures``: the names it runs on. ``copies``: how many structures' bytes a case takes at its
-    peak. ``turn``: its place in a study, early ones first. ``table`` and ``axes``: the table whose
-    claims it decides, and the order of handles that holds the measurements along each axis.
+    ``copies``: how many structures' bytes a case takes at its peak. ``turn``: its place in a study,
+    early ones first. ``kind``: what is measured, but for cases in the orders ``counted``, which are
+    work. ``structures``: the names it runs on. ``table`` and ``axes``: the table whose claims it
+    decides, and the order of handles that holds the measurements along each axis.
     ``just_written``: the axes whose cases run on a mesh that was copied just before, so that the
     latency measured beside them may miss what they waited for. ``baseline_orders``: the orders
     whose times enter the baseline. ``claims``: for subjects of its own, the growth class that is
@@ -69,12 +87,12 @@ class Experiment:
     """
 
     title: str
-    kind: str
     cases: Callable[[Preset, str], Sequence[Case]]
     measure: Callable[[Case, Preset, Timer], Measurement]
-    structures: tuple[str, ...]
     copies: int
     turn: int
+    kind: str = "time"
+    structures: tuple[str, ...] = NAMES
     counted: tuple[str, ...] = ()
     table: Table | None = None
     axes: Mapping[Axis, str] = field(default_factory=dict)
@@ -85,18 +103,15 @@ class Experiment:
 
     def __post_init__(self) -> None:
         """Raises ValueError for what does not fit together."""
-        if self.kind not in KINDS:
-            raise ValueError(f"{self.title}: kind must be one of {KINDS}, not {self.kind!r}")
-        if self.axes and self.table is None:
-            raise ValueError(f"{self.title}: axes need the table whose claims they decide")
-        subjects = self.table.subjects if self.table else {}
-        strange = set(self.claims) - set(subjects)
-        if strange:
-            raise ValueError(
-                f"{self.title}: claims name {min(strange)!r}, which is no subject of its table"
-            )
-        if self.claims and not self.source:
-            raise ValueError(f"{self.title}: claims need a source: who expects them")
+        strange = set(self.claims) - set(self.table.subjects if self.table else ())
+        for wrong, why in (
+            (self.kind not in KINDS, f"kind must be one of {KINDS}, not {self.kind!r}"),
+            (self.axes and not self.table, "axes need the table whose claims they decide"),
+            (strange, f"claims name {sorted(strange)}, which are no subjects of its table"),
+            (self.claims and not self.source, "claims need a source: who expects them"),
+        ):
+            if wrong:
+                raise ValueError(f"{self.title}: {why}")
 
     @property
     def name(self) -> str:
@@ -104,9 +119,16 @@ class Experiment:
         return self.cases.__module__.rpartition(".")[2]
 
     @property
-    def module(self) -> str:
-        """The module that measures it."""
-        return self.cases.__module__
+    def test(self) -> Callable[..., None]:
+        """The test that measures a case: what pytest finds in its file, see ``conftest``."""
+
+        def time(case: Case, preset: Preset, timer: Timer, keep: Keep) -> None:
+            keep(self.measure(case, preset, timer))
+
+        def count(case: Case, preset: Preset, keep: Keep) -> None:
+            keep(self.measure(case, preset, time_rounds))
+
+        return time if self.kind == "time" else count
 
     def kind_of(self, case: Case) -> str:
         """What a case measures."""

@@ -1,15 +1,14 @@
 """What a case will take of memory, before it takes it.
 
-Estimated from what a small mesh takes in the same structure, which is in proportion to its
-vertices; a case that would take more than a part of what there is is left out and says so.
+Estimated in proportion from a small mesh; a case that would take too much is skipped and says so.
 """
-
-from __future__ import annotations
 
 import os
 import re
 from functools import lru_cache
 from pathlib import Path
+
+import psutil
 
 import hem
 import structures
@@ -19,21 +18,16 @@ from structures import REGISTRY
 
 SHARE = 0.7
 """The part of the available memory that a case may take."""
-
 VARIABLE = "HEM_MEMORY"
 """Environment variable that says how much memory there is, such as ``500M``, ``8G`` or bytes."""
-
 SMALL = 400
 MESH_BYTES = {"torus": 300, HUBS: 300}
 OTHER_MESH_BYTES = 1_600
 """Bytes per vertex of a mesh while it is made, renumbered and checked: the sphere's and more."""
-
 OBJECTS_BYTES = 2_500
 """Bytes per vertex of what is as printed: objects, with the render mesh beside them."""
-
 BUILDING = 3
 """How much more than what remains of it a compiled structure takes while it is built."""
-
 CHASE_COPIES = 3
 UNITS = {"": 1, "K": 1 << 10, "M": 1 << 20, "G": 1 << 30, "T": 1 << 40}
 CGROUPS = (
@@ -46,13 +40,13 @@ CGROUPS = (
 
 
 def why_too_large(case: Case, copies: int) -> str:
-    """Why a case had better be left out; empty if it fits."""
+    """Why a case had better be skipped; empty if it fits."""
     needed, there = estimate(case, copies), available()
     if needed <= SHARE * there:
         return ""
     return (
-        f"would take some {megabytes(needed)} of memory; "
-        f"{megabytes(there)} are available, of which a case may take {SHARE:.0%}"
+        f"would take some {needed / UNITS['M']:,.0f} MiB of memory; "
+        f"{there / UNITS['M']:,.0f} MiB are available, of which a case may take {SHARE:.0%}"
     )
 
 
@@ -65,26 +59,19 @@ def estimate(case: Case, copies: int) -> int:
     if not copies:
         return CHASE_COPIES * case.size
     compiled = case.structure in REGISTRY and REGISTRY[case.structure].compiled
-    each = per_vertex(case.structure, case.reference_bytes)
-    building = BUILDING * each if compiled else each
+    each = _per_vertex(case.structure, case.reference_bytes)
     mesh = MESH_BYTES.get(case.family, OTHER_MESH_BYTES)
-    return int(vertices(case) * (mesh + building + copies * each))
+    vertices = len(case.mesh().points) if case.family in hem.SAMPLES else case.vertices
+    return int(vertices * (mesh + (BUILDING if compiled else 1) * each + copies * each))
 
 
 @lru_cache(maxsize=32)
-def per_vertex(structure: str, reference_bytes: int = 4) -> float:
+def _per_vertex(structure: str, reference_bytes: int) -> float:
     """Bytes per vertex that remain of a structure, as it says itself of a small mesh."""
     if structure not in REGISTRY:
         return OBJECTS_BYTES
     small = structures.build(structure, hem.generate("torus", SMALL), reference_bytes)
     return sum(small.memory().values()) / small.n_vertices
-
-
-def vertices(case: Case) -> int:
-    """How many vertices the mesh of a case will have, about."""
-    if case.family in hem.SAMPLES:
-        return len(case.mesh().points)
-    return case.size // 2 if case.family == HUBS else case.size
 
 
 def available() -> int:
@@ -93,9 +80,7 @@ def available() -> int:
     Raises ValueError if what ``HEM_MEMORY`` says is no size.
     """
     told = os.environ.get(VARIABLE)
-    if told:
-        return size_of(told)
-    return min([_free(), *_left_in_cgroups()])
+    return size_of(told) if told else min([psutil.virtual_memory().available, *_left_in_cgroups()])
 
 
 def size_of(text: str) -> int:
@@ -106,37 +91,18 @@ def size_of(text: str) -> int:
     return int(float(found[1]) * UNITS[found[2].upper()])
 
 
-def megabytes(size: float) -> str:
-    """Bytes for reading."""
-    return f"{size / UNITS['M']:,.0f} MiB"
-
-
-def _free() -> int:
-    try:
-        lines = Path("/proc/meminfo").read_text().splitlines()
-    except OSError:
-        return os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
-    kilobytes = {line.partition(":")[0]: line.split()[1] for line in lines}
-    return 1024 * int(kilobytes.get("MemAvailable") or kilobytes["MemFree"])
-
-
 def _left_in_cgroups() -> list[int]:
+    """What control groups still allow; copies of files are let go where memory is needed."""
     left = []
     for limit, used in CGROUPS:
         try:
-            values = Path(limit).read_text().strip(), Path(used).read_text().strip()
+            most, taken = Path(limit).read_text().strip(), int(Path(used).read_text())
         except OSError:
             continue
-        if values[0] != "max":
-            taken = int(values[1]) - _given_back(Path(used).with_name("memory.stat"))
-            left.append(max(0, int(values[0]) - taken))
+        stat = Path(used).with_name("memory.stat")
+        lines = stat.read_text().splitlines() if stat.exists() else []
+        counts = dict(line.split() for line in lines)
+        files = int(counts.get("total_inactive_file") or counts.get("inactive_file") or 0)
+        if most != "max":
+            left.append(max(0, int(most) - taken + files))
     return left
-
-
-def _given_back(stat: Path) -> int:
-    """Bytes of a control group that hold copies of files, and are let go where they are needed."""
-    try:
-        counts = dict(line.split() for line in stat.read_text().splitlines())
-    except (OSError, ValueError):
-        return 0
-    return int(counts.get("total_inactive_file") or counts.get("inactive_file") or 0)

@@ -1,47 +1,35 @@
 """Operations as they are measured: on which elements, on a copy that is made new each time."""
 
-from __future__ import annotations
-
 from functools import lru_cache, partial
 from time import perf_counter
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 import hem
 import structures
+from experiments.harness.calibration import latency_now
 from experiments.harness.cases import BASE, Case
-from experiments.harness.latency import latency_now
 from experiments.harness.presets import HUBS, Preset
-from experiments.harness.timer import Timer
+from experiments.harness.timer import Given, Timer
+from hem.arrays import Array
 from hem.contract import Structure
 from hem.engine import END
 from structures import REGISTRY
 
-Array = NDArray[Any]
-
 ON_EDGES = ("split_edge", "collapse_edge", "flip_edge")
-
 NOT_SEARCHED = ("split_face",)
 """What does not search the whole mesh even where nothing is known of neighbors."""
-
 SECONDS_PER_SCANNED_FACE = 5e-9
-SCANNED_ELEMENTS = 5
-"""How many are operated on one by one where each takes a scan of the mesh."""
-
 MOST_ELEMENTS = 2_000
-
 FEWEST_OPERATIONS = 500
 MOST_TURNS = 16
 """A sample is of at least so many operations, in up to so many turns on a mesh made new each time.
 
 One mesh, so that a small one is found in the caches however many operations there is room for.
 """
-
 IDLE_CALLS = 15
 LEAST_SECONDS = 1e-8
-
 ELEMENT_SEED = 22
 SMALL = 20_000
 """Faces up to which the outcome is judged from its triangles, and against the indexed mesh."""
@@ -61,11 +49,6 @@ def operation_faces(case: Case, count: int = MOST_ELEMENTS) -> Array:
 def searches(case: Case) -> bool:
     """Whether every operation of a case searches the whole mesh."""
     return REGISTRY[case.structure].searches and case.subject not in NOT_SEARCHED
-
-
-def count_elements(case: Case, count: int, scanned: bool = False) -> int:
-    """How many elements to operate on one by one, fewer where each takes a scan of the mesh."""
-    return min(count, SCANNED_ELEMENTS) if scanned or searches(case) else count
 
 
 @lru_cache(maxsize=2)
@@ -134,17 +117,13 @@ class OperationBatch:
         task[END] = self.operations
         return float(np.median(seconds))
 
-    def restore(self) -> None:
-        """Make the mesh what it was.
+    def restore(self) -> Given:
+        """Make the mesh what it was, as the setup of a round.
 
         Just written, up to some 20 MB of it lie in the last caches, and its original beside it; a
         chase of as much memory, read before, was measured to wait up to three times as long.
         """
         self.mesh.restore(self._fresh)
-
-    def restored(self) -> tuple[tuple[()], dict[str, Any]]:
-        """Restore it as the setup of a round."""
-        self.restore()
         return (), {}
 
 
@@ -155,48 +134,34 @@ def validate_operated(operated: Structure) -> None:
         hem.require_sound(operated.to_triangles())
 
 
-def check_operated(case: Case, operated: Structure, faces: Array) -> None:
-    """Validate what operations made, and compare it with the indexed mesh where that is quick."""
-    validate_operated(operated)
-    if operated.n_faces <= SMALL and case.structure != BASE:
-        both = [_operated(name, case, faces[:20]) for name in (case.structure, BASE)]
-        if both[0] != both[1]:
-            raise AssertionError(f"{case.id} on {case.structure} gives another mesh than {BASE}")
-
-
 def _operated(name: str, case: Case, faces: Array) -> list[tuple[int, ...]]:
     batch = OperationBatch(structures.build(name, case.mesh()), str(case.subject), faces)
     batch.operate()
-    return _triangles(batch.mesh)
-
-
-def _triangles(s: Structure) -> list[tuple[int, ...]]:
-    rows = s.face_vertices(s.faces()).values.reshape(-1, 3)
+    rows = batch.mesh.face_vertices(batch.mesh.faces()).values.reshape(-1, 3)
     return sorted(tuple(np.roll(row, -int(row.argmin())).tolist()) for row in rows)
 
 
 def time_operations(case: Case, preset: Preset, timer: Timer) -> dict[str, Any]:
-    """Time operations in compiled loops -> the fields of a measurement."""
+    """Time operations in compiled loops -> the fields of a measurement.
+
+    What they make is validated, and compared with the indexed mesh where that is quick.
+    """
     s, faces = case.build(), operation_faces(case)
     if searches(case):
         faces = faces[: max(4, int(preset.round_seconds / (SECONDS_PER_SCANNED_FACE * s.n_faces)))]
     batch = OperationBatch(s, str(case.subject), faces)
     if batch.operate() < batch.operations:
         raise RuntimeError(f"{case.id}: there was no room for all operations")
-    check_operated(case, batch.mesh, faces)
+    validate_operated(batch.mesh)
+    if batch.mesh.n_faces <= SMALL and case.structure != BASE:
+        mine, other = (_operated(name, case, faces[:20]) for name in (case.structure, BASE))
+        if mine != other:
+            raise AssertionError(f"{case.id} on {case.structure} gives another mesh than {BASE}")
     most = MOST_TURNS if s.compiled else 1  # interpreted ones last long enough
     turns = int(np.clip(FEWEST_OPERATIONS // batch.operations, 1, most))
     latency = latency_now(sum(s.memory().values()))
-    timed = timer(
-        batch.operate,
-        setup=batch.restored,
-        rounds=turns * preset.rounds,
-        warmup=2,
-    ).averaged(turns)
+    timed = timer(batch.operate, setup=batch.restore, rounds=turns * preset.rounds, warmup=2)
+    timed = timed.averaged(turns)
     seconds = np.maximum(timed.samples - batch.idle_seconds(), LEAST_SECONDS) / batch.operations
-    return {
-        **timed.fields,
-        "samples": seconds,
-        "handles": turns * batch.operations,
-        "latency": latency,
-    }
+    fields = {"samples": seconds, "handles": turns * batch.operations, "latency": latency}
+    return {**timed.fields, **fields}

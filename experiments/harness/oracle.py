@@ -3,21 +3,14 @@
 Nothing of a structure is used here, so that a structure's mistake cannot confirm itself.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hem.arrays import Array
 from hem.contract import Query, Structure
 from hem.meshes import TriangleMesh
-
-Array = NDArray[Any]
-
-
-CHECKED_HANDLES = 3
 
 
 class CheckFailedError(AssertionError):

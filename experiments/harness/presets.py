@@ -1,23 +1,30 @@
 """How much a study measures: the presets, as data."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
+from typing import Any, Self
 
 from structures import REGISTRY
 
 HUBS = "hubs"
 """The family of ``hem.valence_mesh``: its size is a number of faces, its valence the hubs'."""
 
-
 ORDERS = ("random", "consecutive")
+"""Of the handles that a query is asked for, and of the faces that a structure is built of."""
 VALENCES = tuple(2**k for k in range(2, 13))
+
+
+def _geometric(first: int, last: int, per_decade: float) -> tuple[int, ...]:
+    sizes: list[int] = []
+    while (size := round(first * 10 ** (len(sizes) / per_decade))) <= last:
+        sizes.append(size)
+    return tuple(sizes)
 
 
 @dataclass(frozen=True)
 class Preset:
-    """One extent of a study. Sizes are numbers of vertices, valences those of the asked vertices.
+    """One extent of a study, ``standard`` by default.
 
+    Sizes are numbers of vertices, valences those of the asked vertices.
     ``families[0]`` is the judged one: its valence is the same at every size. Structures made of
     objects are operated on up to ``object_vertices``, asked and built of three times as many; what
     the thesis prints is built of ``printed_sizes``. Operations are done one by one at
@@ -29,63 +36,49 @@ class Preset:
     """
 
     what: str
-    families: tuple[str, ...]
-    sizes: tuple[int, ...]
-    valences: tuple[int, ...]
-    valence_faces: int
-    work_sizes: tuple[int, ...]
-    work_faces: int
-    build_sizes: tuple[int, ...]
-    operation_sizes: tuple[int, ...]
-    operation_faces: int
-    single_sizes: tuple[int, ...]
-    workload_sizes: tuple[int, ...]
-    fracture_sizes: tuple[int, ...]
-    object_vertices: int
-    printed_sizes: tuple[int, ...]
-    models: tuple[str, ...]
-    rounds: int
-    round_seconds: float
-    case_seconds: float
-    latency_mib: int
-    orders: tuple[str, ...] = ORDERS
+    families: tuple[str, ...] = ("torus", "sphere", "grid", "isosurface")
+    sizes: tuple[int, ...] = _geometric(100, 1_000_000, 2)
+    valences: tuple[int, ...] = VALENCES
+    valence_faces: int = 65_536
+    work_sizes: tuple[int, ...] = _geometric(100, 10_000, 2)
+    work_faces: int = 16_384
+    build_sizes: tuple[int, ...] = sizes
     build_reference_bytes: tuple[int, ...] = (4, 8)
+    operation_sizes: tuple[int, ...] = sizes[1:]
+    operation_faces: int = 65_536
+    single_sizes: tuple[int, ...] = sizes[1::2]
+    workload_sizes: tuple[int, ...] = _geometric(100, 100_000, 2)
     workloads: tuple[str, ...] = ()
+    fracture_sizes: tuple[int, ...] = _geometric(100, 100_000, 2)[1:]
+    object_vertices: int = 3_200
+    printed_sizes: tuple[int, ...] = _geometric(50, 900, 5)
+    models: tuple[str, ...] = ("teapot", "cow", "bunny", "bone")
+    rounds: int = 15
+    round_seconds: float = 0.004
+    case_seconds: float = 1.0
+    latency_mib: int = 512
     skipped: tuple[str, ...] = ()
 
-    def of(self, structure: str) -> Preset:
-        """The profile for one structure: smaller meshes where it is made of objects."""
+    def of(self, structure: str) -> Self:
+        """The preset for one structure: smaller meshes where it is made of objects."""
         if structure not in REGISTRY or REGISTRY[structure].compiled:
             return self
         most = self.object_vertices
-
-        def up_to(sizes: tuple[int, ...], limit: int = most) -> tuple[int, ...]:
-            return tuple(size for size in sizes if size <= limit)
-
-        return replace(
-            self,
-            sizes=up_to(self.sizes, 3 * most),
-            valence_faces=min(self.valence_faces, 10 * most),
-            build_sizes=up_to(self.build_sizes, 3 * most),
-            operation_sizes=up_to(self.operation_sizes),
-            operation_faces=min(self.operation_faces, most),
-            single_sizes=up_to(self.single_sizes),
-            workload_sizes=up_to(self.workload_sizes),
-            fracture_sizes=up_to(self.fracture_sizes),
-        )
+        operated = ("operation_sizes", "single_sizes", "workload_sizes", "fracture_sizes")
+        limits = {"sizes": 3 * most, "build_sizes": 3 * most, **dict.fromkeys(operated, most)}
+        smaller: dict[str, Any] = {
+            name: tuple(size for size in getattr(self, name) if size <= limit)
+            for name, limit in limits.items()
+        }
+        smaller["valence_faces"] = min(self.valence_faces, 10 * most)
+        smaller["operation_faces"] = min(self.operation_faces, most)
+        return replace(self, **smaller)
 
     def work_points(self) -> list[tuple[str, int, int | None]]:
         """Where work is counted: family, size, valence; one family by size, the hubs by valence."""
         few = self.work_faces // 16  # so that a scan's work is the scan, not what it finds
         hubs = [(HUBS, self.work_faces, k) for k in self.valences if k <= few]
         return [*((self.families[0], size, None) for size in self.work_sizes), *hubs]
-
-
-def _geometric(first: int, last: int, per_decade: float) -> tuple[int, ...]:
-    sizes: list[int] = []
-    while (size := round(first * 10 ** (len(sizes) / per_decade))) <= last:
-        sizes.append(size)
-    return tuple(sizes)
 
 
 PRESETS = {
@@ -116,7 +109,6 @@ PRESETS = {
         families=("torus",),
         sizes=_geometric(100, 100_000, 4 / 3),
         valences=VALENCES[::2],
-        valence_faces=65_536,
         work_sizes=_geometric(100, 3_200, 2),
         work_faces=8_192,
         build_sizes=_geometric(100, 100_000, 1),
@@ -127,7 +119,6 @@ PRESETS = {
         workload_sizes=(1_000, 10_000),
         workloads=("vertex_normals", "impacts"),
         fracture_sizes=_geometric(100, 10_000, 1),
-        object_vertices=3_200,
         printed_sizes=(50, 100, 200, 400),
         models=("teapot", "bunny"),
         rounds=9,
@@ -136,36 +127,12 @@ PRESETS = {
         latency_mib=64,
         skipped=("bench_fracture",),
     ),
-    "standard": Preset(
-        what="one family of each kind up to 1,000,000 vertices, some 40 minutes",
-        families=("torus", "sphere", "grid", "isosurface"),
-        sizes=_geometric(100, 1_000_000, 2),
-        valences=VALENCES,
-        valence_faces=65_536,
-        work_sizes=_geometric(100, 10_000, 2),
-        work_faces=16_384,
-        build_sizes=_geometric(100, 1_000_000, 2),
-        operation_sizes=_geometric(100, 1_000_000, 2)[1:],
-        operation_faces=65_536,
-        single_sizes=_geometric(100, 1_000_000, 2)[1::2],
-        workload_sizes=_geometric(100, 100_000, 2),
-        fracture_sizes=_geometric(100, 100_000, 2)[1:],
-        object_vertices=3_200,
-        printed_sizes=_geometric(50, 900, 5),
-        models=("teapot", "cow", "bunny", "bone"),
-        rounds=15,
-        round_seconds=0.004,
-        case_seconds=1.0,
-        latency_mib=512,
-    ),
+    "standard": Preset("one family of each kind up to 1,000,000 vertices, some 40 minutes"),
     "full": Preset(
         what="every family up to 1,000,000 vertices with finer steps, some two hours",
         families=("torus", "sphere", "grid", "cone", "terrain", "isosurface"),
         sizes=_geometric(100, 1_000_000, 4),
-        valences=VALENCES,
-        valence_faces=65_536,
         work_sizes=_geometric(100, 32_000, 4),
-        work_faces=16_384,
         build_sizes=_geometric(100, 1_000_000, 4),
         operation_sizes=_geometric(100, 1_000_000, 4),
         operation_faces=131_072,

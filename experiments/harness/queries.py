@@ -1,73 +1,64 @@
 """Timing a query: as many handles per round as last long enough, and other ones every round."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from itertools import count
 from time import perf_counter
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from experiments.harness.cases import Case, queried_handles
-from experiments.harness.latency import latency_now
-from experiments.harness.measurement import Measurement
-from experiments.harness.oracle import CHECKED_HANDLES, check_query
+from experiments.harness.calibration import latency_now
+from experiments.harness.cases import Case, Measurement, queried_handles
+from experiments.harness.oracle import check_query
 from experiments.harness.presets import Preset
-from experiments.harness.timer import Timer
+from experiments.harness.timer import Given, Timer
+from hem.arrays import Array
 from hem.contract import Structure
-
-Array = NDArray[Any]
 
 MOST_HANDLES = 1_000_000
 FEWEST_ROUNDS = 5
+CHECKED_HANDLES = 3
 TRIES = 3
 """Times that a number of handles is tried before it is believed to last long enough."""
 
 
-def time_checked_query(case: Case, preset: Preset, timer: Timer) -> Measurement:
-    """Check a case against the triangle list, then time it; skipped where that takes too long."""
+def checked_handles(case: Case) -> tuple[Structure, Array]:
+    """The structure of a case and the handles it asks.
+
+    Raises CheckFailedError unless the answers for the first ``CHECKED_HANDLES`` of them are those
+    of the triangle list.
+    """
     s = case.build()
     handles = queried_handles(case, s)
     check_query(s, case.mesh(), case.query, handles[:CHECKED_HANDLES])
-    try:
-        timed = time_query(timer, s, case.query.name, handles, preset)
-    except TooSlowError as reason:
-        return case.result("time", s, skipped=str(reason))
-    return case.result("time", s, checked=True, **timed)
+    return s, handles
 
 
-class TooSlowError(RuntimeError):
-    """A case would take longer than its preset allows."""
-
-
-def time_query(
-    timer: Timer, s: Structure, query: str, handles: Array, preset: Preset
-) -> dict[str, Any]:
-    """Time ``s.sweep(query, …)`` over handles -> the fields of a measurement.
+def time_query(case: Case, preset: Preset, timer: Timer) -> Measurement:
+    """Check a case against the triangle list, then time it; skipped where that takes too long.
 
     Successive rounds take successive handles and begin again only when all have been asked, so that
     a large mesh is not answered out of the caches by what the last round left there. All are asked
-    once before, so that a small one is. Raises TooSlowError before it takes long.
+    once before, so that a small one is.
     """
+    s, handles = checked_handles(case)
+    query = case.query.name
     seconds = _seconds_per_query(s, query, handles, preset.round_seconds / 4)
     many = int(np.clip(preset.round_seconds / seconds, 1, MOST_HANDLES))
     rounds = int(np.clip(preset.case_seconds / (seconds * many), 0, preset.rounds))
     if rounds < FEWEST_ROUNDS:
-        raise TooSlowError(
-            f"one query takes {seconds:.3g} s, a case may take {preset.case_seconds} s"
-        )
+        reason = f"one query takes {seconds:.3g} s, a case may take {preset.case_seconds} s"
+        return case.result("time", s, skipped=reason)
     latency = latency_now(sum(s.memory().values()))
     if seconds * len(handles) < preset.case_seconds:
         s.sweep(query, handles)
     windows = (np.arange(many) + many * k for k in count())
 
-    def successive() -> tuple[tuple[str, Array], dict[str, Any]]:
+    def successive() -> Given:
         return (query, handles[next(windows) % len(handles)]), {}
 
     timed = timer(s.sweep, setup=successive, rounds=rounds, per=many)
-    return {**timed.fields, "handles": many, "latency": latency}
+    return case.result("time", s, handles=many, latency=latency, checked=True, **timed.fields)
 
 
 def _seconds_per_query(s: Structure, query: str, handles: Array, enough: float) -> float:

@@ -1,33 +1,31 @@
-"""How steady the machine is while a case is measured.
+"""How steady the machine is while a case is measured, and which core is the calmest.
 
-The calibration loop, which always does the same, is timed before and after each case. One that
-takes longer than it can take says that something else was running, or that the processor was
-throttled; so does a case during which the process did not get its core. Cases that are disturbed
-are measured again, at most ``REPEATS`` times, and the calmest measurement is kept. What is still
-disturbed is counted, and past ``BUSY`` the machine was too busy to judge by time.
+The calibration loop is timed before and after each case. A case beside a slow loop, or without its
+core, was disturbed: it is measured again, and the calmest measurement is kept.
 """
 
-from __future__ import annotations
-
+import os
 from functools import lru_cache
-from time import perf_counter, process_time
+from time import perf_counter, process_time, sleep
 from typing import Any
 
 import numpy as np
+import psutil
 
 from experiments.harness.calibration import calibration_loop
 
 READINGS = 5
 FIRST_READINGS = 50
 """Readings at the start of a process, to know how fast the loop can be."""
-
 SLOWDOWN = 0.25
 """Part by which the loop may be slower than at its fastest …"""
 OFF_CPU = 0.10
 """… and part of its time that a case may wait for its core, before it counts as disturbed."""
 REPEATS = 2
+"""How often a disturbed case is measured again, at most."""
 BUSY = 0.10
 """Share of disturbed cases above which times should not be judged by."""
+WATCHED_SECONDS = 0.1
 
 
 def calibration() -> float:
@@ -60,13 +58,9 @@ class Watch:
         wall, ran = perf_counter() - self._begin[0], process_time() - self._begin[1]
         after = calibration()
         least = min(self.fastest, self.before, after)
-        return {
-            "fastest": least,
-            "before": self.before,
-            "after": after,
-            "slowdown": max(self.before, after) / least - 1,
-            "off_cpu": max(0.0, 1 - ran / wall),
-        }
+        readings = {"fastest": least, "before": self.before, "after": after}
+        slowdown = max(self.before, after) / least - 1
+        return {**readings, "slowdown": slowdown, "off_cpu": max(0.0, 1 - ran / wall)}
 
 
 def disturbed(noise: dict[str, Any]) -> bool:
@@ -77,3 +71,39 @@ def disturbed(noise: dict[str, Any]) -> bool:
 def badness(noise: dict[str, Any]) -> float:
     """By how much a case was disturbed, to choose the calmest of several measurements of it."""
     return max(noise["slowdown"] / SLOWDOWN, noise["off_cpu"] / OFF_CPU) if noise else np.inf
+
+
+@lru_cache(maxsize=1)
+def allowed_cores() -> list[int]:
+    """The cores this process was given; none where the system does not say."""
+    return sorted(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else []
+
+
+def pin() -> int | None:
+    """Keep this process, and threads it starts later, on the calmest core -> which.
+
+    None where the system has no such call or refuses it; then the process moves about as before.
+    """
+    cores = allowed_cores()
+    if not cores:
+        return None
+    try:
+        os.sched_setaffinity(0, cores)
+        core = calmest(cores)
+        os.sched_setaffinity(0, {core})
+    except OSError:
+        return None
+    return core
+
+
+def calmest(cores: list[int], seconds: float = WATCHED_SECONDS) -> int:
+    """The core that was idle for longest just now; of equals the last one."""
+    before = idle_seconds()
+    sleep(seconds)
+    after = idle_seconds()
+    return max(cores, key=lambda core: (after.get(core, 0) - before.get(core, 0), core))
+
+
+def idle_seconds() -> dict[int, float]:
+    """By core, for how long it was idle since the machine started."""
+    return {core: times.idle for core, times in enumerate(psutil.cpu_times(percpu=True))}

@@ -1,25 +1,23 @@
 """The one timer: rounds of the same call, and a fixed loop beside each of them.
 
-A round is one sample. Before each round the calibration loop is timed, so that a machine that slows
-down is seen beside what it slowed. ``time_rounds`` needs nothing else; ``BenchmarkTimer`` does the
-same through pytest-benchmark, whose own command line then works on the experiments.
+``time_rounds`` needs the clock alone; ``BenchmarkTimer`` does the same through pytest-benchmark,
+whose own command line then works on the experiments.
 """
-
-from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
 from time import perf_counter
-from typing import Any, Protocol
+from typing import Any, Self
 
 import numpy as np
-from numpy.typing import NDArray
 
 from experiments.harness.calibration import calibration_loop
 from experiments.harness.presets import Preset
+from hem.arrays import Array
 
-Array = NDArray[Any]
-Setup = Callable[[], tuple[tuple[Any, ...], dict[str, Any]]]
+Call = Callable[..., Any]
+Given = tuple[tuple[Any, ...], dict[str, Any]]
+Setup = Callable[[], Given] | None
 
 
 @dataclass(frozen=True)
@@ -29,47 +27,30 @@ class Timed:
     samples: Array
     calibration: Array
 
-    def averaged(self, together: int) -> Timed:
+    def averaged(self, together: int) -> Self:
         """Every so many successive rounds as one."""
-        return Timed(
-            *(it.reshape(-1, together).mean(axis=1) for it in (self.samples, self.calibration))
-        )
+        both = self.samples, self.calibration
+        return type(self)(*(it.reshape(-1, together).mean(axis=1) for it in both))
 
     @property
     def fields(self) -> dict[str, Any]:
         """What of it a measurement keeps."""
-        return {"samples": self.samples, "calibration": self.calibration.tolist()}
+        return {"samples": self.samples.tolist(), "calibration": self.calibration.tolist()}
 
 
-class Timer(Protocol):
-    """Times ``rounds`` of a call, after ``warmup`` rounds that do not count.
-
-    ``setup()`` gives the arguments of each round and is not timed. ``per``: how many units a round
-    does; samples are seconds per unit.
-    """
-
-    def __call__(
-        self,
-        call: Callable[..., Any],
-        *,
-        setup: Setup | None = None,
-        rounds: int,
-        warmup: int = 1,
-        per: float = 1,
-    ) -> Timed:
-        """The rounds, timed."""
-        ...
+Timer = Callable[..., Timed]
+"""``time_rounds``, or a ``BenchmarkTimer``, which is called likewise."""
 
 
 def time_rounds(
-    call: Callable[..., Any],
-    *,
-    setup: Setup | None = None,
-    rounds: int,
-    warmup: int = 1,
-    per: float = 1,
+    call: Call, *, setup: Setup = None, rounds: int, warmup: int = 1, per: float = 1
 ) -> Timed:
-    """As ``Timer`` says, with nothing but the clock."""
+    """Time ``rounds`` of a call, after ``warmup`` rounds that do not count: a sample each.
+
+    Before each the calibration loop is timed, so that a slow machine is seen beside what it slowed.
+    ``setup()`` gives the arguments of each round and is not timed. ``per``: how many units a round
+    does; samples are seconds per unit.
+    """
     samples, calibration = [], []
     for _ in range(warmup + rounds):
         given, named = setup() if setup else ((), {})
@@ -106,18 +87,12 @@ class BenchmarkTimer:
         self._used = False
 
     def __call__(
-        self,
-        call: Callable[..., Any],
-        *,
-        setup: Setup | None = None,
-        rounds: int,
-        warmup: int = 1,
-        per: float = 1,
+        self, call: Call, *, setup: Setup = None, rounds: int, warmup: int = 1, per: float = 1
     ) -> Timed:
         """The rounds, timed; none with ``--benchmark-disable``."""
         calibration: list[float] = []
 
-        def ready() -> tuple[tuple[Any, ...], dict[str, Any]]:
+        def ready() -> Given:
             given = setup() if setup else ((), {})
             calibration.append(calibration_loop())
             return given

@@ -1,12 +1,12 @@
 """What ran where: the facts that a run carries besides its measurements."""
 
-from __future__ import annotations
-
 import json
 import os
 import platform
+import re
 import subprocess
 import sys
+from contextlib import suppress
 from datetime import UTC, datetime
 from hashlib import sha256
 from importlib.metadata import PackageNotFoundError, version
@@ -15,8 +15,6 @@ from typing import Any
 
 import psutil
 
-from experiments.runs.run import Run
-from experiments.runs.steadiness import noise
 from experiments.runs.store import SCHEMA
 
 LIBRARIES = ("numpy", "numba", "scipy", "pandas", "pymeshlab", "pytest-benchmark")
@@ -24,8 +22,12 @@ LIBRARIES = ("numpy", "numba", "scipy", "pandas", "pymeshlab", "pytest-benchmark
 
 def describe(preset: str) -> dict[str, Any]:
     """The head of a run: schema, preset, time, commit, machine and versions."""
+    versions = {"python": platform.python_version()}
+    for name in LIBRARIES:
+        with suppress(PackageNotFoundError):  # some are optional
+            versions[name] = version(name)
     head = {"schema": SCHEMA, "preset": preset, "started": now(), **source()}
-    return {**head, "machine": machine(), "versions": _versions()}
+    return {**head, "machine": machine(), "versions": versions}
 
 
 def source() -> dict[str, Any]:
@@ -84,48 +86,11 @@ def machine_id(machine: dict[str, Any]) -> str:
     return sha256(json.dumps(facts, sort_keys=True).encode()).hexdigest()[:8]
 
 
-def in_words(run: Run) -> str:
-    """What a run was, where it was measured, and how calm it was there."""
-    meta = run.meta
-    versions = ", ".join(f"{name} {number}" for name, number in meta.get("versions", {}).items())
-    changes = " with changes that are not committed" if meta.get("dirty") else ""
-    finished = f"to {meta['finished']}" if "finished" in meta else "and not finished"
-    return (
-        f"Preset {meta.get('preset')}, from {meta.get('started')} {finished}, at commit "
-        f"{str(meta.get('commit'))[:10]}{changes}. "
-        f"{_measured_by(run)}. {versions}. {len(run.cases):,} cases, each checked against the "
-        f"triangle list before it was measured. {noise(run).words}"
-    )
-
-
-def _measured_by(run: Run) -> str:
-    if run.machines:
-        return f"Measured by {len(run.machines)} machines, whose times are not compared"
-    it = run.meta.get("machine", {})
-    caches = ", ".join(f"{level} {size}" for level, size in it.get("caches", {}).items())
-    return (
-        f"{it.get('cores')} cores of {it.get('cpu')} ({caches}), "
-        f"{it.get('memory_bytes', 0) / 2**30:.0f} GiB, {it.get('platform')}"
-    )
-
-
-def _versions() -> dict[str, str]:
-    versions = {"python": platform.python_version()}
-    for name in LIBRARIES:
-        try:
-            versions[name] = version(name)
-        except PackageNotFoundError:  # some are optional
-            continue
-    return versions
-
-
 def _cpu() -> str:
-    try:
-        lines = Path("/proc/cpuinfo").read_text().splitlines()
-    except OSError:
-        lines = []
-    names = [line.partition(":")[2].strip() for line in lines if line.startswith("model name")]
-    return names[0] if names else platform.processor() or "unknown"
+    info = Path("/proc/cpuinfo")
+    text = info.read_text() if info.exists() else ""
+    names = re.findall(r"^model name\s*: *(.+?) *$", text, re.MULTILINE)
+    return str(names[0]) if names else platform.processor() or "unknown"
 
 
 def _caches() -> dict[str, str]:

@@ -1,4 +1,4 @@
-"""A run as it is read: one table of all its cases."""
+"""A run as it is read: one table of all its cases, and how steady the machine was meanwhile."""
 
 from __future__ import annotations
 
@@ -8,16 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from experiments.harness import Measurement
-from experiments.runs.store import (
-    META,
-    CaseFile,
-    DamagedError,
-    ResultsError,
-    case_files,
-    read_meta,
-    resuming,
-)
+from experiments.harness import Measurement, disturbed
+from experiments.harness.steadiness import BUSY
+from experiments.runs import store
 
 if TYPE_CHECKING:  # it takes half a second, and a study has no need of it
     import pandas as pd
@@ -53,13 +46,14 @@ def load(folder: Path | str) -> Run:
     import pandas as pd
 
     folder = Path(folder)
-    meta = read_meta(folder)
-    files = {str(path.relative_to(folder)): CaseFile.at(path) for path in case_files(folder)}
+    meta = store.read_meta(folder)
+    paths = store.case_files(folder)
+    files = {str(path.relative_to(folder)): store.CaseFile.at(path) for path in paths}
     for name, count in meta.get("files", {}).items():
         if name not in files or len(files[name].measurements) < count:
             missing = f"{folder / name} is {'not whole' if name in files else 'missing'}"
-            raise DamagedError(
-                f"{missing}; measure its cases again with: {resuming(folder / name)}"
+            raise store.DamagedError(
+                f"{missing}; measure its cases again with: {store.resuming(folder / name)}"
             )
     rows = [
         {
@@ -80,9 +74,83 @@ def load(folder: Path | str) -> Run:
 
 def latest(root: Path | str = RUNS, *, unfinished: bool = False) -> Path:
     """The newest run, or the newest that was not finished. Raises ResultsError if there is none."""
-    runs = sorted(Path(root).glob(f"*/{META}"), key=lambda path: path.parent.name, reverse=True)
-    for path in runs:
-        if not (unfinished and "finished" in read_meta(path.parent)):
-            return path.parent
+    runs = [path.parent for path in Path(root).glob(f"*/{store.META}")]
+    for folder in sorted(runs, key=lambda folder: folder.name, reverse=True):
+        if not (unfinished and "finished" in store.read_meta(folder)):
+            return folder
     what = "unfinished run" if unfinished else "run"
-    raise ResultsError(f"there is no {what} in {root}; start one with: hem study")
+    raise store.ResultsError(f"there is no {what} in {root}; start one with: hem study")
+
+
+@dataclass(frozen=True)
+class Noise:
+    """How steady the machine was during a run, over its timed cases.
+
+    ``cases``: how many said so; ``disturbed``: how many were even when they were repeated;
+    ``repeated``: how many were measured more than once; ``probe_spread``: the 90th percentile of
+    the calibration loop's readings over its fastest, less one; ``worst``: the processes with most
+    disturbed cases; ``share``: the disturbed part; ``too_busy``: whether not to judge by time.
+    """
+
+    cases: int
+    disturbed: int
+    repeated: int
+    probe_spread: float
+    worst: dict[str, int]
+    share: float
+    too_busy: bool
+
+    @property
+    def words(self) -> str:
+        """All that in a sentence or two."""
+        if not self.cases:
+            return "The run timed nothing that could be disturbed."
+        found = (
+            f"{self.disturbed:,} of {self.cases:,} timed cases ({self.share:.0%}) were disturbed, "
+            f"{self.repeated:,} were repeated; a fixed loop took up to {self.probe_spread:.0%} "
+            "longer than at its fastest in nine of ten probes."
+        )
+        if not self.too_busy:
+            return f"The machine was steady: {found}"
+        most = ", ".join(f"{name} ({count})" for name, count in self.worst.items())
+        return f"The machine was too busy to judge by time: {found} Most: {most}."
+
+
+def noise(run: Run) -> Noise:
+    """How steady the machine was during a run; no cases for runs that did not watch."""
+    timed = run.cases[(run.cases["kind"] == "time") & run.cases["noise"].map(bool)]
+    bad = timed[timed["noise"].map(disturbed).astype(bool)]
+    worst = (bad["experiment"] + " on " + bad["structure"]).value_counts().head(3)
+    seen = list(timed["noise"])
+    over = [it[when] / it["fastest"] - 1 for it in seen for when in ("before", "after")]
+    share = len(bad) / max(len(seen), 1)
+    return Noise(
+        cases=len(seen),
+        disturbed=len(bad),
+        repeated=sum(it.get("measured", 1) > 1 for it in seen),
+        probe_spread=float(np.quantile(over or [0.0], 0.9)),
+        worst={str(name): int(count) for name, count in worst.items()},
+        share=share,
+        too_busy=share > BUSY,
+    )
+
+
+def in_words(run: Run) -> str:
+    """What a run was, where it was measured, and how calm it was there."""
+    meta, it = run.meta, run.meta.get("machine", {})
+    caches = ", ".join(f"{level} {size}" for level, size in it.get("caches", {}).items())
+    measured_by = (
+        f"Measured by {len(run.machines)} machines, whose times are not compared"
+        if run.machines
+        else f"{it.get('cores')} cores of {it.get('cpu')} ({caches}), "
+        f"{it.get('memory_bytes', 0) / 2**30:.0f} GiB, {it.get('platform')}"
+    )
+    versions = ", ".join(f"{name} {number}" for name, number in meta.get("versions", {}).items())
+    changes = " with changes that are not committed" if meta.get("dirty") else ""
+    finished = f"to {meta['finished']}" if "finished" in meta else "and not finished"
+    return (
+        f"Preset {meta.get('preset')}, from {meta.get('started')} {finished}, at commit "
+        f"{str(meta.get('commit'))[:10]}{changes}. "
+        f"{measured_by}. {versions}. {len(run.cases):,} cases, each checked against the "
+        f"triangle list before it was measured. {noise(run).words}"
+    )

@@ -1,13 +1,9 @@
 """What a run leaves on disk: lines that are appended, each with its checksum, and one lock.
 
 ``run.json`` says what ran where. Each experiment on each structure has a file of JSON lines,
-``<experiment>.<structure>.jsonl``: a head, then a line per finished measurement, appended and
-synced, so that whoever is killed loses the case in flight and nothing else. A case that was
-disturbed may have several lines; the calmest counts. A last line that is torn is a case to measure
-again; anything else that is not as it was written raises DamagedError.
+``<experiment>.<structure>.jsonl``: a head, then a synced line per finished measurement. A torn last
+line is a case to measure again; anything else that is not as it was written raises DamagedError.
 """
-
-from __future__ import annotations
 
 import errno
 import hashlib
@@ -16,9 +12,9 @@ import os
 import socket
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
-from dataclasses import MISSING, asdict, fields, replace
+from dataclasses import asdict, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, Self
 
 from filelock import FileLock, Timeout
 
@@ -29,22 +25,17 @@ from hem.whole_files import write_whole
 SCHEMA = 3
 META = "run.json"
 
-CHOOSE = "choose another folder, or make this one writable"
-IN_PLACE = "choose another folder: a file is in its place"
-ROOM = "make room there"
 HINTS = {
-    **dict.fromkeys((errno.ENOSPC, errno.EDQUOT), ROOM),
-    **dict.fromkeys((errno.EROFS, errno.EACCES, errno.EPERM), CHOOSE),
-    **dict.fromkeys((errno.ENOTDIR, errno.EEXIST), IN_PLACE),
-    errno.EFBIG: "allow for larger files there",
+    (errno.ENOSPC, errno.EDQUOT): "make room there",
+    (errno.EROFS, errno.EACCES, errno.EPERM): "choose another folder, or make this one writable",
+    (errno.ENOTDIR, errno.EEXIST): "choose another folder: a file is in its place",
+    (errno.EFBIG,): "allow for larger files there",
 }
+"""What to do about an error of the system."""
 ROOM_BYTES = 1 << 16
 """What must be free in a folder for it to be worth measuring into."""
 
-DEFAULTS = {
-    it.name: it.default if it.default_factory is MISSING else it.default_factory()
-    for it in fields(Measurement)
-}
+DEFAULTS = vars(Measurement("", ""))
 
 
 class ResultsError(ValueError):
@@ -73,12 +64,13 @@ class CaseFile:
         self.path = folder / f"{experiment}.{structure}.jsonl"
         self.experiment, self.structure = experiment, structure
         self.measurements: list[Measurement] = []
+        self._head = {"schema": SCHEMA, "experiment": experiment, "structure": structure}
         self._bytes = 0
         if self.path.exists():
             self._read()
 
     @classmethod
-    def at(cls, path: Path) -> CaseFile:
+    def at(cls, path: Path) -> Self:
         """The file of that path."""
         return cls(path.parent, *path.stem.split("."))
 
@@ -88,13 +80,12 @@ class CaseFile:
         by_id: dict[str, list[Measurement]] = {}
         for it in self.measurements:
             by_id.setdefault(it.id, []).append(it)
-        calmest = {
-            key: min(every, key=lambda it: badness(it.noise)) for key, every in by_id.items()
-        }
-        return {
-            key: replace(it, noise=it.noise and {**it.noise, "measured": len(by_id[key])})
-            for key, it in calmest.items()
-        }
+        cases = {}
+        for key, every in by_id.items():
+            calmest = min(every, key=lambda it: badness(it.noise))
+            noise = calmest.noise and {**calmest.noise, "measured": len(every)}
+            cases[key] = replace(calmest, noise=noise)
+        return cases
 
     @property
     def disturbed(self) -> set[str]:
@@ -107,20 +98,26 @@ class CaseFile:
 
     def add(self, *measurements: Measurement) -> None:
         """Append measurements. Raises CannotWriteError, and leaves the file as it was."""
-        head = [] if self._bytes else [self._head()]
-        data = "".join(map(_sealed_line, [*head, *map(_compact, measurements)])).encode()
-        try:
+        changed = (
+            {name: value for name, value in asdict(it).items() if value != DEFAULTS[name]}
+            for it in measurements
+        )
+        lines = [*([] if self._bytes else [self._head]), *changed]
+        data = "".join(f"{_compact(_sealed(line))}\n" for line in lines).encode()
+        with writing(self.path):
             self.path.parent.mkdir(parents=True, exist_ok=True)
             with self.path.open("ab", buffering=0) as file:
                 file.truncate(self._bytes)
-                _append(file.fileno(), data, self._bytes)
-        except OSError as error:
-            raise cannot_write(self.path, error) from error
+                try:
+                    written = 0
+                    while written < len(data):
+                        written += file.write(data[written:])
+                    os.fsync(file)
+                except OSError:
+                    file.truncate(self._bytes)
+                    raise
         self._bytes += len(data)
         self.measurements += measurements
-
-    def _head(self) -> dict[str, Any]:
-        return {"schema": SCHEMA, "experiment": self.experiment, "structure": self.structure}
 
     def _read(self) -> None:
         *lines, _torn = self.path.read_bytes().split(b"\n")
@@ -129,7 +126,7 @@ class CaseFile:
             content = _unsealed(line, where, f"measure its cases again with: {resuming(self.path)}")
             if number:
                 self.measurements.append(Measurement(**content))
-            elif content != self._head():
+            elif content != self._head:
                 raise ResultsError(
                     f"{where} is the head of another file, {content}: move the file away"
                 )
@@ -138,10 +135,8 @@ class CaseFile:
 
 def write_meta(folder: Path, meta: dict[str, Any]) -> None:
     """Write a run's ``run.json`` whole, with its checksum. Raises CannotWriteError."""
-    try:
+    with writing(folder / META):
         write_whole(folder / META, json.dumps(_sealed(meta), indent=1) + "\n")
-    except OSError as error:
-        raise cannot_write(folder / META, error) from error
 
 
 def read_meta(folder: Path) -> dict[str, Any]:
@@ -174,10 +169,8 @@ def set_aside_damaged(folder: Path) -> Iterator[Path]:
             CaseFile.at(path)
         except DamagedError:
             names = (path.with_name(f"{path.name}.damaged{k or ''}") for k in range(1_000))
-            try:
+            with writing(path):
                 path.rename(next(name for name in names if not name.exists()))
-            except OSError as error:
-                raise cannot_write(path, error) from error
             yield path
 
 
@@ -188,17 +181,16 @@ def lock_run(folder: Path) -> Iterator[None]:
     The lock is the operating system's: it goes when its process ends, however that was.
     """
     lock, holder = FileLock(folder / ".lock", timeout=0), folder / ".holder"
-    try:
-        lock.acquire()
+    with writing(folder):
+        try:
+            lock.acquire()
+        except Timeout:
+            name = holder.read_text() if holder.exists() else "another process"
+            raise InUseError(
+                f"{folder} is being measured into by {name}: wait until that has ended, "
+                "or end it; or begin a run of its own with: hem study"
+            ) from None
         holder.write_text(f"process {os.getpid()} on {socket.gethostname()}")
-    except Timeout:
-        name = holder.read_text() if holder.exists() else "another process"
-        raise InUseError(
-            f"{folder} is being measured into by {name}: wait until that has ended, "
-            "or end it; or begin a run of its own with: hem study"
-        ) from None
-    except OSError as error:
-        raise cannot_write(folder, error) from error
     with lock:
         yield
 
@@ -207,18 +199,24 @@ def require_room(folder: Path) -> None:
     """Raise CannotWriteError unless something can be written into a folder."""
     trial = folder / ".room"
     try:
-        trial.write_bytes(bytes(ROOM_BYTES))
-    except OSError as error:
-        raise cannot_write(folder, error) from error
+        with writing(folder):
+            trial.write_bytes(bytes(ROOM_BYTES))
     finally:
         with suppress(OSError):
             trial.unlink()
 
 
-def cannot_write(path: Path, error: OSError) -> CannotWriteError:
-    """What to raise for an error at writing ``path``."""
-    hint = HINTS.get(error.errno or 0, "see to the disk")
-    return CannotWriteError(f"{path} cannot be written ({error.strerror or error}): {hint}")
+@contextmanager
+def writing(path: Path) -> Iterator[None]:
+    """Raise CannotWriteError, with what to do, where ``path`` cannot be written."""
+    try:
+        yield
+    except OSError as error:
+        hints = (hint for numbers, hint in HINTS.items() if error.errno in numbers)
+        hint = next(hints, "see to the disk")
+        raise CannotWriteError(
+            f"{path} cannot be written ({error.strerror or error}): {hint}"
+        ) from error
 
 
 def resuming(path: Path) -> str:
@@ -227,50 +225,23 @@ def resuming(path: Path) -> str:
     return f"hem study --resume --run {folder}"
 
 
-def _calmest(measurements: list[Measurement]) -> Measurement:
-    calmest = min(measurements, key=lambda it: badness(it.noise))
-    return replace(
-        calmest, noise=calmest.noise and {**calmest.noise, "measured": len(measurements)}
-    )
-
-
-def _compact(measurement: Measurement) -> dict[str, Any]:
-    """What of a measurement is not as it is by default."""
-    return {key: it for key, it in asdict(measurement).items() if it != DEFAULTS[key]}
+def _compact(content: dict[str, Any]) -> str:
+    return json.dumps(content, separators=(",", ":"))
 
 
 def _sealed(content: dict[str, Any]) -> dict[str, Any]:
-    return {**content, "checksum": _checksum(content)}
-
-
-def _sealed_line(content: dict[str, Any]) -> str:
-    return json.dumps(_sealed(content), separators=(",", ":")) + "\n"
+    """With its checksum: 32 hexadecimal digits, of everything else."""
+    digest = hashlib.sha256(_compact(content).encode()).hexdigest()
+    return {**content, "checksum": digest[:32]}
 
 
 def _unsealed(text: bytes, where: str, hint: str) -> dict[str, Any]:
     """The content of a sealed object. Raises DamagedError unless it is as it was written."""
     try:
-        content: dict[str, Any] = json.loads(text)
-        if content.pop("checksum") != _checksum(content):
+        sealed = json.loads(text)
+        content = {name: value for name, value in sealed.items() if name != "checksum"}
+        if sealed != _sealed(content):
             raise ValueError("its checksum does not fit")
-    except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
+    except (ValueError, AttributeError, RecursionError) as error:
         raise DamagedError(f"{where} is damaged ({error}): {hint}") from error
     return content
-
-
-def _checksum(content: dict[str, Any]) -> str:
-    """Of everything but itself: 32 hexadecimal digits."""
-    text = json.dumps(content, separators=(",", ":"))
-    return hashlib.sha256(text.encode()).hexdigest()[:32]
-
-
-def _append(file: int, data: bytes, begin: int) -> None:
-    """Write all of it and have it on the disk, or nothing."""
-    try:
-        while data:
-            data = data[os.write(file, data) :]
-        os.fsync(file)
-    except OSError:
-        with suppress(OSError):
-            os.ftruncate(file, begin)
-        raise

@@ -4,47 +4,33 @@ First what the experiments need is compiled, and what is only counted is counted
 workers take times, one structure after the other, because what runs beside is timed with it.
 """
 
-from __future__ import annotations
-
-from collections.abc import Callable, Iterator, Sequence
+import hashlib
+import os
+from collections import Counter
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor, as_completed
 from contextlib import closing, contextmanager, suppress
 from dataclasses import asdict
 from datetime import UTC, datetime
+from functools import cache
+from importlib.metadata import version
 from pathlib import Path
 from threading import Event
 from time import monotonic
 from typing import Any
 
-from experiments.harness import PRESETS
-from experiments.harness.steadiness import REPEATS
-from experiments.runs.catalog import experiments
-from experiments.runs.compiling import compile_and_count
+from experiments.harness import BASE, PRESETS
+from experiments.harness.steadiness import REPEATS, allowed_cores
+from experiments.runs import store
+from experiments.runs.catalog import experiments as catalog
 from experiments.runs.provenance import describe, now, source
-from experiments.runs.run import RUNS, latest, load
-from experiments.runs.steadiness import noise
-from experiments.runs.store import (
-    CannotWriteError,
-    CaseFile,
-    ResultsError,
-    cannot_write,
-    case_files,
-    lock_run,
-    read_meta,
-    require_room,
-    set_aside_damaged,
-    write_meta,
-)
-from experiments.runs.worker import (
-    AGAIN,
-    DEFAULT_SEED,
-    Job,
-    Options,
-    WorkerDiedError,
-    end_of_log,
-    log_of,
-    perform,
-)
-from structures import NAMED
+from experiments.runs.run import RUNS, load, noise
+from experiments.runs.worker import AGAIN, COMPILE, Job, WorkerDiedError, end_of_log, perform
+from structures import NAMED, REGISTRY
+
+ROOT = Path(__file__).parents[2]
+COMPILED = "hem", "structures", "experiments/harness"
+"""Where the sources are that Numba compiles."""
 
 REPEATING_SHARE = 0.5
 """Disturbed cases are measured again for at most this part of the time that all cases took."""
@@ -73,75 +59,59 @@ def begin(
     structures: Sequence[str] = (),
     experiments: Sequence[str] = (),
     *,
-    seed: int = DEFAULT_SEED,
+    seed: int = Job.seed,
     pin: bool = True,
 ) -> Path:
     """A new run folder, named by the time and the preset, with what is known before it runs.
 
-    ``structures``, ``experiments``: just these; all of them for none. ``seed``: of the order of the
-    cases; ``pin``: whether to stay on one core. Raises ValueError for a name that there is not,
-    CannotWriteError.
+    ``structures``, ``experiments``: just these, all of them for none; an experiment with or without
+    ``bench_``. ``seed``: of the order of the cases; ``pin``: whether to stay on one core. Raises
+    ValueError for a name that there is not, CannotWriteError.
     """
-    chosen = {"structures": list(structures), "experiments": [_full_name(it) for it in experiments]}
-    for name in structures:
-        if name not in NAMED:
-            raise ValueError(f"no structure is called {name!r}; there are {', '.join(NAMED)}")
-    if preset not in PRESETS:
-        raise ValueError(f"no preset is called {preset!r}; there are {', '.join(PRESETS)}")
+    short = [name.removeprefix("bench_") for name in experiments]
+    _require_known("experiment", short, [name.removeprefix("bench_") for name in catalog()])
+    _require_known("structure", structures, NAMED)
+    _require_known("preset", [preset], PRESETS)
+    chosen = {"structures": list(structures), "experiments": [f"bench_{name}" for name in short]}
     folder = _new_folder(root, f"{datetime.now(UTC).strftime('%Y%m%d-%H%M%S')}-{preset}")
     try:
-        write_meta(folder, {**describe(preset), **chosen, "seed": seed, "pin": pin})
-    except CannotWriteError:
+        store.write_meta(folder, {**describe(preset), **chosen, "seed": seed, "pin": pin})
+    except store.CannotWriteError:
         with suppress(OSError):
             folder.rmdir()
         raise
     return folder
 
 
-def _full_name(experiment: str) -> str:
-    """The name of an experiment's module, given with or without ``bench_``."""
-    known = {name.removeprefix("bench_"): name for name in experiments()}
-    short = experiment.removeprefix("bench_")
-    if short not in known:
-        raise ValueError(f"no experiment is called {short!r}; there are {', '.join(known)}")
-    return known[short]
+def _require_known(kind: str, names: Iterable[str], known: Collection[str]) -> None:
+    for name in names:
+        if name not in known:
+            raise ValueError(f"no {kind} is called {name!r}; there are {', '.join(known)}")
 
 
 def _new_folder(root: Path, name: str) -> Path:
     """A folder that nobody else has: of two studies in one second the later gets a number."""
-    try:
+    with store.writing(root):
         root.mkdir(parents=True, exist_ok=True)
         for suffix in ("", *(f"-{k}" for k in range(2, 1_000))):
             with suppress(FileExistsError):
                 (root / f"{name}{suffix}").mkdir()
                 return root / f"{name}{suffix}"
-    except OSError as error:
-        raise cannot_write(root, error) from error
-    raise CannotWriteError(f"{root} has a thousand runs called {name}: clear it up")
-
-
-def options_of(meta: dict[str, Any]) -> Options:
-    """How a run was begun, and is to go on."""
-    return Options(str(meta["preset"]), int(meta["seed"]), bool(meta["pin"]))
+    raise store.CannotWriteError(f"{root} has a thousand runs called {name}: clear it up")
 
 
 def plan(folder: Path) -> list[Job]:
     """All jobs of a run, in the order of the experiments."""
-    meta = read_meta(folder)
-    chosen, options = meta["structures"], options_of(meta)
+    meta = store.read_meta(folder)
+    preset, wanted, chosen = str(meta["preset"]), meta["experiments"], meta["structures"]
     jobs = [
-        Job(name, structure, options)
-        for name, declared in experiments().items()
-        if name in (meta["experiments"] or _usual(options.preset))
+        Job(name, structure, preset, int(meta["seed"]), bool(meta["pin"]))
+        for name, declared in catalog().items()
+        if (name in wanted if wanted else name not in PRESETS[preset].skipped)
         for structure in declared.structures
         if not chosen or structure in chosen or structure not in NAMED
     ]
     return [job for job in jobs if job.ids]
-
-
-def _usual(preset: str) -> list[str]:
-    """The experiments of a preset, where none are asked for by name."""
-    return [name for name in experiments() if name not in PRESETS[preset].skipped]
 
 
 def run(folder: Path, observer: Observer | None = None) -> None:
@@ -160,12 +130,82 @@ def run(folder: Path, observer: Observer | None = None) -> None:
             failures.extend(_measure(folder, group, observer, stop))
 
         compile_and_count(folder, jobs, observer.compiled, measure)
-        timed = [job for job in jobs if job.timed]
-        for structure in dict.fromkeys(job.structure for job in timed):
-            measure([job for job in timed if job.structure == structure], Event())
+        for group in by_structure(jobs, timed=True):
+            measure(group, Event())
         if failures:
             raise StudyFailedError("\n\n".join(failures))
         finish(folder)
+
+
+def compile_and_count(
+    folder: Path,
+    jobs: Sequence[Job],
+    compiled: Callable[[str, int, int], None],
+    count: Callable[[list[Job], Event], None],
+) -> None:
+    """Compile what timed jobs need, and do those that only count, on all cores.
+
+    ``compiled`` is told of each structure whose kernels are ready; ``count`` does the jobs of one
+    structure, until the event is set. What cannot be compiled, its measurement will tell.
+    """
+    timed = [it for it in by_structure(jobs, timed=True) if not _stamp(it).exists()]
+    timed.sort(key=_urgency)
+    stop = Event()
+    with ThreadPoolExecutor(len(allowed_cores()) or os.cpu_count()) as pool:
+        running = {pool.submit(_compile, folder, it, stop): it[0].structure for it in timed}
+        counting = [pool.submit(count, it, stop) for it in by_structure(jobs, timed=False)]
+        try:
+            for done, future in enumerate(as_completed(running), 1):
+                future.result()
+                compiled(running[future], done, len(timed))
+            for counted in as_completed(counting):
+                counted.result()
+        except BaseException:
+            stop.set()
+            pool.shutdown(cancel_futures=True)
+            raise
+
+
+def by_structure(jobs: Sequence[Job], timed: bool) -> list[list[Job]]:
+    """The jobs that take times, or those that only count, a group per structure."""
+    groups: dict[str, list[Job]] = {}
+    for job in jobs:
+        if job.timed == timed:
+            groups.setdefault(job.structure, []).append(job)
+    return list(groups.values())
+
+
+def _urgency(jobs: list[Job]) -> tuple[bool, bool]:
+    """First what the others are compared with, so that it is not compiled many times over.
+
+    What is not compiled comes next, which leaves it time.
+    """
+    structure = REGISTRY.get(jobs[0].structure)
+    return jobs[0].structure != BASE, structure is not None and structure.compiled
+
+
+def _compile(folder: Path, jobs: list[Job], stop: Event) -> None:
+    with suppress(WorkerDiedError, OSError), closing(perform(folder, jobs, COMPILE)) as finished:
+        for _ in finished:
+            if stop.is_set():
+                return
+        _stamp(jobs).touch()
+
+
+def _stamp(jobs: list[Job]) -> Path:
+    """The file that is there if what jobs of one structure need was compiled of these sources."""
+    text = " ".join([jobs[0].structure, *(job.experiment for job in jobs)])
+    digest = hashlib.blake2b(_sources() + text.encode(), digest_size=8).hexdigest()
+    return ROOT / "hem" / "__pycache__" / f"compiled-{digest}"
+
+
+@cache
+def _sources() -> bytes:
+    """A digest of everything that is compiled, and of what compiles it."""
+    files = [path for room in COMPILED for path in sorted((ROOT / room).rglob("*.py"))]
+    content = b"".join(path.read_bytes() for path in files)
+    where = os.environ.get("NUMBA_CACHE_DIR", "")
+    return hashlib.blake2b(content + f"{version('numba')} {where}".encode()).digest()
 
 
 def _measure(folder: Path, jobs: list[Job], observer: Observer, stop: Event) -> list[str]:
@@ -180,7 +220,7 @@ def _measure(folder: Path, jobs: list[Job], observer: Observer, stop: Event) -> 
             left = left[1:]  # what killed the worker does not keep the others from being measured
         else:
             names = ", ".join(str(job) for job in left if job.left(folder))
-            failures += [f"{names}:\n{end_of_log(log_of(folder, left[0]))}"] if names else []
+            failures += [f"{names}:\n{end_of_log(folder, left[0])}"] if names else []
             left = []
     now = monotonic()
     if stop.is_set():
@@ -191,11 +231,9 @@ def _measure(folder: Path, jobs: list[Job], observer: Observer, stop: Event) -> 
 
 
 def _measure_once(folder: Path, jobs: list[Job], observer: Observer, stop: Event) -> None:
-    done = {job: len(job.ids) - len(job.left(folder)) for job in jobs}
-    by_name = {job.experiment: job for job in jobs}
+    done = Counter({job: len(job.ids) - len(job.left(folder)) for job in jobs})
     with closing(perform(folder, jobs)) as finished:
-        for experiment in finished:
-            job = by_name[experiment]
+        for job in finished:
             done[job] += 1
             observer.measured(job, done[job])
             if stop.is_set():
@@ -205,7 +243,7 @@ def _measure_once(folder: Path, jobs: list[Job], observer: Observer, stop: Event
 def _measure_again(folder: Path, jobs: list[Job], until: float) -> None:
     """Measure disturbed cases once more, each time in a new process, while there is time."""
     for _ in range(REPEATS):
-        again = [job for job in jobs if job.disturbed(folder)]
+        again = [job for job in jobs if job.file(folder).disturbed]
         if not again:
             return
         with closing(perform(folder, again, AGAIN)) as finished:
@@ -216,28 +254,27 @@ def _measure_again(folder: Path, jobs: list[Job], until: float) -> None:
 
 @contextmanager
 def prepared(folder: Path, say: Callable[[str], None]) -> Iterator[None]:
-    """Have a folder for oneself, with room in it and nothing damaged."""
-    with lock_run(folder):
-        require_room(folder)
-        begun = bool(case_files(folder))
-        for path in set_aside_damaged(folder):
+    """Have a folder for oneself, with room in it and nothing damaged.
+
+    Raises ResultsError if a run would be resumed by other code than it was begun with.
+    """
+    with store.lock_run(folder):
+        store.require_room(folder)
+        begun = bool(store.case_files(folder))
+        for path in store.set_aside_damaged(folder):
             say(f"{path.name} was damaged and is set aside; its cases are measured again")
-        meta = read_meta(folder)
+        meta = store.read_meta(folder)
         if begun:
-            _require_same_code(folder, meta)
-            again = {"at": now(), **source()}
-            write_meta(folder, {**meta, "resumed": [*meta.get("resumed", []), again]})
+            was, here = meta.get("commit"), source()
+            if was and was != here["commit"]:
+                raise store.ResultsError(
+                    f"{folder} was begun at commit {was[:12]}, and this is {here['commit'][:12]}: "
+                    "what they measure does not belong together; check that commit out, "
+                    "or begin a new run"
+                )
+            resumed = [*meta.get("resumed", []), {"at": now(), **here}]
+            store.write_meta(folder, {**meta, "resumed": resumed})
         yield
-
-
-def _require_same_code(folder: Path, meta: dict[str, Any]) -> None:
-    """Raise ResultsError if a run would be resumed by other code than it was begun with."""
-    was, here = meta.get("commit"), source()["commit"]
-    if was and was != here:
-        raise ResultsError(
-            f"{folder} was begun at commit {was[:12]}, and this is {here[:12]}: what they measure "
-            "does not belong together; check that commit out, or begin a new run"
-        )
 
 
 def finish(folder: Path, machine: dict[str, Any] | None = None) -> None:
@@ -245,19 +282,8 @@ def finish(folder: Path, machine: dict[str, Any] | None = None) -> None:
 
     ``machine``: what measured it, if it was not this one.
     """
-    files = {
-        str(path.relative_to(folder)): len(CaseFile.at(path).measurements)
-        for path in case_files(folder)
-    }
-    seen = noise(load(folder))
-    steadiness = {**asdict(seen), "share": seen.share, "too_busy": seen.too_busy}
-    meta = read_meta(folder)
-    more = {"finished": now(), "files": files, "noise": steadiness}
-    write_meta(folder, {**meta, **more, "machine": machine or meta["machine"]})
-
-
-def resume(root: Path = RUNS, folder: Path | None = None) -> Path:
-    """The newest unfinished run, or ``folder``, finished or not. Raises ResultsError."""
-    folder = folder or latest(root, unfinished=True)
-    read_meta(folder)
-    return folder
+    paths = store.case_files(folder)
+    files = {str(it.relative_to(folder)): len(store.CaseFile.at(it).measurements) for it in paths}
+    more = {"finished": now(), "files": files, "noise": asdict(noise(load(folder)))}
+    meta = store.read_meta(folder)
+    store.write_meta(folder, {**meta, **more, "machine": machine or meta["machine"]})

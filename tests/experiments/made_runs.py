@@ -8,8 +8,9 @@ from pathlib import Path
 
 import numpy as np
 
+from experiments.bench_workloads import WORKLOADS
 from experiments.claims import Exactly, load_claims
-from experiments.harness import HUBS, WORKLOADS, Measurement
+from experiments.harness import HUBS, Measurement
 from experiments.runs import CaseFile, describe, experiments, write_meta
 from structures import NAMES
 

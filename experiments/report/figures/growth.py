@@ -11,8 +11,9 @@ from matplotlib.ticker import FuncFormatter, LogLocator
 
 from experiments.bench_fracture import FIND, SHATTER, VISITED, WAYS
 from experiments.bench_printed import EXPERIMENT as PRINTED
+from experiments.bench_workloads import WORKLOADS
 from experiments.claims import MIXES, break_even, curves
-from experiments.harness import WORKLOADS, Axis
+from experiments.harness import Axis
 from experiments.report import style
 from experiments.report.session import MissingError
 from experiments.report.style import BLUE, GRAY, RED, STYLES, Plot

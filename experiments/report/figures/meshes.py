@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 
 import hem
 import structures
-from experiments.harness.workloads import simplify
+from experiments.bench_workloads import simplify
 from experiments.report.pages import Html, page
 from experiments.report.style import side_by_side, styled
 from hem.arrays import Array

@@ -7,11 +7,11 @@ import pytest
 
 import hem
 import structures
-from experiments.harness import HUBS, OPERATIONS, WORKLOADS, Case
+from experiments.bench_workloads import KEPT, WORKLOADS
+from experiments.harness import HUBS, OPERATIONS, Case
 from experiments.harness import operation_arguments as arguments
 from experiments.harness import operation_faces as faces_of
 from experiments.harness.operations import OperationBatch
-from experiments.harness.workloads import KEPT
 
 
 def case(structure: str, family: str = "torus", valence: int | None = None) -> Case:

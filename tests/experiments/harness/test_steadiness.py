@@ -11,7 +11,6 @@ from itertools import pairwise
 from experiments.harness import (
     Case,
     Watch,
-    affinity,
     badness,
     disturbed,
     in_random_order,
@@ -68,20 +67,20 @@ def test_what_is_asked_of_a_mesh_stays_together_so_that_it_is_built_once():
 
 def test_a_process_stays_on_one_core_where_it_may():
     script = (
-        "import os; from experiments.harness import affinity\n"
+        "import os; from experiments.harness import steadiness\n"
         "def refused(*a): raise PermissionError\n"
-        "core = affinity.pin()\n"
+        "core = steadiness.pin()\n"
         "assert core is None or os.sched_getaffinity(0) == {core}, core\n"
         "os.sched_setaffinity = refused\n"
-        "assert affinity.pin() is None"
+        "assert steadiness.pin() is None"
     )
     subprocess.run([sys.executable, "-c", script], check=True, timeout=60)
 
 
 def test_the_calmest_core_is_the_one_that_was_idle(monkeypatch):
     ticks = iter([{0: 5, 1: 5, 2: 5}, {0: 6, 1: 14, 2: 7}])
-    monkeypatch.setattr(affinity, "idle_ticks", lambda: next(ticks))
-    assert affinity.calmest([0, 1, 2], seconds=0) == 1
-    monkeypatch.setattr(affinity, "idle_ticks", dict)
-    assert affinity.calmest([0, 1, 2], seconds=0) == 2
-    assert set(affinity.allowed()) <= set(range(os.cpu_count() or 1))
+    monkeypatch.setattr(steadiness, "idle_seconds", lambda: next(ticks))
+    assert steadiness.calmest([0, 1, 2], seconds=0) == 1
+    monkeypatch.setattr(steadiness, "idle_seconds", dict)
+    assert steadiness.calmest([0, 1, 2], seconds=0) == 2
+    assert set(steadiness.allowed_cores()) <= set(range(os.cpu_count() or 1))

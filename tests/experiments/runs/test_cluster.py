@@ -10,7 +10,7 @@ import sys
 import pytest
 
 from experiments.runs import cluster, load, read_meta, study
-from experiments.runs.worker import Job, Options
+from experiments.runs.worker import Job
 from tests.experiments.cli.test_cli import hem
 from tests.experiments.small_study import Recorder, begin, samples
 
@@ -83,7 +83,7 @@ def test_work_is_spread_kept_apart_and_tried_elsewhere_when_a_machine_is_lost(
 
 
 def test_a_machine_measures_only_what_is_wanted_by_the_same_code(tmp_path):
-    job = Job("bench_memory", "indexed", Options("smoke"))
+    job = Job("bench_memory", "indexed", "smoke")
     commit = cluster.describe("smoke")["commit"]
     with pytest.raises(cluster.ClusterError, match="bring them to the same"):
         cluster.measure_alone(job, "0123456789", lambda: True)

@@ -99,15 +99,15 @@ def test_disturbed_cases_are_measured_again_by_a_new_process(run):
     file.path.unlink()
     CaseFile(run, "bench_memory", "indexed").add(first, *others)
     jobs = study.plan(run)
-    assert [job.disturbed(run) for job in jobs] == [True]
-    assert list(perform(run, jobs, AGAIN)) == ["bench_memory"]
+    assert [len(job.file(run).disturbed) for job in jobs] == [1]
+    assert list(perform(run, jobs, AGAIN)) == jobs
     again = CaseFile(run, "bench_memory", "indexed").measurements
     assert [it.id for it in again] == [it.id for it in (first, *others, first)]
 
 
 def test_disturbed_cases_are_measured_again_no_more_often_than_they_may(run, monkeypatch):
     actions = []
-    monkeypatch.setattr(study.Job, "disturbed", lambda job, folder: True)
+    monkeypatch.setattr(CaseFile, "disturbed", {"a case"})
     monkeypatch.setattr(study, "perform", lambda *given: (actions.append(given[2:]) for _ in "a"))
     study._measure_again(run, study.plan(run), until=float("inf"))
     assert actions == [(AGAIN,)] * REPEATS
