@@ -49,12 +49,6 @@ class Curve:
         center = np.mean if self.measure == "work" else np.median
         return np.array([float(center(it)) for it in self.samples])
 
-    def spread(self, part: float = 0.5) -> tuple[Array, Array]:
-        """(k,), (k,): between these lies the middle part of each case's samples."""
-        edges = (1 - part) / 2, (1 + part) / 2
-        low, high = np.array([np.quantile(it, edges) for it in self.samples]).reshape(-1, 2).T
-        return low, high
-
     @property
     def by_size(self) -> dict[int, float]:
         """The cost of each case by its number of vertices."""

@@ -76,7 +76,7 @@ def compare_trees(
         return [Finding(Change.UNDETERMINED, Kind.TIME, CaseKey("interleaved"), why=why)]
     timed: dict[Case, list[PairTimed]] = {case: [] for case in wanted}
     for k in range(PAIRS + FURTHER):
-        still = wanted if k < PAIRS else [case for case in wanted if _is_in_doubt(timed[case])]
+        still = [case for case in wanted if k < PAIRS or _is_in_doubt(timed[case])]
         for case, pair in time_in_new_processes(before, after, still, factor):
             timed[case].append(pair)
     return [_judge(*case, timed[case]) for case in wanted]

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from hem.whole_files import write_whole
+from hem.whole_files import append_whole, write_whole
 
 
 def test_a_file_is_written_replaced_and_nothing_is_left_beside(tmp_path: Path) -> None:
@@ -28,5 +28,7 @@ def test_what_fails_leaves_the_old_file(tmp_path: Path, monkeypatch: pytest.Monk
     monkeypatch.setattr(os, "fsync", full)
     with pytest.raises(OSError, match="No space left"):
         write_whole(file, "new")
+    with file.open("ab", buffering=0) as opened, pytest.raises(OSError, match="No space left"):
+        append_whole(opened, b"more", 3)
     assert file.read_text() == "old"
     assert os.listdir(tmp_path) == ["file.txt"]

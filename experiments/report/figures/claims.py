@@ -91,7 +91,7 @@ def _draw_growth(axes: Axes, curve: Curve, judged: JudgedClaim, axis: Axis) -> N
 
 def _summary(curve: Curve) -> pd.DataFrame:
     """The center, the smallest and the largest sample of each case; no access counts as one."""
-    low, high = curve.spread(1.0)
+    low, high = ([end(it) for it in curve.samples] for end in (np.min, np.max))
     summary = pd.DataFrame({"center": curve.centers, "smallest": low, "largest": high})
     return summary.clip(lower=1.0 if curve.measure == "work" else 0.0)
 
