@@ -137,23 +137,19 @@ def label_ends(axes: Axes, gap: float = 10.5) -> None:
     """
     figure = axes.get_figure(root=True)
     assert figure is not None
-    groups: dict[int, list[tuple[float, Line2D]]] = defaultdict(list)
+    groups: dict[int, list[tuple[float, Any, Line2D]]] = defaultdict(list)
     for line in labeled(axes):
-        x, y = axes.transData.transform(_end(line)) * 72 / figure.dpi
-        groups[round(x / APART)].append((y, line))
+        end = np.asarray(line.get_xydata())[-1]
+        x, y = axes.transData.transform(end) * 72 / figure.dpi
+        groups[round(x / APART)].append((y, end, line))
     for ends in groups.values():
-        ends.sort(key=lambda end: end[0])
-        places = spread_apart([height for height, _ in ends], gap)
-        for (height, line), place in zip(ends, places, strict=True):
+        ends.sort(key=lambda it: it[0])
+        places = spread_apart([height for height, _, _ in ends], gap)
+        for (height, end, line), place in zip(ends, places, strict=True):
             axes.annotate(
-                str(line.get_label()), _end(line), (5, place - height),
-                textcoords="offset points", annotation_clip=False,
-                color=line.get_color(), va="center", fontsize=8,
+                str(line.get_label()), end, (5, place - height), textcoords="offset points",
+                annotation_clip=False, color=line.get_color(), va="center", fontsize=8,
             )  # fmt: skip
-
-
-def _end(line: Line2D) -> Any:
-    return np.asarray(line.get_xydata())[-1]
 
 
 def spread_apart(heights: list[float], gap: float) -> list[float]:

@@ -23,8 +23,6 @@ COLORS = {
 }
 """What is colored in a terminal, as regular expressions."""
 
-WIDEST = 500  # columns of a table that a terminal does not cut
-
 LEGEND = """Each cell: what is claimed, the verdict by work (memory accesses) and that by time.
 ✓ consistent, ✗ violated, ? undetermined, – nothing claimed. The work decides.
 Where the claim is not confirmed, what was found stands beside it."""
@@ -33,24 +31,38 @@ Where the claim is not confirmed, what was found stands beside it."""
 def show_rows(
     console: Console, rows: Iterable[Sequence[str]], title: str = "", numbers: Sequence[str] = ()
 ) -> None:
-    """Print a table, however wide it is: a figure that is cut is a wrong one.
+    """Print a table that cuts nothing: a figure that is cut is a wrong one.
 
-    rows: its heads first. numbers: the heads of the columns that are flush right.
+    As many columns beside each other as there is room for; the first one is repeated, without the
+    rows that have nothing else. rows: the heads first. numbers: the heads that are flush right.
     """
-    heads, *body = rows
+    every = [list(row) for row in rows]
+    widths = [max(map(len, column)) + 2 for column in zip(*every, strict=True)]
+    start = 1
+    while start < len(widths):
+        stop = start + 1
+        while stop < len(widths) and widths[0] + sum(widths[start : stop + 1]) <= console.width:
+            stop += 1
+        heads, *body = ([row[0], *row[start:stop]] for row in every)
+        console.print(_grid(heads, [row for row in body if any(row[1:])], title, numbers))
+        start = stop
+
+
+def _grid(
+    heads: Sequence[str], rows: Sequence[Sequence[str]], title: str, numbers: Sequence[str]
+) -> Table:
     table = Table(title=title or None, title_justify="left", box=box.SIMPLE_HEAD, pad_edge=False)
     table.padding = (0, 1, 0, 0)
     for head in heads:
         table.add_column(head, style="" if head else "bold", no_wrap=True)
         table.columns[-1].justify = "right" if head in numbers else "left"
-    for row in body:
+    for row in rows:
         cells = [Text(cell) for cell in row]
         for cell in cells:
             for pattern, color in COLORS.items():
                 cell.highlight_regex(pattern, color)
         table.add_row(*cells)
-    wide = console.measure(table, options=console.options.update(max_width=WIDEST))
-    console.print(table, width=max(console.width, wide.maximum), crop=False)
+    return table
 
 
 def markdown_rows(rows: Iterable[Sequence[str]]) -> str:
@@ -103,26 +115,15 @@ def show_claims(
         mine = [it for it in claims if it.claim.table == name]
         if mine:
             console.print(f"\n[bold]{table.title}[/]", highlight=False)
-            (_show_slopes if slopes else _show_verdicts)(console, mine)
+            if slopes:
+                _show_slopes(console, mine)
+            else:
+                show_rows(console, _texts(mine, name, "abbreviation", _cell))
             console.print(_summary(mine), highlight=False)
     seen = noise(run)
     if seen.too_busy:
         console.print(f"[yellow]{seen.words}[/]", highlight=False)
     console.print(LEGEND, style="dim", highlight=False)
-
-
-def _show_verdicts(console: Console, claims: Sequence[JudgedClaim]) -> None:
-    """As many structures beside each other as there is room for."""
-    rows = _texts(claims, claims[0].claim.table, "abbreviation", _cell)
-    widths = [max(map(len, column)) + 2 for column in zip(*rows, strict=True)]
-    start = 1
-    while start < len(widths):
-        stop = start + 1
-        while stop < len(widths) and widths[0] + sum(widths[start : stop + 1]) <= console.width:
-            stop += 1
-        part = [[row[0], *row[start:stop]] for row in rows]
-        show_rows(console, [row for row in part if any(row[1:])])
-        start = stop
 
 
 def _cell(judged: JudgedClaim) -> str:
