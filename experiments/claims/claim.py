@@ -6,9 +6,9 @@ from enum import StrEnum
 from typing import Self
 
 import numpy as np
-from numpy.typing import NDArray
 
 from experiments.harness import Axis
+from hem.arrays import Floats
 from hem.complexity import Verdict
 
 MEMORY = "memory"
@@ -135,7 +135,7 @@ class JudgedClaim:
     reason: str = ""
     outcome_time: Outcome = Outcome.NO_CLAIM
     verdicts: Mapping[Axis, Verdict] = field(default_factory=dict)
-    values: NDArray[np.float64] = field(default_factory=lambda: np.zeros(0))
+    values: Floats = field(default_factory=lambda: np.zeros(0))
     work: float = np.nan
     seconds: float = np.nan
     bytes_per_vertex: float = np.nan

@@ -6,12 +6,10 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
 from experiments.harness import HUBS, QUERIES_TABLE, Axis
 from experiments.runs import Run, experiments, tables
-
-Array = NDArray[Any]
+from hem.arrays import Array
 
 PARTS = (4, 16)
 """By how much less than its working set a query or an operation may touch: one of several arrays,

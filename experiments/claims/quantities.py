@@ -13,7 +13,6 @@ from typing import cast
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
 import hem
 import structures
@@ -22,12 +21,12 @@ from experiments.claims.curves import Curves, curves
 from experiments.claims.errata import BOOK
 from experiments.harness import BASE, OPERATIONS, Axis
 from experiments.runs import Run
+from hem.arrays import Array
 from hem.complexity import slope
 from hem.contract import QUERIES
 from structures.object_tools import HalfEdgeMeshBuilder
 from structures.plankton import Plankton
 
-Array = NDArray[np.float64]
 Quantity = Callable[[Curves], Iterable[float]]
 
 LARGER = 990

@@ -20,7 +20,7 @@ from filelock import FileLock, Timeout
 
 from experiments.harness import Measurement, badness, disturbed
 from experiments.harness.steadiness import REPEATS
-from hem.whole_files import write_whole
+from hem.whole_files import append_whole, write_whole
 
 SCHEMA = 3
 META = "run.json"
@@ -108,14 +108,7 @@ class CaseFile:
             self.path.parent.mkdir(parents=True, exist_ok=True)
             with self.path.open("ab", buffering=0) as file:
                 file.truncate(self._bytes)
-                try:
-                    written = 0
-                    while written < len(data):
-                        written += file.write(data[written:])
-                    os.fsync(file)
-                except OSError:
-                    file.truncate(self._bytes)
-                    raise
+                append_whole(file, data, self._bytes)
         self._bytes += len(data)
         self.measurements += measurements
 
