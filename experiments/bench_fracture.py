@@ -38,13 +38,10 @@ IMPACTS = 64
 IMPACT_SEED = 31
 MARGIN = 1e-6
 """Nearer than this part of the mesh to where the scan ends is the same place."""
-
 REFERENCE = "half_edge"
 """The structure whose shards the others must give, and on which looks at faces are counted."""
-
 ASKED_PER_BREAK_POINT = 30
 """Neighbors are asked for at least so often; where that is a scan, it takes what follows."""
-
 FEWEST_ROUNDS = 3
 ROUNDS = FEWEST_ROUNDS + 2
 """With those to check it and to warm up."""

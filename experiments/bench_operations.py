@@ -30,7 +30,6 @@ from hem.contract import Structure
 
 FEWEST_HUBS = 64
 """In a mesh whose valence is varied; with fewer operations at a time they are not worth timing."""
-
 SINGLE_FACES = 50
 SCANNED_FACES = 5
 """How many are operated on one by one where each takes a scan of the mesh."""

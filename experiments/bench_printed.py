@@ -34,14 +34,11 @@ LISTINGS = {
 }
 COUNTED, TIMED = "counted", "timed"
 """The kinds of cases: work, and time."""
-
 TIMED_OPERATIONS = 9
 COUNTED_OPERATIONS = 3
 WARM_UP = 2
-
 MORE_FACES = {"build": 0, "split_edge": 2, "split_face": 2, "collapse_edge": -2}
 """How many faces more there are after each, inside a surface."""
-
 POINTS = [(9.0, 9.0, float(i)) for i in range(TIMED_OPERATIONS + WARM_UP)]
 """Different positions where nothing is yet."""
 

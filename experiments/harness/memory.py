@@ -30,12 +30,10 @@ BUILDING = 3
 """How much more than what remains of it a compiled structure takes while it is built."""
 CHASE_COPIES = 3
 UNITS = {"": 1, "K": 1 << 10, "M": 1 << 20, "G": 1 << 30, "T": 1 << 40}
+CGROUP = "/sys/fs/cgroup"
 CGROUPS = (
-    ("/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory.current"),
-    (
-        "/sys/fs/cgroup/memory/memory.limit_in_bytes",
-        "/sys/fs/cgroup/memory/memory.usage_in_bytes",
-    ),
+    (f"{CGROUP}/memory.max", f"{CGROUP}/memory.current"),
+    (f"{CGROUP}/memory/memory.limit_in_bytes", f"{CGROUP}/memory/memory.usage_in_bytes"),
 )
 
 
