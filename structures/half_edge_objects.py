@@ -69,6 +69,9 @@ from structures.object_records import (
     to_arrays,
 )
 
+SHARED = 257
+"""Integers below this one are shared by all who use them."""
+
 COUNTED = (Vertex, HalfEdge, Face, ElementList)
 """The classes whose fields count as work when they are read or written."""
 
@@ -534,9 +537,8 @@ class HalfEdgeMesh(Structure):
             kind, n = elements.kind, len(elements)
             sample = next(iter(elements), None)
             taken[f"{kind}.object"] = n * (sys.getsizeof(sample) if sample else 0)
-            taken[f"{kind}.index"] = sum(
-                sys.getsizeof(it.index) for it in elements if it.index > 256
-            )
+            shared = sum(it is not None for it in elements.items[:SHARED])
+            taken[f"{kind}.index"] = sys.getsizeof(SHARED) * (n - shared)
             taken[f"{kind}.list"] = 8 * n
         taken["vertex.point"] = position * len(self.vertices)
         return taken

@@ -5,6 +5,7 @@ from time import perf_counter
 from typing import Any
 
 import numpy as np
+from scipy.sparse import coo_array
 
 import hem
 import structures
@@ -15,6 +16,7 @@ from experiments.harness.timer import Given, Timer
 from hem.arrays import Array
 from hem.contract import Structure
 from hem.engine import END
+from hem.meshes import undirected_edges
 from structures import REGISTRY
 
 ON_EDGES = ("split_edge", "collapse_edge", "flip_edge")
@@ -53,19 +55,22 @@ def searches(case: Case) -> bool:
 
 @lru_cache(maxsize=2)
 def _apart(family: str, size: int, valence: int | None) -> Array:
-    mesh = Case("half_edge", family, size, valence=valence).mesh()
+    mesh = Case(BASE, family, size, valence=valence).mesh()
     if family == HUBS:
         hubs = hem.valence_hubs(int(valence or 0), size)[::2]  # one of each bipyramid
         order = np.argsort(mesh.triangles[:, 0], kind="stable")
         # Half-way around, not where every walk around the hub begins.
         across = np.searchsorted(mesh.triangles[order, 0], hubs) + int(valence or 0) // 2
         return np.sort(order[across])
-    s = structures.build("half_edge", mesh)
-    taken, chosen = np.zeros(s.n_vertices, np.bool_), []
-    tried = np.random.default_rng(ELEMENT_SEED).permutation(s.n_faces)[: 40 * MOST_ELEMENTS]
-    around = s.vertex_vertices(mesh.triangles[tried].ravel())
-    for i, face in enumerate(tried.tolist()):
-        ring = around.values[around.offsets[3 * i] : around.offsets[3 * i + 3]]
+    n, (edges, _) = len(mesh.points), undirected_edges(mesh.triangles)
+    ends = np.concatenate([edges, edges[:, ::-1]]).T
+    joined = coo_array((np.ones(ends.shape[1], np.bool_), tuple(ends)), (n, n)).tocsr()
+    begin, neighbors = joined.indptr, joined.indices
+    taken, chosen = np.zeros(n, np.bool_), []
+    tried = np.random.default_rng(ELEMENT_SEED).permutation(len(mesh.triangles))
+    for face in tried[: 40 * MOST_ELEMENTS].tolist():
+        corners = mesh.triangles[face].tolist()
+        ring = np.concatenate([neighbors[begin[v] : begin[v + 1]] for v in corners])
         if not taken[ring].any():
             taken[ring] = True
             chosen.append(face)
@@ -138,7 +143,8 @@ def _operated(name: str, case: Case, faces: Array) -> list[tuple[int, ...]]:
     batch = OperationBatch(structures.build(name, case.mesh()), str(case.subject), faces)
     batch.operate()
     rows = batch.mesh.face_vertices(batch.mesh.faces()).values.reshape(-1, 3)
-    return sorted(tuple(np.roll(row, -int(row.argmin())).tolist()) for row in rows)
+    turned = (rows.argmin(axis=1)[:, None] + np.arange(3)) % 3
+    return sorted(map(tuple, np.take_along_axis(rows, turned, axis=1).tolist()))
 
 
 def time_operations(case: Case, preset: Preset, timer: Timer) -> dict[str, Any]:

@@ -176,15 +176,17 @@ def by_structure(jobs: Sequence[Job], timed: bool) -> list[list[Job]]:
 
 
 def _urgency(jobs: list[Job]) -> tuple[bool, bool]:
-    """First what the others are compared with, so that it is not compiled many times over.
+    """First what the others are compared with, last what is not compiled itself.
 
-    What is not compiled comes next, which leaves it time.
+    So nothing is compiled by several workers at once.
     """
     structure = REGISTRY.get(jobs[0].structure)
-    return jobs[0].structure != BASE, structure is not None and structure.compiled
+    return jobs[0].structure != BASE, structure is None or not structure.compiled
 
 
 def _compile(folder: Path, jobs: list[Job], stop: Event) -> None:
+    if jobs[0].structure == BASE:
+        jobs = jobs[::-1]  # the others ask for its operations, after queries of their own
     with suppress(WorkerDiedError, OSError), closing(perform(folder, jobs, COMPILE)) as finished:
         for _ in finished:
             if stop.is_set():
