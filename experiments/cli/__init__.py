@@ -4,8 +4,6 @@
 A command imports what it needs when it is run, so that help and mistakes are quick.
 """
 
-from __future__ import annotations
-
 from importlib.metadata import version
 from pathlib import Path
 from typing import Annotated, Any

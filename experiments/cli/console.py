@@ -1,7 +1,5 @@
 """What the commands share: where they print, which run they mean, how they tell mistakes."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The demo of breaking meshes: ``make demo`` makes some animations and a page to watch them on."""
 
-from __future__ import annotations
-
 import json
 import shlex
 from importlib.resources import files

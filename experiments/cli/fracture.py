@@ -1,7 +1,5 @@
 """The command ``hem fracture``: break a model, and keep pieces, pictures and numbers."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Callable, Sequence
 from contextlib import suppress

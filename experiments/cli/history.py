@@ -1,7 +1,5 @@
 """The commands ``hem history add`` and ``hem history show``."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 from typing import Annotated

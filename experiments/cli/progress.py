@@ -1,7 +1,5 @@
 """How ``hem study`` shows how far it is."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path

@@ -1,7 +1,5 @@
 """``hem study``: measure every structure, resume after anything, say whether time can be judged."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from time import perf_counter
 from typing import Annotated, Any

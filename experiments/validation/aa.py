@@ -7,8 +7,6 @@ are not compared, as they are the same each time. Takes twenty minutes of a mach
 attention.
 """
 
-from __future__ import annotations
-
 import json
 import tempfile
 from collections import Counter

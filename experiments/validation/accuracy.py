@@ -6,8 +6,6 @@ names a class of `hem.complexity.models`, or none. The rivals know of no latency
 nanoseconds, as some of them have thresholds in absolute units.
 """
 
-from __future__ import annotations
-
 import atexit
 import json
 from collections import Counter

@@ -3,8 +3,6 @@
 ``python -m experiments.validation.budgets`` says how quickly things break; Linux only.
 """
 
-from __future__ import annotations
-
 import gc
 from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import ProcessPoolExecutor

@@ -4,8 +4,6 @@
 in the name. The faults are data, see ``mutants.toml``. A copy without a fault must pass.
 """
 
-from __future__ import annotations
-
 import json
 import shutil
 import subprocess

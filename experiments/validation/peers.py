@@ -4,8 +4,6 @@
 skipped, and said so. COMPAS' meshes are Python objects, and compared on a smaller torus.
 """
 
-from __future__ import annotations
-
 import platform
 from collections.abc import Callable, Iterable, Iterator
 from functools import partial

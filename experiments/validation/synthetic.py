@@ -5,8 +5,6 @@ intercept of nothing or as much as the smallest size costs; noise of 2, 5 or 10 
 that the memory causes. Everything follows from a seed.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
