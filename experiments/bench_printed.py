@@ -1,4 +1,4 @@
-"""The thesis' listings as printed, beside their mended versions: work and time by size.
+"""The thesis' listings as published, beside their corrected versions: work and time by size.
 
 Building, splitting and collapsing, in Python objects on both sides. The sizes are small, because
 the printed builder is quadratic. Work is the number of fields of objects that are read or written.

@@ -25,7 +25,7 @@ MESH_BYTES = {"torus": 300, HUBS: 300}
 OTHER_MESH_BYTES = 1_600
 """Bytes per vertex of a mesh while it is made, renumbered and checked: the sphere's and more."""
 OBJECTS_BYTES = 2_500
-"""Bytes per vertex of what is as printed: objects, with the render mesh beside them."""
+"""Bytes per vertex of what is as published: objects, with the render mesh beside them."""
 BUILDING = 3
 """How much more than what remains of it a compiled structure takes while it is built."""
 CHASE_COPIES = 3

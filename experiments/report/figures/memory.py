@@ -26,7 +26,7 @@ PARTS = {
 
 
 def by_field(run: Run) -> Plot:
-    """Bytes per vertex, stacked by field: as printed, modeled with 8 and 4 bytes, and as traced.
+    """Bytes per vertex, stacked by field: as published, modeled with 8 and 4 bytes, and as traced.
 
     Of what is made of arrays; ``references`` has the objects.
     """
@@ -49,7 +49,7 @@ def by_field(run: Run) -> Plot:
             if name in rows and isinstance(claimed, Exactly) and claimed.value:
                 top, value = rows.index(name) - 0.42, float(claimed.value)
                 axes.plot([value, value], [top, top + 0.44], color="black", linewidth=2.5)
-                words = "printed in the thesis" if name == rows[0] else ""
+                words = "published in the thesis" if name == rows[0] else ""
                 axes.text(value, top - 0.04, words, ha="center", fontsize=8, fontweight="bold")
         axes.set_xlim(0, 350)
     return plot

@@ -163,7 +163,7 @@ def split_as_printed() -> Figure:
     s = Plankton.build(hem.PolygonMesh([v.point for v in m.vertices], corners))
     wrong = [(h.origin.index, h.end.index) for h in m.half_edges if h.next.face is not h.face]
     before = _step("A quad", whole, edges=[(0, 2)])
-    return steps([before, _step("split as printed", s, arrows=wrong, vertices=[4])])
+    return steps([before, _step("split as published", s, arrows=wrong, vertices=[4])])
 
 
 def quad_splits(structure: str) -> Figure:

@@ -1,0 +1,104 @@
+"""What is printed fits 80 columns, and no figure and no class is cut, however long they are."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+from rich.console import Console
+from typer.testing import CliRunner
+
+from experiments import cli
+from experiments.claims import judge_run
+from experiments.regression import CaseKey, Change, Finding, Kind, Trends, append_run, read_history
+from experiments.report import findings, history_tables
+from experiments.runs import load
+from hem import FAMILIES
+from structures import NAMED
+from tests.experiments.histories import CLAIM, MACHINES, line
+from tests.experiments.made_runs import LAWS, write_run
+
+RANGE = r"\d…-?\d"
+"""Two ends of an interval."""
+
+
+def printed(*arguments: str) -> str:
+    cli.console.width = cli.errors.width = 80
+    result = CliRunner().invoke(cli.app, arguments)
+    assert result.exit_code == 0, result.output
+    return require_fits(result.stdout)
+
+
+def require_fits(text: str) -> str:
+    assert max(map(len, text.splitlines())) <= 80, text
+    assert "…" not in re.sub(RANGE, "", text), text
+    return text
+
+
+@pytest.fixture(scope="module")
+def violated(tmp_path_factory):
+    """A run in which all of it grows as the square of the mesh."""
+    return write_run(tmp_path_factory.mktemp("long") / "run", lambda *_: LAWS["O(n_t²)"])
+
+
+def test_the_table_shows_every_class_found(violated):
+    text = printed("table", str(violated), "--all")
+    claims = [it for it in judge_run(load(violated)) if it.claim.structure and it.verdicts]
+    assert {it.found for it in claims if it.outcome.mark == "✗"}
+    for judged in claims:
+        assert judged.claim.title in text
+        if judged.outcome.mark == "✗":
+            marks = judged.outcome.mark + judged.outcome_time.mark
+            assert f"{judged.claim.printed} {marks} {judged.found}" in text
+
+
+def test_slopes_and_intervals_are_shown_when_asked_for(violated):
+    assert not re.search(RANGE, printed("table", str(violated)))
+    text = printed("table", str(violated), "--all", "--slopes")
+    assert re.search(RANGE, text)
+    assert all(kind.title in text for kind in NAMED.values())
+
+
+@pytest.mark.parametrize("claim", [None, CLAIM, "half_edge"])
+@pytest.mark.parametrize("slopes", [False, True])
+def test_a_history_of_two_machines_and_presets_with_large_figures(
+    base, tmp_path, capsys, claim, slopes
+):
+    path = tmp_path / "history.jsonl"
+    for k in range(24):
+        made = line(base, k, MACHINES[k % 2]) | {"profile": ("quick", "standard")[k // 12]}
+        for figures in made["claims"].values():
+            figures |= {it: figures[it] * 1e5 + k for it in ("work", "relative") if it in figures}
+            figures["slopes"] = {
+                key: [-it[0] - k, -it[1] - k, -it[2] - k]
+                for key, it in figures.get("slopes", {}).items()
+            }
+        append_run(made, path)
+    history_tables.show(Trends(read_history(path)), claim, Console(width=80), None, slopes)
+    text = require_fits(capsys.readouterr().out)
+    if claim:
+        assert "time" in text
+
+
+def test_the_meshes_and_their_sizes():
+    cli.console.width = 80
+    output = CliRunner().invoke(cli.app, ["meshes", "--size", "100000"]).stdout
+    assert max(map(len, output.splitlines())) <= 80
+    text = " ".join(output.split())
+    assert all(it.what in text and it.sizes in text for it in FAMILIES.values())
+    heads = ("name", "vertices", "edges", "faces", "border", "valence")
+    assert text.count(" ┃ ".join(heads)) == 2
+    assert "torus │ 100,000 │ 300,000 │ 200,000 │ 0 │ 6…6" in text
+
+
+def test_the_lines_of_a_check(capsys):
+    case = CaseKey("bench_queries", "winged_edge", "vertex_vertices", "isosurface", 1_000_000, 4096)
+    long = "a reason that is told at some length, so that it reaches beyond the end of a line"
+    found = [
+        Finding(Change.WORSE, Kind.TIME, case, "12.345 [1, 2]", "67.891 [3, 4]", long, "hem study"),
+        Finding(Change.WORSE, Kind.WORK, case, "1, 2, 3", "4, 5, 6", claim=5 * "Table 1, a claim "),
+    ]
+    findings.show(found, [3 * long], Console(width=80))
+    text = " ".join(require_fits(capsys.readouterr().out).split())
+    assert f"12.345 [1, 2] → 67.891 [3, 4] ({long})" in text
+    assert "1, 2, 3 → 4, 5, 6" in text
