@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import shutil
 import subprocess
 import sys
@@ -82,9 +83,11 @@ def extended(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return tree
 
 
-def python(tree: Path, *arguments: str, code: int = 0) -> str:
-    command = [sys.executable, *arguments]
-    ran = subprocess.run(command, cwd=tree, capture_output=True, text=True, timeout=600)
+def python(tree: Path, *arguments: str, code: int = 0, run: str = "") -> str:
+    command, environment = [sys.executable, *arguments], {**os.environ, "HEM_RUN": run}
+    ran = subprocess.run(
+        command, cwd=tree, capture_output=True, text=True, timeout=600, env=environment
+    )
     assert ran.returncode == code, ran.stdout + ran.stderr
     return ran.stdout + ran.stderr
 
@@ -94,6 +97,13 @@ def test_the_table_shows_a_new_structure_and_a_new_experiment(extended):
     assert "DEM" in printed
     assert "Random walks" in printed
     assert "Walk over faces" in printed
+
+
+def test_the_report_shows_them_on_its_front_page_and_in_the_chapter_of_their_table(extended):
+    made = "from experiments.report.notebooks import body; "
+    pages = python(extended, "-c", made + "print(body('index'), body('query_scaling'))", run="run")
+    for shown in ("Directed-Edge", "Random walks", "Walk over faces"):
+        assert shown in pages
 
 
 def test_the_check_measures_them_and_says_what_is_next(extended):
