@@ -9,7 +9,7 @@ import hem
 import structures
 from tests.structures.actions import faces_of
 from tests.structures.conftest import NEEDS_MANIFOLD, OF_ARRAYS, octahedron, strip
-from tests.structures.test_operations import TETRAHEDRON
+from tests.structures.laws.test_operations import TETRAHEDRON
 
 PLANE = np.random.default_rng(1).random((12, 3))
 SQUARE = [(0, 1, 2), (0, 2, 3)]
