@@ -52,7 +52,8 @@ def test_half_of_the_timed_curves_missing_is_half_of_the_claims_undetermined(
     assert shares.time == pytest.approx(1 - run.cases[lost]["structure"].nunique() / shares.claims)
 
 
-def test_the_baseline_has_as_many_claims_of_table_1_determined_as_was_asked() -> None:
+def test_the_baseline_has_as_many_claims_of_table_1_determined_by_work_as_was_asked() -> None:
+    # By time the share is the machine's; the chapter shows it beside what was asked.
     baseline = load_baseline(RUN)
     assert baseline.run.meta["preset"] == "standard"
     assert baseline.run.meta["dirty"] is False
@@ -64,9 +65,8 @@ def test_the_baseline_has_as_many_claims_of_table_1_determined_as_was_asked() ->
         and claim["outcome"] != "no claim"
     ]
     assert len(claims) == 42
-    for key, asked in zip(("outcome", "outcome_time"), accuracy.DETERMINED.values(), strict=True):
-        determined = [claim[key] != "undetermined" for claim in claims]
-        assert sum(determined) >= asked * len(determined)
+    determined = [claim["outcome"] != "undetermined" for claim in claims]
+    assert sum(determined) >= accuracy.DETERMINED["work"] * len(determined)
 
 
 def test_the_kept_answers_are_as_many_right_and_as_few_wrong_as_asked() -> None:
