@@ -2,5 +2,5 @@
 
 import signal
 
-# A shell that runs the tests in the background has them ignore Ctrl-C, and so would what they start.
+# In the background of a shell Ctrl-C is ignored, and would be by all that the tests start.
 signal.signal(signal.SIGINT, signal.default_int_handler)
