@@ -76,12 +76,10 @@ def _write_parts(session: Session, folder: Path) -> dict[str, str]:
 def _workers(session: Session) -> Iterator[ProcessPoolExecutor]:
     """Processes that know the run, one per core; an interrupt or an error ends them.
 
-    They share what takes long to import where the system can fork them.
+    Where the system can fork them they share what the door of this room had imported for them.
     """
     methods = multiprocessing.get_all_start_methods()
     context: Any = multiprocessing.get_context("forkserver" if "forkserver" in methods else "spawn")
-    if "forkserver" in methods:
-        context.set_forkserver_preload([__name__])
     others = set(multiprocessing.active_children())
     pool = ProcessPoolExecutor(len(os.sched_getaffinity(0)), context, _begin, (session,))
     try:

@@ -14,10 +14,9 @@ import pytest
 
 from experiments.claims import judge_run
 from experiments.harness import OPERATIONS, Axis
-from experiments.report import notebooks, readme, site
+from experiments.report import notebooks, readme, site, write_report
 from experiments.report.figures import growth
 from experiments.report.session import Session, share
-from experiments.report.site import write_report
 from experiments.report.style import spread_apart
 from experiments.runs import ResultsError, load
 from tests.experiments.small_study import wait_for

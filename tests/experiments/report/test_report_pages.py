@@ -9,9 +9,9 @@ from urllib.parse import unquote, urldefrag, urlparse
 import pytest
 
 from experiments.claims import judge_run
+from experiments.report import write_report
 from experiments.report.notebooks import page_titles
 from experiments.report.pdf import BROWSER_VARIABLE, find_browser
-from experiments.report.site import write_report
 from experiments.runs import load
 from tests.experiments.chromium import Browser, started
 
