@@ -12,6 +12,7 @@ from pkgutil import iter_modules
 from typing import Any
 
 from hem.contract import REFERENCE_TYPES, Described, Structure
+from hem.errors import MeshError
 from hem.meshes import PolygonMesh, TriangleMesh, require_triangles
 
 
@@ -56,12 +57,12 @@ def build(name: str, mesh: TriangleMesh | PolygonMesh, reference_bytes: int = 4)
 
     ``reference_bytes``: 4, or 8 as the thesis counts. Cost O(n_v + n_t). Raises NonManifoldError,
     with the elements, for what the structure cannot represent, MeshError for polygons where it
-    holds triangles; KeyError or ValueError for a name or a reference size that does not exist.
+    holds triangles, and for a name or a reference size that does not exist.
     """
     if name not in REGISTRY:
-        raise KeyError(f"no structure is called {name!r}; there are {', '.join(NAMES)}")
+        raise MeshError(f"no structure is called {name!r}; there are {', '.join(NAMES)}")
     if reference_bytes not in REFERENCE_TYPES:
-        raise ValueError(f"references take 4 or 8 bytes, not {reference_bytes!r}")
+        raise MeshError(f"references take 4 or 8 bytes, not {reference_bytes!r}")
     kind: Any = REGISTRY[name]
     if not kind.holds_polygons:
         mesh = require_triangles(mesh)

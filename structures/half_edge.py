@@ -144,7 +144,7 @@ def edge_vertices(m: HalfEdgeRecords, e: int, out: Array) -> int:
     return 2
 
 
-edge_edges = edges_at_both_ends(edge_vertices, vertex_edges)
+edge_edges = edges_at_both_ends(edge_vertices, vertex_edges, edge_of)
 
 
 @kernel
@@ -526,8 +526,10 @@ class HalfEdge(Structure):
 
     def _edge_names(self, handles: Array) -> Array:
         known = (handles >= 0) & (handles < self.records.counts[EDGE_END])
-        twin = self.records.half_edge[np.where(known, handles, 0), TWIN]
-        return np.where(known & (twin >= 0), np.minimum(handles, twin), handles)
+        names = handles.copy()
+        twin = self.records.half_edge[handles[known], TWIN]
+        names[known] = np.where(twin >= 0, np.minimum(handles[known], twin), handles[known])
+        return names
 
     def _require_invariants(self) -> None:
         """Those at the top of this file."""

@@ -119,7 +119,12 @@ def edge_vertices(m: ObjectRecords, e: int, out: Any) -> int:
     return 2
 
 
-edge_edges = edges_at_both_ends(edge_vertices, vertex_edges)
+def edge_of(m: ObjectRecords, e: int) -> int:
+    """The name of the edge that e is a half-edge of. Cost O(1)."""
+    return m.half_edges.items[e].edge
+
+
+edge_edges = edges_at_both_ends(edge_vertices, vertex_edges, edge_of)
 
 
 def edge_faces(m: ObjectRecords, e: int, out: Any) -> int:
@@ -467,9 +472,11 @@ class HalfEdgeMesh(Structure):
     def _live(self, element: str) -> NDArray[np.int32]:
         return np.flatnonzero(self._alive(element)).astype(np.int32)
 
-    def _alive(self, element: str) -> NDArray[np.bool_]:
+    def _alive(self, element: str, rows: Any = slice(None)) -> NDArray[np.bool_]:
         lists: dict[str, ElementList[Any]] = {"vertex": self.vertices, "face": self.faces}
-        return lists.get(element, self.half_edges).alive()
+        items = lists.get(element, self.half_edges).items
+        chosen = items[rows] if isinstance(rows, slice) else [items[row] for row in rows.tolist()]
+        return np.array([it is not None for it in chosen], np.bool_)
 
     def _edge_names(self, handles: Array) -> Array:
         items = self.half_edges.items
@@ -487,10 +494,6 @@ class HalfEdgeMesh(Structure):
         # Slices of it are views, as of an array, but it is faster, and its numbers are Python's.
         return memoryview(np.empty(width, dtype).data)
 
-    def _kept(self, element: str) -> Callable[[Any], Array]:
-        dtype = HANDLE_TYPES[element]
-        return lambda answer: np.array(answer, dtype)
-
     def _compacted(self) -> tuple[ObjectRecords, dict[str, Array]]:
         m, number = self.records, {}
         lists: dict[str, ElementList[Any]] = {it.kind: it for it in m[:-1]}
@@ -506,10 +509,19 @@ class HalfEdgeMesh(Structure):
 
     def copy(self) -> Self:
         """The same mesh in objects of its own, with the same indices and no subscribers."""
-        return type(self)(from_arrays(self.snapshot()))
+        return self._of(to_arrays(self.records, self.points))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """As arrays: a pickle of objects would follow their references without end."""
+        return self._of, (to_arrays(self.records, self.points),)
+
+    @classmethod
+    def _of(cls, records: HalfEdgeRecords) -> Self:
+        return cls(from_arrays(records))
 
     def snapshot(self) -> HalfEdgeRecords:
         """The same half-edges by index, see ``Structure.snapshot``. Cost O(n_v + n_t)."""
+        self._widen()
         return to_arrays(self.records, self.points)
 
     def restore(self, snapshot: HalfEdgeRecords) -> None:
@@ -551,7 +563,7 @@ class HalfEdgeMesh(Structure):
     def validate(self) -> None:
         """Check the objects themselves, then as arrays what ``structures.half_edge`` requires."""
         self._require_invariants()
-        HalfEdgeArrays(self.snapshot()).validate()
+        HalfEdgeArrays(to_arrays(self.records, self.points)).validate()
 
     def _require_invariants(self) -> None:
         """Every element stands in its list, and every reference leads to one that does."""

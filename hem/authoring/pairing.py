@@ -20,6 +20,8 @@ from hem.authoring.slices import in_slices, slice_count
 from hem.errors import MeshError, NonManifoldError
 from hem.meshes import PolygonMesh, TriangleMesh, require_manifold
 
+MOST_HALF_EDGES = np.iinfo(np.int32).max
+
 LARGE_BUCKET = 24
 """Entries from which on a bucket is sorted instead of compared pair by pair."""
 
@@ -48,6 +50,11 @@ def pair_half_edges(mesh: TriangleMesh, room: Array | None = None) -> Pairing:
     """
     triangles, n_vertices = mesh.triangles, len(mesh.points)
     n_half_edges = 3 * len(triangles)
+    if n_half_edges > MOST_HALF_EDGES:
+        raise MeshError(
+            f"{len(triangles):,} faces have more half-edges than int32 can name, "
+            f"{MOST_HALF_EDGES:,}"
+        )
     counts = np.zeros((slice_count(len(triangles)), n_vertices), np.int32)
     firsts = np.full_like(counts, -1)
     in_slices(_count, len(triangles), triangles, counts, firsts)

@@ -28,6 +28,7 @@ from hem.authoring.kernels import (
     VERTEX_ROOM,
     VERTICES,
 )
+from hem.errors import MeshError
 
 REFERENCE_TYPES = {4: np.int32, 8: np.int64}
 """Bytes of a stored reference to the type that holds it. The thesis counts 8 (section 7)."""
@@ -91,10 +92,12 @@ def counted(
     return count
 
 
-def live(records: Any, fields: Sequence[Field], element: str) -> NDArray[np.bool_]:
-    """(end,) bool: which of the records of a kind are live. Cost O(records)."""
+def live(
+    records: Any, fields: Sequence[Field], element: str, rows: Any = slice(None)
+) -> NDArray[np.bool_]:
+    """(end,) bool: which of the records of a kind are live, or which of ``rows``. O(rows)."""
     mark = next(it for it in fields if it.marks and ENDS[it.element] == ENDS[element])
-    values = in_use(records, fields, mark)[:, 0]
+    values = in_use(records, fields, mark)[rows, 0]
     alive: NDArray[np.bool_] = ~np.isnan(values) if element == "vertex" else values >= 0
     return alive
 
@@ -120,6 +123,11 @@ def grown(records: Any, fields: Sequence[Field], vertices: int, faces: int) -> A
         if used + wanted[end] > records.counts[room]:
             count[room] = max(2 * used, used + wanted[end])
             old = getattr(records, field.array)
+            if old.dtype.kind == "i" and count[room] > np.iinfo(old.dtype).max:
+                raise MeshError(
+                    f"{count[room]:,} records are more than references of {old.dtype.itemsize} "
+                    "bytes can name; build with reference_bytes=8"
+                )
             if len(arrays[field.array]) < count[room]:
                 arrays[field.array] = np.empty((count[room], *old.shape[1:]), old.dtype)
                 arrays[field.array][:used] = old[:used]
@@ -141,8 +149,7 @@ def compacted(records: Any, fields: Sequence[Field]) -> tuple[Any, dict[str, Arr
         if field.target:
             array = arrays[field.array]
             part = array if array.ndim == 1 else array[:, columns[field.name]]
-            # Where there is none, -1, the last number is taken and thrown away again.
-            part[...] = np.where(part < 0, part, number[field.target][part]) if part.size else part
+            part[...] = np.append(number[field.target], -1)[part]  # where there is none, -1, too
     old, recorded = records.counts, [kind for kind in alive if ENDS[kind] == EDGE_END]
     edge_records = int(alive[recorded[0]].sum()) if recorded else ENDLESS
     own = edge_records, old[EDGE_GROWTH], old[SIDES]

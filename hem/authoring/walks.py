@@ -92,18 +92,33 @@ def joined_by_steps(first: Kernel, clockwise: Kernel, ends: Kernel, find: Kernel
     return joined
 
 
-def edges_at_both_ends(edge_vertices: Kernel, vertex_edges: Kernel) -> Kernel:
-    """Make the kernel ``edge_edges``: the edges at either end, without the edge itself."""
+@kernel
+def as_named(m: Any, e: int) -> int:
+    """The name of an edge that has one name only."""
+    return e
+
+
+def edges_at_both_ends(
+    edge_vertices: Kernel, vertex_edges: Kernel, edge_of: Kernel = as_named
+) -> Kernel:
+    """Make the kernel ``edge_edges``: the edges at either end, without the edge itself.
+
+    ``edge_of(m, h)`` is the name of an edge that may be asked for by more than one handle.
+    """
 
     @kernel
     def edge_edges(m: Any, e: int, out: Array) -> int:
         edge_vertices(m, e, out)
         a, b = out[0], out[1]
         around = vertex_edges(m, a, out)
-        count = without(out, around, e)
+        name = e
+        count = without(out, around, name)
+        if count == around:
+            name = edge_of(m, e)
+            count = without(out, around, name)
         if count == around:  # the handle names two vertices that are not joined
             return 0
-        return count + without(out[count:], vertex_edges(m, b, out[count:]), e)
+        return count + without(out[count:], vertex_edges(m, b, out[count:]), name)
 
     return edge_edges
 

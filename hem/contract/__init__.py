@@ -19,6 +19,7 @@ from hem.contract import arguments
 from hem.contract.algorithms import Algorithm
 from hem.contract.description import Claims, Described, Look
 from hem.contract.elements import HANDLE_TYPES
+from hem.contract.following import tell_all
 from hem.contract.measuring import Prepared
 from hem.contract.packed import PackedEdges
 from hem.contract.removal import Remaining, remaining
@@ -41,4 +42,5 @@ __all__ = [
     "Structure",
     "arguments",
     "remaining",
+    "tell_all",
 ]

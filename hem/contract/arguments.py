@@ -56,7 +56,7 @@ def positions(called: str, points: ArrayLike, n: int) -> Array:
 def refusal(operation: str, args: tuple[Any, ...], point: Any) -> MeshError:
     """The error for arguments of one operation that are no handles, or no point."""
     args = tuple(it for it in args if it is not None)
-    wrong = [it for it in args if not isinstance(it, int | np.integer)]
+    wrong = [it for it in args if not isinstance(it, int | np.integer) or isinstance(it, bool)]
     if wrong:
         return MeshError(f"{operation} takes handles (integers), not {wrong[0]!r}")
     if any(not -(1 << 63) <= it < 1 << 63 for it in args):

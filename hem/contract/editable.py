@@ -9,13 +9,17 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from hem.arrays import Array, Bools, Handles
-from hem.authoring import ENTRIES, Refusal, compacted
+from hem.authoring import ENTRIES, SIDES, Refusal, compacted
 from hem.contract import arguments
 from hem.contract.algorithms import Algorithms
 from hem.contract.removal import Removal, remaining, removing, vanishing_edges
 from hem.edit import Edit, Remapping
 from hem.engine import PERSIST
 from hem.errors import MeshError, TopologyError
+
+
+NO_VERTEX = -2
+"""Stands for a vertex to keep that is said to be -1, which means that none is said."""
 
 
 class Editable(Algorithms, abstract=True):
@@ -51,7 +55,8 @@ class Editable(Algorithms, abstract=True):
         faces fewer; border: 1, 2 and 1. Cost O(n_ev), or O(n_t) where neighbors are searched for.
         Thesis 4.2; refused as ``hem.authoring.operations.collapse_edge`` says.
         """
-        return self._do["collapse_edge"](edge, None, -1 if keep is None else keep)
+        end = -1 if keep is None else NO_VERTEX if keep == -1 else keep
+        return self._do["collapse_edge"](edge, None, end)
 
     def flip_edge(self, edge: int) -> Edit:
         """Turn an edge inside the two faces at it, so that it joins their other two corners.
@@ -107,10 +112,11 @@ class Editable(Algorithms, abstract=True):
         return self._all("split_faces", "split_face", handles, points, handles)
 
     def split_all_faces(self) -> Handles:
-        """Split every face at its centroid -> the new vertices. Thrice as many faces. O(n_t)."""
+        """Split every face at its centroid -> the new vertices. A face for every side. O(n_t)."""
         faces = self.faces()
-        corners = self.face_vertices(faces).values.reshape(-1, 3)
-        centroids = self.points[corners].mean(axis=1, dtype=np.float64)
+        corners = self.face_vertices(faces)
+        sums = np.add.reduceat(self.points[corners.values], corners.offsets[:-1], 0, np.float64)
+        centroids = sums / corners.counts[:, None]
         return self._all("split_all_faces", "split_face", faces, centroids, faces)
 
     def remove_faces(self, faces: ArrayLike) -> None:
@@ -148,9 +154,10 @@ class Editable(Algorithms, abstract=True):
         Subscribers hear of one edit.
         """
         handles = arguments.handles("collapse_edges", edges)
-        ends = (
-            np.full(len(handles), -1) if keep is None else arguments.handles("collapse_edges", keep)
-        )
+        ends = np.full(len(handles), -1)
+        if keep is not None:
+            ends = arguments.handles("collapse_edges", keep)
+            ends[ends == -1] = NO_VERTEX
         if len(ends) != len(handles):
             raise MeshError(
                 f"collapse_edges takes one vertex to keep per edge, not {len(ends)} "
@@ -169,6 +176,8 @@ class Editable(Algorithms, abstract=True):
         """
         self._count_edges()
         self.records, number = self._compacted()
+        sides = self.face_vertices(self.faces()).counts.max(initial=3)
+        self.records.counts[SIDES] = sides
         for pinned, scratch in self._pins:
             pinned.replace(*self.records, *scratch())
         vertices = number["vertex"].astype(np.int32)
@@ -185,4 +194,8 @@ class Editable(Algorithms, abstract=True):
 
     def _renumbered(self, edges: ArrayLike, number: Mapping[str, Array]) -> NDArray[np.int64]:
         recorded = next(it for it in ("half_edge", "edge") if it in number)
-        return number[recorded][np.asarray(edges, np.int64)].astype(np.int64)
+        old, numbers = np.asarray(edges, np.int64), number[recorded]
+        known = (old >= 0) & (old < len(numbers))
+        return (
+            np.where(known, numbers[np.where(known, old, 0)], -1) if len(numbers) else 0 * old - 1
+        )

@@ -84,24 +84,25 @@ class Elements(Described, abstract=True):
             return np.flatnonzero(self._alive(element)).astype(np.int32)
         return np.arange(self.records.counts[ENDS[element]], dtype=np.int32)
 
-    def _alive(self, element: str) -> Bools:
-        """(end,) bool: which of the records of a kind are live. Cost O(records)."""
-        return live(self.records, self.fields, element)
+    def _alive(self, element: str, rows: Any = slice(None)) -> Bools:
+        """(end,) bool: which of the records of a kind are live, or which of ``rows``. O(rows)."""
+        return live(self.records, self.fields, element, rows)
 
     def _check_handles(self, element: str, handles: Array) -> None:
-        """Raise MeshError if any of ``handles`` (n,) names no live element of this mesh."""
+        """Raise MeshError if any of ``handles`` (n,) names no live element of this mesh. O(n)."""
         if not handles.size:
             return
         end = self.records.counts[ENDS[element]]
         if handles.min() < 0 or handles.max() >= end:
             refuse_handles(element, handles[(handles < 0) | (handles >= end)])
-        if self._any_dead(element):
-            dead = ~self._alive(element)[handles]
+        # A polygon's edge may die without a face, and how many edges are recorded is not counted.
+        if element == "edge" or self._any_dead(element):
+            dead = ~self._alive(element, handles)
             if dead.any():
                 refuse_handles(element, handles[dead])
 
     def _any_dead(self, element: str) -> bool:
-        """Whether any record of a kind is dead; edges die with faces only."""
+        """Whether any vertex or face is dead."""
         alive, end = (VERTICES, VERTEX_END) if element == "vertex" else (FACES, FACE_END)
         return bool(self.records.counts[alive] < self.records.counts[end])
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from functools import cached_property
 from typing import Any
 
@@ -36,14 +36,7 @@ class Following(Queryable, abstract=True):
         return []
 
     def _publish(self, edit: Edit) -> None:
-        failures = []
-        for callback in tuple(self._subscribers):
-            try:
-                callback(edit)
-            except Exception as failure:
-                failures.append(failure)
-        if failures:
-            raise failures[0]
+        tell_all(self._subscribers, edit)
 
     def copy_touched(self, touched: ArrayLike, points: Points, indices: Handles) -> None:
         """Write what an edit touched into the arrays of a render mesh, clockwise. O(edit).
@@ -58,3 +51,15 @@ class Following(Queryable, abstract=True):
     def _copy_touched(self) -> Callable[..., None]:
         uses, k = self._uses["face_vertices"], self.kernels
         return uses.copy_touched(k["face_exists"], k["coordinate"])
+
+
+def tell_all(listeners: Iterable[Callable[[Any], Any]], told: Any) -> None:
+    """Call every listener, even if one of them raises; then raise what the first of them raised."""
+    failures = []
+    for listener in tuple(listeners):
+        try:
+            listener(told)
+        except Exception as failure:
+            failures.append(failure)
+    if failures:
+        raise failures[0]

@@ -14,6 +14,7 @@ from hem.contract import arguments
 from hem.contract.editable import Editable
 from hem.edit import Edit
 from hem.engine import CHECK, MODE, PERSIST
+from hem.errors import MeshError
 
 
 class Prepared(NamedTuple):
@@ -27,9 +28,11 @@ class Prepared(NamedTuple):
 
     def check(self) -> Bools:
         """Change nothing -> (n,) which of them would be done."""
-        self.task[MODE] = CHECK
-        self.perform(self.pinned.address)
-        self.task[MODE] = PERSIST
+        try:
+            self.task[MODE] = CHECK
+            self.perform(self.pinned.address)
+        finally:
+            self.task[MODE] = PERSIST
         return self.results >= 0
 
     def run(self) -> None:
@@ -93,6 +96,8 @@ class Measuring(Editable, abstract=True):
         Arguments as for the method of that name, which says what it raises; KeyError for no
         operation.
         """
+        if not 1 <= len(args) <= 3:
+            raise MeshError(f"{operation} takes one to three handles, not {len(args)}")
         self._make_way(operation)
         self._log[0] = 0
         row, position = [*args, -1, -1][:3], np.asarray(point, np.float32)
@@ -106,6 +111,8 @@ class Measuring(Editable, abstract=True):
 
     def snapshot(self) -> Any:
         """What ``restore`` needs to make the mesh what it is now. Cost O(n_v + n_t)."""
+        self._count_edges()  # what is not known yet would be unknown again, and then kept up
+        self._widen()
         return copied(self.records)
 
     def restore(self, snapshot: Any) -> None:

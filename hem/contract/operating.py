@@ -128,11 +128,13 @@ class Operating(Following, abstract=True):
             args[1] = -1
         except (TypeError, ValueError, OverflowError) as error:
             raise arguments.refusal(operation, (edge,), None) from error
-        task[MODE] = CHECK
-        if not perform(pinned.address) and result[0] == NEEDS_ROOM:
-            self._make_way(operation)
-            perform(pinned.address)
-        task[MODE] = DO
+        try:
+            task[MODE] = CHECK
+            if not perform(pinned.address) and result[0] == NEEDS_ROOM:
+                self._make_way(operation)
+                perform(pinned.address)
+        finally:  # interrupted or not: or nothing would ever be done again
+            task[MODE] = DO
         if result[0] == Refusal.NO_EDGE:
             raise self._refusal(operation, Refusal.NO_EDGE, args)
         return bool(result[0] >= 0)
@@ -156,7 +158,7 @@ class Operating(Following, abstract=True):
         element = self.operations[operation].element
         self._require_different(called, element, handles, names)
         args = arguments.rows(handles)
-        if element == "edge" and self.emulated:
+        if element == "edge" and (self.emulated or self.most_corners > 3):
             self._require_allowed(operation, args, positions)
         results, log = self._run(operation, args, positions)
         self._publish(Edit(called, -1, log))
@@ -176,7 +178,8 @@ class Operating(Following, abstract=True):
     def _require_allowed(self, operation: str, args: Array, positions: Array) -> None:
         """Raise for the first row of ``args`` (n, 3) that would be refused; change nothing.
 
-        Where edges are recorded a live one can always be split. Else it may not even be one.
+        Where edges are recorded one between triangles can always be split. Else it may not even be
+        one.
         """
         results, _ = self._run(operation, args, positions, CHECK)
         refused = np.flatnonzero(results < 0)

@@ -18,6 +18,9 @@ from hem.ragged import Ragged
 MOST = 1 << 63
 """More than any handle."""
 
+NUMPY_INTEGERS = frozenset(np.sctypeDict[it] for it in np.typecodes["AllInteger"])
+"""What a loop over an array of handles gives."""
+
 
 class QueryMethod(Protocol):
     """A query as a method: one handle -> 1-D array; an array of handles -> ``Ragged``."""
@@ -35,14 +38,15 @@ def _query_method(query: Query) -> Any:
         target = query.target
         pinned = self._pin(lambda: (self._out[target],))
         single = self._uses[query.name].single(pinned, self.kernels[f"{query.source}_exists"])
-        address, scratch, kept = pinned.address, self._out, self._kept(target)
+        address = pinned.address
 
         def ask(handles: Any) -> Any:
-            # One plain integer is the way that programs take a million times: no detours here.
-            if type(handles) is int and -MOST <= handles < MOST:
-                count = single(handles, address)
-                if count:
-                    return kept(scratch[target][:count])
+            # One integer is the way that programs take a million times: no detours here.
+            handle = int(handles) if type(handles) in NUMPY_INTEGERS else handles
+            if type(handle) is int and -MOST <= handle < MOST:
+                answer = single(handle, address)
+                if len(answer):
+                    return answer
             return self._ask(query, handles)
 
         ask.__name__, ask.__doc__ = query.name, attribute.__doc__
@@ -60,13 +64,13 @@ def _query_method(query: Query) -> Any:
     return attribute
 
 
-def _as_integer(handle: Any, query: Query) -> int:
+def _as_integer(handle: Any, called: str, element: str) -> int:
     if isinstance(handle, np.ndarray) and handle.ndim == 0:
         handle = handle[()]
     if isinstance(handle, int | np.integer) and not isinstance(handle, bool):
         return int(handle)
     raise MeshError(
-        f"{query.name} takes a {query.source} handle (an integer) or an array of them, "
+        f"{called} takes a {element} handle (an integer) or an array of them, "
         f"not {type(handle).__name__} {handle!r}"
     )
 
@@ -74,7 +78,7 @@ def _as_integer(handle: Any, query: Query) -> int:
 class Queryable(Scratch, abstract=True):
     """The queries for the neighbors of elements.
 
-    Not safe for single queries from several threads at once: they share one scratch array.
+    Any number of threads may ask at once, as long as none operates on the mesh.
     """
 
     emulated: ClassVar[frozenset[str]] = frozenset()
@@ -114,10 +118,13 @@ class Queryable(Scratch, abstract=True):
 
         Cost: that of ``vertex_edges``. Raises MeshError if ``a`` or ``b`` is no vertex.
         """
+        a, b = (_as_integer(it, "find_edge", "vertex") for it in (a, b))
         self._check_handles("vertex", np.array([a, b]))
+        if a == b:
+            return None
         self._widen()
-        ends = np.empty(2, np.int64)
-        found = self._find_edge(int(a), int(b), self._out["edge"], ends, *self.records)
+        out = self._room(len(self._out["edge"]), HANDLE_TYPES["edge"])  # of this thread alone
+        found = self._find_edge(a, b, out, np.empty(2, np.int64), *self.records)
         return None if found < 0 else int(found)
 
     def _count_edges(self) -> None:
@@ -133,7 +140,8 @@ class Queryable(Scratch, abstract=True):
         """Any handles for a query, checked."""
         if np.ndim(handles):
             return self._ask_many(query, handles)
-        return self._ask_many(query, [_as_integer(handles, query)])[0].copy()
+        handle = _as_integer(handles, query.name, query.source)
+        return self._ask_many(query, [handle])[0].copy()
 
     def _ask_many(self, query: Query, handles: ArrayLike) -> Ragged:
         wanted = np.asarray(handles)

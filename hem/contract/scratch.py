@@ -47,18 +47,15 @@ class Scratch(Elements, abstract=True):
     _uses: ClassVar[dict[str, Uses]]
     """The uses of the query kernels, by query."""
 
-    @cached_property
-    def _pins(self) -> list[tuple[Any, Callable[[], tuple[Any, ...]]]]:
-        return []
+    def __init__(self, records: tuple[Any, ...]) -> None:
+        super().__init__(records)
+        # Whoever asks first, and in how many threads: all must find the same list.
+        self._pins: list[tuple[Any, Callable[[], tuple[Any, ...]]]] = []
 
     def _pin(self, scratch: Callable[[], tuple[Any, ...]]) -> Any:
         pinned = self.pinning(*self.records, *scratch())
         self._pins.append((pinned, scratch))
         return pinned
-
-    def _kept(self, element: str) -> Callable[[Any], Array]:
-        """How an answer is taken out of the scratch for elements of a kind."""
-        return np.ndarray.copy
 
     @cached_property
     def _out(self) -> dict[str, Array]:

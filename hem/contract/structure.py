@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from typing import ClassVar, Self
+from typing import Any, ClassVar, Self
 
 import numpy as np
 
@@ -93,7 +93,16 @@ class Structure(Measuring, ABC, abstract=True):
 
     def copy(self) -> Self:
         """The same mesh in arrays of its own, with the same handles and no subscribers."""
-        return type(self)(copied(self.records))
+        return self._of(copied(self.records))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """How ``copy.copy``, ``copy.deepcopy`` and ``pickle`` make a copy: as ``copy`` does."""
+        return self._of, (copied(self.records),)
+
+    @classmethod
+    def _of(cls, records: Any) -> Self:
+        """The structure of records that are its own from here on."""
+        return cls(records)
 
     def memory(self) -> dict[str, int]:
         """Bytes per field of live elements, such as ``{"vertex.point": 12 * n_vertices, …}``."""

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hem.arrays import Array
-from hem.authoring import Kernel
+from hem.authoring import VALENCE, WIDTH, Kernel
 from hem.engine.counting import interpreted
 from hem.engine.uses import Uses
 
@@ -46,6 +46,19 @@ class InterpretedUses(Uses):
     """The uses of one kernel over objects; the classes to count are those with ``__slots__``."""
 
     counted_classes: Sequence[type[Any]] = ()
+
+    def single(self, pinned: Held, exists: Kernel) -> Callable[[int, Held], Array]:
+        """As ``Uses.single``; each call has scratch of its own, as Python may switch threads."""
+        answer, records = interpreted(self._kernel), self._records
+
+        def ask(handle: int, held: Held) -> Array:
+            *things, shared = held.things
+            m, out = records(*things), memoryview(np.empty(len(shared), shared.format).data)
+            enough = WIDTH * (m.counts[VALENCE] + 1) <= len(out)
+            count = answer(m, handle, out) if enough and exists(m, handle) else 0
+            return np.array(out[:count])
+
+        return ask
 
     def work(self, handles: Array, out: Any, records: tuple[Any, ...]) -> NDArray[np.int64]:
         """(n,) int64: how many fields of objects the kernel reads for each handle, exactly."""

@@ -53,7 +53,11 @@ def loader(kind: Any) -> Callable[[int], Any]:
 
     def load(context: Any, address: Any) -> Any:
         def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-            image = context.get_value_type(kind).as_pointer()
+            described = context.get_value_type(kind)
+            words = sum(5 + 2 * array.ndim for array in kind)
+            if context.get_abi_sizeof(described) != 8 * words:
+                raise TypeError("this version of Numba lays arrays out otherwise than hem expects")
+            image = described.as_pointer()
             return builder.load(builder.inttoptr(arguments[0], image))
 
         return kind(types.intp), generate

@@ -37,14 +37,17 @@ _EDGE_VERTICES: Kernel = unbound
 _COORDINATE: Kernel = unbound
 
 
-def single(handle: int, address: int) -> int:
-    """One handle, called from Python; 0 where it names nothing or ``out`` is too small."""
+def single(handle: int, address: int) -> Array:
+    """One handle, called from Python; nothing where it names nothing or ``out`` is too small.
+
+    No other thread runs until the answer has been copied out of the scratch.
+    """
     arrays = _LOAD(address)
     m, out = _RECORDS(*arrays[:-1]), arrays[-1]
-    if WIDTH * (m.counts[VALENCE] + 1) > len(out) or not _EXISTS(m, handle):
-        return 0
-    count: int = _KERNEL(m, handle, out)
-    return count
+    count = 0
+    if WIDTH * (m.counts[VALENCE] + 1) <= len(out) and _EXISTS(m, handle):
+        count = _KERNEL(m, handle, out)
+    return out[:count].copy()
 
 
 def perform(address: int) -> int:

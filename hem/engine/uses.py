@@ -36,10 +36,10 @@ class Uses:
         self._kernel, self._records = kernel, records
         self._by_kind: dict[Any, Callable[..., Any]] = {}
 
-    def single(self, pinned: Any, exists: Kernel) -> Callable[[int, int], int]:
-        """``single(handle, pinned.address) -> count``, for records and an ``out`` as these.
+    def single(self, pinned: Any, exists: Kernel) -> Callable[[int, int], Array]:
+        """``single(handle, pinned.address) -> neighbors``, for records and an ``out`` as these.
 
-        The count is 0 also where ``exists(m, handle)`` is false, and where ``out`` is too small.
+        There are none also where ``exists(m, handle)`` is false, and where ``out`` is too small.
         """
         return self._bound(templates.single, pinned.kind, _EXISTS=exists)
 
@@ -135,11 +135,25 @@ class Uses:
 
 
 def _digest(bound: Iterable[Any], variant: str) -> str:
-    """Of the files that records, kernels and all that they call stand in, and the shared ones."""
+    """Of records, kernels and all that they call: the files they stand in, and which they are."""
     parts = {part for it in bound for part in _parts(it, set())}
     files = sorted({inspect.getfile(part) for part in parts})
-    content = b"".join(map(_contents, files)) + _shared_contents() + variant.encode()
+    told_apart = "".join(sorted(map(_told_apart, parts))) + variant
+    content = b"".join(map(_contents, files)) + _shared_contents() + told_apart.encode()
     return hashlib.blake2b(content, digest_size=6).hexdigest()
+
+
+def _told_apart(part: Any) -> str:
+    """What tells a function from others of its name in its file: its code, and what it closes over.
+
+    Two kernels that one function makes differ by nothing else.
+    """
+    if isinstance(part, type):
+        return part.__qualname__
+    code, cells = part.__code__, (it.cell_contents for it in part.__closure__ or ())
+    values = [it for it in (*cells, *(part.__defaults__ or ())) if not callable(it)]
+    spelled = [it.tolist() if isinstance(it, np.ndarray) else it for it in values]
+    return f"{part.__qualname__} {code.co_firstlineno} {code.co_code.hex()} {spelled}"
 
 
 def _parts(bound: Any, seen: set[Any]) -> set[Any]:
@@ -166,4 +180,5 @@ def _shared_contents() -> bytes:
 
 @cache
 def _contents(file: str) -> bytes:
-    return Path(file).read_bytes()
+    path = Path(file)
+    return path.read_bytes() if path.exists() else b""  # a cell of a notebook is no file

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from hem.arrays import Bools, Indices, Points
 from hem.errors import MeshError
 from hem.meshes.summary import MeshSummary, summarize
-from hem.meshes.triangles import TriangleMesh
+from hem.meshes.triangles import TriangleMesh, own, read_only
 from hem.ragged import Ragged
 
 
@@ -32,6 +32,10 @@ class PolygonMesh:
     def __init__(self, points: ArrayLike, faces: Ragged | Sequence[Sequence[int]]) -> None:
         self.points = TriangleMesh(points, np.zeros((0, 3), np.int32)).points
         self.faces = _validated(faces, len(self.points))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Copied and unpickled as it is made, so that the copy is read-only, too."""
+        return type(self), (self.points, self.faces)
 
     def __repr__(self) -> str:
         return (
@@ -94,6 +98,12 @@ def repeats_a_corner(faces: Ragged) -> Bools:
 def _validated(faces: Ragged | Sequence[Sequence[int]], n: int) -> Ragged:
     if not isinstance(faces, Ragged):
         faces = _ragged(faces)
+    offsets = np.asarray(faces.offsets)
+    if offsets.ndim != 1 or not len(offsets) or offsets[0] or offsets[-1] != len(faces.values):
+        raise MeshError(
+            f"the offsets of {len(faces)} faces run from 0 to the number of their corners, "
+            f"{len(faces.values)}"
+        )
     counts, corners = faces.counts, faces.values
     if not np.issubdtype(corners.dtype, np.integer):
         raise MeshError(f"corners are vertex indices, integers, not {corners.dtype}")
@@ -102,7 +112,7 @@ def _validated(faces: Ragged | Sequence[Sequence[int]], n: int) -> Ragged:
     outside = (corners < 0) | (corners >= n)
     _refuse(np.bincount(face[outside], minlength=len(counts)) > 0, f"corners are 0 … {n - 1:,}")
     _refuse(repeats_a_corner(faces), "faces come past a vertex twice; split or drop them")
-    return Ragged(faces.offsets.astype(np.int64), corners.astype(np.int32))
+    return Ragged(read_only(own(offsets, np.int64)), read_only(own(corners, np.int32)))
 
 
 def _ragged(faces: Sequence[Sequence[int]]) -> Ragged:

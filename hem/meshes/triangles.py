@@ -21,9 +21,8 @@ class TriangleMesh:
     triangles  (m, 3) int32, indices into `points`, counterclockwise from outside, three different
                corners each
 
-    Vertices that no triangle uses are legal, and so is the empty mesh. Arrays that already have
-    the right type and order are shared with the caller, not copied, so they should not be written
-    to afterwards; the caller's own arrays stay writable.
+    Vertices that no triangle uses are legal, and so is the empty mesh. What can still be written
+    to is copied; read-only arrays of the right type and order are shared.
 
     Cost: O(n + m). Raises MeshError with the offending rows: wrong shapes, coordinates that are
     not finite (also: too large for float32), indices that are no integers, out of range or beyond
@@ -34,8 +33,17 @@ class TriangleMesh:
     triangles: Triangles
 
     def __init__(self, points: ArrayLike, triangles: ArrayLike) -> None:
-        self.points = _read_only(_validated_points(points))
-        self.triangles = _read_only(_validated_triangles(triangles, len(self.points)))
+        self.points = read_only(_validated_points(points))
+        self.triangles = read_only(_validated_triangles(triangles, len(self.points)))
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        if name in self.__dict__:
+            raise AttributeError(f"the {name} of a mesh do not change; make another mesh of them")
+        super().__setattr__(name, value)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Copied and unpickled as it is made, so that the copy is read-only, too."""
+        return type(self), (self.points, self.triangles)
 
     def __repr__(self) -> str:
         return f"TriangleMesh({len(self.points):,} vertices, {len(self.triangles):,} faces)"
@@ -76,7 +84,7 @@ def repeated_corners(triangles: Triangles) -> Bools:
 def _validated_points(points: ArrayLike) -> Points:
     given = _rows_of_three(points, "points", kinds="fiu")
     with np.errstate(over="ignore"):
-        kept = np.ascontiguousarray(given, dtype=np.float32)
+        kept = own(given, np.float32)
     if not np.isfinite(kept).all():
         rows = np.flatnonzero(~np.isfinite(kept).all(axis=1))
         why = (
@@ -92,9 +100,15 @@ def _validated_triangles(triangles: ArrayLike, n: int) -> Triangles:
         _refuse(given != np.floor(given), "vertex indices are not whole numbers")
     if given.size and (given.min() < 0 or given.max() >= n):
         _refuse((given < 0) | (given >= n), _out_of_range(given, n))
-    kept = np.ascontiguousarray(given, dtype=np.int32)
+    kept = own(given, np.int32)
     _refuse(repeated_corners(kept), "triangles use a vertex twice; drop them, or see welded()")
     return kept
+
+
+def own(given: NDArray[Any], dtype: type[np.generic]) -> NDArray[Any]:
+    """The array as this type, and where the caller could still write to it a copy of it."""
+    kept = np.ascontiguousarray(given, dtype)
+    return kept.copy() if given.flags.writeable and np.shares_memory(kept, given) else kept
 
 
 def _rows_of_three(values: ArrayLike, name: str, kinds: str) -> NDArray[Any]:
@@ -127,7 +141,8 @@ def _refuse(bad: Bools, message: str) -> None:
         raise MeshError(message, rows=np.flatnonzero(rows))
 
 
-def _read_only(array: NDArray[Any]) -> NDArray[Any]:
+def read_only(array: NDArray[Any]) -> NDArray[Any]:
+    """A view that cannot be written to."""
     view = array.view()
     view.flags.writeable = False
     return view

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from hem.arrays import Array, Handles, Points
-from hem.contract import Structure
+from hem.contract import Structure, tell_all
 from hem.edit import Edit
 from hem.errors import MeshError
 from hem.meshes import TriangleMesh, repeated_corners
@@ -44,7 +44,7 @@ class RenderMesh:
     Every edit is committed at once: whoever subscribed is told what to upload. Within
     ``transaction()`` edits are gathered and committed once at its end. Cost to begin with, after
     ``compact``, and now and then for more room: O(n_v + n_t). MeshError for a mesh with polygons,
-    and when one arises: from then on the arrays stay as they are.
+    and when one arises: the edit is done, and from then on the arrays stay as they are.
     """
 
     def __init__(self, structure: Structure) -> None:
@@ -53,6 +53,7 @@ class RenderMesh:
         self._listeners: list[Callable[[Upload], Any]] = []
         self._pending: list[ArrayLike] = []
         self._depth, self._resized = 0, False
+        self._end: Callable[[], None] = lambda: None
         self._rebuild()
         self._end = structure.subscribe(self._follow)
 
@@ -69,7 +70,12 @@ class RenderMesh:
     def subscribe(self, callback: Callable[[Upload], Any]) -> Callable[[], None]:
         """Have ``callback`` called with the ``Upload`` of every commit -> a way to end that."""
         self._listeners.append(callback)
-        return lambda: self._listeners.remove(callback)
+
+        def unsubscribe() -> None:
+            if callback in self._listeners:
+                self._listeners.remove(callback)
+
+        return unsubscribe
 
     @contextmanager
     def transaction(self) -> Iterator[RenderMesh]:
@@ -92,11 +98,11 @@ class RenderMesh:
 
     def _rebuild(self) -> None:
         s = self.structure
-        self._require_triangles()
+        faces = s.faces()
+        self._require_triangles(faces)
         self._n_vertices, self._n_triangles = len(s.points), s.face_end
         self._points = np.nan_to_num(s.points, nan=0.0)
         self._indices = np.zeros((self._n_triangles, 3), np.int32)
-        faces = s.faces()
         corners = s.face_vertices(faces).values.reshape(-1, 3)
         self._indices[faces] = corners[:, [0, 2, 1]]
 
@@ -105,19 +111,24 @@ class RenderMesh:
             self._rebuild()
             self._pending, self._resized = [], True
         else:
-            self._require_triangles()
+            if self.structure.most_corners > 3:
+                self._require_triangles(np.append(edit.created_faces, edit.changed_faces))
             self._pending.append(edit.touched)
             self._grow()
             self.structure.copy_touched(edit.touched, self._points, self._indices)
         if not self._depth:
             self._commit()
 
-    def _require_triangles(self) -> None:
+    def _require_triangles(self, faces: Handles) -> None:
+        """Follow no longer once one of the faces is a polygon."""
         s = self.structure
-        if s.most_corners > 3:
+        larger = faces[s.face_vertices(faces).counts > 3] if s.most_corners > 3 else faces[:0]
+        if len(larger):
+            self._end()
             raise MeshError(
-                f"a render mesh holds triangles only, and {s.title} has faces of up to "
-                f"{s.most_corners} corners; follow a mesh built of to_triangles() instead"
+                f"a render mesh holds triangles only, and follows this {s.title} mesh no longer, "
+                "which has larger faces now; follow one built of to_triangles() instead",
+                faces=larger,
             )
 
     def _grow(self) -> None:
@@ -138,8 +149,7 @@ class RenderMesh:
             parts = list(dirty_ranges(self._pending, NEARBY))
         upload = Upload(parts[0], parts[1], self._resized)
         self._pending, self._resized = [], False
-        for listener in tuple(self._listeners):
-            listener(upload)
+        tell_all(self._listeners, upload)
 
 
 def _with_room(array: Array, used: int, wanted: int) -> Array:

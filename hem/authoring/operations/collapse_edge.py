@@ -54,7 +54,9 @@ def rule(k: Kernels) -> Kernel:
         triangles = (at[C] >= 0) + (at[D] >= 0)
         if triangles == 2 and at[C] == at[D]:
             return Refusal.SAME_CORNER
-        if is_alone(m, at[LEFT], at[C], others, out) or is_alone(m, at[RIGHT], at[D], others, out):
+        if is_alone(m, at[LEFT], at[A], at[B], at[C], others, out):
+            return Refusal.LONE_FACE
+        if is_alone(m, at[RIGHT], at[B], at[A], at[D], others, out):
             return Refusal.LONE_FACE
         around_a = vertex_vertices(m, at[A], out)
         border_a = on_border(m, at[A], around_a, out[around_a:])
@@ -82,8 +84,14 @@ def _parts(k: Kernels) -> tuple[Kernel, Kernel]:
     face_faces, face_left_of, sides = k["face_faces"], k["face_left_of"], k["sides"]
 
     @kernel
-    def is_alone(m: Any, face: int, corner: int, others: int, out: Array) -> bool:
-        return corner >= 0 and face_faces(m, face, out) == others
+    def is_alone(m: Any, face: int, a: int, b: int, c: int, others: int, out: Array) -> bool:
+        """Whether a triangle that runs a → b → c has no face beyond its edges at c."""
+        if c < 0 or face_faces(m, face, out) != others:
+            return False
+        # What lies beyond the edge from a to b may be a polygon that lies beyond another, too.
+        if m.counts[SIDES] == 3:
+            return True
+        return face_left_of(m, c, b) < 0 and face_left_of(m, a, c) < 0
 
     @kernel
     def are_triangles(m: Any, a: int, b: int, c: int, d: int) -> bool:
@@ -109,7 +117,7 @@ def make(k: Kernels) -> Kernel:
         refusal = may_collapse_edge(m, args[0], at, out)
         if refusal != ALLOWED:
             return refusal
-        keep = args[1] if args[1] >= 0 else at[B]
+        keep = args[1] if args[1] != -1 else at[B]
         if keep != at[A] and keep != at[B]:
             return Refusal.NOT_AN_END
         if dry:

@@ -75,8 +75,19 @@ def scanned(structure: Structure, position: ArrayLike) -> Found:
 
 
 def corner_vertices(structure: Structure, faces: Array) -> Array:
-    """(k, 3): the corners of faces, from the smallest vertex on, as all structures agree."""
-    vertices = structure.face_vertices(faces).values.reshape(-1, 3)
+    """(k, 3): the corners of faces, from the smallest vertex on, as all structures agree.
+
+    Raises MeshError for faces of more corners.
+    """
+    found = structure.face_vertices(faces)
+    larger = np.asarray(faces)[found.counts > 3]
+    if len(larger):
+        raise MeshError(
+            "a point is looked for on triangles; cut the polygons first, with "
+            "structures.build(name, mesh.triangulated())",
+            faces=larger,
+        )
+    vertices = found.values.reshape(-1, 3)
     turned = (vertices.argmin(axis=1)[:, None] + np.arange(3)) % 3
     return np.take_along_axis(vertices, turned, axis=1)
 

@@ -121,7 +121,8 @@ def in_place(
     **told: Any,
 ) -> Fracture:
     """The fracture of what ``break_surface`` broke; the structure keeps the rest."""
-    rest = LazyMeshes(lambda: islands(structure.to_triangles()))
+    left = structure.to_triangles()  # now: the structure may change before the rest is asked for
+    rest = LazyMeshes(lambda: islands(left))
     return Fracture(
         impact=broken.target,
         direction=-np.cross(broken.frame[0], broken.frame[1]),

@@ -1,0 +1,348 @@
+"""What holds of every structure beside its answers: copies, dead handles, threads, interrupts."""
+
+from __future__ import annotations
+
+import copy
+import importlib
+import pickle
+import sys
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from typing import Any
+
+import numpy as np
+import pytest
+
+import hem
+import structures
+from hem.contract import QUERIES, Structure
+from hem.errors import MeshError, TopologyError
+from hem.ragged import Ragged
+from tests.structures.test_polygons import CUBE, plankton, sheet
+
+COPIES: dict[str, Callable[[Structure], Structure]] = {
+    "copy": lambda s: s.copy(),
+    "copy.copy": copy.copy,
+    "deepcopy": copy.deepcopy,
+    "pickle": lambda s: pickle.loads(pickle.dumps(s)),
+}
+
+
+def answers(s: Structure) -> dict[str, list[list[int]]]:
+    """Every answer to every query, singly."""
+    return {
+        name: [getattr(s, name)(handle).tolist() for handle in s.handles(query.source).tolist()]
+        for name, query in QUERIES.items()
+    }
+
+
+@pytest.mark.parametrize("how", COPIES)
+@pytest.mark.parametrize("edited", [False, True])
+def test_a_copy_answers_for_itself(name: str, how: str, edited: bool) -> None:
+    s = structures.build(name, hem.generate("grid", 25))
+    s.vertex_faces(0)
+    if edited:
+        s.split_face(0, (0, 0, 0))
+        s.collapse_edge(int(s.edges()[0]))
+    before = answers(s)
+    other = COPIES[how](s)
+    other.validate()
+    assert answers(other) == before
+    other.split_face(int(other.faces()[1]), (0, 0, 0))
+    other.collapse_edge(int(other.edges()[0]))
+    other.validate()
+    assert answers(s) == before
+    assert answers(other) != before
+    s.split_face(int(s.faces()[0]), (0, 0, 0))
+    s.validate()
+
+
+def test_a_mesh_is_pickled_and_copied_read_only() -> None:
+    for mesh in (hem.generate("grid", 9), CUBE):
+        for how in (copy.copy, copy.deepcopy, lambda it: pickle.loads(pickle.dumps(it))):
+            other: Any = how(mesh)
+            assert not other.points.flags.writeable
+            np.testing.assert_array_equal(other.points, mesh.points)
+            assert other.summary() == mesh.summary()
+
+
+def test_a_mesh_does_not_change_with_the_arrays_it_was_made_of() -> None:
+    points, triangles = np.eye(3, dtype=np.float32), np.array([[0, 1, 2]], np.int32)
+    mesh = hem.TriangleMesh(points, triangles)
+    points[0], triangles[0] = 7, 99
+    assert mesh.points[0].tolist() == [1, 0, 0]
+    assert mesh.triangles.tolist() == [[0, 1, 2]]
+    with pytest.raises(AttributeError, match="do not change"):
+        mesh.points = points
+
+
+def test_a_dead_handle_is_refused_whatever_died_with_it(name: str) -> None:
+    s = structures.build(name, hem.generate("torus", 100))
+    edge = int(s.edges()[5])
+    drop, _ = s.edge_vertices(edge).tolist()
+    faces = s.edge_faces(edge).tolist()
+    s.collapse_edge(edge)
+    for query, handle in (("vertex_faces", drop), *(("face_vertices", face) for face in faces)):
+        for asked in (handle, np.int32(handle), [handle], np.array([handle, 0])):
+            if query == "vertex_faces" and asked is handle and not s.vertex_faces([0]).counts.any():
+                continue
+            with pytest.raises(MeshError, match="no such"):
+                getattr(s, query)(asked)
+    with pytest.raises(MeshError, match="no such"):
+        s.find_edge(drop, 0)
+
+
+def test_an_edge_that_died_without_a_face_is_refused() -> None:
+    s = plankton(sheet())
+    edge = s.find_edge(14, 15)
+    assert edge is not None
+    s.collapse_edge(edge)
+    s.validate()
+    for asked in (edge, [edge]):
+        for query in ("edge_vertices", "edge_edges", "edge_faces"):
+            with pytest.raises(MeshError, match="no such edge"):
+                getattr(s, query)(asked)
+
+
+def test_split_edges_of_polygons_is_refused_as_a_whole() -> None:
+    mesh = hem.PolygonMesh(
+        [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [2, 0, 0], [2, 1, 0]],
+        [[0, 1, 2], [0, 2, 3], [1, 4, 5, 2]],
+    )
+    s = plankton(mesh)
+    before, edits = answers(s), []
+    s.subscribe(edits.append)
+    edges = [s.find_edge(0, 2), s.find_edge(1, 2), s.find_edge(0, 1)]
+    with pytest.raises(TopologyError, match="more than three corners"):
+        s.split_edges(edges, [[0.5, 0.5, 0], [1, 0.5, 0], [0.5, 0, 0]])
+    assert answers(s) == before
+    assert not edits
+    assert len(s.split_edges(edges[::2], [[0.5, 0.5, 0], [0.5, 0, 0]])) == 2
+    s.validate()
+
+
+def test_no_edge_joins_a_vertex_to_itself_and_none_is_found_for_a_fraction(name: str) -> None:
+    s = structures.build(name, hem.generate("torus", 100))
+    assert s.find_edge(3, 3) is None
+    for a in (0.9, "0", True, None):
+        with pytest.raises(MeshError, match="takes a vertex handle"):
+            s.find_edge(a, 1)  # type: ignore[arg-type]
+
+
+def test_numpy_integers_are_handles(name: str) -> None:
+    s = structures.build(name, hem.generate("grid", 25))
+    for query in QUERIES:
+        handle = s.handles(QUERIES[query].source)[1]
+        expected = getattr(s, query)(int(handle)).tolist()
+        for kind in (np.int32, np.int64, np.uint8, np.uint64):
+            assert getattr(s, query)(kind(handle)).tolist() == expected
+    for wrong in (True, np.bool_(True), 1.0, "1"):
+        with pytest.raises(MeshError):
+            s.vertex_faces(wrong)  # type: ignore[call-overload]
+
+
+def test_threads_that_only_read_get_their_own_answers(name: str) -> None:
+    s = structures.build(name, hem.generate("torus", 400))
+    vertices = s.vertices().tolist()
+    expected = {v: s.vertex_faces(v).tolist() for v in vertices}
+    rounds = 40 if s.compiled else 4
+
+    def read(seed: int) -> int:
+        order = np.random.default_rng(seed).permutation(vertices).tolist() * rounds
+        return sum(s.vertex_faces(v).tolist() != expected[v] for v in order)
+
+    with ThreadPoolExecutor(4) as pool:
+        assert list(pool.map(read, range(4))) == [0] * 4
+
+
+def test_an_interrupted_question_leaves_the_mesh_ready(
+    name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    s = structures.build(name, hem.generate("torus", 100))
+    edge = int(s.edges()[0])
+
+    def interrupted(operation: str) -> None:
+        raise KeyboardInterrupt
+
+    with monkeypatch.context() as patched:
+        patched.setattr(s, "_make_way", interrupted)
+        with pytest.raises(KeyboardInterrupt):
+            s.can_collapse_edge(edge)
+    vertices = s.n_vertices
+    s.collapse_edge(edge)
+    assert s.n_vertices == vertices - 1
+    s.validate()
+
+
+def test_what_is_restored_counts_on(name: str) -> None:
+    s = structures.build(name, hem.generate("grid", 25))
+    fresh, expected = s.snapshot(), hem.generate("grid", 25).summary().edges
+    s.reserve(10)
+    s = structures.build(name, hem.generate("grid", 25))
+    s.reserve(10)
+    fresh = s.snapshot()
+    s.split_face(0, (0, 0, 0))
+    s.restore(fresh)
+    assert s.n_edges == expected
+    s.split_face(0, (0, 0, 0))
+    assert s.n_edges == expected + 3
+    s.validate()
+
+
+def test_the_vertex_to_keep_is_an_end(name: str) -> None:
+    s = structures.build(name, hem.generate("torus", 100))
+    edge = int(s.edges()[0])
+    for keep in (-1, -5, 99):
+        with pytest.raises(TopologyError, match="not an end"):
+            s.collapse_edge(edge, keep)
+    assert not s.collapse_edges([edge], [-1]).any()
+    assert s.collapse_edge(edge).vertex >= 0
+
+
+def test_nothing_is_left_and_compacted_twice(name: str) -> None:
+    s = structures.build(name, hem.TriangleMesh([[0, 0, 0]], []))
+    s.compact()
+    s.validate()
+    s = structures.build(name, hem.generate("grid", 9))
+    s.remove_faces(s.faces())
+    s.compact()
+    s.compact()
+    s.validate()
+    assert (s.n_faces, s.n_edges) == (0, 0)
+
+
+def test_a_remapping_knows_no_edge_before_the_first(name: str) -> None:
+    s = structures.build(name, hem.generate("grid", 25))
+    s.collapse_edge(int(s.edges()[0]))
+    assert s.compact().edges([-1]).tolist() == [-1]
+
+
+def test_either_half_edge_names_its_edge() -> None:
+    for name in ("half_edge", "half_edge_objects", "plankton"):
+        s = structures.build(name, hem.generate("torus", 100))
+        names = s.edges()
+        others = np.setdiff1d(np.arange(2 * len(names)), names)
+        for query in ("edge_vertices", "edge_edges", "edge_faces"):
+            of_either = {
+                tuple(sorted(getattr(s, query)(int(h)).tolist())) for h in others[:20].tolist()
+            }
+            of_names = {tuple(sorted(row.tolist())) for row in getattr(s, query)(names)}
+            assert of_either <= of_names
+
+
+def test_every_face_of_a_cube_is_split_at_its_middle() -> None:
+    s = plankton(CUBE)
+    new = s.split_all_faces()
+    s.validate()
+    assert (s.n_vertices, s.n_faces) == (14, 24)
+    assert sorted(map(tuple, s.points[new].tolist())) == sorted(
+        tuple(0.5 if i != axis else float(side) for i in range(3))
+        for axis in range(3)
+        for side in (0, 1)
+    )
+
+
+def test_a_mesh_that_once_had_a_quad_is_rendered() -> None:
+    s = plankton(CUBE)
+    with pytest.raises(MeshError, match="triangles only"):
+        hem.RenderMesh(s)
+    s.split_all_faces()
+    assert hem.RenderMesh(s).to_triangles().summary().faces == 24
+    s.compact()
+    assert s.most_corners == 3
+
+
+def test_a_render_mesh_that_meets_a_polygon_follows_no_longer() -> None:
+    s = plankton(CUBE)
+    s.split_all_faces()
+    shown = hem.RenderMesh(s)
+    edge = int(s.edges()[0])
+    with pytest.raises(MeshError, match="no longer"):
+        s.split_edge(edge, (0, 0, 0), triangles=False)
+    s.validate()
+    faces = shown.to_triangles().summary().faces
+    s.split_face(int(s.faces()[-1]), (0, 0, 0))
+    assert shown.to_triangles().summary().faces == faces
+
+
+def test_a_triangle_in_the_notch_of_a_pentagon_loses_its_edge() -> None:
+    points = [[0, 0, 0], [2, 0, 0], [2, 2, 0], [0, 2, 0], [1, 1, 0]]
+    for a, b in ((1, 4), (0, 4)):
+        s = plankton(hem.PolygonMesh(points, [[1, 4, 0], [1, 2, 3, 0, 4]]))
+        edge = s.find_edge(a, b)
+        assert edge is not None
+        assert s.can_collapse_edge(edge)
+        s.collapse_edge(edge, a)
+        s.validate()
+        assert sorted(s.to_polygons().faces[0].tolist()) == [0, 1, 2, 3]
+
+
+def test_listeners_of_a_render_mesh_are_all_called_and_end_more_than_once() -> None:
+    s = structures.build("half_edge", hem.generate("torus", 100))
+    shown, heard = hem.RenderMesh(s), []
+
+    def fails(upload: Any) -> None:
+        raise ValueError("the first one fails")
+
+    end = shown.subscribe(fails)
+    shown.subscribe(heard.append)
+    with pytest.raises(ValueError, match="first one"):
+        s.split_face(0, (0, 0, 0))
+    assert len(heard) == 1
+    end()
+    end()
+    s.split_face(0, (0, 0, 0))
+    assert len(heard) == 2
+
+
+def test_offsets_that_do_not_fit_are_refused() -> None:
+    for offsets in ([0, 5], [1, 3], []):
+        rows = Ragged(np.array(offsets, np.int64), np.array([0, 1, 2]))
+        with pytest.raises(MeshError, match="offsets"):
+            hem.PolygonMesh(np.eye(3), rows)
+
+
+ALGORITHM = """
+from typing import NamedTuple
+import numpy as np
+from hem.authoring import kernel
+
+class Plan(NamedTuple):
+    room: np.ndarray
+
+def first(queries, operations):
+    @kernel
+    def algorithm(m, plan):
+        return 1
+    return algorithm
+
+def second(queries, operations):
+    @kernel
+    def algorithm(m, plan):
+        return 2
+    return algorithm
+
+def closing_over(number):
+    def make(queries, operations):
+        @kernel
+        def algorithm(m, plan):
+            return number
+        return algorithm
+    return make
+"""
+
+
+@pytest.mark.parametrize("process", [1, 2])
+def test_algorithms_of_one_name_are_told_apart(
+    process: int, tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    folder = tmp_path_factory.getbasetemp() / "algorithms_of_one_name"
+    folder.mkdir(exist_ok=True)
+    (folder / "algorithms.py").write_text(ALGORITHM)
+    monkeypatch.syspath_prepend(str(folder))
+    monkeypatch.delitem(sys.modules, "algorithms", raising=False)
+    made = importlib.import_module("algorithms")
+    s = structures.build("half_edge", hem.generate("grid", 9))
+    plan = made.Plan(np.zeros(1))
+    makers = (made.first, made.second, made.closing_over(3), made.closing_over(4))
+    assert [s.run(make, plan) for make in makers] == [1, 2, 3, 4]
