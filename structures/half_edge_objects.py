@@ -44,7 +44,7 @@ from hem.authoring import (
     append_face,
     edges_at_both_ends,
 )
-from hem.contract import HANDLE_TYPES, Claims, Look, Structure
+from hem.contract import Claims, Look, Structure
 from hem.engine import Held, InterpretedUses, counting
 from hem.errors import MeshError
 from hem.meshes import TriangleMesh

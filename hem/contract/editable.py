@@ -17,7 +17,6 @@ from hem.edit import Edit, Remapping
 from hem.engine import PERSIST
 from hem.errors import MeshError, TopologyError
 
-
 NO_VERTEX = -2
 """Stands for a vertex to keep that is said to be -1, which means that none is said."""
 
