@@ -18,6 +18,10 @@ if TYPE_CHECKING:  # what type checkers and editors see; the table below says it
     from hem.meshes import TriangleMesh as TriangleMesh
     from hem.meshes import require_manifold as require_manifold
     from hem.meshes import require_sound as require_sound
+    from hem.meshes.conversions import from_meshio as from_meshio
+    from hem.meshes.conversions import from_pyvista as from_pyvista
+    from hem.meshes.conversions import from_trimesh as from_trimesh
+    from hem.ragged import Ragged as Ragged
     from hem.rendering import RenderMesh as RenderMesh
     from hem.rendering import Upload as Upload
     from hem.rendering import mesh_from_render as mesh_from_render
@@ -40,6 +44,8 @@ _NAMES = {
         "require_manifold",
         "require_sound",
     ),
+    "hem.meshes.conversions": ("from_meshio", "from_pyvista", "from_trimesh"),
+    "hem.ragged": ("Ragged",),
     "hem.rendering": ("RenderMesh", "Upload", "mesh_from_render"),
     "hem.sources.families": ("FAMILIES", "generate"),
     "hem.sources.files": ("load", "save"),

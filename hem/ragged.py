@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, overload
 
 import numpy as np
 from numpy.typing import NDArray
+
+SHOWN = 3
+"""Rows that ``repr`` shows."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -23,8 +26,26 @@ class Ragged:
     def __len__(self) -> int:
         return len(self.offsets) - 1
 
-    def __getitem__(self, i: int) -> NDArray[Any]:
-        """The i-th row, a view. Cost O(1). Raises IndexError outside ``-len … len - 1``."""
+    @staticmethod
+    def from_lists(rows: Iterable[Sequence[int]], dtype: Any = np.int64) -> Ragged:
+        """The rows in one array. Cost O(values)."""
+        return _gathered([np.asarray(row, dtype) for row in rows], dtype)
+
+    def to_list(self) -> list[list[int]]:
+        """The rows as lists. Cost O(values)."""
+        return [row.tolist() for row in self]
+
+    @overload
+    def __getitem__(self, i: int) -> NDArray[Any]: ...
+    @overload
+    def __getitem__(self, i: slice) -> Ragged: ...
+    def __getitem__(self, i: int | slice) -> NDArray[Any] | Ragged:
+        """The i-th row, a view, in O(1), or a slice of rows as a ``Ragged`` of their own.
+
+        Raises IndexError outside ``-len … len - 1``.
+        """
+        if isinstance(i, slice):
+            return _gathered([self[k] for k in range(*i.indices(len(self)))], self.values.dtype)
         n = len(self)
         if not -n <= i < n:
             raise IndexError(f"row {i} of a Ragged of {n} rows")
@@ -34,7 +55,16 @@ class Ragged:
     def __iter__(self) -> Iterator[NDArray[Any]]:
         return (self[i] for i in range(len(self)))
 
+    def __repr__(self) -> str:
+        shown = ", ".join(str(row.tolist()) for row in self[:SHOWN])
+        return f"Ragged({len(self):,} rows: {shown}{', …' if len(self) > SHOWN else ''})"
+
     @property
     def counts(self) -> NDArray[np.int64]:
         """(n,) int64: the length of every row."""
         return np.diff(self.offsets)
+
+
+def _gathered(rows: Sequence[NDArray[Any]], dtype: Any) -> Ragged:
+    offsets = np.concatenate([[0], np.cumsum([len(row) for row in rows])]).astype(np.int64)
+    return Ragged(offsets, np.concatenate(rows) if rows else np.zeros(0, dtype))

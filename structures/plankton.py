@@ -169,14 +169,6 @@ class Plankton(Structure):
 
     # What the mesh is like ----------------------------------------------------------------------
 
-    def is_closed(self) -> bool:
-        """Whether no half-edge lies outside a border. Cost O(n_e)."""
-        return not len(self._outside())
-
-    def valence(self, vertex: int) -> int:
-        """Number of edges at a vertex. Cost O(n_ev)."""
-        return len(self.vertex_edges(int(vertex)))
-
     def vertex_naked_edges(self, vertex: int) -> int:
         """How many edges at a vertex lie on the border: 0 or 2. Cost O(1)."""
         h = self.outgoing_half_edge(vertex)

@@ -6,6 +6,7 @@
 ``Elements``     vertices, faces, positions
 ``Scratch``      where answers are written, and room for more elements
 ``Queryable``    the nine queries, ``find_edge``
+``Surveying``    borders, components, all triangles
 ``Following``    ``subscribe``
 ``Operating``    how an operation is checked, tried and logged
 ``Algorithms``   ``run``: algorithms of one's own over any structure

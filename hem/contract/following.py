@@ -10,11 +10,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from hem.arrays import Handles, Points
-from hem.contract.queryable import Queryable
+from hem.contract.surveying import Surveying
 from hem.edit import Edit
 
 
-class Following(Queryable, abstract=True):
+class Following(Surveying, abstract=True):
     """Subscribers and their edits."""
 
     def subscribe(self, callback: Callable[[Edit], Any]) -> Callable[[], None]:

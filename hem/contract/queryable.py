@@ -23,12 +23,12 @@ NUMPY_INTEGERS = frozenset(np.sctypeDict[it] for it in np.typecodes["AllInteger"
 
 
 class QueryMethod(Protocol):
-    """A query as a method: one handle -> 1-D array; an array of handles -> ``Ragged``."""
+    """A query as a method: one handle -> 1-D array; an array of handles, or all -> ``Ragged``."""
 
     @overload
     def __call__(self, handles: int) -> NDArray[Any]: ...
     @overload
-    def __call__(self, handles: NDArray[Any] | list[int]) -> Ragged: ...
+    def __call__(self, handles: NDArray[Any] | list[int] | None = None) -> Ragged: ...
 
 
 def _query_method(query: Query) -> Any:
@@ -40,7 +40,7 @@ def _query_method(query: Query) -> Any:
         single = self._uses[query.name].single(pinned, self.kernels[f"{query.source}_exists"])
         address = pinned.address
 
-        def ask(handles: Any) -> Any:
+        def ask(handles: Any = None) -> Any:
             # One integer is the way that programs take a million times: no detours here.
             handle = int(handles) if type(handles) in NUMPY_INTEGERS else handles
             if type(handle) is int and -MOST <= handle < MOST:
@@ -56,10 +56,10 @@ def _query_method(query: Query) -> Any:
     attribute = cached_property(bound)
     attribute.__doc__ = (
         f"{query.title}, of one {query.source} or of many.\n\n"
-        "One handle gives a 1-D array, an array of handles (n,) a ``Ragged`` with n rows. Each\n"
-        "neighbor comes once; around a vertex or face counterclockwise where the structure\n"
-        "knows the order. Cost per handle: thesis, table 1. Raises MeshError for a handle that\n"
-        f"names no {query.source} of this mesh."
+        "One handle gives a 1-D array, an array of handles (n,) a ``Ragged`` with n rows, and no\n"
+        "argument one of all live elements. Each neighbor comes once; around a vertex or face it comes\n"
+        "counterclockwise where the structure knows the order. Cost per handle: thesis, table 1.\n"
+        f"Raises MeshError for a handle that names no {query.source} of this mesh."
     )
     return attribute
 
@@ -137,7 +137,9 @@ class Queryable(Scratch, abstract=True):
         return self._uses["vertex_edges"].find_edge(self.kernels["edge_vertices"])
 
     def _ask(self, query: Query, handles: Any) -> NDArray[Any] | Ragged:
-        """Any handles for a query, checked."""
+        """Any handles for a query, checked; all of them for None."""
+        if handles is None:
+            handles = self.handles(query.source)
         if np.ndim(handles):
             return self._ask_many(query, handles)
         handle = _as_integer(handles, query.name, query.source)

@@ -19,6 +19,7 @@ from hem.authoring import (
 from hem.contract.description import place_of
 from hem.contract.measuring import Measuring
 from hem.meshes import TriangleMesh
+from hem.ragged import Ragged
 
 
 class Structure(Measuring, ABC, abstract=True):
@@ -91,6 +92,23 @@ class Structure(Measuring, ABC, abstract=True):
             corners = number[corners]
         return TriangleMesh(self.points[alive], corners.reshape(-1, 3))
 
+    def __repr__(self) -> str:
+        return (
+            f"<{self.title}: {self.n_vertices:,} vertices, {self.n_edges:,} edges, "
+            f"{self.n_faces:,} faces>"
+        )
+
+    def same_as(self, other: Structure) -> bool:
+        """Whether another structure holds the same mesh: positions and faces by the same handles.
+
+        Whatever corner a face begins at. Cost O(n_v + n_t).
+        """
+        return (
+            np.array_equal(self.points, other.points, equal_nan=True)
+            and np.array_equal(self.faces(), other.faces())
+            and _from_smallest(self.face_vertices()) == _from_smallest(other.face_vertices())
+        )
+
     def copy(self) -> Self:
         """The same mesh in arrays of its own, with the same handles and no subscribers."""
         return self._of(copied(self.records))
@@ -124,6 +142,12 @@ class Structure(Measuring, ABC, abstract=True):
     def n_half_edges(self) -> int:
         """Number of live half-edges, one for each corner of a face; recorded or not."""
         return 3 * self.n_faces
+
+
+def _from_smallest(rows: Ragged) -> list[list[int]]:
+    """The corners of every face, from the smallest on."""
+    found = [row.tolist() for row in rows]
+    return [row[(k := row.index(min(row))) :] + row[:k] for row in found]
 
 
 def _query(cls: type[Structure], name: str) -> Kernel:

@@ -5,8 +5,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from hem.arrays import Bools, Points, Triangles
+from hem.arrays import Bools, Floats, Points, Triangles
 from hem.errors import MeshError
+from hem.meshes import measures
 from hem.meshes.edges import undirected_edges
 from hem.meshes.summary import MeshSummary, summarize
 from hem.meshes.weld import clusters
@@ -69,6 +70,53 @@ class TriangleMesh:
         """The same faces seen from the other side: corners (a, b, c) become (a, c, b). O(m)."""
         return TriangleMesh(self.points, self.triangles[:, [0, 2, 1]])
 
+    @property
+    def bounds(self) -> tuple[Floats, Floats]:
+        """The lower and the upper corner (3,) of the bounding box. O(n)."""
+        return measures.bounds(self.points)
+
+    def face_areas(self) -> Floats:
+        """(m,) float64. O(m)."""
+        return measures.areas(self._corners())
+
+    def face_normals(self) -> Floats:
+        """(m, 3) float64, outward and of length 1; zero for a face without area. O(m)."""
+        return _unit_or_zero(measures.normals(self._corners()))
+
+    def vertex_normals(self) -> Floats:
+        """(n, 3) float64, of length 1: the faces at a vertex weigh by area. O(n + m).
+
+        Zero without faces, and where they cancel out.
+        """
+        weighed = np.repeat(measures.normals(self._corners()), 3, axis=0)
+        at = self.triangles.ravel()
+        sums = [np.bincount(at, column, len(self.points)) for column in weighed.T]
+        return _unit_or_zero(np.stack(sums, axis=1))
+
+    def area(self) -> float:
+        """Of all faces. O(m)."""
+        return float(self.face_areas().sum())
+
+    def volume(self) -> float:
+        """What a closed surface encloses, positive where it is wound outward. O(m).
+
+        Raises MeshError for a surface with a border.
+        """
+        _, faces = undirected_edges(self.triangles)
+        if (faces == 1).any():
+            raise MeshError("a mesh with borders encloses no volume; close its holes")
+        return measures.volume(self._corners())
+
+    def centroid(self) -> Floats:
+        """(3,): the middle of the surface, faces weighing by area; NaN without area. O(m)."""
+        areas, middles = self.face_areas(), self._corners().mean(axis=1)
+        with np.errstate(invalid="ignore"):
+            middle: Floats = (areas[:, None] * middles).sum(axis=0) / areas.sum()
+        return middle
+
+    def _corners(self) -> Floats:
+        return measures.corners(self.points, self.triangles)
+
     def summary(self) -> MeshSummary:
         """Counts of elements, borders, components and valences. O(m log m)."""
         return summarize(len(self.points), len(self.triangles), *undirected_edges(self.triangles))
@@ -103,6 +151,11 @@ def _validated_triangles(triangles: ArrayLike, n: int) -> Triangles:
     kept = own(given, np.int32)
     _refuse(repeated_corners(kept), "triangles use a vertex twice; drop them, or see welded()")
     return kept
+
+
+def _unit_or_zero(vectors: Floats) -> Floats:
+    lengths = measures.length(vectors)[:, None]
+    return np.divide(vectors, lengths, out=np.zeros_like(vectors), where=lengths > 0)
 
 
 def own(given: NDArray[Any], dtype: type[np.generic]) -> NDArray[Any]:
