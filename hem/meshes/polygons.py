@@ -10,12 +10,13 @@ from numpy.typing import ArrayLike, NDArray
 
 from hem.arrays import Bools, Indices, Points
 from hem.errors import MeshError
+from hem.meshes.convertible import Convertible
 from hem.meshes.summary import MeshSummary, summarize
 from hem.meshes.triangles import TriangleMesh, own, read_only
 from hem.ragged import Ragged
 
 
-class PolygonMesh:
+class PolygonMesh(Convertible):
     """Points and faces of any number of corners between them, validated once.
 
     points   (n, 3) float32, finite, in the units of the source
@@ -47,6 +48,10 @@ class PolygonMesh:
     def most_corners(self) -> int:
         """The corners of the face that has the most; 3 for no faces."""
         return int(self.faces.counts.max(initial=3))
+
+    def face_rows(self) -> Ragged:
+        """The corners of every face."""
+        return self.faces
 
     def sides(self) -> tuple[Indices, Indices]:
         """(corners,) of every side of every face the vertex where it starts and where it ends."""

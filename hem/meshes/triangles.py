@@ -8,14 +8,16 @@ from numpy.typing import ArrayLike, NDArray
 from hem.arrays import Bools, Floats, Points, Triangles
 from hem.errors import MeshError
 from hem.meshes import measures
+from hem.meshes.convertible import Convertible, library
 from hem.meshes.edges import undirected_edges
 from hem.meshes.summary import MeshSummary, summarize
 from hem.meshes.weld import clusters
+from hem.ragged import Ragged
 
 _MOST_ELEMENTS = np.iinfo(np.int32).max
 
 
-class TriangleMesh:
+class TriangleMesh(Convertible):
     """Points and the triangles between them, validated once and read-only from then on.
 
     points     (n, 3) float32, finite, in the units of the source
@@ -65,6 +67,17 @@ class TriangleMesh:
         first, cluster = clusters(self.points, tolerance)
         triangles = cluster[self.triangles]
         return TriangleMesh(self.points[first], triangles[~repeated_corners(triangles)])
+
+    def face_rows(self) -> Ragged:
+        """The corners of every face."""
+        return Ragged(np.arange(0, self.triangles.size + 1, 3), self.triangles.reshape(-1))
+
+    def to_trimesh(self) -> Any:
+        """A ``trimesh.Trimesh``, in which nothing is merged or dropped. O(n + m).
+
+        ImportError where trimesh is not installed.
+        """
+        return library("trimesh").Trimesh(self.points, self.triangles, process=False)
 
     def flipped(self) -> "TriangleMesh":
         """The same faces seen from the other side: corners (a, b, c) become (a, c, b). O(m)."""

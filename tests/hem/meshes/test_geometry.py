@@ -1,0 +1,82 @@
+"""Geometry and conversions, against trimesh and by going there and back."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import hem
+from hem.errors import MeshError
+from tests.structures.test_polygons import CUBE, mixed
+
+trimesh = pytest.importorskip("trimesh")
+
+
+@pytest.fixture(params=["sphere", "torus", "cow"])
+def mesh(request: pytest.FixtureRequest) -> hem.TriangleMesh:
+    if request.param in hem.SAMPLES:
+        return hem.sample(request.param)
+    return hem.generate(request.param, 500)
+
+
+def test_geometry_is_that_of_trimesh(mesh: hem.TriangleMesh) -> None:
+    other = trimesh.Trimesh(mesh.points.astype(float), mesh.triangles, process=False)
+    np.testing.assert_allclose(mesh.bounds, other.bounds)
+    np.testing.assert_allclose(mesh.face_areas(), other.area_faces, atol=1e-12)
+    np.testing.assert_allclose(mesh.area(), other.area)
+    np.testing.assert_allclose(mesh.centroid(), other.centroid, atol=1e-9)
+    areas = mesh.face_areas() > 1e-12
+    np.testing.assert_allclose(mesh.face_normals()[areas], other.face_normals[areas], atol=1e-6)
+    if other.is_watertight:
+        np.testing.assert_allclose(mesh.volume(), other.volume)
+    else:
+        with pytest.raises(MeshError, match="borders"):
+            mesh.volume()
+
+
+def test_vertex_normals_weigh_by_area() -> None:
+    mesh = hem.generate("sphere", 500)
+    outward = mesh.points / np.linalg.norm(mesh.points, axis=1, keepdims=True)
+    assert (np.einsum("ij,ij->i", mesh.vertex_normals(), outward) > 0.99).all()
+    other = trimesh.Trimesh(mesh.points.astype(float), mesh.triangles, process=False)
+    summed = np.zeros((len(mesh.points), 3))
+    for face, corners in enumerate(mesh.triangles):
+        summed[corners] += other.area_faces[face] * other.face_normals[face]
+    expected = summed / np.linalg.norm(summed, axis=1, keepdims=True)
+    np.testing.assert_allclose(mesh.vertex_normals(), expected, atol=1e-9)
+
+
+def test_a_mesh_without_area_has_no_direction() -> None:
+    mesh = hem.TriangleMesh([[0, 0, 0], [1, 1, 1], [2, 2, 2]], [[0, 1, 2]])
+    assert not mesh.face_normals().any()
+    assert not mesh.vertex_normals().any()
+    assert hem.TriangleMesh([], []).face_normals().shape == (0, 3)
+
+
+def test_there_and_back_is_the_same_mesh(mesh: hem.TriangleMesh) -> None:
+    back = [hem.from_trimesh(mesh.to_trimesh())]
+    if importable("pyvista"):
+        back.append(hem.from_pyvista(mesh.to_pyvista()))
+    if importable("meshio"):
+        back.append(hem.from_meshio(mesh.to_meshio()))
+    for other in back:
+        np.testing.assert_array_equal(other.points, mesh.points)
+        np.testing.assert_array_equal(other.triangles, mesh.triangles)
+
+
+def test_polygons_there_and_back() -> None:
+    for mesh in (CUBE, mixed()):
+        for library in ("pyvista", "meshio"):
+            if not importable(library):
+                continue
+            other = getattr(hem, f"from_{library}")(getattr(mesh, f"to_{library}")())
+            np.testing.assert_array_equal(other.points, mesh.points)
+            assert other.faces.to_list() == mesh.faces.to_list()
+
+
+def importable(name: str) -> bool:
+    try:
+        __import__(name)
+    except ImportError:
+        return False
+    return True

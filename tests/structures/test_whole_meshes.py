@@ -1,0 +1,119 @@
+"""Questions about whole meshes: against NetworkX-like truth made of the triangles alone."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import hem
+import structures
+from hem.errors import MeshError
+from hem.meshes import undirected_edges
+from tests.structures.test_polygons import CUBE, plankton, sheet
+
+
+@pytest.fixture(params=["torus", "grid", "two parts", "edited", "empty"])
+def whole(request: pytest.FixtureRequest, name: str) -> structures.Structure:
+    if request.param == "two parts":
+        one, other = hem.generate("torus", 49), hem.generate("grid", 16)
+        points = np.concatenate([one.points, other.points + 9])
+        triangles = np.concatenate([one.triangles, other.triangles + len(one.points)])
+        return structures.build(name, hem.TriangleMesh(points, triangles))
+    if request.param == "empty":
+        return structures.build(name, hem.TriangleMesh(np.zeros((2, 3)), []))
+    s = structures.build(
+        name, hem.generate("grid" if request.param == "edited" else request.param, 49)
+    )
+    if request.param == "edited":
+        s.collapse_edge(int(s.edges()[10]))
+        s.remove_face(int(s.faces()[30]))
+        s.split_face(int(s.faces()[3]), (0, 0, 0))
+    return s
+
+
+def rows_of(s: structures.Structure) -> dict[int, list[int]]:
+    return {f: s.face_vertices(f).tolist() for f in s.faces().tolist()}
+
+
+def test_all_elements_are_asked_without_an_argument(whole: structures.Structure) -> None:
+    s = whole
+    assert s.face_vertices().to_list() == list(rows_of(s).values())
+    assert s.vertex_faces().to_list() == s.vertex_faces(s.vertices()).to_list()
+    assert sorted(map(sorted, s.triangles().tolist())) == sorted(map(sorted, rows_of(s).values()))
+    expected, _ = undirected_edges(s.triangles())
+    assert sorted(s.edge_array().tolist()) == sorted(expected.tolist())
+
+
+def test_valence_and_border_are_those_of_the_edges(whole: structures.Structure) -> None:
+    s = whole
+    edges, faces = undirected_edges(s.triangles())
+    valence = np.bincount(edges.ravel(), minlength=len(s.points))
+    border = np.zeros(len(s.points), np.bool_)
+    border[edges[faces == 1]] = True
+    vertices = s.vertices()
+    assert s.valence().tolist() == valence[vertices].tolist()
+    assert s.is_border().tolist() == border[vertices].tolist()
+    for v in vertices[:9].tolist():
+        assert s.valence(v) == valence[v]
+        assert s.is_border(v) is bool(border[v])
+    assert s.is_closed() is not bool((faces == 1).any())
+
+
+def test_border_loops_go_along_every_border_edge_once(whole: structures.Structure) -> None:
+    s = whole
+    edges, faces = undirected_edges(s.triangles())
+    along = [
+        tuple(sorted(pair))
+        for loop in s.border_loops()
+        for pair in zip(loop.tolist(), np.roll(loop, -1).tolist(), strict=True)
+    ]
+    assert sorted(along) == sorted(map(tuple, edges[faces == 1].tolist()))
+    sides = {(row[i - 1], row[i]) for row in rows_of(s).values() for i in range(3)}
+    for loop in s.border_loops():
+        assert loop[0] == loop.min()
+        assert (int(loop[0]), int(loop[1])) in sides  # the surface lies on the left
+
+
+def test_components_are_found_face_by_face(whole: structures.Structure) -> None:
+    s = whole
+    part: dict[int, set[int]] = {}  # by vertex, the vertices joined to it
+    for row in rows_of(s).values():
+        joined = set().union(*(part.get(v, {v}) for v in row))
+        part.update(dict.fromkeys(joined, joined))
+    expected: dict[frozenset[int], list[int]] = {}
+    for face, row in rows_of(s).items():
+        expected.setdefault(frozenset(part[row[0]]), []).append(face)
+    assert [it.tolist() for it in s.components()] == list(expected.values())
+
+
+def test_polygons_have_borders_and_parts_but_no_triangles() -> None:
+    s = plankton(sheet(3))
+    (loop,) = s.border_loops()
+    assert sorted(loop.tolist()) == sorted(set(range(16)) - {5, 6, 9, 10})
+    assert len(s.components()) == 1
+    assert plankton(CUBE).is_closed()
+    with pytest.raises(MeshError, match="more corners"):
+        s.triangles()
+
+
+def test_a_structure_is_shown_and_compared(whole: structures.Structure) -> None:
+    s = whole
+    assert s.title in repr(s)
+    assert f"{s.n_faces:,} faces" in repr(s)
+    other = s.copy()
+    assert s.same_as(other)
+    other.add_vertex((1, 2, 3))
+    assert not s.same_as(other)
+    for name in structures.NAMES:
+        assert structures.build(name, s.to_triangles()).same_as(
+            structures.build("indexed", s.to_triangles())
+        )
+
+
+def test_rows_of_different_lengths() -> None:
+    rows = hem.Ragged.from_lists([[1, 2], [], [3], [4, 5, 6]])
+    assert rows.to_list() == [[1, 2], [], [3], [4, 5, 6]]
+    assert rows[1:3].to_list() == [[], [3]]
+    assert rows[::-2].to_list() == [[4, 5, 6], []]
+    assert repr(rows) == "Ragged(4 rows: [1, 2], [], [3], …)"
+    assert hem.Ragged.from_lists([]).to_list() == []
