@@ -46,17 +46,20 @@ from hem.authoring import (
     counted,
     edges_at_both_ends,
     found_by_steps,
+    half_edge_column,
     in_slices,
     joined_by_steps,
     kernel,
+    leaving,
     live,
     pair_half_edges,
     require,
     require_distinct_edges,
     require_edge_count,
     require_one_fan,
+    within,
 )
-from hem.contract import Look, Structure
+from hem.contract import Look, Navigable
 from hem.meshes import TriangleMesh
 
 ORIGIN, FACE, NEXT, TWIN = range(4)  # the columns of a half-edge
@@ -491,7 +494,7 @@ def _fill(
             row[TWIN] = twin[3 * f + i]
 
 
-class HalfEdge(Structure):
+class HalfEdge(Navigable):
     """The half-edge mesh."""
 
     name, title, abbreviation = "half_edge", "Half-Edge", "HEM"
@@ -506,6 +509,17 @@ class HalfEdge(Structure):
         Field("half_edge.next", "half_edge", target="half_edge"),
         Field("half_edge.twin", "half_edge", target="half_edge", optional=True),
     )
+    steps = {
+        "next": half_edge_column(NEXT),
+        "previous": previous,
+        "twin": half_edge_column(TWIN),
+        "origin": half_edge_column(ORIGIN),
+        "tip": tip,
+        "face": half_edge_column(FACE),
+        "edge": edge_of,
+        "vertex_half_edge": leaving,
+        "face_half_edge": within,
+    }
 
     @classmethod
     def build(cls, mesh: TriangleMesh, reference_bytes: int = 4) -> Self:

@@ -44,7 +44,7 @@ from hem.authoring import (
     append_face,
     edges_at_both_ends,
 )
-from hem.contract import Claims, Look, Structure
+from hem.contract import Claims, Look, Navigable
 from hem.engine import Held, InterpretedUses, counting
 from hem.errors import MeshError
 from hem.meshes import TriangleMesh
@@ -165,6 +165,23 @@ def face_faces(m: ObjectRecords, f: int, out: Any) -> int:
             count = append_face(out, count, opposite.face.index)
         h = h.next
     return count
+
+
+def _index(element: Any) -> int:
+    return -1 if element is None else int(element.index)
+
+
+STEPS: dict[str, Callable[[ObjectRecords, int], int]] = {
+    "next": lambda m, h: m.half_edges.items[h].next.index,
+    "previous": lambda m, h: m.half_edges.items[h].previous.index,
+    "twin": lambda m, h: _index(m.half_edges.items[h].opposite),
+    "origin": lambda m, h: m.half_edges.items[h].origin.index,
+    "tip": lambda m, h: m.half_edges.items[h].end.index,
+    "face": lambda m, h: m.half_edges.items[h].face.index,
+    "edge": lambda m, h: m.half_edges.items[h].edge,
+    "vertex_half_edge": lambda m, v: _index(m.vertices.items[v].half_edge),
+    "face_half_edge": lambda m, f: m.faces.items[f].half_edge.index,
+}
 
 
 # What operations need to know, and what they change (see hem.authoring.operations) --------------
@@ -412,7 +429,7 @@ class ObjectUses(InterpretedUses):
     counted_classes = COUNTED
 
 
-class HalfEdgeMesh(Structure):
+class HalfEdgeMesh(Navigable):
     """The half-edge mesh of the thesis' class model."""
 
     name, title, abbreviation = "half_edge_objects", "Half-Edge Objects", "Objects"
@@ -423,7 +440,7 @@ class HalfEdgeMesh(Structure):
     )
     uses_type, pinning, compiled = ObjectUses, Held, False
     records_type = ObjectRecords
-    fields = ()
+    fields, steps = (), STEPS
 
     @classmethod
     def build(cls, mesh: TriangleMesh, reference_bytes: int = 4) -> Self:

@@ -46,8 +46,11 @@ from hem.authoring import (
     D,
     append_face,
     distinct,
+    half_edge_column,
     joined_by_steps,
     kernel,
+    leaving,
+    within,
     without,
 )
 
@@ -204,6 +207,32 @@ def face_faces(m: PlanktonRecords, f: int, out: Array) -> int:
         if h == first:
             # Polygons may share edges that do not follow each other.
             return count if sides == 3 else distinct(out, count)
+
+
+@kernel
+def twin(m: PlanktonRecords, h: int) -> int:
+    """The other half-edge of the same edge."""
+    return h ^ 1
+
+
+@kernel
+def edge(m: PlanktonRecords, h: int) -> int:
+    """The name of h's edge."""
+    return edge_of(h)
+
+
+STEPS = {
+    "next": half_edge_column(NEXT),
+    "previous": half_edge_column(PREVIOUS),
+    "twin": twin,
+    "origin": half_edge_column(START),
+    "tip": tip,
+    "face": half_edge_column(FACE),
+    "edge": edge,
+    "vertex_half_edge": leaving,
+    "face_half_edge": within,
+}
+"""Outside the border a half-edge has no face, and next and previous run along it."""
 
 
 # What operations need to know, and what they change (see hem.authoring.operations) --------------

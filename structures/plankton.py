@@ -40,7 +40,7 @@ from hem.authoring import (
     require_one_fan,
     require_one_loop,
 )
-from hem.contract import Claims, Look, Structure, arguments
+from hem.contract import Claims, Look, Navigable, arguments
 from hem.edit import Edit
 from hem.errors import MeshError, TopologyError
 from hem.meshes import PolygonMesh, TriangleMesh
@@ -50,7 +50,7 @@ from structures.pairs import FACE, NEXT, PREVIOUS, START, PlanktonRecords
 from structures.polygons import POLYGON_OPERATIONS
 
 
-class Plankton(Structure):
+class Plankton(Navigable):
     """The half-edge mesh of Plankton."""
 
     name, title, abbreviation = "plankton", "Plankton", "Plankton"
@@ -68,6 +68,7 @@ class Plankton(Structure):
         Field("half_edge.previous", "half_edge", target="half_edge"),
     )
     kernels = kernels_of(pairs.__name__)
+    steps = pairs.STEPS
     operations = OPERATIONS | POLYGON_OPERATIONS
 
     @classmethod
@@ -109,10 +110,6 @@ class Plankton(Structure):
     def edges(self) -> NDArray[np.int64]:
         """(n_edges,) int64: of each pair of live half-edges the first."""
         return 2 * np.flatnonzero(self._half_edges[::2, START] >= 0)
-
-    def half_edges(self) -> NDArray[np.int64]:
-        """(2 n_edges,) int64: all live half-edges, ascending."""
-        return np.flatnonzero(self._half_edges[:, START] >= 0)
 
     def start_vertex(self, h: int) -> int:
         """Where half-edge h starts. O(1), as are the others; MeshError for one that is dead."""

@@ -77,7 +77,15 @@ from hem.authoring.records import (
 )
 from hem.authoring.refusals import ALLOWED, NEEDS_ROOM, WORDS, Refusal
 from hem.authoring.slices import in_slices, slice_count
-from hem.authoring.walks import circulator, edges_at_both_ends, found_by_steps, joined_by_steps
+from hem.authoring.walks import (
+    circulator,
+    edges_at_both_ends,
+    found_by_steps,
+    half_edge_column,
+    joined_by_steps,
+    leaving,
+    within,
+)
 
 __all__ = [
     "ALLOWED",
@@ -128,6 +136,7 @@ __all__ = [
     "edges_at_both_ends",
     "found_by_steps",
     "grown",
+    "half_edge_column",
     "has_room",
     "has_scratch",
     "in_slices",
@@ -136,6 +145,7 @@ __all__ = [
     "kernel",
     "kernels_of",
     "kill_vertex",
+    "leaving",
     "live",
     "log_element",
     "log_faces",
@@ -154,5 +164,6 @@ __all__ = [
     "slice_count",
     "vertex_exists",
     "vertex_maker",
+    "within",
     "without",
 ]

@@ -92,6 +92,28 @@ def joined_by_steps(first: Kernel, clockwise: Kernel, ends: Kernel, find: Kernel
     return joined
 
 
+def half_edge_column(which: int) -> Kernel:
+    """Make ``read(m, h)``: one column of the records of half-edges."""
+
+    @kernel
+    def read(m: Any, h: int) -> int:
+        return int(m.half_edge[h, which])
+
+    return read
+
+
+@kernel
+def leaving(m: Any, v: int) -> int:
+    """The half-edge that is recorded at vertex v."""
+    return int(m.vertex_half_edge[v])
+
+
+@kernel
+def within(m: Any, f: int) -> int:
+    """The half-edge that is recorded at face f."""
+    return int(m.face_half_edge[f])
+
+
 @kernel
 def as_named(m: Any, e: int) -> int:
     """The name of an edge that has one name only."""

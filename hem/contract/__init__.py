@@ -13,6 +13,7 @@
 ``Editable``     the operations, ``compact``
 ``Measuring``    what experiments time and count
 ``Structure``    build, validate, copy, memory
+``Navigable``    a structure whose half-edges can be walked
 """
 
 from hem.authoring import ELEMENTS, OPERATIONS, QUERIES, REFERENCE_TYPES, Query
@@ -22,6 +23,7 @@ from hem.contract.description import Claims, Described, Look
 from hem.contract.elements import HANDLE_TYPES
 from hem.contract.following import tell_all
 from hem.contract.measuring import Prepared
+from hem.contract.navigation import STEPS, Navigable
 from hem.contract.packed import PackedEdges
 from hem.contract.removal import Remaining, remaining
 from hem.contract.structure import Structure
@@ -32,10 +34,12 @@ __all__ = [
     "OPERATIONS",
     "QUERIES",
     "REFERENCE_TYPES",
+    "STEPS",
     "Algorithm",
     "Claims",
     "Described",
     "Look",
+    "Navigable",
     "PackedEdges",
     "Prepared",
     "Query",

@@ -96,7 +96,7 @@ class Elements(Described, abstract=True):
         if handles.min() < 0 or handles.max() >= end:
             refuse_handles(element, handles[(handles < 0) | (handles >= end)])
         # A polygon's edge may die without a face, and how many edges are recorded is not counted.
-        if element == "edge" or self._any_dead(element):
+        if "edge" in element or self._any_dead(element):
             dead = ~self._alive(element, handles)
             if dead.any():
                 refuse_handles(element, handles[dead])
@@ -109,4 +109,5 @@ class Elements(Described, abstract=True):
 
 def refuse_handles(element: str, handles: NDArray[Any]) -> None:
     """Raise the MeshError for ``handles`` that name no element of the mesh."""
-    raise MeshError(f"no such {element} in this mesh", **{ELEMENTS[element]: handles})
+    words = f"no such {element.replace('_', '-')} in this mesh"
+    raise MeshError(words, **{ELEMENTS.get(element, f"{element}s"): handles})

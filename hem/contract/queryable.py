@@ -57,7 +57,7 @@ def _query_method(query: Query) -> Any:
     attribute.__doc__ = (
         f"{query.title}, of one {query.source} or of many.\n\n"
         "One handle gives a 1-D array, an array of handles (n,) a ``Ragged`` with n rows, and no\n"
-        "argument one of all live elements. Each neighbor comes once; around a vertex or face it comes\n"
+        "argument one of all live elements. Each neighbor comes once; around a vertex or face\n"
         "counterclockwise where the structure knows the order. Cost per handle: thesis, table 1.\n"
         f"Raises MeshError for a handle that names no {query.source} of this mesh."
     )

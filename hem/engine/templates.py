@@ -50,6 +50,20 @@ def single(handle: int, address: int) -> Array:
     return out[:count].copy()
 
 
+def step(handle: int, address: int) -> int:
+    """One step from one handle, called from Python; -1 where it names nothing, or leads nowhere."""
+    m = _RECORDS(*_LOAD(address))
+    found: int = _KERNEL(m, handle) if _EXISTS(m, handle) else -1
+    return found
+
+
+def walk(handles: Array, found: Array, *arrays: Array) -> None:
+    """One step from each of many handles."""
+    m = _RECORDS(*arrays)
+    for i in range(len(handles)):
+        found[i] = max(_KERNEL(m, handles[i]), -1)
+
+
 def perform(address: int) -> int:
     """One operation or many -> the end, or the place of the one that could not be done."""
     arrays = _LOAD(address)

@@ -43,6 +43,15 @@ class Uses:
         """
         return self._bound(templates.single, pinned.kind, _EXISTS=exists)
 
+    def step(self, pinned: Any, exists: Kernel) -> Callable[[int, int], int]:
+        """``step(handle, pinned.address) -> handle``, for a step from one element to another."""
+        return self._bound(templates.step, pinned.kind, _EXISTS=exists)
+
+    @cached_property
+    def walk(self) -> Callable[..., None]:
+        """``walk(handles, found, *records)``: a step from each of the handles."""
+        return self._compiled(templates.walk)
+
     def perform(self, pinned: Any) -> Callable[[int], int]:
         """``perform(pinned.address) -> end``, for an operation.
 
@@ -129,7 +138,7 @@ class Uses:
         names = template.__name__, self._records.__name__, source_of(self._kernel).__name__
         function.__qualname__ = "_".join([*names, _digest(scope.values(), variant)])
         # To let other threads run would take longer than a query.
-        nogil = template not in (templates.single, templates.perform)
+        nogil = template not in (templates.single, templates.step, templates.perform)
         compiled: Callable[..., Any] = njit(cache=True, nogil=nogil)(function)
         return compiled
 

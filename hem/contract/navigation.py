@@ -1,0 +1,126 @@
+"""Walking a mesh by its half-edges, on structures that record them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import cached_property
+from typing import Any, ClassVar, NamedTuple, Protocol, overload
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hem.arrays import Array
+from hem.authoring import Kernel
+from hem.contract.description import place_of
+from hem.contract.elements import HANDLE_TYPES
+from hem.contract.queryable import MOST, NUMPY_INTEGERS
+from hem.contract.structure import Structure
+from hem.errors import MeshError
+
+
+class Step(NamedTuple):
+    """A step from one element to another."""
+
+    source: str
+    target: str
+    words: str
+
+
+STEPS = {
+    "next": Step("half_edge", "half_edge", "the half-edge after it in its face"),
+    "previous": Step("half_edge", "half_edge", "the half-edge before it in its face"),
+    "twin": Step("half_edge", "half_edge", "the half-edge of its edge that runs the other way"),
+    "origin": Step("half_edge", "vertex", "the vertex where it starts"),
+    "tip": Step("half_edge", "vertex", "the vertex where it ends"),
+    "face": Step("half_edge", "face", "the face that it lies in"),
+    "edge": Step("half_edge", "edge", "its edge"),
+    "vertex_half_edge": Step("vertex", "half_edge", "a half-edge that leaves the vertex"),
+    "face_half_edge": Step("face", "half_edge", "a half-edge of the face"),
+}
+"""Every step by name."""
+
+
+class StepMethod(Protocol):
+    """A step as a method: one handle -> a handle; an array of handles -> an array."""
+
+    @overload
+    def __call__(self, handles: int) -> int: ...
+    @overload
+    def __call__(self, handles: NDArray[Any] | list[int]) -> NDArray[Any]: ...
+
+
+def _step_method(name: str) -> Any:
+    step = STEPS[name]
+
+    def bound(self: Navigable) -> StepMethod:
+        pinned = self._pin(lambda: ())
+        exists = self.kernels[f"{step.source.removeprefix('half_')}_exists"]
+        take = self._steps[name].step(pinned, exists)
+        address = pinned.address
+
+        def walk(handles: Any) -> Any:
+            handle = int(handles) if type(handles) in NUMPY_INTEGERS else handles
+            if type(handle) is int and -MOST <= handle < MOST:
+                found = take(handle, address)
+                if found >= 0:
+                    return found
+            return self._walk(name, handles)
+
+        walk.__name__, walk.__doc__ = name, attribute.__doc__
+        walk.__dict__["pinned"] = pinned  # lives as long as the address is in use
+        return walk
+
+    attribute = cached_property(bound)
+    attribute.__doc__ = (
+        f"Of a {step.source.replace('_', '-')}: {step.words}; -1 where there is none.\n\n"
+        "One handle gives a handle, an array of handles (n,) an array. Cost O(1). Raises\n"
+        f"MeshError for a handle that names no {step.source.replace('_', '-')} of this mesh."
+    )
+    return attribute
+
+
+class Navigable(Structure, abstract=True):
+    """A structure that records half-edges, which are handles as other elements are."""
+
+    steps: ClassVar[Mapping[str, Kernel]]
+    """By the names of ``STEPS``: ``step(m, handle) -> handle``, or a negative number for none."""
+
+    _steps: ClassVar[dict[str, Any]]
+
+    def __init_subclass__(cls, abstract: bool = False) -> None:
+        super().__init_subclass__(abstract)
+        if abstract:
+            return
+        missing = STEPS.keys() - getattr(cls, "steps", {}).keys()
+        if missing:
+            raise TypeError(f"{place_of(cls)} has no steps {', '.join(sorted(missing))}")
+        cls._steps = {name: cls.uses_type(cls.steps[name], cls.records_type) for name in STEPS}
+
+    next: StepMethod = _step_method("next")
+    previous: StepMethod = _step_method("previous")
+    twin: StepMethod = _step_method("twin")
+    origin: StepMethod = _step_method("origin")
+    tip: StepMethod = _step_method("tip")
+    face: StepMethod = _step_method("face")
+    edge: StepMethod = _step_method("edge")
+    vertex_half_edge: StepMethod = _step_method("vertex_half_edge")
+    face_half_edge: StepMethod = _step_method("face_half_edge")
+
+    def half_edges(self) -> NDArray[np.int64]:
+        """(n_half_edges,) int64: the handles of all live half-edges, ascending. Cost O(n_e)."""
+        return np.flatnonzero(self._alive("half_edge"))
+
+    def _walk(self, name: str, handles: Any) -> Any:
+        """Any handles for a step, checked."""
+        step = STEPS[name]
+        asked: Array = np.asarray(handles)
+        if not np.issubdtype(asked.dtype, np.integer) or asked.ndim > 1:
+            raise MeshError(
+                f"{name} takes one {step.source} handle or a 1-D array of integers, not "
+                f"{handles!r:.60}"
+            )
+        rows = np.atleast_1d(asked).astype(np.int64)
+        self._check_handles(step.source, rows)
+        found = np.empty(len(rows), HANDLE_TYPES.get(step.target, np.int64))
+        self._steps[name].walk(rows, found, *self.records)
+        return found if asked.ndim else int(found[0])
