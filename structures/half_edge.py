@@ -494,6 +494,19 @@ def _fill(
             row[TWIN] = twin[3 * f + i]
 
 
+STEPS = {
+    "next": half_edge_column(NEXT),
+    "previous": previous,
+    "twin": half_edge_column(TWIN),
+    "origin": half_edge_column(ORIGIN),
+    "tip": tip,
+    "face": half_edge_column(FACE),
+    "edge": edge_of,
+    "vertex_half_edge": leaving,
+    "face_half_edge": within,
+}
+
+
 class HalfEdge(Navigable):
     """The half-edge mesh."""
 
@@ -509,17 +522,7 @@ class HalfEdge(Navigable):
         Field("half_edge.next", "half_edge", target="half_edge"),
         Field("half_edge.twin", "half_edge", target="half_edge", optional=True),
     )
-    steps = {
-        "next": half_edge_column(NEXT),
-        "previous": previous,
-        "twin": half_edge_column(TWIN),
-        "origin": half_edge_column(ORIGIN),
-        "tip": tip,
-        "face": half_edge_column(FACE),
-        "edge": edge_of,
-        "vertex_half_edge": leaving,
-        "face_half_edge": within,
-    }
+    steps = STEPS
 
     @classmethod
     def build(cls, mesh: TriangleMesh, reference_bytes: int = 4) -> Self:
