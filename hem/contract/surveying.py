@@ -53,6 +53,14 @@ class Surveying(Queryable, abstract=True):
         on_border = self.valence(vertices) > _each(self.vertex_faces, vertices)
         return on_border if isinstance(on_border, np.ndarray) else bool(on_border)
 
+    def find_face(self, a: int, b: int, c: int) -> int | None:
+        """The face of three vertices, whichever way it runs, or None. Cost: ``vertex_faces``."""
+        faces = self.vertex_faces(a)
+        for face, row in zip(faces.tolist(), self.face_vertices(faces), strict=True):
+            if sorted(row.tolist()) == sorted((a, b, c)):
+                return face
+        return None
+
     def is_closed(self) -> bool:
         """Whether every edge has two faces. Cost O(n_t)."""
         return not len(self._border())

@@ -198,7 +198,8 @@ def _out_of_range(given: NDArray[Any], n: int) -> str:
         return "there are triangles, but no points"
     beyond = ", some beyond int32" if given.max() > _MOST_ELEMENTS else ""
     hint = "; do the indices count from 1?" if given.min() == 1 and given.max() == n else ""
-    return f"vertex indices are out of the range 0 … {n - 1:,}{beyond}{hint}"
+    first = int(given[(given < 0) | (given >= n)][0])
+    return f"vertex indices are out of the range 0 … {n - 1:,}, such as {first}{beyond}{hint}"
 
 
 def _refuse(bad: Bools, message: str) -> None:

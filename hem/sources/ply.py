@@ -82,6 +82,8 @@ def _header(data: bytes) -> tuple[str, list[_Element], int]:
                     order = _ORDERS[name]
                 case ["element", name, count]:
                     elements.append(_Element(name, int(count), []))
+                    if not 0 <= int(count) <= len(data):
+                        raise cut_short(f"{len(data):,} bytes, and promises {count} of {name}")
                 case ["property", "list", count, kind, name]:
                     elements[-1].properties.append(_Property(name, _TYPES[kind], _TYPES[count]))
                 case ["property", kind, name]:

@@ -71,6 +71,8 @@ def read_off(data: bytes) -> Parts:
     counts, *elements = lines[1:] if len(lines[0]) == 1 else [lines[0][1:], *lines[1:]]
     try:
         n, m = int(counts[0]), int(counts[1])
+        if not (0 <= n <= len(data) and 0 <= m <= len(data)):
+            raise cut_short(f"{len(data):,} bytes, and promises {n} vertices and {m} faces")
         points = [[float(word) for word in line[:3]] for line in elements[:n]]
         rows = [[int(word) for word in line[: int(line[0]) + 1]] for line in elements[n : n + m]]
     except (ValueError, IndexError) as error:

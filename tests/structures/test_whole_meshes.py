@@ -1,4 +1,4 @@
-"""Questions about whole meshes: against NetworkX-like truth made of the triangles alone."""
+"""Questions about whole meshes, against what the faces alone say."""
 
 from __future__ import annotations
 
@@ -42,6 +42,15 @@ def test_all_elements_are_asked_without_an_argument(whole: structures.Structure)
     assert sorted(map(sorted, s.triangles().tolist())) == sorted(map(sorted, rows_of(s).values()))
     expected, _ = undirected_edges(s.triangles())
     assert sorted(s.edge_array().tolist()) == sorted(expected.tolist())
+
+
+def test_a_face_is_found_by_its_corners(whole: structures.Structure) -> None:
+    s, rows = whole, rows_of(whole)
+    for face, (a, b, c) in rows.items():
+        assert s.find_face(b, c, a) == s.find_face(c, b, a) == face
+    if rows:
+        v = next(iter(rows.values()))[0]
+        assert s.find_face(v, v, v) is None
 
 
 def test_valence_and_border_are_those_of_the_edges(whole: structures.Structure) -> None:
