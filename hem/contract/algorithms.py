@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from hem.arrays import Array
-from hem.authoring import ENTRIES, VALENCE, WIDTH, Kernel, Kernels
+from hem.authoring import ENTRIES, Kernel, Kernels
 from hem.contract.operating import Operating
 from hem.edit import Edit
 from hem.engine import Uses
@@ -42,12 +42,7 @@ class Algorithms(Operating, abstract=True):
         """
         self._count_edges()
         self._make_room(splits, 2 * splits)
-        if "_out" not in self.__dict__:
-            self._out = self._scratch(max(splits, self.n_faces // 8))
-        valence = int(self.records.counts[VALENCE]) + splits + 1
-        if WIDTH * (valence + 1) > len(self._out["edge"]):
-            self._out.update(self._scratch(max(splits, self.n_faces // 8)))
-            self._repin()
+        self._widen(splits)
         return self._out["edge"], np.zeros(ENTRIES * (splits + 2), np.int64)
 
     def tell(self, kind: str, touched: Array) -> None:

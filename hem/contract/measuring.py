@@ -63,8 +63,10 @@ class Measuring(Editable, abstract=True):
         return self._uses[query].work(handles, out, self.records)
 
     def reserve(self, splits: int) -> None:
-        """Make room for so many splits at once, so that none of them has to. Cost O(n_v + n_t)."""
+        """Make all room for so many splits at once, so that none of them has to. O(n_v + n_t)."""
         self._make_room(splits, 2 * splits)
+        for operation in self._do:
+            self._make_way(operation)
 
     def prepare(self, operation: str, args: ArrayLike, points: ArrayLike | None = None) -> Prepared:
         """Have operations ready to be run in one compiled loop, untold to anyone: for measuring.
@@ -78,8 +80,8 @@ class Measuring(Editable, abstract=True):
         n, bound = len(rows), self._bound[operation]
         vertices, faces = self.operations[operation].growth
         self._make_room(vertices * n, faces * n)
-        self._out.update(self._scratch(2 * n))  # an operation adds at most 2 to a valence
-        self._repin()
+        self._count_valence()
+        self._widen(2 * n)  # an operation adds at most 2 to a valence
         positions = (
             arguments.NO_POINT if points is None else arguments.positions("prepare", points, n)
         )

@@ -51,6 +51,7 @@ class Scratch(Elements, abstract=True):
         super().__init__(records)
         # Whoever asks first, and in how many threads: all must find the same list.
         self._pins: list[tuple[Any, Callable[[], tuple[Any, ...]]]] = []
+        self._valence_counted = 0
 
     def _pin(self, scratch: Callable[[], tuple[Any, ...]]) -> Any:
         pinned = self.pinning(*self.records, *scratch())
@@ -60,15 +61,19 @@ class Scratch(Elements, abstract=True):
     @cached_property
     def _out(self) -> dict[str, Array]:
         """Scratch for the answer to one query, by the kind of element in it."""
-        return self._scratch(0)
+        return self._scratch(self._count_valence())
 
-    def _scratch(self, more: int) -> dict[str, Array]:
-        """As ``_out``, with room for a valence by so many larger than the largest there is."""
+    def _count_valence(self) -> int:
+        """The bound on the valence made exact: operations only ever raise it. Cost O(n_t)."""
         counts = self.records.counts
         corners = self._ragged("face_vertices", self.faces(), int(counts[SIDES])).values
         valence = max(int(np.bincount(corners).max(initial=0)) + 1, int(counts[SIDES]))
-        counts[VALENCE] = valence
-        width = WIDTH * (valence + more + 1)
+        counts[VALENCE] = self._valence_counted = valence
+        return valence
+
+    def _scratch(self, valence: int) -> dict[str, Array]:
+        """Room for the answer to any query at vertices of such a valence."""
+        width = WIDTH * (valence + 1)
         return {element: self._room(width, dtype) for element, dtype in HANDLE_TYPES.items()}
 
     def _room(self, width: int, dtype: Any) -> Any:
@@ -86,11 +91,17 @@ class Scratch(Elements, abstract=True):
             self.records = grown(self.records, self.fields, vertices, faces)
             self._repin()
 
-    def _widen(self) -> None:
-        """See that the answer to any query fits into the scratch for it."""
-        if WIDTH * (self.records.counts[VALENCE] + 1) > len(self._out["edge"]):
-            # In proportion to the mesh, so that one operation pays O(1) of it in the long run.
-            self._out.update(self._scratch(self.n_faces // 8))
+    def _widen(self, more: int = 0) -> None:
+        """See that the answer to any query fits into the scratch, at a valence by so many larger.
+
+        It doubles, so its bytes are in proportion to the operations done, and so is the time to
+        count valences anew: O(1) per operation in the long run.
+        """
+        room, counts = len(self._out["edge"]), self.records.counts
+        if WIDTH * (counts[VALENCE] + more + 1) > room:
+            if counts[VALENCE] > self._valence_counted + self.n_faces // 8:
+                self._count_valence()
+            self._out.update(self._scratch(2 * (int(counts[VALENCE]) + more)))
             self._repin()
 
     def _repin(self) -> None:
