@@ -554,7 +554,7 @@ class HalfEdgeMesh(Navigable):
         """There are none to measure: the bytes are those of the objects, see ``memory``."""
         return ()
 
-    def memory(self) -> dict[str, int]:
+    def memory(self, room: bool = False) -> dict[str, int]:
         """Bytes that Python's objects take, by class and by what their fields hold of their own.
 
         As ``sys.getsizeof`` tells of the running interpreter; small integers are shared.
@@ -570,7 +570,11 @@ class HalfEdgeMesh(Navigable):
             taken[f"{kind}.index"] = sys.getsizeof(SHARED) * (n - shared)
             taken[f"{kind}.list"] = 8 * n
         taken["vertex.point"] = position * len(self.vertices)
-        return taken
+        return taken | self._beside(0) if room else taken
+
+    def _beside(self, live: int) -> dict[str, int]:
+        dead = sum(len(it.items) - len(it) for it in self.records[:-1])
+        return super()._beside(0) | {"dead and room to grow": 8 * dead}
 
     def clr_memory(self) -> dict[str, int]:
         """Bytes per field as the runtime of the thesis would lay its classes out: a model."""

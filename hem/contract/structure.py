@@ -122,8 +122,13 @@ class Structure(Measuring, ABC, abstract=True):
         """The structure of records that are its own from here on."""
         return cls(records)
 
-    def memory(self) -> dict[str, int]:
-        """Bytes per field of live elements, such as ``{"vertex.point": 12 * n_vertices, …}``."""
+    def memory(self, room: bool = False) -> dict[str, int]:
+        """Bytes per field of live elements, such as ``{"vertex.point": 12 * n_vertices, …}``.
+
+        With ``room`` also what is taken beside them: ``dead and room to grow`` is what the arrays
+        hold besides, up to as much again after they grew; ``scratch`` is where queries and
+        operations work, nothing before the first of them.
+        """
         counts = {
             "vertex": self.n_vertices,
             "edge": self.n_edges,
@@ -131,11 +136,20 @@ class Structure(Measuring, ABC, abstract=True):
             "face": self.n_faces,
             "triangle": self.n_faces,
         }
-        return {
+        live = {
             field.name: counts[field.element]
             * field.width
             * int(getattr(self.records, field.array).itemsize)
             for field in self.fields
+        }
+        return live | self._beside(sum(live.values())) if room else live
+
+    def _beside(self, live: int) -> dict[str, int]:
+        """Bytes taken beside those of live elements."""
+        scratch = self.__dict__.get("_out", {}).values()
+        return {
+            "dead and room to grow": sum(getattr(it, "nbytes", 0) for it in self.records) - live,
+            "scratch": sum(it.nbytes for it in scratch) + self._log.nbytes,
         }
 
     @property

@@ -346,3 +346,32 @@ def test_algorithms_of_one_name_are_told_apart(
     plan = made.Plan(np.zeros(1))
     makers = (made.first, made.second, made.closing_over(3), made.closing_over(4))
     assert [s.run(make, plan) for make in makers] == [1, 2, 3, 4]
+
+
+def test_what_is_taken_beside_the_elements_is_told(name: str) -> None:
+    s = structures.build(
+        name, hem.generate("torus", 10_000 if name != "half_edge_objects" else 900)
+    )
+    bare = sum(s.memory().values())
+    s.collapse_edge(int(s.edges()[0]))
+    s.vertex_faces(5)
+    beside = s.memory(room=True)
+    assert {it: beside[it] for it in s.memory()} == s.memory()
+    assert 0 < beside["scratch"] < bare / 10
+    arrays = sum(array.nbytes for array in s.arrays) + (s.compiled and s.records.counts.nbytes)
+    live = sum(s.memory().values())
+    assert beside["dead and room to grow"] == (arrays - live if s.compiled else 8 * (1 + 2 + 6))
+
+
+def test_the_first_edit_after_reserve_makes_no_room(
+    name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    s = structures.build(name, hem.generate("torus", 400))
+    s.reserve(50)
+
+    def unexpected(*_: Any) -> None:
+        raise AssertionError("room is made")
+
+    monkeypatch.setattr(s, "_make_way", unexpected)
+    s.split_face(0, (0, 0, 0))
+    s.collapse_edge(int(s.find_edge(*s.face_vertices(9)[:2].tolist())))
