@@ -34,5 +34,10 @@ class PackedEdges(Structure, abstract=True):
         self, edges: ArrayLike, number: Mapping[str, NDArray[Any]]
     ) -> NDArray[np.int64]:
         handles = np.asarray(edges, np.int64)
-        smaller, larger = number["vertex"][handles >> 32], number["vertex"][handles & 0xFFFFFFFF]
-        return np.where((smaller < 0) | (larger < 0), -1, (smaller << 32) | larger)
+        known, n = handles >= 0, len(number["vertex"])
+        known &= (handles >> 32 < n) & (handles & 0xFFFFFFFF < n)
+        handles = np.where(known, handles, 0)
+        new = np.append(number["vertex"], -1)
+        smaller, larger = new[handles >> 32], new[handles & 0xFFFFFFFF]
+        gone = ~known | (smaller < 0) | (larger < 0)
+        return np.where(gone, -1, (smaller << 32) | larger)

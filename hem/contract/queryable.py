@@ -18,7 +18,7 @@ from hem.ragged import Ragged
 MOST = 1 << 63
 """More than any handle."""
 
-NUMPY_INTEGERS = frozenset(np.sctypeDict[it] for it in np.typecodes["AllInteger"])
+NUMPY_INTEGERS = frozenset(np.dtype(it).type for it in np.typecodes["AllInteger"])
 """What a loop over an array of handles gives."""
 
 

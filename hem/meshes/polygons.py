@@ -106,7 +106,7 @@ def _validated(faces: Ragged | Sequence[Sequence[int]], n: int) -> Ragged:
     offsets = np.asarray(faces.offsets)
     if offsets.ndim != 1 or not len(offsets) or offsets[0] or offsets[-1] != len(faces.values):
         raise MeshError(
-            f"the offsets of {len(faces)} faces run from 0 to the number of their corners, "
+            f"{len(offsets)} offsets of faces run from 0 to the number of their corners, "
             f"{len(faces.values)}"
         )
     counts, corners = faces.counts, faces.values

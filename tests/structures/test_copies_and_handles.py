@@ -28,6 +28,11 @@ COPIES: dict[str, Callable[[Structure], Structure]] = {
 }
 
 
+def collapsible(s: Structure) -> int:
+    """The first edge that may be collapsed."""
+    return next(edge for edge in s.edges().tolist() if s.can_collapse_edge(edge))
+
+
 def answers(s: Structure) -> dict[str, list[list[int]]]:
     """Every answer to every query, singly."""
     return {
@@ -43,13 +48,13 @@ def test_a_copy_answers_for_itself(name: str, how: str, edited: bool) -> None:
     s.vertex_faces(0)
     if edited:
         s.split_face(0, (0, 0, 0))
-        s.collapse_edge(int(s.edges()[0]))
+        s.collapse_edge(collapsible(s))
     before = answers(s)
     other = COPIES[how](s)
     other.validate()
     assert answers(other) == before
     other.split_face(int(other.faces()[1]), (0, 0, 0))
-    other.collapse_edge(int(other.edges()[0]))
+    other.collapse_edge(collapsible(other))
     other.validate()
     assert answers(s) == before
     assert answers(other) != before
@@ -78,18 +83,16 @@ def test_a_mesh_does_not_change_with_the_arrays_it_was_made_of() -> None:
 
 def test_a_dead_handle_is_refused_whatever_died_with_it(name: str) -> None:
     s = structures.build(name, hem.generate("torus", 100))
-    edge = int(s.edges()[5])
+    edge = collapsible(s)
     drop, _ = s.edge_vertices(edge).tolist()
     faces = s.edge_faces(edge).tolist()
     s.collapse_edge(edge)
     for query, handle in (("vertex_faces", drop), *(("face_vertices", face) for face in faces)):
-        for asked in (handle, np.int32(handle), [handle], np.array([handle, 0])):
-            if query == "vertex_faces" and asked is handle and not s.vertex_faces([0]).counts.any():
-                continue
+        for asked in (handle, np.int32(handle), [handle], np.array([50, handle])):
             with pytest.raises(MeshError, match="no such"):
                 getattr(s, query)(asked)
     with pytest.raises(MeshError, match="no such"):
-        s.find_edge(drop, 0)
+        s.find_edge(drop, 50)
 
 
 def test_an_edge_that_died_without_a_face_is_refused() -> None:
@@ -159,7 +162,7 @@ def test_an_interrupted_question_leaves_the_mesh_ready(
     name: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     s = structures.build(name, hem.generate("torus", 100))
-    edge = int(s.edges()[0])
+    edge = collapsible(s.copy())
 
     def interrupted(operation: str) -> None:
         raise KeyboardInterrupt
@@ -176,9 +179,7 @@ def test_an_interrupted_question_leaves_the_mesh_ready(
 
 def test_what_is_restored_counts_on(name: str) -> None:
     s = structures.build(name, hem.generate("grid", 25))
-    fresh, expected = s.snapshot(), hem.generate("grid", 25).summary().edges
-    s.reserve(10)
-    s = structures.build(name, hem.generate("grid", 25))
+    expected = hem.generate("grid", 25).summary().edges
     s.reserve(10)
     fresh = s.snapshot()
     s.split_face(0, (0, 0, 0))
@@ -191,7 +192,7 @@ def test_what_is_restored_counts_on(name: str) -> None:
 
 def test_the_vertex_to_keep_is_an_end(name: str) -> None:
     s = structures.build(name, hem.generate("torus", 100))
-    edge = int(s.edges()[0])
+    edge = collapsible(s)
     for keep in (-1, -5, 99):
         with pytest.raises(TopologyError, match="not an end"):
             s.collapse_edge(edge, keep)
@@ -213,7 +214,7 @@ def test_nothing_is_left_and_compacted_twice(name: str) -> None:
 
 def test_a_remapping_knows_no_edge_before_the_first(name: str) -> None:
     s = structures.build(name, hem.generate("grid", 25))
-    s.collapse_edge(int(s.edges()[0]))
+    s.collapse_edge(collapsible(s))
     assert s.compact().edges([-1]).tolist() == [-1]
 
 
@@ -353,7 +354,7 @@ def test_what_is_taken_beside_the_elements_is_told(name: str) -> None:
         name, hem.generate("torus", 10_000 if name != "half_edge_objects" else 900)
     )
     bare = sum(s.memory().values())
-    s.collapse_edge(int(s.edges()[0]))
+    s.collapse_edge(collapsible(s))
     s.vertex_faces(5)
     beside = s.memory(room=True)
     assert {it: beside[it] for it in s.memory()} == s.memory()
@@ -374,4 +375,4 @@ def test_the_first_edit_after_reserve_makes_no_room(
 
     monkeypatch.setattr(s, "_make_way", unexpected)
     s.split_face(0, (0, 0, 0))
-    s.collapse_edge(int(s.find_edge(*s.face_vertices(9)[:2].tolist())))
+    s.flip_edge(int(s.edges()[40]))

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
+
 import numpy as np
 import pytest
 
 import hem
 import structures
 from hem.contract import STEPS, Navigable
-from hem.errors import MeshError
+from hem.errors import MeshError, TopologyError
 from tests.structures.test_polygons import CUBE, mixed
 
 WALKED = [name for name, it in structures.REGISTRY.items() if issubclass(it, Navigable)]
@@ -33,8 +35,11 @@ def walked(request: pytest.FixtureRequest) -> Navigable:
     s = structures.build(name, MESHES[mesh]())
     assert isinstance(s, Navigable)
     if mesh in ("torus", "grid"):
-        s.collapse_edge(int(s.edges()[7]))
-        s.remove_face(int(s.faces()[3]))
+        s.collapse_edge(next(e for e in s.edges().tolist() if s.can_collapse_edge(e)))
+        for face in s.faces()[::-1].tolist():
+            with suppress(TopologyError):
+                s.remove_face(face)
+                break
         s.split_edge(int(s.edges()[0]), (0, 0, 0))
     return s
 
