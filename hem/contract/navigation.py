@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from functools import cached_property
 from typing import Any, ClassVar, NamedTuple, Protocol, overload
 
@@ -38,6 +38,9 @@ STEPS = {
     "face_half_edge": Step("face", "half_edge", "a half-edge of the face"),
 }
 """Every step by name."""
+
+
+SOURCES = {it.source for it in STEPS.values()}
 
 
 class StepMethod(Protocol):
@@ -110,6 +113,12 @@ class Navigable(Structure, abstract=True):
         """(n_half_edges,) int64: the handles of all live half-edges, ascending. Cost O(n_e)."""
         return np.flatnonzero(self._alive("half_edge"))
 
+    @cached_property
+    def _walks(self) -> dict[str, Callable[..., int]]:
+        """Every step from many handles."""
+        exists = {it: self.kernels[f"{it.removeprefix('half_')}_exists"] for it in SOURCES}
+        return {name: self._steps[name].walk(exists[it.source]) for name, it in STEPS.items()}
+
     def _walk(self, name: str, handles: Any) -> Any:
         """Any handles for a step, checked."""
         step = STEPS[name]
@@ -120,7 +129,7 @@ class Navigable(Structure, abstract=True):
                 f"{handles!r:.60}"
             )
         rows = np.atleast_1d(asked).astype(np.int64)
-        self._check_handles(step.source, rows)
         found = np.empty(len(rows), HANDLE_TYPES.get(step.target, np.int64))
-        self._steps[name].walk(rows, found, *self.records)
+        if self._walks[name](rows, found, *self.records) < len(rows) or step.source == "vertex":
+            self._check_handles(step.source, rows)
         return found if asked.ndim else int(found[0])

@@ -118,14 +118,15 @@ class Queryable(Scratch, abstract=True):
 
         Cost: that of ``vertex_edges``. Raises MeshError if ``a`` or ``b`` is no vertex.
         """
+        find, address = self._find_edge
         a, b = (_as_integer(it, "find_edge", "vertex") for it in (a, b))
+        found = find(a, b, address) if min(a, b) >= -MOST and max(a, b) < MOST else -1
+        if found >= 0:
+            return found
         self._check_handles("vertex", np.array([a, b]))
-        if a == b:
-            return None
         self._widen()
-        out = self._room(len(self._out["edge"]), HANDLE_TYPES["edge"])  # of this thread alone
-        found = self._find_edge(a, b, out, np.empty(2, np.int64), *self.records)
-        return None if found < 0 else int(found)
+        found = find(a, b, address)
+        return None if found < 0 else found
 
     def _count_edges(self) -> None:
         """Search for the edges where their number is not known yet; operations keep it up."""
@@ -133,8 +134,14 @@ class Queryable(Scratch, abstract=True):
             self.records.counts[EDGES] = len(self.edges())
 
     @cached_property
-    def _find_edge(self) -> Callable[..., int]:
-        return self._uses["vertex_edges"].find_edge(self.kernels["edge_vertices"])
+    def _find_edge(self) -> tuple[Callable[[int, int, Any], int], Any]:
+        """The function, and the address of what it works on."""
+        ends = self._room(2, HANDLE_TYPES["edge"])
+        pinned = self._pin(lambda: (self._out["edge"], ends))
+        exists, edge_vertices = self.kernels["vertex_exists"], self.kernels["edge_vertices"]
+        find = self._uses["vertex_edges"].find_edge(pinned, exists, edge_vertices)
+        self.__dict__["_find_edge_pinned"] = pinned  # lives as long as the address is in use
+        return find, pinned.address
 
     def _ask(self, query: Query, handles: Any) -> NDArray[Any] | Ragged:
         """Any handles for a query, checked; all of them for None."""

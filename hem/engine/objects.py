@@ -60,6 +60,19 @@ class InterpretedUses(Uses):
 
         return ask
 
+    def find_edge(
+        self, pinned: Held, exists: Kernel, edge_vertices: Kernel
+    ) -> Callable[[int, int, Held], int]:
+        """As ``Uses.find_edge``, with scratch of its own per call."""
+        bound = super().find_edge(pinned, exists, edge_vertices)
+
+        def find(a: int, b: int, held: Held) -> int:
+            *things, out, ends = held.things
+            own = [memoryview(np.empty(len(it), it.format).data) for it in (out, ends)]
+            return bound(a, b, Held(*things, *own))
+
+        return find
+
     def work(self, handles: Array, out: Any, records: tuple[Any, ...]) -> NDArray[np.int64]:
         """(n,) int64: how many fields of objects the kernel reads for each handle, exactly."""
         answer, m = interpreted(self._kernel), self._records(*records)

@@ -57,11 +57,14 @@ def step(handle: int, address: int) -> int:
     return found
 
 
-def walk(handles: Array, found: Array, *arrays: Array) -> None:
-    """One step from each of many handles."""
+def walk(handles: Array, found: Array, *arrays: Array) -> int:
+    """One step from each of many handles -> the place of the first that names nothing."""
     m = _RECORDS(*arrays)
     for i in range(len(handles)):
-        found[i] = max(_KERNEL(m, handles[i]), -1)
+        if not _EXISTS(m, handles[i]):
+            return i
+        found[i] = _KERNEL(m, handles[i])
+    return len(handles)
 
 
 def perform(address: int) -> int:
@@ -126,9 +129,14 @@ def run(plan: Any, *arrays: Array) -> int:
     return result
 
 
-def find_edge(a: int, b: int, out: Array, vertices: Array, *arrays: Array) -> int:
-    """The edge at vertex a that ends at b, or -1."""
-    m = _RECORDS(*arrays)
+def find_edge(a: int, b: int, address: int) -> int:
+    """The edge at vertex a that ends at b; -1 where there is none, or the scratch is too small."""
+    arrays = _LOAD(address)
+    m, out, vertices = _RECORDS(*arrays[:-2]), arrays[-2], arrays[-1]
+    if a == b or WIDTH * (m.counts[VALENCE] + 1) > len(out):
+        return -1
+    if not _EXISTS(m, a) or not _EXISTS(m, b):
+        return -1
     for i in range(_KERNEL(m, a, out)):
         _EDGE_VERTICES(m, out[i], vertices)
         if vertices[0] == b or vertices[1] == b:

@@ -47,10 +47,9 @@ class Uses:
         """``step(handle, pinned.address) -> handle``, for a step from one element to another."""
         return self._bound(templates.step, pinned.kind, _EXISTS=exists)
 
-    @cached_property
-    def walk(self) -> Callable[..., None]:
-        """``walk(handles, found, *records)``: a step from each of the handles."""
-        return self._compiled(templates.walk)
+    def walk(self, exists: Kernel) -> Callable[..., int]:
+        """``walk(handles, found, *records) -> end``: a step from each, up to one that is none."""
+        return self._compiled(templates.walk, _EXISTS=exists)
 
     def perform(self, pinned: Any) -> Callable[[int], int]:
         """``perform(pinned.address) -> end``, for an operation.
@@ -102,9 +101,15 @@ class Uses:
         """What it is the uses of."""
         return self._kernel
 
-    def find_edge(self, edge_vertices: Kernel) -> Callable[..., int]:
-        """``find_edge(a, b, out, vertices, *records) -> edge or -1``, from ``vertex_edges``."""
-        return self._compiled(templates.find_edge, _EDGE_VERTICES=edge_vertices)
+    def find_edge(
+        self, pinned: Any, exists: Kernel, edge_vertices: Kernel
+    ) -> Callable[[int, int, int], int]:
+        """``find_edge(a, b, pinned.address) -> edge or -1``, from ``vertex_edges``.
+
+        Pinned are the records, and scratch for the edges at a vertex and the ends of one.
+        """
+        bound = {"_EXISTS": exists, "_EDGE_VERTICES": edge_vertices}
+        return self._bound(templates.find_edge, pinned.kind, **bound)
 
     def work(self, handles: Array, out: Array, records: tuple[Array, ...]) -> NDArray[np.int64]:
         """(n,) int64: how many array elements the kernel reads for each handle, exactly."""
@@ -138,7 +143,7 @@ class Uses:
         names = template.__name__, self._records.__name__, source_of(self._kernel).__name__
         function.__qualname__ = "_".join([*names, _digest(scope.values(), variant)])
         # To let other threads run would take longer than a query.
-        nogil = template not in (templates.single, templates.step, templates.perform)
+        nogil = template in (templates.batch, templates.sweep, templates.walk, templates.run)
         compiled: Callable[..., Any] = njit(cache=True, nogil=nogil)(function)
         return compiled
 
