@@ -47,7 +47,7 @@ class InterpretedUses(Uses):
 
     counted_classes: Sequence[type[Any]] = ()
 
-    def single(self, pinned: Held, exists: Kernel) -> Callable[[int, Held], Array]:
+    def single(self, pinned: Held, exists: Kernel) -> Callable[[int, Any], Array]:
         """As ``Uses.single``; each call has scratch of its own, as Python may switch threads."""
         answer, records = interpreted(self._kernel), self._records
 
@@ -62,7 +62,7 @@ class InterpretedUses(Uses):
 
     def find_edge(
         self, pinned: Held, exists: Kernel, edge_vertices: Kernel
-    ) -> Callable[[int, int, Held], int]:
+    ) -> Callable[[int, int, Any], int]:
         """As ``Uses.find_edge``, with scratch of its own per call."""
         bound = super().find_edge(pinned, exists, edge_vertices)
 

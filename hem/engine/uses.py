@@ -36,7 +36,7 @@ class Uses:
         self._kernel, self._records = kernel, records
         self._by_kind: dict[Any, Callable[..., Any]] = {}
 
-    def single(self, pinned: Any, exists: Kernel) -> Callable[[int, int], Array]:
+    def single(self, pinned: Any, exists: Kernel) -> Callable[[int, Any], Array]:
         """``single(handle, pinned.address) -> neighbors``, for records and an ``out`` as these.
 
         There are none also where ``exists(m, handle)`` is false, and where ``out`` is too small.
@@ -103,7 +103,7 @@ class Uses:
 
     def find_edge(
         self, pinned: Any, exists: Kernel, edge_vertices: Kernel
-    ) -> Callable[[int, int, int], int]:
+    ) -> Callable[[int, int, Any], int]:
         """``find_edge(a, b, pinned.address) -> edge or -1``, from ``vertex_edges``.
 
         Pinned are the records, and scratch for the edges at a vertex and the ends of one.
