@@ -18,6 +18,9 @@ from hem.ragged import Ragged
 MOST = 1 << 63
 """More than any handle."""
 
+ALL: Any = object()
+"""Stands for the handles of all live elements."""
+
 NUMPY_INTEGERS = frozenset(np.dtype(it).type for it in np.typecodes["AllInteger"])
 """What a loop over an array of handles gives."""
 
@@ -28,7 +31,7 @@ class QueryMethod(Protocol):
     @overload
     def __call__(self, handles: int) -> NDArray[Any]: ...
     @overload
-    def __call__(self, handles: NDArray[Any] | list[int] | None = None) -> Ragged: ...
+    def __call__(self, handles: NDArray[Any] | list[int] = ...) -> Ragged: ...
 
 
 def _query_method(query: Query) -> Any:
@@ -40,7 +43,7 @@ def _query_method(query: Query) -> Any:
         single = self._uses[query.name].single(pinned, self.kernels[f"{query.source}_exists"])
         address = pinned.address
 
-        def ask(handles: Any = None) -> Any:
+        def ask(handles: Any = ALL) -> Any:
             # One integer is the way that programs take a million times: no detours here.
             handle = int(handles) if type(handles) in NUMPY_INTEGERS else handles
             if type(handle) is int and -MOST <= handle < MOST:
@@ -144,8 +147,8 @@ class Queryable(Scratch, abstract=True):
         return find, pinned.address
 
     def _ask(self, query: Query, handles: Any) -> NDArray[Any] | Ragged:
-        """Any handles for a query, checked; all of them for None."""
-        if handles is None:
+        """Any handles for a query, checked."""
+        if handles is ALL:
             handles = self.handles(query.source)
         if np.ndim(handles):
             return self._ask_many(query, handles)

@@ -57,7 +57,7 @@ def test_a_claim_of_no_query_is_refused(tmp_path, monkeypatch):
     claims = 'claims = Claims("a paper", {"vertex_rings": "O(1)"})'
     changes = {
         "records_type = HalfEdgeRecords": f"{claims}\n    records_type = HalfEdgeRecords",
-        "import Look, Structure": "import Claims, Look, Structure",
+        "import Look, Navigable": "import Claims, Look, Navigable",
     }
     package = write(tmp_path, "claiming", changes)
     monkeypatch.syspath_prepend(tmp_path)
@@ -71,7 +71,7 @@ def test_a_new_file_is_a_structure(tmp_path, monkeypatch):
         '"-"), True, 4': '"-"), False, 1000',
         "records_type = HalfEdgeRecords": 'claims = Claims("", like="half_edge")\n'
         "    records_type = HalfEdgeRecords",
-        "import Look, Structure": "import Claims, Look, Structure",
+        "import Look, Navigable": "import Claims, Look, Navigable",
     }
     package = write(tmp_path, "found", changes)
     monkeypatch.syspath_prepend(tmp_path)

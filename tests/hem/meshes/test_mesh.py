@@ -16,11 +16,16 @@ SQUARE = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], np.float32)
 HALVES = np.array([[0, 1, 2], [0, 2, 3]], np.int32)
 
 
-def test_arrays_of_the_right_type_are_shared_read_only_and_stay_the_callers() -> None:
+def test_arrays_of_the_right_type_are_shared_if_nobody_can_write_to_them() -> None:
     points, triangles = SQUARE.copy(), HALVES.copy()
     mesh = hem.TriangleMesh(points, triangles)
-    for kept, given in ((mesh.points, points), (mesh.triangles, triangles)):
-        assert np.shares_memory(kept, given)
+    again = hem.TriangleMesh(mesh.points, mesh.triangles)
+    for kept, shared, given in (
+        (mesh.points, again.points, points),
+        (mesh.triangles, again.triangles, triangles),
+    ):
+        assert not np.shares_memory(kept, given)
+        assert np.shares_memory(shared, kept)
         assert given.flags.writeable
         with pytest.raises(ValueError, match="read-only"):
             kept[0, 0] = 1
