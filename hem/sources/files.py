@@ -1,6 +1,7 @@
 """Meshes from files and into files: ply, obj, off and stl read here, all else by pymeshlab."""
 
 import os
+import struct
 import tempfile
 from collections.abc import Callable
 from pathlib import Path
@@ -12,6 +13,7 @@ from hem.arrays import Array, Points
 from hem.errors import MeshError
 from hem.meshes import PolygonMesh, TriangleMesh, repeats_a_corner
 from hem.ragged import Ragged
+from hem.sources.ctm import promised_bytes
 from hem.sources.meshlab import MeshlabError, load_file, save_file
 from hem.sources.ply import read_ply, write_ply
 from hem.sources.repair import repaired
@@ -127,14 +129,26 @@ def _read(file: Path) -> Parts:
     data, extension = _bytes(file), _extension(file)
     if extension in _READERS:
         return _READERS[extension](data)
-    promised = int.from_bytes(data[2:6], "little")
-    if extension == "3ds" and len(data) < max(promised, 6):  # pymeshlab would read the half of it
+    promised = _promised(data, extension)
+    if len(data) < promised:  # pymeshlab would read the half of it
         raise cut_short(f"{len(data):,} of {promised:,} bytes")
     try:
         points, triangles = load_file(file)
     except MeshlabError as error:
         raise MeshError(_words(error)) from error
     return points, uniform(triangles)
+
+
+def _promised(data: bytes, extension: str) -> int:
+    """How many bytes a file says that it has, where it does."""
+    if extension == "3ds":
+        return max(int.from_bytes(data[2:6], "little"), 6)
+    if extension == "ctm":
+        try:
+            return promised_bytes(data)
+        except (struct.error, KeyError) as error:
+            raise cut_short(f"{len(data):,} bytes, and no whole part at its end") from error
+    return 0
 
 
 def _bytes(file: Path) -> bytes:
