@@ -193,8 +193,6 @@ class Editable(Algorithms, abstract=True):
 
     def _renumbered(self, edges: ArrayLike, number: Mapping[str, Array]) -> NDArray[np.int64]:
         recorded = next(it for it in ("half_edge", "edge") if it in number)
-        old, numbers = np.asarray(edges, np.int64), number[recorded]
+        old, numbers = np.asarray(edges, np.int64), np.append(number[recorded], -1)
         known = (old >= 0) & (old < len(numbers))
-        return (
-            np.where(known, numbers[np.where(known, old, 0)], -1) if len(numbers) else 0 * old - 1
-        )
+        return numbers[np.where(known, old, -1)].astype(np.int64)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from importlib import import_module
 from typing import Any
 
@@ -14,14 +15,14 @@ CELLS = {3: "triangle", 4: "quad"}
 """What meshio calls faces by their corners; the others are polygons."""
 
 
-class Convertible:
+class Convertible(ABC):
     """What has points and faces of any size; the way back is in ``hem.meshes.conversions``."""
 
     points: Points
 
+    @abstractmethod
     def face_rows(self) -> Ragged:
         """The corners of every face."""
-        raise NotImplementedError
 
     def to_pyvista(self) -> Any:
         """A ``pyvista.PolyData``. O(n + m). ImportError where PyVista is not installed."""
