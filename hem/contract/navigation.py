@@ -123,7 +123,7 @@ class Navigable(Structure, abstract=True):
         """Any handles for a step, checked."""
         step = STEPS[name]
         asked: Array = np.asarray(handles)
-        if not np.issubdtype(asked.dtype, np.integer) or asked.ndim > 1:
+        if asked.ndim > 1 or (asked.size and not np.issubdtype(asked.dtype, np.integer)):
             raise MeshError(
                 f"{name} takes one {step.source} handle or a 1-D array of integers, not "
                 f"{handles!r:.60}"

@@ -126,3 +126,16 @@ def test_rows_of_different_lengths() -> None:
     assert rows[::-2].to_list() == [[4, 5, 6], []]
     assert repr(rows) == "Ragged(4 rows: [1, 2], [], [3], …)"
     assert hem.Ragged.from_lists([]).to_list() == []
+
+
+def test_nothing_is_asked_of_a_mesh_without_faces(name: str) -> None:
+    for points in ([], [[0, 0, 0]]):
+        s = structures.build(name, hem.TriangleMesh(points, []))
+        assert (s.border_loops(), s.components(), s.is_closed()) == ([], [], True)
+        assert (len(s.triangles()), len(s.edge_array()), len(s.split_all_faces())) == (0, 0, 0)
+        assert s.valence([]).tolist() == []
+        assert s.is_border().tolist() == [False] * len(points)
+        s.reserve(3)
+        s.split_all_faces()
+        s.compact()
+        s.validate()
