@@ -11,6 +11,7 @@ if TYPE_CHECKING:  # what type checkers and editors see; the table below says it
     from hem.edit import Edit as Edit
     from hem.edit import Remapping as Remapping
     from hem.errors import MeshError as MeshError
+    from hem.errors import MeshWarning as MeshWarning
     from hem.errors import NonManifoldError as NonManifoldError
     from hem.errors import TopologyError as TopologyError
     from hem.meshes import MeshSummary as MeshSummary
@@ -27,7 +28,9 @@ if TYPE_CHECKING:  # what type checkers and editors see; the table below says it
     from hem.rendering import mesh_from_render as mesh_from_render
     from hem.sources.families import FAMILIES as FAMILIES
     from hem.sources.families import generate as generate
+    from hem.sources.files import as_mesh as as_mesh
     from hem.sources.files import load as load
+    from hem.sources.files import load_polygons as load_polygons
     from hem.sources.files import save as save
     from hem.sources.samples import SAMPLES as SAMPLES
     from hem.sources.samples import sample as sample
@@ -36,7 +39,7 @@ if TYPE_CHECKING:  # what type checkers and editors see; the table below says it
 
 _NAMES = {
     "hem.edit": ("Edit", "Remapping"),
-    "hem.errors": ("MeshError", "NonManifoldError", "TopologyError"),
+    "hem.errors": ("MeshError", "MeshWarning", "NonManifoldError", "TopologyError"),
     "hem.meshes": (
         "MeshSummary",
         "PolygonMesh",
@@ -48,7 +51,7 @@ _NAMES = {
     "hem.ragged": ("Ragged",),
     "hem.rendering": ("RenderMesh", "Upload", "mesh_from_render"),
     "hem.sources.families": ("FAMILIES", "generate"),
-    "hem.sources.files": ("load", "save"),
+    "hem.sources.files": ("as_mesh", "load", "load_polygons", "save"),
     "hem.sources.samples": ("SAMPLES", "sample"),
     "hem.sources.valence": ("valence_hubs", "valence_mesh"),
 }

@@ -11,8 +11,8 @@ Array = NDArray[Any]
 Bools = NDArray[np.bool_]
 Floats = NDArray[np.float64]
 
-Points = NDArray[np.float32]
-"""(n, 3): positions."""
+Points = NDArray[np.floating[Any]]
+"""(n, 3): positions, float32, and float64 where a mesh was asked to keep them so."""
 
 Triangles = NDArray[np.int32]
 """(n, 3): the corners of triangles, counterclockwise from outside."""

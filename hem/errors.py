@@ -42,5 +42,9 @@ class NonManifoldError(MeshError):
     """The mesh is sound as a list of triangles, but some edge or vertex is not a surface's."""
 
 
+class MeshWarning(UserWarning):
+    """What was given holds more than the mesh that was made of it keeps."""
+
+
 class TopologyError(_ElementsError):
     """The operation would break the surface; the mesh is untouched."""

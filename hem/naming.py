@@ -13,6 +13,6 @@ def look_up(name: str, known: Mapping[str, T], kind: str) -> T:
     """What has this name. Raises MeshError with the names there are, and the nearest one."""
     if name in known:
         return known[name]
-    near = difflib.get_close_matches(name, known, n=1)
+    near = difflib.get_close_matches(str(name), known, n=1)
     meant = f"; did you mean {near[0]!r}?" if near else ""
     raise MeshError(f"no {kind} {name!r} (there are {', '.join(known)}){meant}")

@@ -11,9 +11,13 @@ from importlib import import_module
 from pkgutil import iter_modules
 from typing import Any
 
+import numpy as np
+
 from hem.contract import REFERENCE_TYPES, Described, Structure
 from hem.errors import MeshError
-from hem.meshes import PolygonMesh, TriangleMesh, require_triangles
+from hem.meshes import require_triangles
+from hem.naming import look_up
+from hem.sources import as_mesh
 
 
 def find_described(folders: Iterable[str], package: str) -> dict[str, Any]:
@@ -52,19 +56,27 @@ THESIS = tuple(name for name, it in NAMED.items() if it.thesis)
 __all__ = ["NAMED", "NAMES", "REGISTRY", "THESIS", "Structure", "build"]
 
 
-def build(name: str, mesh: TriangleMesh | PolygonMesh, reference_bytes: int = 4) -> Structure:
+def build(name: str, mesh: Any, reference_bytes: int = 4) -> Structure:
     """The structure called ``name``, holding ``mesh``.
 
-    ``reference_bytes``: 4, or 8 as the thesis counts. Cost O(n_v + n_t). Raises NonManifoldError,
-    with the elements, for what the structure cannot represent, MeshError for polygons where it
-    holds triangles, and for a name or a reference size that does not exist.
+    >>> s = structures.build("half_edge", hem.valence_mesh(6, 12))
+    >>> s.vertex_faces(0)
+    array([0, 5, 4, 3, 2, 1], dtype=int32)
+
+    ``mesh`` is a ``TriangleMesh``, a ``PolygonMesh``, or what else ``hem.as_mesh`` takes: a path,
+    a pair of arrays, the mesh of another library, another structure. Positions are held as float32,
+    see ``TriangleMesh``. ``reference_bytes``: 4, or 8 as the thesis counts.
+
+    Cost O(n_v + n_t). Raises NonManifoldError, with the elements, for what the structure cannot
+    represent, MeshError for polygons where it holds triangles, for what is no mesh, and for a name
+    or a reference size that does not exist.
     """
-    if name not in REGISTRY:
-        raise MeshError(f"no structure is called {name!r}; there are {', '.join(NAMES)}")
+    kind: Any = look_up(name, REGISTRY, "structure")
     if reference_bytes not in REFERENCE_TYPES:
         raise MeshError(f"references take 4 or 8 bytes, not {reference_bytes!r}")
-    kind: Any = REGISTRY[name]
+    given = as_mesh(mesh).astype(np.float32)
     if not kind.holds_polygons:
-        mesh = require_triangles(mesh)
-    built: Structure = kind.build(mesh, reference_bytes)
+        able = " or ".join(it for it in NAMES if REGISTRY[it].holds_polygons)
+        given = require_triangles(given, f"build {able}")
+    built: Structure = kind.build(given, reference_bytes)
     return built

@@ -4,7 +4,7 @@ The data structure itself, its invariants and kernels, stands in ``structures.pa
 polygons in ``structures.polygons``. This is the mesh that users hold: they ask it as any structure,
 and for what polygons need beside::
 
-    mesh = structures.build("plankton", hem.load("house.obj"))     # quads and n-gons stay
+    mesh = structures.build("plankton", "house.obj")     # quads and n-gons stay
     h = mesh.split_face(mesh.face_half_edges(0)[0], mesh.face_half_edges(0)[2])
     mesh.merge_faces(h)                                            # as it was
 

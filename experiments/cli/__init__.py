@@ -121,7 +121,11 @@ def info(
 
     by_name = mesh in hem.SAMPLES and not Path(mesh).exists()
     options: dict[str, Any] = {"repair": True} if repair else {}
-    found = hem.sample(mesh, **options) if by_name else hem.load(mesh, **options)
+    found: hem.PolygonMesh | hem.TriangleMesh
+    if by_name:
+        found = hem.sample(mesh, **options)
+    else:
+        found = hem.load(mesh, repair, triangulate=True) if repair else hem.as_mesh(Path(mesh))
     console.print(f"[bold]{mesh}[/]\n{found.summary()}\n")
     table = _numbers("structure", "bytes", "per vertex", "with 8-byte references", "per vertex")
     refusals = []

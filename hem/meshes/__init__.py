@@ -13,9 +13,9 @@ from hem.meshes.manifold import (
     same_way_edges,
     split_vertices,
 )
-from hem.meshes.polygons import PolygonMesh, repeats_a_corner, require_triangles
+from hem.meshes.polygons import PolygonMesh, repeats_a_corner, require_triangles, simplest
 from hem.meshes.summary import MeshSummary
-from hem.meshes.triangles import TriangleMesh, repeated_corners
+from hem.meshes.triangles import TriangleMesh, repeated_corners, validated_points
 from hem.meshes.weld import clusters
 
 __all__ = [
@@ -32,7 +32,9 @@ __all__ = [
     "require_sound",
     "require_triangles",
     "same_way_edges",
+    "simplest",
     "split_vertices",
     "undirected_edges",
     "used_only",
+    "validated_points",
 ]

@@ -5,29 +5,36 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+from numpy.typing import DTypeLike
 
 from hem.errors import MeshError
 from hem.meshes.convertible import CELLS
-from hem.meshes.polygons import PolygonMesh, require_triangles
+from hem.meshes.polygons import PolygonMesh, simplest
 from hem.meshes.triangles import TriangleMesh
 from hem.ragged import Ragged
 
+_TAKEN = (
+    "a TriangleMesh, a PolygonMesh, a structure, a path, a pair (points, faces), and whatever has "
+    "points or vertices, and faces, triangles or cells, as the meshes of trimesh, PyVista, Open3D "
+    "and meshio have"
+)
 
-def from_trimesh(given: Any) -> TriangleMesh:
+
+def from_trimesh(given: Any, dtype: DTypeLike = np.float32) -> TriangleMesh:
     """The mesh of a ``trimesh.Trimesh``. O(n + m)."""
-    return TriangleMesh(np.asarray(given.vertices), np.asarray(given.faces))
+    return TriangleMesh(np.asarray(given.vertices), np.asarray(given.faces), dtype)
 
 
-def from_pyvista(given: Any) -> TriangleMesh | PolygonMesh:
+def from_pyvista(given: Any, dtype: DTypeLike = np.float32) -> TriangleMesh | PolygonMesh:
     """The mesh of a ``pyvista.PolyData``: of triangles if it has no other faces. O(n + m)."""
     values, rows, at = np.asarray(given.faces), [], 0
     while at < len(values):
         rows.append(values[at + 1 : at + 1 + values[at]])
         at += 1 + int(values[at])
-    return _of_rows(given.points, rows)
+    return _of_rows(given.points, rows, dtype)
 
 
-def from_meshio(given: Any) -> TriangleMesh | PolygonMesh:
+def from_meshio(given: Any, dtype: DTypeLike = np.float32) -> TriangleMesh | PolygonMesh:
     """The faces of a ``meshio.Mesh``: of triangles if it has no others. O(n + m).
 
     Points in the plane come to lie at height 0. Raises MeshError for cells that are no faces, such
@@ -39,9 +46,42 @@ def from_meshio(given: Any) -> TriangleMesh | PolygonMesh:
     points = np.asarray(given.points)
     flat = points.ndim == 2 and points.shape[1] == 2
     rows = [np.asarray(row) for block in given.cells for row in block.data]
-    return _of_rows(np.pad(points, ((0, 0), (0, 1))) if flat else points, rows)
+    return _of_rows(np.pad(points, ((0, 0), (0, 1))) if flat else points, rows, dtype)
 
 
-def _of_rows(points: Any, rows: list[Any]) -> TriangleMesh | PolygonMesh:
-    mesh = PolygonMesh(np.asarray(points), Ragged.from_lists(rows))
-    return require_triangles(mesh) if mesh.most_corners == 3 else mesh
+def from_any(given: Any) -> TriangleMesh | PolygonMesh:
+    """The mesh of whatever has vertices and faces: of triangles if it has no others. O(n + m).
+
+    Positions become float32, but for those of a mesh that keeps them otherwise. Raises MeshError
+    that names what was given, and what is taken.
+    """
+    if isinstance(given, TriangleMesh | PolygonMesh):
+        return simplest(given)
+    for way in ("to_polygons", "to_triangles"):  # a structure
+        if callable(getattr(given, way, None)):
+            return simplest(getattr(given, way)())
+    if isinstance(getattr(given, "cells", None), list):
+        return from_meshio(given)
+    if isinstance(given, tuple | list) and len(given) == 2:
+        return _of_rows(*given)
+    points = _first_of(given, "points", "vertices")
+    faces = None if points is None else _first_of(given, "faces", "triangles")
+    if faces is None:
+        raise MeshError(f"a mesh cannot be made of {type(given)}; taken are {_TAKEN}")
+    if isinstance(faces, np.ndarray) and faces.ndim == 1:
+        return from_pyvista(given)
+    return _of_rows(points, faces)
+
+
+def _first_of(given: Any, *names: str) -> Any:
+    return next((getattr(given, name) for name in names if hasattr(given, name)), None)
+
+
+def _of_rows(points: Any, rows: Any, dtype: DTypeLike = np.float32) -> TriangleMesh | PolygonMesh:
+    try:
+        size = () if isinstance(rows, Ragged) else np.shape(rows)[1:]
+    except ValueError:  # rows of several lengths
+        size = ()
+    if size == (3,):
+        return TriangleMesh(np.asarray(points), np.asarray(rows), dtype)
+    return simplest(PolygonMesh(np.asarray(points), rows, dtype))

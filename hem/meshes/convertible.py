@@ -1,12 +1,13 @@
-"""To the meshes of other libraries, where they are installed: the same points and faces."""
+"""What every mesh is: points and faces that do not change, and that other libraries can have."""
 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from importlib import import_module
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
+from numpy.typing import DTypeLike
 
 from hem.arrays import Points
 from hem.ragged import Ragged
@@ -16,9 +17,27 @@ CELLS = {3: "triangle", 4: "quad"}
 
 
 class Convertible(ABC):
-    """What has points and faces of any size; the way back is in ``hem.meshes.conversions``."""
+    """Points and faces of any size; the way from other libraries is ``hem.meshes.conversions``.
+
+    A subclass is made of its attributes, in their order, and the type of its positions.
+    """
 
     points: Points
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        if name in self.__dict__:
+            raise AttributeError(f"the {name} of a mesh do not change; make another mesh of them")
+        super().__setattr__(name, value)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Copied and unpickled as it is made, so that the copy is read-only, too."""
+        return type(self), (*vars(self).values(), self.points.dtype)
+
+    def astype(self, dtype: DTypeLike) -> Self:
+        """The mesh with positions of this type, float32 or float64: itself if they are. O(n)."""
+        make: Any = type(self)
+        same = self.points.dtype == np.dtype(dtype)
+        return self if same else make(*vars(self).values(), dtype)
 
     @abstractmethod
     def face_rows(self) -> Ragged:

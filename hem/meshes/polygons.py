@@ -6,20 +6,20 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike, DTypeLike, NDArray
 
-from hem.arrays import Bools, Indices, Points
+from hem.arrays import Bools, Indices
 from hem.errors import MeshError
 from hem.meshes.convertible import Convertible
 from hem.meshes.summary import MeshSummary, summarize
-from hem.meshes.triangles import TriangleMesh, own, read_only
+from hem.meshes.triangles import TriangleMesh, own, read_only, validated_points
 from hem.ragged import Ragged
 
 
 class PolygonMesh(Convertible):
     """Points and faces of any number of corners between them, validated once.
 
-    points   (n, 3) float32, finite, in the units of the source
+    points   (n, 3) as those of a `TriangleMesh`
     faces    a row of corners per face: indices into `points`, counterclockwise from outside, three
              or more, all different
 
@@ -27,16 +27,16 @@ class PolygonMesh(Convertible):
     points, faces of fewer than three corners, corners out of range or repeated.
     """
 
-    points: Points
     faces: Ragged
 
-    def __init__(self, points: ArrayLike, faces: Ragged | Sequence[Sequence[int]]) -> None:
-        self.points = TriangleMesh(points, np.zeros((0, 3), np.int32)).points
+    def __init__(
+        self,
+        points: ArrayLike,
+        faces: Ragged | Sequence[Sequence[int]],
+        dtype: DTypeLike = np.float32,
+    ) -> None:
+        self.points = read_only(validated_points(points, dtype))
         self.faces = _validated(faces, len(self.points))
-
-    def __reduce__(self) -> tuple[Any, ...]:
-        """Copied and unpickled as it is made, so that the copy is read-only, too."""
-        return type(self), (self.points, self.faces)
 
     def __repr__(self) -> str:
         return (
@@ -73,22 +73,31 @@ class PolygonMesh(Convertible):
         first = np.repeat(offsets[:-1], cuts)
         step = np.arange(len(first)) - np.repeat(np.cumsum(cuts) - cuts, cuts)
         rows = np.stack([first, first + step + 1, first + step + 2], axis=1)
-        return TriangleMesh(self.points, corners[rows])
+        return TriangleMesh(self.points, corners[rows], self.points.dtype)
 
 
-def require_triangles(mesh: TriangleMesh | PolygonMesh) -> TriangleMesh:
-    """The mesh as triangles, if it has no other faces; else a MeshError that says what to do."""
+def simplest(mesh: TriangleMesh | PolygonMesh) -> TriangleMesh | PolygonMesh:
+    """The mesh as triangles, if it has no other faces. O(n + m)."""
+    if isinstance(mesh, TriangleMesh) or mesh.most_corners > 3:
+        return mesh
+    return mesh.triangulated()
+
+
+def require_triangles(mesh: TriangleMesh | PolygonMesh, or_else: str) -> TriangleMesh:
+    """The mesh as triangles, if it has no other faces; else a MeshError that says what to do.
+
+    `or_else`: what takes the other faces as they are.
+    """
+    mesh = simplest(mesh)
     if isinstance(mesh, TriangleMesh):
         return mesh
     larger = np.flatnonzero(mesh.faces.counts > 3)
-    if len(larger):
-        raise MeshError(
-            f"only triangles can be held, and {len(larger):,} of {len(mesh.faces):,} faces have "
-            "more corners; use plankton, or cut them: hem.load(path, triangulate=True), or "
-            "mesh.triangulated()",
-            faces=larger,
-        )
-    return TriangleMesh(mesh.points, mesh.faces.values.reshape(-1, 3))
+    raise MeshError(
+        f"only triangles can be held, and {len(larger):,} of {len(mesh.faces):,} faces have more "
+        f"corners; {or_else}, or cut them: hem.load(path, triangulate=True), or "
+        "mesh.triangulated()",
+        faces=larger,
+    )
 
 
 def repeats_a_corner(faces: Ragged) -> Bools:

@@ -1,12 +1,13 @@
 """A mesh as points and triangles: what every source gives and every structure is built from."""
 
+import warnings
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike, DTypeLike, NDArray
 
-from hem.arrays import Bools, Floats, Points, Triangles
-from hem.errors import MeshError
+from hem.arrays import Bools, Floats, Indices, Points, Triangles
+from hem.errors import MeshError, MeshWarning
 from hem.meshes import measures
 from hem.meshes.convertible import Convertible, library
 from hem.meshes.edges import undirected_edges
@@ -15,38 +16,39 @@ from hem.meshes.weld import clusters
 from hem.ragged import Ragged
 
 _MOST_ELEMENTS = np.iinfo(np.int32).max
+_MIXED = np.sqrt([2.0, 3.0, 5.0])
+_NOISE = 1e-12
+"""What computing positions in float64 leaves between equal ones, of the largest coordinate."""
 
 
 class TriangleMesh(Convertible):
     """Points and the triangles between them, validated once and read-only from then on.
 
-    points     (n, 3) float32, finite, in the units of the source
+    points     (n, 3) float32, or float64 if `dtype` says so; finite, in the units of the source
     triangles  (m, 3) int32, indices into `points`, counterclockwise from outside, three different
                corners each
 
     Vertices that no triangle uses are legal, and so is the empty mesh. What can still be written
     to is copied; read-only arrays of the right type and order are shared.
 
-    Cost: O(n + m). Raises MeshError with the offending rows: wrong shapes, coordinates that are
-    not finite (also: too large for float32), indices that are no integers, out of range or beyond
-    int32, repeated corners.
+    >>> mesh = hem.TriangleMesh([(0, 0, 0), (1, 0, 0), (1, 1, 0)], [(0, 1, 2)])
+    >>> mesh.area()
+    0.5
+
+    Cost: O(n + m), and O(n log n) where positions are rounded: a MeshWarning names the rows of
+    different ones that become equal, as far from zero they do. Raises MeshError with the offending
+    rows: wrong shapes, coordinates that are not finite (also: too large for float32), indices that
+    are no integers, out of range or beyond int32, repeated corners.
     """
 
     points: Points
     triangles: Triangles
 
-    def __init__(self, points: ArrayLike, triangles: ArrayLike) -> None:
-        self.points = read_only(_validated_points(points))
+    def __init__(
+        self, points: ArrayLike, triangles: ArrayLike, dtype: DTypeLike = np.float32
+    ) -> None:
+        self.points = read_only(validated_points(points, dtype))
         self.triangles = read_only(_validated_triangles(triangles, len(self.points)))
-
-    def __setattr__(self, name: str, value: Any) -> None:
-        if name in self.__dict__:
-            raise AttributeError(f"the {name} of a mesh do not change; make another mesh of them")
-        super().__setattr__(name, value)
-
-    def __reduce__(self) -> tuple[Any, ...]:
-        """Copied and unpickled as it is made, so that the copy is read-only, too."""
-        return type(self), (self.points, self.triangles)
 
     def __repr__(self) -> str:
         return f"TriangleMesh({len(self.points):,} vertices, {len(self.triangles):,} faces)"
@@ -66,7 +68,7 @@ class TriangleMesh(Convertible):
             raise MeshError(f"a weld tolerance is finite and not negative, not {tolerance}")
         first, cluster = clusters(self.points, tolerance)
         triangles = cluster[self.triangles]
-        return TriangleMesh(self.points[first], triangles[~repeated_corners(triangles)])
+        return self._with(self.points[first], triangles[~repeated_corners(triangles)])
 
     def face_rows(self) -> Ragged:
         """The corners of every face."""
@@ -81,7 +83,10 @@ class TriangleMesh(Convertible):
 
     def flipped(self) -> "TriangleMesh":
         """The same faces seen from the other side: corners (a, b, c) become (a, c, b). O(m)."""
-        return TriangleMesh(self.points, self.triangles[:, [0, 2, 1]])
+        return self._with(self.points, self.triangles[:, [0, 2, 1]])
+
+    def _with(self, points: Points, triangles: Triangles) -> "TriangleMesh":
+        return TriangleMesh(points, triangles, points.dtype)
 
     @property
     def bounds(self) -> tuple[Floats, Floats]:
@@ -142,17 +147,38 @@ def repeated_corners(triangles: Triangles) -> Bools:
     return repeated
 
 
-def _validated_points(points: ArrayLike) -> Points:
+def validated_points(points: ArrayLike, dtype: DTypeLike, source: str = "") -> Points:
+    """The positions (n, 3) as this type; `source` is whose the warning says that they are."""
     given = _rows_of_three(points, "points", kinds="fiu")
+    if np.dtype(dtype) not in (np.float32, np.float64):
+        raise MeshError(f"positions are kept as float32 or float64, not as {np.dtype(dtype)}")
     with np.errstate(over="ignore"):
-        kept = own(given, np.float32)
+        kept = own(given, dtype)
     if not np.isfinite(kept).all():
         rows = np.flatnonzero(~np.isfinite(kept).all(axis=1))
-        why = (
-            "are not finite" if not np.isfinite(given[rows]).all() else "are too large for float32"
-        )
-        raise MeshError(f"coordinates {why}; remove or mend these points", rows=rows)
+        why = "not finite" if not np.isfinite(given[rows]).all() else f"too large for {kept.dtype}"
+        raise MeshError(f"coordinates are {why}; remove or mend these points", rows=rows)
+    fallen = _fallen_together(given, kept)
+    if len(fallen):
+        pairs = MeshError(f"{source}different positions are equal as {kept.dtype}", rows=fallen)
+        hint = "keep them apart with dtype=np.float64, or move the mesh to the origin"
+        warnings.warn(f"{pairs}; {hint}", MeshWarning, stacklevel=3)
     return kept
+
+
+def _fallen_together(given: NDArray[Any], kept: Points) -> Indices:
+    """(k, 2): the first row at a position, and another one that was rounded to it. O(n log n)."""
+    none = np.zeros((0, 2), np.int64)
+    if np.array_equal(given, kept):
+        return none
+    sums = np.sort(measures.dot(kept.astype(np.float64), _MIXED))
+    if (sums[1:] != sums[:-1]).all():  # equal positions have equal sums, and others seldom
+        return none
+    first, cluster = clusters(kept, 0.0)
+    same = first[cluster]
+    apart = np.abs(given.astype(np.float64) - given[same]).max(axis=1)
+    rows = np.flatnonzero(apart > _NOISE * np.abs(kept).max())
+    return np.stack([same[rows], rows], axis=1)
 
 
 def _validated_triangles(triangles: ArrayLike, n: int) -> Triangles:
@@ -171,7 +197,7 @@ def _unit_or_zero(vectors: Floats) -> Floats:
     return np.divide(vectors, lengths, out=np.zeros_like(vectors), where=lengths > 0)
 
 
-def own(given: NDArray[Any], dtype: type[np.generic]) -> NDArray[Any]:
+def own(given: NDArray[Any], dtype: DTypeLike) -> NDArray[Any]:
     """The array as this type, and where the caller could still write to it a copy of it."""
     kept = np.ascontiguousarray(given, dtype)
     return kept.copy() if given.flags.writeable and np.shares_memory(kept, given) else kept

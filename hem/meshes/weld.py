@@ -23,7 +23,7 @@ def clusters(points: Points, tolerance: float) -> Clusters:
 
 
 def _equal(points: Points) -> Clusters:
-    whole = (points + np.float32(0)).view("V12").ravel()  # -0.0 + 0.0 is 0.0
+    whole = (points + points.dtype.type(0)).view(f"V{3 * points.itemsize}").ravel()  # no -0.0
     _, first, label = np.unique(whole, return_index=True, return_inverse=True)
     return _in_order_of_first(first, label)
 

@@ -2,7 +2,7 @@
 
 from hem.sources.cache import cache_folder
 from hem.sources.families import FAMILIES, Family, generate
-from hem.sources.files import encoded, load, save
+from hem.sources.files import as_mesh, encoded, load, load_polygons, save
 from hem.sources.samples import SAMPLES, Sample, sample
 from hem.sources.valence import valence_hubs, valence_mesh
 
@@ -11,10 +11,12 @@ __all__ = [
     "SAMPLES",
     "Family",
     "Sample",
+    "as_mesh",
     "cache_folder",
     "encoded",
     "generate",
     "load",
+    "load_polygons",
     "sample",
     "save",
     "valence_hubs",

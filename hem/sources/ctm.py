@@ -10,6 +10,13 @@ _GRID = 48  # of MG2: precisions, bounds and divisions
 _COORDINATES, _CORNERS, _TEXTURE, _ATTRIBUTE = 12, 12, 8, 16  # bytes of RAW, each
 
 
+def besides(data: bytes) -> list[str]:
+    """What the file has beside points and faces, by its head."""
+    _, _, textures, _, flags = struct.unpack_from("<5I", data, 12)
+    found = {"texture coordinates": textures, "normals": flags & 1}
+    return [name for name, count in found.items() if count]
+
+
 def promised_bytes(data: bytes) -> int:
     """The bytes of the whole file that begins like this. struct.error where its head is cut."""
     method = data[8:12].rstrip(b"\0")

@@ -1,19 +1,31 @@
 """Meshes from files and into files: ply, obj, off and stl read here, all else by pymeshlab."""
 
 import os
+import re
 import struct
 import tempfile
-from collections.abc import Callable
+import warnings
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
-from typing import Literal, overload
+from typing import Any
 
 import numpy as np
+from numpy.typing import DTypeLike
 
 from hem.arrays import Array, Points
-from hem.errors import MeshError
-from hem.meshes import PolygonMesh, TriangleMesh, repeats_a_corner
+from hem.errors import MeshError, MeshWarning
+from hem.meshes import (
+    PolygonMesh,
+    TriangleMesh,
+    repeats_a_corner,
+    require_triangles,
+    simplest,
+    validated_points,
+)
+from hem.meshes.conversions import from_any
 from hem.ragged import Ragged
-from hem.sources.ctm import promised_bytes
+from hem.sources.ctm import besides, promised_bytes
 from hem.sources.meshlab import MeshlabError, load_file, save_file
 from hem.sources.ply import read_ply, write_ply
 from hem.sources.repair import repaired
@@ -37,79 +49,110 @@ _READERS: dict[str, Callable[[bytes], Parts]] = {
 _WRITERS: dict[str, Callable[[Points, Ragged], bytes]] = {
     "ply": write_ply, "obj": write_obj, "off": write_off, "stl": write_stl,
 }  # fmt: skip
+_BESIDE = {
+    "texture coordinates": rb'"TEXCOORD|\bTextureCoordinate\b',
+    "normals": rb'"NORMAL"|<Normal\b|\bNormal\s*\{',
+}
+"""What text that pymeshlab reads has beside; it does not tell, and makes normals of its own."""
+
 _SAYS_ONLY_WHERE = ("Unable to open file", "Error encountered while loading file", "File:", '"')
 
 
-@overload
 def load(
-    path: str | os.PathLike[str], repair: bool = False, *, triangulate: Literal[True]
-) -> TriangleMesh: ...
+    path: str | os.PathLike[str],
+    repair: bool = False,
+    triangulate: bool = False,
+    dtype: DTypeLike = np.float32,
+) -> TriangleMesh:
+    """The triangles of a file: ply, obj, off, stl, and of any other format that pymeshlab reads.
 
+    >>> hem.save(hem.valence_mesh(6, 12), "model.ply")
+    >>> hem.load("model.ply")
+    TriangleMesh(8 vertices, 12 faces)
 
-@overload
-def load(
-    path: str | os.PathLike[str], repair: bool = False, triangulate: bool = False
-) -> TriangleMesh | PolygonMesh: ...
-
-
-def load(
-    path: str | os.PathLike[str], repair: bool = False, triangulate: bool = False
-) -> TriangleMesh | PolygonMesh:
-    """The mesh of a file: ply, obj, off, stl, and of any other format that pymeshlab reads.
-
-    A `PolygonMesh` if it has faces of more than three corners (ply, obj and off), which only some
-    structures hold; with `triangulate`, or in other formats, these are cut into triangles.
+    Faces of more than three corners are a MeshError: `load_polygons` keeps them, and with
+    `triangulate` they are cut, as pymeshlab does with those of all formats but ply, obj and off.
 
     Vertices keep their order, also those without faces and those of one position, but for STL,
     which has no shared vertices: there the ones of one position become one. Several meshes in one
     file become one mesh. With `repair`, elements that cannot be used (corners out of range or
     repeated, coordinates that are not finite) are left out, and pymeshlab's repair filters make
-    the mesh a surface (hem.sources.repair).
+    the mesh a surface (hem.sources.repair). `dtype` is that of the positions, see `TriangleMesh`.
 
-    O(bytes). Raises MeshError, naming the file and what is wrong, for one that is missing, a
-    folder, empty, cut short, of an unknown format, no mesh, or without faces, and without
-    `repair` for one with elements that cannot be used; and where pymeshlab is needed, but missing.
+    O(bytes). A MeshWarning names normals, texture coordinates and whatever else the file has and a
+    mesh does not. Raises MeshError, naming the file and what is wrong, for one that is missing, a
+    folder, empty, cut short, of an unknown format, no mesh, or without faces, and without `repair`
+    for one with elements that cannot be used; and where pymeshlab is needed, but missing.
     """
-    file = Path(path).absolute()
-    try:
-        points, faces = _read(file)
-        if repair:
-            points, faces = _usable(points, faces)
-        mesh = _mesh(points, faces)
-        if isinstance(mesh, PolygonMesh) and not (triangulate or repair):
-            return mesh
-        triangles = mesh.triangulated() if isinstance(mesh, PolygonMesh) else mesh
-        if not len(triangles.triangles):
-            raise MeshError(f"there are no triangles in it, only {len(points):,} points")
-        return repaired(triangles) if repair else triangles
-    except MeshError as error:
-        raise type(error)(f"cannot load {file}: {error.reason}", **error.elements) from error
+    mesh, dropped = read_triangles(path, repair, triangulate, dtype)
+    _tell(path, dropped)
+    return mesh
 
 
-def save(mesh: TriangleMesh | PolygonMesh, path: str | os.PathLike[str]) -> None:
-    """Write the mesh in the format that the path's extension names; replaces what is there.
+def load_polygons(path: str | os.PathLike[str], dtype: DTypeLike = np.float32) -> PolygonMesh:
+    """The faces of a file, of any number of corners where it is ply, obj or off; else see `load`.
 
-    ply, off and obj keep every float32, every vertex and every polygon; 3ds keeps no polygons, and
-    stl (binary) only triangles and vertices that have faces; text formats such as wrl, dae and x3d
-    round the coordinates. A broken run never leaves half a file. Raises MeshError where the format
-    is unknown, or keeps no polygons, or the folder cannot be written.
+    Only some structures hold such a mesh; `triangulated()` cuts it.
     """
-    file = Path(path).absolute()
-    if not file.parent.is_dir():
-        raise MeshError(f"cannot save {file}: there is no folder {file.parent}")
-    try:
-        write_whole(file, encoded(mesh, _extension(file)))
-    except MeshError as error:
-        raise MeshError(f"cannot save {file}: {error.reason}") from error
-    except OSError as error:
-        raise MeshError(f"cannot save {file}: {error.strerror or error}") from error
+    with _about("load", path) as file:
+        mesh, dropped = _read_mesh(file, False, dtype)
+        if not isinstance(mesh, PolygonMesh):
+            mesh = PolygonMesh(mesh.points, mesh.face_rows(), dtype)
+    _tell(path, dropped)
+    return mesh
+
+
+def as_mesh(given: Any) -> TriangleMesh | PolygonMesh:
+    """The mesh of a path, a structure, a pair of arrays, or whatever has vertices and faces.
+
+    >>> hem.as_mesh(([(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2)]))
+    TriangleMesh(3 vertices, 1 faces)
+
+    Of triangles if it has no other faces. O(n + m). Raises MeshError that names what was given, and
+    what is taken.
+    """
+    if isinstance(given, str | os.PathLike):
+        return simplest(load_polygons(given))
+    return from_any(given)
+
+
+def save(mesh: Any, path: str | os.PathLike[str]) -> None:
+    """Write a mesh, or what `as_mesh` takes, in the format that the path's extension names.
+
+    Replaces what is there. ply, off and obj keep every bit, every vertex and every polygon; the
+    others round to float32. 3ds keeps no polygons, and stl (binary) only triangles and vertices
+    that have faces; text formats such as wrl, dae and x3d round the coordinates once more. A broken
+    run never leaves half a file. Raises MeshError where the format is unknown, or keeps no
+    polygons, or the folder cannot be written.
+    """
+    with _about("save", path) as file:
+        if not file.parent.is_dir():
+            raise MeshError(f"there is no folder {file.parent}")
+        content = encoded(as_mesh(mesh), _extension(file))
+        try:
+            write_whole(file, content)
+        except OSError as error:
+            raise MeshError(error.strerror or str(error)) from error
+
+
+def read_triangles(
+    path: str | os.PathLike[str], repair: bool, triangulate: bool, dtype: DTypeLike = np.float32
+) -> tuple[TriangleMesh, Iterable[str]]:
+    """What `load` gives, and what the file has besides."""
+    with _about("load", path) as file:
+        mesh, dropped = _read_mesh(file, repair, dtype)
+        if triangulate and isinstance(mesh, PolygonMesh):
+            mesh = mesh.triangulated()
+        triangles = require_triangles(mesh, "keep them with hem.load_polygons(path)")
+        return repaired(triangles) if repair else triangles, dropped
 
 
 def encoded(mesh: TriangleMesh | PolygonMesh, extension: str) -> bytes:
     """The content of a file of this extension (lower case, no dot) that holds the mesh."""
+    if extension not in ("ply", "obj", "off"):
+        mesh = mesh.astype(np.float32)
     if extension in _WRITERS:
-        faces = mesh.faces if isinstance(mesh, PolygonMesh) else uniform(mesh.triangles)
-        return _WRITERS[extension](mesh.points, faces)
+        return _WRITERS[extension](mesh.points, mesh.face_rows())
     if isinstance(mesh, PolygonMesh):
         raise MeshError("polygons are kept by ply, obj and off; or take mesh.triangulated()")
     with tempfile.TemporaryDirectory(prefix="hem-") as folder:
@@ -136,7 +179,18 @@ def _read(file: Path) -> Parts:
         points, triangles = load_file(file)
     except MeshlabError as error:
         raise MeshError(_words(error)) from error
-    return points, uniform(triangles)
+    return Parts(points, uniform(triangles), _besides(data, extension))
+
+
+def _besides(data: bytes, extension: str) -> list[str]:
+    """What a file has beside points and faces, by what its format writes for that."""
+    if extension == "ctm":
+        return besides(data)
+    if extension == "3ds":  # a part's number, its bytes, and how many coordinates it has
+        parts = re.findall(rb"(?s)\x40\x41(.{4})(..)", data)
+        sizes = [[int.from_bytes(number, "little") for number in part] for part in parts]
+        return ["texture coordinates"] * any(size == 8 + 8 * count for size, count in sizes)
+    return [name for name, words in _BESIDE.items() if re.search(words, data)]
 
 
 def _promised(data: bytes, extension: str) -> int:
@@ -167,20 +221,44 @@ def _bytes(file: Path) -> bytes:
     return data
 
 
-def _mesh(points: Array, faces: Ragged) -> TriangleMesh | PolygonMesh:
+def _read_mesh(
+    file: Path, repair: bool, dtype: DTypeLike
+) -> tuple[TriangleMesh | PolygonMesh, Iterable[str]]:
+    points, faces, dropped = _read(file)
+    if repair:
+        points, faces = _usable(points, faces, dtype)
+    if not len(faces):
+        raise MeshError(f"there are no triangles in it, only {len(points):,} points")
     try:
+        points = validated_points(points, dtype, f"{file}: ")
         if (faces.counts == 3).all():
-            return TriangleMesh(points, faces.values.reshape(-1, 3))
-        return PolygonMesh(points, faces)
+            return TriangleMesh(points, faces.values.reshape(-1, 3), dtype), dropped
+        return PolygonMesh(points, faces, dtype), dropped
     except MeshError as error:
-        hint = f"{error.reason}; or leave them out with repair=True"
+        hint = f"{error.reason}; or leave them out with hem.load(path, repair=True)"
         raise MeshError(hint, **error.elements) from error
 
 
-def _usable(points: Array, faces: Ragged) -> Parts:
+@contextmanager
+def _about(task: str, path: str | os.PathLike[str]) -> Iterator[Path]:
+    """The file; every MeshError names it, and what could not be done with it."""
+    file = Path(path).absolute()
+    try:
+        yield file
+    except MeshError as error:
+        raise type(error)(f"cannot {task} {file}: {error.reason}", **error.elements) from error
+
+
+def _tell(path: str | os.PathLike[str], dropped: Iterable[str]) -> None:
+    if names := ", ".join(dropped):
+        message = f"{path} has {names}, which are dropped: a mesh is positions and faces"
+        warnings.warn(message, MeshWarning, stacklevel=3)
+
+
+def _usable(points: Array, faces: Ragged, dtype: DTypeLike) -> tuple[Array, Ragged]:
     """Without points that are not finite, and faces that have such corners or are no polygons."""
     with np.errstate(over="ignore"):
-        finite = np.all(np.isfinite(np.asarray(points, np.float32)), axis=1)
+        finite = np.all(np.isfinite(np.asarray(points, dtype)), axis=1)
     corners, counts = faces.values, faces.counts
     inside = (corners >= 0) & (corners < len(points))
     inside[inside] = finite[corners[inside]]

@@ -14,6 +14,8 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from hem.arrays import Indices
 from hem.errors import MeshError
 from hem.meshes import TriangleMesh
@@ -54,12 +56,14 @@ def apply(
     """
     given = {"name": filter_name, "mesh": _arrays(mesh)}
     try:
-        made = _WORKER.ask("apply", **given, percent=percent or {}, parameters=parameters)
+        points, triangles = _WORKER.ask(
+            "apply", **given, percent=percent or {}, parameters=parameters
+        )
     except MeshlabError as error:
         raise MeshError(
             f"pymeshlab's {filter_name} failed: {' '.join(error.reason.split())}"
         ) from error
-    return TriangleMesh(*made)
+    return TriangleMesh(points, triangles, mesh.points.dtype if mesh else np.float32)
 
 
 def intersecting_faces(mesh: TriangleMesh) -> Indices:

@@ -20,6 +20,12 @@ _TYPES = {
 }  # fmt: skip
 _ORDERS = {"ascii": "", "binary_little_endian": "<", "binary_big_endian": ">"}
 _CORNERS = ("vertex_indices", "vertex_index")
+_BESIDE = {
+    **dict.fromkeys(("nx", "ny", "nz"), "normals"),
+    **dict.fromkeys(("s", "t", "u", "v", "texture_u", "texture_v"), "texture coordinates"),
+    **dict.fromkeys(("texcoord", "texnumber"), "texture coordinates"),
+    **dict.fromkeys(("red", "green", "blue", "alpha"), "colors"),
+}
 
 
 class _Property(NamedTuple):
@@ -35,7 +41,7 @@ class _Element(NamedTuple):
 
 
 def read_ply(data: bytes) -> Parts:
-    """Points and faces of a ply file; all that it holds besides is passed over."""
+    """Points and faces of a ply file."""
     order, elements, begin = _header(data)
     numbers = _Numbers(data[begin:], order)
     try:
@@ -48,18 +54,26 @@ def read_ply(data: bytes) -> Parts:
         raise MeshError(f"its head names no {error} of vertices") from error
     faces = found.get("face", {})
     rows: Any = next((faces[name] for name in _CORNERS if name in faces), [])
-    return points, as_ragged(rows) if isinstance(rows, list) else uniform(rows)
+    dropped = (
+        _BESIDE.get(name, name) if element in ("vertex", "face") else element
+        for element, columns in found.items()
+        for name in columns
+        if name not in (*"xyz", *_CORNERS)
+    )
+    corners = as_ragged(rows) if isinstance(rows, list) else uniform(rows)
+    return Parts(points, corners, dict.fromkeys(dropped))
 
 
 def write_ply(points: Points, faces: Ragged) -> bytes:
-    """Binary, with every bit of float32. MeshError for faces of more than 255 corners."""
+    """Binary, with every bit. Raises MeshError for faces of more than 255 corners."""
     counts = faces.counts
     if counts.max(initial=0) > 255:
         raise MeshError("faces of more than 255 corners are kept by obj and off")
+    kind = "double" if points.dtype == np.float64 else "float"
+    axes = "".join(f"property {kind} {axis}\n" for axis in "xyz")
     head = (
-        f"ply\nformat binary_little_endian 1.0\nelement vertex {len(points)}\nproperty float x\n"
-        f"property float y\nproperty float z\nelement face {len(faces)}\n"
-        "property list uchar int vertex_indices\nend_header\n"
+        f"ply\nformat binary_little_endian 1.0\nelement vertex {len(points)}\n{axes}"
+        f"element face {len(faces)}\nproperty list uchar int vertex_indices\nend_header\n"
     )
     if (counts == 3).all():
         body = np.zeros(len(faces), [("count", "u1"), ("corners", "<i4", 3)])
@@ -67,7 +81,7 @@ def write_ply(points: Points, faces: Ragged) -> bytes:
         rows = body.tobytes()
     else:
         rows = b"".join(struct.pack(f"<B{len(row)}i", len(row), *row.tolist()) for row in faces)
-    return head.encode() + points.astype("<f4").tobytes() + rows
+    return head.encode() + points.astype(points.dtype.newbyteorder("<")).tobytes() + rows
 
 
 def _header(data: bytes) -> tuple[str, list[_Element], int]:

@@ -9,7 +9,7 @@ from typing import Any
 from hem.errors import MeshError
 from hem.meshes import TriangleMesh
 from hem.naming import look_up
-from hem.sources.files import load
+from hem.sources.files import read_triangles
 from hem.sources.teapot import teapot
 
 
@@ -33,7 +33,7 @@ def sample(name: str, **options: Any) -> TriangleMesh:
 
 def _from_file(name: str) -> Callable[..., TriangleMesh]:
     def make(repair: bool = False) -> TriangleMesh:
-        return load(_sample_file(name), repair=repair, triangulate=True)
+        return read_triangles(_sample_file(name), repair, triangulate=True)[0]
 
     return make
 

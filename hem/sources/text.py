@@ -5,8 +5,9 @@ handed on, for the mesh to refuse by their rows.
 """
 
 import re
+from collections.abc import Iterable
 from itertools import chain, pairwise
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -15,8 +16,16 @@ from hem.errors import MeshError
 from hem.meshes import clusters
 from hem.ragged import Ragged
 
-Parts = tuple[Array, Ragged]
-"""(n, 3) points, and a row of corners per face."""
+_OBJ_BESIDE = {b"vt": "texture coordinates", b"vn": "normals"}
+_OFF_BESIDE = {b"ST": "texture coordinates", b"C": "colors", b"N": "normals"}
+
+
+class Parts(NamedTuple):
+    """What a file holds: (n, 3) points, a row of corners per face, and names for all else."""
+
+    points: Array
+    faces: Ragged
+    dropped: Iterable[str] = ()
 
 
 def as_ragged(rows: list[list[int]]) -> Ragged:
@@ -44,14 +53,19 @@ def read_obj(data: bytes) -> Parts:
     """
     points: list[list[float]] = []
     faces: list[list[int]] = []
+    dropped: dict[str, None] = {}
     for line in re.sub(rb"\\\r?\n", b" ", data).splitlines():
         kind, *words = line.partition(b"#")[0].split() or [b""]
         try:
             if kind == b"v":
                 points.append([float(word) for word in words[:3]])
+                if len(words) >= 6:
+                    dropped["colors"] = None
             elif kind == b"f":
                 corners = [int(word.partition(b"/")[0]) for word in words]
                 faces.append([v - 1 if v >= 0 else max(len(points) + v, -1) for v in corners])
+            elif kind in _OBJ_BESIDE:
+                dropped[_OBJ_BESIDE[kind]] = None
         except ValueError as error:
             raise MeshError(f"a line is no {kind.decode()} line: {line[:60]!r}") from error
     for name, found in ((b"Vertices", points), (b"Faces", faces)):
@@ -60,14 +74,18 @@ def read_obj(data: bytes) -> Parts:
             raise cut_short(f"{len(found):,} of {int(said[1]):,} {name.decode().lower()}")
     if faces and len(faces[-1]) < 3:
         raise cut_short("a last line without all its numbers")
-    return _rows_of_three(points), as_ragged(faces)
+    return Parts(_rows_of_three(points), as_ragged(faces), dropped)
 
 
 def read_off(data: bytes) -> Parts:
-    """Points and faces of an off file, without the colors and normals that it may have besides."""
+    """Points and faces of an off file."""
     lines = [line.split() for raw in data.splitlines() if (line := raw.partition(b"#")[0].strip())]
     if len(lines) < 2 or not lines[0][0].endswith(b"OFF"):
         raise MeshError("it does not begin as off files do, with OFF and how much it holds")
+    kind = lines[0][0].removesuffix(b"OFF")
+    if re.search(rb"[4n]", kind):
+        raise MeshError(f"its points are not of three dimensions: {lines[0][0].decode()!r}")
+    dropped = [words for letter, words in _OFF_BESIDE.items() if letter in kind]
     counts, *elements = lines[1:] if len(lines[0]) == 1 else [lines[0][1:], *lines[1:]]
     try:
         n, m = int(counts[0]), int(counts[1])
@@ -75,24 +93,29 @@ def read_off(data: bytes) -> Parts:
             raise cut_short(f"{len(data):,} bytes, and promises {n} vertices and {m} faces")
         points = [[float(word) for word in line[:3]] for line in elements[:n]]
         rows = [[int(word) for word in line[: int(line[0]) + 1]] for line in elements[n : n + m]]
+        if any(len(line) > len(row) for line, row in zip(elements[n:], rows, strict=False)):
+            dropped.append("colors")
     except (ValueError, IndexError) as error:
         raise MeshError(f"it has something else where a number belongs: {error}") from error
     if len(rows) < m:
         raise cut_short(f"{len(points) + len(rows):,} of {n + m:,} lines")
     if any(len(row) <= row[0] for row in rows):
         raise cut_short("a face without all its corners")
-    return _rows_of_three(points), as_ragged([row[1:] for row in rows])
+    return Parts(_rows_of_three(points), as_ragged([row[1:] for row in rows]), dropped)
 
 
 def read_stl(data: bytes) -> Parts:
-    """Points, one per position, and triangles of an stl file, binary or text."""
+    """Points, one per position, and triangles of an stl file, binary or text.
+
+    Its normals are those of the triangles, so that nothing is lost with them.
+    """
     count = int.from_bytes(data[80:84], "little") if len(data) >= 84 else -1
     if data.lstrip().startswith(b"solid") and len(data) != 84 + 50 * count:
         numbers = re.findall(rb"\bvertex\s+(\S+)\s+(\S+)\s+(\S+)", data)
         if b"endsolid" not in data[-500:] or len(numbers) != 3 * data.count(b"endfacet"):
             raise cut_short("no 'endsolid' at its end, or a facet without three vertices")
         try:
-            corners = np.array(numbers, np.bytes_).reshape(-1, 3).astype(np.float32)
+            corners = np.array(numbers, np.bytes_).reshape(-1, 3).astype(np.float64)
         except ValueError as error:
             raise MeshError(f"a vertex has a coordinate that is no number: {error}") from error
     elif count >= 0 and len(data) >= 84 + 50 * count:
@@ -101,18 +124,18 @@ def read_stl(data: bytes) -> Parts:
     else:
         raise cut_short(f"{len(data):,} bytes" + (f" of {84 + 50 * count:,}" if count >= 0 else ""))
     first, cluster = clusters(corners, 0.0)
-    return corners[first], uniform(cluster.reshape(-1, 3))
+    return Parts(corners[first], uniform(cluster.reshape(-1, 3)))
 
 
 def write_obj(points: Points, faces: Ragged) -> bytes:
-    """Text with the counts at its head, every digit of float32 and all corners of every face."""
+    """Text with the counts at its head, every digit and all corners of every face."""
     head = f"# Vertices: {len(points)}\n# Faces: {len(faces)}\n"
     rows = ["f " + " ".join(map(str, row)) for row in _lists(faces, 1)]
     return "\n".join([head, *_positions("v ", points), *rows, ""]).encode()
 
 
 def write_off(points: Points, faces: Ragged) -> bytes:
-    """Text with every digit of float32 and all corners of every face."""
+    """Text with every digit and all corners of every face."""
     head = f"OFF\n{len(points)} {len(faces)} 0"
     rows = [" ".join(map(str, (len(row), *row))) for row in _lists(faces)]
     return "\n".join([head, *_positions("", points), *rows, ""]).encode()
@@ -137,7 +160,8 @@ def _rows_of_three(points: list[list[float]]) -> Floats:
 
 
 def _positions(before: str, points: Points) -> list[str]:
-    row = before + "%.9g %.9g %.9g"
+    digits = 17 if points.dtype == np.float64 else 9
+    row = before + " ".join([f"%.{digits}g"] * 3)
     return [row % tuple(point) for point in points.tolist()]
 
 

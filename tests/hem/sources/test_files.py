@@ -4,6 +4,8 @@ import os
 import struct
 import subprocess
 import sys
+import warnings
+from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +15,7 @@ import pytest
 import hem
 import structures
 from hem.sources import meshlab
+from hem.sources.ctm import besides
 
 PLY = """ply
 format ascii 1.0
@@ -232,10 +235,13 @@ def test_polygons_stay_polygons_unless_triangles_are_asked_for(
     tmp_path: Path, extension: str
 ) -> None:
     path = written(tmp_path / f"house.{extension}", house(extension))
-    mesh = hem.load(path)
-    assert isinstance(mesh, hem.PolygonMesh)
+    mesh = hem.load_polygons(path)
     assert [tuple(face) for face in mesh.faces] == POLYGONS
     assert np.array_equal(mesh.points, np.array(CORNERS, np.float32))
+    for repair in (False, True):
+        with pytest.raises(hem.MeshError, match=r"load_polygons.*triangulate=True") as refusal:
+            hem.load(path, repair=repair)
+        assert refusal.value.elements["faces"].tolist() == [0, 2]
     triangles = hem.load(path, triangulate=True)
     fans = [(f[0], f[i], f[i + 1]) for f in POLYGONS for i in range(1, len(f) - 1)]
     assert [tuple(row) for row in triangles.triangles] == fans
@@ -245,8 +251,7 @@ def test_polygons_stay_polygons_unless_triangles_are_asked_for(
 def test_polygons_are_saved_and_come_back(tmp_path: Path, extension: str) -> None:
     mesh = hem.PolygonMesh(CORNERS, POLYGONS)
     hem.save(mesh, tmp_path / f"house.{extension}")
-    back = hem.load(tmp_path / f"house.{extension}")
-    assert isinstance(back, hem.PolygonMesh)
+    back = hem.load_polygons(tmp_path / f"house.{extension}")
     assert np.array_equal(back.points, mesh.points)
     assert [tuple(face) for face in back.faces] == POLYGONS
 
@@ -273,23 +278,114 @@ def test_a_binary_ply_file_may_hold_more_than_a_mesh(
     rows = [struct.pack(f"{order}B3d", 255, *CORNERS[i]) for i in range(4)]
     rows += [struct.pack(f"{order}H{len(f)}Ih", len(f), *f, -1) for f in faces]
     file = written(tmp_path / "more.ply", head.encode() + b"".join(rows) + struct.pack("i", 1))
-    mesh = hem.load(file)
+    with pytest.warns(
+        hem.MeshWarning, match=r"more\.ply has colors, part, edge, which are dropped"
+    ):
+        mesh = hem.load_polygons(file)
     assert np.array_equal(mesh.points, np.array(CORNERS[:4], np.float32))
-    found = mesh.faces if isinstance(mesh, hem.PolygonMesh) else mesh.triangles
-    assert [tuple(face) for face in found] == faces
+    assert [tuple(face) for face in mesh.faces] == faces
 
 
 @pytest.mark.parametrize("head", ["OFF 3 1 0\n", "COFF\n# colors\n3 1 0\n"])
 def test_an_off_file_may_have_colors_and_comments(tmp_path: Path, head: str) -> None:
     text = head + "0 0 0 9 9 9\n1 0 0 9 9 9 # here\n\n0 1 0 9 9 9\n3 0 1 2 255 0 0\n"
-    assert hem.load(written(tmp_path / "a.off", text)).triangles.tolist() == [[0, 1, 2]]
+    with pytest.warns(hem.MeshWarning, match=r"a\.off has colors"):
+        mesh = hem.load(written(tmp_path / "a.off", text))
+    assert mesh.triangles.tolist() == [[0, 1, 2]]
 
 
 def test_what_an_obj_file_may_say_of_its_corners(tmp_path: Path) -> None:
     points = OBJ[: OBJ.index("f")]
     faces = "f -4 -3 -2 # counted backward\nf 1/1/1 \\\n 3/1/1 4/1/1\n"
-    mesh = hem.load(written(tmp_path / "fine.obj", points + "vt 0 0\nvn 0 0 1\n" + faces))
+    file = written(tmp_path / "fine.obj", points + "vt 0 0\nvn 0 0 1\n" + faces)
+    with pytest.warns(hem.MeshWarning, match=r"fine\.obj has texture coordinates, normals, which"):
+        mesh = hem.load(file)
     assert mesh.triangles.tolist() == [[0, 1, 2], [0, 2, 3]]
+
+
+NORMALS, TEXTURE = "normals", "texture coordinates"
+VERTEX = "element vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+X3D = """<X3D><Scene><Shape><IndexedFaceSet coordIndex="0 1 2 -1">
+<Coordinate point="0 0 0 1 0 0 0 1 0"/>{}</IndexedFaceSet></Shape></Scene></X3D>"""
+WRL = """#VRML V2.0 utf8
+Shape {{ geometry IndexedFaceSet {{ coord Coordinate {{ point [0 0 0, 1 0 0, 0 1 0] }}
+coordIndex [0, 1, 2, -1] {} }} }}"""
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "dropped"),
+    [
+        ("a.obj", OBJ.format(4), []),
+        ("a.obj", OBJ.format(4) + "vn 0 0 1\n", [NORMALS]),
+        ("a.obj", OBJ.format(4) + "vt 0 1\n", [TEXTURE]),
+        ("a.obj", OBJ.format(4).replace("v 1 0 0", "v 1 0 0 .5 .5 .5"), ["colors"]),
+        ("a.ply", PLY.format(2), []),
+        (
+            "a.ply",
+            PLY.format(2).replace(VERTEX, VERTEX + "property float nx\nproperty float s\n")
+            .replace(" 0\n", " 0 0 0\n"),
+            [NORMALS, TEXTURE],
+        ),
+        ("a.off", OFF.format(0, 3), []),
+        ("a.off", OFF.format(0, 3).replace("OFF", "STNOFF"), [TEXTURE, NORMALS]),
+        ("a.off", OFF.format(0, "3 .5 .5 .5"), ["colors"]),
+        ("a.x3d", X3D.format(""), []),
+        ("a.x3d", X3D.format('<Normal vector="0 0 1 0 0 1 0 0 1"/>'), [NORMALS]),
+        ("a.x3d", X3D.format('<TextureCoordinate point="0 0 1 0 0 1"/>'), [TEXTURE]),
+        ("a.wrl", WRL.format(""), []),
+        ("a.wrl", WRL.format("normal Normal { vector [0 0 1, 0 0 1, 0 0 1] }"), [NORMALS]),
+    ],
+)  # fmt: skip
+def test_what_a_file_has_and_a_mesh_has_not_is_told(
+    tmp_path: Path, name: str, content: str, dropped: list[str]
+) -> None:
+    file = written(tmp_path / name, content)
+    for read in (hem.load, hem.load_polygons, hem.as_mesh):
+        with warnings.catch_warnings(record=True) as told:
+            warnings.simplefilter("always")
+            read(file)
+        names = ", ".join(dropped)
+        sentence = f"{file} has {names}, which are dropped: a mesh is positions and faces"
+        assert [str(it.message) for it in told] == [sentence] * bool(dropped)
+        assert {it.category for it in told} <= {hem.MeshWarning}
+
+
+@pytest.mark.parametrize("extension", FORMATS)
+def test_only_formats_that_keep_normals_are_told_to_have_some(
+    tmp_path: Path, extension: str
+) -> None:
+    hem.save(hem.generate("sphere", 42), tmp_path / f"mesh.{extension}")
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("always")
+        hem.load(tmp_path / f"mesh.{extension}")
+    assert len(told) == (extension in ("dae", "x3d")), told
+
+
+def test_a_part_of_texture_in_a_3ds_file_is_told(tmp_path: Path) -> None:
+    hem.save(
+        hem.TriangleMesh([(12, 0, 0), (12, 12, 0), (0, 0, 12)], [[0, 1, 2]]), tmp_path / "a.3ds"
+    )
+    data = (tmp_path / "a.3ds").read_bytes()
+    part = struct.pack("<HIH6f", 0x4140, 32, 3, *range(6))
+    at = data.index(struct.pack("<H", 0x4120))  # before the faces
+    outer = [data.index(struct.pack("<H", it)) for it in (0x4D4D, 0x3D3D, 0x4000, 0x4100)]
+    longer = bytearray(data[:at] + part + data[at:])
+    for start in outer:
+        size = int.from_bytes(data[start + 2 : start + 6], "little") + len(part)
+        longer[start + 2 : start + 6] = size.to_bytes(4, "little")
+    with pytest.warns(hem.MeshWarning, match=TEXTURE):
+        assert len(hem.load(written(tmp_path / "b.3ds", bytes(longer))).triangles) == 1
+
+
+def test_the_head_of_an_openctm_file_says_what_it_has() -> None:
+    head = b"OCTM" + struct.pack("<I4s5I", 5, b"RAW", 3, 1, 2, 0, 1)
+    assert besides(head) == [TEXTURE, NORMALS]
+
+
+def test_off_files_of_other_dimensions_are_refused(tmp_path: Path) -> None:
+    for head in ("4OFF", "nOFF"):
+        with pytest.raises(hem.MeshError, match=f"three dimensions: '{head}'"):
+            hem.load(written(tmp_path / "a.off", OFF.format(0, 3).replace("OFF", head)))
 
 
 def test_repair_leaves_polygons_with_repeated_corners_out(tmp_path: Path) -> None:
@@ -297,17 +393,17 @@ def test_repair_leaves_polygons_with_repeated_corners_out(tmp_path: Path) -> Non
         text = house(extension).replace("1 2 3 4", "1 2 1 4").replace("4 0 1 2 3", "4 0 1 0 3")
         path = written(tmp_path / f"house.{extension}", text)
         with pytest.raises(hem.MeshError, match=r"twice|can be used"):
-            hem.load(path)
-        assert len(hem.load(path, repair=True).triangles) == 4
+            hem.load(path, triangulate=True)
+        assert len(hem.load(path, repair=True, triangulate=True).triangles) == 4
 
 
 def test_a_triangle_structure_says_how_to_cut_polygons(tmp_path: Path) -> None:
-    mesh = hem.load(written(tmp_path / "house.obj", house("obj")))
-    for name in structures.NAMES:
-        if name == "plankton":
+    path = written(tmp_path / "house.obj", house("obj"))
+    for name, mesh in product(structures.NAMES, (path, str(path), hem.load_polygons(path))):
+        if structures.REGISTRY[name].holds_polygons:
             assert structures.build(name, mesh).n_faces == 3
             continue
-        with pytest.raises(hem.MeshError, match="triangulate=True") as refusal:
+        with pytest.raises(hem.MeshError, match=r"build plankton.*triangulate=True") as refusal:
             structures.build(name, mesh)
         assert refusal.value.elements["faces"].tolist() == [0, 2]
 
