@@ -34,8 +34,6 @@ from experiments.harness import (
 from experiments.runs.store import CannotWriteError, CaseFile
 from experiments.runs.worker import AGAIN, COMPILE, DEFAULT_SEED, MEASURE
 
-CORE = pytest.StashKey[int | None]()
-
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     """The extent of an experiment, how it is measured, and where its results go."""
@@ -57,17 +55,13 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     )
 
 
-def pytest_configure(config: pytest.Config) -> None:
-    """Tie this process to a core."""
-    config.stash[CORE] = steadiness.pin() if config.getoption("--pin") else None
-
-
 def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
     """One test per case of the experiment that is to be measured."""
     if "case" in metafunc.fixturenames:
         config, experiment = metafunc.config, metafunc.module.EXPERIMENT
         chosen = config.getoption("--structure") or experiment.structures
-        cases = [case for name in chosen for case in _cases(config, experiment, name)]
+        structures = (name for name in experiment.structures if name in chosen)
+        cases = [case for name in structures for case in _cases(config, experiment, name)]
         metafunc.parametrize("case", cases, ids=[f"{it.structure}/{it.id}" for it in cases])
 
 
@@ -104,6 +98,12 @@ def preset(request: pytest.FixtureRequest, case: Case) -> Preset:
     return _preset(request.config, case.structure)
 
 
+@pytest.fixture(scope="module")
+def core(request: pytest.FixtureRequest) -> int | None:
+    """The core that an experiment stays on, the calmest when it begins."""
+    return steadiness.pin() if request.config.getoption("--pin") else None
+
+
 @pytest.fixture
 def timer(benchmark: Any) -> Iterator[BenchmarkTimer]:
     """The timer that also feeds pytest-benchmark."""
@@ -113,7 +113,7 @@ def timer(benchmark: Any) -> Iterator[BenchmarkTimer]:
 
 
 @pytest.fixture
-def keep(request: pytest.FixtureRequest, case: Case) -> Keep:
+def keep(request: pytest.FixtureRequest, case: Case, core: int | None) -> Keep:
     """Keep a case's result in the run, and what it is about in pytest-benchmark's own JSON.
 
     Skips the test, and keeps the reason, where there is not enough memory for the case.
@@ -134,7 +134,7 @@ def keep(request: pytest.FixtureRequest, case: Case) -> Keep:
     watch = Watch()
 
     def keep_result(result: Measurement) -> None:
-        result = replace(result, noise={**watch.seen(), "core": config.stash[CORE]})
+        result = replace(result, noise={**watch.seen(), "core": core})
         if "benchmark" in request.fixturenames:
             facts = {key: value for key, value in asdict(result).items() if key != "samples"}
             request.getfixturevalue("benchmark").extra_info.update(facts)

@@ -119,6 +119,7 @@ PRESETS = {
         workload_sizes=(1_000, 10_000),
         workloads=("vertex_normals", "impacts"),
         fracture_sizes=_geometric(100, 10_000, 1),
+        object_vertices=1_100,
         printed_sizes=(50, 100, 200, 400),
         models=("teapot", "bunny"),
         rounds=9,

@@ -1,7 +1,8 @@
 """A study: every experiment on every structure, into one run folder.
 
 First what the experiments need is compiled, and what is only counted is counted, on all cores. Then
-workers take times, one structure after the other, because what runs beside is timed with it.
+one worker takes times, alone, because what runs beside is timed with it. A worker has many jobs: it
+takes seconds to begin.
 """
 
 import hashlib
@@ -14,6 +15,8 @@ from dataclasses import asdict
 from datetime import UTC, datetime
 from functools import cache
 from importlib.metadata import version
+from itertools import groupby
+from operator import attrgetter
 from pathlib import Path
 from threading import Event
 from time import monotonic
@@ -130,8 +133,8 @@ def run(folder: Path, observer: Observer | None = None) -> None:
             failures.extend(_measure(folder, group, observer, stop))
 
         compile_and_count(folder, jobs, observer.compiled, measure)
-        for group in by_structure(jobs, timed=True):
-            measure(group, Event())
+        if timed := [job for job in jobs if job.timed]:
+            measure(timed, Event())
         if failures:
             raise StudyFailedError("\n\n".join(failures))
         finish(folder)
@@ -146,42 +149,36 @@ def compile_and_count(
     """Compile what timed jobs need, and do those that only count, on all cores.
 
     ``compiled`` is told of each structure whose kernels are ready; ``count`` does the jobs of one
-    structure, until the event is set. What cannot be compiled, its measurement will tell.
+    experiment, until the event is set. What cannot be compiled, its measurement will tell.
     """
-    timed = [it for it in by_structure(jobs, timed=True) if not _stamp(it).exists()]
-    timed.sort(key=_urgency)
+    to_compile = [job for job in jobs if job.timed and _is_compiled(job.structure)]
+    groups = [it for it in _grouped(to_compile, "structure") if not _stamp(it).exists()]
+    groups.sort(key=lambda it: it[0].structure != BASE)  # what the others are compared with
     stop = Event()
     with ThreadPoolExecutor(len(allowed_cores()) or os.cpu_count()) as pool:
-        running = {pool.submit(_compile, folder, it, stop): it[0].structure for it in timed}
-        counting = [pool.submit(count, it, stop) for it in by_structure(jobs, timed=False)]
+        running = {pool.submit(_compile, folder, it, stop): it[0].structure for it in groups}
+        counted = _grouped([job for job in jobs if not job.timed], "experiment")
+        counting = [pool.submit(count, it, stop) for it in counted]
         try:
             for done, future in enumerate(as_completed(running), 1):
                 future.result()
-                compiled(running[future], done, len(timed))
-            for counted in as_completed(counting):
-                counted.result()
+                compiled(running[future], done, len(groups))
+            for counter in as_completed(counting):
+                counter.result()
         except BaseException:
             stop.set()
             pool.shutdown(cancel_futures=True)
             raise
 
 
-def by_structure(jobs: Sequence[Job], timed: bool) -> list[list[Job]]:
-    """The jobs that take times, or those that only count, a group per structure."""
-    groups: dict[str, list[Job]] = {}
-    for job in jobs:
-        if job.timed == timed:
-            groups.setdefault(job.structure, []).append(job)
-    return list(groups.values())
+def _grouped(jobs: Iterable[Job], by: str) -> list[list[Job]]:
+    """The jobs of each structure, or of each experiment."""
+    key = attrgetter(by)
+    return [list(group) for _, group in groupby(sorted(jobs, key=key), key)]
 
 
-def _urgency(jobs: list[Job]) -> tuple[bool, bool]:
-    """First what the others are compared with, last what is not compiled itself.
-
-    So nothing is compiled by several workers at once.
-    """
-    structure = REGISTRY.get(jobs[0].structure)
-    return jobs[0].structure != BASE, structure is None or not structure.compiled
+def _is_compiled(structure: str) -> bool:
+    return structure in REGISTRY and REGISTRY[structure].compiled
 
 
 def _compile(folder: Path, jobs: list[Job], stop: Event) -> None:
@@ -211,19 +208,18 @@ def _sources() -> bytes:
 
 
 def _measure(folder: Path, jobs: list[Job], observer: Observer, stop: Event) -> list[str]:
-    """Measure jobs of one structure -> which failed, and why."""
-    begin, failures, left = monotonic(), [], jobs
-    while left:
-        try:
-            _measure_once(folder, left, observer, stop)
-        except WorkerDiedError as error:
-            left = [job for job in left if job.left(folder)]
-            failures += [f"{job}:\n{error}" for job in left[:1]]
-            left = left[1:]  # what killed the worker does not keep the others from being measured
-        else:
-            names = ", ".join(str(job) for job in left if job.left(folder))
-            failures += [f"{names}:\n{end_of_log(folder, left[0])}"] if names else []
-            left = []
+    """Measure jobs -> which failed, and why."""
+    begin = monotonic()
+    try:
+        _measure_once(folder, jobs, observer, stop)
+    except WorkerDiedError as error:
+        left = [job for job in jobs if job.left(folder)]
+        failures = [f"{job}:\n{error}" for job in left[:1]]
+        for job in left[1:]:  # what killed the worker does not keep the others from being measured
+            failures += _measure(folder, [job], observer, stop)
+    else:
+        names = ", ".join(str(job) for job in jobs if job.left(folder))
+        failures = [f"{names}:\n{end_of_log(folder, jobs[0])}"] if names else []
     now = monotonic()
     if stop.is_set():
         return []

@@ -1,4 +1,4 @@
-"""A worker: one process that measures experiments on one structure, and says when a case is done.
+"""A worker: one process that measures experiments on structures, and says when a case is done.
 
 It writes a line to its standard output after every case, and ends when its standard input does:
 with the study, however that ends. What pytest prints goes to a log.
@@ -12,9 +12,9 @@ from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from threading import Thread
-from typing import TextIO
+from typing import Any, TextIO
 
-from experiments.harness import PRESETS
+from experiments.harness import PRESETS, Case
 from experiments.runs.catalog import experiments
 from experiments.runs.store import CaseFile, require_room, writing
 
@@ -72,16 +72,20 @@ class WorkerDiedError(RuntimeError):
 
 
 def perform(folder: Path, jobs: Sequence[Job], action: str = MEASURE) -> Generator[Job]:
-    """Perform jobs on one structure in a process of their own -> after each case its job.
+    """Perform jobs in a process of their own -> after each case its job.
 
-    Closing the iterator ends the process. Raises WorkerDiedError if it dies, CannotWriteError if
-    there is no more room for results.
+    They are performed in the order of the experiments, and every experiment on all structures that
+    one of the jobs is about: what is left of those. Closing the iterator ends the process. Raises
+    WorkerDiedError if it dies, CannotWriteError if there is no more room for results.
     """
-    first, by_name = jobs[0], {job.experiment: job for job in jobs}
+    first, by_name = jobs[0], {f"{job.experiment} {job.structure}": job for job in jobs}
     log = _log(folder, first, action)
-    command = [str(EXPERIMENTS / f"{name}.py") for name in by_name]
-    command += ["--preset", first.preset, "--structure", first.structure]
-    command += ["--case-seed", str(first.seed), "--action", action, "--run", str(folder.resolve())]
+    command = [
+        str(EXPERIMENTS / f"{name}.py") for name in dict.fromkeys(it.experiment for it in jobs)
+    ]
+    command += [f"--structure={name}" for name in dict.fromkeys(it.structure for it in jobs)]
+    command += ["--preset", first.preset, "--case-seed", str(first.seed), "--action", action]
+    command += ["--run", str(folder.resolve())]
     if action == COMPILE:
         command += ["--benchmark-disable"]
     elif first.pin and first.timed:
@@ -109,12 +113,11 @@ def perform(folder: Path, jobs: Sequence[Job], action: str = MEASURE) -> Generat
 
 
 def _log(folder: Path, job: Job, action: str) -> Path:
-    what = action if action != MEASURE or job.timed else "count"
-    return folder / "logs" / f"{job.structure}.{what}.txt"
+    return folder / "logs" / f"{job.experiment}.{job.structure}.{action}.txt"
 
 
 def end_of_log(folder: Path, job: Job, action: str = MEASURE) -> str:
-    """The last lines of what the workers of a job's structure printed."""
+    """The last lines of what workers printed whose first job it was."""
     log = _log(folder, job, action)
     text = log.read_text(errors="replace") if log.exists() else ""
     return "".join(text.splitlines(keepends=True)[-LINES_SHOWN:])
@@ -131,13 +134,15 @@ def _end(worker: subprocess.Popen[str]) -> None:
 
 
 class _Progress:
-    """A plugin of pytest that says which experiment a finished case belongs to."""
+    """A plugin of pytest that says which experiment and structure a finished case belongs to."""
 
     def __init__(self, study: TextIO) -> None:
         self._study = study
 
-    def pytest_runtest_logfinish(self, nodeid: str) -> None:
-        print(Path(nodeid.partition("::")[0]).stem, file=self._study, flush=True)
+    def pytest_runtest_teardown(self, item: Any) -> None:
+        case = item.callspec.params["case"]
+        if isinstance(case, Case):  # and not what stands for none
+            print(item.path.stem, case.structure, file=self._study, flush=True)
 
 
 def main(command: list[str]) -> int:

@@ -89,7 +89,7 @@ def batch(handles: Array, offsets: Array, values: Array, width: int, *arrays: Ar
         offsets[i] = end
         if end + width > len(values):
             grown = np.empty(2 * len(values) + width, values.dtype)
-            grown[:end] = values[:end]
+            move(values[:end], grown, 0)  # to compile an assignment of slices takes a second
             values = grown
         end += _KERNEL(m, handles[i], values[end:])
     return values[:end]
