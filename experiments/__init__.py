@@ -1,5 +1,6 @@
 """The study: what is measured, how it is judged, and the command line."""
 
+from collections.abc import Collection, Iterable
 from pathlib import Path
 
 
@@ -8,3 +9,10 @@ def carried(folder: str) -> Path:
     here = Path(__file__).parent
     installed = here / "carried" / folder
     return installed if installed.is_dir() else here.parent / folder
+
+
+def require_known(kind: str, names: Iterable[str], known: Collection[str]) -> None:
+    """Raise ValueError, with the names that there are, for one that is not among them."""
+    for name in names:
+        if name not in known:
+            raise ValueError(f"no {kind} is called {name!r}; there are {', '.join(known)}")

@@ -11,7 +11,7 @@ import typer
 from rich.markup import escape
 from typer import Argument, Option
 
-from experiments import carried
+from experiments import carried, require_known
 from experiments.cli.console import Structures, console, errors, run_folder, user_errors
 
 if TYPE_CHECKING:  # takes a second to import, and `hem --help` has no need of it
@@ -61,9 +61,7 @@ def _compare(
     chosen = run_folder(run) if run else None
     from structures import NAMED
 
-    for name in structures:
-        if name not in NAMED:
-            raise ValueError(f"no structure is called {name!r}; there are {', '.join(NAMED)}")
+    require_known("structure", structures, NAMED)
     from experiments import regression as gate
 
     before = gate.load_baseline(gate.COUNTERS, folder)  # before anything is measured

@@ -8,7 +8,12 @@ import typer
 from rich.markup import escape
 from typer import Option
 
+from experiments import require_known
 from experiments.cli.console import Structures, console, errors
+from experiments.presets import PRESETS
+
+DEFAULT = "quick"
+"""The preset of a study that names none."""
 
 
 def run_study(
@@ -34,6 +39,7 @@ def run_study(
     """
     if run and not resume:
         raise ValueError(f"to resume {run}, say --resume as well")
+    require_known("preset", [preset or DEFAULT], PRESETS)  # before anything heavy is imported
     from experiments.harness import memory
     from experiments.runs import cluster, latest, study
 
@@ -47,7 +53,7 @@ def run_study(
         folder = run or latest(output, unfinished=True)
         _require_as_begun(folder, given, workers)
     else:
-        folder = study.begin(given.pop("preset", "quick"), output, **given)
+        folder = study.begin(given.pop("preset", DEFAULT), output, **given)
     _measure(folder, workers)
 
 

@@ -21,10 +21,10 @@ from experiments.harness.operations import (
     time_operations,
     validate_operated,
 )
-from experiments.harness.presets import HUBS, ORDERS, PRESETS, Preset
 from experiments.harness.queries import CHECKED_HANDLES, checked_handles, time_query
 from experiments.harness.steadiness import Watch, badness, disturbed
 from experiments.harness.timer import CLOCK, BenchmarkTimer, Timer, time_rounds, why_too_slow
+from experiments.presets import HUBS, ORDERS, PRESETS, Preset
 
 __all__ = [
     "ANYONE", "BASE", "CHECKED_HANDLES", "CLOCK", "HUBS", "OPERATIONS", "OPERATIONS_TABLE",

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 
 import hem
 import structures
-from experiments.harness.presets import HUBS
+from experiments.presets import HUBS
 from hem.arrays import Array
 from hem.contract import QUERIES, Query, Structure
 from hem.meshes import MeshSummary, TriangleMesh

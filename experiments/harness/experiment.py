@@ -8,8 +8,8 @@ from dataclasses import dataclass, field
 from enum import Enum
 
 from experiments.harness.cases import Case, Measurement
-from experiments.harness.presets import Preset
 from experiments.harness.timer import Timer, time_rounds
+from experiments.presets import Preset
 from hem.contract import QUERIES
 from structures import NAMES
 

@@ -13,7 +13,7 @@ import psutil
 import hem
 import structures
 from experiments.harness.cases import Case
-from experiments.harness.presets import HUBS
+from experiments.presets import HUBS
 from structures import REGISTRY
 
 SHARE = 0.7

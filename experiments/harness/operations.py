@@ -11,8 +11,8 @@ import hem
 import structures
 from experiments.harness.calibration import latency_now
 from experiments.harness.cases import BASE, Case
-from experiments.harness.presets import HUBS, Preset
 from experiments.harness.timer import Given, Timer
+from experiments.presets import HUBS, Preset
 from hem.arrays import Array
 from hem.contract import Structure
 from hem.engine import END

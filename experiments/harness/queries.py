@@ -10,8 +10,8 @@ import numpy as np
 from experiments.harness.calibration import latency_now
 from experiments.harness.cases import Case, Measurement, queried_handles
 from experiments.harness.oracle import check_query
-from experiments.harness.presets import Preset
 from experiments.harness.timer import Given, Timer
+from experiments.presets import Preset
 from hem.arrays import Array
 from hem.contract import Structure
 

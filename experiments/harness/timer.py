@@ -12,7 +12,7 @@ from typing import Any, Self
 import numpy as np
 
 from experiments.harness.calibration import calibration_loop
-from experiments.harness.presets import Preset
+from experiments.presets import Preset
 from hem.arrays import Array
 
 Call = Callable[..., Any]

@@ -8,7 +8,7 @@ takes seconds to begin.
 import hashlib
 import os
 from collections import Counter
-from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from contextlib import closing, contextmanager, suppress
 from dataclasses import asdict
@@ -22,6 +22,7 @@ from threading import Event
 from time import monotonic
 from typing import Any
 
+from experiments import require_known
 from experiments.harness import BASE, PRESETS
 from experiments.harness.steadiness import REPEATS, allowed_cores
 from experiments.runs import store
@@ -72,9 +73,9 @@ def begin(
     ValueError for a name that there is not, CannotWriteError.
     """
     short = [name.removeprefix("bench_") for name in experiments]
-    _require_known("experiment", short, [name.removeprefix("bench_") for name in catalog()])
-    _require_known("structure", structures, NAMED)
-    _require_known("preset", [preset], PRESETS)
+    require_known("experiment", short, [name.removeprefix("bench_") for name in catalog()])
+    require_known("structure", structures, NAMED)
+    require_known("preset", [preset], PRESETS)
     chosen = {"structures": list(structures), "experiments": [f"bench_{name}" for name in short]}
     folder = _new_folder(root, f"{datetime.now(UTC).strftime('%Y%m%d-%H%M%S')}-{preset}")
     try:
@@ -84,12 +85,6 @@ def begin(
             folder.rmdir()
         raise
     return folder
-
-
-def _require_known(kind: str, names: Iterable[str], known: Collection[str]) -> None:
-    for name in names:
-        if name not in known:
-            raise ValueError(f"no {kind} is called {name!r}; there are {', '.join(known)}")
 
 
 def _new_folder(root: Path, name: str) -> Path:

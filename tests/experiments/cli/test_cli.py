@@ -13,7 +13,7 @@ from typer.testing import CliRunner
 
 from experiments import cli
 from experiments.cli import app
-from experiments.harness.presets import PRESETS
+from experiments.presets import PRESETS
 from experiments.runs import experiments, load
 from experiments.runs.study import plan
 from structures import NAMES
@@ -52,9 +52,10 @@ def test_a_mistake_gets_one_clear_line_and_an_exit_code(arguments, said, tmp_pat
 
 QUICK = [
     ["--version"], ["-h"], ["history", "show", "-h"], ["stdy"], ["study", "--seed", "many"],
-    ["study", "--run", "nowhere"], ["table", "nowhere"], ["report", "nowhere"],
-    ["history", "add", "nowhere"], ["check", "nowhere"], ["check", "--factor", "1"],
-    ["baseline", "update", "nowhere"], ["fracture", "sphere", "--up", "w"],
+    ["study", "--run", "nowhere"], ["study", "--preset", "fast"], ["table", "nowhere"],
+    ["report", "nowhere"], ["history", "add", "nowhere"], ["check", "nowhere"],
+    ["check", "--factor", "1"], ["baseline", "update", "nowhere"],
+    ["fracture", "sphere", "--up", "w"],
 ]  # fmt: skip
 
 

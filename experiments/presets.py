@@ -1,9 +1,10 @@
-"""How much a study measures: the presets, as data."""
+"""How much a study measures: the presets, as data.
+
+They stand outside of their room so that a wrong name is told before anything heavy is imported.
+"""
 
 from dataclasses import dataclass, replace
 from typing import Any, Self
-
-from structures import REGISTRY
 
 HUBS = "hubs"
 """The family of ``hem.valence_mesh``: its size is a number of faces, its valence the hubs'."""
@@ -61,6 +62,8 @@ class Preset:
 
     def of(self, structure: str) -> Self:
         """The preset for one structure: smaller meshes where it is made of objects."""
+        from structures import REGISTRY
+
         if structure not in REGISTRY or REGISTRY[structure].compiled:
             return self
         most = self.object_vertices
