@@ -61,7 +61,7 @@ def build(name: str, mesh: Any, reference_bytes: int = 4) -> Structure:
 
     >>> s = structures.build("half_edge", hem.valence_mesh(6, 12))
     >>> s.vertex_faces(0)
-    array([0, 5, 4, 3, 2, 1], dtype=int32)
+    array([1, 2, 3, 4, 5, 0], dtype=int32)
 
     ``mesh`` is a ``TriangleMesh``, a ``PolygonMesh``, or what else ``hem.as_mesh`` takes: a path,
     a pair of arrays, the mesh of another library, another structure. Positions are held as float32,

@@ -15,7 +15,7 @@ from hem.meshes.manifold import (
 )
 from hem.meshes.polygons import PolygonMesh, repeats_a_corner, require_triangles, simplest
 from hem.meshes.summary import MeshSummary
-from hem.meshes.triangles import TriangleMesh, repeated_corners, validated_points
+from hem.meshes.triangles import TriangleMesh, repeated_corners
 from hem.meshes.weld import clusters
 
 __all__ = [
@@ -36,5 +36,4 @@ __all__ = [
     "split_vertices",
     "undirected_edges",
     "used_only",
-    "validated_points",
 ]

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
-from hem.arrays import Bools, Floats, Indices, Points, Triangles
+from hem.arrays import Bools, Floats, Points, Triangles
 from hem.errors import MeshError, MeshWarning
 from hem.meshes import measures
 from hem.meshes.convertible import Convertible, library
@@ -68,7 +68,8 @@ class TriangleMesh(Convertible):
             raise MeshError(f"a weld tolerance is finite and not negative, not {tolerance}")
         first, cluster = clusters(self.points, tolerance)
         triangles = cluster[self.triangles]
-        return self._with(self.points[first], triangles[~repeated_corners(triangles)])
+        triangles = triangles[~repeated_corners(triangles)]
+        return TriangleMesh(self.points[first], triangles, self.points.dtype)
 
     def face_rows(self) -> Ragged:
         """The corners of every face."""
@@ -83,10 +84,7 @@ class TriangleMesh(Convertible):
 
     def flipped(self) -> "TriangleMesh":
         """The same faces seen from the other side: corners (a, b, c) become (a, c, b). O(m)."""
-        return self._with(self.points, self.triangles[:, [0, 2, 1]])
-
-    def _with(self, points: Points, triangles: Triangles) -> "TriangleMesh":
-        return TriangleMesh(points, triangles, points.dtype)
+        return TriangleMesh(self.points, self.triangles[:, [0, 2, 1]], self.points.dtype)
 
     @property
     def bounds(self) -> tuple[Floats, Floats]:
@@ -147,8 +145,8 @@ def repeated_corners(triangles: Triangles) -> Bools:
     return repeated
 
 
-def validated_points(points: ArrayLike, dtype: DTypeLike, source: str = "") -> Points:
-    """The positions (n, 3) as this type; `source` is whose the warning says that they are."""
+def validated_points(points: ArrayLike, dtype: DTypeLike) -> Points:
+    """The positions (n, 3) as this type."""
     given = _rows_of_three(points, "points", kinds="fiu")
     if np.dtype(dtype) not in (np.float32, np.float64):
         raise MeshError(f"positions are kept as float32 or float64, not as {np.dtype(dtype)}")
@@ -158,27 +156,25 @@ def validated_points(points: ArrayLike, dtype: DTypeLike, source: str = "") -> P
         rows = np.flatnonzero(~np.isfinite(kept).all(axis=1))
         why = "not finite" if not np.isfinite(given[rows]).all() else f"too large for {kept.dtype}"
         raise MeshError(f"coordinates are {why}; remove or mend these points", rows=rows)
-    fallen = _fallen_together(given, kept)
-    if len(fallen):
-        pairs = MeshError(f"{source}different positions are equal as {kept.dtype}", rows=fallen)
-        hint = "keep them apart with dtype=np.float64, or move the mesh to the origin"
-        warnings.warn(f"{pairs}; {hint}", MeshWarning, stacklevel=3)
+    if not np.array_equal(given, kept):
+        _tell_of_equal(given, kept)
     return kept
 
 
-def _fallen_together(given: NDArray[Any], kept: Points) -> Indices:
-    """(k, 2): the first row at a position, and another one that was rounded to it. O(n log n)."""
-    none = np.zeros((0, 2), np.int64)
-    if np.array_equal(given, kept):
-        return none
+def _tell_of_equal(given: NDArray[Any], kept: Points) -> None:
+    """Warn of different positions that have become equal: the first of them, and each other."""
     sums = np.sort(measures.dot(kept.astype(np.float64), _MIXED))
     if (sums[1:] != sums[:-1]).all():  # equal positions have equal sums, and others seldom
-        return none
+        return
     first, cluster = clusters(kept, 0.0)
     same = first[cluster]
     apart = np.abs(given.astype(np.float64) - given[same]).max(axis=1)
     rows = np.flatnonzero(apart > _NOISE * np.abs(kept).max())
-    return np.stack([same[rows], rows], axis=1)
+    if len(rows):
+        pairs = np.stack([same[rows], rows], axis=1)
+        told = MeshError(f"different positions are equal as {kept.dtype}", rows=pairs)
+        hint = "keep them apart with dtype=np.float64, or move the mesh to the origin"
+        warnings.warn(f"{told}; {hint}", MeshWarning, stacklevel=4)
 
 
 def _validated_triangles(triangles: ArrayLike, n: int) -> Triangles:

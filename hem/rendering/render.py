@@ -19,7 +19,7 @@ from hem.arrays import Array, Handles, Points
 from hem.contract import Structure, tell_all
 from hem.edit import Edit
 from hem.errors import MeshError
-from hem.meshes import TriangleMesh, repeated_corners
+from hem.meshes import TriangleMesh, repeated_corners, used_only
 from hem.rendering.ranges import Ranges, dirty_ranges
 
 NEARBY = 32
@@ -173,10 +173,7 @@ def mesh_from_render(points: ArrayLike, indices: ArrayLike, tolerance: float = 0
     corners = _rows(indices, "indices")
     used = corners[~repeated_corners(corners)]
     mesh = TriangleMesh(_rows(points, "points"), used[:, [0, 2, 1]]).welded(tolerance)
-    kept = np.zeros(len(mesh.points), np.bool_)
-    kept[mesh.triangles] = True
-    number = np.cumsum(kept) - 1
-    return TriangleMesh(mesh.points[kept], number[mesh.triangles])
+    return TriangleMesh(*used_only(mesh.points, mesh.triangles))
 
 
 def _rows(values: ArrayLike, name: str) -> Array:

@@ -34,11 +34,6 @@ class Family:
     smallest: int
     make: Callable[[int, int], TriangleMesh]
 
-    @property
-    def has_border(self) -> bool:
-        """Whether some edges have one face only."""
-        return not self.closed
-
 
 def generate(family: str, n_vertices: int, seed: int = 0) -> TriangleMesh:
     """A manifold, consistently wound mesh of the family, of the reachable size nearest in ratio.

@@ -5,7 +5,7 @@ import re
 import struct
 import tempfile
 import warnings
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -15,14 +15,7 @@ from numpy.typing import DTypeLike
 
 from hem.arrays import Array, Points
 from hem.errors import MeshError, MeshWarning
-from hem.meshes import (
-    PolygonMesh,
-    TriangleMesh,
-    repeats_a_corner,
-    require_triangles,
-    simplest,
-    validated_points,
-)
+from hem.meshes import PolygonMesh, TriangleMesh, repeats_a_corner, require_triangles, simplest
 from hem.meshes.conversions import from_any
 from hem.ragged import Ragged
 from hem.sources.ctm import besides, promised_bytes
@@ -84,9 +77,12 @@ def load(
     folder, empty, cut short, of an unknown format, no mesh, or without faces, and without `repair`
     for one with elements that cannot be used; and where pymeshlab is needed, but missing.
     """
-    mesh, dropped = read_triangles(path, repair, triangulate, dtype)
-    _tell(path, dropped)
-    return mesh
+    with _about("load", path) as file:
+        mesh = _read_mesh(file, repair, dtype)
+        if triangulate and isinstance(mesh, PolygonMesh):
+            mesh = mesh.triangulated()
+        triangles = require_triangles(mesh, "keep them with hem.load_polygons(path)")
+        return repaired(triangles) if repair else triangles
 
 
 def load_polygons(path: str | os.PathLike[str], dtype: DTypeLike = np.float32) -> PolygonMesh:
@@ -95,11 +91,8 @@ def load_polygons(path: str | os.PathLike[str], dtype: DTypeLike = np.float32) -
     Only some structures hold such a mesh; `triangulated()` cuts it.
     """
     with _about("load", path) as file:
-        mesh, dropped = _read_mesh(file, False, dtype)
-        if not isinstance(mesh, PolygonMesh):
-            mesh = PolygonMesh(mesh.points, mesh.face_rows(), dtype)
-    _tell(path, dropped)
-    return mesh
+        mesh = _read_mesh(file, False, dtype)
+        return PolygonMesh(mesh.points, mesh.face_rows(), dtype)
 
 
 def as_mesh(given: Any) -> TriangleMesh | PolygonMesh:
@@ -133,18 +126,6 @@ def save(mesh: Any, path: str | os.PathLike[str]) -> None:
             write_whole(file, content)
         except OSError as error:
             raise MeshError(error.strerror or str(error)) from error
-
-
-def read_triangles(
-    path: str | os.PathLike[str], repair: bool, triangulate: bool, dtype: DTypeLike = np.float32
-) -> tuple[TriangleMesh, Iterable[str]]:
-    """What `load` gives, and what the file has besides."""
-    with _about("load", path) as file:
-        mesh, dropped = _read_mesh(file, repair, dtype)
-        if triangulate and isinstance(mesh, PolygonMesh):
-            mesh = mesh.triangulated()
-        triangles = require_triangles(mesh, "keep them with hem.load_polygons(path)")
-        return repaired(triangles) if repair else triangles, dropped
 
 
 def encoded(mesh: TriangleMesh | PolygonMesh, extension: str) -> bytes:
@@ -221,19 +202,19 @@ def _bytes(file: Path) -> bytes:
     return data
 
 
-def _read_mesh(
-    file: Path, repair: bool, dtype: DTypeLike
-) -> tuple[TriangleMesh | PolygonMesh, Iterable[str]]:
+def _read_mesh(file: Path, repair: bool, dtype: DTypeLike) -> TriangleMesh | PolygonMesh:
     points, faces, dropped = _read(file)
     if repair:
         points, faces = _usable(points, faces, dtype)
     if not len(faces):
         raise MeshError(f"there are no triangles in it, only {len(points):,} points")
+    if names := ", ".join(dropped):
+        message = f"{file} has {names}, which are dropped: a mesh is positions and faces"
+        warnings.warn(message, MeshWarning, stacklevel=3)
     try:
-        points = validated_points(points, dtype, f"{file}: ")
         if (faces.counts == 3).all():
-            return TriangleMesh(points, faces.values.reshape(-1, 3), dtype), dropped
-        return PolygonMesh(points, faces, dtype), dropped
+            return TriangleMesh(points, faces.values.reshape(-1, 3), dtype)
+        return PolygonMesh(points, faces, dtype)
     except MeshError as error:
         hint = f"{error.reason}; or leave them out with hem.load(path, repair=True)"
         raise MeshError(hint, **error.elements) from error
@@ -247,12 +228,6 @@ def _about(task: str, path: str | os.PathLike[str]) -> Iterator[Path]:
         yield file
     except MeshError as error:
         raise type(error)(f"cannot {task} {file}: {error.reason}", **error.elements) from error
-
-
-def _tell(path: str | os.PathLike[str], dropped: Iterable[str]) -> None:
-    if names := ", ".join(dropped):
-        message = f"{path} has {names}, which are dropped: a mesh is positions and faces"
-        warnings.warn(message, MeshWarning, stacklevel=3)
 
 
 def _usable(points: Array, faces: Ragged, dtype: DTypeLike) -> tuple[Array, Ragged]:

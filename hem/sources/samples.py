@@ -1,15 +1,16 @@
 """Real models: those that come inside the pymeshlab package, and the Utah teapot."""
 
+import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
-from hem.errors import MeshError
+from hem.errors import MeshError, MeshWarning
 from hem.meshes import TriangleMesh
 from hem.naming import look_up
-from hem.sources.files import read_triangles
+from hem.sources.files import load
 from hem.sources.teapot import teapot
 
 
@@ -33,7 +34,8 @@ def sample(name: str, **options: Any) -> TriangleMesh:
 
 def _from_file(name: str) -> Callable[..., TriangleMesh]:
     def make(repair: bool = False) -> TriangleMesh:
-        return read_triangles(_sample_file(name), repair, triangulate=True)[0]
+        with warnings.catch_warnings(action="ignore", category=MeshWarning):
+            return load(_sample_file(name), repair, triangulate=True)
 
     return make
 

@@ -65,7 +65,7 @@ def test_float64_is_kept_by_whatever_is_made_of_the_mesh(
         hem.save(mesh, file)
         made += [hem.load(file, triangulate=True, dtype=np.float64)]
         made += [hem.load_polygons(file, dtype=np.float64)]
-        with pytest.warns(hem.MeshWarning, match=rf"mesh\.{extension}: different.*rows: 0-1"):
+        with pytest.warns(hem.MeshWarning, match="rows: 0-1"):
             assert hem.load_polygons(file).points.dtype == np.float32
     for other in made:
         assert other.points.dtype == np.float64

@@ -1,0 +1,126 @@
+"""Whatever the README and the docstrings show is run."""
+
+from __future__ import annotations
+
+import ast
+import doctest
+import re
+import subprocess
+import sys
+import textwrap
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from typer.main import get_command
+from typer.testing import CliRunner
+
+import hem
+import structures
+from experiments.cli import app
+
+ROOT = Path(__file__).parents[1]
+README = (ROOT / "README.md").read_text()
+BLOCKS = re.findall(r"(?ms)^```(\w*)\n(.*?)^```", README)
+LINES = [line.partition("#")[0].split() for _, text in BLOCKS for line in text.splitlines()]
+COMMANDS = [line[1:] for line in LINES if line[:1] == ["hem"]]
+QUICK = [it for it in COMMANDS if it[0] in ("info", "meshes")]
+PYTEST = re.findall(r"`python -m (pytest [^`]+)`", README)
+
+
+def docstrings() -> Iterator[tuple[str, str]]:
+    """Every docstring of the library, and whose it is."""
+    for file in sorted(
+        file for room in ("hem", "structures") for file in ROOT.glob(f"{room}/**/*.py")
+    ):
+        module = file.relative_to(ROOT).as_posix()
+        for node in ast.walk(ast.parse(file.read_text())):
+            if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef):
+                yield f"{module}:{getattr(node, 'name', '')}", ast.get_docstring(node) or ""
+
+
+def code_in(text: str) -> str:
+    """The indented blocks behind a double colon that are Python, and no drawings."""
+    code = ""
+    for block in re.findall(r"(?m)^.*::\n\n((?:(?: {4}.*)?\n)+)", text + "\n"):
+        try:
+            code += ast.unparse(ast.parse(textwrap.dedent(block))) + "\n"
+        except SyntaxError:
+            continue
+    return code
+
+
+SESSIONS = {name: text for name, text in docstrings() if ">>>" in text}
+LITERAL = {name: code for name, text in docstrings() if (code := code_in(text))}
+
+
+@pytest.fixture(autouse=True)
+def names(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
+    """A folder with the files that examples read, and what they have imported."""
+    monkeypatch.chdir(tmp_path)
+    square = np.array([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)])
+    hem.save(hem.PolygonMesh(square, [(0, 1, 2, 3)]), "house.obj")
+    hem.save(hem.generate("torus", 400), "model.ply")
+    return {"hem": hem, "structures": structures, "np": np}
+
+
+def test_the_python_of_the_readme_runs_from_top_to_bottom(names: dict[str, Any]) -> None:
+    blocks = [text for language, text in BLOCKS if language == "python"]
+    assert len(blocks) >= 3
+    for text in blocks:
+        shown = [line for line in text.splitlines() if line]
+        exec(compile("\n".join(shown), "README.md", "exec"), names)
+    assert names["broken"].shards
+    assert names["verdict"].outcome == "consistent"
+
+
+def test_what_people_reach_for_first_has_an_example() -> None:
+    owners = {name.rpartition(":")[2] for name in SESSIONS}
+    assert owners >= {"build", "load", "as_mesh", "TriangleMesh"}
+
+
+@pytest.mark.parametrize("name", SESSIONS)
+def test_an_example_in_a_docstring_gives_what_it_shows(name: str, names: dict[str, Any]) -> None:
+    session = doctest.DocTestParser().get_doctest(SESSIONS[name], names, name, name, 0)
+    said: list[str] = []
+    failed, tried = doctest.DocTestRunner().run(session, out=said.append)
+    assert tried
+    assert not failed, "".join(said)
+
+
+@pytest.mark.parametrize("name", LITERAL)
+def test_code_in_a_docstring_runs(name: str, names: dict[str, Any]) -> None:
+    names["mesh"] = structures.build("half_edge_objects", "model.ply")
+    exec(compile(LITERAL[name], name, "exec"), names)
+
+
+@pytest.mark.parametrize("words", COMMANDS, ids=" ".join)
+def test_a_command_of_the_readme_is_one(words: list[str]) -> None:
+    command: Any = get_command(app)
+    rest = words
+    while hasattr(command, "commands"):
+        command, rest = command.commands[rest[0].rstrip(";")], rest[1:]
+    assert command.make_context("hem", rest).params is not None
+
+
+@pytest.mark.parametrize("words", QUICK, ids=" ".join)
+def test_a_quick_command_of_the_readme_runs(words: list[str]) -> None:
+    done = CliRunner().invoke(app, words)
+    assert done.exit_code == 0, done.output
+
+
+@pytest.mark.parametrize(
+    "target", sorted(set(re.findall(r"(?:`|^)make (\w+)", README, re.MULTILINE)))
+)
+def test_a_target_of_the_readme_is_in_the_makefile(target: str) -> None:
+    assert re.search(rf"^{target}:", (ROOT / "Makefile").read_text(), re.MULTILINE)
+
+
+@pytest.mark.parametrize("line", PYTEST)
+def test_a_line_of_pytest_in_the_readme_selects_something(line: str) -> None:
+    words = [sys.executable, "-m", *line.split(), "--collect-only", "-q"]
+    done = subprocess.run(words, cwd=ROOT, capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout
+    assert "::" in done.stdout
