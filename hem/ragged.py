@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any, overload
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 SHOWN = 3
 """Rows that ``repr`` shows."""
@@ -27,7 +27,7 @@ class Ragged:
         return len(self.offsets) - 1
 
     @staticmethod
-    def from_lists(rows: Iterable[Sequence[int]], dtype: Any = np.int64) -> Ragged:
+    def from_lists(rows: Iterable[ArrayLike], dtype: Any = np.int64) -> Ragged:
         """The rows in one array. Cost O(values)."""
         return _gathered([np.asarray(row, dtype) for row in rows], dtype)
 

@@ -50,11 +50,7 @@ def from_meshio(given: Any, dtype: DTypeLike = np.float32) -> TriangleMesh | Pol
 
 
 def from_any(given: Any) -> TriangleMesh | PolygonMesh:
-    """The mesh of whatever has vertices and faces: of triangles if it has no others. O(n + m).
-
-    Positions become float32, but for those of a mesh that keeps them otherwise. Raises MeshError
-    that names what was given, and what is taken.
-    """
+    """What ``hem.as_mesh`` gives, but for paths."""
     if isinstance(given, TriangleMesh | PolygonMesh):
         return simplest(given)
     for way in ("to_polygons", "to_triangles"):  # a structure

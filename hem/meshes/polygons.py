@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, DTypeLike, NDArray
+from numpy.typing import ArrayLike, DTypeLike
 
 from hem.arrays import Bools, Indices
 from hem.errors import MeshError
@@ -137,9 +136,7 @@ def _ragged(faces: Sequence[Sequence[int]]) -> Ragged:
     wrong = [i for i, row in enumerate(rows) if row.ndim != 1]
     if wrong:
         raise MeshError("faces are rows of vertex indices", rows=wrong)
-    offsets = np.concatenate([[0], np.cumsum([len(row) for row in rows])]).astype(np.int64)
-    values: NDArray[Any] = np.concatenate(rows) if rows else np.zeros(0, np.int32)
-    return Ragged(offsets, values)
+    return Ragged.from_lists(rows, None if rows else np.int32)
 
 
 def _refuse(bad: Bools, message: str) -> None:

@@ -101,8 +101,8 @@ def as_mesh(given: Any) -> TriangleMesh | PolygonMesh:
     >>> hem.as_mesh(([(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2)]))
     TriangleMesh(3 vertices, 1 faces)
 
-    Of triangles if it has no other faces. O(n + m). Raises MeshError that names what was given, and
-    what is taken.
+    Of triangles if it has no other faces; with positions as float32, but for a mesh that keeps them
+    otherwise. O(n + m). Raises MeshError that names what was given, and what is taken.
     """
     if isinstance(given, str | os.PathLike):
         return simplest(load_polygons(given))

@@ -54,15 +54,12 @@ def apply(
     `percent`: parameters in percent of the diagonal. Raises MeshError with pymeshlab's own words
     when the filter refuses, and NoMeshlabError where there is no pymeshlab.
     """
-    given = {"name": filter_name, "mesh": _arrays(mesh)}
+    given = {"percent": percent or {}, "parameters": parameters}
     try:
-        points, triangles = _WORKER.ask(
-            "apply", **given, percent=percent or {}, parameters=parameters
-        )
+        points, triangles = _WORKER.ask("apply", name=filter_name, mesh=_arrays(mesh), **given)
     except MeshlabError as error:
-        raise MeshError(
-            f"pymeshlab's {filter_name} failed: {' '.join(error.reason.split())}"
-        ) from error
+        said = " ".join(error.reason.split())
+        raise MeshError(f"pymeshlab's {filter_name} failed: {said}") from error
     return TriangleMesh(points, triangles, mesh.points.dtype if mesh else np.float32)
 
 
@@ -108,6 +105,7 @@ class _Worker:
 
     def __init__(self) -> None:
         self._process: Any = None
+        self._inherited: list[Any] = []
         self._lock = threading.Lock()
 
     def ask(self, what: str, **arguments: Any) -> Any:
@@ -137,6 +135,11 @@ class _Worker:
             process.kill()
             process.communicate()
 
+    def forget(self) -> None:
+        """In a forked process, to which the other's process does not belong."""
+        self._inherited.append(self._process)  # whoever closed its pipes would speak to it
+        self._process, self._lock = None, threading.Lock()
+
 
 def _started() -> Any:
     return subprocess.Popen(
@@ -150,19 +153,9 @@ def _started() -> Any:
 
 
 _WORKER = _Worker()
-atexit.register(lambda: _WORKER.stop())
-
-
-def _forget() -> None:
-    """In a forked process, to which the other's worker does not belong."""
-    global _WORKER
-    _INHERITED.append(_WORKER)  # whoever closed its pipes would speak to it
-    _WORKER = _Worker()
-
-
-_INHERITED: list[_Worker] = []
+atexit.register(_WORKER.stop)
 if hasattr(os, "register_at_fork"):
-    os.register_at_fork(after_in_child=_forget)
+    os.register_at_fork(after_in_child=_WORKER.forget)
 
 
 def _advice(problem: str) -> str:

@@ -21,11 +21,11 @@ _TYPES = {
 _ORDERS = {"ascii": "", "binary_little_endian": "<", "binary_big_endian": ">"}
 _CORNERS = ("vertex_indices", "vertex_index")
 _BESIDE = {
-    **dict.fromkeys(("nx", "ny", "nz"), "normals"),
-    **dict.fromkeys(("s", "t", "u", "v", "texture_u", "texture_v"), "texture coordinates"),
-    **dict.fromkeys(("texcoord", "texnumber"), "texture coordinates"),
-    **dict.fromkeys(("red", "green", "blue", "alpha"), "colors"),
+    "normals": "nx ny nz",
+    "texture coordinates": "s t u v texture_u texture_v texcoord texnumber",
+    "colors": "red green blue alpha",
 }
+_WORDS = {name: words for words, names in _BESIDE.items() for name in names.split()}
 
 
 class _Property(NamedTuple):
@@ -55,7 +55,7 @@ def read_ply(data: bytes) -> Parts:
     faces = found.get("face", {})
     rows: Any = next((faces[name] for name in _CORNERS if name in faces), [])
     dropped = (
-        _BESIDE.get(name, name) if element in ("vertex", "face") else element
+        _WORDS.get(name, name) if element in ("vertex", "face") else element
         for element, columns in found.items()
         for name in columns
         if name not in (*"xyz", *_CORNERS)
