@@ -1,5 +1,6 @@
 """What the commands share: where they print, which run they mean, how they tell mistakes."""
 
+import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -52,9 +53,12 @@ def user_errors(code: int = 1) -> Iterator[None]:
 
 
 class Commands(TyperGroup):
-    """Commands that tell a user's mistakes in one line."""
+    """Commands that tell a user's mistakes, and what is warned of, in one line each."""
 
     def invoke(self, ctx: Any) -> Any:
         """Run the chosen command."""
-        with user_errors():
+        with user_errors(), warnings.catch_warnings():
+            warnings.showwarning = lambda message, *_: errors.print(
+                f"[bold yellow]hem:[/] {escape(str(message))}"
+            )
             return super().invoke(ctx)

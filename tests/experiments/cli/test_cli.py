@@ -114,6 +114,14 @@ def test_info_says_which_structure_can_hold_a_mesh_and_why_another_cannot(tmp_pa
     assert output.count("triangulate=True") == 1
 
 
+def test_what_a_file_loses_is_told_in_one_line(tmp_path):
+    (tmp_path / "a.obj").write_text("v 0 0 0\nv 1 0 0\nv 1 1 0\nvn 0 0 1\nf 1 2 3\n")
+    code, output = hem("info", str(tmp_path / "a.obj"))
+    assert code == 0
+    assert "a.obj has normals, which are dropped: a mesh is positions and faces" in output
+    assert "MeshWarning" not in output
+
+
 def test_meshes_lists_every_family_and_model():
     code, output = hem("meshes", "--size", "400")
     assert code == 0
