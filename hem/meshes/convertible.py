@@ -9,7 +9,9 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import DTypeLike
 
-from hem.arrays import Points
+from hem.arrays import Indices, Points
+from hem.meshes.edges import distinct_edges
+from hem.meshes.summary import MeshSummary, summarize
 from hem.ragged import Ragged
 
 CELLS = {3: "triangle", 4: "quad"}
@@ -42,6 +44,19 @@ class Convertible(ABC):
     @abstractmethod
     def face_rows(self) -> Ragged:
         """The corners of every face."""
+
+    def sides(self) -> tuple[Indices, Indices]:
+        """(corners,) of every side of every face the vertex where it starts and where it ends."""
+        faces = self.face_rows()
+        here = faces.values.astype(np.int64)
+        following = np.arange(1, len(here) + 1)
+        following[faces.offsets[1:] - 1] = faces.offsets[:-1]
+        return here, here[following]
+
+    def summary(self) -> MeshSummary:
+        """Counts of elements, borders, components and valences. O(n log n)."""
+        edges, faces_per_edge = distinct_edges(*self.sides())
+        return summarize(len(self.points), len(self.face_rows()), edges, faces_per_edge)
 
     def to_pyvista(self) -> Any:
         """A ``pyvista.PolyData``. O(n + m). ImportError where PyVista is not installed."""

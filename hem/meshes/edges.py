@@ -24,5 +24,10 @@ def key_vertices(keys: Indices) -> Indices:
 
 def undirected_edges(triangles: Triangles) -> tuple[Indices, Indices]:
     """The (k, 2) edges, smaller vertex first and in ascending order, and the faces of each (k,)."""
-    keys, count = np.unique(edge_keys(*half_edges(triangles)), return_counts=True)
+    return distinct_edges(*half_edges(triangles))
+
+
+def distinct_edges(start: Indices, end: Indices) -> tuple[Indices, Indices]:
+    """The same of sides (k,) of faces, from their starts to their ends."""
+    keys, count = np.unique(edge_keys(start, end), return_counts=True)
     return key_vertices(keys), count

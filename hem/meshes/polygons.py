@@ -7,12 +7,13 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike
 
-from hem.arrays import Bools, Indices
+from hem.arrays import Bools
 from hem.errors import MeshError
 from hem.meshes.convertible import Convertible
-from hem.meshes.summary import MeshSummary, summarize
-from hem.meshes.triangles import TriangleMesh, own, read_only, validated_points
+from hem.meshes.triangles import TriangleMesh, own, read_only, refuse, validated_points
 from hem.ragged import Ragged
+
+Faces = Ragged | Sequence[Sequence[int]]
 
 
 class PolygonMesh(Convertible):
@@ -28,12 +29,7 @@ class PolygonMesh(Convertible):
 
     faces: Ragged
 
-    def __init__(
-        self,
-        points: ArrayLike,
-        faces: Ragged | Sequence[Sequence[int]],
-        dtype: DTypeLike = np.float32,
-    ) -> None:
+    def __init__(self, points: ArrayLike, faces: Faces, dtype: DTypeLike = np.float32) -> None:
         self.points = read_only(validated_points(points, dtype))
         self.faces = _validated(faces, len(self.points))
 
@@ -51,19 +47,6 @@ class PolygonMesh(Convertible):
     def face_rows(self) -> Ragged:
         """The corners of every face."""
         return self.faces
-
-    def sides(self) -> tuple[Indices, Indices]:
-        """(corners,) of every side of every face the vertex where it starts and where it ends."""
-        here = self.faces.values.astype(np.int64)
-        following = np.arange(1, len(here) + 1)
-        following[self.faces.offsets[1:] - 1] = self.faces.offsets[:-1]
-        return here, here[following]
-
-    def summary(self) -> MeshSummary:
-        """Counts of elements, borders, components and valences. O(n log n)."""
-        ends = np.sort(np.stack(self.sides(), axis=1), axis=1)
-        edges, faces_per_edge = np.unique(ends, axis=0, return_counts=True)
-        return summarize(len(self.points), len(self.faces), edges, faces_per_edge)
 
     def triangulated(self) -> TriangleMesh:
         """Every face as the fan of its first corner, in order; exact for flat convex ones. O(n)."""
@@ -108,7 +91,7 @@ def repeats_a_corner(faces: Ragged) -> Bools:
     return repeats
 
 
-def _validated(faces: Ragged | Sequence[Sequence[int]], n: int) -> Ragged:
+def _validated(faces: Faces, n: int) -> Ragged:
     if not isinstance(faces, Ragged):
         faces = _ragged(faces)
     offsets = np.asarray(faces.offsets)
@@ -120,11 +103,12 @@ def _validated(faces: Ragged | Sequence[Sequence[int]], n: int) -> Ragged:
     counts, corners = faces.counts, faces.values
     if not np.issubdtype(corners.dtype, np.integer):
         raise MeshError(f"corners are vertex indices, integers, not {corners.dtype}")
-    _refuse(counts < 3, "faces have three corners or more")
+    refuse(counts < 3, "faces have three corners or more", "faces")
     face = np.repeat(np.arange(len(counts)), counts)
     outside = (corners < 0) | (corners >= n)
-    _refuse(np.bincount(face[outside], minlength=len(counts)) > 0, f"corners are 0 … {n - 1:,}")
-    _refuse(repeats_a_corner(faces), "faces come past a vertex twice; split or drop them")
+    strays = np.bincount(face[outside], minlength=len(counts)) > 0
+    refuse(strays, f"corners are 0 … {n - 1:,}", "faces")
+    refuse(repeats_a_corner(faces), "faces come past a vertex twice; split or drop them", "faces")
     return Ragged(read_only(own(offsets, np.int64)), read_only(own(corners, np.int32)))
 
 
@@ -137,8 +121,3 @@ def _ragged(faces: Sequence[Sequence[int]]) -> Ragged:
     if wrong:
         raise MeshError("faces are rows of vertex indices", rows=wrong)
     return Ragged.from_lists(rows, None if rows else np.int32)
-
-
-def _refuse(bad: Bools, message: str) -> None:
-    if bad.any():
-        raise MeshError(message, faces=np.flatnonzero(bad))

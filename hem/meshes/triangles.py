@@ -11,7 +11,6 @@ from hem.errors import MeshError, MeshWarning
 from hem.meshes import measures
 from hem.meshes.convertible import Convertible, library
 from hem.meshes.edges import undirected_edges
-from hem.meshes.summary import MeshSummary, summarize
 from hem.meshes.weld import clusters
 from hem.ragged import Ragged
 
@@ -133,10 +132,6 @@ class TriangleMesh(Convertible):
     def _corners(self) -> Floats:
         return measures.corners(self.points, self.triangles)
 
-    def summary(self) -> MeshSummary:
-        """Counts of elements, borders, components and valences. O(m log m)."""
-        return summarize(len(self.points), len(self.triangles), *undirected_edges(self.triangles))
-
 
 def repeated_corners(triangles: Triangles) -> Bools:
     """Which triangles use a vertex twice. (m,) bool, O(m)."""
@@ -180,11 +175,11 @@ def _tell_of_equal(given: NDArray[Any], kept: Points) -> None:
 def _validated_triangles(triangles: ArrayLike, n: int) -> Triangles:
     given = _rows_of_three(triangles, "triangles", kinds="iuf")
     if given.dtype.kind == "f":
-        _refuse(given != np.floor(given), "vertex indices are not whole numbers")
+        refuse(given != np.floor(given), "vertex indices are not whole numbers")
     if given.size and (given.min() < 0 or given.max() >= n):
-        _refuse((given < 0) | (given >= n), _out_of_range(given, n))
+        refuse((given < 0) | (given >= n), _out_of_range(given, n))
     kept = own(given, np.int32)
-    _refuse(repeated_corners(kept), "triangles use a vertex twice; drop them, or see welded()")
+    refuse(repeated_corners(kept), "triangles use a vertex twice; drop them, or see welded()")
     return kept
 
 
@@ -224,10 +219,10 @@ def _out_of_range(given: NDArray[Any], n: int) -> str:
     return f"vertex indices are out of the range 0 … {n - 1:,}, such as {first}{beyond}{hint}"
 
 
-def _refuse(bad: Bools, message: str) -> None:
+def refuse(bad: Bools, message: str, kind: str = "rows") -> None:
+    """Raise the MeshError for elements of a kind, if any (k,) or a part (k, n) of any is bad."""
     if bad.any():
-        rows = bad if bad.ndim == 1 else bad.any(axis=1)
-        raise MeshError(message, rows=np.flatnonzero(rows))
+        raise MeshError(message, **{kind: np.flatnonzero(bad.reshape(len(bad), -1).any(axis=1))})
 
 
 def read_only(array: NDArray[Any]) -> NDArray[Any]:

@@ -35,6 +35,7 @@ from hem.sources.text import (
 )
 from hem.whole_files import write_whole
 
+FilePath = str | os.PathLike[str]
 _COMMON = "ply, obj, off, stl, 3ds, dae, wrl, x3d, ctm"
 _READERS: dict[str, Callable[[bytes], Parts]] = {
     "ply": read_ply, "obj": read_obj, "off": read_off, "stl": read_stl,
@@ -52,10 +53,7 @@ _SAYS_ONLY_WHERE = ("Unable to open file", "Error encountered while loading file
 
 
 def load(
-    path: str | os.PathLike[str],
-    repair: bool = False,
-    triangulate: bool = False,
-    dtype: DTypeLike = np.float32,
+    path: FilePath, repair: bool = False, triangulate: bool = False, dtype: DTypeLike = np.float32
 ) -> TriangleMesh:
     """The triangles of a file: ply, obj, off, stl, and of any other format that pymeshlab reads.
 
@@ -85,7 +83,7 @@ def load(
         return repaired(triangles) if repair else triangles
 
 
-def load_polygons(path: str | os.PathLike[str], dtype: DTypeLike = np.float32) -> PolygonMesh:
+def load_polygons(path: FilePath, dtype: DTypeLike = np.float32) -> PolygonMesh:
     """The faces of a file, of any number of corners where it is ply, obj or off; else see `load`.
 
     Only some structures hold such a mesh; `triangulated()` cuts it.
@@ -109,7 +107,7 @@ def as_mesh(given: Any) -> TriangleMesh | PolygonMesh:
     return from_any(given)
 
 
-def save(mesh: Any, path: str | os.PathLike[str]) -> None:
+def save(mesh: Any, path: FilePath) -> None:
     """Write a mesh, or what `as_mesh` takes, in the format that the path's extension names.
 
     Replaces what is there. ply, off and obj keep every bit, every vertex and every polygon; the
@@ -221,7 +219,7 @@ def _read_mesh(file: Path, repair: bool, dtype: DTypeLike) -> TriangleMesh | Pol
 
 
 @contextmanager
-def _about(task: str, path: str | os.PathLike[str]) -> Iterator[Path]:
+def _about(task: str, path: FilePath) -> Iterator[Path]:
     """The file; every MeshError names it, and what could not be done with it."""
     file = Path(path).absolute()
     try:

@@ -94,12 +94,7 @@ def filled(pymeshlab: Any, mesh: Any) -> Any:
     return meshes
 
 
-JOBS: dict[str, Callable[..., Any]] = {
-    "apply": apply,
-    "crossing": crossing,
-    "load": load,
-    "save": save,
-}
+JOBS: dict[str, Callable[..., Any]] = {job.__name__: job for job in (apply, crossing, load, save)}
 
 if __name__ == "__main__":
     main()
