@@ -127,6 +127,6 @@ def started() -> Iterator[Browser]:
             yield Browser(to, back)
         finally:
             process.terminate()
-            process.wait(10)
+            process.wait(PATIENCE)
             for end in (to, back):
                 os.close(end)

@@ -127,9 +127,9 @@ def faces_of(s: Structure) -> dict[int, tuple[int, ...]]:
     """The live triangles by face, each from its smallest corner on."""
     faces = s.faces()
     rows = s.face_vertices(faces).values.reshape(-1, 3)
-    smallest = rows.argmin(axis=1) if len(rows) else []
-    turned = (tuple(np.roll(row, -k).tolist()) for row, k in zip(rows, smallest, strict=True))
-    return dict(zip(faces.tolist(), turned, strict=True))
+    turned = (rows.argmin(axis=1)[:, None] + np.arange(3)) % 3
+    corners = np.take_along_axis(rows, turned, axis=1).tolist()
+    return dict(zip(faces.tolist(), map(tuple, corners), strict=True))
 
 
 EULER = {"add_face": None, "remove_face": None, "remove_faces": None}

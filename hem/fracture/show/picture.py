@@ -197,16 +197,18 @@ def shadow(
     from scipy.ndimage import gaussian_filter
 
     plane = _plane(up)
-    flat, height = points @ plane, np.maximum(points @ up - floor, 0)
-    cell = (high - low) / _CELLS
+    height, cell = np.maximum(points @ up - floor, 0), (high - low) / _CELLS
+    flat = np.ascontiguousarray((points @ plane - low).T)  # an axis each: twice as fast as in pairs
     dark = np.zeros((_CELLS, _CELLS))
     for axis, spread, count, blur in ((light, 0.1, 8, 0.012), (up, 0.9, 16, 0.04)):
         hits = np.zeros(_CELLS**2)
         for way in _cone(axis, spread, count):
-            fallen = flat - height[:, None] * (way @ plane) / (way @ up)
-            at = np.floor((fallen - low) / cell).astype(int)
-            at = at[((at >= 0) & (at < _CELLS)).all(axis=1)]
-            hits += np.bincount(at @ (_CELLS, 1), minlength=_CELLS**2) > 0
+            fallen = flat - height * (way @ plane / (way @ up))[:, None]
+            x, y = np.floor(fallen / cell[:, None]).astype(int)
+            inside = (x >= 0) & (x < _CELLS) & (y >= 0) & (y < _CELLS)
+            hit = np.zeros(_CELLS**2, bool)
+            hit[x[inside] * _CELLS + y[inside]] = True
+            hits += hit
         dark += 0.4 * gaussian_filter(hits.reshape(_CELLS, _CELLS) / count, blur * size / cell)
     edge = np.minimum(np.arange(_CELLS), np.arange(_CELLS)[::-1]) / (0.18 * _CELLS)
     fade = np.clip(edge, 0, 1)

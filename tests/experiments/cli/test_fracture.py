@@ -149,13 +149,14 @@ def test_an_interrupted_run_leaves_a_folder_as_it_was(tmp_path):
     out = tmp_path / "out"
     out.mkdir()
     (out / "fracture.json").write_text("before")
-    command = [sys.executable, "-m", "experiments.cli", "fracture", "sphere:642", "--out", str(out)]
-    child = subprocess.Popen([*command, "--size", "1600x1200"], stderr=subprocess.PIPE, text=True)
+    command = [sys.executable, "-m", "experiments.cli", "fracture", "sphere:162", "--out", str(out)]
+    # The picture is there soon; what comes after it takes long.
+    child = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
     while not list(out.glob(".hem-*/new/fracture.png")):
         assert child.poll() is None
         time.sleep(0.05)
     child.send_signal(signal.SIGINT)
-    _, said = child.communicate(timeout=60)
+    _, said = child.communicate(timeout=300)
     assert child.returncode == 130
     assert "nothing was written" in said
     assert [path.name for path in out.iterdir()] == ["fracture.json"]

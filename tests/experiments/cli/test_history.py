@@ -33,6 +33,12 @@ def kept(base, tmp_path_factory):
 
 
 @pytest.fixture(scope="module")
+def trends(kept):
+    """What they say."""
+    return Trends(read_history(kept))
+
+
+@pytest.fixture(scope="module")
 def mixed(base, tmp_path_factory):
     """Runs of two machines by turns, the second of which takes twice the time."""
     path = tmp_path_factory.mktemp("history") / "mixed.jsonl"
@@ -98,8 +104,8 @@ def test_damage_is_told_of_beside_what_is_whole(base, tmp_path):
     assert line(base, 1)["commit"][:7] in output
 
 
-def test_the_changes_are_those_that_were_made_and_no_others(kept):
-    changes = Trends(read_history(kept)).changes
+def test_the_changes_are_those_that_were_made_and_no_others(trends):
+    changes = trends.changes
     assert set(changes["claim"]) == {CLAIM}
     exact = changes[changes["machine"] == ""][["measure", "run"]]
     assert set(exact.itertuples(index=False, name=None)) == {("verdict by work", 15), ("work", 15)}
@@ -209,8 +215,8 @@ def test_without_a_history_there_is_no_figure_but_what_to_do(tmp_path):
 
 @pytest.mark.parametrize("claim", [None, CLAIM, "half_edge"])
 @pytest.mark.parametrize("slopes", [False, True])
-def test_the_tables_fit_80_columns_and_cut_no_figure(kept, capsys, claim, slopes):
-    history_tables.show(Trends(read_history(kept)), claim, Console(width=80), 5, slopes)
+def test_the_tables_fit_80_columns_and_cut_no_figure(trends, capsys, claim, slopes):
+    history_tables.show(trends, claim, Console(width=80), 5, slopes)
     output = capsys.readouterr().out
     assert max(map(len, output.splitlines())) <= 80
     assert "…" not in output

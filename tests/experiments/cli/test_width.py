@@ -59,12 +59,10 @@ def test_slopes_and_intervals_are_shown_when_asked_for(violated):
     assert all(kind.title in text for kind in NAMED.values())
 
 
-@pytest.mark.parametrize("claim", [None, CLAIM, "half_edge"])
-@pytest.mark.parametrize("slopes", [False, True])
-def test_a_history_of_two_machines_and_presets_with_large_figures(
-    base, tmp_path, capsys, claim, slopes
-):
-    path = tmp_path / "history.jsonl"
+@pytest.fixture(scope="module")
+def large(base, tmp_path_factory):
+    """The trends of two machines and presets, with large figures."""
+    path = tmp_path_factory.mktemp("large") / "history.jsonl"
     for k in range(24):
         made = line(base, k, MACHINES[k % 2]) | {"profile": ("quick", "standard")[k // 12]}
         for figures in made["claims"].values():
@@ -74,7 +72,13 @@ def test_a_history_of_two_machines_and_presets_with_large_figures(
                 for key, it in figures.get("slopes", {}).items()
             }
         append_run(made, path)
-    history_tables.show(Trends(read_history(path)), claim, Console(width=80), None, slopes)
+    return Trends(read_history(path))
+
+
+@pytest.mark.parametrize("claim", [None, CLAIM, "half_edge"])
+@pytest.mark.parametrize("slopes", [False, True])
+def test_a_history_of_two_machines_and_presets_with_large_figures(large, capsys, claim, slopes):
+    history_tables.show(large, claim, Console(width=80), None, slopes)
     text = require_fits(capsys.readouterr().out)
     if claim:
         assert "time" in text

@@ -74,7 +74,7 @@ def test_a_process_stays_on_one_core_where_it_may():
         "os.sched_setaffinity = refused\n"
         "assert steadiness.pin() is None"
     )
-    subprocess.run([sys.executable, "-c", script], check=True, timeout=60)
+    subprocess.run([sys.executable, "-c", script], check=True, timeout=300)
 
 
 def test_the_calmest_core_is_the_one_that_was_idle(monkeypatch):

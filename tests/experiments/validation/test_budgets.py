@@ -4,10 +4,18 @@ from __future__ import annotations
 
 from time import sleep
 
+import numpy as np
 import pytest
 
 from experiments.validation import budgets, peers
 from experiments.validation.budgets import Task, time_interleaved
+
+
+@pytest.fixture(autouse=True)
+def _left_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    """However slow the machine all rounds begin, and none searches what other tests have left."""
+    monkeypatch.setattr(budgets, "SECONDS", np.inf)
+    monkeypatch.setattr("gc.collect", lambda: 0)
 
 
 def test_rounds_are_interleaved_and_each_has_its_own_setup() -> None:
