@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 import structures
-from experiments.harness import Case, Experiment, Measurement, Preset, Timer, why_too_slow
+from experiments.harness import Case, Experiment, Measurement, Preset, Timer
 from experiments.harness.calibration import latency_now
 from hem.arrays import Array, Floats
 from hem.contract import Structure
@@ -42,9 +42,6 @@ REFERENCE = "half_edge"
 """The structure whose shards the others must give, and on which looks at faces are counted."""
 ASKED_PER_BREAK_POINT = 30
 """Neighbors are asked for at least so often; where that is a scan, it takes what follows."""
-FEWEST_ROUNDS = 3
-ROUNDS = FEWEST_ROUNDS + 2
-"""With those to check it and to warm up."""
 
 
 def cases(preset: Preset, structure: str) -> list[Case]:
@@ -62,7 +59,8 @@ def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
     """Time a fracture, or the search for faces, after its outcome was checked."""
     s = case.build()
     scans = _neighbors_asked(case, s) if s.searches else 0
-    reason = why_too_slow(scans, s.n_faces, ROUNDS, preset)
+    # With a round to check it, and one to warm up.
+    reason = preset.why_too_slow(scans, s.n_faces, preset.fewest_rounds + 2)
     if reason:
         return case.result(EXPERIMENT.kind_of(case), s, skipped=reason)
     return (_shatter if case.subject == SHATTER else _find)(case, s, preset, timer)
@@ -86,14 +84,14 @@ def _shatter(case: Case, s: Structure, preset: Preset, timer: Timer) -> Measurem
     if not np.array_equal([it.points for it in shards], [it.points for it in expected]):
         raise AssertionError(f"{case.structure} gives other shards than {REFERENCE}")
 
-    def fresh() -> tuple[tuple[Structure, Array, Any], dict[str, Any]]:
+    def fresh() -> tuple[Structure, Array, Any]:
         ready = s.copy()
         ready.reserve(2 * sum(material.circles))
-        return (ready, at, material), {}
+        return ready, at, material
 
-    rounds = int(np.clip(preset.case_seconds / seconds, FEWEST_ROUNDS, preset.rounds))
+    rounds = preset.affordable_rounds(seconds)
     timed = timer(shatter, setup=fresh, rounds=rounds, per=len(shards))
-    return case.result("time", s, handles=len(shards), checked=True, **timed.fields)
+    return case.result("time", s, **timed.fields)
 
 
 def _find(case: Case, s: Structure, preset: Preset, timer: Timer) -> Measurement:
@@ -112,10 +110,9 @@ def _find(case: Case, s: Structure, preset: Preset, timer: Timer) -> Measurement
             find(s, at)
 
     latency = latency_now(sum(s.memory().values()))
-    rounds = max(FEWEST_ROUNDS, preset.rounds // 2)
+    rounds = max(preset.fewest_rounds, preset.rounds // 2)
     timed = timer(all_of_them, rounds=rounds, warmup=0, per=len(impacts))
-    units = len(impacts)
-    return case.result("time", s, handles=units, latency=latency, checked=True, **timed.fields)
+    return case.result("time", s, latency=latency, **timed.fields)
 
 
 def _impacts(s: Structure) -> Floats:

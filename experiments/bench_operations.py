@@ -65,7 +65,7 @@ def cases(preset: Preset, structure: str) -> list[Case]:
 def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
     """Time one case, and check what the operations make of the mesh."""
     timed = (time_operations if case.order == "batched" else _time_one_by_one)(case, preset, timer)
-    return case.result("time", case.build(), checked=True, **timed)
+    return case.result("time", case.build(), **timed)
 
 
 def _follow(order: str, s: Structure) -> Ending:
@@ -88,21 +88,20 @@ def _time_one_by_one(case: Case, preset: Preset, timer: Timer) -> dict[str, Any]
     given = 3 if operation == "add_face" else 1
     point = ((0.0, 0.0, 0.0),) if operation.startswith("split") else ()
 
-    def fresh() -> tuple[tuple[Any, list[list[int]], Ending], dict[str, Any]]:
+    def fresh() -> tuple[Any, list[list[int]], Ending]:
         copy = s.copy()
         copy.reserve(2 * SINGLE_FACES)
         rows = operation_arguments(copy, operation, np.array(faces))[:, :given].tolist()
         end = _follow(order, copy)
         copy.split_face(first, (0, 0, 0))  # makes room, here and in the render mesh
-        return (getattr(copy, operation), rows, end), {}
+        return getattr(copy, operation), rows, end
 
     def operate(method: Callable[..., Any], rows: list[list[int]], end: Ending) -> None:
         for row in rows:
             method(*row, *point)
         end()
 
-    timed = timer(operate, setup=fresh, rounds=preset.rounds, per=len(faces))
-    return {**timed.fields, "handles": len(faces)}
+    return timer(operate, setup=fresh, rounds=preset.rounds, per=len(faces)).fields
 
 
 EXPERIMENT = Experiment(

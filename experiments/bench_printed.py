@@ -61,9 +61,10 @@ def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
     steps, faces = _steps(case, COUNTED_OPERATIONS if counted else TIMED_OPERATIONS)
     before = faces()
     if counted:
-        fields: dict[str, Any] = {"samples": [fields_accessed(step) for step in steps]}
+        samples = [fields_accessed(step) for step in steps]
+        fields: dict[str, Any] = {"samples": samples, "handles": 1, "checked": True}
     else:
-        waiting: Any = iter([((step,), {}) for step in steps])
+        waiting = iter([(step,) for step in steps])
         latency = latency_now(500 * len(case.mesh().points))
         timed = timer(lambda step: step(), setup=waiting.__next__, rounds=len(steps), warmup=0)
         fields = {**timed.fields, "latency": latency}
@@ -71,7 +72,7 @@ def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
     if faces() != expected:
         raise AssertionError(f"{case.id} on {case.structure}: {faces()} faces, not {expected}")
     kind = EXPERIMENT.kind_of(case)
-    return case.result(kind, None, reference_bytes=8, handles=1, checked=True, **fields)
+    return case.result(kind, None, reference_bytes=8, **fields)
 
 
 def _steps(case: Case, most: int) -> tuple[list[Step], Callable[[], int]]:

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 import structures
-from experiments.harness import BASE, Case, Experiment, Measurement, Preset, Timer, why_too_slow
+from experiments.harness import BASE, Case, Experiment, Measurement, Preset, Timer
 from hem.contract import QUERIES, Structure
 
 KEPT = 0.1
@@ -22,8 +22,6 @@ IMPACT_SEED = 23
 
 SMALL = 400
 """Vertices of the mesh on which all structures must give the same."""
-
-FEWEST_ROUNDS = 3
 
 
 class Workload(NamedTuple):
@@ -127,19 +125,16 @@ def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
     s, workload = case.build(), WORKLOADS[str(case.subject)]
     units = IMPACTS if case.subject == "impacts" else s.n_vertices
     scans = units * workload.scans if s.searches else 0
-    reason = why_too_slow(scans, s.n_faces, FEWEST_ROUNDS, preset)
+    reason = preset.why_too_slow(scans, s.n_faces, preset.fewest_rounds)
     if reason:
         return case.result("time", s, skipped=reason)
     _check(case, workload)
     ready = _ready(s)
     begin = perf_counter()
     units = workload.run(ready)
-    seconds = perf_counter() - begin
-    rounds = int(np.clip(preset.case_seconds / seconds, FEWEST_ROUNDS, preset.rounds))
-    timed = timer(
-        workload.run, setup=lambda: ((_ready(s),), {}), rounds=rounds, warmup=0, per=units
-    )
-    return case.result("time", s, handles=units, checked=True, **timed.fields)
+    rounds = preset.affordable_rounds(perf_counter() - begin)
+    timed = timer(workload.run, setup=lambda: (_ready(s),), rounds=rounds, warmup=0, per=units)
+    return case.result("time", s, **timed.fields)
 
 
 def _ready(s: Structure) -> Structure:
@@ -158,9 +153,7 @@ def _check(case: Case, workload: Workload) -> None:
     for s in (mine, other):
         workload.run(s)
         s.validate()
-    corners, expected = (
-        np.sort(s.face_vertices(s.faces()).values.reshape(-1, 3), axis=1) for s in (mine, other)
-    )
+    corners, expected = (np.sort(s.triangles(), axis=1) for s in (mine, other))
     same_points = np.allclose(mine.points, other.points, atol=1e-5, equal_nan=True)
     if not (np.array_equal(corners, expected) and same_points):
         raise AssertionError(f"{case.subject} on {case.structure} gives another mesh than {BASE}")

@@ -13,6 +13,11 @@ ORDERS = ("random", "consecutive")
 """Of the handles that a query is asked for, and of the faces that a structure is built of."""
 VALENCES = tuple(2**k for k in range(2, 13))
 
+SECONDS_PER_FACE = 1e-9
+"""What a scan of the mesh takes at the least."""
+LONGEST = 20
+"""How many times the seconds of a case all its rounds may take, where each searches the mesh."""
+
 
 def _geometric(first: int, last: int, per_decade: float) -> tuple[int, ...]:
     sizes: list[int] = []
@@ -31,7 +36,7 @@ class Preset:
     the thesis prints is built of ``printed_sizes``. Operations are done one by one at
     ``single_sizes``. ``workloads``: those that are timed, all for none; ``skipped``: experiments
     that are not part of it. A round is one sample; ``round_seconds`` is how long it should last,
-    ``case_seconds`` what a case may take in all.
+    ``case_seconds`` what a case may take in all, but for ``fewest_rounds`` that last long.
     ``valence_faces`` stay in the caches that a core has to itself: beyond, neighbors on the machine
     make cases of one curve differ threefold.
     """
@@ -55,6 +60,7 @@ class Preset:
     printed_sizes: tuple[int, ...] = _geometric(50, 900, 5)
     models: tuple[str, ...] = ("teapot", "cow", "bunny", "bone")
     rounds: int = 15
+    fewest_rounds: int = 3
     round_seconds: float = 0.004
     case_seconds: float = 1.0
     latency_mib: int = 512
@@ -76,6 +82,19 @@ class Preset:
         smaller["valence_faces"] = min(self.valence_faces, 10 * most)
         smaller["operation_faces"] = min(self.operation_faces, most)
         return replace(self, **smaller)
+
+    def affordable_rounds(self, seconds: float) -> int:
+        """How many rounds of so many seconds there is time for."""
+        return min(self.rounds, max(self.fewest_rounds, int(self.case_seconds / seconds)))
+
+    def why_too_slow(self, scans: float, faces: int, rounds: int) -> str:
+        """Why a case that scans the mesh so often a round is skipped; empty if there is time."""
+        seconds, allowed = scans * faces * SECONDS_PER_FACE, LONGEST * self.case_seconds
+        if rounds * seconds <= allowed:
+            return ""
+        return (
+            f"takes {seconds:.0f} s and more a round, and {allowed:.0f} s are given to all rounds"
+        )
 
     def work_points(self) -> list[tuple[str, int, int | None]]:
         """Where work is counted: family, size, valence; one family by size, the hubs by valence."""

@@ -23,7 +23,7 @@ from experiments.harness.operations import (
 )
 from experiments.harness.queries import CHECKED_HANDLES, checked_handles, time_query
 from experiments.harness.steadiness import Watch, badness, disturbed
-from experiments.harness.timer import CLOCK, BenchmarkTimer, Timer, time_rounds, why_too_slow
+from experiments.harness.timer import CLOCK, BenchmarkTimer, Timer, time_rounds
 from experiments.presets import HUBS, ORDERS, PRESETS, Preset
 
 __all__ = [
@@ -31,5 +31,5 @@ __all__ = [
     "ORDERS", "PRESETS", "QUERIES_TABLE", "Axis", "BenchmarkTimer", "Case", "Experiment", "Keep",
     "Measurement", "Preset", "Table", "Timer", "Watch", "badness", "checked_handles", "disturbed",
     "in_random_order", "operation_arguments", "operation_faces", "searches", "shuffled",
-    "time_operations", "time_query", "time_rounds", "validate_operated", "why_too_slow",
+    "time_operations", "time_query", "time_rounds", "validate_operated",
 ]  # fmt: skip

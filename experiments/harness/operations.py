@@ -11,7 +11,7 @@ import hem
 import structures
 from experiments.harness.calibration import latency_now
 from experiments.harness.cases import BASE, Case
-from experiments.harness.timer import Given, Timer
+from experiments.harness.timer import Timer
 from experiments.presets import HUBS, Preset
 from hem.arrays import Array
 from hem.contract import Structure
@@ -122,14 +122,14 @@ class OperationBatch:
         task[END] = self.operations
         return float(np.median(seconds))
 
-    def restore(self) -> Given:
+    def restore(self) -> tuple[()]:
         """Make the mesh what it was, as the setup of a round.
 
         Just written, up to some 20 MB of it lie in the last caches, and its original beside it; a
         chase of as much memory, read before, was measured to wait up to three times as long.
         """
         self.mesh.restore(self._fresh)
-        return (), {}
+        return ()
 
 
 def validate_operated(operated: Structure) -> None:
@@ -142,7 +142,7 @@ def validate_operated(operated: Structure) -> None:
 def _operated(name: str, case: Case, faces: Array) -> list[tuple[int, ...]]:
     batch = OperationBatch(structures.build(name, case.mesh()), str(case.subject), faces)
     batch.operate()
-    rows = batch.mesh.face_vertices(batch.mesh.faces()).values.reshape(-1, 3)
+    rows = batch.mesh.triangles()
     turned = (rows.argmin(axis=1)[:, None] + np.arange(3)) % 3
     return sorted(map(tuple, np.take_along_axis(rows, turned, axis=1).tolist()))
 
@@ -169,5 +169,5 @@ def time_operations(case: Case, preset: Preset, timer: Timer) -> dict[str, Any]:
     timed = timer(batch.operate, setup=batch.restore, rounds=turns * preset.rounds, warmup=2)
     timed = timed.averaged(turns)
     seconds = np.maximum(timed.samples - batch.idle_seconds(), LEAST_SECONDS) / batch.operations
-    fields = {"samples": seconds, "handles": turns * batch.operations, "latency": latency}
-    return {**timed.fields, **fields}
+    handles = turns * batch.operations
+    return {**timed.fields, "samples": seconds, "handles": handles, "latency": latency}

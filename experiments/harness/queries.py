@@ -10,7 +10,7 @@ import numpy as np
 from experiments.harness.calibration import latency_now
 from experiments.harness.cases import Case, Measurement, queried_handles
 from experiments.harness.oracle import check_query
-from experiments.harness.timer import Given, Timer
+from experiments.harness.timer import Timer
 from experiments.presets import Preset
 from hem.arrays import Array
 from hem.contract import Structure
@@ -54,11 +54,11 @@ def time_query(case: Case, preset: Preset, timer: Timer) -> Measurement:
         s.sweep(query, handles)
     windows = (np.arange(many) + many * k for k in count())
 
-    def successive() -> Given:
-        return (query, handles[next(windows) % len(handles)]), {}
+    def successive() -> tuple[str, Array]:
+        return query, handles[next(windows) % len(handles)]
 
     timed = timer(s.sweep, setup=successive, rounds=rounds, per=many)
-    return case.result("time", s, handles=many, latency=latency, checked=True, **timed.fields)
+    return case.result("time", s, latency=latency, **timed.fields)
 
 
 def _seconds_per_query(s: Structure, query: str, handles: Array, enough: float) -> float:

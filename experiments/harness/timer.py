@@ -12,30 +12,35 @@ from typing import Any, Self
 import numpy as np
 
 from experiments.harness.calibration import calibration_loop
-from experiments.presets import Preset
 from hem.arrays import Array
 
 Call = Callable[..., Any]
-Given = tuple[tuple[Any, ...], dict[str, Any]]
-Setup = Callable[[], Given] | None
+Setup = Callable[[], tuple[Any, ...]]
 
 
 @dataclass(frozen=True)
 class Timed:
-    """Rounds of a call: ``samples``, seconds per unit, and ``calibration``, seconds per step."""
+    """Rounds of a call: ``samples``, seconds per unit, and ``calibration``, seconds per step.
+
+    ``per``: how many units a round does.
+    """
 
     samples: Array
     calibration: Array
+    per: int
 
     def averaged(self, together: int) -> Self:
         """Every so many successive rounds as one."""
-        both = self.samples, self.calibration
-        return type(self)(*(it.reshape(-1, together).mean(axis=1) for it in both))
+        samples, calibration = (
+            it.reshape(-1, together).mean(axis=1) for it in (self.samples, self.calibration)
+        )
+        return type(self)(samples, calibration, together * self.per)
 
     @property
     def fields(self) -> dict[str, Any]:
-        """What of it a measurement keeps."""
-        return {"samples": self.samples.tolist(), "calibration": self.calibration.tolist()}
+        """What of it the measurement of a checked case keeps."""
+        rows = {"samples": self.samples.tolist(), "calibration": self.calibration.tolist()}
+        return {**rows, "handles": self.per, "checked": True}
 
 
 Timer = Callable[..., Timed]
@@ -43,7 +48,7 @@ Timer = Callable[..., Timed]
 
 
 def time_rounds(
-    call: Call, *, setup: Setup = None, rounds: int, warmup: int = 1, per: float = 1
+    call: Call, *, setup: Setup = tuple, rounds: int, warmup: int = 1, per: int = 1
 ) -> Timed:
     """Time ``rounds`` of a call, after ``warmup`` rounds that do not count: a sample each.
 
@@ -53,12 +58,12 @@ def time_rounds(
     """
     samples, calibration = [], []
     for _ in range(warmup + rounds):
-        given, named = setup() if setup else ((), {})
+        given = setup()
         calibration.append(calibration_loop())
         begin = perf_counter()
-        call(*given, **named)
+        call(*given)
         samples.append((perf_counter() - begin) / per)
-    return Timed(np.array(samples[warmup:]), np.array(calibration[warmup:]))
+    return Timed(np.array(samples[warmup:]), np.array(calibration[warmup:]), per)
 
 
 class UnitClock:
@@ -87,37 +92,23 @@ class BenchmarkTimer:
         self._used = False
 
     def __call__(
-        self, call: Call, *, setup: Setup = None, rounds: int, warmup: int = 1, per: float = 1
+        self, call: Call, *, setup: Setup = tuple, rounds: int, warmup: int = 1, per: int = 1
     ) -> Timed:
         """The rounds, timed; none with ``--benchmark-disable``."""
         calibration: list[float] = []
 
-        def ready() -> Given:
-            given = setup() if setup else ((), {})
+        def ready() -> tuple[tuple[Any, ...], dict[str, Any]]:
+            given = setup()
             calibration.append(calibration_loop())
-            return given
+            return given, {}
 
         self._used, CLOCK.per = True, per
         self._benchmark.pedantic(call, setup=ready, rounds=rounds, warmup_rounds=warmup)
         stats = self._benchmark.stats
         samples = np.array(stats.stats.data if stats else [], float)
-        return Timed(samples, np.array(calibration[len(calibration) - len(samples) :], float))
+        return Timed(samples, np.array(calibration[len(calibration) - len(samples) :], float), per)
 
     def end(self) -> None:
         """Tell pytest-benchmark of a case that was counted, or not measured at all."""
         if not self._used:
             self._benchmark.pedantic(lambda: None)
-
-
-SECONDS_PER_FACE = 1e-9
-"""What a scan of the mesh takes at the least."""
-LONGEST = 20
-"""How many times the seconds of a case all its rounds may take, where each searches the mesh."""
-
-
-def why_too_slow(scans: float, faces: int, rounds: int, preset: Preset) -> str:
-    """Why a case that scans the mesh so often per round is skipped; empty if it can be afforded."""
-    seconds, allowed = scans * faces * SECONDS_PER_FACE, LONGEST * preset.case_seconds
-    if rounds * seconds <= allowed:
-        return ""
-    return f"takes {seconds:.0f} s and more a round, and {allowed:.0f} s are given to all rounds"

@@ -15,8 +15,6 @@ from dataclasses import asdict
 from datetime import UTC, datetime
 from functools import cache
 from importlib.metadata import version
-from itertools import groupby
-from operator import attrgetter
 from pathlib import Path
 from threading import Event
 from time import monotonic
@@ -167,9 +165,11 @@ def compile_and_count(
 
 
 def _grouped(jobs: Iterable[Job], by: str) -> list[list[Job]]:
-    """The jobs of each structure, or of each experiment."""
-    key = attrgetter(by)
-    return [list(group) for _, group in groupby(sorted(jobs, key=key), key)]
+    """The jobs of each structure, or of each experiment, in the order of a study."""
+    groups: dict[str, list[Job]] = {}
+    for job in jobs:
+        groups.setdefault(getattr(job, by), []).append(job)
+    return list(groups.values())
 
 
 def _is_compiled(structure: str) -> bool:

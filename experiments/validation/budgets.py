@@ -49,7 +49,7 @@ class Task:
     """What is timed: ``call`` gets what ``setup``, which is not timed, makes for each round."""
 
     call: Callable[..., Any]
-    setup: Callable[[], Any] | None = None
+    setup: Callable[[], tuple[Any, ...]] = tuple
 
 
 def print_budgets(title: str, budgets: Iterable[Budget]) -> None:
@@ -78,10 +78,10 @@ def time_interleaved(tasks: Sequence[Task], rounds: int = ROUNDS) -> list[float]
 def _time_once(task: Task) -> float:
     results: list[Any] = []  # kept, so that freeing them is not timed
 
-    def setup() -> tuple[tuple[Any, ...], dict[str, Any]]:
-        given = (task.setup(),) if task.setup else ()
+    def setup() -> tuple[Any, ...]:
+        given = task.setup()
         gc.collect()
-        return given, {}
+        return given
 
     def call(*given: Any) -> None:
         results.append(task.call(*given))
@@ -111,7 +111,7 @@ def _shatter(name: str, mesh: hem.TriangleMesh, material: Material) -> Task:
         corners = original.face_vertices(int(original.faces()[1_000 * seed]))
         return original.copy(), original.points[corners].mean(axis=0), material, seed
 
-    return Task(lambda given: shatter(*given), setup)
+    return Task(shatter, setup)
 
 
 def measure_body() -> list[Budget]:

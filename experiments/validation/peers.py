@@ -148,8 +148,8 @@ def compare_operations(peers: dict[str, Any]) -> Iterator[Budget]:
         yield compare(
             f"{COUNT:,} {operation}, {'batched' if batch else 'one by one'}, OpenMesh",
             asked,
-            Task(ours, partial(_copy_with_room, s)),
-            Task(theirs, partial(openmesh.TriMesh, points, triangles)),
+            Task(ours, lambda: (_copy_with_room(s),)),
+            Task(theirs, lambda: (openmesh.TriMesh(points, triangles),)),
         )
 
 

@@ -7,7 +7,7 @@ from time import perf_counter
 import numpy as np
 import pytest
 
-from experiments.harness import PRESETS, BenchmarkTimer, time_rounds, why_too_slow
+from experiments.harness import PRESETS, BenchmarkTimer, time_rounds
 from experiments.harness.queries import _seconds_per_query
 from experiments.harness.timer import UnitClock
 
@@ -51,7 +51,7 @@ def test_a_timer_gives_a_sample_and_a_calibration_per_round_and_per_unit(kind, b
 
     def setup():
         given.append(len(given))
-        return (given[-1],), {}
+        return (given[-1],)
 
     timed = timer(lambda k: busy(1e-3), setup=setup, rounds=4, warmup=2, per=10)
     if kind == "alone":
@@ -80,5 +80,5 @@ def test_a_round_of_many_units_lasts_as_long_as_one_of_them() -> None:
 
 def test_a_case_that_would_search_for_too_long_says_so() -> None:
     preset = PRESETS["quick"]
-    assert why_too_slow(10, 1_000, 3, preset) == ""
-    assert "given to all rounds" in why_too_slow(10**6, 10**6, 3, preset)
+    assert preset.why_too_slow(10, 1_000, 3) == ""
+    assert "given to all rounds" in preset.why_too_slow(10**6, 10**6, 3)

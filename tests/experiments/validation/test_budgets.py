@@ -21,7 +21,7 @@ def _left_alone(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_rounds_are_interleaved_and_each_has_its_own_setup() -> None:
     calls: list[str] = []
     made = iter(range(100))
-    first = Task(lambda given: calls.append(f"first {given}"), lambda: next(made))
+    first = Task(lambda given: calls.append(f"first {given}"), lambda: (next(made),))
     time_interleaved([first, Task(lambda: calls.append("second"))], rounds=2)
     assert calls == ["first 0", "second", "first 1", "second", "first 2", "second"]
 
