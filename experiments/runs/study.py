@@ -144,8 +144,9 @@ def compile_and_count(
     ``compiled`` is told of each structure whose kernels are ready; ``count`` does the jobs of one
     experiment, until the event is set. What cannot be compiled, its measurement will tell.
     """
-    to_compile = [job for job in jobs if job.timed and _is_compiled(job.structure)]
-    groups = [it for it in _grouped(to_compile, "structure") if not _stamp(it).exists()]
+    compiled_ones = {name for name, it in REGISTRY.items() if it.compiled}
+    timed = [job for job in jobs if job.timed and job.structure in compiled_ones]
+    groups = [it for it in _grouped(timed, "structure") if not _stamp(it).exists()]
     groups.sort(key=lambda it: it[0].structure != BASE)  # what the others are compared with
     stop = Event()
     with ThreadPoolExecutor(len(allowed_cores()) or os.cpu_count()) as pool:
@@ -170,10 +171,6 @@ def _grouped(jobs: Iterable[Job], by: str) -> list[list[Job]]:
     for job in jobs:
         groups.setdefault(getattr(job, by), []).append(job)
     return list(groups.values())
-
-
-def _is_compiled(structure: str) -> bool:
-    return structure in REGISTRY and REGISTRY[structure].compiled
 
 
 def _compile(folder: Path, jobs: list[Job], stop: Event) -> None:
