@@ -147,7 +147,7 @@ PRESETS = {
         rounds=9,
         round_seconds=0.002,
         case_seconds=0.25,
-        latency_mib=64,
+        latency_mib=32,
         skipped=("bench_fracture",),
     ),
     "standard": Preset("one family of each kind up to 1,000,000 vertices, some 40 minutes"),
