@@ -21,7 +21,7 @@ CELLS = {3: "triangle", 4: "quad"}
 class Convertible(ABC):
     """Points and faces of any size; the way from other libraries is ``hem.meshes.conversions``.
 
-    A subclass is made of its attributes, in their order, and the type of its positions.
+    A subclass is made of its points, its faces and the type of the points, and sets them in order.
     """
 
     points: Points
@@ -33,13 +33,15 @@ class Convertible(ABC):
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Copied and unpickled as it is made, so that the copy is read-only, too."""
-        return type(self), (*vars(self).values(), self.points.dtype)
+        return type(self), (*self._parts(), self.points.dtype)
 
     def astype(self, dtype: DTypeLike) -> Self:
         """The mesh with positions of this type, float32 or float64: itself if they are. O(n)."""
         make: Any = type(self)
-        same = self.points.dtype == np.dtype(dtype)
-        return self if same else make(*vars(self).values(), dtype)
+        return self if self.points.dtype == np.dtype(dtype) else make(*self._parts(), dtype)
+
+    def _parts(self) -> list[Any]:
+        return list(vars(self).values())[:2]  # behind them stands what others have added
 
     @abstractmethod
     def face_rows(self) -> Ragged:

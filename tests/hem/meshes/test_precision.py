@@ -73,6 +73,17 @@ def test_float64_is_kept_by_whatever_is_made_of_the_mesh(
     assert mesh.astype(np.float64) is mesh
 
 
+@pytest.mark.parametrize("mesh", [TRIANGLES, POLYGONS])
+def test_a_mesh_that_was_given_a_name_is_copied(mesh: hem.TriangleMesh | hem.PolygonMesh) -> None:
+    named = copy.copy(mesh)
+    named.name = "far"  # type: ignore[union-attr]
+    assert np.array_equal(copy.deepcopy(named).points, FAR)
+    with pytest.warns(hem.MeshWarning):
+        assert named.astype(np.float32).points.dtype == np.float32
+    with pytest.raises(AttributeError, match="points of a mesh do not change"):
+        named.points = FAR
+
+
 def test_a_weld_is_of_positions_as_they_are_kept() -> None:
     points = np.vstack([FAR, FAR[1:2] * -0.0, FAR[1:2]])
     assert len(hem.TriangleMesh(points, [], np.float64).welded().points) == 5
