@@ -11,15 +11,12 @@ from experiments.harness import Axis
 from hem.arrays import Floats
 from hem.complexity import Verdict
 
-MEMORY = "memory"
-"""The subject of the claims about bytes."""
+MEMORY = "memory"  # the subject of the claims about bytes
 
 NO_CLAIM = "N/A"
-BOUND = "≤ "
-"""What a class begins with that is claimed as a bound only."""
+BOUND = "≤ "  # what a class begins with that is claimed as a bound only
 
-SENTENCES = "sentences"
-"""The table of what is not a cell."""
+SENTENCES = "sentences"  # the table of what is not a cell
 
 
 class Outcome(StrEnum):
@@ -108,14 +105,14 @@ class Claim:
     printed: str = ""
 
     @property
+    def classes(self) -> Mapping[str, str]:
+        """Of a growth the class that is claimed, by variable."""
+        return self.expects.classes if isinstance(self.expects, Growth) else {}
+
+    @property
     def claims_something(self) -> bool:
         """Whether there is anything to be violated."""
-        match self.expects:
-            case Growth(classes):
-                return bool(classes)
-            case Exactly(value):
-                return value is not None
-        return True
+        return self.expects not in (Growth(), Exactly(None))
 
 
 @dataclass(frozen=True, eq=False)
@@ -124,9 +121,8 @@ class JudgedClaim:
 
     ``outcome``: by what is exact where there is such a measure, else by time; ``outcome_time``: by
     time. ``found``: short, such as ``O(n_ev)`` or ``6.33``; ``reason``: a sentence. ``verdicts``:
-    of a growth, by axis. ``values``: of a quantity. ``work`` and ``seconds``: per query at the
-    largest size, at random handles where that was measured. ``bytes_per_vertex``: of a claim about
-    memory.
+    of a growth, by axis. ``values``: of a quantity, or the bytes per vertex. ``work`` and
+    ``seconds``: per query at the largest size, at random handles where that was measured.
     """
 
     claim: Claim
@@ -138,4 +134,8 @@ class JudgedClaim:
     values: Floats = field(default_factory=lambda: np.zeros(0))
     work: float = np.nan
     seconds: float = np.nan
-    bytes_per_vertex: float = np.nan
+
+    @property
+    def was_measured(self) -> bool:
+        """Whether the run has anything to say about the claim."""
+        return bool(self.verdicts) or len(self.values) > 0

@@ -48,9 +48,9 @@ class Curve:
         return np.array([float(center(it)) for it in self.samples])
 
     @property
-    def by_size(self) -> dict[int, float]:
+    def by_size(self) -> pd.Series:
         """The cost of each case by its number of vertices."""
-        return dict(zip(self.cases["vertices"].astype(int), self.centers.tolist(), strict=True))
+        return pd.Series(self.centers, self.cases["vertices"].astype(int), dtype=float)
 
     @property
     def largest(self) -> float:
@@ -86,36 +86,24 @@ class Curves:
         return Curve(axis.variable, cases)
 
     def named(
-        self, experiment: str, structure: str, subject: str | None = None, order: str | None = None
+        self, experiment: str, structure: str, subject: str = "", order: str = "", width: int = 4
     ) -> Curve:
-        """The cases of one experiment by size, on the judged family, with references of 4 bytes."""
-        cases = self._of_family(
-            experiment=experiment, structure=structure, subject=subject, order=order,
-            reference_bytes=4,
-        )  # fmt: skip
-        return Curve("faces", cases[cases["valence"].isna()].sort_values("faces"))
-
-    def memory(self, structure: str, reference_bytes: int) -> pd.DataFrame:
-        """The judged family's cases of the memory experiment, by size."""
-        cases = self._of_family(
-            experiment="bench_memory", structure=structure, reference_bytes=reference_bytes
-        )
-        return cases.sort_values("vertices")
-
-    def _of_family(self, **columns: Any) -> pd.DataFrame:
-        """The judged family's cases with these values; None: with any."""
-        wanted = self.cases["family"] == self.judged_family
-        for name, value in columns.items():
-            if value is not None:
+        """The judged family's cases of an experiment by size; ``width``: bytes of a reference."""
+        known = {"experiment": experiment, "structure": structure, "family": self.judged_family}
+        wanted = self.cases["valence"].isna() & (self.cases["reference_bytes"] == width)
+        for name, value in {**known, "subject": subject, "order": order}.items():
+            if value != "":
                 wanted &= self.cases[name] == value
-        return self.cases[wanted]
+        return Curve("faces", self.cases[wanted].sort_values("faces"))
 
-    def bytes_per_vertex(self, structure: str, reference_bytes: int = 8) -> float:
+    def memory(self, structure: str, width: int = 8) -> Curve:
+        """The bytes of a structure by size."""
+        return self.named("bench_memory", structure, width=width)
+
+    def bytes_per_vertex(self, structure: str, width: int = 8) -> float:
         """Bytes in the arrays per vertex, at the largest size of the judged family."""
-        cases = self.memory(structure, reference_bytes)
-        if cases.empty:
-            return float("nan")
-        return float(cases["samples"].iloc[-1][0] / cases["vertices"].iloc[-1])
+        curve = self.memory(structure, width)
+        return curve.largest / float(curve.cases["vertices"].max())
 
     def latencies(self, curve: Curve) -> Array:
         """(a, k): what each case may have waited for, beside it or in a part of its working set."""
@@ -126,16 +114,15 @@ class Curves:
 
     def latency(self, working_sets: Array) -> Array | None:
         """Seconds per access at each working set, between those that were measured."""
-        sizes, seconds = self._latency
-        if len(sizes) == 0:
+        curve = self._latency
+        if len(curve) == 0:
             return None
-        return np.exp(np.interp(np.log(working_sets), np.log(sizes), np.log(seconds)))
+        return np.exp(np.interp(np.log(working_sets), np.log(curve.sizes), np.log(curve.centers)))
 
     @cached_property
-    def _latency(self) -> tuple[Array, Array]:
-        cases = self.cases[self.cases["experiment"] == "bench_latency"].sort_values("working_set")
-        seconds = [np.median(samples) for samples in cases["samples"]]
-        return cases["working_set"].to_numpy(float), np.array(seconds)
+    def _latency(self) -> Curve:
+        cases = self.cases[self.cases["experiment"] == "bench_latency"]
+        return Curve("working_set", cases.sort_values("working_set"))
 
     @cached_property
     def _rows(self) -> dict[Any, Any]:

@@ -20,8 +20,7 @@ from structures.as_printed import AsPrinted, render_arrays
 from structures.half_edge_objects import HalfEdgeMesh, fields_accessed
 from structures.plankton import Plankton
 
-KNOWN = 9
-"""The first so many errata were found by reading, the others by running."""
+KNOWN = 9  # the first so many errata were found by reading, the others by running
 
 POINTS = np.vstack([np.eye(3), -np.eye(3)])
 OCTAHEDRON = hem.TriangleMesh(
@@ -29,17 +28,13 @@ OCTAHEDRON = hem.TriangleMesh(
 )
 TETRAHEDRON = hem.TriangleMesh(POINTS[:4], [(0, 2, 1), (0, 1, 3), (1, 2, 3), (2, 0, 3)])
 TRIANGLE = hem.TriangleMesh(POINTS[:3], [(0, 1, 2)])
-BOOK = hem.TriangleMesh(POINTS[:5], [(0, 1, 2), (1, 0, 3), (0, 1, 4)])
-"""Three faces at one edge."""
+BOOK = hem.TriangleMesh(POINTS[:5], [(0, 1, 2), (1, 0, 3), (0, 1, 4)])  # three faces at one edge
 
-MIDDLE = (0.25, 0.25, 0.5)
-"""A position in the octahedron where nothing is yet."""
+MIDDLE = (0.25, 0.25, 0.5)  # a position in the octahedron where nothing is yet
 
-GIVES_UP = 999
-"""After so many steps Plankton's circulator takes a vertex for a runaway (quoted in thesis 5)."""
+GIVES_UP = 999  # after so many steps Plankton takes a vertex for a runaway (quoted in thesis 5)
 
-SMALLER, LARGER = 100, 400
-"""Vertices of the two tori whose work is compared: four times as many."""
+SMALLER, LARGER = 100, 400  # vertices of the two tori whose work is compared: four times as many
 
 MISPLACED = "corners of the render mesh at another position"
 

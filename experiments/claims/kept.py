@@ -24,7 +24,7 @@ from experiments.runs import Run
 from hem.complexity import Verdict
 from hem.whole_files import write_whole
 
-PLAIN = ("outcome", "outcome_time", "found", "reason", "work", "seconds", "bytes_per_vertex")
+PLAIN = ("outcome", "outcome_time", "found", "reason", "work", "seconds")
 
 
 @lru_cache(maxsize=4)

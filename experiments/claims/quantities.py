@@ -29,8 +29,7 @@ from structures.plankton import Plankton
 
 Quantity = Callable[[Curves], Iterable[float]]
 
-LARGER = 990
-"""Vertices from which on a mesh is spoken of: smaller ones are built and scanned in no time."""
+LARGER = 990  # vertices from which on a mesh is spoken of: others are built and scanned in no time
 
 HALF, WINGED = "half_edge", "winged_edge"
 HALF_EDGES = (HALF, "half_edge_objects", "plankton")
@@ -110,8 +109,7 @@ def _costs(of_run: Curves, structure: str, subject: str) -> pd.DataFrame:
     build = of_run.named("bench_build", structure, order="consecutive").by_size
     asked = of_run.named("bench_queries", structure, subject, "random").by_size
     edited = of_run.named("bench_operations", structure, subject, "batched").by_size
-    costs = {"build": build, "each": {**asked, **edited}}
-    return pd.DataFrame({name: pd.Series(it, dtype=float) for name, it in costs.items()})
+    return pd.DataFrame({"build": build, "each": pd.concat([asked, edited])})
 
 
 def _work(of_run: Curves, structure: str, subject: str) -> Array:
@@ -141,23 +139,22 @@ def _answers(of_run: Curves) -> Iterable[float]:
         yield local[0] - local[1]
 
 
-def _time_ratios(of_run: Curves, at_least: int, experiment: str, *case: str | None) -> list[float]:
+def _time_ratios(of_run: Curves, experiment: str, subject: str = "", order: str = "") -> pd.Series:
     """The time at every size that both were measured at, half-edge by indexed."""
-    mine, base = (of_run.named(experiment, it, *case).by_size for it in (HALF, BASE))
-    return [mine[n] / base[n] for n in sorted(mine.keys() & base.keys()) if n >= at_least]
+    mine, base = (of_run.named(experiment, it, subject, order).by_size for it in (HALF, BASE))
+    return (mine / base).dropna()
 
 
 def _static(of_run: Curves) -> Iterable[float]:
-    yield from _time_ratios(of_run, 0, "bench_build", None, "consecutive")
+    yield from _time_ratios(of_run, "bench_build", order="consecutive")
     yield from _bytes_ratio(of_run, HALF, BASE)
 
 
 def _edits_per_build(of_run: Curves) -> Iterable[float]:
     """Edge splits per vertex after which the half-edge mesh has overtaken, at the larger sizes."""
-    table = break_even(of_run)
-    mine = table[(table["structure"] == HALF) & (table["subject"] == "split_edge")]
-    mine = mine[mine["vertices"] >= LARGER]
-    yield from (mine["times"] / mine["vertices"]).tolist()
+    wanted = "structure == @HALF and subject == 'split_edge' and vertices >= @LARGER"
+    mine = break_even(of_run).query(wanted)
+    yield from mine["times"] / mine["vertices"]
 
 
 def _slopes(
@@ -220,12 +217,12 @@ QUANTITIES: dict[str, Quantity] = {
     "winged_half": lambda of_run: _work_ratios(of_run, WINGED, HALF, (*QUERIES, *OPERATIONS)),
     "answers": _answers,
     "static": _static,
-    "dynamic": lambda of_run: _time_ratios(of_run, LARGER, "bench_workloads", "impacts"),
+    "dynamic": lambda of_run: _time_ratios(of_run, "bench_workloads", "impacts").loc[LARGER:],
     "edits_per_build": _edits_per_build,
-    "printed_splits": lambda of_run: _slopes(of_run, ("as_printed",), SPLITS, "listings"),
-    "mended_splits": lambda of_run: _slopes(of_run, HALF_EDGES, SPLITS, "operations"),
-    "printed_collapse": lambda of_run: _slopes(of_run, ("as_printed",), COLLAPSE, "listings"),
-    "mended_collapse": lambda of_run: _slopes(of_run, HALF_EDGES, COLLAPSE, "operations"),
+    "published_splits": lambda of_run: _slopes(of_run, ("as_printed",), SPLITS, "listings"),
+    "corrected_splits": lambda of_run: _slopes(of_run, HALF_EDGES, SPLITS, "operations"),
+    "published_collapse": lambda of_run: _slopes(of_run, ("as_printed",), COLLAPSE, "listings"),
+    "corrected_collapse": lambda of_run: _slopes(of_run, HALF_EDGES, COLLAPSE, "operations"),
     "half_winged_operations": lambda of_run: _work_ratios(of_run, HALF, WINGED, OPERATIONS),
     "books_built": _books_built,
     "polygon_corners": _polygon_corners,

@@ -20,35 +20,28 @@ CASE_ERROR = 0.15
 """How far cases of one curve stray, beyond what their own rounds tell: each is measured within some
 milliseconds, and other tenants of the machine slow its caches for longer than that."""
 
-FLAT = 0.5
-"""Slope in n_ev below which what grows comes on top of a larger part that does not."""
+FLAT = 0.5  # slope in n_ev below which what grows comes on top of a larger part that does not
 
 
 def judge_cells(run: Run, claims: Sequence[Claim] | None = None) -> list[JudgedClaim]:
     """Every cell of every table, or these."""
-    of_run, every = curves(run), load_claims() if claims is None else claims
-    return [
-        _judge_growth(of_run, claim, claim.expects.classes)
-        if isinstance(claim.expects, Growth)
-        else _judge_bytes(of_run, claim)
-        for claim in every
-    ]
+    judges = {Growth: _judge_growth, Exactly: _judge_bytes}
+    every = load_claims() if claims is None else claims
+    return [judges[type(claim.expects)](curves(run), claim) for claim in every]
 
 
 def _judge_bytes(of_run: Curves, claim: Claim) -> JudgedClaim:
     found = of_run.bytes_per_vertex(claim.structure)
-    if not claim.claims_something:
-        outcome = Outcome.NO_CLAIM
-    elif np.isnan(found):
-        outcome = Outcome.UNDETERMINED
-    else:
-        outcome = Outcome.CONSISTENT if Exactly(found) == claim.expects else Outcome.VIOLATED
-    shown = "?" if np.isnan(found) else f"{found:,.4g}"
-    return JudgedClaim(claim, outcome, shown, bytes_per_vertex=found)
+    if np.isnan(found):
+        outcome = Outcome.UNDETERMINED if claim.claims_something else Outcome.NO_CLAIM
+        return JudgedClaim(claim, outcome, "?")
+    outcome = Outcome.CONSISTENT if Exactly(found) == claim.expects else Outcome.VIOLATED
+    outcome = outcome if claim.claims_something else Outcome.NO_CLAIM
+    return JudgedClaim(claim, outcome, f"{found:,.4g}", values=np.array([found]))
 
 
-def _judge_growth(of_run: Curves, claim: Claim, classes: Mapping[str, str]) -> JudgedClaim:
-    axes = axes_of(claim.table)
+def _judge_growth(of_run: Curves, claim: Claim) -> JudgedClaim:
+    axes, classes = axes_of(claim.table), claim.classes
     cases = {axis: of_run.curve(axis, claim.structure, claim.subject, claim.table) for axis in Axis}
     verdicts = {
         axis: _verdict(of_run, claim.table, axis, cases[axis], classes.get(axis.variable, "O(1)"))
@@ -67,15 +60,12 @@ def _judge_growth(of_run: Curves, claim: Claim, classes: Mapping[str, str]) -> J
     measure = "work" if counted else "time"
     timed = Axis.RANDOM_FACES if Axis.RANDOM_FACES in axes else Axis.TIME_FACES
     return JudgedClaim(
-        claim=claim,
-        outcome=outcomes[measure],
-        outcome_time=outcomes["time"],
-        found=_class_found([axis for axis in axes if axis.measure == measure], verdicts),
-        reason=" ".join(it.reason for axis, it in verdicts.items() if axis.exact == counted),
-        verdicts=verdicts,
-        work=cases[Axis.WORK_FACES].largest,
-        seconds=cases[timed].largest,
-    )
+        claim, outcomes[measure],
+        _class_found([axis for axis in axes if axis.measure == measure], verdicts),
+        " ".join(it.reason for axis, it in verdicts.items() if axis.exact == counted),
+        outcomes["time"], verdicts,
+        work=cases[Axis.WORK_FACES].largest, seconds=cases[timed].largest,
+    )  # fmt: skip
 
 
 def _verdict(of_run: Curves, table: str, axis: Axis, curve: Curve, expected: str) -> Verdict:
@@ -85,17 +75,14 @@ def _verdict(of_run: Curves, table: str, axis: Axis, curve: Curve, expected: str
     """
     # What reads nothing at all costs something all the same: the call.
     samples = [np.maximum(it, 1) if axis.exact else it for it in curve.samples]
+    latency = None if axis.exact else of_run.latencies(curve)
     every = [it for it in experiments().values() if it.table and it.table.name == table]
     return judge(
-        curve.sizes,
-        samples,
-        expected.removeprefix(BOUND),
-        None if axis.exact else of_run.latencies(curve),
-        exact=axis.exact,
-        latency_error=CASE_ERROR,
+        curve.sizes, samples, expected.removeprefix(BOUND), latency,
+        exact=axis.exact, latency_error=CASE_ERROR,
         unseen=any(axis in it.just_written for it in every),
         bound="upper" if expected.startswith(BOUND) else "tight",
-    )
+    )  # fmt: skip
 
 
 def _class_found(axes: Sequence[Axis], verdicts: Mapping[Axis, Verdict]) -> str:

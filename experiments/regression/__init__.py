@@ -26,12 +26,12 @@ from experiments.regression.findings import CaseKey, Change, Finding, Kind, exit
 from experiments.regression.history import History, Line, append_run, read_history, record_run
 from experiments.regression.interleaved import HERE, compare_trees
 from experiments.regression.significance import FACTOR as INTERLEAVED_FACTOR
-from experiments.regression.trends import MEASURES, OUTCOMES, Trends, is_of
+from experiments.regression.trends import MEASURES, OUTCOMES, Trends
 
 __all__ = [
     "COUNTERS", "HERE", "INTERLEAVED_FACTOR", "MEASURES", "OUTCOMES", "RUN", "RUN_FACTOR",
     "CaseKey", "Change", "Compared", "Finding", "History", "Kind", "Line", "Measured", "Trends",
     "append_run", "compare_counters", "compare_runs", "compare_trees", "describe_difference",
-    "exit_code", "is_of", "load_baseline", "measure_counters", "read_history", "record_run",
+    "exit_code", "load_baseline", "measure_counters", "read_history", "record_run",
     "reduce_run", "save_baseline",
 ]  # fmt: skip

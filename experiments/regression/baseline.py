@@ -31,8 +31,7 @@ HEAD = (
 )
 """What is kept of the head of a run."""
 
-LEAST_ROUNDS = 9
-"""Rounds on either side with which a comparison of times can decide at all."""
+LEAST_ROUNDS = 9  # rounds on either side with which a comparison of times can decide at all
 
 KEPT = ("id", "kind", "subject", "order", "family", "vertices", "faces", "valence")
 """What is kept of a case besides its samples and the calibration loop's readings."""

@@ -19,14 +19,10 @@ from hem.arrays import Floats
 ALARM = 2e-3
 """The share of series of nothing but normal noise in which a step may be found, at most. A run is
 drawn as some hundred series, so this is about one false step in five of them."""
-SHORTEST = 3
-"""Noisy values that make a level: a step is seen from the third value after it on."""
-SMALLEST = 0.05
-"""Noisy steps below this ratio are not told: they would be real, and matter to nobody."""
-FARTHEST = 4.0
-"""Standard deviations of the noise from its surroundings at which a single value is cut off."""
-MOST = 6
-"""Steps in one series."""
+SHORTEST = 3  # noisy values that make a level: a step is seen from the third value after it on
+SMALLEST = 0.05  # noisy steps below this ratio are not told: real or not, they matter to nobody
+FARTHEST = 4.0  # standard deviations from its surroundings at which a value is cut off
+MOST = 6  # steps in one series
 
 
 @dataclass(frozen=True)

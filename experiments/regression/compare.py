@@ -7,6 +7,7 @@ the calibration loop that ran beside its rounds.
 """
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from itertools import groupby
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -32,11 +33,11 @@ were measured to differ by up to 0.17, where one of them took a rise for the mem
 did not; a query that becomes linear moves its slope by 1. Where nothing is claimed they are not
 compared."""
 
-MACHINE = {"machine": ("cpu", "cores", "caches", "machines"), "versions": ("numba",)}
+MACHINE = [("machine", it) for it in ("cpu", "cores", "caches", "machines")]
+MACHINE += [("versions", "numba")]
 """What must be the same for times to be comparable."""
 
-Row = Mapping[Any, Any]
-"""A case as a row of a run."""
+Row = Mapping[Any, Any]  # a case as a row of a run
 
 
 class Pair(NamedTuple):
@@ -67,9 +68,7 @@ def compare_runs(before: Measured, after: Measured, factor: float = FACTOR) -> C
     pairs, notes = _pair_cases(before.run, after.run)
     old, new = before.run.meta, after.run.meta
     alike = old.get("preset") == new.get("preset")
-    present = {it.case[:2] for it in pairs if it.after is not None}
-    findings = _find_gone(it for it in pairs if it.case[:2] not in present)
-    pairs = [it for it in pairs if it.case[:2] in present]
+    findings, pairs = _find_gone(pairs)
     if not alike:
         count, pairs = len(pairs), [it for it in pairs if it.before and it.after]
         notes.append(
@@ -207,15 +206,14 @@ def compare_classes(before: Sequence[str], after: Sequence[str]) -> tuple[Change
     claim, too: so does an index that is hidden in a structure without one.
     """
     (old, was), (new, now) = before, after
+    decided = {"violated": Change.WORSE, "consistent": Change.BETTER}
     change = Change.UNDETERMINED
     if (old, was) == (new, now):
         change = Change.SAME
-    elif was != now:
-        decided = {"violated": Change.WORSE, "consistent": Change.BETTER}
-        change = change if was == Outcome.NO_CLAIM else decided.get(now, change)
-    elif was != Outcome.UNDETERMINED and old in CLASSES and new in CLASSES:
-        worse = CLASSES.index(new) > CLASSES.index(old)
-        change = Change.WORSE if worse else Change.BETTER
+    elif was != now and was != Outcome.NO_CLAIM:
+        change = decided.get(now, change)
+    elif was == now != Outcome.UNDETERMINED and old in CLASSES and new in CLASSES:
+        change = Change.WORSE if CLASSES.index(new) > CLASSES.index(old) else Change.BETTER
     return change, ""
 
 
@@ -254,26 +252,27 @@ def _compare_slopes(key: CaseKey, old: Figures, new: Figures, claim: str) -> Ite
             yield Finding(change, Kind.SLOPE, key, before, after, "", "", where, claim, random)
 
 
-def _find_gone(pairs: Iterable[Pair]) -> list[Finding]:
-    """One finding for all cases of an experiment on a structure of which the run has none."""
-    gone: dict[CaseKey, list[Kind]] = {}
-    for pair in pairs:
-        gone.setdefault(CaseKey(*pair.case[:2]), []).append(pair.kind)
-    return [
-        Finding(Change.UNDETERMINED, kinds[0], key, f"{len(kinds):,} cases", "none")
-        for key, kinds in gone.items()
-    ]
+def _find_gone(pairs: Iterable[Pair]) -> tuple[list[Finding], list[Pair]]:
+    """A finding for each experiment on a structure of which the run has no case; the others."""
+    findings, others = [], []
+    for key, group in groupby(pairs, lambda it: it.case[:2]):
+        cases = list(group)
+        if any(it.after is not None for it in cases):
+            others += cases
+        else:
+            case, were = CaseKey(*key), f"{len(cases):,} cases"
+            findings.append(Finding(Change.UNDETERMINED, cases[0].kind, case, were, "none"))
+    return findings, others
 
 
 def _other_machine(before: Row, after: Row) -> str:
     """Why times of two runs with these heads cannot be compared; empty if they can."""
     if (after.get("machine") or {}).get("machines"):
         return "the run was measured by several machines"
-    for part, keys in MACHINE.items():
-        for key in keys:
-            old, new = ((meta.get(part) or {}).get(key) for meta in (before, after))
-            if old != new:
-                return f"another machine or compiler ({key}: {new}, the baseline has {old})"
+    for part, key in MACHINE:
+        old, new = ((meta.get(part) or {}).get(key) for meta in (before, after))
+        if old != new:
+            return f"another machine or compiler ({key}: {new}, the baseline has {old})"
     return ""
 
 
@@ -307,8 +306,7 @@ def _compare_curve(key: CaseKey, axis: str, pairs: list[Pair], factor: float) ->
         for old, new in both
     ]
     change, why = vote(case.change for case in cases)
-    if lost := sum(it.after is None for it in pairs):
-        # Perhaps just the largest are slower.
+    if lost := sum(it.after is None for it in pairs):  # perhaps just the largest are slower
         change = Change.UNDETERMINED if change == Change.SAME else change
         why += f", {lost} not measured"
     ratios = [case.ratio for case in cases]

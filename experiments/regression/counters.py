@@ -32,14 +32,11 @@ EXTENT = replace(
     printed_sizes=(50, 100),
 )
 
-BYTES = "bytes"
-"""What stands for an experiment where bytes are counted here."""
+BYTES = "bytes"  # what stands for an experiment where bytes are counted here
 
-WEIGHED, GROWING = 1_000, 100
-"""Vertices of the mesh whose bytes are counted, and of the one that is made to grow."""
+WEIGHED, GROWING = 1_000, 100  # vertices of the mesh that is weighed, and of that which grows
 
-SPLITS = 500
-"""How often one of its faces is split."""
+SPLITS = 500  # how often one of its faces is split
 
 Task = tuple[str, str, Measurement, Callable[[], Iterable[Measurement]]]
 """An experiment, a structure, what is kept if nothing can be measured, and how it is."""

@@ -23,8 +23,7 @@ from experiments.regression.significance import FACTOR, Comparison, compare_roun
 from hem.contract import QUERIES
 from structures import REGISTRY
 
-HERE = Path(__file__).parents[2]
-"""The tree that this is."""
+HERE = Path(__file__).parents[2]  # the tree that this is
 WORKER = Path(__file__).with_name("interleaved_worker.py")
 
 VERTICES = 1_000
@@ -39,8 +38,7 @@ as before. Where a process happens to lie in memory alone was measured to make a
 without doing anything obviously wrong, ASPLOS 2009): so a tree is slower only if no pair says
 otherwise."""
 
-Case = tuple[str, str]
-"""A structure and a query."""
+Case = tuple[str, str]  # a structure and a query
 
 
 class PairTimed(NamedTuple):
@@ -65,14 +63,12 @@ def compare_trees(
     """
     if not (before / "hem" / "__init__.py").exists():
         raise ValueError(f"--beside {before} is no checkout: there is no hem/__init__.py in it")
-    names = [name for name, it in REGISTRY.items() if it.compiled]
-    wanted = [
-        (it, query) for it in names for query in QUERIES if not structures or it in structures
-    ]
+    chosen = structures or REGISTRY
+    names = [name for name, it in REGISTRY.items() if it.compiled and name in chosen]
+    wanted = [(name, query) for name in names for query in QUERIES]
     if not wanted:
-        why = (
-            f"none of {', '.join(structures)} is compiled, so there is nothing to time interleaved"
-        )
+        none = f"none of {', '.join(structures)} is compiled"
+        why = f"{none}, so there is nothing to time interleaved"
         return [Finding(Change.UNDETERMINED, Kind.TIME, CaseKey("interleaved"), why=why)]
     timed: dict[Case, list[PairTimed]] = {case: [] for case in wanted}
     for k in range(PAIRS + FURTHER):

@@ -17,20 +17,13 @@ from scipy.stats import mannwhitneyu, rankdata, ttest_ind
 from experiments.regression.findings import Change
 from hem.arrays import Array
 
-FACTOR = 1.15
-"""How much slower is worth telling."""
-ALPHA = 1e-4
-"""Chance of a false alarm that the ranks alone may leave: 9 rounds on each side can show it."""
-CONFIDENCE = 0.95
-"""That the ratio lies above the interval's lower end, and, apart, below the upper one."""
-DRIFT = 1.05
-"""Factor by which the level of a run may differ from that of the next for no reason in the code."""
-TRIMMED = 0.2
-"""Share of the rounds left out at either end: what another tenant delayed moves nothing."""
-FEWEST = 3
-"""Rounds below which nothing is computed."""
-LARGEST_EXACT = 2500
-"""Pairs of rounds up to which the rank test is exact, if no two rounds are equal."""
+FACTOR = 1.15  # how much slower is worth telling
+ALPHA = 1e-4  # chance of a false alarm that the ranks alone may leave: 9 rounds each can show it
+CONFIDENCE = 0.95  # that the ratio lies above the lower end of the interval; likewise the upper one
+DRIFT = 1.05  # factor by which runs may differ in their level for no reason in the code
+TRIMMED = 0.2  # share of the rounds left out at either end: delays by other tenants move nothing
+FEWEST = 3  # rounds below which nothing is computed
+LARGEST_EXACT = 2500  # pairs of rounds up to which the rank test is exact, if no two are equal
 
 
 class Comparison(NamedTuple):
@@ -47,12 +40,9 @@ class Comparison(NamedTuple):
 
 
 def compare_rounds(
-    before: ArrayLike,
-    after: ArrayLike,
-    loop_before: ArrayLike,
-    loop_after: ArrayLike,
+    before: ArrayLike, after: ArrayLike, loop_before: ArrayLike, loop_after: ArrayLike,
     factor: float = FACTOR,
-) -> Comparison:
+) -> Comparison:  # fmt: skip
     """Compare the rounds of one case in two runs.
 
     before, after: seconds per round, in the order they were measured; 9 rounds each can decide.

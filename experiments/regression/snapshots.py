@@ -9,7 +9,6 @@ from experiments.claims import (
     NO_CLAIM,
     Claim,
     Curves,
-    Growth,
     JudgedClaim,
     Outcome,
     curves,
@@ -24,15 +23,12 @@ LEAST_SLOPE = 0.01
 """Slopes of counts that differ by less are the same one: not even they come out alike everywhere,
 to the last digit."""
 
-LEAST_SIZES = 4
-"""Sizes below which counts show no class."""
+LEAST_SIZES = 4  # sizes below which counts show no class
 
 DIGITS = 5
-NOTHING = 1e-12
-"""What rounding leaves of nothing."""
+NOTHING = 1e-12  # what rounding leaves of nothing
 
-Figures = dict[str, Any]
-"""What is kept of a claim, see `claim_figures`."""
+Figures = dict[str, Any]  # what is kept of a claim, see `claim_figures`
 
 
 def claim_figures(run: Run) -> dict[str, Figures]:
@@ -76,19 +72,18 @@ def _name(claim: Claim) -> str:
 
 def _classes(of_run: Curves, judged: JudgedClaim) -> Figures:
     claim, classes = judged.claim, Figures()
-    claimed = claim.expects.classes if isinstance(claim.expects, Growth) else {}
     for axis, verdict in judged.verdicts.items():
         if len(of_run.curve(axis, claim.structure, claim.subject, claim.table)) >= LEAST_SIZES:
-            outcome = verdict.outcome if axis.variable in claimed else Outcome.NO_CLAIM
+            outcome = verdict.outcome if axis.variable in claim.classes else Outcome.NO_CLAIM
             classes[axis.key] = [verdict.best, outcome]
     return classes
 
 
 def _figures(run: Run, judged: JudgedClaim) -> Figures:
-    if np.isfinite(judged.bytes_per_vertex):
-        return {"outcome": judged.outcome, "bytes": _short(judged.bytes_per_vertex)}
-    if not judged.verdicts:
+    if not judged.was_measured:
         return {}
+    if not judged.verdicts:
+        return {"outcome": judged.outcome, "bytes": _short(judged.values[0])}
     slopes = {
         axis.key: [_short(it) for it in (verdict.slope, verdict.slope_low, verdict.slope_high)]
         for axis, verdict in judged.verdicts.items()

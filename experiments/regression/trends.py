@@ -4,7 +4,7 @@ Work, bytes and outcomes by work are comparable between machines, times are not:
 is of one machine. All series are of one profile, as the profile sets the sizes.
 """
 
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, Self
@@ -54,24 +54,30 @@ class Trends:
         self.history = history
         self.runs = history.runs
 
+    @cached_property
+    def about(self) -> pd.DataFrame:
+        """By run its ``commit``, with a star where there were changes besides, and the like."""
+        rows = [
+            (it["commit"][:7] + "*" * bool(it.get("dirty")), it["profile"], it["machine"]["id"])
+            for it in self.runs
+        ]
+        return pd.DataFrame(rows, columns=["commit", "preset", "machine"])
+
     def only(self, machine: str | None = None, preset: str | None = None) -> Self:
         """The runs of one machine, by its first digits, or of one preset.
 
         Raises ValueError that says which there are, if there are none or several machines.
         """
-        runs = [
-            (run, {"machine": run["machine"]["id"], "preset": run["profile"]}) for run in self.runs
-        ]
+        about = self.about
         for what, wanted in (("machine", machine), ("preset", preset)):
             if wanted is not None:
-                known = list(dict.fromkeys(about[what] for _, about in runs))
+                known = about[what].unique()
                 named = [it for it in known if wanted and it.startswith(wanted)]
                 if len(named) != 1:
-                    which = "several runs are" if named else "no run is"
-                    there = ", ".join(known)
+                    which, there = "several runs are" if named else "no run is", ", ".join(known)
                     raise ValueError(f"{which} of {what} {wanted!r}; there are {there}")
-                runs = [(run, about) for run, about in runs if about[what] == named[0]]
-        return type(self)(replace(self.history, runs=[run for run, _ in runs]))
+                about = about[about[what] == named[0]]
+        return type(self)(replace(self.history, runs=[self.runs[k] for k in about.index]))
 
     def claims(self, text: str | None = None) -> list[str]:
         """The claims, in the newest run's order, that ``text`` names; None: all.
@@ -109,22 +115,21 @@ class Trends:
 
     @cached_property
     def verdicts(self) -> pd.DataFrame:
-        """A row per run, claim and measure: its ``outcome``, and the one ``before``, if any."""
+        """A row per run, claim and measure: ``outcome``, that ``before``, if it is ``changed``."""
         verdicts = self._table(_verdicts, ["outcome"])
-        verdicts["before"] = verdicts.groupby(SERIES)["outcome"].shift()
-        return verdicts
+        before = verdicts.groupby(SERIES)["outcome"].shift()
+        changed = before.notna() & (before != verdicts["outcome"])
+        return verdicts.assign(before=before, changed=changed)
 
     @cached_property
     def changes(self) -> pd.DataFrame:
         """All verdicts and figures that changed, by commit: run, claim, measure, before, after."""
         columns = ["run", "claim", "measure", "machine", "before", "after"]
-        seen = self.verdicts.rename(columns={"outcome": "after"})
-        seen = seen[seen["before"].notna() & (seen["before"] != seen["after"])][columns]
+        seen = self.verdicts[self.verdicts["changed"]].rename(columns={"outcome": "after"})[columns]
         steps = self.figures[self.figures["before"].notna()][columns].astype(object)
         steps["measure"] = steps["measure"].map(lambda name: MEASURES[name].title)
-        for level in ("before", "after"):
-            steps[level] = steps[level].map(lambda value: f"{value:.4g}")
-        both = pd.concat([seen.assign(verdict=True), steps.assign(verdict=False)])
+        levels = steps[["before", "after"]].map("{:.4g}".format)
+        both = pd.concat([seen.assign(verdict=True), steps.assign(**levels, verdict=False)])
         return both.sort_values(["run", "verdict"], ascending=[True, False], kind="stable")
 
     def _table(self, of_claim: Callable[[Any], Rows], columns: list[str]) -> pd.DataFrame:
@@ -136,11 +141,6 @@ class Trends:
             for measure, exact, *values in of_claim(claim)
         ]
         return pd.DataFrame(rows, columns=["run", *SERIES, *columns])
-
-
-def is_of(claims: Collection[str], rows: pd.DataFrame) -> pd.DataFrame:
-    """The rows of some claims."""
-    return rows[rows["claim"].isin(list(claims))]
 
 
 def _figures(claim: dict[str, Any]) -> Rows:

@@ -26,20 +26,17 @@ _PLACES = {
 __all__ = [name for names in _PLACES.values() for name in names]
 
 
-def _begin_workers() -> None:
-    """Where processes can be forked, have one import what they share, beside this one's imports."""
-    if "forkserver" in multiprocessing.get_all_start_methods():
+def __getattr__(name: str) -> Any:
+    """A public name, imported now.
+
+    Where processes can be forked, one imports what they share, beside this one's own imports.
+    """
+    file = next((file for file, names in _PLACES.items() if name in names), "")
+    if not file:
+        raise AttributeError(f"experiments.report has no {name!r}")
+    if file == "site" and "forkserver" in multiprocessing.get_all_start_methods():
         from multiprocessing import forkserver
 
         multiprocessing.set_forkserver_preload([f"{__name__}.site"])
         forkserver.ensure_running()
-
-
-def __getattr__(name: str) -> Any:
-    """A public name, imported now."""
-    for file, names in _PLACES.items():
-        if name in names:
-            if file == "site":
-                _begin_workers()
-            return getattr(import_module(f"experiments.report.{file}"), name)
-    raise AttributeError(f"experiments.report has no {name!r}")
+    return getattr(import_module(f"experiments.report.{file}"), name)

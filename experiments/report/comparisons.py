@@ -27,9 +27,10 @@ def objects_against_arrays(run: Run) -> Html:
     for subject, title in TITLES.items():
         costs: list[float] = []
         for axis in (Axis.WORK_FACES, Axis.TIME_FACES):
-            found = [curves(run).curve(axis, name, subject).by_size for name in (ARRAYS, OBJECTS)]
-            size = max(found[0].keys() & found[1].keys(), default=0)
-            costs += [it.get(size, np.nan) for it in found]
+            found = (curves(run).curve(axis, name, subject).by_size for name in (ARRAYS, OBJECTS))
+            both = pd.concat(found, axis=1).dropna()
+            size = both.index.max() if len(both) else 0
+            costs += both.reindex([size]).to_numpy()[0].tolist()
         if not np.isnan(costs).all():
             rows.append((title, *costs, costs[3] / costs[2], size))
     heads: Heads = {

@@ -45,9 +45,8 @@ def show(findings: Sequence[Finding], notes: Sequence[str], console: Console) ->
     last = [f"Note: {note}" for note in notes] + [f"Compared: {count_same(findings)}"]
     if any(finding.change == Change.BETTER for finding in findings):
         last.append("What got better becomes the baseline with: hem baseline update")
-    commands = dict.fromkeys(finding.next for finding in findings if finding.next)
-    for text in (*last, *(f"Next: {command}" for command in commands)):
-        console.print(escape(text), highlight=False)
+    last += [f"Next: {it}" for it in dict.fromkeys(it.next for it in findings if it.next)]
+    console.print(escape("\n".join(last)), highlight=False)
     console.print(f"[bold]{SUMMARY[exit_code(findings)]}[/]")
 
 

@@ -11,7 +11,7 @@ import pandas as pd
 from rich.console import Console
 
 from experiments.claims import Outcome
-from experiments.regression import MEASURES, OUTCOMES, Line, Trends, is_of
+from experiments.regression import MEASURES, OUTCOMES, Trends
 from experiments.report.tables import show_rows, two_digits
 from structures import NAMED
 
@@ -63,16 +63,8 @@ def show(
 
 def _heads(trends: Trends) -> pd.DataFrame:
     """By run its commit, and what of preset and machine is not the same in all runs."""
-    columns = ["commit", "preset", "machine"]
-    rows = [(short_commit(it), it["profile"], it["machine"]["id"]) for it in trends.runs]
-    heads = pd.DataFrame(rows, columns=columns)
-    several = [name for name in columns[1:] if heads[name].nunique() > 1]
-    return heads[["commit", *several]]
-
-
-def short_commit(run: Line) -> str:
-    """The commit of a run, with a star where there were changes besides."""
-    return str(run["commit"][:7]) + ("*" if run.get("dirty") else "")
+    several = trends.about.nunique() > 1
+    return trends.about.loc[:, several | (several.index == "commit")]
 
 
 def short_claim(name: str) -> str:
@@ -85,16 +77,15 @@ def short_claim(name: str) -> str:
 def runs_frame(trends: Trends) -> pd.DataFrame:
     """A row per run: how many claims have which outcome, and how much changed."""
     runs = _heads(trends).assign(measured=[run["started"][:10] for run in trends.runs])
-    seen, changes = trends.verdicts, trends.changes
     for what, short in SHORT.items():
-        counts = seen[seen["measure"] == what].groupby("run")["outcome"].agg(_count_outcomes)
+        seen = trends.verdicts[trends.verdicts["measure"] == what]
+        counts = seen.groupby("run")["outcome"].agg(_count_outcomes)
         runs[short] = counts.reindex(runs.index, fill_value="")
-    kinds = [*(changes["measure"] == what for what in SHORT), ~changes["measure"].isin(SHORT)]
-    counted = pd.DataFrame(
-        [changes["run"][kind].value_counts().reindex(runs.index, fill_value=0) for kind in kinds]
-    )
-    text = counted.astype(str).agg("/".join)
-    return runs.assign(changed=text.where(counted.any(), ""))
+    changes, kinds = trends.changes, [*SHORT, "figures"]
+    kind = changes["measure"].where(changes["measure"].isin(SHORT), kinds[-1])
+    counted = pd.crosstab(changes["run"], kind).reindex(runs.index, columns=kinds, fill_value=0)
+    text = counted.astype(str).agg("/".join, axis=1)
+    return runs.assign(changed=text.where(counted.any(axis=1), ""))
 
 
 def _count_outcomes(outcomes: pd.Series) -> str:
@@ -110,7 +101,7 @@ def changes_frame(trends: Trends) -> pd.DataFrame:
     return pd.DataFrame(
         {
             "run": changes["run"],
-            "at": [short_commit(trends.runs[k]) for k in changes["run"]],
+            "at": changes["run"].map(trends.about["commit"]),
             "claim": changes["claim"].map(short_claim),
             "figure": changes["measure"].replace(SHORT),
             "before → after": changes["before"].map(_mark) + " → " + changes["after"].map(_mark),
@@ -126,57 +117,50 @@ def _mark(outcome: str) -> str:
 
 def _by_run(trends: Trends, name: str, shown: Collection[int], slopes: bool) -> pd.DataFrame:
     """A row per run of one claim, a column per figure."""
-    figures = is_of([name], trends.figures)
+    figures = trends.figures.query("claim == @name")
     figures = figures[figures["measure"].map(lambda it: MEASURES[it].slope == slopes)]
     cells = figures.assign(text=[_figure(row) for row in figures.itertuples()])
     table = cells.pivot_table("text", "run", "measure", aggfunc="first", sort=False)
     table = table.rename(columns={key: measure.title for key, measure in MEASURES.items()})
-    verdicts = _verdicts(trends, name).rename("verdict")
-    joined = _heads(trends).join(verdicts, how="inner").join(table).fillna("–")
+    joined = _heads(trends).join(_verdicts(trends)[name].dropna().rename("verdict"), how="inner")
+    joined = joined.join(table).fillna("–")
     return joined[joined.index.isin(shown)]
 
 
-def _verdicts(trends: Trends, name: str) -> pd.Series:
-    """By run the verdicts by work and by time, marked where they are not as before."""
-    rows = is_of([name], trends.verdicts)
-    changed = rows["before"].notna() & (rows["before"] != rows["outcome"])
-    marks = rows["outcome"].map(_mark) + changed.map({True: "≠ ", False: "  "})
-    return marks.groupby(rows["run"]).sum()
+def _verdicts(trends: Trends) -> pd.DataFrame:
+    """By run and claim the verdicts by work and by time, marked where they are not as before."""
+    rows = trends.verdicts
+    marks = rows["outcome"].map(_mark) + rows["changed"].map({True: "≠ ", False: "  "})
+    return marks.groupby([rows["run"], rows["claim"]]).sum().unstack()
 
 
 def _figure(row: Any) -> str:
     """A figure, of time a slope with its interval; in parentheses if it is of other meshes."""
     measure = MEASURES[row.measure]
     text = two_digits(row.value) if measure.slope else f"{row.value:,.5g}"
-    text += (
-        f" [{two_digits(row.low)}, {two_digits(row.high)}]" if measure.slope > measure.exact else ""
-    )
+    if measure.slope and not measure.exact:
+        text += f" [{two_digits(row.low)}, {two_digits(row.high)}]"
     text = text if row.comparable else f"({text})"
     if pd.isna(row.before):
         return text
-    ratio = measure.slope or not row.before
-    step = f"{row.after - row.before:+.2f}" if ratio else f"{row.after / row.before - 1:+.1%}"
-    return f"{text} {'▲' if row.after > row.before else '▼'}{step}"
+    change = row.after - row.before
+    absolute = measure.slope or not row.before
+    step = f"{change:+.2f}" if absolute else f"{change / row.before:+.1%}"
+    return f"{text} {'▲' if change > 0 else '▼'}{step}"
 
 
 def _at_a_glance(trends: Trends, names: list[str]) -> pd.DataFrame:
     """A row per claim: where its verdict and figures are now, and when they changed last."""
-    newest = is_of(names, trends.figures).groupby(["claim", "measure"])["value"].last().unstack()
+    figures, verdicts, changes = trends.figures, _verdicts(trends), trends.changes
+    newest = figures.groupby(["claim", "measure"])["value"].last().unstack()
     newest = newest.reindex(index=names, columns=list(MEASURES))
-    by_time = trends.changes["measure"] == OUTCOMES["outcome_time"]
-    changed = trends.changes[~by_time].groupby("claim")["run"].last()
-    commits = changed.map(lambda run: short_commit(trends.runs[run])).reindex(names, fill_value="")
-    glance = pd.DataFrame(
-        {
-            "claim": [short_claim(name) for name in names],
-            "verdict": [_verdicts(trends, name).iloc[-1].replace("≠", " ") for name in names],
-            "work or bytes": newest["bytes"].fillna(newest["work"]),
-            "time": newest["time"],
-            "changed": commits,
-        }
-    )
-    figures = glance[["work or bytes", "time"]].map("{:,.5g}".format)
-    return glance.assign(**figures.replace("nan", "–"))
+    changed = changes[changes["measure"] != OUTCOMES["outcome_time"]].groupby("claim")["run"].last()
+    shown = {"work or bytes": newest["bytes"].fillna(newest["work"]), "time": newest["time"]}
+    texts = pd.DataFrame(shown).map("{:,.5g}".format).replace("nan", "–")
+    glance = texts.assign(changed=changed.map(trends.about["commit"]).reindex(names).fillna(""))
+    glance.insert(0, "claim", [short_claim(name) for name in names])
+    glance.insert(1, "verdict", verdicts[names].ffill().iloc[-1].str.replace("≠", " "))
+    return glance
 
 
 def as_json(trends: Trends, claim: str | None, last: int | None) -> dict[str, Any]:
@@ -189,7 +173,7 @@ def as_json(trends: Trends, claim: str | None, last: int | None) -> dict[str, An
     }
     for name in ("figures", "verdicts", "changes"):
         rows = getattr(trends, name)
-        rows = is_of(names, rows[rows["run"] >= first]).astype(object)
+        rows = rows[rows["claim"].isin(names) & (rows["run"] >= first)].astype(object)
         content[name] = rows.where(rows.notna(), None).to_dict("records")
     return content
 

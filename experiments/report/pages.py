@@ -1,7 +1,7 @@
 """HTML from the templates: whole pages, the claim browser, and the tables that chapters show."""
 
 from collections import Counter
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from functools import cache, partial
 from html import escape
 from importlib.resources import files
@@ -44,7 +44,6 @@ def _templates() -> Environment:
         "link": session.link,
         "claim_link": session.claim_link,
         "claim_file": lambda judged: f"{session.CLAIMS}/{session.claim_file(judged)}",
-        "was_measured": session.was_measured,
         "static": lambda name: Html((files("experiments.report") / "static" / name).read_text()),
     }
     environment.filters |= {"time": duration, "two_digits": two_digits}
@@ -75,19 +74,12 @@ def groups_of_claims() -> dict[str, Table]:
 
 def filters(claims: Sequence[JudgedClaim]) -> dict[str, dict[str, tuple[str, int]]]:
     """By group the choices: value -> its title, and how many claims it has."""
-    counts = {
-        "outcome": Counter(it.outcome.value for it in claims),
-        "structure": Counter(it.claim.structure for it in claims if it.claim.structure),
-        "kind": Counter(it.claim.table for it in claims),
-    }
-    titles: dict[str, dict[str, str]] = {
-        "outcome": {it.value: f"{it.mark} {it.value}" for it in Outcome},
-        "structure": {name: NAMED[name].title for name in counts["structure"]},
-        "kind": {name: it.title for name, it in groups_of_claims().items()},
-    }
+    facts = [(it.outcome.value, it.claim.structure, it.claim.table) for it in claims]
+    outcomes, structures, kinds = map(Counter, zip(*facts, strict=True))
     return {
-        group: {value: (title, counts[group][value]) for value, title in offered.items()}
-        for group, offered in titles.items()
+        "outcome": {it.value: (f"{it.mark} {it.value}", outcomes[it.value]) for it in Outcome},
+        "structure": {name: (NAMED[name].title, structures[name]) for name in structures if name},
+        "kind": {name: (it.title, kinds[name]) for name, it in groups_of_claims().items()},
     }
 
 
@@ -106,15 +98,19 @@ def sentences(claims: Iterable[JudgedClaim]) -> Html:
     return table("sentences", [it for it in claims if it.claim.table == SENTENCES])
 
 
-def claim_tables(claims: Iterable[JudgedClaim]) -> Html:
+def claim_tables(claims: Collection[JudgedClaim]) -> Html:
     """Every table at a glance, each under its title."""
-    named = {it.claim.table for it in claims if it.claim.structure}
-    shown = {
-        it.title: or_missing(partial(verdicts, claims, name))
-        for name, it in tables().items()
-        if name in named
-    }
+    shown = each_table(claims, verdicts, '<p class="missing">{}</p>')
     return Html("\n".join(f"<h3>{escape(title)}</h3>{text}" for title, text in shown.items()))
+
+
+def each_table(
+    claims: Collection[JudgedClaim], how: Callable[[Any, str], str], otherwise: str
+) -> dict[str, str]:
+    """By title every table that claims are cells of, or a word on why it is not there."""
+    named = {it.claim.table for it in claims if it.claim.structure}
+    every = ((name, it.title) for name, it in tables().items() if name in named)
+    return {title: or_missing(partial(how, claims, name), otherwise) for name, title in every}
 
 
 def reasons(claims: Iterable[JudgedClaim], name: str) -> Html:
@@ -144,7 +140,7 @@ def chapter_list() -> Html:
     return table("chapter_list", page_titles())
 
 
-def or_missing(part: Callable[[], str], otherwise: str = '<p class="missing">{}</p>') -> str:
+def or_missing(part: Callable[[], str], otherwise: str) -> str:
     """A part of a page, or a word on why it is not there."""
     try:
         return part()

@@ -10,21 +10,19 @@ from matplotlib.figure import Figure
 from experiments.claims import judge_run
 from experiments.harness import OPERATIONS, QUERIES_TABLE, Axis
 from experiments.report.figures import fracture, growth, memory, meshes
-from experiments.report.pages import or_missing
+from experiments.report.pages import each_table, or_missing
 from experiments.report.session import Session, share
 from experiments.report.tables import markdown, sentences_markdown
-from experiments.runs import Run, in_words, load, tables
+from experiments.runs import Run, in_words, load
 
+TIMES = partial(growth.scaling, axis=Axis.TIME_FACES)
 DRAWN: dict[str, tuple[str, Callable[[Run], Figure]]] = {
     "overview": ("The faces around a vertex, by work and by time", growth.overview),
-    "time": ("Time of the nine queries", lambda run: growth.scaling(run, Axis.TIME_FACES)),
+    "time": ("Time of the nine queries", TIMES),
     "work": ("Work of the nine queries", lambda run: growth.scaling(run, Axis.WORK_FACES)),
     "memory": ("Bytes per vertex", memory.by_field),
     "building": ("Time to build", growth.building),
-    "operations": (
-        "Time of the operations",
-        lambda run: growth.scaling(run, Axis.TIME_FACES, OPERATIONS),
-    ),
+    "operations": ("Time of the operations", partial(TIMES, subjects=OPERATIONS)),
     "workloads": ("What people do with meshes", growth.workloads),
     "references": ("A half-edge mesh in arrays and in objects", memory.references),
     "listings": ("The thesis' listings, as published and as corrected", growth.listings),
@@ -55,12 +53,7 @@ def write_readme(run_folder: Path, folder: Path) -> Path:
     claims = judge_run(run)
     share(Session(run, claims))
     folder.mkdir(parents=True, exist_ok=True)
-    named = {it.claim.table for it in claims if it.claim.structure}
-    parts = {
-        it.title: or_missing(partial(markdown, claims, name), MISSING)
-        for name, it in tables().items()
-        if name in named
-    }
+    parts = each_table(claims, markdown, MISSING)
     parts["In sentences"] = sentences_markdown(claims)
     for name, (title, draw) in DRAWN.items():
         picture = partial(_draw, run, draw, folder / f"{name}.png", title)

@@ -65,12 +65,6 @@ def claim_file(judged: JudgedClaim) -> str:
     return judged.claim.key.replace("/", ".")
 
 
-def was_measured(judged: JudgedClaim) -> bool:
-    """Whether a run has anything to say about a claim."""
-    known = judged.bytes_per_vertex == judged.bytes_per_vertex  # not nan
-    return bool(judged.verdicts) or len(judged.values) > 0 or known
-
-
 def project_file(path: str) -> Path:
     """A file that comes with the checkout. Raises MissingError where the package is installed."""
     found = Path(__file__).parents[2] / path

@@ -130,7 +130,7 @@ def finish_panels(figure: Figure, every: Sequence[Axes], room: float = 0.17) -> 
 
 
 def label_ends(axes: Axes, gap: float = 10.5) -> None:
-    """Write each line's label to the right of its end, pushed apart to ``gap`` points.
+    """Write each line's label to the right of its end, above the axis, ``gap`` points apart.
 
     Lines that end elsewhere, by more than ``APART`` points, are not in each other's way. Call it
     when the axes' limits stand.
@@ -144,7 +144,8 @@ def label_ends(axes: Axes, gap: float = 10.5) -> None:
         groups[round(x / APART)].append((y, end, line))
     for ends in groups.values():
         ends.sort(key=lambda it: it[0])
-        places = spread_apart([height for height, _, _ in ends], gap)
+        lowest = axes.bbox.y0 * 72 / figure.dpi + gap * (np.arange(len(ends)) + 0.5)
+        places = np.maximum(spread_apart([height for height, _, _ in ends], gap), lowest)
         for (height, end, line), place in zip(ends, places, strict=True):
             axes.annotate(
                 str(line.get_label()), end, (5, place - height), textcoords="offset points",

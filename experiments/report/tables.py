@@ -1,5 +1,6 @@
 """Rows as a table for a terminal, in 80 columns, or in Markdown; and so the tables of claims."""
 
+import re
 from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
@@ -10,14 +11,12 @@ from rich.table import Table
 from rich.text import Text
 
 from experiments.claims import Between, JudgedClaim, Outcome, judge_run
-from experiments.report.session import MissingError, was_measured
+from experiments.report.session import MissingError
 from experiments.runs import load, noise, tables
 from structures import NAMED, THESIS
 
 COLORS = {
-    rf"\{Outcome.CONSISTENT.mark}": Outcome.CONSISTENT.color,
-    rf"\{Outcome.VIOLATED.mark}": Outcome.VIOLATED.color,
-    rf"\{Outcome.UNDETERMINED.mark}": Outcome.UNDETERMINED.color,
+    **{re.escape(it.mark): it.color for it in Outcome if it is not Outcome.NO_CLAIM},
     rf"^{Outcome.NO_CLAIM.mark}.*": Outcome.NO_CLAIM.color,
     "[▲▼][^ ]+|≠": "bold yellow",
 }
@@ -79,7 +78,7 @@ def by_subject(
     A structure of which nothing was measured has no column. Raises MissingError if none is left.
     """
     mine = [it for it in claims if it.claim.table == name and it.claim.structure]
-    columns = list(dict.fromkeys(it.claim.structure for it in mine if was_measured(it)))
+    columns = list(dict.fromkeys(it.claim.structure for it in mine if it.was_measured))
     if not columns:
         raise MissingError("This run has measured nothing of this table.")
     rows: dict[str, dict[str, JudgedClaim]] = {}
@@ -106,7 +105,7 @@ def show_claims(
 ) -> None:
     """Print the claims of a run and their verdicts: of the thesis' four structures, or of all."""
     run = load(run_folder)
-    claims = [it for it in judge_run(run) if it.claim.structure and was_measured(it)]
+    claims = [it for it in judge_run(run) if it.claim.structure and it.was_measured]
     claims = [it for it in claims if every or it.claim.structure in THESIS]
     if not claims:
         raise MissingError(f"{run_folder} holds no measurements of these structures: try --all")

@@ -8,8 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from hem.complexity.models import Array
 
-FLOOR = 0.02
-"""Relative error between sizes that no repetition at one size shows."""
+FLOOR = 0.02  # relative error between sizes that no repetition at one size shows
 
 
 @dataclass(frozen=True)
@@ -18,12 +17,10 @@ class Costs:
 
     sizes: Array
     samples: list[Array]
-    latency: Array | None
-    """(a, k): what the memory took at each size, as any one of the rows has it."""
+    latency: Array | None  # (a, k): what the memory took at each size, as any one row has it
     cost: Array
     error: Array
-    scatter: float
-    """Relative standard deviation of single samples, as all sizes share it."""
+    scatter: float  # relative standard deviation of single samples, as all sizes share it
 
     def only(self, rows: NDArray[np.intp]) -> "Costs":
         """The costs of some of the sizes, as if no other had been measured."""

@@ -26,12 +26,9 @@ Bound = Literal["tight", "upper"]
 
 MIN_SIZES = 4
 MIN_RANGE = 4.0
-MAX_SCATTER = 0.4
-"""Relative scatter of samples beyond which nothing is concluded."""
-MAX_ERROR = 0.12
-"""Relative error of a size's cost beyond which the size is left out …"""
-MOST_LEFT_OUT = 0.25
-"""… if so few of the sizes are like that; otherwise nothing is concluded."""
+MAX_SCATTER = 0.4  # relative scatter of samples beyond which nothing is concluded
+MAX_ERROR = 0.12  # relative error of a size's cost beyond which the size is left out …
+MOST_LEFT_OUT = 0.25  # … if so few of the sizes are like that; otherwise nothing is concluded
 
 
 @dataclass(frozen=True)
@@ -64,19 +61,11 @@ class Verdict:
 
 
 def judge(
-    sizes: ArrayLike,
-    samples: Sequence[ArrayLike],
-    expected: str = "O(1)",
-    latency: ArrayLike | None = None,
-    *,
-    exact: bool = False,
-    latency_error: float = LATENCY_ERROR,
-    unseen: bool = False,
-    bound: Bound = "tight",
-    confidence: float = 0.95,
-    resamples: int = 200,
-    seed: int = 0,
-) -> Verdict:
+    sizes: ArrayLike, samples: Sequence[ArrayLike], expected: str = "O(1)",
+    latency: ArrayLike | None = None, *, exact: bool = False,
+    latency_error: float = LATENCY_ERROR, unseen: bool = False, bound: Bound = "tight",
+    confidence: float = 0.95, resamples: int = 200, seed: int = 0,
+) -> Verdict:  # fmt: skip
     """Judge whether costs measured at several sizes grow as claimed.
 
     sizes: (k,) at least 1, the variable of the claim; 4 distinct ones over a range of 4 can decide.
@@ -114,30 +103,20 @@ def judge(
     tails = [(1 - confidence) / 2, (1 + confidence) / 2]
     low, high = np.quantile(slope(costs.sizes, models.steady(replicates)), tails)
     return Verdict(
-        outcome=outcome,
-        expected=NAMES[claim],
-        bound=bound,
-        best=NAMES[models.best],
-        runner_up=NAMES[models.runner_up],
-        margin=models.margin,
+        outcome, NAMES[claim], bound, NAMES[models.best], NAMES[models.runner_up], models.margin,
         slope=float(slope(costs.sizes, models.steady(costs.cost))),
-        slope_low=float(low),
-        slope_high=float(high),
+        slope_low=float(low), slope_high=float(high),
         raw_slope=float(slope(costs.sizes, costs.cost)),
-        confidence=confidence,
-        noise=costs.scatter,
-        coefficients=_coefficients(models),
-        errors=dict(zip(NAMES, errors.tolist(), strict=True)),
-        reason=reason,
-    )
+        confidence=confidence, noise=costs.scatter, coefficients=_coefficients(models),
+        errors=dict(zip(NAMES, errors.tolist(), strict=True)), reason=reason,
+    )  # fmt: skip
 
 
 def _decide(costs: Costs, models: Comparison, claim: int, bound: Bound) -> tuple[Outcome, str]:
     doubt = _doubt(costs, models)
     if doubt:
         return "undetermined", doubt
-    best = models.best
-    kept = range(claim + 1) if bound == "upper" else range(claim, claim + 1)
+    best, kept = models.best, range(0 if bound == "upper" else claim, claim + 1)
     if best in kept:
         rivals = [m for m in range(len(NAMES)) if m not in kept and not models.confirms(best, m)]
         if not rivals:
@@ -146,8 +125,7 @@ def _decide(costs: Costs, models: Comparison, claim: int, bound: Bound) -> tuple
         rivals = [m for m in kept if not models.refutes(best, m)]
         if not rivals:
             return "violated", f"{NAMES[best]} explains the costs, {NAMES[claim]} does not."
-    close = ", ".join(NAMES[m] for m in rivals)
-    memory = models.memory
+    close, memory = ", ".join(NAMES[m] for m in rivals), models.memory
     bent = memory.unmeasured is not None and not (memory.latency_known and best in kept)
     allowed = " once caches that no latency tells of are allowed for" if bent else ""
     reason = f"{NAMES[best]} explains the costs best, but {close} cannot be ruled out{allowed}."

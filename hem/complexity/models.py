@@ -95,12 +95,9 @@ class DesignMatrix:
     """Columns whose nonnegative sums are the costs of m models under s slowdowns, at k sizes."""
 
     slowdowns: Slowdowns
-    growth: Array
-    """(m, k) f, of largest value 1."""
-    intercept: Array
-    """(m,) largest intercept beside it."""
-    scale: Array
-    """(m,) largest value of f itself."""
+    growth: Array  # (m, k) f, of largest value 1
+    intercept: Array  # (m,) largest intercept beside it
+    scale: Array  # (m,) largest value of f itself
 
     def columns(self) -> tuple[Array, Array]:
         """(m, s, k) f with no intercept, and with the largest: between them lie all others."""
@@ -127,14 +124,10 @@ def design(sizes: Array, slowdowns: Slowdowns, growth: float) -> DesignMatrix:
 class Fit:
     """Best nonnegative fit of each model: misfit and coefficients, (..., m) each."""
 
-    chi2: Array
-    """Squared relative residuals over their variances."""
-    intercept: Array
-    """The intercept c, in the unit of the costs."""
-    factor: Array
-    """Factor a of f(n)."""
-    slowdown: NDArray[np.intp]
-    """Row of the slowdowns that served best."""
+    chi2: Array  # squared relative residuals over their variances
+    intercept: Array  # the intercept c, in the unit of the costs
+    factor: Array  # factor a of f(n)
+    slowdown: NDArray[np.intp]  # row of the slowdowns that served best
 
 
 def fit(models: DesignMatrix, costs: Array, weight: Array) -> Fit:

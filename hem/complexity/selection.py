@@ -30,49 +30,32 @@ from hem.complexity.models import (
     unknown_slowdowns,
 )
 
-LATENCY_ERROR = 0.03
-"""Relative error of a measured latency, unless a caller knows better."""
-PRIOR = 10.0
-"""Degrees of freedom p to which the samples tell the error."""
-AGAINST_SIMPLER = 6.5
-"""Evidence that rules out a model in favor of a more complex one."""
-AGAINST_COMPLEX = 1.5
-"""Evidence that rules out a more complex rival of a claim …"""
-AGAINST_COMPLEX_CLAIM = 4.0
-"""… and a claim more complex than what explains the costs: a violation accuses …"""
-NO_BETTER = 2.0
-"""… provided that the simpler one explains the costs worse by less evidence than this."""
-GROWTH = 1.3
-"""Factor by which a model must grow over the sizes, intercept included, to be told from O(1) …"""
-CLEAR_GROWTH = 2.1
-"""… and by which it would have to grow to be rejected in favor of a simpler one."""
+LATENCY_ERROR = 0.03  # relative error of a measured latency, unless a caller knows better
+PRIOR = 10.0  # degrees of freedom p to which the samples tell the error
+AGAINST_SIMPLER = 6.5  # evidence that rules out a model in favor of a more complex one
+AGAINST_COMPLEX = 1.5  # evidence that rules out a more complex rival of a claim …
+AGAINST_COMPLEX_CLAIM = 4.0  # … and a claim more complex than what explains the costs: it accuses …
+NO_BETTER = 2.0  # … provided that the simpler one explains them worse by less evidence than this
+GROWTH = 1.3  # factor by which a model must grow, intercept included, to be told from O(1) …
+CLEAR_GROWTH = 2.1  # … and by which it would have to grow to be rejected in favor of a simpler one
 ACCUSING_GROWTH = 2.0
 """Factor by which times must grow over the sizes to violate a claim of slower growth: cells of the
 same code were measured to differ by 1.8 where neighbors share the caches."""
-HIGHEST_SLOWDOWN = 12.0
-"""Slowdown over the sizes that unmeasured caches are reckoned with."""
-MISFIT = 2.5
-"""χ² per degree of freedom that a model may have and still explain times without a latency …"""
-MISFIT_EXPLAINED = 12.0
-"""… and with it, or exact counts: caches are accounted for, what is left is small print."""
+HIGHEST_SLOWDOWN = 12.0  # slowdown over the sizes that unmeasured caches are reckoned with
+MISFIT = 2.5  # χ² per degree of freedom with which a model explains times without a latency …
+MISFIT_EXPLAINED = 12.0  # … and with it, or exact counts: what is left is small print
 
 
 @dataclass(frozen=True)
 class Memory:
     """What caches may have done to costs."""
 
-    slowdowns: Slowdowns
-    """What the measured latency, or its absence, allows."""
-    unmeasured: Slowdowns | None
-    """What is possible besides, because nobody measured it: it violates nothing."""
-    latency_known: bool
-    """Whether nothing unmeasured casts doubt on what is confirmed."""
-    growth_to_reject: float
-    """Growth over the sizes from which on a model violates a simpler claim."""
-    misfit: float
-    """χ² per degree of freedom up to which a model explains the costs."""
-    parameters: int
-    """Free parameters of a model: intercept, factor, and the slowdown if there is one."""
+    slowdowns: Slowdowns  # what the measured latency, or its absence, allows
+    unmeasured: Slowdowns | None  # what is possible besides, unmeasured: it violates nothing
+    latency_known: bool  # whether nothing unmeasured casts doubt on what is confirmed
+    growth_to_reject: float  # growth over the sizes from which on a model violates a simpler claim
+    misfit: float  # χ² per degree of freedom up to which a model explains the costs
+    parameters: int  # free ones of a model: intercept, factor, and the slowdown if there is one
 
 
 def account_for_memory(
@@ -115,15 +98,11 @@ class Comparison:
     weight: Array
     design: DesignMatrix
     fit: Fit
-    chi2: Array
-    """(m,) misfit of each model with the slowdowns that are known of."""
-    chi2_if_slowed: Array
-    """… or with unmeasured ones, whichever fits better."""
-    chi2_at_clear_growth: Array
-    """… of each model that grows clearly over the sizes."""
+    chi2: Array  # (m,) misfit of each model with the slowdowns that are known of
+    chi2_if_slowed: Array  # … or with unmeasured ones, whichever fits better
+    chi2_at_clear_growth: Array  # … of each model that grows clearly over the sizes
     chi2_at_clear_growth_if_slowed: Array
-    grows_enough_to_reject: NDArray[np.bool_]
-    """(m,) whether the fitted model grew enough to violate a simpler claim."""
+    grows_enough_to_reject: NDArray[np.bool_]  # (m,) it grew enough to violate a simpler claim
 
     @property
     def freedom(self) -> int:
@@ -205,8 +184,6 @@ def compare_models(costs: Costs, memory: Memory) -> Comparison:
     grows_enough = steady.max(axis=1) >= memory.growth_to_reject * steady.min(axis=1)
     return Comparison(
         costs, memory, weight, models, fitted, fitted.chi2,
-        chi2_if_slowed=if_slowed,
-        chi2_at_clear_growth=clear,
-        chi2_at_clear_growth_if_slowed=clear_if_slowed,
-        grows_enough_to_reject=grows_enough,
+        chi2_if_slowed=if_slowed, chi2_at_clear_growth=clear,
+        chi2_at_clear_growth_if_slowed=clear_if_slowed, grows_enough_to_reject=grows_enough,
     )  # fmt: skip

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from experiments.claims import Between, Curve, Exactly, JudgedClaim, curves
 from experiments.harness import Axis
 from experiments.report import style
-from experiments.report.session import Session, claim_file, open_run, was_measured
+from experiments.report.session import Session, claim_file, open_run
 from experiments.report.style import GRAY, RED, STYLES, Plot
 from hem.complexity import MODELS
 
@@ -36,7 +36,7 @@ def write_claims(keys: list[str], folder: Path) -> None:
 
 def draw(session: Session, judged: JudgedClaim) -> Plot | None:
     """The figure of a claim: a panel per axis, the bytes by size, or values beside bounds."""
-    if not was_measured(judged):
+    if not judged.was_measured:
         return None
     with style.styled():
         plot = Plot(figsize=(WIDTH * max(len(judged.verdicts), 1), HEIGHT))
@@ -107,8 +107,8 @@ def _name(axes: Axes, title: str) -> None:
 
 def _draw_bytes(axes: Axes, session: Session, judged: JudgedClaim, value: float | None) -> None:
     """Bytes per vertex against size, and what is claimed."""
-    cases = curves(session.run).memory(judged.claim.structure, 8)
-    each = cases["samples"].map(lambda it: it[0]) / cases["vertices"]
+    curve = curves(session.run).memory(judged.claim.structure)
+    cases, each = curve.cases, curve.centers / curve.cases["vertices"]
     axes.plot(cases["vertices"], each, "o", color=STYLES[judged.claim.structure]["color"])
     if value:
         axes.axhline(float(value), color=GRAY, linestyle="--")
@@ -139,10 +139,10 @@ def data(session: Session, judged: JudgedClaim) -> str:
     elif isinstance(bounds, Between):
         table = pd.DataFrame({"value": judged.values, "low": bounds.low, "high": bounds.high})
     else:
-        cases = curves(session.run).memory(judged.claim.structure, 8).to_dict("records")
+        cases = curves(session.run).memory(judged.claim.structure).cases
         rows = [
             (case["vertices"], case["reference_bytes"], field, int(size))
-            for case in cases
+            for case in cases.to_dict("records")
             for field, size in {**case["detail"]["fields"], "all": case["samples"][0]}.items()
         ]
         table = pd.DataFrame(rows, columns=["vertices", "reference_bytes", "field", "bytes"])

@@ -21,8 +21,8 @@ from experiments.runs import Run
 from hem.contract import QUERIES
 from structures import NAMED
 
-RENDERED = {
-    "one by one": {"label": "no render mesh", "linestyle": "-"},
+RENDERED: dict[str, dict[str, Any]] = {
+    "one by one": {"label": "no render mesh", "linestyle": "-", "color": GRAY},
     "in a transaction": {"label": "followed, one commit at the end", "linestyle": "--"},
     "rendered": {"label": "followed, a commit per edit", "linestyle": "-."},
     "render mesh built anew": {"label": "built anew after every edit", "linestyle": ":"},
@@ -61,18 +61,26 @@ def _draw(
                 also(axes, name)
             if layout.get("sharex"):
                 axes.label_outer()
-            if plain:  # numbers also between the decades, where there is no whole one to be seen
-                axes.margins(y=0.18)
-                low, high = axes.get_ylim()
-                marks = (1.0,) if high / low > 30 else (1.0, 2.0, 5.0)
+            if plain and axes.lines:
+                low, high = _heights(axes)
+                room = max((high / low) ** 0.18, 1.05)  # of costs that are the same, too
+                axes.set_ylim(low / room, high * room)
+                # Numbers also between the decades, where there is no whole one to be seen.
+                marks = (1.0,) if high / low * room**2 > 30 else (1.0, 2.0, 5.0)
                 axes.yaxis.set_major_locator(LogLocator(subs=marks))
         if not any(map(style.labeled, every)):
             raise MissingError(f"This run has not measured {what}.")
         if layout.get("sharey"):  # what lies below the lines does not count
-            heights = np.concatenate([line.get_ydata() for axes in every for line in axes.lines])
-            every[0].set_ylim(heights.min() / 2.2, heights.max() * 2.2)
+            low, high = _heights(*every)
+            every[0].set_ylim(low / 2.2, high * 2.2)
         style.finish_panels(figure, every, room)
     return figure
+
+
+def _heights(*every: Axes) -> tuple[float, float]:
+    """The lowest and the highest point of all lines."""
+    heights = np.concatenate([line.get_ydata() for axes in every for line in axes.lines])
+    return float(heights.min()), float(heights.max())
 
 
 def _costs(run: Run, axis: Axis, subjects: Iterable[str], table: str = "") -> pd.DataFrame:
@@ -99,23 +107,21 @@ def scaling(run: Run, axis: Axis, subjects: Iterable[str] = QUERIES) -> Plot:
     costs = _costs(run, Axis.RANDOM_FACES if in_both_orders else axis, titles)
     also = partial(_draw_order_and_latency, run) if in_both_orders else None
     what, label = f"{axis.label} by {axis.variable}", style.axis_label(axis)
-    shape: dict[str, Any] = {"also": also, "sharex": True, "sharey": True}
-    return _draw(costs, titles, axis.variable, what, label, **shape)
+    return _draw(costs, titles, axis.variable, what, label, also=also, sharex=True, sharey=True)
 
 
 def overview(run: Run) -> Plot:
     """The study in one picture: the faces around a vertex, by work and by time."""
-    subject, work, time = "vertex_faces", Axis.WORK_FACES, Axis.TIME_FACES
-    titles = {axis.key: f"Vertex → Faces, {axis.label}" for axis in (work, time)}
-    sources = {work: work, time: Axis.RANDOM_FACES}
-    costs = [_costs(run, it, [subject]).assign(axis=axis.key) for axis, it in sources.items()]
+    subject, shown = "vertex_faces", (Axis.WORK_FACES, Axis.RANDOM_FACES)
+    titles = {axis.key: f"Vertex → Faces, {axis.label}" for axis in shown}
+    costs = pd.concat(_costs(run, axis, [subject]).assign(axis=axis.key) for axis in shown)
 
     def also(axes: Axes, key: str) -> None:
-        if key == time.key:
+        if key == Axis.RANDOM_FACES.key:
             _draw_order_and_latency(run, axes, subject)
 
-    shape: dict[str, Any] = {"panel": "axis", "also": also, "size": (4.5, 3.1)}
-    return _draw(pd.concat(costs), titles, "faces", "the faces around a vertex", **shape)
+    what = "the faces around a vertex"
+    return _draw(costs, titles, "faces", what, panel="axis", also=also, size=(4.5, 3.1))
 
 
 def _draw_order_and_latency(run: Run, axes: Axes, subject: str) -> None:
@@ -154,13 +160,12 @@ def rendering(run: Run, structure: str = "half_edge") -> Plot:
     """What a render mesh adds to one edit from Python, by size."""
     cases = _timed(run, "bench_operations", 1e6)
     cases = cases[cases["structure"] == structure]
-    colors = dict.fromkeys(RENDERED, STYLES[structure]["color"]) | {"one by one": GRAY}
-    styles = {it: RENDERED[it] | {"color": colors[it], "marker": "o"} for it in RENDERED}
+    look = {"color": STYLES[structure]["color"], "marker": "o"}
+    styles = {order: look | it for order, it in RENDERED.items()}
     titles = {"split_face": f"Splitting a face from Python, {NAMED[structure].title.lower()} mesh"}
-    shape: dict[str, Any] = {"room": 0.75, "plain": True, "size": (7.5, 3.3)}
-    shape |= {"by": "order", "styles": styles}
-    what = "operations with a render mesh"
-    return _draw(cases, titles, "faces", what, "time per edit, µs", **shape)
+    shape: dict[str, Any] = {"room": 0.75, "plain": True, "size": (7.5, 3.3), "styles": styles}
+    what, label = "operations with a render mesh", "time per edit, µs"
+    return _draw(cases, titles, "faces", what, label, by="order", **shape)
 
 
 def workloads(run: Run) -> Plot:
@@ -183,7 +188,7 @@ def overtaking(run: Run) -> Plot:
     def also(axes: Axes, _: str) -> None:
         axes.set_yscale("symlog")
         axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-        axes.set_ylim(0, 2 * max(table["times"], default=1.0))
+        axes.set_ylim(0, 2 * max([1.0, *table["times"]]))
 
     titles = {name: title.capitalize() for name, title in MIXES.items()}
     what = "building and queries or operations of the same meshes, beside an indexed mesh"

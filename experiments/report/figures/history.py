@@ -1,5 +1,6 @@
 """The figures of the chapter on regressions: a history in, a figure out."""
 
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
@@ -9,8 +10,7 @@ from matplotlib.colors import TwoSlopeNorm
 from matplotlib.figure import Figure
 
 from experiments.claims import MEMORY
-from experiments.regression import OUTCOMES, Trends, is_of
-from experiments.report.history_tables import short_commit
+from experiments.regression import OUTCOMES, Trends
 from experiments.report.style import STYLES, TITLES, label_ends, styled
 from structures import NAMES, REGISTRY
 
@@ -81,13 +81,18 @@ def _draw_line(axes: Axes, trends: Trends, line: pd.DataFrame) -> None:
         axes.vlines(x, line["low"], line["high"], color=look["color"], linewidth=1, alpha=0.6)
     stepped = line["before"].notna().to_numpy()
     _mark(axes, x[stepped], y[stepped], "step", look["color"], 11)
-    changes = is_of([last["claim"]], trends.changes)
-    verdicts = changes[changes["measure"] == OUTCOMES["outcome"]]
-    changed = line["run"].isin(verdicts["run"]).to_numpy()
+    changed = line["run"].isin(_changed(trends, [last["claim"]])["run"]).to_numpy()
     _mark(axes, x[changed], y[changed], "verdict", look["color"], 10)
     if last["here"] and (sloped or y[-1] > 0):
         end: Any = last["run"] + width / 2, y[-1]
         axes.plot(*end, label=look["label"], color=look["color"])
+
+
+def _changed(trends: Trends, claims: Iterable[str]) -> pd.DataFrame:
+    """Where the verdicts of some claims by work changed."""
+    rows = trends.verdicts
+    wanted = rows["changed"] & (rows["measure"] == OUTCOMES["outcome"])
+    return rows[wanted & rows["claim"].isin(list(claims))]
 
 
 def _mark(axes: Axes, x: Any, y: Any, what: str, color: str, size: int) -> None:
@@ -110,9 +115,8 @@ def _name_commits(axes: Axes, trends: Trends, room: float = 0.0) -> None:
     """The runs along the axis, by commit; every so many if there are many."""
     count = len(trends.runs)
     at = list(range(count - 1, -1, count // -LABELS))
-    names = [short_commit(trends.runs[k]) for k in at]
     turned: dict[str, Any] = {"rotation": 45, "ha": "right"} if count > 4 else {}
-    axes.set_xticks(at, names, **turned)
+    axes.set_xticks(at, trends.about["commit"][at], **turned)
     axes.set_xlim(-0.5, count - 0.5 + room * max(count, 1))
 
 
@@ -148,8 +152,7 @@ def _departures(axes: Axes, trends: Trends, rows: pd.DataFrame) -> np.ndarray:
     subjects = list(TITLES)
     usual = rows.groupby("subject")["value"].transform("median")
     table = rows.assign(off=np.log(rows["value"] / usual)).pivot_table("off", "subject", "run")
-    changed = is_of(rows["claim"], trends.changes)
-    changed = changed[changed["measure"] == OUTCOMES["outcome"]]
+    changed = _changed(trends, rows["claim"])
     for part, what in ((rows[rows["before"].notna()], "step"), (changed, "verdict")):
         heights = part["claim"].str.split("/").str[-1].map(subjects.index)
         _mark(axes, part["run"].to_numpy(), heights.to_numpy(), what, "black", 6)

@@ -31,14 +31,14 @@ def by_field(run: Run) -> Plot:
     Of what is made of arrays; ``references`` has the objects.
     """
     names = [name for name, structure in REGISTRY.items() if structure.compiled]
-    cases = [(name, curves(run).memory(name, size).tail(1)) for name in names for size in (8, 4)]
-    measured = [(name, case.iloc[0]) for name, case in cases if len(case)]
-    rows = list(dict.fromkeys(name for name, _ in measured))
+    every = (curves(run).memory(name, size).cases.tail(1) for name in names for size in (8, 4))
+    measured = [case for cases in every for case in cases.to_dict("records")]
+    rows = list(dict.fromkeys(case["structure"] for case in measured))
     with styled():
         plot, axes = _rows([NAMED[name].title for name in rows], 1.25, 1.1)
-        for name, case in measured:
+        for case in measured:
+            name, sizes = case["structure"], case["detail"]["fields"].items()
             height = rows.index(name) + (-0.19 if case["reference_bytes"] == 8 else 0.19)
-            sizes = case["detail"]["fields"].items()
             fields = {field: size / case["vertices"] for field, size in sizes}
             traced, peak = (case["detail"][key] / case["vertices"] for key in ("traced", "peak"))
             note = f"{sum(fields.values()):g} B with {case['reference_bytes']}-byte references"
@@ -65,10 +65,10 @@ def references(run: Run) -> Plot:
         "objects, in Python (measured)": (objects, 8, "fields"),
     }
     bars = {
-        title: (name, _parts(curves(run).memory(name, size), kind))
+        title: (name, parts)
         for title, (name, size, kind) in held.items()
+        if (parts := _parts(curves(run).memory(name, size).cases, kind))
     }
-    bars = {title: (name, parts) for title, (name, parts) in bars.items() if parts}
     with styled():
         plot, axes = _rows(list(bars), 0.6, 0.5)
         for row, (name, parts) in enumerate(bars.values()):

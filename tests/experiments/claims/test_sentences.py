@@ -11,7 +11,7 @@ from experiments.runs import load
 from tests.experiments.made_runs import BUILD, SIZES, rewrite, write_run
 
 SOURCES = ("thesis", "article", "claim", "the")
-"""The documents, a claim that is mended here, and the question that a document leaves open."""
+"""The documents, a claim that is corrected here, and the question that a document leaves open."""
 
 
 @pytest.fixture(scope="module")
@@ -45,9 +45,9 @@ def test_what_the_article_says_is_run(run):
 
 
 def test_the_listings_are_judged_by_how_they_grow(run):
-    assert outcome(run, "printed_splits") == "violated"  # they are linear
-    assert outcome(run, "printed_collapse") == "consistent"
-    assert outcome(run, "mended_splits") == outcome(run, "mended_collapse") == "consistent"
+    assert outcome(run, "published_splits") == "violated"  # they are linear
+    assert outcome(run, "published_collapse") == "consistent"
+    assert outcome(run, "corrected_splits") == outcome(run, "corrected_collapse") == "consistent"
 
 
 def test_what_lies_outside_its_bounds_is_violated(tmp_path):
