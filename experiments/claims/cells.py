@@ -91,11 +91,11 @@ def _claim(
     suffix = "" if table.name in ("queries", "operations") else f"/{table.name}"
     name, title = NAMED[structure].title, table.subjects.get(what, MEMORY_TITLE)
     expects: Exactly | Growth
-    if what == MEMORY:
-        expects = Exactly(None if printed == NO_CLAIM else printed)
+    if what == MEMORY and printed == NO_CLAIM:
+        expects, text = Exactly(None), f"Of the bytes of {name}, nothing is claimed."
+    elif what == MEMORY:
+        expects = Exactly(printed)
         text = f"{name} takes {printed} bytes per vertex, with references of 8 bytes."
-        if printed == NO_CLAIM:
-            text = f"Of the bytes of {name}, nothing is claimed."
     elif printed != NO_CLAIM and printed not in classes:
         raise ValueError(f"claims.toml, row {what}: {printed!r} is none of {', '.join(classes)}")
     else:

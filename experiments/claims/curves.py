@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from experiments.claims.claim import Claim
 from experiments.harness import HUBS, QUERIES_TABLE, Axis
 from experiments.runs import Run, experiments, tables
 from hem.arrays import Array
@@ -84,6 +85,10 @@ class Curves:
         rows = self._rows.get((*source, structure, subject, family), []) if source else []
         cases = self.cases.iloc[rows].sort_values(axis.variable)
         return Curve(axis.variable, cases)
+
+    def of(self, claim: Claim, axis: Axis) -> Curve:
+        """What a claim is judged by along an axis."""
+        return self.curve(axis, claim.structure, claim.subject, claim.table)
 
     def named(
         self, experiment: str, structure: str, subject: str = "", order: str = "", width: int = 4

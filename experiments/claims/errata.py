@@ -94,18 +94,17 @@ def _attempt(call: Callable[[], object]) -> str:
 def _grows(
     as_printed: Callable[[hem.TriangleMesh, AsPrinted], object],
     as_sound: Callable[[hem.TriangleMesh, HalfEdgeMesh], object],
-    at_least: float,
-    at_most: float,
-) -> Shown:
+    at_least: float, at_most: float,
+) -> Shown:  # fmt: skip
     """How the work of a call on a mesh and what is built of it grows from torus to torus."""
-    work: tuple[list[int], list[int]] = ([], [])
+    work = []
     for n in (SMALLER, LARGER):
         mesh = hem.generate("torus", n)
         m, s = printed(mesh), sound(mesh)
         s.move_vertex(0, s.points[0])  # binds the operations
-        work[0].append(fields_accessed(partial(as_printed, mesh, m)))
-        work[1].append(fields_accessed(partial(as_sound, mesh, s)))
-    one, other = (large / small for small, large in work)
+        calls = partial(as_printed, mesh, m), partial(as_sound, mesh, s)
+        work.append([fields_accessed(call) for call in calls])
+    one, other = (large / small for small, large in zip(*work, strict=True))
     words = f"× the work in a mesh of {LARGER // SMALLER} × the vertices"
     return Shown(f"{one:.1f} {words}", f"{other:.1f} {words}", one > at_least and other < at_most)
 
@@ -190,16 +189,14 @@ def _search_for_duplicates() -> Shown:
     there = (9.0, 9.0, 9.0)
     return _grows(
         lambda mesh, m: m.split_face(m.faces[0], there),
-        lambda mesh, s: s.split_face(0, there),
-        2, 1.1,
+        lambda mesh, s: s.split_face(0, there), 2, 1.1,
     )  # fmt: skip
 
 
 def _scanning_circulator() -> Shown:
     return _grows(
         lambda mesh, m: m.vertex_circulator(m.vertices[0]),
-        lambda mesh, s: s.vertices.circulator(s.vertices[0]),
-        3.9, 1.1,
+        lambda mesh, s: s.vertices.circulator(s.vertices[0]), 3.9, 1.1,
     )  # fmt: skip
 
 

@@ -42,7 +42,7 @@ def _judge_bytes(of_run: Curves, claim: Claim) -> JudgedClaim:
 
 def _judge_growth(of_run: Curves, claim: Claim) -> JudgedClaim:
     axes, classes = axes_of(claim.table), claim.classes
-    cases = {axis: of_run.curve(axis, claim.structure, claim.subject, claim.table) for axis in Axis}
+    cases = {axis: of_run.of(claim, axis) for axis in Axis}
     verdicts = {
         axis: _verdict(of_run, claim.table, axis, cases[axis], classes.get(axis.variable, "O(1)"))
         for axis in axes

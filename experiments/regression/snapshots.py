@@ -73,7 +73,7 @@ def _name(claim: Claim) -> str:
 def _classes(of_run: Curves, judged: JudgedClaim) -> Figures:
     claim, classes = judged.claim, Figures()
     for axis, verdict in judged.verdicts.items():
-        if len(of_run.curve(axis, claim.structure, claim.subject, claim.table)) >= LEAST_SIZES:
+        if len(of_run.of(claim, axis)) >= LEAST_SIZES:
             outcome = verdict.outcome if axis.variable in claim.classes else Outcome.NO_CLAIM
             classes[axis.key] = [verdict.best, outcome]
     return classes
@@ -90,9 +90,9 @@ def _figures(run: Run, judged: JudgedClaim) -> Figures:
     }
     outcomes = {"outcome": judged.outcome, "outcome_time": judged.outcome_time}
     claim, figures = judged.claim, Figures(**outcomes, slopes=slopes)
-    work = curves(run).curve(Axis.WORK_FACES, claim.structure, claim.subject, claim.table)
+    work = curves(run).of(claim, Axis.WORK_FACES)
     if len(work):
-        figures |= {"work": _short(work.largest), "work_faces": int(work.sizes[-1])}
+        figures |= {"work": _short(judged.work), "work_faces": int(work.sizes[-1])}
     return figures if run.machines else {**figures, **_time(curves(run), claim)}
 
 
@@ -103,17 +103,16 @@ def _time(of_run: Curves, claim: Claim) -> Figures:
     more; the median over the sizes came back within 2 % (standard deviation, nine runs).
     """
     axis = Axis.RANDOM_FACES if claim.table == "queries" else Axis.TIME_FACES
-    curve = of_run.curve(axis, claim.structure, claim.subject, claim.table)
+    curve = of_run.of(claim, axis)
     if not len(curve):
         return {}
     faces, sizes = int(curve.sizes[-1]), len(curve)
     figures = {"seconds": _short(curve.largest), "time_faces": faces, "time_sizes": sizes}
     latency = curve.cases["latency"].to_numpy(float)
+    between = of_run.latency(curve.cases["working_set"].to_numpy(float))
+    latency = latency if between is None else np.where(np.isnan(latency), between, latency)
     if np.isnan(latency).any():
-        between = of_run.latency(curve.cases["working_set"].to_numpy(float))
-        if between is None:
-            return figures
-        latency = np.where(np.isnan(latency), between, latency)
+        return figures
     return {**figures, "relative": _short(np.exp(np.median(np.log(curve.centers / latency))))}
 
 

@@ -87,11 +87,10 @@ def _outputs(shell: Any, source: str, heading: str, name: str) -> list[Any]:
 
 def _output(data: Any, metadata: Any, heading: str) -> Any:
     """A displayed value as a notebook keeps it; a picture has the alternative text it needs."""
-    metadata = dict(metadata or {})
-    for kind in {"image/jpeg", "image/png", "image/svg+xml"} & set(data):
-        metadata[kind] = {"alt": f"Plot: {heading}", **metadata.get(kind, {})}
-    texts = {
-        kind: b64encode(value).decode() if isinstance(value, bytes) else value
-        for kind, value in data.items()
-    }
+    metadata, texts = dict(metadata or {}), dict(data)
+    for kind, value in data.items():
+        if kind.startswith("image/"):
+            metadata[kind] = {"alt": f"Plot: {heading}", **metadata.get(kind, {})}
+        if isinstance(value, bytes):
+            texts[kind] = b64encode(value).decode()
     return nbformat.v4.new_output("display_data", data=texts, metadata=metadata)

@@ -7,13 +7,12 @@ from pathlib import Path
 
 from matplotlib.figure import Figure
 
-from experiments.claims import judge_run
 from experiments.harness import OPERATIONS, QUERIES_TABLE, Axis
 from experiments.report.figures import fracture, growth, memory, meshes
 from experiments.report.pages import each_table, or_missing
-from experiments.report.session import Session, share
+from experiments.report.session import read_session, share
 from experiments.report.tables import markdown, sentences_markdown
-from experiments.runs import Run, in_words, load
+from experiments.runs import Run, in_words
 
 TIMES = partial(growth.scaling, axis=Axis.TIME_FACES)
 DRAWN: dict[str, tuple[str, Callable[[Run], Figure]]] = {
@@ -49,9 +48,8 @@ def write_readme(run_folder: Path, folder: Path) -> Path:
 
     Table 1 goes into the README beside ``folder``, too, if it has the marks for it.
     """
-    run = load(run_folder)
-    claims = judge_run(run)
-    share(Session(run, claims))
+    share(session := read_session(run_folder))
+    run, claims = session.run, session.claims
     folder.mkdir(parents=True, exist_ok=True)
     parts = each_table(claims, markdown, MISSING)
     parts["In sentences"] = sentences_markdown(claims)

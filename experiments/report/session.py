@@ -24,6 +24,12 @@ class Session:
     printed: bool = False
 
 
+def read_session(run_folder: str | Path, printed: bool = False) -> Session:
+    """A run with its judged claims. Raises ResultsError where there is none."""
+    run = load(run_folder)
+    return Session(run, judge_run(run), printed)
+
+
 _current: Session | None = None
 
 
@@ -42,8 +48,7 @@ def open_run() -> Session:
 
     show_figures()
     if _current is None:
-        run = load(os.environ.get(RUN_VARIABLE) or latest())
-        share(Session(run, judge_run(run)))
+        share(read_session(os.environ.get(RUN_VARIABLE) or latest()))
     assert _current is not None
     return _current
 

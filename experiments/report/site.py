@@ -11,13 +11,12 @@ from pathlib import Path
 from threading import Thread
 from typing import Any
 
-from experiments.claims import judge_run
 from experiments.report import pdf
 from experiments.report.figures.claims import write_claims
 from experiments.report.notebooks import FRONT, body, page_titles
 from experiments.report.pages import page
-from experiments.report.session import CLAIMS, Session, share
-from experiments.runs import ResultsError, load
+from experiments.report.session import CLAIMS, Session, read_session, share
+from experiments.runs import ResultsError
 
 BATCH = 10  # claims whose figures a process draws at a time
 
@@ -28,7 +27,7 @@ def write_report(run_folder: Path, output: Path) -> Path:
     The pages replace what was there all at once. Raises ResultsError where the run cannot be read
     or a notebook fails, naming it; then what was there stays.
     """
-    session = Session(run := load(run_folder), judge_run(run))
+    session = read_session(run_folder)
     _require_replaceable(output)
     with _beside(output) as fresh:
         for name, text in _write_parts(session, fresh).items():
@@ -47,7 +46,7 @@ def write_pdf(run_folder: Path, output: Path) -> Path:
     Raises ResultsError as ``write_report`` does, and PrintError without a browser to print it.
     """
     pdf.require_browser()  # rather now than after the notebooks
-    session = Session(run := load(run_folder), judge_run(run), printed=True)
+    session = read_session(run_folder, printed=True)
     with _beside(output) as fresh:
         bodies = _write_parts(session, fresh)
         content = page("print.html.j2", titles=page_titles(), front=FRONT, bodies=bodies)

@@ -74,17 +74,13 @@ def svg(plot: Figure) -> str:
 def panels(
     titles: Sequence[str], size: tuple[float, float] = (3.7, 2.8), columns: int = 3, **shared: Any
 ) -> tuple[Plot, list[Axes]]:
-    """A figure with a titled logarithmic panel for each of ``titles``."""
-    columns = min(columns, len(titles))
-    rows = -(-len(titles) // columns)
-    figure = Plot(figsize=(size[0] * columns, size[1] * rows + 0.3), layout="constrained")
-    every = list(figure.subplots(rows, columns, squeeze=False, **shared).flat)
-    for axes in every[len(titles) :]:
-        axes.set_visible(False)
-    for axes, title in zip(every, titles, strict=False):
-        axes.set(xscale="log", yscale="log", title=title)
+    """A plot with a titled logarithmic panel for each of ``titles``."""
+    plot, every = grid(titles, size, columns, Plot, **shared)
+    plot.set_figheight(plot.get_figheight() + 0.3)
+    for axes in every:
+        axes.set(xscale="log", yscale="log")
         short_numbers(axes)
-    return figure, every[: len(titles)]
+    return plot, every
 
 
 def short_numbers(axes: Axes) -> None:
@@ -159,12 +155,17 @@ def spread_apart(heights: list[float], gap: float) -> list[float]:
     return [float(it) for it in isotonic_regression(np.array(heights) - steps).x + steps]
 
 
-def side_by_side(
-    titles: Sequence[str], width: float, height: float, **shared: Any
-) -> tuple[Figure, list[Axes]]:
-    """A figure with a titled panel for each of ``titles``, in inches."""
-    figure = Figure(figsize=(width * len(titles), height), layout="constrained")
-    every = list(figure.subplots(1, len(titles), squeeze=False, **shared)[0])
-    for axes, title in zip(every, titles, strict=True):
+def grid(
+    titles: Sequence[str], size: tuple[float, float], columns: int = 99, kind: Any = Figure,
+    **shared: Any,
+) -> tuple[Any, list[Axes]]:  # fmt: skip
+    """A figure with a titled panel of this size, in inches, for each of ``titles``."""
+    columns = min(columns, len(titles))
+    rows = -(-len(titles) // columns)
+    figure = kind(figsize=(size[0] * columns, size[1] * rows), layout="constrained")
+    every = list(figure.subplots(rows, columns, squeeze=False, **shared).flat)
+    for axes in every[len(titles) :]:
+        axes.set_visible(False)
+    for axes, title in zip(every, titles, strict=False):
         axes.set_title(title)
-    return figure, every
+    return figure, every[: len(titles)]

@@ -42,26 +42,24 @@ def show_rows(
         stop = start + 1
         while stop < len(widths) and widths[0] + sum(widths[start : stop + 1]) <= console.width:
             stop += 1
+        table = Table(title=title or None, title_justify="left", box=box.SIMPLE_HEAD)
+        table.pad_edge, table.padding = False, (0, 1, 0, 0)
         heads, *body = ([row[0], *row[start:stop]] for row in every)
-        console.print(_grid(heads, [row for row in body if any(row[1:])], title, numbers))
+        for head in heads:
+            table.add_column(head, style="" if head else "bold", no_wrap=True)
+            table.columns[-1].justify = "right" if head in numbers else "left"
+        for row in body:
+            if any(row[1:]):
+                table.add_row(*map(_colored, row))
+        console.print(table)
         start = stop
 
 
-def _grid(
-    heads: Sequence[str], rows: Sequence[Sequence[str]], title: str, numbers: Sequence[str]
-) -> Table:
-    table = Table(title=title or None, title_justify="left", box=box.SIMPLE_HEAD, pad_edge=False)
-    table.padding = (0, 1, 0, 0)
-    for head in heads:
-        table.add_column(head, style="" if head else "bold", no_wrap=True)
-        table.columns[-1].justify = "right" if head in numbers else "left"
-    for row in rows:
-        cells = [Text(cell) for cell in row]
-        for cell in cells:
-            for pattern, color in COLORS.items():
-                cell.highlight_regex(pattern, color)
-        table.add_row(*cells)
-    return table
+def _colored(cell: str) -> Text:
+    text = Text(cell)
+    for pattern, color in COLORS.items():
+        text.highlight_regex(pattern, color)
+    return text
 
 
 def markdown_rows(rows: Iterable[Sequence[str]]) -> str:
@@ -104,9 +102,8 @@ def show_claims(
     run_folder: Path, console: Console, every: bool = False, slopes: bool = False
 ) -> None:
     """Print the claims of a run and their verdicts: of the thesis' four structures, or of all."""
-    run = load(run_folder)
-    claims = [it for it in judge_run(run) if it.claim.structure and it.was_measured]
-    claims = [it for it in claims if every or it.claim.structure in THESIS]
+    run, shown = load(run_folder), NAMED if every else THESIS
+    claims = [it for it in judge_run(run) if it.claim.structure in shown and it.was_measured]
     if not claims:
         raise MissingError(f"{run_folder} holds no measurements of these structures: try --all")
     console.print(f"[bold]{run.folder.name}[/], preset {run.meta.get('preset')}", highlight=False)

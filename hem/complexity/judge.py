@@ -148,7 +148,7 @@ def _doubt(costs: Costs, models: Comparison) -> str:
         return f"Too short a range: the largest size is {reach:.1f} times the smallest."
     if costs.scatter > MAX_SCATTER or costs.error.max() > MAX_ERROR:
         return f"Too noisy: the samples of a size scatter by {costs.scatter:.0%}."
-    if not models.explained:
+    if models.chi2[models.best] > models.memory.misfit * models.freedom:
         unknown = ", and caches that no latency tells of might have bent them"
         hint = unknown if models.memory.unmeasured is not None else ""
         return f"No class explains the costs: {NAMES[models.best]} comes closest{hint}."

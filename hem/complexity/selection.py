@@ -127,11 +127,6 @@ class Comparison:
         """Evidence of the best model against the runner-up."""
         return self.evidence(self.chi2[self.best], self.chi2[self.runner_up])
 
-    @property
-    def explained(self) -> bool:
-        """Whether the best model explains the costs at all."""
-        return bool(self.chi2[self.best] <= self.memory.misfit * self.freedom)
-
     def steady(self, costs: Array) -> Array:
         """Costs (..., k) with the memory's part, as the best model sees it in each row, removed."""
         best = self.design.only(self.best)

@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
-from experiments.report.style import BLUE, FADED, GRAY, RED, styled
+from experiments.report.style import BLUE, FADED, GRAY, RED, grid, styled
 
 KINDS = {"right": BLUE, "undetermined": "#d5d5d5", "wrong": RED}
 """What can be said of an answer, and its color in every figure here."""
@@ -22,9 +22,8 @@ def plot_answer_shares(shares: pd.DataFrame, titles: Mapping[str, str]) -> Figur
     shares: a row per judge and condition, a column per kind of answer. titles: by condition.
     """
     with styled():
-        figure = Figure(figsize=(9.6, 4.6), layout="constrained")
-        panels = figure.subplots(2, 2, sharex=True, sharey=True)
-        for axes, (condition, title) in zip(panels.flat, titles.items(), strict=True):
+        figure, panels = grid(list(titles.values()), (4.8, 2.3), 2, sharex=True, sharey=True)
+        for axes, condition in zip(panels, titles, strict=True):
             mine = shares.xs(condition, level="condition").loc[shares.index.unique("judge")]
             left = np.zeros(len(mine))
             for kind, color in KINDS.items():
@@ -33,10 +32,10 @@ def plot_answer_shares(shares: pd.DataFrame, titles: Mapping[str, str]) -> Figur
                 ink = "#333333" if kind == "undetermined" else "white"
                 axes.bar_label(bars, words, label_type="center", color=ink, fontsize=8)
                 left = left + mine[kind].to_numpy()
-            axes.set(xlim=(0, 1), ylim=(len(mine) - 0.5, -0.5), title=title)
+            axes.set(xlim=(0, 1), ylim=(len(mine) - 0.5, -0.5))
             axes.xaxis.set_major_formatter(lambda share, _: f"{share:.0%}")
             _hide_frame(axes)
-        for axes in panels[-1]:
+        for axes in panels[-2:]:
             axes.set_xlabel("share of the curves")
         handles = [Rectangle((0, 0), 1, 1, color=color) for color in KINDS.values()]
         figure.legend(handles, list(KINDS), loc="outside lower center", ncols=3, frameon=False)
@@ -46,11 +45,9 @@ def plot_answer_shares(shares: pd.DataFrame, titles: Mapping[str, str]) -> Figur
 def plot_confusions(confusions: Mapping[str, pd.DataFrame]) -> Figure:
     """A panel per judge: which answers curves of each class got. A "?" is undetermined."""
     with styled():
-        figure = Figure(figsize=(2.6 * len(confusions) + 0.8, 3.3), layout="constrained")
-        panels = figure.subplots(1, len(confusions), sharey=True, squeeze=False)[0]
-        for axes, (judge, counts) in zip(panels, confusions.items(), strict=True):
+        figure, panels = grid(list(confusions), (2.8, 3.3), sharey=True)
+        for axes, counts in zip(panels, confusions.values(), strict=True):
             _draw_matrix(axes, counts)
-            axes.set_title(judge)
         panels[0].set_ylabel("true class")
         figure.supxlabel("answer", fontsize=9)
     return figure

@@ -50,13 +50,8 @@ def draw(session: Session, judged: JudgedClaim) -> Plot | None:
             _draw_values(plot.subplots(), np.asarray(judged.values, float), judged.claim.expects)
         for place, axis in enumerate(judged.verdicts, start=1):
             panel = plot.add_subplot(1, len(judged.verdicts), place)
-            _draw_growth(panel, _curve(session, judged, axis), judged, axis)
+            _draw_growth(panel, curves(session.run).of(judged.claim, axis), judged, axis)
     return plot
-
-
-def _curve(session: Session, judged: JudgedClaim, axis: Axis) -> Curve:
-    claim = judged.claim
-    return curves(session.run).curve(axis, claim.structure, claim.subject, claim.table)
 
 
 def _draw_growth(axes: Axes, curve: Curve, judged: JudgedClaim, axis: Axis) -> None:
@@ -135,7 +130,8 @@ def data(session: Session, judged: JudgedClaim) -> str:
     """What a claim was judged by as comma-separated values; times in seconds."""
     bounds = judged.claim.expects
     if judged.verdicts:
-        table = pd.concat([_cases(_curve(session, judged, it), it) for it in judged.verdicts])
+        of_run = curves(session.run)
+        table = pd.concat([_cases(of_run.of(judged.claim, it), it) for it in judged.verdicts])
     elif isinstance(bounds, Between):
         table = pd.DataFrame({"value": judged.values, "low": bounds.low, "high": bounds.high})
     else:

@@ -12,7 +12,7 @@ import hem
 import structures
 from experiments.report.figures.meshes import INK, PAPER, STRONG, show_picture, turnable
 from experiments.report.fracture_scenes import Broken, break_up, model
-from experiments.report.style import side_by_side, styled
+from experiments.report.style import grid, styled
 from hem.fracture import MATERIALS, Fracture, material, shatter
 from hem.fracture.show import PicturesMissingError
 
@@ -49,7 +49,7 @@ def materials() -> Figure:
 
 def _plates(every: Sequence[tuple[str, str, tuple[float, float]]]) -> Figure:
     with styled():
-        figure, panels = side_by_side([title for title, _, _ in every], 3.3, 3.6)
+        figure, panels = grid([title for title, _, _ in every], (3.3, 3.6))
         for axes, (title, name, at) in zip(panels, every, strict=True):
             broken = shatter(structures.build("half_edge", plate()), (*at, 0), name, seed=4)
             _draw_plate(axes, broken)
@@ -81,10 +81,8 @@ def broken_by_force(
 def gallery(every: Sequence[Broken]) -> Figure:
     """Each fracture in a row of its own: in place on the left, exploded on the right."""
     with styled():
-        figure = Figure(figsize=(9.6, 3.75 * len(every)), layout="constrained")
-        panels = figure.subplots(len(every), squeeze=False)[:, 0]
+        figure, panels = grid(list(map(_title, every)), (9.6, 3.75), 1)
         for axes, broken in zip(panels, every, strict=True):
-            axes.set_title(_title(broken))
             show_picture(axes, lambda it: it.scene().still(), broken)
     return figure
 

@@ -63,10 +63,10 @@ def _draw(
                 axes.label_outer()
             if plain and axes.lines:
                 low, high = _heights(axes)
-                room = max((high / low) ** 0.18, 1.05)  # of costs that are the same, too
-                axes.set_ylim(low / room, high * room)
+                margin = max((high / low) ** 0.18, 1.05)  # of costs that are the same, too
+                axes.set_ylim(low / margin, high * margin)
                 # Numbers also between the decades, where there is no whole one to be seen.
-                marks = (1.0,) if high / low * room**2 > 30 else (1.0, 2.0, 5.0)
+                marks = (1.0,) if high / low * margin**2 > 30 else (1.0, 2.0, 5.0)
                 axes.yaxis.set_major_locator(LogLocator(subs=marks))
         if not any(map(style.labeled, every)):
             raise MissingError(f"This run has not measured {what}.")

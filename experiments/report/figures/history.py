@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 from experiments.claims import MEMORY
 from experiments.regression import OUTCOMES, Trends
-from experiments.report.style import STYLES, TITLES, label_ends, styled
+from experiments.report.style import STYLES, TITLES, grid, label_ends, styled
 from structures import NAMES, REGISTRY
 
 PANELS = {
@@ -36,19 +36,23 @@ def by_commit(trends: Trends, subject: str) -> Figure:
     """
     rows = _of_newest(trends)
     with styled():
-        figure = Figure(figsize=(11, 5.8), layout="constrained")
-        panels = figure.subplots(2, 2, sharex=True)
-        for axes, (measure, title) in zip(panels.flat, PANELS.items(), strict=True):
-            whole = measure == "bytes"
-            axes.set_title(title if whole else f"{title}: {TITLES[subject]}")
+        titles = [
+            it if key == "bytes" else f"{it}: {TITLES[subject]}" for key, it in PANELS.items()
+        ]
+        figure, panels = grid(titles, (5.5, 2.9), 2, sharex=True)
+        for axes, measure in zip(panels, PANELS, strict=True):
             axes.set_yscale("linear" if measure in FROM_ZERO else "log")
-            mine = rows[rows["subject"] == (MEMORY if whole else subject)]
+            mine = rows[rows["subject"] == (MEMORY if measure == "bytes" else subject)]
             for _, line in mine[mine["measure"] == measure].groupby(["structure", "machine"]):
                 _draw_line(axes, trends, line)
-            _leave_room(axes, measure)
+            low = axes.dataLim.y0 if measure in FROM_ZERO else axes.dataLim.minposy
+            high = axes.dataLim.y1
+            if axes.lines and np.isfinite([low, high]).all():  # no noise is to look like news
+                sloped = min(low, 0) - 0.25, max(high, 1) + 0.15
+                axes.set_ylim(sloped if measure in FROM_ZERO else (low / 2.5, high * 2.5))
             _name_commits(axes, trends, room=0.2)
         figure.draw_without_rendering()
-        for axes in panels.flat:
+        for axes in panels:
             label_ends(axes)
     return figure
 
@@ -102,15 +106,6 @@ def _mark(axes: Axes, x: Any, y: Any, what: str, color: str, size: int) -> None:
         axes.plot(x, y, marker, color=color, ms=size, markerfacecolor=fill, gid=what)
 
 
-def _leave_room(axes: Axes, measure: str) -> None:
-    """Room above and below, and no axis so narrow that noise looks like news."""
-    low = axes.dataLim.y0 if measure in FROM_ZERO else axes.dataLim.minposy
-    high = axes.dataLim.y1
-    if axes.lines and np.isfinite([low, high]).all():
-        sloped = min(low, 0) - 0.25, max(high, 1) + 0.15
-        axes.set_ylim(sloped if measure in FROM_ZERO else (low / 2.5, high * 2.5))
-
-
 def _name_commits(axes: Axes, trends: Trends, room: float = 0.0) -> None:
     """The runs along the axis, by commit; every so many if there are many."""
     count = len(trends.runs)
@@ -128,22 +123,17 @@ def departures(trends: Trends, measure: str = "time") -> Figure:
     """
     rows = _of_newest(trends)
     rows = rows[rows["here"] & (rows["measure"] == measure) & (rows["value"] > 0)]
-    ends = {1 / STRONGEST: f"{1 / STRONGEST - 1:+.0%}", 1.0: "as usual"}
-    ends[STRONGEST] = f"{STRONGEST - 1:+.0%}"
-    ticks = np.log(list(ends))
+    ends = (1 / STRONGEST, 1.0, STRONGEST)
+    ticks, names = np.log(ends), [f"{it - 1:+.0%}" if it != 1 else "as usual" for it in ends]
     with styled():
-        figure = Figure(figsize=(11, 7.0), layout="constrained")
-        panels = figure.subplots(-(-len(NAMES) // 3), 3, sharex=True, sharey=True, squeeze=False)
-        for axes, structure in zip(panels.flat, NAMES, strict=False):
+        titles = [REGISTRY[it].title for it in NAMES]
+        figure, panels = grid(titles, (11 / 3, 3.5), 3, sharex=True, sharey=True)
+        for axes, structure in zip(panels, NAMES, strict=True):
             image = _departures(axes, trends, rows[rows["structure"] == structure])
-            axes.set_title(REGISTRY[structure].title)
             norm = TwoSlopeNorm(0.0, ticks[0], ticks[-1])
             drawn = axes.imshow(image, cmap="RdBu_r", norm=norm, aspect="auto")
-        for axes in panels.flat[len(NAMES) :]:
-            axes.set_visible(False)
-        bar = figure.colorbar(drawn, ax=panels, shrink=0.5, ticks=ticks)
-        bar.ax.set_yticklabels(list(ends.values()))
-        bar.set_label(PANELS[measure])
+        bar = figure.colorbar(drawn, ax=panels, shrink=0.5, label=PANELS[measure])
+        bar.set_ticks(ticks.tolist(), labels=names)
     return figure
 
 

@@ -16,7 +16,7 @@ import hem
 import structures
 from experiments.bench_workloads import simplify
 from experiments.report.pages import Html, page
-from experiments.report.style import side_by_side, styled
+from experiments.report.style import grid, styled
 from hem.arrays import Array
 from hem.contract import Structure
 from hem.fracture.show import AXES, FractureScene, Image, Picture, PicturesMissingError
@@ -56,7 +56,7 @@ def steps(every: Sequence[Step], labels: bool = True) -> Figure:
     """Flat meshes side by side, with their vertices numbered."""
     titles = [title for title, _, _ in every]
     with styled():
-        figure, panels = side_by_side(titles, 3.1, 2.7, sharex=True, sharey=True)
+        figure, panels = grid(titles, (3.1, 2.7), sharex=True, sharey=True)
         for axes, (_, s, shown) in zip(panels, every, strict=True):
             _draw_flat(axes, s, shown, labels)
     return figure
@@ -83,14 +83,12 @@ def _draw_flat(axes: Axes, s: Structure, shown: dict[str, Any], labels: bool) ->
     axes.axis("off")
 
 
-def _step(title: str, s: Structure, **marked: Any) -> Step:
+def _step(title: str, s: Structure, edit: hem.Edit | None = None, **marked: Any) -> Step:
+    """The mesh as it is; after an operation what that made, and the vertex it is about."""
+    if edit is not None:
+        made = {"faces": [*edit.created_faces, *edit.changed_faces], "vertices": [edit.vertex]}
+        marked = {**made, **marked}
     return title, s.copy(), marked
-
-
-def _edited(title: str, s: Structure, edit: hem.Edit, **marked: Any) -> Step:
-    """What an operation made, and the vertex it is about."""
-    faces = [*edit.created_faces.tolist(), *edit.changed_faces.tolist()]
-    return title, s.copy(), {"faces": faces, "vertices": [edit.vertex], **marked}
 
 
 def _edge(s: Structure, a: int, b: int) -> int:
@@ -145,9 +143,9 @@ def split_edge_steps(structure: str) -> Figure:
     edge = _edge(s, 0, 1)
     before = _step("An edge, and the faces at it", s, faces=s.edge_faces(edge), edges=[(0, 1)])
     edit = s.split_edge(edge, (0, 0.0, 0))
-    inside = _edited("split: 1 vertex, 3 edges,\n2 faces more", s, edit)
+    inside = _step("split: 1 vertex, 3 edges,\n2 faces more", s, edit)
     edit = s.split_edge(_edge(s, 2, 3), 0.5 * (s.points[2] + s.points[3]))
-    border = _edited("on the border: 1 vertex,\n2 edges, 1 face more", s, edit)
+    border = _step("on the border: 1 vertex,\n2 edges, 1 face more", s, edit)
     return steps([before, inside, border])
 
 
@@ -176,7 +174,7 @@ def quad_splits(structure: str) -> Figure:
     every = [_step("The quad", structures.build(structure, quad()), edges=[(0, 2)])]
     for title, (edge, place) in places.items():
         s = structures.build(structure, quad())
-        every.append(_edited(title, s, s.split_edge(_edge(s, *edge), place)))
+        every.append(_step(title, s, s.split_edge(_edge(s, *edge), place)))
     return steps(every)
 
 
@@ -187,7 +185,7 @@ def collapse_steps(structure: str) -> Figure:
     before = _step("Vertex 0 is to merge into 1", s, faces=s.vertex_faces(0), edges=ends)
     gone = _step("These two faces vanish", s, faces=s.edge_faces(edge), edges=ends)
     edit = s.collapse_edge(edge, keep=1)
-    return steps([before, gone, _edited("collapsed: 1 vertex, 3 edges,\n2 faces fewer", s, edit)])
+    return steps([before, gone, _step("collapsed: 1 vertex, 3 edges,\n2 faces fewer", s, edit)])
 
 
 def split_face_steps(structure: str) -> Figure:
@@ -196,7 +194,7 @@ def split_face_steps(structure: str) -> Figure:
     before, whole = _step("A face", s, faces=[0]), s.copy()
     every = _step("all faces split", whole, vertices=whole.split_all_faces())
     edit = s.split_face(0, s.points[s.face_vertices(0)].mean(axis=0))
-    one = _edited("split: 1 vertex, 3 edges,\n2 faces more", s, edit)
+    one = _step("split: 1 vertex, 3 edges,\n2 faces more", s, edit)
     return steps([before, one, every], labels=False)
 
 
@@ -205,25 +203,25 @@ def flip_steps(structure: str) -> Figure:
     s = structures.build(structure, hexagon())
     edge = _edge(s, 0, 1)
     before = _step("An edge", s, faces=s.edge_faces(edge), edges=[(0, 1)])
-    flipped = _edited("flipped: no count changes", s, s.flip_edge(edge), edges=[(4, 8)])
+    flipped = _step("flipped: no count changes", s, s.flip_edge(edge), edges=[(4, 8)])
     edit = s.flip_edge(_edge(s, 4, 8))
-    return steps([before, flipped, _edited("flipped again: as it was", s, edit, edges=[(0, 1)])])
+    return steps([before, flipped, _step("flipped again: as it was", s, edit, edges=[(0, 1)])])
 
 
 def shaded(meshes: Mapping[str, hem.TriangleMesh]) -> Figure:
     """Meshes side by side with their edges, z up."""
+
+    def shade(mesh: hem.TriangleMesh) -> Image:
+        look: dict[str, Any] = {"up": AXES["z"], "wires": True}
+        with closing(Picture(mesh.points, mesh.triangles, SAND, (740, 560), **look)) as picture:
+            picture.look_at(mesh.points.astype(float), -60, 22)
+            return picture.image()
+
     with styled():
-        figure, panels = side_by_side(list(meshes), 3.7, 3.0)
+        figure, panels = grid(list(meshes), (3.7, 3.0))
         for axes, mesh in zip(panels, meshes.values(), strict=True):
-            show_picture(axes, _shade, mesh)
+            show_picture(axes, shade, mesh)
     return figure
-
-
-def _shade(mesh: hem.TriangleMesh) -> Image:
-    look: dict[str, Any] = {"up": AXES["z"], "wires": True}
-    with closing(Picture(mesh.points, mesh.triangles, SAND, (740, 560), **look)) as picture:
-        picture.look_at(mesh.points.astype(float), -60, 22)
-        return picture.image()
 
 
 def show_picture(axes: Axes, draw: Callable[[Any], Image], shown: Any) -> None:
