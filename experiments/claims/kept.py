@@ -52,17 +52,16 @@ def _state(folder: Path) -> str:
     """A digest of the run's files and of the code that judges them."""
     digest = hashlib.sha256()
     code = [Path(__file__).parent, Path(str(hem.complexity.__file__)).parent]
-    sources = [path for room in code for path in sorted(room.glob("*.*")) if path.is_file()]
-    measured = sorted(path for path in folder.glob("*.json*") if path.is_file())
-    for path in (*sources, *measured):
-        digest.update(path.name.encode() + path.read_bytes())
+    for room, pattern in ((code[0], "*.*"), (code[1], "*.*"), (folder, "*.json*")):
+        for path in sorted(filter(Path.is_file, room.glob(pattern))):
+            digest.update(path.name.encode() + path.read_bytes())
     return digest.hexdigest()
 
 
 def _plain(judged: JudgedClaim) -> dict[str, Any]:
     verdicts = {axis.key: asdict(verdict) for axis, verdict in judged.verdicts.items()}
-    values = {"verdicts": verdicts, "values": judged.values.tolist()}
-    return {**{name: getattr(judged, name) for name in PLAIN}, **values}
+    plain = {name: getattr(judged, name) for name in PLAIN}
+    return {**plain, "verdicts": verdicts, "values": judged.values.tolist()}
 
 
 def _judged(claim: Claim, row: dict[str, Any]) -> JudgedClaim:

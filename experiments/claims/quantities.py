@@ -68,10 +68,9 @@ def _judge(of_run: Curves, claim: Claim, expects: Between) -> JudgedClaim:
     measured = np.array(list(QUANTITIES[expects.quantity](of_run)), float)
     values = measured[~np.isnan(measured)]
     inside = (values >= expects.low) & (values <= expects.high)
-    if not len(values) or (inside.any() and not inside.all()):
+    outcome = Outcome.CONSISTENT if inside.all() else Outcome.VIOLATED
+    if not len(values) or inside.any() > inside.all():
         outcome = Outcome.UNDETERMINED
-    else:
-        outcome = Outcome.CONSISTENT if inside.all() else Outcome.VIOLATED
     reason = f"{inside.sum()} of {len(values)} values are {expects.words}."
     return JudgedClaim(claim, outcome, _span(values), reason, values=values)
 

@@ -152,11 +152,10 @@ def _finding(
         why, command = "not in the baseline", UPDATE[part]
     else:
         change, why = (compare_classes if kind == Kind.CLASS else compare_values)(old, new)
-    return Finding(change, kind, case, _show(old), _show(new), why, command, **more)
+    return Finding(change, kind, case, _show(old or ()), _show(new or ()), why, command, **more)
 
 
-def _show(values: Sequence[Any] | None) -> str:
-    values = values or ()
+def _show(values: Sequence[Any]) -> str:
     few = ", ".join(it if isinstance(it, str) else f"{it:,}" for it in values)
     return few if len(values) <= 3 else f"{sum(values):,} in {len(values)}"
 

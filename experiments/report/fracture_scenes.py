@@ -98,8 +98,8 @@ def break_up(
     which the force decides only how the shards fly. Raises MeshError for unknown methods and
     structures, and for what they refuse.
     """
-    known = {"structure": (structure, structures.NAMES), "method": (method, METHODS)}
-    for what, (name, names) in known.items():
+    known = ("structure", structure, structures.NAMES), ("method", method, METHODS)
+    for what, name, names in known:
         if name not in names:
             raise hem.MeshError(f"there is no {what} {name!r}, only {', '.join(names)}")
     if impact is None:
@@ -109,14 +109,12 @@ def break_up(
     given = Blow(np.asarray(impact), np.asarray(toward), force)  # checked before all is broken
     if method == "voronoi":
         fracture = voronoi(mesh, impact, material, force, seed, direction)
+    elif method == "tetra":
+        fracture = tetrahedra(structures.build(structure, mesh), impact, material, force, seed)
     else:
-        held = structures.build(structure, mesh)
-        if method == "tetra":
-            fracture = tetrahedra(held, impact, material, force, seed)
-        else:
-            fracture = shatter(held, impact, material, seed)
-        if direction is not None:
-            fracture = replace(fracture, direction=given.direction)
+        fracture = shatter(structures.build(structure, mesh), impact, material, seed)
+    if direction is not None:
+        fracture = replace(fracture, direction=given.direction)
     blow = Blow(fracture.impact, fracture.direction, force)
     return Broken(mesh, fracture, blow, motion(fracture, blow), up)
 
