@@ -69,10 +69,7 @@ def _judge_growth(of_run: Curves, claim: Claim) -> JudgedClaim:
 
 
 def _verdict(of_run: Curves, table: str, axis: Axis, curve: Curve, expected: str) -> Verdict:
-    """Judge one claim along one axis.
-
-    Where nothing is claimed the class found is what matters, and O(1) is asked about.
-    """
+    """Judge a claim along one axis; O(1) where none is made, as the class found is what matters."""
     # What reads nothing at all costs something all the same: the call.
     samples = [np.maximum(it, 1) if axis.exact else it for it in curve.samples]
     latency = None if axis.exact else of_run.latencies(curve)

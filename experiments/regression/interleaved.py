@@ -42,10 +42,7 @@ Case = tuple[str, str]  # a structure and a query
 
 
 class PairTimed(NamedTuple):
-    """What two processes, one of each tree, say of a query; their median seconds per handle.
-
-    ``error``: why they could not say anything.
-    """
+    """What two processes say of a query, in median seconds per handle; ``error``: why nothing."""
 
     compared: Comparison = Comparison(Change.UNDETERMINED, np.nan, 0, np.inf)
     before: float = np.nan

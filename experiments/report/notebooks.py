@@ -38,10 +38,7 @@ def page_titles() -> dict[str, str]:
 
 
 def body(name: str) -> str:
-    """Execute a notebook -> the body of its page, without its code.
-
-    Raises ResultsError naming the notebook if a cell fails.
-    """
+    """Execute a notebook -> its page's body, without code. ResultsError names it if one fails."""
     notebook = nbformat.read(carried("notebooks") / f"{name}.ipynb", as_version=4)
     execute(notebook, name)
     exporter = HTMLExporter(

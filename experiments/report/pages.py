@@ -149,10 +149,7 @@ def or_missing(part: Callable[[], str], otherwise: str) -> str:
 
 
 def numbers(rows: Iterable[Sequence[Any]], heads: Heads) -> Html:
-    """A table of numbers; ``heads``: what stands above a column, and how its values are written.
-
-    Raises MissingError where there is no row.
-    """
+    """A table of numbers below their heads. Raises MissingError where there is no row."""
     written = [[how(it) for it, how in zip(row, heads.values(), strict=True)] for row in rows]
     if not written:
         raise session.MissingError("This run has not measured what would stand here.")
