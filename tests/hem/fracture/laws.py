@@ -75,7 +75,8 @@ def unpaired(meshes: list[hem.TriangleMesh]) -> tuple[int, int]:
     there = np.roll(here, -1, axis=1)
     forth, count = np.unique(here.astype(np.int64) << 32 | there, return_counts=True)
     back = np.unique(there.astype(np.int64) << 32 | here)
-    return int((~np.isin(forth, back)).sum()), int((count > 1).sum())
+    alone = ~np.isin(forth, back, assume_unique=True)
+    return int(alone.sum()), int((count > 1).sum())
 
 
 @cache
