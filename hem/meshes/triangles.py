@@ -151,7 +151,7 @@ def validated_points(points: ArrayLike, dtype: DTypeLike) -> Points:
         rows = np.flatnonzero(~np.isfinite(kept).all(axis=1))
         why = "not finite" if not np.isfinite(given[rows]).all() else f"too large for {kept.dtype}"
         raise MeshError(f"coordinates are {why}; remove or mend these points", rows=rows)
-    if not np.array_equal(given, kept):
+    if kept.dtype != given.dtype and not np.array_equal(given, kept):
         _tell_of_equal(given, kept)
     return kept
 
