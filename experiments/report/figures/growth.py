@@ -104,7 +104,8 @@ def scaling(run: Run, axis: Axis, subjects: Iterable[str] = QUERIES) -> Plot:
     """
     titles = {name: style.TITLES[name] for name in subjects}
     in_both_orders = axis is Axis.TIME_FACES and titles.keys() <= QUERIES.keys()
-    costs = _costs(run, Axis.RANDOM_FACES if in_both_orders else axis, titles)
+    axis = Axis.RANDOM_FACES if in_both_orders else axis
+    costs = _costs(run, axis, titles)
     also = partial(_draw_order_and_latency, run) if in_both_orders else None
     what, label = f"{axis.label} by {axis.variable}", style.axis_label(axis)
     return _draw(costs, titles, axis.variable, what, label, also=also, sharex=True, sharey=True)
