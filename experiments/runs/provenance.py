@@ -44,7 +44,7 @@ def git(*arguments: str) -> str:
     try:
         done = subprocess.run(
             ["git", *arguments], cwd=Path(__file__).parent, capture_output=True, text=True,
-            check=True, timeout=10,
+            check=True, timeout=60,
         )  # fmt: skip
     except (OSError, subprocess.SubprocessError):
         return ""

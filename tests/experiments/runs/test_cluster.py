@@ -12,7 +12,7 @@ import pytest
 from experiments.runs import cluster, load, read_meta, study
 from experiments.runs.worker import Job
 from tests.experiments.cli.test_cli import hem
-from tests.experiments.small_study import Recorder, begin, samples
+from tests.experiments.small_study import PATIENCE_SECONDS, Recorder, begin, samples
 
 
 @pytest.fixture(scope="module")
@@ -23,11 +23,17 @@ def two_machines():
         n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None,
         resources={"machine": 1},
     )  # fmt: skip
-    with local, distributed.Client(local, set_as_default=False) as client:
+    with local, distributed.Client(local, timeout=PATIENCE_SECONDS, set_as_default=False) as client:
         for name, worker in enumerate(client.ncores()):
             set_name = {cluster.VARIABLE: str(name)}
             client.run(lambda it: os.environ.update(it), set_name, workers=[worker])
         yield local.scheduler_address, list(client.run(os.getpid).values())
+
+
+@pytest.fixture(autouse=True)
+def _patient(monkeypatch):
+    """A scheduler on a busy machine is a while in answering."""
+    monkeypatch.setattr(cluster, "CONNECT_SECONDS", PATIENCE_SECONDS)
 
 
 def test_an_interrupted_study_is_resumed_with_what_its_machines_have_measured(
@@ -39,6 +45,7 @@ def test_an_interrupted_study_is_resumed_with_what_its_machines_have_measured(
         "import sys; from pathlib import Path; from experiments.runs import cluster, study\n"
         "class Prints(study.Observer):\n"
         "    def measured(self, job, done): print(job, flush=True)\n"
+        f"cluster.CONNECT_SECONDS = {PATIENCE_SECONDS}\n"
         "cluster.run(Path(sys.argv[1]), sys.argv[2], Prints())"
     )
     with subprocess.Popen(
