@@ -10,10 +10,14 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from hem.arrays import Handles
+from hem.ragged import Ragged
 
 CREATED, CHANGED, REMOVED = range(3)
-VERTEX, FACE = 0, 3
-"""An entry of the log is ``index << 3 | element + what happened``; the first says how many."""
+VERTEX, FACE, PARENT = 0, 3, 6
+"""An entry of the log is ``index << 3 | element + what happened``; the first says how many.
+
+Entries of ``PARENT`` follow that of a created element: what it was made of.
+"""
 
 
 class Remapping(NamedTuple):
@@ -38,6 +42,8 @@ class Edit:
     changed when its corners are others than before, a vertex when its position is.
 
     ``compact`` touches nothing but renumbers everything; ``remapping`` says how, else it is None.
+
+    What was created has parents, so that anyone can carry on what belongs to the elements.
 
     The lists are made when they are asked for; an edit may be kept as long as one likes.
     """
@@ -91,6 +97,35 @@ class Edit:
     def removed_faces(self) -> Handles:
         """(k,) int32, ascending."""
         return self._found[FACE + REMOVED]
+
+    @cached_property
+    def vertex_parents(self) -> Ragged:
+        """A row for each of ``created_vertices``: what it was put between.
+
+        The ends of a split edge, first the one whose part keeps the handle; the corners of a split
+        face; the vertex that was split; nothing for a vertex that was added.
+        """
+        return self._parents(VERTEX, self.created_vertices)
+
+    @cached_property
+    def face_parents(self) -> Handles:
+        """(k,) int32: the face that each of ``created_faces`` was a part of, or -1."""
+        parents = self._parents(FACE, self.created_faces)
+        found = np.full(len(parents), -1, np.int32)
+        found[parents.counts > 0] = parents.values
+        return found
+
+    def _parents(self, kind: int, created: Handles) -> Ragged:
+        """Of each created element the entries that follow its own in the log."""
+        log = np.asarray(self.touched, np.int64)
+        is_parent = log & 7 == PARENT
+        entry = np.arange(len(log)) * ~is_parent
+        child = log[np.maximum.accumulate(entry)[is_parent]] if len(log) else log
+        mine = (child & 7 == kind + CREATED) & np.isin(child >> 3, created)
+        child, parent = child[mine] >> 3, log[is_parent][mine] >> 3
+        order = np.argsort(child, kind="stable")
+        offsets = np.searchsorted(child[order], np.append(created, np.iinfo(np.int64).max))
+        return Ragged(offsets.astype(np.int64), parent[order].astype(np.int32))
 
     @cached_property
     def _found(self) -> dict[int, Handles]:

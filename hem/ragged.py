@@ -29,7 +29,10 @@ class Ragged:
     @staticmethod
     def from_lists(rows: Iterable[ArrayLike], dtype: Any = np.int64) -> Ragged:
         """The rows in one array. Cost O(values)."""
-        return _gathered([np.asarray(row, dtype) for row in rows], dtype)
+        arrays = [np.asarray(row, dtype) for row in rows]
+        offsets = np.concatenate([[0], np.cumsum([len(row) for row in arrays])])
+        values = np.concatenate(arrays) if arrays else np.zeros(0, dtype)
+        return Ragged(offsets.astype(np.int64), values)
 
     def to_list(self) -> list[list[int]]:
         """The rows as lists. Cost O(values)."""
@@ -38,15 +41,19 @@ class Ragged:
     @overload
     def __getitem__(self, i: int) -> NDArray[Any]: ...
     @overload
-    def __getitem__(self, i: slice) -> Ragged: ...
-    def __getitem__(self, i: int | slice) -> NDArray[Any] | Ragged:
-        """The i-th row, a view, in O(1), or a slice of rows as a ``Ragged`` of their own.
+    def __getitem__(self, i: slice | NDArray[Any]) -> Ragged: ...
+    def __getitem__(self, i: int | slice | NDArray[Any]) -> NDArray[Any] | Ragged:
+        """The i-th row, a view, in O(1); of a slice or an array of places a ``Ragged`` of theirs.
 
         Raises IndexError outside ``-len … len - 1``.
         """
-        if isinstance(i, slice):
-            return _gathered([self[k] for k in range(*i.indices(len(self)))], self.values.dtype)
         n = len(self)
+        if isinstance(i, slice | np.ndarray):
+            rows = np.arange(n)[i]
+            counts = self.counts[rows]
+            offsets = np.concatenate([[0], np.cumsum(counts)])
+            places = np.repeat(self.offsets[rows] - offsets[:-1], counts) + np.arange(offsets[-1])
+            return Ragged(offsets, self.values[places])
         if not -n <= i < n:
             raise IndexError(f"row {i} of a Ragged of {n} rows")
         i %= n
@@ -63,8 +70,3 @@ class Ragged:
     def counts(self) -> NDArray[np.int64]:
         """(n,) int64: the length of every row."""
         return np.diff(self.offsets)
-
-
-def _gathered(rows: Sequence[NDArray[Any]], dtype: Any) -> Ragged:
-    offsets = np.concatenate([[0], np.cumsum([len(row) for row in rows])]).astype(np.int64)
-    return Ragged(offsets, np.concatenate(rows) if rows else np.zeros(0, dtype))

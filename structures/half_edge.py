@@ -330,7 +330,7 @@ def split_edge_records(m: HalfEdgeRecords, e: int, at: Array, v: int, f: int) ->
 
 
 @kernel
-def split_face_records(m: HalfEdgeRecords, face: int, v: int, f: int) -> None:
+def split_face_records(m: HalfEdgeRecords, face: int, v: int, f: int, corners: Array) -> None:
     """Cost O(1): each face keeps one half-edge of the old one and gets two."""
     ab = m.face_half_edge[face]
     other = ab
@@ -341,6 +341,7 @@ def split_face_records(m: HalfEdgeRecords, face: int, v: int, f: int) -> None:
     bc = m.half_edge[ab, NEXT]
     ca = m.half_edge[bc, NEXT]
     a, b, c = m.half_edge[ab, ORIGIN], m.half_edge[bc, ORIGIN], m.half_edge[ca, ORIGIN]
+    corners[0], corners[1], corners[2] = a, b, c
     av, va = new_half_edge(m, a), new_half_edge(m, v)
     bv, vb = new_half_edge(m, b), new_half_edge(m, v)
     cv, vc = new_half_edge(m, c), new_half_edge(m, v)

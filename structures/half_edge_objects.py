@@ -305,12 +305,14 @@ def split_edge_records(m: ObjectRecords, e: int, at: Any, v: int, f: int) -> Non
         m.half_edges.pair(on_left, on_right)
 
 
-def split_face_records(m: ObjectRecords, face: int, v: int, f: int) -> None:
+def split_face_records(m: ObjectRecords, face: int, v: int, f: int, corners: Any) -> None:
     """Cost O(1): each face keeps one half-edge of the old one and gets two."""
     it, middle = m.faces.items[face], m.vertices.items[v]
     h = it.half_edge
-    ab = min((h, h.next, h.previous), key=lambda side: side.origin.index)
+    corner = {side: side.origin.index for side in (h, h.next, h.previous)}
+    ab = min(corner, key=corner.__getitem__)
     bc, ca = ab.next, ab.previous
+    corners[0], corners[1], corners[2] = corner[ab], corner[bc], corner[ca]
     av, va = new_half_edge(m, ab.origin), new_half_edge(m, middle)
     bv, vb = new_half_edge(m, bc.origin), new_half_edge(m, middle)
     cv, vc = new_half_edge(m, ca.origin), new_half_edge(m, middle)
@@ -524,26 +526,16 @@ class HalfEdgeMesh(Navigable):
         count[VALENCE] = m.counts[VALENCE]
         return m._replace(counts=count), number
 
-    def copy(self) -> Self:
-        """The same mesh in objects of its own, with the same indices and no subscribers."""
-        return self._of(to_arrays(self.records, self.points))
-
-    def __reduce__(self) -> tuple[Any, ...]:
-        """As arrays: a pickle of objects would follow their references without end."""
-        return self._of, (to_arrays(self.records, self.points),)
-
-    @classmethod
-    def _of(cls, records: HalfEdgeRecords) -> Self:
-        return cls(from_arrays(records))
-
-    def snapshot(self) -> HalfEdgeRecords:
-        """The same half-edges by index, see ``Structure.snapshot``. Cost O(n_v + n_t)."""
-        self._widen()
+    def _portable(self) -> HalfEdgeRecords:
+        # A pickle of objects would follow their references without end.
         return to_arrays(self.records, self.points)
 
-    def restore(self, snapshot: HalfEdgeRecords) -> None:
-        """See ``Structure.restore``; the objects are new ones."""
-        fresh = from_arrays(snapshot)
+    @classmethod
+    def _records_of(cls, portable: HalfEdgeRecords) -> ObjectRecords:
+        return from_arrays(portable)
+
+    def _put_back(self, portable: HalfEdgeRecords) -> None:
+        fresh = from_arrays(portable)
         self.vertices.items[:] = fresh.vertices.items
         self.half_edges.items[:] = fresh.half_edges.items
         self.faces.items[:] = fresh.faces.items

@@ -219,13 +219,14 @@ def split_edge_records(m: IndexedRecords, e: int, at: Array, v: int, f: int) -> 
 
 
 @kernel
-def split_face_records(m: IndexedRecords, face: int, v: int, f: int) -> None:
+def split_face_records(m: IndexedRecords, face: int, v: int, f: int, corners: Array) -> None:
     """Cost O(1)."""
     i = 0
     for j in range(1, 3):
         if m.triangle[face, j] < m.triangle[face, i]:
             i = j
     a, b, c = m.triangle[face, i], m.triangle[face, (i + 1) % 3], m.triangle[face, (i + 2) % 3]
+    corners[0], corners[1], corners[2] = a, b, c
     set_triangle(m, face, a, b, v)
     set_triangle(m, f, b, c, v)
     set_triangle(m, f + 1, c, a, v)

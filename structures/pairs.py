@@ -417,7 +417,7 @@ def split_edge_records(m: PlanktonRecords, e: int, at: Array, v: int, f: int) ->
 
 
 @kernel
-def split_face_records(m: PlanktonRecords, face: int, v: int, f: int) -> None:
+def split_face_records(m: PlanktonRecords, face: int, v: int, f: int, corners: Array) -> None:
     """Cost O(1) for a triangle, O(n) for n corners: an edge from every corner to v."""
     smallest, count = m.face_half_edge[face], 1
     h = m.half_edge[smallest, NEXT]
@@ -428,8 +428,9 @@ def split_face_records(m: PlanktonRecords, face: int, v: int, f: int) -> None:
         count += 1
     spoke = m.counts[EDGE_END]
     h = smallest
-    for _ in range(count):
-        new_pair(m, m.half_edge[h, START], v)
+    for i in range(count):
+        corners[i] = m.half_edge[h, START]
+        new_pair(m, corners[i], v)
         h = m.half_edge[h, NEXT]
     for i in range(count):
         inward = spoke + 2 * ((i + 1) % count)

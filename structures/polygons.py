@@ -42,11 +42,12 @@ from hem.authoring import (
     kill_vertex,
     log_element,
     log_faces,
+    log_parts,
     set_point,
     vertex_exists,
     vertex_maker,
 )
-from hem.edit import CHANGED, CREATED, FACE, REMOVED, VERTEX
+from hem.edit import CHANGED, CREATED, FACE, PARENT, REMOVED, VERTEX
 from structures.pairs import FACE as FACE_OF
 from structures.pairs import (
     NEXT,
@@ -91,12 +92,14 @@ def insert_vertex(
     if not has_room(m, 1, 1, log):
         return NEEDS_ROOM
     v = new_vertex(m, point)
-    insert(m, h, v)
+    onward = insert(m, h, v)
     count_new(m, 1, 0)
     left, right = m.half_edge[h, FACE_OF], m.half_edge[h ^ 1, FACE_OF]
     more_corners(m, left)
     more_corners(m, right)
     log_element(log, VERTEX + CREATED, v)
+    log_element(log, PARENT, m.half_edge[h, START])
+    log_element(log, PARENT, m.half_edge[onward ^ 1, START])
     log_faces(log, CHANGED, left, right)
     return v
 
@@ -158,7 +161,7 @@ def cut_across(
     count_new(m, 1, 1)
     m.counts[VALENCE] += 1
     log_faces(log, CHANGED, face, -1)
-    log_faces(log, CREATED, f, -1)
+    log_parts(log, f, 1, face)
     return int(kept)
 
 
@@ -243,6 +246,7 @@ def split_vertex(
     before_first = m.half_edge[first ^ 1, NEXT]
     w = new_vertex(m, point)
     log_element(log, VERTEX + CREATED, w)
+    log_element(log, PARENT, v)
     last = first
     while True:
         m.half_edge[last, START] = w

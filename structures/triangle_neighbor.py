@@ -292,7 +292,9 @@ def split_edge_records(m: TriangleNeighborRecords, e: int, at: Array, v: int, f:
 
 
 @kernel
-def split_face_records(m: TriangleNeighborRecords, face: int, v: int, f: int) -> None:
+def split_face_records(
+    m: TriangleNeighborRecords, face: int, v: int, f: int, corners: Array
+) -> None:
     """Cost O(1)."""
     i = 0
     for j in range(1, 3):
@@ -303,6 +305,7 @@ def split_face_records(m: TriangleNeighborRecords, face: int, v: int, f: int) ->
     c = m.triangle[face, CORNER + k]
     ab, bc = m.triangle[face, NEIGHBOR + i], m.triangle[face, NEIGHBOR + j]
     ca = m.triangle[face, NEIGHBOR + k]
+    corners[0], corners[1], corners[2] = a, b, c
     set_triangle(m, face, a, b, v)
     set_triangle(m, f, b, c, v)
     set_triangle(m, f + 1, c, a, v)

@@ -341,7 +341,7 @@ def split_edge_records(m: WingedEdgeRecords, e: int, at: Array, v: int, f: int) 
 
 
 @kernel
-def split_face_records(m: WingedEdgeRecords, face: int, v: int, f: int) -> None:
+def split_face_records(m: WingedEdgeRecords, face: int, v: int, f: int, corners: Array) -> None:
     """Cost O(1)."""
     e = m.face_edge[face]
     ab = 2 * e + side_of(m, e, face)
@@ -353,6 +353,7 @@ def split_face_records(m: WingedEdgeRecords, face: int, v: int, f: int) -> None:
     bc = following(m, ab)
     ca = following(m, bc)
     a, b, c = tip(m, ca), tip(m, ab), tip(m, bc)
+    corners[0], corners[1], corners[2] = a, b, c
     av, bv, cv = new_edge(m, a, v), new_edge(m, b, v), new_edge(m, c, v)
     set_face(m, face, ab, bv, av ^ 1)
     set_face(m, f, bc, cv, bv ^ 1)

@@ -59,6 +59,7 @@ from hem.authoring.operations import (
     is_point,
     log_element,
     log_faces,
+    log_parts,
     vertex_maker,
 )
 from hem.authoring.pairing import Pairing, pair_half_edges, pair_polygons
@@ -149,6 +150,7 @@ __all__ = [
     "live",
     "log_element",
     "log_faces",
+    "log_parts",
     "packed",
     "pair_half_edges",
     "pair_polygons",

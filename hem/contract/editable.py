@@ -126,19 +126,35 @@ class Editable(Algorithms, abstract=True):
         """
         handles = arguments.handles("remove_faces", faces)
         self._require_different("remove_faces", "face", handles, handles)
-        if not len(handles):
-            return
-        left = remaining(self, handles)
+        if len(handles):
+            self._remove("remove_faces", handles)
+
+    def remove_vertex(self, vertex: int) -> Edit:
+        """Take a vertex away, and all faces at it; its neighbors stay.
+
+        1 vertex fewer. Refused where two fans of what is left would meet in one vertex. Cost: that
+        of ``vertex_faces`` at the vertex and its neighbors.
+        """
+        handle = arguments.handles("remove_vertex", [vertex])
+        self._require_different("remove_vertex", "vertex", handles, handles)
+        faces = self.vertex_faces(handle).values.astype(np.int64)
+        return self._remove("remove_vertex", faces, int(vertex))
+
+    def _remove(self, called: str, faces: Array, vertex: int = -1) -> Edit:
+        """Take faces (k,) away and a vertex that has no others, or -1."""
+        left = remaining(self, faces)
         pinched = left.pinched()
         if len(pinched):
-            raise TopologyError(f"cannot remove_faces: {Refusal.BETWEEN.words}", vertices=pinched)
+            raise TopologyError(f"cannot {called}: {Refusal.BETWEEN.words}", vertices=pinched)
         vertices, first = np.unique(left.vertex, return_index=True)
         anchors = np.stack([vertices, left.face[first]], axis=1)
-        vanishing = np.array([vanishing_edges(self, handles, left)])
-        log = np.zeros(len(handles) + ENTRIES, np.int64)
+        counted = np.array([vanishing_edges(self, faces, left), vertex])
+        log = np.zeros(len(faces) + ENTRIES, np.int64)
         self._count_edges()
-        self.run(removing, Removal(handles, anchors, vanishing, log))
-        self.tell("remove_faces", log[1 : log[0] + 1])
+        self.run(removing, Removal(faces, anchors, counted, log))
+        edit = Edit(called, -1, log[1 : log[0] + 1])
+        self._publish(edit)
+        return edit
 
     def move_vertices(self, vertices: ArrayLike, points: ArrayLike) -> None:
         """Give different vertices (k,) the positions (k, 3). One edit. Cost O(k)."""
@@ -150,7 +166,7 @@ class Editable(Algorithms, abstract=True):
 
         ``keep``: (k,) the ends that stay, each ``edge_vertices(edge)[1]`` unless it is said. Edges
         at a merged vertex live on where edges are recorded; named by their ends they are gone.
-        Subscribers hear of one edit.
+        Subscribers hear of one edit, or of one each where corners have attributes.
         """
         handles = arguments.handles("collapse_edges", edges)
         ends = np.full(len(handles), -1)
@@ -162,11 +178,22 @@ class Editable(Algorithms, abstract=True):
                 f"collapse_edges takes one vertex to keep per edge, not {len(ends)} "
                 f"for {len(handles)}"
             )
+        if any(it.element == "corner" for it in self.attributes()):
+            # A batch does not tell what came where in between, and a seam must not be torn.
+            return np.array([self._collapsed(e, v) for e, v in zip(handles, ends, strict=True)])
         results, log = self._run(
             "collapse_edge", arguments.rows(handles, ends), arguments.NO_POINT, PERSIST
         )
         self._publish(Edit("collapse_edges", -1, log))
         return results >= 0
+
+    def _collapsed(self, edge: int, keep: int) -> bool:
+        """Whether an edge could be collapsed, which is done then."""
+        try:
+            self._do["collapse_edge"](edge, None, keep)
+        except TopologyError:
+            return False
+        return True
 
     def compact(self) -> Remapping:
         """Drop what is dead and the room for more; handles change -> the old ones to the new ones.

@@ -41,6 +41,13 @@ class Prepared(NamedTuple):
             raise RuntimeError("there is no more room; prepare fewer operations at a time")
 
 
+class Snapshot(NamedTuple):
+    """A mesh as it was."""
+
+    records: Any
+    attributes: dict[tuple[str, str], tuple[Array, ...]]
+
+
 class Measuring(Editable, abstract=True):
     """For measuring; nobody else needs it."""
 
@@ -86,7 +93,7 @@ class Measuring(Editable, abstract=True):
             arguments.NO_POINT if points is None else arguments.positions("prepare", points, n)
         )
         valence = int(self.records.counts[VALENCE])
-        entries = n * (2 * valence + ENTRIES) + 2 * (valence + 2 * n + ENTRIES)
+        entries = n * (3 * valence + ENTRIES) + 2 * (valence + 2 * n + ENTRIES)
         results, log = np.zeros(n, np.int64), np.empty(entries, np.int64)
         task = np.array([PERSIST, 0, n])
         scratch = task, rows, positions, results, self._at, self._out["edge"], log
@@ -111,18 +118,38 @@ class Measuring(Editable, abstract=True):
         self._publish(Edit(operation, result, self._log[1 : self._log[0] + 1].tolist()))
         return accesses
 
-    def snapshot(self) -> Any:
+    def snapshot(self) -> Snapshot:
         """What ``restore`` needs to make the mesh what it is now. Cost O(n_v + n_t)."""
         self._count_edges()  # what is not known yet would be unknown again, and then kept up
         self._widen()
-        return copied(self.records)
+        states = {key: it.state() for key, it in self._attributes.items()}
+        return Snapshot(self._portable(), states)
 
-    def restore(self, snapshot: Any) -> None:
+    def restore(self, snapshot: Snapshot) -> None:
         """Make the mesh what it was, in the same place; there must be as much room. For measuring.
 
-        Subscribers are not told. Cost O(n_v + n_t).
+        Attributes that were made since become what they were made. Subscribers are not told. Cost
+        O(n_v + n_t).
         """
-        for array, fresh in zip(self.records, snapshot, strict=True):
+        self._put_back(snapshot.records)
+        for key, attribute in self._attributes.items():
+            if key in snapshot.attributes:
+                attribute.restore(snapshot.attributes[key])
+            else:
+                attribute.clear()
+
+    def _portable(self) -> Any:
+        """The records in arrays of their own."""
+        return copied(self.records)
+
+    @classmethod
+    def _records_of(cls, portable: Any) -> Any:
+        """The way back."""
+        return portable
+
+    def _put_back(self, portable: Any) -> None:
+        """Have the records say what they said."""
+        for array, fresh in zip(self.records, portable, strict=True):
             np.copyto(array, fresh)
 
     @property

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from hem.arrays import Array
 from hem.authoring import Kernel
+from hem.contract.attributes import AttributeMethod, EdgeAttribute, attribute_method
 from hem.contract.description import place_of
 from hem.contract.elements import HANDLE_TYPES
 from hem.contract.queryable import MOST, NUMPY_INTEGERS
@@ -108,6 +109,10 @@ class Navigable(Structure, abstract=True):
     edge: StepMethod = _step_method("edge")
     vertex_half_edge: StepMethod = _step_method("vertex_half_edge")
     face_half_edge: StepMethod = _step_method("face_half_edge")
+
+    half_edge_attribute: AttributeMethod = attribute_method(
+        "half_edge", EdgeAttribute, "The parts of one that is split copy what it has."
+    )
 
     def half_edges(self) -> NDArray[np.int64]:
         """(n_half_edges,) int64: the handles of all live half-edges, ascending. Cost O(n_e)."""

@@ -22,7 +22,7 @@ from hem.authoring import (
     Refusal,
 )
 from hem.contract import arguments
-from hem.contract.following import Following
+from hem.contract.attributes import Attributed
 from hem.edit import Edit
 from hem.engine import CHECK, DO, MODE, Uses
 from hem.errors import MeshError, TopologyError
@@ -42,7 +42,7 @@ class Bound(NamedTuple):
     result: memoryview
 
 
-class Operating(Following, abstract=True):
+class Operating(Attributed, abstract=True):
     """Operations bound to a structure."""
 
     operations: ClassVar[Mapping[str, Operation]] = OPERATIONS

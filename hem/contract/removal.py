@@ -12,9 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hem.arrays import Array
-from hem.authoring import EDGES, FACES, Kernel, Kernels, kernel, log_element
+from hem.authoring import EDGES, FACES, VERTICES, Kernel, Kernels, kernel, log_element
 from hem.contract.queryable import Queryable
-from hem.edit import FACE, REMOVED
+from hem.edit import FACE, REMOVED, VERTEX
 
 
 class Remaining(NamedTuple):
@@ -85,7 +85,7 @@ class Removal(NamedTuple):
 
     faces: Array  # (k,) int64, each once
     anchors: Array  # (n, 2) int64: a vertex that keeps faces, and one of them
-    vanishing: Array  # (1,) int64: the edges that are left without a face
+    counted: Array  # (2,) int64: how many edges are left without a face; a vertex to go, or -1
     log: Array
 
 
@@ -95,6 +95,7 @@ def removing(k: Kernels, operations: Kernels) -> Kernel:
     In between there may be several fans in a vertex, which knows only one of them, or none.
     """
     remove_records, set_vertex_face = k["remove_records"], k["set_vertex_face"]
+    kill_vertex = k["kill_vertex"]
 
     @kernel
     def remove(m: Any, plan: Removal) -> int:
@@ -104,7 +105,11 @@ def removing(k: Kernels, operations: Kernels) -> Kernel:
         for i in range(len(plan.anchors)):
             set_vertex_face(m, plan.anchors[i, 0], plan.anchors[i, 1])
         m.counts[FACES] -= len(plan.faces)
-        m.counts[EDGES] -= plan.vanishing[0]
+        m.counts[EDGES] -= plan.counted[0]
+        if plan.counted[1] >= 0:
+            kill_vertex(m, plan.counted[1])
+            m.counts[VERTICES] -= 1
+            log_element(plan.log, VERTEX + REMOVED, plan.counted[1])
         return 0
 
     return remove

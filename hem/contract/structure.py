@@ -12,7 +12,6 @@ from hem.authoring import (
     OPERATIONS,
     QUERIES,
     Kernel,
-    copied,
     kernels_of,
     require_records,
 )
@@ -110,17 +109,19 @@ class Structure(Measuring, ABC, abstract=True):
         )
 
     def copy(self) -> Self:
-        """The same mesh in arrays of its own, with the same handles and no subscribers."""
-        return self._of(copied(self.records))
+        """The same mesh in arrays of its own: same handles, same attributes, no subscribers."""
+        return self._of(self._portable(), self._attribute_states())
 
     def __reduce__(self) -> tuple[Any, ...]:
         """How ``copy.copy``, ``copy.deepcopy`` and ``pickle`` make a copy: as ``copy`` does."""
-        return self._of, (copied(self.records),)
+        return self._of, (self._portable(), self._attribute_states())
 
     @classmethod
-    def _of(cls, records: Any) -> Self:
-        """The structure of records that are its own from here on."""
-        return cls(records)
+    def _of(cls, records: Any, attributes: Any) -> Self:
+        """The structure of what is its own from here on."""
+        made = cls(cls._records_of(records))
+        made._adopt(attributes)
+        return made
 
     def memory(self, room: bool = False) -> dict[str, int]:
         """Bytes per field of live elements, such as ``{"vertex.point": 12 * n_vertices, …}``.

@@ -15,7 +15,7 @@ from numba import njit
 
 from hem.arrays import Array
 from hem.authoring import NEEDS_ROOM, VALENCE, WIDTH, Kernel
-from hem.edit import FACE
+from hem.edit import FACE, PARENT
 
 MODE, BEGIN, END = range(3)
 """The parts of a task."""
@@ -112,6 +112,8 @@ def copy_touched(touched: Array, points: Array, indices: Array, out: Array, *arr
     m = _RECORDS(*arrays)
     for entry in touched:
         index = entry >> 3
+        if entry & 7 == PARENT:
+            continue
         if entry & 7 < FACE:
             for i in range(3):
                 value = _COORDINATE(m, index, i)

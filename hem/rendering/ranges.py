@@ -9,7 +9,7 @@ from numba import njit
 from numpy.typing import ArrayLike, NDArray
 
 from hem.arrays import Array
-from hem.edit import FACE
+from hem.edit import FACE, PARENT
 
 Ranges = NDArray[np.int64]
 
@@ -30,6 +30,8 @@ def dirty_ranges(touched: Sequence[ArrayLike], nearby: int) -> tuple[Ranges, Ran
 def _runs(log: Array, nearby: int, ranges: Array) -> Array:
     count = np.zeros(2, np.int64)
     for entry in log:
+        if entry & 7 == PARENT:
+            continue
         kind, index = (1 if entry & 7 >= FACE else 0), entry >> 3
         last = count[kind] - 1
         if last >= 0 and index <= ranges[kind, last, 1] + nearby:

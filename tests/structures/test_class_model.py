@@ -66,7 +66,7 @@ def test_any_operations_leave_the_same_records_as_on_arrays():
             break
         assert perform(mine, aimed) == perform(arrays, aimed)
         mine.validate()
-        for a, b in zip(mine.snapshot()[1:-1], arrays.records[1:-1], strict=True):
+        for a, b in zip(mine.snapshot().records[1:-1], arrays.records[1:-1], strict=True):
             used = b[: len(a)]
             live = a >= 0 if a.ndim == 1 else a[:, 1] >= 0
             assert np.array_equal(a[live], used[live])

@@ -37,6 +37,7 @@ from hem.authoring.operations.parts import (
     is_point,
     log_element,
     log_faces,
+    log_parts,
     vertex_maker,
 )
 from hem.authoring.operations.rules import LEFT, RIGHT, A, B, C, D
@@ -65,5 +66,6 @@ __all__ = [
     "is_point",
     "log_element",
     "log_faces",
+    "log_parts",
     "vertex_maker",
 ]

@@ -25,7 +25,7 @@ from hem.authoring.kernels import (
     Kernels,
     kernel,
 )
-from hem.edit import FACE
+from hem.edit import CREATED, FACE, PARENT
 
 
 class Operation(NamedTuple):
@@ -48,8 +48,8 @@ class Operation(NamedTuple):
     """Whether it creates one face more for every side that a face has beyond three."""
 
 
-ENTRIES = 8
-"""Room in the log per operation; only a collapse may take more, two per face and these."""
+ENTRIES = 12
+"""Room in the log per operation at triangles; a collapse takes two per face beside."""
 
 WIDTH = 20
 """Room in ``out`` per neighbor: the neighbors of both ends of an edge, and a table to tell them.
@@ -73,6 +73,14 @@ def log_faces(log: Array, what: int, first: int, second: int) -> None:
         log_element(log, FACE + what, first)
     if second >= 0:
         log_element(log, FACE + what, second)
+
+
+@kernel
+def log_parts(log: Array, first: int, count: int, face: int) -> None:
+    """Log so many new faces, which were parts of one that there was."""
+    for i in range(count):
+        log_element(log, FACE + CREATED, first + i)
+        log_element(log, PARENT, face)
 
 
 @kernel

@@ -25,11 +25,12 @@ from hem.authoring.operations.parts import (
     is_point,
     log_element,
     log_faces,
+    log_parts,
     vertex_maker,
 )
-from hem.authoring.operations.rules import LEFT, RIGHT, triangle_edge
+from hem.authoring.operations.rules import LEFT, RIGHT, A, B, triangle_edge
 from hem.authoring.refusals import ALLOWED, NEEDS_ROOM, Refusal
-from hem.edit import CHANGED, CREATED, VERTEX
+from hem.edit import CHANGED, CREATED, PARENT, VERTEX
 
 
 def make(k: Kernels) -> Kernel:
@@ -54,8 +55,12 @@ def make(k: Kernels) -> Kernel:
         count_new(m, 1 + faces, faces)
         m.counts[VALENCE] += 1
         log_element(log, VERTEX + CREATED, v)
+        log_element(log, PARENT, at[A])
+        log_element(log, PARENT, at[B])
         log_faces(log, CHANGED, at[LEFT], at[RIGHT])
-        log_faces(log, CREATED, f, f + 1 if faces == 2 else -1)
+        log_parts(log, f, 1, at[LEFT] if at[LEFT] >= 0 else at[RIGHT])
+        if faces == 2:
+            log_parts(log, f + 1, 1, at[RIGHT])
         return v
 
     return split_edge

@@ -7,7 +7,8 @@
        ╱       ╲          ╱   v   ╲    are new, in this order.
       a─────────b        a ──╱─╲── b
 
-A structure gives ``split_face_records(m, face, v, f)``: the first new face is ``f``.
+A structure gives ``split_face_records(m, face, v, f, corners)``: the first new face is ``f``, and
+``corners`` is filled with those of the face.
 """
 
 from __future__ import annotations
@@ -24,10 +25,11 @@ from hem.authoring.operations.parts import (
     is_point,
     log_element,
     log_faces,
+    log_parts,
     vertex_maker,
 )
 from hem.authoring.refusals import ALLOWED, NEEDS_ROOM, Refusal
-from hem.edit import CHANGED, CREATED, FACE, VERTEX
+from hem.edit import CHANGED, CREATED, PARENT, VERTEX
 
 
 def make(k: Kernels) -> Kernel:
@@ -47,16 +49,19 @@ def make(k: Kernels) -> Kernel:
         if dry:
             return ALLOWED
         sides = sides_of(m, face)
-        if not has_room(m, 1, sides - 1, log) or log[0] + sides + ENTRIES >= len(log):
+        if log[0] + 3 * sides + ENTRIES >= len(log) or sides > len(out):
+            return NEEDS_ROOM
+        if not has_room(m, 1, sides - 1, log):
             return NEEDS_ROOM
         f, v = m.counts[FACE_END], new_vertex(m, point)
-        split_face_records(m, face, v, f)
+        split_face_records(m, face, v, f, out)
         count_new(m, sides, sides - 1)
         m.counts[VALENCE] += 1
         log_element(log, VERTEX + CREATED, v)
+        for i in range(sides):
+            log_element(log, PARENT, out[i])
         log_faces(log, CHANGED, face, -1)
-        for i in range(sides - 1):
-            log_element(log, FACE + CREATED, f + i)
+        log_parts(log, f, sides - 1, face)
         return v
 
     return split_face

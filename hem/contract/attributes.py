@@ -1,0 +1,503 @@
+"""Values that belong to the elements of a mesh, and follow every edit of it.
+
+An attribute has a row for every handle there ever was, as ``points`` has. What an edit leaves alone
+keeps its rows. What it creates gets them by the attribute's rule, from what it was made of
+(``Edit.vertex_parents``, ``Edit.face_parents``).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, Literal, Protocol
+
+import numpy as np
+from numpy.typing import ArrayLike, DTypeLike
+
+from hem.arrays import Array
+from hem.authoring import ENDS
+from hem.contract.following import Following, tell_all
+from hem.edit import Edit
+from hem.errors import MeshError
+from hem.ragged import Ragged
+
+if TYPE_CHECKING:
+    from hem.contract.structure import Structure
+
+Rule = Literal["interpolate", "copy", "default"]
+"""What a new element gets: a value between its parents' by where it lies, that of its first parent,
+or the default, which it also gets where it has no parents."""
+
+RULES = ("interpolate", "copy", "default")
+
+ROUNDING = 1e-6
+"""Faces that are flatter than this part of their length have no direction across."""
+
+
+class Attribute:
+    """A number, or an array of them, for each element of one kind.
+
+    ``a[handle]`` and ``a[handles]`` read, ``a[handles] = values`` writes; both check the handles.
+    ``a.values`` are all rows at once. ``Structure.vertex_attribute`` and its like make one.
+    """
+
+    def __init__(
+        self,
+        mesh: Structure,
+        element: str,
+        name: str,
+        default: Array,
+        on_split: Rule | None = None,
+    ) -> None:
+        self.mesh, self.element, self.name, self.default = mesh, element, name, default
+        self.on_split = on_split or self._usual_rule()
+        if self.on_split not in RULES:
+            raise MeshError(f"on_split is one of {', '.join(RULES)}, not {on_split!r}")
+        if self.on_split == "interpolate" and default.dtype.kind != "f":
+            raise MeshError(f"{default.dtype} values cannot be interpolated; on_split='copy' can")
+        self._listeners: list[Callable[[Array], Any]] = []
+        self.clear()
+
+    def __repr__(self) -> str:
+        return f"<{self.element} attribute {self.name!r}, {self.default.dtype} {self.values.shape}>"
+
+    @property
+    def values(self) -> Array:
+        """(end, …): a row per handle, those of dead elements included.
+
+        A view: writing here tells nobody, and an edit may put others in its place.
+        """
+        self._grow()
+        return self._rows[: self._end]
+
+    def __array__(self, dtype: DTypeLike | None = None, copy: bool | None = None) -> Array:
+        return np.array(self.values, dtype)
+
+    def __getitem__(self, handles: Any) -> Any:
+        """The value of one element or (n, …) of many: a copy. MeshError for what is not live."""
+        return self._rows[self._checked(handles)].copy()
+
+    def __setitem__(self, handles: Any, values: ArrayLike) -> None:
+        """Give one element or many (n,) their values. Who follows the attribute is told."""
+        rows = self._checked(handles)
+        self._rows[rows] = values
+        tell_all(self._listeners, np.atleast_1d(rows))
+
+    def subscribe(self, callback: Callable[[Array], Any]) -> Callable[[], None]:
+        """Have ``callback`` called with the handles (n,) that are written to -> a way to end it."""
+        self._listeners.append(callback)
+        return lambda: self._listeners.remove(callback)
+
+    def follow(self, edit: Edit) -> None:
+        """Carry the values over an edit that was just done. Cost O(edit)."""
+        if edit.remapping is not None:
+            self._renumber(edit)
+        else:
+            self._grow()
+            self._inherit(edit)
+
+    def state(self) -> tuple[Array, ...]:
+        """What ``restore`` needs, in arrays of its own."""
+        return (self.values.copy(),)
+
+    def restore(self, state: tuple[Array, ...]) -> None:
+        """Have the values of a ``state`` again."""
+        self._rows = state[0].copy()
+
+    def clear(self) -> None:
+        """Have the default everywhere, as if just made."""
+        self._rows = self._fresh(0)
+        self._grow()
+
+    # Behind it ---------------------------------------------------------------------------------
+
+    @property
+    def _end(self) -> int:
+        return int(self.mesh.records.counts[ENDS.get(self.element, ENDS["face"])])
+
+    def _usual_rule(self) -> Rule:
+        lies_somewhere = self.element in ("vertex", "corner")
+        return "interpolate" if lies_somewhere and self.default.dtype.kind == "f" else "copy"
+
+    def _fresh(self, *rows: int) -> Array:
+        return np.tile(self.default, rows + (1,) * self.default.ndim)
+
+    def _checked(self, handles: Any) -> Any:
+        """One handle or an array of them, if they name live elements."""
+        rows = np.asarray(handles)
+        if rows.ndim > 1 or (rows.size and not np.issubdtype(rows.dtype, np.integer)):
+            raise MeshError(
+                f"{self!r} takes one handle or a 1-D array of them, not {handles!r:.60}"
+            )
+        self._grow()
+        rows = rows.astype(np.int64)
+        element = "face" if self.element == "corner" else self.element
+        self.mesh._check_handles(element, np.atleast_1d(rows))
+        return rows
+
+    def _grow(self) -> None:
+        """Have a row for every handle; twice as many where there are too few.
+
+        An edit that was interrupted may not have seen to it.
+        """
+        missing = self._end - len(self._rows)
+        if missing > 0:
+            more = max(missing, len(self._rows))
+            self._rows = np.concatenate([self._rows, self._fresh(more)])
+
+    def _renumber(self, edit: Edit) -> None:
+        old, new = self._moved(edit)
+        rows, self._rows = self._rows, self._fresh(self._end)
+        self._rows[new] = rows[old]
+
+    def _moved(self, edit: Edit) -> tuple[Array, Array]:
+        """Old rows and new ones of what is live, after ``compact``."""
+        assert edit.remapping is not None
+        of = edit.remapping
+        number = of.vertices if self.element == "vertex" else of.faces
+        old = np.flatnonzero(number >= 0)
+        return old, number[old]
+
+    def _inherit(self, edit: Edit) -> None:
+        """Give what was created its rows."""
+        if self.on_split == "default":
+            return
+        if self.element == "face":
+            made = edit.created_faces
+            self._rows[made] = self._rows[whole_faces(edit, made)]
+            return
+        for vertices, parents in generations(edit):
+            values = self._rows[parents.values]
+            self._rows[vertices] = self._put_between(values, vertices, parents)
+
+    def _put_between(self, values: Array, vertices: Array, parents: Ragged) -> Array:
+        """By the rule: (n, …) for ``vertices`` (n,), from the ``values`` of all their parents."""
+        first = parents.offsets[:-1]
+        if self.on_split == "copy":
+            return values[first]
+        share = shares(self.mesh.points, vertices, parents)
+        share = share.reshape(-1, *(1,) * self.default.ndim)
+        return np.add.reduceat(values * share, first).astype(values.dtype)
+
+
+class EdgeAttribute(Attribute):
+    """Of edges or half-edges. The new part of an edge that is split has what the old part has."""
+
+    def _checked(self, handles: Any) -> Any:
+        rows = super()._checked(handles)
+        if self.element == "edge":
+            return self.mesh._edge_names(np.atleast_1d(rows)).reshape(rows.shape)
+        return rows
+
+    def _moved(self, edit: Edit) -> tuple[Array, Array]:
+        assert edit.remapping is not None
+        number = edit.remapping.edges(np.arange(len(self._rows)))
+        old = np.flatnonzero(number >= 0)
+        return old, number[old]
+
+    def _inherit(self, edit: Edit) -> None:
+        if self.on_split == "default":
+            return
+        for v, ends in zip(edit.created_vertices.tolist(), edit.vertex_parents, strict=True):
+            if len(ends) == 2:
+                old, new = (self.mesh.find_edge(v, int(end)) for end in ends)
+                for one, other in self._sides(v, old, new):
+                    self._rows[other] = self._rows[one]
+
+    def _sides(self, middle: int, old: int | None, new: int | None) -> list[tuple[int, int]]:
+        """Which row goes into which where an edge was split: half-edges keep their direction."""
+        if old is None or new is None:  # split again by the same batch
+            return []
+        if self.element == "edge":
+            return [(old, new)]
+        mesh: Any = self.mesh
+        apart = (mesh.origin(old) == middle) == (mesh.origin(new) == middle)
+        one, other = [old, mesh.twin(old)], [new, mesh.twin(new)]
+        pairs = zip(one, other[::-1] if apart else other, strict=True)
+        return [(h, g) for h, g in pairs if h >= 0 and g >= 0]
+
+
+class CornerAttribute(Attribute):
+    """Of the corners of faces: a vertex may have another value in each face, as at a seam.
+
+    Handles are those of faces. A face has a row per corner, in the order of ``face_vertices``;
+    those of many faces (k,) come one face after the other, and may be written as (k, 3, …). A new
+    vertex lies between the corners of the very face that it was put into. A corner that comes into
+    a face by a flip or a collapse has the value it has beside it, on the same side of a seam.
+    """
+
+    def __init__(self, mesh: Structure, *made: Any) -> None:
+        self._keys = np.full((0, 3), -1, np.int32)  # of which vertex a row is the corner
+        super().__init__(mesh, *made)
+
+    def __getitem__(self, handles: Any) -> Any:
+        """(corners, …) of one face, or of many, one after the other."""
+        faces, corners = self._corners(self._checked(handles))
+        return self._known(np.repeat(faces, corners.counts), corners.values)[0]
+
+    def __setitem__(self, handles: Any, values: ArrayLike) -> None:
+        """Give the corners of one face or of many their values. Who follows is told."""
+        faces, corners = self._corners(self._checked(handles))
+        shape, given = (len(corners.values), *self.default.shape), np.asarray(values)
+        whole = given.size == np.prod(shape) and given.shape != self.default.shape
+        self._write(faces, corners, given.reshape(shape) if whole else given)
+        tell_all(self._listeners, faces)
+
+    def clear(self) -> None:
+        """See ``Attribute.clear``."""
+        self._keys = self._keys[:0]
+        super().clear()
+        faces, corners = self._corners(self.mesh.faces())
+        self._write(faces, corners, self.default)
+
+    def state(self) -> tuple[Array, ...]:
+        """See ``Attribute.state``."""
+        return self.values.copy(), self._keys[: self._end].copy()
+
+    def restore(self, state: tuple[Array, ...]) -> None:
+        """See ``Attribute.restore``."""
+        self._rows, self._keys = (it.copy() for it in state)
+
+    # Behind it ---------------------------------------------------------------------------------
+
+    def _fresh(self, *rows: int) -> Array:
+        return super()._fresh(*rows, self._keys.shape[1])
+
+    def _grow(self) -> None:
+        wider = self.mesh.most_corners - self._keys.shape[1]
+        if wider > 0:
+            self._keys = np.pad(self._keys, [(0, 0), (0, wider)], constant_values=-1)
+            rows, self._rows = self._rows, self._fresh(len(self._rows))
+            self._rows[:, : rows.shape[1]] = rows
+        super()._grow()
+        longer = len(self._rows) - len(self._keys)
+        self._keys = np.pad(self._keys, [(0, longer), (0, 0)], constant_values=-1)
+
+    def _renumber(self, edit: Edit) -> None:
+        assert edit.remapping is not None
+        old, new = self._moved(edit)
+        keys = np.append(edit.remapping.vertices, -1)[self._keys[old]]
+        super()._renumber(edit)
+        self._keys = np.full(self._rows.shape[:2], -1, np.int32)
+        self._keys[new] = keys
+
+    def _inherit(self, edit: Edit) -> None:
+        """All corners of what was touched are written anew, as a face may begin elsewhere."""
+        touched = np.concatenate([edit.changed_faces, edit.created_faces])
+        faces, corners = self._corners(touched)
+        owners = np.repeat(whole_faces(edit, faces), corners.counts)
+        self._write(faces, corners, self._carried(edit, owners, corners.values))
+
+    def _corners(self, faces: Array) -> tuple[Array, Ragged]:
+        faces = np.atleast_1d(faces).astype(np.int64)
+        return faces, self.mesh.face_vertices(faces)
+
+    def _write(self, faces: Array, corners: Ragged, values: ArrayLike) -> None:
+        """Have just these corners in these faces."""
+        face = np.repeat(faces, corners.counts)
+        place = np.arange(len(face)) - np.repeat(corners.offsets[:-1], corners.counts)
+        self._keys[faces] = -1
+        self._keys[face, place] = corners.values
+        self._rows[face, place] = values
+
+    def _known(self, faces: Array, vertices: Array) -> tuple[Array, Array]:
+        """(n, …) the values of vertices in faces, and (n,) which of them are corners there."""
+        same = self._keys[faces] == vertices[:, None]
+        values, known = super()._fresh(len(faces)), same.any(axis=1)
+        values[known] = self._rows[faces[known], same[known].argmax(axis=1)]
+        return values, known
+
+    def _carried(self, edit: Edit, faces: Array, vertices: Array) -> Array:
+        """(n, …): what corners had before the edit, or get by the rule."""
+        values, known = self._known(faces, vertices)
+        created = np.isin(vertices, edit.created_vertices)
+        if self.on_split != "default" and (created & ~known).any():
+            at = np.searchsorted(edit.created_vertices, vertices[created & ~known])
+            parents = edit.vertex_parents[at]
+            new = np.flatnonzero(created & ~known)[parents.counts > 0]
+            parents = parents[parents.counts > 0]
+            if len(new):
+                own = np.repeat(faces[new], parents.counts)
+                between = self._carried(edit, own, parents.values)
+                values[new] = self._put_between(between, vertices[new], parents)
+        for i in np.flatnonzero(~known & ~created):
+            values[i] = self._from_beside(edit, int(faces[i]), int(vertices[i]))
+        return values
+
+    def _from_beside(self, edit: Edit, face: int, vertex: int) -> Array:
+        """What a corner had in another face of the edit, on this face's side of a seam."""
+        before = np.concatenate([edit.removed_faces, edit.changed_faces])
+        there = before[(self._keys[before] == vertex).any(axis=1)]
+        gone = np.intersect1d(self._keys[face], edit.removed_vertices)[:1]
+        if not len(gone):
+            return self._known(there[:1], np.array([vertex]))[0][0] if len(there) else self.default
+        own = self._known(np.array([face]), gone)[0][0]
+        for other in there:
+            (at_gone, value), known = self._known(np.repeat(other, 2), np.append(gone, vertex))
+            if known.all() and np.array_equal(at_gone, own):
+                return value
+        return own
+
+
+def shares(points: Array, vertices: Array, parents: Ragged) -> Array:
+    """For every parent of ``vertices`` (n,) its share, by position; those of a vertex add up to 1.
+
+    What is linear over the parents is so at the vertex, too, even beyond them. Where the vertex
+    lies off their plane, its foot on it counts; where they all coincide, each counts alike.
+    """
+    found = np.empty(len(parents.values))
+    for n in np.unique(parents.counts):
+        rows = np.flatnonzero(parents.counts == n)
+        places = parents.offsets[rows][:, None] + np.arange(n)
+        corners = points[parents.values[places]].astype(np.float64)
+        middle = corners.mean(axis=1)
+        apart = np.nan_to_num(corners - middle[:, None])  # a parent may be gone by now
+        beside = np.nan_to_num(points[vertices[rows]] - middle)[:, None]
+        found[places] = 1 / n + (beside @ np.linalg.pinv(apart, ROUNDING))[:, 0]
+    return found
+
+
+def generations(edit: Edit) -> Iterator[tuple[Array, Ragged]]:
+    """The created vertices and their parents, which are never among those of the same turn."""
+    vertices, parents = edit.created_vertices, edit.vertex_parents
+    waiting = np.flatnonzero(parents.counts > 0)
+    while len(waiting):
+        those = parents[waiting]
+        late = np.isin(those.values, vertices[waiting])
+        ready = np.add.reduceat(late, those.offsets[:-1]) == 0
+        yield vertices[waiting[ready]], those[ready]
+        waiting = waiting[~ready]
+
+
+def whole_faces(edit: Edit, faces: Array) -> Array:
+    """(k,): the faces that were there before the edit, of which these are parts."""
+    found, made = np.array(faces, np.int64), edit.created_faces
+    while len(made):
+        at = np.minimum(np.searchsorted(made, found), len(made) - 1)
+        parent = np.where(made[at] == found, edit.face_parents[at], -1)
+        if not (parent >= 0).any():
+            break
+        found[parent >= 0] = parent[parent >= 0]
+    return found
+
+
+class AttributeMethod(Protocol):
+    """Makes an attribute of one kind of elements, or finds the one of the same name."""
+
+    def __call__(
+        self,
+        name: str,
+        dtype: DTypeLike | None = None,
+        shape: int | tuple[int, ...] = (),
+        default: ArrayLike = 0,
+        on_split: Rule | None = None,
+    ) -> Attribute:
+        """As ``Structure.vertex_attribute`` says."""
+
+
+def attribute_method(element: str, kind: type[Attribute], words: str) -> Any:
+    """The attribute ``Structure.vertex_attribute`` and its like."""
+
+    def bound(self: Attributed) -> AttributeMethod:
+        def make(
+            name: str,
+            dtype: DTypeLike | None = None,
+            shape: int | tuple[int, ...] = (),
+            default: ArrayLike = 0,
+            on_split: Rule | None = None,
+        ) -> Attribute:
+            return self._attribute(kind, element, name, dtype, shape, default, on_split)
+
+        make.__doc__ = attribute.__doc__
+        return make
+
+    attribute = cached_property(bound)
+    attribute.__doc__ = (
+        f"A value for every {element.replace('_', '-')}, found by its name, or made: the default\n"
+        "everywhere.\n\n"
+        "``dtype``: float32 unless it is said. ``shape``: of one value, () for a number.\n"
+        f"``on_split``: see ``Rule``. {words}\n"
+        "Copies of the mesh and pickles have it, too; ``compact`` renumbers it. Cost O(n) once,\n"
+        "then O(edit). MeshError where there is one of the name and of another type."
+    )
+    return attribute
+
+
+class Attributed(Following, abstract=True):
+    """Attributes by element and name."""
+
+    vertex_attribute: AttributeMethod = attribute_method(
+        "vertex", Attribute, "Floating-point values are interpolated, others copied."
+    )
+    face_attribute: AttributeMethod = attribute_method(
+        "face", Attribute, "The parts of a split face copy what it has."
+    )
+    edge_attribute: AttributeMethod = attribute_method(
+        "edge",
+        EdgeAttribute,
+        "The parts of a split edge copy what it has. MeshError where edges are not recorded.",
+    )
+    corner_attribute: AttributeMethod = attribute_method(
+        "corner",
+        CornerAttribute,
+        "As for vertices; see ``CornerAttribute``. ``collapse_edges`` does an edit per edge then.",
+    )
+
+    def attributes(self) -> list[Attribute]:
+        """All there are, in the order they were made."""
+        return list(self._attributes.values())
+
+    def remove_attribute(self, attribute: Attribute) -> None:
+        """Have an attribute follow no longer. Raises MeshError if it is not of this mesh."""
+        key = attribute.element, attribute.name
+        if self._attributes.get(key) is not attribute:
+            raise MeshError(f"{attribute!r} is no attribute of this mesh")
+        del self._attributes[key]
+        self._subscribers.remove(attribute.follow)
+
+    @cached_property
+    def _attributes(self) -> dict[tuple[str, str], Attribute]:
+        return {}
+
+    def _attribute(
+        self,
+        kind: type[Attribute],
+        element: str,
+        name: str,
+        dtype: DTypeLike | None,
+        shape: int | tuple[int, ...],
+        default: ArrayLike,
+        on_split: Rule | None,
+    ) -> Attribute:
+        if element == "edge" and self.emulated:
+            raise MeshError(f"a {self.title} mesh records no edges that could have attributes")
+        known = self._attributes.get((element, name))
+        if known is not None and dtype is None:
+            return known
+        try:
+            value = np.broadcast_to(np.asarray(default, dtype or np.float32), shape)
+        except (TypeError, ValueError) as error:
+            raise MeshError(f"{element} attribute {name!r}: {error}") from error
+        if known is None:
+            made = kind(self, element, name, value, on_split)  # type: ignore[arg-type]
+            self._attributes[element, name] = made
+            self._subscribers.insert(0, made.follow)  # before those who look at it
+            return made
+        if (known.default.dtype, known.default.shape) != (value.dtype, value.shape):
+            raise MeshError(
+                f"there is a {element} attribute {name!r} of {known.default.dtype} "
+                f"{known.default.shape} already; remove_attribute it first"
+            )
+        return known
+
+    def _attribute_states(self) -> list[tuple[Any, ...]]:
+        """What ``_adopt`` makes the same attributes of, in arrays of their own."""
+        return [
+            (type(it), it.element, it.name, it.default, it.on_split, it.state())
+            for it in self.attributes()
+        ]
+
+    def _adopt(self, states: list[tuple[Any, ...]]) -> None:
+        for kind, element, name, default, on_split, state in states:
+            args = element, name, default.dtype, default.shape, default, on_split
+            self._attribute(kind, *args).restore(state)
