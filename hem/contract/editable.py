@@ -136,7 +136,7 @@ class Editable(Algorithms, abstract=True):
         of ``vertex_faces`` at the vertex and its neighbors.
         """
         handle = arguments.handles("remove_vertex", [vertex])
-        self._require_different("remove_vertex", "vertex", handles, handles)
+        self._require_different("remove_vertex", "vertex", handle, handle)
         faces = self.vertex_faces(handle).values.astype(np.int64)
         return self._remove("remove_vertex", faces, int(vertex))
 
