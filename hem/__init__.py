@@ -26,6 +26,7 @@ if TYPE_CHECKING:  # what type checkers and editors see; the table below says it
     from hem.rendering import RenderMesh as RenderMesh
     from hem.rendering import Upload as Upload
     from hem.rendering import mesh_from_render as mesh_from_render
+    from hem.rendering import split_at_seams as split_at_seams
     from hem.sources.families import FAMILIES as FAMILIES
     from hem.sources.families import generate as generate
     from hem.sources.files import as_mesh as as_mesh
@@ -49,7 +50,7 @@ _NAMES = {
     ),
     "hem.meshes.conversions": ("from_meshio", "from_pyvista", "from_trimesh"),
     "hem.ragged": ("Ragged",),
-    "hem.rendering": ("RenderMesh", "Upload", "mesh_from_render"),
+    "hem.rendering": ("RenderMesh", "Upload", "mesh_from_render", "split_at_seams"),
     "hem.sources.families": ("FAMILIES", "generate"),
     "hem.sources.files": ("as_mesh", "load", "load_polygons", "save"),
     "hem.sources.samples": ("SAMPLES", "sample"),

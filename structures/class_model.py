@@ -43,20 +43,28 @@ class Vertex:
 
     @property
     def point(self) -> Point:
-        """x, y and z. Setting it raises the event; ``move_vertex`` also tells the subscribers."""
+        """x, y and z. Setting it raises the event, and tells who follows the mesh."""
         return self._point
 
     @point.setter
     def point(self, point: Point) -> None:
         self._point = point
-        if self.position_changed is not None:
-            self.position_changed.fire(self)
+        if (event := self.position_changed) is not None:
+            event.fire(self)
+            event.tell_mesh(self)
+
+    def place(self, point: Point) -> None:
+        """Set the point within an operation, of which the mesh tells by itself."""
+        self._point = point
+        if (event := self.position_changed) is not None:
+            event.fire(self)
 
     def subscribe(self, callback: Callable[[Vertex], Any]) -> Callable[[], None]:
         """Have ``callback`` called with this vertex whenever it has moved -> a way to end that."""
-        if self.position_changed is None:
-            self.position_changed = PositionChangedEvent()
-        return self.position_changed.subscribe(callback)
+        event = self.position_changed
+        if event is None or not event.callbacks:  # none, or the one that all vertices share
+            event = self.position_changed = PositionChangedEvent(event.tell_mesh if event else None)
+        return event.subscribe(callback)
 
 
 class HalfEdge:
@@ -107,22 +115,30 @@ class Face:
 
 
 class PositionChangedEvent:
-    """Who is to be told when a vertex has moved."""
+    """Who is to be told when a vertex has moved: its subscribers, and a mesh that has some.
 
-    __slots__ = ("_callbacks",)
+    Vertices without subscribers of their own share one event once the mesh has a subscriber.
+    """
 
-    def __init__(self) -> None:
-        self._callbacks: list[Callable[[Vertex], Any]] = []
+    __slots__ = ("callbacks", "tell_mesh")
+
+    def __init__(self, tell_mesh: Callable[[Vertex], Any] | None = None) -> None:
+        self.callbacks: list[Callable[[Vertex], Any]] = []
+        self.tell_mesh = tell_mesh or _tell_nobody
 
     def subscribe(self, callback: Callable[[Vertex], Any]) -> Callable[[], None]:
         """Have ``callback`` called with the vertex -> a way to end that."""
-        self._callbacks.append(callback)
-        return lambda: self._callbacks.remove(callback)
+        self.callbacks.append(callback)
+        return lambda: self.callbacks.remove(callback)
 
     def fire(self, vertex: Vertex) -> None:
-        """Tell all, in the order they subscribed."""
-        for callback in tuple(self._callbacks):
+        """Tell the subscribers, in their order."""
+        for callback in tuple(self.callbacks):
             callback(vertex)
+
+
+def _tell_nobody(vertex: Vertex) -> None:
+    """There is no mesh that would be told."""
 
 
 Element = TypeVar("Element", Vertex, HalfEdge, Face)
@@ -177,8 +193,21 @@ class ElementList(Generic[Element]):
 class VertexList(ElementList[Vertex]):
     """The vertices."""
 
-    __slots__ = ()
+    __slots__ = ("event",)
     kind = "vertex"
+
+    def __init__(self, items: list[Vertex | None] | None = None) -> None:
+        super().__init__(items)
+        self.event: PositionChangedEvent | None = None
+
+    def watch(self, tell_mesh: Callable[[Vertex], Any]) -> None:
+        """Have the mesh told whenever the point of a vertex is set. Cost O(n_v)."""
+        self.event = PositionChangedEvent(tell_mesh)
+        for vertex in self:
+            if vertex.position_changed is None:
+                vertex.position_changed = self.event
+            else:
+                vertex.position_changed.tell_mesh = tell_mesh
 
     def __call__(self) -> NDArray[np.int32]:
         """(n,) int32: the handles of all live vertices, ascending."""
@@ -187,6 +216,8 @@ class VertexList(ElementList[Vertex]):
     def create(self, point: Point) -> Vertex:
         """Append a vertex. No duplicate is searched for. Cost O(1)."""
         vertex = Vertex(len(self.items), point)
+        if self.event is not None:
+            vertex.position_changed = self.event
         self.items.append(vertex)
         return vertex
 

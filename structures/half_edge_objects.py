@@ -45,6 +45,7 @@ from hem.authoring import (
     edges_at_both_ends,
 )
 from hem.contract import Claims, Look, Navigable
+from hem.edit import CHANGED, VERTEX, Edit
 from hem.engine import Held, InterpretedUses, counting
 from hem.errors import MeshError
 from hem.meshes import TriangleMesh
@@ -218,7 +219,7 @@ def set_point(m: ObjectRecords, v: int, point: Any) -> None:
     if v == len(m.vertices.items):
         m.vertices.create(position)
     else:
-        m.vertices.items[v].point = position
+        m.vertices.items[v].place(position)
 
 
 def kill_vertex(m: ObjectRecords, v: int) -> None:
@@ -503,7 +504,19 @@ class HalfEdgeMesh(Navigable):
         names = [h if it is None else it.edge for h, it in zip(handles, known, strict=True)]
         return np.array(names, np.int64)
 
+    def subscribe(self, callback: Callable[[Edit], Any]) -> Callable[[], None]:
+        """See ``Following.subscribe``; also told when the ``point`` of a vertex is set."""
+        if self.vertices.event is None:
+            self.vertices.watch(self._tell_moved)
+        return super().subscribe(callback)
+
     # Behind the contract ---------------------------------------------------------------------
+
+    def _tell_moved(self, vertex: Vertex) -> None:
+        items = self.vertices.items
+        if vertex.index < len(items) and items[vertex.index] is vertex:
+            log = [vertex.index << 3 | VERTEX + CHANGED]
+            self._publish(Edit("move_vertex", vertex.index, log))
 
     @cached_property
     def _at(self) -> list[int]:
@@ -540,6 +553,8 @@ class HalfEdgeMesh(Navigable):
         self.half_edges.items[:] = fresh.half_edges.items
         self.faces.items[:] = fresh.faces.items
         np.copyto(self.records.counts, fresh.counts)
+        if self.vertices.event is not None:
+            self.vertices.watch(self._tell_moved)
 
     @property
     def arrays(self) -> tuple[Array, ...]:

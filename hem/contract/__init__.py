@@ -8,6 +8,7 @@
 ``Queryable``    the nine queries, ``find_edge``
 ``Surveying``    borders, components, all triangles
 ``Following``    ``subscribe``
+``Attributed``   values of vertices, edges, faces, corners that follow every edit
 ``Operating``    how an operation is checked, tried and logged
 ``Algorithms``   ``run``: algorithms of one's own over any structure
 ``Editable``     the operations, ``compact``
@@ -19,6 +20,7 @@
 from hem.authoring import ELEMENTS, OPERATIONS, QUERIES, REFERENCE_TYPES, Query
 from hem.contract import arguments
 from hem.contract.algorithms import Algorithm
+from hem.contract.attributes import Attribute
 from hem.contract.description import Claims, Described, Look
 from hem.contract.elements import HANDLE_TYPES
 from hem.contract.following import tell_all
@@ -36,6 +38,7 @@ __all__ = [
     "REFERENCE_TYPES",
     "STEPS",
     "Algorithm",
+    "Attribute",
     "Claims",
     "Described",
     "Look",

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Literal, Protocol
+from typing import Any, Literal, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike
@@ -20,9 +20,6 @@ from hem.contract.following import Following, tell_all
 from hem.edit import Edit
 from hem.errors import MeshError
 from hem.ragged import Ragged
-
-if TYPE_CHECKING:
-    from hem.contract.structure import Structure
 
 Rule = Literal["interpolate", "copy", "default"]
 """What a new element gets: a value between its parents' by where it lies, that of its first parent,
@@ -43,7 +40,7 @@ class Attribute:
 
     def __init__(
         self,
-        mesh: Structure,
+        mesh: Attributed,
         element: str,
         name: str,
         default: Array,
@@ -75,7 +72,8 @@ class Attribute:
 
     def __getitem__(self, handles: Any) -> Any:
         """The value of one element or (n, …) of many: a copy. MeshError for what is not live."""
-        return self._rows[self._checked(handles)].copy()
+        rows = self._checked(handles)
+        return self._rows[rows].copy()
 
     def __setitem__(self, handles: Any, values: ArrayLike) -> None:
         """Give one element or many (n,) their values. Who follows the attribute is told."""
@@ -226,7 +224,7 @@ class CornerAttribute(Attribute):
     a face by a flip or a collapse has the value it has beside it, on the same side of a seam.
     """
 
-    def __init__(self, mesh: Structure, *made: Any) -> None:
+    def __init__(self, mesh: Attributed, *made: Any) -> None:
         self._keys = np.full((0, 3), -1, np.int32)  # of which vertex a row is the corner
         super().__init__(mesh, *made)
 
@@ -479,7 +477,7 @@ class Attributed(Following, abstract=True):
         except (TypeError, ValueError) as error:
             raise MeshError(f"{element} attribute {name!r}: {error}") from error
         if known is None:
-            made = kind(self, element, name, value, on_split)  # type: ignore[arg-type]
+            made = kind(self, element, name, value, on_split)
             self._attributes[element, name] = made
             self._subscribers.insert(0, made.follow)  # before those who look at it
             return made

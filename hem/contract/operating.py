@@ -227,6 +227,3 @@ class Operating(Attributed, abstract=True):
             beside = self.face_vertices(self.edge_faces(handle)).values
             elements["vertices"] = np.setdiff1d(np.intersect1d(a, b), beside)
         return TopologyError(f"cannot {operation}: {words}", **elements)
-
-    def _edge_names(self, handles: Array) -> Array:
-        return handles

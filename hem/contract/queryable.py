@@ -131,6 +131,10 @@ class Queryable(Scratch, abstract=True):
         found = find(a, b, address)
         return None if found < 0 else found
 
+    def _edge_names(self, handles: NDArray[Any]) -> NDArray[Any]:
+        """The one name of each edge, where it has two handles."""
+        return handles
+
     def _count_edges(self) -> None:
         """Search for the edges where their number is not known yet; operations keep it up."""
         if self.records.counts[EDGES] == UNKNOWN:

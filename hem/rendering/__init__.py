@@ -1,5 +1,5 @@
 """Flat arrays for a renderer that follow every edit of a structure."""
 
-from hem.rendering.render import RenderMesh, Upload, mesh_from_render
+from hem.rendering.render import RenderMesh, Upload, mesh_from_render, split_at_seams
 
-__all__ = ["RenderMesh", "Upload", "mesh_from_render"]
+__all__ = ["RenderMesh", "Upload", "mesh_from_render", "split_at_seams"]

@@ -19,7 +19,7 @@ def dirty_ranges(touched: Sequence[ArrayLike], nearby: int) -> tuple[Ranges, Ran
 
     Elements at most ``nearby`` apart share a range. Cost O(k log k) for k entries.
     """
-    log = np.concatenate([np.asarray(it, np.int64) for it in touched])
+    log = np.concatenate([np.zeros(0, np.int64), *(np.asarray(it, np.int64) for it in touched)])
     log.sort()  # by index, as that is in the upper bits
     ranges = np.empty((2, len(log), 2), np.int64)
     vertices, triangles = _runs(log, nearby, ranges)

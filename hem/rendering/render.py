@@ -8,18 +8,20 @@ the origin that no triangle uses. ``Structure.compact`` closes the gaps here, to
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
-from typing import Any, NamedTuple
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import ExitStack, contextmanager
+from functools import partial
+from types import MappingProxyType
+from typing import Any, NamedTuple, overload
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from hem.arrays import Array, Handles, Points
-from hem.contract import Structure, tell_all
-from hem.edit import Edit
+from hem.contract import Attribute, Structure, tell_all
+from hem.edit import CHANGED, VERTEX, Edit
 from hem.errors import MeshError
-from hem.meshes import TriangleMesh, repeated_corners, used_only
+from hem.meshes import TriangleMesh, clusters, repeated_corners, used_only
 from hem.rendering.ranges import Ranges, dirty_ranges
 
 NEARBY = 32
@@ -30,32 +32,42 @@ class Upload(NamedTuple):
     """What a commit changed: ranges (k, 2) of vertices and of triangles, each begin and end.
 
     ``resized``: the arrays are others than before, for more elements or after ``compact``; then the
-    ranges cover everything.
+    ranges cover everything. ``attributes``: ranges of vertices for each that is uploaded, by name.
     """
 
     vertices: Ranges
     triangles: Ranges
     resized: bool
+    attributes: Mapping[str, Ranges] = MappingProxyType({})
 
 
 class RenderMesh:
     """Flat arrays for a renderer that follow the edits of a structure, each in O(edit).
 
     Every edit is committed at once: whoever subscribed is told what to upload. Within
-    ``transaction()`` edits are gathered and committed once at its end. Cost to begin with, after
-    ``compact``, and now and then for more room: O(n_v + n_t). MeshError for a mesh with polygons,
-    and when one arises: the edit is done, and from then on the arrays stay as they are.
+    ``transaction()`` edits are gathered and committed once at its end. ``attributes`` of vertices
+    are uploaded, too: their ``values`` have a row where ``points`` has three numbers, and what is
+    written to them is committed like an edit. Cost to begin with, after ``compact``, and now and
+    then for more room: O(n_v + n_t). MeshError for a mesh with polygons, and when one arises: the
+    edit is done, and from then on the arrays stay as they are.
     """
 
-    def __init__(self, structure: Structure) -> None:
+    def __init__(self, structure: Structure, attributes: Sequence[Attribute] = ()) -> None:
         self.structure = structure
         self.commits = 0
+        self.attributes = {it.name: it for it in attributes}
+        for it in attributes:
+            if it.element != "vertex" or it.mesh is not structure:
+                raise MeshError(f"{it!r} is no attribute of vertices of this mesh")
+        self._written: dict[str, list[ArrayLike]] = {name: [] for name in self.attributes}
         self._listeners: list[Callable[[Upload], Any]] = []
         self._pending: list[ArrayLike] = []
         self._depth, self._resized = 0, False
-        self._end: Callable[[], None] = lambda: None
+        self._following = ExitStack()
         self._rebuild()
-        self._end = structure.subscribe(self._follow)
+        self._following.callback(structure.subscribe(self._follow))
+        for it in attributes:
+            self._following.callback(it.subscribe(partial(self._rewrite, it.name)))
 
     @property
     def points(self) -> Points:
@@ -85,12 +97,12 @@ class RenderMesh:
             yield self
         finally:
             self._depth -= 1
-            if not self._depth and (self._pending or self._resized):
+            if not self._depth and (self._pending or self._resized or any(self._written.values())):
                 self._commit()
 
     def close(self) -> None:
         """Follow no longer; the arrays stay as they are."""
-        self._end()
+        self._following.close()
 
     def to_triangles(self) -> TriangleMesh:
         """The way back, see ``mesh_from_render``."""
@@ -119,12 +131,17 @@ class RenderMesh:
         if not self._depth:
             self._commit()
 
+    def _rewrite(self, name: str, vertices: Handles) -> None:
+        self._written[name].append(vertices << 3 | VERTEX + CHANGED)
+        if not self._depth:
+            self._commit()
+
     def _require_triangles(self, faces: Handles) -> None:
         """Follow no longer once one of the faces is a polygon."""
         s = self.structure
         larger = faces[s.face_vertices(faces).counts > 3] if s.most_corners > 3 else faces[:0]
         if len(larger):
-            self._end()
+            self._following.close()
             raise MeshError(
                 f"a render mesh holds triangles only, and follows this {s.title} mesh no longer, "
                 "which has larger faces now; follow one built of to_triangles() instead",
@@ -145,10 +162,16 @@ class RenderMesh:
         if self._resized:
             everything = ([(0, n)] if n else [] for n in (self._n_vertices, self._n_triangles))
             parts = [np.array(it, np.int64).reshape(-1, 2) for it in everything]
+            written = dict.fromkeys(self._written, parts[0])
         else:
             parts = list(dirty_ranges(self._pending, NEARBY))
-        upload = Upload(parts[0], parts[1], self._resized)
+            written = {
+                name: dirty_ranges([*self._pending, *logs], NEARBY)[0]
+                for name, logs in self._written.items()
+            }
+        upload = Upload(parts[0], parts[1], self._resized, written)
         self._pending, self._resized = [], False
+        self._written = {name: [] for name in self._written}
         tell_all(self._listeners, upload)
 
 
@@ -161,19 +184,60 @@ def _with_room(array: Array, used: int, wanted: int) -> Array:
     return larger
 
 
-def mesh_from_render(points: ArrayLike, indices: ArrayLike, tolerance: float = 0.0) -> TriangleMesh:
+def split_at_seams(corners: Attribute) -> tuple[Points, Handles, Array]:
+    """The arrays for a renderer of a mesh whose corners have values, such as texture coordinates.
+
+    A vertex is repeated for each of the values that its corners have. -> points (3 n,) float32,
+    indices (3 m,) int32, clockwise, and the values (n, …). MeshError for polygons, and for what is
+    no attribute of corners. Cost O(m log m). ``mesh_from_render`` is the way back.
+    """
+    if corners.element != "corner":
+        raise MeshError(f"{corners!r} is no attribute of corners")
+    s = corners.mesh
+    vertex, values = s.triangles().reshape(-1), corners[s.faces()]
+    told_apart = values.reshape(len(vertex), -1)
+    _, value = np.unique(told_apart, axis=0, return_inverse=True)
+    pairs = np.stack([vertex, value.reshape(-1)], axis=1)
+    _, first, place = np.unique(pairs, axis=0, return_index=True, return_inverse=True)
+    indices = place.reshape(-1, 3)[:, [0, 2, 1]].astype(np.int32)
+    return s.points[vertex[first]].reshape(-1), indices.reshape(-1), values[first]
+
+
+@overload
+def mesh_from_render(
+    points: ArrayLike, indices: ArrayLike, tolerance: float = 0.0
+) -> TriangleMesh: ...
+@overload
+def mesh_from_render(
+    points: ArrayLike, indices: ArrayLike, tolerance: float = 0.0, *, values: ArrayLike
+) -> tuple[TriangleMesh, Array]: ...
+def mesh_from_render(
+    points: ArrayLike,
+    indices: ArrayLike,
+    tolerance: float = 0.0,
+    values: ArrayLike | None = None,
+) -> TriangleMesh | tuple[TriangleMesh, Array]:
     """The surface behind a render mesh, for any structure.
 
     ``points``: (3 n,) or (n, 3); ``indices``: (3 m,) or (m, 3), clockwise from outside. Positions
     that are repeated at seams become one vertex, ``tolerance`` as for ``TriangleMesh.welded``; the
     winding is turned; triangles without area of their own (a repeated corner) and vertices without
-    triangles are left out. Cost O(n + m) without a tolerance. Raises MeshError for what is no such
-    mesh. Source: thesis 3.3.2, where the search for repeated positions is quadratic.
+    triangles are left out. With ``values`` (n, …) of the repeated positions also theirs by corner
+    (m, 3, …), for a ``corner_attribute``, so that seams are kept. Cost without a tolerance
+    O(n + m). Raises MeshError for what is no such mesh. Source: thesis 3.3.2, where the search for
+    repeated positions is quadratic.
     """
     corners = _rows(indices, "indices")
-    used = corners[~repeated_corners(corners)]
-    mesh = TriangleMesh(_rows(points, "points"), used[:, [0, 2, 1]]).welded(tolerance)
-    return TriangleMesh(*used_only(mesh.points, mesh.triangles))
+    raw = TriangleMesh(_rows(points, "points"), corners[~repeated_corners(corners)][:, [0, 2, 1]])
+    mesh = raw.welded(tolerance)
+    found = TriangleMesh(*used_only(mesh.points, mesh.triangles))
+    if values is None:
+        return found
+    given = np.asarray(values)
+    if len(given) != len(raw.points):
+        raise MeshError(f"there are {len(given):,} values for {len(raw.points):,} positions")
+    _, cluster = clusters(raw.points, tolerance)
+    return found, given[raw.triangles[~repeated_corners(cluster[raw.triangles])]]
 
 
 def _rows(values: ArrayLike, name: str) -> Array:

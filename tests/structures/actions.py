@@ -16,7 +16,7 @@ from hem.meshes import euler_number
 
 KINDS = (
     *("split_edge", "split_face", "collapse_edge", "collapse_edge", "collapse_edge", "flip_edge"),
-    *("flip_edge", "remove_face", "remove_faces", "add_face", "move_vertex"),
+    *("flip_edge", "remove_face", "remove_faces", "remove_vertex", "add_face", "move_vertex"),
 )
 LISTS = ("created_vertices", "changed_vertices", "removed_vertices")
 LISTS += ("created_faces", "changed_faces", "removed_faces")
@@ -45,7 +45,7 @@ def aim(s: Structure, action: Action) -> Aimed | None:
     kind, first, second, third = action
     faces, vertices = s.faces(), s.vertices()
     point = (first % 7, second % 5, third % 3)
-    if kind == "move_vertex":
+    if kind in ("move_vertex", "remove_vertex"):
         return Aimed(kind, (int(vertices[first % len(vertices)]),), -1, point)
     if kind == "add_face":
         return Aimed(kind, _corners(s, action), -1, point)
@@ -90,13 +90,14 @@ def perform(s: Structure, aimed: Aimed) -> Any:
             edit = _told(s, lambda: s.remove_faces(elements))
         elif kind == "move_vertex" or kind == "split_face":
             edit = getattr(s, kind)(*elements, point)
-        elif kind in ("remove_face", "add_face"):
+        elif kind in ("remove_face", "remove_vertex", "add_face"):
             edit = getattr(s, kind)(*elements)
         else:
             edit = _on_edge(s, kind, s.find_edge(*elements), keep, point)
     except hem.TopologyError as refusal:
         return refusal.reason
-    return edit.vertex, *(getattr(edit, name).tolist() for name in LISTS)
+    parents = edit.vertex_parents.to_list(), edit.face_parents.tolist()
+    return edit.vertex, *(getattr(edit, name).tolist() for name in LISTS), parents
 
 
 def _told(s: Structure, operate: Callable[[], None]) -> hem.Edit:
@@ -132,7 +133,7 @@ def faces_of(s: Structure) -> dict[int, tuple[int, ...]]:
     return dict(zip(faces.tolist(), map(tuple, corners), strict=True))
 
 
-EULER = {"add_face": None, "remove_face": None, "remove_faces": None}
+EULER = dict.fromkeys(("add_face", "remove_face", "remove_faces", "remove_vertex"))
 """Operations that may change Euler's number; all others keep it."""
 
 

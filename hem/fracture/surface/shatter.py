@@ -17,12 +17,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from hem.arrays import Floats, Indices
-from hem.contract import Structure
+from hem.contract import Attribute, Structure
 from hem.edit import Edit
 from hem.errors import MeshError
 from hem.fracture.blow import generator
 from hem.fracture.islands import islands
-from hem.fracture.material import Material
+from hem.fracture.material import MATERIALS, Material
 from hem.fracture.material import material as named
 from hem.fracture.pieces import Fracture
 from hem.fracture.surface.breaking import (
@@ -79,18 +79,20 @@ class LazyMeshes(Sequence[TriangleMesh]):
 def shatter(
     structure: Structure,
     impact: ArrayLike,
-    material: Material | str = "glass",
+    material: Material | str | Attribute = "glass",
     seed: int = 0,
     scale: float | None = None,
 ) -> Fracture:
     """Break the surface that a structure holds, in place, around an impact (3,) -> the pieces.
 
-    The impact is taken to the nearest point of the surface. ``scale``: how far apart the circles of
-    break points lie, in units of the mesh; the material's unless it is said, 1 as printed. Points
-    are placed in the plane of the face that is hit and carried straight over the surface. Those
-    that come to lie beyond the border are dropped, and so are those within a tolerance of a vertex:
-    1e-5 of the diagonal of the bounding box, or 32 roundings of the largest coordinate if that is
-    more. Within that tolerance of an edge the edge is split. ``Fracture.counts`` tells how many.
+    The impact is taken to the nearest point of the surface. ``material``: one, its name, or an
+    attribute of faces that holds places in ``list(MATERIALS)``: then that of the face that is hit
+    counts, as the thesis' ``materialType``. ``scale``: how far apart the circles of break points
+    lie, in units of the mesh; the material's unless it is said, 1 as printed. Points are placed in
+    the plane of the face that is hit and carried straight over the surface. Those that come to lie
+    beyond the border are dropped, and so are those within a tolerance of a vertex: 1e-5 of the
+    diagonal of the bounding box, or 32 roundings of the largest coordinate if that is more. Within
+    that tolerance of an edge the edge is split. ``Fracture.counts`` tells how many.
 
     The structure keeps the rest, sound, in which no handle changed; subscribers hear of one edit
     for what was split and one for what came out. The same seed gives the same shards on every
@@ -100,7 +102,7 @@ def shatter(
     impact that is no position or not near the surface, for polygons, and for a mesh without faces.
     Source: thesis 4.4.
     """
-    chosen = material if isinstance(material, Material) else named(material)
+    chosen = _chosen(structure, impact, material)
     broken, new, size = break_surface(structure, impact, chosen, seed, scale)
     loose = hanging(structure, new)
     faces = np.concatenate([new, loose])
@@ -111,6 +113,25 @@ def shatter(
         structure, broken, shards, {"broken off": len(loose)},
         method="surface", material=chosen, seed=seed, diagonal=size,
     )  # fmt: skip
+
+
+def _chosen(
+    structure: Structure, impact: ArrayLike, material: Material | str | Attribute
+) -> Material:
+    if isinstance(material, str):
+        return named(material)
+    if isinstance(material, Material):
+        return material
+    if material.element != "face" or material.mesh is not structure:
+        raise MeshError(f"{material!r} is no attribute of the faces of this mesh")
+    _require_triangles(structure)
+    face = nearest_face(structure, impact).face
+    known, place = list(MATERIALS.values()), material[face]
+    if not 0 <= place < len(known):
+        raise MeshError(
+            f"material {place} is none of {len(known)}: {', '.join(MATERIALS)}", faces=[face]
+        )
+    return known[int(place)]
 
 
 def in_place(

@@ -1,0 +1,396 @@
+"""Values of elements follow every edit: what they must be is told by positions and charts."""
+
+from __future__ import annotations
+
+import contextlib
+import copy
+import pickle
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+import hem
+import structures
+from hem.contract import Navigable, Structure
+from tests.structures.conftest import SURFACES, octahedron, shuffled
+from tests.structures.test_polygons import mixed
+
+COPIES: dict[str, Callable[[Structure], Structure]] = {
+    "copy": lambda s: s.copy(),
+    "copy.copy": copy.copy,
+    "deepcopy": copy.deepcopy,
+    "pickle": lambda s: pickle.loads(pickle.dumps(s)),
+}
+WITH_EDGES = [it for it in structures.NAMES if not structures.REGISTRY[it].emulated]
+NAVIGABLE = [it for it in structures.NAMES if issubclass(structures.REGISTRY[it], Navigable)]
+
+
+def plain(points: np.ndarray) -> np.ndarray:
+    """Something that is linear in the position."""
+    return points.astype(float) @ [[1, 2], [-3, 0.5], [0.25, 1]] + [5, -7]
+
+
+def begin(s: Structure) -> None:
+    """Give every vertex, and every corner, what is linear in its position."""
+    s.vertex_attribute("plain", np.float64, 2)[s.vertices()] = plain(s.points[s.vertices()])
+    corners = s.face_vertices().values
+    s.corner_attribute("plain", np.float64, 2)[s.faces()] = plain(s.points[corners])
+
+
+def assert_plain(s: Structure) -> None:
+    at = s.vertices()
+    assert np.allclose(s.vertex_attribute("plain")[at], plain(s.points[at]), atol=1e-4)
+    corners = s.face_vertices().values
+    assert np.allclose(s.corner_attribute("plain")[s.faces()], plain(s.points[corners]), atol=1e-4)
+
+
+def between(s: Structure, vertices: np.ndarray, seed: int) -> np.ndarray:
+    """A point somewhere between vertices."""
+    share = np.random.default_rng(seed).dirichlet(np.ones(len(vertices)))
+    return share @ s.points[vertices]
+
+
+def edit_much(s: Structure) -> None:
+    """Splits, singly and in batches, flips and collapses; points lie on what is split."""
+    for turn in range(4):
+        edge, face = int(s.edges()[3 * turn + 1]), int(s.faces()[turn + 2])
+        s.split_edge(edge, between(s, s.edge_vertices(edge), turn))
+        s.split_face(face, between(s, s.face_vertices(face), turn))
+    edges = s.edges()[::5]
+    s.split_edges(edges, [between(s, row, 1) for row in s.edge_vertices(edges)])
+    faces = s.faces()[::4]
+    s.split_faces(faces, [between(s, row, 2) for row in s.face_vertices(faces)])
+    s.split_all_faces()
+    for edge in s.edges()[::6].tolist():
+        with contextlib.suppress(hem.TopologyError):
+            s.flip_edge(edge)
+    s.collapse_edges(s.edges()[::7])
+    with contextlib.suppress(hem.TopologyError):
+        s.remove_vertex(int(s.vertices()[-1]))
+
+
+def test_what_is_linear_in_the_position_stays_so(s):
+    begin(s)
+    edit_much(s)
+    assert_plain(s)
+    s.compact()
+    assert_plain(s)
+    edit_much(s)
+    assert_plain(s)
+
+
+@pytest.mark.parametrize("how", COPIES)
+def test_a_copy_has_attributes_of_its_own(name: str, how: str):
+    s = structures.build(name, SURFACES["grid"]())
+    begin(s)
+    s.remove_face(int(s.faces()[5]))
+    made = COPIES[how](s)
+    edit_much(made)
+    assert_plain(made)
+    assert_plain(s)
+    made.vertex_attribute("plain")[made.vertices()] = 0
+    assert_plain(s)
+    assert [repr(it).split(",")[0] for it in made.attributes()] == [
+        repr(it).split(",")[0] for it in s.attributes()
+    ]
+
+
+def test_it_is_so_on_polygons_too():
+    s = structures.build("plankton", mixed())
+    begin(s)
+    edge, face = int(s.edges()[4]), int(s.faces()[0])
+    s.split_edge(edge, between(s, s.edge_vertices(edge), 0), triangles=False)
+    s.stellate(face)
+    assert_plain(s)
+    h = int(s.face_half_edges(7)[0])
+    kept = s.split_face(h, int(s.next(s.next(h))))
+    assert_plain(s)
+    s.merge_faces(kept)
+    assert_plain(s)
+    s.truncate_vertex(int(next(v for v in s.vertices().tolist() if not s.is_border(v))))
+    assert_plain(s)
+    s.split_all_faces()
+    assert_plain(s)
+    s.compact()
+    assert_plain(s)
+
+
+def test_a_seam_is_never_torn_or_mended(s):
+    """Every face lies in a chart; so do all its corners, whatever is done beside it."""
+    faces = s.faces()
+    middle = s.points[s.triangles()].mean(axis=1)
+    charts = (middle[:, 0] > 0).astype(np.int32) + (middle[:, 1] > 0.3)
+    chart, uv = s.face_attribute("chart", np.int32), s.corner_attribute("chart", np.float64)
+    chart[faces] = charts
+    uv[faces] = np.repeat(charts, 3)
+    assert len(set(charts.tolist())) > 1
+    edges = s.edges()[::3]
+    s.split_edges(edges, [between(s, row, 1) for row in s.edge_vertices(edges)])
+    s.split_faces(s.faces()[::3], np.zeros((len(s.faces()[::3]), 3)))
+    for edge in s.edges()[::4].tolist():
+        with contextlib.suppress(hem.TopologyError, hem.MeshError):
+            if len({int(chart[f]) for f in s.edge_faces(edge)}) == 1:
+                s.flip_edge(edge)
+    assert s.collapse_edges(s.edges()[::5]).sum() > 10
+    own = chart[s.faces()].astype(float)
+    assert np.allclose(uv[s.faces()].reshape(-1, 3), own[:, None])
+    assert {0.0, 1.0} <= set(own.tolist())
+
+
+@pytest.mark.parametrize("rule", ["copy", "default"])
+def test_what_is_not_interpolated_is_copied_or_the_default(s, rule: str):
+    kind = s.vertex_attribute("kind", np.int32, default=-1, on_split=rule)
+    kind[s.vertices()] = s.vertices()
+    edge = int(s.edges()[7])
+    ends, corners = s.edge_vertices(edge).tolist(), s.face_vertices(int(s.faces()[0])).tolist()
+    of_face = s.split_face(int(s.faces()[0]), (0, 0, 0)).vertex
+    of_edge = s.split_edge(s.find_edge(*ends), (0, 0, 0)).vertex
+    alone = s.add_vertex((1, 1, 1)).vertex
+    assert kind[of_edge] == (-1 if rule == "default" else ends[0])
+    assert kind[of_face] in ([-1] if rule == "default" else corners)
+    assert kind[alone] == -1
+
+
+def test_the_parts_of_a_face_have_what_it_had(s):
+    number = s.face_attribute("number", np.int64)
+    number[s.faces()] = 100 + s.faces()
+    place = {f: sorted(s.face_vertices(f).tolist()) for f in s.faces().tolist()}
+    made = s.split_faces(s.faces()[::2], np.zeros((len(s.faces()[::2]), 3)))
+    for v in made.tolist():
+        around = s.vertex_faces(v)
+        (whole,) = {int(it) - 100 for it in number[around]}
+        corners = {*s.face_vertices(around).values.tolist()} - {v}
+        assert corners == set(place[whole])
+    edge = int(s.edges()[0])
+    before = sorted(number[s.edge_faces(edge)].tolist())
+    v = s.split_edge(edge, (0, 0, 0)).vertex
+    assert sorted(number[s.vertex_faces(v)].tolist()) == sorted(2 * before)
+
+
+def where(s: Structure, edge: int) -> frozenset:
+    """The positions of the ends of an edge."""
+    return frozenset(map(tuple, s.points[s.edge_vertices(edge)].tolist()))
+
+
+@pytest.mark.parametrize("name", WITH_EDGES)
+@pytest.mark.parametrize("source", SURFACES)
+def test_both_parts_of_an_edge_have_what_it_had(name: str, source: str):
+    s = structures.build(name, SURFACES[source]())
+    ends = s.edge_attribute("ends", np.int64, default=-1)
+    names = {}
+    for edge in s.edges().tolist():
+        a, b = s.edge_vertices(edge).tolist()
+        names[a, b] = 1000 * a + b
+        ends[edge] = 1000 * a + b
+    chosen = s.edges()[::3]
+    rows = [tuple(row.tolist()) for row in s.edge_vertices(chosen)]
+    made = s.split_edges(chosen, [s.points[list(row)].mean(axis=0) for row in rows])
+    for v, (a, b) in zip(made.tolist(), rows, strict=True):
+        assert [ends[s.find_edge(v, w)] for w in (a, b)] == [names.pop((a, b))] * 2
+    for (a, b), value in names.items():
+        assert ends[s.find_edge(a, b)] == value
+    new = {s.find_edge(int(v), int(w)) for v in made for w in s.vertex_vertices(int(v))}
+    assert sum(ends[e] == -1 for e in new) == len(new) - 2 * len(made)
+    before = {where(s, e): ends[e] for e in s.edges().tolist()}
+    s.remove_face(int(s.faces()[0]))
+    s.compact()
+    for e in s.edges().tolist():
+        assert ends[e] == before[where(s, e)]
+
+
+@pytest.mark.parametrize("name", NAVIGABLE)
+def test_half_edges_keep_their_direction_when_they_are_split(name: str):
+    s = structures.build(name, SURFACES["grid"]())
+    way = s.half_edge_attribute("way", np.int64, default=-1)
+    for h in s.half_edges().tolist():
+        way[h] = 1000 * s.origin(h) + s.tip(h)
+    for edge in s.edges()[::4].tolist():
+        a, b = s.edge_vertices(edge).tolist()
+        v = s.split_edge(edge, (0, 0, 0)).vertex
+        around = {(s.origin(h), s.tip(h)): way[h] for h in s.half_edges().tolist()}
+        for first, second in ((a, b), (b, a)):
+            for part in ((first, v), (v, second)):
+                assert around.get(part, 1000 * first + second) == 1000 * first + second
+
+
+def test_an_edit_names_the_parents_of_what_it_made(s):
+    edge, face = int(s.edges()[9]), int(s.faces()[1])
+    ends, beside = s.edge_vertices(edge).tolist(), s.edge_faces(edge).tolist()
+    corners = s.face_vertices(face).tolist()
+    edit = s.split_edge(edge, (0, 0, 0))
+    assert edit.vertex_parents.to_list() == [ends]
+    assert sorted(edit.face_parents.tolist()) == sorted(beside)
+    face = next(f for f in s.faces().tolist() if f not in beside)
+    corners = s.face_vertices(face).tolist()
+    edit = s.split_face(face, (0, 0, 0))
+    assert sorted(edit.vertex_parents[0].tolist()) == sorted(corners)
+    assert edit.face_parents.tolist() == [face, face]
+    assert s.add_vertex((0, 0, 0)).vertex_parents.to_list() == [[]]
+    assert len(s.flip_edge(next(e for e in s.edges() if s.can_flip_edge(e))).face_parents) == 0
+
+
+def test_a_mesh_without_elements_has_attributes(name: str):
+    s = structures.build(name, hem.TriangleMesh(np.zeros((0, 3)), np.zeros((0, 3), int)))
+    weight, uv = s.vertex_attribute("weight", default=2), s.corner_attribute("uv", shape=2)
+    assert weight[s.vertices()].shape == (0,)
+    assert uv[s.faces()].shape == (0, 2)
+    made = [s.add_vertex(p).vertex for p in np.eye(3)]
+    face = s.add_face(*made).created_faces[0]
+    assert weight[made].tolist() == [2, 2, 2]
+    uv[face] = [(0, 0), (1, 0), (0, 1)]
+    assert uv[face].tolist() == [[0, 0], [1, 0], [0, 1]]
+    s.compact()
+    assert uv[0].shape == (3, 2)
+
+
+def test_a_name_is_one_attribute(s):
+    weight = s.vertex_attribute("weight", np.float32, shape=(3,))
+    assert s.vertex_attribute("weight") is weight
+    assert s.vertex_attribute("weight", np.float32, shape=3) is weight
+    assert s.face_attribute("weight") is not weight
+    with pytest.raises(hem.MeshError, match="already"):
+        s.vertex_attribute("weight", np.int8)
+    s.remove_attribute(weight)
+    with pytest.raises(hem.MeshError, match="no attribute of this mesh"):
+        s.remove_attribute(weight)
+    s.split_face(int(s.faces()[0]), (0, 0, 0))
+    assert s.vertex_attribute("weight", np.int8) is not weight
+
+
+@pytest.mark.parametrize("wrong", [-1, 10**6, [0, 10**6], 1.5, [[0]], None, "a"])
+def test_what_names_no_live_element_has_no_value(s, wrong):
+    for attribute in (s.vertex_attribute("a"), s.face_attribute("a"), s.corner_attribute("a")):
+        with pytest.raises(hem.MeshError):
+            attribute[wrong]
+        with pytest.raises(hem.MeshError):
+            attribute[wrong] = 1
+    face = int(s.faces()[3])
+    s.remove_face(face)
+    with pytest.raises(hem.MeshError, match="face"):
+        s.face_attribute("a")[face]
+
+
+@pytest.mark.parametrize(
+    ("made", "words"),
+    [
+        ({"dtype": np.int32, "on_split": "interpolate"}, "cannot be interpolated"),
+        ({"on_split": "mean"}, "on_split is one of"),
+        ({"shape": (2,), "default": (1, 2, 3)}, "vertex attribute"),
+        ({"dtype": "nonsense"}, "vertex attribute"),
+    ],
+)
+def test_what_cannot_be_an_attribute_is_refused(name: str, made: dict, words: str):
+    s = structures.build(name, octahedron())
+    with pytest.raises(hem.MeshError, match=words):
+        s.vertex_attribute("weight", **made)
+    assert not s.attributes()
+
+
+def test_edges_that_are_not_recorded_have_none():
+    for name in set(structures.NAMES) - set(WITH_EDGES):
+        with pytest.raises(hem.MeshError, match="records no edges"):
+            structures.build(name, octahedron()).edge_attribute("crease")
+
+
+def test_what_is_restored_has_its_values_again(s):
+    begin(s)
+    s.reserve(50)
+    before = s.snapshot()
+    late = s.face_attribute("late", default=3)
+    late[s.faces()] = 4
+    edge = int(s.edges()[0])
+    s.split_edge(edge, between(s, s.edge_vertices(edge), 0))
+    s.vertex_attribute("plain")[s.vertices()] = 0
+    s.restore(before)
+    assert_plain(s)
+    assert set(late[s.faces()].tolist()) == {3}
+    s.split_face(int(s.faces()[0]), between(s, s.face_vertices(int(s.faces()[0])), 0))
+    assert_plain(s)
+
+
+def test_values_are_uploaded_where_it_is_asked(s):
+    color = s.vertex_attribute("color", shape=3)
+    uploads: list[hem.Upload] = []
+    render = hem.RenderMesh(s, [color])
+    render.subscribe(uploads.append)
+    color[[3, 60]] = (1, 0, 0)
+    assert uploads[-1].attributes["color"].tolist() == [[3, 4], [60, 61]]
+    assert not len(uploads[-1].vertices)
+    v = s.split_face(int(s.faces()[0]), (0, 0, 0)).vertex
+    (begin, end), *_ = uploads[-1].attributes["color"].tolist()
+    assert begin <= v < end
+    with render.transaction():
+        color[3] = (0, 1, 0)
+        color[4] = (0, 1, 0)
+    assert uploads[-1].attributes["color"].tolist() == [[3, 5]]
+    assert len(render.attributes["color"].values) == len(render.points) // 3
+    count = len(uploads)
+    render.close()
+    color[5] = (1, 1, 1)
+    assert len(uploads) == count
+    with pytest.raises(hem.MeshError, match="no attribute of vertices"):
+        hem.RenderMesh(s, [s.face_attribute("color")])
+
+
+def test_seams_survive_the_way_to_a_renderer_and_back(s):
+    uv = s.corner_attribute("uv", np.float64, 2)
+    rng = np.random.default_rng(3)
+    uv[s.faces()] = rng.integers(0, 2, (s.n_faces, 3, 2))
+    s.collapse_edges(s.edges()[::9])
+    points, indices, values = hem.split_at_seams(uv)
+    assert len(points) == 3 * len(values)
+    mesh, corners = hem.mesh_from_render(points, indices, values=values)
+    back = structures.build(s.name, mesh)
+    again = back.corner_attribute("uv", np.float64, 2)
+    again[back.faces()] = corners
+    assert told(back, again) == told(s, uv)
+    assert len(values) > len(mesh.points)
+    with pytest.raises(hem.MeshError, match="values for"):
+        hem.mesh_from_render(points, indices, values=values[1:])
+
+
+def told(s: Structure, uv) -> list:
+    """Every face as positions and values of its corners, from the smallest on."""
+    found = []
+    for row, values in zip(s.triangles(), uv[s.faces()].reshape(-1, 3, 2), strict=True):
+        corners = [(*s.points[v].tolist(), *at.tolist()) for v, at in zip(row, values, strict=True)]
+        k = corners.index(min(corners))
+        found.append(corners[k:] + corners[:k])
+    return sorted(found)
+
+
+def test_removing_a_vertex_removes_its_faces_and_no_other(s):
+    for v in s.vertices()[::9].tolist():
+        before = {f: s.face_vertices(f).tolist() for f in s.faces().tolist()}
+        kept = {f: row for f, row in before.items() if v not in row}
+        try:
+            edit = s.remove_vertex(v)
+        except hem.TopologyError:
+            assert {f: s.face_vertices(f).tolist() for f in s.faces().tolist()} == before
+            continue
+        assert edit.removed_vertices.tolist() == [v]
+        assert edit.removed_faces.tolist() == sorted(set(before) - set(kept))
+        assert {f: s.face_vertices(f).tolist() for f in s.faces().tolist()} == kept
+        assert v not in s.vertices()
+        s.validate()
+    alone = s.add_vertex((0, 0, 0)).vertex
+    assert s.remove_vertex(alone).removed_vertices.tolist() == [alone]
+    with pytest.raises(hem.TopologyError, match="no such vertex"):
+        s.remove_vertex(alone)
+    s.validate()
+
+
+def test_an_interrupted_edit_leaves_rows_for_all(name: str):
+    s = structures.build(name, shuffled(hem.generate("torus", 100)))
+    weight = s.vertex_attribute("weight", default=1)
+
+    def interrupt(edit: hem.Edit) -> None:
+        raise KeyboardInterrupt
+
+    s._subscribers.insert(0, interrupt)
+    with pytest.raises(KeyboardInterrupt):
+        s.split_face(0, (0, 0, 0))
+    s._subscribers.remove(interrupt)
+    assert weight[s.vertices()].tolist() == [1] * s.n_vertices
+    assert len(weight.values) == len(s.points)
