@@ -313,7 +313,7 @@ class Plankton(Navigable):
         """Cut a corner off: a face of n corners takes the place of a vertex of n edges -> it.
 
         The new vertices lie at a fraction of the way along the edges. n - 1 vertices, n edges and 1
-        face more. Refused at the border, and for fewer than three edges. One edit. O(corners).
+        face more. Refused at the border, and for fewer than three edges. Two edits. O(corners).
         """
         if not 0 < fraction < 1:
             raise MeshError(f"a vertex is truncated at a fraction between 0 and 1, not {fraction}")
@@ -330,9 +330,10 @@ class Plankton(Navigable):
         before = self._half_edges[spokes, PREVIOUS]  # from the next new vertex to this one
         ends = np.stack([self._half_edges[spokes, NEXT], before, before], axis=1)
         _, second = self._run("cut_across", ends.astype(np.int64), arguments.NO_POINT)
-        args = arguments.rows([vertex])
-        found, third = self._run("erase_vertex", args, arguments.NO_POINT)
-        self._publish(Edit("truncate_vertex", -1, np.concatenate([first, second, third])))
+        # Told before the old vertex goes, so that what follows can interpolate from it.
+        self._publish(Edit("truncate_vertex", -1, np.concatenate([first, second])))
+        found, third = self._run("erase_vertex", arguments.rows([vertex]), arguments.NO_POINT)
+        self._publish(Edit("truncate_vertex", -1, third))
         return int(found[0])
 
     # Behind the contract ---------------------------------------------------------------------

@@ -18,6 +18,7 @@ KINDS = (
     *("split_edge", "split_face", "collapse_edge", "collapse_edge", "collapse_edge", "flip_edge"),
     *("flip_edge", "remove_face", "remove_faces", "remove_vertex", "add_face", "move_vertex"),
 )
+BATCHES = ("split_edges", "split_faces", "collapse_edges", "move_vertices", "split_all_faces")
 LISTS = ("created_vertices", "changed_vertices", "removed_vertices")
 LISTS += ("created_faces", "changed_faces", "removed_faces")
 
@@ -52,9 +53,16 @@ def aim(s: Structure, action: Action) -> Aimed | None:
     if not len(faces):
         return None
     face = int(faces[first % len(faces)])
-    if kind == "remove_faces":
-        chosen = faces[(first + second * np.arange(1 + third % 12)) % len(faces)]
+    if kind == "split_all_faces":
+        return Aimed(kind, (), -1, point) if len(faces) < 100 else None
+    if kind in ("remove_faces", "split_faces", "move_vertices"):
+        those = vertices if kind == "move_vertices" else faces
+        chosen = those[(first + second * np.arange(1 + third % 12)) % len(those)]
         return Aimed(kind, tuple(np.unique(chosen).tolist()), -1, point)
+    if kind in ("split_edges", "collapse_edges"):
+        return Aimed(
+            kind, _apart(s, faces[(first + second * np.arange(9)) % len(faces)]), -1, point
+        )
     if kind in ("split_face", "remove_face"):
         return Aimed(kind, (face,), -1, point)
     corners = s.face_vertices(face).tolist()
@@ -82,10 +90,21 @@ def _corners(s: Structure, action: Action) -> tuple[int, ...]:
     return tuple(int(vertices[it % len(vertices)]) for it in (first, second, third))
 
 
+def _apart(s: Structure, faces: np.ndarray) -> tuple[int, ...]:
+    """The first two corners of some faces, one pair after the other; no vertex comes twice."""
+    found: list[int] = []
+    for a, b, _ in s.face_vertices(faces).values.reshape(-1, 3).tolist():
+        if not {a, b} & set(found):
+            found += [a, b]
+    return tuple(found)
+
+
 def perform(s: Structure, aimed: Aimed) -> Any:
     """Do it -> what the edit names, or why it was refused. The predicates must agree."""
     kind, elements, keep, point = aimed
     try:
+        if kind in BATCHES:
+            return _in_one_go(s, kind, elements, point)
         if kind == "remove_faces":
             edit = _told(s, lambda: s.remove_faces(elements))
         elif kind == "move_vertex" or kind == "split_face":
@@ -98,6 +117,20 @@ def perform(s: Structure, aimed: Aimed) -> Any:
         return refusal.reason
     parents = edit.vertex_parents.to_list(), edit.face_parents.tolist()
     return edit.vertex, *(getattr(edit, name).tolist() for name in LISTS), parents
+
+
+def _in_one_go(s: Structure, kind: str, elements: tuple[int, ...], point: Any) -> Any:
+    """A batch -> what it gives back, as lists."""
+    if kind == "split_all_faces":
+        return kind, s.split_all_faces().tolist()
+    handles: Any = elements
+    if kind in ("split_edges", "collapse_edges"):
+        pairs = zip(elements[::2], elements[1::2], strict=True)
+        handles = [s.find_edge(a, b) for a, b in pairs]
+    if kind == "collapse_edges":
+        return kind, s.collapse_edges(handles).tolist()
+    made = getattr(s, kind)(handles, [point] * len(handles))
+    return kind, [] if made is None else made.tolist()
 
 
 def _told(s: Structure, operate: Callable[[], None]) -> hem.Edit:
