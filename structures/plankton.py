@@ -40,7 +40,7 @@ from hem.authoring import (
     require_one_fan,
     require_one_loop,
 )
-from hem.contract import Claims, Look, Navigable, arguments
+from hem.contract import Claims, Look, Navigable, arguments, tell_all
 from hem.edit import Edit
 from hem.errors import MeshError, TopologyError
 from hem.meshes import PolygonMesh, TriangleMesh
@@ -313,7 +313,7 @@ class Plankton(Navigable):
         """Cut a corner off: a face of n corners takes the place of a vertex of n edges -> it.
 
         The new vertices lie at a fraction of the way along the edges. n - 1 vertices, n edges and 1
-        face more. Refused at the border, and for fewer than three edges. Two edits. O(corners).
+        face more. Refused at the border, and for fewer than three edges. One edit. O(corners).
         """
         if not 0 < fraction < 1:
             raise MeshError(f"a vertex is truncated at a fraction between 0 and 1, not {fraction}")
@@ -330,10 +330,12 @@ class Plankton(Navigable):
         before = self._half_edges[spokes, PREVIOUS]  # from the next new vertex to this one
         ends = np.stack([self._half_edges[spokes, NEXT], before, before], axis=1)
         _, second = self._run("cut_across", ends.astype(np.int64), arguments.NO_POINT)
-        # Told before the old vertex goes, so that what follows can interpolate from it.
-        self._publish(Edit("truncate_vertex", -1, np.concatenate([first, second])))
+        self._carry_on(Edit("", -1, np.concatenate([first, second])))  # from a vertex still there
         found, third = self._run("erase_vertex", arguments.rows([vertex]), arguments.NO_POINT)
-        self._publish(Edit("truncate_vertex", -1, third))
+        self._carry_on(Edit("", -1, third))
+        tell_all(
+            self._subscribers, Edit("truncate_vertex", -1, np.concatenate([first, second, third]))
+        )
         return int(found[0])
 
     # Behind the contract ---------------------------------------------------------------------

@@ -47,7 +47,7 @@ class Algorithms(Operating, abstract=True):
 
     def tell(self, kind: str, touched: Array) -> None:
         """Tell subscribers of one edit, by the log of what an algorithm touched."""
-        if self._subscribers:
+        if self._subscribers or self._attributes:
             self._publish(Edit(kind, -1, touched))
 
     @classmethod

@@ -451,7 +451,15 @@ class Attributed(Following, abstract=True):
         if self._attributes.get(key) is not attribute:
             raise MeshError(f"{attribute!r} is no attribute of this mesh")
         del self._attributes[key]
-        self._subscribers.remove(attribute.follow)
+
+    def _publish(self, edit: Edit) -> None:
+        self._carry_on(edit)
+        super()._publish(edit)
+
+    def _carry_on(self, edit: Edit) -> None:
+        """Have the attributes follow, before anyone looks at them."""
+        for attribute in self._attributes.values():
+            attribute.follow(edit)
 
     @cached_property
     def _attributes(self) -> dict[tuple[str, str], Attribute]:
@@ -479,7 +487,6 @@ class Attributed(Following, abstract=True):
         if known is None:
             made = kind(self, element, name, value, on_split)
             self._attributes[element, name] = made
-            self._subscribers.insert(0, made.follow)  # before those who look at it
             return made
         if (known.default.dtype, known.default.shape) != (value.dtype, value.shape):
             raise MeshError(

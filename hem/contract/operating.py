@@ -115,7 +115,7 @@ class Operating(Attributed, abstract=True):
             log = self._log
             touched = log[1 : log[0] + 1].tolist()
             edit = Edit(operation, vertex if names_a_vertex else -1, touched)
-            if self._subscribers:
+            if self._subscribers or self._attributes:
                 self._publish(edit)
             return edit
 
