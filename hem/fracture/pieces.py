@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 from hem.arrays import Floats, Indices
 from hem.fracture.mass import Mass, of_bodies, of_sheets
@@ -36,6 +37,11 @@ class Fracture:
     """Of the bounding box of what was struck; what the material's lengths are parts of."""
 
     find_neighbors: Callable[[], Indices]
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Pickled with all that is made when it is asked for."""
+        made = {"neighbors": self.neighbors, "find_neighbors": None}
+        return self.__dict__ | {"shards": [*self.shards], "rest": [*self.rest]} | made
 
     @property
     def closed(self) -> bool:

@@ -13,7 +13,7 @@ import pytest
 import hem
 import structures
 from hem.contract import Navigable, Structure
-from tests.structures.conftest import SURFACES, octahedron, shuffled
+from tests.structures.conftest import octahedron, shuffled
 from tests.structures.test_polygons import mixed
 
 COPIES: dict[str, Callable[[Structure], Structure]] = {
@@ -24,6 +24,17 @@ COPIES: dict[str, Callable[[Structure], Structure]] = {
 }
 WITH_EDGES = [it for it in structures.NAMES if not structures.REGISTRY[it].emulated]
 NAVIGABLE = [it for it in structures.NAMES if issubclass(structures.REGISTRY[it], Navigable)]
+
+
+SURFACES = {
+    "closed": lambda: shuffled(hem.generate("torus", 48)),
+    "open": lambda: shuffled(hem.generate("grid", 49)),
+}
+
+
+@pytest.fixture(params=SURFACES)
+def s(request: pytest.FixtureRequest, name: str) -> Structure:
+    return structures.build(name, SURFACES[request.param]())
 
 
 def plain(points: np.ndarray) -> np.ndarray:
@@ -82,7 +93,7 @@ def test_what_is_linear_in_the_position_stays_so(s):
 
 @pytest.mark.parametrize("how", COPIES)
 def test_a_copy_has_attributes_of_its_own(name: str, how: str):
-    s = structures.build(name, SURFACES["grid"]())
+    s = structures.build(name, SURFACES["open"]())
     begin(s)
     s.remove_face(int(s.faces()[5]))
     made = COPIES[how](s)
@@ -201,7 +212,7 @@ def test_both_parts_of_an_edge_have_what_it_had(name: str, source: str):
 
 @pytest.mark.parametrize("name", NAVIGABLE)
 def test_half_edges_keep_their_direction_when_they_are_split(name: str):
-    s = structures.build(name, SURFACES["grid"]())
+    s = structures.build(name, SURFACES["open"]())
     way = s.half_edge_attribute("way", np.int64, default=-1)
     for h in s.half_edges().tolist():
         way[h] = 1000 * s.origin(h) + s.tip(h)
@@ -314,8 +325,8 @@ def test_values_are_uploaded_where_it_is_asked(s):
     uploads: list[hem.Upload] = []
     render = hem.RenderMesh(s, [color])
     render.subscribe(uploads.append)
-    color[[3, 60]] = (1, 0, 0)
-    assert uploads[-1].attributes["color"].tolist() == [[3, 4], [60, 61]]
+    color[[3, 47]] = (1, 0, 0)
+    assert uploads[-1].attributes["color"].tolist() == [[3, 4], [47, 48]]
     assert not len(uploads[-1].vertices)
     v = s.split_face(int(s.faces()[0]), (0, 0, 0)).vertex
     (begin, end), *_ = uploads[-1].attributes["color"].tolist()

@@ -48,7 +48,7 @@ ACTIONS = st.lists(
 
 
 @pytest.mark.parametrize("start", STARTS)
-@settings(max_examples=25, deadline=None, derandomize=True)
+@settings(max_examples=12, deadline=None, derandomize=True)
 @given(actions=ACTIONS)
 def test_anything_leaves_every_structure_sound_and_with_the_same_mesh(start, actions):
     world = World(STARTS[start]())

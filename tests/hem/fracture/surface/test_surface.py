@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import hashlib
+import pickle
 from dataclasses import replace
 
 import numpy as np
@@ -275,3 +276,30 @@ def test_faces_without_area_are_no_trouble_to_find_others():
     s = structures.build("indexed", flat)
     for at, face in (((5.2, 0.2, 0.5), 4), ((-1, 0, 1), 0), ((1.5, -1, 0), 2)):
         assert scanned(s, at).face == face
+
+
+@pytest.mark.parametrize("name", structures.NAMES)
+def test_the_face_that_is_hit_says_of_what_material_it_is(name):
+    at = (3.2, 4.1, 0)
+    s = structures.build(name, sheet())
+    made_of = s.face_attribute("material", np.int8)
+    made_of[s.faces()] = NAMES.index("wood")
+    made_of[nearest_face(s, at).face] = NAMES.index("glass")
+    expected = shatter(structures.build(name, sheet()), at, "glass", 7)
+    broken = shatter(s, at, made_of, 7)
+    assert broken.material == MATERIALS["glass"]
+    assert np.array_equal(corners(broken.shards), corners(expected.shards))
+    assert set(made_of[s.faces()].tolist()) <= {NAMES.index("wood"), NAMES.index("glass")}
+    made_of[s.faces()] = 99
+    with pytest.raises(hem.MeshError, match="material 99 is none of"):
+        shatter(s, (7.5, 7.1, 0), made_of)
+    with pytest.raises(hem.MeshError, match="no attribute of the faces of this mesh"):
+        shatter(structures.build(name, sheet()), at, made_of)
+
+
+def test_a_fracture_can_be_pickled():
+    broken = shatter(structures.build("half_edge", sheet()), (3.2, 4.1, 0), "glass", 7)
+    again = pickle.loads(pickle.dumps(broken))
+    assert np.array_equal(corners(again.shards), corners(broken.shards))
+    assert np.array_equal(again.neighbors, broken.neighbors)
+    assert again.counts == broken.counts
