@@ -95,7 +95,7 @@ def test_what_is_linear_in_the_position_stays_so(s):
 def test_a_copy_has_attributes_of_its_own(name: str, how: str):
     s = structures.build(name, SURFACES["open"]())
     begin(s)
-    s.remove_face(int(s.faces()[5]))
+    s.collapse_edges(s.edges()[::9])
     made = COPIES[how](s)
     edit_much(made)
     assert_plain(made)
@@ -179,6 +179,15 @@ def test_the_parts_of_a_face_have_what_it_had(s):
     assert sorted(number[s.vertex_faces(v)].tolist()) == sorted(2 * before)
 
 
+def remove_one(s: Structure) -> int:
+    """Take away the first face that may be."""
+    for face in s.faces().tolist():
+        with contextlib.suppress(hem.TopologyError):
+            s.remove_face(face)
+            return face
+    raise AssertionError("no face can be taken away")
+
+
 def where(s: Structure, edge: int) -> frozenset:
     """The positions of the ends of an edge."""
     return frozenset(map(tuple, s.points[s.edge_vertices(edge)].tolist()))
@@ -204,7 +213,7 @@ def test_both_parts_of_an_edge_have_what_it_had(name: str, source: str):
     new = {s.find_edge(int(v), int(w)) for v in made for w in s.vertex_vertices(int(v))}
     assert sum(ends[e] == -1 for e in new) == len(new) - 2 * len(made)
     before = {where(s, e): ends[e] for e in s.edges().tolist()}
-    s.remove_face(int(s.faces()[0]))
+    remove_one(s)
     s.compact()
     for e in s.edges().tolist():
         assert ends[e] == before[where(s, e)]
@@ -276,8 +285,7 @@ def test_what_names_no_live_element_has_no_value(s, wrong):
             attribute[wrong]
         with pytest.raises(hem.MeshError):
             attribute[wrong] = 1
-    face = int(s.faces()[3])
-    s.remove_face(face)
+    face = remove_one(s)
     with pytest.raises(hem.MeshError, match="face"):
         s.face_attribute("a")[face]
 

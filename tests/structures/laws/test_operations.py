@@ -36,20 +36,19 @@ STARTS = {
     "high valence": lambda: shuffled(hem.generate("cone", 40)),
 }
 
-ACTIONS = st.lists(
-    st.builds(
-        Action,
-        st.sampled_from((*KINDS, *BATCHES, *HANDLING)),
-        *(st.integers(0, 5039) for _ in range(3)),
-    ),
-    min_size=1,
-    max_size=25,
-)
+
+def histories(*kinds: str) -> st.SearchStrategy[list[Action]]:
+    """Some actions of these kinds."""
+    numbers = (st.integers(0, 5039) for _ in range(3))
+    return st.lists(st.builds(Action, st.sampled_from(kinds), *numbers), min_size=1, max_size=25)
+
+
+ACTIONS = histories(*KINDS, *BATCHES)
 
 
 @pytest.mark.parametrize("start", STARTS)
 @settings(max_examples=12, deadline=None, derandomize=True)
-@given(actions=ACTIONS)
+@given(actions=histories(*KINDS, *BATCHES, *HANDLING))
 def test_anything_leaves_every_structure_sound_and_with_the_same_mesh(start, actions):
     world = World(STARTS[start]())
     for action in actions:
