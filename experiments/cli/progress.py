@@ -28,6 +28,7 @@ class StudyProgress(study.Observer):
     def __init__(self, bars: Progress, done: dict[Job, int]) -> None:
         self.bars, self.done = bars, done
         self.begin, self.before = perf_counter(), sum(done.values())
+        self.first = 0.0  # when measuring began, beside compiling or after it
         self.total = sum(len(job.ids) for job in done)
         self.compiling = bars.add_task("compiling", total=None, visible=False)
         self.measuring = bars.add_task("", start=False, total=self.total, completed=self.before)
@@ -36,13 +37,12 @@ class StudyProgress(study.Observer):
         """Move the bar of compiling."""
         self.bars.update(self.compiling, total=total, completed=done, visible=done < total)
         self._print(f"compiled {structure} ({done} of {total})")
-        if done == total:
-            self.begin = perf_counter()
 
     def measured(self, job: Job, done: int) -> None:
         """Move the bar of the cases; a line is for the last case of a job."""
         self.done[job] = done
-        finished, seconds = sum(self.done.values()), perf_counter() - self.begin
+        self.first = self.first or perf_counter()
+        finished, seconds = sum(self.done.values()), perf_counter() - self.first
         self.bars.start_task(self.measuring)
         self.bars.update(self.measuring, completed=finished, description=str(job))
         if done == len(job.ids):
