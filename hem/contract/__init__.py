@@ -19,13 +19,13 @@
 
 from hem.authoring import ELEMENTS, OPERATIONS, QUERIES, REFERENCE_TYPES, Query
 from hem.contract import arguments
-from hem.contract.algorithms import Algorithm
 from hem.contract.attributes import Attribute
 from hem.contract.description import Claims, Described, Look
 from hem.contract.elements import HANDLE_TYPES
 from hem.contract.following import tell_all
 from hem.contract.measuring import Prepared
 from hem.contract.navigation import STEPS, Navigable
+from hem.contract.operating import Algorithm
 from hem.contract.packed import PackedEdges
 from hem.contract.removal import Remaining, remaining
 from hem.contract.structure import Structure

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from hem.arrays import Array, Bools, Handles
 from hem.authoring import ENTRIES, SIDES, Refusal, compacted
 from hem.contract import arguments
-from hem.contract.algorithms import Algorithms
+from hem.contract.operating import Algorithms
 from hem.contract.removal import Removal, remaining, removing, vanishing_edges
 from hem.edit import Edit, Remapping
 from hem.engine import PERSIST
