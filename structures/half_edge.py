@@ -27,7 +27,6 @@ from typing import NamedTuple, Self
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
 from hem.arrays import Array
 from hem.authoring import (
@@ -41,23 +40,18 @@ from hem.authoring import (
     C,
     D,
     Field,
-    append_face,
-    circulator,
     counted,
-    edges_at_both_ends,
-    found_by_steps,
-    half_edge_column,
     in_slices,
-    joined_by_steps,
     kernel,
-    leaving,
     live,
     pair_half_edges,
     require,
     require_distinct_edges,
     require_edge_count,
+    require_of_vertices,
     require_one_fan,
-    within,
+    steps,
+    walks,
 )
 from hem.contract import Look, Navigable
 from hem.meshes import TriangleMesh
@@ -75,6 +69,27 @@ class HalfEdgeRecords(NamedTuple):
     counts: Array  # how many of them there are, see hem.authoring.kernels
 
 
+# Steps from a half-edge: four are recorded, the others follow ------------------------------------
+
+origin, face = steps.half_edge_column(ORIGIN), steps.half_edge_column(FACE)
+following, twin = steps.half_edge_column(NEXT), steps.half_edge_column(TWIN)
+previous = steps.then(following, following)
+tip, apex = steps.then(following, origin), steps.then(previous, origin)
+edge_of = steps.smaller_of_twins(twin)
+
+STEPS = {
+    "next": following,
+    "previous": previous,
+    "twin": twin,
+    "origin": origin,
+    "tip": tip,
+    "face": face,
+    "edge": edge_of,
+    "vertex_half_edge": steps.leaving,
+    "face_half_edge": steps.within,
+}
+
+
 @kernel
 def clockwise(m: HalfEdgeRecords, h: int, v: int) -> int:
     """The next half-edge that leaves v."""
@@ -83,186 +98,47 @@ def clockwise(m: HalfEdgeRecords, h: int, v: int) -> int:
 
 
 @kernel
-def previous(m: HalfEdgeRecords, h: int) -> int:
-    """The half-edge before h in its face."""
-    return m.half_edge[m.half_edge[h, NEXT], NEXT]
-
-
-@kernel
 def counterclockwise(m: HalfEdgeRecords, h: int, v: int) -> int:
     """The half-edge that leaves v before h."""
     return m.half_edge[previous(m, h), TWIN]
 
 
-outgoing = circulator(clockwise, counterclockwise)
-
-
 @kernel
-def edge_of(m: HalfEdgeRecords, h: int) -> int:
-    """The name of h's edge: the smaller of its two half-edges."""
+def across(m: HalfEdgeRecords, h: int) -> int:
+    """The face beyond h, or -1."""
     twin = m.half_edge[h, TWIN]
-    return h if twin < 0 else min(h, twin)
+    return m.half_edge[twin, FACE] if twin >= 0 else -1
 
 
-@kernel
-def vertex_vertices(m: HalfEdgeRecords, v: int, out: Array) -> int:
-    """Cost O(n_ev)."""
-    count, closed = outgoing(m, m.vertex_half_edge[v], v, out)
-    last = out[count - 1]
-    for i in range(count):
-        out[i] = m.half_edge[m.half_edge[out[i], NEXT], ORIGIN]
-    if closed or count == 0:
-        return count
-    out[count] = m.half_edge[previous(m, last), ORIGIN]
-    return count + 1
+# The nine queries: O(1), those of a vertex and edge_edges O(n_ev) ---------------------------------
 
+outgoing = walks.from_vertex(steps.leaving, walks.circulator(clockwise, counterclockwise))
 
-@kernel
-def vertex_edges(m: HalfEdgeRecords, v: int, out: Array) -> int:
-    """Cost O(n_ev)."""
-    count, closed = outgoing(m, m.vertex_half_edge[v], v, out)
-    last = out[count - 1]
-    for i in range(count):
-        out[i] = edge_of(m, out[i])
-    if closed or count == 0:
-        return count
-    out[count] = previous(m, last)
-    return count + 1
-
-
-@kernel
-def vertex_faces(m: HalfEdgeRecords, v: int, out: Array) -> int:
-    """Cost O(n_ev)."""
-    count, _ = outgoing(m, m.vertex_half_edge[v], v, out)
-    for i in range(count):
-        out[i] = m.half_edge[out[i], FACE]
-    return count
-
-
-@kernel
-def edge_vertices(m: HalfEdgeRecords, e: int, out: Array) -> int:
-    """Cost O(1)."""
-    a, b = m.half_edge[e, ORIGIN], m.half_edge[m.half_edge[e, NEXT], ORIGIN]
-    out[0], out[1] = min(a, b), max(a, b)
-    return 2
-
-
-edge_edges = edges_at_both_ends(edge_vertices, vertex_edges, edge_of)
-
-
-@kernel
-def edge_faces(m: HalfEdgeRecords, e: int, out: Array) -> int:
-    """Cost O(1)."""
-    out[0] = m.half_edge[e, FACE]
-    twin = m.half_edge[e, TWIN]
-    if twin < 0:
-        return 1
-    out[1] = m.half_edge[twin, FACE]
-    return 2
-
-
-@kernel
-def face_vertices(m: HalfEdgeRecords, f: int, out: Array) -> int:
-    """Cost O(1)."""
-    h = m.face_half_edge[f]
-    for i in range(3):
-        out[i] = m.half_edge[h, ORIGIN]
-        h = m.half_edge[h, NEXT]
-    return 3
-
-
-@kernel
-def face_edges(m: HalfEdgeRecords, f: int, out: Array) -> int:
-    """Cost O(1)."""
-    h = m.face_half_edge[f]
-    for i in range(3):
-        out[i] = edge_of(m, h)
-        h = m.half_edge[h, NEXT]
-    return 3
-
-
-@kernel
-def face_faces(m: HalfEdgeRecords, f: int, out: Array) -> int:
-    """Cost O(1)."""
-    h, count = m.face_half_edge[f], 0
-    for _ in range(3):
-        twin = m.half_edge[h, TWIN]
-        if twin >= 0:
-            count = append_face(out, count, m.half_edge[twin, FACE])
-        h = m.half_edge[h, NEXT]
-    return count
+vertex_vertices = walks.each_and_last(outgoing, tip, apex)
+vertex_edges = walks.each_and_last(outgoing, edge_of, previous)  # at the border it is the name
+vertex_faces = walks.each(outgoing, face)
+edge_vertices = steps.ends(origin, tip)
+edge_edges = walks.edges_at_both_ends(edge_vertices, vertex_edges, edge_of)
+edge_faces = steps.faces_beside(face, across)
+face_vertices = walks.each_side(steps.within, following, origin)
+face_edges = walks.each_side(steps.within, following, edge_of)
+face_faces = walks.faces_across(steps.within, following, across)
 
 
 # What operations need to know, and what they change (see hem.authoring.operations) --------------
 
-
-@kernel
-def face_exists(m: HalfEdgeRecords, f: int) -> bool:
-    """Whether f is a live face."""
-    return 0 <= f < m.counts[FACE_END] and m.face_half_edge[f] >= 0
-
-
-@kernel
-def edge_exists(m: HalfEdgeRecords, e: int) -> bool:
-    """Whether e is a live half-edge."""
-    return 0 <= e < m.counts[EDGE_END] and m.half_edge[e, FACE] >= 0
-
-
-@kernel
-def tip(m: HalfEdgeRecords, h: int) -> int:
-    """The vertex where h ends."""
-    return m.half_edge[m.half_edge[h, NEXT], ORIGIN]
-
-
-@kernel
-def left_and_right(m: HalfEdgeRecords, e: int) -> tuple[int, int]:
-    """The half-edges of e: first the one that runs from its smaller to its larger vertex."""
-    twin = m.half_edge[e, TWIN]
-    return (e, twin) if m.half_edge[e, ORIGIN] < tip(m, e) else (twin, e)
-
-
-@kernel
-def diamond(m: HalfEdgeRecords, e: int, at: Array) -> int:
-    """Cost O(1)."""
-    h, twin = left_and_right(m, e)
-    edge_vertices(m, e, at)
-    at[LEFT], at[RIGHT], at[C], at[D] = -1, -1, -1, -1
-    if h >= 0:
-        at[LEFT], at[C] = m.half_edge[h, FACE], m.half_edge[previous(m, h), ORIGIN]
-    if twin >= 0:
-        at[RIGHT], at[D] = m.half_edge[twin, FACE], m.half_edge[previous(m, twin), ORIGIN]
-    return (h >= 0) + (twin >= 0)
-
-
-@kernel
-def first(m: HalfEdgeRecords, v: int) -> int:
-    """A half-edge that leaves v."""
-    return m.vertex_half_edge[v]
-
-
-@kernel
-def in_triangle(m: HalfEdgeRecords, h: int, v: int, w: int) -> bool:
-    """Whether w is a corner of the face of h, which leaves v."""
-    return tip(m, h) == w or m.half_edge[previous(m, h), ORIGIN] == w
-
-
-@kernel
-def ends_at(m: HalfEdgeRecords, h: int, v: int, w: int) -> bool:
-    """Whether h, which leaves v, ends at w."""
-    return tip(m, h) == w
-
+face_exists = steps.recorded(FACE_END, steps.within)
+edge_exists = steps.recorded(EDGE_END, face)
+left_and_right = steps.left_first(twin, origin, tip)
+diamond = steps.diamond_of(edge_vertices, left_and_right, face, apex)
+ends_at, in_triangle = steps.ending_at(tip), steps.within_triangle(tip, apex)
 
 # The half-edge that runs a → b, or -1; and one at a whose face has b.
-find_half_edge = found_by_steps(first, clockwise, ends_at, counterclockwise)
-with_edge = found_by_steps(first, clockwise, in_triangle, counterclockwise)
-are_joined = joined_by_steps(first, clockwise, ends_at, with_edge)
-
-
-@kernel
-def face_left_of(m: HalfEdgeRecords, a: int, b: int) -> int:
-    """The face that runs a → b, or -1. Cost O(n_ev)."""
-    h = find_half_edge(m, a, b)
-    return m.half_edge[h, FACE] if h >= 0 else -1
+find_half_edge = walks.found_by_steps(steps.leaving, clockwise, ends_at, counterclockwise)
+with_edge = walks.found_by_steps(steps.leaving, clockwise, in_triangle, counterclockwise)
+are_joined = walks.joined_by_steps(steps.leaving, clockwise, ends_at, with_edge)
+face_left_of = steps.left_face(find_half_edge, face)
+leaves_smallest = steps.from_smallest(following, origin)
 
 
 @kernel
@@ -332,12 +208,7 @@ def split_edge_records(m: HalfEdgeRecords, e: int, at: Array, v: int, f: int) ->
 @kernel
 def split_face_records(m: HalfEdgeRecords, face: int, v: int, f: int, corners: Array) -> None:
     """Cost O(1): each face keeps one half-edge of the old one and gets two."""
-    ab = m.face_half_edge[face]
-    other = ab
-    for _ in range(2):
-        other = m.half_edge[other, NEXT]
-        if m.half_edge[other, ORIGIN] < m.half_edge[ab, ORIGIN]:
-            ab = other
+    ab = leaves_smallest(m, m.face_half_edge[face])
     bc = m.half_edge[ab, NEXT]
     ca = m.half_edge[bc, NEXT]
     a, b, c = m.half_edge[ab, ORIGIN], m.half_edge[bc, ORIGIN], m.half_edge[ca, ORIGIN]
@@ -438,11 +309,7 @@ def flip_records(m: HalfEdgeRecords, e: int, at: Array, one: int, other: int) ->
 def add_records(m: HalfEdgeRecords, corners: Array, f: int) -> None:
     """Cost O(n_ev)."""
     a, b, c = corners[0], corners[1], corners[2]
-    ab, bc, ca = (
-        find_half_edge(m, b, a),
-        find_half_edge(m, c, b),
-        find_half_edge(m, a, c),
-    )  # beyond the edges
+    ab, bc, ca = find_half_edge(m, b, a), find_half_edge(m, c, b), find_half_edge(m, a, c)
     g, h, i = new_half_edge(m, a), new_half_edge(m, b), new_half_edge(m, c)
     if ab >= 0:
         set_twins(m, g, ab)
@@ -495,19 +362,6 @@ def _fill(
             row[TWIN] = twin[3 * f + i]
 
 
-STEPS = {
-    "next": half_edge_column(NEXT),
-    "previous": previous,
-    "twin": half_edge_column(TWIN),
-    "origin": half_edge_column(ORIGIN),
-    "tip": tip,
-    "face": half_edge_column(FACE),
-    "edge": edge_of,
-    "vertex_half_edge": leaving,
-    "face_half_edge": within,
-}
-
-
 class HalfEdge(Navigable):
     """The half-edge mesh."""
 
@@ -535,12 +389,6 @@ class HalfEdge(Navigable):
         vertex = pairing.vertex_half_edge.astype(reference, copy=False)
         count = counted(len(mesh.points), pairing.n_edges, n, 3 * n)
         return cls(HalfEdgeRecords(mesh.points.copy(), vertex, face, half_edge, count))
-
-    def edges(self) -> NDArray[np.int64]:
-        """(n_edges,) int64: of each pair of live half-edges the smaller."""
-        half_edge = self.records.half_edge[: self.records.counts[EDGE_END]]
-        twin, number = half_edge[:, TWIN], np.arange(len(half_edge))
-        return np.flatnonzero((half_edge[:, FACE] >= 0) & ((twin < 0) | (number < twin)))
 
     def _edge_names(self, handles: Array) -> Array:
         known = (handles >= 0) & (handles < self.records.counts[EDGE_END])
@@ -573,10 +421,8 @@ class HalfEdge(Navigable):
         words = "twins run opposite ways between the same vertices"
         require(opposite, words, "half_edges", inner)
 
-        used = np.bincount(origin[h], minlength=len(leaving)) > 0
-        require((leaving >= 0) == used, "just the vertices with faces have a half-edge", "vertices")
-        at = np.flatnonzero(used)
-        require(origin[leaving[at]] == at, "a vertex' half-edge starts at it", "vertices", at)
+        just = "just the vertices with faces have a half-edge"
+        require_of_vertices(leaving, origin[:, None], h, just, "a vertex' half-edge starts at it")
         clockwise = np.full(len(half_edges), -1)
         clockwise[inner] = following[other]
         require_one_fan(origin, clockwise, h)

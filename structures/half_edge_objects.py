@@ -42,7 +42,7 @@ from hem.authoring import (
     C,
     D,
     append_face,
-    edges_at_both_ends,
+    walks,
 )
 from hem.contract import Claims, Look, Navigable
 from hem.edit import CHANGED, VERTEX, Edit
@@ -125,7 +125,7 @@ def edge_of(m: ObjectRecords, e: int) -> int:
     return m.half_edges.items[e].edge
 
 
-edge_edges = edges_at_both_ends(edge_vertices, vertex_edges, edge_of)
+edge_edges = walks.edges_at_both_ends(edge_vertices, vertex_edges, edge_of)
 
 
 def edge_faces(m: ObjectRecords, e: int, out: Any) -> int:
@@ -484,10 +484,6 @@ class HalfEdgeMesh(Navigable):
         dead = (np.nan,) * 3
         rows = [dead if it is None else it.point for it in self.vertices.items]
         return np.array(rows, np.float32).reshape(-1, 3)
-
-    def edges(self) -> NDArray[np.int64]:
-        """(n_edges,) int64: of each pair of live half-edges the smaller."""
-        return np.array([h.index for h in self.half_edges if h.edge == h.index], np.int64)
 
     def _live(self, element: str) -> NDArray[np.int32]:
         return np.flatnonzero(self._alive(element)).astype(np.int32)

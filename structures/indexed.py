@@ -34,10 +34,10 @@ from hem.authoring import (
     Field,
     counted,
     distinct,
-    edges_at_both_ends,
     kernel,
     packed,
     require,
+    walks,
 )
 from hem.contract import Look, PackedEdges
 from hem.meshes import TriangleMesh
@@ -74,13 +74,7 @@ def vertex_vertices(m: IndexedRecords, v: int, out: Array) -> int:
     return distinct(out, count)
 
 
-@kernel
-def vertex_edges(m: IndexedRecords, v: int, out: Array) -> int:
-    """Cost O(n_t)."""
-    count = vertex_vertices(m, v, out)
-    for i in range(count):
-        out[i] = pack(v, out[i])
-    return count
+vertex_edges = packed.vertex_edges(vertex_vertices)
 
 
 @kernel
@@ -94,7 +88,7 @@ def vertex_faces(m: IndexedRecords, v: int, out: Array) -> int:
     return count
 
 
-edge_edges = edges_at_both_ends(edge_vertices, vertex_edges)
+edge_edges = walks.edges_at_both_ends(edge_vertices, vertex_edges)
 
 
 @kernel
@@ -110,19 +104,12 @@ def edge_faces(m: IndexedRecords, e: int, out: Array) -> int:
 
 
 @kernel
-def face_vertices(m: IndexedRecords, f: int, out: Array) -> int:
-    """Cost O(1)."""
-    for i in range(3):
-        out[i] = m.triangle[f, i]
-    return 3
+def corner(m: IndexedRecords, f: int, i: int) -> int:
+    """Corner i of triangle f."""
+    return m.triangle[f, i]
 
 
-@kernel
-def face_edges(m: IndexedRecords, f: int, out: Array) -> int:
-    """Cost O(1)."""
-    for i in range(3):
-        out[i] = pack(m.triangle[f, i], m.triangle[f, (i + 1) % 3])
-    return 3
+face_vertices, face_edges = packed.face_vertices(corner), packed.face_edges(corner)
 
 
 @kernel

@@ -44,13 +44,12 @@ from hem.authoring import (
     B,
     C,
     D,
+    Kernel,
     append_face,
     distinct,
-    half_edge_column,
-    joined_by_steps,
     kernel,
-    leaving,
-    within,
+    steps,
+    walks,
     without,
 )
 
@@ -70,6 +69,24 @@ class PlanktonRecords(NamedTuple):
     counts: Array  # how many of them there are, see hem.authoring.kernels
 
 
+# Steps from a half-edge ---------------------------------------------------------------------------
+
+origin, face = steps.half_edge_column(START), steps.half_edge_column(FACE)
+following, previous = steps.half_edge_column(NEXT), steps.half_edge_column(PREVIOUS)
+
+
+@kernel
+def twin(m: PlanktonRecords, h: int) -> int:
+    """The other half-edge of the same edge."""
+    return h ^ 1
+
+
+@kernel
+def edge_of(m: PlanktonRecords, h: int) -> int:
+    """The name of h's edge."""
+    return h - (h & 1)
+
+
 @kernel
 def counterclockwise(m: PlanktonRecords, h: int) -> int:
     """The half-edge that leaves the same vertex after h."""
@@ -82,44 +99,63 @@ def clockwise(m: PlanktonRecords, h: int, v: int) -> int:
     return m.half_edge[h ^ 1, NEXT]
 
 
-@kernel
-def tip(m: PlanktonRecords, h: int) -> int:
-    """The vertex where h ends."""
-    return m.half_edge[h ^ 1, START]
+tip, across = steps.then(twin, origin), steps.then(twin, face)
+
+STEPS = {
+    "next": following,
+    "previous": previous,
+    "twin": twin,
+    "origin": origin,
+    "tip": tip,
+    "face": face,
+    "edge": edge_of,
+    "vertex_half_edge": steps.leaving,
+    "face_half_edge": steps.within,
+}
+"""Outside the border a half-edge has no face, and next and previous run along it."""
 
 
-@kernel
-def edge_of(h: int) -> int:
-    """The name of h's edge."""
-    return h - (h & 1)
+# The nine queries: O(1), around a vertex O(n_ev), around a face O(n) for n corners ----------------
 
 
-@kernel
-def vertex_vertices(m: PlanktonRecords, v: int, out: Array) -> int:
-    """Cost O(n_ev)."""
-    first = m.vertex_half_edge[v]
-    h, count = first, 0
-    while h >= 0:
-        h = counterclockwise(m, h)
-        out[count] = tip(m, h)
-        count += 1
-        if h == first:
-            break
-    return count
+def around_vertex(give: Kernel) -> Kernel:
+    """Make a query: ``give(m, h)`` of every half-edge that leaves a vertex, counterclockwise."""
+
+    @kernel
+    def query(m: PlanktonRecords, v: int, out: Array) -> int:
+        first = m.vertex_half_edge[v]
+        h, count = first, 0
+        while h >= 0:
+            h = counterclockwise(m, h)
+            out[count] = give(m, h)
+            count += 1
+            if h == first:
+                break
+        return count
+
+    return query
 
 
-@kernel
-def vertex_edges(m: PlanktonRecords, v: int, out: Array) -> int:
-    """Cost O(n_ev)."""
-    first = m.vertex_half_edge[v]
-    h, count = first, 0
-    while h >= 0:
-        h = counterclockwise(m, h)
-        out[count] = edge_of(h)
-        count += 1
-        if h == first:
-            break
-    return count
+def round_face(give: Kernel) -> Kernel:
+    """Make a query: ``give(m, h)`` of every half-edge of a face, from its first."""
+
+    @kernel
+    def query(m: PlanktonRecords, f: int, out: Array) -> int:
+        first = m.face_half_edge[f]
+        h, count = first, 0
+        while True:
+            out[count] = give(m, h)
+            count += 1
+            h = m.half_edge[h, NEXT]
+            if h == first:
+                return count
+
+    return query
+
+
+vertex_vertices, vertex_edges = around_vertex(tip), around_vertex(edge_of)
+edge_vertices = steps.ends(origin, tip)
+face_vertices, face_edges = round_face(origin), round_face(edge_of)
 
 
 @kernel
@@ -139,20 +175,12 @@ def vertex_faces(m: PlanktonRecords, v: int, out: Array) -> int:
 
 
 @kernel
-def edge_vertices(m: PlanktonRecords, e: int, out: Array) -> int:
-    """Cost O(1)."""
-    a, b = m.half_edge[e, START], tip(m, e)
-    out[0], out[1] = min(a, b), max(a, b)
-    return 2
-
-
-@kernel
 def edge_edges(m: PlanktonRecords, e: int, out: Array) -> int:
     """The edges at either end, without the edge itself. Cost O(n_ev)."""
     a, b = m.half_edge[e, START], tip(m, e)
-    count = without(out, vertex_edges(m, a, out), edge_of(e))
+    count = without(out, vertex_edges(m, a, out), edge_of(m, e))
     rest = out[count:]
-    return count + without(rest, vertex_edges(m, b, rest), edge_of(e))
+    return count + without(rest, vertex_edges(m, b, rest), edge_of(m, e))
 
 
 @kernel
@@ -168,38 +196,12 @@ def edge_faces(m: PlanktonRecords, e: int, out: Array) -> int:
 
 
 @kernel
-def face_vertices(m: PlanktonRecords, f: int, out: Array) -> int:
-    """Cost O(1) for a triangle, O(n) for n corners."""
-    first = m.face_half_edge[f]
-    h, count = first, 0
-    while True:
-        out[count] = m.half_edge[h, START]
-        count += 1
-        h = m.half_edge[h, NEXT]
-        if h == first:
-            return count
-
-
-@kernel
-def face_edges(m: PlanktonRecords, f: int, out: Array) -> int:
-    """Cost O(1) for a triangle, O(n) for n corners."""
-    first = m.face_half_edge[f]
-    h, count = first, 0
-    while True:
-        out[count] = edge_of(h)
-        count += 1
-        h = m.half_edge[h, NEXT]
-        if h == first:
-            return count
-
-
-@kernel
 def face_faces(m: PlanktonRecords, f: int, out: Array) -> int:
-    """Cost O(1) for a triangle, O(n) for n corners."""
+    """Those that share an edge with f, each once."""
     first = m.face_half_edge[f]
     h, count, sides = first, 0, 0
     while True:
-        face = m.half_edge[h ^ 1, FACE]
+        face = across(m, h)
         if face >= 0:
             count = append_face(out, count, face)
         sides += 1
@@ -207,32 +209,6 @@ def face_faces(m: PlanktonRecords, f: int, out: Array) -> int:
         if h == first:
             # Polygons may share edges that do not follow each other.
             return count if sides == 3 else distinct(out, count)
-
-
-@kernel
-def twin(m: PlanktonRecords, h: int) -> int:
-    """The other half-edge of the same edge."""
-    return h ^ 1
-
-
-@kernel
-def edge(m: PlanktonRecords, h: int) -> int:
-    """The name of h's edge."""
-    return edge_of(h)
-
-
-STEPS = {
-    "next": half_edge_column(NEXT),
-    "previous": half_edge_column(PREVIOUS),
-    "twin": twin,
-    "origin": half_edge_column(START),
-    "tip": tip,
-    "face": half_edge_column(FACE),
-    "edge": edge,
-    "vertex_half_edge": leaving,
-    "face_half_edge": within,
-}
-"""Outside the border a half-edge has no face, and next and previous run along it."""
 
 
 # What operations need to know, and what they change (see hem.authoring.operations) --------------
@@ -250,16 +226,8 @@ def sides(m: PlanktonRecords, f: int) -> int:
             return count
 
 
-@kernel
-def face_exists(m: PlanktonRecords, f: int) -> bool:
-    """Whether f is a live face."""
-    return 0 <= f < m.counts[FACE_END] and m.face_half_edge[f] >= 0
-
-
-@kernel
-def edge_exists(m: PlanktonRecords, e: int) -> bool:
-    """Whether e is a live half-edge."""
-    return 0 <= e < m.counts[EDGE_END] and m.half_edge[e, START] >= 0
+face_exists = steps.recorded(FACE_END, steps.within)
+edge_exists = steps.recorded(EDGE_END, origin)
 
 
 @kernel
@@ -293,18 +261,6 @@ def diamond(m: PlanktonRecords, e: int, at: Array) -> int:
 
 
 @kernel
-def first(m: PlanktonRecords, v: int) -> int:
-    """A half-edge that leaves v."""
-    return m.vertex_half_edge[v]
-
-
-@kernel
-def ends_at(m: PlanktonRecords, h: int, v: int, w: int) -> bool:
-    """Whether h, which leaves v, ends at w."""
-    return tip(m, h) == w
-
-
-@kernel
 def find_half_edge(m: PlanktonRecords, a: int, b: int) -> int:
     """The half-edge that runs a → b, or -1. Cost O(n_ev)."""
     start = m.vertex_half_edge[a]
@@ -318,14 +274,9 @@ def find_half_edge(m: PlanktonRecords, a: int, b: int) -> int:
     return -1
 
 
-are_joined = joined_by_steps(first, clockwise, ends_at, find_half_edge)
-
-
-@kernel
-def face_left_of(m: PlanktonRecords, a: int, b: int) -> int:
-    """The face that runs a → b, or -1. Cost O(n_ev)."""
-    h = find_half_edge(m, a, b)
-    return m.half_edge[h, FACE] if h >= 0 else -1
+ends_at = steps.ending_at(tip)
+are_joined = walks.joined_by_steps(steps.leaving, clockwise, ends_at, find_half_edge)
+face_left_of = steps.left_face(find_half_edge, face)
 
 
 @kernel

@@ -37,6 +37,7 @@ from hem.authoring import (
     require,
     require_distinct_edges,
     require_edge_count,
+    require_of_vertices,
     require_one_fan,
     require_one_loop,
 )
@@ -106,10 +107,6 @@ class Plankton(Navigable):
     def n_half_edges(self) -> int:
         """Number of live half-edges, two per edge."""
         return 2 * self.n_edges
-
-    def edges(self) -> NDArray[np.int64]:
-        """(n_edges,) int64: of each pair of live half-edges the first."""
-        return 2 * np.flatnonzero(self._half_edges[::2, START] >= 0)
 
     def start_vertex(self, h: int) -> int:
         """Where half-edge h starts. O(1), as are the others; MeshError for one that is dead."""
@@ -428,10 +425,8 @@ class Plankton(Navigable):
         """What holds around vertices, of the live half-edges ``h``."""
         leaving, n = self.records.vertex_half_edge[: len(self.points)], len(self.points)
         start, face, following, _ = self._half_edges.T
-        used = np.bincount(start[h], minlength=n) > 0
-        require((leaving >= 0) == used, "just the vertices with faces have a half-edge", "vertices")
-        at = np.flatnonzero(used)
-        require(start[leaving[at]] == at, "a vertex' half-edge starts at it", "vertices", at)
+        just = "just the vertices with faces have a half-edge"
+        require_of_vertices(leaving, start[:, None], h, just, "a vertex' half-edge starts at it")
         holes = np.bincount(start[h[face[h] < 0]], minlength=n)
         require(holes < 2, "one hole at most lies at a vertex", "vertices")
         border = np.flatnonzero(holes)

@@ -39,12 +39,8 @@ from hem.authoring import (
     D,
     Field,
     append_face,
-    circulator,
     counted,
-    edges_at_both_ends,
-    found_by_steps,
     in_slices,
-    joined_by_steps,
     kernel,
     live,
     packed,
@@ -52,7 +48,10 @@ from hem.authoring import (
     require,
     require_distinct_edges,
     require_edge_count,
+    require_of_vertices,
     require_one_fan,
+    steps,
+    walks,
 )
 from hem.contract import Look, PackedEdges
 from hem.meshes import TriangleMesh
@@ -93,7 +92,13 @@ def counterclockwise(m: TriangleNeighborRecords, t: int, v: int) -> int:
     return m.triangle[t, NEIGHBOR + (corner_of(m, t, v) + 2) % 3]
 
 
-fan = circulator(clockwise, counterclockwise)
+@kernel
+def first(m: TriangleNeighborRecords, v: int) -> int:
+    """A triangle at v."""
+    return m.vertex_triangle[v]
+
+
+fan = walks.circulator(clockwise, counterclockwise)
 
 
 @kernel
@@ -109,13 +114,7 @@ def vertex_vertices(m: TriangleNeighborRecords, v: int, out: Array) -> int:
     return count + 1
 
 
-@kernel
-def vertex_edges(m: TriangleNeighborRecords, v: int, out: Array) -> int:
-    """Cost O(n_ev)."""
-    count = vertex_vertices(m, v, out)
-    for k in range(count):
-        out[k] = pack(v, out[k])
-    return count
+vertex_edges = packed.vertex_edges(vertex_vertices)
 
 
 @kernel
@@ -125,7 +124,7 @@ def vertex_faces(m: TriangleNeighborRecords, v: int, out: Array) -> int:
     return count
 
 
-edge_edges = edges_at_both_ends(edge_vertices, vertex_edges)
+edge_edges = walks.edges_at_both_ends(edge_vertices, vertex_edges)
 
 
 @kernel
@@ -143,19 +142,12 @@ def edge_faces(m: TriangleNeighborRecords, e: int, out: Array) -> int:
 
 
 @kernel
-def face_vertices(m: TriangleNeighborRecords, f: int, out: Array) -> int:
-    """Cost O(1)."""
-    for i in range(3):
-        out[i] = m.triangle[f, CORNER + i]
-    return 3
+def corner(m: TriangleNeighborRecords, f: int, i: int) -> int:
+    """Corner i of triangle f."""
+    return m.triangle[f, CORNER + i]
 
 
-@kernel
-def face_edges(m: TriangleNeighborRecords, f: int, out: Array) -> int:
-    """Cost O(1)."""
-    for i in range(3):
-        out[i] = pack(m.triangle[f, CORNER + i], m.triangle[f, CORNER + (i + 1) % 3])
-    return 3
+face_vertices, face_edges = packed.face_vertices(corner), packed.face_edges(corner)
 
 
 @kernel
@@ -173,15 +165,12 @@ def face_faces(m: TriangleNeighborRecords, f: int, out: Array) -> int:
 
 
 @kernel
-def face_exists(m: TriangleNeighborRecords, f: int) -> bool:
-    """Whether f is a live triangle."""
-    return 0 <= f < m.counts[FACE_END] and m.triangle[f, CORNER] >= 0
+def first_corner(m: TriangleNeighborRecords, f: int) -> int:
+    """A corner of triangle f, negative if it is dead."""
+    return m.triangle[f, CORNER]
 
 
-@kernel
-def first(m: TriangleNeighborRecords, v: int) -> int:
-    """A triangle at v."""
-    return m.vertex_triangle[v]
+face_exists = steps.recorded(FACE_END, first_corner)
 
 
 @kernel
@@ -197,8 +186,8 @@ def leaves_for(m: TriangleNeighborRecords, t: int, v: int, w: int) -> bool:
 
 
 # A triangle that has edge a – b, or -1.
-with_edge = found_by_steps(first, clockwise, in_triangle, counterclockwise)
-are_joined = joined_by_steps(first, clockwise, leaves_for, with_edge)
+with_edge = walks.found_by_steps(first, clockwise, in_triangle, counterclockwise)
+are_joined = walks.joined_by_steps(first, clockwise, leaves_for, with_edge)
 
 
 @kernel
@@ -436,11 +425,11 @@ class TriangleNeighbor(PackedEdges):
         require_edge_count(m, int(np.count_nonzero(once)))
         require(corner[f] != np.roll(corner[f], 1, axis=1), "corners differ", "faces", f)
 
-        used = np.bincount(corner[f].ravel(), minlength=len(of_vertex)) > 0
-        require((of_vertex >= 0) == used, "just vertices with faces have one", "vertices")
-        v = np.flatnonzero(used)
-        at = (corner[of_vertex[v]] == v[:, None]).any(axis=1)
-        require(at, "the triangle of a vertex has it as a corner", "vertices", v)
+        just, has = (
+            "just vertices with faces have one",
+            "the triangle of a vertex has it as a corner",
+        )
+        require_of_vertices(of_vertex, corner, f, just, has)
 
         # Edge i of t runs a → b; the neighbor must run b → a along its edge j, and know t there.
         t, i = np.nonzero(beyond >= 0)

@@ -38,37 +38,32 @@ from hem.arrays import Array
 from hem.authoring import (
     EDGE_END,
     FACE_END,
+    LEFT,
     REFERENCE_TYPES,
+    RIGHT,
     A,
     B,
     C,
     D,
     Field,
-    append_face,
-    circulator,
+    Kernel,
     counted,
-    edges_at_both_ends,
-    found_by_steps,
     in_slices,
-    joined_by_steps,
     kernel,
     live,
     pair_half_edges,
     require,
     require_distinct_edges,
     require_edge_count,
+    require_of_vertices,
     require_one_fan,
-)
-from hem.authoring import (
-    LEFT as LEFT_FACE,
-)
-from hem.authoring import (
-    RIGHT as RIGHT_FACE,
+    steps,
+    walks,
 )
 from hem.contract import Look, Structure
 from hem.meshes import TriangleMesh
 
-TAIL, HEAD, LEFT, RIGHT = range(4)
+TAIL, HEAD, LEFT_FACE, RIGHT_FACE = range(4)
 LEFT_PREVIOUS, RIGHT_PREVIOUS, LEFT_NEXT, RIGHT_NEXT = range(4, 8)
 
 
@@ -82,6 +77,30 @@ class WingedEdgeRecords(NamedTuple):
     counts: Array  # how many of them there are, see hem.authoring.kernels
 
 
+# Steps from a directed edge -----------------------------------------------------------------------
+
+
+def by_side(left: int, right: int) -> Kernel:
+    """Make ``read(m, d)``: one column if d runs from tail to head, another if it runs back."""
+
+    @kernel
+    def read(m: WingedEdgeRecords, d: int) -> int:
+        return m.edge[d >> 1, left + (right - left) * (d & 1)]
+
+    return read
+
+
+origin, tip = by_side(TAIL, HEAD), by_side(HEAD, TAIL)
+left_of, right_of = by_side(LEFT_FACE, RIGHT_FACE), by_side(RIGHT_FACE, LEFT_FACE)
+previous_edge, next_edge = by_side(LEFT_PREVIOUS, RIGHT_PREVIOUS), by_side(LEFT_NEXT, RIGHT_NEXT)
+
+
+@kernel
+def edge_of(m: WingedEdgeRecords, d: int) -> int:
+    """The edge of directed edge d."""
+    return d >> 1
+
+
 @kernel
 def directed_from(m: WingedEdgeRecords, e: int, v: int) -> int:
     """Edge e as it leaves vertex v."""
@@ -89,24 +108,44 @@ def directed_from(m: WingedEdgeRecords, e: int, v: int) -> int:
 
 
 @kernel
+def directed_along(m: WingedEdgeRecords, e: int, f: int) -> int:
+    """Edge e as it runs round face f, which lies on its left hand then."""
+    return 2 * e if m.edge[e, LEFT_FACE] == f else 2 * e + 1
+
+
+@kernel
+def edge_at(m: WingedEdgeRecords, f: int) -> int:
+    """The edge that is recorded at face f."""
+    return m.face_edge[f]
+
+
+@kernel
+def following(m: WingedEdgeRecords, d: int) -> int:
+    """The directed edge after d in the face on its left hand."""
+    return directed_from(m, next_edge(m, d), tip(m, d))
+
+
+@kernel
 def counterclockwise(m: WingedEdgeRecords, d: int, v: int) -> int:
     """The directed edge that leaves v before d: it enters v in the face on the left hand of d."""
-    e = m.edge[d >> 1, LEFT_PREVIOUS + (d & 1)]
+    e = previous_edge(m, d)
     return directed_from(m, e, v) if e >= 0 else -1
 
 
 @kernel
 def clockwise(m: WingedEdgeRecords, d: int, v: int) -> int:
     """The directed edge that leaves v after d: next in the face on the right hand of d."""
-    e = m.edge[d >> 1, RIGHT_NEXT - (d & 1)]
+    e = next_edge(m, d ^ 1)
     return directed_from(m, e, v) if e >= 0 else -1
 
 
-around = circulator(clockwise, counterclockwise)
+# The nine queries: O(1), those of a vertex and edge_edges O(n_ev) ---------------------------------
+
+around = walks.circulator(clockwise, counterclockwise)
 
 
 @kernel
-def leaving(m: WingedEdgeRecords, v: int, out: Array) -> tuple[int, bool]:
+def outgoing(m: WingedEdgeRecords, v: int, out: Array) -> tuple[int, bool]:
     """The directed edges that leave v, counterclockwise -> how many, and whether they close."""
     e = m.vertex_edge[v]
     if e < 0:
@@ -115,103 +154,56 @@ def leaving(m: WingedEdgeRecords, v: int, out: Array) -> tuple[int, bool]:
 
 
 @kernel
-def vertex_vertices(m: WingedEdgeRecords, v: int, out: Array) -> int:
-    """Cost O(n_ev)."""
-    count, _ = leaving(m, v, out)
-    for i in range(count):
-        out[i] = m.edge[out[i] >> 1, HEAD - (out[i] & 1)]
-    return count
-
-
-@kernel
-def vertex_edges(m: WingedEdgeRecords, v: int, out: Array) -> int:
-    """Cost O(n_ev)."""
-    count, _ = leaving(m, v, out)
-    for i in range(count):
-        out[i] >>= 1
-    return count
-
-
-@kernel
 def vertex_faces(m: WingedEdgeRecords, v: int, out: Array) -> int:
-    """Cost O(n_ev)."""
-    count, closed = leaving(m, v, out)
-    faces = count if closed else count - 1  # beyond the last edge of an open fan lies none
+    """Beyond the last edge of an open fan lies none."""
+    count, closed = outgoing(m, v, out)
+    faces = count if closed else count - 1
     for i in range(faces):
-        out[i] = m.edge[out[i] >> 1, LEFT + (out[i] & 1)]
+        out[i] = left_of(m, out[i])
     return faces
 
 
 @kernel
 def edge_vertices(m: WingedEdgeRecords, e: int, out: Array) -> int:
-    """Cost O(1)."""
+    """The smaller first."""
     a, b = m.edge[e, TAIL], m.edge[e, HEAD]
     out[0], out[1] = min(a, b), max(a, b)
     return 2
 
 
-edge_edges = edges_at_both_ends(edge_vertices, vertex_edges)
-
-
 @kernel
 def edge_faces(m: WingedEdgeRecords, e: int, out: Array) -> int:
-    """Cost O(1)."""
+    """The left one first."""
     count = 0
     for side in range(2):
-        face = m.edge[e, LEFT + side]
+        face = m.edge[e, LEFT_FACE + side]
         if face >= 0:
             out[count] = face
             count += 1
     return count
 
 
-@kernel
-def side_of(m: WingedEdgeRecords, e: int, f: int) -> int:
-    """On which side of edge e face f lies: 0 for the left, 1 for the right."""
-    return 0 if m.edge[e, LEFT] == f else 1
-
-
-@kernel
-def face_vertices(m: WingedEdgeRecords, f: int, out: Array) -> int:
-    """Cost O(1)."""
-    e = m.face_edge[f]
-    for i in range(3):
-        side = side_of(m, e, f)
-        out[i] = m.edge[e, TAIL + side]
-        e = m.edge[e, LEFT_NEXT + side]
-    return 3
-
-
-@kernel
-def face_edges(m: WingedEdgeRecords, f: int, out: Array) -> int:
-    """Cost O(1)."""
-    e = m.face_edge[f]
-    for i in range(3):
-        out[i] = e
-        e = m.edge[e, LEFT_NEXT + side_of(m, e, f)]
-    return 3
-
-
-@kernel
-def face_faces(m: WingedEdgeRecords, f: int, out: Array) -> int:
-    """Cost O(1)."""
-    e, count = m.face_edge[f], 0
-    for _ in range(3):
-        side = side_of(m, e, f)
-        beyond = m.edge[e, RIGHT - side]
-        if beyond >= 0:
-            count = append_face(out, count, beyond)
-        e = m.edge[e, LEFT_NEXT + side]
-    return count
+vertex_vertices, vertex_edges = walks.each(outgoing, tip), walks.each(outgoing, edge_of)
+edge_edges = walks.edges_at_both_ends(edge_vertices, vertex_edges)
+face_vertices = walks.each_side(edge_at, next_edge, origin, directed_along)
+face_edges = walks.each_side(edge_at, next_edge, edge_of, directed_along)
+face_faces = walks.faces_across(edge_at, next_edge, right_of, directed_along)
 
 
 # What operations need to know, and what they change (see hem.authoring.operations) --------------
 
 
 @kernel
-def face_exists(m: WingedEdgeRecords, f: int) -> bool:
-    """Whether f is a live face."""
-    return 0 <= f < m.counts[FACE_END] and m.face_edge[f] >= 0
+def diamond(m: WingedEdgeRecords, e: int, at: Array) -> int:
+    """Cost O(1)."""
+    edge_vertices(m, e, at)
+    left = directed_from(m, e, at[A])
+    at[LEFT], at[RIGHT], at[C], at[D] = left_of(m, left), right_of(m, left), -1, -1
+    if at[LEFT] >= 0:
+        at[C] = tip(m, following(m, left))
+    if at[RIGHT] >= 0:
+        at[D] = tip(m, following(m, left ^ 1))
+    return (at[LEFT] >= 0) + (at[RIGHT] >= 0)
 
 
 @kernel
@@ -221,65 +213,31 @@ def edge_exists(m: WingedEdgeRecords, e: int) -> bool:
 
 
 @kernel
-def following(m: WingedEdgeRecords, d: int) -> int:
-    """The directed edge after d in the face on its left hand."""
-    return directed_from(m, m.edge[d >> 1, LEFT_NEXT + (d & 1)], tip(m, d))
-
-
-@kernel
-def tip(m: WingedEdgeRecords, d: int) -> int:
-    """The vertex where directed edge d ends."""
-    return m.edge[d >> 1, HEAD - (d & 1)]
-
-
-@kernel
-def left_of(m: WingedEdgeRecords, d: int) -> int:
-    """The face on the left hand of directed edge d, or -1."""
-    return m.edge[d >> 1, LEFT + (d & 1)]
-
-
-@kernel
-def diamond(m: WingedEdgeRecords, e: int, at: Array) -> int:
-    """Cost O(1)."""
-    edge_vertices(m, e, at)
-    left = directed_from(m, e, at[A])
-    at[LEFT_FACE], at[RIGHT_FACE], at[C], at[D] = left_of(m, left), left_of(m, left ^ 1), -1, -1
-    if at[LEFT_FACE] >= 0:
-        at[C] = tip(m, following(m, left))
-    if at[RIGHT_FACE] >= 0:
-        at[D] = tip(m, following(m, left ^ 1))
-    return (at[LEFT_FACE] >= 0) + (at[RIGHT_FACE] >= 0)
-
-
-@kernel
 def first(m: WingedEdgeRecords, v: int) -> int:
     """A directed edge that leaves v, or a negative number."""
     return directed_from(m, m.vertex_edge[v], v) if m.vertex_edge[v] >= 0 else -1
 
 
 @kernel
-def ends_at(m: WingedEdgeRecords, d: int, v: int, w: int) -> bool:
-    """Whether directed edge d, which leaves v, ends at w."""
-    return tip(m, d) == w
+def first_side(m: WingedEdgeRecords, f: int) -> int:
+    """A directed edge that runs round f."""
+    return directed_along(m, m.face_edge[f], f)
 
+
+face_exists, ends_at = steps.recorded(FACE_END, edge_at), steps.ending_at(tip)
 
 # The directed edge a → b, or -1.
-find_directed_edge = found_by_steps(first, clockwise, ends_at, counterclockwise)
-are_joined = joined_by_steps(first, clockwise, ends_at, find_directed_edge)
-
-
-@kernel
-def face_left_of(m: WingedEdgeRecords, a: int, b: int) -> int:
-    """The face that runs a → b, or -1. Cost O(n_ev)."""
-    d = find_directed_edge(m, a, b)
-    return left_of(m, d) if d >= 0 else -1
+find_directed_edge = walks.found_by_steps(first, clockwise, ends_at, counterclockwise)
+are_joined = walks.joined_by_steps(first, clockwise, ends_at, find_directed_edge)
+face_left_of = steps.left_face(find_directed_edge, left_of)
+leaves_smallest = steps.from_smallest(following, origin)
 
 
 @kernel
 def set_side(m: WingedEdgeRecords, d: int, f: int, before: int, after: int) -> None:
     """Write the face on the left hand of directed edge d, and the wings there."""
     e, side = d >> 1, d & 1
-    m.edge[e, LEFT + side] = f
+    m.edge[e, LEFT_FACE + side] = f
     m.edge[e, LEFT_PREVIOUS + side] = before
     m.edge[e, LEFT_NEXT + side] = after
 
@@ -323,33 +281,27 @@ def split_edge_records(m: WingedEdgeRecords, e: int, at: Array, v: int, f: int) 
     a, b = at[A], at[B]
     av = directed_from(m, e, a)
     bc, ad = -1, -1
-    if at[LEFT_FACE] >= 0:
+    if at[LEFT] >= 0:
         bc = following(m, av)
-    if at[RIGHT_FACE] >= 0:
+    if at[RIGHT] >= 0:
         ad = following(m, av ^ 1)
     set_ends(m, av, a, v)
     vb = new_edge(m, v, b)
-    if at[LEFT_FACE] >= 0:
+    if at[LEFT] >= 0:
         ca, vc = following(m, bc), new_edge(m, v, at[C])
-        set_face(m, at[LEFT_FACE], av, vc, ca)
+        set_face(m, at[LEFT], av, vc, ca)
         set_face(m, f, vb, bc, vc ^ 1)
         f += 1
-    if at[RIGHT_FACE] >= 0:
+    if at[RIGHT] >= 0:
         db, vd = following(m, ad), new_edge(m, v, at[D])
-        set_face(m, at[RIGHT_FACE], av ^ 1, ad, vd ^ 1)
+        set_face(m, at[RIGHT], av ^ 1, ad, vd ^ 1)
         set_face(m, f, vb ^ 1, vd, db)
 
 
 @kernel
 def split_face_records(m: WingedEdgeRecords, face: int, v: int, f: int, corners: Array) -> None:
     """Cost O(1)."""
-    e = m.face_edge[face]
-    ab = 2 * e + side_of(m, e, face)
-    other = ab
-    for _ in range(2):
-        other = following(m, other)
-        if tip(m, other ^ 1) < tip(m, ab ^ 1):
-            ab = other
+    ab = leaves_smallest(m, first_side(m, face))
     bc = following(m, ab)
     ca = following(m, bc)
     a, b, c = tip(m, ca), tip(m, ab), tip(m, bc)
@@ -423,11 +375,8 @@ def flip_records(m: WingedEdgeRecords, e: int, at: Array, one: int, other: int) 
 def add_records(m: WingedEdgeRecords, corners: Array, f: int) -> None:
     """Cost O(n_ev)."""
     a, b, c = corners[0], corners[1], corners[2]
-    ab, bc, ca = (
-        find_directed_edge(m, a, b),
-        find_directed_edge(m, b, c),
-        find_directed_edge(m, c, a),
-    )
+    ab, bc = find_directed_edge(m, a, b), find_directed_edge(m, b, c)
+    ca = find_directed_edge(m, c, a)
     ab = ab if ab >= 0 else new_edge(m, a, b)
     bc = bc if bc >= 0 else new_edge(m, b, c)
     ca = ca if ca >= 0 else new_edge(m, c, a)
@@ -437,8 +386,7 @@ def add_records(m: WingedEdgeRecords, corners: Array, f: int) -> None:
 @kernel
 def remove_records(m: WingedEdgeRecords, f: int) -> None:
     """Cost O(1)."""
-    e = m.face_edge[f]
-    ab = 2 * e + side_of(m, e, f)
+    ab = first_side(m, f)
     bc = following(m, ab)
     ca = following(m, bc)
     a, b, c = tip(m, ca), tip(m, ab), tip(m, bc)
@@ -455,8 +403,7 @@ def remove_records(m: WingedEdgeRecords, f: int) -> None:
 @kernel
 def set_vertex_face(m: WingedEdgeRecords, v: int, f: int) -> None:
     """Let v know of the face f at it. Cost O(1)."""
-    e = m.face_edge[f]
-    d = 2 * e + side_of(m, e, f)
+    d = first_side(m, f)
     for _ in range(3):
         if tip(m, d) == v:
             m.vertex_edge[v] = d >> 1
@@ -488,7 +435,7 @@ def _fill(
         for side in range(2):
             g = h if side == 0 else twin[h]
             base = g - g % 3
-            row[LEFT + side] = g // 3 if g >= 0 else -1
+            row[LEFT_FACE + side] = g // 3 if g >= 0 else -1
             row[LEFT_PREVIOUS + side] = edge_of[base + (g + 2) % 3] if g >= 0 else -1
             row[LEFT_NEXT + side] = edge_of[base + (g + 1) % 3] if g >= 0 else -1
 
@@ -537,24 +484,21 @@ class WingedEdge(Structure):
         m, e, f = self.records, self.edges(), self.faces()
         require_edge_count(m, len(e))
         record = m.edge[: m.counts[EDGE_END]]
-        faces = record[e][:, [LEFT, RIGHT]].max(axis=1, initial=-1)
+        faces = record[e][:, [LEFT_FACE, RIGHT_FACE]].max(axis=1, initial=-1)
         require(faces >= 0, "an edge has a face", "edges", e)
         require_distinct_edges(record[e, TAIL], record[e, HEAD], "edges", e)
-        own = (record[m.face_edge[f]][:, [LEFT, RIGHT]] == f[:, None]).any(axis=1)
+        own = (record[m.face_edge[f]][:, [LEFT_FACE, RIGHT_FACE]] == f[:, None]).any(axis=1)
         require(own, "the edge of a face borders it", "faces", f)
 
         of_vertex = m.vertex_edge[: len(self.points)]
-        used = np.bincount(record[e][:, [TAIL, HEAD]].ravel(), minlength=len(of_vertex)) > 0
-        require((of_vertex >= 0) == used, "just the vertices with edges have one", "vertices")
-        v = np.flatnonzero(used)
-        ends = (record[of_vertex[v]][:, [TAIL, HEAD]] == v[:, None]).any(axis=1)
-        require(ends, "the edge of a vertex ends there", "vertices", v)
+        just, there = "just the vertices with edges have one", "the edge of a vertex ends there"
+        require_of_vertices(of_vertex, record[:, [TAIL, HEAD]], e, just, there)
         self._require_wings(record, e, f)
 
     def _require_wings(self, record: Array, e: Array, f: Array) -> None:
         """As directed edges 2e + side: one row each, whichever way round the edge lies."""
         tail, head = record[:, [TAIL, HEAD]].ravel(), record[:, [HEAD, TAIL]].ravel()
-        face = record[:, [LEFT, RIGHT]].ravel()
+        face = record[:, [LEFT_FACE, RIGHT_FACE]].ravel()
         before = record[:, [LEFT_PREVIOUS, RIGHT_PREVIOUS]].ravel()
         after = record[:, [LEFT_NEXT, RIGHT_NEXT]].ravel()
         d = np.stack([2 * e, 2 * e + 1], axis=1).ravel()

@@ -1,7 +1,7 @@
 """What a structure's file is written with.
 
 - ``kernel``, the decorator; the columns of ``counts`` (``FACE_END`` …); small parts of kernels.
-- walks around a vertex: ``circulator``, ``found_by_steps``, ``joined_by_steps``;
+- ``steps`` and ``walks``, from which queries follow; ``packed``, where no edges are recorded;
 - ``Field`` and ``counted``, which declare and begin the records;
 - ``pair_half_edges`` and ``in_slices`` for the build;
 - ``require…``, which state invariants;
@@ -10,12 +10,13 @@
 What a structure must offer is said by ``hem.contract.Structure``, of which it is a subclass.
 """
 
-from hem.authoring import packed
+from hem.authoring import packed, steps, walks
 from hem.authoring.defaults import OF_ARRAYS, kill_vertex, set_point, sides, vertex_exists
 from hem.authoring.invariants import (
     require,
     require_distinct_edges,
     require_edge_count,
+    require_of_vertices,
     require_one_fan,
     require_one_loop,
     require_records,
@@ -78,15 +79,6 @@ from hem.authoring.records import (
 )
 from hem.authoring.refusals import ALLOWED, NEEDS_ROOM, WORDS, Refusal
 from hem.authoring.slices import in_slices, slice_count
-from hem.authoring.walks import (
-    circulator,
-    edges_at_both_ends,
-    found_by_steps,
-    half_edge_column,
-    joined_by_steps,
-    leaving,
-    within,
-)
 
 __all__ = [
     "ALLOWED",
@@ -128,25 +120,19 @@ __all__ = [
     "Query",
     "Refusal",
     "append_face",
-    "circulator",
     "compacted",
     "copied",
     "count_new",
     "counted",
     "distinct",
-    "edges_at_both_ends",
-    "found_by_steps",
     "grown",
-    "half_edge_column",
     "has_room",
     "has_scratch",
     "in_slices",
     "is_point",
-    "joined_by_steps",
     "kernel",
     "kernels_of",
     "kill_vertex",
-    "leaving",
     "live",
     "log_element",
     "log_faces",
@@ -158,14 +144,16 @@ __all__ = [
     "require",
     "require_distinct_edges",
     "require_edge_count",
+    "require_of_vertices",
     "require_one_fan",
     "require_one_loop",
     "require_records",
     "set_point",
     "sides",
     "slice_count",
+    "steps",
     "vertex_exists",
     "vertex_maker",
-    "within",
+    "walks",
     "without",
 ]

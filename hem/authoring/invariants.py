@@ -79,6 +79,18 @@ def require_distinct_edges(a: Array, b: Array, elements: str, of: Array | None =
     require(first, "two vertices are joined by at most one edge", elements, of)
 
 
+def require_of_vertices(of: Array, at: Array, alive: Array, just: str, there: str) -> None:
+    """Require that ``just`` the vertices of live items name one, and that they are ``there``.
+
+    ``of``: (n_v,) the item that a vertex names, or -1. ``at``: (n, k) the vertices of each item.
+    ``alive``: (m,) the live items.
+    """
+    used = np.bincount(at[alive].ravel(), minlength=len(of)) > 0
+    require((of >= 0) == used, just, "vertices")
+    v = np.flatnonzero(used)
+    require((at[of[v]] == v[:, None]).any(axis=1), there, "vertices", v)
+
+
 def require_one_fan(vertex: Array, clockwise: Array, alive: Array) -> None:
     """Require that the faces around every vertex form one fan.
 

@@ -1,11 +1,14 @@
-"""Walks around a vertex, written once over the steps that a structure takes."""
+"""Walks around a vertex or a face, and the queries that follow: written once over the steps taken.
+
+A circulator writes all that it comes past: ``circulate(m, element, out) -> (count, closed)``.
+"""
 
 from __future__ import annotations
 
 from typing import Any
 
 from hem.arrays import Array
-from hem.authoring.kernels import Kernel, kernel, without
+from hem.authoring.kernels import Kernel, append_face, kernel, without
 
 
 def circulator(clockwise: Kernel, counterclockwise: Kernel) -> Kernel:
@@ -35,6 +38,123 @@ def circulator(clockwise: Kernel, counterclockwise: Kernel) -> Kernel:
         return count, False
 
     return around
+
+
+def from_vertex(first: Kernel, around: Kernel) -> Kernel:
+    """Make the circulator of a vertex that begins at ``first(m, v)``. Cost O(valence)."""
+
+    @kernel
+    def circulate(m: Any, v: int, out: Array) -> tuple[int, bool]:
+        return around(m, first(m, v), v, out)
+
+    return circulate
+
+
+def each(circulate: Kernel, give: Kernel) -> Kernel:
+    """Make a query: ``give(m, h)`` of every half-edge that the circulator comes past."""
+
+    @kernel
+    def query(m: Any, element: int, out: Array) -> int:
+        count, _ = circulate(m, element, out)
+        for i in range(count):
+            out[i] = give(m, out[i])
+        return count
+
+    return query
+
+
+def each_and_last(circulate: Kernel, give: Kernel, last: Kernel) -> Kernel:
+    """Make a query as ``each``, with ``last(m, h)`` of the last half-edge too if a fan is open.
+
+    No half-edge leaves the vertex beyond it, but the edge and the neighbor are there.
+    """
+
+    @kernel
+    def query(m: Any, v: int, out: Array) -> int:
+        count, closed = circulate(m, v, out)
+        h = out[count - 1]
+        for i in range(count):
+            out[i] = give(m, out[i])
+        if closed or count == 0:
+            return count
+        out[count] = last(m, h)
+        return count + 1
+
+    return query
+
+
+@kernel
+def as_met(m: Any, h: int, f: int) -> int:
+    """What is met on the way round a face, where that is a half-edge already."""
+    return h
+
+
+def each_side(first: Kernel, following: Kernel, give: Kernel, enter: Kernel = as_met) -> Kernel:
+    """Make a query of a triangle: ``give(m, h)`` of its half-edges from ``first(m, f)``. O(1).
+
+    ``enter(m, it, f)`` is the half-edge in f of what ``first`` and ``following(m, h)`` lead to.
+    """
+
+    @kernel
+    def query(m: Any, f: int, out: Array) -> int:
+        it = first(m, f)
+        for i in range(3):
+            h = enter(m, it, f)
+            out[i] = give(m, h)
+            it = following(m, h)
+        return 3
+
+    return query
+
+
+def faces_across(
+    first: Kernel, following: Kernel, across: Kernel, enter: Kernel = as_met
+) -> Kernel:
+    """Make ``face_faces`` as ``each_side``: ``across(m, h)`` is the face beyond h, or -1."""
+
+    @kernel
+    def face_faces(m: Any, f: int, out: Array) -> int:
+        it, count = first(m, f), 0
+        for _ in range(3):
+            h = enter(m, it, f)
+            face = across(m, h)
+            if face >= 0:
+                count = append_face(out, count, face)
+            it = following(m, h)
+        return count
+
+    return face_faces
+
+
+@kernel
+def as_named(m: Any, e: int) -> int:
+    """The name of an edge that has one name only."""
+    return e
+
+
+def edges_at_both_ends(
+    edge_vertices: Kernel, vertex_edges: Kernel, edge_of: Kernel = as_named
+) -> Kernel:
+    """Make the kernel ``edge_edges``: the edges at either end, without the edge itself.
+
+    ``edge_of(m, h)`` is the name of an edge that may be asked for by more than one handle.
+    """
+
+    @kernel
+    def edge_edges(m: Any, e: int, out: Array) -> int:
+        edge_vertices(m, e, out)
+        a, b = out[0], out[1]
+        around = vertex_edges(m, a, out)
+        name = e
+        count = without(out, around, name)
+        if count == around:
+            name = edge_of(m, e)
+            count = without(out, around, name)
+        if count == around:  # the handle names two vertices that are not joined
+            return 0
+        return count + without(out[count:], vertex_edges(m, b, out[count:]), name)
+
+    return edge_edges
 
 
 def found_by_steps(first: Kernel, clockwise: Kernel, reaches: Kernel, back: Kernel) -> Kernel:
@@ -90,59 +210,6 @@ def joined_by_steps(first: Kernel, clockwise: Kernel, ends: Kernel, find: Kernel
         return True
 
     return joined
-
-
-def half_edge_column(which: int) -> Kernel:
-    """Make ``read(m, h)``: one column of the records of half-edges."""
-
-    @kernel
-    def read(m: Any, h: int) -> int:
-        return int(m.half_edge[h, which])
-
-    return read
-
-
-@kernel
-def leaving(m: Any, v: int) -> int:
-    """The half-edge that is recorded at vertex v."""
-    return int(m.vertex_half_edge[v])
-
-
-@kernel
-def within(m: Any, f: int) -> int:
-    """The half-edge that is recorded at face f."""
-    return int(m.face_half_edge[f])
-
-
-@kernel
-def as_named(m: Any, e: int) -> int:
-    """The name of an edge that has one name only."""
-    return e
-
-
-def edges_at_both_ends(
-    edge_vertices: Kernel, vertex_edges: Kernel, edge_of: Kernel = as_named
-) -> Kernel:
-    """Make the kernel ``edge_edges``: the edges at either end, without the edge itself.
-
-    ``edge_of(m, h)`` is the name of an edge that may be asked for by more than one handle.
-    """
-
-    @kernel
-    def edge_edges(m: Any, e: int, out: Array) -> int:
-        edge_vertices(m, e, out)
-        a, b = out[0], out[1]
-        around = vertex_edges(m, a, out)
-        name = e
-        count = without(out, around, name)
-        if count == around:
-            name = edge_of(m, e)
-            count = without(out, around, name)
-        if count == around:  # the handle names two vertices that are not joined
-            return 0
-        return count + without(out[count:], vertex_edges(m, b, out[count:]), name)
-
-    return edge_edges
 
 
 @kernel

@@ -118,6 +118,11 @@ class Navigable(Structure, abstract=True):
         """(n_half_edges,) int64: the handles of all live half-edges, ascending. Cost O(n_e)."""
         return np.flatnonzero(self._alive("half_edge"))
 
+    def edges(self) -> NDArray[np.int64]:
+        """(n_edges,) int64: the handles of all live edges, each by its one name. Cost O(n_e)."""
+        h = self.half_edges()
+        return h[self._edge_names(h) == h]
+
     @cached_property
     def _walks(self) -> dict[str, Callable[..., int]]:
         """Every step from many handles."""

@@ -32,7 +32,7 @@ def write(folder: Path, name: str, changes: dict[str, str]) -> str:
         ('"-"), True, 4', '"-"), False, 4', "claims"),
         ("records_type = HalfEdgeRecords", "pass", "records_type"),
         ("def _require_invariants(", "def _forgotten(", "_require_invariants"),
-        ("def face_faces(", "def face_neighbors(", "face_faces(m, f, out) -> count"),
+        ("face_faces = ", "face_neighbors = ", "face_faces(m, f, out) -> count"),
         ("def flip_records(", "def flip(", "flip_records, which flip_edge takes"),
     ],
 )
