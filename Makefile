@@ -6,8 +6,10 @@ BIN := $(VENV)/bin
 STUDY := $(VENV)/installed-study
 DEV := $(VENV)/installed-dev
 STUDY_EXTRAS := study,fracture,viz
-# In the order of the files the slowest tests come first, and the cores end at the same time.
-PYTEST := -m pytest tests -n auto --dist loadfile --no-loadscope-reorder --durations=20
+# One worker more than there are cores, as many tests wait for a process of their own. In the order
+# of the files the slowest tests come first, and the workers end at the same time.
+WORKERS := $(shell echo $$(($$(getconf _NPROCESSORS_ONLN) + 1)))
+PYTEST := -m pytest tests -n $(WORKERS) --dist loadfile --no-loadscope-reorder --durations=20
 
 # Installs the project with extras $(2) into the environment $(1), held by the constraints $(3).
 # uv takes a quarter of pip's time; where it cannot be had or does not get through, pip does the same.
