@@ -122,7 +122,7 @@ def overview(run: Run) -> Plot:
             _draw_order_and_latency(run, axes, subject)
 
     what = "the faces around a vertex"
-    return _draw(costs, titles, "faces", what, panel="axis", also=also, size=(4.5, 3.1))
+    return _draw(costs, titles, "faces", what, panel="axis", also=also, size=(4.5, 3.1), plain=True)
 
 
 def _draw_order_and_latency(run: Run, axes: Axes, subject: str) -> None:
