@@ -36,9 +36,10 @@ def corners(shards) -> np.ndarray:
 
 @pytest.mark.parametrize("model", MODELS)
 def test_shards_and_rest_make_up_the_surface_again(model):
+    """On the bunny with fewer seeds: ``make soak`` breaks every model a hundred times."""
     mesh = surface(model)
     original = structures.build("half_edge", mesh)
-    for seed in range(100):
+    for seed in range(10 if model == "bunny" else 100):
         s = original.copy()
         broken = shatter(s, struck(mesh, seed), NAMES[seed % len(NAMES)], seed)
         s.validate()
