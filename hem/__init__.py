@@ -57,7 +57,7 @@ _NAMES = {
     "hem.sources.valence": ("valence_hubs", "valence_mesh"),
 }
 _MODULES = {name: module for module, names in _NAMES.items() for name in names}
-_ROOMS = ("complexity", "contract", "fracture", "meshes", "rendering", "sources")
+_ROOMS = ("algorithms", "complexity", "contract", "fracture", "meshes", "rendering", "sources")
 
 __all__ = sorted(_MODULES)
 

@@ -255,19 +255,25 @@ class Algorithms(Operating, abstract=True):
         """
         return int(type(self)._algorithm(make).run(plan, *self.records))
 
-    def scratch(self, splits: int) -> tuple[Any, Array]:
-        """Make room for so many splits -> scratch for all of them, and a log.
+    def scratch(self, splits: int, operations: int | None = None) -> tuple[Any, Array]:
+        """Make room for so many splits -> scratch and a log, for all of them or ``operations``.
 
         Cost O(1) per split in the long run.
         """
+        more = splits if operations is None else operations
         self._count_edges()
         self._make_room(splits, 2 * splits)
-        self._widen(splits)
-        return self._out["edge"], np.zeros(ENTRIES * (splits + 2), np.int64)
+        self._widen(more)
+        return self._out["edge"], np.zeros(ENTRIES * (more + 2), np.int64)
+
+    @property
+    def followed(self) -> bool:
+        """Whether anyone is to be told of edits: subscribers or attributes."""
+        return bool(self._subscribers or self._attributes)
 
     def tell(self, kind: str, touched: Array) -> None:
         """Tell subscribers of one edit, by the log of what an algorithm touched."""
-        if self._subscribers or self._attributes:
+        if self.followed:
             self._publish(Edit(kind, -1, touched))
 
     @classmethod

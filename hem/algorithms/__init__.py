@@ -1,0 +1,23 @@
+"""What programs do with meshes, each algorithm written once over the contract of all structures.
+
+It is compiled for every structure from that one source (``Structure.run``), and interpreted for
+those of objects; all structures give the same. README.md shows how to write one's own.
+"""
+
+from hem.algorithms.circulating import center, circulate
+from hem.algorithms.normals import vertex_normals
+from hem.algorithms.sieger_botsch import SIX, split_and_collapse
+from hem.algorithms.smoothing import METHODS, smooth
+from hem.algorithms.subdivision import SCHEMES, subdivide
+
+__all__ = [
+    "METHODS",
+    "SCHEMES",
+    "SIX",
+    "center",
+    "circulate",
+    "smooth",
+    "split_and_collapse",
+    "subdivide",
+    "vertex_normals",
+]

@@ -1,0 +1,129 @@
+"""Loop subdivision: a vertex on every edge, a face becomes four.
+
+::
+
+        c                 c           New vertices take 3/8 of both ends and 1/8 of both corners
+       ╱ ╲               ╱ ╲          beside the edge, half of each end on the border. Old ones
+      ╱   ╲      ──▶    •───•         move toward the mean of their n neighbors, by 5/8 - (3/8 +
+     ╱     ╲           ╱ ╲ ╱ ╲        cos(2 π / n) / 4)² of the way, on the border by a fourth
+    a───────b         a───•───b       toward that of the two along it.
+
+Edges are split one after the other; then one edge in each old face, from the first new vertex
+across to the old one, is turned.
+
+Source: Loop, Smooth Subdivision Surfaces Based on Triangles (1987).
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from hem.algorithms.parts import NO_WORK, Work, change, doing, finding_edge, move, side_keys
+from hem.algorithms.smoothing import averages, most_neighbors
+from hem.arrays import Array, Points
+from hem.authoring import FACE_END, LEFT, NEEDS_ROOM, RIGHT, C, D, Kernel, Kernels, kernel
+from hem.contract import Structure
+
+BORDER = 0.25
+
+
+class Plan(NamedTuple):
+    """What is split or turned, and how far that is."""
+
+    edges: Array  # (k, 2) int64: the ends of each
+    points: Points  # (k, 3) float32: of the new vertices
+    old: Array  # (1,) int64: how many vertices there were
+    next: Array  # (1,) int64: the place of the next edge, or face
+    work: Work
+
+
+def placing_on_edges(k: Kernels, operations: Kernels) -> Kernel:
+    """Make ``find(m, plan) -> 0``: 3/8 of both ends, 1/8 of both corners beside; on borders 1/2."""
+    coordinate, diamond = k["coordinate"], k["diamond"]
+    edge_between = finding_edge(k["vertex_edges"], k["edge_vertices"])
+
+    @kernel
+    def find(m: Any, plan: Plan) -> int:
+        at = plan.work.at
+        for i in range(len(plan.edges)):
+            a, b = plan.edges[i, 0], plan.edges[i, 1]
+            diamond(m, edge_between(m, a, b, plan.work), at)
+            for j in range(3):
+                middle = 0.5 * coordinate(m, a, j) + 0.5 * coordinate(m, b, j)
+                if at[LEFT] >= 0 and at[RIGHT] >= 0:
+                    beside = 0.5 * coordinate(m, at[C], j) + 0.5 * coordinate(m, at[D], j)
+                    middle = 0.75 * middle + 0.25 * beside
+                plan.points[i, j] = middle
+        return 0
+
+    return find
+
+
+def splitting(k: Kernels, operations: Kernels) -> Kernel:
+    """Make ``split_all(m, plan) -> 0``: every edge of the plan at its point."""
+    split_edge = doing(operations["split_edge"])
+    edge_between = finding_edge(k["vertex_edges"], k["edge_vertices"])
+
+    @kernel
+    def split_all(m: Any, plan: Plan) -> int:
+        while plan.next[0] < len(plan.edges):
+            i = plan.next[0]
+            for j in range(3):
+                plan.work.point[j] = plan.points[i, j]
+            e = edge_between(m, plan.edges[i, 0], plan.edges[i, 1], plan.work)
+            if split_edge(m, e, -1, plan.work) == NEEDS_ROOM:
+                return NEEDS_ROOM
+            plan.next[0] += 1
+        return 0
+
+    return split_all
+
+
+def turning(k: Kernels, operations: Kernels) -> Kernel:
+    """Make ``turn(m, plan) -> 0``: flip every edge from a new vertex to an old one across a face.
+
+    The first split of a face leaves one. An old vertex and a new one are joined along an old edge,
+    too, but then the old one is an end of it.
+    """
+    face_exists, face_edges = k["face_exists"], k["face_edges"]
+    edge_vertices, flip_edge = k["edge_vertices"], doing(operations["flip_edge"])
+
+    @kernel
+    def turn(m: Any, plan: Plan) -> int:
+        out, at, old = plan.work.out, plan.work.at, plan.old[0]
+        while plan.next[0] < m.counts[FACE_END]:
+            f = plan.next[0]
+            for i in range(face_edges(m, f, out) if face_exists(m, f) else 0):
+                edge_vertices(m, out[i], at)
+                a, new = at[0], at[1] - old
+                if at[0] < old <= at[1] and plan.edges[new, 0] != a and plan.edges[new, 1] != a:
+                    if flip_edge(m, out[i], -1, plan.work) == NEEDS_ROOM:
+                        return NEEDS_ROOM
+                    break
+            plan.next[0] += 1
+        return 0
+
+    return turn
+
+
+def loop(s: Structure) -> None:
+    """Three edits. Cost: ``vertex_vertices`` of all, a split per edge, a flip per face.
+
+    Besides, O(n_t log n_t) for the order of the edges, which is the same on every structure.
+    """
+    keys, _ = side_keys(s)
+    edges = np.stack([keys >> 32, keys & 0xFFFFFFFF], axis=1)
+    points, old = np.zeros((len(keys), 3), np.float32), np.array([len(s.points)])
+    n = np.arange(1, most_neighbors(s) + 2)
+    inside = 5 / 8 - (3 / 8 + np.cos(2 * np.pi / n) / 4) ** 2
+    vertices, places = s.vertices(), averages(s, np.append(0, inside), BORDER)
+
+    def plan() -> Plan:
+        return Plan(edges, points, old, np.zeros(1, np.int64), NO_WORK)
+
+    change(s, "subdivide", placing_on_edges, plan())
+    change(s, "subdivide", splitting, plan(), len(keys))
+    change(s, "subdivide", turning, plan())
+    move(s, "subdivide", vertices, places)

@@ -1,0 +1,99 @@
+"""Smoothing: every vertex toward the mean of its neighbors, again and again.
+
+Sources: Sieger & Botsch (2011) for the pass; Taubin, A Signal Processing Approach to Fair Surface
+Design (1995), for the one that does not shrink what it smooths.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from hem.algorithms.parts import move, plus, require_count, require_mesh
+from hem.arrays import Array, Floats, Points
+from hem.authoring import Kernel, Kernels, kernel
+from hem.contract import Structure
+from hem.naming import look_up
+
+METHODS = {"laplace": (1.0,), "taubin": (0.5, -0.53)}
+"""How far vertices go toward the mean in the passes of one iteration; away from it is negative."""
+
+
+class Plan(NamedTuple):
+    """Who goes how far, and where to."""
+
+    vertices: Array
+    faces: Array
+    inside: Floats  # by number of neighbors: the part of the way to their mean
+    border: Floats  # (1,): that to the mean of the two neighbors along the border
+    faces_at: Array  # (n,) int32 zeros: how many faces a vertex has
+    places: Points  # (n, 3) float32: where vertices come to lie
+    out: Any
+
+
+def averaging(k: Kernels, operations: Kernels) -> Kernel:
+    """Make ``average(m, plan) -> 0``. A vertex on the border has more neighbors than faces."""
+    vertex_vertices, face_vertices = k["vertex_vertices"], k["face_vertices"]
+    coordinate, face_left_of = k["coordinate"], k["face_left_of"]
+
+    @kernel
+    def along_border(m: Any, v: int, n: int, out: Any) -> int:
+        """Keep the neighbors that v has an edge of one face with."""
+        left = 0
+        for i in range(n):
+            if face_left_of(m, v, out[i]) < 0 or face_left_of(m, out[i], v) < 0:
+                out[left] = out[i]
+                left += 1
+        return left
+
+    @kernel
+    def average(m: Any, plan: Plan) -> int:
+        out, border = plan.out, plan.border[0]
+        for i in range(len(plan.faces)):
+            for j in range(face_vertices(m, plan.faces[i], out)):
+                plan.faces_at[out[j]] += 1
+        for i in range(len(plan.vertices)):
+            v = plan.vertices[i]
+            n = vertex_vertices(m, v, out)
+            part = plan.inside[n]
+            if n > plan.faces_at[v]:
+                part = border
+                n = along_border(m, v, n, out) if border != 0 else 0
+            for j in range(3):
+                here, total, rest = coordinate(m, v, j), 0.0, 0.0
+                for o in range(n):
+                    total, rest = plus(total, rest, coordinate(m, out[o], j))
+                plan.places[v, j] = here + part * ((total + rest) / n - here) if n > 0 else here
+        return 0
+
+    return average
+
+
+def averages(s: Structure, inside: Floats, border: float = 0.0) -> Points:
+    """(n, 3) float32: vertices moved toward the mean of their neighbors; see ``Plan``."""
+    n = len(s.points)
+    own = np.array([border]), np.zeros(n, np.int32), np.zeros((n, 3), np.float32)
+    plan = Plan(s.vertices(), s.faces(), inside, *own, s.scratch(0)[0])
+    s.run(averaging, plan)
+    return plan.places
+
+
+def most_neighbors(s: Structure) -> int:
+    """A bound on the number of neighbors of any vertex. Cost O(n_t)."""
+    return 2 * int(np.bincount(s.triangles().reshape(-1)).max(initial=0))
+
+
+def smooth(s: Structure, iterations: int = 1, method: str = "laplace") -> None:
+    """Smooth a mesh in place, all vertices at once; those on the border stay.
+
+    ``laplace`` moves each to the mean of its neighbors, ``taubin`` half the way there and then as
+    far back, by which the volume is kept. One edit per pass. Cost per iteration: one or two times
+    ``vertex_vertices`` of all. MeshError for another method or number, and for polygons.
+    """
+    require_mesh(s, "smooth")
+    passes = look_up(method, METHODS, "method")
+    most = most_neighbors(s)
+    for _ in range(require_count("smooth", "iterations", iterations)):
+        for part in passes:
+            move(s, "smooth", s.vertices(), averages(s, np.full(most + 1, part)))

@@ -1,0 +1,81 @@
+"""Circulating, normals and smoothing, against the triangle list and another library."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import hem
+import structures
+from hem import algorithms
+from tests.hem.algorithms.meshes import dented
+
+CLOSED, OPEN = dented("torus", 400), dented("grid", 400)
+
+
+def neighbors(mesh: hem.TriangleMesh) -> np.ndarray:
+    """(n, n): how many faces two vertices share."""
+    joined = np.zeros((len(mesh.points),) * 2, int)
+    for a, b, c in mesh.triangles.tolist():
+        for x, y in ((a, b), (b, c), (c, a)):
+            joined[x, y] += 1
+            joined[y, x] += 1
+    return joined
+
+
+@pytest.mark.parametrize("mesh", [CLOSED, OPEN], ids=["closed", "open"])
+def test_circulating_meets_every_edge_twice_and_every_face_thrice(mesh: hem.TriangleMesh) -> None:
+    s = structures.build("half_edge", mesh)
+    edges = np.count_nonzero(np.triu(neighbors(mesh)))
+    assert algorithms.circulate(s) == 2 * edges + 3 * len(mesh.triangles)
+
+
+def test_the_center_is_the_mean_of_all_corners() -> None:
+    s = structures.build("half_edge", OPEN)
+    mean = OPEN.points[OPEN.triangles].astype(np.float64).mean(axis=(0, 1))
+    assert np.allclose(algorithms.center(s), mean, atol=1e-12)
+    assert np.allclose(s.points, OPEN.points - mean, atol=1e-6)
+    assert np.allclose(algorithms.center(s), 0, atol=1e-6)
+
+
+@pytest.mark.parametrize("mesh", [CLOSED, OPEN], ids=["closed", "open"])
+def test_normals_are_those_of_trimesh_weighted_by_area(mesh: hem.TriangleMesh) -> None:
+    trimesh = pytest.importorskip("trimesh")
+    other = trimesh.Trimesh(mesh.points, mesh.triangles, process=False)
+    expected = trimesh.geometry.weighted_vertex_normals(
+        len(mesh.points), mesh.triangles, other.face_normals, other.area_faces[:, None] * [1, 1, 1]
+    )
+    found = algorithms.vertex_normals(structures.build("half_edge", mesh))
+    assert np.allclose(found, expected, atol=1e-5)
+
+
+def test_normals_of_a_sphere_point_away_from_its_middle() -> None:
+    mesh = hem.generate("sphere", 2562)
+    found = algorithms.vertex_normals(structures.build("winged_edge", mesh))
+    outward = mesh.points / np.linalg.norm(mesh.points, axis=1, keepdims=True)
+    assert ((found * outward).sum(axis=1) > 0.999).all()
+
+
+@pytest.mark.parametrize("mesh", [CLOSED, OPEN], ids=["closed", "open"])
+def test_smoothing_is_a_product_with_the_matrix_of_means(mesh: hem.TriangleMesh) -> None:
+    shared = neighbors(mesh)
+    means = (shared > 0) / (shared > 0).sum(axis=1, keepdims=True)
+    border = (shared == 1).any(axis=1)
+    means[border] = np.eye(len(shared))[border]
+    s = structures.build("half_edge", mesh)
+    algorithms.smooth(s, iterations=3)
+    assert np.allclose(s.points, np.linalg.matrix_power(means, 3) @ mesh.points, atol=1e-5)
+    algorithms.smooth(t := structures.build("half_edge", mesh), 1, "taubin")
+    one = np.eye(len(shared))
+    expected = (one - 0.53 * (means - one)) @ (one + 0.5 * (means - one)) @ mesh.points
+    assert np.allclose(t.points, expected, atol=1e-5)
+
+
+def test_taubin_keeps_the_volume_that_laplace_loses() -> None:
+    mesh = hem.generate("sphere", 642)
+    kept, lost = (structures.build("half_edge", mesh) for _ in range(2))
+    algorithms.smooth(kept, 20, "taubin")
+    algorithms.smooth(lost, 20)
+    volume = mesh.volume()
+    assert abs(kept.to_triangles().volume() - volume) < 0.02 * volume
+    assert lost.to_triangles().volume() < 0.9 * volume
