@@ -7,7 +7,6 @@ is read only as long as both are what they were, and written anew otherwise.
 import hashlib
 import json
 from contextlib import suppress
-from dataclasses import asdict
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -44,7 +43,7 @@ def judge_run(run: Run) -> list[JudgedClaim]:
     if "finished" in run.meta and run.folder.exists():
         rows = {it.claim.key: _plain(it) for it in judged}
         with suppress(OSError):
-            write_whole(path, json.dumps({"of": state, "claims": rows}, indent=1))
+            write_whole(path, json.dumps({"of": state, "claims": rows}))
     return judged
 
 
@@ -59,7 +58,7 @@ def _state(folder: Path) -> str:
 
 
 def _plain(judged: JudgedClaim) -> dict[str, Any]:
-    verdicts = {axis.key: asdict(verdict) for axis, verdict in judged.verdicts.items()}
+    verdicts = {axis.key: vars(verdict) for axis, verdict in judged.verdicts.items()}
     plain = {name: getattr(judged, name) for name in PLAIN}
     return {**plain, "verdicts": verdicts, "values": judged.values.tolist()}
 
