@@ -7,15 +7,18 @@ those of objects; all structures give the same. README.md shows how to write one
 from hem.algorithms.circulating import center, circulate
 from hem.algorithms.normals import vertex_normals
 from hem.algorithms.sieger_botsch import SIX, split_and_collapse
+from hem.algorithms.simplification import MEASURES, simplify
 from hem.algorithms.smoothing import METHODS, smooth
 from hem.algorithms.subdivision import SCHEMES, subdivide
 
 __all__ = [
+    "MEASURES",
     "METHODS",
     "SCHEMES",
     "SIX",
     "center",
     "circulate",
+    "simplify",
     "smooth",
     "split_and_collapse",
     "subdivide",

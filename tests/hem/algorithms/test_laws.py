@@ -18,6 +18,8 @@ ALGORITHMS: dict[str, Callable[[Structure], Any]] = {
     **algorithms.SIX,
     "taubin": lambda s: algorithms.smooth(s, 2, "taubin"),
     "loop": lambda s: algorithms.subdivide(s, "loop"),
+    "quadrics": lambda s: algorithms.simplify(s, vertices=30),
+    "shortest edge": lambda s: algorithms.simplify(s, faces=80, by="shortest_edge"),
     "sqrt3 twice": lambda s: algorithms.subdivide(s, "sqrt3", times=2),
 }
 CHANGING = [it for it in ALGORITHMS if it not in ("circulator", "normals")]
@@ -110,6 +112,12 @@ def test_an_interrupt_leaves_a_whole_mesh_that_works(algorithm: str, name: str) 
     lambda s: algorithms.smooth(s, 1, "gauss"),
     lambda s: algorithms.subdivide(s, "catmull"),
     lambda s: algorithms.subdivide(s, times=-1),
+    lambda s: algorithms.simplify(s),
+    lambda s: algorithms.simplify(s, vertices=-1),
+    lambda s: algorithms.simplify(s, faces=10.0),
+    lambda s: algorithms.simplify(s, error=float("nan")),
+    lambda s: algorithms.simplify(s, error="small"),
+    lambda s: algorithms.simplify(s, 10, by="volume"),
 ])  # fmt: skip
 def test_a_bad_argument_is_refused_before_anything_changes(call: Callable[[Any], None]) -> None:
     s = structures.build("half_edge", MESHES["torus"]())

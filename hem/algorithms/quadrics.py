@@ -1,0 +1,96 @@
+"""Error quadrics: the sum of squared distances from a point to planes, as a quadratic function.
+
+A quadric is a row ``xx xy xz yy yz zz x y z 1 weight`` of the symmetric matrix A, the vector b and
+the number c of ``p·A·p + 2 b·p + c``; the weight is that of all its planes together. Sums of planes
+are sums of rows. Source: Garland & Heckbert, Surface Simplification Using Quadric Error Metrics
+(1997).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+from hem.arrays import Array, Floats
+from hem.authoring import kernel
+
+WIDTH = 11
+
+TOWARD_MIDDLE = 1e-3
+"""How much the middle of an edge counts, against the planes: it decides where they do not."""
+
+
+BORDER_WEIGHT = 1.0
+"""How much the planes that stand upright on the border count: as a square on the edge."""
+
+
+@kernel
+def add_plane(row: Array, normal: tuple[float, ...], point: Array, weight: float) -> None:
+    """Add the plane through a point with a unit normal."""
+    x, y, z = normal
+    d = -(x * point[0] + y * point[1] + z * point[2])
+    parts = x * x, x * y, x * z, y * y, y * z, z * z, x * d, y * d, z * d, d * d, 1.0
+    for i in range(WIDTH):
+        row[i] += weight * parts[i]
+
+
+@kernel
+def cross(u: Array, v: Array) -> tuple[float, float, float]:
+    """The vector product."""
+    return u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]
+
+
+@kernel
+def unit(x: float, y: float, z: float) -> tuple[float, float, float]:
+    """The vector of length 1 in that direction; 0 stays 0."""
+    size = np.sqrt(x * x + y * y + z * z)
+    return (x / size, y / size, z / size) if size > 0 else (0.0, 0.0, 0.0)
+
+
+@njit(cache=True)
+def quadrics(points: Floats, triangles: Array, borders: Array) -> Floats:
+    """(n, 11): by vertex, the planes of its faces and borders, weighted by area.
+
+    ``borders`` (k, 3): the two ends of each edge on the border, and the third corner of its face.
+    """
+    found = np.zeros((len(points), WIDTH))
+    for a, b, c in triangles:
+        x, y, z = cross(points[b] - points[a], points[c] - points[a])
+        area = np.sqrt(x * x + y * y + z * z) / 2
+        for v in (a, b, c):
+            add_plane(found[v], unit(x, y, z), points[a], area)
+    for a, b, c in borders:
+        side = points[b] - points[a]
+        x, y, z = cross(side, np.array(cross(side, points[c] - points[a])))
+        area = BORDER_WEIGHT * (side * side).sum()
+        for v in (a, b):
+            add_plane(found[v], unit(x, y, z), points[a], area)
+    return found
+
+
+@kernel
+def value(row: Array, x: float, y: float, z: float) -> float:
+    """The weighted sum of squared distances of a point."""
+    total = row[0] * x * x + row[3] * y * y + row[5] * z * z + row[9]
+    total += 2 * (row[1] * x * y + row[2] * x * z + row[4] * y * z)
+    total += 2 * (row[6] * x + row[7] * y + row[8] * z)
+    return max(total, 0.0)
+
+
+@kernel
+def best_point(row: Array, x: float, y: float, z: float) -> tuple[float, float, float]:
+    """The point nearest to all planes, by Cramer's rule; a little drawn to a middle (x, y, z)."""
+    pull = TOWARD_MIDDLE * (row[0] + row[3] + row[5])
+    xx, yy, zz = row[0] + pull, row[3] + pull, row[5] + pull
+    xy, xz, yz = row[1], row[2], row[4]
+    u, v, w = pull * x - row[6], pull * y - row[7], pull * z - row[8]
+    first, second, third = yy * zz - yz * yz, xz * yz - xy * zz, xy * yz - xz * yy
+    size = xx * first + xy * second + xz * third
+    if not size > 0:
+        return x, y, z
+    fourth, fifth, sixth = xx * zz - xz * xz, xy * xz - xx * yz, xx * yy - xy * xy
+    return (
+        (first * u + second * v + third * w) / size,
+        (second * u + fourth * v + fifth * w) / size,
+        (third * u + fifth * v + sixth * w) / size,
+    )

@@ -1,0 +1,104 @@
+"""Simplification: the cheapest edge is collapsed, again and again.
+
+What an edge costs is told by error quadrics, or by its length. Borders have planes of their own,
+which stand upright on their faces, so that they keep their shape. An edge is passed over where a
+face would turn over, or where the surface would break.
+
+Source: Garland & Heckbert, Surface Simplification Using Quadric Error Metrics (1997).
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from hem.algorithms.collapsing import QUADRICS, SHORTEST_EDGE, Plan, simplifying
+from hem.algorithms.heap import heap_for
+from hem.algorithms.parts import NO_WORK, change, require_count, require_mesh, side_keys
+from hem.algorithms.quadrics import WIDTH, quadrics
+from hem.contract import Structure
+from hem.errors import MeshError
+from hem.naming import look_up
+
+MEASURES = {"quadrics": QUADRICS, "shortest_edge": SHORTEST_EDGE}
+"""What an edge costs."""
+
+LEAST_COSINES = (0.7, 0.2)
+"""How far the normal of a face may turn in one collapse, and once nothing else is left."""
+
+
+def simplify(
+    s: Structure,
+    vertices: int | None = None,
+    faces: int | None = None,
+    error: float | None = None,
+    by: str = "quadrics",
+) -> None:
+    """Simplify a mesh in place until so few vertices or faces are left, or all else is worse.
+
+    ``quadrics`` collapses the edge whose planes are least far from where its vertex comes to lie,
+    ``shortest_edge`` the shortest, into one of its ends; that keeps borders as they are. ``error``
+    is the most that a collapse may cost: the root of the mean squared distance to these planes, or
+    the length of the edge. Fewer than asked for are collapsed where faces would turn over or the
+    surface would break. Handles of what stays are kept; ``compact`` renumbers.
+
+    An edit, or some where edges have to be tried again. Cost O(n_v log n_v) for bounded valence.
+    MeshError for polygons, for another measure or number, and where nothing is said to stop at.
+    Source: Garland & Heckbert (1997).
+    """
+    require_mesh(s, "simplify")
+    measure = look_up(by, MEASURES, "measure")
+    if vertices is None and faces is None and error is None:
+        raise MeshError("simplify takes vertices, faces or error: what to stop at")
+    most = [
+        require_count("simplify", name, 0 if value is None else value)
+        for name, value in (("vertices", vertices), ("faces", faces))
+    ]
+    bound = _length(error)
+    for cosine in LEAST_COSINES:
+        left = s.n_vertices + 1
+        while s.n_vertices < left and s.n_vertices > most[0] and s.n_faces > most[1]:
+            left = s.n_vertices
+            change(s, "simplify", simplifying, _plan(s, most, bound, cosine, measure))
+
+
+def _length(error: Any) -> float:
+    if error is None:
+        return np.inf
+    if not isinstance(error, int | float | np.number) or not float(error) >= 0:
+        raise MeshError(f"simplify takes error as a number from 0 on, not {error!r}")
+    return float(error)
+
+
+def _plan(s: Structure, most: list[int], error: float, cosine: float, measure: int) -> Plan:
+    """A plan to begin with, all of it from the triangles, each from its smallest corner."""
+    rows, n = s.triangles(), len(s.points)
+    turned = (rows.argmin(axis=1)[:, None] + np.arange(3)) % 3
+    rows = np.take_along_axis(rows, turned, axis=1).astype(np.int64)
+    ends = np.roll(rows, -1, axis=1)
+    keys, count = side_keys(s)
+    lonely = np.isin(np.minimum(rows, ends) << 32 | np.maximum(rows, ends), keys[count == 1])
+    borders = np.stack([rows, ends, np.roll(rows, -2, axis=1)], axis=2)[lonely]
+    on_border = np.zeros(n, np.bool_)
+    on_border[borders[:, :2]] = True
+    alive = s.points[s.vertices()].astype(np.float64)
+    middle = (alive.min(axis=0, initial=0) + alive.max(axis=0, initial=0)) / 2
+    xyz = s.points - middle
+    return Plan(
+        most=np.array(most),
+        error=np.array([error**2]),
+        cosine=np.array([cosine]),
+        measure=np.array([measure]),
+        edges=keys,
+        next=np.zeros(1, np.int64),
+        middle=middle,
+        xyz=xyz,
+        quadric=quadrics(xyz, rows, borders),
+        on_border=on_border,
+        version=np.zeros(n, np.int64),
+        target=np.zeros(3),
+        sum=np.zeros(WIDTH),
+        heap=heap_for(len(keys)),
+        work=NO_WORK,
+    )

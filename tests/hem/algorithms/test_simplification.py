@@ -1,0 +1,118 @@
+"""Simplification against other libraries, and against what it promises."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import hem
+import structures
+from hem import algorithms
+from hem.meshes.measures import normals
+from tests.hem.algorithms.meshes import dented
+
+GRID = hem.generate("grid", 900)
+SAMPLED = 40_000
+
+
+def simplified(mesh: hem.TriangleMesh, **asked: object) -> hem.TriangleMesh:
+    s = structures.build("half_edge", mesh)
+    algorithms.simplify(s, **asked)  # type: ignore[arg-type]
+    s.validate()
+    return s.to_triangles()
+
+
+def distances(one: hem.TriangleMesh, other: hem.TriangleMesh) -> tuple[float, float]:
+    """Hausdorff and root mean square, both ways, in parts of the diagonal."""
+    pymeshlab = pytest.importorskip("pymeshlab")
+    both = pymeshlab.MeshSet()
+    for mesh in (one, other):
+        both.add_mesh(pymeshlab.Mesh(mesh.points, mesh.triangles))
+    found = [
+        both.get_hausdorff_distance(
+            sampledmesh=a,
+            targetmesh=1 - a,
+            samplenum=SAMPLED,
+            maxdist=pymeshlab.PercentageValue(50),
+        )
+        for a in (0, 1)
+    ]
+    largest = max(it["max"] / it["diag_mesh_0"] for it in found)
+    return largest, float(np.sqrt(np.mean([(it["RMS"] / it["diag_mesh_0"]) ** 2 for it in found])))
+
+
+def by_pymeshlab(mesh: hem.TriangleMesh, faces: int) -> hem.TriangleMesh:
+    pymeshlab = pytest.importorskip("pymeshlab")
+    scene = pymeshlab.MeshSet()
+    scene.add_mesh(pymeshlab.Mesh(mesh.points, mesh.triangles))
+    scene.meshing_decimation_quadric_edge_collapse(targetfacenum=faces)
+    found = scene.current_mesh()
+    return hem.TriangleMesh(found.vertex_matrix(), found.face_matrix())
+
+
+def by_fast_simplification(mesh: hem.TriangleMesh, faces: int) -> hem.TriangleMesh:
+    other = pytest.importorskip("fast_simplification")
+    return hem.TriangleMesh(*other.simplify(mesh.points, mesh.triangles, target_count=faces))
+
+
+@pytest.mark.parametrize("rival", [by_pymeshlab, by_fast_simplification])
+@pytest.mark.parametrize("sample", ["cow", "bunny"])
+def test_a_tenth_of_the_faces_is_as_near_as_what_others_make(sample: str, rival) -> None:
+    mesh = hem.sample(sample)
+    faces = len(mesh.triangles) // 10
+    theirs = distances(mesh, rival(mesh, faces))
+    mine = simplified(mesh, faces=faces)
+    assert len(mine.triangles) <= faces
+    for found, other in zip(distances(mesh, mine), theirs, strict=True):
+        assert found <= 1.1 * other
+
+
+@pytest.mark.parametrize("by", algorithms.MEASURES)
+def test_it_stops_at_the_number_asked_for(by: str) -> None:
+    mesh = dented("torus", 400)
+    assert len(simplified(mesh, vertices=123, by=by).points) == 123
+    assert len(simplified(mesh, faces=300, by=by).triangles) == 300
+    assert len(simplified(mesh, vertices=10_000, by=by).points) == 400
+
+
+def test_a_sphere_can_become_a_tetrahedron_and_nothing_less() -> None:
+    assert len(simplified(hem.generate("sphere", 642), vertices=0).points) == 4
+
+
+def test_a_flat_square_keeps_its_outline_and_its_side() -> None:
+    mine = simplified(GRID, error=1e-6)
+    assert len(mine.points) < 30
+    assert np.isclose(mine.face_areas().sum(), GRID.face_areas().sum(), rtol=1e-5)
+    assert np.allclose(mine.bounds, GRID.bounds, atol=1e-5)
+    up = normals(GRID.points[GRID.triangles[:1]].astype(float))[0]
+    assert (normals(mine.points[mine.triangles].astype(float)) @ up > 0).all()
+
+
+def test_by_length_borders_stay_as_they_are() -> None:
+    s = structures.build("half_edge", GRID)
+    before = [loop.tolist() for loop in s.border_loops()]
+    algorithms.simplify(s, vertices=300, by="shortest_edge")
+    assert [loop.tolist() for loop in s.border_loops()] == before
+    assert np.array_equal(s.points[before[0]], GRID.points[before[0]])
+
+
+def test_no_edge_longer_than_the_error_is_collapsed() -> None:
+    mesh = dented("torus", 400)
+    s = structures.build("half_edge", mesh)
+    shortest = np.linalg.norm(np.diff(mesh.points[s.edge_array()], axis=1), axis=2).min()
+    algorithms.simplify(s, error=0.99 * shortest, by="shortest_edge")
+    assert s.n_vertices == 400
+    algorithms.simplify(s, error=1.01 * shortest, by="shortest_edge")
+    assert s.n_vertices < 400
+
+
+def test_the_quadric_error_bounds_how_far_a_sphere_is_left() -> None:
+    """The planes of a sphere touch it, so what is far from many of them is far from it."""
+    mesh = hem.generate("sphere", 2562)
+    counts = []
+    for error in (1e-4, 1e-3, 1e-2):
+        mine = simplified(mesh, error=error)
+        counts.append(len(mine.points))
+        assert abs(np.linalg.norm(mine.points, axis=1) - 1).max() < 10 * error + 1e-3
+    assert counts == sorted(counts, reverse=True)
+    assert counts[-1] < 300
