@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from hem.arrays import Handles
+from hem.arrays import Array, Handles
 from hem.ragged import Ragged
 
 CREATED, CHANGED, REMOVED = range(3)
@@ -143,3 +143,27 @@ class Edit:
             for what, these in wanted.items():
                 found[kind + what] = elements[these].astype(np.int32)
         return found
+
+
+def generations(edit: Edit) -> Iterator[tuple[Array, Ragged]]:
+    """The created vertices and their parents, which are never among those of the same turn."""
+    vertices, parents = edit.created_vertices, edit.vertex_parents
+    waiting = np.flatnonzero(parents.counts > 0)
+    while len(waiting):
+        those = parents[waiting]
+        late = np.isin(those.values, vertices[waiting])
+        ready = np.add.reduceat(late, those.offsets[:-1]) == 0
+        yield vertices[waiting[ready]], those[ready]
+        waiting = waiting[~ready]
+
+
+def whole_faces(edit: Edit, faces: Array) -> Array:
+    """(k,): the faces that were there before the edit, of which these are parts."""
+    found, made = np.array(faces, np.int64), edit.created_faces
+    while len(made):
+        at = np.minimum(np.searchsorted(made, found), len(made) - 1)
+        parent = np.where(made[at] == found, edit.face_parents[at], -1)
+        if not (parent >= 0).any():
+            break
+        found[parent >= 0] = parent[parent >= 0]
+    return found

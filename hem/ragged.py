@@ -67,6 +67,16 @@ class Ragged:
         return f"Ragged({len(self):,} rows: {shown}{', …' if len(self) > SHOWN else ''})"
 
     @property
+    def following(self) -> NDArray[np.int64]:
+        """(offsets[n],) int64: where the next value of the row stands, behind the last the first.
+
+        So the sides of faces follow from their corners.
+        """
+        places, rows = np.arange(1, len(self.values) + 1), self.counts > 0
+        places[self.offsets[1:][rows] - 1] = self.offsets[:-1][rows]
+        return places
+
+    @property
     def counts(self) -> NDArray[np.int64]:
         """(n,) int64: the length of every row."""
         return np.diff(self.offsets)

@@ -23,6 +23,7 @@ from numpy.typing import NDArray
 
 from hem.contract import ELEMENTS
 from hem.errors import MeshError
+from hem.listeners import Listeners
 
 Point = tuple[float, float, float]
 
@@ -50,20 +51,22 @@ class Vertex:
     def point(self, point: Point) -> None:
         self._point = point
         if (event := self.position_changed) is not None:
-            event.fire(self)
+            event.tell(self)
             event.tell_mesh(self)
 
     def place(self, point: Point) -> None:
         """Set the point within an operation, of which the mesh tells by itself."""
         self._point = point
         if (event := self.position_changed) is not None:
-            event.fire(self)
+            event.tell(self)
 
     def subscribe(self, callback: Callable[[Vertex], Any]) -> Callable[[], None]:
         """Have ``callback`` called with this vertex whenever it has moved -> a way to end that."""
         event = self.position_changed
-        if event is None or not event.callbacks:  # none, or the one that all vertices share
-            event = self.position_changed = PositionChangedEvent(event.tell_mesh if event else None)
+        if not event:  # none, or the one that all vertices share
+            event = self.position_changed = PositionChangedEvent(
+                None if event is None else event.tell_mesh
+            )
         return event.subscribe(callback)
 
 
@@ -114,27 +117,17 @@ class Face:
         return f"Face({self.index}: {h.origin.index}, {h.end.index}, {h.previous.origin.index})"
 
 
-class PositionChangedEvent:
+class PositionChangedEvent(Listeners):
     """Who is to be told when a vertex has moved: its subscribers, and a mesh that has some.
 
     Vertices without subscribers of their own share one event once the mesh has a subscriber.
     """
 
-    __slots__ = ("callbacks", "tell_mesh")
+    __slots__ = ("tell_mesh",)
 
     def __init__(self, tell_mesh: Callable[[Vertex], Any] | None = None) -> None:
-        self.callbacks: list[Callable[[Vertex], Any]] = []
+        super().__init__()
         self.tell_mesh = tell_mesh or _tell_nobody
-
-    def subscribe(self, callback: Callable[[Vertex], Any]) -> Callable[[], None]:
-        """Have ``callback`` called with the vertex -> a way to end that."""
-        self.callbacks.append(callback)
-        return lambda: self.callbacks.remove(callback)
-
-    def fire(self, vertex: Vertex) -> None:
-        """Tell the subscribers, in their order."""
-        for callback in tuple(self.callbacks):
-            callback(vertex)
 
 
 def _tell_nobody(vertex: Vertex) -> None:

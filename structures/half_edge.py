@@ -46,10 +46,10 @@ from hem.authoring import (
     live,
     pair_half_edges,
     require,
-    require_distinct_edges,
-    require_edge_count,
+    require_edges,
     require_of_vertices,
     require_one_fan,
+    require_triangles,
     steps,
     walks,
 )
@@ -71,23 +71,11 @@ class HalfEdgeRecords(NamedTuple):
 
 # Steps from a half-edge: four are recorded, the others follow ------------------------------------
 
-origin, face = steps.half_edge_column(ORIGIN), steps.half_edge_column(FACE)
-following, twin = steps.half_edge_column(NEXT), steps.half_edge_column(TWIN)
+origin, face, following, twin = steps.columns(HalfEdgeRecords, "half_edge", 4)
 previous = steps.then(following, following)
 tip, apex = steps.then(following, origin), steps.then(previous, origin)
-edge_of = steps.smaller_of_twins(twin)
-
-STEPS = {
-    "next": following,
-    "previous": previous,
-    "twin": twin,
-    "origin": origin,
-    "tip": tip,
-    "face": face,
-    "edge": edge_of,
-    "vertex_half_edge": steps.leaving,
-    "face_half_edge": steps.within,
-}
+edge_of, others = steps.smaller_of_twins(twin), steps.others_of_triangle(following)
+leaving, within = steps.entries(HalfEdgeRecords, "vertex_half_edge", "face_half_edge")
 
 
 @kernel
@@ -112,7 +100,7 @@ def across(m: HalfEdgeRecords, h: int) -> int:
 
 # The nine queries: O(1), those of a vertex and edge_edges O(n_ev) ---------------------------------
 
-outgoing = walks.from_vertex(steps.leaving, walks.circulator(clockwise, counterclockwise))
+outgoing = walks.from_vertex(leaving, walks.circulator(clockwise, counterclockwise))
 
 vertex_vertices = walks.each_and_last(outgoing, tip, apex)
 vertex_edges = walks.each_and_last(outgoing, edge_of, previous)  # at the border it is the name
@@ -120,25 +108,26 @@ vertex_faces = walks.each(outgoing, face)
 edge_vertices = steps.ends(origin, tip)
 edge_edges = walks.edges_at_both_ends(edge_vertices, vertex_edges, edge_of)
 edge_faces = steps.faces_beside(face, across)
-face_vertices = walks.each_side(steps.within, following, origin)
-face_edges = walks.each_side(steps.within, following, edge_of)
-face_faces = walks.faces_across(steps.within, following, across)
+face_vertices = walks.each_side(within, following, origin)
+face_edges = walks.each_side(within, following, edge_of)
+face_faces = walks.faces_across(within, following, across)
 
 
 # What operations need to know, and what they change (see hem.authoring.operations) --------------
 
-face_exists = steps.recorded(FACE_END, steps.within)
+face_exists = steps.recorded(FACE_END, within)
 edge_exists = steps.recorded(EDGE_END, face)
 left_and_right = steps.left_first(twin, origin, tip)
 diamond = steps.diamond_of(edge_vertices, left_and_right, face, apex)
 ends_at, in_triangle = steps.ending_at(tip), steps.within_triangle(tip, apex)
 
 # The half-edge that runs a → b, or -1; and one at a whose face has b.
-find_half_edge = walks.found_by_steps(steps.leaving, clockwise, ends_at, counterclockwise)
-with_edge = walks.found_by_steps(steps.leaving, clockwise, in_triangle, counterclockwise)
-are_joined = walks.joined_by_steps(steps.leaving, clockwise, ends_at, with_edge)
+find_half_edge = walks.found_by_steps(leaving, clockwise, ends_at, counterclockwise)
+with_edge = walks.found_by_steps(leaving, clockwise, in_triangle, counterclockwise)
+are_joined = walks.joined_by_steps(leaving, clockwise, ends_at, with_edge)
 face_left_of = steps.left_face(find_half_edge, face)
 leaves_smallest = steps.from_smallest(following, origin)
+clear_vertex = steps.clear_vertex
 
 
 @kernel
@@ -173,19 +162,12 @@ def set_vertices(m: HalfEdgeRecords, h: int) -> None:
 
 
 @kernel
-def clear_vertex(m: HalfEdgeRecords, v: int) -> None:
-    """See to it that vertex v has no faces."""
-    m.vertex_half_edge[v] = -1
-
-
-@kernel
 def split_edge_records(m: HalfEdgeRecords, e: int, at: Array, v: int, f: int) -> None:
     """Cost O(1): two half-edges of each face stay, one moves on, and three are new."""
     left, right = left_and_right(m, e)  # they stay with a and v
     on_left, on_right = -1, -1  # the halves of the edge from v to b
     if left >= 0:
-        bc = m.half_edge[left, NEXT]
-        ca = m.half_edge[bc, NEXT]
+        bc, ca = others(m, left)
         on_left, cv, vc = new_half_edge(m, v), new_half_edge(m, at[C]), new_half_edge(m, v)
         set_twins(m, cv, vc)
         set_face(m, at[LEFT], left, vc, ca)
@@ -193,8 +175,7 @@ def split_edge_records(m: HalfEdgeRecords, e: int, at: Array, v: int, f: int) ->
         set_vertices(m, on_left)
         f += 1
     if right >= 0:
-        ad = m.half_edge[right, NEXT]
-        db = m.half_edge[ad, NEXT]
+        ad, db = others(m, right)
         on_right, vd, dv = new_half_edge(m, at[B]), new_half_edge(m, v), new_half_edge(m, at[D])
         set_twins(m, vd, dv)
         m.half_edge[right, ORIGIN] = v
@@ -209,8 +190,7 @@ def split_edge_records(m: HalfEdgeRecords, e: int, at: Array, v: int, f: int) ->
 def split_face_records(m: HalfEdgeRecords, face: int, v: int, f: int, corners: Array) -> None:
     """Cost O(1): each face keeps one half-edge of the old one and gets two."""
     ab = leaves_smallest(m, m.face_half_edge[face])
-    bc = m.half_edge[ab, NEXT]
-    ca = m.half_edge[bc, NEXT]
+    bc, ca = others(m, ab)
     a, b, c = m.half_edge[ab, ORIGIN], m.half_edge[bc, ORIGIN], m.half_edge[ca, ORIGIN]
     corners[0], corners[1], corners[2] = a, b, c
     av, va = new_half_edge(m, a), new_half_edge(m, v)
@@ -283,22 +263,20 @@ def collapse_records(
         h = inward if i == 0 else outward
         if h < 0:
             continue
-        following = m.half_edge[h, NEXT]
-        last = m.half_edge[following, NEXT]
+        after, last = others(m, h)
         m.half_edge[h, FACE] = -1
         m.face_half_edge[at[LEFT] if h == left else at[RIGHT]] = -1
         if i == 0:
-            unite(m, last, following)
+            unite(m, last, after)
         else:
-            unite(m, following, last)
+            unite(m, after, last)
 
 
 @kernel
 def flip_records(m: HalfEdgeRecords, e: int, at: Array, one: int, other: int) -> None:
     """Cost O(1)."""
     ab, ba = left_and_right(m, e)
-    bc, ad = m.half_edge[ab, NEXT], m.half_edge[ba, NEXT]
-    ca, db = m.half_edge[bc, NEXT], m.half_edge[ad, NEXT]
+    (bc, ca), (ad, db) = others(m, ab), others(m, ba)
     m.half_edge[ab, ORIGIN], m.half_edge[ba, ORIGIN] = at[D], at[C]
     set_face(m, one, ad, ab, ca)
     set_face(m, other, bc, ba, db)
@@ -326,8 +304,7 @@ def add_records(m: HalfEdgeRecords, corners: Array, f: int) -> None:
 def remove_records(m: HalfEdgeRecords, f: int) -> None:
     """Cost O(1)."""
     g = m.face_half_edge[f]
-    h = m.half_edge[g, NEXT]
-    i = m.half_edge[h, NEXT]
+    h, i = others(m, g)
     for j in (g, h, i):
         m.vertex_half_edge[m.half_edge[j, ORIGIN]] = -1
     m.face_half_edge[f] = -1
@@ -377,7 +354,6 @@ class HalfEdge(Navigable):
         Field("half_edge.next", "half_edge", target="half_edge"),
         Field("half_edge.twin", "half_edge", target="half_edge", optional=True),
     )
-    steps = STEPS
 
     @classmethod
     def build(cls, mesh: TriangleMesh, reference_bytes: int = 4) -> Self:
@@ -404,13 +380,10 @@ class HalfEdge(Navigable):
         origin, face, following, twin = m.half_edge[: len(half_edges)].T
         h, after = np.flatnonzero(half_edges), following[half_edges]
         edges = self.edges()
-        require_edge_count(m, len(edges))
+        require_edges(m, origin[edges], origin[following[edges]], edges)
         require(after != h, "next is another half-edge", "half_edges", h)
-        require(following[following[after]] == h, "three times next comes round", "half_edges", h)
-        require(face[after] == face[h], "next lies in the same face", "half_edges", h)
+        require_triangles(face, following, h, "half_edges", h)
         require(face[m.face_half_edge[f]] == f, "a face's half-edge lies in it", "faces", f)
-        sides = np.bincount(face[h], minlength=self.face_end)[f]
-        require(sides == 3, "a face has three half-edges", "faces", f)
 
         inner = h[twin[h] >= 0]
         other = twin[inner]
@@ -426,4 +399,3 @@ class HalfEdge(Navigable):
         clockwise = np.full(len(half_edges), -1)
         clockwise[inner] = following[other]
         require_one_fan(origin, clockwise, h)
-        require_distinct_edges(origin[edges], origin[following[edges]], "edges", edges)

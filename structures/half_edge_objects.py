@@ -41,6 +41,7 @@ from hem.authoring import (
     A,
     C,
     D,
+    Kernel,
     append_face,
     walks,
 )
@@ -73,43 +74,50 @@ from structures.object_records import (
 SHARED = 257
 """Integers below this one are shared by all who use them."""
 
+Give = Callable[[HalfEdge], int]
+"""What a query or a step gives of a half-edge."""
+
 COUNTED = (Vertex, HalfEdge, Face, ElementList)
 """The classes whose fields count as work when they are read or written."""
 
 
-def vertex_vertices(m: ObjectRecords, v: int, out: Any) -> int:
-    """Cost O(n_ev)."""
-    leaving, closed = around(m.vertices.items[v])
-    count = 0
-    for h in leaving:
-        out[count] = h.next.origin.index
-        count += 1
-    if closed or not count:
-        return count
-    out[count] = leaving[-1].next.next.origin.index
-    return count + 1
+def around_vertex(give: Give, last: Give | None = None) -> Kernel:
+    """Make a query: ``give(h)`` of every half-edge that leaves a vertex. Cost O(n_ev).
+
+    And ``last(h)`` of the last one of an open fan, where the query has something beyond it.
+    """
+
+    def query(m: ObjectRecords, v: int, out: Any) -> int:
+        leaving, closed = around(m.vertices.items[v])
+        count = 0
+        for h in leaving:
+            out[count] = give(h)
+            count += 1
+        if closed or not count or last is None:
+            return count
+        out[count] = last(leaving[-1])
+        return count + 1
+
+    return query
 
 
-def vertex_edges(m: ObjectRecords, v: int, out: Any) -> int:
-    """Cost O(n_ev)."""
-    leaving, closed = around(m.vertices.items[v])
-    count = 0
-    for h in leaving:
-        out[count] = h.edge
-        count += 1
-    if closed or not count:
-        return count
-    out[count] = leaving[-1].next.next.index
-    return count + 1
+def round_face(give: Give) -> Kernel:
+    """Make a query: ``give(h)`` of every half-edge of a face. Cost O(1)."""
+
+    def query(m: ObjectRecords, f: int, out: Any) -> int:
+        h = m.faces.items[f].half_edge
+        for i in range(3):
+            out[i] = give(h)
+            h = h.next
+        return 3
+
+    return query
 
 
-def vertex_faces(m: ObjectRecords, v: int, out: Any) -> int:
-    """Cost O(n_ev)."""
-    count = 0
-    for h in around(m.vertices.items[v])[0]:
-        out[count] = h.face.index
-        count += 1
-    return count
+vertex_vertices = around_vertex(lambda h: h.next.origin.index, lambda h: h.next.next.origin.index)
+vertex_edges = around_vertex(lambda h: h.edge, lambda h: h.next.next.index)
+vertex_faces = around_vertex(lambda h: h.face.index)
+face_vertices, face_edges = round_face(lambda h: h.origin.index), round_face(lambda h: h.edge)
 
 
 def edge_vertices(m: ObjectRecords, e: int, out: Any) -> int:
@@ -120,9 +128,33 @@ def edge_vertices(m: ObjectRecords, e: int, out: Any) -> int:
     return 2
 
 
-def edge_of(m: ObjectRecords, e: int) -> int:
-    """The name of the edge that e is a half-edge of. Cost O(1)."""
-    return m.half_edges.items[e].edge
+def _index(element: Any) -> int:
+    return -1 if element is None else int(element.index)
+
+
+def step(give: Give) -> Kernel:
+    """Make a step ``take(m, h)``: ``give`` of the half-edge with index h. Cost O(1)."""
+
+    def take(m: ObjectRecords, h: int) -> int:
+        return give(m.half_edges.items[h])
+
+    return take
+
+
+following, previous = step(lambda h: h.next.index), step(lambda h: h.previous.index)
+origin, tip = step(lambda h: h.origin.index), step(lambda h: h.end.index)
+twin, face = step(lambda h: _index(h.opposite)), step(lambda h: h.face.index)
+edge_of = step(lambda h: h.edge)
+
+
+def leaving(m: ObjectRecords, v: int) -> int:
+    """The half-edge that is recorded at vertex v, or -1."""
+    return _index(m.vertices.items[v].half_edge)
+
+
+def within(m: ObjectRecords, f: int) -> int:
+    """The half-edge that is recorded at face f."""
+    return int(m.faces.items[f].half_edge.index)
 
 
 edge_edges = walks.edges_at_both_ends(edge_vertices, vertex_edges, edge_of)
@@ -139,24 +171,6 @@ def edge_faces(m: ObjectRecords, e: int, out: Any) -> int:
     return 2
 
 
-def face_vertices(m: ObjectRecords, f: int, out: Any) -> int:
-    """Cost O(1)."""
-    h = m.faces.items[f].half_edge
-    for i in range(3):
-        out[i] = h.origin.index
-        h = h.next
-    return 3
-
-
-def face_edges(m: ObjectRecords, f: int, out: Any) -> int:
-    """Cost O(1)."""
-    h = m.faces.items[f].half_edge
-    for i in range(3):
-        out[i] = h.edge
-        h = h.next
-    return 3
-
-
 def face_faces(m: ObjectRecords, f: int, out: Any) -> int:
     """Cost O(1)."""
     h, count = m.faces.items[f].half_edge, 0
@@ -166,23 +180,6 @@ def face_faces(m: ObjectRecords, f: int, out: Any) -> int:
             count = append_face(out, count, opposite.face.index)
         h = h.next
     return count
-
-
-def _index(element: Any) -> int:
-    return -1 if element is None else int(element.index)
-
-
-STEPS: dict[str, Callable[[ObjectRecords, int], int]] = {
-    "next": lambda m, h: m.half_edges.items[h].next.index,
-    "previous": lambda m, h: m.half_edges.items[h].previous.index,
-    "twin": lambda m, h: _index(m.half_edges.items[h].opposite),
-    "origin": lambda m, h: m.half_edges.items[h].origin.index,
-    "tip": lambda m, h: m.half_edges.items[h].end.index,
-    "face": lambda m, h: m.half_edges.items[h].face.index,
-    "edge": lambda m, h: m.half_edges.items[h].edge,
-    "vertex_half_edge": lambda m, v: _index(m.vertices.items[v].half_edge),
-    "face_half_edge": lambda m, f: m.faces.items[f].half_edge.index,
-}
 
 
 # What operations need to know, and what they change (see hem.authoring.operations) --------------
@@ -443,7 +440,7 @@ class HalfEdgeMesh(Navigable):
     )
     uses_type, pinning, compiled = ObjectUses, Held, False
     records_type = ObjectRecords
-    fields, steps = (), STEPS
+    fields = ()
 
     @classmethod
     def build(cls, mesh: TriangleMesh, reference_bytes: int = 4) -> Self:

@@ -37,6 +37,7 @@ from hem.authoring import (
     kernel,
     packed,
     require,
+    steps,
     walks,
 )
 from hem.contract import Look, PackedEdges
@@ -131,10 +132,7 @@ def face_faces(m: IndexedRecords, f: int, out: Array) -> int:
 # What operations need to know, and what they change (see hem.authoring.operations) --------------
 
 
-@kernel
-def face_exists(m: IndexedRecords, f: int) -> bool:
-    """Whether f is a live triangle."""
-    return 0 <= f < m.counts[FACE_END] and m.triangle[f, 0] >= 0
+face_exists = steps.recorded(FACE_END, steps.column(IndexedRecords, "triangle", 0))
 
 
 @kernel

@@ -71,8 +71,8 @@ class PlanktonRecords(NamedTuple):
 
 # Steps from a half-edge ---------------------------------------------------------------------------
 
-origin, face = steps.half_edge_column(START), steps.half_edge_column(FACE)
-following, previous = steps.half_edge_column(NEXT), steps.half_edge_column(PREVIOUS)
+# Outside the border a half-edge has no face, and next and previous run along it.
+origin, face, following, previous = steps.columns(PlanktonRecords, "half_edge", 4)
 
 
 @kernel
@@ -100,26 +100,17 @@ def clockwise(m: PlanktonRecords, h: int, v: int) -> int:
 
 
 tip, across = steps.then(twin, origin), steps.then(twin, face)
-
-STEPS = {
-    "next": following,
-    "previous": previous,
-    "twin": twin,
-    "origin": origin,
-    "tip": tip,
-    "face": face,
-    "edge": edge_of,
-    "vertex_half_edge": steps.leaving,
-    "face_half_edge": steps.within,
-}
-"""Outside the border a half-edge has no face, and next and previous run along it."""
+leaving, within = steps.entries(PlanktonRecords, "vertex_half_edge", "face_half_edge")
 
 
 # The nine queries: O(1), around a vertex O(n_ev), around a face O(n) for n corners ----------------
 
 
 def around_vertex(give: Kernel) -> Kernel:
-    """Make a query: ``give(m, h)`` of every half-edge that leaves a vertex, counterclockwise."""
+    """Make a query: ``give(m, h)`` of every half-edge that leaves a vertex, counterclockwise.
+
+    None is given where it is negative.
+    """
 
     @kernel
     def query(m: PlanktonRecords, v: int, out: Array) -> int:
@@ -127,8 +118,10 @@ def around_vertex(give: Kernel) -> Kernel:
         h, count = first, 0
         while h >= 0:
             h = counterclockwise(m, h)
-            out[count] = give(m, h)
-            count += 1
+            found = give(m, h)
+            if found >= 0:
+                out[count] = found
+                count += 1
             if h == first:
                 break
         return count
@@ -154,24 +147,9 @@ def round_face(give: Kernel) -> Kernel:
 
 
 vertex_vertices, vertex_edges = around_vertex(tip), around_vertex(edge_of)
-edge_vertices = steps.ends(origin, tip)
+vertex_faces = around_vertex(face)
+edge_vertices, edge_faces = steps.ends(origin, tip), steps.faces_beside(face, across)
 face_vertices, face_edges = round_face(origin), round_face(edge_of)
-
-
-@kernel
-def vertex_faces(m: PlanktonRecords, v: int, out: Array) -> int:
-    """Cost O(n_ev)."""
-    first = m.vertex_half_edge[v]
-    h, count = first, 0
-    while h >= 0:
-        h = counterclockwise(m, h)
-        face = m.half_edge[h, FACE]
-        if face >= 0:
-            out[count] = face
-            count += 1
-        if h == first:
-            break
-    return count
 
 
 @kernel
@@ -181,18 +159,6 @@ def edge_edges(m: PlanktonRecords, e: int, out: Array) -> int:
     count = without(out, vertex_edges(m, a, out), edge_of(m, e))
     rest = out[count:]
     return count + without(rest, vertex_edges(m, b, rest), edge_of(m, e))
-
-
-@kernel
-def edge_faces(m: PlanktonRecords, e: int, out: Array) -> int:
-    """Cost O(1)."""
-    count = 0
-    for h in (e, e ^ 1):
-        face = m.half_edge[h, FACE]
-        if face >= 0:
-            out[count] = face
-            count += 1
-    return count
 
 
 @kernel
@@ -226,7 +192,7 @@ def sides(m: PlanktonRecords, f: int) -> int:
             return count
 
 
-face_exists = steps.recorded(FACE_END, steps.within)
+face_exists = steps.recorded(FACE_END, within)
 edge_exists = steps.recorded(EDGE_END, origin)
 
 
@@ -275,8 +241,9 @@ def find_half_edge(m: PlanktonRecords, a: int, b: int) -> int:
 
 
 ends_at = steps.ending_at(tip)
-are_joined = walks.joined_by_steps(steps.leaving, clockwise, ends_at, find_half_edge)
+are_joined = walks.joined_by_steps(leaving, clockwise, ends_at, find_half_edge)
 face_left_of = steps.left_face(find_half_edge, face)
+clear_vertex = steps.clear_vertex
 
 
 @kernel
@@ -336,12 +303,6 @@ def insert(m: PlanktonRecords, h: int, v: int) -> int:
         m.vertex_half_edge[b] = back
     m.vertex_half_edge[v] = other if m.half_edge[other, FACE] < 0 else onward
     return onward
-
-
-@kernel
-def clear_vertex(m: PlanktonRecords, v: int) -> None:
-    """See to it that vertex v has no faces."""
-    m.vertex_half_edge[v] = -1
 
 
 @kernel
@@ -542,19 +503,12 @@ def remove_records(m: PlanktonRecords, f: int) -> None:
 
 
 @njit(cache=True, nogil=True)
-def number(corner_vertex: Array, twin: Array, half: Array, vertex: Array) -> None:
-    """Number the half-edge at every corner; an edge counts where it is first met.
+def keep_last(corner_vertex: Array, half: Array, vertex: Array) -> None:
+    """Let every vertex keep the half-edge at its last corner.
 
-    So does Plankton when it adds the faces in order, and a vertex keeps the half-edge that it had
-    when its last face was added.
+    So does Plankton when it adds the faces in order.
     """
-    end = 0
-    for corner in range(len(twin)):
-        if twin[corner] < 0 or corner < twin[corner]:
-            half[corner] = end
-            end += 2
-        else:
-            half[corner] = half[twin[corner]] ^ 1
+    for corner in range(len(half)):
         vertex[corner_vertex[corner]] = half[corner]
 
 

@@ -32,16 +32,16 @@ from hem.authoring import (
     in_slices,
     kernels_of,
     live,
+    number_edges,
     pair_half_edges,
     pair_polygons,
     require,
-    require_distinct_edges,
-    require_edge_count,
+    require_edges,
     require_of_vertices,
     require_one_fan,
     require_one_loop,
 )
-from hem.contract import Claims, Look, Navigable, arguments, tell_all
+from hem.contract import Claims, Look, Navigable, arguments
 from hem.edit import Edit
 from hem.errors import MeshError, TopologyError
 from hem.meshes import PolygonMesh, TriangleMesh
@@ -69,7 +69,6 @@ class Plankton(Navigable):
         Field("half_edge.previous", "half_edge", target="half_edge"),
     )
     kernels = kernels_of(pairs.__name__)
-    steps = pairs.STEPS
     operations = OPERATIONS | POLYGON_OPERATIONS
 
     @classmethod
@@ -90,7 +89,8 @@ class Plankton(Navigable):
             room = np.empty((n_half_edges, 4), reference)
         half, face = np.empty(len(corners), np.int32), np.empty(n, reference)
         vertex = np.full(len(mesh.points), -1, reference)
-        pairs.number(corners, pairing.twin, half, vertex)
+        number_edges(pairing.twin, half)
+        pairs.keep_last(corners, half, vertex)
         if offsets is None:
             in_slices(pairs.fill, n, corners, half, face, room)
         else:
@@ -330,9 +330,8 @@ class Plankton(Navigable):
         self._carry_on(Edit("", -1, np.concatenate([first, second])))  # from a vertex still there
         found, third = self._run("erase_vertex", arguments.rows([vertex]), arguments.NO_POINT)
         self._carry_on(Edit("", -1, third))
-        tell_all(
-            self._subscribers, Edit("truncate_vertex", -1, np.concatenate([first, second, third]))
-        )
+        log = np.concatenate([first, second, third])
+        self._subscribers.tell(Edit("truncate_vertex", -1, log))
         return int(found[0])
 
     # Behind the contract ---------------------------------------------------------------------
@@ -364,10 +363,8 @@ class Plankton(Navigable):
         """Of every side of every face: which face, and the points where it starts and ends."""
         rows = self.face_vertices(self.faces())
         face = np.repeat(np.arange(len(rows)), rows.counts)
-        following = np.arange(1, len(rows.values) + 1)
-        following[rows.offsets[1:] - 1] = rows.offsets[:-1]
-        points = self.points.astype(np.float64)
-        return face, points[rows.values], points[rows.values[following]]
+        points = self.points.astype(np.float64)[rows.values]
+        return face, points, points[rows.following]
 
     def _polygonal(
         self, called: str, operation: str, args: Array, point: ArrayLike | None = None
@@ -398,14 +395,13 @@ class Plankton(Navigable):
         require(np.repeat(paired, 2), "both half-edges of an edge are live or dead", "half_edges")
         h = np.flatnonzero(half_edges)
         edges, after = h[0::2], following[h]
-        require_edge_count(m, len(edges))
+        require_edges(m, start[edges], start[edges ^ 1], edges)
         require(previous[after] == h, "previous of next is the half-edge itself", "half_edges", h)
         require(start[after] == start[h ^ 1], "next starts where the pair does", "half_edges", h)
         require(face[after] == face[h], "next lies in the same face", "half_edges", h)
         inhabited = (face[edges] >= 0) | (face[edges ^ 1] >= 0)
         require(inhabited, "an edge has a face on one side at least", "half_edges", edges)
         require(face[edges] != face[edges ^ 1], "an edge has two faces", "half_edges", edges)
-        require_distinct_edges(start[edges], start[edges ^ 1], "edges", edges)
         self._require_faces(h[face[h] >= 0])
         self._require_fans(h)
 

@@ -46,8 +46,7 @@ from hem.authoring import (
     packed,
     pair_half_edges,
     require,
-    require_distinct_edges,
-    require_edge_count,
+    require_edges,
     require_of_vertices,
     require_one_fan,
     steps,
@@ -92,12 +91,7 @@ def counterclockwise(m: TriangleNeighborRecords, t: int, v: int) -> int:
     return m.triangle[t, NEIGHBOR + (corner_of(m, t, v) + 2) % 3]
 
 
-@kernel
-def first(m: TriangleNeighborRecords, v: int) -> int:
-    """A triangle at v."""
-    return m.vertex_triangle[v]
-
-
+(first,) = steps.entries(TriangleNeighborRecords, "vertex_triangle")
 fan = walks.circulator(clockwise, counterclockwise)
 
 
@@ -164,13 +158,7 @@ def face_faces(m: TriangleNeighborRecords, f: int, out: Array) -> int:
 # What operations need to know, and what they change (see hem.authoring.operations) --------------
 
 
-@kernel
-def first_corner(m: TriangleNeighborRecords, f: int) -> int:
-    """A corner of triangle f, negative if it is dead."""
-    return m.triangle[f, CORNER]
-
-
-face_exists = steps.recorded(FACE_END, first_corner)
+face_exists = steps.recorded(FACE_END, steps.column(TriangleNeighborRecords, "triangle", CORNER))
 
 
 @kernel
@@ -422,7 +410,7 @@ class TriangleNeighbor(PackedEdges):
         beyond = np.full_like(corner, -1)
         beyond[f] = m.triangle[f, NEIGHBOR:CORNER]
         once = (beyond < np.arange(len(faces))[:, None]) & faces[:, None]  # of two the later one
-        require_edge_count(m, int(np.count_nonzero(once)))
+        require_edges(m, corner[once], np.roll(corner, -1, axis=1)[once])
         require(corner[f] != np.roll(corner[f], 1, axis=1), "corners differ", "faces", f)
 
         just, has = (
@@ -443,4 +431,3 @@ class TriangleNeighbor(PackedEdges):
         clockwise_corner[3 * t + i] = 3 * u + (j + 1) % 3
         corners = np.flatnonzero(np.repeat(faces, 3))
         require_one_fan(corner.ravel(), clockwise_corner, corners)
-        require_distinct_edges(corner[once], np.roll(corner, -1, axis=1)[once], "edges")

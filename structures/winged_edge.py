@@ -50,13 +50,13 @@ from hem.authoring import (
     counted,
     in_slices,
     kernel,
-    live,
+    number_edges,
     pair_half_edges,
     require,
-    require_distinct_edges,
-    require_edge_count,
+    require_edges,
     require_of_vertices,
     require_one_fan,
+    require_triangles,
     steps,
     walks,
 )
@@ -90,9 +90,12 @@ def by_side(left: int, right: int) -> Kernel:
     return read
 
 
+tail, head, left_face, right_face = steps.columns(WingedEdgeRecords, "edge", 4)
 origin, tip = by_side(TAIL, HEAD), by_side(HEAD, TAIL)
 left_of, right_of = by_side(LEFT_FACE, RIGHT_FACE), by_side(RIGHT_FACE, LEFT_FACE)
 previous_edge, next_edge = by_side(LEFT_PREVIOUS, RIGHT_PREVIOUS), by_side(LEFT_NEXT, RIGHT_NEXT)
+next_beyond = by_side(RIGHT_NEXT, LEFT_NEXT)  # in the face on the right hand
+edge_ending_at, edge_at = steps.entries(WingedEdgeRecords, "vertex_edge", "face_edge")
 
 
 @kernel
@@ -114,76 +117,27 @@ def directed_along(m: WingedEdgeRecords, e: int, f: int) -> int:
 
 
 @kernel
-def edge_at(m: WingedEdgeRecords, f: int) -> int:
-    """The edge that is recorded at face f."""
-    return m.face_edge[f]
-
-
-@kernel
 def following(m: WingedEdgeRecords, d: int) -> int:
     """The directed edge after d in the face on its left hand."""
     return directed_from(m, next_edge(m, d), tip(m, d))
 
 
-@kernel
-def counterclockwise(m: WingedEdgeRecords, d: int, v: int) -> int:
-    """The directed edge that leaves v before d: it enters v in the face on the left hand of d."""
-    e = previous_edge(m, d)
-    return directed_from(m, e, v) if e >= 0 else -1
-
-
-@kernel
-def clockwise(m: WingedEdgeRecords, d: int, v: int) -> int:
-    """The directed edge that leaves v after d: next in the face on the right hand of d."""
-    e = next_edge(m, d ^ 1)
-    return directed_from(m, e, v) if e >= 0 else -1
+# The two after d in the triangle on its left hand.
+others = steps.others_of_triangle(following)
+# The directed edge that leaves v before d enters v in the face on the left hand of d; the one after
+# d is next in the face on its right hand.
+counterclockwise = steps.entering(previous_edge, directed_from)
+clockwise = steps.entering(next_beyond, directed_from)
 
 
 # The nine queries: O(1), those of a vertex and edge_edges O(n_ev) ---------------------------------
 
 around = walks.circulator(clockwise, counterclockwise)
-
-
-@kernel
-def outgoing(m: WingedEdgeRecords, v: int, out: Array) -> tuple[int, bool]:
-    """The directed edges that leave v, counterclockwise -> how many, and whether they close."""
-    e = m.vertex_edge[v]
-    if e < 0:
-        return 0, True
-    return around(m, directed_from(m, e, v), v, out)
-
-
-@kernel
-def vertex_faces(m: WingedEdgeRecords, v: int, out: Array) -> int:
-    """Beyond the last edge of an open fan lies none."""
-    count, closed = outgoing(m, v, out)
-    faces = count if closed else count - 1
-    for i in range(faces):
-        out[i] = left_of(m, out[i])
-    return faces
-
-
-@kernel
-def edge_vertices(m: WingedEdgeRecords, e: int, out: Array) -> int:
-    """The smaller first."""
-    a, b = m.edge[e, TAIL], m.edge[e, HEAD]
-    out[0], out[1] = min(a, b), max(a, b)
-    return 2
-
-
-@kernel
-def edge_faces(m: WingedEdgeRecords, e: int, out: Array) -> int:
-    """The left one first."""
-    count = 0
-    for side in range(2):
-        face = m.edge[e, LEFT_FACE + side]
-        if face >= 0:
-            out[count] = face
-            count += 1
-    return count
-
+outgoing = walks.from_vertex(edge_ending_at, around, directed_from)
 
 vertex_vertices, vertex_edges = walks.each(outgoing, tip), walks.each(outgoing, edge_of)
+vertex_faces = walks.each_but_last(outgoing, left_of)  # beyond the last edge of an open fan is none
+edge_vertices, edge_faces = steps.ends(tail, head), steps.faces_beside(left_face, right_face)
 edge_edges = walks.edges_at_both_ends(edge_vertices, vertex_edges)
 face_vertices = walks.each_side(edge_at, next_edge, origin, directed_along)
 face_edges = walks.each_side(edge_at, next_edge, edge_of, directed_along)
@@ -207,12 +161,6 @@ def diamond(m: WingedEdgeRecords, e: int, at: Array) -> int:
 
 
 @kernel
-def edge_exists(m: WingedEdgeRecords, e: int) -> bool:
-    """Whether e is a live edge."""
-    return 0 <= e < m.counts[EDGE_END] and m.edge[e, TAIL] >= 0
-
-
-@kernel
 def first(m: WingedEdgeRecords, v: int) -> int:
     """A directed edge that leaves v, or a negative number."""
     return directed_from(m, m.vertex_edge[v], v) if m.vertex_edge[v] >= 0 else -1
@@ -224,7 +172,9 @@ def first_side(m: WingedEdgeRecords, f: int) -> int:
     return directed_along(m, m.face_edge[f], f)
 
 
-face_exists, ends_at = steps.recorded(FACE_END, edge_at), steps.ending_at(tip)
+face_exists = steps.recorded(FACE_END, edge_at)
+edge_exists = steps.recorded(EDGE_END, tail)
+ends_at = steps.ending_at(tip)
 
 # The directed edge a → b, or -1.
 find_directed_edge = walks.found_by_steps(first, clockwise, ends_at, counterclockwise)
@@ -302,8 +252,7 @@ def split_edge_records(m: WingedEdgeRecords, e: int, at: Array, v: int, f: int) 
 def split_face_records(m: WingedEdgeRecords, face: int, v: int, f: int, corners: Array) -> None:
     """Cost O(1)."""
     ab = leaves_smallest(m, first_side(m, face))
-    bc = following(m, ab)
-    ca = following(m, bc)
+    bc, ca = others(m, ab)
     a, b, c = tip(m, ca), tip(m, ab), tip(m, bc)
     corners[0], corners[1], corners[2] = a, b, c
     av, bv, cv = new_edge(m, a, v), new_edge(m, b, v), new_edge(m, c, v)
@@ -321,8 +270,8 @@ def unite(m: WingedEdgeRecords, gone: int, stays: int) -> None:
     beyond = gone ^ 1
     face = left_of(m, beyond)
     if face >= 0:
-        begin, after = m.face_edge[face], following(m, beyond)
-        set_face(m, face, stays, after, following(m, after))
+        begin, (after, before) = m.face_edge[face], others(m, beyond)
+        set_face(m, face, stays, after, before)
         m.face_edge[face] = begin if begin != gone >> 1 else stays >> 1
     else:
         set_side(m, stays, -1, -1, -1)
@@ -340,12 +289,10 @@ def collapse_records(
     inward = directed_from(m, e, drop)  # ends at keep
     to_c, from_c, to_d, from_d = -1, -1, -1, -1
     if left_of(m, inward) >= 0:
-        to_c = following(m, inward)
-        from_c = following(m, to_c)
+        to_c, from_c = others(m, inward)
         m.face_edge[left_of(m, inward)] = -1
     if left_of(m, inward ^ 1) >= 0:
-        to_d = following(m, inward ^ 1)
-        from_d = following(m, to_d)
+        to_d, from_d = others(m, inward ^ 1)
         m.face_edge[left_of(m, inward ^ 1)] = -1
     for i in range(edges):
         for end in (TAIL, HEAD):
@@ -363,8 +310,7 @@ def collapse_records(
 def flip_records(m: WingedEdgeRecords, e: int, at: Array, one: int, other: int) -> None:
     """Cost O(1)."""
     ab = directed_from(m, e, at[A])
-    bc, ad = following(m, ab), following(m, ab ^ 1)
-    ca, db = following(m, bc), following(m, ad)
+    (bc, ca), (ad, db) = others(m, ab), others(m, ab ^ 1)
     set_ends(m, ab, at[D], at[C])
     set_face(m, one, ad, ab, ca)
     set_face(m, other, bc, ab ^ 1, db)
@@ -387,8 +333,7 @@ def add_records(m: WingedEdgeRecords, corners: Array, f: int) -> None:
 def remove_records(m: WingedEdgeRecords, f: int) -> None:
     """Cost O(1)."""
     ab = first_side(m, f)
-    bc = following(m, ab)
-    ca = following(m, bc)
+    bc, ca = others(m, ab)
     a, b, c = tip(m, ca), tip(m, ab), tip(m, bc)
     m.face_edge[f] = -1
     m.vertex_edge[a] = m.vertex_edge[b] = m.vertex_edge[c] = -1
@@ -411,33 +356,21 @@ def set_vertex_face(m: WingedEdgeRecords, v: int, f: int) -> None:
 
 
 @njit(cache=True, nogil=True)
-def _number_edges(twin: Array, edge_of: Array) -> None:
-    """Number the edges in the order of the first of their half-edges."""
-    n = 0
-    for h in range(len(twin)):
-        if twin[h] < 0 or h < twin[h]:
-            edge_of[h] = n
-            n += 1
-        else:
-            edge_of[h] = edge_of[twin[h]]
-
-
-@njit(cache=True, nogil=True)
 def _fill(
-    begin: int, end: int, part: int, corners: Array, twin: Array, edge_of: Array, edge: Array
+    begin: int, end: int, part: int, corners: Array, twin: Array, directed: Array, edge: Array
 ) -> None:
     """The first half-edge of an edge gives its direction and left side, the twin its right side."""
     for h in range(begin, end):
-        if h > twin[h] >= 0:
+        if directed[h] & 1:
             continue
-        row, following = edge[edge_of[h]], h + 1 if h % 3 < 2 else h - 2
+        row, following = edge[directed[h] >> 1], h + 1 if h % 3 < 2 else h - 2
         row[TAIL], row[HEAD] = corners[h // 3, h % 3], corners[h // 3, following % 3]
         for side in range(2):
             g = h if side == 0 else twin[h]
             base = g - g % 3
             row[LEFT_FACE + side] = g // 3 if g >= 0 else -1
-            row[LEFT_PREVIOUS + side] = edge_of[base + (g + 2) % 3] if g >= 0 else -1
-            row[LEFT_NEXT + side] = edge_of[base + (g + 1) % 3] if g >= 0 else -1
+            row[LEFT_PREVIOUS + side] = directed[base + (g + 2) % 3] >> 1 if g >= 0 else -1
+            row[LEFT_NEXT + side] = directed[base + (g + 1) % 3] >> 1 if g >= 0 else -1
 
 
 class WingedEdge(Structure):
@@ -464,43 +397,41 @@ class WingedEdge(Structure):
     def build(cls, mesh: TriangleMesh, reference_bytes: int = 4) -> Self:
         """See ``Structure.build``."""
         reference, pairing = REFERENCE_TYPES[reference_bytes], pair_half_edges(mesh)
-        edge_of = np.empty_like(pairing.twin)
-        _number_edges(pairing.twin, edge_of)
+        directed = np.empty_like(pairing.twin)
+        number_edges(pairing.twin, directed)
         edge = np.empty((pairing.n_edges, 8), reference)
-        in_slices(_fill, len(edge_of), mesh.triangles, pairing.twin, edge_of, edge)
+        in_slices(_fill, len(directed), mesh.triangles, pairing.twin, directed, edge)
         used = pairing.vertex_half_edge >= 0
         vertex_edge = np.full(len(used), -1, reference)
-        vertex_edge[used] = edge_of[pairing.vertex_half_edge[used]]
-        face_edge = edge_of[::3].astype(reference)
+        vertex_edge[used] = directed[pairing.vertex_half_edge[used]] >> 1
+        face_edge = (directed[::3] >> 1).astype(reference)
         count = counted(len(mesh.points), pairing.n_edges, len(face_edge), pairing.n_edges)
         return cls(WingedEdgeRecords(mesh.points.copy(), vertex_edge, face_edge, edge, count))
 
     def edges(self) -> NDArray[np.int64]:
         """(n_edges,) int64: the index of every live edge record."""
-        return np.flatnonzero(live(self.records, self.fields, "edge"))
+        return np.flatnonzero(self._alive("edge"))
 
     def _require_invariants(self) -> None:
         """Those at the top of this file."""
         m, e, f = self.records, self.edges(), self.faces()
-        require_edge_count(m, len(e))
         record = m.edge[: m.counts[EDGE_END]]
+        require_edges(m, record[e, TAIL], record[e, HEAD], e)
         faces = record[e][:, [LEFT_FACE, RIGHT_FACE]].max(axis=1, initial=-1)
         require(faces >= 0, "an edge has a face", "edges", e)
-        require_distinct_edges(record[e, TAIL], record[e, HEAD], "edges", e)
         own = (record[m.face_edge[f]][:, [LEFT_FACE, RIGHT_FACE]] == f[:, None]).any(axis=1)
         require(own, "the edge of a face borders it", "faces", f)
 
         of_vertex = m.vertex_edge[: len(self.points)]
         just, there = "just the vertices with edges have one", "the edge of a vertex ends there"
         require_of_vertices(of_vertex, record[:, [TAIL, HEAD]], e, just, there)
-        self._require_wings(record, e, f)
+        self._require_wings(record, e)
 
-    def _require_wings(self, record: Array, e: Array, f: Array) -> None:
+    def _require_wings(self, record: Array, e: Array) -> None:
         """As directed edges 2e + side: one row each, whichever way round the edge lies."""
-        tail, head = record[:, [TAIL, HEAD]].ravel(), record[:, [HEAD, TAIL]].ravel()
-        face = record[:, [LEFT_FACE, RIGHT_FACE]].ravel()
-        before = record[:, [LEFT_PREVIOUS, RIGHT_PREVIOUS]].ravel()
-        after = record[:, [LEFT_NEXT, RIGHT_NEXT]].ravel()
+        columns = record.reshape(-1, 4, 2).swapaxes(0, 1)  # they come in pairs, one for each side
+        tail, face, before, after = columns.reshape(4, -1)
+        head = record[:, [HEAD, TAIL]].ravel()
         d = np.stack([2 * e, 2 * e + 1], axis=1).ravel()
         inner = d[face[d] >= 0]
         owner = inner // 2
@@ -512,12 +443,8 @@ class WingedEdge(Structure):
         on_right = face[2 * after[inner]] != face[inner]
         follower[inner] = 2 * after[inner] + on_right
         then = follower[inner]
-        words = "next lies in the same face and starts at the end"
-        require((face[then] == face[inner]) & (tail[then] == head[inner]), words, "edges", owner)
+        require_triangles(face, follower, inner, "edges", owner)
+        require(tail[then] == head[inner], "next starts at the end", "edges", owner)
         require(before[then] == owner, "previous of next is the edge itself", "edges", owner)
-        round_ = follower[follower[then]] == inner
-        require(round_, "three times next comes round", "edges", owner)
-        sides = np.bincount(face[inner], minlength=self.face_end)[f]
-        require(sides == 3, "a face has three edges", "faces", f)
         # Around its tail, clockwise of a directed edge comes the follower of its other direction.
         require_one_fan(tail, follower[np.arange(len(face)) ^ 1], d)

@@ -13,7 +13,7 @@ from experiments.harness.oracle import check_query
 from experiments.harness.timer import Timer
 from experiments.presets import Preset
 from hem.arrays import Array
-from hem.contract import Structure
+from hem.contract import Structure, Sweep
 
 MOST_HANDLES = 1_000_000
 FEWEST_ROUNDS = 5
@@ -42,8 +42,8 @@ def time_query(case: Case, preset: Preset, timer: Timer) -> Measurement:
     once before, so that a small one is.
     """
     s, handles = checked_handles(case)
-    query = case.query.name
-    seconds = _seconds_per_query(s, query, handles, preset.round_seconds / 4)
+    sweep = s.prepare_sweep(case.query.name, handles)
+    seconds = _seconds_per_query(sweep, preset.round_seconds / 4)
     many = int(np.clip(preset.round_seconds / seconds, 1, MOST_HANDLES))
     rounds = int(np.clip(preset.case_seconds / (seconds * many), 0, preset.rounds))
     if rounds < FEWEST_ROUNDS:
@@ -51,35 +51,35 @@ def time_query(case: Case, preset: Preset, timer: Timer) -> Measurement:
         return case.result("time", s, skipped=reason)
     latency = latency_now(sum(s.memory().values()))
     if seconds * len(handles) < preset.case_seconds:
-        s.sweep(query, handles)
+        sweep.run()
     windows = (np.arange(many) + many * k for k in count())
 
-    def successive() -> tuple[str, Array]:
-        return query, handles[next(windows) % len(handles)]
+    def successive() -> tuple[Sweep]:
+        return (sweep.some(next(windows) % len(handles)),)
 
-    timed = timer(s.sweep, setup=successive, rounds=rounds, per=many)
+    timed = timer(Sweep.run, setup=successive, rounds=rounds, per=many)
     return case.result("time", s, latency=latency, **timed.fields)
 
 
-def _seconds_per_query(s: Structure, query: str, handles: Array, enough: float) -> float:
+def _seconds_per_query(sweep: Sweep, enough: float) -> float:
     """The least of some tries: one that was delayed would leave a round with too few handles.
 
     Then it is the call that is timed: asked of one handle a query of 6 ns takes 1.7 µs.
     """
-    s.sweep(query, handles[:1])  # compiles
+    sweep.some(slice(1)).run()  # compiles
     many = 1
     while True:
-        asked = handles[np.arange(many) % len(handles)]
-        seconds = _seconds(s.sweep, query, asked)
+        asked = sweep.some(np.arange(many) % len(sweep.handles))
+        seconds = _seconds(asked.run)
         for _ in range(TRIES - 1):
             if seconds >= enough:
-                seconds = min(seconds, _seconds(s.sweep, query, asked))
+                seconds = min(seconds, _seconds(asked.run))
         if seconds >= enough or many >= MOST_HANDLES:
             return max(seconds / many, 1e-10)
         many *= 4
 
 
-def _seconds(call: Callable[..., Any], *given: Any) -> float:
+def _seconds(call: Callable[[], Any]) -> float:
     begin = perf_counter()
-    call(*given)
+    call()
     return perf_counter() - begin

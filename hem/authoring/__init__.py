@@ -14,12 +14,12 @@ from hem.authoring import packed, steps, walks
 from hem.authoring.defaults import OF_ARRAYS, kill_vertex, set_point, sides, vertex_exists
 from hem.authoring.invariants import (
     require,
-    require_distinct_edges,
-    require_edge_count,
+    require_edges,
     require_of_vertices,
     require_one_fan,
     require_one_loop,
     require_records,
+    require_triangles,
 )
 from hem.authoring.kernels import (
     EDGE_END,
@@ -63,7 +63,7 @@ from hem.authoring.operations import (
     log_parts,
     vertex_maker,
 )
-from hem.authoring.pairing import Pairing, pair_half_edges, pair_polygons
+from hem.authoring.pairing import Pairing, number_edges, pair_half_edges, pair_polygons
 from hem.authoring.queries import ELEMENTS, QUERIES, Query
 from hem.authoring.records import (
     ENDLESS,
@@ -137,17 +137,18 @@ __all__ = [
     "log_element",
     "log_faces",
     "log_parts",
+    "number_edges",
     "packed",
     "pair_half_edges",
     "pair_polygons",
     "part",
     "require",
-    "require_distinct_edges",
-    "require_edge_count",
+    "require_edges",
     "require_of_vertices",
     "require_one_fan",
     "require_one_loop",
     "require_records",
+    "require_triangles",
     "set_point",
     "sides",
     "slice_count",

@@ -13,6 +13,7 @@ from hem.authoring.kernels import EDGES, FACES, VERTICES
 from hem.authoring.queries import ELEMENTS
 from hem.authoring.records import Field, in_use, live
 from hem.errors import MeshError
+from hem.meshes import components
 
 RECORDS = {**ELEMENTS, "half_edge": "half_edges", "triangle": "faces"}
 """How errors call the elements that records stand for."""
@@ -65,18 +66,17 @@ def _require_count(element: str, found: int, counted: int) -> None:
         raise MeshError(f"broken invariant: {counted:,} live {many} are counted, not {found:,}")
 
 
-def require_edge_count(records: Any, edges: int) -> None:
-    """Require that there are as many live edges as the structure says."""
-    _require_count("edge", edges, int(records.counts[EDGES]))
+def require_edges(records: Any, a: Array, b: Array, of: Array | None = None) -> None:
+    """Require that all live edges are (a[i], b[i]), as many as the structure says, all different.
 
-
-def require_distinct_edges(a: Array, b: Array, elements: str, of: Array | None = None) -> None:
-    """Require that no two edges (a[i], b[i]) join the same two vertices, and none joins one."""
-    require(a != b, "an edge joins two different vertices", elements, of)
+    No two join the same two vertices, and none joins one.
+    """
+    _require_count("edge", len(a), int(records.counts[EDGES]))
+    require(a != b, "an edge joins two different vertices", "edges", of)
     named = (np.minimum(a, b).astype(np.int64) << 32) | np.maximum(a, b)
     first = np.zeros(len(named), np.bool_)
     first[np.unique(named, return_index=True)[1]] = True
-    require(first, "two vertices are joined by at most one edge", elements, of)
+    require(first, "two vertices are joined by at most one edge", "edges", of)
 
 
 def require_of_vertices(of: Array, at: Array, alive: Array, just: str, there: str) -> None:
@@ -89,6 +89,21 @@ def require_of_vertices(of: Array, at: Array, alive: Array, just: str, there: st
     require((of >= 0) == used, just, "vertices")
     v = np.flatnonzero(used)
     require((at[of[v]] == v[:, None]).any(axis=1), there, "vertices", v)
+
+
+def require_triangles(
+    face: Array, following: Array, alive: Array, elements: str, of: Array
+) -> None:
+    """Require that half-edges run round triangles, three in each of their faces.
+
+    ``face``, ``following``: (n,) of each half-edge. ``alive``: (k,) those that lie in live faces,
+    called ``of`` (k,) in errors.
+    """
+    after = following[alive]
+    require(face[after] == face[alive], "next lies in the same face", elements, of)
+    require(following[following[after]] == alive, "three times next comes round", elements, of)
+    sides = np.bincount(face[alive])
+    require((sides == 0) | (sides == 3), "a face has three sides", "faces")
 
 
 def require_one_fan(vertex: Array, clockwise: Array, alive: Array) -> None:
@@ -112,14 +127,7 @@ def require_one_loop(face: Array, following: Array, alive: Array) -> None:
 
 def _require_one_each(owner: Array, step: Array, alive: Array, words: str, elements: str) -> None:
     """Require that all items of an owner hang together by steps; -1 is no step."""
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-
-    n = len(owner)
-    if n == 0:
-        return
     items = alive[step[alive] >= 0]
-    steps = (np.ones(len(items), np.bool_), (items, step[items]))
-    group = connected_components(coo_array(steps, shape=(n, n)), directed=False)[1][alive]
+    group = components(len(owner), np.stack([items, step[items]], axis=1))[1][alive]
     owners = owner[alive][np.unique(group, return_index=True)[1]]
     require(np.bincount(owners) < 2, words, elements)

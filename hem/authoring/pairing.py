@@ -97,13 +97,27 @@ def pair_polygons(mesh: PolygonMesh) -> Pairing:
     twin: NDArray[np.int32] = paired.astype(np.int32)
     vertex = np.full(len(mesh.points), -1, np.int32)
     vertex[here[::-1]] = np.arange(len(here), dtype=np.int32)[::-1]
-    following = np.roll(np.arange(len(here)), -1)
-    following[mesh.faces.offsets[1:] - 1] = mesh.faces.offsets[:-1]
+    clockwise = np.where(twin >= 0, mesh.faces.following[twin], -1)
     try:
-        require_one_fan(here, np.where(twin >= 0, following[twin], -1), np.arange(len(here)))
+        require_one_fan(here, clockwise, np.arange(len(here)))
     except MeshError as error:
         raise NonManifoldError("fans of faces meet in a vertex", **error.elements) from error
     return Pairing(twin, vertex, (len(here) + int((twin < 0).sum())) // 2)
+
+
+@njit(cache=True, nogil=True)
+def number_edges(twin: Array, side: Array) -> None:
+    """Number the two sides of every edge: 2k and 2k + 1 for the k-th edge that is met.
+
+    ``side``: (n,) half-edge → its number; the half-edge that is met first has 2k.
+    """
+    end = 0
+    for h in range(len(twin)):
+        if twin[h] < 0 or h < twin[h]:
+            side[h] = end
+            end += 2
+        else:
+            side[h] = side[twin[h]] + 1
 
 
 @njit(cache=True, nogil=True)

@@ -15,26 +15,39 @@ from hem.authoring.kernels import Kernel, kernel
 from hem.authoring.operations import LEFT, RIGHT, C, D
 
 
-def half_edge_column(which: int) -> Kernel:
-    """Make ``read(m, h)``: one column of the records of half-edges."""
+def column(records: type[Any], array: str, which: int) -> Kernel:
+    """Make ``read(m, it)``: one column of an array of the ``records``, a ``NamedTuple`` of them."""
+    place = records._fields.index(array)  # getattr would count references, for 15 ns a read
 
     @kernel
-    def read(m: Any, h: int) -> int:
-        return int(m.half_edge[h, which])
+    def read(m: Any, it: int) -> int:
+        return int(m[place][it, which])
 
     return read
 
 
-@kernel
-def leaving(m: Any, v: int) -> int:
-    """The half-edge that is recorded at vertex v."""
-    return int(m.vertex_half_edge[v])
+def columns(records: type[Any], array: str, count: int) -> list[Kernel]:
+    """Make ``read(m, it)`` of each of the first ``count`` columns."""
+    return [column(records, array, which) for which in range(count)]
+
+
+def entries(records: type[Any], *arrays: str) -> list[Kernel]:
+    """Make ``read(m, it)`` of each of the arrays that hold one reference for every element."""
+
+    def entry(place: int) -> Kernel:
+        @kernel
+        def read(m: Any, it: int) -> int:
+            return int(m[place][it])
+
+        return read
+
+    return [entry(records._fields.index(array)) for array in arrays]
 
 
 @kernel
-def within(m: Any, f: int) -> int:
-    """The half-edge that is recorded at face f."""
-    return int(m.face_half_edge[f])
+def clear_vertex(m: Any, v: int) -> None:
+    """See to it that vertex v has no faces, where its half-edge is recorded."""
+    m.vertex_half_edge[v] = -1
 
 
 def then(first: Kernel, second: Kernel) -> Kernel:
@@ -45,6 +58,31 @@ def then(first: Kernel, second: Kernel) -> Kernel:
         return int(second(m, first(m, h)))
 
     return both
+
+
+def entering(step: Kernel, enter: Kernel) -> Kernel:
+    """Make ``turn(m, h, v)``, which leaves v again, of a step to what is no half-edge yet.
+
+    ``enter(m, it, v)`` is the half-edge that leaves v for what the step leads to.
+    """
+
+    @kernel
+    def turn(m: Any, h: int, v: int) -> int:
+        it = step(m, h)
+        return enter(m, it, v) if it >= 0 else -1
+
+    return turn
+
+
+def others_of_triangle(following: Kernel) -> Kernel:
+    """Make ``others(m, h)``: the two half-edges that come after h in its triangle."""
+
+    @kernel
+    def others(m: Any, h: int) -> tuple[int, int]:
+        after = following(m, h)
+        return after, following(m, after)
+
+    return others
 
 
 def smaller_of_twins(twin: Kernel) -> Kernel:
@@ -72,7 +110,7 @@ def recorded(end: int, mark: Kernel) -> Kernel:
 
 
 def ends(origin: Kernel, tip: Kernel) -> Kernel:
-    """Make ``edge_vertices`` of an edge that is named by a half-edge. Cost O(1)."""
+    """Make ``edge_vertices`` of one end of an edge and the other: the smaller first. O(1)."""
 
     @kernel
     def edge_vertices(m: Any, e: int, out: Array) -> int:
@@ -84,16 +122,18 @@ def ends(origin: Kernel, tip: Kernel) -> Kernel:
 
 
 def faces_beside(face: Kernel, across: Kernel) -> Kernel:
-    """Make ``edge_faces`` of an edge that is named by a half-edge in a face. Cost O(1)."""
+    """Make ``edge_faces`` of the faces on both sides of an edge, of which one may be none. O(1)."""
 
     @kernel
     def edge_faces(m: Any, e: int, out: Array) -> int:
-        out[0] = face(m, e)
-        beyond = across(m, e)
-        if beyond < 0:
-            return 1
-        out[1] = beyond
-        return 2
+        here, there, count = face(m, e), across(m, e), 0
+        if here >= 0:
+            out[0] = here
+            count = 1
+        if there >= 0:
+            out[count] = there
+            count += 1
+        return count
 
     return edge_faces
 

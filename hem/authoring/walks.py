@@ -40,12 +40,24 @@ def circulator(clockwise: Kernel, counterclockwise: Kernel) -> Kernel:
     return around
 
 
-def from_vertex(first: Kernel, around: Kernel) -> Kernel:
-    """Make the circulator of a vertex that begins at ``first(m, v)``. Cost O(valence)."""
+@kernel
+def as_met(m: Any, h: int, at: int) -> int:
+    """What is met on the way around a vertex or a face, where that is a half-edge already."""
+    return h
+
+
+def from_vertex(first: Kernel, around: Kernel, enter: Kernel = as_met) -> Kernel:
+    """Make the circulator of a vertex that begins at ``first(m, v)``. Cost O(valence).
+
+    ``enter(m, it, v)`` is the half-edge that leaves v for what ``first`` leads to.
+    """
 
     @kernel
     def circulate(m: Any, v: int, out: Array) -> tuple[int, bool]:
-        return around(m, first(m, v), v, out)
+        start = first(m, v)
+        if start < 0:
+            return 0, True
+        return around(m, enter(m, start, v), v, out)
 
     return circulate
 
@@ -59,6 +71,23 @@ def each(circulate: Kernel, give: Kernel) -> Kernel:
         for i in range(count):
             out[i] = give(m, out[i])
         return count
+
+    return query
+
+
+def each_but_last(circulate: Kernel, give: Kernel) -> Kernel:
+    """Make a query as ``each``, without the last half-edge if a fan is open.
+
+    It leaves the vertex along the border, and has no face.
+    """
+
+    @kernel
+    def query(m: Any, v: int, out: Array) -> int:
+        count, closed = circulate(m, v, out)
+        faces = count if closed else count - 1
+        for i in range(faces):
+            out[i] = give(m, out[i])
+        return faces
 
     return query
 
@@ -81,12 +110,6 @@ def each_and_last(circulate: Kernel, give: Kernel, last: Kernel) -> Kernel:
         return count + 1
 
     return query
-
-
-@kernel
-def as_met(m: Any, h: int, f: int) -> int:
-    """What is met on the way round a face, where that is a half-edge already."""
-    return h
 
 
 def each_side(first: Kernel, following: Kernel, give: Kernel, enter: Kernel = as_met) -> Kernel:

@@ -7,8 +7,7 @@
 ``Scratch``      where answers are written, and room for more elements
 ``Queryable``    the nine queries, ``find_edge``
 ``Surveying``    borders, components, all triangles
-``Following``    ``subscribe``
-``Attributed``   values of vertices, edges, faces, corners that follow every edit
+``Following``    what follows every edit: subscribers, values of vertices, edges, faces, corners
 ``Operating``    how an operation is checked, tried and logged
 ``Algorithms``   ``run``: algorithms of one's own over any structure
 ``Editable``     the operations, ``compact``
@@ -22,8 +21,7 @@ from hem.contract import arguments
 from hem.contract.attributes import Attribute
 from hem.contract.description import Claims, Described, Look
 from hem.contract.elements import HANDLE_TYPES
-from hem.contract.following import tell_all
-from hem.contract.measuring import Prepared
+from hem.contract.measuring import Prepared, Sweep
 from hem.contract.navigation import STEPS, Navigable
 from hem.contract.operating import Algorithm
 from hem.contract.packed import PackedEdges
@@ -48,7 +46,7 @@ __all__ = [
     "Query",
     "Remaining",
     "Structure",
+    "Sweep",
     "arguments",
     "remaining",
-    "tell_all",
 ]

@@ -7,18 +7,18 @@ keeps its rows. What it creates gets them by the attribute's rule, from what it 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from functools import cached_property
-from typing import Any, Literal, Protocol
+from collections.abc import Callable
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike
 
 from hem.arrays import Array
 from hem.authoring import ENDS
-from hem.contract.following import Following, tell_all
-from hem.edit import Edit
+from hem.contract.surveying import Surveying
+from hem.edit import Edit, generations, whole_faces
 from hem.errors import MeshError
+from hem.listeners import Listeners
 from hem.ragged import Ragged
 
 Rule = Literal["interpolate", "copy", "default"]
@@ -40,7 +40,7 @@ class Attribute:
 
     def __init__(
         self,
-        mesh: Attributed,
+        mesh: Surveying,
         element: str,
         name: str,
         default: Array,
@@ -52,7 +52,7 @@ class Attribute:
             raise MeshError(f"on_split is one of {', '.join(RULES)}, not {on_split!r}")
         if self.on_split == "interpolate" and default.dtype.kind != "f":
             raise MeshError(f"{default.dtype} values cannot be interpolated; on_split='copy' can")
-        self._listeners: list[Callable[[Array], Any]] = []
+        self._listeners = Listeners()
         self.clear()
 
     def __repr__(self) -> str:
@@ -79,12 +79,11 @@ class Attribute:
         """Give one element or many (n,) their values. Who follows the attribute is told."""
         rows = self._checked(handles)
         self._rows[rows] = values
-        tell_all(self._listeners, np.atleast_1d(rows))
+        self._listeners.tell(np.atleast_1d(rows))
 
     def subscribe(self, callback: Callable[[Array], Any]) -> Callable[[], None]:
         """Have ``callback`` called with the handles (n,) that are written to -> a way to end it."""
-        self._listeners.append(callback)
-        return lambda: self._listeners.remove(callback)
+        return self._listeners.subscribe(callback)
 
     def follow(self, edit: Edit) -> None:
         """Carry the values over an edit that was just done. Cost O(edit)."""
@@ -224,7 +223,7 @@ class CornerAttribute(Attribute):
     a face by a flip or a collapse has the value it has beside it, on the same side of a seam.
     """
 
-    def __init__(self, mesh: Attributed, *made: Any) -> None:
+    def __init__(self, mesh: Surveying, *made: Any) -> None:
         self._keys = np.full((0, 3), -1, np.int32)  # of which vertex a row is the corner
         super().__init__(mesh, *made)
 
@@ -239,7 +238,7 @@ class CornerAttribute(Attribute):
         shape, given = (len(corners.values), *self.default.shape), np.asarray(values)
         whole = given.size == np.prod(shape) and given.shape != self.default.shape
         self._write(faces, corners, given.reshape(shape) if whole else given)
-        tell_all(self._listeners, faces)
+        self._listeners.tell(faces)
 
     def clear(self) -> None:
         """See ``Attribute.clear``."""
@@ -353,156 +352,3 @@ def shares(points: Array, vertices: Array, parents: Ragged) -> Array:
         beside = np.nan_to_num(points[vertices[rows]] - middle)[:, None]
         found[places] = 1 / n + (beside @ np.linalg.pinv(apart, ROUNDING))[:, 0]
     return found
-
-
-def generations(edit: Edit) -> Iterator[tuple[Array, Ragged]]:
-    """The created vertices and their parents, which are never among those of the same turn."""
-    vertices, parents = edit.created_vertices, edit.vertex_parents
-    waiting = np.flatnonzero(parents.counts > 0)
-    while len(waiting):
-        those = parents[waiting]
-        late = np.isin(those.values, vertices[waiting])
-        ready = np.add.reduceat(late, those.offsets[:-1]) == 0
-        yield vertices[waiting[ready]], those[ready]
-        waiting = waiting[~ready]
-
-
-def whole_faces(edit: Edit, faces: Array) -> Array:
-    """(k,): the faces that were there before the edit, of which these are parts."""
-    found, made = np.array(faces, np.int64), edit.created_faces
-    while len(made):
-        at = np.minimum(np.searchsorted(made, found), len(made) - 1)
-        parent = np.where(made[at] == found, edit.face_parents[at], -1)
-        if not (parent >= 0).any():
-            break
-        found[parent >= 0] = parent[parent >= 0]
-    return found
-
-
-class AttributeMethod(Protocol):
-    """Makes an attribute of one kind of elements, or finds the one of the same name."""
-
-    def __call__(
-        self,
-        name: str,
-        dtype: DTypeLike | None = None,
-        shape: int | tuple[int, ...] = (),
-        default: ArrayLike = 0,
-        on_split: Rule | None = None,
-    ) -> Attribute:
-        """As ``Structure.vertex_attribute`` says."""
-
-
-def attribute_method(element: str, kind: type[Attribute], words: str) -> Any:
-    """The attribute ``Structure.vertex_attribute`` and its like."""
-
-    def bound(self: Attributed) -> AttributeMethod:
-        def make(
-            name: str,
-            dtype: DTypeLike | None = None,
-            shape: int | tuple[int, ...] = (),
-            default: ArrayLike = 0,
-            on_split: Rule | None = None,
-        ) -> Attribute:
-            return self._attribute(kind, element, name, dtype, shape, default, on_split)
-
-        make.__doc__ = attribute.__doc__
-        return make
-
-    attribute = cached_property(bound)
-    attribute.__doc__ = (
-        f"A value for every {element.replace('_', '-')}, found by its name, or made: the default\n"
-        "everywhere.\n\n"
-        "``dtype``: float32 unless it is said. ``shape``: of one value, () for a number.\n"
-        f"``on_split``: see ``Rule``. {words}\n"
-        "Copies of the mesh and pickles have it, too; ``compact`` renumbers it. Cost O(n) once,\n"
-        "then O(edit). MeshError where there is one of the name and of another type."
-    )
-    return attribute
-
-
-class Attributed(Following, abstract=True):
-    """Attributes by element and name."""
-
-    vertex_attribute: AttributeMethod = attribute_method(
-        "vertex", Attribute, "Floating-point values are interpolated, others copied."
-    )
-    face_attribute: AttributeMethod = attribute_method(
-        "face", Attribute, "The parts of a split face copy what it has."
-    )
-    edge_attribute: AttributeMethod = attribute_method(
-        "edge",
-        EdgeAttribute,
-        "The parts of a split edge copy what it has. MeshError where edges are not recorded.",
-    )
-    corner_attribute: AttributeMethod = attribute_method(
-        "corner",
-        CornerAttribute,
-        "As for vertices; see ``CornerAttribute``. ``collapse_edges`` does an edit per edge then.",
-    )
-
-    def attributes(self) -> list[Attribute]:
-        """All there are, in the order they were made."""
-        return list(self._attributes.values())
-
-    def remove_attribute(self, attribute: Attribute) -> None:
-        """Have an attribute follow no longer. Raises MeshError if it is not of this mesh."""
-        key = attribute.element, attribute.name
-        if self._attributes.get(key) is not attribute:
-            raise MeshError(f"{attribute!r} is no attribute of this mesh")
-        del self._attributes[key]
-
-    def _publish(self, edit: Edit) -> None:
-        self._carry_on(edit)
-        super()._publish(edit)
-
-    def _carry_on(self, edit: Edit) -> None:
-        """Have the attributes follow, before anyone looks at them."""
-        for attribute in self._attributes.values():
-            attribute.follow(edit)
-
-    @cached_property
-    def _attributes(self) -> dict[tuple[str, str], Attribute]:
-        return {}
-
-    def _attribute(
-        self,
-        kind: type[Attribute],
-        element: str,
-        name: str,
-        dtype: DTypeLike | None,
-        shape: int | tuple[int, ...],
-        default: ArrayLike,
-        on_split: Rule | None,
-    ) -> Attribute:
-        if element == "edge" and self.emulated:
-            raise MeshError(f"a {self.title} mesh records no edges that could have attributes")
-        known = self._attributes.get((element, name))
-        if known is not None and dtype is None:
-            return known
-        try:
-            value = np.broadcast_to(np.asarray(default, dtype or np.float32), shape)
-        except (TypeError, ValueError) as error:
-            raise MeshError(f"{element} attribute {name!r}: {error}") from error
-        if known is None:
-            made = kind(self, element, name, value, on_split)
-            self._attributes[element, name] = made
-            return made
-        if (known.default.dtype, known.default.shape) != (value.dtype, value.shape):
-            raise MeshError(
-                f"there is a {element} attribute {name!r} of {known.default.dtype} "
-                f"{known.default.shape} already; remove_attribute it first"
-            )
-        return known
-
-    def _attribute_states(self) -> list[tuple[Any, ...]]:
-        """What ``_adopt`` makes the same attributes of, in arrays of their own."""
-        return [
-            (type(it), it.element, it.name, it.default, it.on_split, it.state())
-            for it in self.attributes()
-        ]
-
-    def _adopt(self, states: list[tuple[Any, ...]]) -> None:
-        for kind, element, name, default, on_split, state in states:
-            args = element, name, default.dtype, default.shape, default, on_split
-            self._attribute(kind, *args).restore(state)

@@ -204,8 +204,7 @@ class Editable(Algorithms, abstract=True):
         self.records, number = self._compacted()
         sides = self.face_vertices(self.faces()).counts.max(initial=3)
         self.records.counts[SIDES] = sides
-        for pinned, scratch in self._pins:
-            pinned.replace(*self.records, *scratch())
+        self._repin()
         vertices = number["vertex"].astype(np.int32)
         faces = next(number[it] for it in ("face", "triangle") if it in number).astype(np.int32)
         remapping = Remapping(vertices, faces, lambda edges: self._renumbered(edges, number))

@@ -41,6 +41,27 @@ class Prepared(NamedTuple):
             raise RuntimeError("there is no more room; prepare fewer operations at a time")
 
 
+class Sweep(NamedTuple):
+    """A query that only waits to be asked of many handles, which were checked."""
+
+    loop: Callable[..., int]
+    handles: Array
+    out: Any
+    records: Any
+    counts: bytes
+    """What the mesh counted when the handles were checked."""
+
+    def some(self, places: Any) -> Sweep:
+        """The same for the handles at some of their places."""
+        return self._replace(handles=self.handles[places])
+
+    def run(self) -> int:
+        """Ask in one compiled loop, keeping nothing -> a checksum; MeshError after an edit."""
+        if self.records.counts.tobytes() != self.counts:
+            raise MeshError("the mesh was edited since the handles were checked")
+        return int(self.loop(self.handles, self.out, *self.records))
+
+
 class Snapshot(NamedTuple):
     """A mesh as it was."""
 
@@ -54,20 +75,27 @@ class Measuring(Editable, abstract=True):
     def sweep(self, query: str, handles: NDArray[Any]) -> int:
         """Answer ``query`` for every handle in one compiled loop, keeping nothing -> a checksum.
 
-        What the experiments time; the handles are not checked. Raises KeyError for no query.
+        Raises MeshError for what names nothing, KeyError for no query.
         """
+        return self.prepare_sweep(query, handles).run()
+
+    def prepare_sweep(self, query: str, handles: NDArray[Any]) -> Sweep:
+        """Check handles for a ``sweep``, which is run later: what the experiments time."""
+        wanted = self._checked(QUERIES[query], handles)
+        self._count_edges()
         self._widen()
-        out = self._out[QUERIES[query].target]
-        return int(self._uses[query].sweep(handles, out, *self.records))
+        out, counts = self._out[QUERIES[query].target], self.records.counts
+        return Sweep(self._uses[query].sweep, wanted, out, self.records, counts.tobytes())
 
     def work(self, query: str, handles: NDArray[Any]) -> NDArray[np.int64]:
         """(n,) int64: elements of the structure's arrays read to answer ``query``, per handle.
 
-        Exact and the same on every machine; runs uncompiled. Raises KeyError for no query.
+        Exact and the same on every machine; runs uncompiled. Raises as ``sweep``.
         """
+        wanted = self._checked(QUERIES[query], handles)
         self._widen()
         out = self._out[QUERIES[query].target]
-        return self._uses[query].work(handles, out, self.records)
+        return self._uses[query].work(wanted, out, self.records)
 
     def reserve(self, splits: int) -> None:
         """Make all room for so many splits at once, so that none of them has to. O(n_v + n_t)."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from functools import cached_property
 from typing import Any, ClassVar, NamedTuple, Protocol, overload
 
@@ -10,10 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hem.arrays import Array
-from hem.authoring import Kernel
-from hem.contract.attributes import AttributeMethod, EdgeAttribute, attribute_method
+from hem.contract.attributes import EdgeAttribute
 from hem.contract.description import place_of
 from hem.contract.elements import HANDLE_TYPES
+from hem.contract.following import AttributeMethod, attribute_method
 from hem.contract.queryable import MOST, NUMPY_INTEGERS
 from hem.contract.structure import Structure
 from hem.errors import MeshError
@@ -24,19 +24,26 @@ class Step(NamedTuple):
 
     source: str
     target: str
+    kernel: str
+    """What the kernel is called that takes it, ``kernel(m, handle) -> handle``."""
+
     words: str
 
 
 STEPS = {
-    "next": Step("half_edge", "half_edge", "the half-edge after it in its face"),
-    "previous": Step("half_edge", "half_edge", "the half-edge before it in its face"),
-    "twin": Step("half_edge", "half_edge", "the half-edge of its edge that runs the other way"),
-    "origin": Step("half_edge", "vertex", "the vertex where it starts"),
-    "tip": Step("half_edge", "vertex", "the vertex where it ends"),
-    "face": Step("half_edge", "face", "the face that it lies in"),
-    "edge": Step("half_edge", "edge", "its edge"),
-    "vertex_half_edge": Step("vertex", "half_edge", "a half-edge that leaves the vertex"),
-    "face_half_edge": Step("face", "half_edge", "a half-edge of the face"),
+    "next": Step("half_edge", "half_edge", "following", "the half-edge after it in its face"),
+    "previous": Step("half_edge", "half_edge", "previous", "the half-edge before it in its face"),
+    "twin": Step(
+        "half_edge", "half_edge", "twin", "the half-edge of its edge that runs the other way"
+    ),
+    "origin": Step("half_edge", "vertex", "origin", "the vertex where it starts"),
+    "tip": Step("half_edge", "vertex", "tip", "the vertex where it ends"),
+    "face": Step("half_edge", "face", "face", "the face that it lies in"),
+    "edge": Step("half_edge", "edge", "edge_of", "its edge"),
+    "vertex_half_edge": Step(
+        "vertex", "half_edge", "leaving", "a half-edge that leaves the vertex"
+    ),
+    "face_half_edge": Step("face", "half_edge", "within", "a half-edge of the face"),
 }
 """Every step by name."""
 
@@ -84,10 +91,10 @@ def _step_method(name: str) -> Any:
 
 
 class Navigable(Structure, abstract=True):
-    """A structure that records half-edges, which are handles as other elements are."""
+    """A structure that records half-edges, which are handles as other elements are.
 
-    steps: ClassVar[Mapping[str, Kernel]]
-    """By the names of ``STEPS``: ``step(m, handle) -> handle``, or a negative number for none."""
+    Its kernels for the steps lead to a negative number where there is none.
+    """
 
     _steps: ClassVar[dict[str, Any]]
 
@@ -95,10 +102,11 @@ class Navigable(Structure, abstract=True):
         super().__init_subclass__(abstract)
         if abstract:
             return
-        missing = STEPS.keys() - getattr(cls, "steps", {}).keys()
+        missing = {it.kernel for it in STEPS.values()} - cls.kernels.keys()
         if missing:
-            raise TypeError(f"{place_of(cls)} has no steps {', '.join(sorted(missing))}")
-        cls._steps = {name: cls.uses_type(cls.steps[name], cls.records_type) for name in STEPS}
+            raise TypeError(f"{place_of(cls)} has no kernels of steps: {sorted(missing)}")
+        taken = {name: cls.kernels[it.kernel] for name, it in STEPS.items()}
+        cls._steps = {name: cls.uses_type(it, cls.records_type) for name, it in taken.items()}
 
     next: StepMethod = _step_method("next")
     previous: StepMethod = _step_method("previous")

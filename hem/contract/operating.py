@@ -27,7 +27,7 @@ from hem.authoring import (
     Refusal,
 )
 from hem.contract import arguments
-from hem.contract.attributes import Attributed
+from hem.contract.following import Following
 from hem.edit import Edit
 from hem.engine import CHECK, DO, MODE, Uses
 from hem.errors import MeshError, TopologyError
@@ -50,7 +50,7 @@ class Bound(NamedTuple):
     result: memoryview
 
 
-class Operating(Attributed, abstract=True):
+class Operating(Following, abstract=True):
     """Operations bound to a structure."""
 
     operations: ClassVar[Mapping[str, Operation]] = OPERATIONS
@@ -250,8 +250,9 @@ class Algorithms(Operating, abstract=True):
 
         ``make(queries, operations)`` gets the kernels of this structure by name and makes one of
         them, ``algorithm(m, plan) -> result``; it is asked once per structure. ``plan`` is a
-        ``NamedTuple`` of arrays. Operations need room and scratch, see ``scratch``, and are told to
-        subscribers by ``tell``.
+        ``NamedTuple`` of arrays. Who writes an algorithm checks the handles in it, for which there
+        are kernels such as ``vertex_exists``. Operations need room and scratch, see ``scratch``,
+        and are told to subscribers by ``tell``.
         """
         return int(type(self)._algorithm(make).run(plan, *self.records))
 

@@ -159,7 +159,8 @@ class Queryable(Scratch, abstract=True):
         handle = _as_integer(handles, query.name, query.source)
         return self._ask_many(query, [handle])[0].copy()
 
-    def _ask_many(self, query: Query, handles: ArrayLike) -> Ragged:
+    def _checked(self, query: Query, handles: ArrayLike) -> NDArray[Any]:
+        """(n,) handles for a query; MeshError unless they all name elements of this mesh."""
         wanted = np.asarray(handles)
         if wanted.ndim != 1 or (wanted.size and not np.issubdtype(wanted.dtype, np.integer)):
             raise MeshError(
@@ -167,11 +168,14 @@ class Queryable(Scratch, abstract=True):
                 f"not {wanted.dtype} of shape {wanted.shape}"
             )
         self._check_handles(query.source, wanted)
+        return np.ascontiguousarray(wanted, HANDLE_TYPES[query.source])
+
+    def _ask_many(self, query: Query, handles: ArrayLike) -> Ragged:
+        wanted = self._checked(query, handles)
         self._widen()
         fixed = query.name in ("face_vertices", "face_edges")
         counts = self.records.counts
         width = int(counts[SIDES]) if fixed else WIDTH * int(counts[VALENCE] + 1)
-        wanted = np.ascontiguousarray(wanted, HANDLE_TYPES[query.source])
         answers = self._ragged(query.name, wanted, width)
         if query.source == "edge" and not answers.counts.all():
             refuse_handles(query.source, wanted[answers.counts == 0])

@@ -59,10 +59,9 @@ def remaining(s: Queryable, gone: Array, fresh: Array | None = None) -> Remainin
     faces = ascending(s.vertex_faces(touched).values)
     faces = faces[~np.isin(faces, gone)]
     corners = s.face_vertices(faces)
-    vertex, last = corners.values.astype(np.int64), corners.offsets[1:] - 1
-    following, before = np.roll(vertex, -1), np.roll(vertex, 1)
-    following[last] = vertex[corners.offsets[:-1]]
-    before[corners.offsets[:-1]] = vertex[last]
+    vertex, places = corners.values.astype(np.int64), corners.following
+    following, before = vertex[places], np.empty_like(vertex)
+    before[places] = vertex
     face = np.repeat(faces.astype(np.int64), corners.counts)
     chosen = np.isin(vertex, touched)
     return Remaining(*(it[chosen] for it in (vertex, face, following, before)))
@@ -71,9 +70,8 @@ def remaining(s: Queryable, gone: Array, fresh: Array | None = None) -> Remainin
 def vanishing_edges(s: Queryable, gone: Array, left: Remaining) -> int:
     """How many edges have no face any more once these are gone."""
     corners = s.face_vertices(gone)
-    here, last = corners.values.astype(np.int64), corners.offsets[1:] - 1
-    there = np.roll(here, -1)
-    there[last] = here[corners.offsets[:-1]]
+    here = corners.values.astype(np.int64)
+    there = here[corners.following]
     mine = ascending(np.minimum(here, there) << 32 | np.maximum(here, there))
     edges = left.edges
     ends = edges >> 32, edges & 0xFFFFFFFF

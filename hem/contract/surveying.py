@@ -6,12 +6,11 @@ from typing import Any, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from hem.arrays import Array, Bools, Handles
 from hem.contract.queryable import Queryable
 from hem.errors import MeshError
+from hem.meshes import components
 
 
 class Surveying(Queryable, abstract=True):
@@ -89,20 +88,17 @@ class Surveying(Queryable, abstract=True):
         O(n_t).
         """
         faces, corners = self.faces(), self.face_vertices()
-        first = np.repeat(corners.values[corners.offsets[:-1]], corners.counts)
-        n = len(self.points)
-        joined = coo_array((np.ones(len(first), np.bool_), (first, corners.values)), (n, n))
-        _, part = connected_components(joined, directed=False)
-        part = part[corners.values[corners.offsets[:-1]]]
+        first = corners.values[corners.offsets[:-1]]
+        joined = np.stack([np.repeat(first, corners.counts), corners.values], axis=1)
+        part = components(len(self.points), joined)[1][first]
         names, places = np.unique(part, return_index=True)
         return [faces[part == name] for name in names[np.argsort(places)]]
 
     def _border(self) -> Array:
         """(k, 2): the sides of faces that have no face beyond them, along the face."""
         corners = self.face_vertices()
-        here, last = corners.values.astype(np.int64), corners.offsets[1:] - 1
-        there = np.roll(here, -1)
-        there[last] = here[corners.offsets[:-1]]
+        here = corners.values.astype(np.int64)
+        there = here[corners.following]
         sides, beyond = here << 32 | there, there << 32 | here
         return np.stack([here, there], axis=1)[~np.isin(sides, beyond)]
 

@@ -20,9 +20,10 @@ that it is made of. That happens the first time each of these is asked for:
 - *batched*, ``s.vertex_faces(array)``. All handles are checked first. ``templates.batch`` then runs
   in slices, one per core, each with its own room for the answers, which grows where it is too
   small; the parts are put together as a ``Ragged``.
-- *timed*, ``s.sweep("vertex_faces", handles)``. ``templates.sweep`` asks for every handle, writes
-  every answer over the last and returns a checksum, so that nothing is optimized away. This is what
-  the experiments time: no check, no allocation, no Python.
+- *timed*, ``s.sweep("vertex_faces", handles)``. All handles are checked first, which
+  ``prepare_sweep`` does alone. ``templates.sweep`` then asks for every handle, writes every answer
+  over the last and returns a checksum, so that nothing is optimized away. This is what the
+  experiments time: no check, no allocation, no Python.
 - *counted*, ``s.work("vertex_faces", handles)``. The kernel's Python source, and that of whatever
   it calls, runs over ``CountingArray``s: exactly how many elements are read, on any machine.
 

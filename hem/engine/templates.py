@@ -14,7 +14,7 @@ import numpy as np
 from numba import njit
 
 from hem.arrays import Array
-from hem.authoring import NEEDS_ROOM, VALENCE, WIDTH, Kernel
+from hem.authoring import FACE_END, NEEDS_ROOM, SIDES, VALENCE, VERTEX_END, WIDTH, Kernel
 from hem.edit import FACE, PARENT
 
 MODE, BEGIN, END = range(3)
@@ -107,14 +107,23 @@ def sweep(handles: Array, out: Array, *arrays: Array) -> int:
     return checksum
 
 
-def copy_touched(touched: Array, points: Array, indices: Array, out: Array, *arrays: Array) -> None:
-    """Points and clockwise corners of what a log names; zeros for what is dead."""
+def copy_touched(touched: Array, points: Array, indices: Array, out: Array, *arrays: Array) -> int:
+    """Points and clockwise corners of what a log names, zeros for what is dead -> the end.
+
+    Or the place of the first entry that names what is not there, or has no row.
+    """
     m = _RECORDS(*arrays)
-    for entry in touched:
-        index = entry >> 3
-        if entry & 7 == PARENT:
+    if points.shape[1] != 3 or indices.shape[1] != 3 or m.counts[SIDES] > len(out):
+        return 0
+    vertices = min(len(points), m.counts[VERTEX_END])
+    faces = min(len(indices), m.counts[FACE_END])
+    for k in range(len(touched)):
+        index, what = touched[k] >> 3, touched[k] & 7
+        if what == PARENT:
             continue
-        if entry & 7 < FACE:
+        if not 0 <= index < (vertices if what < FACE else faces):
+            return k
+        if what < FACE:
             for i in range(3):
                 value = _COORDINATE(m, index, i)
                 points[index, i] = value if not np.isnan(value) else 0
@@ -123,6 +132,7 @@ def copy_touched(touched: Array, points: Array, indices: Array, out: Array, *arr
             indices[index, 0], indices[index, 1], indices[index, 2] = out[0], out[2], out[1]
         else:
             indices[index, 0], indices[index, 1], indices[index, 2] = 0, 0, 0
+    return len(touched)
 
 
 def run(plan: Any, *arrays: Array) -> int:

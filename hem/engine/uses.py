@@ -84,10 +84,11 @@ class Uses:
         """``sweep(handles, out, *records) -> checksum``; every answer overwrites the last."""
         return self._compiled(templates.sweep)
 
-    def copy_touched(self, exists: Kernel, coordinate: Kernel) -> Callable[..., None]:
-        """``copy(touched, points, indices, out, *records)``, from ``face_vertices``.
+    def copy_touched(self, exists: Kernel, coordinate: Kernel) -> Callable[..., int]:
+        """``copy(touched, points, indices, out, *records) -> end``, from ``face_vertices``.
 
-        Points and clockwise corners of what the log of an edit names; zeros for what is dead.
+        Points and clockwise corners of what the log of an edit names; zeros for what is dead. Ends
+        before what is not there.
         """
         return self._compiled(templates.copy_touched, _EXISTS=exists, _COORDINATE=coordinate)
 

@@ -51,9 +51,7 @@ class Convertible(ABC):
         """(corners,) of every side of every face the vertex where it starts and where it ends."""
         faces = self.face_rows()
         here = faces.values.astype(np.int64)
-        following = np.arange(1, len(here) + 1)
-        following[faces.offsets[1:] - 1] = faces.offsets[:-1]
-        return here, here[following]
+        return here, here[faces.following]
 
     def summary(self) -> MeshSummary:
         """Counts of elements, borders, components and valences. O(n log n)."""

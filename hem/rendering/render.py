@@ -18,9 +18,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from hem.arrays import Array, Handles, Points
-from hem.contract import Attribute, Structure, tell_all
+from hem.contract import Attribute, Structure
 from hem.edit import CHANGED, VERTEX, Edit
 from hem.errors import MeshError
+from hem.listeners import Listeners
 from hem.meshes import TriangleMesh, clusters, repeated_corners, used_only
 from hem.rendering.ranges import Ranges, dirty_ranges
 
@@ -60,7 +61,7 @@ class RenderMesh:
             if it.element != "vertex" or it.mesh is not structure:
                 raise MeshError(f"{it!r} is no attribute of vertices of this mesh")
         self._written: dict[str, list[ArrayLike]] = {name: [] for name in self.attributes}
-        self._listeners: list[Callable[[Upload], Any]] = []
+        self._listeners = Listeners()
         self._pending: list[ArrayLike] = []
         self._depth, self._resized = 0, False
         self._following = ExitStack()
@@ -81,13 +82,7 @@ class RenderMesh:
 
     def subscribe(self, callback: Callable[[Upload], Any]) -> Callable[[], None]:
         """Have ``callback`` called with the ``Upload`` of every commit -> a way to end that."""
-        self._listeners.append(callback)
-
-        def unsubscribe() -> None:
-            if callback in self._listeners:
-                self._listeners.remove(callback)
-
-        return unsubscribe
+        return self._listeners.subscribe(callback)
 
     @contextmanager
     def transaction(self) -> Iterator[RenderMesh]:
@@ -172,7 +167,7 @@ class RenderMesh:
         upload = Upload(parts[0], parts[1], self._resized, written)
         self._pending, self._resized = [], False
         self._written = {name: [] for name in self._written}
-        tell_all(self._listeners, upload)
+        self._listeners.tell(upload)
 
 
 def _with_room(array: Array, used: int, wanted: int) -> Array:

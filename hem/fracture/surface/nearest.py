@@ -45,9 +45,11 @@ def nearest_face(structure: Structure, position: ArrayLike, start: int = JUMP) -
 
     Cost O(n_t^(1/3)), from ``start`` O(√n_t), times that of ``face_faces``; else O(n_t). Raises
     MeshError for no position, one farther from the surface than half the diagonal of the bounding
-    box, and a mesh without faces.
+    box, a start that is no face, and a mesh without faces.
     """
     p = as_position(position)
+    if start != JUMP:
+        structure.face_vertices(start)  # raises for what is no face
     out, log = structure.scratch(0)
     plan = make_plan(p, 0.0, out, log, start=np.array([start]))
     face = structure.run(finding, plan)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from time import perf_counter
+from typing import NamedTuple
 
 import numpy as np
 import pytest
@@ -10,12 +11,19 @@ import pytest
 from experiments.harness import PRESETS, BenchmarkTimer, time_rounds
 from experiments.harness.queries import _seconds_per_query
 from experiments.harness.timer import UnitClock
+from hem.contract import Sweep
 
 
 def busy(seconds: float) -> None:
     end = perf_counter() + seconds
     while perf_counter() < end:
         pass
+
+
+class Empty(NamedTuple):
+    """The records of no mesh."""
+
+    counts: np.ndarray
 
 
 class Delayed:
@@ -26,9 +34,10 @@ class Delayed:
         self.calls = 0
         self.seconds = 0.0
 
-    def sweep(self, query: str, handles: np.ndarray) -> None:
+    def loop(self, handles: np.ndarray, *_: object) -> int:
         self.seconds += len(handles) * 1e-6 + (2e-3 if self.calls == self.slow else 0)
         self.calls += 1
+        return 0
 
     def clock(self) -> float:
         return self.seconds
@@ -41,7 +50,7 @@ def test_one_delayed_try_leaves_no_round_with_too_few_handles(
     for delayed in range(5):
         s = Delayed(delayed)
         monkeypatch.setattr("experiments.harness.queries.perf_counter", s.clock)
-        seconds = _seconds_per_query(s, "vertex_faces", handles, 2e-4)
+        seconds = _seconds_per_query(Sweep(s.loop, handles, None, Empty(np.zeros(0)), b""), 2e-4)
         assert seconds == pytest.approx(1e-6)
 
 

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 import pytest
 
 import hem
 import structures
+from hem.contract import QUERIES
+from hem.edit import CHANGED, FACE, VERTEX
 from tests.structures.actions import faces_of
 from tests.structures.conftest import NEEDS_MANIFOLD, OF_ARRAYS, octahedron, strip
 from tests.structures.laws.test_operations import TETRAHEDRON
@@ -201,3 +205,44 @@ def test_a_dead_record_that_something_refers_to_is_found(name):
     of_vertex[1] = of_vertex[0]
     with pytest.raises(hem.MeshError, match="broken invariant"):
         s.validate()
+
+
+@pytest.mark.parametrize("query", QUERIES)
+def test_no_foreign_handle_reaches_compiled_code(name, query):
+    s = structures.build(name, octahedron())
+    source = QUERIES[query].source
+    for handle in (-1, 10_000, 10**9, 2**40, -(2**40)):
+        for ask in (getattr(s, query), partial(s.sweep, query), partial(s.work, query)):
+            for handles in ([handle], np.append(s.handles(source), handle)):
+                with pytest.raises(hem.MeshError, match=f"no such {source}"):
+                    ask(handles)
+    for wrong in ([0.5], ["7"], [[0]]):
+        with pytest.raises(hem.MeshError, match="1-D array of integers"):
+            s.sweep(query, wrong)
+
+
+def test_a_sweep_is_not_run_once_the_mesh_was_edited(name):
+    s = structures.build(name, octahedron())
+    sweep = s.prepare_sweep("face_vertices", s.faces())
+    assert sweep.run() == sweep.some(slice(None)).run() == s.sweep("face_vertices", s.faces())
+    s.collapse_edge(s.find_edge(0, 1), keep=0)
+    with pytest.raises(hem.MeshError, match="was edited"):
+        sweep.run()
+    with pytest.raises(hem.MeshError, match="no such face"):
+        s.sweep("face_vertices", sweep.handles)
+
+
+@pytest.mark.parametrize("element", ["vertices", "faces"])
+def test_nothing_foreign_is_copied_for_a_render_mesh(name, element):
+    s = structures.build(name, octahedron())
+    points, indices = np.full((6, 3), 7.0, np.float32), np.full((8, 3), 7, np.int32)
+    what = {"vertices": VERTEX, "faces": FACE}[element] + CHANGED
+    for index in (-1, 8, 10**9, 2**40):
+        with pytest.raises(hem.MeshError, match="no row") as refused:
+            s.copy_touched([index << 3 | what], points, indices)
+        assert refused.value.elements[element].tolist() == [index]
+    for arrays in ((points[:, :2], indices), (points, indices[:, :2]), (points[:0], indices[:0])):
+        with pytest.raises(hem.MeshError, match="no row"):
+            s.copy_touched([0 << 3 | what], *arrays)
+    assert (points == 7).all()
+    assert (indices == 7).all()

@@ -125,6 +125,7 @@ def test_rows_of_different_lengths() -> None:
     assert rows[1:3].to_list() == [[], [3]]
     assert rows[::-2].to_list() == [[4, 5, 6], []]
     assert repr(rows) == "Ragged(4 rows: [1, 2], [], [3], …)"
+    assert rows.values[rows.following].tolist() == [2, 1, 3, 5, 6, 4]
     assert hem.Ragged.from_lists([]).to_list() == []
 
 

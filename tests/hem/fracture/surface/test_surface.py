@@ -225,6 +225,9 @@ def test_a_walk_visits_few_faces_and_starts_where_it_is_told():
     from_afar = [nearest_face(s, struck(mesh, i), start=0).visited for i in range(50)]
     assert np.mean(visited) < 60
     assert 100 < np.mean(from_afar) < 1000
+    for start in (-2, 10**6, 2**40):
+        with pytest.raises(hem.MeshError, match="no such face"):
+            nearest_face(s, struck(mesh, 0), start=start)
 
 
 def test_materials_of_ones_own(tmp_path):

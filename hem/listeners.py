@@ -1,0 +1,33 @@
+"""Who is told of what happens to something, and for how long."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+Listener = Callable[[Any], Any]
+
+
+class Listeners(list[Listener]):
+    """Those who are told, in the order they subscribed."""
+
+    def subscribe(self, callback: Listener) -> Callable[[], None]:
+        """Have ``callback`` told from now on -> a way to end that, which may be called twice."""
+        self.append(callback)
+
+        def unsubscribe() -> None:
+            if callback in self:
+                self.remove(callback)
+
+        return unsubscribe
+
+    def tell(self, what: Any) -> None:
+        """Call them all, even if one of them raises; then raise what the first of them raised."""
+        failures = []
+        for listener in tuple(self):
+            try:
+                listener(what)
+            except Exception as failure:
+                failures.append(failure)
+        if failures:
+            raise failures[0]
