@@ -16,6 +16,7 @@ takes a corner from it, ``remove_face`` and ``add_face`` take it as it is; ``fli
 
 from __future__ import annotations
 
+from operator import attrgetter
 from typing import Any, Self
 
 import numpy as np
@@ -49,6 +50,11 @@ from hem.ragged import Ragged
 from structures import pairs
 from structures.pairs import FACE, NEXT, PREVIOUS, START, PlanktonRecords
 from structures.polygons import POLYGON_OPERATIONS
+
+
+def _known_as(step: str) -> Any:
+    """A step under the name that the article gives it. See ``Navigable``."""
+    return property(attrgetter(step), doc=getattr(Navigable, step).__doc__)
 
 
 class Plankton(Navigable):
@@ -108,40 +114,10 @@ class Plankton(Navigable):
         """Number of live half-edges, two per edge."""
         return 2 * self.n_edges
 
-    def start_vertex(self, h: int) -> int:
-        """Where half-edge h starts. O(1), as are the others; MeshError for one that is dead."""
-        return int(self._row(h)[START])
-
-    def end_vertex(self, h: int) -> int:
-        """Where half-edge h ends."""
-        return int(self._row(self.pair(h))[START])
-
-    def adjacent_face(self, h: int) -> int:
-        """The face of half-edge h, or -1 outside the border."""
-        return int(self._row(h)[FACE])
-
-    def next_half_edge(self, h: int) -> int:
-        """The half-edge that follows h round its face or hole."""
-        return int(self._row(h)[NEXT])
-
-    def previous_half_edge(self, h: int) -> int:
-        """The half-edge that h follows."""
-        return int(self._row(h)[PREVIOUS])
-
-    def pair(self, h: int) -> int:
-        """The other half-edge of the same edge."""
-        self._row(h)
-        return int(h) ^ 1
-
-    def outgoing_half_edge(self, vertex: int) -> int:
-        """The half-edge of a vertex, along the border if it lies there; -1 without faces. O(1)."""
-        self._check_handles("vertex", np.array([vertex]))
-        return int(self.records.vertex_half_edge[vertex])
-
-    def first_half_edge(self, face: int) -> int:
-        """The half-edge of a face. O(1)."""
-        self._check_handles("face", np.array([face]))
-        return int(self.records.face_half_edge[face])
+    start_vertex, end_vertex = _known_as("origin"), _known_as("tip")
+    adjacent_face, pair = _known_as("face"), _known_as("twin")
+    next_half_edge, previous_half_edge = _known_as("next"), _known_as("previous")
+    outgoing_half_edge, first_half_edge = _known_as("vertex_half_edge"), _known_as("face_half_edge")
 
     def find_half_edge(self, a: int, b: int) -> int | None:
         """The half-edge that runs from vertex a to vertex b, or None. Cost O(n_ev)."""
@@ -197,9 +173,7 @@ class Plankton(Navigable):
             raise MeshError(
                 "a mesh with borders encloses no volume; close its holes", half_edges=outside
             )
-        corner = self.to_triangles()
-        a, b, c = (corner.points[corner.triangles[:, i]].astype(np.float64) for i in range(3))
-        return float(np.einsum("ij,ij->", a, np.cross(b, c)) / 6)
+        return self.to_triangles().volume()
 
     def to_polygons(self) -> PolygonMesh:
         """The same mesh as points and faces of any number of corners. Cost O(n)."""
@@ -340,13 +314,6 @@ class Plankton(Navigable):
     def _half_edges(self) -> Array:
         used: Array = self.records.half_edge[: self.records.counts[EDGE_END]]
         return used
-
-    def _row(self, h: int) -> Array:
-        rows = self._half_edges
-        if not 0 <= h < len(rows) or rows[h, START] < 0:
-            raise MeshError("no such half-edge in this mesh (any more)", half_edges=[h])
-        row: Array = rows[h]
-        return row
 
     def _outside(self) -> Array:
         rows = self._half_edges

@@ -112,6 +112,8 @@ class Measuring(Editable, abstract=True):
         """
         rows = np.asarray(args, np.int64)
         rows = arguments.rows(rows) if rows.ndim == 1 else np.ascontiguousarray(rows)
+        if rows.ndim != 2 or rows.shape[1] < 3:
+            raise MeshError(f"{operation} takes (n,) or (n, 3) handles, not {rows.shape}")
         n, bound = len(rows), self._bound[operation]
         vertices, faces = self.operations[operation].growth
         self._make_room(vertices * n, faces * n)

@@ -232,6 +232,19 @@ def test_a_sweep_is_not_run_once_the_mesh_was_edited(name):
         s.sweep("face_vertices", sweep.handles)
 
 
+def test_operations_are_prepared_by_their_first_handle_or_all_three(name):
+    s = structures.build(name, octahedron())
+    edges = s.edges()
+    whole = np.stack([edges, *2 * [np.full_like(edges, -1)]], axis=1)
+    assert s.prepare("flip_edge", edges).check().all()
+    assert s.prepare("flip_edge", whole).check().all()
+    for wrong in (whole[:, :1], whole[:, :2], whole[None]):
+        with pytest.raises(hem.MeshError, match="handles, not"):
+            s.prepare("flip_edge", wrong)
+    foreign = np.array([-1, 10_000, 10**9, 2**40])
+    assert not s.prepare("split_edge", foreign, np.zeros((4, 3))).check().any()
+
+
 @pytest.mark.parametrize("element", ["vertices", "faces"])
 def test_nothing_foreign_is_copied_for_a_render_mesh(name, element):
     s = structures.build(name, octahedron())
