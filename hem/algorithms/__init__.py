@@ -5,6 +5,7 @@ those of objects; all structures give the same. README.md shows how to write one
 """
 
 from hem.algorithms.circulating import center, circulate
+from hem.algorithms.impacts import impacts
 from hem.algorithms.normals import vertex_normals
 from hem.algorithms.sieger_botsch import SIX, split_and_collapse
 from hem.algorithms.simplification import MEASURES, simplify
@@ -18,6 +19,7 @@ __all__ = [
     "SIX",
     "center",
     "circulate",
+    "impacts",
     "simplify",
     "smooth",
     "split_and_collapse",

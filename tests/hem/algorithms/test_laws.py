@@ -20,6 +20,7 @@ ALGORITHMS: dict[str, Callable[[Structure], Any]] = {
     "loop": lambda s: algorithms.subdivide(s, "loop"),
     "quadrics": lambda s: algorithms.simplify(s, vertices=30),
     "shortest edge": lambda s: algorithms.simplify(s, faces=80, by="shortest_edge"),
+    "impacts": lambda s: algorithms.impacts(s, s.faces()[::3] if isinstance(s, Structure) else []),
     "sqrt3 twice": lambda s: algorithms.subdivide(s, "sqrt3", times=2),
 }
 CHANGING = [it for it in ALGORITHMS if it not in ("circulator", "normals")]
