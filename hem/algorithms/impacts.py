@@ -77,8 +77,8 @@ def impacts(s: Structure, faces: Array | list[int]) -> int:
     """Hit faces one after the other -> how many faces were found around. One edit.
 
     Each makes two vertices and four faces more; a face may be hit again. Cost per impact: a split
-    of a face, a split of an edge, and six queries. HandleError for what is no face, before anything
-    changes; MeshError for polygons.
+    of a face, a split of an edge, and six queries. MeshError for what is no face, before anything
+    changes, and for polygons.
     """
     require_mesh(s, "impacts")
     s.face_vertices(faces)  # refuses what is no face

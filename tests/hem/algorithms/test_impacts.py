@@ -34,7 +34,7 @@ def test_impacts_are_their_single_operations(name: str, mesh: str) -> None:
 def test_what_is_no_face_is_refused_before_anything_changes() -> None:
     s = structures.build("half_edge", MESHES["torus"]())
     before = s.copy()
-    with pytest.raises(hem.HandleError):
+    with pytest.raises(hem.MeshError):
         impacts(s, [0, 1, s.face_end])
     assert s.same_as(before)
     assert impacts(s, []) == 0
