@@ -173,8 +173,10 @@ def face_faces(m: PlanktonRecords, f: int, out: Array) -> int:
         sides += 1
         h = m.half_edge[h, NEXT]
         if h == first:
-            # Polygons may share edges that do not follow each other.
-            return count if sides == 3 else distinct(out, count)
+            # Polygons may share edges that do not follow each other; of a triangle just these two.
+            if sides == 3:
+                return count - (count == 3 and out[0] == out[2])
+            return distinct(out, count)
 
 
 # What operations need to know, and what they change (see hem.authoring.operations) --------------

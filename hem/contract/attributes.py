@@ -30,6 +30,9 @@ RULES = ("interpolate", "copy", "default")
 ROUNDING = 1e-6
 """Faces that are flatter than this part of their length have no direction across."""
 
+ALIKE = 1e-5
+"""Values of two corners that differ by less, and by less than this part of them, are no seam."""
+
 
 class Attribute:
     """A number, or an array of them, for each element of one kind.
@@ -214,6 +217,77 @@ class EdgeAttribute(Attribute):
         return [(h, g) for h, g in pairs if h >= 0 and g >= 0]
 
 
+class HalfEdgeAttribute(EdgeAttribute):
+    """Of half-edges. Values go where their half-edges go.
+
+    An edge keeps its handle when one of its faces is taken away, and so the half-edge that is left
+    may move into the place of the one that is gone. Nobody tells of that; therefore it is kept how
+    the half-edges of every face ran when they were last looked at.
+    """
+
+    def clear(self) -> None:
+        """See ``Attribute.clear``."""
+        super().clear()
+        self._look_at_all()
+
+    def restore(self, state: tuple[Array, ...]) -> None:
+        """See ``Attribute.restore``."""
+        super().restore(state)
+        self._look_at_all()
+
+    def _renumber(self, edit: Edit) -> None:
+        super()._renumber(edit)
+        self._look_at_all()
+
+    def _inherit(self, edit: Edit) -> None:
+        mesh, faces = self._mesh, np.concatenate([edit.changed_faces, edit.created_faces])
+        if len(edit.removed_faces):
+            h = self._within[edit.removed_faces].reshape(-1)
+            h = h[h >= 0]
+            h = h[mesh._alive("half_edge", h)]
+            moved = h[mesh.origin(h) != self._ran[h, 0]]
+            self._rows[moved] = self._rows[self._ran[moved, 1]]
+            faces = np.concatenate([faces, mesh.face(moved)])
+        super()._inherit(edit)
+        self._look_at(np.unique(faces[faces >= 0]))
+
+    @property
+    def _mesh(self) -> Any:
+        """The mesh, which has half-edges."""
+        return self.mesh
+
+    def _look_at_all(self) -> None:
+        self._ran = np.full((0, 2), -1)  # of each half-edge the origin and the twin
+        self._within = np.full((0, 3), -1)  # of each face the half-edges
+        self._look_at(self.mesh.faces())
+
+    def _look_at(self, faces: Array) -> None:
+        """Keep how the half-edges of these faces run. Cost O(corners)."""
+        mesh, wide = self._mesh, max(3, self.mesh.most_corners)
+        self._ran = enlarged(self._ran, len(self._rows), 2)
+        self._within = enlarged(self._within, self.mesh.face_end, wide)
+        self._within[faces] = -1
+        first = h = mesh.face_half_edge(faces)
+        for corner in range(wide):
+            twin = mesh.twin(h)
+            self._within[faces, corner] = h
+            self._ran[h, 0], self._ran[h, 1] = mesh.origin(h), twin
+            self._ran[twin[twin >= 0], 1] = h[twin >= 0]
+            h = mesh.next(h)
+            faces, first, h = (it[h != first] for it in (faces, first, h))
+            if not len(faces):
+                return
+
+
+def enlarged(rows: Array, length: int, width: int) -> Array:
+    """So many rows or more, -1 in those that are new; a row may be wider than it was."""
+    if length <= len(rows) and width == rows.shape[1]:
+        return rows
+    larger = np.full((max(length, 2 * len(rows)), width), -1)
+    larger[: len(rows), : rows.shape[1]] = rows
+    return larger
+
+
 class CornerAttribute(Attribute):
     """Of the corners of faces: a vertex may have another value in each face, as at a seam.
 
@@ -331,9 +405,16 @@ class CornerAttribute(Attribute):
         own = self._known(np.array([face]), gone)[0][0]
         for other in there:
             (at_gone, value), known = self._known(np.repeat(other, 2), np.append(gone, vertex))
-            if known.all() and np.array_equal(at_gone, own):
+            if known.all() and on_one_side(at_gone, own):
                 return value
         return own
+
+
+def on_one_side(one: Array, other: Array) -> bool:
+    """Whether two corners of a vertex have one value; what was interpolated differs by rounding."""
+    if one.dtype.kind != "f":
+        return np.array_equal(one, other)
+    return np.allclose(one, other, rtol=ALIKE, atol=ALIKE, equal_nan=True)
 
 
 def shares(points: Array, vertices: Array, parents: Ragged) -> Array:

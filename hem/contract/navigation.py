@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hem.arrays import Array
-from hem.contract.attributes import EdgeAttribute
+from hem.contract.attributes import HalfEdgeAttribute
 from hem.contract.description import place_of
 from hem.contract.elements import HANDLE_TYPES
 from hem.contract.following import AttributeMethod, attribute_method
@@ -119,7 +119,7 @@ class Navigable(Structure, abstract=True):
     face_half_edge: StepMethod = _step_method("face_half_edge")
 
     half_edge_attribute: AttributeMethod = attribute_method(
-        "half_edge", EdgeAttribute, "The parts of one that is split copy what it has."
+        "half_edge", HalfEdgeAttribute, "The parts of one that is split copy what it has."
     )
 
     def half_edges(self) -> NDArray[np.int64]:

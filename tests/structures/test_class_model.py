@@ -16,9 +16,8 @@ from structures.object_tools import (
     FaceSplittingBehaviour,
     HalfEdgeMeshBuilder,
 )
-from tests.structures.actions import Action, aim, perform
+from tests.structures.actions import KINDS, NUMBERS, Action, aim, perform, surface_of
 from tests.structures.conftest import MESHES, octahedron, shuffled
-from tests.structures.soak import KINDS, NUMBERS
 
 
 def objects(mesh: hem.TriangleMesh) -> HalfEdgeMesh:
@@ -61,7 +60,8 @@ def test_any_operations_leave_the_same_records_as_on_arrays():
     mesh = shuffled(hem.generate("grid", 64))
     mine, arrays = objects(mesh), structures.build("half_edge", mesh)
     for _ in range(250):
-        aimed = aim(arrays, Action(str(rng.choice(KINDS)), *rng.integers(0, NUMBERS, 3).tolist()))
+        action = Action(str(rng.choice(KINDS)), *rng.integers(0, NUMBERS, 3).tolist())
+        aimed = aim(surface_of(arrays), action)
         if aimed is None:
             break
         assert perform(mine, aimed) == perform(arrays, aimed)

@@ -7,7 +7,7 @@ import pytest
 
 import hem
 import structures
-from tests.structures.actions import KINDS, Action, aim, perform
+from tests.structures.actions import KINDS, Action, aim, perform, surface_of
 from tests.structures.conftest import octahedron, shuffled
 
 
@@ -35,7 +35,7 @@ def some_edits(s: structures.Structure, count: int, seed: int = 0) -> None:
     rng = np.random.default_rng(seed)
     for _ in range(count):
         numbers = rng.integers(0, 5040, 3).tolist()
-        aimed = aim(s, Action(str(rng.choice(KINDS)), *numbers))
+        aimed = aim(surface_of(s), Action(str(rng.choice(KINDS)), *numbers))
         if aimed:
             perform(s, aimed)
 
