@@ -166,7 +166,7 @@ class Editable(Algorithms, abstract=True):
 
         ``keep``: (k,) the ends that stay, each ``edge_vertices(edge)[1]`` unless it is said. Edges
         at a merged vertex live on where edges are recorded; named by their ends they are gone.
-        Subscribers hear of one edit, or of one each where corners have attributes.
+        Subscribers hear of one edit, or of one each where corners or half-edges have attributes.
         """
         handles = arguments.handles("collapse_edges", edges)
         ends = np.full(len(handles), -1)
@@ -178,7 +178,7 @@ class Editable(Algorithms, abstract=True):
                 f"collapse_edges takes one vertex to keep per edge, not {len(ends)} "
                 f"for {len(handles)}"
             )
-        if any(it.element == "corner" for it in self.attributes()):
+        if any(it.element in ("corner", "half_edge") for it in self.attributes()):
             # A batch does not tell what came where in between, and a seam must not be torn.
             return np.array([self._collapsed(e, v) for e, v in zip(handles, ends, strict=True)])
         results, log = self._run(

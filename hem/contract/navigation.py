@@ -119,7 +119,10 @@ class Navigable(Structure, abstract=True):
     face_half_edge: StepMethod = _step_method("face_half_edge")
 
     half_edge_attribute: AttributeMethod = attribute_method(
-        "half_edge", HalfEdgeAttribute, "The parts of one that is split copy what it has."
+        "half_edge",
+        HalfEdgeAttribute,
+        "The parts of one that is split copy what it has. ``collapse_edges`` does an edit per\n"
+        "edge then, as for corners.",
     )
 
     def half_edges(self) -> NDArray[np.int64]:

@@ -141,6 +141,12 @@ class Surface:
         at = row.index(v)
         return row[(at + 1) % len(row)], row[at - 1]
 
+    def back(self, f: int) -> int:
+        """The face that has the same corners, the other way round; -1 if there is none."""
+        row = self.faces[f]
+        beyond = self.sides.get((row[1], row[0]), -1)
+        return beyond if self.faces.get(beyond) == from_smallest(row[::-1]) else -1
+
     # Changing them -----------------------------------------------------------------------------
 
     def new_vertex(self, point: Iterable[float]) -> int:
@@ -229,9 +235,6 @@ class Surface:
                 raise UnsoundError("a face of fewer corners")
             if not {*row} <= self.points.keys():
                 raise UnsoundError("a corner that is no vertex")
-            beyond = self.sides.get((row[1], row[0]), f)
-            if self.faces.get(beyond) == from_smallest(row[::-1]):
-                raise UnsoundError("two faces of the same corners")
             self.faces[f] = row
             for v, side in zip(row, sides_of(row), strict=True):
                 if side in self.sides:

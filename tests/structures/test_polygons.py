@@ -229,6 +229,13 @@ def test_removing_and_adding_a_polygon_restores_the_mesh(mesh):
         assert sorted(rows(s).values()) == before
 
 
+def test_a_triangle_with_a_polygon_beyond_two_sides_has_it_as_a_neighbor_once():
+    corners = [(0, 0, 0), (4, 0, 0), (2, 4, 0), (2, 1, 0), (2, -2, 0)]
+    for row in [(0, 1, 3), (1, 3, 0), (3, 0, 1)]:
+        s = plankton(hem.PolygonMesh(corners, [row, (2, 0, 3, 1), (1, 0, 4)]))
+        assert [sorted(s.face_faces(f).tolist()) for f in range(3)] == [[1, 2], [0], [0]]
+
+
 def test_random_operations_on_polygons_leave_a_sound_mesh():
     rng = np.random.default_rng(4)
     s, done = plankton(mixed()), set()

@@ -106,7 +106,10 @@ def split_face(m: Surface, f: int, point: Point) -> int:
 
 
 def collapse_edge(m: Surface, a: int, b: int, keep: int) -> int:
-    """One end takes the place of the other; triangles there vanish, polygons lose a corner."""
+    """One end takes the place of the other; triangles there vanish, polygons lose a corner.
+
+    Of a tetrahedron two coincident triangles would be left. Polygons may lie back to back.
+    """
     drop, euler, made = a + b - keep, m.euler, {}
     for f in m.around[drop]:
         row = m.faces[f]
@@ -117,8 +120,10 @@ def collapse_edge(m: Surface, a: int, b: int, keep: int) -> int:
             made[f] = tuple(keep if v == drop else v for v in row)
     own = {*m.fan(keep)}
     heirs = {(keep, x): (drop, x) for x in m.fan(drop) if x != keep and x not in own}
+    triangles = all(len(m.faces[f]) == 3 for f in made)
     m.put(made, heirs=heirs, gone=drop)
-    m.require(m.euler == euler)
+    m.require(m.euler == euler and len(m.around[keep]) > 0)
+    m.require(not triangles or all(m.back(f) < 0 for f, row in made.items() if row))
     return keep
 
 
@@ -139,6 +144,7 @@ def add_face(m: Surface, *corners: int) -> int:
     """Where it fits."""
     (f,) = m.new_faces(1)
     m.put({f: corners})
+    m.require(m.back(f) < 0)
     return -1
 
 

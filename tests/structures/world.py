@@ -100,14 +100,12 @@ class World:
             afresh.close()
 
     def _perform(self, aimed: Aimed) -> str:
-        before = self.surface.faces
         told, results = predict(self.surface, aimed), []
         for s, heard in zip(self.many, self.heard, strict=True):
             heard.clear()
             results.append(self._one(s, aimed))
-            assert isinstance(results[-1], str) == (told is None), (
-                f"{aimed}: {results[-1]} of {s!r} {before}"
-            )
+            refused = isinstance(results[-1], str)
+            assert refused == (told is None), f"{aimed}: {results[-1]} of {s!r}"
             if told is None:
                 assert results[-1] == results[0], f"{aimed}: {results}"
                 assert not heard, f"{aimed} was refused, but told by {s!r}"

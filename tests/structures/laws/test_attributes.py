@@ -234,6 +234,58 @@ def test_half_edges_keep_their_direction_when_they_are_split(name: str):
                 assert around.get(part, 1000 * first + second) == 1000 * first + second
 
 
+@pytest.mark.parametrize("name", NAVIGABLE)
+@pytest.mark.parametrize("source", SURFACES)
+def test_half_edges_keep_their_values_when_the_faces_beyond_go(name: str, source: str):
+    s = structures.build(name, SURFACES[source]())
+    values = s.half_edge_attribute("way", np.int64)
+    values[s.half_edges()] = 1000 * s.origin(s.half_edges()) + s.tip(s.half_edges())
+    number = {tuple(at): v for v, at in enumerate(s.points.tolist())}
+    for turn in range(3):
+        for v in s.vertices()[turn::9].tolist():
+            with contextlib.suppress(hem.TopologyError):
+                s.remove_vertex(v)
+        for face in s.faces()[turn::5].tolist():
+            with contextlib.suppress(hem.TopologyError):
+                s.remove_face(face)
+        if turn == 1:
+            s.compact()
+        for h in s.half_edges().tolist():
+            a, b = (number[tuple(s.points[v].tolist())] for v in (s.origin(h), s.tip(h)))
+            assert values[h] == 1000 * a + b
+
+
+@pytest.mark.parametrize("name", NAVIGABLE)
+def test_batches_of_collapses_leave_half_edges_the_values_they_had(name: str):
+    many = [structures.build(name, SURFACES["open"]()) for _ in range(2)]
+    for s in many:
+        way = s.half_edge_attribute("way", np.int64)
+        way[s.half_edges()] = 1000 * s.origin(s.half_edges()) + s.tip(s.half_edges())
+    one, batch = many
+    edges = one.edges()[::3]
+    for edge in edges.tolist():
+        with contextlib.suppress(hem.TopologyError, hem.MeshError):
+            one.collapse_edge(edge)
+    assert batch.collapse_edges(edges).sum() > 10
+    found = [
+        dict(
+            zip(s.half_edges().tolist(), s.half_edge_attribute("way")[s.half_edges()], strict=True)
+        )
+        for s in many
+    ]
+    assert found[0] == found[1]
+
+
+def test_what_differs_by_rounding_is_no_seam(name: str):
+    """Three corners of a vertex that is merged into a neighbor."""
+    s = structures.build(name, SURFACES["closed"]())
+    begin(s)
+    uv, rng = s.corner_attribute("plain"), np.random.default_rng(4)
+    uv[s.faces()] = uv[s.faces()] * (1 + 1e-15 * rng.standard_normal((3 * s.n_faces, 1)))
+    assert s.collapse_edges(s.edges()[::5]).sum() > 5
+    assert_plain(s)
+
+
 def test_an_edit_names_the_parents_of_what_it_made(s):
     edge, face = int(s.edges()[9]), int(s.faces()[1])
     ends, beside = s.edge_vertices(edge).tolist(), s.edge_faces(edge).tolist()
