@@ -242,7 +242,8 @@ class HalfEdgeAttribute(EdgeAttribute):
     def _inherit(self, edit: Edit) -> None:
         mesh, faces = self._mesh, np.concatenate([edit.changed_faces, edit.created_faces])
         if len(edit.removed_faces):
-            h = self._within[edit.removed_faces].reshape(-1)
+            known = edit.removed_faces < len(self._within)  # or an edit was interrupted
+            h = self._within[edit.removed_faces[known]].reshape(-1)
             h = h[h >= 0]
             h = h[mesh._alive("half_edge", h)]
             moved = h[mesh.origin(h) != self._ran[h, 0]]

@@ -21,10 +21,10 @@ import numpy as np
 import typer
 
 import hem
-from tests.structures.actions import BATCHES, KINDS, NUMBERS, POLYGON_KINDS, Action
 from tests.structures.conftest import shuffled
+from tests.structures.histories.actions import BATCHES, KINDS, NUMBERS, POLYGON_KINDS, Action
+from tests.structures.histories.world import FOLLOWERS, HANDLING, World
 from tests.structures.test_polygons import CUBE, mixed, sheet
-from tests.structures.world import FOLLOWERS, HANDLING, World
 
 EVERYTHING = (*3 * KINDS, *BATCHES, *HANDLING)
 ON_POLYGONS = (*2 * POLYGON_KINDS, *EVERYTHING)

@@ -16,8 +16,8 @@ from structures.object_tools import (
     FaceSplittingBehaviour,
     HalfEdgeMeshBuilder,
 )
-from tests.structures.actions import KINDS, NUMBERS, Action, aim, perform, surface_of
 from tests.structures.conftest import MESHES, octahedron, shuffled
+from tests.structures.histories.actions import KINDS, NUMBERS, Action, aim, perform, surface_of
 
 
 def objects(mesh: hem.TriangleMesh) -> HalfEdgeMesh:

@@ -7,8 +7,8 @@ import pytest
 
 import hem
 import structures
-from tests.structures.actions import KINDS, Action, aim, perform, surface_of
 from tests.structures.conftest import octahedron, shuffled
+from tests.structures.histories.actions import KINDS, Action, aim, perform, surface_of
 
 
 @pytest.fixture(params=structures.NAMES)

@@ -6,7 +6,7 @@ import numpy as np
 
 import hem
 import structures
-from tests.structures.actions import faces_of
+from tests.structures.histories.actions import faces_of
 
 
 def triangles(s: structures.Structure) -> list[tuple[int, ...]]:

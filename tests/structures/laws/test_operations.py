@@ -11,7 +11,8 @@ from hypothesis import strategies as st
 
 import hem
 import structures
-from tests.structures.actions import (
+from tests.structures.conftest import OF_ARRAYS, octahedron, shuffled, strip
+from tests.structures.histories.actions import (
     BATCHES,
     KINDS,
     NUMBERS,
@@ -22,9 +23,8 @@ from tests.structures.actions import (
     perform,
     surface_of,
 )
-from tests.structures.conftest import OF_ARRAYS, octahedron, shuffled, strip
+from tests.structures.histories.world import HANDLING, World, check_mesh
 from tests.structures.test_polygons import CUBE, mixed, sheet
-from tests.structures.world import HANDLING, World, check_mesh
 
 TETRAHEDRON = [(0, 2, 1), (0, 1, 3), (1, 2, 3), (2, 0, 3)]
 

@@ -11,8 +11,8 @@ import hem
 import structures
 from hem.contract import QUERIES
 from hem.edit import CHANGED, FACE, VERTEX
-from tests.structures.actions import faces_of
 from tests.structures.conftest import NEEDS_MANIFOLD, OF_ARRAYS, octahedron, strip
+from tests.structures.histories.actions import faces_of
 from tests.structures.laws.test_operations import TETRAHEDRON
 
 PLANE = np.random.default_rng(1).random((12, 3))

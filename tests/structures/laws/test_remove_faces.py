@@ -7,7 +7,7 @@ import pytest
 
 import hem
 import structures
-from tests.structures.actions import faces_of
+from tests.structures.histories.actions import faces_of
 
 
 def patch(s: structures.Structure, rng: np.random.Generator) -> np.ndarray:

@@ -12,7 +12,7 @@ import numpy as np
 
 import hem
 from hem.contract import Structure
-from tests.structures.surface import Cycle, Point, Surface, loops, path
+from tests.structures.histories.surface import Cycle, Point, Surface, loops, path
 
 KINDS = (
     *("split_edge", "split_face", "collapse_edge", "collapse_edge", "collapse_edge", "flip_edge"),

@@ -9,8 +9,8 @@ import numpy as np
 
 import hem
 from hem.contract import Navigable, Structure
-from tests.structures.surface import Change, Side, Surface, both
-from tests.structures.truth import Predicted
+from tests.structures.histories.surface import Change, Side, Surface, both
+from tests.structures.histories.truth import Predicted
 
 ELEMENTS = ("vertex", "face", "corner", "edge", "half_edge", "plain", "plain corner")
 """What a world may have attributes of; ``plain`` ones are linear in the position."""

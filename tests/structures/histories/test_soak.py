@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
+from tests.structures.histories.world import World
 from tests.structures.soak import History, Meshes, histories
-from tests.structures.world import World
 
 
 @pytest.mark.parametrize("of_polygons", [False, True])

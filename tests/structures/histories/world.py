@@ -21,11 +21,11 @@ import hem
 import structures
 from hem.contract import Structure
 from hem.edit import CHANGED, CREATED, FACE, PARENT, REMOVED, VERTEX
-from tests.structures.actions import Action, Aimed, aim, faces_of, perform
-from tests.structures.answers import check_answers, check_steps
-from tests.structures.surface import Cycle, Surface, from_smallest
-from tests.structures.truth import FREE, Predicted, adopt, predict
-from tests.structures.values import ELEMENTS, Values
+from tests.structures.histories.actions import Action, Aimed, aim, faces_of, perform
+from tests.structures.histories.answers import check_answers, check_steps
+from tests.structures.histories.surface import Cycle, Surface, from_smallest
+from tests.structures.histories.truth import FREE, Predicted, adopt, predict
+from tests.structures.histories.values import ELEMENTS, Values
 
 HANDLING = ("copy", "compact", "restore", "interrupt", "reserve")
 WAYS = (

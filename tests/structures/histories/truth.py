@@ -10,8 +10,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import NamedTuple
 
-from tests.structures.actions import Aimed
-from tests.structures.surface import (
+from tests.structures.histories.actions import Aimed
+from tests.structures.histories.surface import (
     Change,
     Cycle,
     Point,

@@ -8,7 +8,7 @@ import pytest
 
 from hem.contract import Navigable, Structure
 from hem.errors import MeshError
-from tests.structures.surface import Side, Surface, both, sides_of
+from tests.structures.histories.surface import Side, Surface, both, sides_of
 
 
 def check_answers(m: Surface, s: Structure) -> None:
