@@ -1,6 +1,6 @@
 """A long soak: random histories of everything, ``python -m tests.structures.soak``.
 
-A history is a mesh, in every structure that can hold it, and some hundred operations on it; half of
+A history is a mesh, in every structure that can hold it, and a thousand operations on it; half of
 the histories are of triangles, half of polygons. What follows the meshes (render meshes, attributes
 of each kind) is drawn for every history, as it takes most of the time. What each operation must do
 is predicted; what was refused and what the edits told is compared at every step. All that was left
@@ -15,6 +15,7 @@ from collections import Counter
 from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor
 from enum import StrEnum
+from functools import partial
 from typing import Annotated, NamedTuple
 
 import numpy as np
@@ -30,11 +31,11 @@ EVERYTHING = (*3 * KINDS, *BATCHES, *HANDLING)
 ON_POLYGONS = (*2 * POLYGON_KINDS, *EVERYTHING)
 SHRINKING = ("collapse_edge", "collapse_edges", "flip_edge", "remove_face", "add_face")
 MOST_FACES, FEWEST_FACES = 200, 10
-LENGTH = 500
+LENGTH = 1000
 """Operations in a history."""
 
-FOLLOWING = 0.15
-"""How likely each of the followers is; but every tenth history has all of them."""
+FOLLOWING = 0.08
+"""How likely each of the followers is; but every twentieth history has all of them."""
 
 PATIENCE = 60
 """Seconds between two lines that tell how far it is."""
@@ -60,7 +61,7 @@ class History(NamedTuple):
         """How often what was done. AssertionError, with the step, where something is wrong."""
         rng = np.random.default_rng((self.seed, self.number))
         chosen = np.array(FOLLOWERS)[rng.random(len(FOLLOWERS)) < FOLLOWING].tolist()
-        followers = FOLLOWERS if self.number % 10 == 0 else chosen
+        followers = FOLLOWERS if self.number % 20 == 0 else chosen
         world, kinds, found = World(self._start(rng), followers), self._kinds(0), Counter[str]()
         for step in range(self.length):
             action = Action(str(rng.choice(kinds)), *rng.integers(0, NUMBERS, 3).tolist())
@@ -80,6 +81,13 @@ class History(NamedTuple):
         except AssertionError:
             self.run(1)
             raise
+
+    def told(self, every: int) -> Counter[str] | str:
+        """As ``narrowed``, but what goes wrong is told in words."""
+        try:
+            return self.narrowed(every)
+        except AssertionError as fault:
+            return str(fault)
 
     def _kinds(self, n_faces: int, before: tuple[str, ...] = ()) -> tuple[str, ...]:
         """What may come next: the mesh is kept between bounds."""
@@ -109,19 +117,23 @@ def main(
     workers: Annotated[int, typer.Option(help="Processes that do histories at once.")] = 1,
     meshes: Annotated[Meshes, typer.Option(help="What histories are of.")] = Meshes.BOTH,
 ) -> None:
-    """Do anything at random until something is found or all is done, see ``World``."""
-    every_history, found = list(histories(meshes, steps, seed)), Counter[str]()
+    """Do anything at random, see ``World``, and tell what goes wrong; then the exit code is 1."""
+    all_of_them, found, faults = list(histories(meshes, steps, seed)), Counter[str](), 0
     begun = told = time.monotonic()
     with ProcessPoolExecutor(workers) as pool:
-        intervals = [every] * len(every_history)
-        for done in pool.map(History.narrowed, every_history, intervals):
-            found += done
+        for done in pool.map(partial(History.told, every=every), all_of_them):
+            if isinstance(done, str):
+                faults += 1
+                print(done, flush=True)
+            else:
+                found += done
             if time.monotonic() > told + PATIENCE:
                 told = time.monotonic()
                 print(f"{found.total():,} of {steps:,} after {told - begun:,.0f} s", flush=True)
     for what, count in sorted(found.items(), key=lambda it: -it[1]):
         print(f"{count:8,} {what}")
-    print(f"{steps:,} operations, each on every structure that holds the mesh: nothing found")
+    print(f"{found.total():,} operations on every structure that holds the mesh: {faults} faults")
+    raise typer.Exit(faults > 0)
 
 
 if __name__ == "__main__":
