@@ -1,6 +1,7 @@
 """Time of what programs do with meshes, on every structure, by size; building is not included.
 
-Each workload is written once over the contract.
+Each workload is written once over the contract, in two ways: compiled, which measures the structure
+and is what claims rest on, and as a loop in Python, which measures the interpreter, too.
 """
 
 import heapq
@@ -12,6 +13,7 @@ import numpy as np
 
 import structures
 from experiments.harness import BASE, Case, Experiment, Measurement, Preset, Timer
+from hem import algorithms
 from hem.contract import QUERIES, Structure
 
 KEPT = 0.1
@@ -24,17 +26,31 @@ SMALL = 400
 """Vertices of the mesh on which all structures must give the same."""
 
 
-class Workload(NamedTuple):
-    """One workload: ``run(s)`` does it, on a mesh that is its own, and tells how many ``unit``.
+COMPILED, FROM_PYTHON = "compiled", "from Python"
 
-    ``scans``: about how many scans of the whole mesh it takes per unit where neighbors are searched
-    for, so that what would take hours is skipped beforehand.
+
+class Workload(NamedTuple):
+    """One workload, on a mesh that is its own, ``compiled`` and ``from_python``.
+
+    Either tells how many ``unit`` it has done. ``scans``: about how many scans of the whole mesh it
+    takes per unit where neighbors are searched for, so that what would take hours is skipped
+    beforehand.
     """
 
     title: str
     unit: str
     scans: float
-    run: Callable[[Structure], int]
+    compiled: Callable[[Structure], int]
+    from_python: Callable[[Structure], int]
+
+    def run(self, order: str | None) -> Callable[[Structure], int]:
+        """The way that an order names."""
+        return self.compiled if order == COMPILED else self.from_python
+
+
+def _normals(s: Structure) -> int:
+    algorithms.vertex_normals(s)
+    return s.n_vertices
 
 
 def vertex_normals(s: Structure) -> int:
@@ -48,6 +64,11 @@ def vertex_normals(s: Structure) -> int:
     return s.n_vertices
 
 
+def _smooth(s: Structure) -> int:
+    algorithms.smooth(s)
+    return s.n_vertices
+
+
 def smoothing(s: Structure) -> int:
     """Move every vertex to the mean of its neighbors, once."""
     vertices = s.vertices()
@@ -57,14 +78,32 @@ def smoothing(s: Structure) -> int:
     return len(vertices)
 
 
-def subdivision(s: Structure) -> int:
-    """Split every face at its centroid."""
+def _split(s: Structure) -> int:
     return len(s.split_all_faces())
 
 
-def simplify(s: Structure, part: float = KEPT) -> int:
+def subdivision(s: Structure) -> int:
+    """Split every face at its centroid."""
+    corners = s.face_vertices(s.faces()).values.reshape(-1, 3)
+    centers = s.points[corners].mean(axis=1)
+    for face, center in zip(s.faces().tolist(), centers, strict=True):
+        s.split_face(face, center)
+    return len(centers)
+
+
+def _wanted(s: Structure, part: float = KEPT) -> int:
+    return max(4, int(part * s.n_vertices))
+
+
+def _simplify(s: Structure) -> int:
+    before = s.n_vertices
+    algorithms.simplify(s, vertices=_wanted(s), by="shortest_edge")
+    return before - s.n_vertices
+
+
+def simplification(s: Structure, part: float = KEPT) -> int:
     """Collapse the shortest edge there is until ``part`` of the vertices is left -> how many."""
-    wanted = max(4, int(part * s.n_vertices))
+    wanted = _wanted(s, part)
     ends = np.sort(s.edge_vertices(s.edges()).values.reshape(-1, 2))
     lengths = np.linalg.norm(s.points[ends[:, 0]] - s.points[ends[:, 1]], axis=1)
     queue = [(x, a, b) for x, (a, b) in zip(lengths.tolist(), ends.tolist(), strict=True)]
@@ -84,10 +123,19 @@ def simplify(s: Structure, part: float = KEPT) -> int:
     return collapsed
 
 
+def _hit(s: Structure) -> list[int]:
+    faces: list[int] = np.random.default_rng(IMPACT_SEED).integers(0, s.n_faces, IMPACTS).tolist()
+    return faces
+
+
+def _impacts(s: Structure) -> int:
+    algorithms.impacts(s, _hit(s))
+    return IMPACTS
+
+
 def impacts(s: Structure) -> int:
     """As in a game: split the face that is hit, ask what is around, split an edge there."""
-    rng = np.random.default_rng(IMPACT_SEED)
-    for face in rng.integers(0, s.n_faces, IMPACTS).tolist():
+    for face in _hit(s):
         corners = s.face_vertices(face)
         center = s.points[corners].mean(axis=0)
         new = s.split_face(face, center).vertex
@@ -102,38 +150,42 @@ def impacts(s: Structure) -> int:
 
 
 WORKLOADS = {
-    "vertex_normals": Workload("Vertex normals", "vertex", 0, vertex_normals),
-    "smoothing": Workload("Smoothing", "vertex", 3, smoothing),
-    "subdivision": Workload("Subdivision of all faces", "face", 0, subdivision),
-    "simplification": Workload("Simplification to a tenth", "collapse", 35, simplify),
-    "impacts": Workload("Impacts, as in a game", "impact", 30, impacts),
+    "vertex_normals": Workload("Vertex normals", "vertex", 12, _normals, vertex_normals),
+    "smoothing": Workload("Smoothing", "vertex", 3, _smooth, smoothing),
+    "subdivision": Workload("Subdivision of all faces", "face", 0, _split, subdivision),
+    "simplification": Workload(
+        "Simplification to a tenth", "collapse", 35, _simplify, simplification
+    ),
+    "impacts": Workload("Impacts, as in a game", "impact", 30, _impacts, impacts),
 }
-"""Every workload by name. A new one is one function and one line here."""
+"""Every workload by name. A new one is its two functions and one line here."""
 
 
 def cases(preset: Preset, structure: str) -> list[Case]:
-    """Every workload of the preset at every size."""
+    """Every workload of the preset at every size, in both ways where anything is compiled."""
+    orders = (COMPILED, FROM_PYTHON) if structures.REGISTRY[structure].compiled else (FROM_PYTHON,)
     return [
-        Case(structure, preset.families[0], size, workload, "workload")
+        Case(structure, preset.families[0], size, workload, order)
         for size in preset.workload_sizes
         for workload in preset.workloads or WORKLOADS
+        for order in orders
     ]
 
 
 def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
     """Time a workload on copies of a mesh, if it can be done in the time there is."""
     s, workload = case.build(), WORKLOADS[str(case.subject)]
-    units = IMPACTS if case.subject == "impacts" else s.n_vertices
+    units, run = IMPACTS if case.subject == "impacts" else s.n_vertices, workload.run(case.order)
     scans = units * workload.scans if s.searches else 0
     reason = preset.why_too_slow(scans, s.n_faces, preset.fewest_rounds)
     if reason:
         return case.result("time", s, skipped=reason)
-    _check(case, workload)
+    _check(case, run)
     ready = _ready(s)
     begin = perf_counter()
-    units = workload.run(ready)
+    units = run(ready)
     rounds = preset.affordable_rounds(perf_counter() - begin)
-    timed = timer(workload.run, setup=lambda: (_ready(s),), rounds=rounds, warmup=0, per=units)
+    timed = timer(run, setup=lambda: (_ready(s),), rounds=rounds, warmup=0, per=units)
     return case.result("time", s, **timed.fields)
 
 
@@ -146,12 +198,12 @@ def _ready(s: Structure) -> Structure:
     return copy
 
 
-def _check(case: Case, workload: Workload) -> None:
+def _check(case: Case, run: Callable[[Structure], int]) -> None:
     """On a small mesh the outcome is the same on every structure."""
     mesh = Case(case.structure, case.family, SMALL).mesh()
     mine, other = (structures.build(name, mesh) for name in (case.structure, BASE))
     for s in (mine, other):
-        workload.run(s)
+        run(s)
         s.validate()
     corners, expected = (np.sort(s.triangles(), axis=1) for s in (mine, other))
     same_points = np.allclose(mine.points, other.points, atol=1e-5, equal_nan=True)

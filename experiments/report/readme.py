@@ -22,7 +22,7 @@ DRAWN: dict[str, tuple[str, Callable[[Run], Figure]]] = {
     "memory": ("Bytes per vertex", memory.by_field),
     "building": ("Time to build", growth.building),
     "operations": ("Time of the operations", partial(TIMES, subjects=OPERATIONS)),
-    "workloads": ("What people do with meshes", growth.workloads),
+    "workloads": ("What people do with meshes, compiled", growth.workloads),
     "references": ("A half-edge mesh in arrays and in objects", memory.references),
     "listings": ("The thesis' listings, as published and as corrected", growth.listings),
     "plankton": ("The article's walk around a vertex", lambda run: meshes.plankton_walk()),

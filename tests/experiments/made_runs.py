@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from experiments.bench_workloads import WORKLOADS
+from experiments.bench_workloads import COMPILED, FROM_PYTHON, WORKLOADS
 from experiments.claims import Exactly, load_claims
 from experiments.harness import HUBS, Measurement
 from experiments.runs import CaseFile, describe, experiments, write_meta
@@ -115,8 +115,9 @@ def _add_times(files: dict, folder: Path, structure: str) -> None:
             for order in ORDERS
         ]
         every += [
-            ("bench_workloads", name, "workload", 1e-6 * (n_t if slow and it.scans else 1))
+            ("bench_workloads", name, order, 1e-6 * (n_t if slow and it.scans else 1))
             for name, it in WORKLOADS.items()
+            for order in (COMPILED, FROM_PYTHON)
         ]
         every += [
             ("bench_operations", "split_face", order, 1e-6 * (k + 1) * (n_t if k == 3 else 1))

@@ -11,7 +11,7 @@ from matplotlib.ticker import FuncFormatter, LogLocator
 
 from experiments.bench_fracture import FIND, SHATTER, VISITED, WAYS
 from experiments.bench_printed import EXPERIMENT as PRINTED
-from experiments.bench_workloads import WORKLOADS
+from experiments.bench_workloads import COMPILED, WORKLOADS
 from experiments.claims import MIXES, break_even, curves
 from experiments.harness import Axis
 from experiments.report import style
@@ -169,15 +169,16 @@ def rendering(run: Run, structure: str = "half_edge") -> Plot:
     return _draw(cases, titles, "faces", what, label, by="order", **shape)
 
 
-def workloads(run: Run) -> Plot:
-    """Time per unit of every workload, by size."""
+def workloads(run: Run, order: str = COMPILED) -> Plot:
+    """Time per unit of every workload, by size: compiled or from Python, never both."""
 
     def also(axes: Axes, name: str) -> None:
         axes.set_ylabel(f"time per {WORKLOADS[name].unit}, µs")
 
     titles = {name: workload.title for name, workload in WORKLOADS.items()}
     cases = _timed(run, "bench_workloads", 1e6)
-    return _draw(cases, titles, "vertices", "any workload", also=also, plain=True)
+    cases = cases[cases["order"] == order]
+    return _draw(cases, titles, "vertices", f"any workload {order}", also=also, plain=True)
 
 
 def overtaking(run: Run) -> Plot:

@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 
 import hem
 import structures
-from experiments.bench_workloads import simplify
+from experiments.bench_workloads import simplification
 from experiments.report.pages import Html, page
 from experiments.report.style import grid, styled
 from hem.arrays import Array
@@ -246,7 +246,7 @@ def jpeg(figure: Figure) -> Any:
 def shrunk(mesh: hem.TriangleMesh, part: float, structure: str) -> hem.TriangleMesh:
     """The mesh with its shortest edges collapsed until ``part`` of its vertices is left."""
     s = structures.build(structure, mesh)
-    simplify(s, part)
+    simplification(s, part)
     return s.to_triangles()
 
 

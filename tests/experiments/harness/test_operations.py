@@ -71,29 +71,32 @@ def test_all_structures_are_asked_for_the_same(monkeypatch):
     assert all(row == rows[0] for row in rows)
 
 
+@pytest.mark.parametrize("order", ["compiled", "from Python"])
 @pytest.mark.parametrize("workload", WORKLOADS)
-def test_a_workload_makes_of_every_structure_the_same_mesh(workload):
+def test_a_workload_makes_of_every_structure_the_same_mesh(workload, order):
     made = []
     for name in structures.NAMES:
         s = structures.build(name, hem.generate("sphere", 162))
-        units = WORKLOADS[workload].run(s)
+        units = WORKLOADS[workload].run(order)(s)
         s.validate()
         corners = np.sort(s.face_vertices(s.faces()).values.reshape(-1, 3), axis=1)
         made.append((units, corners.tolist()))
     assert all(it == made[0] for it in made)
 
 
-def test_a_simplification_leaves_a_tenth_and_a_closed_surface():
+@pytest.mark.parametrize("order", ["compiled", "from Python"])
+def test_a_simplification_leaves_a_tenth_and_a_closed_surface(order):
     s = structures.build("half_edge", hem.generate("sphere", 642))
-    WORKLOADS["simplification"].run(s)
+    WORKLOADS["simplification"].run(order)(s)
     assert s.n_vertices == int(KEPT * 642)
     hem.require_sound(s.to_triangles(), euler=2)
 
 
-def test_smoothing_moves_every_vertex_to_the_mean_of_its_neighbors():
+@pytest.mark.parametrize("order", ["compiled", "from Python"])
+def test_smoothing_moves_every_vertex_to_the_mean_of_its_neighbors(order):
     mesh = hem.generate("torus", 100)
     s = structures.build("winged_edge", mesh)
-    WORKLOADS["smoothing"].run(s)
+    WORKLOADS["smoothing"].run(order)(s)
     for v in (0, 50, 99):
         near = np.unique(mesh.triangles[(mesh.triangles == v).any(axis=1)])
         expected = mesh.points[near[near != v]].mean(axis=0)
