@@ -150,7 +150,7 @@ def impacts(s: Structure) -> int:
 
 
 WORKLOADS = {
-    "vertex_normals": Workload("Vertex normals", "vertex", 12, _normals, vertex_normals),
+    "vertex_normals": Workload("Vertex normals", "vertex", 0, _normals, vertex_normals),
     "smoothing": Workload("Smoothing", "vertex", 3, _smooth, smoothing),
     "subdivision": Workload("Subdivision of all faces", "face", 0, _split, subdivision),
     "simplification": Workload(

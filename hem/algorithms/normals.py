@@ -6,19 +6,18 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from hem.algorithms.parts import locating, plus, require_mesh
-from hem.arrays import Array, Points
+from hem.algorithms.parts import locating, require_mesh
+from hem.arrays import Array, Floats, Points
 from hem.authoring import Kernel, Kernels, kernel
 from hem.contract import Structure
 
 
 class Plan(NamedTuple):
-    """What is asked, and where the answers go."""
+    """The faces to pass over, and where the answers go."""
 
-    vertices: Array
     faces: Array
-    of_faces: Array  # (face_end, 3) float32: as long as twice the area
-    of_vertices: Array  # (n, 3) float32
+    vertices: Array
+    found: Floats  # (n, 3): sums at first, then unit normals
     out: Any
 
 
@@ -45,40 +44,37 @@ def face_normal(k: Kernels) -> Kernel:
 
 
 def normals(k: Kernels, operations: Kernels) -> Kernel:
-    """Make ``find_normals(m, plan) -> 0``."""
-    vertex_faces, normal = k["vertex_faces"], face_normal(k)
+    """Make ``find_normals(m, plan) -> 0``. Every structure has the faces in the same order."""
+    normal = face_normal(k)
 
     @kernel
     def find_normals(m: Any, plan: Plan) -> int:
-        found, of_faces, out = plan.of_vertices, plan.of_faces, plan.out
+        found, out = plan.found, plan.out
         for i in range(len(plan.faces)):
-            f = plan.faces[i]
-            of_faces[f, 0], of_faces[f, 1], of_faces[f, 2] = normal(m, f, out)
+            x, y, z = normal(m, plan.faces[i], out)
+            for j in range(3):
+                v = out[j]
+                found[v, 0] += x
+                found[v, 1] += y
+                found[v, 2] += z
         for i in range(len(plan.vertices)):
             v = plan.vertices[i]
-            x = y = z = x_rest = y_rest = z_rest = 0.0
-            for j in range(vertex_faces(m, v, out)):
-                f = out[j]
-                x, x_rest = plus(x, x_rest, of_faces[f, 0])
-                y, y_rest = plus(y, y_rest, of_faces[f, 1])
-                z, z_rest = plus(z, z_rest, of_faces[f, 2])
-            x, y, z = x + x_rest, y + y_rest, z + z_rest
-            size = np.sqrt(x * x + y * y + z * z)
+            size = np.sqrt(found[v, 0] ** 2 + found[v, 1] ** 2 + found[v, 2] ** 2)
             if size > 0:
-                found[v, 0], found[v, 1], found[v, 2] = x / size, y / size, z / size
+                for j in range(3):
+                    found[v, j] /= size
         return 0
 
     return find_normals
 
 
 def vertex_normals(s: Structure) -> Points:
-    """(n, 3) float32: the unit normal of every vertex, by handle.
+    """(n, 3) float32: the unit normal of every vertex, by handle, weighted by areas of faces.
 
-    It is the sum of those of its faces, weighted by their areas. Zeros for what is dead, and where
-    there is no face or they cancel out. Cost: ``vertex_faces`` of all. MeshError for polygons.
+    Zeros for what is dead, and where there is no face or they cancel out. A pass over the faces,
+    which asks for no neighbors. Cost O(n_v + n_t). MeshError for polygons.
     """
     require_mesh(s, "vertex_normals")
-    found = np.zeros((len(s.points), 3), np.float32)
-    of_faces = np.empty((s.face_end, 3), np.float32)
-    s.run(normals, Plan(s.vertices(), s.faces(), of_faces, found, s.scratch(0)[0]))
-    return found
+    found = np.zeros((len(s.points), 3))
+    s.run(normals, Plan(s.faces(), s.vertices(), found, s.scratch(0)[0]))
+    return found.astype(np.float32)
