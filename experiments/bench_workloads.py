@@ -190,8 +190,12 @@ def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
 
 
 def _ready(s: Structure) -> Structure:
-    """A copy that was asked everything once, so that its methods are bound."""
+    """A copy that was asked everything once, so that its methods are bound, with room for impacts.
+
+    To make room copies the whole mesh, which is spread over more edits than so few.
+    """
     copy = s.copy()
+    copy.scratch(3 * IMPACTS)
     for query in QUERIES.values():
         getattr(copy, query.name)(int(copy.handles(query.source)[0]))
     copy.can_flip_edge(int(copy.edges()[0]))

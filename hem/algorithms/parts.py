@@ -70,7 +70,7 @@ def change(s: Structure, kind: str, make: Algorithm, plan: Any, splits: int = 0)
     """
     one_by_one = any(it.element == "corner" for it in s.attributes())
     logs: list[Array] = []
-    room, operations = splits, STEP
+    room, operations = splits, min(splits or STEP, STEP)
     try:
         while True:
             before = None if s.compiled else s.snapshot()
