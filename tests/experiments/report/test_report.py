@@ -115,7 +115,7 @@ def test_the_answers_are_numbers_of_the_run(base_folder):
     assert body.count('class="answer"') == 5
     assert "600 µs at 200,000 triangles" in body
     assert "takes 228 bytes per vertex and an indexed mesh 36: 6.33 times" in body
-    assert "A pass over all faces takes a half-edge mesh 1.0 times as long" in body
+    assert "a pass over all faces takes a half-edge mesh 1.0 times as long" in body
     assert ", 0 violated, 0 undetermined" in body
 
 
