@@ -4,10 +4,10 @@ It is compiled for every structure from that one source (``Structure.run``), and
 those of objects; all structures give the same. README.md shows how to write one's own.
 """
 
-from hem.algorithms.circulating import center, circulate
 from hem.algorithms.impacts import impacts
 from hem.algorithms.normals import vertex_normals
-from hem.algorithms.sieger_botsch import SIX, split_and_collapse
+from hem.algorithms.remeshing import remesh
+from hem.algorithms.sieger_botsch import SIX, center, circulate, split_and_collapse
 from hem.algorithms.simplification import MEASURES, simplify
 from hem.algorithms.smoothing import METHODS, smooth
 from hem.algorithms.subdivision import SCHEMES, subdivide
@@ -20,6 +20,7 @@ __all__ = [
     "center",
     "circulate",
     "impacts",
+    "remesh",
     "simplify",
     "smooth",
     "split_and_collapse",

@@ -10,14 +10,30 @@ from hem.algorithms.heap import Heap, pop, purge, push
 from hem.algorithms.parts import Work, doing, finding_edge
 from hem.algorithms.quadrics import WIDTH, best_point, value
 from hem.arrays import Bools, Floats, Indices
-from hem.authoring import FACES, NEEDS_ROOM, VERTICES, Kernel, Kernels, kernel, log_element, part
+from hem.authoring import (
+    FACES,
+    NEEDS_ROOM,
+    VERTICES,
+    Kernel,
+    Kernels,
+    Refusal,
+    kernel,
+    log_element,
+    part,
+)
 from hem.edit import CHANGED, VERTEX
 
-QUADRICS, SHORTEST_EDGE = range(2)
-"""What an edge costs."""
+QUADRICS, SHORTEST_EDGE, SHORTEST_TO_PLANES = range(3)
+"""What an edge costs; its vertex comes to lie where planes say, or at an end of it."""
+
+FLAT = 0.1**2
+"""How far from its planes a short edge may be collapsed: a part of its squared length."""
 
 LENGTH_WEIGHT = 1e-5
 """How much the length of an edge counts, so that the short ones go first where all is flat."""
+
+PASSED_OVER = int(Refusal.NO_EDGE)
+"""The result where a collapse is not even tried."""
 
 DEAD = -(1 << 40)
 """The version of what was collapsed: no stamp is like it."""
@@ -28,8 +44,9 @@ class Plan(NamedTuple):
 
     most: Indices  # (2,): of vertices, and of faces, to be left
     error: Floats  # (1,): squared
+    longest: Floats  # (1,): squared: no collapse may leave a longer edge
     cosine: Floats  # (1,): how far the normal of a face may turn
-    measure: Indices  # (1,): QUADRICS or SHORTEST_EDGE
+    measure: Indices  # (1,): QUADRICS, SHORTEST_EDGE or SHORTEST_TO_PLANES
     edges: Indices  # (k,): smaller end << 32 | larger end
     next: Indices  # (1,): which of them is not on the heap yet
     middle: Floats  # (3,): of the bounding box
@@ -53,14 +70,18 @@ def cost_of(plan: Plan, edge: int) -> float:
     for j in range(3):
         long += (xyz[a, j] - xyz[b, j]) ** 2
         target[j] = xyz[stays, j]
-    if plan.measure[0] == SHORTEST_EDGE:
-        inner = not (plan.on_border[a] and plan.on_border[b])
-        return long if inner and long <= plan.error[0] else np.inf
+    if plan.measure[0] != QUADRICS:
+        if long > plan.error[0] or (plan.on_border[a] and plan.on_border[b]):
+            return np.inf
+        if plan.measure[0] == SHORTEST_EDGE or plan.on_border[stays]:
+            return long
     for j in range(WIDTH):
         total[j] = plan.quadric[a, j] + plan.quadric[b, j]
     x, y, z = xyz[a, 0] + xyz[b, 0], xyz[a, 1] + xyz[b, 1], xyz[a, 2] + xyz[b, 2]
     target[0], target[1], target[2] = best_point(total, x / 2, y / 2, z / 2)
     error = value(total, target[0], target[1], target[2])
+    if plan.measure[0] == SHORTEST_TO_PLANES:
+        return long if error <= FLAT * long * total[10] else np.inf
     if error > plan.error[0] * total[10]:
         return np.inf
     return error + LENGTH_WEIGHT * long * total[10]
@@ -119,10 +140,23 @@ def simplifying(k: Kernels, operations: Kernels) -> Kernel:
     vertex_vertices, set_point, coordinate = k["vertex_vertices"], k["set_point"], k["coordinate"]
 
     @part
+    def keeps_short(m: Any, v: int, plan: Plan) -> bool:
+        """Whether all neighbors of v lie near enough to the target."""
+        for i in range(vertex_vertices(m, v, plan.work.out)):
+            long = 0.0
+            for j in range(3):
+                long += (plan.xyz[plan.work.out[i], j] - plan.target[j]) ** 2
+            if long > plan.longest[0]:
+                return False
+        return True
+
+    @part
     def collapse(m: Any, a: int, b: int, plan: Plan) -> int:
         """Collapse an edge into its target -> the vertex, or why not."""
         if not (keeps_sides(m, a, b, plan) and keeps_sides(m, b, a, plan)):
-            return NEEDS_ROOM - 1
+            return PASSED_OVER
+        if not (keeps_short(m, a, plan) and keeps_short(m, b, plan)):
+            return PASSED_OVER
         stays = b if plan.on_border[b] and not plan.on_border[a] else a
         done = collapse_edge(m, edge_between(m, a, b, plan.work), stays, plan.work)
         if done < 0:

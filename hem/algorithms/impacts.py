@@ -16,7 +16,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from hem.algorithms.parts import NO_WORK, Work, change, doing, finding_edge, require_mesh
+from hem.algorithms.arguments import require_mesh
+from hem.algorithms.parts import NO_WORK, Work, change, doing, finding_edge
 from hem.arrays import Array
 from hem.authoring import NEEDS_ROOM, Kernel, Kernels, kernel
 from hem.contract import Structure

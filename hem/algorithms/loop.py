@@ -21,7 +21,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from hem.algorithms.parts import NO_WORK, Work, change, doing, finding_edge, move, side_keys
-from hem.algorithms.smoothing import averages, most_neighbors
+from hem.algorithms.smoothing import averages
 from hem.arrays import Array, Points
 from hem.authoring import FACE_END, LEFT, NEEDS_ROOM, RIGHT, C, D, Kernel, Kernels, kernel
 from hem.contract import Structure
@@ -116,9 +116,8 @@ def loop(s: Structure) -> None:
     keys, _ = side_keys(s)
     edges = np.stack([keys >> 32, keys & 0xFFFFFFFF], axis=1)
     points, old = np.zeros((len(keys), 3), np.float32), np.array([len(s.points)])
-    n = np.arange(1, most_neighbors(s) + 2)
-    inside = 5 / 8 - (3 / 8 + np.cos(2 * np.pi / n) / 4) ** 2
-    vertices, places = s.vertices(), averages(s, np.append(0, inside), BORDER)
+    places = averages(s, lambda n: 5 / 8 - (3 / 8 + np.cos(2 * np.pi / n) / 4) ** 2, BORDER)
+    vertices = s.vertices()
 
     def plan() -> Plan:
         return Plan(edges, points, old, np.zeros(1, np.int64), NO_WORK)

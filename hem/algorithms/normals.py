@@ -6,7 +6,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from hem.algorithms.parts import locating, require_mesh
+from hem.algorithms.arguments import require_mesh
+from hem.algorithms.parts import locating
 from hem.arrays import Array, Floats, Points
 from hem.authoring import Kernel, Kernels, kernel
 from hem.contract import Structure

@@ -1,4 +1,4 @@
-"""What algorithms share: operations done inside compiled code, positions, what they refuse."""
+"""What algorithms share: operations inside compiled code, positions, sums, the order of edges."""
 
 from __future__ import annotations
 
@@ -13,8 +13,11 @@ from hem.contract import Algorithm, Structure
 from hem.edit import CHANGED, VERTEX
 from hem.errors import MeshError
 
-STEP = 4096
-"""Operations per call of compiled code; between two calls an interrupt gets through."""
+STEP = 16_384
+"""The most operations per call of compiled code; between two calls an interrupt gets through."""
+
+AT_ONCE = 8
+"""Calls that the same scratch serves: no operation adds more than 2 to a valence, of WIDTH."""
 
 
 class Work(NamedTuple):
@@ -52,52 +55,53 @@ def doing(operation: Kernel) -> Kernel:
     return do
 
 
-def work_of(s: Structure, *scratch: Any) -> Work:
-    """Scratch for a structure; where it is interpreted, of Python's own numbers.
-
-    True and True are 2 then, as they are when compiled.
-    """
-    return Work(*(it if s.compiled else memoryview(it) for it in scratch))
-
-
 def change(s: Structure, kind: str, make: Algorithm, plan: Any, splits: int = 0) -> int:
     """Run an algorithm that operates, in steps, until it is done -> its result. One edit.
 
     ``plan.work`` is put in. The algorithm answers ``NEEDS_ROOM`` as soon as an operation does, and
-    goes on where it was, by its plan, when it is called again. There is room for so many ``splits``
-    from the start. Where corners have attributes every operation is an edit of its own, so that no
-    seam is torn. An interrupt leaves what was done so far and told.
+    goes on by its plan when it is called again. There is room for so many ``splits``. Where corners
+    have attributes every operation is an edit of its own, so that no seam is torn. An interrupt
+    leaves what was done so far, and told.
     """
     one_by_one = any(it.element == "corner" for it in s.attributes())
-    logs: list[Array] = []
-    room, operations = splits, min(splits or STEP, STEP)
+    operations = min(splits or STEP, s.n_faces + 64, STEP)
+    logs: list[Array] = []  # copies, as the log is written over
+    result, steps = NEEDS_ROOM, 0
+    out, log = s.scratch(splits, operations)
     try:
-        while True:
+        while result == NEEDS_ROOM:
             before = None if s.compiled else s.snapshot()
-            out, log = s.scratch(room, operations)
-            logs.append(log)
+            if steps == AT_ONCE:
+                steps, (out, log) = 0, s.scratch(0, operations)
+            log[0] = 0
+            args, point, at = np.full(3, -1), np.zeros(3, np.float32), np.zeros(6, np.int64)
             left = np.array([1 if one_by_one else operations])
-            scratch = np.full(3, -1), np.zeros(3, np.float32), np.zeros(6, np.int64)
+            own: tuple[Any, ...] = args, point, at, out, log, left
+            # True and True are 2 to Python's own numbers, as they are to compiled code.
+            work = Work(*(it if s.compiled else memoryview(it) for it in own))
             try:
-                result = s.run(make, plan._replace(work=work_of(s, *scratch, out, log, left)))
+                result = s.run(make, plan._replace(work=work))
             except BaseException:
                 if before is not None:  # Python may stop in the midst of an operation
                     log[0] = 0
                     s.restore(before)
                 raise
-            if result != NEEDS_ROOM:
-                return result
-            room = min(max(splits, 1), STEP) if splits else 0
-            operations = operations if log[0] else 2 * operations
-            if one_by_one or not s.followed:
+            finally:
+                if s.followed:
+                    logs.append(log[1 : log[0] + 1].copy())
+            steps += 1
+            if not log[0]:  # there was not enough for one operation
+                operations, steps = 2 * operations, AT_ONCE
+            if one_by_one:
                 tell(s, kind, logs)
     finally:
         tell(s, kind, logs)
+    return result
 
 
 def tell(s: Structure, kind: str, logs: list[Array]) -> None:
-    """Tell followers of one edit by its logs, which are emptied."""
-    touched = np.concatenate([np.zeros(0, np.int64), *(log[1 : log[0] + 1] for log in logs)])
+    """Tell followers of one edit by its logs, which are forgotten."""
+    touched = np.concatenate([np.zeros(0, np.int64), *logs])
     logs.clear()
     if len(touched):
         s.tell(kind, touched)
@@ -159,6 +163,12 @@ def side_keys(s: Structure) -> tuple[Array, Array]:
     return keys[first], np.diff(np.append(first, len(keys)))
 
 
+def from_smallest(triangles: Array) -> Array:
+    """(n, 3) int64: the corners of each from the smallest on, as on every structure."""
+    turned = (triangles.argmin(axis=1)[:, None] + np.arange(3)) % 3
+    return np.take_along_axis(triangles, turned, axis=1).astype(np.int64)
+
+
 class Placing(NamedTuple):
     """Which vertices are moved, and where to."""
 
@@ -181,34 +191,12 @@ def placing(k: Kernels, operations: Kernels) -> Kernel:
 
 def move(s: Structure, kind: str, vertices: Array, places: Array) -> None:
     """Move vertices to their rows of ``places``: all, or none if one is not finite. One edit."""
-    wrong = ~np.isfinite(places[vertices]).all(axis=1)
-    if wrong.any():
-        raise MeshError(f"{kind}: {Refusal.NOT_FINITE.words}", vertices=vertices[wrong])
+    if not np.isfinite(places).all():
+        wrong = ~np.isfinite(places[vertices]).all(axis=1)
+        if wrong.any():
+            raise MeshError(f"{kind}: {Refusal.NOT_FINITE.words}", vertices=vertices[wrong])
     try:
         s.run(placing, Placing(vertices, places))
     finally:
-        s.tell(kind, vertices.astype(np.int64) << 3 | VERTEX + CHANGED)
-
-
-def require_mesh(s: Any, called: str) -> None:
-    """Raise MeshError for what is no structure, or holds larger faces than triangles."""
-    if not isinstance(s, Structure):
-        raise MeshError(
-            f"{called} takes a structure, such as structures.build('half_edge', mesh), "
-            f"not {type(s).__name__}"
-        )
-    if s.most_corners > 3:
-        faces = s.faces()
-        larger = faces[s.face_vertices(faces).counts > 3]
-        if len(larger):
-            raise MeshError(
-                f"{called} takes triangles only; build one of to_triangles() or triangulated()",
-                faces=larger,
-            )
-
-
-def require_count(called: str, name: str, value: Any, least: int = 0) -> int:
-    """The value, if it is an integer of at least so much; else MeshError."""
-    if isinstance(value, int | np.integer) and not isinstance(value, bool) and value >= least:
-        return int(value)
-    raise MeshError(f"{called} takes {name} as an integer from {least} on, not {value!r}")
+        if s.followed:
+            s.tell(kind, vertices.astype(np.int64) << 3 | VERTEX + CHANGED)

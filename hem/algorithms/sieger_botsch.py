@@ -6,15 +6,144 @@ Source: Design, Implementation, and Evaluation of the Surface_mesh Data Structur
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from typing import Any, NamedTuple
 
-from hem.algorithms.circulating import center, circulate
-from hem.algorithms.normals import vertex_normals
-from hem.algorithms.parts import change, doing, require_mesh
+import numpy as np
+
+from hem.algorithms.arguments import require_mesh
+from hem.algorithms.normals import face_normal
+from hem.algorithms.parts import change, doing, move, plus
 from hem.algorithms.smoothing import smooth
 from hem.algorithms.sqrt3 import Plan, split_all_faces, sqrt3
+from hem.arrays import Array, Floats, Points
 from hem.authoring import NEEDS_ROOM, VERTEX_END, Kernel, Kernels, kernel
 from hem.contract import Structure
+
+
+class Visit(NamedTuple):
+    """What to visit, and the scratch for it."""
+
+    vertices: Array
+    faces: Array
+    out: Any
+
+
+def circulating(k: Kernels, operations: Kernels) -> Kernel:
+    """Make ``circulate(m, plan) -> count``."""
+    vertex_vertices, face_vertices = k["vertex_vertices"], k["face_vertices"]
+
+    @kernel
+    def circulate(m: Any, plan: Visit) -> int:
+        count, out = 0, plan.out
+        for i in range(len(plan.vertices)):
+            v = plan.vertices[i]
+            for j in range(vertex_vertices(m, v, out)):
+                count += out[j] != v
+        for i in range(len(plan.faces)):
+            for j in range(face_vertices(m, plan.faces[i], out)):
+                count += out[j] >= 0
+        return count
+
+    return circulate
+
+
+def circulate(s: Structure) -> int:
+    """Visit the neighbors of every vertex and the corners of every face -> how many those are.
+
+    Two for every edge and three for every face. Cost: ``vertex_vertices`` and ``face_vertices`` of
+    all. MeshError for polygons.
+    """
+    require_mesh(s, "circulate")
+    return s.run(circulating, Visit(s.vertices(), s.faces(), s.scratch(0)[0]))
+
+
+class Corners(NamedTuple):
+    """Whose corners, and what they add up to."""
+
+    faces: Array
+    total: Array  # (3,) float64
+    out: Any
+
+
+def adding(k: Kernels, operations: Kernels) -> Kernel:
+    """Make ``add(m, plan) -> 0``."""
+    face_vertices, coordinate = k["face_vertices"], k["coordinate"]
+
+    @kernel
+    def add(m: Any, plan: Corners) -> int:
+        x = y = z = x_rest = y_rest = z_rest = 0.0
+        out = plan.out
+        for i in range(len(plan.faces)):
+            for j in range(face_vertices(m, plan.faces[i], out)):
+                x, x_rest = plus(x, x_rest, coordinate(m, out[j], 0))
+                y, y_rest = plus(y, y_rest, coordinate(m, out[j], 1))
+                z, z_rest = plus(z, z_rest, coordinate(m, out[j], 2))
+        plan.total[0], plan.total[1], plan.total[2] = x + x_rest, y + y_rest, z + z_rest
+        return 0
+
+    return add
+
+
+def center(s: Structure) -> Floats:
+    """Move a mesh so that the mean of all corners of all faces lies at the origin -> (3,) the mean.
+
+    One edit. Cost O(n_v + n_t). MeshError for polygons.
+    """
+    require_mesh(s, "center")
+    faces, total = s.faces(), np.zeros(3)
+    s.run(adding, Corners(faces, total, s.scratch(0)[0]))
+    middle: Floats = total / max(3 * len(faces), 1)
+    move(s, "center", s.vertices(), (s.points - middle).astype(np.float32))
+    return middle
+
+
+class Fans(NamedTuple):
+    """Whose normals, and where they go."""
+
+    vertices: Array
+    faces: Array
+    of_faces: Array  # (face_end, 3) float32: as long as twice the area
+    found: Array  # (n, 3) float32
+    out: Any
+
+
+def adding_around(k: Kernels, operations: Kernels) -> Kernel:
+    """Make ``add(m, plan) -> 0``: normals of faces, then their sums around each vertex."""
+    vertex_faces, normal = k["vertex_faces"], face_normal(k)
+
+    @kernel
+    def add(m: Any, plan: Fans) -> int:
+        found, of_faces, out = plan.found, plan.of_faces, plan.out
+        for i in range(len(plan.faces)):
+            f = plan.faces[i]
+            of_faces[f, 0], of_faces[f, 1], of_faces[f, 2] = normal(m, f, out)
+        for i in range(len(plan.vertices)):
+            v = plan.vertices[i]
+            x = y = z = x_rest = y_rest = z_rest = 0.0
+            for j in range(vertex_faces(m, v, out)):
+                f = out[j]
+                x, x_rest = plus(x, x_rest, of_faces[f, 0])
+                y, y_rest = plus(y, y_rest, of_faces[f, 1])
+                z, z_rest = plus(z, z_rest, of_faces[f, 2])
+            x, y, z = x + x_rest, y + y_rest, z + z_rest
+            size = np.sqrt(x * x + y * y + z * z)
+            if size > 0:
+                found[v, 0], found[v, 1], found[v, 2] = x / size, y / size, z / size
+        return 0
+
+    return add
+
+
+def normals_around(s: Structure) -> Points:
+    """What ``vertex_normals`` gives, (n, 3) float32, by walking around every vertex.
+
+    Cost: ``vertex_faces`` of all. MeshError for polygons.
+    """
+    require_mesh(s, "normals_around")
+    found = np.zeros((len(s.points), 3), np.float32)
+    of_faces = np.empty((s.face_end, 3), np.float32)
+    s.run(adding_around, Fans(s.vertices(), s.faces(), of_faces, found, s.scratch(0)[0]))
+    return found
 
 
 def collapsing(k: Kernels, operations: Kernels) -> Kernel:
@@ -54,7 +183,7 @@ def split_and_collapse(s: Structure) -> None:
 SIX: dict[str, Callable[[Structure], Any]] = {
     "circulator": circulate,
     "barycenter": center,
-    "normals": vertex_normals,
+    "normals": normals_around,
     "smoothing": smooth,
     "subdivision": sqrt3,
     "collapse": split_and_collapse,

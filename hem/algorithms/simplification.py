@@ -9,13 +9,14 @@ Source: Garland & Heckbert, Surface Simplification Using Quadric Error Metrics (
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Sequence
 
 import numpy as np
 
+from hem.algorithms.arguments import require_count, require_length, require_mesh
 from hem.algorithms.collapsing import QUADRICS, SHORTEST_EDGE, Plan, simplifying
 from hem.algorithms.heap import heap_for
-from hem.algorithms.parts import NO_WORK, change, require_count, require_mesh, side_keys
+from hem.algorithms.parts import NO_WORK, change, from_smallest, side_keys
 from hem.algorithms.quadrics import WIDTH, quadrics
 from hem.contract import Structure
 from hem.errors import MeshError
@@ -55,27 +56,25 @@ def simplify(
         require_count("simplify", name, 0 if value is None else value)
         for name, value in (("vertices", vertices), ("faces", faces))
     ]
-    bound = _length(error)
+    bound = np.inf if error is None else require_length("simplify", "error", error)
     for cosine in LEAST_COSINES:
         left = s.n_vertices + 1
         while s.n_vertices < left and s.n_vertices > most[0] and s.n_faces > most[1]:
             left = s.n_vertices
-            change(s, "simplify", simplifying, _plan(s, most, bound, cosine, measure))
+            plan = collapsible(s, measure, cosine, bound, most)
+            change(s, "simplify", simplifying, plan)
 
 
-def _length(error: Any) -> float:
-    if error is None:
-        return np.inf
-    if not isinstance(error, int | float | np.number) or not float(error) >= 0:
-        raise MeshError(f"simplify takes error as a number from 0 on, not {error!r}")
-    return float(error)
-
-
-def _plan(s: Structure, most: list[int], error: float, cosine: float, measure: int) -> Plan:
+def collapsible(
+    s: Structure,
+    measure: int,
+    cosine: float,
+    error: float,
+    most: Sequence[int] = (0, 0),
+    longest: float = np.inf,
+) -> Plan:
     """A plan to begin with, all of it from the triangles, each from its smallest corner."""
-    rows, n = s.triangles(), len(s.points)
-    turned = (rows.argmin(axis=1)[:, None] + np.arange(3)) % 3
-    rows = np.take_along_axis(rows, turned, axis=1).astype(np.int64)
+    rows, n = from_smallest(s.triangles()), len(s.points)
     ends = np.roll(rows, -1, axis=1)
     keys, count = side_keys(s)
     lonely = np.isin(np.minimum(rows, ends) << 32 | np.maximum(rows, ends), keys[count == 1])
@@ -88,6 +87,7 @@ def _plan(s: Structure, most: list[int], error: float, cosine: float, measure: i
     return Plan(
         most=np.array(most),
         error=np.array([error**2]),
+        longest=np.array([longest**2]),
         cosine=np.array([cosine]),
         measure=np.array([measure]),
         edges=keys,

@@ -6,11 +6,14 @@ Design (1995), for the one that does not shrink what it smooths.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from hem.algorithms.parts import move, plus, require_count, require_mesh
+from hem.algorithms.arguments import require_count, require_mesh
+from hem.algorithms.parts import move, plus
 from hem.arrays import Array, Floats, Points
 from hem.authoring import Kernel, Kernels, kernel
 from hem.contract import Structure
@@ -70,18 +73,15 @@ def averaging(k: Kernels, operations: Kernels) -> Kernel:
     return average
 
 
-def averages(s: Structure, inside: Floats, border: float = 0.0) -> Points:
+def averages(s: Structure, inside: Callable[[Array], Array], border: float = 0.0) -> Points:
     """(n, 3) float32: vertices moved toward the mean of their neighbors; see ``Plan``."""
-    n = len(s.points)
+    n, (out, _) = len(s.points), s.scratch(0)
+    neighbors = np.arange(1.0, len(out) // 2)  # more than any vertex has
+    parts = np.append(0.0, inside(neighbors))
     own = np.array([border]), np.zeros(n, np.int32), np.zeros((n, 3), np.float32)
-    plan = Plan(s.vertices(), s.faces(), inside, *own, s.scratch(0)[0])
+    plan = Plan(s.vertices(), s.faces(), parts, *own, out)
     s.run(averaging, plan)
     return plan.places
-
-
-def most_neighbors(s: Structure) -> int:
-    """A bound on the number of neighbors of any vertex. Cost O(n_t)."""
-    return 2 * int(np.bincount(s.triangles().reshape(-1)).max(initial=0))
 
 
 def smooth(s: Structure, iterations: int = 1, method: str = "laplace") -> None:
@@ -93,7 +93,6 @@ def smooth(s: Structure, iterations: int = 1, method: str = "laplace") -> None:
     """
     require_mesh(s, "smooth")
     passes = look_up(method, METHODS, "method")
-    most = most_neighbors(s)
     for _ in range(require_count("smooth", "iterations", iterations)):
         for part in passes:
-            move(s, "smooth", s.vertices(), averages(s, np.full(most + 1, part)))
+            move(s, "smooth", s.vertices(), averages(s, partial(np.full_like, fill_value=part)))

@@ -17,8 +17,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from hem.algorithms.parts import NO_WORK, Work, change, doing, move, plus, require_mesh
-from hem.algorithms.smoothing import averages, most_neighbors
+from hem.algorithms.arguments import require_mesh
+from hem.algorithms.parts import NO_WORK, Work, change, doing, move, plus
+from hem.algorithms.smoothing import averages
 from hem.arrays import Array
 from hem.authoring import FACE_END, NEEDS_ROOM, Kernel, Kernels, kernel
 from hem.contract import Structure
@@ -92,8 +93,7 @@ def split_all_faces(s: Structure, kind: str) -> Plan:
 def sqrt3(s: Structure) -> None:
     """One step, in three edits. Cost: ``vertex_vertices`` of all, a split and a flip per face."""
     require_mesh(s, "subdivide")
-    n = np.arange(1, most_neighbors(s) + 2)
-    inside = (4 - 2 * np.cos(2 * np.pi / n)) / 9
-    vertices, places = s.vertices(), averages(s, np.append(0, inside))
+    places = averages(s, lambda n: (4 - 2 * np.cos(2 * np.pi / n)) / 9)
+    vertices = s.vertices()
     change(s, "subdivide", turning, split_all_faces(s, "subdivide"))
     move(s, "subdivide", vertices, places)

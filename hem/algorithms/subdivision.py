@@ -6,8 +6,9 @@ from collections.abc import Callable
 
 import numpy as np
 
+from hem.algorithms.arguments import require_count, require_mesh
 from hem.algorithms.loop import loop
-from hem.algorithms.parts import require_count, require_mesh, side_keys
+from hem.algorithms.parts import side_keys
 from hem.algorithms.sqrt3 import sqrt3
 from hem.contract import Structure
 from hem.errors import TopologyError

@@ -16,14 +16,16 @@ from tests.hem.algorithms.meshes import MESHES, used
 
 ALGORITHMS: dict[str, Callable[[Structure], Any]] = {
     **algorithms.SIX,
+    "vertex normals": algorithms.vertex_normals,
     "taubin": lambda s: algorithms.smooth(s, 2, "taubin"),
     "loop": lambda s: algorithms.subdivide(s, "loop"),
     "quadrics": lambda s: algorithms.simplify(s, vertices=30),
     "shortest edge": lambda s: algorithms.simplify(s, faces=80, by="shortest_edge"),
+    "remesh": lambda s: algorithms.remesh(s, 0.4, iterations=2),
     "impacts": lambda s: algorithms.impacts(s, s.faces()[::3] if isinstance(s, Structure) else []),
     "sqrt3 twice": lambda s: algorithms.subdivide(s, "sqrt3", times=2),
 }
-CHANGING = [it for it in ALGORITHMS if it not in ("circulator", "normals")]
+CHANGING = [it for it in ALGORITHMS if it not in ("circulator", "normals", "vertex normals")]
 
 
 def corners_of(s: Structure) -> list[tuple[int, ...]]:
@@ -114,6 +116,14 @@ def test_an_interrupt_leaves_a_whole_mesh_that_works(algorithm: str, name: str) 
     lambda s: algorithms.subdivide(s, "catmull"),
     lambda s: algorithms.subdivide(s, times=-1),
     lambda s: algorithms.simplify(s),
+    lambda s: algorithms.remesh(s, 0.0),
+    lambda s: algorithms.remesh(s, -0.1),
+    lambda s: algorithms.remesh(s, float("inf")),
+    lambda s: algorithms.remesh(s, "short"),
+    lambda s: algorithms.remesh(s, iterations=-1),
+    lambda s: algorithms.impacts(s, [0, 1, 200]),
+    lambda s: algorithms.impacts(s, [0.5]),
+    lambda s: algorithms.impacts(s, [-1]),
     lambda s: algorithms.simplify(s, vertices=-1),
     lambda s: algorithms.simplify(s, faces=10.0),
     lambda s: algorithms.simplify(s, error=float("nan")),

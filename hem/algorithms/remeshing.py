@@ -1,0 +1,167 @@
+"""Isotropic remeshing: all edges about as long as each other, all valences about six.
+
+Again and again edges that are too long are split, those that are too short are collapsed, edges are
+flipped where that evens out valences, and vertices move within their tangent planes to the middle
+of their neighbors, and from there back onto the surface that there was. Vertices on the border
+stay; long edges along it are split.
+
+Source: Botsch & Kobbelt, A Remeshing Approach to Multiresolution Modeling (2004), section 4.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from hem.algorithms.arguments import require_count, require_length, require_mesh
+from hem.algorithms.collapsing import SHORTEST_TO_PLANES, simplifying
+from hem.algorithms.loop import Plan as Splits
+from hem.algorithms.loop import splitting
+from hem.algorithms.nearest import Surface
+from hem.algorithms.normals import vertex_normals
+from hem.algorithms.parts import (
+    NO_WORK,
+    Work,
+    change,
+    doing,
+    finding_edge,
+    from_smallest,
+    move,
+    side_keys,
+)
+from hem.algorithms.simplification import collapsible
+from hem.algorithms.smoothing import averages
+from hem.arrays import Array, Floats, Indices
+from hem.authoring import LEFT, NEEDS_ROOM, RIGHT, C, D, Kernel, Kernels, kernel
+from hem.contract import Structure
+from hem.errors import MeshError
+
+LONGEST, SHORTEST = 4 / 3, 4 / 5
+"""Of the length asked for: what is longer is split, what is shorter is collapsed."""
+
+LEAST_COSINE = 0.7
+"""How far the normal of a face may turn."""
+
+
+class Flips(NamedTuple):
+    """Which edges are looked at, and what is known of the vertices."""
+
+    edges: Indices  # (k,): smaller end << 32 | larger end
+    next: Indices  # (1,): the place of the next one
+    xyz: Floats  # (n, 3)
+    excess: Indices  # (n,): valence above 6, or above 4 on the border
+    work: Work
+
+
+@kernel
+def facing(xyz: Floats, a: int, b: int, c: int) -> tuple[float, float, float]:
+    """The normal of a triangle, as long as twice its area."""
+    u, v = xyz[b] - xyz[a], xyz[c] - xyz[a]
+    return u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]
+
+
+@kernel
+def agree(n: tuple[float, ...], m: tuple[float, ...]) -> bool:
+    """Whether two normals point the same way."""
+    both = n[0] * m[0] + n[1] * m[1] + n[2] * m[2]
+    sizes = (n[0] ** 2 + n[1] ** 2 + n[2] ** 2) * (m[0] ** 2 + m[1] ** 2 + m[2] ** 2)
+    return bool(both > LEAST_COSINE * np.sqrt(sizes))
+
+
+def evening_out(k: Kernels, operations: Kernels) -> Kernel:
+    """Make ``even_out(m, plan) -> 0``: flip what brings valences nearer to six."""
+    edge_between = finding_edge(k["vertex_edges"], k["edge_vertices"])
+    diamond, flip_edge = k["diamond"], doing(operations["flip_edge"])
+
+    @kernel
+    def even_out(m: Any, plan: Flips) -> int:
+        at, xyz, excess = plan.work.at, plan.xyz, plan.excess
+        while plan.next[0] < len(plan.edges):
+            edge = plan.edges[plan.next[0]]
+            a, b = edge >> 32, edge & 0xFFFFFFFF
+            e = edge_between(m, a, b, plan.work)
+            if e >= 0 and diamond(m, e, at) == 2 and at[LEFT] >= 0 and at[RIGHT] >= 0:
+                c, d = at[C], at[D]
+                # The sum of squares falls by twice this much, less 4.
+                gain = excess[a] + excess[b] - excess[c] - excess[d]
+                one, other = facing(xyz, a, d, c), facing(xyz, b, c, d)
+                left, right = facing(xyz, a, b, c), facing(xyz, b, a, d)
+                both = left[0] + right[0], left[1] + right[1], left[2] + right[2]
+                if gain > 2 and agree(one, both) and agree(other, both):
+                    done = flip_edge(m, e, -1, plan.work)
+                    if done == NEEDS_ROOM:
+                        return NEEDS_ROOM
+                    if done >= 0:
+                        excess[a], excess[b] = excess[a] - 1, excess[b] - 1
+                        excess[c], excess[d] = excess[c] + 1, excess[d] + 1
+            plan.next[0] += 1
+        return 0
+
+    return even_out
+
+
+def remesh(s: Structure, length: float | None = None, iterations: int = 10) -> None:
+    """Make all edges about as long as ``length``, the mean of all unless it is said, in place.
+
+    After ten iterations 95 of 100 edges are between 4/5 and 4/3 of it, fewer where what is thin or
+    sharp would be lost. Handles of what is left are kept, and ``compact`` renumbers. Several edits
+    per iteration. Cost per iteration: O(n_t log n_t) for bounded valence. MeshError for what is no
+    length or number, and for polygons. Source: Botsch & Kobbelt (2004).
+    """
+    require_mesh(s, "remesh")
+    iterations = require_count("remesh", "iterations", iterations)
+    ends = s.points[s.edge_array()].astype(np.float64)
+    lengths = np.linalg.norm(ends[:, 0] - ends[:, 1], axis=1)
+    wanted = float(lengths.sum()) / max(len(lengths), 1)
+    if length is not None:
+        wanted = require_length("remesh", "length", length)
+        if not 0 < wanted < np.inf:
+            raise MeshError(f"remesh takes length as a positive number, not {length!r}")
+    surface = Surface(s.points, from_smallest(s.triangles()))
+    for _ in range(iterations):
+        split_longer(s, LONGEST * wanted)
+        limits = LEAST_COSINE, SHORTEST * wanted
+        plan = collapsible(s, SHORTEST_TO_PLANES, *limits, longest=LONGEST * wanted)
+        change(s, "remesh", simplifying, plan)
+        flip_to_even(s)
+        relax(s, surface)
+
+
+def split_longer(s: Structure, length: float) -> None:
+    """Split all edges longer than that in the middle, until there are none."""
+    while True:
+        keys, _ = side_keys(s)
+        ends = np.stack([keys >> 32, keys & 0xFFFFFFFF], axis=1)
+        places = s.points[ends].astype(np.float64)
+        long = np.linalg.norm(places[:, 0] - places[:, 1], axis=1) > length
+        if not long.any():
+            return
+        points = places[long].mean(axis=1).astype(np.float32)
+        start = np.array([len(s.points)]), np.zeros(1, np.int64), NO_WORK
+        change(s, "remesh", splitting, Splits(ends[long], points, *start), len(points))
+
+
+def flip_to_even(s: Structure) -> None:
+    """Flip each edge at most once, in the order of their ends."""
+    keys, faces = side_keys(s)
+    ends = np.stack([keys >> 32, keys & 0xFFFFFFFF])
+    n = len(s.points)
+    excess = np.bincount(ends.reshape(-1), minlength=n) - 6
+    on_border = np.zeros(n, np.bool_)
+    on_border[ends[:, faces == 1]] = True
+    excess[on_border] += 2
+    xyz = s.points.astype(np.float64)
+    change(s, "remesh", evening_out, Flips(keys, np.zeros(1, np.int64), xyz, excess, NO_WORK))
+
+
+def relax(s: Structure, surface: Surface) -> None:
+    """Move vertices within their tangent planes to the means of their neighbors, and back down."""
+    normals: Array = vertex_normals(s).astype(np.float64)
+    toward = averages(s, np.ones_like) - s.points.astype(np.float64)
+    away = (toward * normals).sum(axis=1, keepdims=True) * normals
+    vertices = s.vertices()
+    vertices = vertices[toward[vertices].any(axis=1)]
+    places = s.points + toward - away
+    places[vertices] = surface.nearest(places[vertices])
+    move(s, "remesh", vertices, places.astype(np.float32))

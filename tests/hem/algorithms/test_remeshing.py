@@ -1,0 +1,83 @@
+"""Remeshing: as even as another library makes it, and still the same surface."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import hem
+import structures
+from hem import algorithms
+from tests.hem.algorithms.test_passes import OPEN
+from tests.hem.algorithms.test_simplification import distances
+
+
+def edges_of(mesh: hem.TriangleMesh) -> tuple[np.ndarray, np.ndarray]:
+    """(k, 2): the edges, and how many faces each has."""
+    sides = np.concatenate([np.roll(mesh.triangles, i, axis=1)[:, :2] for i in range(3)])
+    return np.unique(np.sort(sides, axis=1), axis=0, return_counts=True)
+
+
+def lengths(mesh: hem.TriangleMesh) -> np.ndarray:
+    edges, _ = edges_of(mesh)
+    return np.linalg.norm(np.diff(mesh.points[edges].astype(float), axis=1)[:, 0], axis=1)
+
+
+def valence_error(mesh: hem.TriangleMesh) -> float:
+    """How far the valence is from 6, or from 4 on the border, on average."""
+    edges, faces = edges_of(mesh)
+    wanted = np.full(len(mesh.points), 6)
+    wanted[edges[faces == 1]] = 4
+    return float(np.abs(np.bincount(edges.reshape(-1), minlength=len(wanted)) - wanted).mean())
+
+
+def remeshed(mesh: hem.TriangleMesh, **asked: float) -> hem.TriangleMesh:
+    s = structures.build("half_edge", mesh)
+    algorithms.remesh(s, **asked)  # type: ignore[arg-type]
+    s.validate()
+    return s.to_triangles()
+
+
+def by_pymeshlab(mesh: hem.TriangleMesh, length: float) -> hem.TriangleMesh:
+    pymeshlab = pytest.importorskip("pymeshlab")
+    scene = pymeshlab.MeshSet()
+    scene.add_mesh(pymeshlab.Mesh(mesh.points, mesh.triangles))
+    scene.meshing_isotropic_explicit_remeshing(iterations=10, targetlen=pymeshlab.PureValue(length))
+    found = scene.current_mesh()
+    return hem.TriangleMesh(found.vertex_matrix(), found.face_matrix())
+
+
+@pytest.mark.parametrize("factor", [1.0, 1.5])
+def test_edges_are_as_long_as_asked_for_and_valences_evener_than_those_of_pymeshlab(
+    factor: float,
+) -> None:
+    mesh = hem.sample("bunny")
+    length = factor * float(lengths(mesh).mean())
+    mine, theirs = remeshed(mesh, length=length), by_pymeshlab(mesh, length)
+    found = lengths(mine) / length
+    assert ((found > 4 / 5) & (found < 4 / 3)).mean() >= 0.95
+    assert valence_error(mine) < valence_error(theirs)
+    assert distances(mesh, mine)[1] < 1e-3
+    hem.require_sound(mine)
+
+
+@pytest.mark.parametrize("factor", [0.5, 2.0])
+def test_a_surface_stays_where_it_is_finer_or_coarser(factor: float) -> None:
+    mesh = hem.generate("torus", 2500)
+    mine = remeshed(mesh, length=factor * float(lengths(mesh).mean()))
+    assert np.isclose(mine.volume(), mesh.volume(), rtol=0.05)
+    assert (len(mine.points) > len(mesh.points)) == (factor < 1)
+
+
+def test_the_length_is_the_mean_unless_it_is_said() -> None:
+    mesh = hem.generate("sphere", 642)
+    assert np.isclose(lengths(remeshed(mesh)).mean(), lengths(mesh).mean(), rtol=0.1)
+
+
+def test_border_vertices_stay() -> None:
+    edges, faces = edges_of(OPEN)
+    border = np.unique(edges[faces == 1])
+    s = structures.build("half_edge", OPEN)
+    algorithms.remesh(s, 1.5 * float(lengths(OPEN).mean()), iterations=3)
+    assert np.array_equal(s.points[border], OPEN.points[border])
+    assert s.is_border(border).all()
