@@ -8,7 +8,7 @@ from pathlib import Path
 PAGE = Path(__file__).parents[3] / "hem" / "algorithms" / "README.md"
 
 
-def test_the_example_of_the_page_runs_on_every_structure() -> None:
+def test_the_example_of_the_page_runs() -> None:
     blocks = re.findall(r"(?ms)^```python\n(.*?)^```", PAGE.read_text())
     assert len(blocks) == 1
     for text in blocks:
