@@ -32,13 +32,14 @@ class Refusal(IntEnum):
         "mend the mesh first (repair=True)"
     )
     NOT_TRIANGLES = "a face at the edge has more than three corners; split that face first"
+    # split_edge, collapse_edge, flip_edge
+    SAME_CORNER = "the two faces at the edge have the same three corners"
     # collapse_edge
     NOT_AN_END = "the vertex to keep is not an end of the edge"
     LONE_FACE = (
         "a face at the edge has its other two edges on the border, and would leave an edge without "
         "a face"
     )
-    SAME_CORNER = "the two faces at the edge have the same three corners"
     TWO_BORDERS = (
         "both ends lie on the border, but the edge does not, and the surface would be pinched in "
         "one vertex"

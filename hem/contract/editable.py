@@ -35,8 +35,9 @@ class Editable(Algorithms, abstract=True):
     def split_edge(self, edge: int, point: ArrayLike) -> Edit:
         """Put a new vertex on an edge; each face there becomes two. The point may lie anywhere.
 
-        Interior: 1 vertex, 3 edges and 2 faces more; border: 1, 2 and 1. Cost O(1) where edges are
-        recorded, else that of finding the faces: O(n_ev) or O(n_t). Thesis 4.1.
+        Interior: 1 vertex, 3 edges and 2 faces more; border: 1, 2 and 1. Refused between two faces
+        of the same corners. Cost O(1) where edges are recorded, else that of finding the faces:
+        O(n_ev) or O(n_t). Thesis 4.1.
         """
         return self._do["split_edge"](edge, point)
 

@@ -154,8 +154,9 @@ class Operating(Following, abstract=True):
         self._make_room(vertices, faces + more * self.operations[operation].grows_with_sides)
         self._widen()
         neighbors = len(self._out["edge"]) // WIDTH
-        if len(self._log) < 2 * neighbors + 2 * ENTRIES:
-            self._log = memoryview(np.zeros(2 * neighbors + 2 * ENTRIES, np.int64).data)
+        entries = max(2 * neighbors, 3 * (more + 3)) + 2 * ENTRIES  # a split face: three per corner
+        if len(self._log) < entries:
+            self._log = memoryview(np.zeros(entries, np.int64).data)
             self._repin()
 
     def _all(
@@ -166,7 +167,7 @@ class Operating(Following, abstract=True):
         element = self.operations[operation].element
         self._require_different(called, element, handles, names)
         args = arguments.rows(handles)
-        if element == "edge" and (self.emulated or self.most_corners > 3):
+        if element == "edge":
             self._require_allowed(operation, args, positions)
         results, log = self._run(operation, args, positions)
         self._publish(Edit(called, -1, log))
@@ -184,11 +185,7 @@ class Operating(Following, abstract=True):
             raise TopologyError(f"{called} takes different {many}, each once", **{many: again})
 
     def _require_allowed(self, operation: str, args: Array, positions: Array) -> None:
-        """Raise for the first row of ``args`` (n, 3) that would be refused; change nothing.
-
-        Where edges are recorded one between triangles can always be split. Else it may not even be
-        one.
-        """
+        """Raise for the first row of ``args`` (n, 3) that would be refused; change nothing."""
         results, _ = self._run(operation, args, positions, CHECK)
         refused = np.flatnonzero(results < 0)
         if len(refused):

@@ -215,6 +215,18 @@ def test_faces_of_any_number_of_corners_are_added_and_removed(corners):
             s.validate()
 
 
+@pytest.mark.parametrize("corners", [12, 13, 14, 40, 3000])
+@pytest.mark.parametrize("how", ["stellate", "split_face", "split_faces", "split_all_faces"])
+def test_the_first_that_is_done_to_a_large_face_may_be_to_split_it(corners, how):
+    angle = np.linspace(0, 2 * np.pi, corners, endpoint=False)
+    points = np.stack([np.cos(angle), np.sin(angle), 0 * angle], axis=1)
+    s = plankton(hem.PolygonMesh(points, [range(corners)]))
+    given = {"split_face": (0, (0, 0, 0)), "split_faces": ([0], [(0, 0, 0)]), "stellate": (0,)}
+    getattr(s, how)(*given.get(how, ()))
+    s.validate()
+    assert counts(s) == (corners + 1, 2 * corners, corners)
+
+
 def test_removing_and_adding_a_polygon_restores_the_mesh(mesh):
     s = plankton(mesh)
     before = sorted(rows(s).values())

@@ -28,7 +28,7 @@ from hem.authoring.operations.parts import (
     log_parts,
     vertex_maker,
 )
-from hem.authoring.operations.rules import LEFT, RIGHT, A, B, triangle_edge
+from hem.authoring.operations.rules import LEFT, RIGHT, A, B, C, D, triangle_edge
 from hem.authoring.refusals import ALLOWED, NEEDS_ROOM, Refusal
 from hem.edit import CHANGED, CREATED, PARENT, VERTEX
 
@@ -43,6 +43,8 @@ def make(k: Kernels) -> Kernel:
         m: Any, args: Array, point: Array, at: Array, out: Array, log: Array, dry: bool
     ) -> int:
         refusal = may_split_edge(m, args[0], at)
+        if refusal == ALLOWED and at[C] == at[D]:  # two edges would join it to the new vertex
+            refusal = Refusal.SAME_CORNER
         if refusal == ALLOWED and not is_point(point):
             refusal = Refusal.NOT_FINITE
         if refusal != ALLOWED or dry:

@@ -27,7 +27,8 @@ def check_answers(m: Surface, s: Structure) -> None:
         assert s.find_edge(*pair) == name.get(both(*pair)), f"find_edge{pair} of {s!r}"
     for f, row in [*m.faces.items()][:: max(1, len(m.faces) // 8)]:
         if len(row) == 3:
-            assert s.find_face(*row) == s.find_face(*row[::-1]) == f, f"find_face{row} of {s!r}"
+            found = {s.find_face(*row), s.find_face(*row[::-1])}
+            assert found <= {f, m.back(f)} - {-1}, f"find_face{row} of {s!r}: {found}"
     _refuse_dead(m, s)
 
 

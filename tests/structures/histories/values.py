@@ -176,8 +176,9 @@ class Values:
         if (f, change.gone) not in old:
             found = {old[g, v] for g in there}
             return found.pop() if len(found) == 1 else None
-        found = {old[g, v] for g in there if old.get((g, change.gone)) == own}
-        if None in found or own is None or len(found) > 1:
+        sides = {g: old[g, change.gone] for g in there if (g, change.gone) in old}
+        found = {old[g, v] for g, side in sides.items() if side == own}
+        if None in {own, *found, *sides.values()} or len(found) > 1:
             return None
         return found.pop() if found else own
 

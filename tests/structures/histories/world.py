@@ -90,7 +90,8 @@ class World:
             check_answers(self.surface, s)
             check_steps(self.surface, s)
         if all(len(row) == 3 for row in self.surface.faces.values()):
-            hem.require_sound(self.many[0].to_triangles())
+            if not any(self.surface.back(f) >= 0 for f in self.surface.faces):
+                hem.require_sound(self.many[0].to_triangles())
             if not self.renders:
                 self._follow()
         for s, render in zip(self.many, self.renders, strict=bool(self.renders)):

@@ -38,6 +38,7 @@ def several() -> hem.TriangleMesh:
 
 STARTS = {
     "one triangle": lambda: hem.TriangleMesh(np.eye(3), [(0, 1, 2)]),
+    "pillow": lambda: hem.TriangleMesh(np.eye(3), [(0, 1, 2), (0, 2, 1)]),
     "tetrahedron": lambda: hem.TriangleMesh(np.eye(4)[:, :3], TETRAHEDRON),
     "octahedron": octahedron,
     "strip": lambda: strip(6),

@@ -27,6 +27,9 @@ BOOK = [(0, 1, 2), (1, 0, 3), (0, 1, 4)]
 
 FAN = [(0, 1, 2), (0, 2, 3), (0, 3, 4)]
 
+CLOSED_AND_APART = [*PILLOW, (3, 4, 5)]
+"""A pillow, and a triangle beside it."""
+
 CASES = {
     "collapse in a tetrahedron": (TETRAHEDRON, "collapse_edge", (0, 1), "tetrahedron"),
     "collapse across a tube": (RING, "collapse_edge", (0, 1), "common neighbor"),
@@ -53,6 +56,19 @@ def call(s: structures.Structure, operation: str, elements: tuple[int, ...]) -> 
     else:
         a, b, *keep = elements
         getattr(s, operation)(s.find_edge(a, b), *keep)
+
+
+def test_no_edge_of_a_pillow_is_split_and_no_other_in_the_same_batch(name):
+    s = structures.build(name, hem.TriangleMesh(PLANE, CLOSED_AND_APART))
+    edges, before = [s.find_edge(3, 4), s.find_edge(1, 2)], faces_of(s)
+    with pytest.raises(hem.TopologyError, match="same three corners"):
+        s.split_edge(edges[1], (0, 0, 0))
+    with pytest.raises(hem.TopologyError, match="same three corners"):
+        s.split_edges(edges, np.zeros((2, 3)))
+    assert faces_of(s) == before
+    s.validate()
+    s.split_edges(edges[:1], np.zeros((1, 3)))
+    s.validate()
 
 
 @pytest.mark.parametrize("case", CASES)
