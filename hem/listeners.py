@@ -11,13 +11,16 @@ Listener = Callable[[Any], Any]
 class Listeners(list[Listener]):
     """Those who are told, in the order they subscribed."""
 
+    __slots__ = ()
+
     def subscribe(self, callback: Listener) -> Callable[[], None]:
         """Have ``callback`` told from now on -> a way to end that, which may be called twice."""
         self.append(callback)
+        subscribed = [callback]
 
         def unsubscribe() -> None:
-            if callback in self:
-                self.remove(callback)
+            if subscribed and callback in self:
+                self.remove(subscribed.pop())
 
         return unsubscribe
 

@@ -47,7 +47,7 @@ class Sweep(NamedTuple):
     loop: Callable[..., int]
     handles: Array
     out: Any
-    records: Any
+    mesh: Measuring
     counts: bytes
     """What the mesh counted when the handles were checked."""
 
@@ -56,10 +56,14 @@ class Sweep(NamedTuple):
         return self._replace(handles=self.handles[places])
 
     def run(self) -> int:
-        """Ask in one compiled loop, keeping nothing -> a checksum; MeshError after an edit."""
-        if self.records.counts.tobytes() != self.counts:
+        """Ask in one compiled loop, keeping nothing -> a checksum.
+
+        MeshError where elements came or went since: then what was checked may be gone.
+        """
+        records = self.mesh.records
+        if records.counts.tobytes() != self.counts:
             raise MeshError("the mesh was edited since the handles were checked")
-        return int(self.loop(self.handles, self.out, *self.records))
+        return int(self.loop(self.handles, self.out, *records))
 
 
 class Snapshot(NamedTuple):
@@ -85,7 +89,7 @@ class Measuring(Editable, abstract=True):
         self._count_edges()
         self._widen()
         out, counts = self._out[QUERIES[query].target], self.records.counts
-        return Sweep(self._uses[query].sweep, wanted, out, self.records, counts.tobytes())
+        return Sweep(self._uses[query].sweep, wanted, out, self, counts.tobytes())
 
     def work(self, query: str, handles: NDArray[Any]) -> NDArray[np.int64]:
         """(n,) int64: elements of the structure's arrays read to answer ``query``, per handle.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from time import perf_counter
+from types import SimpleNamespace
 from typing import NamedTuple
 
 import numpy as np
@@ -50,7 +51,9 @@ def test_one_delayed_try_leaves_no_round_with_too_few_handles(
     for delayed in range(5):
         s = Delayed(delayed)
         monkeypatch.setattr("experiments.harness.queries.perf_counter", s.clock)
-        seconds = _seconds_per_query(Sweep(s.loop, handles, None, Empty(np.zeros(0)), b""), 2e-4)
+        seconds = _seconds_per_query(
+            Sweep(s.loop, handles, None, SimpleNamespace(records=Empty(np.zeros(0))), b""), 2e-4
+        )
         assert seconds == pytest.approx(1e-6)
 
 

@@ -296,6 +296,18 @@ def test_listeners_of_a_render_mesh_are_all_called_and_end_more_than_once() -> N
     assert len(heard) == 2
 
 
+def test_who_listens_twice_is_told_once_after_ending_one_of_them_twice() -> None:
+    s, heard = structures.build("half_edge", hem.generate("torus", 100)), []
+    ends = [s.subscribe(heard.append) for _ in "12"]
+    ends[0]()
+    ends[0]()
+    s.split_face(0, (0, 0, 0))
+    assert len(heard) == 1
+    ends[1]()
+    s.split_face(0, (0, 0, 0))
+    assert len(heard) == 1
+
+
 def test_offsets_that_do_not_fit_are_refused() -> None:
     for offsets in ([0, 5], [1, 3], []):
         rows = Ragged(np.array(offsets, np.int64), np.array([0, 1, 2]))

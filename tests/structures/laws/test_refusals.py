@@ -237,15 +237,29 @@ def test_no_foreign_handle_reaches_compiled_code(name, query):
             s.sweep(query, wrong)
 
 
-def test_a_sweep_is_not_run_once_the_mesh_was_edited(name):
+EDITS = {
+    "a collapse": lambda s: s.collapse_edge(s.find_edge(0, 1), keep=0),
+    "growth": lambda s: s.split_face(0, (0, 0, 0)),
+    "much growth": lambda s: [s.split_face(0, (0, 0, 0)) for _ in range(40)],
+    "a filled hole": lambda s: s.add_face(0, 1, 2),
+    "a compaction": lambda s: s.compact(),
+}
+
+
+@pytest.mark.parametrize("edit", EDITS)
+def test_a_sweep_is_not_run_once_the_mesh_was_edited(name, edit):
     s = structures.build(name, octahedron())
-    sweep = s.prepare_sweep("face_vertices", s.faces())
-    assert sweep.run() == sweep.some(slice(None)).run() == s.sweep("face_vertices", s.faces())
-    s.collapse_edge(s.find_edge(0, 1), keep=0)
+    if edit in ("a filled hole", "a compaction"):
+        s.remove_face(0)
+    sweep = s.prepare_sweep("vertex_faces", s.vertices())
+    assert sweep.run() == sweep.some(slice(None)).run() == s.sweep("vertex_faces", s.vertices())
+    EDITS[edit](s)
     with pytest.raises(hem.MeshError, match="was edited"):
         sweep.run()
+    faces = s.faces()
+    s.remove_face(int(faces[1]))
     with pytest.raises(hem.MeshError, match="no such face"):
-        s.sweep("face_vertices", sweep.handles)
+        s.sweep("face_vertices", faces)
 
 
 def test_operations_are_prepared_by_their_first_handle_or_all_three(name):
