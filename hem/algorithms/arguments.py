@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
+from numbers import Real
 from typing import Any
 
 import numpy as np
 
+from hem.algorithms.parts import side_keys
 from hem.contract import Structure
-from hem.errors import MeshError
+from hem.errors import MeshError, TopologyError
 
 
 def require_mesh(s: Any, called: str) -> None:
@@ -35,7 +38,25 @@ def require_count(called: str, name: str, value: Any, least: int = 0) -> int:
 
 
 def require_length(called: str, name: str, value: Any) -> float:
-    """The value, if it is a number from 0 on, infinity included; else MeshError."""
-    if isinstance(value, int | float | np.number) and float(value) >= 0:
-        return float(value)
-    raise MeshError(f"{called} takes {name} as a length from 0 on, not {value!r}")
+    """The value, if it is a real number from 0 on, infinity included; else MeshError."""
+    if isinstance(value, Real) and not isinstance(value, bool):
+        with suppress(OverflowError):  # an integer that is no float any more
+            if float(value) >= 0:
+                return float(value)
+    raise MeshError(f"{called} takes {name} as a length from 0 on, not {value!r:.60}")
+
+
+def require_surface(s: Structure, called: str) -> None:
+    """Raise TopologyError where some splits, flips or collapses would be refused."""
+    keys, faces = side_keys(s)
+    crowded = keys[faces > 2]
+    if len(crowded):
+        edges = np.stack([crowded >> 32, crowded & 0xFFFFFFFF], axis=1)
+        raise TopologyError(f"cannot {called}: edges lie in more than two faces", edges=edges)
+    if len(s.face_faces().values) < 2 * (faces == 2).sum():  # each neighbor is told once
+        corners = np.sort(s.triangles(), axis=1)
+        _, first, count = np.unique(corners, axis=0, return_index=True, return_counts=True)
+        raise TopologyError(
+            f"cannot {called}: faces have the same three corners; remove one of each pair",
+            faces=s.faces()[first[count > 1]],
+        )

@@ -20,7 +20,7 @@ from hem.algorithms.arguments import require_mesh
 from hem.algorithms.parts import NO_WORK, Work, change, doing, finding_edge
 from hem.arrays import Array
 from hem.authoring import NEEDS_ROOM, Kernel, Kernels, kernel
-from hem.contract import Structure
+from hem.contract import Structure, arguments
 
 
 class Plan(NamedTuple):
@@ -63,7 +63,7 @@ def hitting(k: Kernels, operations: Kernels) -> Kernel:
                     plan.found[0] += vertex_faces(m, corners[i], out)
             v, a = plan.middle[0], min(corners[0], corners[1], corners[2])
             for j in range(3):
-                point[j] = (coordinate(m, v, j) + coordinate(m, a, j)) / 2
+                point[j] = 0.5 * coordinate(m, v, j) + 0.5 * coordinate(m, a, j)
             if split_edge(m, edge_between(m, v, a, plan.work), -1, plan.work) == NEEDS_ROOM:
                 return NEEDS_ROOM
             plan.found[0] += face_faces(m, f, out)
@@ -82,8 +82,8 @@ def impacts(s: Structure, faces: Array | list[int]) -> int:
     changes, and for polygons.
     """
     require_mesh(s, "impacts")
-    s.face_vertices(faces)  # refuses what is no face
-    hit = np.asarray(faces, np.int64)
+    hit = arguments.handles("impacts", faces)
+    s.face_vertices(hit)  # refuses what is no face
     state = np.zeros(3, np.int64), np.zeros(1, np.int64), np.full(1, -1), np.zeros(1, np.int64)
     plan = Plan(hit, *state, NO_WORK)
     change(s, "impacts", hitting, plan, 2 * len(hit))

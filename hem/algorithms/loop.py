@@ -20,10 +20,19 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from hem.algorithms.parts import NO_WORK, Work, change, doing, finding_edge, move, side_keys
+from hem.algorithms.parts import (
+    NO_WORK,
+    Work,
+    change,
+    doing,
+    finding_edge,
+    move,
+    side_keys,
+    turning,
+)
 from hem.algorithms.smoothing import averages
 from hem.arrays import Array, Points
-from hem.authoring import FACE_END, LEFT, NEEDS_ROOM, RIGHT, C, D, Kernel, Kernels, kernel
+from hem.authoring import LEFT, NEEDS_ROOM, RIGHT, C, D, Kernel, Kernels, kernel, part
 from hem.contract import Structure
 
 BORDER = 0.25
@@ -81,31 +90,17 @@ def splitting(k: Kernels, operations: Kernels) -> Kernel:
     return split_all
 
 
-def turning(k: Kernels, operations: Kernels) -> Kernel:
-    """Make ``turn(m, plan) -> 0``: flip every edge from a new vertex to an old one across a face.
+@part
+def is_turned(plan: Plan, a: int, b: int) -> bool:
+    """Whether an edge runs from a new vertex to an old one across a face.
 
     The first split of a face leaves one. An old vertex and a new one are joined along an old edge,
     too, but then the old one is an end of it.
     """
-    face_exists, face_edges = k["face_exists"], k["face_edges"]
-    edge_vertices, flip_edge = k["edge_vertices"], doing(operations["flip_edge"])
-
-    @kernel
-    def turn(m: Any, plan: Plan) -> int:
-        out, at, old = plan.work.out, plan.work.at, plan.old[0]
-        while plan.next[0] < m.counts[FACE_END]:
-            f = plan.next[0]
-            for i in range(face_edges(m, f, out) if face_exists(m, f) else 0):
-                edge_vertices(m, out[i], at)
-                a, new = at[0], at[1] - old
-                if at[0] < old <= at[1] and plan.edges[new, 0] != a and plan.edges[new, 1] != a:
-                    if flip_edge(m, out[i], -1, plan.work) == NEEDS_ROOM:
-                        return NEEDS_ROOM
-                    break
-            plan.next[0] += 1
-        return 0
-
-    return turn
+    old = plan.old[0]
+    if not a < old <= b:
+        return False
+    return bool(plan.edges[b - old, 0] != a and plan.edges[b - old, 1] != a)
 
 
 def loop(s: Structure) -> None:
@@ -124,5 +119,5 @@ def loop(s: Structure) -> None:
 
     change(s, "subdivide", placing_on_edges, plan())
     change(s, "subdivide", splitting, plan(), len(keys))
-    change(s, "subdivide", turning, plan())
+    change(s, "subdivide", turning(is_turned), plan())
     move(s, "subdivide", vertices, places)

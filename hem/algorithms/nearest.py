@@ -50,13 +50,15 @@ def _on_triangle(corners: Floats, p: Floats) -> Floats:
         return b
     if d6 >= 0 and d5 <= d6:
         return c
-    if vc <= 0 <= d1 and d3 <= 0:
+    # Where two corners coincide their edge has no length to divide by; then another one is taken.
+    if vc <= 0 <= d1 and d3 <= 0 and d3 < d1:
         return a + ab * (d1 / (d1 - d3))
-    if vb <= 0 <= d2 and d6 <= 0:
+    if vb <= 0 <= d2 and d6 <= 0 and d6 < d2:
         return a + ac * (d2 / (d2 - d6))
-    if va <= 0 <= d4 - d3 and d5 >= d6:
+    if va <= 0 <= d4 - d3 and d5 >= d6 and (d4 - d3) + (d5 - d6) > 0:
         return b + (c - b) * ((d4 - d3) / ((d4 - d3) + (d5 - d6)))
-    return a + ab * (vb / (va + vb + vc)) + ac * (vc / (va + vb + vc))
+    total = va + vb + vc
+    return a + ab * (vb / total) + ac * (vc / total) if total > 0 else a
 
 
 @njit(cache=True)

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from hem.algorithms.arguments import require_mesh
-from hem.algorithms.parts import locating
+from hem.algorithms.parts import cross, locating, unit
 from hem.arrays import Array, Floats, Points
 from hem.authoring import Kernel, Kernels, kernel
 from hem.contract import Structure
@@ -38,8 +38,7 @@ def face_normal(k: Kernels) -> Kernel:
         elif c < a and c < b:
             a, b, c = c, a, b
         (ax, ay, az), (bx, by, bz), (cx, cy, cz) = where(m, a), where(m, b), where(m, c)
-        bx, by, bz, cx, cy, cz = bx - ax, by - ay, bz - az, cx - ax, cy - ay, cz - az
-        return by * cz - bz * cy, bz * cx - bx * cz, bx * cy - by * cx
+        return cross((bx - ax, by - ay, bz - az), (cx - ax, cy - ay, cz - az))
 
     return normal
 
@@ -60,10 +59,7 @@ def normals(k: Kernels, operations: Kernels) -> Kernel:
                 found[v, 2] += z
         for i in range(len(plan.vertices)):
             v = plan.vertices[i]
-            size = np.sqrt(found[v, 0] ** 2 + found[v, 1] ** 2 + found[v, 2] ** 2)
-            if size > 0:
-                for j in range(3):
-                    found[v, j] /= size
+            found[v, 0], found[v, 1], found[v, 2] = unit(found[v, 0], found[v, 1], found[v, 2])
         return 0
 
     return find_normals

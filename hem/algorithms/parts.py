@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from hem.arrays import Array
-from hem.authoring import NEEDS_ROOM, Kernel, Kernels, Refusal, kernel, part
+from hem.authoring import FACE_END, NEEDS_ROOM, Kernel, Kernels, Refusal, kernel, part
 from hem.contract import Algorithm, Structure
 from hem.edit import CHANGED, VERTEX
 from hem.errors import MeshError
@@ -59,44 +59,50 @@ def change(s: Structure, kind: str, make: Algorithm, plan: Any, splits: int = 0)
     """Run an algorithm that operates, in steps, until it is done -> its result. One edit.
 
     ``plan.work`` is put in. The algorithm answers ``NEEDS_ROOM`` as soon as an operation does, and
-    goes on by its plan when it is called again. There is room for so many ``splits``. Where corners
-    have attributes every operation is an edit of its own, so that no seam is torn. An interrupt
-    leaves what was done so far, and told.
+    goes on by its plan when it is called again. There is room for so many ``splits``; MeshError if
+    it wants more. Every operation is an edit of its own where ``told_one_by_one`` says so. An
+    interrupt leaves what was done so far, and told.
     """
-    one_by_one = any(it.element == "corner" for it in s.attributes())
     operations = min(splits or STEP, s.n_faces + 64, STEP)
     logs: list[Array] = []  # copies, as the log is written over
-    result, steps = NEEDS_ROOM, 0
+    result, steps, idle = NEEDS_ROOM, 0, 0
     out, log = s.scratch(splits, operations)
     try:
         while result == NEEDS_ROOM:
-            before = None if s.compiled else s.snapshot()
+            if idle == 2:  # more scratch was no help
+                raise MeshError(f"{kind}: there is room for {splits} splits, and more are done")
             if steps == AT_ONCE:
                 steps, (out, log) = 0, s.scratch(0, operations)
-            log[0] = 0
-            args, point, at = np.full(3, -1), np.zeros(3, np.float32), np.zeros(6, np.int64)
-            left = np.array([1 if one_by_one else operations])
-            own: tuple[Any, ...] = args, point, at, out, log, left
-            # True and True are 2 to Python's own numbers, as they are to compiled code.
-            work = Work(*(it if s.compiled else memoryview(it) for it in own))
             try:
-                result = s.run(make, plan._replace(work=work))
-            except BaseException:
-                if before is not None:  # Python may stop in the midst of an operation
-                    log[0] = 0
-                    s.restore(before)
-                raise
+                result = step(s, make, plan, out, log, 1 if s.told_one_by_one else operations)
             finally:
                 if s.followed:
                     logs.append(log[1 : log[0] + 1].copy())
-            steps += 1
-            if not log[0]:  # there was not enough for one operation
+            steps, idle = steps + 1, 0 if log[0] else idle + 1
+            if idle:  # there was not enough for one operation
                 operations, steps = 2 * operations, AT_ONCE
-            if one_by_one:
+            if s.told_one_by_one:
                 tell(s, kind, logs)
     finally:
         tell(s, kind, logs)
     return result
+
+
+def step(s: Structure, make: Algorithm, plan: Any, out: Any, log: Array, left: int) -> int:
+    """Run an algorithm for so many operations -> its result. What is interrupted is not done."""
+    before = None if s.compiled else s.snapshot()
+    args, point, at = np.full(3, -1), np.zeros(3, np.float32), np.zeros(6, np.int64)
+    own: tuple[Any, ...] = args, point, at, out, log, np.array([left])
+    # True and True are 2 to Python's own numbers, as they are to compiled code.
+    work = Work(*(it if s.compiled else memoryview(it) for it in own))
+    log[0] = 0
+    try:
+        return s.run(make, plan._replace(work=work))
+    except BaseException:
+        if before is not None:  # Python may stop in the midst of an operation
+            log[0] = 0
+            s.restore(before)
+        raise
 
 
 def tell(s: Structure, kind: str, logs: list[Array]) -> None:
@@ -117,6 +123,19 @@ def locating(coordinate: Kernel) -> Kernel:
         return np.float64(x), np.float64(y), np.float64(z)
 
     return where
+
+
+@kernel
+def cross(u: Any, v: Any) -> tuple[float, float, float]:
+    """The vector product."""
+    return u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]
+
+
+@kernel
+def unit(x: float, y: float, z: float) -> tuple[float, float, float]:
+    """The vector of length 1 in that direction; 0 stays 0."""
+    size = np.sqrt(x * x + y * y + z * z)
+    return (x / size, y / size, z / size) if size > 0 else (0.0, 0.0, 0.0)
 
 
 @kernel
@@ -149,6 +168,37 @@ def finding_edge(vertex_edges: Kernel, edge_vertices: Kernel) -> Kernel:
         return -1
 
     return edge_between
+
+
+@cache
+def turning(is_turned: Kernel) -> Algorithm:
+    """Make an algorithm that flips in every face the first edge that ``is_turned(plan, a, b)``.
+
+    The plan has ``next``: (1,) int64, the next face. One that was reached from the other side of
+    its edge has none to turn any more.
+    """
+
+    def turning_in_faces(k: Kernels, operations: Kernels) -> Kernel:
+        face_exists, face_edges = k["face_exists"], k["face_edges"]
+        edge_vertices, flip_edge = k["edge_vertices"], doing(operations["flip_edge"])
+
+        @kernel
+        def turn(m: Any, plan: Any) -> int:
+            out, at = plan.work.out, plan.work.at
+            while plan.next[0] < m.counts[FACE_END]:
+                f = plan.next[0]
+                for i in range(face_edges(m, f, out) if face_exists(m, f) else 0):
+                    edge_vertices(m, out[i], at)
+                    if is_turned(plan, at[0], at[1]):
+                        if flip_edge(m, out[i], -1, plan.work) == NEEDS_ROOM:
+                            return NEEDS_ROOM
+                        break
+                plan.next[0] += 1
+            return 0
+
+        return turn
+
+    return turning_in_faces
 
 
 def side_keys(s: Structure) -> tuple[Array, Array]:

@@ -11,6 +11,7 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
+from hem.algorithms.parts import cross, unit
 from hem.arrays import Array, Floats
 from hem.authoring import kernel
 
@@ -18,7 +19,6 @@ WIDTH = 11
 
 TOWARD_MIDDLE = 1e-3
 """How much the middle of an edge counts, against the planes: it decides where they do not."""
-
 
 BORDER_WEIGHT = 1.0
 """How much the planes that stand upright on the border count: as a square on the edge."""
@@ -32,19 +32,6 @@ def add_plane(row: Array, normal: tuple[float, ...], point: Array, weight: float
     parts = x * x, x * y, x * z, y * y, y * z, z * z, x * d, y * d, z * d, d * d, 1.0
     for i in range(WIDTH):
         row[i] += weight * parts[i]
-
-
-@kernel
-def cross(u: Array, v: Array) -> tuple[float, float, float]:
-    """The vector product."""
-    return u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]
-
-
-@kernel
-def unit(x: float, y: float, z: float) -> tuple[float, float, float]:
-    """The vector of length 1 in that direction; 0 stays 0."""
-    size = np.sqrt(x * x + y * y + z * z)
-    return (x / size, y / size, z / size) if size > 0 else (0.0, 0.0, 0.0)
 
 
 @njit(cache=True)

@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from hem.algorithms.arguments import require_count, require_length, require_mesh
+from hem.algorithms.arguments import require_count, require_length, require_mesh, require_surface
 from hem.algorithms.collapsing import SHORTEST_TO_PLANES, simplifying
 from hem.algorithms.loop import Plan as Splits
 from hem.algorithms.loop import splitting
@@ -24,6 +24,7 @@ from hem.algorithms.parts import (
     NO_WORK,
     Work,
     change,
+    cross,
     doing,
     finding_edge,
     from_smallest,
@@ -39,6 +40,9 @@ from hem.errors import MeshError
 
 LONGEST, SHORTEST = 4 / 3, 4 / 5
 """Of the length asked for: what is longer is split, what is shorter is collapsed."""
+
+LEAST_STEPS = 8
+"""Of float32, that an edge is long which is split: shorter ones have no middle to speak of."""
 
 LEAST_COSINE = 0.7
 """How far the normal of a face may turn."""
@@ -57,8 +61,7 @@ class Flips(NamedTuple):
 @kernel
 def facing(xyz: Floats, a: int, b: int, c: int) -> tuple[float, float, float]:
     """The normal of a triangle, as long as twice its area."""
-    u, v = xyz[b] - xyz[a], xyz[c] - xyz[a]
-    return u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]
+    return cross(xyz[b] - xyz[a], xyz[c] - xyz[a])
 
 
 @kernel
@@ -107,9 +110,11 @@ def remesh(s: Structure, length: float | None = None, iterations: int = 10) -> N
     After ten iterations 95 of 100 edges are between 4/5 and 4/3 of it, fewer where what is thin or
     sharp would be lost. Handles of what is left are kept, and ``compact`` renumbers. Several edits
     per iteration. Cost per iteration: O(n_t log n_t) for bounded valence. MeshError for what is no
-    length or number, and for polygons. Source: Botsch & Kobbelt (2004).
+    length or number, for a length that takes more faces than there are handles, and for polygons;
+    TopologyError as ``subdivide``. Source: Botsch & Kobbelt (2004).
     """
     require_mesh(s, "remesh")
+    require_surface(s, "remesh")
     iterations = require_count("remesh", "iterations", iterations)
     ends = s.points[s.edge_array()].astype(np.float64)
     lengths = np.linalg.norm(ends[:, 0] - ends[:, 1], axis=1)
@@ -118,6 +123,9 @@ def remesh(s: Structure, length: float | None = None, iterations: int = 10) -> N
         wanted = require_length("remesh", "length", length)
         if not 0 < wanted < np.inf:
             raise MeshError(f"remesh takes length as a positive number, not {length!r}")
+        area, along = float(s.to_triangles().face_areas().sum()), float(lengths.sum())
+        if area / wanted / wanted + along / wanted > np.iinfo(np.int32).max:
+            raise MeshError(f"remesh takes a longer length: {length!r} makes too many faces")
     surface = Surface(s.points, from_smallest(s.triangles()))
     for _ in range(iterations):
         split_longer(s, LONGEST * wanted)
@@ -129,14 +137,16 @@ def remesh(s: Structure, length: float | None = None, iterations: int = 10) -> N
 
 
 def split_longer(s: Structure, length: float) -> None:
-    """Split all edges longer than that in the middle, until there are none."""
-    while True:
+    """Split all edges longer than that in the middle, until none is left that has one."""
+    before = -1
+    while before < s.n_vertices:
+        before = s.n_vertices
         keys, _ = side_keys(s)
         ends = np.stack([keys >> 32, keys & 0xFFFFFFFF], axis=1)
         places = s.points[ends].astype(np.float64)
-        long = np.linalg.norm(places[:, 0] - places[:, 1], axis=1) > length
-        if not long.any():
-            return
+        least = LEAST_STEPS * np.spacing(np.abs(s.points[ends]).max(axis=(1, 2)))
+        longest = np.maximum(length, least)
+        long = np.linalg.norm(places[:, 0] - places[:, 1], axis=1) > longest
         points = places[long].mean(axis=1).astype(np.float32)
         start = np.array([len(s.points)]), np.zeros(1, np.int64), NO_WORK
         change(s, "remesh", splitting, Splits(ends[long], points, *start), len(points))

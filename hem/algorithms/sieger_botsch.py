@@ -6,15 +6,17 @@ Source: Design, Implementation, and Evaluation of the Surface_mesh Data Structur
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from hem.algorithms.arguments import require_mesh
+from hem.algorithms.arguments import require_mesh, require_surface
 from hem.algorithms.normals import face_normal
-from hem.algorithms.parts import change, doing, move, plus
+from hem.algorithms.parts import change, doing, move, plus, unit
 from hem.algorithms.smoothing import smooth
-from hem.algorithms.sqrt3 import Plan, split_all_faces, sqrt3
+from hem.algorithms.sqrt3 import Plan, split_all_faces
+from hem.algorithms.subdivision import subdivide
 from hem.arrays import Array, Floats, Points
 from hem.authoring import NEEDS_ROOM, VERTEX_END, Kernel, Kernels, kernel
 from hem.contract import Structure
@@ -125,10 +127,8 @@ def adding_around(k: Kernels, operations: Kernels) -> Kernel:
                 x, x_rest = plus(x, x_rest, of_faces[f, 0])
                 y, y_rest = plus(y, y_rest, of_faces[f, 1])
                 z, z_rest = plus(z, z_rest, of_faces[f, 2])
-            x, y, z = x + x_rest, y + y_rest, z + z_rest
-            size = np.sqrt(x * x + y * y + z * z)
-            if size > 0:
-                found[v, 0], found[v, 1], found[v, 2] = x / size, y / size, z / size
+            x, y, z = unit(x + x_rest, y + y_rest, z + z_rest)
+            found[v, 0], found[v, 1], found[v, 2] = x, y, z
         return 0
 
     return add
@@ -173,9 +173,10 @@ def split_and_collapse(s: Structure) -> None:
     """Put a vertex into every face, and collapse each into a corner again; then ``compact``.
 
     The mesh is what it was, but handles may have changed. Three edits. Cost: a split and a collapse
-    per face. MeshError for polygons.
+    per face. MeshError for polygons; TopologyError as ``subdivide``.
     """
     require_mesh(s, "split_and_collapse")
+    require_surface(s, "split_and_collapse")
     change(s, "split_and_collapse", collapsing, split_all_faces(s, "split_and_collapse"))
     s.compact()
 
@@ -185,7 +186,7 @@ SIX: dict[str, Callable[[Structure], Any]] = {
     "barycenter": center,
     "normals": normals_around,
     "smoothing": smooth,
-    "subdivision": sqrt3,
+    "subdivision": partial(subdivide, scheme="sqrt3"),
     "collapse": split_and_collapse,
 }
 """By the names that they have there."""

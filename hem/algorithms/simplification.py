@@ -82,19 +82,22 @@ def collapsible(
     on_border = np.zeros(n, np.bool_)
     on_border[borders[:, :2]] = True
     alive = s.points[s.vertices()].astype(np.float64)
-    middle = (alive.min(axis=0, initial=0) + alive.max(axis=0, initial=0)) / 2
+    middle = (alive.min(axis=0) + alive.max(axis=0)) / 2 if len(alive) else np.zeros(3)
     xyz = s.points - middle
+    needs_planes = measure != SHORTEST_EDGE
+    with np.errstate(over="ignore"):  # what is infinite squared bounds nothing
+        bounds = np.square([[error], [longest]])
     return Plan(
         most=np.array(most),
-        error=np.array([error**2]),
-        longest=np.array([longest**2]),
+        error=bounds[0],
+        longest=bounds[1],
         cosine=np.array([cosine]),
         measure=np.array([measure]),
         edges=keys,
         next=np.zeros(1, np.int64),
         middle=middle,
         xyz=xyz,
-        quadric=quadrics(xyz, rows, borders),
+        quadric=quadrics(xyz, rows, borders) if needs_planes else np.zeros((n, WIDTH)),
         on_border=on_border,
         version=np.zeros(n, np.int64),
         target=np.zeros(3),

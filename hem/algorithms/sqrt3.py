@@ -18,10 +18,10 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from hem.algorithms.arguments import require_mesh
-from hem.algorithms.parts import NO_WORK, Work, change, doing, move, plus
+from hem.algorithms.parts import NO_WORK, Work, change, doing, move, plus, turning
 from hem.algorithms.smoothing import averages
 from hem.arrays import Array
-from hem.authoring import FACE_END, NEEDS_ROOM, Kernel, Kernels, kernel
+from hem.authoring import NEEDS_ROOM, Kernel, Kernels, kernel, part
 from hem.contract import Structure
 
 
@@ -58,29 +58,10 @@ def splitting(k: Kernels, operations: Kernels) -> Kernel:
     return split_all
 
 
-def turning(k: Kernels, operations: Kernels) -> Kernel:
-    """Make ``turn(m, plan) -> 0``: flip every edge between two old vertices, but for the border.
-
-    Each new face has one; a face that was reached from the other side has none any more.
-    """
-    face_exists, face_edges = k["face_exists"], k["face_edges"]
-    edge_vertices, flip_edge = k["edge_vertices"], doing(operations["flip_edge"])
-
-    @kernel
-    def turn(m: Any, plan: Plan) -> int:
-        out, at, old = plan.work.out, plan.work.at, plan.old[0]
-        while plan.next[0] < m.counts[FACE_END]:
-            f = plan.next[0]
-            for i in range(face_edges(m, f, out) if face_exists(m, f) else 0):
-                edge_vertices(m, out[i], at)
-                if at[0] < old and at[1] < old:
-                    if flip_edge(m, out[i], -1, plan.work) == NEEDS_ROOM:
-                        return NEEDS_ROOM
-                    break
-            plan.next[0] += 1
-        return 0
-
-    return turn
+@part
+def is_turned(plan: Plan, a: int, b: int) -> bool:
+    """Whether an edge joins two old vertices. Each new face has one; the border is not flipped."""
+    return bool(a < plan.old[0] and b < plan.old[0])
 
 
 def split_all_faces(s: Structure, kind: str) -> Plan:
@@ -95,5 +76,5 @@ def sqrt3(s: Structure) -> None:
     require_mesh(s, "subdivide")
     places = averages(s, lambda n: (4 - 2 * np.cos(2 * np.pi / n)) / 9)
     vertices = s.vertices()
-    change(s, "subdivide", turning, split_all_faces(s, "subdivide"))
+    change(s, "subdivide", turning(is_turned), split_all_faces(s, "subdivide"))
     move(s, "subdivide", vertices, places)

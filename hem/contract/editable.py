@@ -179,8 +179,7 @@ class Editable(Algorithms, abstract=True):
                 f"collapse_edges takes one vertex to keep per edge, not {len(ends)} "
                 f"for {len(handles)}"
             )
-        if any(it.element in ("corner", "half_edge") for it in self.attributes()):
-            # A batch does not tell what came where in between, and a seam must not be torn.
+        if self.told_one_by_one:
             return np.array([self._collapsed(e, v) for e, v in zip(handles, ends, strict=True)])
         results, log = self._run(
             "collapse_edge", arguments.rows(handles, ends), arguments.NO_POINT, PERSIST

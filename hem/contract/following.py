@@ -98,6 +98,14 @@ class Following(Surveying, abstract=True):
         """All there are, in the order they were made."""
         return list(self._attributes.values())
 
+    @property
+    def told_one_by_one(self) -> bool:
+        """Whether every operation is an edit of its own, as corners or half-edges have values.
+
+        A batch does not tell what came where in between, and a seam must not be torn.
+        """
+        return any(it.element in ("corner", "half_edge") for it in self.attributes())
+
     def remove_attribute(self, attribute: Attribute) -> None:
         """Have an attribute follow no longer. Raises MeshError if it is not of this mesh."""
         key = attribute.element, attribute.name

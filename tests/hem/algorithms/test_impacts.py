@@ -31,6 +31,15 @@ def test_impacts_are_their_single_operations(name: str, mesh: str) -> None:
     assert np.allclose(one.points, many.points, atol=1e-6, equal_nan=True)
 
 
+def test_coordinates_may_be_as_large_as_numbers_are() -> None:
+    mesh = MESHES["torus"]()
+    points = mesh.points * np.float32(3.2e38 / np.abs(mesh.points).max())
+    s = structures.build("half_edge", hem.TriangleMesh(points, mesh.triangles))
+    faces = s.faces()
+    impacts(s, faces)
+    assert s.n_vertices == len(points) + 2 * len(faces)
+
+
 def test_what_is_no_face_is_refused_before_anything_changes() -> None:
     s = structures.build("half_edge", MESHES["torus"]())
     before = s.copy()

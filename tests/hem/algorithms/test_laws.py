@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -11,7 +12,9 @@ import pytest
 import hem
 import structures
 from hem import algorithms
-from hem.contract import Structure
+from hem.algorithms.loop import Plan, splitting
+from hem.algorithms.parts import NO_WORK, change
+from hem.contract import Navigable, Structure
 from tests.hem.algorithms.meshes import MESHES, used
 
 ALGORITHMS: dict[str, Callable[[Structure], Any]] = {
@@ -74,15 +77,54 @@ def test_a_copy_is_changed_and_the_original_is_not(algorithm: str, name: str) ->
     assert s.same_as(before)
 
 
-@pytest.mark.parametrize("algorithm", CHANGING)
-@pytest.mark.parametrize("name", ["half_edge", "half_edge_objects"])
-def test_corners_keep_the_values_of_their_side_of_a_seam(algorithm: str, name: str) -> None:
-    """Every face has a value of its own at all its corners, which no operation may mix up."""
-    s = structures.build(name, MESHES["grid"]())
-    side = s.corner_attribute("side", np.float64)
-    side[s.faces()] = 7.0
-    ALGORITHMS[algorithm](s)
-    assert np.allclose(side[s.faces()], 7)
+def follow(edit: hem.Edit, s: Structure, one: Structure) -> None:
+    """Do the single operation that an edit of s tells of to another structure."""
+
+    def edge_between(a: int, b: int) -> int:
+        edge = one.find_edge(a, b)
+        assert edge is not None
+        return edge
+
+    if edit.remapping is not None:
+        one.compact()
+        return
+    changed, removed = edit.changed_faces, edit.removed_vertices.tolist()
+    for v, parents in zip(edit.created_vertices.tolist(), edit.vertex_parents, strict=True):
+        if len(parents) == 3:
+            assert one.split_face(int(edit.face_parents[0]), s.points[v]).vertex == v
+        else:
+            assert one.split_edge(edge_between(*parents.tolist()), s.points[v]).vertex == v
+    for v in removed:
+        new = np.setdiff1d(s.face_vertices(changed).values, one.face_vertices(changed).values)
+        (left,) = (new if len(new) else edit.changed_vertices).tolist()
+        one.collapse_edge(edge_between(v, left), keep=left)
+    if len(changed) and not removed and not len(edit.created_vertices):
+        left, right = one.face_vertices(changed)
+        one.flip_edge(edge_between(*np.intersect1d(left, right).tolist()))
+    moved = edit.changed_vertices
+    one.move_vertices(moved, s.points[moved])
+
+
+@pytest.mark.parametrize(("name", "element", "algorithm"), [
+    *(("half_edge", "corner", it) for it in CHANGING),
+    *(("half_edge", "half_edge", it) for it in ("quadrics", "shortest edge", "impacts")),
+    ("half_edge_objects", "corner", "quadrics"),
+])  # fmt: skip
+def test_values_at_a_seam_are_those_that_single_operations_give(
+    algorithm: str, element: str, name: str
+) -> None:
+    many, one = (structures.build(name, MESHES["grid"]()) for _ in "12")
+    values = []
+    for s in (many, one):
+        values.append(getattr(s, f"{element}_attribute")("value", np.int64))
+        assert isinstance(s, Navigable)
+        handles = s.faces() if element == "corner" else s.half_edges()
+        size = values[-1][handles].size
+        values[-1][handles] = np.random.default_rng(5).permutation(size)
+    many.subscribe(lambda edit: follow(edit, many, one))
+    ALGORITHMS[algorithm](many)
+    assert np.array_equal(many.triangles(), one.triangles())
+    assert np.array_equal(values[0].values, values[1].values)
 
 
 class Stop(BaseException):
@@ -108,6 +150,40 @@ def test_an_interrupt_leaves_a_whole_mesh_that_works(algorithm: str, name: str) 
     s.validate()
 
 
+@pytest.mark.parametrize("algorithm", ["quadrics", "remesh"])
+def test_an_interrupt_in_the_midst_of_an_operation_leaves_what_was_told(algorithm: str) -> None:
+    """Python stops anywhere: here where the first vertex is moved, or the tenth."""
+    for nth in (1, 10):
+        s = structures.build("half_edge_objects", MESHES["torus"]())
+        render, moves = hem.RenderMesh(s), []
+
+        def stop(vertex: Any, moves: list[Any] = moves, nth: int = nth) -> None:
+            moves.append(vertex)
+            if len(moves) == nth:
+                raise Stop
+
+        for vertex in s.records.vertices.items:
+            vertex.subscribe(stop)
+        with pytest.raises(Stop):
+            ALGORITHMS[algorithm](s)
+        s.validate()
+        afresh = hem.RenderMesh(s)
+        assert np.array_equal(render.points, afresh.points)
+        assert np.array_equal(render.indices, afresh.indices)
+        ALGORITHMS[algorithm](s)
+        s.validate()
+
+
+def test_an_algorithm_that_needs_more_room_than_it_says_is_ended() -> None:
+    s = structures.build("half_edge", MESHES["torus"]())
+    ends = np.sort(s.edge_array(), axis=1).astype(np.int64)
+    points = np.zeros((len(ends), 3), np.float32)
+    start = np.array([len(s.points)]), np.zeros(1, np.int64), NO_WORK
+    with pytest.raises(hem.MeshError, match="room for 1 split"):
+        change(s, "split", splitting, Plan(ends, points, *start), 1)
+    s.validate()
+
+
 @pytest.mark.parametrize("call", [
     lambda s: algorithms.smooth(s, -1),
     lambda s: algorithms.smooth(s, 1.5),
@@ -124,6 +200,12 @@ def test_an_interrupt_leaves_a_whole_mesh_that_works(algorithm: str, name: str) 
     lambda s: algorithms.impacts(s, [0, 1, 200]),
     lambda s: algorithms.impacts(s, [0.5]),
     lambda s: algorithms.impacts(s, [-1]),
+    lambda s: algorithms.impacts(s, 3),
+    lambda s: algorithms.remesh(s, 1e-200),
+    lambda s: algorithms.remesh(s, 10**400),
+    lambda s: algorithms.remesh(s, True),
+    lambda s: algorithms.simplify(s, error=10**400),
+    lambda s: algorithms.simplify(s, error=1 + 0j),
     lambda s: algorithms.simplify(s, vertices=-1),
     lambda s: algorithms.simplify(s, faces=10.0),
     lambda s: algorithms.simplify(s, error=float("nan")),
@@ -150,10 +232,28 @@ def test_polygons_and_what_is_no_structure_are_refused(algorithm: str) -> None:
         ALGORITHMS[algorithm](MESHES["torus"]())  # type: ignore[arg-type]
 
 
+EDITING = {
+    **{it: partial(algorithms.subdivide, scheme=it) for it in algorithms.SCHEMES},
+    "sqrt3 of the six": algorithms.SIX["subdivision"],
+    "collapse": algorithms.split_and_collapse,
+    "remesh": algorithms.remesh,
+}
+
+
 @pytest.mark.parametrize("name", structures.NAMES)
-def test_two_faces_with_the_same_corners_cannot_be_subdivided(name: str) -> None:
+@pytest.mark.parametrize("algorithm", EDITING)
+def test_two_faces_with_the_same_corners_are_refused(algorithm: str, name: str) -> None:
     s = structures.build(name, hem.TriangleMesh(np.eye(3), [(0, 1, 2), (0, 2, 1)]))
-    for scheme in algorithms.SCHEMES:
-        with pytest.raises(hem.TopologyError, match="same three corners"):
-            algorithms.subdivide(s, scheme)
+    with pytest.raises(hem.TopologyError, match="same three corners"):
+        EDITING[algorithm](s)
     assert s.n_vertices == 3
+
+
+@pytest.mark.parametrize("algorithm", EDITING)
+def test_an_edge_in_three_faces_is_refused(algorithm: str) -> None:
+    points = [(0, 0, 0), (4, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1)]
+    mesh = hem.TriangleMesh(points, [(0, 1, 2), (1, 0, 3), (0, 1, 4)])
+    s = structures.build("indexed", mesh)
+    with pytest.raises(hem.TopologyError, match="more than two faces"):
+        EDITING[algorithm](s)
+    assert s.n_vertices == 5

@@ -8,6 +8,7 @@ import pytest
 import hem
 import structures
 from hem import algorithms
+from hem.algorithms.nearest import Surface
 from tests.hem.algorithms.test_passes import OPEN
 from tests.hem.algorithms.test_simplification import distances
 
@@ -78,3 +79,39 @@ def test_border_vertices_stay() -> None:
     algorithms.remesh(s, 1.5 * float(lengths(OPEN).mean()), iterations=3)
     assert np.array_equal(s.points[border], OPEN.points[border])
     assert s.is_border(border).all()
+
+
+def test_edges_that_have_no_middle_in_float32_stay() -> None:
+    """Of a plane so far away that coordinates along it come in steps of 2."""
+    x, y = (it.reshape(-1) for it in np.meshgrid(np.arange(5), np.arange(5)))
+    points = np.stack([2 * x + 2.0**24, 2 * y, 0 * x], axis=1)
+    first = (5 * y + x)[(x < 4) & (y < 4)]
+    corners = [first + i for i in (0, 1, 6)], [first + i for i in (0, 6, 5)]
+    mesh = hem.TriangleMesh(points, np.concatenate([np.stack(it, axis=1) for it in corners]))
+    mine = remeshed(mesh, length=1.0)
+    assert len(mine.points) < 100
+    assert np.isclose(mine.face_areas().sum(), 64)
+
+
+@pytest.mark.parametrize("turn", range(3))
+@pytest.mark.parametrize(("corners", "place", "expected"), [
+    ([(0, 0, 0), (0, 0, 0), (2, 0, 0)], (1, 1, 0), (1, 0, 0)),
+    ([(0, 0, 0), (1, 0, 0), (2, 0, 0)], (1.5, 1, 1), (1.5, 0, 0)),
+    ([(1, 2, 3), (1, 2, 3), (1, 2, 3)], (0, 1, 0), (1, 2, 3)),
+    ([(0, 0, 0), (3, 0, 0), (0, 3, 0)], (1, 1, 5), (1, 1, 0)),
+])  # fmt: skip
+def test_a_triangle_without_area_has_a_nearest_point_as_well(
+    corners: list[tuple[float, ...]],
+    place: tuple[float, ...],
+    expected: tuple[float, ...],
+    turn: int,
+) -> None:
+    surface = Surface(np.array(np.roll(corners, turn, axis=0)), np.array([[0, 1, 2]]))
+    assert np.allclose(surface.nearest(np.array([place], float)), [expected])
+
+
+def test_a_mesh_with_vertices_in_the_same_place_can_be_remeshed() -> None:
+    points = OPEN.points.copy()
+    points[OPEN.triangles[::50, 1]] = points[OPEN.triangles[::50, 0]]
+    mine = remeshed(hem.TriangleMesh(points, OPEN.triangles), iterations=2)
+    assert np.isfinite(mine.points).all()

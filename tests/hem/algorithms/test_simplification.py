@@ -8,6 +8,8 @@ import pytest
 import hem
 import structures
 from hem import algorithms
+from hem.algorithms.collapsing import QUADRICS
+from hem.algorithms.simplification import collapsible
 from hem.meshes.measures import normals
 from tests.hem.algorithms.meshes import dented
 
@@ -116,3 +118,15 @@ def test_the_quadric_error_bounds_how_far_a_sphere_is_left() -> None:
         assert abs(np.linalg.norm(mine.points, axis=1) - 1).max() < 10 * error + 1e-3
     assert counts == sorted(counts, reverse=True)
     assert counts[-1] < 300
+
+
+@pytest.mark.parametrize("error", [1e200, np.inf])
+def test_an_error_whose_square_is_infinite_bounds_nothing(error: float) -> None:
+    mesh = dented("torus", 100)
+    assert len(simplified(mesh, error=error).points) == len(simplified(mesh, vertices=0).points)
+
+
+def test_positions_are_seen_from_the_middle_of_the_bounding_box() -> None:
+    for mesh in (GRID, hem.TriangleMesh(GRID.points + np.float32(4096), GRID.triangles)):
+        plan = collapsible(structures.build("half_edge", mesh), QUADRICS, 0.7, np.inf)
+        assert np.allclose(plan.middle, np.mean(mesh.bounds, axis=0))

@@ -44,28 +44,27 @@ def test_old_vertices_go_where_their_mask_says(scheme: str, mesh: hem.TriangleMe
     assert np.allclose(s.points[: len(mesh.points)], expected, atol=1e-6)
 
 
-def loop_faces(mesh: hem.TriangleMesh) -> tuple[list[np.ndarray], set[tuple[float, ...]]]:
-    """The new points of Loop's masks by edge, and the faces as sets of rounded positions."""
+def points_on_edges(mesh: hem.TriangleMesh) -> dict[frozenset[int], np.ndarray]:
+    """By edge the new point of Loop's masks, (3,) float64."""
     edges: dict[frozenset[int], list[int]] = {}
     for a, b, c in mesh.triangles.tolist():
         for x, y, z in ((a, b, c), (b, c, a), (c, a, b)):
             edges.setdefault(frozenset((x, y)), []).append(z)
     points = mesh.points.astype(np.float64)
-    new = {
+    return {
         edge: 3 / 8 * points[list(edge)].sum(axis=0) + points[beside].sum(axis=0) / 8
         if len(beside) == 2
         else points[list(edge)].mean(axis=0)
         for edge, beside in edges.items()
     }
-    return new, edges
 
 
 @pytest.mark.parametrize("mesh", [CLOSED, OPEN], ids=["closed", "open"])
 def test_loop_makes_of_each_face_four_with_the_points_of_the_masks(mesh: hem.TriangleMesh) -> None:
     s = structures.build("half_edge", mesh)
     algorithms.subdivide(s, "loop")
-    new, edges = loop_faces(mesh)
-    numbered = {edge: len(mesh.points) + i for i, edge in enumerate(sorted(edges, key=sorted))}
+    new = points_on_edges(mesh)
+    numbered = {edge: len(mesh.points) + i for i, edge in enumerate(sorted(new, key=sorted))}
     expected = set()
     for a, b, c in mesh.triangles.tolist():
         ab, bc, ca = (numbered[frozenset(pair)] for pair in ((a, b), (b, c), (c, a)))
@@ -74,7 +73,7 @@ def test_loop_makes_of_each_face_four_with_the_points_of_the_masks(mesh: hem.Tri
     assert found == {tuple(np.roll(row, -int(np.argmin(row)))) for row in expected}
     for edge, v in numbered.items():
         assert np.allclose(s.points[v], new[edge], atol=1e-6)
-    assert s.n_edges == 2 * len(edges) + 3 * len(mesh.triangles)
+    assert s.n_edges == 2 * len(new) + 3 * len(mesh.triangles)
 
 
 def test_sqrt3_makes_a_face_for_each_corner_and_its_two_middles() -> None:
