@@ -54,7 +54,8 @@ def by_pymeshlab(mesh: hem.TriangleMesh, faces: int) -> hem.TriangleMesh:
 
 def by_fast_simplification(mesh: hem.TriangleMesh, faces: int) -> hem.TriangleMesh:
     other = pytest.importorskip("fast_simplification")
-    return hem.TriangleMesh(*other.simplify(mesh.points, mesh.triangles, target_count=faces))
+    arrays = mesh.points.copy(), mesh.triangles.astype(np.int32)  # it takes none that is read-only
+    return hem.TriangleMesh(*other.simplify(*arrays, target_count=faces))
 
 
 @pytest.mark.parametrize("rival", [by_pymeshlab, by_fast_simplification])
