@@ -115,7 +115,10 @@ class Editable(Algorithms, abstract=True):
         """Split every face at its centroid -> the new vertices. A face for every side. O(n_t)."""
         faces = self.faces()
         corners = self.face_vertices(faces)
-        sums = np.add.reduceat(self.points[corners.values], corners.offsets[:-1], 0, np.float64)
+        values = corners.values
+        if self.most_corners == 3:  # each structure has its own first corner, and sums are rounded
+            values = np.sort(values.reshape(-1, 3)).reshape(-1)
+        sums = np.add.reduceat(self.points[values], corners.offsets[:-1], 0, np.float64)
         centroids = sums / corners.counts[:, None]
         return self._all("split_all_faces", "split_face", faces, centroids, faces)
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from itertools import pairwise
+from itertools import pairwise, product
 
 import numpy as np
 import pytest
@@ -247,6 +247,16 @@ def test_subdividing_every_face_triples_the_faces_at_their_centroids(name):
     assert np.allclose(s.points[new], mesh.points[mesh.triangles].mean(axis=1), atol=1e-6)
     assert [len(ring) for ring in s.vertex_faces(new)] == [3] * 200
     s.validate()
+
+
+def test_the_centroid_of_a_face_depends_on_no_first_corner():
+    """1e20, -1e20 and 1 add up to 1 or to 0, by the order in which they are added."""
+    points, places = [(1e20, 0, 0), (-1e20, 1, 0), (1, 0, 1)], set()
+    for name, first in product(structures.NAMES, range(3)):
+        s = structures.build(name, hem.TriangleMesh(points, [np.roll(range(3), first)]))
+        (new,) = s.split_all_faces()
+        places.add(tuple(s.points[new].tolist()))
+    assert len(places) == 1
 
 
 @pytest.mark.parametrize("name", OF_ARRAYS)
