@@ -29,6 +29,7 @@ from experiments.harness import (
     Watch,
     in_random_order,
     memory,
+    own_mesh,
     steadiness,
 )
 from experiments.runs.store import CannotWriteError, CaseFile
@@ -78,7 +79,14 @@ def _cases(config: pytest.Config, experiment: Experiment, structure: str) -> lis
 
 
 def _preset(config: pytest.Config, structure: str) -> Preset:
-    return PRESETS[config.getoption("--preset")].of(structure)
+    return _extent(config).of(structure)
+
+
+@cache
+def _extent(config: pytest.Config) -> Preset:
+    preset, folder = PRESETS[config.getoption("--preset")], config.getoption("--run")
+    mesh = own_mesh.of_run(folder) if folder else None
+    return preset.on(*mesh) if mesh else preset
 
 
 @cache

@@ -33,6 +33,7 @@ if TYPE_CHECKING:  # what type checkers and editors see; the table below says it
     from hem.sources.files import load as load
     from hem.sources.files import load_polygons as load_polygons
     from hem.sources.files import save as save
+    from hem.sources.named import find_mesh as find_mesh
     from hem.sources.samples import SAMPLES as SAMPLES
     from hem.sources.samples import sample as sample
     from hem.sources.valence import valence_hubs as valence_hubs
@@ -53,6 +54,7 @@ _NAMES = {
     "hem.rendering": ("RenderMesh", "Upload", "mesh_from_render", "split_at_seams"),
     "hem.sources.families": ("FAMILIES", "generate"),
     "hem.sources.files": ("as_mesh", "load", "load_polygons", "save"),
+    "hem.sources.named": ("find_mesh",),
     "hem.sources.samples": ("SAMPLES", "sample"),
     "hem.sources.valence": ("valence_hubs", "valence_mesh"),
 }

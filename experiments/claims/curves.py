@@ -110,6 +110,12 @@ class Curves:
         curve = self.memory(structure, width)
         return curve.largest / float(curve.cases["vertices"].max())
 
+    @property
+    def faces_per_vertex(self) -> float:
+        """That of the largest mesh of the judged family."""
+        largest = self.cases[self.cases["family"] == self.judged_family].nlargest(1, "vertices")
+        return float((largest["faces"] / largest["vertices"]).max())
+
     def latencies(self, curve: Curve) -> Array:
         """(a, k): what each case may have waited for, beside it or in a part of its working set."""
         beside = curve.cases["latency"].to_numpy(float)

@@ -35,9 +35,22 @@ def _judge_bytes(of_run: Curves, claim: Claim) -> JudgedClaim:
     if np.isnan(found):
         outcome = Outcome.UNDETERMINED if claim.claims_something else Outcome.NO_CLAIM
         return JudgedClaim(claim, outcome, "?")
-    outcome = Outcome.CONSISTENT if Exactly(found) == claim.expects else Outcome.VIOLATED
-    outcome = outcome if claim.claims_something else Outcome.NO_CLAIM
-    return JudgedClaim(claim, outcome, f"{found:,.4g}", values=np.array([found]))
+    outcome, reason = _outcome_of_bytes(found, claim, of_run.faces_per_vertex)
+    return JudgedClaim(claim, outcome, f"{found:,.4g}", reason, values=np.array([found]))
+
+
+def _outcome_of_bytes(found: float, claim: Claim, faces_per_vertex: float) -> tuple[Outcome, str]:
+    """The outcome, and why. What is claimed is of two faces per vertex, as on a torus."""
+    if not claim.claims_something:
+        return Outcome.NO_CLAIM, ""
+    if Exactly(found) == claim.expects:
+        return Outcome.CONSISTENT, ""
+    if faces_per_vertex == 2:
+        return Outcome.VIOLATED, ""
+    if Exactly(round(found)) == claim.expects:
+        return Outcome.CONSISTENT, "To the byte."
+    few = f"The claim is of two faces per vertex, and this mesh has {faces_per_vertex:.4g}."
+    return Outcome.UNDETERMINED, few
 
 
 def _judge_growth(of_run: Curves, claim: Claim) -> JudgedClaim:

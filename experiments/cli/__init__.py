@@ -6,7 +6,7 @@ A command imports what it needs when it is run, so that help and mistakes are qu
 
 from importlib.metadata import version
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 try:
     import typer
@@ -17,7 +17,7 @@ except ModuleNotFoundError as error:  # the library alone was installed
 
 import hem
 from experiments.cli.check import baseline_app, check
-from experiments.cli.console import Commands, RunArgument, console, errors, run_folder
+from experiments.cli.console import MESH, Commands, Repair, RunArgument, console, errors, run_folder
 from experiments.cli.fracture import fracture
 from experiments.cli.history import history
 from experiments.cli.study import run_study
@@ -113,19 +113,13 @@ def meshes(
 
 @app.command()
 def info(
-    mesh: Annotated[str, Argument(help="A mesh file, or the name of a model (see hem meshes).")],
-    repair: Annotated[bool, Option("--repair", help="Repair what is not manifold first.")] = False,
+    mesh: Annotated[str, Argument(help=MESH)],
+    repair: Repair = False,
 ) -> None:
     """Say what a mesh consists of, and which structure can hold it in how many bytes."""
     from structures import REGISTRY, build
 
-    by_name = mesh in hem.SAMPLES and not Path(mesh).exists()
-    options: dict[str, Any] = {"repair": True} if repair else {}
-    found: hem.PolygonMesh | hem.TriangleMesh
-    if by_name:
-        found = hem.sample(mesh, **options)
-    else:
-        found = hem.load(mesh, repair, triangulate=True) if repair else hem.as_mesh(Path(mesh))
+    found = hem.find_mesh(mesh, repair)
     console.print(f"[bold]{mesh}[/]\n{found.summary()}\n")
     table = _numbers("structure", "bytes", "per vertex", "with 8-byte references", "per vertex")
     refusals = []

@@ -21,6 +21,8 @@ RunArgument = Annotated[
 Structures = Annotated[
     list[str] | None, Option("--structure", help="Measure just this one; may be repeated.")
 ]
+MESH = "A mesh file, a model (bunny), or a family and size (sphere:2000)."
+Repair = Annotated[bool, Option("--repair", help="Repair what is not manifold first.")]
 
 
 def run_folder(run: Path | None) -> Path:

@@ -11,7 +11,7 @@ from typing import Annotated, Any
 import typer
 from typer import Argument, Option
 
-from experiments.cli.console import console, errors
+from experiments.cli.console import MESH, Repair, console, errors
 
 Method = StrEnum("Method", ["voronoi", "tetra", "surface"])
 Format = StrEnum("Format", ["glb", "obj", "ply"])
@@ -41,8 +41,7 @@ POINT: Any = {"metavar": "X,Y,Z", "parser": _parser(
 PIXELS: Any = {"metavar": "WIDTHxHEIGHT", "parser": _parser(
     int, "x", lambda w, h: min(w, h) >= 64 and max(w, h) <= 4096 and 0.25 <= w / h <= 4,
     "a width and a height of 64 … 4096 pixels, not too narrow, as in 640x480")}
-Model = Annotated[str, Argument(
-    help="A mesh file, a model (bunny), or a family and size (sphere:2000).")]
+Model = Annotated[str, Argument(help=MESH)]
 Impact = Annotated[Any, Option(**POINT, help="Where it is struck. Default: in view, to the left.")]
 Direction = Annotated[Any, Option(**POINT, help="Where the blow goes. Default: into the surface.")]
 OfMaterial = Annotated[str, Option(help="What it is of: glass, ceramic, stone, wood, ice.")]
@@ -54,7 +53,6 @@ Holder = Annotated[str, Option(help="What holds the mesh, for tetra and surface.
 Seed = Annotated[int, Option(min=0, help="Other seeds, other shards.")]
 Scale = Annotated[float, Option(min=1e-9, max=1e9,
     help="Multiply the model first; its unit is taken as a meter.")]
-Repair = Annotated[bool, Option("--repair", help="Repair what is not manifold first.")]
 Wrap = Annotated[bool, Option("--wrap", help="Make a body around the model first.")]
 Up = Annotated[Axis | None, Option(help="Which axis points up. Default: the model's.")]
 Formats = Annotated[list[Format] | None, Option(

@@ -9,7 +9,7 @@ from rich.markup import escape
 from typer import Option
 
 from experiments import require_known
-from experiments.cli.console import Structures, console, errors
+from experiments.cli.console import Repair, Structures, console, errors
 from experiments.presets import PRESETS
 
 DEFAULT = "quick"
@@ -28,11 +28,16 @@ def run_study(
     experiment: Annotated[
         list[str] | None, Option(help="Run just this one; may be repeated.")
     ] = None,
+    mesh: Annotated[str | None, Option(help="Measure on this mesh, and on versions of it.")] = None,
+    repair: Repair = False,
     seed: Annotated[int | None, Option(help="Of the order of the cases.")] = None,
     pin: Annotated[bool | None, Option(help="Whether to stay on one core (yes).")] = None,
     workers: Annotated[str | None, Option(help="A Dask scheduler, tcp://host:port.")] = None,
 ) -> None:
     """Measure every structure. The results go to a new folder, case by case.
+
+    With --mesh on a mesh of your own, coarser and finer versions of it, where a slope is wanted: a
+    file, a model (bunny), or a family and size (sphere:2000).
 
     A case that would not fit into memory is skipped and says so; HEM_MEMORY=8G pretends that there
     is so much.
@@ -45,23 +50,31 @@ def run_study(
 
     memory.available()  # whether HEM_MEMORY can be read
     if workers:
+        if mesh:
+            raise ValueError("--mesh is measured on this machine: leave out --workers")
         cluster.require(workers)
+    if repair and not mesh:
+        raise ValueError("--repair is about a mesh: say --mesh as well")
     options: dict[str, Any] = {"preset": preset, "seed": seed, "pin": pin}
     options |= {"structures": structure, "experiments": experiment}
     given = {key: it for key, it in options.items() if it not in (None, [])}
     if resume:
+        if mesh:
+            raise ValueError("a run is resumed on the mesh it was begun with: leave out --mesh")
         folder = run or latest(output, unfinished=True)
         _require_as_begun(folder, given, workers)
     else:
+        given |= {"mesh": mesh, "repair": repair}
         folder = study.begin(given.pop("preset", DEFAULT), output, **given)
     _measure(folder, workers)
 
 
 def _require_as_begun(folder: Path, given: dict[str, Any], workers: str | None) -> None:
     """Raise ValueError for options that would change how a run was begun."""
-    from experiments.runs import read_meta
+    from experiments.runs import read_meta, study
 
     meta = read_meta(folder)
+    meta["preset"] = study.preset_of(meta)
     for key, value in given.items():
         if value != meta[key]:
             option = "no-pin" if key == "pin" and not value else key.removesuffix("s")

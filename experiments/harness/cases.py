@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 
 import hem
 import structures
+from experiments.harness import own_mesh
 from experiments.presets import HUBS
 from hem.arrays import Array
 from hem.contract import QUERIES, Query, Structure
@@ -180,6 +181,8 @@ def _mesh(family: str, size: int, valence: int | None, renumbered: bool) -> Tria
         return shuffled(_mesh(family, size, valence, False))
     if family == HUBS:
         return hem.valence_mesh(int(valence or 0), size)
+    if (own := own_mesh.version(family, size)) is not None:
+        return own
     return hem.sample(family) if family in hem.SAMPLES else hem.generate(family, size)
 
 

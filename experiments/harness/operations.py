@@ -82,7 +82,8 @@ def _apart(family: str, size: int, valence: int | None) -> Array:
 def operation_arguments(s: Structure, operation: str, faces: Array) -> Array:
     """(k, 3) the handles of the operations at these faces: their first edges, or they themselves.
 
-    To be added are faces that are not there yet: ``s`` loses them.
+    Those that may be done; in a mesh of one's own there are others. To be added are faces that are
+    not there yet: ``s`` loses them. Raises MeshError if nothing may be done.
     """
     rows = np.full((len(faces), 3), -1, np.int64)
     if operation in ON_EDGES:
@@ -93,7 +94,10 @@ def operation_arguments(s: Structure, operation: str, faces: Array) -> Array:
             s.remove_face(face)
     else:
         rows[:, 0] = faces
-    return rows
+    allowed = rows[s.prepare(operation, rows, np.zeros((len(rows), 3))).check()]
+    if not len(allowed):
+        raise hem.MeshError(f"none of {len(rows)} elements of the mesh allows {operation}")
+    return allowed
 
 
 class OperationBatch:
@@ -102,10 +106,8 @@ class OperationBatch:
     def __init__(self, s: Structure, operation: str, faces: Array) -> None:
         self.mesh = s.copy()
         args = operation_arguments(self.mesh, operation, faces)
-        points = np.zeros((len(args), 3))
-        args = args[self.mesh.prepare(operation, args, points).check()]
         self.operations = len(args)
-        self._prepared = self.mesh.prepare(operation, args, points[: len(args)])
+        self._prepared = self.mesh.prepare(operation, args, np.zeros((len(args), 3)))
         self._fresh = self.mesh.snapshot()
         # As bare as can be, but for the call itself, see ``idle_seconds``.
         self.operate = partial(self._prepared.perform, self._prepared.pinned.address)

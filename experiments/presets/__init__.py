@@ -18,6 +18,11 @@ SECONDS_PER_FACE = 1e-9
 LONGEST = 20
 """How many times the seconds of a case all its rounds may take, where each searches the mesh."""
 
+LARGEST_COUNTED = 100_000
+"""Vertices of one's own mesh up to which accesses are counted, which Python does."""
+NOT_OF_ONE_MESH = "bench_fracture", "bench_printed"
+"""What a study of one's own mesh leaves out: bodies and the thesis' listings."""
+
 
 def _geometric(first: int, last: int, per_decade: float) -> tuple[int, ...]:
     sizes: list[int] = []
@@ -82,6 +87,26 @@ class Preset:
         smaller["valence_faces"] = min(self.valence_faces, 10 * most)
         smaller["operation_faces"] = min(self.operation_faces, most)
         return replace(self, **smaller)
+
+    def on(self, mesh: str, sizes: tuple[int, ...]) -> Self:
+        """The preset for one mesh at the sizes that there are of it.
+
+        What a valence costs is measured on the hubs, as always.
+        """
+        return replace(
+            self,
+            what=f"{self.what.partition(',')[0]}, on {mesh}",
+            families=(mesh,),
+            models=(),
+            sizes=sizes,
+            work_sizes=tuple(it for it in sizes if it <= LARGEST_COUNTED),
+            build_sizes=sizes,
+            operation_sizes=sizes,
+            single_sizes=sizes,
+            workload_sizes=sizes,
+            workloads=(),
+            skipped=NOT_OF_ONE_MESH,
+        )
 
     def affordable_rounds(self, seconds: float) -> int:
         """How many rounds of so many seconds there is time for."""

@@ -68,23 +68,12 @@ def model(
 
 
 def _read(name: str, repair: bool) -> tuple[hem.TriangleMesh, str]:
-    family, _, size = name.partition(":")
+    family, colon, size = name.partition(":")
     if Path(name).exists():
         return hem.load(name, repair, triangulate=True), "y"
-    if name in hem.SAMPLES:
-        return hem.sample(name, **({"repair": True} if repair else {})), UP.get(name, "y")
-    if family in (PLATE, *hem.FAMILIES):
-        if size and not (size.isascii() and size.replace("_", "").isdigit()):
-            raise hem.MeshError(f"{name!r}: after the colon stands a number of vertices")
-        made, default = ("grid", 144) if family == PLATE else (family, 2000)
-        return hem.generate(made, int(size or default)), UP.get(family, "y")
-    if Path(name).suffix:
-        return hem.load(name, repair, triangulate=True), "y"  # says why it cannot be read
-    every = ", ".join((*hem.SAMPLES, PLATE, *hem.FAMILIES))
-    raise hem.MeshError(
-        f"there is no model {name!r}: name a file, or one of {every}; families take a "
-        "size, as in sphere:2000"
-    )
+    if family == PLATE:
+        name = f"grid:{size}" if colon else "grid:144"
+    return hem.find_mesh(name, repair, triangulate=True), UP.get(family, "y")
 
 
 def break_up(

@@ -7,8 +7,9 @@ takes seconds to begin.
 
 import hashlib
 import os
+import shutil
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from contextlib import closing, contextmanager, suppress
 from dataclasses import asdict
@@ -21,7 +22,7 @@ from time import monotonic
 from typing import Any
 
 from experiments import require_known
-from experiments.harness import BASE, PRESETS
+from experiments.harness import BASE, PRESETS, own_mesh
 from experiments.harness.steadiness import REPEATS, allowed_cores
 from experiments.runs import store
 from experiments.runs.catalog import experiments as catalog
@@ -33,6 +34,9 @@ from structures import NAMED, REGISTRY
 ROOT = Path(__file__).parents[2]
 COMPILED = "hem", "structures", "experiments/harness"
 """Where the sources are that Numba compiles."""
+
+ON = " on "
+"""Between a preset and one's own mesh, in the name of what was measured."""
 
 REPEATING_SHARE = 0.5
 """Disturbed cases are measured again for at most this part of the time that all cases took."""
@@ -63,24 +67,31 @@ def begin(
     *,
     seed: int = Job.seed,
     pin: bool = True,
+    mesh: str | None = None,
+    repair: bool = False,
 ) -> Path:
     """A new run folder, named by the time and the preset, with what is known before it runs.
 
     ``structures``, ``experiments``: just these, all of them for none; an experiment with or without
-    ``bench_``. ``seed``: of the order of the cases; ``pin``: whether to stay on one core. Raises
-    ValueError for a name that there is not, CannotWriteError.
+    ``bench_``. ``seed``: of the order of the cases; ``pin``: whether to stay on one core. ``mesh``:
+    one's own to measure on, see ``hem.find_mesh``. Raises ValueError for a name that there is not,
+    MeshError for a mesh that not every structure holds, CannotWriteError.
     """
     short = [name.removeprefix("bench_") for name in experiments]
     require_known("experiment", short, [name.removeprefix("bench_") for name in catalog()])
     require_known("structure", structures, NAMED)
     require_known("preset", [preset], PRESETS)
     chosen = {"structures": list(structures), "experiments": [f"bench_{name}" for name in short]}
-    folder = _new_folder(root, f"{datetime.now(UTC).strftime('%Y%m%d-%H%M%S')}-{preset}")
+    title = "-".join([preset, *([own_mesh.called(mesh)] if mesh else [])])
+    folder = _new_folder(root, f"{datetime.now(UTC).strftime('%Y%m%d-%H%M%S')}-{title}")
     try:
-        store.write_meta(folder, {**describe(preset), **chosen, "seed": seed, "pin": pin})
-    except store.CannotWriteError:
-        with suppress(OSError):
-            folder.rmdir()
+        known = {**describe(preset), **chosen, "seed": seed, "pin": pin}
+        if mesh:
+            own_mesh.keep_versions(folder, mesh, repair)
+            known["preset"] += ON + own_mesh.called(mesh)  # what is compared is of one mesh
+        store.write_meta(folder, known)
+    except BaseException:
+        shutil.rmtree(folder, ignore_errors=True)
         raise
     return folder
 
@@ -96,14 +107,20 @@ def _new_folder(root: Path, name: str) -> Path:
     raise store.CannotWriteError(f"{root} has a thousand runs called {name}: clear it up")
 
 
+def preset_of(meta: Mapping[str, Any]) -> str:
+    """The name of a run's preset, whatever mesh it is on."""
+    return str(meta["preset"]).partition(ON)[0]
+
+
 def plan(folder: Path) -> list[Job]:
     """All jobs of a run, in the order of the experiments."""
-    meta = store.read_meta(folder)
-    preset, wanted, chosen = str(meta["preset"]), meta["experiments"], meta["structures"]
+    meta, mesh = store.read_meta(folder), own_mesh.of_run(folder)
+    preset, wanted, chosen = preset_of(meta), meta["experiments"], meta["structures"]
+    extent = PRESETS[preset].on(*mesh) if mesh else PRESETS[preset]
     jobs = [
-        Job(name, structure, preset, int(meta["seed"]), bool(meta["pin"]))
+        Job(name, structure, preset, int(meta["seed"]), bool(meta["pin"]), mesh)
         for name, declared in catalog().items()
-        if (name in wanted if wanted else name not in PRESETS[preset].skipped)
+        if (name in wanted if wanted else name not in extent.skipped)
         for structure in declared.structures
         if not chosen or structure in chosen or structure not in NAMED
     ]

@@ -35,13 +35,17 @@ PYTEST = (
 
 @dataclass(frozen=True)
 class Job:
-    """One experiment on one structure; ``seed``: of the order of cases; ``pin``: to one core."""
+    """One experiment on one structure, in a preset's extent.
+
+    ``seed``: of the order of cases; ``pin``: to one core; ``mesh``: one's own, and its sizes.
+    """
 
     experiment: str
     structure: str
     preset: str
     seed: int = DEFAULT_SEED
     pin: bool = True
+    mesh: tuple[str, tuple[int, ...]] | None = None
 
     def __str__(self) -> str:
         return f"{self.experiment.removeprefix('bench_')} on {self.structure}"
@@ -54,8 +58,8 @@ class Job:
     @cached_property
     def ids(self) -> frozenset[str]:
         """The ids of the cases that it leaves behind."""
-        preset = PRESETS[self.preset].of(self.structure)
-        cases = experiments()[self.experiment].cases(preset, self.structure)
+        preset = PRESETS[self.preset].on(*self.mesh) if self.mesh else PRESETS[self.preset]
+        cases = experiments()[self.experiment].cases(preset.of(self.structure), self.structure)
         return frozenset(case.id for case in cases)
 
     def file(self, folder: Path) -> CaseFile:

@@ -3,6 +3,7 @@
 from hem.sources.cache import cache_folder
 from hem.sources.families import FAMILIES, Family, generate
 from hem.sources.files import as_mesh, encoded, load, load_polygons, save
+from hem.sources.named import find_mesh
 from hem.sources.samples import SAMPLES, Sample, sample
 from hem.sources.valence import valence_hubs, valence_mesh
 
@@ -14,6 +15,7 @@ __all__ = [
     "as_mesh",
     "cache_folder",
     "encoded",
+    "find_mesh",
     "generate",
     "load",
     "load_polygons",

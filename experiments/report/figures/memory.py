@@ -41,7 +41,7 @@ def by_field(run: Run) -> Plot:
             height = rows.index(name) + (-0.19 if case["reference_bytes"] == 8 else 0.19)
             fields = {field: size / case["vertices"] for field, size in sizes}
             traced, peak = (case["detail"][key] / case["vertices"] for key in ("traced", "peak"))
-            note = f"{sum(fields.values()):g} B with {case['reference_bytes']}-byte references"
+            note = f"{sum(fields.values()):.4g} B with {case['reference_bytes']}-byte references"
             note += f" · {traced:.1f} traced · {peak:.0f} at the peak"
             _bar(axes, height, 0.36, fields, STYLES[name]["color"], note)
         for it in open_run().claims:

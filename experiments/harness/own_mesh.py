@@ -1,0 +1,105 @@
+"""A mesh of one's own to be measured: at its size, and as coarser and finer versions of it.
+
+The versions stand in the folder of the run, so that it can be resumed wherever its mesh has gone.
+"""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+
+import structures
+from hem.algorithms import simplify, subdivide
+from hem.errors import MeshError
+from hem.meshes import TriangleMesh
+from hem.sources import find_mesh
+
+FOLDER = "mesh"
+SMALLEST, LARGEST = 100, 1_000_000
+"""Vertices of the coarsest and the finest version, but for the mesh itself."""
+COARSER = 4
+"""How many coarser versions there are at the most; each has a quarter of the vertices."""
+FINE_ENOUGH = 20_000
+"""Vertices up to which there are finer versions of a small mesh; there is always one."""
+
+_HOLDER = next(name for name, it in structures.REGISTRY.items() if it.compiled and not it.searches)
+"""The structure in which versions are made."""
+
+_folders: dict[str, Path] = {}
+
+OwnMesh = tuple[str, tuple[int, ...]]
+"""How cases call it, and the numbers of vertices of its versions."""
+
+
+def called(name: str) -> str:
+    """How cases call a mesh: ``model.obj``, ``sphere-2000``."""
+    return Path(name).name.replace(":", "-")
+
+
+def keep_versions(folder: Path, name: str, repair: bool = False) -> None:
+    """Keep a mesh, and its versions, in the folder of a run.
+
+    ``name``: see ``hem.find_mesh``. Raises MeshError for what cannot be read, and for what is not
+    manifold, as only a structure that searches could hold it.
+    """
+    mesh = find_mesh(name, repair, triangulate=True)
+    if not len(mesh.triangles):
+        raise MeshError(f"there is nothing to measure: {name} has no faces")
+    try:
+        versions = [*_coarser(mesh), mesh, *_finer(mesh)]
+    except MeshError as error:
+        advice = "" if repair else "; --repair makes a surface of it"
+        raise MeshError(f"{name} cannot be held by every structure: {error}{advice}") from error
+    kept = folder / FOLDER / called(name)
+    kept.mkdir(parents=True)
+    for it in versions:
+        np.savez(kept / str(len(it.points)), points=it.points, triangles=it.triangles)
+
+
+def of_run(folder: Path) -> OwnMesh | None:
+    """The mesh of a run that is on one's own; its cases find it from here on."""
+    for kept in (folder / FOLDER).glob("*"):
+        _folders[kept.name] = kept
+        return kept.name, tuple(_files(kept.name))
+    return None
+
+
+def version(name: str, size: int) -> TriangleMesh | None:
+    """The version with about so many vertices of what cases call so, if it is one's own."""
+    if name not in _folders:
+        return None
+    files = _files(name)
+    with np.load(files[min(files, key=lambda n: abs(np.log(n / size)))]) as arrays:
+        return TriangleMesh(arrays["points"], arrays["triangles"])
+
+
+def _files(name: str) -> dict[int, Path]:
+    """The file of each version by its number of vertices, ascending."""
+    return dict(sorted((int(path.stem), path) for path in _folders[name].glob("*.npz")))
+
+
+def _coarser(mesh: TriangleMesh) -> Iterator[TriangleMesh]:
+    s = structures.build(_HOLDER, mesh)
+    for _ in range(COARSER):
+        before = s.n_faces
+        if len(mesh.points) < 4 * SMALLEST:
+            return
+        simplify(s, faces=before // 4)
+        if s.n_faces > before // 2:  # small parts cannot be simplified any more
+            return
+        mesh = _without_faceless(s.to_triangles())
+        yield mesh
+
+
+def _finer(mesh: TriangleMesh) -> Iterator[TriangleMesh]:
+    s = structures.build(_HOLDER, _without_faceless(mesh))
+    while 4 * s.n_vertices <= LARGEST:
+        subdivide(s, "loop")
+        yield s.to_triangles()
+        if 4 * s.n_vertices > FINE_ENOUGH:
+            return
+
+
+def _without_faceless(mesh: TriangleMesh) -> TriangleMesh:
+    used, corners = np.unique(mesh.triangles, return_inverse=True)
+    return TriangleMesh(mesh.points[used], corners.reshape(-1, 3))

@@ -1,0 +1,44 @@
+"""A mesh by a name, as every command takes it: a file, a sample, or a family and a size."""
+
+from pathlib import Path
+from typing import Literal, overload
+
+from hem.errors import MeshError
+from hem.meshes import PolygonMesh, TriangleMesh
+from hem.sources.families import FAMILIES, generate
+from hem.sources.files import as_mesh, load
+from hem.sources.samples import SAMPLES, sample
+
+USUAL_SIZE = 2_000
+"""Vertices of a family that is named without a size."""
+
+
+@overload
+def find_mesh(name: str, repair: bool = ..., *, triangulate: Literal[True]) -> TriangleMesh: ...
+@overload
+def find_mesh(name: str, repair: bool = ...) -> TriangleMesh | PolygonMesh: ...
+def find_mesh(
+    name: str, repair: bool = False, *, triangulate: bool = False
+) -> TriangleMesh | PolygonMesh:
+    """The mesh of a file, of a sample (`bunny`), or of a family and its size (`sphere:2000`).
+
+    >>> hem.find_mesh("torus:100")
+    TriangleMesh(100 vertices, 200 faces)
+
+    A file comes before a sample of its name. `repair` and `triangulate`: see `load`. Raises
+    MeshError for a name that nothing has, with those that there are, and for what cannot be read.
+    """
+    family, _, size = name.partition(":")
+    if Path(name).exists() or (Path(name).suffix and family not in FAMILIES):
+        cut = repair or triangulate
+        return load(name, repair, triangulate=True) if cut else as_mesh(name)
+    if name in SAMPLES:
+        return sample(name, **({"repair": True} if repair else {}))
+    if family not in FAMILIES:
+        raise MeshError(
+            f"there is no model {name!r}: name a file, or one of "
+            f"{', '.join((*SAMPLES, *FAMILIES))}; families take a size, as in sphere:2000"
+        )
+    if size and not (size.isascii() and size.replace("_", "").isdigit()):
+        raise MeshError(f"{name!r}: after the colon stands a number of vertices")
+    return generate(family, int(size or USUAL_SIZE))

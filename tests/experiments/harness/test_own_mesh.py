@@ -1,0 +1,89 @@
+"""A study of one's own mesh: versions are surfaces of its kind, and cases are about them."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import hem
+from experiments.harness import PRESETS, own_mesh
+from experiments.runs import load, read_meta, study
+from tests.experiments.cli.test_cli import hem as command
+from tests.experiments.small_study import begin, go_on
+
+
+def versions(folder: Path) -> list[hem.TriangleMesh]:
+    name, sizes = own_mesh.of_run(folder) or ("", ())
+    return [own_mesh.version(name, size) for size in sizes]
+
+
+@pytest.mark.parametrize("name", ["torus:1600", "grid:1600", "bone"])
+def test_versions_are_of_the_same_topology_and_four_times_apart(tmp_path, name):
+    own_mesh.keep_versions(tmp_path, name)
+    given, kept = hem.find_mesh(name), versions(tmp_path)
+    own_one = next(it for it in kept if len(it.points) == len(given.points))
+    assert np.array_equal(own_one.points, given.points)
+    assert np.array_equal(own_one.triangles, given.triangles)
+    own = given.summary()
+    for coarser, finer in pairwise(kept):
+        assert 3 < len(finer.triangles) / len(coarser.triangles) < 6
+    for mesh in kept:
+        hem.require_sound(mesh)
+        summary = mesh.summary()
+        assert (summary.euler, summary.components) == (own.euler, own.components)
+        assert summary.unreferenced == (own.unreferenced if mesh is own_one else 0)
+
+
+def test_a_small_mesh_gets_finer_versions_only(tmp_path):
+    tetrahedron = tmp_path / "tetrahedron.off"
+    hem.save(
+        hem.TriangleMesh(np.eye(4, 3), [(0, 2, 1), (0, 1, 3), (1, 2, 3), (2, 0, 3)]), tetrahedron
+    )
+    own_mesh.keep_versions(tmp_path, str(tetrahedron))
+    sizes = [len(it.points) for it in versions(tmp_path)]
+    assert sizes[0] == 4
+    assert sizes[-1] > own_mesh.FINE_ENOUGH / 4
+
+
+def test_a_run_keeps_its_mesh_and_is_called_by_it(tmp_path):
+    file = tmp_path / "model.ply"
+    hem.save(hem.generate("torus", 500), file)
+    folder = begin(tmp_path, "memory", "work", mesh=str(file))
+    file.unlink()
+    go_on(folder)
+    assert read_meta(folder)["preset"] == "smoke on model.ply"
+    cases = load(folder).cases
+    of_mesh = cases[cases["family"] == "model.ply"]
+    assert set(of_mesh["experiment"]) == {"bench_memory", "bench_work"}
+    assert 500 in set(of_mesh["vertices"])
+    assert set(cases["family"]) == {"model.ply", "hubs"}  # and no real models
+
+
+def test_what_not_every_structure_can_hold_is_refused_and_leaves_no_run(tmp_path):
+    with pytest.raises(hem.MeshError, match=r"held by every structure.*--repair"):
+        study.begin("smoke", tmp_path, mesh="face")
+    with pytest.raises(hem.MeshError, match="there is no model"):
+        study.begin("smoke", tmp_path, mesh="nothing")
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(("options", "said"), [
+    (["--repair"], "say --mesh as well"),
+    (["--mesh", "cow", "--workers", "tcp://a:1"], "leave out --workers"),
+    (["--mesh", "cow", "--resume"], "leave out --mesh"),
+])  # fmt: skip
+def test_options_that_do_not_go_together_are_told(options, said):
+    code, printed = command("study", *options)
+    assert code == 1
+    assert said in printed
+
+
+def test_every_size_of_a_preset_is_one_of_the_mesh():
+    preset = PRESETS["quick"].on("mine", (100, 400_000))
+    assert preset.families == ("mine",)
+    for sizes in (preset.sizes, preset.build_sizes, preset.operation_sizes, preset.workload_sizes):
+        assert sizes == (100, 400_000)
+    assert preset.work_sizes == (100,)  # Python counts
