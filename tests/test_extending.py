@@ -23,7 +23,7 @@ from structures.half_edge import HalfEdge
 class DirectedEdge(HalfEdge):
     """As a half-edge mesh."""
 
-    name, title, abbreviation = "directed_edge", "Directed-Edge", "DEM"
+    name, title, abbreviation = "quarter_edge", "Quarter-Edge", "QEM"
     look, thesis, order = Look("#7b2d8b", "D", ":"), False, 10
     claims = Claims("a test: as a half-edge mesh", like="half_edge")
 '''
@@ -76,7 +76,7 @@ def extended(tmp_path_factory: pytest.TempPathFactory) -> Path:
     tree = tmp_path_factory.mktemp("extended")
     for part in COPIED:
         shutil.copytree(ROOT / part, tree / part, symlinks=True)  # times stay: the cache is valid
-    (tree / "structures" / "directed_edge.py").write_text(STRUCTURE)
+    (tree / "structures" / "quarter_edge.py").write_text(STRUCTURE)
     (tree / "experiments" / "bench_random_walk.py").write_text(EXPERIMENT)
     made = "from pathlib import Path; from tests.experiments.made_runs import write_run; "
     python(tree, "-c", made + "write_run(Path('run'))")
@@ -94,7 +94,7 @@ def python(tree: Path, *arguments: str, code: int = 0, run: str = "") -> str:
 
 def test_the_table_shows_a_new_structure_and_a_new_experiment(extended):
     printed = python(extended, "-m", "experiments.cli", "table", "run", "--all")
-    assert "DEM" in printed
+    assert "QEM" in printed
     assert "Random walks" in printed
     assert "Walk over faces" in printed
 
@@ -102,15 +102,15 @@ def test_the_table_shows_a_new_structure_and_a_new_experiment(extended):
 def test_the_report_shows_them_on_its_front_page_and_in_the_chapter_of_their_table(extended):
     made = "from experiments.report.notebooks import body; "
     pages = python(extended, "-c", made + "print(body('index'), body('query_scaling'))", run="run")
-    for shown in ("Directed-Edge", "Random walks", "Walk over faces"):
+    for shown in ("Quarter-Edge", "Random walks", "Walk over faces"):
         assert shown in pages
 
 
 def test_the_check_measures_them_and_says_what_is_next(extended):
-    command = ("-m", "experiments.cli", "check", "--json", "--structure", "directed_edge")
+    command = ("-m", "experiments.cli", "check", "--json", "--structure", "quarter_edge")
     said = python(extended, *command, code=2)  # what the baseline lacks cannot be told
     assert "random_walk" in said
-    assert "directed_edge" in said
+    assert "quarter_edge" in said
     assert "hem baseline update" in said
 
 
@@ -120,7 +120,7 @@ def test_a_structure_or_an_experiment_that_forgets_something_is_an_error_that_na
         ("experiments/bench_half_done.py", '"""Nothing."""\n', "EXPERIMENT"),
     ]:
         file = extended / path
-        file.write_text(text.replace("directed_edge", "half_done"))
+        file.write_text(text.replace("quarter_edge", "half_done"))
         try:
             said = python(extended, "-m", "experiments.cli", "table", "run", code=1)
         finally:

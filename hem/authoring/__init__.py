@@ -2,6 +2,7 @@
 
 - ``kernel``, the decorator; the columns of ``counts`` (``FACE_END`` …); small parts of kernels.
 - ``steps`` and ``walks``, from which queries follow; ``packed``, where no edges are recorded;
+  ``marked``, where half-edges move;
 - ``Field`` and ``counted``, which declare and begin the records;
 - ``pair_half_edges`` and ``in_slices`` for the build;
 - ``require…``, which state invariants;
@@ -10,10 +11,11 @@
 What a structure must offer is said by ``hem.contract.Structure``, of which it is a subclass.
 """
 
-from hem.authoring import packed, steps, walks
+from hem.authoring import marked, packed, steps, walks
 from hem.authoring.defaults import OF_ARRAYS, kill_vertex, set_point, sides, vertex_exists
 from hem.authoring.invariants import (
     require,
+    require_count,
     require_edges,
     require_of_vertices,
     require_one_fan,
@@ -137,12 +139,14 @@ __all__ = [
     "log_element",
     "log_faces",
     "log_parts",
+    "marked",
     "number_edges",
     "packed",
     "pair_half_edges",
     "pair_polygons",
     "part",
     "require",
+    "require_count",
     "require_edges",
     "require_of_vertices",
     "require_one_fan",

@@ -43,7 +43,7 @@ def require_records(records: Any, fields: Sequence[Field]) -> None:
         values, kind = in_use(records, fields, field), field.element
         if field.marks and kind in ("vertex", "face", "triangle"):
             element, column = ("vertex", VERTICES) if kind == "vertex" else ("face", FACES)
-            _require_count(element, int(alive[kind].sum()), int(records.counts[column]))
+            require_count(element, int(alive[kind].sum()), int(records.counts[column]))
         if field.target:
             rows = np.flatnonzero(alive[kind])
             _require_references(field, values[rows], alive[field.target], rows)
@@ -60,7 +60,8 @@ def _require_references(field: Field, values: Array, alive: Array, rows: Array) 
     require(named, f"{field.name} is a live {field.target}", RECORDS[field.element], rows)
 
 
-def _require_count(element: str, found: int, counted: int) -> None:
+def require_count(element: str, found: int, counted: int) -> None:
+    """Require that so many elements are ``found`` as the structure has ``counted``."""
     if found != counted:
         many = ELEMENTS[element]
         raise MeshError(f"broken invariant: {counted:,} live {many} are counted, not {found:,}")
@@ -71,7 +72,7 @@ def require_edges(records: Any, a: Array, b: Array, of: Array | None = None) -> 
 
     No two join the same two vertices, and none joins one.
     """
-    _require_count("edge", len(a), int(records.counts[EDGES]))
+    require_count("edge", len(a), int(records.counts[EDGES]))
     require(a != b, "an edge joins two different vertices", "edges", of)
     named = (np.minimum(a, b).astype(np.int64) << 32) | np.maximum(a, b)
     first = np.zeros(len(named), np.bool_)

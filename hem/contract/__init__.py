@@ -24,7 +24,7 @@ from hem.contract.elements import HANDLE_TYPES
 from hem.contract.measuring import Prepared, Sweep
 from hem.contract.navigation import STEPS, Navigable
 from hem.contract.operating import Algorithm
-from hem.contract.packed import PackedEdges
+from hem.contract.packed import MarkedEdges, PackedEdges
 from hem.contract.removal import Remaining, remaining
 from hem.contract.structure import Structure
 
@@ -40,6 +40,7 @@ __all__ = [
     "Claims",
     "Described",
     "Look",
+    "MarkedEdges",
     "Navigable",
     "PackedEdges",
     "Prepared",

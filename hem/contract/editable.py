@@ -169,7 +169,8 @@ class Editable(Algorithms, abstract=True):
         """Collapse edges (k,) in order, skipping what is gone or refused -> which were done.
 
         ``keep``: (k,) the ends that stay, each ``edge_vertices(edge)[1]`` unless it is said. Edges
-        at a merged vertex live on where edges are recorded; named by their ends they are gone.
+        at a merged vertex live on where edges are recorded and their handles stable; named by their
+        ends they are gone.
         Subscribers hear of one edit, or of one each where corners or half-edges have attributes.
         """
         handles = arguments.handles("collapse_edges", edges)
@@ -183,17 +184,18 @@ class Editable(Algorithms, abstract=True):
                 f"for {len(handles)}"
             )
         if self.told_one_by_one:
-            return np.array([self._collapsed(e, v) for e, v in zip(handles, ends, strict=True)])
+            names = self._lasting_names(handles)
+            return np.array([self._collapsed(e, v) for e, v in zip(names, ends, strict=True)])
         results, log = self._run(
             "collapse_edge", arguments.rows(handles, ends), arguments.NO_POINT, PERSIST
         )
         self._publish(Edit("collapse_edges", -1, log))
         return results >= 0
 
-    def _collapsed(self, edge: int, keep: int) -> bool:
-        """Whether an edge could be collapsed, which is done then."""
+    def _collapsed(self, name: int, keep: int) -> bool:
+        """Whether an edge, by its lasting name, could be collapsed, which is done then."""
         try:
-            self._do["collapse_edge"](edge, None, keep)
+            self._do["collapse_edge"](self._lasting_handle(name), None, keep)
         except TopologyError:
             return False
         return True

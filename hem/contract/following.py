@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, DTypeLike
 
 from hem.arrays import Handles, Points
 from hem.contract.attributes import Attribute, CornerAttribute, EdgeAttribute, Rule
+from hem.contract.sides import SideAttribute
 from hem.contract.surveying import Surveying
 from hem.edit import FACE, Edit
 from hem.errors import MeshError
@@ -43,7 +44,9 @@ class AttributeMethod:
         except (TypeError, ValueError) as error:
             raise MeshError(f"{element} attribute {name!r}: {error}") from error
         if known is None:
-            made = self._kind(mesh, element, name, value, on_split)
+            moved = "edge" in element and not mesh.stable_edge_handles
+            kind = SideAttribute if moved else self._kind
+            made = kind(mesh, element, name, value, on_split)
             mesh._attributes[element, name] = made
             return made
         if (known.default.dtype, known.default.shape) != (value.dtype, value.shape):
@@ -102,9 +105,11 @@ class Following(Surveying, abstract=True):
     def told_one_by_one(self) -> bool:
         """Whether every operation is an edit of its own, as corners or half-edges have values.
 
-        A batch does not tell what came where in between, and a seam must not be torn.
+        A batch does not tell what came where in between, and a seam must not be torn. So it is of
+        edges whose handles are not stable.
         """
-        return any(it.element in ("corner", "half_edge") for it in self.attributes())
+        stable = ("edge",) if self.stable_edge_handles else ()
+        return any(it.element not in ("vertex", "face", *stable) for it in self.attributes())
 
     def remove_attribute(self, attribute: Attribute) -> None:
         """Have an attribute follow no longer. Raises MeshError if it is not of this mesh."""

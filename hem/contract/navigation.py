@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hem.arrays import Array
+from hem.authoring import Kernel, Kernels
 from hem.contract.attributes import HalfEdgeAttribute
 from hem.contract.description import place_of
 from hem.contract.elements import HANDLE_TYPES
@@ -51,6 +52,11 @@ STEPS = {
 SOURCES = {it.source for it in STEPS.values()}
 
 
+def _exists(k: Kernels, source: str) -> Kernel:
+    """Whether there is such an element. A half-edge that names its edge is one where that is."""
+    return k.get(f"{source}_exists") or k[f"{source.removeprefix('half_')}_exists"]
+
+
 class StepMethod(Protocol):
     """A step as a method: one handle -> a handle; an array of handles -> an array."""
 
@@ -65,7 +71,7 @@ def _step_method(name: str) -> Any:
 
     def bound(self: Navigable) -> StepMethod:
         pinned = self._pin(lambda: ())
-        exists = self.kernels[f"{step.source.removeprefix('half_')}_exists"]
+        exists = _exists(self.kernels, step.source)
         take = self._steps[name].step(pinned, exists)
         address = pinned.address
 
@@ -137,7 +143,7 @@ class Navigable(Structure, abstract=True):
     @cached_property
     def _walks(self) -> dict[str, Callable[..., int]]:
         """Every step from many handles."""
-        exists = {it: self.kernels[f"{it.removeprefix('half_')}_exists"] for it in SOURCES}
+        exists = {it: _exists(self.kernels, it) for it in SOURCES}
         return {name: self._steps[name].walk(exists[it.source]) for name, it in STEPS.items()}
 
     def _walk(self, name: str, handles: Any) -> Any:

@@ -58,6 +58,9 @@ class Operating(Following, abstract=True):
 
     _operation_uses: ClassVar[dict[str, Uses]]
 
+    _lasting_uses: ClassVar[Mapping[str, Uses]] = {}
+    """The uses of those on edges for lasting names, where handles are not stable."""
+
     def operate(self, operation: str, *handles: int, point: ArrayLike | None = None) -> Edit:
         """Do an operation by its name, as the method of that name does where there is one.
 
@@ -198,6 +201,9 @@ class Operating(Following, abstract=True):
         perform, n = self._bound[operation].perform, len(args)
         results, logs, done = np.zeros(n, np.int64), [], 0
         vertices, faces = self.operations[operation].growth
+        if operation in self._lasting_uses:
+            args = np.column_stack([self._lasting_names(args[:, 0]), args[:, 1:]])
+            perform = self._lasting_uses[operation].perform(self._bound[operation].pinned)
         if mode == DO:
             # A face of more corners needs the edges of so many triangles.
             self._make_room(vertices * n, (faces + args.shape[1] - 3) * n)

@@ -87,6 +87,13 @@ class Queryable(Scratch, abstract=True):
     emulated: ClassVar[frozenset[str]] = frozenset()
     """Queries answered without edge records: table 1's N/A."""
 
+    stable_edge_handles: ClassVar[bool] = True
+    """Whether an edge keeps its handle as long as it joins the same two vertices.
+
+    Where it does not, an operation may give other edges of the faces that it changes new handles.
+    The old ones are refused then; ``find_edge`` finds the new ones.
+    """
+
     vertex_vertices: QueryMethod = _query_method(QUERIES["vertex_vertices"])
     vertex_edges: QueryMethod = _query_method(QUERIES["vertex_edges"])
     vertex_faces: QueryMethod = _query_method(QUERIES["vertex_faces"])
@@ -134,6 +141,14 @@ class Queryable(Scratch, abstract=True):
     def _edge_names(self, handles: NDArray[Any]) -> NDArray[Any]:
         """The one name of each edge, where it has two handles."""
         return handles
+
+    def _lasting_names(self, handles: NDArray[Any]) -> NDArray[Any]:
+        """Names of edges that last whatever is done to others; -1 for what is no edge."""
+        return handles
+
+    def _lasting_handle(self, name: int) -> int:
+        """The handle of an edge by its lasting name; one that is refused where there is none."""
+        return name
 
     def _count_edges(self) -> None:
         """Search for the edges where their number is not known yet; operations keep it up."""

@@ -15,6 +15,7 @@ from hem.authoring import (
     kernels_of,
     require_records,
 )
+from hem.authoring.marked import named_by_ends
 from hem.contract.description import place_of
 from hem.contract.measuring import Measuring
 from hem.meshes import TriangleMesh
@@ -60,6 +61,12 @@ class Structure(Measuring, ABC, abstract=True):
         cls._operation_uses = {
             name: derive(_operation(cls, name), records) for name in cls.operations
         }
+        if not cls.stable_edge_handles:
+            cls._lasting_uses = {
+                name: derive(_of_lasting_names(cls, name), records)
+                for name in cls.operations
+                if cls.operations[name].element == "edge"
+            }
 
     @classmethod
     @abstractmethod
@@ -180,6 +187,12 @@ def _operation(cls: type[Structure], name: str) -> Kernel:
             f"{place_of(cls)} has no kernel {missing.args[0]}, which {name} takes; see "
             f"{operation.make.__module__}"
         ) from None
+
+
+def _of_lasting_names(cls: type[Structure], name: str) -> Kernel:
+    if "edge_between" not in cls.kernels:
+        raise TypeError(f"{place_of(cls)} has no kernel edge_between(m, a, b) -> edge or -1")
+    return named_by_ends(cls._operation_uses[name].kernel, cls.kernels["edge_between"])
 
 
 def _require_claims(cls: type[Structure]) -> None:

@@ -137,6 +137,7 @@ def test_the_bunny_survives_the_round_trip(name):
                 "winged_edge": 228,
                 "half_edge": 228,
                 "plankton": 228,
+                "directed_edge": 116,
             },
         ),
         (
@@ -147,6 +148,7 @@ def test_the_bunny_survives_the_round_trip(name):
                 "winged_edge": 120,
                 "half_edge": 120,
                 "plankton": 120,
+                "directed_edge": 64,
             },
         ),
     ],

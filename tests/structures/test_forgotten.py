@@ -20,7 +20,7 @@ def write(folder: Path, name: str, changes: dict[str, str]) -> str:
     for old, new in changes.items():
         assert old in text
         text = text.replace(old, new)
-    (package / "directed_edge.py").write_text(text, "utf-8")
+    (package / "quarter_edge.py").write_text(text, "utf-8")
     return name
 
 
@@ -42,7 +42,7 @@ def test_a_forgotten_part_is_named(tmp_path, monkeypatch, old, new, forgotten):
     with pytest.raises(TypeError) as refused:
         structures.find_described([str(tmp_path / package)], package)
     assert forgotten in str(refused.value)
-    assert "directed_edge.py: HalfEdge" in str(refused.value)
+    assert "quarter_edge.py: HalfEdge" in str(refused.value)
 
 
 def test_two_structures_of_one_name_are_refused(tmp_path, monkeypatch):
@@ -67,7 +67,7 @@ def test_a_claim_of_no_query_is_refused(tmp_path, monkeypatch):
 
 def test_a_new_file_is_a_structure(tmp_path, monkeypatch):
     changes = {
-        '"half_edge", "Half-Edge", "HEM"': '"directed_edge", "Directed Edge", "DEM"',
+        '"half_edge", "Half-Edge", "HEM"': '"quarter_edge", "Quarter Edge", "QEM"',
         '"-"), True, 4': '"-"), False, 1000',
         "records_type = HalfEdgeRecords": 'claims = Claims("", like="half_edge")\n'
         "    records_type = HalfEdgeRecords",
@@ -76,5 +76,5 @@ def test_a_new_file_is_a_structure(tmp_path, monkeypatch):
     package = write(tmp_path, "found", changes)
     monkeypatch.syspath_prepend(tmp_path)
     found = structures.find_described([str(tmp_path / package)], package)
-    assert list(found) == ["directed_edge"]
-    assert found["directed_edge"].look == structures.NAMED["half_edge"].look
+    assert list(found) == ["quarter_edge"]
+    assert found["quarter_edge"].look == structures.NAMED["half_edge"].look

@@ -85,6 +85,8 @@ def test_what_comes_after_finds_a_sound_mesh(s):
             s.remove_faces(patch(s, rng))
         except hem.TopologyError:
             continue
+        if not s.n_faces:
+            break
         for _ in range(6):
             edge = int(rng.choice(s.edges()))
             if s.can_collapse_edge(edge):
