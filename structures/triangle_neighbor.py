@@ -92,17 +92,23 @@ def counterclockwise(m: TriangleNeighborRecords, t: int, v: int) -> int:
 
 
 (first,) = steps.entries(TriangleNeighborRecords, "vertex_triangle")
-fan = walks.circulator(clockwise, counterclockwise)
+circulate = walks.circulator(clockwise, counterclockwise)
+
+
+@kernel
+def corner_after(m: TriangleNeighborRecords, t: int, v: int) -> int:
+    """The corner of triangle t after v."""
+    return m.triangle[t, CORNER + (corner_of(m, t, v) + 1) % 3]
+
+
+around, fan = circulate(corner_after), circulate(walks.as_met)
 
 
 @kernel
 def vertex_vertices(m: TriangleNeighborRecords, v: int, out: Array) -> int:
     """Cost O(n_ev)."""
-    count, closed = fan(m, m.vertex_triangle[v], v, out)
-    last = out[count - 1]
-    for k in range(count):
-        out[k] = m.triangle[out[k], CORNER + (corner_of(m, out[k], v) + 1) % 3]
-    if closed or count == 0:
+    count, last = around(m, m.vertex_triangle[v], v, out)
+    if last < 0:
         return count
     out[count] = m.triangle[last, CORNER + (corner_of(m, last, v) + 2) % 3]
     return count + 1

@@ -1,112 +1,127 @@
 """Walks around a vertex or a face, and the queries that follow: written once over the steps taken.
 
-A circulator writes all that it comes past: ``circulate(m, element, out) -> (count, closed)``.
+A circulator writes what is given by all that it comes past: ``circulate(m, element, out) -> (count,
+last)``.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 from hem.arrays import Array
 from hem.authoring.kernels import Kernel, append_face, kernel, without
 
+Giving = Callable[[Kernel], Kernel]
+"""Makes a circulator that writes what the kernel gives."""
 
-def circulator(clockwise: Kernel, counterclockwise: Kernel) -> Kernel:
-    """Make ``around(m, start, v, out) -> (count, closed)`` of two steps ``step(m, item, v)``.
 
-    A step goes from one item at vertex ``v`` (a half-edge, an edge, a triangle) to the next, or to
-    a negative number at the border. The items come counterclockwise. A fan open at the border is
-    circulated from both sides of ``start``. Cost O(valence).
+def circulator(clockwise: Kernel, counterclockwise: Kernel) -> Giving:
+    """Make, for ``give(m, item, v)``, ``around(m, start, v, out) -> (count, last)``.
+
+    A step ``step(m, item, v)`` goes from one item at vertex ``v`` (a half-edge, an edge, a
+    triangle) to the next, or to a negative number at the border. What the items give comes
+    counterclockwise. A fan open at the border is circulated from both sides of ``start``; ``last``
+    is its last item, and -1 where the fan is closed. Cost O(valence).
     """
 
-    @kernel
-    def around(m: Any, start: int, v: int, out: Array) -> tuple[int, bool]:
-        count, item = 0, start
-        while item >= 0:
-            out[count] = item
-            count += 1
-            item = clockwise(m, item, v)
-            if item == start:
-                reverse(out, count)
-                return count, True
-        reverse(out, count)
-        item = counterclockwise(m, start, v) if count else -1
-        while item >= 0:
-            out[count] = item
-            count += 1
-            item = counterclockwise(m, item, v)
-        return count, False
+    def giving(give: Kernel) -> Kernel:
+        @kernel
+        def around(m: Any, start: int, v: int, out: Array) -> tuple[int, int]:
+            count, item = 0, start
+            while item >= 0:  # what is given is written at once: to come back to it takes longer
+                out[count] = give(m, item, v)
+                count += 1
+                item = clockwise(m, item, v)
+                if item == start:
+                    reverse(out, count)
+                    return count, -1
+            reverse(out, count)
+            last = start
+            item = counterclockwise(m, start, v) if count else -1
+            while item >= 0:
+                out[count] = give(m, item, v)
+                count += 1
+                last = item
+                item = counterclockwise(m, item, v)
+            return count, last
 
-    return around
+        return around
+
+    return giving
 
 
 @kernel
 def as_met(m: Any, h: int, at: int) -> int:
-    """What is met on the way around a vertex or a face, where that is a half-edge already."""
+    """What is met on the way around a vertex or a face, where that is what is wanted."""
     return h
 
 
-def from_vertex(first: Kernel, around: Kernel, enter: Kernel = as_met) -> Kernel:
-    """Make the circulator of a vertex that begins at ``first(m, v)``. Cost O(valence).
+def from_vertex(first: Kernel, around: Giving, enter: Kernel = as_met) -> Giving:
+    """Make, for ``give(m, h)``, the circulator of a vertex that begins at ``first(m, v)``.
 
-    ``enter(m, it, v)`` is the half-edge that leaves v for what ``first`` leads to.
+    ``enter(m, it, v)`` is the half-edge that leaves v for what ``first`` leads to. O(valence).
     """
 
-    @kernel
-    def circulate(m: Any, v: int, out: Array) -> tuple[int, bool]:
-        start = first(m, v)
-        if start < 0:
-            return 0, True
-        return around(m, enter(m, start, v), v, out)
+    def giving(give: Kernel) -> Kernel:
+        @kernel
+        def give_of(m: Any, h: int, v: int) -> int:
+            return give(m, h)
 
-    return circulate
+        walk = around(give_of)
+
+        @kernel
+        def circulate(m: Any, v: int, out: Array) -> tuple[int, int]:
+            start = first(m, v)
+            if start < 0:
+                return 0, -1
+            return walk(m, enter(m, start, v), v, out)
+
+        return circulate
+
+    return giving
 
 
-def each(circulate: Kernel, give: Kernel) -> Kernel:
-    """Make a query: ``give(m, h)`` of every half-edge that the circulator comes past."""
+def each(giving: Giving, give: Kernel) -> Kernel:
+    """Make a query: what is given by every half-edge that a circulator comes past."""
+    circulate = giving(give)
 
     @kernel
     def query(m: Any, element: int, out: Array) -> int:
         count, _ = circulate(m, element, out)
-        for i in range(count):
-            out[i] = give(m, out[i])
         return count
 
     return query
 
 
-def each_but_last(circulate: Kernel, give: Kernel) -> Kernel:
+def each_but_last(giving: Giving, give: Kernel) -> Kernel:
     """Make a query as ``each``, without the last half-edge if a fan is open.
 
     It leaves the vertex along the border, and has no face.
     """
+    circulate = giving(give)
 
     @kernel
     def query(m: Any, v: int, out: Array) -> int:
-        count, closed = circulate(m, v, out)
-        faces = count if closed else count - 1
-        for i in range(faces):
-            out[i] = give(m, out[i])
-        return faces
+        count, last = circulate(m, v, out)
+        return count if last < 0 else count - 1
 
     return query
 
 
-def each_and_last(circulate: Kernel, give: Kernel, last: Kernel) -> Kernel:
-    """Make a query as ``each``, with ``last(m, h)`` of the last half-edge too if a fan is open.
+def each_and_last(giving: Giving, give: Kernel, last_of: Kernel) -> Kernel:
+    """Make a query as ``each``, with ``last_of(m, h)`` of the last half-edge if a fan is open.
 
     No half-edge leaves the vertex beyond it, but the edge and the neighbor are there.
     """
+    circulate = giving(give)
 
     @kernel
     def query(m: Any, v: int, out: Array) -> int:
-        count, closed = circulate(m, v, out)
-        h = out[count - 1]
-        for i in range(count):
-            out[i] = give(m, out[i])
-        if closed or count == 0:
+        count, last = circulate(m, v, out)
+        if last < 0:
             return count
-        out[count] = last(m, h)
+        out[count] = last_of(m, last)
         return count + 1
 
     return query

@@ -61,13 +61,15 @@ class Scratch(Elements, abstract=True):
     @cached_property
     def _out(self) -> dict[str, Array]:
         """Scratch for the answer to one query, by the kind of element in it."""
-        return self._scratch(self._count_valence())
+        known = int(self.records.counts[VALENCE])  # of what was copied or compacted
+        return self._scratch(known if 0 < known <= self.n_faces // 8 else self._count_valence())
 
     def _count_valence(self) -> int:
         """The bound on the valence made exact: operations only ever raise it. Cost O(n_t)."""
-        counts = self.records.counts
-        corners = self._ragged("face_vertices", self.faces(), int(counts[SIDES])).values
-        valence = max(int(np.bincount(corners).max(initial=0)) + 1, int(counts[SIDES]))
+        counts, times = self.records.counts, np.zeros(len(self.points), np.int32)
+        corners = self._room(int(counts[SIDES]), HANDLE_TYPES["vertex"])
+        self._uses["face_vertices"].tally(self.faces(), times, corners, *self.records)
+        valence = max(int(times.max(initial=0)) + 1, int(counts[SIDES]))
         counts[VALENCE] = self._valence_counted = valence
         return valence
 

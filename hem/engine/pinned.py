@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 from numba import typeof, types
+from numba.core.cgutils import get_null_value
 from numba.extending import intrinsic
 from numpy.typing import NDArray
 
@@ -58,9 +59,38 @@ def loader(kind: Any) -> Callable[[int], Any]:
             if context.get_abi_sizeof(described) != 8 * words:
                 raise TypeError("this version of Numba lays arrays out otherwise than hem expects")
             image = described.as_pointer()
-            return builder.load(builder.inttoptr(arguments[0], image))
+            loaded = builder.load(builder.inttoptr(arguments[0], image))
+            return _without_owner(context, builder, kind, loaded)
 
         return kind(types.intp), generate
 
     loading: Callable[[int], Any] = intrinsic(load)
     return loading
+
+
+def _borrow(context: Any, given: Any) -> Any:
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        return _without_owner(context, builder, given, arguments[0])
+
+    return given(given), generate
+
+
+borrowed: Callable[[Any], Any] = intrinsic(_borrow)
+"""The same arrays, or tuples of them, of which compiled code counts no references.
+
+Whoever calls keeps them alive. To count takes longer than most steps, and is no use to them.
+"""
+
+
+def _without_owner(context: Any, builder: Any, kind: Any, value: Any) -> Any:
+    """A value whose arrays have neither an owner nor a parent, as the compiler can see."""
+    if isinstance(kind, types.BaseTuple):
+        for i, part in enumerate(kind):
+            own = _without_owner(context, builder, part, builder.extract_value(value, i))
+            value = builder.insert_value(value, own, i)
+    if isinstance(kind, types.Array):
+        array = context.make_array(kind)(context, builder, value)
+        array.meminfo = get_null_value(array.meminfo.type)
+        array.parent = get_null_value(array.parent.type)
+        return array._getvalue()
+    return value

@@ -29,12 +29,18 @@ def unbound(*_: Any) -> Any:
     raise TypeError("a template is called that is not bound to a kernel")
 
 
+def itself(arrays: Any) -> Any:
+    """Stands where ``Uses`` puts ``borrowed`` if it compiles."""
+    return arrays
+
+
 _KERNEL: Kernel = unbound
 _RECORDS: Callable[..., Any] = unbound
 _LOAD: Callable[..., Any] = unbound
 _EXISTS: Kernel = unbound
 _EDGE_VERTICES: Kernel = unbound
 _COORDINATE: Kernel = unbound
+_BORROWED: Callable[[Any], Any] = itself
 
 
 def single(handle: int, address: int) -> Array:
@@ -59,7 +65,7 @@ def step(handle: int, address: int) -> int:
 
 def walk(handles: Array, found: Array, *arrays: Array) -> int:
     """One step from each of many handles -> the place of the first that names nothing."""
-    m = _RECORDS(*arrays)
+    m = _RECORDS(*_BORROWED(arrays))
     for i in range(len(handles)):
         if not _EXISTS(m, handles[i]):
             return i
@@ -83,22 +89,22 @@ def perform(address: int) -> int:
 
 def batch(handles: Array, offsets: Array, values: Array, width: int, *arrays: Array) -> Array:
     """Many handles into offsets and values."""
-    m = _RECORDS(*arrays)
+    m, room = _RECORDS(*_BORROWED(arrays)), _BORROWED(values)
     end = 0
     for i in range(len(handles)):
         offsets[i] = end
         if end + width > len(values):
             grown = np.empty(2 * len(values) + width, values.dtype)
             move(values[:end], grown, 0)  # to compile an assignment of slices takes a second
-            values = grown
-        end += _KERNEL(m, handles[i], values[end:])
+            values, room = grown, _BORROWED(grown)
+        end += _KERNEL(m, handles[i], room[end:])
     return values[:end]
 
 
 def sweep(handles: Array, out: Array, *arrays: Array) -> int:
     """Many handles with nothing kept, for timing -> a checksum."""
-    m = _RECORDS(*arrays)
-    checksum = 0
+    m = _RECORDS(*_BORROWED(arrays))
+    checksum, out = 0, _BORROWED(out)
     for i in range(len(handles)):
         count = _KERNEL(m, handles[i], out)
         checksum += count
@@ -107,12 +113,20 @@ def sweep(handles: Array, out: Array, *arrays: Array) -> int:
     return checksum
 
 
+def tally(handles: Array, times: Array, out: Array, *arrays: Array) -> None:
+    """How many times each element is an answer, added to what ``times`` has."""
+    m, times, out = _RECORDS(*_BORROWED(arrays)), _BORROWED(times), _BORROWED(out)
+    for i in range(len(handles)):
+        for j in range(_KERNEL(m, handles[i], out)):
+            times[out[j]] += 1
+
+
 def copy_touched(touched: Array, points: Array, indices: Array, out: Array, *arrays: Array) -> int:
     """Points and clockwise corners of what a log names, zeros for what is dead -> the end.
 
     Or the place of the first entry that names what is not there, or has no row.
     """
-    m = _RECORDS(*arrays)
+    m = _RECORDS(*_BORROWED(arrays))
     if points.shape[1] != 3 or indices.shape[1] != 3 or m.counts[SIDES] > len(out):
         return 0
     vertices = min(len(points), m.counts[VERTEX_END])
@@ -137,7 +151,7 @@ def copy_touched(touched: Array, points: Array, indices: Array, out: Array, *arr
 
 def run(plan: Any, *arrays: Array) -> int:
     """An algorithm."""
-    result: int = _KERNEL(_RECORDS(*arrays), plan)
+    result: int = _KERNEL(_RECORDS(*_BORROWED(arrays)), _BORROWED(plan))
     return result
 
 

@@ -23,7 +23,7 @@ from hem.arrays import Array
 from hem.authoring import Kernel
 from hem.engine import templates
 from hem.engine.counting import CountingArray, interpreted, source_of
-from hem.engine.pinned import loader
+from hem.engine.pinned import borrowed, loader
 
 SHARED = ("edit.py", "authoring/**/*.py", "engine/*.py")
 """What every structure's machine code is made of, beside its own files."""
@@ -84,6 +84,11 @@ class Uses:
         """``sweep(handles, out, *records) -> checksum``; every answer overwrites the last."""
         return self._compiled(templates.sweep)
 
+    @cached_property
+    def tally(self) -> Callable[..., None]:
+        """``tally(handles, times, out, *records)``: adds up how many times each is an answer."""
+        return self._compiled(templates.tally)
+
     def copy_touched(self, exists: Kernel, coordinate: Kernel) -> Callable[..., int]:
         """``copy(touched, points, indices, out, *records) -> end``, from ``face_vertices``.
 
@@ -139,7 +144,8 @@ class Uses:
 
         ``variant`` tells apart what is bound otherwise than by the kernel.
         """
-        scope = {"_KERNEL": self._kernel, "_RECORDS": self._records, **scope}
+        own = {"_KERNEL": self._kernel, "_RECORDS": self._records, "_BORROWED": borrowed}
+        scope = own | scope
         function = FunctionType(template.__code__, {**template.__globals__, **scope})
         names = template.__name__, self._records.__name__, source_of(self._kernel).__name__
         function.__qualname__ = "_".join([*names, _digest(scope.values(), variant)])
