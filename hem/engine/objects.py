@@ -6,7 +6,7 @@ the same signatures, and the operations' drivers and rules run uncompiled around
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from types import FunctionType
 from typing import Any
@@ -95,7 +95,9 @@ class InterpretedUses(Uses):
     def _bound(self, template: Kernel, kind: Any, **scope: Any) -> Callable[..., Any]:
         return self._compiled(template, _LOAD=_things, **scope)
 
-    def _compiled(self, template: Kernel, variant: str = "", **scope: Any) -> Callable[..., Any]:
+    def _compile(
+        self, template: Kernel, variant: str, scope: Mapping[str, Any]
+    ) -> Callable[..., Any]:
         scope = {"_KERNEL": interpreted(self._kernel), "_RECORDS": self._records, **scope}
         return FunctionType(template.__code__, {**template.__globals__, **scope})
 

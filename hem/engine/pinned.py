@@ -8,6 +8,7 @@ from then on a call passes two integers.
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -49,6 +50,7 @@ def _described(arrays: tuple[NDArray[Any], ...]) -> list[int]:
     ]
 
 
+@cache
 def loader(kind: Any) -> Callable[[int], Any]:
     """Make ``load(address) -> arrays`` for compiled code, for arrays pinned as this ``kind``."""
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import hashlib
 import inspect
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from functools import cache, cached_property
 from pathlib import Path
 from types import FunctionType
@@ -34,7 +34,7 @@ class Uses:
 
     def __init__(self, kernel: Kernel, records: type[Any]) -> None:
         self._kernel, self._records = kernel, records
-        self._by_kind: dict[Any, Callable[..., Any]] = {}
+        self._made: dict[Any, Callable[..., Any]] = {}
 
     def single(self, pinned: Any, exists: Kernel) -> Callable[[int, Any], Array]:
         """``single(handle, pinned.address) -> neighbors``, for records and an ``out`` as these.
@@ -63,11 +63,8 @@ class Uses:
         return self._bound(templates.perform, pinned.kind)
 
     def _bound(self, template: Kernel, kind: Any, **scope: Any) -> Callable[..., Any]:
-        """``template`` for arrays pinned as this ``kind``; all structures of a kind share it."""
-        if kind not in self._by_kind:
-            load = loader(kind)
-            self._by_kind[kind] = self._compiled(template, str(kind), _LOAD=load, **scope)
-        return self._by_kind[kind]
+        """``template`` for arrays pinned as this ``kind``."""
+        return self._compiled(template, str(kind), _LOAD=loader(kind), **scope)
 
     @cached_property
     def batch(self) -> Callable[..., Array]:
@@ -142,10 +139,19 @@ class Uses:
     def _compiled(self, template: Kernel, variant: str = "", **scope: Any) -> Callable[..., Any]:
         """``template`` with its free names bound to this kernel, compiled and cached on disk.
 
-        ``variant`` tells apart what is bound otherwise than by the kernel.
+        ``variant`` tells apart what is bound otherwise than by the kernel. All structures share
+        what is made: machine code that is loaded stays in memory as long as the process.
         """
+        key = template, variant, *scope.values()
+        if key not in self._made:
+            self._made[key] = self._compile(template, variant, scope)
+        return self._made[key]
+
+    def _compile(
+        self, template: Kernel, variant: str, scope: Mapping[str, Any]
+    ) -> Callable[..., Any]:
         own = {"_KERNEL": self._kernel, "_RECORDS": self._records, "_BORROWED": borrowed}
-        scope = own | scope
+        scope = {**own, **scope}
         function = FunctionType(template.__code__, {**template.__globals__, **scope})
         names = template.__name__, self._records.__name__, source_of(self._kernel).__name__
         function.__qualname__ = "_".join([*names, _digest(scope.values(), variant)])

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import pytest
+from llvmlite.binding.executionengine import ExecutionEngine
+from numba import njit
 
 from tests.structures.histories.world import World
 from tests.structures.soak import History, Meshes, histories
@@ -24,6 +26,23 @@ def test_a_fault_is_narrowed_to_its_step(monkeypatch: pytest.MonkeyPatch, of_pol
 def test_the_same_history_is_run_again():
     history = History(5, 2, True, 60)
     assert history.run(20) == history.run(60)
+
+
+@pytest.mark.parametrize("of_polygons", [False, True])
+def test_what_was_done_before_loads_no_machine_code(monkeypatch, of_polygons: bool):
+    """Else a process ends some day: code that is loaded stays, and its pages are limited."""
+    history, loaded, add = History(0, 0, of_polygons, 60), [], ExecutionEngine.add_module
+    history.run(20)
+
+    def watched(engine: ExecutionEngine, module: object) -> None:
+        loaded.append(module)
+        add(engine, module)
+
+    monkeypatch.setattr(ExecutionEngine, "add_module", watched)
+    history.run(20)
+    assert not loaded
+    njit(lambda x: x + 1)(1)
+    assert loaded  # a change in Numba would go unseen otherwise
 
 
 @pytest.mark.parametrize("meshes", Meshes)
