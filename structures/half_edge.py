@@ -366,20 +366,13 @@ class HalfEdge(Navigable):
         count = counted(len(mesh.points), pairing.n_edges, n, 3 * n)
         return cls(HalfEdgeRecords(mesh.points.copy(), vertex, face, half_edge, count))
 
-    def _edge_names(self, handles: Array) -> Array:
-        known = (handles >= 0) & (handles < self.records.counts[EDGE_END])
-        names = handles.copy()
-        twin = self.records.half_edge[handles[known], TWIN]
-        names[known] = np.where(twin >= 0, np.minimum(handles[known], twin), handles[known])
-        return names
-
     def _require_invariants(self) -> None:
         """Those at the top of this file."""
         m, half_edges = self.records, live(self.records, self.fields, "half_edge")
         leaving, f = m.vertex_half_edge[: len(self.points)], self.faces()
         origin, face, following, twin = m.half_edge[: len(half_edges)].T
         h, after = np.flatnonzero(half_edges), following[half_edges]
-        edges = self.edges()
+        edges = h[(twin[h] < 0) | (h < twin[h])]
         require_edges(m, origin[edges], origin[following[edges]], edges)
         require(after != h, "next is another half-edge", "half_edges", h)
         require_triangles(face, following, h, "half_edges", h)

@@ -25,19 +25,15 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable
-from functools import cached_property
 from typing import Any, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from hem.arrays import Array
 from hem.authoring import (
     EDGE_END,
-    EDGES,
     LEFT,
     RIGHT,
-    VALENCE,
     A,
     C,
     D,
@@ -47,12 +43,10 @@ from hem.authoring import (
 )
 from hem.contract import Claims, Look, Navigable
 from hem.edit import CHANGED, VERTEX, Edit
-from hem.engine import Held, InterpretedUses, counting
+from hem.engine import counting
 from hem.errors import MeshError
 from hem.meshes import TriangleMesh
 from structures.class_model import (
-    ElementList,
-    Face,
     FaceList,
     HalfEdge,
     HalfEdgeList,
@@ -62,12 +56,12 @@ from structures.class_model import (
     clr_memory,
 )
 from structures.half_edge import HalfEdge as HalfEdgeArrays
-from structures.half_edge import HalfEdgeRecords
 from structures.object_records import (
+    COUNTED,
     ObjectRecords,
+    ObjectStorage,
     build_records,
-    count_records,
-    from_arrays,
+    positions,
     to_arrays,
 )
 
@@ -76,9 +70,6 @@ SHARED = 257
 
 Give = Callable[[HalfEdge], int]
 """What a query or a step gives of a half-edge."""
-
-COUNTED = (Vertex, HalfEdge, Face, ElementList)
-"""The classes whose fields count as work when they are read or written."""
 
 
 def around_vertex(give: Give, last: Give | None = None) -> Kernel:
@@ -423,12 +414,6 @@ def set_vertex_face(m: ObjectRecords, v: int, f: int) -> None:
     h.origin.half_edge = h
 
 
-class ObjectUses(InterpretedUses):
-    """Counts the fields of the class model."""
-
-    counted_classes = COUNTED
-
-
 class HalfEdgeMesh(Navigable):
     """The half-edge mesh of the thesis' class model."""
 
@@ -438,7 +423,7 @@ class HalfEdgeMesh(Navigable):
         "the class model of thesis 3.2, with the circulator that chapter 6 asks for",
         like="half_edge",
     )
-    uses_type, pinning, compiled = ObjectUses, Held, False
+    storage, compiled = ObjectStorage, False
     records_type = ObjectRecords
     fields = ()
 
@@ -478,27 +463,10 @@ class HalfEdgeMesh(Navigable):
     @property
     def points(self) -> NDArray[np.float32]:
         """(n, 3) float32: positions by vertex, NaN for dead ones; gathered anew. Cost O(n_v)."""
-        dead = (np.nan,) * 3
-        rows = [dead if it is None else it.point for it in self.vertices.items]
-        return np.array(rows, np.float32).reshape(-1, 3)
-
-    def _live(self, element: str) -> NDArray[np.int32]:
-        return np.flatnonzero(self._alive(element)).astype(np.int32)
-
-    def _alive(self, element: str, rows: Any = slice(None)) -> NDArray[np.bool_]:
-        lists: dict[str, ElementList[Any]] = {"vertex": self.vertices, "face": self.faces}
-        items = lists.get(element, self.half_edges).items
-        chosen = items[rows] if isinstance(rows, slice) else [items[row] for row in rows.tolist()]
-        return np.array([it is not None for it in chosen], np.bool_)
-
-    def _edge_names(self, handles: Array) -> Array:
-        items = self.half_edges.items
-        known = [items[h] if 0 <= h < len(items) else None for h in handles.tolist()]
-        names = [h if it is None else it.edge for h, it in zip(handles, known, strict=True)]
-        return np.array(names, np.int64)
+        return positions(self.records)
 
     def subscribe(self, callback: Callable[[Edit], Any]) -> Callable[[], None]:
-        """See ``Following.subscribe``; also told when the ``point`` of a vertex is set."""
+        """See ``Structure.subscribe``; also told when the ``point`` of a vertex is set."""
         if self.vertices.event is None:
             self.vertices.watch(self._tell_moved)
         return super().subscribe(callback)
@@ -509,52 +477,15 @@ class HalfEdgeMesh(Navigable):
         items = self.vertices.items
         if vertex.index < len(items) and items[vertex.index] is vertex:
             log = [vertex.index << 3 | VERTEX + CHANGED]
-            self._publish(Edit("move_vertex", vertex.index, log))
+            self._followers.publish(Edit("move_vertex", vertex.index, log))
 
-    @cached_property
-    def _at(self) -> list[int]:
-        return [0] * 6
-
-    def _room(self, width: int, dtype: Any) -> memoryview:
-        # Slices of it are views, as of an array, but it is faster, and its numbers are Python's.
-        return memoryview(np.empty(width, dtype).data)
-
-    def _compacted(self) -> tuple[ObjectRecords, dict[str, Array]]:
-        m, number = self.records, {}
-        lists: dict[str, ElementList[Any]] = {it.kind: it for it in m[:-1]}
-        for kind, elements in lists.items():
-            alive = elements.alive()
-            number[kind] = np.where(alive, np.cumsum(alive) - 1, -1)
-            elements.items[:] = list(elements)
-            for index, element in enumerate(elements.items):
-                element.index = index
-        count = count_records(m.vertices, m.half_edges, m.faces, int(m.counts[EDGES]))
-        count[VALENCE] = m.counts[VALENCE]
-        return m._replace(counts=count), number
-
-    def _portable(self) -> HalfEdgeRecords:
-        # A pickle of objects would follow their references without end.
-        return to_arrays(self.records, self.points)
-
-    @classmethod
-    def _records_of(cls, portable: HalfEdgeRecords) -> ObjectRecords:
-        return from_arrays(portable)
-
-    def _put_back(self, portable: HalfEdgeRecords) -> None:
-        fresh = from_arrays(portable)
-        self.vertices.items[:] = fresh.vertices.items
-        self.half_edges.items[:] = fresh.half_edges.items
-        self.faces.items[:] = fresh.faces.items
-        np.copyto(self.records.counts, fresh.counts)
+    def restore(self, snapshot: Any) -> None:
+        """See ``Structure.restore``."""
+        super().restore(snapshot)
         if self.vertices.event is not None:
             self.vertices.watch(self._tell_moved)
 
-    @property
-    def arrays(self) -> tuple[Array, ...]:
-        """There are none to measure: the bytes are those of the objects, see ``memory``."""
-        return ()
-
-    def memory(self, room: bool = False) -> dict[str, int]:
+    def _live_bytes(self) -> dict[str, int]:
         """Bytes that Python's objects take, by class and by what their fields hold of their own.
 
         As ``sys.getsizeof`` tells of the running interpreter; small integers are shared.
@@ -570,11 +501,7 @@ class HalfEdgeMesh(Navigable):
             taken[f"{kind}.index"] = sys.getsizeof(SHARED) * (n - shared)
             taken[f"{kind}.list"] = 8 * n
         taken["vertex.point"] = position * len(self.vertices)
-        return taken | self._beside(0) if room else taken
-
-    def _beside(self, live: int) -> dict[str, int]:
-        dead = sum(len(it.items) - len(it) for it in self.records[:-1])
-        return super()._beside(0) | {"dead and room to grow": 8 * dead}
+        return taken
 
     def clr_memory(self) -> dict[str, int]:
         """Bytes per field as the runtime of the thesis would lay its classes out: a model."""
@@ -584,7 +511,7 @@ class HalfEdgeMesh(Navigable):
     def validate(self) -> None:
         """Check the objects themselves, then as arrays what ``structures.half_edge`` requires."""
         self._require_invariants()
-        HalfEdgeArrays(to_arrays(self.records, self.points)).validate()
+        HalfEdgeArrays(to_arrays(self.records)).validate()
 
     def _require_invariants(self) -> None:
         """Every element stands in its list, and every reference leads to one that does."""

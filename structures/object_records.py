@@ -8,21 +8,37 @@ from contextlib import contextmanager
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from hem.arrays import Array
 from hem.authoring import (
     EDGE_ROOM,
+    EDGES,
     ENDLESS,
     FACE_ROOM,
     FACES,
+    VALENCE,
     VERTEX_END,
     VERTEX_ROOM,
     VERTICES,
     counted,
 )
+from hem.contract import Storage
+from hem.engine import Held, InterpretedUses
 from hem.meshes import TriangleMesh, require_manifold
-from structures.class_model import Face, FaceList, HalfEdge, HalfEdgeList, Vertex, VertexList
+from structures.class_model import (
+    ElementList,
+    Face,
+    FaceList,
+    HalfEdge,
+    HalfEdgeList,
+    Vertex,
+    VertexList,
+)
 from structures.half_edge import HalfEdgeRecords
+
+COUNTED = (Vertex, HalfEdge, Face, ElementList)
+"""The classes whose fields count as work when they are read or written."""
 
 
 class ObjectRecords(NamedTuple):
@@ -73,7 +89,14 @@ def build_records(mesh: TriangleMesh) -> ObjectRecords:
     return ObjectRecords(*lists, count_records(*lists, n_edges))
 
 
-def to_arrays(m: ObjectRecords, points: Array) -> HalfEdgeRecords:
+def positions(m: ObjectRecords) -> NDArray[np.float32]:
+    """(n, 3): by vertex, NaN for dead ones. Cost O(n_v)."""
+    dead = (np.nan,) * 3
+    rows = [dead if it is None else it.point for it in m.vertices.items]
+    return np.array(rows, np.float32).reshape(-1, 3)
+
+
+def to_arrays(m: ObjectRecords) -> HalfEdgeRecords:
     """The same half-edges by index, as ``structures.half_edge`` has them. O(n_v + n_t)."""
     half_edge = [
         (-1,) * 4
@@ -87,7 +110,7 @@ def to_arrays(m: ObjectRecords, points: Array) -> HalfEdgeRecords:
     ends = VERTEX_ROOM, FACE_ROOM, EDGE_ROOM
     counts[list(ends)] = len(leaving), len(within), len(half_edge)
     return HalfEdgeRecords(
-        points,
+        positions(m),
         np.array(leaving, np.int32),
         np.array(within, np.int32),
         np.array(half_edge, np.int32).reshape(-1, 4),
@@ -135,6 +158,67 @@ def from_arrays(arrays: HalfEdgeRecords) -> ObjectRecords:
     counts = arrays.counts.copy()
     counts[[VERTEX_ROOM, EDGE_ROOM, FACE_ROOM]] = ENDLESS
     return ObjectRecords(VertexList(vertices), HalfEdgeList(half_edges), FaceList(faces), counts)
+
+
+class ObjectUses(InterpretedUses):
+    """Counts the fields of the class model."""
+
+    counted_classes = COUNTED
+
+
+class ObjectStorage(Storage):
+    """Records in lists of objects; kept and copied as arrays."""
+
+    uses, pinned = ObjectUses, Held
+
+    def alive(self, records: Any, element: str, rows: Any = slice(None)) -> NDArray[np.bool_]:
+        """See ``Storage.alive``."""
+        lists: dict[str, ElementList[Any]] = {"vertex": records.vertices, "face": records.faces}
+        items = lists.get(element, records.half_edges).items
+        chosen = items[rows] if isinstance(rows, slice) else [items[row] for row in rows.tolist()]
+        return np.array([it is not None for it in chosen], np.bool_)
+
+    def row(self, n: int, dtype: Any) -> memoryview:
+        """See ``Storage.row``; faster than an array, and its numbers are Python's."""
+        return memoryview(np.zeros(n, dtype).data)
+
+    def compacted(self, records: Any) -> tuple[ObjectRecords, dict[str, Array]]:
+        """See ``Storage.compacted``; the lists stay the same."""
+        m, number = records, {}
+        lists: dict[str, ElementList[Any]] = {it.kind: it for it in m[:-1]}
+        for kind, elements in lists.items():
+            alive = elements.alive()
+            number[kind] = np.where(alive, np.cumsum(alive) - 1, -1)
+            elements.items[:] = list(elements)
+            for index, element in enumerate(elements.items):
+                element.index = index
+        count = count_records(m.vertices, m.half_edges, m.faces, int(m.counts[EDGES]))
+        count[VALENCE] = m.counts[VALENCE]
+        return m._replace(counts=count), number
+
+    def saved(self, records: Any) -> HalfEdgeRecords:
+        """See ``Storage.saved``: a pickle of objects would follow their references without end."""
+        return to_arrays(records)
+
+    def loaded(self, saved: Any) -> ObjectRecords:
+        """See ``Storage.loaded``."""
+        return from_arrays(saved)
+
+    def put_back(self, records: Any, saved: Any) -> None:
+        """See ``Storage.put_back``."""
+        fresh: tuple[Any, ...] = from_arrays(saved)
+        *lists, counts = fresh
+        for mine, its in zip(records, lists, strict=False):
+            mine.items[:] = its.items
+        np.copyto(records.counts, counts)
+
+    def arrays(self, records: Any) -> tuple[Array, ...]:
+        """There are none to measure: the bytes are those of the objects, see ``memory``."""
+        return ()
+
+    def spare(self, records: Any, taken: int) -> int:
+        """See ``Storage.spare``: references to nothing."""
+        return 8 * sum(len(it.items) - len(it) for it in records[:-1])
 
 
 @contextmanager

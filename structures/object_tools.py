@@ -46,7 +46,7 @@ class EdgeSplittingBehaviour:
         self.created_faces: list[Face] = []
 
     def split_half_edge(self, half_edge: HalfEdge, point: ArrayLike) -> Vertex:
-        """Put a new vertex on an edge -> the vertex. See ``Editable.split_edge``."""
+        """Put a new vertex on an edge -> the vertex. See ``Structure.split_edge``."""
         edit = self.mesh.split_edge(half_edge.edge, point)
         self.created_faces += [self.mesh.faces[f] for f in edit.created_faces.tolist()]
         return self.mesh.vertices[edit.vertex]
@@ -60,7 +60,7 @@ class FaceSplittingBehaviour:
         self.created_faces: list[Face] = []
 
     def split_face(self, face: Face, point: ArrayLike) -> Vertex:
-        """Put a new vertex into a face -> the vertex. See ``Editable.split_face``."""
+        """Put a new vertex into a face -> the vertex. See ``Structure.split_face``."""
         edit = self.mesh.split_face(face.index, point)
         self.created_faces += [self.mesh.faces[f] for f in edit.created_faces.tolist()]
         return self.mesh.vertices[edit.vertex]

@@ -229,7 +229,7 @@ class Plankton(Navigable):
         """
         if triangles:
             return super().split_edge(edge, point)
-        return self._do["insert_vertex"](edge, point)
+        return self.operate("insert_vertex", edge, point=point)
 
     def split_face(self, face: int, point: Any) -> Any:
         """Split a face: at a point into triangles -> Edit, or along a diagonal -> its half-edge.
@@ -297,15 +297,16 @@ class Plankton(Navigable):
             )
         ends = self.points[self._half_edges[spokes ^ 1, START]]
         points = (1 - fraction) * self.points[vertex] + fraction * ends
-        _, first = self._run("insert_vertex", arguments.rows(spokes), points.astype(np.float32))
+        run, followers = self._operations.run, self._followers
+        _, first = run("insert_vertex", arguments.rows(spokes), points.astype(np.float32))
         before = self._half_edges[spokes, PREVIOUS]  # from the next new vertex to this one
         ends = np.stack([self._half_edges[spokes, NEXT], before, before], axis=1)
-        _, second = self._run("cut_across", ends.astype(np.int64), arguments.NO_POINT)
-        self._carry_on(Edit("", -1, np.concatenate([first, second])))  # from a vertex still there
-        found, third = self._run("erase_vertex", arguments.rows([vertex]), arguments.NO_POINT)
-        self._carry_on(Edit("", -1, third))
+        _, second = run("cut_across", ends.astype(np.int64))
+        followers.carry(Edit("", -1, np.concatenate([first, second])))  # from a vertex still there
+        found, third = run("erase_vertex", arguments.rows([vertex]))
+        followers.carry(Edit("", -1, third))
         log = np.concatenate([first, second, third])
-        self._subscribers.tell(Edit("truncate_vertex", -1, log))
+        followers.subscribers.tell(Edit("truncate_vertex", -1, log))
         return int(found[0])
 
     # Behind the contract ---------------------------------------------------------------------
@@ -342,17 +343,14 @@ class Plankton(Navigable):
             if point is None
             else arguments.positions(called, np.asarray(point)[None], 1)
         )
-        results, log = self._run(operation, args, points)
+        results, log = self._operations.run(operation, args, points)
         result = int(results[0])
         if result < 0:
-            raise self._refusal(operation, result, args[0].tolist())
+            raise self._operations.refusal(operation, result, args[0].tolist())
         names_a_vertex = self.operations[operation].names_a_vertex
         edit = Edit(called, result if names_a_vertex else -1, log)
-        self._publish(edit)
+        self._followers.publish(edit)
         return result, edit
-
-    def _edge_names(self, handles: Array) -> Array:
-        return handles - (handles & 1)
 
     def _require_invariants(self) -> None:
         """Those at the top of this file."""

@@ -32,7 +32,6 @@ from typing import NamedTuple, Self
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
 from hem.arrays import Array
 from hem.authoring import (
@@ -407,10 +406,6 @@ class WingedEdge(Structure):
         face_edge = (directed[::3] >> 1).astype(reference)
         count = counted(len(mesh.points), pairing.n_edges, len(face_edge), pairing.n_edges)
         return cls(WingedEdgeRecords(mesh.points.copy(), vertex_edge, face_edge, edge, count))
-
-    def edges(self) -> NDArray[np.int64]:
-        """(n_edges,) int64: the index of every live edge record."""
-        return np.flatnonzero(self._alive("edge"))
 
     def _require_invariants(self) -> None:
         """Those at the top of this file."""

@@ -1,31 +1,31 @@
 """What every structure offers, for whoever uses one or writes one.
 
-``Structure`` is one class made of layers, each on top of the last:
+``Structure`` is the one class that is used: the contract, each method a line or two that hand it on
+to a part. The parts, each on top of those before:
 
-``Described``    name, title, look and claims, for tables and plots
-``Elements``     vertices, faces, positions
-``Scratch``      where answers are written, and room for more elements
-``Queryable``    the nine queries, ``find_edge``
-``Surveying``    borders, components, all triangles
-``Following``    what follows every edit: subscribers, values of vertices, edges, faces, corners
-``Operating``    how an operation is checked, tried and logged
-``Algorithms``   ``run``: algorithms of one's own over any structure
-``Editable``     the operations, ``compact``
-``Measuring``    what experiments time and count
-``Structure``    build, validate, copy, memory
-``Navigable``    a structure whose half-edges can be walked
+``Declared``    what follows from a structure's class, once: kernels, their uses, its storage
+``Storage``     how records are held: which are live, room, numbers after ``compact``, copies
+``State``       of one mesh: records, scratch, log, bounds, and what is pinned in memory
+``Queries``     the nine queries, ``find_edge``, all edges, steps along half-edges
+``Surveying``   borders, components, all triangles: of records and queries alone
+``Attribute``   values of vertices, edges, faces, corners, half-edges
+``Followers``   attributes and subscribers, which follow every edit
+``Operations``  how an operation is checked, tried, given room and logged
+
+``Navigable`` is a structure whose half-edges can be walked, ``PackedEdges`` one that names edges by
+their vertices, ``MarkedEdges`` one whose half-edges move.
 """
 
 from hem.authoring import ELEMENTS, OPERATIONS, QUERIES, REFERENCE_TYPES, Query
 from hem.contract import arguments
 from hem.contract.attributes import Attribute
-from hem.contract.description import Claims, Described, Look
-from hem.contract.elements import HANDLE_TYPES
-from hem.contract.measuring import Prepared, Sweep
+from hem.contract.description import Algorithm, Claims, Described, Look
 from hem.contract.navigation import STEPS, Navigable
-from hem.contract.operating import Algorithm
+from hem.contract.operations import Prepared
 from hem.contract.packed import MarkedEdges, PackedEdges
+from hem.contract.queries import Sweep
 from hem.contract.removal import Remaining, remaining
+from hem.contract.storage import HANDLE_TYPES, Storage
 from hem.contract.structure import Structure
 
 __all__ = [
@@ -46,6 +46,7 @@ __all__ = [
     "Prepared",
     "Query",
     "Remaining",
+    "Storage",
     "Structure",
     "Sweep",
     "arguments",

@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike, DTypeLike
 
 from hem.arrays import Array
 from hem.authoring import ENDS
+from hem.contract.state import State
 from hem.contract.surveying import Surveying
 from hem.edit import Edit, generations, whole_faces
 from hem.errors import MeshError
@@ -44,12 +45,14 @@ class Attribute:
     def __init__(
         self,
         mesh: Surveying,
+        state: State,
         element: str,
         name: str,
         default: Array,
         on_split: Rule | None = None,
     ) -> None:
-        self.mesh, self.element, self.name, self.default = mesh, element, name, default
+        self.mesh, self._state = mesh, state
+        self.element, self.name, self.default = element, name, default
         self.on_split = on_split or self._usual_rule()
         if self.on_split not in RULES:
             raise MeshError(f"on_split is one of {', '.join(RULES)}, not {on_split!r}")
@@ -132,7 +135,7 @@ class Attribute:
         self._grow()
         rows = rows.astype(np.int64)
         element = "face" if self.element == "corner" else self.element
-        self.mesh._check_handles(element, np.atleast_1d(rows))
+        self._state.require(element, np.atleast_1d(rows))
         return rows
 
     def _grow(self) -> None:
@@ -183,10 +186,15 @@ class Attribute:
 class EdgeAttribute(Attribute):
     """Of edges or half-edges. The new part of an edge that is split has what the old part has."""
 
+    @property
+    def _mesh(self) -> Any:
+        """The mesh, which records edges, or half-edges."""
+        return self.mesh
+
     def _checked(self, handles: Any) -> Any:
         rows = super()._checked(handles)
         if self.element == "edge":
-            return self.mesh._edge_names(np.atleast_1d(rows)).reshape(rows.shape)
+            return self._state.edge_names(np.atleast_1d(rows)).reshape(rows.shape)
         return rows
 
     def _moved(self, edit: Edit) -> tuple[Array, Array]:
@@ -200,7 +208,7 @@ class EdgeAttribute(Attribute):
             return
         for v, ends in zip(edit.created_vertices.tolist(), edit.vertex_parents, strict=True):
             if len(ends) == 2:
-                old, new = (self.mesh.find_edge(v, int(end)) for end in ends)
+                old, new = (self._mesh.find_edge(v, int(end)) for end in ends)
                 for one, other in self._sides(v, old, new):
                     self._rows[other] = self._rows[one]
 
@@ -210,7 +218,7 @@ class EdgeAttribute(Attribute):
             return []
         if self.element == "edge":
             return [(old, new)]
-        mesh: Any = self.mesh
+        mesh = self._mesh
         apart = (mesh.origin(old) == middle) == (mesh.origin(new) == middle)
         one, other = [old, mesh.twin(old)], [new, mesh.twin(new)]
         pairs = zip(one, other[::-1] if apart else other, strict=True)
@@ -245,17 +253,12 @@ class HalfEdgeAttribute(EdgeAttribute):
             known = edit.removed_faces < len(self._within)  # or an edit was interrupted
             h = self._within[edit.removed_faces[known]].reshape(-1)
             h = h[h >= 0]
-            h = h[mesh._alive("half_edge", h)]
+            h = h[self._state.alive("half_edge", h)]
             moved = h[mesh.origin(h) != self._ran[h, 0]]
             self._rows[moved] = self._rows[self._ran[moved, 1]]
             faces = np.concatenate([faces, mesh.face(moved)])
         super()._inherit(edit)
         self._look_at(np.unique(faces[faces >= 0]))
-
-    @property
-    def _mesh(self) -> Any:
-        """The mesh, which has half-edges."""
-        return self.mesh
 
     def _look_at_all(self) -> None:
         self._ran = np.full((0, 2), -1)  # of each half-edge the origin and the twin
@@ -298,9 +301,9 @@ class CornerAttribute(Attribute):
     a face by a flip or a collapse has the value it has beside it, on the same side of a seam.
     """
 
-    def __init__(self, mesh: Surveying, *made: Any) -> None:
+    def __init__(self, *made: Any) -> None:
         self._keys = np.full((0, 3), -1, np.int32)  # of which vertex a row is the corner
-        super().__init__(mesh, *made)
+        super().__init__(*made)
 
     def __getitem__(self, handles: Any) -> Any:
         """(corners, …) of one face, or of many, one after the other."""

@@ -1,11 +1,23 @@
-"""What tables and plots say of a structure: its names, its look, and what is claimed of it."""
+"""What a structure's class declares: its names, look and claims, its records and kernels."""
 
 from __future__ import annotations
 
 import inspect
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import ClassVar
+from functools import cached_property
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hem.arrays import Array
+from hem.authoring import OPERATIONS, QUERIES, Kernel, Kernels
+from hem.authoring.marked import named_by_ends
+from hem.engine import Uses
+
+Algorithm = Callable[[Kernels, Kernels], Kernel]
+"""Makes an algorithm of one structure's queries and operations, see ``Structure.run``."""
 
 
 @dataclass(frozen=True)
@@ -72,3 +84,98 @@ def place_of(cls: type) -> str:
         return f"{inspect.getfile(cls)}: {cls.__name__}"
     except (OSError, TypeError):
         return cls.__name__
+
+
+class Declared:
+    """What follows from a structure's class, once for all its meshes.
+
+    A class that forgets a part is a TypeError that names the class and the part.
+    """
+
+    def __init__(self, cls: Any) -> None:
+        self._place = place_of(cls)
+        self._require_parts(cls)
+        self.kernels: Kernels = cls.kernels
+        self.operations, self.steps = cls.operations, cls.steps
+        self.storage = cls.storage(cls.fields, self.step if self.steps else None)
+        self._uses, self._records = self.storage.uses, cls.records_type
+        self._algorithms: dict[Algorithm, Uses] = {}
+        self.queries = {name: self._derived(self._query(name)) for name in QUERIES}
+        self.operating = {name: self._derived(self._operation(name)) for name in self.operations}
+        self.lasting: dict[str, Uses] = {}
+        if not cls.stable_edge_handles:
+            of_edges = [it for it in self.operations if self.operations[it].element == "edge"]
+            self.lasting = {name: self._derived(self._of_lasting_names(name)) for name in of_edges}
+        lacking = {it.kernel for it in self.steps.values()} - self.kernels.keys()
+        if lacking:
+            raise TypeError(f"{self._place} has no kernels of steps: {sorted(lacking)}")
+        self.stepping = {
+            name: self._derived(self.kernels[it.kernel]) for name, it in self.steps.items()
+        }
+
+    def exists(self, element: str) -> Kernel:
+        """Whether there is one; a half-edge that names its edge is one where that is."""
+        own = self.kernels.get(f"{element}_exists")
+        return own or self.kernels[f"{element.removeprefix('half_')}_exists"]
+
+    def step(self, name: str, records: Any, handles: Array) -> NDArray[np.int64]:
+        """Where a step leads from each of the live ``handles`` (n,) int64."""
+        found = np.empty(len(handles), np.int64)
+        self.walks[name](handles, found, *records)
+        return found
+
+    def algorithm(self, make: Algorithm) -> Uses:
+        """What ``make`` makes for this structure; asked once."""
+        if make not in self._algorithms:
+            operations = {name: uses.kernel for name, uses in self.operating.items()}
+            self._algorithms[make] = self._derived(make(self.kernels, operations))
+        return self._algorithms[make]
+
+    @cached_property
+    def walks(self) -> dict[str, Callable[..., int]]:
+        """Every step from many handles, see ``Uses.walk``."""
+        sources = {name: self.exists(it.source) for name, it in self.steps.items()}
+        return {name: self.stepping[name].walk(exists) for name, exists in sources.items()}
+
+    @cached_property
+    def copy_touched(self) -> Callable[..., int]:
+        """See ``Uses.copy_touched``."""
+        exists, coordinate = self.kernels["face_exists"], self.kernels["coordinate"]
+        return self.queries["face_vertices"].copy_touched(exists, coordinate)
+
+    def _derived(self, kernel: Kernel) -> Uses:
+        return self._uses(kernel, self._records)
+
+    def _require_parts(self, cls: Any) -> None:
+        missing = [it for it in ("records_type", "fields") if not hasattr(cls, it)]
+        for method in ("build", "_require_invariants"):
+            if getattr(getattr(cls, method), "__isabstractmethod__", False):
+                missing.append(method)
+        if missing:
+            raise TypeError(f"{self._place} does not say: {', '.join(missing)}")
+        claimed = cls.claims.costs if hasattr(cls, "claims") else {}
+        unknown = sorted(set(claimed) - {*QUERIES, *OPERATIONS})
+        if unknown:
+            raise TypeError(
+                f"{self._place}: claims of what is no query and no operation: {unknown}"
+            )
+
+    def _query(self, name: str) -> Kernel:
+        if name not in self.kernels:
+            raise TypeError(f"{self._place} has no kernel {name}(m, {name[0]}, out) -> count")
+        return self.kernels[name]
+
+    def _of_lasting_names(self, name: str) -> Kernel:
+        if "edge_between" not in self.kernels:
+            raise TypeError(f"{self._place} has no kernel edge_between(m, a, b) -> edge or -1")
+        return named_by_ends(self.operating[name].kernel, self.kernels["edge_between"])
+
+    def _operation(self, name: str) -> Kernel:
+        make = self.operations[name].make
+        try:
+            return make(self.kernels)
+        except KeyError as missing:
+            raise TypeError(
+                f"{self._place} has no kernel {missing.args[0]}, which {name} takes; see "
+                f"{make.__module__}"
+            ) from None

@@ -2,22 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from functools import cached_property
-from typing import Any, ClassVar, NamedTuple, Protocol, overload
+from typing import Any, NamedTuple, Protocol, overload
 
 import numpy as np
 from numpy.typing import NDArray
 
-from hem.arrays import Array
-from hem.authoring import Kernel, Kernels
 from hem.contract.attributes import HalfEdgeAttribute
-from hem.contract.description import place_of
-from hem.contract.elements import HANDLE_TYPES
-from hem.contract.following import AttributeMethod, attribute_method
-from hem.contract.queryable import MOST, NUMPY_INTEGERS
-from hem.contract.structure import Structure
-from hem.errors import MeshError
+from hem.contract.following import AttributeMethod
+from hem.contract.structure import Structure, attribute_method, made_once
 
 
 class Step(NamedTuple):
@@ -29,6 +21,16 @@ class Step(NamedTuple):
     """What the kernel is called that takes it, ``kernel(m, handle) -> handle``."""
 
     words: str
+
+    @property
+    def text(self) -> str:
+        """The docstring of its method."""
+        source = self.source.replace("_", "-")
+        return (
+            f"Of a {source}: {self.words}; -1 where there is none.\n\n"
+            "One handle gives a handle, an array of handles (n,) an array. Cost O(1). Raises\n"
+            f"MeshError for a handle that names no {source} of this mesh."
+        )
 
 
 STEPS = {
@@ -49,14 +51,6 @@ STEPS = {
 """Every step by name."""
 
 
-SOURCES = {it.source for it in STEPS.values()}
-
-
-def _exists(k: Kernels, source: str) -> Kernel:
-    """Whether there is such an element. A half-edge that names its edge is one where that is."""
-    return k.get(f"{source}_exists") or k[f"{source.removeprefix('half_')}_exists"]
-
-
 class StepMethod(Protocol):
     """A step as a method: one handle -> a handle; an array of handles -> an array."""
 
@@ -67,33 +61,7 @@ class StepMethod(Protocol):
 
 
 def _step_method(name: str) -> Any:
-    step = STEPS[name]
-
-    def bound(self: Navigable) -> StepMethod:
-        pinned = self._pin(lambda: ())
-        exists = _exists(self.kernels, step.source)
-        take = self._steps[name].step(pinned, exists)
-        address = pinned.address
-
-        def walk(handles: Any) -> Any:
-            handle = int(handles) if type(handles) in NUMPY_INTEGERS else handles
-            if type(handle) is int and -MOST <= handle < MOST:
-                found = take(handle, address)
-                if found >= 0:
-                    return found
-            return self._walk(name, handles)
-
-        walk.__name__, walk.__doc__ = name, attribute.__doc__
-        walk.__dict__["pinned"] = pinned  # lives as long as the address is in use
-        return walk
-
-    attribute = cached_property(bound)
-    attribute.__doc__ = (
-        f"Of a {step.source.replace('_', '-')}: {step.words}; -1 where there is none.\n\n"
-        "One handle gives a handle, an array of handles (n,) an array. Cost O(1). Raises\n"
-        f"MeshError for a handle that names no {step.source.replace('_', '-')} of this mesh."
-    )
-    return attribute
+    return made_once(STEPS[name].text, lambda self: self._queries.step(name))
 
 
 class Navigable(Structure, abstract=True):
@@ -102,17 +70,7 @@ class Navigable(Structure, abstract=True):
     Its kernels for the steps lead to a negative number where there is none.
     """
 
-    _steps: ClassVar[dict[str, Any]]
-
-    def __init_subclass__(cls, abstract: bool = False) -> None:
-        super().__init_subclass__(abstract)
-        if abstract:
-            return
-        missing = {it.kernel for it in STEPS.values()} - cls.kernels.keys()
-        if missing:
-            raise TypeError(f"{place_of(cls)} has no kernels of steps: {sorted(missing)}")
-        taken = {name: cls.kernels[it.kernel] for name, it in STEPS.items()}
-        cls._steps = {name: cls.uses_type(it, cls.records_type) for name, it in taken.items()}
+    steps = STEPS
 
     next: StepMethod = _step_method("next")
     previous: StepMethod = _step_method("previous")
@@ -133,30 +91,4 @@ class Navigable(Structure, abstract=True):
 
     def half_edges(self) -> NDArray[np.int64]:
         """(n_half_edges,) int64: the handles of all live half-edges, ascending. Cost O(n_e)."""
-        return np.flatnonzero(self._alive("half_edge"))
-
-    def edges(self) -> NDArray[np.int64]:
-        """(n_edges,) int64: the handles of all live edges, each by its one name. Cost O(n_e)."""
-        h = self.half_edges()
-        return h[self._edge_names(h) == h]
-
-    @cached_property
-    def _walks(self) -> dict[str, Callable[..., int]]:
-        """Every step from many handles."""
-        exists = {it: _exists(self.kernels, it) for it in SOURCES}
-        return {name: self._steps[name].walk(exists[it.source]) for name, it in STEPS.items()}
-
-    def _walk(self, name: str, handles: Any) -> Any:
-        """Any handles for a step, checked."""
-        step = STEPS[name]
-        asked: Array = np.asarray(handles)
-        if asked.ndim > 1 or (asked.size and not np.issubdtype(asked.dtype, np.integer)):
-            raise MeshError(
-                f"{name} takes one {step.source} handle or a 1-D array of integers, not "
-                f"{handles!r:.60}"
-            )
-        rows = np.atleast_1d(asked).astype(np.int64)
-        found = np.empty(len(rows), HANDLE_TYPES.get(step.target, np.int64))
-        if self._walks[name](rows, found, *self.records) < len(rows) or step.source == "vertex":
-            self._check_handles(step.source, rows)
-        return found if asked.ndim else int(found[0])
+        return self._state.live("half_edge")

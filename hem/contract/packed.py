@@ -9,12 +9,35 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from hem.arrays import Array, Bools
-from hem.authoring import EDGE_END, ENDLESS, FACE_ROOM
+from hem.authoring import EDGE_END, ENDLESS, FACE_ROOM, VERTEX_END
 from hem.authoring.marked import BITS, MARK, scatter
-from hem.contract.elements import refuse_handles
 from hem.contract.navigation import Navigable
+from hem.contract.storage import Storage, refuse_handles
 from hem.contract.structure import Structure
-from hem.errors import MeshError
+
+
+class PackedStorage(Storage):
+    """Records of vertices and faces; an edge handle is its two vertices."""
+
+    def require(self, records: Any, element: str, handles: Array) -> None:
+        """See ``Storage.require``; whether an edge joins the two is not looked at."""
+        if element != "edge":
+            return super().require(records, element, handles)
+        smaller, larger = handles >> 32, handles & 0xFFFFFFFF
+        legal = (smaller >= 0) & (smaller < larger) & (larger < records.counts[VERTEX_END])
+        if not legal.all():
+            refuse_handles("edge", handles[~legal])
+
+    def renumbered(self, edges: ArrayLike, number: Mapping[str, Array]) -> NDArray[np.int64]:
+        """See ``Storage.renumbered``."""
+        handles = np.asarray(edges, np.int64)
+        known, n = handles >= 0, len(number["vertex"])
+        known &= (handles >> 32 < n) & (handles & 0xFFFFFFFF < n)
+        handles = np.where(known, handles, 0)
+        new = np.append(number["vertex"], -1)
+        smaller, larger = new[handles >> 32], new[handles & 0xFFFFFFFF]
+        gone = ~known | (smaller < 0) | (larger < 0)
+        return np.where(gone, -1, (smaller << 32) | larger)
 
 
 class PackedEdges(Structure, abstract=True):
@@ -26,26 +49,79 @@ class PackedEdges(Structure, abstract=True):
     """
 
     emulated = frozenset({"edge_vertices", "edge_edges", "edge_faces"})
+    storage = PackedStorage
 
-    def _check_handles(self, element: str, handles: NDArray[Any]) -> None:
+
+class MarkedStorage(Storage):
+    """Records of vertices and half-edges; an edge handle is a half-edge and a mark of its ends."""
+
+    _step: Any
+
+    def alive(self, records: Any, element: str, rows: Any = slice(None)) -> Bools:
+        """See ``Storage.alive``; a face is live where its half-edges are."""
+        if element == "face":
+            element = "half_edge"
+            rows = slice(None, None, 3) if isinstance(rows, slice) else 3 * rows.astype(np.int64)
+        return super().alive(records, element, rows)
+
+    def edges(self, records: Any) -> NDArray[np.int64]:
+        """See ``Storage.edges``."""
+        h = self.live(records, "half_edge")
+        names = self._step("edge", records, h)
+        found: NDArray[np.int64] = names[names >> BITS == h]
+        return found
+
+    def edge_names(self, records: Any, edges: NDArray[np.int64]) -> NDArray[np.int64]:
+        """See ``Storage.edge_names``."""
+        names: NDArray[np.int64] = self._step("edge", records, edges >> BITS)
+        return names
+
+    def lasting_names(self, records: Any, edges: NDArray[np.int64]) -> NDArray[np.int64]:
+        """See ``Storage.lasting_names``: ``smaller end << 32 | larger end``."""
+        known, names = self._are_edges(records, edges), np.full(len(edges), -1)
+        h = edges[known] >> BITS
+        ends = np.sort([self._step(it, records, h) for it in ("origin", "tip")], axis=0)
+        names[known] = ends[0] << 32 | ends[1]
+        return names
+
+    def require(self, records: Any, element: str, handles: Array) -> None:
+        """See ``Storage.require``."""
         if element != "edge":
-            return super()._check_handles(element, handles)
-        smaller, larger = handles >> 32, handles & 0xFFFFFFFF
-        legal = (smaller >= 0) & (smaller < larger) & (larger < len(self.points))
-        if not legal.all():
-            refuse_handles("edge", handles[~legal])
+            return super().require(records, element, handles)
+        known = self._are_edges(records, handles.astype(np.int64))
+        if not known.all():
+            refuse_handles("edge", handles[~known])
 
-    def _renumbered(
-        self, edges: ArrayLike, number: Mapping[str, NDArray[Any]]
-    ) -> NDArray[np.int64]:
+    def _are_edges(self, records: Any, handles: NDArray[np.int64]) -> Bools:
+        """(n,) which handles name an edge."""
+        h = handles >> BITS
+        known: Bools = (h >= 0) & (h < records.counts[EDGE_END])
+        known[known] = self.alive(records, "half_edge", h[known])
+        known[known] = (self._step("edge", records, h[known]) ^ handles[known]) & MARK == 0
+        return known
+
+    def compacted(self, records: Any) -> tuple[Any, dict[str, Array]]:
+        """See ``Storage.compacted``; also the mark that each old edge had, and its new handle."""
+        h = self.live(records, "half_edge")
+        twin, *ends = (self._step(it, records, h) for it in ("twin", "origin", "tip"))
+        was, new = np.full((2, int(records.counts[EDGE_END])), -1)
+        was[h] = self._step("edge", records, h) & MARK
+        records, number = super().compacted(records)
+        records.counts[FACE_ROOM] = ENDLESS
+        of = number["half_edge"]
+        place = np.where(twin >= 0, np.minimum(of[h], of[twin]), of[h])
+        marks = (scatter(number["vertex"][it].astype(np.int64)) for it in ends)
+        new[h] = place << BITS | np.bitwise_xor(*marks)
+        return records, number | {"face": of[::3] // 3, "mark": was, "edge": new}
+
+    def renumbered(self, edges: ArrayLike, number: Mapping[str, Array]) -> NDArray[np.int64]:
+        """See ``Storage.renumbered``."""
         handles = np.asarray(edges, np.int64)
-        known, n = handles >= 0, len(number["vertex"])
-        known &= (handles >> 32 < n) & (handles & 0xFFFFFFFF < n)
-        handles = np.where(known, handles, 0)
-        new = np.append(number["vertex"], -1)
-        smaller, larger = new[handles >> 32], new[handles & 0xFFFFFFFF]
-        gone = ~known | (smaller < 0) | (larger < 0)
-        return np.where(gone, -1, (smaller << 32) | larger)
+        h = handles >> BITS
+        known = (h >= 0) & (h < len(number["mark"]))
+        h = np.where(known, h, 0)
+        known[known] = number["mark"][h[known]] == handles[known] & MARK
+        return np.where(known, np.append(number["edge"], -1)[h], -1)
 
 
 class MarkedEdges(Navigable, abstract=True):
@@ -57,73 +133,4 @@ class MarkedEdges(Navigable, abstract=True):
     """
 
     stable_edge_handles = False
-
-    def edges(self) -> NDArray[np.int64]:
-        """See ``Navigable.edges``; ascending."""
-        h = self.half_edges()
-        names = self.edge(h)
-        return names[names >> BITS == h]
-
-    def _are_edges(self, handles: Array) -> Bools:
-        """(n,) which handles name an edge."""
-        h = handles >> BITS
-        known: Bools = (h >= 0) & (h < self.records.counts[EDGE_END])
-        known[known] = self._alive("half_edge", h[known])
-        known[known] = (self.edge(h[known]) ^ handles[known]) & MARK == 0
-        return known
-
-    def _edge_names(self, handles: Array) -> Array:
-        known, names = self._are_edges(handles), handles.copy()
-        names[known] = self.edge(handles[known] >> BITS)
-        return names
-
-    def _lasting_names(self, handles: Array) -> Array:
-        known, names = self._are_edges(handles), np.full(len(handles), -1)
-        h = handles[known] >> BITS
-        ends = np.sort([self.origin(h), self.tip(h)], axis=0).astype(np.int64)
-        names[known] = ends[0] << 32 | ends[1]
-        return names
-
-    def _lasting_handle(self, name: int) -> int:
-        try:
-            edge = self.find_edge(int(name) >> 32, int(name) & 0xFFFFFFFF)
-        except MeshError:  # an end is gone
-            return -1
-        return -1 if edge is None else edge
-
-    def _check_handles(self, element: str, handles: Array) -> None:
-        if element != "edge":
-            return super()._check_handles(element, handles)
-        known = self._are_edges(handles.astype(np.int64))
-        if not known.all():
-            refuse_handles("edge", handles[~known])
-
-    def _alive(self, element: str, rows: Any = slice(None)) -> Bools:
-        if element == "face":
-            element = "half_edge"
-            first = slice(None, None, 3) if isinstance(rows, slice) else 3 * rows.astype(np.int64)
-            rows = first
-        return super()._alive(element, rows)
-
-    def _compacted(self) -> tuple[Any, dict[str, Array]]:
-        h, end = self.half_edges(), self.records.counts[EDGE_END]
-        twin, ends = self.twin(h), (self.origin(h), self.tip(h))
-        was, new = np.full((2, end), -1)
-        was[h] = self.edge(h) & MARK
-        records, number = super()._compacted()
-        records.counts[FACE_ROOM] = ENDLESS
-        of = number["half_edge"]
-        place = np.where(twin >= 0, np.minimum(of[h], of[twin]), of[h])
-        marks = (scatter(number["vertex"][it].astype(np.int64)) for it in ends)
-        new[h] = place << BITS | np.bitwise_xor(*marks)
-        return records, number | {"face": of[::3] // 3, "mark": was, "edge": new}
-
-    def _renumbered(
-        self, edges: ArrayLike, number: Mapping[str, NDArray[Any]]
-    ) -> NDArray[np.int64]:
-        handles = np.asarray(edges, np.int64)
-        h = handles >> BITS
-        known = (h >= 0) & (h < len(number["mark"]))
-        h = np.where(known, h, 0)
-        known[known] = number["mark"][h[known]] == handles[known] & MARK
-        return np.where(known, np.append(number["edge"], -1)[h], -1)
+    storage = MarkedStorage

@@ -12,9 +12,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hem.arrays import Array
-from hem.authoring import EDGES, FACES, VERTICES, Kernel, Kernels, kernel, log_element
-from hem.contract.queryable import Queryable
+from hem.authoring import (
+    EDGES,
+    ENTRIES,
+    FACES,
+    VERTICES,
+    Kernel,
+    Kernels,
+    Refusal,
+    kernel,
+    log_element,
+)
+from hem.contract.surveying import Surveying
 from hem.edit import FACE, REMOVED, VERTEX
+from hem.errors import TopologyError
 
 
 class Remaining(NamedTuple):
@@ -50,7 +61,7 @@ def ascending(values: Array) -> Array:
     return ordered[np.append(True, ordered[1:] != ordered[:-1])] if len(ordered) else ordered
 
 
-def remaining(s: Queryable, gone: Array, fresh: Array | None = None) -> Remaining:
+def remaining(s: Surveying, gone: Array, fresh: Array | None = None) -> Remaining:
     """What is left at the vertices of faces (k,), or just of the ``fresh`` ones among them.
 
     Cost: ``vertex_faces`` of these vertices.
@@ -67,7 +78,7 @@ def remaining(s: Queryable, gone: Array, fresh: Array | None = None) -> Remainin
     return Remaining(*(it[chosen] for it in (vertex, face, following, before)))
 
 
-def vanishing_edges(s: Queryable, gone: Array, left: Remaining) -> int:
+def vanishing_edges(s: Surveying, gone: Array, left: Remaining) -> int:
     """How many edges have no face any more once these are gone."""
     corners = s.face_vertices(gone)
     here = corners.values.astype(np.int64)
@@ -85,6 +96,21 @@ class Removal(NamedTuple):
     anchors: Array  # (n, 2) int64: a vertex that keeps faces, and one of them
     counted: Array  # (2,) int64: how many edges are left without a face; a vertex to go, or -1
     log: Array
+
+
+def planned(s: Surveying, called: str, faces: Array, vertex: int) -> Removal:
+    """How to take faces (k,) away and a vertex that has no others, or -1.
+
+    TopologyError where two fans of what is left would meet in one vertex.
+    """
+    left = remaining(s, faces)
+    pinched = left.pinched()
+    if len(pinched):
+        raise TopologyError(f"cannot {called}: {Refusal.BETWEEN.words}", vertices=pinched)
+    vertices, first = np.unique(left.vertex, return_index=True)
+    anchors = np.stack([vertices, left.face[first]], axis=1)
+    counted = np.array([vanishing_edges(s, faces, left), vertex])
+    return Removal(faces, anchors, counted, np.zeros(len(faces) + ENTRIES, np.int64))
 
 
 def removing(k: Kernels, operations: Kernels) -> Kernel:

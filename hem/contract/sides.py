@@ -46,11 +46,6 @@ class SideAttribute(EdgeAttribute):
 
     # Behind it ---------------------------------------------------------------------------------
 
-    @property
-    def _mesh(self) -> Any:
-        """The mesh, which has half-edges."""
-        return self.mesh
-
     def _checked(self, handles: Any) -> Any:
         rows = super(EdgeAttribute, self)._checked(handles)
         return rows >> BITS if self.element == "edge" else rows

@@ -1,34 +1,120 @@
-"""What every mesh data structure has in common: the contract, derived from its kernels."""
+"""The contract: what every mesh data structure offers, derived from its kernels."""
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
-from typing import Any, ClassVar, Self
+from abc import abstractmethod
+from collections.abc import Callable, Mapping
+from functools import cached_property
+from typing import Any, ClassVar, NamedTuple, Self
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
+from hem.arrays import Array, Bools, Handles, Points
 from hem.authoring import (
+    ENTRIES,
     OF_ARRAYS,
     OPERATIONS,
     QUERIES,
+    Field,
     Kernel,
+    Operation,
     kernels_of,
     require_records,
 )
-from hem.authoring.marked import named_by_ends
-from hem.contract.description import place_of
-from hem.contract.measuring import Measuring
+from hem.contract import arguments
+from hem.contract.attributes import Attribute, CornerAttribute, EdgeAttribute
+from hem.contract.description import Algorithm, Declared, Described
+from hem.contract.following import AttributeMethod, Followers, Kept
+from hem.contract.operations import Operations, Prepared
+from hem.contract.queries import Queries, QueryMethod, Sweep
+from hem.contract.removal import planned, removing
+from hem.contract.state import State
+from hem.contract.storage import Storage
+from hem.contract.surveying import Surveying, centroids
+from hem.edit import Edit, Remapping
+from hem.errors import MeshError
 from hem.meshes import TriangleMesh
-from hem.ragged import Ragged
+
+NO_VERTEX = -2
+"""Stands for a vertex to keep that is said to be -1, which means that none is said."""
 
 
-class Structure(Measuring, ABC, abstract=True):
+class Snapshot(NamedTuple):
+    """A mesh as it was."""
+
+    records: Any
+    attributes: Kept
+
+
+def made_once(text: str, make: Callable[[Any], Any]) -> Any:
+    """A method that is made when a mesh is first asked for it, and kept: quick to call."""
+
+    def bound(self: Any) -> Any:
+        method = make(self)
+        method.__doc__ = text
+        return method
+
+    attribute = cached_property(bound)
+    attribute.__doc__ = text
+    return attribute
+
+
+def _query_method(name: str) -> Any:
+    source, title = QUERIES[name].source, QUERIES[name].title
+    text = (
+        f"{title}, of one {source} or of many.\n\n"
+        "One handle gives a 1-D array, an array of handles (n,) a ``Ragged`` with n rows, and no\n"
+        "argument one of all live elements. Each neighbor comes once; around a vertex or face\n"
+        "counterclockwise where the structure knows the order. Cost per handle: thesis, table 1.\n"
+        f"Raises MeshError for a handle that names no {source} of this mesh."
+    )
+    return made_once(text, lambda self: self._queries.method(name))
+
+
+def attribute_method(element: str, kind: type[Attribute], words: str) -> Any:
+    """The method ``Structure.vertex_attribute`` and its like."""
+    text = (
+        f"A value for every {element.replace('_', '-')}, found by its name, or made: the default\n"
+        "everywhere.\n\n"
+        "``dtype``: float32 unless it is said. ``shape``: of one value, () for a number.\n"
+        f"``on_split``: see ``Rule``. {words}\n"
+        "Copies of the mesh and pickles have it, too; ``compact`` renumbers it. Cost O(n) once,\n"
+        "then O(edit). MeshError where there is one of the name and of another type."
+    )
+    return made_once(
+        text, lambda self: AttributeMethod(self, self._state, self._followers, element, kind)
+    )
+
+
+class Structure(Described, Surveying, abstract=True):
     """A triangle mesh held in one data structure, interchangeable behind one contract.
 
     A subclass declares how it is called and looks (``Described``), its records (a ``NamedTuple`` of
     arrays) and their fields, how it is built and what must hold; its kernels are those of the
     module that it stands in. What it forgets is a TypeError that names the class and the part.
+
+    Any number of threads may ask a mesh at once, as long as none operates on it.
     """
+
+    records_type: ClassVar[type[Any]]
+    """The `NamedTuple` of the structure's arrays, with from→to names."""
+
+    fields: ClassVar[tuple[Field, ...]]
+    kernels: ClassVar[Mapping[str, Kernel]]
+    """By name; those of the module that the class stands in, unless it says others."""
+
+    operations: ClassVar[Mapping[str, Operation]] = OPERATIONS
+    """What can be done to this structure, by name."""
+
+    steps: ClassVar[Mapping[str, Any]] = {}
+    """How its half-edges can be walked, by name."""
+
+    storage: ClassVar[type[Storage]] = Storage
+    """How its records are held."""
+
+    declared: ClassVar[Declared]
+    """What follows from all these."""
 
     holds_polygons: ClassVar[bool] = False
     """Whether faces may have more than three corners, and ``build`` takes a ``PolygonMesh``."""
@@ -39,34 +125,29 @@ class Structure(Measuring, ABC, abstract=True):
     searches: ClassVar[bool] = False
     """Whether nothing is recorded of neighbors, so that they are searched for in the whole mesh."""
 
+    emulated: ClassVar[frozenset[str]] = frozenset()
+    """Queries answered without edge records: table 1's N/A."""
+
+    stable_edge_handles: ClassVar[bool] = True
+    """Whether an edge keeps its handle as long as it joins the same two vertices.
+
+    Where it does not, an operation may give other edges of the faces that it changes new handles.
+    The old ones are refused then; ``find_edge`` finds the new ones.
+    """
+
     def __init_subclass__(cls, abstract: bool = False) -> None:
-        """Derive the uses of every kernel."""
         super().__init_subclass__(abstract)
         if abstract:
             return
-        missing = [it for it in ("records_type", "fields") if not hasattr(cls, it)]
-        methods = ("build", "_require_invariants")
-        missing += [
-            it for it in methods if getattr(getattr(cls, it), "__isabstractmethod__", False)
-        ]
-        if missing:
-            raise TypeError(f"{place_of(cls)} does not say: {', '.join(missing)}")
         if "records_type" in cls.__dict__:
             own = cls.__dict__.get("kernels") or kernels_of(cls.__module__)
             cls.kernels = {**OF_ARRAYS, **own}
-        _require_claims(cls)
-        derive, records = cls.uses_type, cls.records_type
-        cls._algorithms = {}
-        cls._uses = {name: derive(_query(cls, name), records) for name in QUERIES}
-        cls._operation_uses = {
-            name: derive(_operation(cls, name), records) for name in cls.operations
-        }
-        if not cls.stable_edge_handles:
-            cls._lasting_uses = {
-                name: derive(_of_lasting_names(cls, name), records)
-                for name in cls.operations
-                if cls.operations[name].element == "edge"
-            }
+        cls.declared = Declared(cls)
+
+    def __init__(self, records: Any) -> None:
+        self._state = State(self.declared, records)
+        self._queries, self._followers = Queries(self._state), Followers()
+        self._operations = Operations(self._state, self._queries, self._followers)
 
     @classmethod
     @abstractmethod
@@ -89,6 +170,45 @@ class Structure(Measuring, ABC, abstract=True):
     def _require_invariants(self) -> None:
         """Check what must hold beside what follows from the fields (``require_records``)."""
 
+    def __repr__(self) -> str:
+        return (
+            f"<{self.title}: {self.n_vertices:,} vertices, {self.n_edges:,} edges, "
+            f"{self.n_faces:,} faces>"
+        )
+
+    # What there is ---------------------------------------------------------------------------
+
+    @property
+    def records(self) -> Any:
+        """See ``Surveying.records``."""
+        return self._state.records
+
+    @property
+    def arrays(self) -> tuple[Array, ...]:
+        """The arrays of the records, room for more included, without the count of them."""
+        return self._state.storage.arrays(self.records)
+
+    @property
+    def n_edges(self) -> int:
+        """Number of live undirected edges."""
+        return self._queries.count_edges()
+
+    def vertices(self) -> Handles:
+        """(n_vertices,) int32: the handles of all live vertices, ascending."""
+        return self._state.live("vertex")
+
+    def faces(self) -> Handles:
+        """See ``Surveying.faces``."""
+        return self._state.live("face")
+
+    def edges(self) -> NDArray[np.int64]:
+        """(n_edges,) int64: the handles of all live edges, ascending, each undirected edge once."""
+        return self._queries.edges()
+
+    def handles(self, element: str) -> NDArray[Any]:
+        """The handles of all elements of one kind: ``vertex``, ``edge`` or ``face``."""
+        return self._queries.handles(element)
+
     def to_triangles(self) -> TriangleMesh:
         """The same mesh as points and counterclockwise triangles. Cost O(n_v + n_t)."""
         corners, alive = self.face_vertices(self.faces()).values, self.vertices()
@@ -98,37 +218,330 @@ class Structure(Measuring, ABC, abstract=True):
             corners = number[corners]
         return TriangleMesh(self.points[alive], corners.reshape(-1, 3))
 
-    def __repr__(self) -> str:
-        return (
-            f"<{self.title}: {self.n_vertices:,} vertices, {self.n_edges:,} edges, "
-            f"{self.n_faces:,} faces>"
-        )
+    # Queries ---------------------------------------------------------------------------------
 
-    def same_as(self, other: Structure) -> bool:
-        """Whether another structure holds the same mesh: positions and faces by the same handles.
+    vertex_vertices: QueryMethod = _query_method("vertex_vertices")
+    vertex_edges: QueryMethod = _query_method("vertex_edges")
+    vertex_faces: QueryMethod = _query_method("vertex_faces")
+    edge_vertices: QueryMethod = _query_method("edge_vertices")
+    edge_edges: QueryMethod = _query_method("edge_edges")
+    edge_faces: QueryMethod = _query_method("edge_faces")
+    face_vertices: QueryMethod = _query_method("face_vertices")
+    face_edges: QueryMethod = _query_method("face_edges")
+    face_faces: QueryMethod = _query_method("face_faces")
 
-        Whatever corner a face begins at. Cost O(n_v + n_t).
+    def find_edge(self, a: int, b: int) -> int | None:
+        """The handle of the edge between vertices ``a`` and ``b``, or None where there is none.
+
+        Cost: that of ``vertex_edges``. Raises MeshError if ``a`` or ``b`` is no vertex.
         """
-        return (
-            np.array_equal(self.points, other.points, equal_nan=True)
-            and np.array_equal(self.faces(), other.faces())
-            and _from_smallest(self.face_vertices()) == _from_smallest(other.face_vertices())
+        return self._queries.find_edge(a, b)
+
+    # Operations ------------------------------------------------------------------------------
+    #
+    # Each checks first. If it may not be done, it raises TopologyError with the reason and the
+    # elements, and nothing has changed; so it does for a handle that names nothing (any more).
+    # MeshError is raised for arguments that are no handles or positions at all. Handles of
+    # untouched elements stay valid; new vertices and faces take the next index.
+
+    def operate(self, operation: str, *handles: int, point: ArrayLike | None = None) -> Edit:
+        """Do an operation by its name, as the method of that name does where there is one.
+
+        ``handles``: one to three. Raises KeyError for no operation.
+        """
+        first, *more = handles or (-1,)
+        return self._do[operation](first, point, *more)
+
+    def split_edge(self, edge: int, point: ArrayLike) -> Edit:
+        """Put a new vertex on an edge; each face there becomes two. The point may lie anywhere.
+
+        Interior: 1 vertex, 3 edges and 2 faces more; border: 1, 2 and 1. Refused between two faces
+        of the same corners. Cost O(1) where edges are recorded, else that of finding the faces:
+        O(n_ev) or O(n_t). Thesis 4.1.
+        """
+        return self._do["split_edge"](edge, point)
+
+    def split_face(self, face: int, point: ArrayLike) -> Edit:
+        """Put a new vertex into a face, which becomes three.
+
+        1 vertex, 3 edges and 2 faces more. Cost O(1). Thesis 4.3.
+        """
+        return self._do["split_face"](face, point)
+
+    def collapse_edge(self, edge: int, keep: int | None = None) -> Edit:
+        """Merge one end of an edge into the other, ``keep``, which stays where it is.
+
+        ``keep`` is ``edge_vertices(edge)[1]`` unless it is said. Interior: 1 vertex, 3 edges and 2
+        faces fewer; border: 1, 2 and 1. Cost O(n_ev), or O(n_t) where neighbors are searched for.
+        Thesis 4.2; refused as ``hem.authoring.operations.collapse_edge`` says.
+        """
+        end = -1 if keep is None else NO_VERTEX if keep == -1 else keep
+        return self._do["collapse_edge"](edge, None, end)
+
+    def flip_edge(self, edge: int) -> Edit:
+        """Turn an edge inside the two faces at it, so that it joins their other two corners.
+
+        No count changes; a second flip undoes the first. Cost O(1) where edges are recorded, and
+        to see that no edge is there yet O(the smaller valence of the two corners).
+        """
+        return self._do["flip_edge"](edge)
+
+    def add_face(self, a: int, b: int, c: int) -> Edit:
+        """Make a face of three vertices, counterclockwise. 1 face and 0 to 3 edges more.
+
+        Every corner must be without faces or share an edge with the surface. Cost O(n_ev).
+        """
+        return self._do["add_face"](a, None, b, c)
+
+    def remove_face(self, face: int) -> Edit:
+        """Take a face away. 1 face and 0 to 3 edges fewer; vertices stay. Cost O(n_ev)."""
+        return self._do["remove_face"](face)
+
+    def move_vertex(self, vertex: int, point: ArrayLike) -> Edit:
+        """Give a vertex another position. Cost O(1)."""
+        return self._do["move_vertex"](vertex, point)
+
+    def add_vertex(self, point: ArrayLike) -> Edit:
+        """Make a vertex that no face uses yet. 1 vertex more. O(1), as none is searched for."""
+        return self._do["add_vertex"](-1, point)
+
+    def can_collapse_edge(self, edge: int) -> bool:
+        """Whether ``collapse_edge`` would do it. Raises TopologyError if there is no such edge."""
+        return self._operations.may("collapse_edge", edge)
+
+    def can_flip_edge(self, edge: int) -> bool:
+        """Whether ``flip_edge`` would do it. Raises TopologyError if there is no such edge."""
+        return self._operations.may("flip_edge", edge)
+
+    @cached_property
+    def _do(self) -> dict[str, Callable[..., Edit]]:
+        """Every operation as a function of its first handle, a point and two more handles."""
+        return {name: self._operations.method(name) for name in self.operations}
+
+    # Many operations at once -----------------------------------------------------------------
+
+    def split_edges(self, edges: ArrayLike, points: ArrayLike) -> Handles:
+        """Split different edges (k,) at points (k, 3), in order -> the new vertices (k,) int32.
+
+        All are checked before any is split. Subscribers hear of one edit.
+        """
+        handles = arguments.handles("split_edges", edges)
+        return self._operations.all("split_edges", "split_edge", handles, points)
+
+    def split_faces(self, faces: ArrayLike, points: ArrayLike) -> Handles:
+        """Split different faces (k,) at points (k, 3), in order -> the new vertices (k,) int32.
+
+        All are checked before any is split. Subscribers hear of one edit.
+        """
+        handles = arguments.handles("split_faces", faces)
+        return self._operations.all("split_faces", "split_face", handles, points)
+
+    def split_all_faces(self) -> Handles:
+        """Split every face at its centroid -> the new vertices. A face for every side. O(n_t)."""
+        faces = self.faces()
+        points = centroids(self, faces)
+        return self._operations.all("split_all_faces", "split_face", faces, points)
+
+    def collapse_edges(self, edges: ArrayLike, keep: ArrayLike | None = None) -> Bools:
+        """Collapse edges (k,) in order, skipping what is gone or refused -> which were done.
+
+        ``keep``: (k,) the ends that stay, each ``edge_vertices(edge)[1]`` unless it is said. Edges
+        at a merged vertex live on where edges are recorded and their handles stable; named by their
+        ends they are gone.
+        Subscribers hear of one edit, or of one each where corners or half-edges have attributes.
+        """
+        handles = arguments.handles("collapse_edges", edges)
+        ends = np.full(len(handles), -1)
+        if keep is not None:
+            ends = arguments.handles("collapse_edges", keep)
+            ends[ends == -1] = NO_VERTEX
+        if len(ends) != len(handles):
+            raise MeshError(
+                f"collapse_edges takes one vertex to keep per edge, not {len(ends)} "
+                f"for {len(handles)}"
+            )
+        rows = arguments.rows(handles, ends)
+        if self.told_one_by_one:
+            return self._operations.one_by_one(self._do["collapse_edge"], rows)
+        return self._operations.persist("collapse_edges", "collapse_edge", rows)
+
+    def move_vertices(self, vertices: ArrayLike, points: ArrayLike) -> None:
+        """Give different vertices (k,) the positions (k, 3). One edit. Cost O(k)."""
+        handles = arguments.handles("move_vertices", vertices)
+        self._operations.all("move_vertices", "move_vertex", handles, points)
+
+    def remove_faces(self, faces: ArrayLike) -> None:
+        """Take different faces (k,) away, all at once or none; vertices stay.
+
+        Refused where two fans of what is left would meet in one vertex. Subscribers hear of one
+        edit. Cost: that of ``vertex_faces`` at all the corners.
+        """
+        handles = arguments.handles("remove_faces", faces)
+        self._operations.require_different("remove_faces", "face", handles)
+        if len(handles):
+            self._remove("remove_faces", handles)
+
+    def remove_vertex(self, vertex: int) -> Edit:
+        """Take a vertex away, and all faces at it; its neighbors stay.
+
+        1 vertex fewer. Refused where two fans of what is left would meet in one vertex. Cost: that
+        of ``vertex_faces`` at the vertex and its neighbors.
+        """
+        handle = arguments.handles("remove_vertex", [vertex])
+        self._operations.require_different("remove_vertex", "vertex", handle)
+        faces = self.vertex_faces(handle).values.astype(np.int64)
+        return self._remove("remove_vertex", faces, int(vertex))
+
+    def _remove(self, called: str, faces: Array, vertex: int = -1) -> Edit:
+        """Take faces (k,) away and a vertex that has no others, or -1."""
+        plan = planned(self, called, faces, vertex)
+        self._queries.count_edges()
+        self.run(removing, plan)
+        edit = Edit(called, -1, plan.log[1 : plan.log[0] + 1])
+        self._followers.publish(edit)
+        return edit
+
+    def compact(self) -> Remapping:
+        """Drop what is dead and the room for more; handles change -> the old ones to the new ones.
+
+        Elements keep their order. Cost O(n_v + n_t).
+        """
+        self._queries.count_edges()
+        number, renumbered = self._state.compact(), self._state.storage.renumbered
+        faces = next(number[it] for it in ("face", "triangle") if it in number)
+        edit = Edit("compact", -1, np.zeros(0, np.int64))
+        edit.remapping = Remapping(
+            number["vertex"].astype(np.int32),
+            faces.astype(np.int32),
+            lambda edges: renumbered(edges, number),
         )
+        self._followers.publish(edit)
+        return edit.remapping
+
+    # Algorithms ------------------------------------------------------------------------------
+
+    def run(self, make: Algorithm, plan: Any) -> int:
+        """Run an algorithm over this mesh in one go, compiled where the structure is.
+
+        ``make(queries, operations)`` gets the kernels of this structure by name and makes one of
+        them, ``algorithm(m, plan) -> result``; it is asked once per structure. ``plan`` is a
+        ``NamedTuple`` of arrays. Who writes an algorithm checks the handles in it, for which there
+        are kernels such as ``vertex_exists``. Operations need room and scratch, see ``scratch``,
+        and are told to subscribers by ``tell``.
+        """
+        return int(self.declared.algorithm(make).run(plan, *self.records))
+
+    def scratch(self, splits: int, operations: int | None = None) -> tuple[Any, Array]:
+        """Make room for so many splits -> scratch and a log, for all of them or ``operations``.
+
+        Cost O(1) per split in the long run.
+        """
+        more = splits if operations is None else operations
+        self._queries.count_edges()
+        self._state.make_room(splits, 2 * splits)
+        self._state.widen(more)
+        return self._state.out["edge"], np.zeros(ENTRIES * (more + 2), np.int64)
+
+    @property
+    def followed(self) -> bool:
+        """Whether anyone is to be told of edits: subscribers or attributes."""
+        return bool(self._followers)
+
+    def tell(self, kind: str, touched: ArrayLike) -> None:
+        """Tell subscribers of one edit, by the log of what an algorithm touched."""
+        if self._followers:
+            self._followers.publish(Edit(kind, -1, touched))
+
+    # What follows every edit -----------------------------------------------------------------
+
+    vertex_attribute: AttributeMethod = attribute_method(
+        "vertex", Attribute, "Floating-point values are interpolated, others copied."
+    )
+    face_attribute: AttributeMethod = attribute_method(
+        "face", Attribute, "The parts of a split face copy what it has."
+    )
+    edge_attribute: AttributeMethod = attribute_method(
+        "edge",
+        EdgeAttribute,
+        "The parts of a split edge copy what it has. MeshError where edges are not recorded.",
+    )
+    corner_attribute: AttributeMethod = attribute_method(
+        "corner",
+        CornerAttribute,
+        "As for vertices; see ``CornerAttribute``. ``collapse_edges`` does an edit per edge then.",
+    )
+
+    def attributes(self) -> list[Attribute]:
+        """All there are, in the order they were made."""
+        return list(self._followers.attributes.values())
+
+    @property
+    def told_one_by_one(self) -> bool:
+        """Whether every operation is an edit of its own, as corners or half-edges have values.
+
+        A batch does not tell what came where in between, and a seam must not be torn. So it is of
+        edges whose handles are not stable.
+        """
+        stable = ("edge",) if self.stable_edge_handles else ()
+        return any(it.element not in ("vertex", "face", *stable) for it in self.attributes())
+
+    def remove_attribute(self, attribute: Attribute) -> None:
+        """Have an attribute follow no longer. Raises MeshError if it is not of this mesh."""
+        key, known = (attribute.element, attribute.name), self._followers.attributes
+        if known.get(key) is not attribute:
+            raise MeshError(f"{attribute!r} is no attribute of this mesh")
+        del known[key]
+
+    def subscribe(self, callback: Callable[[Edit], Any]) -> Callable[[], None]:
+        """Have ``callback`` called with every ``Edit`` once it is done -> a way to end that.
+
+        All are called, in the order they subscribed, even if one of them raises; what the first of
+        them raised is raised then.
+        """
+        return self._followers.subscribers.subscribe(callback)
+
+    def copy_touched(self, touched: ArrayLike, points: Points, indices: Handles) -> None:
+        """Write what an edit touched into the arrays of a render mesh, clockwise. O(edit).
+
+        ``points`` (n, 3) and ``indices`` (m, 3) have a row for every vertex and face there ever
+        was; what is dead becomes zeros. Raises MeshError for what is not there, or has no row.
+        """
+        self._queries.copy_touched(touched, points, indices)
+
+    # Copies and memory -----------------------------------------------------------------------
 
     def copy(self) -> Self:
         """The same mesh in arrays of its own: same handles, same attributes, no subscribers."""
-        return self._of(self._portable(), self._attribute_states())
+        return self._of(self._saved())
 
     def __reduce__(self) -> tuple[Any, ...]:
         """How ``copy.copy``, ``copy.deepcopy`` and ``pickle`` make a copy: as ``copy`` does."""
-        return self._of, (self._portable(), self._attribute_states())
+        return self._of, (self._saved(),)
 
     @classmethod
-    def _of(cls, records: Any, attributes: Any) -> Self:
+    def _of(cls, saved: Snapshot) -> Self:
         """The structure of what is its own from here on."""
-        made = cls(cls._records_of(records))
-        made._adopt(attributes)
+        made = cls(cls.declared.storage.loaded(saved.records))
+        made._followers.adopt(saved.attributes, made, made._state)
         return made
+
+    def _saved(self) -> Snapshot:
+        return Snapshot(self._state.storage.saved(self.records), self._followers.kept())
+
+    def snapshot(self) -> Snapshot:
+        """What ``restore`` needs to make the mesh what it is now. Cost O(n_v + n_t)."""
+        self._queries.count_edges()  # what is not known yet would be unknown again, then kept up
+        self._state.widen()
+        return self._saved()
+
+    def restore(self, snapshot: Snapshot) -> None:
+        """Make the mesh what it was, in the same place; there must be as much room. For measuring.
+
+        Attributes that were made since become what they were made. Subscribers are not told. Cost
+        O(n_v + n_t).
+        """
+        self._state.storage.put_back(self.records, snapshot.records)
+        self._followers.put_back(snapshot.attributes)
 
     def memory(self, room: bool = False) -> dict[str, int]:
         """Bytes per field of live elements, such as ``{"vertex.point": 12 * n_vertices, …}``.
@@ -137,6 +550,13 @@ class Structure(Measuring, ABC, abstract=True):
         hold besides, up to as much again after they grew; ``scratch`` is where queries and
         operations work, nothing before the first of them.
         """
+        taken = self._live_bytes()
+        if not room:
+            return taken
+        spare = self._state.storage.spare(self.records, sum(taken.values()))
+        return taken | {"dead and room to grow": spare, "scratch": self._state.scratch_bytes}
+
+    def _live_bytes(self) -> dict[str, int]:
         counts = {
             "vertex": self.n_vertices,
             "edge": self.n_edges,
@@ -144,61 +564,50 @@ class Structure(Measuring, ABC, abstract=True):
             "face": self.n_faces,
             "triangle": self.n_faces,
         }
-        live = {
+        return {
             field.name: counts[field.element]
             * field.width
             * int(getattr(self.records, field.array).itemsize)
             for field in self.fields
         }
-        return live | self._beside(sum(live.values())) if room else live
 
-    def _beside(self, live: int) -> dict[str, int]:
-        """Bytes taken beside those of live elements."""
-        scratch = self.__dict__.get("_out", {}).values()
-        return {
-            "dead and room to grow": sum(getattr(it, "nbytes", 0) for it in self.records) - live,
-            "scratch": sum(it.nbytes for it in scratch) + self._log.nbytes,
-        }
+    # For measuring; nobody else needs it -----------------------------------------------------
 
-    @property
-    def n_half_edges(self) -> int:
-        """Number of live half-edges, one for each corner of a face; recorded or not."""
-        return 3 * self.n_faces
+    def sweep(self, query: str, handles: NDArray[Any]) -> int:
+        """Answer ``query`` for every handle in one compiled loop, keeping nothing -> a checksum.
 
+        Raises MeshError for what names nothing, KeyError for no query.
+        """
+        return self.prepare_sweep(query, handles).run()
 
-def _from_smallest(rows: Ragged) -> list[list[int]]:
-    """The corners of every face, from the smallest on."""
-    found = [row.tolist() for row in rows]
-    return [row[(k := row.index(min(row))) :] + row[:k] for row in found]
+    def prepare_sweep(self, query: str, handles: NDArray[Any]) -> Sweep:
+        """Check handles for a ``sweep``, which is run later: what the experiments time."""
+        return self._queries.sweep(query, handles)
 
+    def work(self, query: str, handles: NDArray[Any]) -> NDArray[np.int64]:
+        """(n,) int64: elements of the structure's arrays read to answer ``query``, per handle.
 
-def _query(cls: type[Structure], name: str) -> Kernel:
-    if name not in cls.kernels:
-        raise TypeError(f"{place_of(cls)} has no kernel {name}(m, {name[0]}, out) -> count")
-    return cls.kernels[name]
+        Exact and the same on every machine; runs uncompiled. Raises as ``sweep``.
+        """
+        return self._queries.work(query, handles)
 
+    def reserve(self, splits: int) -> None:
+        """Make all room for so many splits at once, so that none of them has to. O(n_v + n_t)."""
+        self._operations.reserve(splits)
 
-def _operation(cls: type[Structure], name: str) -> Kernel:
-    operation = cls.operations[name]
-    try:
-        return operation.make(cls.kernels)
-    except KeyError as missing:
-        raise TypeError(
-            f"{place_of(cls)} has no kernel {missing.args[0]}, which {name} takes; see "
-            f"{operation.make.__module__}"
-        ) from None
+    def prepare(self, operation: str, args: ArrayLike, points: ArrayLike | None = None) -> Prepared:
+        """Have operations ready to be run in one compiled loop, untold to anyone: for measuring.
 
+        ``args``: (n,) first handles, or (n, 3) all of them. Refused ones are passed over. There is
+        room for them all from here on; the arrays must stay the same until it is run. Raises
+        KeyError for no operation.
+        """
+        return self._operations.prepare(operation, args, points)
 
-def _of_lasting_names(cls: type[Structure], name: str) -> Kernel:
-    if "edge_between" not in cls.kernels:
-        raise TypeError(f"{place_of(cls)} has no kernel edge_between(m, a, b) -> edge or -1")
-    return named_by_ends(cls._operation_uses[name].kernel, cls.kernels["edge_between"])
+    def operation_work(self, operation: str, *args: int, point: ArrayLike = (0, 0, 0)) -> int:
+        """Do one operation uncompiled -> the array elements it read and wrote, exactly.
 
-
-def _require_claims(cls: type[Structure]) -> None:
-    claimed = cls.claims.costs if hasattr(cls, "claims") else {}
-    unknown = set(claimed) - {*QUERIES, *OPERATIONS}
-    if unknown:
-        raise TypeError(
-            f"{place_of(cls)}: claims of what is no query and no operation: {sorted(unknown)}"
-        )
+        Arguments as for the method of that name, which says what it raises; KeyError for no
+        operation.
+        """
+        return self._operations.work(operation, args, point)

@@ -1,20 +1,71 @@
-"""What is asked of a whole mesh, or of every element at once: derived from the nine queries."""
+"""What is asked of a whole mesh, or of every element at once: from its records and queries."""
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from typing import Any, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from hem.arrays import Array, Bools, Handles
-from hem.contract.queryable import Queryable
+from hem.arrays import Array, Bools, Handles, Points
+from hem.authoring import FACE_END, FACES, SIDES, VERTEX_END, VERTICES
+from hem.contract.queries import QueryMethod
 from hem.errors import MeshError
 from hem.meshes import components
+from hem.ragged import Ragged
 
 
-class Surveying(Queryable, abstract=True):
-    """Questions about the surface as a whole."""
+class Surveying(ABC):
+    """Questions about the surface as a whole, to whatever answers those about its elements."""
+
+    vertex_vertices: QueryMethod
+    vertex_faces: QueryMethod
+    edge_vertices: QueryMethod
+    face_vertices: QueryMethod
+
+    @property
+    @abstractmethod
+    def records(self) -> Any:
+        """The `NamedTuple` of the structure's arrays; after an operation it may be another."""
+
+    @abstractmethod
+    def faces(self) -> Handles:
+        """(n_faces,) int32: the handles of all live faces, ascending."""
+
+    @property
+    def n_vertices(self) -> int:
+        """Number of live vertices, unreferenced ones included."""
+        return int(self.records.counts[VERTICES])
+
+    @property
+    def n_faces(self) -> int:
+        """Number of live faces."""
+        return int(self.records.counts[FACES])
+
+    @property
+    def n_half_edges(self) -> int:
+        """Number of live half-edges, one for each corner of a face; recorded or not."""
+        return 3 * self.n_faces
+
+    @property
+    def points(self) -> Points:
+        """(n, 3) float32: positions by vertex; those of dead ones are NaN.
+
+        A view: ``move_vertex`` tells subscribers of a new position, writing here does not.
+        """
+        points: Points = self.records.vertex_point
+        return points[: self.records.counts[VERTEX_END]]
+
+    @property
+    def face_end(self) -> int:
+        """One past the largest face handle there ever was; for vertices that is len(points)."""
+        return int(self.records.counts[FACE_END])
+
+    @property
+    def most_corners(self) -> int:
+        """A bound on the corners of any face there ever was: 3 where all are triangles."""
+        return int(self.records.counts[SIDES])
 
     def triangles(self) -> Handles:
         """(n_faces, 3) int32: the corners of every live face, counterclockwise. Cost O(n_t).
@@ -94,6 +145,17 @@ class Surveying(Queryable, abstract=True):
         names, places = np.unique(part, return_index=True)
         return [faces[part == name] for name in names[np.argsort(places)]]
 
+    def same_as(self, other: Surveying) -> bool:
+        """Whether another structure holds the same mesh: positions and faces by the same handles.
+
+        Whatever corner a face begins at. Cost O(n_v + n_t).
+        """
+        return (
+            np.array_equal(self.points, other.points, equal_nan=True)
+            and np.array_equal(self.faces(), other.faces())
+            and _from_smallest(self.face_vertices()) == _from_smallest(other.face_vertices())
+        )
+
     def _border(self) -> Array:
         """(k, 2): the sides of faces that have no face beyond them, along the face."""
         corners = self.face_vertices()
@@ -107,3 +169,19 @@ def _each(query: Any, handles: Any) -> Any:
     """How many neighbors a query finds: of one handle a number, of many an array."""
     found = query(handles) if handles is not None else query()
     return len(found) if isinstance(found, np.ndarray) else found.counts
+
+
+def _from_smallest(rows: Ragged) -> list[list[int]]:
+    """The corners of every face, from the smallest on."""
+    found = [row.tolist() for row in rows]
+    return [row[(k := row.index(min(row))) :] + row[:k] for row in found]
+
+
+def centroids(mesh: Surveying, faces: Handles) -> NDArray[np.float64]:
+    """(n, 3): the middle of the corners of each face, the same on every structure."""
+    corners = mesh.face_vertices(faces)
+    values = corners.values
+    if mesh.most_corners == 3:  # each structure has its own first corner, and sums are rounded
+        values = np.sort(values.reshape(-1, 3)).reshape(-1)
+    sums = np.add.reduceat(mesh.points[values], corners.offsets[:-1], 0, np.float64)
+    return sums / corners.counts[:, None]

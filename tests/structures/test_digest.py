@@ -20,7 +20,7 @@ def digest(monkeypatch):
         monkeypatch.setattr(
             uses, "_contents", lambda file: read(file) + (b"#" if file.endswith(changed) else b"")
         )
-        flip = structures.REGISTRY["plankton"]._operation_uses["flip_edge"]
+        flip = structures.REGISTRY["plankton"].declared.operating["flip_edge"]
         try:
             return uses._digest([flip.kernel, structures.REGISTRY["plankton"].records_type], "")
         finally:

@@ -46,7 +46,7 @@ def test_compiled_and_interpreted_kernels_give_the_same_answer(name, query):
     before = {
         field: array.copy() for field, array in zip(s.records._fields, s.arrays, strict=False)
     }
-    checksum, out = 0, s._out[QUERIES[query].target]
+    checksum, out = 0, s._state.out[QUERIES[query].target]
     for handle in handles:
         s.work(query, np.array([handle]))
         answer = getattr(s, query)(int(handle))

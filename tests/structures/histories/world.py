@@ -155,7 +155,7 @@ class World:
         self.heard: list[list[hem.Edit]] = [[] for _ in self.many]
         self.renders: list[hem.RenderMesh] = []
         for s, heard in zip(self.many, self.heard, strict=True):
-            s._subscribers.clear()
+            s._followers.subscribers.clear()
             s.subscribe(heard.append)
         triangles = all(len(row) == 3 for row in self.surface.faces.values())
         if "render" in self.followers and triangles:

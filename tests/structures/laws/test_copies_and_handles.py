@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import copy
+import gc
 import importlib
 import pickle
 import sys
+import weakref
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any
@@ -159,6 +161,23 @@ def test_threads_that_only_read_get_their_own_answers(name: str) -> None:
         assert list(pool.map(read, range(4))) == [0] * 4
 
 
+def test_a_mesh_that_is_dropped_is_freed_at_once(name: str) -> None:
+    s = structures.build(name, hem.generate("torus", 100))
+    s.vertex_faces(7)
+    s.vertex_faces()
+    s.find_edge(0, 1)
+    s.collapse_edge(collapsible(s))
+    s.split_faces(s.faces()[:1], [(0, 0, 0)])
+    s.compact()
+    parts = [weakref.ref(part) for part in (s, *s.arrays)]
+    gc.disable()  # reference cycles would wait for it, and large meshes with them
+    try:
+        del s
+        assert all(part() is None for part in parts)
+    finally:
+        gc.enable()
+
+
 def test_an_interrupted_question_leaves_the_mesh_ready(
     name: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -169,7 +188,7 @@ def test_an_interrupted_question_leaves_the_mesh_ready(
         raise KeyboardInterrupt
 
     with monkeypatch.context() as patched:
-        patched.setattr(s, "_make_way", interrupted)
+        patched.setattr(s._operations, "make_way", interrupted)
         with pytest.raises(KeyboardInterrupt):
             s.can_collapse_edge(edge)
     vertices = s.n_vertices
@@ -386,6 +405,6 @@ def test_the_first_edit_after_reserve_makes_no_room(
     def unexpected(*_: Any) -> None:
         raise AssertionError("room is made")
 
-    monkeypatch.setattr(s, "_make_way", unexpected)
+    monkeypatch.setattr(s._operations, "make_way", unexpected)
     s.split_face(0, (0, 0, 0))
     s.flip_edge(int(s.edges()[40]))

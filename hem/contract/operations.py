@@ -1,0 +1,302 @@
+"""How an operation is done: checked, tried, given room where there is none, and logged."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cached_property
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from hem.arrays import Array, Bools, Handles
+from hem.authoring import ELEMENTS, ENTRIES, NEEDS_ROOM, SIDES, VALENCE, WIDTH, WORDS, Refusal
+from hem.contract import arguments
+from hem.contract.following import Followers
+from hem.contract.queries import Queries
+from hem.contract.state import State
+from hem.edit import Edit
+from hem.engine import CHECK, DO, MODE, PERSIST
+from hem.errors import MeshError, TopologyError
+
+
+class Bound(NamedTuple):
+    """An operation bound to a mesh: where its arguments and its result lie.
+
+    Views, as they are faster to write and read than arrays.
+    """
+
+    perform: Callable[[int], int]
+    address: Any
+    task: memoryview
+    args: memoryview
+    point: memoryview
+    result: memoryview
+
+
+class Prepared(NamedTuple):
+    """Operations that only wait to be run."""
+
+    perform: Callable[[int], int]
+    pinned: Any
+    task: Array
+    results: Array
+    """(n,): what became of each; a refusal is negative."""
+
+    def check(self) -> Bools:
+        """Change nothing -> (n,) which of them would be done."""
+        try:
+            self.task[MODE] = CHECK
+            self.perform(self.pinned.address)
+        finally:
+            self.task[MODE] = PERSIST
+        return self.results >= 0
+
+    def run(self) -> None:
+        """Do them all, but those that are refused; RuntimeError if not all could be tried."""
+        if self.perform(self.pinned.address) < len(self.results):
+            raise RuntimeError("there is no more room; prepare fewer operations at a time")
+
+
+class Operations:
+    """The operations on one mesh, by name."""
+
+    def __init__(self, state: State, queries: Queries, followers: Followers) -> None:
+        self._state, self._queries, self._followers = state, queries, followers
+        self._operations = state.declared.operations
+
+    # One at a time ---------------------------------------------------------------------------
+
+    def method(self, operation: str) -> Callable[..., Edit]:
+        """An operation as a function of its first handle, a point and two more handles."""
+        state, publish = self._state, self._followers.publish
+        subscribers, attributes = self._followers.subscribers, self._followers.attributes
+        perform, address, _, args, position, result = self._bound[operation]
+        names_a_vertex = self._operations[operation].names_a_vertex
+        takes_a_point = self._operations[operation].takes_a_point
+
+        def do(a: Any, point: Any = None, b: Any = None, c: Any = None) -> Edit:
+            # What programs do a million times takes no detours here.
+            try:
+                args[0] = a
+                if b is not None:
+                    args[1] = b
+                    if c is not None:
+                        args[2] = c
+                if takes_a_point:
+                    place = point.tolist() if type(point) is np.ndarray else point
+                    position[0], position[1], position[2] = place
+            except (TypeError, ValueError, OverflowError) as error:
+                raise arguments.refusal(operation, (a, b, c), point) from error
+            if not perform(address) and result[0] == NEEDS_ROOM:
+                self.make_way(operation)
+                perform(address)
+            vertex = result[0]
+            if vertex < 0:
+                raise self.refusal(operation, vertex, args)
+            log = state.log
+            touched = log[1 : log[0] + 1].tolist()
+            edit = Edit(operation, vertex if names_a_vertex else -1, touched)
+            if subscribers or attributes:
+                publish(edit)
+            return edit
+
+        return do
+
+    def may(self, operation: str, edge: Any) -> bool:
+        """Whether an operation on an edge would be done; TopologyError if there is no edge."""
+        perform, address, task, args, _, result = self._bound[operation]
+        try:
+            args[0] = edge
+            args[1] = -1
+        except (TypeError, ValueError, OverflowError) as error:
+            raise arguments.refusal(operation, (edge,), None) from error
+        try:
+            task[MODE] = CHECK
+            if not perform(address) and result[0] == NEEDS_ROOM:
+                self.make_way(operation)
+                perform(address)
+        finally:  # interrupted or not: or nothing would ever be done again
+            task[MODE] = DO
+        if result[0] == Refusal.NO_EDGE:
+            raise self.refusal(operation, Refusal.NO_EDGE, args)
+        return bool(result[0] >= 0)
+
+    def make_way(self, operation: str) -> None:
+        """Make room for what one operation may need."""
+        state = self._state
+        more = int(state.records.counts[SIDES]) - 3
+        vertices, faces = self._operations[operation].growth
+        state.make_room(vertices, faces + more * self._operations[operation].grows_with_sides)
+        state.widen()
+        neighbors = len(state.out["edge"]) // WIDTH
+        corners = 3 * (more + 3)  # a split face: three entries for each
+        state.lengthen(max(2 * neighbors, corners) + 2 * ENTRIES)
+
+    @cached_property
+    def _bound(self) -> dict[str, Bound]:
+        """Every operation, bound; by name."""
+        self._queries.count_edges()
+        return {operation: self._bind(operation) for operation in self._operations}
+
+    def _bind(self, operation: str) -> Bound:
+        state = self._state
+        task, args = np.array([DO, 0, 1]), np.full((1, 3), -1, np.int64)
+        points, result = np.zeros((1, 3), np.float32), np.zeros(1, np.int64)
+        own = task, args, points, result, state.at
+        pinned = state.pin(lambda its: (*own, its.out["edge"], np.asarray(its.log)))
+        perform = state.declared.operating[operation].perform(pinned)
+        views = [memoryview(it.reshape(-1).data) for it in own[:4]]
+        return Bound(perform, pinned.address, views[0], views[1], views[2], views[3])
+
+    # Many at once ----------------------------------------------------------------------------
+
+    def all(self, called: str, operation: str, handles: Array, points: ArrayLike) -> Handles:
+        """Do an operation for all handles, or for none if one is refused -> the vertices."""
+        positions = arguments.positions(called, points, len(handles))
+        element = self._operations[operation].element
+        self.require_different(called, element, handles)
+        args = arguments.rows(handles)
+        if element == "edge":
+            results, _ = self.run(operation, args, positions, CHECK)
+            refused = np.flatnonzero(results < 0)
+            if len(refused):
+                first = refused[0]
+                raise self.refusal(operation, int(results[first]), args[first].tolist())
+        results, log = self.run(operation, args, positions)
+        self._followers.publish(Edit(called, -1, log))
+        return results.astype(np.int32)
+
+    def require_different(self, called: str, element: str, handles: Array) -> None:
+        """Raise for handles that name nothing, and for elements that are named twice."""
+        try:
+            self._state.require(element, handles)
+        except MeshError as error:
+            raise TopologyError(f"{called}: {error.reason} (any more)", **error.elements) from None
+        names = self._state.edge_names(handles) if element == "edge" else handles
+        again = np.delete(handles, np.unique(names, return_index=True)[1])
+        if len(again):
+            many = ELEMENTS[element]
+            raise TopologyError(f"{called} takes different {many}, each once", **{many: again})
+
+    def persist(self, called: str, operation: str, args: Array) -> Bools:
+        """Do an operation for every row of ``args`` (n, 3) but those refused -> which were done."""
+        results, log = self.run(operation, args, mode=PERSIST)
+        self._followers.publish(Edit(called, -1, log))
+        return results >= 0
+
+    def one_by_one(self, do: Callable[..., Edit], args: Array) -> Bools:
+        """As ``persist`` of one on edges, each an edit of its own."""
+        names = self._state.storage.lasting_names(self._state.records, args[:, 0])
+        results = np.ones(len(args), np.bool_)
+        for i, (name, (_, b, c)) in enumerate(zip(names.tolist(), args.tolist(), strict=True)):
+            try:
+                do(self._lasting_handle(name), None, b, c)
+            except TopologyError:
+                results[i] = False
+        return results
+
+    def _lasting_handle(self, name: int) -> int:
+        """The handle of an edge by its lasting name; one that is refused where there is none."""
+        if not self._state.declared.lasting:
+            return name
+        try:
+            edge = self._queries.find_edge(name >> 32, name & 0xFFFFFFFF)
+        except MeshError:  # an end is gone
+            return -1
+        return -1 if edge is None else edge
+
+    def run(
+        self, operation: str, args: Array, points: Array = arguments.NO_POINT, mode: int = DO
+    ) -> tuple[Array, Array]:
+        """Do an operation for every row of ``args`` (n, 3) -> the results (n,) and the log.
+
+        Ends at one that is refused, unless the ``mode`` is another. Nobody is told.
+        """
+        state, perform, n = self._state, self._bound[operation].perform, len(args)
+        results, logs, done = np.zeros(n, np.int64), [], 0
+        vertices, faces = self._operations[operation].growth
+        lasting = state.declared.lasting.get(operation)
+        if lasting is not None:
+            names = state.storage.lasting_names(state.records, args[:, 0])
+            args = np.column_stack([names, args[:, 1:]])
+        if mode == DO:
+            # A face of more corners needs the edges of so many triangles.
+            state.make_room(vertices * n, (faces + args.shape[1] - 3) * n)
+        while True:
+            log = np.empty(ENTRIES * (n + 1) + 2 * len(state.log), np.int64)
+            task = np.array([mode, done, n])
+            scratch = task, args, points, results, state.at, state.out["edge"], log
+            pinned = state.pinned_now(*scratch)
+            if lasting is not None:
+                perform = lasting.perform(pinned)
+            done = perform(pinned.address)
+            logs.append(log[1 : log[0] + 1])
+            if done == n or results[done] != NEEDS_ROOM:
+                return results, np.concatenate(logs)
+            self.make_way(operation)
+
+    def refusal(self, operation: str, code: int, args: Any) -> MeshError | TopologyError:
+        """The error for a code, with the elements as the user knows them."""
+        words, handle, ask = WORDS[code], int(args[0]), self._queries.ask
+        if code == Refusal.NOT_FINITE:
+            return MeshError(words)
+        if operation == "add_face":
+            return TopologyError(f"cannot {operation}: {words}", vertices=[int(v) for v in args])
+        element = self._operations[operation].element
+        if element != "edge" or code == Refusal.NO_EDGE:
+            many = ELEMENTS.get(element, "half_edges")
+            return TopologyError(f"cannot {operation}: {words}", **{many: [handle]})
+        ends = ask("edge_vertices", handle)
+        elements = {"edges": ends[None, :]}
+        if code == Refusal.NOT_AN_END:
+            elements["vertices"] = np.array([args[1]])
+        if code == Refusal.COMMON_NEIGHBOR:
+            a, b = ask("vertex_vertices", ends)
+            beside = ask("face_vertices", ask("edge_faces", handle)).values
+            elements["vertices"] = np.setdiff1d(np.intersect1d(a, b), beside)
+        return TopologyError(f"cannot {operation}: {words}", **elements)
+
+    # For measuring -----------------------------------------------------------------------------
+
+    def reserve(self, splits: int) -> None:
+        """See ``Structure.reserve``."""
+        self._state.make_room(splits, 2 * splits)
+        for operation in self._bound:
+            self.make_way(operation)
+
+    def prepare(self, operation: str, args: ArrayLike, points: ArrayLike | None) -> Prepared:
+        """See ``Structure.prepare``."""
+        rows = np.asarray(args, np.int64)
+        rows = arguments.rows(rows) if rows.ndim == 1 else np.ascontiguousarray(rows)
+        if rows.ndim != 2 or rows.shape[1] < 3:
+            raise MeshError(f"{operation} takes (n,) or (n, 3) handles, not {rows.shape}")
+        state, perform, n = self._state, self._bound[operation].perform, len(rows)
+        vertices, faces = self._operations[operation].growth
+        state.make_room(vertices * n, faces * n)
+        state.count_valence()
+        state.widen(2 * n)  # an operation adds at most 2 to a valence
+        positions = (
+            arguments.NO_POINT if points is None else arguments.positions("prepare", points, n)
+        )
+        valence = int(state.records.counts[VALENCE])
+        entries = n * (3 * valence + ENTRIES) + 2 * (valence + 2 * n + ENTRIES)
+        results, log = np.zeros(n, np.int64), np.empty(entries, np.int64)
+        task = np.array([PERSIST, 0, n])
+        scratch = task, rows, positions, results, state.at, state.out["edge"], log
+        return Prepared(perform, state.pinned_now(*scratch), task, results)
+
+    def work(self, operation: str, handles: tuple[int, ...], point: ArrayLike) -> int:
+        """See ``Structure.operation_work``."""
+        if not 1 <= len(handles) <= 3:
+            raise MeshError(f"{operation} takes one to three handles, not {len(handles)}")
+        self.make_way(operation)
+        state, row = self._state, [*handles, -1, -1][:3]
+        log, position = state.log, np.asarray(point, np.float32)
+        log[0] = 0
+        work = state.declared.operating[operation].operation_work
+        result, accesses = work(row, position, state.out["edge"], log, state.records)
+        if result < 0:
+            raise self.refusal(operation, result, row)
+        self._followers.publish(Edit(operation, result, log[1 : log[0] + 1].tolist()))
+        return accesses

@@ -1,0 +1,240 @@
+"""The queries of the contract, derived from a structure's kernels."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cached_property
+from typing import Any, NamedTuple, Protocol, overload
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from hem.arrays import Array, Handles, Points
+from hem.authoring import EDGES, ELEMENTS, QUERIES, SIDES, UNKNOWN, VALENCE, WIDTH
+from hem.contract.state import State
+from hem.contract.storage import HANDLE_TYPES, refuse_handles
+from hem.edit import FACE
+from hem.errors import MeshError
+from hem.ragged import Ragged
+
+MOST = 1 << 63
+"""More than any handle."""
+
+ALL: Any = object()
+"""Stands for the handles of all live elements."""
+
+NUMPY_INTEGERS = frozenset(np.dtype(it).type for it in np.typecodes["AllInteger"])
+"""What a loop over an array of handles gives."""
+
+
+class QueryMethod(Protocol):
+    """A query as a method: one handle -> 1-D array; an array of handles, or all -> ``Ragged``."""
+
+    @overload
+    def __call__(self, handles: int) -> NDArray[Any]: ...
+    @overload
+    def __call__(self, handles: NDArray[Any] | list[int] = ...) -> Ragged: ...
+
+
+class Sweep(NamedTuple):
+    """A query that only waits to be asked of many handles, which were checked."""
+
+    loop: Callable[..., int]
+    handles: Array
+    out: Any
+    state: State
+    counts: bytes
+    """What the mesh counted when the handles were checked."""
+
+    def some(self, places: Any) -> Sweep:
+        """The same for the handles at some of their places."""
+        return self._replace(handles=self.handles[places])
+
+    def run(self) -> int:
+        """Ask in one compiled loop, keeping nothing -> a checksum.
+
+        MeshError where elements came or went since: then what was checked may be gone.
+        """
+        records = self.state.records
+        if records.counts.tobytes() != self.counts:
+            raise MeshError("the mesh was edited since the handles were checked")
+        return int(self.loop(self.handles, self.out, *records))
+
+
+class Queries:
+    """The nine queries on one mesh, by name, and what is read with them.
+
+    Any number of threads may ask at once, as long as none operates on the mesh.
+    """
+
+    def __init__(self, state: State) -> None:
+        self._state, self._declared = state, state.declared
+
+    def method(self, name: str) -> Any:
+        """The ``QueryMethod`` of a query."""
+        state, (source, target) = self._state, QUERIES[name]
+        pinned = state.pin(lambda its: (its.out[target],))
+        single = self._declared.queries[name].single(pinned, self._declared.exists(source))
+        address = pinned.address
+
+        def ask(handles: Any = ALL) -> Any:
+            # One integer is the way that programs take a million times: no detours here.
+            handle = int(handles) if type(handles) in NUMPY_INTEGERS else handles
+            if type(handle) is int and -MOST <= handle < MOST:
+                answer = single(handle, address)
+                if len(answer):
+                    return answer
+            return self.ask(name, handles)
+
+        return ask
+
+    def ask(self, name: str, handles: Any = ALL) -> Any:
+        """As the method of a query, for any handles; checked."""
+        source = QUERIES[name].source
+        if handles is ALL:
+            handles = self.handles(source)
+        if np.ndim(handles):
+            return self._ask_many(name, handles)
+        return self._ask_many(name, [_as_integer(handles, name, source)])[0].copy()
+
+    def _ask_many(self, name: str, handles: ArrayLike) -> Ragged:
+        wanted = self._checked(name, handles)
+        self._state.widen()
+        fixed = name in ("face_vertices", "face_edges")
+        counts = self._state.records.counts
+        width = int(counts[SIDES]) if fixed else WIDTH * int(counts[VALENCE] + 1)
+        answers = self._state.answers(name, wanted, width)
+        if QUERIES[name].source == "edge" and not answers.counts.all():
+            refuse_handles("edge", wanted[answers.counts == 0])
+        return answers
+
+    def _checked(self, name: str, handles: ArrayLike) -> NDArray[Any]:
+        """(n,) handles for a query; MeshError unless they all name elements of this mesh."""
+        source, wanted = QUERIES[name].source, np.asarray(handles)
+        if wanted.ndim != 1 or (wanted.size and not np.issubdtype(wanted.dtype, np.integer)):
+            raise MeshError(
+                f"{name} takes one {source} handle or a 1-D array of integers, "
+                f"not {wanted.dtype} of shape {wanted.shape}"
+            )
+        self._state.require(source, wanted)
+        return np.ascontiguousarray(wanted, HANDLE_TYPES[source])
+
+    # Steps along half-edges, where they are recorded ------------------------------------------
+
+    def step(self, name: str) -> Any:
+        """The ``StepMethod`` of a step."""
+        declared, pinned = self._declared, self._pinned
+        exists = declared.exists(declared.steps[name].source)
+        take, address = declared.stepping[name].step(pinned, exists), pinned.address
+
+        def walk(handles: Any) -> Any:
+            handle = int(handles) if type(handles) in NUMPY_INTEGERS else handles
+            if type(handle) is int and -MOST <= handle < MOST:
+                found = take(handle, address)
+                if found >= 0:
+                    return found
+            return self._walk(name, handles)
+
+        return walk
+
+    @cached_property
+    def _pinned(self) -> Any:
+        return self._state.pin(lambda its: ())
+
+    def _walk(self, name: str, handles: Any) -> Any:
+        """Any handles for a step, checked."""
+        step, state = self._declared.steps[name], self._state
+        asked: Array = np.asarray(handles)
+        if asked.ndim > 1 or (asked.size and not np.issubdtype(asked.dtype, np.integer)):
+            raise MeshError(
+                f"{name} takes one {step.source} handle or a 1-D array of integers, not "
+                f"{handles!r:.60}"
+            )
+        rows = np.atleast_1d(asked).astype(np.int64)
+        found = np.empty(len(rows), HANDLE_TYPES.get(step.target, np.int64))
+        end = self._declared.walks[name](rows, found, *state.records)
+        if end < len(rows) or step.source == "vertex":
+            state.require(step.source, rows)
+        return found if asked.ndim else int(found[0])
+
+    # What follows from them ------------------------------------------------------------------
+
+    def handles(self, element: str) -> NDArray[Any]:
+        """The handles of all elements of one kind; KeyError for no such kind."""
+        if element not in ELEMENTS:
+            raise KeyError(element)
+        return self.edges() if element == "edge" else self._state.live(element)
+
+    def edges(self) -> NDArray[np.int64]:
+        """(n_edges,): each undirected edge once, ascending; searched for if none is recorded."""
+        recorded = self._state.storage.edges(self._state.records)
+        return np.unique(self.ask("face_edges").values) if recorded is None else recorded
+
+    def count_edges(self) -> int:
+        """Search for the edges where their number is not known yet; operations keep it up."""
+        counts = self._state.records.counts
+        if counts[EDGES] == UNKNOWN:
+            counts[EDGES] = len(self.edges())
+        return int(counts[EDGES])
+
+    def find_edge(self, a: Any, b: Any) -> int | None:
+        """See ``Structure.find_edge``."""
+        find, address = self._find_edge
+        a, b = _as_integer(a, "find_edge", "vertex"), _as_integer(b, "find_edge", "vertex")
+        found = find(a, b, address) if -MOST <= min(a, b) <= max(a, b) < MOST else -1
+        if found >= 0:
+            return found
+        self._state.require("vertex", np.array([a, b]))
+        self._state.widen()
+        found = find(a, b, address)
+        return None if found < 0 else found
+
+    @cached_property
+    def _find_edge(self) -> tuple[Callable[[int, int, Any], int], Any]:
+        """The function, and the address of what it works on."""
+        state, k = self._state, self._declared.kernels
+        ends = state.storage.row(2, HANDLE_TYPES["edge"])
+        pinned = state.pin(lambda its: (its.out["edge"], ends))
+        uses = self._declared.queries["vertex_edges"]
+        return uses.find_edge(pinned, k["vertex_exists"], k["edge_vertices"]), pinned.address
+
+    def copy_touched(self, touched: ArrayLike, points: Points, indices: Handles) -> None:
+        """See ``Structure.copy_touched``."""
+        entries, state = np.asarray(touched, np.int64), self._state
+        copy = self._declared.copy_touched
+        done = copy(entries, points, indices, state.out["face"], *state.records)
+        if done < len(entries):
+            kind = "vertices" if entries[done] & 7 < FACE else "faces"
+            raise MeshError(
+                "no row for what an edit touched", **{kind: entries[done : done + 1] >> 3}
+            )
+
+    # For measuring -----------------------------------------------------------------------------
+
+    def sweep(self, name: str, handles: NDArray[Any]) -> Sweep:
+        """See ``Structure.prepare_sweep``."""
+        wanted, out = self._ready(name, handles)
+        self.count_edges()
+        loop, counts = self._declared.queries[name].sweep, self._state.records.counts
+        return Sweep(loop, wanted, out, self._state, counts.tobytes())
+
+    def work(self, name: str, handles: NDArray[Any]) -> NDArray[np.int64]:
+        """See ``Structure.work``."""
+        return self._declared.queries[name].work(*self._ready(name, handles), self._state.records)
+
+    def _ready(self, name: str, handles: NDArray[Any]) -> tuple[NDArray[Any], Any]:
+        """Handles that were checked, and scratch for the answers to each."""
+        wanted = self._checked(name, handles)
+        self._state.widen()
+        return wanted, self._state.out[QUERIES[name].target]
+
+
+def _as_integer(handle: Any, called: str, element: str) -> int:
+    if isinstance(handle, np.ndarray) and handle.ndim == 0:
+        handle = handle[()]
+    if isinstance(handle, int | np.integer) and not isinstance(handle, bool):
+        return int(handle)
+    raise MeshError(
+        f"{called} takes a {element} handle (an integer) or an array of them, "
+        f"not {type(handle).__name__} {handle!r}"
+    )

@@ -1,0 +1,192 @@
+"""The state of one mesh: its records, and the scratch that queries and operations work in."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hem.arrays import Array, Bools
+from hem.authoring import (
+    EDGE_END,
+    EDGE_GROWTH,
+    EDGE_ROOM,
+    FACE_END,
+    FACE_ROOM,
+    FACES,
+    QUERIES,
+    SIDES,
+    VALENCE,
+    VERTEX_END,
+    VERTEX_ROOM,
+    WIDTH,
+    in_slices,
+    slice_count,
+)
+from hem.contract.description import Declared
+from hem.contract.storage import HANDLE_TYPES
+from hem.engine import move
+from hem.ragged import Ragged
+
+TYPICAL_NEIGHBORS = {"vertex": 7, "edge": 11, "face": 3}
+"""Room to begin with for the answers to a batch, per element; it grows where it is too small."""
+
+
+class State:
+    """Records and scratch of one mesh. Nobody else replaces any of them.
+
+    ``records``  written by operations and by ``Storage.put_back``, in their place; replaced by
+                 larger ones when there is no room (``make_room``), and by ``compact``
+    ``out``      where the answer to one query is written, by the kind of element in it; replaced
+                 when a valence outgrows it (``widen``)
+    ``log``      what the operation under way has touched; replaced by a longer one (``make_way``)
+    ``at``       the parts of a diamond
+    bounds       ``VALENCE`` and ``SIDES`` among the counts: no vertex or face has more; operations
+                 raise them, ``count_valence`` and ``compact`` make them exact
+    pins         images of all these in memory, which compiled code finds by one address
+
+    Whatever is replaced holds what was there before, and every pin is told at once. Threads may
+    ask side by side: each pins for itself, in one list.
+    """
+
+    def __init__(self, declared: Declared, records: Any) -> None:
+        self.declared, self.storage = declared, declared.storage
+        self.records = records
+        self.log = memoryview(np.zeros(1, np.int64).data)  # views are faster to read than arrays
+        self._pins: list[tuple[Any, Callable[[State], tuple[Any, ...]]]] = []
+        self._valence_counted = 0
+
+    @cached_property
+    def out(self) -> dict[str, Any]:
+        """Scratch for the answer to one query, by the kind of element in it."""
+        counts = self.records.counts
+        known = int(counts[VALENCE])  # of what was copied or compacted
+        exact = 0 < known <= counts[FACES] // 8
+        return self._wide_enough(known if exact else self.count_valence())
+
+    @cached_property
+    def at(self) -> Any:
+        """Scratch for the parts of a diamond."""
+        return self.storage.row(6, np.int64)
+
+    @property
+    def scratch_bytes(self) -> int:
+        """Bytes taken beside the records; few before the first question."""
+        return self.log.nbytes + sum(it.nbytes for it in self.__dict__.get("out", {}).values())
+
+    # What is there ---------------------------------------------------------------------------
+
+    def live(self, element: str) -> NDArray[Any]:
+        """The handles of all live elements of a kind that is recorded, ascending."""
+        return self.storage.live(self.records, element)
+
+    def alive(self, element: str, rows: Any) -> Bools:
+        """Which of the ``rows`` of a kind of records are live."""
+        return self.storage.alive(self.records, element, rows)
+
+    def require(self, element: str, handles: Array) -> None:
+        """Raise MeshError if any of ``handles`` (n,) names no live element of the mesh. O(n)."""
+        self.storage.require(self.records, element, handles)
+
+    def edge_names(self, edges: NDArray[np.int64]) -> NDArray[np.int64]:
+        """(n,): the one name of each live edge, where an edge has two handles."""
+        return self.storage.edge_names(self.records, edges)
+
+    def answers(self, query: str, handles: NDArray[Any], width: int) -> Ragged:
+        """The answers for live ``handles``, each of which has at most ``width`` neighbors."""
+        source, target = QUERIES[query]
+        n, typical = len(handles), TYPICAL_NEIGHBORS[source]
+        offsets = np.empty(n + 1, np.int64)
+        room = np.empty(typical * n + slice_count(n) * width, HANDLE_TYPES[target])
+        batch, records = self.declared.queries[query].batch, self.records
+
+        def answer(begin: int, end: int, part: int) -> tuple[slice, NDArray[Any]]:
+            mine, own = slice(begin, end), slice(typical * begin, typical * end)
+            values = room[own.start + part * width : own.stop + (part + 1) * width]
+            return mine, batch(handles[mine], offsets[mine], values, width, *records)
+
+        parts = in_slices(answer, n)
+        if not all(np.may_share_memory(values, room) for _, values in parts if len(values)):
+            room = np.empty(sum(len(values) for _, values in parts), room.dtype)
+        end = 0
+        for mine, values in parts:
+            if end:
+                offsets[mine] += end
+            move(values, room, end)
+            end += len(values)
+        offsets[n] = end
+        return Ragged(offsets, room[:end])
+
+    # What is replaced ------------------------------------------------------------------------
+
+    def pin(self, scratch: Callable[[State], tuple[Any, ...]]) -> Any:
+        """The records and some scratch at an address that stays valid, whatever is replaced."""
+        pinned = self.pinned_now(*scratch(self))
+        self._pins.append((pinned, scratch))
+        return pinned
+
+    def pinned_now(self, *scratch: Any) -> Any:
+        """The records and some scratch at an address that is valid until they are replaced."""
+        return self.storage.pinned(*self.records, *scratch)
+
+    def make_room(self, vertices: int, faces: int) -> None:
+        """Make room for so many new elements. O(1) each in the long run."""
+        counts = self.records.counts
+        if (
+            counts[VERTEX_END] + vertices > counts[VERTEX_ROOM]
+            or counts[FACE_END] + faces > counts[FACE_ROOM]
+            or counts[EDGE_END] + counts[EDGE_GROWTH] * faces > counts[EDGE_ROOM]
+        ):
+            self.records = self.storage.with_room(self.records, vertices, faces)
+            self._repin()
+
+    def widen(self, more: int = 0) -> None:
+        """See that the answer to any query fits into the scratch, at a valence by so many larger.
+
+        It doubles, so its bytes are in proportion to the operations done, and so is the time to
+        count valences anew: O(1) per operation in the long run.
+        """
+        room, counts = len(self.out["edge"]), self.records.counts
+        if WIDTH * (counts[VALENCE] + more + 1) > room:
+            if counts[VALENCE] > self._valence_counted + counts[FACES] // 8:
+                self.count_valence()
+            self.out.update(self._wide_enough(2 * (int(counts[VALENCE]) + more)))
+            self._repin()
+
+    def lengthen(self, entries: int) -> None:
+        """Have a log of at least so many entries."""
+        if len(self.log) < entries:
+            self.log = memoryview(np.zeros(entries, np.int64).data)
+            self._repin()
+
+    def compact(self) -> dict[str, Array]:
+        """Drop dead records and room -> the new number of each old record, by kind. O(records)."""
+        self.records, number = self.storage.compacted(self.records)
+        counts = self.records.counts
+        corners = self.answers("face_vertices", self.live("face"), int(counts[SIDES]))
+        counts[SIDES] = corners.counts.max(initial=3)
+        self._repin()
+        return number
+
+    def count_valence(self) -> int:
+        """The bound on the valence made exact: operations only ever raise it. Cost O(n_t)."""
+        counts = self.records.counts
+        times = np.zeros(counts[VERTEX_END], np.int32)
+        corners = self.storage.row(int(counts[SIDES]), HANDLE_TYPES["vertex"])
+        tally = self.declared.queries["face_vertices"].tally
+        tally(self.live("face"), times, corners, *self.records)
+        counts[VALENCE] = max(int(times.max(initial=0)) + 1, int(counts[SIDES]))
+        self._valence_counted = int(counts[VALENCE])
+        return self._valence_counted
+
+    def _wide_enough(self, valence: int) -> dict[str, Any]:
+        """Room for the answer to any query at vertices of such a valence."""
+        width = WIDTH * (valence + 1)
+        return {element: self.storage.row(width, it) for element, it in HANDLE_TYPES.items()}
+
+    def _repin(self) -> None:
+        for pinned, scratch in self._pins:
+            pinned.replace(*self.records, *scratch(self))

@@ -1,0 +1,140 @@
+"""How the records of a structure are held: what follows from its fields, whatever the mesh."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from hem.arrays import Array, Bools
+from hem.authoring import (
+    ELEMENTS,
+    ENDS,
+    FACE_END,
+    FACES,
+    VERTEX_END,
+    VERTICES,
+    Field,
+    compacted,
+    copied,
+    grown,
+    live,
+)
+from hem.engine import Pinned, Uses
+from hem.errors import MeshError
+
+HANDLE_TYPES = {"vertex": np.int32, "edge": np.int64, "face": np.int32}
+"""The type of the handles by kind of element."""
+
+
+Step = Callable[[str, Any, Array], NDArray[np.int64]]
+"""``step(name, records, handles)``: where a step along half-edges leads from each, all live."""
+
+
+class Storage:
+    """Records in arrays, a row for each. Another way to hold them is a subclass."""
+
+    uses: ClassVar[type[Uses]] = Uses
+    """How kernels become what is called."""
+
+    pinned: ClassVar[type[Any]] = Pinned
+    """How records and scratch are handed to kernels time and again."""
+
+    def __init__(self, fields: Sequence[Field], step: Step | None) -> None:
+        self.fields, self._step = fields, step
+
+    def alive(self, records: Any, element: str, rows: Any = slice(None)) -> Bools:
+        """(end,) bool: which of the records of a kind are live, or which of ``rows``. O(rows)."""
+        return live(records, self.fields, element, rows)
+
+    def live(self, records: Any, element: str) -> NDArray[Any]:
+        """(k,): the handles of all live elements of a kind that is recorded, ascending."""
+        handle = HANDLE_TYPES.get(element, np.int64)
+        if _any_dead(records, element):
+            return np.flatnonzero(self.alive(records, element)).astype(handle, copy=False)
+        return np.arange(records.counts[ENDS[element]], dtype=handle)
+
+    def edges(self, records: Any) -> NDArray[np.int64] | None:
+        """(n_edges,): the handles of all live edges, ascending; None if none is recorded."""
+        if self._step is not None:
+            h = self.live(records, "half_edge")
+            return h[self._step("edge", records, h) == h]
+        recorded = any(it.element == "edge" for it in self.fields)
+        return self.live(records, "edge") if recorded else None
+
+    def edge_names(self, records: Any, edges: NDArray[np.int64]) -> NDArray[np.int64]:
+        """(n,): the one name of each live edge, where an edge has two handles."""
+        return edges if self._step is None else self._step("edge", records, edges)
+
+    def lasting_names(self, records: Any, edges: NDArray[np.int64]) -> NDArray[np.int64]:
+        """(n,): names of edges that last whatever is done to others; -1 for what is no edge."""
+        return edges
+
+    def require(self, records: Any, element: str, handles: Array) -> None:
+        """Raise MeshError if any of ``handles`` (n,) names no live element of the mesh. O(n)."""
+        if not handles.size:
+            return
+        end = records.counts[ENDS[element]]
+        if handles.min() < 0 or handles.max() >= end:
+            refuse_handles(element, handles[(handles < 0) | (handles >= end)])
+        if _any_dead(records, element):
+            dead = ~self.alive(records, element, handles)
+            if dead.any():
+                refuse_handles(element, handles[dead])
+
+    def row(self, n: int, dtype: Any) -> Any:
+        """Scratch for n numbers, which kernels write and read."""
+        return np.zeros(n, dtype)
+
+    def with_room(self, records: Any, vertices: int, faces: int) -> Any:
+        """The records with room for so many more elements, in arrays of their own if need be."""
+        return grown(records, self.fields, vertices, faces)
+
+    def compacted(self, records: Any) -> tuple[Any, dict[str, Array]]:
+        """The live records without gaps, and the new number of each old one by kind."""
+        return compacted(records, self.fields)
+
+    def renumbered(self, edges: ArrayLike, number: Mapping[str, Array]) -> NDArray[np.int64]:
+        """(k,): the new handles of old edges (k,) after ``compacted``, -1 for those that went."""
+        recorded = next(it for it in ("half_edge", "edge") if it in number)
+        old, numbers = np.asarray(edges, np.int64), np.append(number[recorded], -1)
+        known = (old >= 0) & (old < len(numbers))
+        return numbers[np.where(known, old, -1)].astype(np.int64)
+
+    def saved(self, records: Any) -> Any:
+        """What ``loaded`` and ``put_back`` need, in arrays of its own."""
+        return copied(records)
+
+    def loaded(self, saved: Any) -> Any:
+        """The records of what was ``saved``, which is theirs from here on."""
+        return saved
+
+    def put_back(self, records: Any, saved: Any) -> None:
+        """Have the records say again what was ``saved``, in their place."""
+        for array, fresh in zip(records, saved, strict=True):
+            np.copyto(array, fresh)
+
+    def arrays(self, records: Any) -> tuple[Array, ...]:
+        """The arrays, room for more included, without the count of them."""
+        *arrays, _ = records
+        return tuple(arrays)
+
+    def spare(self, records: Any, taken: int) -> int:
+        """Bytes of dead elements and of room to grow, beside those ``taken`` by live ones."""
+        return sum(it.nbytes for it in records) - taken
+
+
+def _any_dead(records: Any, element: str) -> bool:
+    """Whether any element of a kind may be dead."""
+    if "edge" in element:  # how many records of them are live is not counted
+        return True
+    alive, end = (VERTICES, VERTEX_END) if element == "vertex" else (FACES, FACE_END)
+    return bool(records.counts[alive] < records.counts[end])
+
+
+def refuse_handles(element: str, handles: NDArray[Any]) -> None:
+    """Raise the MeshError for ``handles`` that name no element of the mesh."""
+    words = f"no such {element.replace('_', '-')} in this mesh"
+    raise MeshError(words, **{ELEMENTS.get(element, f"{element}s"): handles})
