@@ -19,7 +19,6 @@ from experiments.harness import (
     validate_operated,
 )
 
-REPETITIONS = 3
 SEARCHED = 1
 """One search of the whole mesh reads as much as another."""
 
@@ -36,7 +35,7 @@ def cases(preset: Preset, structure: str) -> list[Case]:
 def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
     """Count what operations read and write, and check what they make of the mesh."""
     s, operation = case.build().copy(), str(case.subject)
-    faces = operation_faces(case, SEARCHED if s.searches else REPETITIONS)
+    faces = operation_faces(case, SEARCHED if s.searches else case.repetitions)
     rows = operation_arguments(s, operation, faces).tolist()
     work = [s.operation_work(operation, *row) for row in rows]
     validate_operated(s)

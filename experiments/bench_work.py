@@ -5,7 +5,6 @@ are small; that is enough, as nothing disturbs them.
 """
 
 from experiments.harness import (
-    CHECKED_HANDLES,
     QUERIES_TABLE,
     Axis,
     Case,
@@ -30,7 +29,7 @@ def cases(preset: Preset, structure: str) -> list[Case]:
 def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
     """Check the query against the triangle list, then count what it reads."""
     s, handles = checked_handles(case)
-    work = s.work(case.query.name, handles[:CHECKED_HANDLES])
+    work = s.work(case.query.name, handles[: case.repetitions])
     return case.result("work", s, work, handles=1, checked=True)
 
 

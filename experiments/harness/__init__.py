@@ -21,13 +21,13 @@ from experiments.harness.operations import (
     time_operations,
     validate_operated,
 )
-from experiments.harness.queries import CHECKED_HANDLES, checked_handles, time_query
+from experiments.harness.queries import checked_handles, time_query
 from experiments.harness.steadiness import Watch, badness, disturbed
 from experiments.harness.timer import CLOCK, BenchmarkTimer, Timer, time_rounds
 from experiments.presets import HUBS, ORDERS, PRESETS, Preset
 
 __all__ = [
-    "ANYONE", "BASE", "CHECKED_HANDLES", "CLOCK", "HUBS", "OPERATIONS", "OPERATIONS_TABLE",
+    "ANYONE", "BASE", "CLOCK", "HUBS", "OPERATIONS", "OPERATIONS_TABLE",
     "ORDERS", "PRESETS", "QUERIES_TABLE", "Axis", "BenchmarkTimer", "Case", "Experiment", "Keep",
     "Measurement", "Preset", "Table", "Timer", "Watch", "badness", "checked_handles", "disturbed",
     "in_random_order", "operation_arguments", "operation_faces", "searches", "shuffled",

@@ -21,6 +21,9 @@ from hem.meshes import MeshSummary, TriangleMesh
 BASE = "indexed"
 """The structure that the others are compared with: what a renderer stores."""
 
+OF_MADE, OF_OWN = 3, 60
+"""How often accesses are counted where all vertices are alike, and in a mesh of one's own."""
+
 SHUFFLE_SEED = 20
 HANDLE_SEED = 21
 
@@ -85,6 +88,12 @@ class Case:
     def query(self) -> Query:
         """The query of a case that has one."""
         return QUERIES[str(self.subject)]
+
+    @property
+    def repetitions(self) -> int:
+        """How often something is counted: more often where elements differ, and not all is read."""
+        searches = structures.REGISTRY[self.structure].searches
+        return OF_OWN if own_mesh.is_own(self.family) and not searches else OF_MADE
 
     @property
     def vertices(self) -> int:

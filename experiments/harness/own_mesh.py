@@ -64,9 +64,14 @@ def of_run(folder: Path) -> OwnMesh | None:
     return None
 
 
+def is_own(name: str) -> bool:
+    """Whether cases call a mesh of one's own so."""
+    return name in _folders
+
+
 def version(name: str, size: int) -> TriangleMesh | None:
     """The version with about so many vertices of what cases call so, if it is one's own."""
-    if name not in _folders:
+    if not is_own(name):
         return None
     files = _files(name)
     with np.load(files[min(files, key=lambda n: abs(np.log(n / size)))]) as arrays:
