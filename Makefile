@@ -24,7 +24,7 @@ define install
 endef
 
 .DEFAULT_GOAL := help
-.PHONY: help study test demo soak mutants check format peers test-floor clean
+.PHONY: help study test demo soak mutants check format peers peers-cpp test-floor clean
 
 help:  ## show this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -73,6 +73,9 @@ peers: $(STUDY)  ## compare with OpenMesh, libigl, MeshLib, trimesh and COMPAS
 		$(BIN)/python -m pip --disable-pip-version-check --quiet install $$peer --constraint constraints.txt >/dev/null 2>&1 \
 		|| echo "$$peer cannot be installed here; pip install $$peer says why"; done
 	@$(BIN)/python -m experiments.validation.peers
+
+peers-cpp: $(STUDY)  ## compare with CGAL and OpenMesh in C++, where they are installed
+	@$(BIN)/python -m experiments.validation.peers_cpp
 
 test-floor:  ## run all tests with the oldest versions that are supported
 	@test -x $(VENV)-floor/bin/python || $(PYTHON) -m venv $(VENV)-floor

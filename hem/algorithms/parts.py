@@ -152,6 +152,56 @@ def plus(total: float, rest: float, x: float) -> tuple[float, float]:
 
 
 @cache
+def summing(read: Kernel) -> Kernel:
+    """Make ``sum_of(source, out, n) -> x, y, z`` of ``read(source, it)`` of the first n in out.
+
+    What rounding costs is summed up as well, see ``plus``.
+    """
+
+    @kernel
+    def sum_of(source: Any, out: Any, n: int) -> tuple[float, float, float]:
+        x = y = z = x_rest = y_rest = z_rest = 0.0
+        for i in range(n):
+            a, b, c = read(source, out[i])
+            x, x_rest = plus(x, x_rest, a)
+            y, y_rest = plus(y, y_rest, b)
+            z, z_rest = plus(z, z_rest, c)
+        return x + x_rest, y + y_rest, z + z_rest
+
+    return sum_of
+
+
+class Corners(NamedTuple):
+    """Whose corners are counted, and where."""
+
+    faces: Array
+    faces_at: Array
+    out: Any
+
+
+def counting_corners(k: Kernels, operations: Kernels) -> Kernel:
+    """Make ``count_corners(m, plan) -> 0``."""
+    face_vertices = k["face_vertices"]
+
+    @kernel
+    def count_corners(m: Any, plan: Corners) -> int:
+        out = plan.out
+        for i in range(len(plan.faces)):
+            for j in range(face_vertices(m, plan.faces[i], out)):
+                plan.faces_at[out[j]] += 1
+        return 0
+
+    return count_corners
+
+
+def count_faces_at(s: Structure) -> Array:
+    """(n,) int32: how many faces each vertex is a corner of. Cost: ``face_vertices`` of all."""
+    faces_at = np.zeros(len(s.points), np.int32)
+    s.run(counting_corners, Corners(s.faces(), faces_at, s.scratch(0)[0]))
+    return faces_at
+
+
+@cache
 def finding_edge(vertex_edges: Kernel, edge_vertices: Kernel) -> Kernel:
     """Make ``edge_between(m, a, b, work) -> edge``, or -1. Cost: ``vertex_edges`` of a.
 

@@ -13,7 +13,7 @@ import numpy as np
 
 from hem.algorithms.arguments import require_mesh, require_surface
 from hem.algorithms.normals import face_normal
-from hem.algorithms.parts import change, doing, move, plus, unit
+from hem.algorithms.parts import change, count_faces_at, doing, move, summing, unit
 from hem.algorithms.smoothing import smooth
 from hem.algorithms.sqrt3 import Plan, split_all_faces
 from hem.algorithms.subdivision import subdivide
@@ -59,43 +59,16 @@ def circulate(s: Structure) -> int:
     return s.run(circulating, Visit(s.vertices(), s.faces(), s.scratch(0)[0]))
 
 
-class Corners(NamedTuple):
-    """Whose corners, and what they add up to."""
-
-    faces: Array
-    total: Array  # (3,) float64
-    out: Any
-
-
-def adding(k: Kernels, operations: Kernels) -> Kernel:
-    """Make ``add(m, plan) -> 0``."""
-    face_vertices, coordinate = k["face_vertices"], k["coordinate"]
-
-    @kernel
-    def add(m: Any, plan: Corners) -> int:
-        x = y = z = x_rest = y_rest = z_rest = 0.0
-        out = plan.out
-        for i in range(len(plan.faces)):
-            for j in range(face_vertices(m, plan.faces[i], out)):
-                x, x_rest = plus(x, x_rest, coordinate(m, out[j], 0))
-                y, y_rest = plus(y, y_rest, coordinate(m, out[j], 1))
-                z, z_rest = plus(z, z_rest, coordinate(m, out[j], 2))
-        plan.total[0], plan.total[1], plan.total[2] = x + x_rest, y + y_rest, z + z_rest
-        return 0
-
-    return add
-
-
 def center(s: Structure) -> Floats:
     """Move a mesh so that the mean of all corners of all faces lies at the origin -> (3,) the mean.
 
     One edit. Cost O(n_v + n_t). MeshError for polygons.
     """
     require_mesh(s, "center")
-    faces, total = s.faces(), np.zeros(3)
-    s.run(adding, Corners(faces, total, s.scratch(0)[0]))
-    middle: Floats = total / max(3 * len(faces), 1)
-    move(s, "center", s.vertices(), (s.points - middle).astype(np.float32))
+    vertices, times = s.vertices(), count_faces_at(s)
+    middle: Floats = times[vertices] @ s.points[vertices].astype(np.float64) / max(times.sum(), 1)
+    places = np.empty_like(s.points, np.float32)
+    move(s, "center", vertices, np.subtract(s.points, middle, places, casting="same_kind"))
     return middle
 
 
@@ -109,9 +82,15 @@ class Fans(NamedTuple):
     out: Any
 
 
+@kernel
+def row(array: Floats, i: int) -> tuple[float, float, float]:
+    """Three numbers of float32, in float64."""
+    return np.float64(array[i, 0]), np.float64(array[i, 1]), np.float64(array[i, 2])
+
+
 def adding_around(k: Kernels, operations: Kernels) -> Kernel:
     """Make ``add(m, plan) -> 0``: normals of faces, then their sums around each vertex."""
-    vertex_faces, normal = k["vertex_faces"], face_normal(k)
+    vertex_faces, normal, sum_of = k["vertex_faces"], face_normal(k), summing(row)
 
     @kernel
     def add(m: Any, plan: Fans) -> int:
@@ -121,13 +100,7 @@ def adding_around(k: Kernels, operations: Kernels) -> Kernel:
             of_faces[f, 0], of_faces[f, 1], of_faces[f, 2] = normal(m, f, out)
         for i in range(len(plan.vertices)):
             v = plan.vertices[i]
-            x = y = z = x_rest = y_rest = z_rest = 0.0
-            for j in range(vertex_faces(m, v, out)):
-                f = out[j]
-                x, x_rest = plus(x, x_rest, of_faces[f, 0])
-                y, y_rest = plus(y, y_rest, of_faces[f, 1])
-                z, z_rest = plus(z, z_rest, of_faces[f, 2])
-            x, y, z = unit(x + x_rest, y + y_rest, z + z_rest)
+            x, y, z = unit(*sum_of(of_faces, out, vertex_faces(m, v, out)))
             found[v, 0], found[v, 1], found[v, 2] = x, y, z
         return 0
 

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from hem.algorithms.arguments import require_count, require_mesh
-from hem.algorithms.parts import move, plus
+from hem.algorithms.parts import count_faces_at, locating, move, summing
 from hem.arrays import Array, Floats, Points
 from hem.authoring import Kernel, Kernels, kernel
 from hem.contract import Structure
@@ -27,18 +27,18 @@ class Plan(NamedTuple):
     """Who goes how far, and where to."""
 
     vertices: Array
-    faces: Array
     inside: Floats  # by number of neighbors: the part of the way to their mean
     border: Floats  # (1,): that to the mean of the two neighbors along the border
-    faces_at: Array  # (n,) int32 zeros: how many faces a vertex has
+    faces_at: Array  # (n,) int32: how many faces a vertex has
     places: Points  # (n, 3) float32: where vertices come to lie
     out: Any
 
 
 def averaging(k: Kernels, operations: Kernels) -> Kernel:
     """Make ``average(m, plan) -> 0``. A vertex on the border has more neighbors than faces."""
-    vertex_vertices, face_vertices = k["vertex_vertices"], k["face_vertices"]
-    coordinate, face_left_of = k["coordinate"], k["face_left_of"]
+    vertex_vertices, face_left_of = k["vertex_vertices"], k["face_left_of"]
+    where = locating(k["coordinate"])
+    sum_of = summing(where)
 
     @kernel
     def along_border(m: Any, v: int, n: int, out: Any) -> int:
@@ -52,10 +52,7 @@ def averaging(k: Kernels, operations: Kernels) -> Kernel:
 
     @kernel
     def average(m: Any, plan: Plan) -> int:
-        out, border = plan.out, plan.border[0]
-        for i in range(len(plan.faces)):
-            for j in range(face_vertices(m, plan.faces[i], out)):
-                plan.faces_at[out[j]] += 1
+        out, border, places = plan.out, plan.border[0], plan.places
         for i in range(len(plan.vertices)):
             v = plan.vertices[i]
             n = vertex_vertices(m, v, out)
@@ -63,11 +60,11 @@ def averaging(k: Kernels, operations: Kernels) -> Kernel:
             if n > plan.faces_at[v]:
                 part = border
                 n = along_border(m, v, n, out) if border != 0 else 0
-            for j in range(3):
-                here, total, rest = coordinate(m, v, j), 0.0, 0.0
-                for o in range(n):
-                    total, rest = plus(total, rest, coordinate(m, out[o], j))
-                plan.places[v, j] = here + part * ((total + rest) / n - here) if n > 0 else here
+            x, y, z = where(m, v)
+            if n > 0:
+                a, b, c = sum_of(m, out, n)
+                x, y, z = x + part * (a / n - x), y + part * (b / n - y), z + part * (c / n - z)
+            places[v, 0], places[v, 1], places[v, 2] = x, y, z
         return 0
 
     return average
@@ -78,8 +75,8 @@ def averages(s: Structure, inside: Callable[[Array], Array], border: float = 0.0
     n, (out, _) = len(s.points), s.scratch(0)
     neighbors = np.arange(1.0, len(out) // 2)  # more than any vertex has
     parts = np.append(0.0, inside(neighbors))
-    own = np.array([border]), np.zeros(n, np.int32), np.zeros((n, 3), np.float32)
-    plan = Plan(s.vertices(), s.faces(), parts, *own, out)
+    own = np.array([border]), count_faces_at(s), np.zeros((n, 3), np.float32)
+    plan = Plan(s.vertices(), parts, *own, out)
     s.run(averaging, plan)
     return plan.places
 

@@ -18,7 +18,16 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from hem.algorithms.arguments import require_mesh
-from hem.algorithms.parts import NO_WORK, Work, change, doing, move, plus, turning
+from hem.algorithms.parts import (
+    NO_WORK,
+    Work,
+    change,
+    doing,
+    locating,
+    move,
+    summing,
+    turning,
+)
 from hem.algorithms.smoothing import averages
 from hem.arrays import Array
 from hem.authoring import NEEDS_ROOM, Kernel, Kernels, kernel, part
@@ -36,7 +45,7 @@ class Plan(NamedTuple):
 
 def splitting(k: Kernels, operations: Kernels) -> Kernel:
     """Make ``split_all(m, plan) -> 0``: every face at the mean of its corners."""
-    face_vertices, coordinate = k["face_vertices"], k["coordinate"]
+    face_vertices, sum_of = k["face_vertices"], summing(locating(k["coordinate"]))
     split_face = doing(operations["split_face"])
 
     @kernel
@@ -44,12 +53,8 @@ def splitting(k: Kernels, operations: Kernels) -> Kernel:
         out, point = plan.work.out, plan.work.point
         while plan.next[0] < len(plan.faces):
             f = plan.faces[plan.next[0]]
-            face_vertices(m, f, out)
-            for j in range(3):
-                total, rest = 0.0, 0.0
-                for i in range(3):
-                    total, rest = plus(total, rest, coordinate(m, out[i], j))
-                point[j] = (total + rest) / 3
+            x, y, z = sum_of(m, out, face_vertices(m, f, out))
+            point[0], point[1], point[2] = x / 3, y / 3, z / 3
             if split_face(m, f, -1, plan.work) == NEEDS_ROOM:
                 return NEEDS_ROOM
             plan.next[0] += 1
