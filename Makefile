@@ -24,7 +24,7 @@ define install
 endef
 
 .DEFAULT_GOAL := help
-.PHONY: help study test demo soak mutants check format peers peers-cpp test-floor clean
+.PHONY: help study test test-all demo soak mutants check format peers peers-cpp test-floor clean
 
 help:  ## show this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -43,8 +43,11 @@ study: $(STUDY)  ## measure what decides the claims, print table 1, write the re
 	@$(BIN)/hem table
 	@$(BIN)/hem report
 
-test: $(DEV)  ## run all tests, on every core
+test: $(DEV)  ## run the tests, on every core
 	@$(BIN)/python $(PYTEST)
+
+test-all: export HEM_TEST := everything
+test-all: test  ## run them with every structure and all data
 
 demo: $(STUDY)  ## break some models, for some minutes, and make a page to watch it on
 	@$(BIN)/python -m experiments.cli.demo

@@ -5,12 +5,17 @@ from pathlib import Path
 
 import pytest
 
+from tests.extent import EVERYTHING
+
 STRUCTURES = Path(__file__).parent / "structures"
 
 # In the background of a shell Ctrl-C is ignored, and would be by all that the tests start.
 signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """The many short files come last, and the cores end at the same time."""
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Leave out what is exhaustive; the many short files come last, so the cores end together."""
+    more = [] if EVERYTHING else [it for it in items if it.get_closest_marker("exhaustive")]
+    config.hook.pytest_deselected(items=more)
+    items[:] = [it for it in items if it not in more] if more else items
     items.sort(key=lambda item: item.path.is_relative_to(STRUCTURES))

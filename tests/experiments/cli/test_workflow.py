@@ -29,7 +29,7 @@ def commands(program: str) -> list[list[str]]:
 
 
 def test_it_checks_tests_measures_judges_and_keeps_the_report():
-    assert commands("make") == [["check"], ["test"], ["study"]]
+    assert commands("make") == [["check"], ["test-all"], ["study"]]
     assert {tuple(it[:2]) for it in commands("hem")} >= {("check", "results/runs/*-quick")}
     kept = [it["with"]["path"] for it in steps() if "upload-artifact" in it.get("uses", "")]
     assert "report/html" in kept[0].split()

@@ -12,6 +12,7 @@ from experiments.harness import HUBS, OPERATIONS, Case
 from experiments.harness import operation_arguments as arguments
 from experiments.harness import operation_faces as faces_of
 from experiments.harness.operations import OperationBatch
+from tests.extent import OF_EACH_KIND
 
 
 def case(structure: str, family: str = "torus", valence: int | None = None) -> Case:
@@ -75,7 +76,7 @@ def test_all_structures_are_asked_for_the_same(monkeypatch):
 @pytest.mark.parametrize("workload", WORKLOADS)
 def test_a_workload_makes_of_every_structure_the_same_mesh(workload, order):
     made = []
-    for name in structures.NAMES:
+    for name in OF_EACH_KIND:
         s = structures.build(name, hem.generate("sphere", 162))
         units = WORKLOADS[workload].run(order)(s)
         s.validate()

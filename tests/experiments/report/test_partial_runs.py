@@ -16,6 +16,7 @@ from experiments.report.tables import show_claims
 from experiments.runs import experiments, load, tables
 from structures import NAMES
 from tests.experiments.made_runs import write_run
+from tests.extent import OF_EACH_KIND, exhaustive
 
 SHOWN = {
     **{axis.key: lambda run, claims, axis=axis: growth.scaling(run, axis) for axis in Axis},
@@ -46,6 +47,7 @@ SHOWN = {
 
 EVERYWHERE = {"sentences", "reasons"}
 PARTS = [*NAMES, *experiments()]
+WAITED_FOR = *OF_EACH_KIND, "bench_queries", "bench_memory"
 LAYOUT = "matplotlib.layout_engine.ConstrainedLayoutEngine"
 
 
@@ -63,7 +65,11 @@ def open_part(tmp_path, part: str) -> Session:
     return session
 
 
-@pytest.mark.parametrize("part", [part for part in PARTS if part != "bench_latency"])
+@pytest.mark.parametrize("part", [
+    pytest.param(it, marks=() if it in WAITED_FOR else exhaustive)
+    for it in PARTS
+    if it != "bench_latency"
+])  # fmt: skip
 def test_what_was_measured_is_shown_and_the_rest_is_named_as_missing(tmp_path, monkeypatch, part):
     # What is shown is looked at here, and not where it stands.
     for placing in ("experiments.report.style.label_ends", f"{LAYOUT}.execute"):

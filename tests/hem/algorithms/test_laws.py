@@ -15,6 +15,7 @@ from hem import algorithms
 from hem.algorithms.loop import Plan, splitting
 from hem.algorithms.parts import NO_WORK, change
 from hem.contract import Navigable, Structure
+from tests.extent import OF_EACH_KIND
 from tests.hem.algorithms.meshes import MESHES, used
 
 ALGORITHMS: dict[str, Callable[[Structure], Any]] = {
@@ -31,7 +32,7 @@ ALGORITHMS: dict[str, Callable[[Structure], Any]] = {
 CHANGING = [it for it in ALGORITHMS if it not in ("circulator", "normals", "vertex normals")]
 EACH_WITH_EACH_KIND = [
     (name, it)
-    for name in structures.NAMES
+    for name in OF_EACH_KIND
     for it in CHANGING
     if name == "half_edge" or it in ("smoothing", "loop", "quadrics", "collapse")
 ]
@@ -48,7 +49,7 @@ def corners_of(s: Structure) -> list[tuple[int, ...]]:
 @pytest.mark.parametrize("mesh", MESHES)
 def test_every_structure_gives_the_same_to_the_last_bit(algorithm: str, mesh: str) -> None:
     expected = None
-    for name in structures.NAMES:
+    for name in OF_EACH_KIND:
         s = used(name, MESHES[mesh]())
         told = ALGORITHMS[algorithm](s)
         s.validate()
@@ -262,7 +263,7 @@ EDITING = {
 }
 
 
-@pytest.mark.parametrize("name", structures.NAMES)
+@pytest.mark.parametrize("name", OF_EACH_KIND)
 @pytest.mark.parametrize("algorithm", EDITING)
 def test_two_faces_with_the_same_corners_are_refused(algorithm: str, name: str) -> None:
     s = structures.build(name, hem.TriangleMesh(np.eye(3), [(0, 1, 2), (0, 2, 1)]))

@@ -11,6 +11,7 @@ import hem
 import structures
 from hem.fracture import MATERIALS, Material, nearest_face, scanned, shatter
 from hem.fracture.surface.shatter import TOLERANCE, break_points, break_surface
+from tests.extent import OF_EACH_KIND
 from tests.hem.fracture.laws import MODELS, require_surface_laws, struck, surface
 from tests.hem.rendering.test_render import assert_in_step
 
@@ -52,7 +53,7 @@ def test_shards_and_rest_make_up_the_surface_again(model):
 @pytest.mark.parametrize(("model", "seeds"), [("plate", 100), ("sphere", 25), ("teapot", 4)])
 def test_all_structures_give_the_same_shards(model, seeds):
     mesh = surface(model)
-    originals = [structures.build(name, mesh) for name in structures.NAMES]
+    originals = [structures.build(name, mesh) for name in OF_EACH_KIND]
     for seed in range(seeds):
         at, material = struck(mesh, seed), NAMES[seed % len(NAMES)]
         broken = [shatter(it.copy(), at, material, seed) for it in originals]

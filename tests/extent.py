@@ -1,0 +1,23 @@
+"""How much of a law is tested: what people wait for, and with ``make test-all`` everything.
+
+Most of the time of a test is that of compiling an algorithm for a structure. So a law about
+algorithms is tested on one structure of each kind, and on all of them where nobody waits.
+"""
+
+import os
+
+import pytest
+
+from hem.contract import Navigable
+from structures import NAMES, REGISTRY
+
+EVERYTHING = os.environ.get("HEM_TEST") == "everything"
+
+exhaustive = pytest.mark.exhaustive
+"""A test of what is tested otherwise, too, with other data."""
+
+_half_edges_first = sorted(NAMES, key=lambda name: not issubclass(REGISTRY[name], Navigable))
+_chosen = {(REGISTRY[it].compiled, REGISTRY[it].searches): it for it in reversed(_half_edges_first)}
+
+OF_EACH_KIND = NAMES if EVERYTHING else tuple(it for it in NAMES if it in _chosen.values())
+"""One structure that searches, one that has half-edges, and one of objects; or all of them."""
