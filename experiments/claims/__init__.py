@@ -6,6 +6,7 @@ judges them all, once per run; ``curves`` gives the measurements behind them.
 
 from experiments.claims.cells import load_claims
 from experiments.claims.claim import (
+    EXPECTATIONS,
     MEMORY,
     NO_CLAIM,
     SENTENCES,
@@ -22,7 +23,7 @@ from experiments.claims.quantities import MIXES, break_even, judge_sentences, se
 from experiments.claims.verdicts import judge_cells
 
 __all__ = [
-    "MEMORY", "MIXES", "NO_CLAIM", "SENTENCES", "Between", "Claim", "Curve", "Curves", "Exactly",
-    "Growth", "JudgedClaim", "Outcome", "break_even", "curves", "judge_cells", "judge_run",
-    "judge_sentences", "load_claims", "sentence_claims",
+    "EXPECTATIONS", "MEMORY", "MIXES", "NO_CLAIM", "SENTENCES", "Between", "Claim", "Curve",
+    "Curves", "Exactly", "Growth", "JudgedClaim", "Outcome", "break_even", "curves", "judge_cells",
+    "judge_run", "judge_sentences", "load_claims", "sentence_claims",
 ]  # fmt: skip

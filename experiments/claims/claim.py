@@ -17,6 +17,7 @@ NO_CLAIM = "N/A"
 BOUND = "≤ "  # what a class begins with that is claimed as a bound only
 
 SENTENCES = "sentences"  # the table of what is not a cell
+EXPECTATIONS = "expectations"  # that of sentences which no document says, but this study expects
 
 
 class Outcome(StrEnum):
@@ -49,6 +50,14 @@ class Outcome(StrEnum):
         """The worst of some; no claim where there are none."""
         given = set(outcomes)
         return next((it for it in cls if it in given), cls.NO_CLAIM)
+
+
+MET = {
+    Outcome.VIOLATED: ("●", "not as expected"),
+    Outcome.UNDETERMINED: ("◌", "undetermined"),
+    Outcome.CONSISTENT: ("○", "as expected"),
+}
+"""What is said instead of what this study expects itself: never to be taken for a document's."""
 
 
 @dataclass(frozen=True)
@@ -134,6 +143,22 @@ class JudgedClaim:
     values: Floats = field(default_factory=lambda: np.zeros(0))
     work: float = np.nan
     seconds: float = np.nan
+
+    @property
+    def mark(self) -> str:
+        """One character for what became of it."""
+        return self._said[0]
+
+    @property
+    def words(self) -> str:
+        """What became of it, such as ``consistent``."""
+        return self._said[1]
+
+    @property
+    def _said(self) -> tuple[str, str]:
+        documented = self.outcome.mark, self.outcome.value
+        own = self.claim.table == EXPECTATIONS
+        return MET.get(self.outcome, documented) if own else documented
 
     @property
     def was_measured(self) -> bool:

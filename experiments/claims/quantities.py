@@ -1,8 +1,9 @@
-"""What the documents say in sentences: each a quantity that is measured, and what it must be.
+"""What is said in sentences: each a quantity that is measured, and what it must be.
 
-The sentences stand in ``sentences.toml``. A quantity is a list of values, one per size, query or
-the like, and the claim holds if all of them lie within its bounds. It is violated if none does; in
-between, or where nothing was measured, it is undetermined.
+The sentences stand in ``sentences.toml``: what the documents say, and what this study expects. A
+quantity is a list of values, one per size, query or the like, and the claim holds if all of them
+lie within its bounds. It is violated if none does; in between, or where nothing was measured, it is
+undetermined.
 """
 
 import tomllib
@@ -16,7 +17,14 @@ import pandas as pd
 
 import hem
 import structures
-from experiments.claims.claim import SENTENCES, Between, Claim, JudgedClaim, Outcome
+from experiments.claims.claim import (
+    EXPECTATIONS,
+    SENTENCES,
+    Between,
+    Claim,
+    JudgedClaim,
+    Outcome,
+)
 from experiments.claims.curves import Curves, curves
 from experiments.claims.errata import BOOK
 from experiments.harness import BASE, OPERATIONS, Axis
@@ -31,7 +39,8 @@ Quantity = Callable[[Curves], Iterable[float]]
 
 LARGER = 990  # vertices from which on a mesh is spoken of: others are built and scanned in no time
 
-HALF, WINGED = "half_edge", "winged_edge"
+HALF, WINGED, DIRECTED = "half_edge", "winged_edge", "directed_edge"
+NEIGHBOR = "triangle_neighbor"
 HALF_EDGES = (HALF, "half_edge_objects", "plankton")
 SPLITS, COLLAPSE = ("split_edge", "split_face"), ("collapse_edge",)
 
@@ -48,14 +57,15 @@ def sentence_claims() -> list[Claim]:
     """Every sentence. Raises ValueError naming one whose quantity nobody measures."""
     content = tomllib.loads((files("experiments.claims") / "sentences.toml").read_text("utf-8"))
     claims = []
-    for row in content["statement"]:
+    tables = {"statement": SENTENCES, "expectation": EXPECTATIONS}
+    for table, row in ((table, row) for kind, table in tables.items() for row in content[kind]):
         name, says = row["quantity"], row["says"]
         if name not in QUANTITIES:
             known = ", ".join(QUANTITIES)
             raise ValueError(f"sentences.toml: {says!r} rests on {name!r}; there are {known}")
         bounds = {end: float(row[end]) for end in ("low", "high") if end in row}
         expects = Between(name, row["measured"], **bounds)
-        claims.append(Claim(f"sentence/{name}", says, row["source"], SENTENCES, says, expects))
+        claims.append(Claim(f"sentence/{name}", says, row["source"], table, says, expects))
     return claims
 
 
@@ -131,7 +141,7 @@ def _bytes_ratio(of_run: Curves, mine: str, other: str) -> Iterable[float]:
 def _answers(of_run: Curves) -> Iterable[float]:
     """How many more queries a triangle-neighbor structure answers without searching the mesh."""
     local = []
-    for name in ("triangle_neighbor", BASE):
+    for name in (NEIGHBOR, BASE):
         work = [_work(of_run, name, query) for query in QUERIES]
         local.append(sum(len(it) > 1 and bool(it[-1] < 2 * it[0] + 2) for it in work))
     if all(local):
@@ -232,5 +242,7 @@ QUANTITIES: dict[str, Quantity] = {
     "polygon_corners": _polygon_corners,
     "article_invariants": _article_invariants,
     "cube_vertices": _cube_vertices,
+    "directed_bytes": lambda of_run: _bytes_ratio(of_run, DIRECTED, NEIGHBOR),
+    "directed_queries": lambda of_run: _work_ratios(of_run, DIRECTED, HALF, QUERIES),
 }
 """What can be measured of a sentence, by the name that ``sentences.toml`` uses."""

@@ -11,7 +11,7 @@ import pandas as pd
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
-from experiments.claims import SENTENCES, JudgedClaim, Outcome
+from experiments.claims import EXPECTATIONS, SENTENCES, JudgedClaim, Outcome
 from experiments.claims.errata import Erratum
 from experiments.harness import Axis, Table
 from experiments.report import session
@@ -69,7 +69,10 @@ def browser(shown: session.Session) -> Html:
 
 def groups_of_claims() -> dict[str, Table]:
     """The tables, and the sentences."""
-    return {**tables(), SENTENCES: Table(SENTENCES, "In sentences", {}, "half_edge_or_indexed")}
+    titles = {SENTENCES: "In sentences", EXPECTATIONS: "What we expect"}
+    chapter = "half_edge_or_indexed"
+    said = {name: Table(name, title, {}, chapter) for name, title in titles.items()}
+    return {**tables(), **said}
 
 
 def filters(claims: Sequence[JudgedClaim]) -> dict[str, dict[str, tuple[str, int]]]:
@@ -96,6 +99,11 @@ def slopes(claims: Iterable[JudgedClaim], name: str) -> Html:
 def sentences(claims: Iterable[JudgedClaim]) -> Html:
     """What the documents say in sentences, what was measured of it, and the verdict."""
     return table("sentences", [it for it in claims if it.claim.table == SENTENCES])
+
+
+def expectations(claims: Iterable[JudgedClaim]) -> Html:
+    """The same of what this study expects itself."""
+    return table("sentences", [it for it in claims if it.claim.table == EXPECTATIONS])
 
 
 def claim_tables(claims: Collection[JudgedClaim]) -> Html:

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from matplotlib.figure import Figure
 
+from experiments.claims import EXPECTATIONS, SENTENCES
 from experiments.harness import OPERATIONS, QUERIES_TABLE, Axis
 from experiments.report.figures import fracture, growth, memory, meshes
 from experiments.report.pages import each_table, or_missing
@@ -52,7 +53,8 @@ def write_readme(run_folder: Path, folder: Path) -> Path:
     run, claims = session.run, session.claims
     folder.mkdir(parents=True, exist_ok=True)
     parts = each_table(claims, markdown, MISSING)
-    parts["In sentences"] = sentences_markdown(claims)
+    parts["In sentences"] = sentences_markdown(claims, SENTENCES)
+    parts["What we expect"] = sentences_markdown(claims, EXPECTATIONS)
     for name, (title, draw) in DRAWN.items():
         picture = partial(_draw, run, draw, folder / f"{name}.png", title)
         parts[title] = or_missing(picture, MISSING)

@@ -172,12 +172,12 @@ def markdown(claims: Iterable[JudgedClaim], name: str) -> str:
     return markdown_rows(_texts(claims, name, "title", cell))
 
 
-def sentences_markdown(claims: Iterable[JudgedClaim]) -> str:
-    """The claims that are sentences, as a table for a page."""
+def sentences_markdown(claims: Iterable[JudgedClaim], name: str) -> str:
+    """The claims that are sentences of a table, as one for a page."""
     rows = [
-        (it.claim.text, bounds.measured, bounds.words, it.found, f"{it.outcome.mark} {it.outcome}")
+        (it.claim.text, bounds.measured, bounds.words, it.found, f"{it.mark} {it.words}")
         for it in claims
-        if isinstance(bounds := it.claim.expects, Between)
+        if it.claim.table == name and isinstance(bounds := it.claim.expects, Between)
     ]
     return markdown_rows([("what is said", "measured by", "claimed", "found", ""), *rows])
 

@@ -27,13 +27,16 @@ def line(base: dict[str, Any], k: int, machine: str = MACHINES[0]) -> dict[str, 
 
 
 def stepped(path: Path, base: dict[str, Any], count: int = 30, step: int = 15) -> Path:
-    """A history with 3 % noise in the times, and from ``step`` on more work, time and a fault."""
-    rng = np.random.default_rng(11)
+    """A history with 3 % noise in the times, and from ``step`` on more work, time and a fault.
+
+    The noise is that of the run, so that another claim more does not draw another history.
+    """
+    noise = np.random.default_rng(11).normal(1, 0.03, count)
     for k in range(count):
         made = line(base, k)
         for claim in made["claims"].values():
             if "relative" in claim:
-                claim["relative"] *= float(rng.normal(1, 0.03))
+                claim["relative"] *= float(noise[k])
         if k >= step:
             made["claims"][CLAIM]["work"] += 4
             made["claims"][CLAIM]["relative"] *= 1.3

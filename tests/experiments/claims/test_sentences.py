@@ -5,8 +5,18 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from experiments.claims import break_even, curves, judge_sentences, sentence_claims
+from experiments.claims import (
+    EXPECTATIONS,
+    SENTENCES,
+    Outcome,
+    break_even,
+    curves,
+    judge_sentences,
+    sentence_claims,
+)
+from experiments.claims.claim import MET
 from experiments.claims.quantities import QUANTITIES
+from experiments.report.tables import sentences_markdown
 from experiments.runs import load
 from tests.experiments.made_runs import BUILD, SIZES, rewrite, write_run
 
@@ -26,8 +36,22 @@ def outcome(run, quantity: str) -> str:
 def test_every_sentence_has_a_quantity_of_its_own_and_a_source():
     every = sentence_claims()
     assert [it.expects.quantity for it in every] == list(QUANTITIES)
-    assert all(it.source.partition(" ")[0].strip(",") in SOURCES for it in every)
+    by = {it.expects.quantity: it.source.partition(" ")[0].strip(",") for it in every}
+    own = {it.expects.quantity for it in every if it.table == EXPECTATIONS}
+    assert {it for it, word in by.items() if word not in SOURCES} == own
+    assert {by[it] for it in own} == {"our"}
     assert all(it.expects.low > -np.inf or it.expects.high < np.inf for it in every)
+
+
+def test_what_this_study_expects_has_no_mark_of_what_a_document_says(run):
+    said = {it.claim.expects.quantity: it for it in judge_sentences(run)}
+    own = said["directed_queries"]
+    assert (own.outcome, own.words) == ("consistent", "as expected")
+    assert {it.mark for it in Outcome}.isdisjoint(mark for mark, _ in MET.values())
+    assert said["bytes_ratio"].words == "consistent"
+    assert own.mark in sentences_markdown([*said.values()], EXPECTATIONS)
+    assert said["bytes_ratio"].claim.text not in sentences_markdown([*said.values()], EXPECTATIONS)
+    assert own.claim.text not in sentences_markdown([*said.values()], SENTENCES)
 
 
 def test_what_lies_within_its_bounds_is_consistent(run):

@@ -36,6 +36,7 @@ SHOWN = {
     "finding": lambda run, claims: comparisons.face_finding(run),
     "break even": lambda run, claims: comparisons.overtaking(break_even(curves(run))),
     "sentences": lambda run, claims: pages.sentences(claims),
+    "expectations": lambda run, claims: pages.expectations(claims),
     "reasons": lambda run, claims: pages.reasons(claims, "queries"),
     **{
         f"{kind.__name__} of {name}": lambda run, claims, kind=kind, name=name: kind(claims, name)
@@ -45,7 +46,7 @@ SHOWN = {
 }
 """What the chapters show of a run."""
 
-EVERYWHERE = {"sentences", "reasons"}
+EVERYWHERE = {"sentences", "expectations", "reasons"}
 PARTS = [*NAMES, *experiments()]
 WAITED_FOR = *OF_EACH_KIND, "bench_queries", "bench_memory"
 LAYOUT = "matplotlib.layout_engine.ConstrainedLayoutEngine"
