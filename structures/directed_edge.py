@@ -85,13 +85,13 @@ origin, twin = steps.columns(DirectedEdgeRecords, "half_edge", 2)
 @kernel
 def following(m: DirectedEdgeRecords, h: int) -> int:
     """The half-edge after h in its face."""
-    return h + 1 if h % 3 < 2 else h - 2
+    return h + 1 - 3 * (h % 3 == 2)
 
 
 @kernel
 def previous(m: DirectedEdgeRecords, h: int) -> int:
     """The half-edge before h in its face."""
-    return h - 1 if h % 3 else h + 2
+    return h - 1 + 3 * (h % 3 == 0)
 
 
 @kernel

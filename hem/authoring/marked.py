@@ -56,7 +56,9 @@ def smaller_of_twins(twin: Kernel, mark: Kernel) -> Kernel:
     @kernel
     def edge_of(m: Any, h: int) -> int:
         other = twin(m, h)
-        return (np.int64(h if other < 0 else min(h, other)) << BITS) | mark(m, h)
+        # Which is the smaller cannot be foreseen, and to wait for it would stop all loads behind.
+        smaller = other + (h - other) * ((other < 0) | (h < other))
+        return (np.int64(smaller) << BITS) | mark(m, h)
 
     return edge_of
 
