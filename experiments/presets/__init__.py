@@ -60,6 +60,7 @@ class Preset:
     single_sizes: tuple[int, ...] = sizes[1::2]
     workload_sizes: tuple[int, ...] = _geometric(100, 100_000, 2)
     workloads: tuple[str, ...] = ()
+    real_time_sizes: tuple[int, ...] = (1_000, 10_000, 100_000, 1_000_000)
     fracture_sizes: tuple[int, ...] = _geometric(100, 100_000, 2)[1:]
     object_vertices: int = 3_200
     printed_sizes: tuple[int, ...] = _geometric(50, 900, 5)
@@ -78,7 +79,8 @@ class Preset:
         if structure not in REGISTRY or REGISTRY[structure].compiled:
             return self
         most = self.object_vertices
-        operated = ("operation_sizes", "single_sizes", "workload_sizes", "fracture_sizes")
+        by_vertices = "operation_sizes", "single_sizes", "workload_sizes", "fracture_sizes"
+        operated = (*by_vertices, "real_time_sizes")
         limits = {"sizes": 3 * most, "build_sizes": 3 * most, **dict.fromkeys(operated, most)}
         smaller: dict[str, Any] = {
             name: tuple(size for size in getattr(self, name) if size <= limit)
@@ -104,6 +106,7 @@ class Preset:
             operation_sizes=sizes,
             single_sizes=sizes,
             workload_sizes=sizes,
+            real_time_sizes=sizes,
             workloads=(),
             skipped=NOT_OF_ONE_MESH,
         )
@@ -142,6 +145,7 @@ PRESETS = {
         operation_faces=256,
         single_sizes=(100,),
         workload_sizes=(100, 400),
+        real_time_sizes=(400,),
         fracture_sizes=(100, 400),
         object_vertices=400,
         printed_sizes=(50, 100),
@@ -165,6 +169,7 @@ PRESETS = {
         single_sizes=(1_000,),
         workload_sizes=(1_000, 10_000),
         workloads=("vertex_normals", "impacts"),
+        real_time_sizes=(1_000, 10_000),
         fracture_sizes=_geometric(100, 10_000, 1),
         object_vertices=1_100,
         printed_sizes=(50, 100, 200, 400),

@@ -95,6 +95,15 @@ class RenderMesh:
             if not self._depth and (self._pending or self._resized or any(self._written.values())):
                 self._commit()
 
+    def reserve(self, splits: int) -> None:
+        """Make room for so many splits at once, so that none of them has to. A commit. O(n).
+
+        The structure has a method of that name for its own arrays.
+        """
+        self._make_room(self._n_vertices + splits, self._n_triangles + 2 * splits)
+        if self._resized and not self._depth:
+            self._commit()
+
     def close(self) -> None:
         """Follow no longer; the arrays stay as they are."""
         self._following.close()
@@ -144,13 +153,15 @@ class RenderMesh:
             )
 
     def _grow(self) -> None:
-        s = self.structure
-        vertices, triangles = len(s.points), s.face_end
+        vertices, triangles = len(self.structure.points), self.structure.face_end
+        self._make_room(vertices, triangles)
+        self._n_vertices, self._n_triangles = vertices, triangles
+
+    def _make_room(self, vertices: int, triangles: int) -> None:
         if vertices > len(self._points) or triangles > len(self._indices):
             self._points = _with_room(self._points, self._n_vertices, vertices)
             self._indices = _with_room(self._indices, self._n_triangles, triangles)
             self._resized = True
-        self._n_vertices, self._n_triangles = vertices, triangles
 
     def _commit(self) -> None:
         self.commits += 1

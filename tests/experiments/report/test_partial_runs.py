@@ -10,7 +10,7 @@ from rich.console import Console
 from experiments.claims import break_even, curves, judge_run
 from experiments.harness import OPERATIONS, Axis
 from experiments.report import comparisons, notebooks, pages
-from experiments.report.figures import growth, memory
+from experiments.report.figures import growth, memory, real_time
 from experiments.report.session import MissingError, Session, share
 from experiments.report.tables import show_claims
 from experiments.runs import experiments, load, tables
@@ -32,6 +32,10 @@ SHOWN = {
     "memory": lambda run, claims: memory.by_field(run),
     "references": lambda run, claims: memory.references(run),
     "objects": lambda run, claims: comparisons.objects_against_arrays(run),
+    "waits": lambda run, claims: real_time.waits(run),
+    "frames": lambda run, claims: real_time.frames(run),
+    "compactions": lambda run, claims: real_time.compactions(run),
+    "weights": lambda run, claims: real_time.weights(run),
     "shattering": lambda run, claims: comparisons.shattering(run),
     "finding": lambda run, claims: comparisons.face_finding(run),
     "break even": lambda run, claims: comparisons.overtaking(break_even(curves(run))),

@@ -1,0 +1,113 @@
+"""Single edits with a render mesh in step, each timed by itself: what a frame has to wait for.
+
+A median hides the edit that stalls. So every edit is a sample: four operations in turn, each at
+another place, from Python, until the arrays of the render mesh may be uploaded.
+"""
+
+from itertools import cycle
+from typing import Any
+
+import numpy as np
+
+import hem
+from experiments.harness import (
+    Case,
+    Experiment,
+    Measurement,
+    Preset,
+    Timer,
+    operation_arguments,
+    operation_faces,
+    searches,
+    validate_operated,
+)
+from hem.contract import Structure
+
+EDITED = "split_edge", "split_face", "collapse_edge", "flip_edge"
+EDITS, COMPACT = "single_edits", "compact"
+RESERVED, GROWING = "reserved", "not reserved"
+"""Whether there was room for all edits beforehand, or the arrays grow when they must."""
+
+MOST_EDITS, MOST_SEARCHING = 1_000, 200
+COMPACTIONS = 5
+
+
+def cases(preset: Preset, structure: str) -> list[Case]:
+    """Edits with room and without, and the compaction that follows them, by size."""
+    kinds = (EDITS, RESERVED), (EDITS, GROWING), (COMPACT, None)
+    return [
+        Case(structure, preset.families[0], size, subject, order)
+        for size in preset.real_time_sizes
+        for subject, order in kinds
+    ]
+
+
+def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
+    """Time single edits, or compactions after as many."""
+    s = case.build()
+    edits = _planned(case, s)
+    if case.subject == COMPACT:
+        timed = timer(_compact, setup=lambda: (_edited(s, edits),), rounds=COMPACTIONS, warmup=1)
+        return case.result("time", s, **timed.fields)
+    _edited(s, edits[:8])  # compiles
+    copy = s.copy()
+    render = hem.RenderMesh(copy)
+    uploads: list[int] = []
+    if case.order == RESERVED:
+        copy.reserve(len(edits))
+        render.reserve(len(edits))
+    render.subscribe(lambda upload: uploads.append(_bytes(upload)))
+    following = iter(edits)
+    timed = timer(
+        lambda edit: copy.operate(edit[0], edit[1], point=edit[2]),
+        setup=lambda: (next(following),), rounds=len(edits), warmup=0,
+    )  # fmt: skip
+    validate_operated(copy)
+    if len(timed.samples):  # and not just compiled
+        _check(render, copy)
+    detail = {"uploads": uploads, "render": render.points.nbytes + render.indices.nbytes}
+    return case.result("time", s, **timed.fields, detail=detail)
+
+
+def _planned(case: Case, s: Structure) -> list[tuple[str, int, Any]]:
+    """Operations in turn, each at a place of its own, where it may be done."""
+    faces = operation_faces(case, MOST_SEARCHING if searches(case) else MOST_EDITS)
+    rows = {it: operation_arguments(s, it, faces[k :: len(EDITED)]) for k, it in enumerate(EDITED)}
+    turns = (iter(rows[it][:, 0].tolist()) for it in EDITED)
+    named: list[tuple[str, int, Any]] = []
+    for name, handles in cycle(list(zip(EDITED, turns, strict=True))):
+        handle = next(handles, None)
+        if handle is None:
+            return named
+        point = np.zeros(3) if name.startswith("split") else None
+        named.append((name, handle, point))
+    return named
+
+
+def _edited(s: Structure, edits: list[tuple[str, int, Any]]) -> Structure:
+    """A copy after these edits, with a render mesh that followed."""
+    copy = s.copy()
+    hem.RenderMesh(copy)
+    for name, handle, point in edits:
+        copy.operate(name, handle, point=point)
+    return copy
+
+
+def _compact(s: Structure) -> None:
+    s.compact()
+
+
+def _bytes(upload: hem.Upload) -> int:
+    """What a commit has to be uploaded."""
+    return int(12 * sum(np.diff(it).sum() for it in (upload.vertices, upload.triangles)))
+
+
+def _check(render: hem.RenderMesh, s: Structure) -> None:
+    afresh = hem.RenderMesh(s)
+    for mine, others in ((render.points, afresh.points), (render.indices, afresh.indices)):
+        if not np.array_equal(mine, others):
+            raise AssertionError("the render mesh is not in step")
+
+
+EXPERIMENT = Experiment(title="Real time", cases=cases, measure=measure, copies=8, turn=65)
+test_real_time = EXPERIMENT.test
