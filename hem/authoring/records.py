@@ -139,23 +139,33 @@ def compacted(records: Any, fields: Sequence[Field]) -> tuple[Any, dict[str, Arr
 
     The numbers are by kind of record: (end,) the new one of each, -1 for the dead. O(records).
     """
-    alive = {it.element: live(records, fields, it.element) for it in fields}
-    number = {kind: np.where(it, np.cumsum(it) - 1, -1) for kind, it in alive.items()}
+    kinds = dict.fromkeys(it.element for it in fields)
+    alive = {kind: np.flatnonzero(live(records, fields, kind)) for kind in kinds}
+    number = {kind: _numbers(rows, records.counts[ENDS[kind]]) for kind, rows in alive.items()}
     columns, arrays = _columns(fields), {}
     for field in fields:
         if field.array not in arrays:
-            used = getattr(records, field.array)[: len(alive[field.element])]
-            arrays[field.array] = used[alive[field.element]]
+            arrays[field.array] = getattr(records, field.array).take(alive[field.element], axis=0)
         if field.target:
             array = arrays[field.array]
             part = array if array.ndim == 1 else array[:, columns[field.name]]
-            part[...] = np.append(number[field.target], -1)[part]  # where there is none, -1, too
+            part[...] = number[field.target].take(part)
     old, recorded = records.counts, [kind for kind in alive if ENDS[kind] == EDGE_END]
-    edge_records = int(alive[recorded[0]].sum()) if recorded else ENDLESS
+    edge_records = len(alive[recorded[0]]) if recorded else ENDLESS
     own = edge_records, old[EDGE_GROWTH], old[SIDES]
     count = counted(old[VERTICES], old[EDGES], old[FACES], *own)
     count[VALENCE] = old[VALENCE]
-    return type(records)(**arrays, counts=count), number
+    return type(records)(**arrays, counts=count), {kind: it[:-1] for kind, it in number.items()}
+
+
+def _numbers(rows: Array, end: int) -> Array:
+    """(end + 1,): the new number of each old one, -1 for those not among ``rows``; the last is -1.
+
+    So the -1 of a reference to none leads to -1.
+    """
+    number = np.full(end + 1, -1)
+    number[rows] = np.arange(len(rows))
+    return number
 
 
 def copied(records: Any) -> Any:

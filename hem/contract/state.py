@@ -109,13 +109,15 @@ class State:
             return mine, batch(handles[mine], offsets[mine], values, width, *records)
 
         parts = in_slices(answer, n)
+        first = room
         if not all(np.may_share_memory(values, room) for _, values in parts if len(values)):
             room = np.empty(sum(len(values) for _, values in parts), room.dtype)
         end = 0
         for mine, values in parts:
             if end:
                 offsets[mine] += end
-            move(values, room, end)
+            if end or room is not first:  # the first part lies where it belongs
+                move(values, room, end)
             end += len(values)
         offsets[n] = end
         return Ragged(offsets, room[:end])
@@ -166,8 +168,9 @@ class State:
         """Drop dead records and room -> the new number of each old record, by kind. O(records)."""
         self.records, number = self.storage.compacted(self.records)
         counts = self.records.counts
-        corners = self.answers("face_vertices", self.live("face"), int(counts[SIDES]))
-        counts[SIDES] = corners.counts.max(initial=3)
+        if counts[SIDES] > 3:
+            corners = self.answers("face_vertices", self.live("face"), int(counts[SIDES]))
+            counts[SIDES] = corners.counts.max(initial=3)
         self._repin()
         return number
 
