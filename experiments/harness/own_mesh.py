@@ -10,6 +10,7 @@ import numpy as np
 
 import structures
 from hem.algorithms import simplify, subdivide
+from hem.contract import Navigable
 from hem.errors import MeshError
 from hem.meshes import TriangleMesh
 from hem.sources import find_mesh
@@ -22,7 +23,9 @@ COARSER = 4
 FINE_ENOUGH = 20_000
 """Vertices up to which there are finer versions of a small mesh; there is always one."""
 
-_HOLDER = next(name for name, it in structures.REGISTRY.items() if it.compiled and not it.searches)
+_HOLDER = next(
+    name for name, it in structures.REGISTRY.items() if it.compiled and issubclass(it, Navigable)
+)
 """The structure in which versions are made."""
 
 _folders: dict[str, Path] = {}

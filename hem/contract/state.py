@@ -55,7 +55,6 @@ class State:
     def __init__(self, declared: Declared, records: Any) -> None:
         self.declared, self.storage = declared, declared.storage
         self.records = records
-        self.log = memoryview(np.zeros(1, np.int64).data)  # views are faster to read than arrays
         self._pins: list[tuple[Any, Callable[[State], tuple[Any, ...]]]] = []
         self._valence_counted = 0
 
@@ -66,6 +65,11 @@ class State:
         known = int(counts[VALENCE])  # of what was copied or compacted
         exact = 0 < known <= counts[FACES] // 8
         return self._wide_enough(known if exact else self.count_valence())
+
+    @cached_property
+    def log(self) -> memoryview:
+        """What the operation under way has touched. Views are faster to read than arrays."""
+        return memoryview(np.zeros(1, np.int64).data)
 
     @cached_property
     def at(self) -> Any:

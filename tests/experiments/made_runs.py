@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
+from experiments.bench_real_time import COMPACT, EDITS, GROWING, RESERVED
 from experiments.bench_workloads import COMPILED, FROM_PYTHON, WORKLOADS
 from experiments.claims import Exactly, load_claims
 from experiments.harness import HUBS, Measurement
@@ -131,6 +132,12 @@ def _add_times(files: dict, folder: Path, structure: str) -> None:
                 latency=2e-9, **about,
             )  # fmt: skip
             _add(files, folder, experiment, structure, case)
+        for subject, order in ((EDITS, RESERVED), (EDITS, GROWING), (COMPACT, None)):
+            edits = Measurement(
+                id=f"{subject}/{n_t}/{order}", subject=subject, order=order,
+                samples=[4e-3, *20 * [2e-5]], detail={"uploads": [12 * n_t, *20 * [84]]}, **about,
+            )  # fmt: skip
+            _add(files, folder, "bench_real_time", structure, edits)
         for way, power in FINDING.items():
             order = f"{way}, faces looked at"
             counted = {**about, "kind": "work", "samples": [float(round(n_t**power))]}

@@ -12,6 +12,7 @@ from experiments.report.figures import accuracy as accuracy_figures
 from experiments.runs import load
 from experiments.validation import accuracy
 from experiments.validation.synthetic import CONDITIONS, GROWTH, make_curves
+from structures import NAMES, THESIS
 from tests.experiments.made_runs import write_run
 
 REFERENCE = Path(__file__).parents[3] / "results" / "reference"
@@ -35,9 +36,10 @@ def test_right_wrong_and_undetermined_are_told_apart() -> None:
 
 def test_a_sound_run_is_determined_and_one_without_data_is_not(tmp_path: Path) -> None:
     run = load(write_run(tmp_path / "sound"))
-    assert accuracy.determined_shares(judge_run(run)).loc["Table 1"].tolist() == [42, 1, 1]
+    claimed = 26 + 8 * (len(NAMES) - len(THESIS))
+    assert accuracy.determined_shares(judge_run(run)).loc["Table 1"].tolist() == [claimed, 1, 1]
     emptied = judge_run(type(run)(tmp_path / "empty", run.meta, run.cases.iloc[:0], run.skipped))
-    assert accuracy.determined_shares(emptied).loc["Table 1"].tolist() == [42, 0, 0]
+    assert accuracy.determined_shares(emptied).loc["Table 1"].tolist() == [claimed, 0, 0]
 
 
 def test_half_of_the_timed_curves_missing_is_half_of_the_claims_undetermined(
