@@ -64,7 +64,9 @@ def _compare(
     require_known("structure", structures, NAMED)
     from experiments import regression as gate
 
-    before = gate.load_baseline(gate.COUNTERS, folder)  # before anything is measured
+    if beside:  # all mistakes are told before anything is measured
+        gate.require_tree(beside)
+    before = gate.load_baseline(gate.COUNTERS, folder)
     runs = chosen and (gate.load_baseline(gate.RUN, folder), gate.reduce_run(_load(chosen)))
     factors: dict[str, Any] = {} if factor is None else {"factor": factor}
     after = gate.measure_counters(structures)

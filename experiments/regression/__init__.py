@@ -24,7 +24,7 @@ from experiments.regression.compare import (
 from experiments.regression.counters import measure_counters
 from experiments.regression.findings import CaseKey, Change, Finding, Kind, exit_code
 from experiments.regression.history import History, Line, append_run, read_history, record_run
-from experiments.regression.interleaved import HERE, compare_trees
+from experiments.regression.interleaved import HERE, compare_trees, require_tree
 from experiments.regression.significance import FACTOR as INTERLEAVED_FACTOR
 from experiments.regression.trends import MEASURES, OUTCOMES, Trends
 
@@ -33,5 +33,5 @@ __all__ = [
     "CaseKey", "Change", "Compared", "Finding", "History", "Kind", "Line", "Measured", "Trends",
     "append_run", "compare_counters", "compare_runs", "compare_trees", "describe_difference",
     "exit_code", "load_baseline", "measure_counters", "read_history", "record_run",
-    "reduce_run", "save_baseline",
+    "reduce_run", "require_tree", "save_baseline",
 ]  # fmt: skip

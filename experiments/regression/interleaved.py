@@ -50,6 +50,12 @@ class PairTimed(NamedTuple):
     error: str = ""
 
 
+def require_tree(path: Path) -> None:
+    """Raise ValueError where there is no tree."""
+    if not (path / "hem" / "__init__.py").exists():
+        raise ValueError(f"--beside {path} is no checkout: there is no hem/__init__.py in it")
+
+
 def compare_trees(
     before: Path, after: Path = HERE, structures: Collection[str] = (), factor: float = FACTOR
 ) -> list[Finding]:
@@ -58,8 +64,7 @@ def compare_trees(
     A tree that never ran compiles first. Raises ValueError where ``before`` is no tree; what does
     not run there cannot be told.
     """
-    if not (before / "hem" / "__init__.py").exists():
-        raise ValueError(f"--beside {before} is no checkout: there is no hem/__init__.py in it")
+    require_tree(before)
     chosen = structures or REGISTRY
     names = [name for name, it in REGISTRY.items() if it.compiled and name in chosen]
     wanted = [(name, query) for name in names for query in QUERIES]

@@ -96,7 +96,7 @@ def test_a_simplification_leaves_a_tenth_and_a_closed_surface(order):
 @pytest.mark.parametrize("order", ["compiled", "from Python"])
 def test_smoothing_moves_every_vertex_to_the_mean_of_its_neighbors(order):
     mesh = hem.generate("torus", 100)
-    s = structures.build("winged_edge", mesh)
+    s = structures.build("half_edge", mesh)
     WORKLOADS["smoothing"].run(order)(s)
     for v in (0, 50, 99):
         near = np.unique(mesh.triangles[(mesh.triangles == v).any(axis=1)])

@@ -95,7 +95,7 @@ def test_counts_grow_as_the_scheme_says_and_the_surface_stays_sound(
     scheme: str, factor: int
 ) -> None:
     for mesh in (CLOSED, OPEN):
-        s = structures.build("triangle_neighbor", mesh)
+        s = structures.build("half_edge", mesh)
         algorithms.subdivide(s, scheme, times=2)
         assert s.n_faces == factor**2 * len(mesh.triangles)
         hem.require_sound(s.to_triangles())

@@ -139,7 +139,7 @@ def test_the_impact_and_the_middles_of_the_sides_are_split():
     ("impact", "what"), [((4, 4, 0), "a vertex"), ((4.5, 4, 0), "a side"), ((0, 0.5, 0), "border")]
 )
 def test_an_impact_on_a_vertex_or_a_side_is_handled(impact, what):
-    for name in structures.NAMES:
+    for name in OF_EACH_KIND:
         s = structures.build(name, sheet())
         broken = shatter(s, impact, "glass", 3)
         s.validate()
@@ -183,7 +183,7 @@ def test_islands_are_parts_of_the_rest_the_largest_first():
     assert found > 3
 
 
-@pytest.mark.parametrize("name", structures.NAMES)
+@pytest.mark.parametrize("name", OF_EACH_KIND)
 def test_a_render_mesh_follows(name):
     s = structures.build(name, sheet())
     render = hem.RenderMesh(s)
@@ -268,7 +268,7 @@ def test_polygons_and_empty_meshes_are_refused():
     with pytest.raises(hem.MeshError, match="only triangles"):
         shatter(structures.build("plankton", quads), (0, 0, 1))
     empty = hem.TriangleMesh(np.zeros((0, 3)), np.zeros((0, 3), int))
-    for name in structures.NAMES:
+    for name in OF_EACH_KIND:
         with pytest.raises(hem.MeshError, match="no faces"):
             shatter(structures.build(name, empty), (0, 0, 1))
 
@@ -283,7 +283,7 @@ def test_faces_without_area_are_no_trouble_to_find_others():
         assert scanned(s, at).face == face
 
 
-@pytest.mark.parametrize("name", structures.NAMES)
+@pytest.mark.parametrize("name", OF_EACH_KIND)
 def test_the_face_that_is_hit_says_of_what_material_it_is(name):
     at = (3.2, 4.1, 0)
     s = structures.build(name, sheet())
