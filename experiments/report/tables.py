@@ -184,6 +184,8 @@ def sentences_markdown(claims: Iterable[JudgedClaim], name: str) -> str:
 
 def duration(seconds: float) -> str:
     """A time with two digits that count: 3.1 µs, 250 ms."""
+    if seconds != seconds:
+        return "–"
     units = ((1.0, "s"), (1e-3, "ms"), (1e-6, "µs"), (1e-9, "ns"))
     size, unit = next((it for it in units if seconds >= 0.995 * it[0]), units[-1])
     return f"{digits(seconds / size)} {unit}"

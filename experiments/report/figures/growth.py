@@ -170,14 +170,15 @@ def rendering(run: Run, structure: str = "half_edge") -> Plot:
 
 
 def workloads(run: Run, order: str = COMPILED) -> Plot:
-    """Time per unit of every workload, by size: compiled or from Python, never both."""
+    """Time per unit of every measured workload, by size: compiled or from Python, never both."""
 
     def also(axes: Axes, name: str) -> None:
         axes.set_ylabel(f"time per {WORKLOADS[name].unit}, µs")
 
-    titles = {name: workload.title for name, workload in WORKLOADS.items()}
     cases = _timed(run, "bench_workloads", 1e6)
     cases = cases[cases["order"] == order]
+    measured = set(cases["subject"]) or WORKLOADS.keys()
+    titles = {name: it.title for name, it in WORKLOADS.items() if name in measured}
     return _draw(cases, titles, "vertices", f"any workload {order}", also=also, plain=True)
 
 

@@ -36,7 +36,7 @@ def waits(run: Run) -> Plot:
                 look = {**STYLES[case["structure"]], "marker": ""}
                 axes.step(1e6 * np.sort(case["samples"]), slower, where="pre", **look)
         every[0].text(1e6 * FRAME, 1, " a frame", color=style.GRAY, va="top", fontsize=7)
-        every[0].legend(loc="lower left", fontsize=7)
+        every[0].legend(loc="upper right", bbox_to_anchor=(0.95, 1), fontsize=7)
     return figure
 
 
@@ -53,7 +53,7 @@ def frames(run: Run) -> Html:
     heads: Heads = {
         "": str, "vertices": _count, "room": lambda there: "made" if there else "grows",
         "median": duration, "99 of 100": duration, "longest": duration,
-        "edits in a frame": _count, "uploaded, bytes": _count, "at most": _count,
+        "edits in a frame": str, "uploaded, bytes": _count, "at most": _count,
     }  # fmt: skip
     return numbers(rows, heads)
 
@@ -91,12 +91,12 @@ def weights(run: Run) -> Html:
     return numbers(rows, {**heads, **{f"+ {REGISTRY[it].abbreviation}": _megabytes for it in held}})
 
 
-def _in_a_frame(seconds: Any) -> float:
+def _in_a_frame(seconds: Any) -> str:
     """How many edits in a row fit into a frame, wherever it begins: in the worst one."""
     ends = np.append(0.0, np.cumsum(seconds))
     fits = np.searchsorted(ends, ends + FRAME, side="right") - 1 - np.arange(len(ends))
     whole = fits[ends + FRAME <= ends[-1]]  # frames that end before the edits do
-    return float(whole.min()) if len(whole) else float(len(seconds))
+    return _count(whole.min()) if len(whole) else f"all {_count(len(seconds))}"
 
 
 def _edits(run: Run) -> pd.DataFrame:
