@@ -86,8 +86,13 @@ def _compare(
 
 
 def _load(folder: Path) -> Run:
+    from experiments.harness import own_mesh
     from experiments.runs import load
 
+    if mesh := own_mesh.of_run(folder):
+        raise ValueError(
+            f"{folder} is on {mesh[0]}, and the baseline is not: there is no comparing"
+        )
     run = load(folder)
     if run.cases.empty:
         raise ValueError(

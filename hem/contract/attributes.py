@@ -7,6 +7,7 @@ keeps its rows. What it creates gets them by the attribute's rule, from what it 
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable
 from typing import Any, Literal
 
@@ -225,13 +226,14 @@ class EdgeAttribute(Attribute):
         return [(h, g) for h, g in pairs if h >= 0 and g >= 0]
 
 
-class HalfEdgeAttribute(EdgeAttribute):
-    """Of half-edges. Values go where their half-edges go.
+class MovingAttribute(EdgeAttribute, ABC):
+    """Values that go where half-edges go, which nobody tells: it is kept how these ran.
 
-    An edge keeps its handle when one of its faces is taken away, and so the half-edge that is left
-    may move into the place of the one that is gone. Nobody tells of that; therefore it is kept how
-    the half-edges of every face ran when they were last looked at.
+    They are looked at anew where all may have changed.
     """
+
+    @abstractmethod
+    def _look_at_all(self) -> None: ...
 
     def clear(self) -> None:
         """See ``Attribute.clear``."""
@@ -246,6 +248,14 @@ class HalfEdgeAttribute(EdgeAttribute):
     def _renumber(self, edit: Edit) -> None:
         super()._renumber(edit)
         self._look_at_all()
+
+
+class HalfEdgeAttribute(MovingAttribute):
+    """Of half-edges. Values go where their half-edges go.
+
+    An edge keeps its handle when one of its faces is taken away, and so the half-edge that is left
+    may move into the place of the one that is gone.
+    """
 
     def _inherit(self, edit: Edit) -> None:
         mesh, faces = self._mesh, np.concatenate([edit.changed_faces, edit.created_faces])

@@ -10,14 +10,14 @@ from numpy.typing import ArrayLike
 
 from hem.arrays import Array
 from hem.authoring.marked import BITS
-from hem.contract.attributes import EdgeAttribute
+from hem.contract.attributes import EdgeAttribute, MovingAttribute
 from hem.edit import Edit
 
 Way = tuple[int, int]
 """Where a half-edge starts, and where it ends."""
 
 
-class SideAttribute(EdgeAttribute):
+class SideAttribute(MovingAttribute):
     """Of edges or half-edges that are the sides of faces: side i of face f has row 3 f + i.
 
     It is kept how every side ran when it was last looked at. After an edit the sides of the faces
@@ -34,25 +34,11 @@ class SideAttribute(EdgeAttribute):
             self._rows[twin[twin >= 0]] = self._rows[rows[twin >= 0]]
         self._listeners.tell(np.atleast_1d(np.asarray(handles)))
 
-    def clear(self) -> None:
-        """See ``Attribute.clear``."""
-        super().clear()
-        self._look_at_all()
-
-    def restore(self, state: tuple[Array, ...]) -> None:
-        """See ``Attribute.restore``."""
-        super().restore(state)
-        self._look_at_all()
-
     # Behind it ---------------------------------------------------------------------------------
 
     def _checked(self, handles: Any) -> Any:
         rows = super(EdgeAttribute, self)._checked(handles)
         return rows >> BITS if self.element == "edge" else rows
-
-    def _renumber(self, edit: Edit) -> None:
-        super()._renumber(edit)
-        self._look_at_all()
 
     def _moved(self, edit: Edit) -> tuple[Array, Array]:
         assert edit.remapping is not None

@@ -63,6 +63,10 @@ def test_a_run_keeps_its_mesh_and_is_called_by_it(tmp_path):
     assert set(of_mesh["experiment"]) == {"bench_memory", "bench_work"}
     assert 500 in set(of_mesh["vertices"])
     assert set(cases["family"]) == {"model.ply", "hubs"}  # and no real models
+    for asked in (["check"], ["baseline", "update", "--yes"]):
+        code, printed = command(*asked, str(folder))
+        assert code in (1, 2)
+        assert "is on model.ply, and the baseline is not" in printed
 
 
 def test_what_not_every_structure_can_hold_is_refused_and_leaves_no_run(tmp_path):
