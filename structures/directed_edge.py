@@ -326,9 +326,7 @@ class DirectedEdge(MarkedEdges):
 
     name, title, abbreviation = "directed_edge", "Directed-Edge", "DE"
     look, order = Look("#56b4e9", "*", "-."), 7
-    claims = Claims(
-        "as a half-edge mesh, of which it leaves out what it computes", like="half_edge"
-    )
+    claims = Claims("no document says what it costs; what is found is shown")
     records_type = DirectedEdgeRecords
     fields = (
         Field("vertex.point", "vertex_point", 3, marks=True),

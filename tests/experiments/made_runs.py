@@ -13,7 +13,7 @@ from experiments.bench_workloads import COMPILED, FROM_PYTHON, WORKLOADS
 from experiments.claims import Exactly, load_claims
 from experiments.harness import HUBS, Measurement
 from experiments.runs import CaseFile, describe, experiments, write_meta
-from structures import NAMES
+from structures import NAMES, REGISTRY, THESIS
 
 ORDERS = ("consecutive", "random")
 
@@ -43,6 +43,9 @@ def experiments_of(table: str) -> list[tuple[str, str, str]]:
         for axis, order in it.axes.items()
     ]
 
+
+LIKE_THE_THESIS = [it for it in NAMES if it not in THESIS and REGISTRY[it].claims.like]
+"""Structures of which the same is claimed as of one of the thesis."""
 
 FINDING = {"walk": 1 / 2, "jump and walk": 1 / 3, "scan": 1}
 """The ways to find a face, and the power of n_t that they take in these runs."""
