@@ -26,6 +26,7 @@ app = typer.Typer(
     cls=Commands,
     help="Triangle-mesh data structures, measured and held against what a thesis claims of them.",
     no_args_is_help=True,
+    rich_markup_mode="markdown",  # which fills the lines of a paragraph
     add_completion=False,
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},

@@ -44,6 +44,8 @@ def user_errors(code: int = 1) -> Iterator[None]:
     """
     try:
         yield
+    except BrokenPipeError:  # whoever read, `| head`, has what he wants; Click ends quietly
+        raise
     except (ValueError, OSError, ImportError) as error:
         errors.print(f"[bold red]hem:[/] {escape(str(error))}")
         raise typer.Exit(code) from error
