@@ -63,6 +63,7 @@ from hem.authoring import (
 )
 from hem.contract import Claims, Look, MarkedEdges
 from hem.meshes import TriangleMesh
+from hem.room import roomy, rows
 
 ORIGIN, TWIN = range(2)  # the columns of a half-edge
 
@@ -339,13 +340,13 @@ class DirectedEdge(MarkedEdges):
     def build(cls, mesh: TriangleMesh, reference_bytes: int = 4) -> Self:
         """See ``Structure.build``."""
         reference, n = REFERENCE_TYPES[reference_bytes], len(mesh.triangles)
-        half_edge = np.empty((3 * n, 2), reference)
+        half_edge = rows(3 * n, 2, dtype=reference)
         pairing = pair_half_edges(mesh, room=half_edge)
         in_slices(_fill, n, mesh.triangles, pairing.twin, half_edge)
         vertex = pairing.vertex_half_edge.astype(reference, copy=False)
         count = counted(len(mesh.points), pairing.n_edges, n, 3 * n)
         count[FACE_ROOM] = ENDLESS  # faces have no records of their own
-        return cls(DirectedEdgeRecords(mesh.points.copy(), vertex, half_edge, count))
+        return cls(DirectedEdgeRecords(roomy(mesh.points), vertex, half_edge, count))
 
     def _require_invariants(self) -> None:
         """Those at the top of this file."""

@@ -55,6 +55,7 @@ from hem.authoring import (
 )
 from hem.contract import Look, Navigable
 from hem.meshes import TriangleMesh
+from hem.room import roomy, rows
 
 ORIGIN, FACE, NEXT, TWIN = range(4)  # the columns of a half-edge
 
@@ -359,12 +360,12 @@ class HalfEdge(Navigable):
     def build(cls, mesh: TriangleMesh, reference_bytes: int = 4) -> Self:
         """See ``Structure.build``."""
         reference, n = REFERENCE_TYPES[reference_bytes], len(mesh.triangles)
-        face, half_edge = np.empty(n, reference), np.empty((3 * n, 4), reference)
+        face, half_edge = rows(n, dtype=reference), rows(3 * n, 4, dtype=reference)
         pairing = pair_half_edges(mesh, room=half_edge)
         in_slices(_fill, n, mesh.triangles, pairing.twin, face, half_edge)
         vertex = pairing.vertex_half_edge.astype(reference, copy=False)
         count = counted(len(mesh.points), pairing.n_edges, n, 3 * n)
-        return cls(HalfEdgeRecords(mesh.points.copy(), vertex, face, half_edge, count))
+        return cls(HalfEdgeRecords(roomy(mesh.points), vertex, face, half_edge, count))
 
     def _require_invariants(self) -> None:
         """Those at the top of this file."""

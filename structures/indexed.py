@@ -42,6 +42,7 @@ from hem.authoring import (
 )
 from hem.contract import Look, PackedEdges
 from hem.meshes import TriangleMesh
+from hem.room import roomy
 
 
 class IndexedRecords(NamedTuple):
@@ -265,7 +266,7 @@ class Indexed(PackedEdges):
     def build(cls, mesh: TriangleMesh, reference_bytes: int = 4) -> Self:
         """See ``Structure.build``. Any mesh is accepted; the indices are 4 bytes in any case."""
         count = counted(len(mesh.points), UNKNOWN, len(mesh.triangles))
-        return cls(IndexedRecords(mesh.points.copy(), mesh.triangles.copy(), count))
+        return cls(IndexedRecords(roomy(mesh.points), roomy(mesh.triangles), count))
 
     def _require_invariants(self) -> None:
         """Those at the top of this file."""

@@ -47,6 +47,7 @@ from hem.edit import Edit
 from hem.errors import MeshError, TopologyError
 from hem.meshes import PolygonMesh, TriangleMesh
 from hem.ragged import Ragged
+from hem.room import roomy, rows
 from structures import pairs
 from structures.pairs import FACE, NEXT, PREVIOUS, START, PlanktonRecords
 from structures.polygons import POLYGON_OPERATIONS
@@ -88,13 +89,14 @@ class Plankton(Navigable):
         else:
             corners, offsets = mesh.triangles.reshape(-1), None
             n, most = len(mesh.triangles), 3
-            room = np.empty((3 * n, 4), reference)
+            room = rows(3 * n, 4, dtype=reference)
             pairing = pair_half_edges(mesh, room=room)
         n_half_edges = 2 * pairing.n_edges
         if room is None or n_half_edges > len(room):
-            room = np.empty((n_half_edges, 4), reference)
-        half, face = np.empty(len(corners), np.int32), np.empty(n, reference)
-        vertex = np.full(len(mesh.points), -1, reference)
+            room = rows(n_half_edges, 4, dtype=reference)
+        half, face = np.empty(len(corners), np.int32), rows(n, dtype=reference)
+        vertex = rows(len(mesh.points), dtype=reference)
+        vertex[:] = -1
         number_edges(pairing.twin, half)
         pairs.keep_last(corners, half, vertex)
         if offsets is None:
@@ -105,7 +107,7 @@ class Plankton(Navigable):
             pairs.go_round_holes(half[pairing.twin < 0], vertex, room)
         own = n_half_edges, 6, most
         count = counted(len(mesh.points), pairing.n_edges, n, *own)
-        return cls(PlanktonRecords(mesh.points.copy(), vertex, face, room, count))
+        return cls(PlanktonRecords(roomy(mesh.points), vertex, face, room, count))
 
     # Elements --------------------------------------------------------------------------------
 

@@ -54,6 +54,7 @@ from hem.authoring import (
 )
 from hem.contract import Look, PackedEdges
 from hem.meshes import TriangleMesh
+from hem.room import roomy, rows
 
 NEIGHBOR, CORNER = 0, 3  # the first of three columns each
 
@@ -401,12 +402,12 @@ class TriangleNeighbor(PackedEdges):
     def build(cls, mesh: TriangleMesh, reference_bytes: int = 4) -> Self:
         """See ``Structure.build``."""
         reference = REFERENCE_TYPES[reference_bytes]
-        triangle = np.empty((len(mesh.triangles), 6), reference)
+        triangle = rows(len(mesh.triangles), 6, dtype=reference)
         pairing = pair_half_edges(mesh, room=triangle)
         in_slices(_fill, len(triangle), mesh.triangles, pairing.twin, triangle)
-        vertex_triangle = (pairing.vertex_half_edge // 3).astype(reference)  # -1 stays -1
+        vertex_triangle = roomy(pairing.vertex_half_edge // 3, reference)  # -1 stays -1
         count = counted(len(mesh.points), pairing.n_edges, len(triangle))
-        return cls(TriangleNeighborRecords(mesh.points.copy(), vertex_triangle, triangle, count))
+        return cls(TriangleNeighborRecords(roomy(mesh.points), vertex_triangle, triangle, count))
 
     def _require_invariants(self) -> None:
         """Those at the top of this file."""

@@ -61,6 +61,7 @@ from hem.authoring import (
 )
 from hem.contract import Look, Structure
 from hem.meshes import TriangleMesh
+from hem.room import roomy, rows
 
 TAIL, HEAD, LEFT_FACE, RIGHT_FACE = range(4)
 LEFT_PREVIOUS, RIGHT_PREVIOUS, LEFT_NEXT, RIGHT_NEXT = range(4, 8)
@@ -398,14 +399,15 @@ class WingedEdge(Structure):
         reference, pairing = REFERENCE_TYPES[reference_bytes], pair_half_edges(mesh)
         directed = np.empty_like(pairing.twin)
         number_edges(pairing.twin, directed)
-        edge = np.empty((pairing.n_edges, 8), reference)
+        edge = rows(pairing.n_edges, 8, dtype=reference)
         in_slices(_fill, len(directed), mesh.triangles, pairing.twin, directed, edge)
         used = pairing.vertex_half_edge >= 0
-        vertex_edge = np.full(len(used), -1, reference)
+        vertex_edge = rows(len(used), dtype=reference)
+        vertex_edge[~used] = -1
         vertex_edge[used] = directed[pairing.vertex_half_edge[used]] >> 1
-        face_edge = (directed[::3] >> 1).astype(reference)
+        face_edge = roomy(directed[::3] >> 1, reference)
         count = counted(len(mesh.points), pairing.n_edges, len(face_edge), pairing.n_edges)
-        return cls(WingedEdgeRecords(mesh.points.copy(), vertex_edge, face_edge, edge, count))
+        return cls(WingedEdgeRecords(roomy(mesh.points), vertex_edge, face_edge, edge, count))
 
     def _require_invariants(self) -> None:
         """Those at the top of this file."""

@@ -22,6 +22,7 @@ from experiments.regression.baseline import COUNTERS, Measured
 from experiments.regression.snapshots import class_figures
 from experiments.runs import Run, describe, experiments
 from hem.contract import QUERIES, REFERENCE_TYPES, Structure
+from hem.room import behind
 
 EXTENT = replace(
     PRESETS["quick"],
@@ -134,13 +135,13 @@ def _weigh(make: Callable[[], Structure]) -> tuple[Structure, int]:
     """Make something -> it, and the bytes of all arrays that were made and are still there.
 
     NumPy tells tracemalloc of every array, wherever it hides; Python's own objects, which take
-    other sizes in other versions, are skipped.
+    other sizes in other versions, are skipped, and so are addresses without memory.
     """
     tracemalloc.start()
     try:
         before = _in_arrays()
         made = make()
-        return made, _in_arrays() - before
+        return made, _in_arrays() - before - behind(*made.arrays)
     finally:
         tracemalloc.stop()
 

@@ -19,6 +19,7 @@ from hem.authoring.invariants import require_one_fan
 from hem.authoring.slices import in_slices, slice_count
 from hem.errors import MeshError, NonManifoldError
 from hem.meshes import PolygonMesh, TriangleMesh, require_manifold
+from hem.room import rows
 
 MOST_HALF_EDGES = np.iinfo(np.int32).max
 
@@ -60,7 +61,7 @@ def pair_half_edges(mesh: TriangleMesh, room: Array | None = None) -> Pairing:
     in_slices(_count, len(triangles), triangles, counts, firsts)
 
     starts = np.empty(n_vertices + 1, np.int32)
-    vertex_half_edge = np.empty(n_vertices, np.int32)
+    vertex_half_edge = rows(n_vertices, dtype=np.int32)
     _start_buckets(counts, firsts, starts, vertex_half_edge)
     room = np.empty(2 * n_half_edges, np.int32) if room is None else room.reshape(-1).view(np.int32)
     buckets = room[: 2 * n_half_edges].reshape(-1, 2)

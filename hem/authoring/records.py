@@ -29,6 +29,7 @@ from hem.authoring.kernels import (
     VERTICES,
 )
 from hem.errors import MeshError
+from hem.room import longer, roomy, rows
 
 REFERENCE_TYPES = {4: np.int32, 8: np.int64}
 """Bytes of a stored reference to the type that holds it. The thesis counts 8 (section 7)."""
@@ -110,27 +111,28 @@ def in_use(records: Any, fields: Sequence[Field], field: Field) -> Array:
 
 
 def grown(records: Any, fields: Sequence[Field], vertices: int, faces: int) -> Any:
-    """The same records with room for so many more vertices and faces, and at least twice as many.
+    """The same records with room for so many more vertices and faces, in place where there is some.
 
-    Cost O(records), so that one new element costs O(1) in the long run.
+    See ``hem.room``. Cost O(records) where they are moved, into twice as much room or more, so that
+    one new element costs O(1) in the long run.
     """
     count, arrays = records.counts.copy(), records._asdict()
     wanted = {VERTEX_END: vertices, FACE_END: faces, EDGE_END: count[EDGE_GROWTH] * faces}
     rooms = {VERTEX_END: VERTEX_ROOM, FACE_END: FACE_ROOM, EDGE_END: EDGE_ROOM}
+    short = [end for end, room in rooms.items() if count[end] + wanted[end] > count[room]]
     for field in fields:
         end = ENDS[field.element]
-        used, room = count[end], rooms[end]
-        if used + wanted[end] > records.counts[room]:
-            count[room] = max(2 * used, used + wanted[end])
-            old = getattr(records, field.array)
-            if old.dtype.kind == "i" and count[room] > np.iinfo(old.dtype).max:
+        if end in short:
+            array = longer(arrays[field.array], count[end], count[end] + wanted[end])
+            if array.dtype.kind == "i" and len(array) > np.iinfo(array.dtype).max:
                 raise MeshError(
-                    f"{count[room]:,} records are more than references of {old.dtype.itemsize} "
+                    f"{len(array):,} records are more than references of {array.dtype.itemsize} "
                     "bytes can name; build with reference_bytes=8"
                 )
-            if len(arrays[field.array]) < count[room]:
-                arrays[field.array] = np.empty((count[room], *old.shape[1:]), old.dtype)
-                arrays[field.array][:used] = old[:used]
+            arrays[field.array] = array
+    for end in short:
+        lengths = [len(arrays[it.array]) for it in fields if ENDS[it.element] == end]
+        count[rooms[end]] = min(lengths)
     return type(records)(**(arrays | {"counts": count}))
 
 
@@ -145,16 +147,18 @@ def compacted(records: Any, fields: Sequence[Field]) -> tuple[Any, dict[str, Arr
     columns, arrays = _columns(fields), {}
     for field in fields:
         if field.array not in arrays:
-            arrays[field.array] = getattr(records, field.array).take(alive[field.element], axis=0)
+            old, kept = getattr(records, field.array), alive[field.element]
+            arrays[field.array] = rows(len(kept), *old.shape[1:], dtype=old.dtype)
+            old.take(kept, axis=0, out=arrays[field.array], mode="clip")
         if field.target:
             array = arrays[field.array]
             part = array if array.ndim == 1 else array[:, columns[field.name]]
             part[...] = number[field.target].take(part)
-    old, recorded = records.counts, [kind for kind in alive if ENDS[kind] == EDGE_END]
+    was, recorded = records.counts, [kind for kind in alive if ENDS[kind] == EDGE_END]
     edge_records = len(alive[recorded[0]]) if recorded else ENDLESS
-    own = edge_records, old[EDGE_GROWTH], old[SIDES]
-    count = counted(old[VERTICES], old[EDGES], old[FACES], *own)
-    count[VALENCE] = old[VALENCE]
+    own = edge_records, was[EDGE_GROWTH], was[SIDES]
+    count = counted(was[VERTICES], was[EDGES], was[FACES], *own)
+    count[VALENCE] = was[VALENCE]
     return type(records)(**arrays, counts=count), {kind: it[:-1] for kind, it in number.items()}
 
 
@@ -170,7 +174,8 @@ def _numbers(rows: Array, end: int) -> Array:
 
 def copied(records: Any) -> Any:
     """The same records in arrays of their own."""
-    return type(records)(*(array.copy() for array in records))
+    *arrays, counts = records
+    return type(records)(*map(roomy, arrays), counts.copy())
 
 
 def _columns(fields: Sequence[Field]) -> dict[str, slice]:

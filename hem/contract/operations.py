@@ -262,6 +262,7 @@ class Operations:
     def reserve(self, splits: int) -> None:
         """See ``Structure.reserve``."""
         self._state.make_room(splits, 2 * splits)
+        self._state.widen(splits)
         for operation in self._bound:
             self.make_way(operation)
 

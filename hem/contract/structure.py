@@ -547,8 +547,9 @@ class Structure(Described, Surveying, abstract=True):
         """Bytes per field of live elements, such as ``{"vertex.point": 12 * n_vertices, …}``.
 
         With ``room`` also what is taken beside them: ``dead and room to grow`` is what the arrays
-        hold besides, up to as much again after they grew; ``scratch`` is where queries and
-        operations work, nothing before the first of them.
+        hold besides, up to as much again after they grew, and is given memory when it is first
+        written, see ``hem.room``; ``scratch`` is where queries and operations work, nothing before
+        the first of them.
         """
         taken = self._live_bytes()
         if not room:
@@ -592,7 +593,10 @@ class Structure(Described, Surveying, abstract=True):
         return self._queries.work(query, handles)
 
     def reserve(self, splits: int) -> None:
-        """Make all room for so many splits at once, so that none of them has to. O(n_v + n_t)."""
+        """Make all room for so many splits at once, so that none of them has to.
+
+        Room for records, and scratch for as many operations of any kind. O(n_v + n_t).
+        """
         self._operations.reserve(splits)
 
     def prepare(self, operation: str, args: ArrayLike, points: ArrayLike | None = None) -> Prepared:

@@ -24,6 +24,7 @@ from hem.errors import MeshError
 from hem.listeners import Listeners
 from hem.meshes import TriangleMesh, clusters, repeated_corners, used_only
 from hem.rendering.ranges import Ranges, dirty_ranges
+from hem.room import longer, rows
 
 NEARBY = 32
 """Elements that a range may include without need, so that there are fewer ranges to upload."""
@@ -33,7 +34,8 @@ class Upload(NamedTuple):
     """What a commit changed: ranges (k, 2) of vertices and of triangles, each begin and end.
 
     ``resized``: the arrays are others than before, for more elements or after ``compact``; then the
-    ranges cover everything. ``attributes``: ranges of vertices for each that is uploaded, by name.
+    ranges cover everything. Arrays that grow in their place (``hem.room``) are the same.
+    ``attributes``: ranges of vertices for each that is uploaded, by name.
     """
 
     vertices: Ranges
@@ -117,8 +119,10 @@ class RenderMesh:
         faces = s.faces()
         self._require_triangles(faces)
         self._n_vertices, self._n_triangles = len(s.points), s.face_end
-        self._points = np.nan_to_num(s.points, nan=0.0)
-        self._indices = np.zeros((self._n_triangles, 3), np.int32)
+        self._points = rows(self._n_vertices, 3, dtype=np.float32, zeros=True)
+        self._points[:] = s.points
+        np.nan_to_num(self._points, copy=False, nan=0.0)
+        self._indices = rows(self._n_triangles, 3, dtype=np.int32, zeros=True)
         corners = s.face_vertices(faces).values.reshape(-1, 3)
         self._indices[faces] = corners[:, [0, 2, 1]]
 
@@ -159,9 +163,11 @@ class RenderMesh:
 
     def _make_room(self, vertices: int, triangles: int) -> None:
         if vertices > len(self._points) or triangles > len(self._indices):
-            self._points = _with_room(self._points, self._n_vertices, vertices)
-            self._indices = _with_room(self._indices, self._n_triangles, triangles)
-            self._resized = True
+            before = self._points.base, self._indices.base
+            self._points = longer(self._points, self._n_vertices, vertices, zeros=True)
+            self._indices = longer(self._indices, self._n_triangles, triangles, zeros=True)
+            moved = self._points.base is not before[0] or self._indices.base is not before[1]
+            self._resized = self._resized or moved
 
     def _commit(self) -> None:
         self.commits += 1
@@ -179,15 +185,6 @@ class RenderMesh:
         self._pending, self._resized = [], False
         self._written = {name: [] for name in self._written}
         self._listeners.tell(upload)
-
-
-def _with_room(array: Array, used: int, wanted: int) -> Array:
-    """The array, or a larger one with the same first rows and zeros behind them."""
-    if wanted <= len(array):
-        return array
-    larger = np.zeros((max(wanted, 2 * used), 3), array.dtype)
-    larger[:used] = array[:used]
-    return larger
 
 
 def split_at_seams(corners: Attribute) -> tuple[Points, Handles, Array]:

@@ -396,9 +396,7 @@ def test_what_is_taken_beside_the_elements_is_told(name: str) -> None:
     assert beside["dead and room to grow"] == (arrays - live if s.compiled else 8 * (1 + 2 + 6))
 
 
-def test_the_first_edit_after_reserve_makes_no_room(
-    name: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_no_edit_after_reserve_makes_room(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     s = structures.build(name, hem.generate("torus", 400))
     s.reserve(50)
 
@@ -408,3 +406,27 @@ def test_the_first_edit_after_reserve_makes_no_room(
     monkeypatch.setattr(s._operations, "make_way", unexpected)
     s.split_face(0, (0, 0, 0))
     s.flip_edge(int(s.edges()[40]))
+    for _ in range(24):
+        s.split_edge(int(s.edges()[7]), (0, 0, 0))
+        s.collapse_edge(collapsible(s))
+
+
+def test_the_first_splits_move_no_record_and_what_was_read_is_read_on(name: str) -> None:
+    s = structures.build(name, hem.generate("torus", 1_600))
+    for own in (s, s.copy()):
+        before, points = [it.ctypes.data for it in own.arrays], own.points
+        new = own.split_faces(range(100), np.ones((100, 3)))
+        if own.compiled:
+            assert [it.ctypes.data for it in own.arrays] == before
+            own.move_vertex(3, (7, 8, 9))
+            assert points[3].tolist() == [7, 8, 9]
+        assert new.tolist() == list(range(1_600, 1_700))
+        own.validate()
+
+
+@pytest.mark.parametrize(
+    "name", [it for it in structures.NAMES if structures.REGISTRY[it].compiled]
+)
+def test_a_pickle_holds_no_room(name: str) -> None:
+    s = structures.build(name, hem.generate("torus", 1_600))
+    assert len(pickle.dumps(s)) < sum(s.memory().values()) + 10_000
