@@ -71,8 +71,8 @@ format: $(DEV)  ## format the code
 
 # OpenMesh comes as source, and not for every Python. What cannot be installed is not compared.
 peers: export CMAKE_BUILD_PARALLEL_LEVEL := $(shell getconf _NPROCESSORS_ONLN)
-peers: $(STUDY)  ## compare with OpenMesh, libigl, MeshLib, trimesh and COMPAS
-	@for peer in openmesh libigl meshlib compas; do \
+peers: $(STUDY)  ## compare with OpenMesh, libigl, MeshLib, COMPAS and others
+	@for peer in openmesh libigl meshlib compas fast-simplification; do \
 		$(BIN)/python -m pip --disable-pip-version-check --quiet install $$peer --constraint constraints.txt >/dev/null 2>&1 \
 		|| echo "$$peer cannot be installed here; pip install $$peer says why"; done
 	@$(BIN)/python -m experiments.validation.peers

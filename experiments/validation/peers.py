@@ -16,6 +16,7 @@ import hem
 import structures
 from experiments.harness import shuffled
 from experiments.validation.budgets import Budget, Task, print_budgets, time_interleaved
+from hem import algorithms
 from hem.arrays import Array
 
 VERTICES = 1_000_000
@@ -23,6 +24,8 @@ OPERATED_VERTICES = 100_000
 OBJECT_VERTICES = 20_000
 COUNT = 20_000
 """Single queries, and operations."""
+SAMPLED = 100_000
+"""Places at which the distance of two surfaces is measured."""
 
 MODULES = {
     "OpenMesh": "openmesh",
@@ -30,6 +33,8 @@ MODULES = {
     "libigl": "igl",
     "trimesh": "trimesh",
     "COMPAS": "compas.datastructures",
+    "pymeshlab": "pymeshlab",
+    "fast-simplification": "fast_simplification",
 }
 
 BUILDERS: dict[str, Callable[[Any, Array, Array], Any]] = {
@@ -38,6 +43,17 @@ BUILDERS: dict[str, Callable[[Any, Array, Array], Any]] = {
     "libigl": lambda igl, _, triangles: igl.triangle_triangle_adjacency(triangles),
 }
 """What each library does to know the neighbors in a mesh."""
+
+SIMPLIFIERS: dict[str, tuple[float, Callable[[Any, hem.TriangleMesh, int], hem.TriangleMesh]]] = {
+    "pymeshlab": (3.0, lambda it, mesh, faces: _simplify_by_pymeshlab(it, mesh, faces)),
+    "fast-simplification": (
+        1.0,
+        lambda it, mesh, faces: hem.TriangleMesh(
+            *it.simplify(mesh.points.copy(), mesh.triangles.copy(), target_count=faces)
+        ),
+    ),
+}
+"""How many times faster quadrics are to be, and how each library simplifies by them."""
 
 OPERATIONS = {
     ("split_face", "split_faces"): 10.0,
@@ -193,6 +209,68 @@ OPENMESH: dict[str, Callable[[list[int], list[Array], Any], None]] = {
 }
 
 
+def compare_simplification(peers: dict[str, Any], mesh: hem.TriangleMesh) -> Iterator[Budget]:
+    """Simplify by quadrics to a tenth of the faces: the time, and how far the result is off."""
+    faces, names = len(mesh.triangles) // 10, [name for name in SIMPLIFIERS if name in peers]
+    made: dict[str, hem.TriangleMesh] = {}
+
+    def ours(s: structures.Structure) -> None:
+        algorithms.simplify(s, faces=faces)
+        made["ours"] = s.to_triangles()
+
+    def theirs(name: str) -> None:
+        made[name] = SIMPLIFIERS[name][1](peers[name], mesh, faces)
+
+    tasks = [Task(ours, lambda: (structures.build("half_edge", mesh),))]
+    seconds = time_interleaved([*tasks, *(Task(partial(theirs, name)) for name in names)])
+    for name, taken in zip(names, seconds[1:], strict=True):
+        asked, ratio = SIMPLIFIERS[name][0], taken / seconds[0]
+        measured = f"{ratio:.2f} × ({seconds[0]:,.1f} s, theirs {taken:,.1f} s)"
+        what = f"quadrics to a tenth, {name}"
+        yield Budget(what, f"≥ {asked:.3g} ×", measured, ratio >= asked)
+        if lab := peers.get("pymeshlab"):
+            off = [_distance(lab, mesh, made[it]) for it in ("ours", name)]
+            measured = (
+                f"{off[0] / off[1]:.2f} × (of the diagonal {off[0]:.1e}, theirs {off[1]:.1e})"
+            )
+            yield Budget(f"{what}: error", "≤ 1 ×", measured, off[0] <= off[1])
+
+
+def _terrain(n_vertices: int) -> hem.TriangleMesh:
+    """A grid with hills of four sizes."""
+    grid = hem.generate("grid", n_vertices)
+    points = grid.points.copy()
+    low, high = grid.bounds
+    x, y = 20 * ((points - low)[:, :2] / (high - low)[:2]).T
+    for size in (1, 3, 9, 27):
+        points[:, 2] += np.sin(size * x + size) * np.cos(0.8 * size * y) / (20 * size)
+    return hem.TriangleMesh(points, grid.triangles)
+
+
+def _scene(pymeshlab: Any, *meshes: hem.TriangleMesh) -> Any:
+    scene = pymeshlab.MeshSet()
+    for mesh in meshes:
+        scene.add_mesh(pymeshlab.Mesh(mesh.points, mesh.triangles))
+    return scene
+
+
+def _simplify_by_pymeshlab(pymeshlab: Any, mesh: hem.TriangleMesh, faces: int) -> hem.TriangleMesh:
+    scene = _scene(pymeshlab, mesh)
+    scene.meshing_decimation_quadric_edge_collapse(targetfacenum=faces)
+    found = scene.current_mesh()
+    return hem.TriangleMesh(found.vertex_matrix(), found.face_matrix())
+
+
+def _distance(pymeshlab: Any, one: hem.TriangleMesh, other: hem.TriangleMesh) -> float:
+    """Root mean square of the distances, both ways, in parts of the diagonal."""
+    scene = _scene(pymeshlab, one, other)
+    found = [
+        scene.get_hausdorff_distance(sampledmesh=a, targetmesh=1 - a, samplenum=SAMPLED)
+        for a in (0, 1)
+    ]
+    return float(np.sqrt(np.mean([(it["RMS"] / it["diag_mesh_0"]) ** 2 for it in found])))
+
+
 def main() -> None:
     """Compare with every library that is installed; print a table after each part."""
     peers, mesh = import_peers(), hem.generate("torus", VERTICES)
@@ -200,6 +278,8 @@ def main() -> None:
     print_budgets(f"Queries, torus of {VERTICES:,} vertices", compare_queries(peers, mesh))
     print_budgets(f"Queries, torus of {OBJECT_VERTICES:,} vertices", compare_objects(peers))
     print_budgets(f"Operations, torus of {OPERATED_VERTICES:,}", compare_operations(peers))
+    terrain = compare_simplification(peers, _terrain(VERTICES))
+    print_budgets(f"Simplification, terrain of {VERTICES:,} vertices", terrain)
 
 
 if __name__ == "__main__":
