@@ -125,9 +125,9 @@ def update(
     chosen = run_folder(run) if run else None
     from experiments import regression
 
-    fresh = {regression.COUNTERS: _complete(regression.measure_counters())}
-    if chosen:
-        fresh[regression.RUN] = _finished(chosen)
+    # Mistakes are told before anything is measured.
+    of_run = {regression.RUN: _finished(chosen)} if chosen else {}
+    fresh = {regression.COUNTERS: _complete(regression.measure_counters())} | of_run
     changed = {part: it for part, it in fresh.items() if _print_difference(part, it, baseline)}
     if not changed:
         console.print(f"{baseline} says just this already.")

@@ -7,6 +7,7 @@ import pytest
 
 import hem
 import structures
+from tests.extent import exhaustive
 
 CORE = structures.NAMES
 QUERIES = [f"{a}_{b}" for a in ("vertex", "edge", "face") for b in ("vertices", "edges", "faces")]
@@ -113,8 +114,9 @@ def test_queries_agree_with_the_triangle_list(name, mesh_name, query):
         assert batch == sorted(getattr(s, query)(int(handle)).tolist())
 
 
-def test_the_bunny_survives_the_round_trip(name):
-    mesh = hem.sample("bunny")
+@pytest.mark.parametrize("sample", ["cow", pytest.param("bunny", marks=exhaustive)])
+def test_a_model_survives_the_round_trip(name, sample):
+    mesh = hem.sample(sample)
     s = structures.build(name, mesh)
     s.validate()
     back = s.to_triangles()

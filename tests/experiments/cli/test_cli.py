@@ -18,6 +18,7 @@ from experiments.runs import experiments, load
 from experiments.runs.study import plan
 from structures import NAMES
 from tests.experiments.small_study import samples
+from tests.extent import exhaustive
 
 runner = CliRunner()
 
@@ -138,9 +139,18 @@ def test_meshes_lists_every_family_and_model():
     assert all(name in output for name in ("torus", "isosurface", "bunny", "28,088", "teapot"))
 
 
-def test_a_study_that_is_killed_is_resumed_where_it_was_and_ends_complete(tmp_path):
+@pytest.mark.parametrize(
+    "measured",
+    [
+        ("bench_latency", "bench_work", "bench_memory", "bench_queries", "bench_printed"),
+        pytest.param(tuple(experiments()), marks=exhaustive, id="everything"),
+    ],
+)
+def test_a_study_that_is_killed_is_resumed_where_it_was_and_ends_complete(tmp_path, measured):
     command = [sys.executable, "-m", "experiments.cli", "study", "--output", str(tmp_path)]
     chosen = ["--preset", "smoke", "--structure", "indexed", "--structure", "as_printed"]
+    for name in measured:
+        chosen += ["--experiment", name]
     with subprocess.Popen([*command, *chosen], stdout=subprocess.PIPE, text=True) as child:
         assert child.stdout is not None
         for line in child.stdout:  # one for every job
@@ -158,7 +168,7 @@ def test_a_study_that_is_killed_is_resumed_where_it_was_and_ends_complete(tmp_pa
     assert {f"{job.experiment}.{job.structure} {key}" for job in jobs for key in job.ids} == set(
         after
     )
-    assert {job.experiment for job in jobs} == set(experiments())
+    assert {job.experiment for job in jobs} == set(measured)
     assert {job.structure for job in jobs} == {"indexed", "as_printed", "machine"}
     assert load(folder).cases.query("experiment != 'bench_latency'")["checked"].all()
 

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 import hem
 import structures
-from tests.extent import exhaustive
+from tests.extent import exhaustive, some
 from tests.structures.conftest import OF_ARRAYS, octahedron, shuffled, strip
 from tests.structures.histories.actions import (
     BATCHES,
@@ -68,7 +68,7 @@ ACTIONS = histories(*KINDS, *BATCHES)
 
 
 @pytest.mark.parametrize("start", STARTS)
-@settings(max_examples=12, deadline=None, derandomize=True)
+@settings(max_examples=some(12), deadline=None, derandomize=True)
 @given(actions=histories(*KINDS, *BATCHES, *HANDLING))
 def test_anything_does_what_the_faces_alone_say_on_every_structure(start, actions):
     world = World(STARTS[start]())
@@ -79,7 +79,7 @@ def test_anything_does_what_the_faces_alone_say_on_every_structure(start, action
 
 
 @pytest.mark.parametrize("start", POLYGONS)
-@settings(max_examples=15, deadline=None, derandomize=True)
+@settings(max_examples=some(15), deadline=None, derandomize=True)
 @given(actions=histories(*2 * POLYGON_KINDS, *KINDS, *BATCHES, *HANDLING))
 def test_anything_does_what_the_faces_alone_say_on_polygons(start, actions):
     world = World(POLYGONS[start]())
@@ -90,7 +90,7 @@ def test_anything_does_what_the_faces_alone_say_on_polygons(start, actions):
 
 
 @pytest.mark.parametrize("start", STARTS)
-@settings(max_examples=8, deadline=None, derandomize=True)
+@settings(max_examples=some(8), deadline=None, derandomize=True)
 @given(actions=ACTIONS)
 def test_compacting_keeps_the_mesh_and_its_remapping_is_right(start, actions):
     for name in structures.NAMES:

@@ -11,7 +11,7 @@ import hem
 import structures
 from hem.fracture import MATERIALS, Material, nearest_face, scanned, shatter
 from hem.fracture.surface.shatter import TOLERANCE, break_points, break_surface
-from tests.extent import OF_EACH_KIND
+from tests.extent import OF_EACH_KIND, some
 from tests.hem.fracture.laws import MODELS, require_surface_laws, struck, surface
 from tests.hem.rendering.test_render import assert_in_step
 
@@ -40,7 +40,7 @@ def test_shards_and_rest_make_up_the_surface_again(model):
     """On the bunny with fewer seeds: ``make soak`` breaks every model a hundred times."""
     mesh = surface(model)
     original = structures.build("half_edge", mesh)
-    for seed in range(10 if model == "bunny" else 100):
+    for seed in range(some(10 if model == "bunny" else 100)):
         s = original.copy()
         broken = shatter(s, struck(mesh, seed), NAMES[seed % len(NAMES)], seed)
         s.validate()
@@ -54,7 +54,7 @@ def test_shards_and_rest_make_up_the_surface_again(model):
 def test_all_structures_give_the_same_shards(model, seeds):
     mesh = surface(model)
     originals = [structures.build(name, mesh) for name in OF_EACH_KIND]
-    for seed in range(seeds):
+    for seed in range(some(seeds)):
         at, material = struck(mesh, seed), NAMES[seed % len(NAMES)]
         broken = [shatter(it.copy(), at, material, seed) for it in originals]
         for other in broken[1:]:
