@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
+from experiments.bench_picking import FOLLOWING, NEIGHBORS, RAY, REBUILT, REFITTED
 from experiments.bench_real_time import COMPACT, EDITS, GROWING, RESERVED
 from experiments.bench_workloads import COMPILED, FROM_PYTHON, WORKLOADS
 from experiments.claims import Exactly, load_claims
@@ -129,6 +130,11 @@ def _add_times(files: dict, folder: Path, structure: str) -> None:
         ]
         every += [("bench_fracture", "shatter", None, 1e-6 * (n_t if slow else 1))]
         every += [("bench_fracture", "find_face", it, 1e-8 * n_t**k) for it, k in FINDING.items()]
+        every += [("bench_picking", NEIGHBORS, None, 1e-6 * (n_t if slow else 3))]
+        for how in (REBUILT, REFITTED) if slow else ():
+            every += [
+                ("bench_picking", it, how, 1e-6 * k) for it, k in ((RAY, 4), (FOLLOWING, n_t))
+            ]
         for experiment, what, order, seconds in every:
             case = Measurement(
                 id=f"{what}/{n_t}/{order}", subject=what, order=order, samples=[seconds], handles=1,

@@ -10,7 +10,7 @@ from rich.console import Console
 from experiments.claims import break_even, curves, judge_run
 from experiments.harness import OPERATIONS, Axis
 from experiments.report import comparisons, notebooks, pages
-from experiments.report.figures import growth, memory, real_time
+from experiments.report.figures import growth, memory, picking, real_time
 from experiments.report.session import MissingError, Session, share
 from experiments.report.tables import show_claims
 from experiments.runs import experiments, load, tables
@@ -36,6 +36,8 @@ SHOWN = {
     "frames": lambda run, claims: real_time.frames(run),
     "compactions": lambda run, claims: real_time.compactions(run),
     "weights": lambda run, claims: real_time.weights(run),
+    "picks": lambda run, claims: picking.picks(run),
+    "picks in words": lambda run, claims: picking.in_words(run),
     "shattering": lambda run, claims: comparisons.shattering(run),
     "finding": lambda run, claims: comparisons.face_finding(run),
     "break even": lambda run, claims: comparisons.overtaking(break_even(curves(run))),

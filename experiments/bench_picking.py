@@ -1,0 +1,195 @@
+"""Picking: a ray to the face it hits, and what is around that face; edited now and then.
+
+The ray is cast through a tree of boxes over the render mesh, by Warp. After an edit the tree is
+built anew, or refitted: every box is computed again, bottom up, and none is made. Warp promises
+that for positions that moved. It holds for other corners, too, and so for new faces if there were
+unused ones when the tree was built; a test compares that with all triangles, one by one. But boxes
+are not put elsewhere, so that a ray may meet more of them; hence it is timed after either.
+"""
+
+import logging
+from functools import cache
+from importlib.util import find_spec
+from time import perf_counter
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+import hem
+from experiments.harness import BASE, Case, Experiment, Measurement, Preset, Timer
+from hem.arrays import Array, Floats
+from hem.contract import Structure
+
+RAY, FOLLOWING, NEIGHBORS = "ray", "follow_edit", "neighbors"
+REBUILT, REFITTED = "rebuilt", "refitted"
+
+PICKS, EDITS, PICK_SEED = 100, 60, 24
+FEW_PICKS = 4
+"""How many picks a sample has where neighbors are searched for."""
+SCANS = 4
+"""How often a pick scans the mesh there."""
+
+WITHOUT = "needs the package warp-lang, which is not installed: pip install hem-mesh[picking]"
+
+
+class Picker:
+    """A render mesh as rays see it: its arrays with unused faces behind, and a tree over them.
+
+    ``room``: for how many splits. It follows every commit; ``refit`` or ``rebuild`` must be called
+    before the next ray.
+    """
+
+    def __init__(self, render: hem.RenderMesh, room: int = EDITS) -> None:
+        self._render, self._room = render, room
+        self._ray = np.zeros((2, 3), np.float32)
+        self._face = np.zeros(1, np.int32)
+        self.rebuild()
+        render.subscribe(self._follow)
+
+    def rebuild(self) -> None:
+        """Make the tree anew. O(n log n)."""
+        import warp
+
+        def shared(array: Array, dtype: Any) -> Any:
+            return warp.array(array, dtype=dtype, device="cpu", copy=False)
+
+        kernel, render = _casting(), self._render
+        points = np.append(render.points, np.zeros(3 * self._room, np.float32))
+        self._points = points.reshape(-1, 3)
+        self._indices = np.append(render.indices, np.zeros(6 * self._room, np.int32))
+        self._tree = warp.Mesh(shared(self._points, warp.vec3), shared(self._indices, int))
+        self._fits = True
+        inputs = [self._tree.id, shared(self._ray, warp.vec3), shared(self._face, int)]
+        self._cast = warp.launch(kernel, dim=1, inputs=inputs, device="cpu", record_cmd=True)
+
+    def refit(self) -> None:
+        """Compute the boxes again, or make the tree anew where there were too few. O(n)."""
+        if self._fits:
+            self._tree.refit()
+        else:
+            self.rebuild()
+
+    def face(self, origin: ArrayLike, direction: ArrayLike) -> int:
+        """The first face that a ray hits, from either side, or -1."""
+        self._ray[0], self._ray[1] = origin, direction
+        self._cast.launch()
+        return int(self._face[0])
+
+    def _follow(self, upload: hem.Upload) -> None:
+        points, indices = self._render.points.reshape(-1, 3), self._render.indices
+        room = len(points) <= len(self._points) and len(indices) <= len(self._indices)
+        self._fits = self._fits and room and not upload.resized
+        if self._fits:
+            for begin, end in upload.vertices.tolist():
+                self._points[begin:end] = points[begin:end]
+            for begin, end in (3 * upload.triangles).tolist():
+                self._indices[begin:end] = indices[begin:end]
+
+
+@cache
+def _casting() -> Any:
+    """What Warp compiles, once per machine, in some seconds."""
+    import warp
+
+    warp.config.log_level = logging.ERROR  # there need not be a graphics card
+
+    def cast(mesh: Any, ray: Any, face: Any) -> None:
+        hit = warp.mesh_query_ray(mesh, ray[0], ray[1], 1.0e30)
+        face[0] = hit.face if hit.result else -1
+
+    vectors, faces = warp.array(dtype=warp.vec3), warp.array(dtype=int)
+    cast.__annotations__ = {"mesh": warp.uint64, "ray": vectors, "face": faces}
+    return warp.kernel(cast, enable_backward=False)
+
+
+def cases(preset: Preset, structure: str) -> list[Case]:
+    """What is around a face on every structure; rays on one, as the render mesh is the same."""
+    kinds: list[tuple[str, str | None]] = [(NEIGHBORS, None)]
+    if structure == BASE:
+        kinds += [(what, how) for what in (RAY, FOLLOWING) for how in (REBUILT, REFITTED)]
+    return [
+        Case(structure, preset.families[0], size, subject, order)
+        for size in preset.real_time_sizes
+        for subject, order in kinds
+    ]
+
+
+def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
+    """Time rays, what follows an edit, or the questions after a hit."""
+    s = case.build()
+    if case.subject == NEIGHBORS:
+        return _time_neighbors(case, s, preset, timer)
+    if find_spec("warp") is None:
+        return case.result("time", s, skipped=WITHOUT)
+    s = s.copy()
+    render, rays = hem.RenderMesh(s), aimed(s, PICKS)
+    picker = Picker(render)
+    follow = picker.refit if case.order == REFITTED else picker.rebuild
+    hits = iter([picker.face(*ray) for ray in rays])
+
+    def edit() -> tuple[()]:
+        face = next(hits)
+        s.split_face(face, s.points[s.face_vertices(face)].mean(axis=0))
+        return ()
+
+    begin = perf_counter()
+    follow()
+    rounds = preset.affordable_rounds(perf_counter() - begin)
+    if case.subject == FOLLOWING:
+        timed = timer(follow, setup=edit, rounds=rounds, warmup=1)
+    else:
+        for _ in range(EDITS):
+            edit()
+        follow()
+        timed = timer(lambda: [picker.face(*it) for it in rays], rounds=preset.rounds, per=PICKS)
+    afresh = Picker(render)
+    if [picker.face(*ray) for ray in rays] != [afresh.face(*ray) for ray in rays]:
+        raise AssertionError(f"{case.id}: another face is hit than with a tree made anew")
+    return case.result("time", s, **timed.fields)
+
+
+def _time_neighbors(case: Case, s: Structure, preset: Preset, timer: Timer) -> Measurement:
+    """Time what is asked about a face that is hit: its neighbors, and those of its corners."""
+    picks = FEW_PICKS if s.searches else PICKS
+    reason = preset.why_too_slow(SCANS * picks, s.n_faces, preset.fewest_rounds)
+    if s.searches and reason:
+        return case.result("time", s, skipped=reason)
+    hits = np.random.default_rng(PICK_SEED).choice(s.faces(), picks).tolist()
+    _check(s, hits[0])
+
+    def ask() -> None:
+        for face in hits:
+            s.face_faces(face)
+            for v in s.face_vertices(face).tolist():
+                s.vertex_faces(v)
+
+    begin = perf_counter()
+    ask()
+    rounds = preset.affordable_rounds(perf_counter() - begin)
+    return case.result("time", s, **timer(ask, rounds=rounds, per=picks).fields)
+
+
+def _check(s: Structure, face: int) -> None:
+    """What is around a face is what has corners in common with it."""
+    corners = s.face_vertices(face)
+    common = np.isin(s.triangles(), corners).sum(axis=1)
+    around = np.unique(s.vertex_faces(corners).values), np.sort(s.face_faces(face))
+    if not all(map(np.array_equal, around, (np.flatnonzero(common), np.flatnonzero(common == 2)))):
+        raise AssertionError(f"around face {face} of {s.title} there are others")
+
+
+def aimed(s: Structure, count: int) -> list[tuple[Floats, Floats]]:
+    """Rays from outside of the mesh to as many faces, at random; to their middle, but no center."""
+    faces = np.random.default_rng(PICK_SEED).choice(s.faces(), count)
+    corners = s.points[s.face_vertices(faces).values.reshape(-1, 3)].astype(np.float64)
+    goals = np.einsum("c,kcx->kx", (0.25, 0.33, 0.42), corners)
+    low, high = (
+        getattr(np, it)(s.points, axis=0).astype(np.float64) for it in ("nanmin", "nanmax")
+    )
+    eye = high + (high - low) * (0.31, 0.47, 1.13)
+    return [(eye, goal - eye) for goal in goals]
+
+
+EXPERIMENT = Experiment(title="Picking", cases=cases, measure=measure, copies=4, turn=66)
+test_picking = EXPERIMENT.test
