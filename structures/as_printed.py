@@ -61,6 +61,7 @@ class AsPrinted(Described):
         self.half_edges: list[HalfEdge] = []
         self.faces: list[Face] = []
         self.render = RenderCache()
+        self.stepping = False
         self._lock = False
         self._new_half_edge: Any = None
         self._split: Any = None
@@ -141,7 +142,12 @@ class AsPrinted(Described):
         return FaceList.circulator(face)
 
     def vertex_circulator(self, vertex: Vertex) -> list[HalfEdge]:
-        """``GetVertexCirculator`` (thesis 5): all half-edges are looked at. Cost O(n_t)."""
+        """``GetVertexCirculator`` (thesis 5): all half-edges are looked at. Cost O(n_t).
+
+        If ``stepping`` it is the better one that chapter 6 asks for, and costs O(n_ev).
+        """
+        if self.stepping:
+            return _step_around(vertex)
         return [h for h in self.half_edges if h.origin.index == vertex.index]
 
     def remove_face(self, face: Face) -> None:
@@ -290,6 +296,23 @@ def render_arrays(
 ) -> tuple[NDArray[Any], NDArray[Any]]:
     """Counterclockwise triangles as a render mesh has them: points, and clockwise flat indices."""
     return points, triangles[:, [0, 2, 1]].reshape(-1)
+
+
+def _step_around(vertex: Vertex) -> list[HalfEdge]:
+    """The half-edges that leave a vertex, from one to the next, and at a border both ways.
+
+    A collapse as it is published leaves walks that do not come round: what was met ends them, too.
+    """
+    found: list[HalfEdge] = []
+    h = vertex.half_edge
+    while h is not None and h not in found:
+        found.append(h)
+        h = h.opposite.next if h.opposite is not None else None
+    h = found[0].previous.opposite if found else None
+    while h is not None and h not in found:
+        found.append(h)
+        h = h.previous.opposite
+    return found
 
 
 def _repeated(elements: Sequence[Any]) -> int:

@@ -6,16 +6,19 @@ judges them all, once per run; ``curves`` gives the measurements behind them.
 
 from experiments.claims.cells import load_claims
 from experiments.claims.claim import (
-    EXPECTATIONS,
+    CLAIMED,
     MEMORY,
     NO_CLAIM,
+    NOT_POSSIBLE,
     SENTENCES,
     Between,
     Claim,
     Exactly,
     Growth,
     JudgedClaim,
+    Kind,
     Outcome,
+    tally,
 )
 from experiments.claims.curves import Curve, Curves, curves
 from experiments.claims.kept import judge_run
@@ -23,7 +26,8 @@ from experiments.claims.quantities import MIXES, break_even, judge_sentences, se
 from experiments.claims.verdicts import judge_cells
 
 __all__ = [
-    "EXPECTATIONS", "MEMORY", "MIXES", "NO_CLAIM", "SENTENCES", "Between", "Claim", "Curve",
-    "Curves", "Exactly", "Growth", "JudgedClaim", "Outcome", "break_even", "curves", "judge_cells",
-    "judge_run", "judge_sentences", "load_claims", "sentence_claims",
+    "CLAIMED", "MEMORY", "MIXES", "NOT_POSSIBLE", "NO_CLAIM", "SENTENCES", "Between", "Claim",
+    "Curve", "Curves", "Exactly", "Growth", "JudgedClaim", "Kind", "Outcome", "break_even",
+    "curves", "judge_cells", "judge_run", "judge_sentences", "load_claims", "sentence_claims",
+    "tally",
 ]  # fmt: skip

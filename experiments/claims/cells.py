@@ -1,15 +1,26 @@
 """The claims in the cells of tables: of the documents, of structures' files, of experiments.
 
-What the thesis prints stands in ``claims.toml``; what is expected of a structure that it does not
-print, in that structure's file; what is expected of an experiment's own subjects, in its file.
+What the thesis prints stands in ``claims.toml``, and what follows from it; what is expected of a
+structure that it does not print, in that structure's file; what is expected of an experiment's own
+subjects, in its file.
 """
 
 import tomllib
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from importlib.resources import files
-from typing import Any
+from typing import Any, NamedTuple
 
-from experiments.claims.claim import BOUND, MEMORY, NO_CLAIM, Claim, Exactly, Growth
+from experiments.claims.claim import (
+    BOUND,
+    CLAIMED,
+    MEMORY,
+    NO_CLAIM,
+    NOT_POSSIBLE,
+    Claim,
+    Exactly,
+    Growth,
+    Kind,
+)
 from experiments.claims.curves import axes_of, table_of
 from experiments.harness import ANYONE, Axis, Table
 from experiments.runs import experiments, tables
@@ -26,53 +37,87 @@ HOW = {
 }
 """How a cost of a class moves with its variable."""
 
-Row = Mapping[str, Any]
+Entry = Mapping[str, Any]
+"""One entry of claims.toml."""
 
 
 def load_claims(text: str | None = None) -> list[Claim]:
     """All cells of all tables, row by row; ``text`` instead of the project's claims.toml.
 
-    Raises ValueError naming the row for a subject, a structure or a class that does not exist.
+    Raises ValueError naming the row for a subject, a structure, a class or a kind that is none.
     """
     content = tomllib.loads(
         text or (files("experiments.claims") / "claims.toml").read_text("utf-8")
     )
-    cells = [cell for row in content["row"] for cell in _of_row(_checked(row))]
+    rows: dict[tuple[str, str], list[Entry]] = {}
+    for entry in map(_checked, content["row"]):
+        name = entry.get("table") or table_of(entry["what"])
+        rows.setdefault((name, entry["what"]), []).append(entry)
+    cells = [cell for row, entries in rows.items() for cell in _of_row(*row, entries)]
     cells += [] if text else _of_experiments()
-    return [_claim(*cell, content["classes"]) for cell in cells]
+    return [_claim(cell, content["classes"]) for cell in cells]
 
 
-Cell = tuple[Table, str, str, Any, str]
-"""The table, the subject, the structure, what is printed, and who claims it."""
+class Cell(NamedTuple):
+    """What is claimed in one cell of a table, who claims it, and where or why."""
+
+    table: Table
+    subject: str
+    structure: str
+    printed: Any = NO_CLAIM
+    kind: Kind = Kind.NOBODY
+    source: str = "nobody claims what it costs"
 
 
-def _checked(row: Row) -> Row:
+def _checked(entry: Entry) -> Entry:
     known = [MEMORY, *dict.fromkeys(it for table in tables().values() for it in table.subjects)]
-    what, unknown = row.get("what"), set(row) - {"what", "table", "source", *NAMED}
+    what, unknown = entry.get("what"), set(entry) - {"what", "table", "kind", "source", *NAMED}
     if what not in known:
         raise ValueError(f"claims.toml: no query is called {what!r}; there are {', '.join(known)}")
-    if unknown or "source" not in row:
-        fault = f"no structure is called {min(unknown)!r}" if unknown else "no source is given"
-        raise ValueError(f"claims.toml, row {what}: {fault}")
-    if row.get("table", table_of(what)) not in tables():
-        raise ValueError(f"claims.toml, row {what}: no table is called {row['table']!r}")
-    return row
+    if unknown:
+        raise ValueError(f"claims.toml, row {what}: no structure is called {min(unknown)!r}")
+    if set(entry) & set(NAMED) and "source" not in entry:
+        raise ValueError(f"claims.toml, row {what}: no source is given")
+    if set(entry) & set(NAMED) and entry.get("kind") not in CLAIMED:
+        kinds = ", ".join(CLAIMED)
+        raise ValueError(f"claims.toml, row {what}: kind is {entry.get('kind')!r}, none of {kinds}")
+    if entry.get("table", table_of(what)) not in tables():
+        raise ValueError(f"claims.toml, row {what}: no table is called {entry['table']!r}")
+    return entry
 
 
-def _of_row(row: Row) -> Iterator[Cell]:
-    """What a document prints, and what the files of the other structures say of the subject."""
-    what = row["what"]
-    table = tables()[row.get("table") or table_of(what)]
+def _of_row(table_name: str, what: str, entries: Sequence[Entry]) -> Iterator[Cell]:
+    """What is claimed in a row, and what the files of the other structures say of the subject."""
+    table = tables()[table_name]
+    said = {
+        name: (entry[name], Kind(entry["kind"]), entry["source"])
+        for entry in entries
+        for name in NAMED
+        if name in entry
+    }
     measured = [
         name for it in experiments().values() if it.table is table for name in it.structures
     ]
     for name in NAMED:
-        own = getattr(NAMED[name], "claims", Claims("not claimed"))
-        if name in row:
-            yield table, what, name, row[name], row["source"]
+        if name in said:
+            yield Cell(table, what, name, *said[name])
         elif name in measured:
-            claimed = None if what == MEMORY else own.costs.get(what) or row.get(own.like)
-            yield table, what, name, claimed or NO_CLAIM, own.source
+            yield Cell(table, what, name, *_own_claim(name, what, said))
+
+
+def _own_claim(
+    name: str, what: str, said: Mapping[str, tuple[Any, Kind, str]]
+) -> tuple[()] | tuple[Any, Kind, str]:
+    """What a structure's file claims of a subject, by itself or as is ``said`` of another."""
+    own: Claims | None = getattr(NAMED[name], "claims", None)
+    if own is None or what == MEMORY:
+        return ()
+    if what in own.costs:
+        return own.costs[what], Kind.EXPECTED, own.source
+    if own.like not in said:
+        return ()
+    printed, kind, _ = said[own.like]
+    return printed, Kind.EXPECTED if kind is Kind.EXPECTED else Kind.FOLLOWS, own.source
 
 
 def _of_experiments() -> Iterator[Cell]:
@@ -81,22 +126,23 @@ def _of_experiments() -> Iterator[Cell]:
             assert it.table is not None  # it declares none without
             default = claimed.get(ANYONE, NO_CLAIM)
             for name in it.structures:
-                yield it.table, what, name, claimed.get(name, default), it.source
+                printed = claimed.get(name, default)
+                kind = Kind.NOBODY if printed == NO_CLAIM else Kind.EXPECTED
+                yield Cell(it.table, what, name, printed, kind, it.source)
 
 
-def _claim(
-    table: Table, what: str, structure: str, printed: Any, source: str,
-    classes: Mapping[str, Mapping[str, str]],
-) -> Claim:  # fmt: skip
+def _claim(cell: Cell, classes: Mapping[str, Mapping[str, str]]) -> Claim:
+    table, what, structure, printed, kind, source = cell
     suffix = "" if table.name in ("queries", "operations") else f"/{table.name}"
     name, title = NAMED[structure].title, table.subjects.get(what, MEMORY_TITLE)
     expects: Exactly | Growth
-    if what == MEMORY and printed == NO_CLAIM:
+    silent = printed in (NO_CLAIM, NOT_POSSIBLE)
+    if what == MEMORY and silent:
         expects, text = Exactly(None), f"Of the bytes of {name}, nothing is claimed."
     elif what == MEMORY:
         expects = Exactly(printed)
         text = f"{name} takes {printed} bytes per vertex, with references of 8 bytes."
-    elif printed != NO_CLAIM and printed not in classes:
+    elif not silent and printed not in classes:
         raise ValueError(f"claims.toml, row {what}: {printed!r} is none of {', '.join(classes)}")
     else:
         measured = {axis.variable for axis in axes_of(table.name)}
@@ -107,6 +153,6 @@ def _claim(
         if not grown:
             text = f"Of {title} on {name}, nothing is claimed. The class that was found is shown."
     return Claim(
-        f"{structure}/{what}{suffix}", text, source, table.name, title, expects,
+        f"{structure}/{what}{suffix}", text, kind, source, table.name, title, expects,
         structure, what, str(printed),
     )  # fmt: skip

@@ -1,5 +1,6 @@
 """What is claimed in a cell of a table or in a sentence, and what became of it."""
 
+from collections import Counter
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
@@ -13,31 +14,33 @@ from hem.complexity import Verdict
 
 MEMORY = "memory"  # the subject of the claims about bytes
 
-NO_CLAIM = "N/A"
+NO_CLAIM = "–"  # what stands where nobody claims anything
+NOT_POSSIBLE = "N/A"  # what table 1 prints where a structure keeps no record of an edge
 BOUND = "≤ "  # what a class begins with that is claimed as a bound only
 
 SENTENCES = "sentences"  # the table of what is not a cell
-EXPECTATIONS = "expectations"  # that of sentences which no document says, but this study expects
 
 
 class Outcome(StrEnum):
     """What can become of a claim. Too little or too noisy data is undetermined, never a pass.
 
-    ``mark``: one character that stands for it; ``color``: a color's name that terminals know.
+    ``mark``: one character that stands for it; ``own``: that where this study expects it itself;
+    ``color``: a color's name that terminals know.
     """
 
     mark: str
+    own: str
     color: str
 
-    VIOLATED = "violated", "✗", "red"
-    UNDETERMINED = "undetermined", "?", "yellow"
-    CONSISTENT = "consistent", "✓", "green"
-    NO_CLAIM = "no claim", "–", "bright_black"
+    VIOLATED = "violated", "✗", "●", "red"
+    UNDETERMINED = "undetermined", "?", "◌", "yellow"
+    CONSISTENT = "consistent", "✓", "○", "green"
+    NO_CLAIM = "no claim", "–", "–", "bright_black"
 
-    def __new__(cls, value: str, mark: str = "", color: str = "") -> Self:
-        """A text that has a mark and a color."""
+    def __new__(cls, value: str, mark: str = "", own: str = "", color: str = "") -> Self:
+        """A text that has marks and a color."""
         outcome = str.__new__(cls, value)
-        outcome._value_, outcome.mark, outcome.color = value, mark, color
+        outcome._value_, outcome.mark, outcome.own, outcome.color = value, mark, own, color
         return outcome
 
     @property
@@ -52,12 +55,40 @@ class Outcome(StrEnum):
         return next((it for it in cls if it in given), cls.NO_CLAIM)
 
 
-MET = {
-    Outcome.VIOLATED: ("●", "not as expected"),
-    Outcome.UNDETERMINED: ("◌", "undetermined"),
-    Outcome.CONSISTENT: ("○", "as expected"),
-}
-"""What is said instead of what this study expects itself: never to be taken for a document's."""
+class Kind(StrEnum):
+    """Who claims something. ``about``: the same as a part of a sentence.
+
+    Their marks differ, so that nothing we expect is ever taken for a document's claim.
+    """
+
+    about: str
+
+    PRINTED = "printed", "a document prints it"
+    FOLLOWS = "follows", "it follows from what a document prints, by the same reasoning"
+    EXPECTED = "expected", "we expect it, no document says so"
+    NOBODY = "not claimed", "nobody claims anything; what was found is shown"
+
+    def __new__(cls, value: str, about: str = "") -> Self:
+        """A text that is explained."""
+        kind = str.__new__(cls, value)
+        kind._value_, kind.about = value, about
+        return kind
+
+    def marks(self, outcomes: Iterable[Outcome]) -> str:
+        """A character per outcome: what follows stands in brackets, what we expect has circles."""
+        text = "".join(it.own if self is Kind.EXPECTED else it.mark for it in outcomes)
+        return f"({text})" if self is Kind.FOLLOWS else text
+
+    def words(self, outcome: Outcome) -> str:
+        """An outcome in words."""
+        return MET.get(outcome, outcome.value) if self is Kind.EXPECTED else outcome.value
+
+
+CLAIMED = Kind.PRINTED, Kind.FOLLOWS, Kind.EXPECTED
+"""The kinds that claim something."""
+
+MET = {Outcome.VIOLATED: "not as expected", Outcome.CONSISTENT: "as expected"}
+"""What is said instead of what this study expects itself."""
 
 
 @dataclass(frozen=True)
@@ -76,12 +107,16 @@ class Exactly:
 
 @dataclass(frozen=True)
 class Between:
-    """Every value of a quantity lies in between; ``measured`` says in words what it is."""
+    """Every value of a quantity lies in between; ``measured`` says in words what it is.
+
+    ``every``: the claim is of all that there is, so that one value outside refutes it.
+    """
 
     quantity: str
     measured: str
     low: float = -np.inf
     high: float = np.inf
+    every: bool = False
 
     @property
     def words(self) -> str:
@@ -98,13 +133,15 @@ class Claim:
     """One claim.
 
     ``key``: its name in links and files, such as ``half_edge/vertex_faces`` or
-    ``sentence/bytes_ratio``. ``text``: the claim as a sentence. ``source``: where it stands, or why
-    it is expected. ``table`` and ``title``: the table it is a row or a cell of, and the row's head.
-    ``structure`` and ``subject``: of a cell, else empty. ``printed``: as the table has it.
+    ``sentence/bytes_ratio``. ``text``: the claim as a sentence. ``kind``: who claims it;
+    ``source``: where it stands, or why it is expected. ``table`` and ``title``: the table it is a
+    row or a cell of, and the row's head. ``structure`` and ``subject``: of a cell, else empty.
+    ``printed``: as the table has it.
     """
 
     key: str
     text: str
+    kind: Kind
     source: str
     table: str
     title: str
@@ -128,39 +165,58 @@ class Claim:
 class JudgedClaim:
     """A claim, what became of it, and why.
 
-    ``outcome``: by what is exact where there is such a measure, else by time; ``outcome_time``: by
-    time. ``found``: short, such as ``O(n_ev)`` or ``6.33``; ``reason``: a sentence. ``verdicts``:
-    of a growth, by axis. ``values``: of a quantity, or the bytes per vertex. ``work`` and
-    ``seconds``: per query at the largest size, at random handles where that was measured.
+    ``outcome``: by what is exact where there is such a measure, else by time. ``outcomes``: of a
+    growth, by measure: ``work``, ``time`` in order and at ``random``. ``found``: short, such as
+    ``O(n_ev)`` or ``6.33``; ``reason``: a sentence. ``verdicts``: of a growth, by axis. ``values``:
+    of a quantity, or the bytes per vertex. ``work`` and ``seconds``: per query at the largest size,
+    at random handles where that was measured.
     """
 
     claim: Claim
     outcome: Outcome
     found: str
     reason: str = ""
-    outcome_time: Outcome = Outcome.NO_CLAIM
+    outcomes: Mapping[str, Outcome] = field(default_factory=dict)
     verdicts: Mapping[Axis, Verdict] = field(default_factory=dict)
     values: Floats = field(default_factory=lambda: np.zeros(0))
     work: float = np.nan
     seconds: float = np.nan
 
     @property
+    def outcome_time(self) -> Outcome:
+        """What became of it by time, asked in order."""
+        return self.outcomes.get("time", Outcome.NO_CLAIM)
+
+    @property
+    def marks(self) -> str:
+        """A character for each measure that it was judged by, or for what became of it."""
+        return self.claim.kind.marks(self.outcomes.values() or [self.outcome])
+
+    @property
     def mark(self) -> str:
-        """One character for what became of it."""
-        return self._said[0]
+        """What became of it, as short as can be."""
+        return self.claim.kind.marks([self.outcome])
 
     @property
     def words(self) -> str:
         """What became of it, such as ``consistent``."""
-        return self._said[1]
-
-    @property
-    def _said(self) -> tuple[str, str]:
-        documented = self.outcome.mark, self.outcome.value
-        own = self.claim.table == EXPECTATIONS
-        return MET.get(self.outcome, documented) if own else documented
+        return self.claim.kind.words(self.outcome)
 
     @property
     def was_measured(self) -> bool:
         """Whether the run has anything to say about the claim."""
         return bool(self.verdicts) or len(self.values) > 0
+
+
+def tally(claims: Iterable[JudgedClaim]) -> dict[tuple[Kind, str], Counter[Outcome]]:
+    """How many claims of each kind came out how, by measure.
+
+    Measures are those of growth, ``bytes`` and ``sentence``; who claims nothing is left out.
+    """
+    counts: dict[tuple[Kind, str], Counter[Outcome]] = {}
+    for it in claims:
+        if it.claim.claims_something:
+            other = "sentence" if it.claim.table == SENTENCES else "bytes"
+            for measure, outcome in (it.outcomes or {other: it.outcome}).items():
+                counts.setdefault((it.claim.kind, measure), Counter())[outcome] += 1
+    return counts

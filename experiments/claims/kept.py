@@ -23,7 +23,7 @@ from experiments.runs import Run
 from hem.complexity import Verdict
 from hem.whole_files import write_whole
 
-PLAIN = ("outcome", "outcome_time", "found", "reason", "work", "seconds")
+PLAIN = ("outcome", "outcomes", "found", "reason", "work", "seconds")
 
 
 @lru_cache(maxsize=4)
@@ -66,6 +66,6 @@ def _plain(judged: JudgedClaim) -> dict[str, Any]:
 def _judged(claim: Claim, row: dict[str, Any]) -> JudgedClaim:
     kept = row["verdicts"]
     verdicts = {axis: Verdict(**kept[axis.key]) for axis in Axis if axis.key in kept}
-    outcomes = {name: Outcome(row[name]) for name in ("outcome", "outcome_time")}
-    values = {"verdicts": verdicts, "values": np.array(row["values"], float)}
-    return JudgedClaim(claim, **{**row, **outcomes, **values})
+    outcomes = {measure: Outcome(it) for measure, it in row["outcomes"].items()}
+    values = {"outcome": Outcome(row["outcome"]), "outcomes": outcomes, "verdicts": verdicts}
+    return JudgedClaim(claim, **{**row, **values, "values": np.array(row["values"], float)})

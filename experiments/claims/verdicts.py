@@ -67,7 +67,7 @@ def _judge_growth(of_run: Curves, claim: Claim) -> JudgedClaim:
             for axis in axes
             if axis.measure == measure and axis.variable in classes
         )
-        for measure in ("work", "time")
+        for measure in dict.fromkeys(axis.measure for axis in axes)
     }
     counted = any(axis.exact for axis in axes)
     measure = "work" if counted else "time"
@@ -76,7 +76,7 @@ def _judge_growth(of_run: Curves, claim: Claim) -> JudgedClaim:
         claim, outcomes[measure],
         _class_found([axis for axis in axes if axis.measure == measure], verdicts),
         " ".join(it.reason for axis, it in verdicts.items() if axis.exact == counted),
-        outcomes["time"], verdicts,
+        outcomes if claim.claims_something else {}, verdicts,
         work=cases[Axis.WORK_FACES].largest, seconds=cases[timed].largest,
     )  # fmt: skip
 

@@ -17,7 +17,7 @@ from experiments.harness import Axis
 from experiments.regression.baseline import COUNTERS, RUN, UPDATE, Measured
 from experiments.regression.findings import CaseKey, Change, Finding, Kind, vote
 from experiments.regression.significance import compare_rounds
-from experiments.regression.snapshots import LEAST_SLOPE, Figures, describe_claim
+from experiments.regression.snapshots import LEAST_SLOPE, Figures, claimed_by, describe_claim
 from experiments.runs import Run, experiments
 from hem.complexity import NAMES as CLASSES
 from structures import REGISTRY
@@ -182,20 +182,23 @@ def compare_values(old: Sequence[int], new: Sequence[int]) -> tuple[Change, str]
     return Change.WORSE if more else Change.BETTER, f"{len(new)} instead of {len(old)} values"
 
 
-def _pair_claims(before: Measured, after: Measured) -> Iterator[tuple[CaseKey, str, Any, Any]]:
-    """Every claim of either: what it is about, in words, and the figures of both."""
+def _pair_claims(
+    before: Measured, after: Measured
+) -> Iterator[tuple[CaseKey, dict[str, str], Any, Any]]:
+    """Every claim of either: what it is about, in words and by kind, and the figures of both."""
     for name in dict.fromkeys((*before.claims, *after.claims)):
         _, structure, subject = name.split("/")
         key = CaseKey("", structure, subject)
-        yield key, describe_claim(name), before.claims.get(name), after.claims.get(name)
+        said = {"claim": describe_claim(name), "claimed": claimed_by(name)}
+        yield key, said, before.claims.get(name), after.claims.get(name)
 
 
 def _compare_classes(before: Measured, after: Measured) -> Iterator[Finding]:
-    for case, claim, *figures in _pair_claims(before, after):
+    for case, said, *figures in _pair_claims(before, after):
         old, new = ((it or {}).get("classes", {}) for it in figures)
         for key in dict.fromkeys((*old, *new)):
             axis, both = Axis[key.upper()].symbol, (old.get(key), new.get(key))
-            yield _finding(Kind.CLASS, case, *both, COUNTERS, axis=axis, claim=claim)
+            yield _finding(Kind.CLASS, case, *both, COUNTERS, axis=axis, **said)
 
 
 def compare_classes(before: Sequence[str], after: Sequence[str]) -> tuple[Change, str]:
@@ -221,12 +224,12 @@ def _compare_claims(before: Measured, after: Measured) -> Iterator[Finding]:
 
     Work is exact. By time a claim is lost or won only where a slope says so, too.
     """
-    for key, text, old, new in _pair_claims(before, after):
+    for key, said, old, new in _pair_claims(before, after):
         if old is None or new is None:
             was, now = (None if it is None else () for it in (old, new))
-            yield _finding(Kind.CLASS, key, was, now, RUN, claim=text)
+            yield _finding(Kind.CLASS, key, was, now, RUN, **said)
             continue
-        slopes = list(_compare_slopes(key, old, new, text))
+        slopes = list(_compare_slopes(key, old, new, said["claim"]))
         yield from slopes
         for outcome, axis in (("outcome", "by work"), ("outcome_time", "by time")):
             if outcome in old and outcome in new:
@@ -235,7 +238,9 @@ def _compare_claims(before: Measured, after: Measured) -> Iterator[Finding]:
                 told = [it.change for it in slopes if it.random]
                 if random and change in (Change.WORSE, Change.BETTER) and change not in told:
                     change, why = Change.UNDETERMINED, "its slopes are as before"
-                yield Finding(change, Kind.CLASS, key, was, now, why, "", axis, text, random)
+                yield Finding(
+                    change, Kind.CLASS, key, was, now, why, axis=axis, random=random, **said
+                )
 
 
 def _compare_slopes(key: CaseKey, old: Figures, new: Figures, claim: str) -> Iterator[Finding]:
@@ -248,7 +253,9 @@ def _compare_slopes(key: CaseKey, old: Figures, new: Figures, claim: str) -> Ite
             change = Change.BETTER if now[2] < was[1] - drift else change
             before, after = ("{:.3f} [{:.3f}, {:.3f}]".format(*it) for it in (was, now))
             where, random = f"{axis.symbol}, {axis.label}", not axis.exact
-            yield Finding(change, Kind.SLOPE, key, before, after, "", "", where, claim, random)
+            yield Finding(
+                change, Kind.SLOPE, key, before, after, axis=where, claim=claim, random=random
+            )
 
 
 def _find_gone(pairs: Iterable[Pair]) -> tuple[list[Finding], list[Pair]]:

@@ -57,8 +57,8 @@ class Finding:
 
     ``before``, ``after``: the figures as text, empty where there is none. ``why``: in words, and
     ``next``: the command that mends it, where they are needed. ``axis``: what a cost was judged by,
-    such as "n_t, by time". ``claim``: what it touches. ``random``: it was measured on both sides
-    and chance has a say in it.
+    such as "n_t, by time". ``claim``: what it touches; ``claimed``: of a claim its kind.
+    ``random``: it was measured on both sides and chance has a say in it.
     """
 
     change: Change
@@ -70,6 +70,7 @@ class Finding:
     next: str = ""
     axis: str = ""
     claim: str = ""
+    claimed: str = ""
     random: bool = False
 
     @property

@@ -34,10 +34,11 @@ Figures = dict[str, Any]  # what is kept of a claim, see `claim_figures`
 def claim_figures(run: Run) -> dict[str, Figures]:
     """The figures of every claim by ``table/structure/subject``, as far as it was measured.
 
-    ``outcome`` by work, which decides (of memory: by bytes), and ``outcome_time``; ``slopes`` with
-    their intervals, by axis; ``work``, accesses at ``work_faces``, the largest mesh; ``seconds`` at
-    ``time_faces``, the largest one that was timed, of ``time_sizes``; ``relative``: the time in
-    memory accesses, which take what they took beside the measurement; ``bytes`` per vertex.
+    ``kind``: who claims it; ``outcome`` by work, which decides (of memory: by bytes), and
+    ``outcome_time``; ``slopes`` with their intervals, by axis; ``work``, accesses at
+    ``work_faces``, the largest mesh; ``seconds`` at ``time_faces``, the largest one that was timed,
+    of ``time_sizes``; ``relative``: the time in memory accesses, which take what they took beside
+    the measurement; ``bytes`` per vertex.
     Judges the run, which takes some seconds.
     """
     cells = [judged for judged in judge_run(run) if judged.claim.structure]
@@ -57,7 +58,13 @@ def describe_claim(name: str) -> str:
     if claim is None:
         return ""
     printed = "nothing claimed" if claim.printed == NO_CLAIM else claim.printed
-    return f"{tables()[claim.table].title}, {claim.title}: {printed}; {claim.source}"
+    return f"{tables()[claim.table].title}, {claim.title}: {printed}; {claim.kind}, {claim.source}"
+
+
+def claimed_by(name: str) -> str:
+    """The kind of a claim: who says it; empty if unknown."""
+    claim = _claims().get(name)
+    return "" if claim is None else claim.kind.value
 
 
 @cache
@@ -82,14 +89,15 @@ def _classes(of_run: Curves, judged: JudgedClaim) -> Figures:
 def _figures(run: Run, judged: JudgedClaim) -> Figures:
     if not judged.was_measured:
         return {}
+    known = {"kind": judged.claim.kind.value}
     if not judged.verdicts:
-        return {"outcome": judged.outcome, "bytes": _short(judged.values[0])}
+        return {**known, "outcome": judged.outcome, "bytes": _short(judged.values[0])}
     slopes = {
         axis.key: [_short(it) for it in (verdict.slope, verdict.slope_low, verdict.slope_high)]
         for axis, verdict in judged.verdicts.items()
     }
     outcomes = {"outcome": judged.outcome, "outcome_time": judged.outcome_time}
-    claim, figures = judged.claim, Figures(**outcomes, slopes=slopes)
+    claim, figures = judged.claim, Figures(**known, **outcomes, slopes=slopes)
     work = curves(run).of(claim, Axis.WORK_FACES)
     if len(work):
         figures |= {"work": _short(judged.work), "work_faces": int(work.sizes[-1])}

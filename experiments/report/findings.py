@@ -60,9 +60,10 @@ def line(finding: Finding) -> str:
 
 
 def count_same(findings: Sequence[Finding]) -> str:
-    """How many of each kind, and how many of them are as before."""
-    every = Counter(finding.kind for finding in findings)
-    same = Counter(finding.kind for finding in findings if finding.change == Change.SAME)
+    """How many of each kind, and of claims by who claims them, and how many are as before."""
+    named = [(" ".join((it.kind, it.claimed)).strip(), it.change) for it in findings]
+    every = Counter(kind for kind, _ in named)
+    same = Counter(kind for kind, change in named if change == Change.SAME)
     parts = (f"{kind} {same[kind]:,} of {count:,}" for kind, count in every.items())
     return ("as before are " + ", ".join(parts)) if every else "nothing"
 

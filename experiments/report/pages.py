@@ -11,12 +11,13 @@ import pandas as pd
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
-from experiments.claims import EXPECTATIONS, SENTENCES, JudgedClaim, Outcome
+from experiments.claims import SENTENCES, JudgedClaim, Kind, Outcome
 from experiments.claims.errata import Erratum
 from experiments.harness import Axis, Table
 from experiments.report import session
 from experiments.report.notebooks import page_titles
-from experiments.report.tables import by_subject, duration, two_digits
+from experiments.report.tables import by_subject, duration, tally_rows, two_digits
+from experiments.report.tables import legend as legend_lines
 from experiments.runs import Run, in_words, tables
 from structures import NAMED
 
@@ -69,17 +70,15 @@ def browser(shown: session.Session) -> Html:
 
 def groups_of_claims() -> dict[str, Table]:
     """The tables, and the sentences."""
-    titles = {SENTENCES: "In sentences", EXPECTATIONS: "What we expect"}
-    chapter = "half_edge_or_indexed"
-    said = {name: Table(name, title, {}, chapter) for name, title in titles.items()}
-    return {**tables(), **said}
+    return {**tables(), SENTENCES: Table(SENTENCES, "In sentences", {}, "half_edge_or_indexed")}
 
 
 def filters(claims: Sequence[JudgedClaim]) -> dict[str, dict[str, tuple[str, int]]]:
     """By group the choices: value -> its title, and how many claims it has."""
-    facts = [(it.outcome.value, it.claim.structure, it.claim.table) for it in claims]
-    outcomes, structures, kinds = map(Counter, zip(*facts, strict=True))
+    facts = [(it.outcome.value, it.claim.kind, it.claim.structure, it.claim.table) for it in claims]
+    outcomes, claimants, structures, kinds = map(Counter, zip(*facts, strict=True))
     return {
+        "claimed": {it.value: (it.value, claimants[it]) for it in Kind},
         "outcome": {it.value: (f"{it.mark} {it.value}", outcomes[it.value]) for it in Outcome},
         "structure": {name: (NAMED[name].title, structures[name]) for name in structures if name},
         "kind": {name: (it.title, kinds[name]) for name, it in groups_of_claims().items()},
@@ -96,14 +95,21 @@ def slopes(claims: Iterable[JudgedClaim], name: str) -> Html:
     return table("slopes", *by_subject(claims, name), list(Axis))
 
 
-def sentences(claims: Iterable[JudgedClaim]) -> Html:
-    """What the documents say in sentences, what was measured of it, and the verdict."""
-    return table("sentences", [it for it in claims if it.claim.table == SENTENCES])
+def sentences(claims: Iterable[JudgedClaim], kind: str) -> Html:
+    """The sentences of a kind, what was measured of them, and the verdicts."""
+    mine = [it for it in claims if it.claim.table == SENTENCES and it.claim.kind == kind]
+    return table("sentences", mine)
 
 
-def expectations(claims: Iterable[JudgedClaim]) -> Html:
-    """The same of what this study expects itself."""
-    return table("sentences", [it for it in claims if it.claim.table == EXPECTATIONS])
+def tally(claims: Iterable[JudgedClaim]) -> Html:
+    """How many claims of each kind came out how."""
+    heads, *rows = tally_rows(claims)
+    return table("words", heads, rows)
+
+
+def legend() -> Html:
+    """How the cells of tables are to be read."""
+    return table("legend", legend_lines())
 
 
 def claim_tables(claims: Collection[JudgedClaim]) -> Html:
@@ -126,9 +132,9 @@ def reasons(claims: Iterable[JudgedClaim], name: str) -> Html:
     rows = [
         (it.claim.title, NAMED[it.claim.structure].title, axis.label, verdict.reason)
         for it in claims
-        if it.claim.table == name and it.outcome_time is Outcome.UNDETERMINED
+        if it.claim.table == name and it.claim.claims_something
         for axis, verdict in it.verdicts.items()
-        if not axis.exact and verdict.outcome == it.outcome_time.value
+        if not axis.exact and verdict.outcome == Outcome.UNDETERMINED.value
     ]
     return table("words", ["Query", "Structure", "Axis", "Reason"], rows)
 

@@ -7,12 +7,18 @@ from pathlib import Path
 
 from matplotlib.figure import Figure
 
-from experiments.claims import EXPECTATIONS, SENTENCES
+from experiments.claims import CLAIMED
 from experiments.harness import OPERATIONS, QUERIES_TABLE, Axis
 from experiments.report.figures import fracture, growth, memory, meshes
 from experiments.report.pages import each_table, or_missing
 from experiments.report.session import read_session, share
-from experiments.report.tables import markdown, sentences_markdown
+from experiments.report.tables import (
+    legend,
+    markdown,
+    markdown_rows,
+    sentences_markdown,
+    tally_rows,
+)
 from experiments.runs import Run, in_words
 
 TIMES = partial(growth.scaling, axis=Axis.TIME_FACES)
@@ -47,14 +53,16 @@ MISSING = "*{}*"  # how the page says what was not measured
 def write_readme(run_folder: Path, folder: Path) -> Path:
     """Write what is committed of a run for reading: a page with the tables and the main plots.
 
-    Table 1 goes into the README beside ``folder``, too, if it has the marks for it.
+    Table 1, its legend and how many claims hold go into the README beside ``folder``, too, if it
+    has the marks for them.
     """
     share(session := read_session(run_folder))
     run, claims = session.run, session.claims
     folder.mkdir(parents=True, exist_ok=True)
-    parts = each_table(claims, markdown, MISSING)
-    parts["In sentences"] = sentences_markdown(claims, SENTENCES)
-    parts["What we expect"] = sentences_markdown(claims, EXPECTATIONS)
+    parts = {"Who claims what": markdown_rows(tally_rows(claims)), "How to read it": _read()}
+    parts |= each_table(claims, markdown, MISSING)
+    for kind in CLAIMED:
+        parts[f"In sentences: {kind.about}"] = sentences_markdown(claims, kind)
     for name, (title, draw) in DRAWN.items():
         picture = partial(_draw, run, draw, folder / f"{name}.png", title)
         parts[title] = or_missing(picture, MISSING)
@@ -63,10 +71,14 @@ def write_readme(run_folder: Path, folder: Path) -> Path:
     page.write_text(f"# The thesis, measured\n\n{in_words(run)}\n\n{text}\n", "utf-8")
     readme = folder.parent / "README.md"
     if readme.exists():
-        table = parts[QUERIES_TABLE.title]
+        table = "\n\n".join([parts[QUERIES_TABLE.title], _read(), parts["Who claims what"]])
         text = re.sub(MARKED, lambda it: f"{it[1]}\n{table}\n{it[2]}", readme.read_text("utf-8"))
         readme.write_text(text, "utf-8")
     return page
+
+
+def _read() -> str:
+    return "\n\n".join(legend())
 
 
 def _draw(run: Run, draw: Callable[[Run], Figure], file: Path, title: str) -> str:

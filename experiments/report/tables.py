@@ -1,6 +1,5 @@
 """Rows as a table for a terminal, in 80 columns, or in Markdown; and so the tables of claims."""
 
-import re
 from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
@@ -10,21 +9,77 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from experiments.claims import Between, JudgedClaim, Outcome, judge_run
+from experiments.claims import (
+    CLAIMED,
+    NO_CLAIM,
+    NOT_POSSIBLE,
+    SENTENCES,
+    Between,
+    JudgedClaim,
+    Kind,
+    Outcome,
+    judge_run,
+    tally,
+)
 from experiments.report.session import MissingError
 from experiments.runs import load, noise, tables
 from structures import NAMED, THESIS
 
 COLORS = {
-    **{re.escape(it.mark): it.color for it in Outcome if it is not Outcome.NO_CLAIM},
-    rf"^{Outcome.NO_CLAIM.mark}.*": Outcome.NO_CLAIM.color,
+    **{f"[{it.mark}{it.own}]": it.color for it in Outcome if it is not Outcome.NO_CLAIM},
+    rf"^({NO_CLAIM}|{NOT_POSSIBLE}).*": Outcome.NO_CLAIM.color,
     "[▲▼][^ ]+|≠": "bold yellow",
 }
 """What is colored in a terminal, as regular expressions."""
 
-LEGEND = """Each cell: what is claimed, the verdict by work (memory accesses) and that by time.
-✓ consistent, ✗ violated, ? undetermined, – nothing claimed. The work decides.
-Where the claim is not confirmed, what was found stands beside it."""
+MEASURES = {
+    "decides": "work, bytes, value",
+    "time": "time in order",
+    "random": "time at random",
+}
+"""The heads of a tally; what is exact decides."""
+
+SHOWN = Outcome.CONSISTENT, Outcome.VIOLATED, Outcome.UNDETERMINED
+
+
+def legend() -> list[str]:
+    """How to read a cell, in lines: the order of its marks, and whose claim they stand for."""
+    words = ", ".join(f"{it.mark} {it.value}" for it in SHOWN)
+    marks = {kind: " ".join(kind.marks([it]) for it in SHOWN) for kind in CLAIMED}
+    return [
+        "Each cell has what is claimed, then its marks: by work (memory accesses), by time in "
+        "order, and for queries by time at random. Work is exact, and it decides.",
+        f"{words}. Whose claim it is: "
+        + "; ".join(f"{marks[kind]} {kind.about}" for kind in CLAIMED)
+        + ".",
+        f"{NO_CLAIM} {Kind.NOBODY.about}. {NOT_POSSIBLE}: table 1 prints this, as the structure "
+        "keeps no record of an edge; found is what it costs to name the edge by its vertices.",
+    ]
+
+
+def tally_rows(claims: Iterable[JudgedClaim]) -> list[list[str]]:
+    """How many claims of each kind came out how, the heads first: in tables, then in sentences."""
+    every = list(claims)
+    rows = [["", "claims", *MEASURES.values()]]
+    for kind in CLAIMED:
+        for place, inside in (("in tables", False), ("in sentences", True)):
+            mine = [it for it in every if (it.claim.table == SENTENCES) == inside]
+            of_kind = [it for it in mine if it.claim.kind is kind and it.claim.claims_something]
+            counts = tally(of_kind)
+            decides = sum(
+                (counts.get((kind, it), Counter()) for it in ("work", "bytes", "sentence")),
+                Counter[Outcome](),
+            )
+            timed = [counts.get((kind, it), Counter()) for it in list(MEASURES)[1:]]
+            if of_kind:
+                cells = [_counted(kind, it) for it in (decides, *timed)]
+                rows.append([f"{kind.value}, {place}", str(len(of_kind)), *cells])
+    return rows
+
+
+def _counted(kind: Kind, counts: Counter[Outcome]) -> str:
+    """Such as ``33 ✓ 3 ✗``."""
+    return " ".join(f"{counts[it]} {kind.marks([it])}" for it in SHOWN if counts[it])
 
 
 def show_rows(
@@ -119,16 +174,17 @@ def show_claims(
     seen = noise(run)
     if seen.too_busy:
         console.print(f"[yellow]{seen.words}[/]", highlight=False)
-    console.print(LEGEND, style="dim", highlight=False)
+    console.print("\n[bold]Who claims what, of all structures[/]")
+    show_rows(console, tally_rows(judge_run(run)))
+    console.print("\n".join(legend()), style="dim", highlight=False)
 
 
 def _cell(judged: JudgedClaim) -> str:
-    """What is claimed, the marks by work and by time, and what was found where it differs."""
+    """What is claimed, its marks, and what was found where it differs."""
     if judged.outcome is Outcome.NO_CLAIM:
-        return f"– {judged.found}"
-    marks = judged.outcome.mark + (judged.outcome_time.mark if judged.verdicts else "")
+        return f"{judged.claim.printed} {judged.found}" if judged.was_measured else ""
     found = "" if judged.outcome is Outcome.CONSISTENT else f" {judged.found}"
-    return f"{judged.claim.printed} {marks}{found}"
+    return f"{judged.claim.printed} {judged.marks}{found}"
 
 
 def _show_slopes(console: Console, claims: Sequence[JudgedClaim]) -> None:
@@ -140,7 +196,8 @@ def _show_slopes(console: Console, claims: Sequence[JudgedClaim]) -> None:
                 low, slope, high = map(two_digits, (it.slope_low, it.slope, it.slope_high))
                 claimed = judged.claim.claims_something
                 outcome = Outcome(it.outcome) if claimed else Outcome.NO_CLAIM
-                found = (it.expected if claimed else "", it.best, outcome.mark)
+                mark = judged.claim.kind.marks([outcome])
+                found = (it.expected if claimed else "", it.best, mark)
                 measured = (f"{axis.measure} {axis.symbol}", slope, f"{low}…{high}")
                 rows.append((judged.claim.title, *measured, *found))
         if len(rows) > 1:
@@ -148,38 +205,37 @@ def _show_slopes(console: Console, claims: Sequence[JudgedClaim]) -> None:
 
 
 def _summary(claims: Sequence[JudgedClaim]) -> str:
-    grown = [it for it in claims if it.verdicts]
-    counted = {
-        "by work": Counter(it.outcome for it in grown),
-        "by time": Counter(it.outcome_time for it in grown),
-        "by bytes": Counter(it.outcome for it in claims if not it.verdicts),
-    }
-    return "\n".join(
-        f"{how}: " + ", ".join(f"{counts[it]} {it.value}" for it in Outcome if counts[it])
-        for how, counts in counted.items()
-        if counts
-    )
+    """A line per kind of claim: by which measure how many came out how."""
+    lines: dict[Kind, list[str]] = {}
+    for (kind, measure), counts in tally(claims).items():
+        lines.setdefault(kind, []).append(f"{measure} {_counted(kind, counts)}")
+    return "\n".join(f"{kind.value}: {', '.join(lines[kind])}" for kind in CLAIMED if kind in lines)
 
 
 def markdown(claims: Iterable[JudgedClaim], name: str) -> str:
-    """A table for a page: what is claimed, the mark, and what was found."""
+    """A table for a page: what is claimed, its marks, and what was found."""
 
     def cell(judged: JudgedClaim) -> str:
-        mark = "" if judged.outcome is Outcome.NO_CLAIM else f" {judged.outcome.mark}"
+        if judged.outcome is Outcome.NO_CLAIM:
+            silent = judged.claim.printed == NO_CLAIM
+            found = f"found {judged.found}" if judged.was_measured else NO_CLAIM
+            return found if silent else f"{judged.claim.printed}, {found}"
         found = "" if judged.outcome is Outcome.CONSISTENT else f", found {judged.found}"
-        return f"{judged.claim.printed}{mark}{found}"
+        return f"{judged.claim.printed} {judged.marks}{found}"
 
     return markdown_rows(_texts(claims, name, "title", cell))
 
 
-def sentences_markdown(claims: Iterable[JudgedClaim], name: str) -> str:
-    """The claims that are sentences of a table, as one for a page."""
+def sentences_markdown(claims: Iterable[JudgedClaim], kind: Kind) -> str:
+    """The claims of a kind that are sentences, as a table for a page."""
     rows = [
-        (it.claim.text, bounds.measured, bounds.words, it.found, f"{it.mark} {it.words}")
+        (it.claim.text, it.claim.source, bounds.measured, bounds.words, it.found,
+         f"{it.mark} {it.words}")
         for it in claims
-        if it.claim.table == name and isinstance(bounds := it.claim.expects, Between)
-    ]
-    return markdown_rows([("what is said", "measured by", "claimed", "found", ""), *rows])
+        if it.claim.kind is kind and isinstance(bounds := it.claim.expects, Between)
+    ]  # fmt: skip
+    heads = "what is said", "where, or why", "measured by", "claimed", "found", ""
+    return markdown_rows([heads, *rows])
 
 
 def duration(seconds: float) -> str:

@@ -32,6 +32,7 @@ LAWS: dict[str, Law] = {
     "O(n_t)": lambda n_t, n_ev: 10.0 + 3.0 * n_t,
     "O(n_t²)": lambda n_t, n_ev: 3.0 + 2e-3 * n_t**2,
     "N/A": lambda n_t, n_ev: 7.0,
+    "–": lambda n_t, n_ev: 7.0,
 }
 
 
@@ -112,7 +113,7 @@ def write_run(
 def _add_times(files: dict, folder: Path, structure: str) -> None:
     """Building, the workloads, and the ways to keep a render mesh in step."""
     slow = structure == "indexed"
-    orders = ("one by one", "rendered", "in a transaction", "render mesh built anew")
+    orders = ("in a transaction", "rendered", "one by one", "render mesh built anew")
     for n_t in SIZES:
         about = {"kind": "time", "family": "torus", "faces": n_t, "vertices": n_t // 2}
         every = [

@@ -5,7 +5,7 @@
   const shown = document.getElementById("shown"), none = document.getElementById("none");
   const entries = [...document.querySelectorAll(".entry")];
   const buttons = [...form.querySelectorAll("button[data-group]")];
-  const groups = ["outcome", "structure", "kind"];
+  const groups = ["outcome", "claimed", "structure", "kind"];
   const plain = (text) => text.toLowerCase().replace(/[-_→]/g, " ").replace(/\s+/g, " ");
   const words = new Map(entries.map((it) => [it, plain([it.id, it.dataset.outcome,
     it.querySelector("summary").textContent, it.querySelector(".words").textContent].join(" "))]));

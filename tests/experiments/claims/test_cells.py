@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from experiments.claims import MEMORY, NO_CLAIM, load_claims
+from experiments.claims import MEMORY, NO_CLAIM, Kind, load_claims
 from experiments.harness import OPERATIONS
 from structures import NAMES, THESIS
 from tests.experiments.made_runs import LIKE_THE_THESIS
@@ -23,22 +23,34 @@ PRINTED = {
 
 
 NOT_IN_TABLE_1 = ("vertex_vertices",)
+TABLES = "queries", "operations"
+
+SAID_OF_OPERATIONS = {
+    ("split_edge", "indexed"), ("split_edge", "half_edge"), ("split_face", "half_edge"),
+    ("collapse_edge", "indexed"), ("collapse_edge", "half_edge"), ("split_by_corners", "indexed"),
+}  # fmt: skip
+"""What chapters 4 and 5 say of the cost of an operation, and of which structure."""
+
+SAID_OF_LISTINGS = "split_edge", "split_face", "collapse_edge", "collapse_stepping"
+"""Those whose cost chapters 4 to 6 tell."""
 
 
 def test_the_claims_are_table_1_as_it_is_printed():
-    claims = {(it.subject, it.structure): it for it in load_claims() if it.table != "listings"}
+    claims = {(it.subject, it.structure): it for it in load_claims() if it.table in TABLES}
     every = (*PRINTED, *NOT_IN_TABLE_1, *OPERATIONS)
     assert set(claims) == {(subject, name) for subject in every for name in NAMES}
     for subject, cells in PRINTED.items():
         assert [claims[subject, name].printed for name in THESIS] == cells
         assert all("table 1" in claims[subject, name].source for name in THESIS)
+        assert {claims[subject, name].kind for name in THESIS} == {Kind.PRINTED}
 
 
 def test_the_other_half_edges_are_claimed_to_cost_what_a_half_edge_mesh_does():
-    claims = {(it.subject, it.structure): it for it in load_claims() if it.table != "listings"}
+    claims = {(it.subject, it.structure): it for it in load_claims() if it.table in TABLES}
     for subject, cells in PRINTED.items():
         others = [claims[subject, name] for name in LIKE_THE_THESIS]
-        assert {it.printed for it in others} == {"N/A" if subject == MEMORY else cells[-1]}
+        assert {it.printed for it in others} == {NO_CLAIM if subject == MEMORY else cells[-1]}
+        assert {it.kind for it in others} == {Kind.NOBODY if subject == MEMORY else Kind.FOLLOWS}
         assert not any("table 1" in it.source for it in others)
 
 
@@ -47,6 +59,28 @@ def test_of_a_structure_of_which_no_document_says_what_it_costs_nothing_is_claim
     of_them = [it for it in load_claims() if it.structure in silent]
     assert {it.structure for it in of_them} == silent
     assert {it.printed for it in of_them} == {NO_CLAIM}
+
+
+def test_nothing_but_what_the_thesis_says_is_told_to_be_printed():
+    said: dict[str, list[tuple[str, str]]] = {}
+    for it in load_claims():
+        if it.kind is Kind.PRINTED and it.claims_something:
+            said.setdefault(it.table, []).append((it.subject, it.structure))
+    assert len(said["queries"]) == 26 + 4
+    assert said["listings"] == [(subject, "as_printed") for subject in SAID_OF_LISTINGS]
+    assert {*said["operations"], *said["naming"]} == SAID_OF_OPERATIONS
+
+
+def test_what_we_expect_says_so_in_its_source():
+    claims = [it for it in load_claims() if it.structure not in LIKE_THE_THESIS]
+    assert all(("we expect" in it.source) == (it.kind is Kind.EXPECTED) for it in claims)
+
+
+def test_a_claim_of_ours_on_what_is_like_another_stays_ours():
+    claims = {(it.subject, it.structure): it.kind for it in load_claims() if it.table in TABLES}
+    for name in LIKE_THE_THESIS:
+        assert claims["split_edge", name] is Kind.FOLLOWS
+        assert claims["flip_edge", name] is Kind.EXPECTED
 
 
 def test_every_claim_has_a_key_of_its_own_a_source_and_a_sentence():
@@ -60,8 +94,10 @@ def test_every_claim_has_a_key_of_its_own_a_source_and_a_sentence():
     [
         ('what = "vertex_corners"\nsource = "x"', "vertex_corners"),
         ('what = "face_faces"\nsource = "x"\nhalf_edges = "O(1)"', "half_edges"),
-        ('what = "face_faces"\nsource = "x"\nhalf_edge = "O(n_v)"', r"O\(n_v\)"),
-        ('what = "face_faces"\nhalf_edge = "O(1)"', "no source"),
+        ('what = "face_faces"\nkind = "printed"\nsource = "x"\nhalf_edge = "O(n_v)"', r"O\(n_v\)"),
+        ('what = "face_faces"\nkind = "printed"\nhalf_edge = "O(1)"', "no source"),
+        ('what = "face_faces"\nsource = "x"\nhalf_edge = "O(1)"', "kind is None"),
+        ('what = "face_faces"\nkind = "said"\nsource = "x"\nhalf_edge = "O(1)"', "'said'"),
         ('what = "face_faces"\nsource = "x"\ntable = "tables"', "tables"),
     ],
 )
@@ -72,7 +108,7 @@ def test_a_claim_that_makes_no_sense_is_refused_by_name(entry, named):
 
 
 def test_what_is_claimed_in_a_variable_that_nobody_measures_is_not_asked():
-    listings = [it for it in load_claims() if it.table == "listings"]
+    listings = [it for it in load_claims() if it.table == "listings" and it.claims_something]
     assert listings
     assert all(set(it.expects.classes) == {"faces"} for it in listings)
     assert all(it.subject != MEMORY for it in listings)

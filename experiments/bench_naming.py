@@ -1,0 +1,103 @@
+"""Splitting a face, named by its index or by its three corners: work and time by size.
+
+The thesis compares a half-edge mesh, whose faces are known, with an indexed mesh in which a face is
+looked for by its corners. So both are measured, where neighbors are searched for: one call per
+split from Python, with the room made before.
+"""
+
+import numpy as np
+
+from experiments.harness import (
+    Axis,
+    Case,
+    Experiment,
+    Measurement,
+    Preset,
+    Table,
+    Timer,
+    operation_faces,
+    validate_operated,
+)
+from experiments.harness.calibration import latency_now
+from hem.contract import Structure
+from structures import NAMES, REGISTRY
+
+BY_INDEX, BY_CORNERS = "split_by_index", "split_by_corners"
+NAMINGS = {BY_INDEX: "Named by its index", BY_CORNERS: "Named by its three corners"}
+COUNTED, TIMED = "counted", "timed"
+"""The kinds of cases: work, and time."""
+SPLITS = 10
+CENTER = (0.0, 0.0, 0.0)
+
+
+def cases(preset: Preset, structure: str) -> list[Case]:
+    """Both ways to name a face: work and time at the sizes of operations."""
+    sizes = {COUNTED: preset.work_sizes, TIMED: preset.operation_sizes}
+    return [
+        Case(structure, preset.families[0], size, naming, order)
+        for order, of_order in sizes.items()
+        for size in of_order
+        for naming in NAMINGS
+    ]
+
+
+def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
+    """Count one split, or time some, and check what they made."""
+    s, faces = case.build(), operation_faces(case, SPLITS).tolist()
+    named = [tuple(s.face_vertices(face).tolist()) for face in faces]
+    by_index = case.subject == BY_INDEX
+    if any(_find_face(s, *corners) != face for face, corners in zip(faces, named, strict=True)):
+        raise AssertionError(f"{case.id} on {case.structure}: another face has these corners")
+    if case.order == COUNTED:
+        copy = s.copy()
+        found = 0 if by_index else _work_to_find(s, named[0][0])
+        samples = np.array([found + copy.operation_work("split_face", faces[0])])
+        validate_operated(copy)
+        return case.result("work", s, samples, handles=1, checked=True)
+
+    def split(copy: Structure) -> None:
+        for face, corners in zip(faces, named, strict=True):
+            copy.split_face(face if by_index else _find_face(copy, *corners), CENTER)
+
+    latency = latency_now(sum(s.memory().values()))
+    rounds = preset.fewest_rounds + 2
+    timed = timer(split, setup=lambda: (_ready(s),), rounds=rounds, warmup=1, per=len(faces))
+    return case.result("time", s, **timed.fields, latency=latency)
+
+
+def _find_face(s: Structure, a: int, b: int, c: int) -> int:
+    """The face with these corners, of those that a search for the first one finds."""
+    for face in s.vertex_faces(a).tolist():
+        if {a, b, c} == set(s.face_vertices(face).tolist()):
+            return int(face)
+    raise LookupError(f"no face has the corners {a}, {b} and {c}")
+
+
+def _work_to_find(s: Structure, a: int) -> int:
+    """The accesses of the search, and of a look at every face that it finds."""
+    faces = s.vertex_faces(a)
+    return int(s.work("vertex_faces", np.array([a])).sum() + s.work("face_vertices", faces).sum())
+
+
+def _ready(s: Structure) -> Structure:
+    """A copy with room for the splits, whose methods are bound."""
+    copy = s.copy()
+    copy.reserve(2 * SPLITS)
+    _find_face(copy, *copy.face_vertices(0).tolist())
+    return copy
+
+
+EXPERIMENT = Experiment(
+    title="Splitting a face by its name",
+    cases=cases,
+    measure=measure,
+    copies=3,
+    turn=44,
+    structures=tuple(name for name in NAMES if REGISTRY[name].searches),
+    counted=(COUNTED,),
+    table=Table("naming", "Split face, by how the face is named", NAMINGS, "operations"),
+    axes={Axis.WORK_FACES: COUNTED, Axis.TIME_FACES: TIMED},
+    just_written=frozenset({Axis.TIME_FACES}),
+    baseline_orders=(TIMED,),
+)
+test_naming = EXPERIMENT.test

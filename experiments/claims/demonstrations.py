@@ -1,0 +1,115 @@
+"""Quantities that no run has to measure: something is built and looked at, or counted in the code.
+
+Each gives the values that a sentence is judged by.
+"""
+
+from collections import Counter
+from collections.abc import Iterable, Mapping
+from contextlib import suppress
+from typing import Any, cast
+
+import numpy as np
+
+import hem
+import structures
+from experiments.claims.errata import BOOK, MIDDLE, printed
+from experiments.claims.source_code import code_facts, come_round_tests
+from hem.contract import QUERIES
+from structures.object_tools import HalfEdgeMeshBuilder
+from structures.plankton import Plankton
+
+HALF, WINGED = "half_edge", "winged_edge"
+HALF_EDGES = (HALF, "half_edge_objects", "plankton")
+
+TOUCHING = hem.TriangleMesh(
+    [(0, 0, 0), (1, 0, 0), (0, 1, 0), (1, 0, 0), (0, 1, 0), (1, 1, 0)], [(0, 1, 2), (3, 5, 4)]
+)
+"""Two triangles with a side at the same place, and vertices of their own."""
+
+
+def books_built() -> Iterable[float]:
+    """How many half-edge meshes accept three faces at one edge."""
+    built = 0
+    for name in HALF_EDGES:
+        with suppress(hem.NonManifoldError):
+            built += bool(structures.build(name, BOOK))
+    yield built
+
+
+def polygon_corners() -> Iterable[float]:
+    """The corners of a face of a hundred that is built, asked for and taken away again."""
+    angle = np.linspace(0, 2 * np.pi, 100, endpoint=False)
+    points = np.stack([np.cos(angle), np.sin(angle), 0 * angle], axis=1)
+    s = structures.build("plankton", hem.PolygonMesh(points, [list(range(100))]))
+    s.validate()
+    yield len(s.face_vertices(0))
+    s.remove_face(0)
+    s.validate()
+
+
+def article_invariants() -> Iterable[float]:
+    """The share of half-edges for which what the article says of them holds."""
+    s = cast(Plankton, structures.build("plankton", hem.generate("grid", 400)))
+    for _ in range(2):
+        holds = [
+            s.start_vertex(h ^ 1) == s.start_vertex(s.next_half_edge(h))
+            and (s.adjacent_face(h) >= 0 or s.outgoing_half_edge(s.start_vertex(h)) == h)
+            for h in s.half_edges().tolist()
+        ]
+        yield float(np.mean(holds))
+        s.collapse_edges(s.edges()[::5])
+        s.split_all_faces()
+
+
+def cube_vertices() -> Iterable[float]:
+    """The vertices that the builder makes of a render mesh with a seam at every edge."""
+    corner = np.array([(x, y, z) for z in (0, 1) for y in (0, 1) for x in (0, 1)], float)
+    sides = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
+    indices = [4 * i + k for i in range(6) for k in (0, 2, 1, 0, 3, 2)]  # clockwise
+    mesh = HalfEdgeMeshBuilder.from_render_mesh(corner[np.array(sides).ravel()], indices)
+    yield mesh.n_vertices
+
+
+def coincident_vertices(mesh: hem.TriangleMesh = TOUCHING) -> Iterable[float]:
+    """The vertices at the position of another in a half-edge mesh that is built, and valid."""
+    s = structures.build("plankton", mesh)
+    s.validate()
+    yield len(s.points) - len(np.unique(s.points, axis=0))
+
+
+def half_edges_per_face() -> Iterable[float]:
+    """How many half-edges name each face after a split as it is published."""
+    m = printed()
+    m.split_half_edge(m.half_edges[0], MIDDLE)
+    yield from half_edges_named(m)
+
+
+def half_edges_named(m: Any) -> Iterable[float]:
+    """How many half-edges name each face of a mesh of objects."""
+    naming = Counter(id(h.face) for h in m.half_edges)
+    return [naming[id(face)] for face in m.faces]
+
+
+def two_steps_back(mesh: Any = None) -> Iterable[float]:
+    """The share of half-edges whose previous one, where it is recorded, is next of next."""
+    s = cast(Plankton, structures.build("plankton", mesh or hem.generate("torus", 400)))
+    h = s.half_edges()
+    yield float(np.mean(s.previous_half_edge(h) == s.next_half_edge(s.next_half_edge(h))))
+
+
+def walks_without_test() -> Iterable[float]:
+    """The edge-based structures whose walk around a vertex never asks whether it came round."""
+    edge_based = [it for it in (*HALF_EDGES, WINGED) if structures.REGISTRY[it].compiled]
+    walks = [structures.REGISTRY[it].kernels["vertex_faces"] for it in edge_based]
+    yield sum(come_round_tests([walk]) == 0 for walk in walks)
+
+
+def handling(*facts: str, mine: str = HALF, other: str = WINGED) -> Iterable[float]:
+    """Counts in the code of all queries and operations, one structure's by another's."""
+    names = [*QUERIES, *(it for it in _kernels(mine) if it.endswith("_records"))]
+    one, two = (code_facts(_kernels(it)[name] for name in names) for it in (mine, other))
+    return [getattr(one, fact) / getattr(two, fact) for fact in facts]
+
+
+def _kernels(structure: str) -> Mapping[str, Any]:
+    return structures.REGISTRY[structure].kernels
