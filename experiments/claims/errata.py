@@ -200,6 +200,29 @@ def _scanning_circulator() -> Shown:
     )  # fmt: skip
 
 
+def _stepping_collapse() -> Shown:
+    def collapse(mesh: hem.TriangleMesh, m: AsPrinted) -> None:
+        m.stepping = True
+        m.collapse_edge(m.half_edges[0])
+
+    return _grows(collapse, lambda mesh, s: s.collapse_edge(s.half_edges[0].edge), 3.5, 1.1)
+
+
+def _there_and_back() -> Shown:
+    reads = []
+    for valence in (8, 64):
+        s = structures.build("winged_edge", hem.valence_mesh(valence, 256))
+        hub = np.asarray(hem.valence_hubs(valence, 256))[:1]
+        asked = ("edge_faces", s.vertex_edges(hub).values[:1]), ("vertex_edges", hub)
+        reads.append([int(s.work(query, handles)[0]) for query, handles in asked])
+    (there, back), (still_there, further_back) = reads
+    return Shown(
+        f"from an edge to its faces {there} accesses at a valence of 8, {still_there} at 64",
+        f"from a vertex to its edges {back} and {further_back}, as table 1 says",
+        there == still_there and further_back > 4 * back,
+    )
+
+
 def _silent_weld() -> Shown:
     m, s = printed(), sound()
     there = m.vertices[3].point

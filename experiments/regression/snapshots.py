@@ -10,6 +10,7 @@ from experiments.claims import (
     Claim,
     Curves,
     JudgedClaim,
+    Kind,
     Outcome,
     curves,
     judge_cells,
@@ -58,7 +59,8 @@ def describe_claim(name: str) -> str:
     if claim is None:
         return ""
     printed = "nothing claimed" if claim.printed == NO_CLAIM else claim.printed
-    return f"{tables()[claim.table].title}, {claim.title}: {printed}; {claim.kind}, {claim.source}"
+    who = "" if claim.kind is Kind.EXPECTED else f"{claim.kind}, "  # which its source says, too
+    return f"{tables()[claim.table].title}, {claim.title}: {printed}; {who}{claim.source}"
 
 
 def claimed_by(name: str) -> str:

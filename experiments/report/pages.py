@@ -41,6 +41,7 @@ def _templates() -> Environment:
     environment.globals |= {
         "NAMED": NAMED,
         "Outcome": Outcome,
+        "outcome_of": {mark: it.css for it in Outcome for mark in (it.mark, it.own)}.get,
         "heads": lambda columns: ["", *(NAMED[it].title for it in columns)],
         "link": session.link,
         "claim_link": session.claim_link,

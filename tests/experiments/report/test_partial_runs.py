@@ -41,8 +41,9 @@ SHOWN = {
     "shattering": lambda run, claims: comparisons.shattering(run),
     "finding": lambda run, claims: comparisons.face_finding(run),
     "break even": lambda run, claims: comparisons.overtaking(break_even(curves(run))),
-    "sentences": lambda run, claims: pages.sentences(claims),
-    "expectations": lambda run, claims: pages.expectations(claims),
+    "sentences": lambda run, claims: pages.sentences(claims, "printed"),
+    "expectations": lambda run, claims: pages.sentences(claims, "expected"),
+    "tally": lambda run, claims: pages.tally(claims),
     "reasons": lambda run, claims: pages.reasons(claims, "queries"),
     **{
         f"{kind.__name__} of {name}": lambda run, claims, kind=kind, name=name: kind(claims, name)
@@ -52,7 +53,7 @@ SHOWN = {
 }
 """What the chapters show of a run."""
 
-EVERYWHERE = {"sentences", "expectations", "reasons"}
+EVERYWHERE = {"sentences", "expectations", "tally", "reasons"}
 PARTS = [*NAMES, *experiments()]
 WAITED_FOR = *OF_EACH_KIND, "bench_queries", "bench_memory"
 LAYOUT = "matplotlib.layout_engine.ConstrainedLayoutEngine"

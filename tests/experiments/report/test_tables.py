@@ -7,13 +7,21 @@ import re
 import pytest
 from rich.console import Console
 
-from experiments.claims import judge_run
+from experiments.claims import CLAIMED, Kind, Outcome, judge_run
 from experiments.report import comparisons
 from experiments.report.pages import verdicts
 from experiments.report.session import share
-from experiments.report.tables import digits, duration, markdown, show_claims
+from experiments.report.tables import (
+    digits,
+    duration,
+    legend,
+    markdown,
+    show_claims,
+    tally_rows,
+)
 from experiments.runs import load
 from structures import NAMED, NAMES
+from tests.experiments.made_runs import LAWS, write_run
 
 
 @pytest.fixture(scope="module")
@@ -52,7 +60,43 @@ def test_the_tables_as_markdown_have_every_mark(run):
     claims = judge_run(run)
     text = markdown(claims, "queries")
     assert "| Bytes per vertex | 36 ✓ | 116 ✓ | 228 ✓ | 228 ✓ |" in text
-    assert "| Split edge | O(1) ✓ | O(n_t) ✓ |" in markdown(claims, "listings")
+    listings = markdown(claims, "listings")
+    assert "| Split edge | O(1) (✓✓) | O(1) ✓✓ |" in listings
+    assert "| Build from a render mesh | O(n_t) ○○ | O(n_t²) ○○ |" in listings
+    assert "| Vertex → Faces | O(n_t) ✓✓✓ | O(n_ev) ✓✓✓ |" in text
+    assert "| Edge → Vertices | N/A, found O(1) | N/A, found O(1) | O(1) ✓✓✓ |" in text
+    assert "| Vertex → adjacent Vertices | found O(1) |" in text
+
+
+def test_what_is_published_and_breaks_what_is_said_of_it_is_violated(tmp_path):
+    """The thesis says constant of a split that is linear as it is published."""
+    linear = lambda s, q, p: LAWS["O(n_t)"] if s == "as_printed" else None  # noqa: E731
+    only = lambda experiment, structure: experiment == "bench_printed"  # noqa: E731
+    claims = judge_run(load(write_run(tmp_path, linear, only)))
+    assert "| Split edge | O(1) (✓✓) | O(1) ✗✗, found O(n_t) |" in markdown(claims, "listings")
+
+
+def test_claims_are_counted_by_who_claims_them(run):
+    claims = judge_run(run)
+    heads, *rows = tally_rows(claims)
+    assert len({len(row) for row in (heads, *rows)}) == 1
+    counted = {row[0]: row[1:] for row in rows}
+    printed = [it for it in claims if it.claim.kind is Kind.PRINTED and it.claim.claims_something]
+    in_tables = [it for it in printed if it.claim.structure]
+    assert counted["printed, in tables"][:2] == [str(len(in_tables)), f"{len(in_tables)} ✓"]
+    assert counted["printed, in tables"][3] == "26 ✓"  # table 1, asked at random
+    assert counted["printed, in sentences"][0] == str(len(printed) - len(in_tables))
+    assert counted["expected, in tables"][1].endswith("○")
+    assert counted["follows, in tables"][1].endswith("(✓)")
+    every = sum(int(row[0]) for row in counted.values())
+    assert every == sum(it.claim.claims_something for it in claims)
+
+
+def test_the_legend_has_every_mark():
+    text = " ".join(legend())
+    for kind in CLAIMED:
+        assert kind.about in text
+        assert all(kind.marks([it]) in text for it in Outcome if it is not Outcome.NO_CLAIM)
 
 
 def test_a_table_of_a_page_leads_to_every_claim(run):
