@@ -112,8 +112,9 @@ class Curves:
 
     @property
     def faces_per_vertex(self) -> float:
-        """That of the largest mesh of the judged family."""
-        largest = self.cases[self.cases["family"] == self.judged_family].nlargest(1, "vertices")
+        """That of the largest mesh of the judged family, nan without any."""
+        sizes = self.cases.loc[self.cases["family"] == self.judged_family, ["faces", "vertices"]]
+        largest = sizes.astype(float).nlargest(1, "vertices")
         return float((largest["faces"] / largest["vertices"]).max())
 
     def latencies(self, curve: Curve) -> Array:
