@@ -22,6 +22,7 @@ from hem.edit import Edit, generations, whole_faces
 from hem.errors import MeshError
 from hem.listeners import Listeners
 from hem.ragged import Ragged
+from hem.room import longer
 
 Rule = Literal["interpolate", "copy", "default"]
 """What a new element gets: a value between its parents' by where it lies, that of its first parent,
@@ -140,14 +141,8 @@ class Attribute:
         return rows
 
     def _grow(self) -> None:
-        """Have a row for every handle; twice as many where there are too few.
-
-        An edit that was interrupted may not have seen to it.
-        """
-        missing = self._end - len(self._rows)
-        if missing > 0:
-            more = max(missing, len(self._rows))
-            self._rows = np.concatenate([self._rows, self._fresh(more)])
+        """Have a row for every handle. An edit that was interrupted may not have seen to it."""
+        self._rows = enlarged(self._rows, self._end, self.default)
 
     def _renumber(self, edit: Edit) -> None:
         old, new = self._moved(edit)
@@ -278,8 +273,8 @@ class HalfEdgeAttribute(MovingAttribute):
     def _look_at(self, faces: Array) -> None:
         """Keep how the half-edges of these faces run. Cost O(corners)."""
         mesh, wide = self._mesh, max(3, self.mesh.most_corners)
-        self._ran = enlarged(self._ran, len(self._rows), 2)
-        self._within = enlarged(self._within, self.mesh.face_end, wide)
+        self._ran = enlarged(self._ran, len(self._rows))
+        self._within = enlarged(widened(self._within, wide), self.mesh.face_end)
         self._within[faces] = -1
         first = h = mesh.face_half_edge(faces)
         for corner in range(wide):
@@ -293,13 +288,20 @@ class HalfEdgeAttribute(MovingAttribute):
                 return
 
 
-def enlarged(rows: Array, length: int, width: int) -> Array:
-    """So many rows or more, -1 in those that are new; a row may be wider than it was."""
-    if length <= len(rows) and width == rows.shape[1]:
+def enlarged(rows: Array, length: int, value: ArrayLike = -1) -> Array:
+    """At least so many rows, with a value in those that are new. O(new ones), see ``hem.room``."""
+    used = len(rows)
+    if length <= used:
         return rows
-    larger = np.full((max(length, 2 * len(rows)), width), -1)
-    larger[: len(rows), : rows.shape[1]] = rows
-    return larger
+    rows = longer(rows, used, length)[:length]
+    rows[used:] = value
+    return rows
+
+
+def widened(rows: Array, width: int) -> Array:
+    """Rows of at least so many columns, -1 in those that are new."""
+    more = max(width - rows.shape[1], 0)
+    return np.pad(rows, [(0, 0), (0, more)], constant_values=-1) if more else rows
 
 
 class CornerAttribute(Attribute):
@@ -351,12 +353,11 @@ class CornerAttribute(Attribute):
     def _grow(self) -> None:
         wider = self.mesh.most_corners - self._keys.shape[1]
         if wider > 0:
-            self._keys = np.pad(self._keys, [(0, 0), (0, wider)], constant_values=-1)
+            self._keys = widened(self._keys, self.mesh.most_corners)
             rows, self._rows = self._rows, self._fresh(len(self._rows))
             self._rows[:, : rows.shape[1]] = rows
         super()._grow()
-        longer = len(self._rows) - len(self._keys)
-        self._keys = np.pad(self._keys, [(0, longer), (0, 0)], constant_values=-1)
+        self._keys = enlarged(self._keys, len(self._rows))
 
     def _renumber(self, edit: Edit) -> None:
         assert edit.remapping is not None

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from hem.arrays import Array
 from hem.authoring.marked import BITS
-from hem.contract.attributes import EdgeAttribute, MovingAttribute
+from hem.contract.attributes import EdgeAttribute, MovingAttribute, enlarged
 from hem.edit import Edit
 
 Way = tuple[int, int]
@@ -53,8 +53,7 @@ class SideAttribute(MovingAttribute):
     def _look_at(self, sides: Array) -> list[Way]:
         """Keep how these sides run -> that."""
         ways = np.stack([self._mesh.origin(sides), self._mesh.tip(sides)], axis=1)
-        missing = len(self._rows) - len(self._ran)
-        self._ran = np.pad(self._ran, [(0, max(missing, 0)), (0, 0)], constant_values=-1)
+        self._ran = enlarged(self._ran, len(self._rows))
         self._ran[sides] = ways
         return [(a, b) for a, b in ways.tolist()]
 

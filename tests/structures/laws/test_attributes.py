@@ -464,3 +464,14 @@ def test_an_interrupted_edit_leaves_rows_for_all(name: str):
         s.split_face(0, (0, 0, 0))
     assert weight[s.vertices()].tolist() == [1] * s.n_vertices
     assert len(weight.values) == len(s.points)
+
+
+def test_values_grow_where_they_are(name):
+    s = structures.build(name, hem.generate("torus", 1_600))
+    of = [s.vertex_attribute("w", default=7), s.face_attribute("m"), s.corner_attribute("uv")]
+    s.split_face(0, (0, 0, 0))  # makes room
+    places = [it.values.ctypes.data for it in of]
+    s.split_faces(range(1, 300), np.zeros((299, 3)))
+    assert [it.values.ctypes.data for it in of] == places
+    assert [len(it.values) for it in of] == [1_900, 3_800, 3_800]
+    assert (of[0].values == 7).all()
