@@ -68,7 +68,8 @@ def write_readme(run_folder: Path, folder: Path) -> Path:
         parts[title] = or_missing(picture, MISSING)
     text = "\n\n".join(f"## {title}\n\n{part}" for title, part in parts.items())
     page = folder / "README.md"
-    page.write_text(f"# The thesis, measured\n\n{in_words(run)}\n\n{text}\n", "utf-8")
+    made = "Made by `hem report --page` from a run; README.md has its table 1 from there, too."
+    page.write_text(f"# The thesis, measured\n\n{made} {in_words(run)}\n\n{text}\n", "utf-8")
     readme = folder.parent / "README.md"
     if readme.exists():
         table = "\n\n".join([parts[QUERIES_TABLE.title], _read(), parts["Who claims what"]])

@@ -47,7 +47,7 @@ def legend() -> list[str]:
     words = ", ".join(f"{it.mark} {it.value}" for it in SHOWN)
     marks = {kind: " ".join(kind.marks([it]) for it in SHOWN) for kind in CLAIMED}
     return [
-        "Each cell has what is claimed, then its marks: by work (memory accesses), by time in "
+        "Each cell has what is claimed, and its marks: by work (memory accesses), by time in "
         "order, and for queries by time at random. Work is exact, and it decides.",
         f"{words}. Whose claim it is: "
         + "; ".join(f"{marks[kind]} {kind.about}" for kind in CLAIMED)

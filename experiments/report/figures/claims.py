@@ -127,7 +127,7 @@ def _draw_values(axes: Axes, values: Array, bounds: Between) -> None:
 
 
 def data(session: Session, judged: JudgedClaim) -> str:
-    """What a claim was judged by as comma-separated values; times in seconds."""
+    """What a claim was judged by, and who claims it, as comma-separated values; in seconds."""
     bounds = judged.claim.expects
     if judged.verdicts:
         of_run = curves(session.run)
@@ -142,6 +142,7 @@ def data(session: Session, judged: JudgedClaim) -> str:
             for field, size in {**case["detail"]["fields"], "all": case["samples"][0]}.items()
         ]
         table = pd.DataFrame(rows, columns=["vertices", "reference_bytes", "field", "bytes"])
+    table["claimed"] = judged.claim.kind.value
     return table.to_csv(index=False, lineterminator="\n", float_format="%.6g")
 
 

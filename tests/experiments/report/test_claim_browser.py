@@ -65,7 +65,7 @@ def test_the_data_of_a_claim_are_the_cases_it_was_judged_by(session, claims):
 
 def test_bytes_are_given_by_field(session, claims):
     data = figures.data(session, claims[f"indexed/{MEMORY}"])
-    assert data.splitlines()[1] == "1000,8,vertex.point,36000"
+    assert data.splitlines()[1] == "1000,8,vertex.point,36000,printed"
 
 
 @pytest.mark.parametrize(
