@@ -156,7 +156,7 @@ def _add_times(files: dict, folder: Path, structure: str) -> None:
 
 
 def _memory(bytes_per_vertex: float | None, reference_bytes: int) -> Measurement:
-    size = 1000 * int(bytes_per_vertex or 0) * reference_bytes // 8
+    size = 1000 * int(bytes_per_vertex or 150) * reference_bytes // 8
     fields = {"vertex.point": size}
     detail = {"fields": fields, "clr": fields, "traced": size, "peak": size}
     return Measurement(

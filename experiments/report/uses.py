@@ -1,0 +1,134 @@
+"""Which structure for which use: every structure beside the best one, by what decides the use."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+from markupsafe import escape
+
+from experiments.bench_workloads import COMPILED
+from experiments.claims import Curves, curves
+from experiments.harness import QUERIES_TABLE, Axis
+from experiments.report.pages import Html, table
+from experiments.report.session import MissingError
+from experiments.report.tables import digits, duration
+from experiments.runs import Run
+from hem.contract import QUERIES
+from structures import REGISTRY, Structure
+
+ALIKE = 1.1
+"""Structures within this factor of the best one are alike: nobody would notice the difference."""
+
+Costs = Callable[[Curves, str], pd.Series]
+"""What a structure costs, by the number of vertices."""
+
+
+def bytes_per_vertex(measured: Curves, structure: str) -> pd.Series:
+    """With references of 4 bytes."""
+    sizes = measured.memory(structure, 4).by_size
+    return sizes / sizes.index.to_numpy(float)
+
+
+def queries(measured: Curves, structure: str) -> pd.Series:
+    """The geometric mean of the queries of table 1, in random order."""
+    asked = [it for it in QUERIES_TABLE.subjects if it in QUERIES]
+    costs = [measured.curve(Axis.RANDOM_FACES, structure, it).by_size for it in asked]
+    table = pd.concat(costs, axis=1).dropna()
+    return pd.Series(np.exp(np.log(table.to_numpy(float)).mean(axis=1)), table.index)
+
+
+def workload(name: str) -> Costs:
+    """A compiled workload."""
+    return lambda measured, structure: (
+        measured.named("bench_workloads", structure, name, COMPILED).by_size
+    )
+
+
+def per_vertex(value: float) -> str:
+    """Bytes."""
+    return f"{digits(value)} bytes"
+
+
+@dataclass(frozen=True)
+class Use:
+    """What a mesh is used for, and the cost that decides which structure should hold it."""
+
+    title: str
+    compared: str
+    costs: Costs
+    written: Callable[[float], str] = duration
+    suits: Callable[[type[Structure]], bool] = lambda structure: True
+    """Whether a structure can be used so at all."""
+
+    largest: bool = True
+    """Compared on the largest mesh that all were measured on, or on the smallest."""
+
+
+USES = {
+    "drawn": Use("Only drawn", "bytes per vertex", bytes_per_vertex, per_vertex),
+    "normals": Use("Drawn, normals renewed", "vertex normals", workload("vertex_normals")),
+    "asked": Use("Picked and measured", "the eight queries of table 1, asked at random", queries),
+    "edited": Use("Edited in real time", "an impact, as in a game", workload("impacts")),
+    "simplified": Use("Simplified", "a vertex, to a tenth of them", workload("simplification")),
+    "tight": Use(
+        "Asked for neighbors, memory tight", "bytes per vertex", bytes_per_vertex, per_vertex,
+        lambda structure: not structure.searches,
+    ),
+    "polygons": Use(
+        "Of polygons", "bytes per vertex", bytes_per_vertex, per_vertex,
+        lambda structure: structure.holds_polygons,
+    ),
+    "small": Use("Small", "the eight queries of table 1, asked at random", queries, largest=False),
+}  # fmt: skip
+"""A new use is one line here."""
+
+
+def ranking(run: Run, name: str) -> pd.Series:
+    """The costs of a use by structure, the least first; its name is the number of vertices.
+
+    The mesh is one that all structures were measured on that suit and were measured at all; they
+    are compiled. Empty if there are none.
+    """
+    use = USES[name]
+    names = [name for name, it in REGISTRY.items() if it.compiled and use.suits(it)]
+    costs = {name: use.costs(curves(run), name) for name in names}
+    table = pd.DataFrame({name: it for name, it in costs.items() if len(it)}).dropna()
+    if run.machines or table.empty:
+        return pd.Series(dtype=float, name=0)
+    found = table.loc[table.index.max() if use.largest else table.index.min()]
+    return found.sort_values(kind="stable")
+
+
+def best(found: pd.Series) -> str:
+    """The titles of the structures that are alike the best one, as in a sentence."""
+    alike = [
+        REGISTRY[str(name)].title for name, cost in found.items() if cost <= ALIKE * found.iloc[0]
+    ]
+    return " or ".join(alike)
+
+
+def recommended(run: Run) -> Html:
+    """For each use the structures, the best first. Raises MissingError if nothing was measured."""
+    rows = []
+    for name, use in USES.items():
+        found = ranking(run, name)
+        if len(found):
+            rows.append((use.title, use.compared, f"{found.name:,}", _in_order(found, use)))
+    if not rows:
+        raise MissingError("This run has not measured what decides between structures.")
+    return table("words", ["Use", "What is compared", "Vertices", "The best first"], rows)
+
+
+def _in_order(found: pd.Series, use: Use) -> Html:
+    """The structures with their costs: the best ones bold."""
+    least, words = found.iloc[0], []
+    for place, (name, cost) in enumerate(found.items()):
+        title = escape(REGISTRY[str(name)].title)
+        ratio = cost / least
+        alike = Html(f"<strong>{title}</strong>") if ratio <= ALIKE else title
+        beside = use.written(cost) if place == 0 else f"{digits(ratio)} ×"
+        words.append(Html(f'<span class="whole">{alike} {beside}</span>'))
+    return Html(" · ").join(words)

@@ -1,0 +1,66 @@
+"""Laws of the recommendations: the least cost comes first, and only what suits is compared."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+
+from experiments.report import MissingError, uses
+from experiments.runs import Run, load
+from structures import REGISTRY
+from tests.experiments.made_runs import write_run
+
+COMPILED = {name for name, it in REGISTRY.items() if it.compiled}
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory: pytest.TempPathFactory) -> Run:
+    return load(write_run(tmp_path_factory.mktemp("uses") / "run"))
+
+
+def bytes_of(run: Run, name: str) -> float:
+    """Per vertex, on the largest mesh, from the cases themselves."""
+    cases = run.cases.query(
+        "experiment == 'bench_memory' and reference_bytes == 4 and structure == @name"
+    )
+    largest = cases.nlargest(1, "vertices").iloc[0]
+    return largest["samples"][0] / largest["vertices"]
+
+
+def test_what_is_smallest_comes_first_and_all_that_are_compiled_are_beside_it(run: Run) -> None:
+    found = uses.ranking(run, "drawn")
+    assert set(found.index) == COMPILED
+    assert found.tolist() == pytest.approx(sorted(bytes_of(run, name) for name in COMPILED))
+    assert found.is_monotonic_increasing
+
+
+@pytest.mark.parametrize("name", uses.USES)
+def test_only_structures_that_suit_are_compared(run: Run, name: str) -> None:
+    found = uses.ranking(run, name)
+    assert set(found.index) <= {it for it in COMPILED if uses.USES[name].suits(REGISTRY[it])}
+
+
+def test_small_meshes_are_compared_on_the_smallest(run: Run) -> None:
+    small, large = uses.ranking(run, "small"), uses.ranking(run, "asked")
+    assert small.name < large.name
+    assert large["indexed"] / large.min() > small["indexed"] / small.min()
+
+
+def test_structures_within_a_tenth_of_the_best_are_bold(run: Run) -> None:
+    rows = re.findall(r"<tr><td>(.*?)</td>(.*?)</tr>", uses.recommended(run))
+    for title, row in rows:
+        name = next(it for it, use in uses.USES.items() if use.title == title)
+        found = uses.ranking(run, name)
+        bold = re.findall("<strong>(.*?)</strong>", row)
+        assert bold == [
+            REGISTRY[it].title for it, cost in found.items() if cost <= 1.1 * found.iloc[0]
+        ]
+        assert uses.best(found) == " or ".join(bold)
+
+
+def test_what_was_not_measured_is_not_recommended(run: Run) -> None:
+    empty = type(run)(run.folder, run.meta, run.cases.iloc[:0], run.skipped)
+    assert not any(len(uses.ranking(empty, name)) for name in uses.USES)
+    with pytest.raises(MissingError, match="decides between"):
+        uses.recommended(empty)
