@@ -26,7 +26,11 @@ def test_a_line_has_the_verdicts_and_figures_of_its_run(base):
     assert claim["slopes"]["work_faces"] == [0, 0, 0]
     slope, low, high = claim["slopes"]["time_valence"]
     assert low <= slope <= high
-    assert base["claims"]["queries/indexed/memory"] == {"outcome": "consistent", "bytes": 36}
+    assert base["claims"]["queries/indexed/memory"] == {
+        "kind": "printed",
+        "outcome": "consistent",
+        "bytes": 36,
+    }
     assert len(json.dumps(base)) < 60_000
 
 
