@@ -5,7 +5,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 STUDY := $(VENV)/installed-study
 DEV := $(VENV)/installed-dev
-STUDY_EXTRAS := study,fracture,viz,picking
+STUDY_EXTRAS := study,fracture,viz
 # One worker more than there are cores, as many tests wait for a process of their own. In the order
 # of the files the slowest tests come first, and the workers end at the same time.
 WORKERS := $(shell echo $$(($$(getconf _NPROCESSORS_ONLN) + 1)))

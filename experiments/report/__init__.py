@@ -13,7 +13,7 @@ from typing import Any
 _PLACES = {
     "pages": (
         "about_run", "answer", "browser", "chapter_list", "claim_tables", "errata", "frame_table",
-        "legend", "reasons", "sentences", "slopes", "tally", "verdicts",
+        "legend", "reasons", "sentences", "slopes", "tally", "text_table", "verdicts",
     ),
     "readme": ("write_readme",),
     "session": ("MissingError", "claim_link", "link", "open_run", "project_file"),

@@ -137,7 +137,7 @@ def reasons(claims: Iterable[JudgedClaim], name: str) -> Html:
         for axis, verdict in it.verdicts.items()
         if not axis.exact and verdict.outcome == Outcome.UNDETERMINED.value
     ]
-    return table("words", ["Query", "Structure", "Axis", "Reason"], rows)
+    return text_table(["Query", "Structure", "Axis", "Reason"], rows)
 
 
 def errata(every: Iterable[Erratum]) -> Html:
@@ -169,6 +169,11 @@ def numbers(rows: Iterable[Sequence[Any]], heads: Heads) -> Html:
     if not written:
         raise session.MissingError("This run has not measured what would stand here.")
     return table("numbers", list(heads), written)
+
+
+def text_table(heads: Sequence[str], rows: Sequence[Sequence[Any]]) -> Html:
+    """A table of words below their heads."""
+    return table("words", heads, rows)
 
 
 def frame_table(frame: pd.DataFrame) -> Html:

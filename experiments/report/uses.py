@@ -12,7 +12,7 @@ from markupsafe import escape
 from experiments.bench_workloads import COMPILED
 from experiments.claims import Curves, curves
 from experiments.harness import QUERIES_TABLE, Axis
-from experiments.report.pages import Html, table
+from experiments.report.pages import Html, text_table
 from experiments.report.session import MissingError
 from experiments.report.tables import digits, duration
 from experiments.runs import Run
@@ -119,7 +119,7 @@ def recommended(run: Run) -> Html:
             rows.append((use.title, use.compared, f"{found.name:,}", _in_order(found, use)))
     if not rows:
         raise MissingError("This run has not measured what decides between structures.")
-    return table("words", ["Use", "What is compared", "Vertices", "The best first"], rows)
+    return text_table(["Use", "What is compared", "Vertices", "The best first"], rows)
 
 
 def _in_order(found: pd.Series, use: Use) -> Html:
