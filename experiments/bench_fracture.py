@@ -58,7 +58,8 @@ def cases(preset: Preset, structure: str) -> list[Case]:
 def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
     """Time a fracture, or the search for faces, after its outcome was checked."""
     s = case.build()
-    scans = _neighbors_asked(case, s) if s.searches else 0
+    searches = s.searches or (s.rebuilds and case.subject == SHATTER)
+    scans = _neighbors_asked(case, s) if searches else 0
     # With a round to check it, and one to warm up.
     reason = preset.why_too_slow(scans, s.n_faces, preset.fewest_rounds + 2)
     if reason:

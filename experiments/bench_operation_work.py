@@ -35,8 +35,10 @@ def cases(preset: Preset, structure: str) -> list[Case]:
 def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
     """Count what operations read and write, and check what they make of the mesh."""
     s, operation = case.build().copy(), str(case.subject)
-    faces = operation_faces(case, SEARCHED if s.searches else case.repetitions)
+    few = s.searches or s.rebuilds
+    faces = operation_faces(case, SEARCHED if few else case.repetitions)
     rows = operation_arguments(s, operation, faces).tolist()
+    s = s.copy()  # which knows nothing of what was asked meanwhile
     work = [s.operation_work(operation, *row) for row in rows]
     validate_operated(s)
     return case.result("work", case.build(), np.array(work), handles=1, checked=True)

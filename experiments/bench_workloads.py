@@ -26,6 +26,9 @@ SMALL = 400
 """Vertices of the mesh on which all structures must give the same."""
 
 
+REBUILT = 5
+"""About how many scans it takes to find all neighbors anew."""
+
 COMPILED, FROM_PYTHON = "compiled", "from Python"
 
 
@@ -34,12 +37,13 @@ class Workload(NamedTuple):
 
     Either tells how many ``unit`` it has done. ``scans``: about how many scans of the whole mesh it
     takes per unit where neighbors are searched for, so that what would take hours is skipped
-    beforehand.
+    beforehand. ``edits``: how many edits per unit are followed by such a question.
     """
 
     title: str
     unit: str
     scans: float
+    edits: int
     compiled: Callable[[Structure], int]
     from_python: Callable[[Structure], int]
 
@@ -150,13 +154,13 @@ def impacts(s: Structure) -> int:
 
 
 WORKLOADS = {
-    "vertex_normals": Workload("Vertex normals", "vertex", 0, _normals, vertex_normals),
-    "smoothing": Workload("Smoothing", "vertex", 3, _smooth, smoothing),
-    "subdivision": Workload("Subdivision of all faces", "face", 0, _split, subdivision),
+    "vertex_normals": Workload("Vertex normals", "vertex", 0, 0, _normals, vertex_normals),
+    "smoothing": Workload("Smoothing", "vertex", 3, 0, _smooth, smoothing),
+    "subdivision": Workload("Subdivision of all faces", "face", 0, 0, _split, subdivision),
     "simplification": Workload(
-        "Simplification to a tenth", "collapse", 35, _simplify, simplification
+        "Simplification to a tenth", "collapse", 35, 1, _simplify, simplification
     ),
-    "impacts": Workload("Impacts, as in a game", "impact", 30, _impacts, impacts),
+    "impacts": Workload("Impacts, as in a game", "impact", 30, 2, _impacts, impacts),
 }
 """Every workload by name. A new one is its two functions and one line here."""
 
@@ -176,7 +180,7 @@ def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
     """Time a workload on copies of a mesh, if it can be done in the time there is."""
     s, workload = case.build(), WORKLOADS[str(case.subject)]
     units, run = IMPACTS if case.subject == "impacts" else s.n_vertices, workload.run(case.order)
-    scans = units * workload.scans if s.searches else 0
+    scans = units * (workload.scans * s.searches + REBUILT * workload.edits * s.rebuilds)
     reason = preset.why_too_slow(scans, s.n_faces, preset.fewest_rounds)
     if reason:
         return case.result("time", s, skipped=reason)

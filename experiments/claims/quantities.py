@@ -20,7 +20,7 @@ import structures
 from experiments.claims import demonstrations as shown
 from experiments.claims.claim import SENTENCES, Between, Claim, JudgedClaim, Kind, Outcome
 from experiments.claims.curves import Curves, curves
-from experiments.harness import BASE, OPERATIONS, Axis
+from experiments.harness import ANSWERING, BASE, OPERATIONS, Axis
 from experiments.runs import Run
 from hem.arrays import Array
 from hem.complexity import slope
@@ -31,10 +31,11 @@ Quantity = Callable[[Curves], Iterable[float]]
 LARGER = 990  # vertices from which on a mesh is spoken of: others are built and scanned in no time
 
 HALF, WINGED, DIRECTED = "half_edge", "winged_edge", "directed_edge"
-NEIGHBOR = "triangle_neighbor"
+NEIGHBOR, ADJACENCY = "triangle_neighbor", "indexed_adjacency"
 HALF_EDGES = (HALF, "half_edge_objects", "plankton")
 PAIRS = ("plankton",)
 SPLITS, COLLAPSE = ("split_edge", "split_face"), ("collapse_edge",)
+AT_EDGES = "split_edge", "collapse_edge", "flip_edge"
 STEPPING = "collapse_stepping"
 
 SOUP_BYTES = 3 * 12
@@ -112,7 +113,8 @@ def break_even(of_run: Curves) -> pd.DataFrame:
 
 def _costs(of_run: Curves, structure: str, subject: str) -> pd.DataFrame:
     """Seconds to build and per query or edit, by number of vertices."""
-    build = of_run.named("bench_build", structure, order="consecutive").by_size
+    order = ANSWERING if structures.REGISTRY[structure].rebuilds else "consecutive"
+    build = of_run.named("bench_build", structure, order=order).by_size
     asked = of_run.named("bench_queries", structure, subject, "random").by_size
     edited = of_run.named("bench_operations", structure, subject, "batched").by_size
     return pd.DataFrame({"build": build, "each": pd.concat([asked, edited])})
@@ -232,12 +234,12 @@ def _edits_per_build(of_run: Curves) -> Iterable[float]:
 def _slopes(
     of_run: Curves, names: Iterable[str], subjects: Iterable[str], table: str
 ) -> Iterable[float]:
-    """The log-log slopes of work in the number of faces."""
+    """The log-log slopes of work in the number of faces; what reads nothing counts as one."""
     for name in names:
         for subject in subjects:
             curve = of_run.curve(Axis.WORK_FACES, name, subject, table)
             if len(curve) > 1:
-                yield float(slope(curve.sizes, curve.centers))
+                yield float(slope(curve.sizes, np.maximum(curve.centers, 1)))
 
 
 LISTED = ("as_printed",)
@@ -280,5 +282,7 @@ QUANTITIES: dict[str, Quantity] = {
     "stored_previous": lambda of_run: _work_ratios(of_run, *PAIRS, HALF, QUERIES),
     "directed_bytes": lambda of_run: _bytes_ratio(of_run, DIRECTED, NEIGHBOR),
     "directed_queries": lambda of_run: _work_ratios(of_run, DIRECTED, HALF, QUERIES),
+    "adjacency_queries": lambda of_run: _slopes(of_run, (ADJACENCY,), QUERIES, "queries"),
+    "adjacency_edits": lambda of_run: _slopes(of_run, (ADJACENCY,), AT_EDGES, "operations"),
 }
 """What can be measured of a sentence, by the name that ``sentences.toml`` uses, in its order."""

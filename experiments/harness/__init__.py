@@ -24,10 +24,10 @@ from experiments.harness.operations import (
 from experiments.harness.queries import checked_handles, time_query
 from experiments.harness.steadiness import Watch, badness, disturbed
 from experiments.harness.timer import CLOCK, BenchmarkTimer, Timer, time_rounds
-from experiments.presets import HUBS, ORDERS, PRESETS, Preset
+from experiments.presets import ANSWERING, HUBS, ORDERS, PRESETS, Preset
 
 __all__ = [
-    "ANYONE", "BASE", "CLOCK", "HUBS", "OPERATIONS", "OPERATIONS_TABLE",
+    "ANSWERING", "ANYONE", "BASE", "CLOCK", "HUBS", "OPERATIONS", "OPERATIONS_TABLE",
     "ORDERS", "PRESETS", "QUERIES_TABLE", "Axis", "BenchmarkTimer", "Case", "Experiment", "Keep",
     "Measurement", "Preset", "Table", "Timer", "Watch", "badness", "checked_handles", "disturbed",
     "in_random_order", "operation_arguments", "operation_faces", "searches", "shuffled",

@@ -49,8 +49,9 @@ def operation_faces(case: Case, count: int = MOST_ELEMENTS) -> Array:
 
 
 def searches(case: Case) -> bool:
-    """Whether every operation of a case searches the whole mesh."""
-    return REGISTRY[case.structure].searches and case.subject not in NOT_SEARCHED
+    """Whether every operation of a case looks at the whole mesh."""
+    kind = REGISTRY[case.structure]
+    return (kind.searches or kind.rebuilds) and case.subject not in NOT_SEARCHED
 
 
 @lru_cache(maxsize=2)

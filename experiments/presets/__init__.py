@@ -11,6 +11,8 @@ HUBS = "hubs"
 
 ORDERS = ("random", "consecutive")
 """Of the handles that a query is asked for, and of the faces that a structure is built of."""
+ANSWERING = "until it answers"
+"""Of what finds its neighbors only when it is asked: as generated, built and asked once."""
 VALENCES = tuple(2**k for k in range(2, 13))
 
 SECONDS_PER_FACE = 1e-9

@@ -22,7 +22,7 @@ from hem.contract.attributes import Attribute
 from hem.contract.description import Algorithm, Claims, Described, Look
 from hem.contract.navigation import STEPS, Navigable
 from hem.contract.operations import Prepared
-from hem.contract.packed import MarkedEdges, PackedEdges
+from hem.contract.packed import MarkedEdges, PackedEdges, PackedStorage
 from hem.contract.queries import Sweep
 from hem.contract.removal import Remaining, remaining
 from hem.contract.storage import HANDLE_TYPES, Storage
@@ -43,6 +43,7 @@ __all__ = [
     "MarkedEdges",
     "Navigable",
     "PackedEdges",
+    "PackedStorage",
     "Prepared",
     "Query",
     "Remaining",

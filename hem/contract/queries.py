@@ -215,6 +215,7 @@ class Queries:
         """See ``Structure.prepare_sweep``."""
         wanted, out = self._ready(name, handles)
         self.count_edges()
+        self._state.prepare(name)
         loop, counts = self._declared.queries[name].sweep, self._state.records.counts
         return Sweep(loop, wanted, out, self._state, counts.tobytes())
 

@@ -99,8 +99,13 @@ class State:
         """(n,): the one name of each live edge, where an edge has two handles."""
         return self.storage.edge_names(self.records, edges)
 
+    def prepare(self, query: str = "") -> None:
+        """See ``Storage.prepare``."""
+        self.storage.prepare(self.records, query)
+
     def answers(self, query: str, handles: NDArray[Any], width: int) -> Ragged:
         """The answers for live ``handles``, each of which has at most ``width`` neighbors."""
+        self.prepare(query)
         source, target = QUERIES[query]
         n, typical = len(handles), TYPICAL_NEIGHBORS[source]
         offsets = np.empty(n + 1, np.int64)

@@ -84,6 +84,12 @@ class Storage:
             if dead.any():
                 refuse_handles(element, handles[dead])
 
+    def prepare(self, records: Any, query: str = "") -> None:
+        """Find what is found when it is first asked for, before several threads may ask at once.
+
+        What ``query`` takes, or any. Compiled code that asks no other thread to wait comes after.
+        """
+
     def row(self, n: int, dtype: Any) -> Any:
         """Scratch for n numbers, which kernels write and read."""
         return np.zeros(n, dtype)

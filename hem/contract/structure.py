@@ -125,6 +125,9 @@ class Structure(Described, Surveying, abstract=True):
     searches: ClassVar[bool] = False
     """Whether nothing is recorded of neighbors, so that they are searched for in the whole mesh."""
 
+    rebuilds: ClassVar[bool] = False
+    """Whether an edit has neighbors found anew in the whole mesh, which answer until the next."""
+
     emulated: ClassVar[frozenset[str]] = frozenset()
     """Queries answered without edge records: table 1's N/A."""
 
@@ -429,6 +432,7 @@ class Structure(Described, Surveying, abstract=True):
         are kernels such as ``vertex_exists``. Operations need room and scratch, see ``scratch``,
         and are told to subscribers by ``tell``.
         """
+        self._state.prepare()
         return int(self.declared.algorithm(make).run(plan, *self.records))
 
     def scratch(self, splits: int, operations: int | None = None) -> tuple[Any, Array]:

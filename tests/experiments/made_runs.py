@@ -12,7 +12,7 @@ from experiments.bench_picking import FOLLOWING, NEIGHBORS, RAY, REBUILT, REFITT
 from experiments.bench_real_time import COMPACT, EDITS, GROWING, RESERVED
 from experiments.bench_workloads import COMPILED, FROM_PYTHON, WORKLOADS
 from experiments.claims import Exactly, load_claims
-from experiments.harness import HUBS, Measurement
+from experiments.harness import ANSWERING, HUBS, Measurement
 from experiments.runs import CaseFile, describe, experiments, write_meta
 from structures import NAMES, REGISTRY, THESIS
 
@@ -118,7 +118,7 @@ def _add_times(files: dict, folder: Path, structure: str) -> None:
         about = {"kind": "time", "family": "torus", "faces": n_t, "vertices": n_t // 2}
         every = [
             ("bench_build", None, order, BUILD.get(structure, BUILD["half_edge"]) * n_t)
-            for order in ORDERS
+            for order in (*ORDERS, ANSWERING)
         ]
         every += [
             ("bench_workloads", name, order, 1e-6 * (n_t if slow and it.scans else 1))

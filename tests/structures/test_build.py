@@ -7,7 +7,7 @@ import pytest
 
 import hem
 import structures
-from tests.structures.conftest import NEEDS_MANIFOLD, OF_ARRAYS, shuffled
+from tests.structures.conftest import HOLDS_ANYTHING, NEEDS_MANIFOLD, OF_ARRAYS, shuffled
 
 NON_MANIFOLD = {
     "edge in three faces": ([(0, 1, 2), (1, 0, 3), (0, 1, 4)], "edges", [[0, 1]]),
@@ -45,10 +45,11 @@ def test_what_is_not_manifold_is_refused_with_its_elements(name, case):
     assert refusal.value.elements[kind].tolist() == elements
 
 
+@pytest.mark.parametrize("name", HOLDS_ANYTHING)
 @pytest.mark.parametrize("case", NON_MANIFOLD)
-def test_the_indexed_mesh_holds_what_is_not_manifold(case):
+def test_the_indexed_mesh_holds_what_is_not_manifold(name, case):
     mesh = hem.TriangleMesh(np.random.default_rng(0).random((6, 3)), NON_MANIFOLD[case][0])
-    s = structures.build("indexed", mesh)
+    s = structures.build(name, mesh)
     s.validate()
     assert s.n_faces == len(mesh.triangles)
 

@@ -8,6 +8,7 @@ import pytest
 import hem
 import structures
 from tests.extent import exhaustive
+from tests.structures.conftest import HOLDS_ANYTHING, NEEDS_MANIFOLD
 
 CORE = structures.NAMES
 QUERIES = [f"{a}_{b}" for a in ("vertex", "edge", "face") for b in ("vertices", "edges", "faces")]
@@ -135,6 +136,7 @@ def test_a_model_survives_the_round_trip(name, sample):
             8,
             {
                 "indexed": 36,
+                "indexed_adjacency": 112,
                 "triangle_neighbor": 116,
                 "winged_edge": 228,
                 "half_edge": 228,
@@ -146,6 +148,7 @@ def test_a_model_survives_the_round_trip(name, sample):
             4,
             {
                 "indexed": 36,
+                "indexed_adjacency": 112,
                 "triangle_neighbor": 64,
                 "winged_edge": 120,
                 "half_edge": 120,
@@ -167,7 +170,7 @@ def test_memory_per_vertex_on_a_torus_is_the_thesis_table(name, reference_bytes,
 def test_only_structures_without_edge_records_emulate(name):
     expected = (
         {"edge_vertices", "edge_edges", "edge_faces"}
-        if name in ("indexed", "triangle_neighbor")
+        if name in (*HOLDS_ANYTHING, "triangle_neighbor")
         else set()
     )
     assert set(structures.build(name, TWO).emulated) == expected
@@ -199,8 +202,9 @@ def test_bad_input_is_refused_with_a_mesh_error(points, triangles):
 )
 def test_non_manifold_input_is_refused_by_what_cannot_represent_it(triangles):
     mesh = hem.TriangleMesh(np.random.default_rng(0).random((5, 3)), triangles)
-    structures.build("indexed", mesh)
-    for name in CORE[1:]:
+    for name in HOLDS_ANYTHING:
+        structures.build(name, mesh)
+    for name in NEEDS_MANIFOLD:
         with pytest.raises(hem.NonManifoldError):
             structures.build(name, mesh)
 

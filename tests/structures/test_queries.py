@@ -11,8 +11,10 @@ import hem
 import structures
 from hem.contract import QUERIES
 from tests.extent import OF_EACH_KIND
+from tests.structures.conftest import HOLDS_ANYTHING, NEEDS_MANIFOLD
 
-ORDERED = tuple(name for name in structures.NAMES if name != "indexed")
+ORDERED = NEEDS_MANIFOLD
+"""Where nothing holds faces together, none knows their order."""
 
 
 class Relations:
@@ -131,7 +133,7 @@ def test_what_is_no_handle_is_refused(name, wrong):
 
 
 def test_vertices_that_are_not_joined_are_no_edge():
-    for name in ("indexed", "triangle_neighbor"):
+    for name in (*HOLDS_ANYTHING, "triangle_neighbor"):
         s = structures.build(name, hem.generate("torus", 100))
         apart = next(v for v in range(1, 100) if s.find_edge(0, v) is None)
         for query in ("edge_edges", "edge_faces"):

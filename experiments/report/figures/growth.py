@@ -13,7 +13,7 @@ from experiments.bench_fracture import FIND, SHATTER, VISITED, WAYS
 from experiments.bench_printed import EXPERIMENT as PRINTED
 from experiments.bench_workloads import COMPILED, WORKLOADS
 from experiments.claims import MIXES, break_even, curves
-from experiments.harness import Axis
+from experiments.harness import ANSWERING, Axis
 from experiments.report import style
 from experiments.report.session import MissingError
 from experiments.report.style import BLUE, GRAY, RED, STYLES, Plot
@@ -153,6 +153,8 @@ def building(run: Run) -> Plot:
     cases = _timed(run, "bench_build", 1e9).query("reference_bytes == 4")
     cases = cases.assign(cost=cases["cost"] / cases["vertices"])
     titles = {"consecutive": "Building, as generated", "random": "Building, renumbered at random"}
+    if (cases["order"] == ANSWERING).any():
+        titles[ANSWERING] = "Building, and finding neighbors"
     shape: dict[str, Any] = {"panel": "order", "plain": True, "size": (4.3, 2.9), "sharey": True}
     return _draw(cases, titles, "vertices", "building", "time per vertex, ns", **shape)
 

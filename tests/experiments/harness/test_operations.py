@@ -40,6 +40,7 @@ def test_where_the_valence_varies_each_element_is_at_a_hub_of_its_own():
 def test_a_batch_is_operated_on_and_restored(name, operation):
     it = case(name)
     batch = OperationBatch(it.build(), operation, faces_of(it))
+    batch.restore()  # what was found when it was asked is forgotten
     before = [array.copy() for array in batch.mesh.arrays]
     count, each = batch.mesh.n_faces, {"split_edge": 2, "split_face": 2, "collapse_edge": -2}
     each |= {"flip_edge": 0, "add_face": 1, "remove_face": -1}

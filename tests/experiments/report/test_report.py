@@ -113,7 +113,7 @@ def test_the_answers_are_numbers_of_the_run(base_folder):
     body = notebooks.body("index")
     share(None)
     assert body.count('class="answer"') == 5
-    assert "600 µs at 200,000 triangles" in body
+    assert re.search(r"(59|60|61)\d µs at 200,000 triangles", body)  # 600 with 2 % of noise
     assert "takes 228 bytes per vertex and an indexed mesh 36: 6.33 times" in body
     assert "over all faces takes a half-edge mesh 1.0 times as long" in body
     assert f"{uses.best(uses.ranking(run, 'asked'))} finds neighbors fastest" in body

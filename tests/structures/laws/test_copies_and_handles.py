@@ -391,7 +391,7 @@ def test_what_is_taken_beside_the_elements_is_told(name: str) -> None:
     beside = s.memory(room=True)
     assert {it: beside[it] for it in s.memory()} == s.memory()
     assert 0 < beside["scratch"] < bare / 10
-    arrays = sum(array.nbytes for array in s.arrays) + (s.compiled and s.records.counts.nbytes)
+    arrays = sum(array.nbytes for array in s.records) if s.compiled else 0
     live = sum(s.memory().values())
     assert beside["dead and room to grow"] == (arrays - live if s.compiled else 8 * (1 + 2 + 6))
 
