@@ -26,7 +26,7 @@ SMALL = 400
 """Vertices of the mesh on which all structures must give the same."""
 
 
-REBUILT = 5
+REBUILT = 20
 """About how many scans it takes to find all neighbors anew."""
 
 COMPILED, FROM_PYTHON = "compiled", "from Python"

@@ -23,6 +23,8 @@ ON_EDGES = ("split_edge", "collapse_edge", "flip_edge")
 NOT_SEARCHED = ("split_face",)
 """What does not search the whole mesh even where nothing is known of neighbors."""
 SECONDS_PER_SCANNED_FACE = 5e-9
+SECONDS_PER_REBUILT_FACE = 20e-9
+"""Where all neighbors are found anew."""
 MOST_ELEMENTS = 2_000
 FEWEST_OPERATIONS = 500
 MOST_TURNS = 16
@@ -156,8 +158,9 @@ def time_operations(case: Case, preset: Preset, timer: Timer) -> dict[str, Any]:
     What they make is validated, and compared with the indexed mesh where that is quick.
     """
     s, faces = case.build(), operation_faces(case)
+    each = s.n_faces * (SECONDS_PER_REBUILT_FACE if s.rebuilds else SECONDS_PER_SCANNED_FACE)
     if searches(case):
-        faces = faces[: max(4, int(preset.round_seconds / (SECONDS_PER_SCANNED_FACE * s.n_faces)))]
+        faces = faces[: max(4, int(preset.round_seconds / each))]
     batch = OperationBatch(s, str(case.subject), faces)
     if batch.operate() < batch.operations:
         raise RuntimeError(f"{case.id}: there was no room for all operations")
@@ -166,7 +169,9 @@ def time_operations(case: Case, preset: Preset, timer: Timer) -> dict[str, Any]:
         mine, other = (_operated(name, case, faces[:20]) for name in (case.structure, BASE))
         if mine != other:
             raise AssertionError(f"{case.id} on {case.structure} gives another mesh than {BASE}")
-    most = MOST_TURNS if s.compiled else 1  # interpreted ones last long enough
+    most = MOST_TURNS if s.compiled else 1  # interpreted ones last long enough, and long rebuilds
+    if s.rebuilds and searches(case):
+        most = int(np.clip(preset.round_seconds / (each * batch.operations), 1, most))
     turns = int(np.clip(FEWEST_OPERATIONS // batch.operations, 1, most))
     latency = latency_now(sum(s.memory().values()))
     timed = timer(batch.operate, setup=batch.restore, rounds=turns * preset.rounds, warmup=2)
