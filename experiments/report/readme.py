@@ -9,6 +9,7 @@ from matplotlib.figure import Figure
 
 from experiments.claims import CLAIMED
 from experiments.harness import OPERATIONS, QUERIES_TABLE, Axis
+from experiments.report import uses
 from experiments.report.figures import fracture, growth, memory, meshes
 from experiments.report.pages import each_table, or_missing
 from experiments.report.session import read_session, share
@@ -53,13 +54,14 @@ MISSING = "*{}*"  # how the page says what was not measured
 def write_readme(run_folder: Path, folder: Path) -> Path:
     """Write what is committed of a run for reading: a page with the tables and the main plots.
 
-    Table 1, its legend and how many claims hold go into the README beside ``folder``, too, if it
-    has the marks for them.
+    Table 1 and its legend go into the README beside ``folder``, too, if it has marks for them.
     """
     share(session := read_session(run_folder))
     run, claims = session.run, session.claims
     folder.mkdir(parents=True, exist_ok=True)
-    parts = {"Who claims what": markdown_rows(tally_rows(claims)), "How to read it": _read()}
+    recommended = partial(uses.recommended_markdown, run)
+    parts = {"Which structure for which use": or_missing(recommended, MISSING)}
+    parts |= {"Who claims what": markdown_rows(tally_rows(claims)), "How to read it": _read()}
     parts |= each_table(claims, markdown, MISSING)
     for kind in CLAIMED:
         parts[f"In sentences: {kind.about}"] = sentences_markdown(claims, kind)
@@ -72,7 +74,7 @@ def write_readme(run_folder: Path, folder: Path) -> Path:
     page.write_text(f"# The thesis, measured\n\n{made} {in_words(run)}\n\n{text}\n", "utf-8")
     readme = folder.parent / "README.md"
     if readme.exists():
-        table = "\n\n".join([parts[QUERIES_TABLE.title], _read(), parts["Who claims what"]])
+        table = f"{parts[QUERIES_TABLE.title]}\n\n{' '.join(legend())}"
         text = re.sub(MARKED, lambda it: f"{it[1]}\n{table}\n{it[2]}", readme.read_text("utf-8"))
         readme.write_text(text, "utf-8")
     return page

@@ -7,14 +7,13 @@ from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
-from markupsafe import escape
 
 from experiments.bench_workloads import COMPILED
 from experiments.claims import Curves, curves
 from experiments.harness import QUERIES_TABLE, Axis
 from experiments.report.pages import Html, text_table
 from experiments.report.session import MissingError
-from experiments.report.tables import digits, duration
+from experiments.report.tables import digits, duration, markdown_rows
 from experiments.runs import Run
 from hem.contract import QUERIES
 from structures import REGISTRY, Structure
@@ -110,25 +109,37 @@ def best(found: pd.Series) -> str:
     return " or ".join(alike)
 
 
+HEADS = "Use", "What is compared", "Vertices", "The best first"
+
+
 def recommended(run: Run) -> Html:
     """For each use the structures, the best first. Raises MissingError if nothing was measured."""
-    rows = []
+    return text_table(HEADS, _rows(run, "<strong>{}</strong>", '<span class="whole">{} {}</span>'))
+
+
+def recommended_markdown(run: Run) -> str:
+    """The same in Markdown."""
+    return markdown_rows([HEADS, *_rows(run, "**{}**", "{} {}")])
+
+
+def _rows(run: Run, bold: str, pair: str) -> list[tuple[str, str, str, str]]:
+    rows: list[tuple[str, str, str, str]] = []
     for name, use in USES.items():
         found = ranking(run, name)
         if len(found):
-            rows.append((use.title, use.compared, f"{found.name:,}", _in_order(found, use)))
+            rows.append(
+                (use.title, use.compared, f"{found.name:,}", _in_order(found, use, bold, pair))
+            )
     if not rows:
         raise MissingError("This run has not measured what decides between structures.")
-    return text_table(["Use", "What is compared", "Vertices", "The best first"], rows)
+    return rows
 
 
-def _in_order(found: pd.Series, use: Use) -> Html:
-    """The structures with their costs: the best ones bold."""
+def _in_order(found: pd.Series, use: Use, bold: str, pair: str) -> Html:
+    """The structures with their costs: those that are alike the best one bold."""
     least, words = found.iloc[0], []
     for place, (name, cost) in enumerate(found.items()):
-        title = escape(REGISTRY[str(name)].title)
-        ratio = cost / least
-        alike = Html(f"<strong>{title}</strong>") if ratio <= ALIKE else title
+        title, ratio = REGISTRY[str(name)].title, cost / least
         beside = use.written(cost) if place == 0 else f"{digits(ratio)} ×"
-        words.append(Html(f'<span class="whole">{alike} {beside}</span>'))
-    return Html(" · ").join(words)
+        words.append(pair.format(bold.format(title) if ratio <= ALIKE else title, beside))
+    return Html(" · ".join(words))
