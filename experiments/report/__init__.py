@@ -16,6 +16,7 @@ _PLACES = {
         "legend", "reasons", "sentences", "slopes", "tally", "text_table", "verdicts",
     ),
     "readme": ("write_readme",),
+    "sections": ("traced",),
     "session": ("MissingError", "claim_link", "link", "open_run", "project_file"),
     "site": ("write_pdf", "write_report"),
     "style": ("show_figures",),

@@ -1,0 +1,51 @@
+"""Laws of the way from the thesis to here: nothing that a document claims is missing from it."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+from experiments.claims import Kind, load_claims, sentence_claims
+from experiments.claims.errata import ERRATA
+from experiments.report.notebooks import page_titles
+from experiments.report.sections import cited, sections
+
+ROOT = Path(__file__).parents[3]
+ERRATA_SOURCES = {re.sub("^quoted in ", "", it.source) for it in ERRATA}
+PRINTED = [it for it in (*load_claims(), *sentence_claims()) if it.kind is Kind.PRINTED]
+
+
+@pytest.mark.parametrize("claim", PRINTED, ids=lambda it: it.key)
+def test_every_claim_that_is_printed_stands_at_a_section_that_is_shown(claim) -> None:
+    known = {it.of for it in sections()}
+    assert cited(claim.source)
+    assert cited(claim.source) <= known
+
+
+def test_every_erratum_stands_at_a_section_too() -> None:
+    assert all(cited(it) and cited(it) <= {s.of for s in sections()} for it in ERRATA_SOURCES)
+
+
+@pytest.mark.parametrize("section", sections(), ids=lambda it: it.of)
+def test_what_a_section_names_is_there(section) -> None:
+    assert section.chapter in page_titles()
+    assert all((ROOT / it).exists() for it in section.done)
+    assert re.search(r"\w\.$|\?$", section.says)
+
+
+@pytest.mark.parametrize(
+    ("source", "expected"),
+    [
+        ("thesis 3.1, table 1; worked out in 7.1 to 7.4", {"3.1"}),
+        ("thesis 4.1 and 5: constant; but the listing searches (erratum 6)", {"4.1", "5"}),
+        ("thesis 3.3.1 and 4.1 (of erratum 6)", {"3.3.1", "4.1"}),
+        ("thesis 7.4 and 3.2.2", {"7", "3.2.2"}),
+        ("thesis, abstract; here taken as twice", {"abstract"}),
+        ("article on Plankton", {"article"}),
+        ("we expect it: thesis 5 leaves the question open", set()),
+    ],
+)
+def test_a_source_cites_its_sections_and_no_table_or_erratum(source, expected) -> None:
+    assert cited(source) == expected
