@@ -101,6 +101,31 @@ def ranking(run: Run, name: str) -> pd.Series:
     return found.sort_values(kind="stable")
 
 
+def beside(run: Run, one: str, other: str) -> Html:
+    """How many queries two structures answer faster than each other, at random, and their bytes.
+
+    Raises MissingError if there is no mesh that both were measured on.
+    """
+    measured = curves(run)
+    costs = {
+        query: [measured.curve(Axis.RANDOM_FACES, it, query).by_size for it in (one, other)]
+        for query in QUERIES
+    }
+    ratios = pd.DataFrame({query: a / b for query, (a, b) in costs.items()}).dropna()
+    if ratios.empty or run.machines:
+        raise MissingError("This run has not measured the queries of both on the same mesh.")
+    vertices, found = ratios.index[-1], ratios.iloc[-1]
+    faster, slower = (found < 1 / ALIKE).sum(), (found > ALIKE).sum()
+    titles = [REGISTRY[it].title for it in (one, other)]
+    per_one, per_other = (f"{measured.bytes_per_vertex(it):.4g}" for it in (one, other))
+    return Html(
+        f"<p>On {vertices:,} vertices, asked at random, {titles[0]} answers {faster} of "
+        f"{len(found)} queries faster than {titles[1]}, {slower} slower, and the others within a "
+        f"tenth. It takes {per_one} bytes per vertex, {titles[1]} {per_other} (references of 8 "
+        f"bytes).</p>"
+    )
+
+
 def best(found: pd.Series) -> str:
     """The titles of the structures that are alike the best one, as in a sentence."""
     alike = [

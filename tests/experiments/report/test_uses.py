@@ -8,6 +8,7 @@ import pytest
 
 from experiments.report import MissingError, uses
 from experiments.runs import Run, load
+from hem.contract import QUERIES
 from structures import REGISTRY
 from tests.experiments.made_runs import write_run
 
@@ -64,3 +65,18 @@ def test_what_was_not_measured_is_not_recommended(run: Run) -> None:
     assert not any(len(uses.ranking(empty, name)) for name in uses.USES)
     with pytest.raises(MissingError, match="decides between"):
         uses.recommended(empty)
+
+
+def test_queries_are_compared_one_by_one_at_the_largest_mesh(run: Run) -> None:
+    cases = run.cases.query("experiment == 'bench_queries' and order == 'random'")
+    largest = cases[cases["vertices"] == cases["vertices"].max()]
+    medians = {
+        (it.structure, it.subject): sorted(it.samples)[len(it.samples) // 2]
+        for it in largest.itertuples()
+    }
+    for one, other in (("indexed", "half_edge"), ("half_edge", "indexed")):
+        ratios = [medians[one, it] / medians[other, it] for it in QUERIES]
+        faster, slower = sum(it < 1 / 1.1 for it in ratios), sum(it > 1.1 for it in ratios)
+        text = uses.beside(run, one, other)
+        assert f"answers {faster} of {len(QUERIES)} queries faster" in text
+        assert f", {slower} slower" in text
