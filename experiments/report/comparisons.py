@@ -41,6 +41,24 @@ def objects_against_arrays(run: Run) -> Html:
     return numbers(rows, heads)
 
 
+def bytes_by_mesh(run: Run, width: int = 8) -> Html:
+    """Bytes per vertex on every mesh, the largest of each family; ``width``: of a reference."""
+    cases = run.cases.query("experiment == 'bench_memory' and reference_bytes == @width")
+    cases = cases.assign(each=[it[0] for it in cases["samples"]] / cases["vertices"])
+    largest = cases[cases["vertices"] == cases.groupby("family")["vertices"].transform("max")]
+    of_mesh = ["family", "vertices", "faces"]
+    table = largest.pivot_table(index=of_mesh, columns="structure", values="each")
+    measured = [name for name in NAMES if name in table]
+    rows = [
+        (family, vertices, faces / vertices, *sizes)
+        for (family, vertices, faces), sizes in zip(
+            table.index, table[measured].to_numpy(), strict=True
+        )
+    ]
+    heads: dict[str, Any] = {"": str, "vertices": _count, "faces per vertex": two_digits}
+    return numbers(rows, heads | {REGISTRY[name].title: _one_digit for name in measured})
+
+
 def shattering(run: Run) -> Html:
     """Breaking a surface, each structure at the largest size that the indexed mesh has, too."""
     found = [curves(run).named("bench_fracture", name, SHATTER) for name in NAMES]
@@ -96,6 +114,10 @@ def overtaking(table: pd.DataFrame) -> Html:
 
 def _count(value: float) -> str:
     return f"{value:,.0f}" if value == value else "–"
+
+
+def _one_digit(value: float) -> str:
+    return f"{value:,.1f}" if value == value else "–"
 
 
 def _slope(verdict: Verdict) -> str:

@@ -9,7 +9,7 @@ from rich.console import Console
 
 from experiments.claims import break_even, curves, judge_run
 from experiments.harness import OPERATIONS, Axis
-from experiments.report import comparisons, notebooks, pages
+from experiments.report import comparisons, notebooks, pages, uses
 from experiments.report.figures import growth, memory, picking, real_time
 from experiments.report.session import MissingError, Session, share
 from experiments.report.tables import show_claims
@@ -32,6 +32,9 @@ SHOWN = {
     "memory": lambda run, claims: memory.by_field(run),
     "references": lambda run, claims: memory.references(run),
     "objects": lambda run, claims: comparisons.objects_against_arrays(run),
+    "bytes by mesh": lambda run, claims: comparisons.bytes_by_mesh(run),
+    "uses": lambda run, claims: uses.recommended(run),
+    "pairs": lambda run, claims: uses.beside(run, "plankton", "half_edge"),
     "waits": lambda run, claims: real_time.waits(run),
     "frames": lambda run, claims: real_time.frames(run),
     "compactions": lambda run, claims: real_time.compactions(run),

@@ -119,3 +119,14 @@ def test_structures_are_compared_with_the_indexed_mesh_at_its_size(run):
     text = comparisons.shattering(run)
     assert re.search(r"<td>Half-Edge</td><td>100,000</td>.*<td>200,000</td></tr>", text)
     assert re.search(r"<td>Indexed</td>.*<td>1\.0</td></tr>", text)
+
+
+def test_bytes_per_vertex_are_shown_of_every_mesh_and_structure(run):
+    cases = run.cases.query("experiment == 'bench_memory' and reference_bytes == 8")
+    text = comparisons.bytes_by_mesh(run)
+    for name in NAMES:
+        assert f">{NAMED[name].title}<" in text
+    for it in cases[cases["family"] != "torus"].itertuples():
+        (row,) = (line for line in text.split("<tr>") if f"<td>{it.family}</td>" in line)
+        assert f"<td>{it.samples[0] / it.vertices:,.1f}</td>" in row
+    assert text.count("<tr>") == 1 + cases["family"].nunique()
