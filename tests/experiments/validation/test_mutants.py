@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import os
 import shutil
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
 
 from experiments.validation.mutants import GATES, MutantError, load_mutants
+from tests.extent import exhaustive
 
 HERE = Path(__file__).parents[3]
 ENTRY = """
@@ -29,6 +33,31 @@ def test_every_fault_changes_the_source_it_is_for(mutant, tmp_path):
     mutant.apply(tmp_path)
     assert path.read_text() != (HERE / mutant.file).read_text()
     compile(path.read_text(), mutant.file, "exec")
+
+
+ASK = """
+import hem, structures
+from hem.contract import QUERIES
+s = structures.build({name!r}, hem.generate("torus", 200))
+for query in QUERIES.values():
+    getattr(s, query.name)(int(s.handles(query.source)[0]))
+"""
+
+
+@exhaustive
+@pytest.mark.parametrize("mutant", load_mutants(), ids=lambda mutant: mutant.name)
+def test_every_fault_can_be_compiled(mutant, tmp_path):
+    """What cannot is caught by nothing: it cannot even be measured."""
+    for room in ("hem", "structures"):
+        ignored = shutil.ignore_patterns("__pycache__")
+        shutil.copytree(HERE / room, tmp_path / room, ignore=ignored)
+    mutant.apply(tmp_path)
+    code = ASK.format(name=mutant.structure)
+    environment = os.environ | {"PYTHONPATH": str(tmp_path)}
+    done = subprocess.run(
+        [sys.executable, "-c", code], cwd=tmp_path, env=environment, capture_output=True, text=True
+    )
+    assert done.returncode == 0, done.stderr[-2000:]
 
 
 def test_there_is_a_fault_for_every_gate():
