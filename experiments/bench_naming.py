@@ -46,7 +46,7 @@ def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
     s, faces = case.build(), operation_faces(case, SPLITS).tolist()
     named = [tuple(s.face_vertices(face).tolist()) for face in faces]
     by_index = case.subject == BY_INDEX
-    if any(_find_face(s, *corners) != face for face, corners in zip(faces, named, strict=True)):
+    if any(s.find_face(*corners) != face for face, corners in zip(faces, named, strict=True)):
         raise AssertionError(f"{case.id} on {case.structure}: another face has these corners")
     if case.order == COUNTED:
         copy = s.copy()
@@ -57,7 +57,9 @@ def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
 
     def split(copy: Structure) -> None:
         for face, corners in zip(faces, named, strict=True):
-            copy.split_face(face if by_index else _find_face(copy, *corners), CENTER)
+            found = face if by_index else copy.find_face(*corners)
+            assert found is not None  # which was checked above
+            copy.split_face(found, CENTER)
 
     latency = latency_now(sum(s.memory().values()))
     rounds = preset.fewest_rounds + 2
@@ -65,16 +67,8 @@ def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
     return case.result("time", s, **timed.fields, latency=latency)
 
 
-def _find_face(s: Structure, a: int, b: int, c: int) -> int:
-    """The face with these corners, of those that a search for the first one finds."""
-    for face in s.vertex_faces(a).tolist():
-        if {a, b, c} == set(s.face_vertices(face).tolist()):
-            return int(face)
-    raise LookupError(f"no face has the corners {a}, {b} and {c}")
-
-
 def _work_to_find(s: Structure, a: int) -> int:
-    """The accesses of the search, and of a look at every face that it finds."""
+    """The accesses of ``find_face``: of the search, and of a look at every face that it finds."""
     faces = s.vertex_faces(a)
     return int(s.work("vertex_faces", np.array([a])).sum() + s.work("face_vertices", faces).sum())
 
@@ -83,7 +77,7 @@ def _ready(s: Structure) -> Structure:
     """A copy with room for the splits, whose methods are bound."""
     copy = s.copy()
     copy.reserve(2 * SPLITS)
-    _find_face(copy, *copy.face_vertices(0).tolist())
+    copy.find_face(*copy.face_vertices(0).tolist())
     return copy
 
 

@@ -140,9 +140,9 @@ def _bytes_ratio(of_run: Curves, mine: str, other: str) -> Iterable[float]:
 def _bytes_of_models(of_run: Curves) -> Iterable[float]:
     """Half-edge by indexed, on the judged family and on every real model."""
     yield from _bytes_ratio(of_run, HALF, BASE)
-    wanted = "experiment == 'bench_memory' and reference_bytes == 8 and family != @family"
-    family = of_run.judged_family  # noqa: F841  # pandas reads it
-    table = of_run.cases.query(wanted).assign(bytes=lambda it: it["samples"].str[0])
+    cases = of_run.cases.query("experiment == 'bench_memory' and reference_bytes == 8")
+    models = cases[cases["family"] != of_run.judged_family]
+    table = models.assign(bytes=models["samples"].str[0])
     both = table.pivot_table(index="family", columns="structure", values="bytes")
     yield from (both.get(HALF, both) / both.get(BASE, both)).dropna().to_numpy(float).ravel()
 

@@ -182,7 +182,7 @@ PRESETS = {
         latency_mib=32,
         skipped=("bench_fracture",),
     ),
-    "standard": Preset("one family of each kind up to 1,000,000 vertices, some 40 minutes"),
+    "standard": Preset("one family of each kind up to 1,000,000 vertices, about an hour"),
     "full": Preset(
         what="every family up to 1,000,000 vertices with finer steps, some two hours",
         families=("torus", "sphere", "grid", "cone", "terrain", "isosurface"),

@@ -139,9 +139,13 @@ def test_what_is_violated_in_one_run_holds_in_the_contrary_one(contrary, quantit
 @pytest.mark.parametrize(("indexed", "said"), [(1e3, "consistent"), (1e-3, "violated")])
 def test_what_the_draft_says_of_faces_is_judged_by_time(tmp_path, indexed, said):
     law = {"indexed": lambda n_t, n_ev: indexed}
-    of_times = {"bench_queries", "bench_operations"}
-    only = lambda experiment, structure: experiment in of_times  # noqa: E731
-    run = load(write_run(tmp_path, lambda s, q, p: law.get(s), only))
+    run = load(
+        write_run(
+            tmp_path,
+            lambda s, q, p: law.get(s),
+            lambda experiment, _: experiment in ("bench_queries", "bench_operations"),
+        )
+    )
     assert outcome(run, "draft_faces") == said
     assert outcome(run, "subdivision") == said
 

@@ -70,9 +70,12 @@ def test_the_tables_as_markdown_have_every_mark(run):
 
 def test_what_is_published_and_breaks_what_is_said_of_it_is_violated(tmp_path):
     """The thesis says constant of a split that is linear as it is published."""
-    linear = lambda s, q, p: LAWS["O(n_t)"] if s == "as_printed" else None  # noqa: E731
-    only = lambda experiment, structure: experiment == "bench_printed"  # noqa: E731
-    claims = judge_run(load(write_run(tmp_path, linear, only)))
+    run = write_run(
+        tmp_path,
+        lambda s, q, p: LAWS["O(n_t)"] if s == "as_printed" else None,
+        lambda experiment, _: experiment == "bench_printed",
+    )
+    claims = judge_run(load(run))
     assert "| Split edge | O(1) (✓✓) | O(1) ✗✗, found O(n_t) |" in markdown(claims, "listings")
 
 
