@@ -76,7 +76,9 @@ from hem.authoring.records import (
     compacted,
     copied,
     counted,
+    field_at,
     grown,
+    in_use,
     live,
 )
 from hem.authoring.refusals import ALLOWED, NEEDS_ROOM, WORDS, Refusal
@@ -127,10 +129,12 @@ __all__ = [
     "count_new",
     "counted",
     "distinct",
+    "field_at",
     "grown",
     "has_room",
     "has_scratch",
     "in_slices",
+    "in_use",
     "is_point",
     "kernel",
     "kernels_of",

@@ -178,6 +178,19 @@ def copied(records: Any) -> Any:
     return type(records)(*map(roomy, arrays), counts.copy())
 
 
+def field_at(fields: Sequence[Field], array: str, column: int) -> tuple[str, int]:
+    """What a column of an array is called, and where it is in its field: the neighbor 2 of three.
+
+    Of an array without fields it is the array's name.
+    """
+    columns = _columns(fields)
+    for field in fields:
+        taken = columns[field.name]
+        if field.array == array and taken.start <= column < taken.stop:
+            return field.name, column - taken.start
+    return array, column
+
+
 def _columns(fields: Sequence[Field]) -> dict[str, slice]:
     """Which columns of its array each field takes."""
     taken: dict[str, int] = {}

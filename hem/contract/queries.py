@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import cached_property
 from typing import Any, NamedTuple, Protocol, overload
 
@@ -10,10 +10,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from hem.arrays import Array, Handles, Points
-from hem.authoring import EDGES, ELEMENTS, QUERIES, SIDES, UNKNOWN, VALENCE, WIDTH
+from hem.authoring import EDGES, ELEMENTS, QUERIES, SIDES, UNKNOWN, VALENCE, WIDTH, Field
 from hem.contract.state import State
 from hem.contract.storage import HANDLE_TYPES, refuse_handles
 from hem.edit import FACE
+from hem.engine import Read
 from hem.errors import MeshError
 from hem.ragged import Ragged
 
@@ -222,6 +223,14 @@ class Queries:
     def work(self, name: str, handles: NDArray[Any]) -> NDArray[np.int64]:
         """See ``Structure.work``."""
         return self._declared.queries[name].work(*self._ready(name, handles), self._state.records)
+
+    def reads(self, name: str, handle: int, fields: Sequence[Field]) -> list[Read]:
+        """See ``Structure.reads``."""
+        (wanted,), out = self._ready(name, np.array([handle]))
+        state = self._state
+        state.prepare(name)
+        uses = self._declared.queries[name]
+        return uses.reads(int(wanted), out, state.records, fields)
 
     def _ready(self, name: str, handles: NDArray[Any]) -> tuple[NDArray[Any], Any]:
         """Handles that were checked, and scratch for the answers to each."""

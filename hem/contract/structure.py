@@ -33,6 +33,7 @@ from hem.contract.state import State
 from hem.contract.storage import Storage
 from hem.contract.surveying import Surveying, centroids
 from hem.edit import Edit, Remapping
+from hem.engine import Read
 from hem.errors import MeshError
 from hem.meshes import TriangleMesh
 
@@ -595,6 +596,10 @@ class Structure(Described, Surveying, abstract=True):
         Exact and the same on every machine; runs uncompiled. Raises as ``sweep``.
         """
         return self._queries.work(query, handles)
+
+    def reads(self, query: str, handle: int) -> list[Read]:
+        """Which elements of which fields are read to answer ``query``, in order; see ``work``."""
+        return self._queries.reads(query, handle, self.fields)
 
     def reserve(self, splits: int) -> None:
         """Make all room for so many splits at once, so that none of them has to.

@@ -26,6 +26,7 @@ that it is made of. That happens the first time each of these is asked for:
   experiments time: no check, no allocation, no Python.
 - *counted*, ``s.work("vertex_faces", handles)``. The kernel's Python source, and that of whatever
   it calls, runs over ``CountingArray``s: exactly how many elements are read, on any machine.
+  ``s.reads("vertex_faces", 7)`` says which ones.
 
 An operation runs likewise. ``templates.perform`` does one, or a whole row of them, until one is
 refused or there is no room; then Python makes room, pins the larger arrays at the same address and
@@ -35,7 +36,7 @@ operations, is compiled by ``templates.run``.
 Structures made of objects (``InterpretedUses``, ``Held``) run the same templates uncompiled.
 """
 
-from hem.engine.counting import CountingArray, interpreted
+from hem.engine.counting import CountingArray, Read, interpreted
 from hem.engine.objects import Held, InterpretedUses, counting
 from hem.engine.pinned import Pinned
 from hem.engine.templates import BEGIN, CHECK, DO, END, MODE, PERSIST, move
@@ -52,6 +53,7 @@ __all__ = [
     "Held",
     "InterpretedUses",
     "Pinned",
+    "Read",
     "Uses",
     "counting",
     "interpreted",

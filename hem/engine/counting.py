@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import cache
 from types import CellType, FunctionType
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -35,6 +35,29 @@ class CountingArray:
     def shape(self) -> tuple[int, ...]:
         """As the array's own; looking at it reads no element."""
         return self._array.shape
+
+
+class Read(NamedTuple):
+    """What a kernel reads at a time: a field by its name, of which record, and where in a wide one.
+
+    Of an object that has no index, such as a list, the row is -1.
+    """
+
+    field: str
+    row: int
+    column: int = 0
+
+
+class TracedArray(CountingArray):
+    """An array that also keeps in order which of its elements are read, as keys in ``trace``."""
+
+    def __init__(self, array: Array, name: str, trace: list[tuple[str, Any]]) -> None:
+        super().__init__(array)
+        self._name, self._trace = name, trace
+
+    def __getitem__(self, key: Any) -> Any:
+        self._trace.append((self._name, key))
+        return super().__getitem__(key)
 
 
 @cache

@@ -6,6 +6,7 @@ the same signatures, and the operations' drivers and rules run uncompiled around
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from types import FunctionType
@@ -16,7 +17,7 @@ from numpy.typing import NDArray
 
 from hem.arrays import Array
 from hem.authoring import VALENCE, WIDTH, Kernel
-from hem.engine.counting import interpreted
+from hem.engine.counting import Read, interpreted
 from hem.engine.uses import Uses
 
 
@@ -83,6 +84,17 @@ class InterpretedUses(Uses):
                 totals.append(counter[0])
         return np.diff(totals)
 
+    def reads(self, handle: int, out: Any, records: tuple[Any, ...], fields: Any) -> list[Read]:
+        """As ``Uses.reads``; a field is that of a class: ``half_edge.next`` of ``HalfEdge``."""
+        trace: list[tuple[Any, str]] = []
+        m = self._records(*records)
+        with counting(self.counted_classes, trace):
+            interpreted(self._kernel)(m, handle, out)
+        return [
+            Read(f"{_words(type(it).__name__)}.{field}", getattr(it, "index", -1))
+            for it, field in trace
+        ]
+
     def operation_work(
         self, args: list[int], point: Array, out: Any, log: Any, records: tuple[Any, ...]
     ) -> tuple[int, int]:
@@ -102,16 +114,24 @@ class InterpretedUses(Uses):
         return FunctionType(template.__code__, {**template.__globals__, **scope})
 
 
+def _words(name: str) -> str:
+    """``HalfEdge`` -> ``half_edge``."""
+    return re.sub(r"\B(?=[A-Z])", "_", name).lower()
+
+
 @contextmanager
-def counting(classes: Sequence[type[Any]]) -> Iterator[list[int]]:
+def counting(
+    classes: Sequence[type[Any]], trace: list[tuple[Any, str]] | None = None
+) -> Iterator[list[int]]:
     """Count every read and write of the ``__slots__`` of ``classes`` -> the count, in a list.
 
-    Concerns the whole process, until the end of the block.
+    ``trace`` gets each read: the object, and the slot. Concerns the whole process, until the end of
+    the block.
     """
     counter = [0]
     slots = [(it, name, it.__dict__[name]) for it in classes for name in it.__slots__]
     for owner, name, slot in slots:
-        setattr(owner, name, _CountingSlot(slot, counter))
+        setattr(owner, name, _CountingSlot(slot, counter, trace))
     try:
         yield counter
     finally:
@@ -122,11 +142,13 @@ def counting(classes: Sequence[type[Any]]) -> Iterator[list[int]]:
 class _CountingSlot:
     """Stands in for a slot of a class while its uses are counted."""
 
-    def __init__(self, slot: Any, counter: list[int]) -> None:
-        self._slot, self._counter = slot, counter
+    def __init__(self, slot: Any, counter: list[int], trace: list[tuple[Any, str]] | None) -> None:
+        self._slot, self._counter, self._trace = slot, counter, trace
 
     def __get__(self, owner: Any, kind: Any = None) -> Any:
         self._counter[0] += 1
+        if self._trace is not None:
+            self._trace.append((owner, self._slot.__name__))
         return self._slot.__get__(owner, kind)
 
     def __set__(self, owner: Any, value: Any) -> None:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import hashlib
 import inspect
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cache, cached_property
 from pathlib import Path
 from types import FunctionType
@@ -20,9 +20,9 @@ from numba import njit
 from numpy.typing import NDArray
 
 from hem.arrays import Array
-from hem.authoring import Kernel
+from hem.authoring import Field, Kernel, field_at
 from hem.engine import templates
-from hem.engine.counting import CountingArray, interpreted, source_of
+from hem.engine.counting import CountingArray, Read, TracedArray, interpreted, source_of
 from hem.engine.pinned import borrowed, loader
 
 SHARED = ("edit.py", "authoring/**/*.py", "engine/*.py")
@@ -123,6 +123,21 @@ class Uses:
             answer(m, handle, out)
             totals.append(sum(counter.accesses for counter in counters))
         return np.diff(totals)
+
+    def reads(
+        self, handle: int, out: Array, records: tuple[Array, ...], fields: Sequence[Field]
+    ) -> list[Read]:
+        """Which elements of its fields the kernel reads for a handle, in order."""
+        trace: list[tuple[str, Any]] = []
+        names = self._records._fields[:-1]
+        traced = [TracedArray(array, it, trace) for it, array in zip(names, records, strict=False)]
+        interpreted(self._kernel)(self._records(*traced, records[-1]), handle, out)
+        keys = [(name, *(key if isinstance(key, tuple) else (key, 0))) for name, key in trace]
+        named = [field_at(fields, name, column) for name, _, column in keys]
+        return [
+            Read(field, int(row), place)
+            for (field, place), (_, row, _) in zip(named, keys, strict=True)
+        ]
 
     def operation_work(
         self, args: list[int], point: Array, out: Array, log: Any, records: tuple[Array, ...]
