@@ -6,6 +6,7 @@ the reason.
 
 from hem.complexity.estimates import slope
 from hem.complexity.judge import Bound, Outcome, Verdict, judge
-from hem.complexity.models import MODELS, NAMES, canonical
+from hem.complexity.models import MODELS, NAMES
+from hem.complexity.notation import canonical, parse
 
-__all__ = ["MODELS", "NAMES", "Bound", "Outcome", "Verdict", "canonical", "judge", "slope"]
+__all__ = ["MODELS", "NAMES", "Bound", "Outcome", "Verdict", "canonical", "judge", "parse", "slope"]

@@ -13,10 +13,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from hem.complexity.estimates import Costs, resample, slope, summarize
-from hem.complexity.models import NAMES, canonical, predict
+from hem.complexity.models import NAMES, STEEP, predict
+from hem.complexity.notation import Order, canonical, parse
 from hem.complexity.selection import (
     LATENCY_ERROR,
     Comparison,
+    Memory,
     account_for_memory,
     compare_models,
 )
@@ -29,6 +31,7 @@ MIN_RANGE = 4.0
 MAX_SCATTER = 0.4  # relative scatter of samples beyond which nothing is concluded
 MAX_ERROR = 0.12  # relative error of a size's cost beyond which the size is left out …
 MOST_LEFT_OUT = 0.25  # … if so few of the sizes are like that; otherwise nothing is concluded
+STEEPER = 2.1  # slope of the larger half of the sizes beyond which steep classes are asked about
 
 
 @dataclass(frozen=True)
@@ -40,7 +43,9 @@ class Verdict:
     against `runner_up`, negative where `best` is preferred for being simpler. noise: relative
     scatter of samples. coefficients: per model `fixed`, `factor` and `rise` of
     fixed·r + factor·f(n)·r, where r rises with the memory's latency from 1 to `rise`. errors: per
-    model, the root mean square of the relative residuals.
+    model, the root mean square of the relative residuals. answer: what the costs say by themselves:
+    one class, two that cannot be told apart ("O(n) or O(n log n)"), a power law that fits where no
+    class does ("O(n^1.62)"), or nothing.
     """
 
     outcome: Outcome
@@ -58,19 +63,21 @@ class Verdict:
     coefficients: Mapping[str, Mapping[str, float]]
     errors: Mapping[str, float]
     reason: str
+    answer: str = ""
 
 
 def judge(
     sizes: ArrayLike, samples: Sequence[ArrayLike], expected: str = "O(1)",
     latency: ArrayLike | None = None, *, exact: bool = False,
     latency_error: float = LATENCY_ERROR, unseen: bool = False, bound: Bound = "tight",
-    confidence: float = 0.95, resamples: int = 200, seed: int = 0,
+    confidence: float = 0.95, resamples: int = 200, seed: int = 0, variable: str | None = None,
 ) -> Verdict:  # fmt: skip
     """Judge whether costs measured at several sizes grow as claimed.
 
     sizes: (k,) at least 1, the variable of the claim; 4 distinct ones over a range of 4 can decide.
     samples: k arrays of positive costs, of any lengths: seconds, or read counts.
-    expected: a class of `MODELS` in any usual spelling; "O(n_t)" and "O(n_ev)" are linear.
+    expected: a growth class in any usual spelling; "O(n_t)" and "O(n_ev)" are linear. Where it
+    names several variables, `variable` says which one the sizes are of; the others are held fixed.
     latency: (k,) the machine's memory latency at each working set, in any unit. A cost may then
     wait for memory to any degree, from not at all to entirely. Or (a, k): as any one row tells it.
     latency_error: how far, relatively, the latency may miss what the costs really waited for.
@@ -84,6 +91,8 @@ def judge(
 
     A size whose own samples tell its cost worse than `MAX_ERROR` is left out, up to a quarter of
     the sizes: a neighbor who took the machine for some milliseconds spoils a cell, not the curve.
+    Times that grow more than any slowdown excuses violate a claim even where no class explains
+    them. None is violated in favor of a class whose slope the largest sizes do not come near.
     Growth below `selection.GROWTH` over the sizes is taken for O(1): beside so large an intercept
     no class shows. Beside a tenfold slowdown by caches, growth below 1.5 may be missed as well.
     Times that grow by less than `selection.ACCUSING_GROWTH` violate no claim of slower growth.
@@ -92,10 +101,11 @@ def judge(
     """
     if bound not in ("tight", "upper"):
         raise ValueError(f'bound must be "tight" or "upper", not {bound!r}')
-    claim = NAMES.index(canonical(expected))
+    claimed = canonical(expected, variable)
     measured = _without_noisy_sizes(summarize(sizes, samples, latency))
     costs, memory = account_for_memory(measured, exact, latency_error, unseen)
-    models = compare_models(costs, memory)
+    models = _compare(costs, memory, claimed)
+    names, claim = models.names, models.names.index(claimed)
     outcome, reason = _decide(measured, models, claim, bound)
     fitted, _ = predict(models.design, models.fit)
     errors = np.sqrt(np.mean((fitted / costs.cost - 1) ** 2, axis=1))
@@ -103,33 +113,62 @@ def judge(
     tails = [(1 - confidence) / 2, (1 + confidence) / 2]
     low, high = np.quantile(slope(costs.sizes, models.steady(replicates)), tails)
     return Verdict(
-        outcome, NAMES[claim], bound, NAMES[models.best], NAMES[models.runner_up], models.margin,
+        outcome, claimed, bound, names[models.best], names[models.runner_up], models.margin,
         slope=float(slope(costs.sizes, models.steady(costs.cost))),
         slope_low=float(low), slope_high=float(high),
         raw_slope=float(slope(costs.sizes, costs.cost)),
         confidence=confidence, noise=costs.scatter, coefficients=_coefficients(models),
-        errors=dict(zip(NAMES, errors.tolist(), strict=True)), reason=reason,
+        errors=dict(zip(names, errors.tolist(), strict=True)), reason=reason,
+        answer=_answer(measured, models),
     )  # fmt: skip
 
 
+def _compare(costs: Costs, memory: Memory, claimed: str) -> Comparison:
+    """All classes held against one another; the steep ones where O(n²) is left behind."""
+    names = tuple(sorted({*NAMES, claimed}, key=parse))
+    models, half = compare_models(costs, memory, names), len(costs.sizes) // 2
+    steady = models.steady(costs.cost)
+    if slope(costs.sizes[half:], steady[half:]) <= STEEPER:
+        return models
+    return compare_models(costs, memory, sorted({*names, *STEEP}, key=parse))
+
+
 def _decide(costs: Costs, models: Comparison, claim: int, bound: Bound) -> tuple[Outcome, str]:
-    doubt = _doubt(costs, models)
+    names, best = models.names, models.best
+    doubt = _doubt(costs)
     if doubt:
         return "undetermined", doubt
-    best, kept = models.best, range(0 if bound == "upper" else claim, claim + 1)
+    if models.outgrows(claim):
+        return "violated", f"The costs grow more than {names[claim]} does, however slow the memory."
+    if not models.explained:
+        return "undetermined", _unexplained(models)
+    kept = range(0 if bound == "upper" else claim, claim + 1)
     if best in kept:
-        rivals = [m for m in range(len(NAMES)) if m not in kept and not models.confirms(best, m)]
+        rivals = [m for m in range(len(names)) if m not in kept and not models.confirms(best, m)]
         if not rivals:
-            return "consistent", f"{NAMES[best]} explains the costs, and no other class does."
+            return "consistent", f"{names[best]} explains the costs, and no other class does."
     else:
         rivals = [m for m in kept if not models.refutes(best, m)]
         if not rivals:
-            return "violated", f"{NAMES[best]} explains the costs, {NAMES[claim]} does not."
-    close, memory = ", ".join(NAMES[m] for m in rivals), models.memory
+            return "violated", f"{names[best]} explains the costs, {names[claim]} does not."
+    close, memory = ", ".join(names[m] for m in rivals), models.memory
     bent = memory.unmeasured is not None and not (memory.latency_known and best in kept)
     allowed = " once caches that no latency tells of are allowed for" if bent else ""
-    reason = f"{NAMES[best]} explains the costs best, but {close} cannot be ruled out{allowed}."
+    reason = f"{names[best]} explains the costs best, but {close} cannot be ruled out{allowed}."
     return "undetermined", reason
+
+
+def _answer(costs: Costs, models: Comparison) -> str:
+    if _doubt(costs):
+        return ""
+    if models.explained:
+        every = range(len(models.names))
+        open_ = [m for m in every if m == models.best or not models.confirms(models.best, m)]
+        return " or ".join(models.names[m] for m in open_) if len(open_) <= 2 else ""
+    cost = models.costs
+    power = Order(power=round(max(float(slope(cost.sizes, cost.cost)), 0.0), 2)).name
+    law = compare_models(cost, models.memory, sorted({NAMES[0], power}, key=parse))
+    return power if law.explained and law.names[law.best] == power else ""
 
 
 def _without_noisy_sizes(costs: Costs) -> Costs:
@@ -139,8 +178,8 @@ def _without_noisy_sizes(costs: Costs) -> Costs:
     return costs.only(clear) if few_left_out and len(clear) < len(costs.sizes) else costs
 
 
-def _doubt(costs: Costs, models: Comparison) -> str:
-    """Why these costs cannot decide anything; empty if they can."""
+def _doubt(costs: Costs) -> str:
+    """Why these costs cannot decide anything, whatever explains them; empty if they can."""
     distinct, reach = len(np.unique(costs.sizes)), costs.sizes[-1] / costs.sizes[0]
     if distinct < MIN_SIZES:
         return f"Too few sizes: {distinct}, where {MIN_SIZES} are needed."
@@ -148,15 +187,17 @@ def _doubt(costs: Costs, models: Comparison) -> str:
         return f"Too short a range: the largest size is {reach:.1f} times the smallest."
     if costs.scatter > MAX_SCATTER or costs.error.max() > MAX_ERROR:
         return f"Too noisy: the samples of a size scatter by {costs.scatter:.0%}."
-    if models.chi2[models.best] > models.memory.misfit * models.freedom:
-        unknown = ", and caches that no latency tells of might have bent them"
-        hint = unknown if models.memory.unmeasured is not None else ""
-        return f"No class explains the costs: {NAMES[models.best]} comes closest{hint}."
     return ""
+
+
+def _unexplained(models: Comparison) -> str:
+    unknown = ", and caches that no latency tells of might have bent them"
+    hint = unknown if models.memory.unmeasured is not None else ""
+    return f"No class explains the costs: {models.names[models.best]} comes closest{hint}."
 
 
 def _coefficients(models: Comparison) -> dict[str, dict[str, float]]:
     rise = models.design.slowdowns.scaling[models.fit.slowdown].max(axis=1)
     values = (it.tolist() for it in (models.fit.intercept, models.fit.factor, rise))
-    rows = zip(NAMES, *values, strict=True)
+    rows = zip(models.names, *values, strict=True)
     return {name: {"fixed": c, "factor": a, "rise": r} for name, c, a, r in rows}

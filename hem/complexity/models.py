@@ -10,42 +10,23 @@ c + a·f(n) still gains a given factor over the measured range. Without that bou
 contain O(1), and no measurement could ever tell them apart.
 """
 
-import re
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from hem.complexity.notation import Array, parse
 
 MODELS: dict[str, Callable[[Array], Array]] = {
-    "O(1)": np.ones_like,
-    "O(log n)": np.log,
-    "O(√n)": np.sqrt,
-    "O(n)": np.copy,
-    "O(n log n)": lambda n: n * np.log(n),
-    "O(n²)": np.square,
+    name: parse(name) for name in ("O(1)", "O(log n)", "O(√n)", "O(n)", "O(n log n)", "O(n²)")
 }
-"""Growth functions by name, slowest growth first."""
+"""Growth functions by name, slowest growth first: those that costs are always held against."""
 
 NAMES = tuple(MODELS)
 
-
-def _bare(claim: str) -> str:
-    plain = re.sub(r"(?<=n)_\w+", "", claim.lower()).replace("sqrt", "√")
-    return re.sub(r"[\s()·]", "", re.sub(r"\^2|\*\*2", "²", plain))
-
-
-def canonical(claim: str) -> str:
-    """Name in `MODELS` of a claim as papers spell it: "O(n_ev)" is "O(n)", "O(sqrt n)" is "O(√n)".
-
-    Raises ValueError for a class that is not modeled.
-    """
-    for name in NAMES:
-        if _bare(name) == _bare(claim):
-            return name
-    raise ValueError(f"unknown growth class {claim!r}; known are {', '.join(NAMES)}")
+STEEP = ("O(n² log n)", "O(n³)", "O(2^n)")
+"""Further ones, for costs that grow faster than O(n²)."""
 
 
 @dataclass(frozen=True)
@@ -94,6 +75,7 @@ def unknown_slowdowns(sizes: Array, highest: float) -> Slowdowns:
 class DesignMatrix:
     """Columns whose nonnegative sums are the costs of m models under s slowdowns, at k sizes."""
 
+    names: tuple[str, ...]
     slowdowns: Slowdowns
     growth: Array  # (m, k) f, of largest value 1
     intercept: Array  # (m,) largest intercept beside it
@@ -107,17 +89,25 @@ class DesignMatrix:
     def only(self, model: int) -> "DesignMatrix":
         """The columns of one model."""
         one = slice(model, model + 1)
-        return DesignMatrix(self.slowdowns, self.growth[one], self.intercept[one], self.scale[one])
+        return DesignMatrix(
+            self.names[one], self.slowdowns,
+            self.growth[one], self.intercept[one], self.scale[one],
+        )  # fmt: skip
 
 
-def design(sizes: Array, slowdowns: Slowdowns, growth: float) -> DesignMatrix:
-    """Columns of every model, which gains at least `growth` over the sizes, if it can."""
-    f = np.array([model(sizes) for model in MODELS.values()])
+def design(
+    sizes: Array, slowdowns: Slowdowns, growth: float, names: Sequence[str] = NAMES
+) -> DesignMatrix:
+    """Columns of models, each of which gains at least `growth` over the sizes, if it can.
+
+    names: of the models, O(1) first.
+    """
+    f = np.array([parse(name)(sizes) for name in names])
     scale = np.maximum(f.max(1), 1e-9)
     f /= scale[:, None]
     intercept = np.maximum((1 - growth * f.min(1)) / (growth - 1), 0)
     intercept[0] = 0.0
-    return DesignMatrix(slowdowns, f, intercept, scale)
+    return DesignMatrix(tuple(names), slowdowns, f, intercept, scale)
 
 
 @dataclass(frozen=True)

@@ -9,13 +9,14 @@ residuals to d; where the fits are good it is about χ²(g) less χ²(f). The si
 best that explains the costs about as well as the closest one does.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
-from hem.complexity.estimates import Costs
+from hem.complexity.estimates import Costs, slope
 from hem.complexity.models import (
     NAMES,
     Array,
@@ -44,6 +45,8 @@ same code were measured to differ by 1.8 where neighbors share the caches."""
 HIGHEST_SLOWDOWN = 12.0  # slowdown over the sizes that unmeasured caches are reckoned with
 MISFIT = 2.5  # χ² per degree of freedom with which a model explains times without a latency …
 MISFIT_EXPLAINED = 12.0  # … and with it, or exact counts: what is left is small print
+MOST_WOBBLE = 0.1  # relative error up to which times may stray from a model that explains them else
+NEAR = 0.25  # share of a class's slope that it must have, as fitted, at the largest sizes
 
 
 @dataclass(frozen=True)
@@ -55,6 +58,7 @@ class Memory:
     latency_known: bool  # whether nothing unmeasured casts doubt on what is confirmed
     growth_to_reject: float  # growth over the sizes from which on a model violates a simpler claim
     misfit: float  # χ² per degree of freedom up to which a model explains the costs
+    exact: bool  # the costs are counts of work
     parameters: int  # free ones of a model: intercept, factor, and the slowdown if there is one
 
 
@@ -70,18 +74,18 @@ def account_for_memory(
     unseen = unknown_slowdowns(costs.sizes, HIGHEST_SLOWDOWN)
     if costs.latency is None:
         if exact:
-            return costs, Memory(nothing, None, True, 1.0, MISFIT_EXPLAINED, 2)
-        return costs, Memory(nothing, unseen, False, ACCUSING_GROWTH, MISFIT, 2)
+            return costs, Memory(nothing, None, True, 1.0, MISFIT_EXPLAINED, True, 2)
+        return costs, Memory(nothing, unseen, False, ACCUSING_GROWTH, MISFIT, False, 2)
     if exact:
         raise ValueError("exact counts wait for no memory: give either latency or exact")
     slowdowns, beside = measured_slowdowns(costs.latency), unseen if allow_unmeasured else None
-    memory = Memory(slowdowns, beside, True, ACCUSING_GROWTH, MISFIT_EXPLAINED, 3)
+    memory = Memory(slowdowns, beside, True, ACCUSING_GROWTH, MISFIT_EXPLAINED, False, 3)
     return replace(costs, error=np.sqrt(costs.error**2 + latency_error**2)), memory
 
 
 @dataclass(frozen=True)
 class Comparison:
-    """All models fitted to the same costs. Models go by their indices in `NAMES`.
+    """All models fitted to the same costs. Models go by their indices in `names`.
 
     What decides for a model f against another, g, is the evidence of chi2[f] against a χ² of g:
 
@@ -105,9 +109,24 @@ class Comparison:
     grows_enough_to_reject: NDArray[np.bool_]  # (m,) it grew enough to violate a simpler claim
 
     @property
+    def names(self) -> tuple[str, ...]:
+        """The models, slowest growth first."""
+        return self.design.names
+
+    @property
     def freedom(self) -> int:
         """Degrees of freedom of the residuals."""
         return max(len(self.costs.sizes) - self.memory.parameters, 1)
+
+    @property
+    def explained(self) -> bool:
+        """Whether the best model explains the costs, and those of the largest sizes are of it."""
+        return self.fits and (self.memory.exact or self._near(self.best))
+
+    @property
+    def fits(self) -> bool:
+        """Whether the costs stray from the best model no more than they may."""
+        return bool(self.chi2[self.best] <= self.memory.misfit * self.freedom)
 
     @cached_property
     def best(self) -> int:
@@ -119,7 +138,7 @@ class Comparison:
     @cached_property
     def runner_up(self) -> int:
         """Of the other models the closest."""
-        others = set(range(len(NAMES))) - {self.best}
+        others = set(range(len(self.names))) - {self.best}
         return min(others, key=lambda model: float(self.chi2[model]))
 
     @property
@@ -157,18 +176,59 @@ class Comparison:
         ruled_out = self.evidence(own, clear) >= AGAINST_COMPLEX_CLAIM
         return ruled_out and self._no_better(claimed, favored)
 
+    def outgrows(self, claimed: int) -> bool:
+        """Whether times grow more than a claim could by any slowdown, whichever size is left out.
+
+        What violates a claim like that needs no class that explains the costs.
+        """
+        slow = self.memory.slowdowns.scaling
+        if self.memory.unmeasured is not None:
+            slow = np.vstack([slow, self.memory.unmeasured.scaling])
+        f, cost = np.maximum(self.design.growth[claimed], 1e-300), self.costs.cost
+        excused = (slow[:, :, None] / slow[:, None, :]).max(0) * (f[:, None] / f)
+        beyond = np.tril(cost[:, None] / cost > ACCUSING_GROWTH * excused)
+        pairs = np.argwhere(beyond)
+        rising = np.all(cost[1:] > (1 - MOST_WOBBLE) * cost[:-1])  # noise alone is not
+        return (
+            bool(rising)
+            and not self.memory.exact
+            and all(np.any((pairs != size).all(axis=1)) for size in range(len(cost)))
+        )
+
+    def _near(self, model: int) -> bool:
+        """Whether a model, as fitted, comes near its own slope at the largest sizes.
+
+        Beside a large intercept a steep class explains a last size that rose for another reason.
+        """
+        last = slice(-max(3, len(self.costs.sizes) // 3), None)
+        sizes, steady = self.costs.sizes[last], predict(self.design, self.fit)[1][model, last]
+        own = slope(sizes, np.maximum(self.design.growth[model, last], 1e-300))
+        return bool(slope(sizes, steady) >= NEAR * own - 1e-9)
+
     def _no_better(self, complex_: int, simpler: int) -> bool:
         return self.evidence(self.chi2[complex_], self.chi2[simpler]) < NO_BETTER
 
 
-def compare_models(costs: Costs, memory: Memory) -> Comparison:
-    """Fit every model to the costs, under every slowdown that may have happened."""
+def compare_models(costs: Costs, memory: Memory, names: Sequence[str] = NAMES) -> Comparison:
+    """Fit models to the costs, under every slowdown that may have happened.
+
+    Times that stray from all of them, but evenly and little, are fitted again with what they stray
+    as their error: sizes differ by more than their samples tell, and a class may still stand out.
+    """
+    models = _fit_models(costs, memory, names)
+    stray = np.sqrt(models.chi2[models.best] / models.freedom)
+    if memory.exact or models.fits or stray * np.median(costs.error) > MOST_WOBBLE:
+        return models
+    return _fit_models(replace(costs, error=stray * costs.error), memory, names)
+
+
+def _fit_models(costs: Costs, memory: Memory, names: Sequence[str]) -> Comparison:
     weight = 1 / (costs.cost * costs.error)
 
     def misfit(slowdowns: Slowdowns, growth: float) -> Array:
-        return fit(design(costs.sizes, slowdowns, growth), costs.cost, weight).chi2
+        return fit(design(costs.sizes, slowdowns, growth, names), costs.cost, weight).chi2
 
-    models = design(costs.sizes, memory.slowdowns, GROWTH)
+    models = design(costs.sizes, memory.slowdowns, GROWTH, names)
     fitted = fit(models, costs.cost, weight)
     _, steady = predict(models, fitted)
     clear = misfit(memory.slowdowns, CLEAR_GROWTH)

@@ -14,7 +14,7 @@ from experiments.harness import Axis
 from experiments.report import style
 from experiments.report.session import Session, claim_file, open_run
 from experiments.report.style import GRAY, RED, STYLES, Plot
-from hem.complexity import MODELS
+from hem.complexity import parse
 
 Array = NDArray[np.float64]
 
@@ -67,7 +67,7 @@ def _draw_growth(axes: Axes, curve: Curve, judged: JudgedClaim, axis: Axis) -> N
         classes.setdefault(verdict.best, RED)
     for place, (name, color) in enumerate(classes.items()):
         it = verdict.coefficients[name]
-        costs = axis.scale * (it["fixed"] + it["factor"] * MODELS[name](smooth))
+        costs = axis.scale * (it["fixed"] + it["factor"] * parse(name)(smooth))
         if it["rise"] > 1.01 and place == 0:
             axes.fill_between(smooth, costs, it["rise"] * costs, color=GRAY, alpha=0.16, lw=0)
         axes.plot(smooth, costs, "--", color=color)

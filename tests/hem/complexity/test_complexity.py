@@ -206,6 +206,69 @@ def test_one_size_drowned_in_noise_spoils_no_curve_but_several_do() -> None:
     assert "Too noisy" in judge(sizes, noisy, "O(n)").reason
 
 
+def wobbling(seed: int, costs: Array, wobble: float) -> list[Array]:
+    """Samples that hardly scatter, of costs that stray from size to size."""
+    rng = np.random.default_rng(seed)
+    strayed = costs * rng.lognormal(0, wobble, len(costs))
+    return [cost * rng.lognormal(0, 0.01, 12) for cost in strayed]
+
+
+def test_a_class_stands_out_although_every_size_strays_a_little() -> None:
+    sizes = np.geomspace(100, 25_600, 9)
+    said = Counter[tuple[str, str]]()
+    for seed in range(30):
+        for claim in ("O(1)", "O(n)", "O(n²)"):
+            said[claim, judge(sizes, wobbling(seed, sizes**2, 0.06), claim).outcome] += 1
+    assert said["O(1)", "violated"] == said["O(n)", "violated"] == 30
+    assert said["O(n²)", "consistent"] >= 27
+    assert said["O(n²)", "violated"] == 0
+
+
+def test_what_no_slowdown_excuses_is_violated_though_no_class_explains_it() -> None:
+    sizes = np.geomspace(4096, 4096 * 256, 9)
+    bumpy = sizes**1.62 * np.exp(0.15 * np.sin(np.arange(9)))  # a string built by prepending
+    samples = wobbling(0, bumpy, 0.0)
+    assert judge(sizes, samples, "O(1)").outcome == "violated"
+    assert judge(sizes, samples, "O(1)", np.geomspace(1, 30, 9)).outcome == "violated"
+    assert judge(sizes, samples, "O(1)", np.geomspace(1, 9000, 9)).outcome != "violated"
+
+
+@pytest.mark.parametrize("latency", [None, np.ones(9)], ids=["bare", "latency"])
+@pytest.mark.parametrize("claim", ["O(1)", "O(n)", "O(n²)"])
+def test_one_risen_size_is_no_class(claim: str, latency: Array | None) -> None:
+    sizes = 4.0 ** np.arange(1, 10)
+    samples = wobbling(1, np.array([30.0] * 8 + [75.0]), 0.0)
+    verdict = judge(sizes, samples, claim, latency)
+    assert verdict.raw_slope < 0.2
+    assert verdict.outcome == "undetermined"
+
+
+@pytest.mark.parametrize(
+    ("name", "sizes"),
+    [
+        ("O(n³)", np.geomspace(10, 200, 8)),
+        ("O(n² log n)", np.geomspace(50, 3000, 9)),
+        ("O(2^n)", np.arange(4.0, 22, 2)),
+        ("O(n^1.5)", np.geomspace(50, 3000, 9)),
+    ],
+)
+def test_further_classes_are_told_from_their_neighbors(name: str, sizes: Array) -> None:
+    grown = {"O(n³)": sizes**3, "O(n² log n)": sizes**2 * np.log(sizes), "O(n^1.5)": sizes**1.5}
+    grown["O(2^n)"] = 2.0 ** np.minimum(sizes, 99)
+    samples = wobbling(2, grown[name], 0.0)
+    assert judge(sizes, samples, name).outcome == "consistent"
+    assert judge(sizes, samples, name).answer == judge(sizes, samples, "O(n)").answer == name
+    for other in ("O(1)", "O(log n)"):
+        assert judge(sizes, samples, other).outcome == "violated"
+
+
+def test_two_classes_are_named_where_nothing_tells_them_apart() -> None:
+    rng = np.random.default_rng(3)
+    sizes = np.geomspace(1e6, 8e6, 5)
+    samples = [n * rng.lognormal(0, 0.1, 5) for n in sizes]
+    assert judge(sizes, samples, "O(1)", np.geomspace(1, 2, 5)).answer == "O(n) or O(n log n)"
+
+
 def power_law(seed: int, exponent: float) -> Verdict:
     rng = np.random.default_rng(seed)
     sizes = np.geomspace(100, 1e6, 7)
@@ -251,7 +314,8 @@ def test_a_verdict_survives_json() -> None:
         ({"latency": [1, 2, 3]}, "latency"),
         ({"latency": [1, 2, 3, -4]}, "latency"),
         ({"latency": [1, 2, 3, 4], "exact": True}, "either latency or exact"),
-        ({"expected": "O(2^n)"}, "unknown growth class"),
+        ({"expected": "O(n!)"}, "unknown growth class"),
+        ({"expected": "O(n·m)"}, "say which"),
         ({"expected": "N/A"}, "unknown growth class"),
         ({"bound": "loose"}, "bound"),
     ],

@@ -5,32 +5,12 @@ import pytest
 
 from hem.complexity.models import (
     NAMES,
-    canonical,
     design,
     fit,
     measured_slowdowns,
     no_slowdown,
     predict,
 )
-
-
-@pytest.mark.parametrize(
-    ("spelling", "name"),
-    [
-        *((name, name) for name in NAMES),
-        ("O(n_t)", "O(n)"),
-        ("O(n_ev)", "O(n)"),
-        ("o(N)", "O(n)"),
-        ("O(sqrt n)", "O(√n)"),
-        ("O(sqrt(n_t))", "O(√n)"),
-        ("O(n_t log n_t)", "O(n log n)"),
-        ("O(n·log(n))", "O(n log n)"),
-        ("O(n^2)", "O(n²)"),
-        ("O(n_v**2)", "O(n²)"),
-    ],
-)
-def test_usual_spellings_name_a_model(spelling: str, name: str) -> None:
-    assert canonical(spelling) == name
 
 
 def test_fits_are_the_nonnegative_least_squares_of_scipy() -> None:

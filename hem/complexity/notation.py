@@ -1,0 +1,173 @@
+"""Growth classes as people write them: "O(n log n)", "n lg n", "O(N*log(N))", "linearithmic".
+
+A class is n^power · (log n)^logs · e^(base · n), an `Order`; of two orders the larger one grows
+faster. Constant factors do not matter, and of a sum the term that grows fastest does.
+"""
+
+import re
+from collections.abc import Iterator
+from math import exp, log
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+class Order(NamedTuple):
+    """Exponents of a growth class, the most telling first; those of a product are their sums."""
+
+    base: float = 0.0  # natural logarithm of b in b^n
+    power: float = 0.0
+    logs: float = 0.0
+
+    def times(self, other: "Order") -> "Order":
+        """The order of a product."""
+        return Order(*(a + b for a, b in zip(self, other, strict=True)))
+
+    def to_the(self, exponent: float) -> "Order":
+        """The order of a power."""
+        return Order(*(a * exponent for a in self))
+
+    @property
+    def name(self) -> str:
+        """As it is printed: "O(n² log n)"."""
+        base = f"{exp(self.base):g}^n" if self.base else ""
+        power = {0: "", 0.5: "√n", 1: "n", 2: "n²", 3: "n³"}.get(self.power, f"n^{self.power:g}")
+        logs = {0: "", 1: "log n"}.get(self.logs, f"log^{self.logs:g} n")
+        return f"O({' '.join(filter(None, (base, power, logs))) or '1'})"
+
+    def __call__(self, n: Array) -> Array:
+        """The growth function; one that outgrows all numbers is scaled to end at the largest."""
+        grown = n**self.power * (np.log(n) ** self.logs if self.logs else 1.0)
+        beyond = max(float(np.max(n)) - 500 / self.base, 0) if self.base else 0
+        return grown * np.exp(self.base * (n - beyond))
+
+
+WORDS = {
+    "constant": "1", "logarithmic": "log n", "linear": "n", "linearithmic": "n log n",
+    "quasilinear": "n log n", "quadratic": "n^2", "cubic": "n^3", "exponential": "2^n",
+}  # fmt: skip
+SPELLED = (
+    (r"amortized|amortised|expected|average|time|\b[oθ](?=\s*\()|\btheta(?=\s*\()", ""),
+    (r"\*\*", "^"), (r"²", "^2"), (r"³", "^3"), (r"ⁿ", "^n"), (r"√", "sqrt "),
+    (r"log_?(2|10|₂)(?=\D)|lg|ln|ld", "log"), (r"\\|·|×|\*|\|", " "),
+)  # fmt: skip
+TOKEN = re.compile(r"\s*(sqrt|log|[a-z](?:_\w+)?|\d+(?:\.\d+)?(?:/\d+)?|[()^+])")
+
+
+def parse(claim: str, variable: str | None = None) -> Order:
+    """The order that a claim names, in one variable: the others are held fixed.
+
+    variable: may be left out where the claim names no more than one. Raises ValueError for what is
+    no growth class, and where the variable is missing.
+    """
+    text = claim.strip().lower()
+    for pattern, plain in SPELLED:
+        text = re.sub(pattern, plain, text)
+    text = WORDS.get(text.strip(" ()"), text).strip()
+    tokens = TOKEN.findall(text)
+    if not tokens or "".join(tokens) != re.sub(r"\s", "", text):
+        raise _unknown(claim)
+    found = sorted({it for it in tokens if it[0].isalpha() and it not in ("sqrt", "log")})
+    if variable is None and len(found) > 1:
+        names = ", ".join(found)
+        raise ValueError(f"{claim!r} names {names}: say which of them is varied, as variable=…")
+    chosen = variable.lower() if variable else next(iter(found), "n")
+    try:
+        reader = _Reader(iter([*tokens, ""]), chosen)
+        order = reader.sum()
+    except (ValueError, ZeroDivisionError):
+        raise _unknown(claim) from None
+    if reader.token:
+        raise _unknown(claim)
+    return order
+
+
+def _unknown(claim: str) -> ValueError:
+    return ValueError(
+        f"unknown growth class {claim!r}; known are products of powers, logarithms and exponentials"
+        ", such as O(1), O(log n), O(√n), O(n), O(n log n), O(n^1.5), O(n²), O(n³), O(2^n)"
+    )
+
+
+class _Reader:
+    """Reads tokens by recursive descent; ValueError where they are no growth class."""
+
+    def __init__(self, tokens: Iterator[str], variable: str) -> None:
+        self._tokens, self._variable = tokens, variable
+        self.token = next(tokens)
+
+    def _take(self, expected: str | None = None) -> str:
+        taken = self.token
+        if not taken or expected not in (None, taken):
+            raise ValueError(taken)
+        self.token = next(self._tokens)
+        return taken
+
+    def sum(self) -> Order:
+        largest = self._product()
+        while self.token == "+":
+            self._take()
+            largest = max(largest, self._product())
+        return largest
+
+    def _product(self) -> Order:
+        product = self._power()
+        while self.token and self.token not in "+)":
+            product = product.times(self._power())
+        return product
+
+    def _power(self) -> Order:
+        number = self.token if self.token[:1].isdigit() else ""
+        atom = self._atom()
+        if self.token != "^":
+            return atom
+        self._take()
+        if number and self.token == self._variable:
+            self._take()
+            return Order(base=log(float(number)))
+        return atom.to_the(self._number())
+
+    def _atom(self) -> Order:
+        token = self._take()
+        if token == "(":
+            inside = self.sum()
+            self._take(")")
+            return inside
+        if token == "sqrt":
+            return self._atom().to_the(0.5)
+        if token == "log":
+            return self._log()
+        if token == self._variable:
+            return Order(power=1.0)
+        if token.isalpha() or "_" in token or token[0].isdigit():
+            return Order()
+        raise ValueError(token)
+
+    def _log(self) -> Order:
+        exponent = 1.0
+        if self.token == "^":
+            self._take()
+            exponent = self._number()
+        inside = self._power()
+        if inside.base:
+            return Order(power=exponent)
+        if inside.logs and not inside.power:
+            raise ValueError("log log")
+        return Order(logs=exponent) if inside.power else Order()
+
+    def _number(self) -> float:
+        bracketed = self.token == "("
+        if bracketed:
+            self._take()
+        over, _, under = self._take().partition("/")
+        if bracketed:
+            self._take(")")
+        return float(over) / float(under or 1)
+
+
+def canonical(claim: str, variable: str | None = None) -> str:
+    """Name of the class that `parse` reads: "O(n_ev)" is "O(n)", "O(sqrt n)" is "O(√n)"."""
+    return parse(claim, variable).name

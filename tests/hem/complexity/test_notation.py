@@ -1,0 +1,72 @@
+"""Laws of how growth classes are read."""
+
+import numpy as np
+import pytest
+
+from hem.complexity import NAMES, canonical, parse
+
+
+@pytest.mark.parametrize(
+    ("spelling", "name"),
+    [
+        *((name, name) for name in (*NAMES, "O(n³)", "O(n² log n)", "O(2^n)", "O(n^1.58)")),
+        ("O(n_t)", "O(n)"),
+        ("O(n_ev)", "O(n)"),
+        ("o(N)", "O(n)"),
+        ("O(|V|)", "O(n)"),
+        ("linear", "O(n)"),
+        ("amortized O(1)", "O(1)"),
+        ("O(3n + log n + 2)", "O(n)"),
+        ("O(sqrt n)", "O(√n)"),
+        ("O(sqrt(n_t))", "O(√n)"),
+        ("O(n^(1/2))", "O(√n)"),
+        ("n log n", "O(n log n)"),
+        ("nlogn", "O(n log n)"),
+        ("O(n lg n)", "O(n log n)"),
+        ("O(N*log(N))", "O(n log n)"),
+        ("Θ(n · log₂ n)", "O(n log n)"),
+        ("O(n_t log n_t)", "O(n log n)"),
+        ("O(n·log(n))", "O(n log n)"),
+        ("linearithmic", "O(n log n)"),
+        ("O(n^2)", "O(n²)"),
+        ("O(n_v**2)", "O(n²)"),
+        ("quadratic time", "O(n²)"),
+        ("O(n√n)", "O(n^1.5)"),
+        ("O((log n)^2)", "O(log^2 n)"),
+        ("O(log(2^n))", "O(n)"),
+        ("exponential", "O(2^n)"),
+        ("O(1.5^n)", "O(1.5^n)"),
+    ],
+)
+def test_usual_spellings_name_a_class(spelling: str, name: str) -> None:
+    assert canonical(spelling) == name
+
+
+def test_of_several_variables_one_is_varied_and_the_others_are_held_fixed() -> None:
+    assert canonical("O(n·m·log m)", "m") == "O(n log n)"
+    assert canonical("O(n·m·log m)", "n") == "O(n)"
+    assert canonical("O(n + k)", "k") == "O(n)"
+    assert canonical("O(n)", "m") == "O(1)"
+    with pytest.raises(ValueError, match=r"names m, n: say which"):
+        canonical("O(n·m)")
+
+
+@pytest.mark.parametrize("claim", ["", "N/A", "O(n!)", "O(n", "O(n))", "log log n", "n^n", "fast"])
+def test_what_is_no_growth_class_is_refused(claim: str) -> None:
+    with pytest.raises(ValueError, match=r"unknown growth class|say which"):
+        canonical(claim)
+
+
+def test_orders_are_sorted_as_their_functions_are_at_large_sizes() -> None:
+    names = ["O(1)", "O(log n)", "O(√n)", "O(n)", "O(n log n)", "O(n^1.5)", "O(n²)", "O(n³)"]
+    assert sorted({*names}, key=parse) == names
+    last = [float(parse(name)(np.array([1e9]))[0]) for name in names]
+    assert last == sorted(last)
+    assert max(map(parse, names)) < parse("O(2^n)")
+
+
+def test_exponentials_keep_their_shape_where_numbers_end() -> None:
+    assert parse("O(2^n)")(np.array([3.0, 10.0])) == pytest.approx([8, 1024])
+    large = parse("O(2^n)")(np.array([10.0, 9_999.0, 10_000.0]))
+    assert np.isfinite(large).all()
+    assert large[2] / large[1] == pytest.approx(2)
