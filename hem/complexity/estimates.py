@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from hem.complexity.models import Array
+from hem.complexity.notation import Array
 
 FLOOR = 0.02  # relative error between sizes that no repetition at one size shows
 

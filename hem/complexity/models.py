@@ -10,15 +10,15 @@ c + a·f(n) still gains a given factor over the measured range. Without that bou
 contain O(1), and no measurement could ever tell them apart.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from hem.complexity.notation import Array, parse
+from hem.complexity.notation import Array, Order, parse
 
-MODELS: dict[str, Callable[[Array], Array]] = {
+MODELS: dict[str, Order] = {
     name: parse(name) for name in ("O(1)", "O(log n)", "O(√n)", "O(n)", "O(n log n)", "O(n²)")
 }
 """Growth functions by name, slowest growth first: those that costs are always held against."""

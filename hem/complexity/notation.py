@@ -34,8 +34,9 @@ class Order(NamedTuple):
     def name(self) -> str:
         """As it is printed: "O(n² log n)"."""
         base = f"{exp(self.base):g}^n" if self.base else ""
-        power = {0: "", 0.5: "√n", 1: "n", 2: "n²", 3: "n³"}.get(self.power, f"n^{self.power:g}")
-        logs = {0: "", 1: "log n"}.get(self.logs, f"log^{self.logs:g} n")
+        plain: dict[float, str] = {0: "", 0.5: "√n", 1: "n", 2: "n²", 3: "n³"}
+        power = plain.get(self.power, f"n^{self.power:g}")
+        logs = f"log^{self.logs:g} n".replace("^1 ", " ") if self.logs else ""
         return f"O({' '.join(filter(None, (base, power, logs))) or '1'})"
 
     def __call__(self, n: Array) -> Array:

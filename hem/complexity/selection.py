@@ -19,7 +19,6 @@ from numpy.typing import NDArray
 from hem.complexity.estimates import Costs, slope
 from hem.complexity.models import (
     NAMES,
-    Array,
     DesignMatrix,
     Fit,
     Slowdowns,
@@ -30,6 +29,7 @@ from hem.complexity.models import (
     predict,
     unknown_slowdowns,
 )
+from hem.complexity.notation import Array
 
 LATENCY_ERROR = 0.03  # relative error of a measured latency, unless a caller knows better
 PRIOR = 10.0  # degrees of freedom p to which the samples tell the error
