@@ -1,12 +1,16 @@
 """The thesis' listings as published, beside their corrected versions: work and time by size.
 
-Building, splitting and collapsing, in Python objects on both sides. The sizes are small, because
-the printed builder is quadratic. Work is the number of fields of objects that are read or written.
+Building, splitting, collapsing and breaking, in Python objects on both sides. The sizes are small,
+because the printed builder is quadratic. Work is the number of fields of objects that are read or
+written, and of an indexed mesh that of the indices of its triangles.
 """
 
 from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 from typing import Any
+
+import numpy as np
 
 import structures
 from experiments.harness import (
@@ -21,10 +25,15 @@ from experiments.harness import (
     operation_faces,
 )
 from experiments.harness.calibration import latency_now
+from hem.arrays import Array
+from hem.engine import CountingArray
+from hem.fracture import MATERIALS, shatter
 from hem.meshes import TriangleMesh
 from structures.as_printed import AsPrinted, render_arrays
+from structures.class_model import Point
 from structures.half_edge_objects import HalfEdgeMesh, fields_accessed
 from structures.object_tools import HalfEdgeMeshBuilder
+from structures.printed_breaking import find_edges, simulate_breaking
 
 MENDED = HalfEdgeMesh.name
 
@@ -33,19 +42,35 @@ LISTINGS = {
     "build": "Build from a render mesh",
     **{name: OPERATIONS[name] for name in ("split_edge", "split_face", "collapse_edge")},
     STEPPING: "Collapse edge, with a circulator that steps",
+    "create_mesh": "Create a triangle",
+    "find_edges": "Find the faces at an edge",
+    "simulate_breaking": "Break a surface",
 }
-"""``STEPPING`` is the published collapse, with the one repair that chapter 6 asks for."""
+"""``STEPPING`` is the published collapse, with the one repair that chapter 6 asks for. The faces at
+an edge are searched for on an indexed mesh as published, and on half-edges as corrected."""
 COUNTED, TIMED = "counted", "timed"
 """The kinds of cases: work, and time."""
 TIMED_OPERATIONS = 9
 COUNTED_OPERATIONS = 3
 WARM_UP = 2
-MORE_FACES = {"build": 0, "split_edge": 2, "split_face": 2, "collapse_edge": -2, STEPPING: -2}
+MORE_FACES = {
+    **{"build": 0, "split_edge": 2, "split_face": 2, "collapse_edge": -2, STEPPING: -2},
+    **{"create_mesh": 1, "find_edges": 0, "simulate_breaking": 0},
+}
 """How many faces more there are after each, inside a surface."""
+BROKEN_OUT = -4
+"""The same of the corrected breaking: the face that is struck, and half of each beside it."""
+BREAKING = replace(MATERIALS["wood"], scale=1e-3)
+"""Its few break points lie near the impact: as corrected they fall on the face that is struck. As
+published they keep the impact's height, so that most miss the mesh and are searched for in vain."""
 POINTS = [(9.0, 9.0, float(i)) for i in range(TIMED_OPERATIONS + WARM_UP)]
 """Different positions where nothing is yet."""
+CORNERS = [[(x + i, y, z) for x, _, i in POINTS] for y, z in ((9.0, 8.0), (8.0, 9.0), (8.0, 8.0))]
+"""The corners of triangles there: their first ones, their second and their third."""
 
-Step = Callable[[], Any]
+Step = partial[Any]
+Calls = tuple[Any, ...]
+"""Something to call, and its arguments, each a list."""
 
 
 def cases(preset: Preset, structure: str) -> list[Case]:
@@ -65,7 +90,7 @@ def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
     steps, faces = _steps(case, COUNTED_OPERATIONS if counted else TIMED_OPERATIONS)
     before = faces()
     if counted:
-        samples = [fields_accessed(step) for step in steps]
+        samples = [_work(step) for step in steps]
         fields: dict[str, Any] = {"samples": samples, "handles": 1, "checked": True}
     else:
         waiting = iter([(step,) for step in steps])
@@ -73,7 +98,9 @@ def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
         timed = timer(lambda step: step(), setup=waiting.__next__, rounds=len(steps), warmup=0)
         fields = {**timed.fields, "latency": latency}
         steps = steps[: len(steps) - len(list(waiting))]  # but one with --benchmark-disable
-    expected = before + MORE_FACES[str(case.subject)] * len(steps)
+    broken_out = (case.subject, case.structure) == ("simulate_breaking", MENDED)
+    more = BROKEN_OUT if broken_out else MORE_FACES[str(case.subject)]
+    expected = before + more * len(steps)
     if faces() != expected:
         raise AssertionError(f"{case.id} on {case.structure}: {faces()} faces, not {expected}")
     kind = EXPERIMENT.kind_of(case)
@@ -89,26 +116,73 @@ def _steps(case: Case, most: int) -> tuple[list[Step], Callable[[], int]]:
     faces = operation_faces(case, most + WARM_UP)
     if case.structure == MENDED:
         m: Any = structures.build(MENDED, mesh)
-        edges, targets = m.face_edges(faces).values.reshape(-1, 3)[:, 0].tolist(), faces.tolist()
-        split_edge = m.split_edge
+        calls = _corrected(m, faces)
     else:
         m = _build(case.structure, mesh)
         m.generate_render_mesh()
         m.stepping = case.subject == STEPPING
-        targets = [m.faces[f] for f in faces.tolist()]
-        edges, split_edge = [face.half_edge for face in targets], m.split_half_edge
-    calls: dict[str, tuple[Any, ...]] = {
-        "split_edge": (split_edge, edges, POINTS),
-        "split_face": (m.split_face, targets, POINTS),
-        **dict.fromkeys(("collapse_edge", STEPPING), (m.collapse_edge, edges)),
-    }
+        calls = _published(m, faces)
     method, *arguments = calls[str(case.subject)]
-    steps: list[Step] = [partial(method, *given) for given in zip(*arguments, strict=False)]
+    steps = [partial(method, *given) for given in zip(*arguments, strict=False)]
     # The first ones bind methods and make room for many more, which takes a pass over the mesh.
     first = min(WARM_UP, len(steps) - 1)
     for step in steps[:first]:
         step()
     return steps[first:], partial(_count_faces, m)
+
+
+def _published(m: AsPrinted, faces: Array) -> dict[str, Calls]:
+    """The listings on a mesh, and what to call them with at these faces."""
+    targets = [m.faces[f] for f in faces.tolist()]
+    edges = [face.half_edge for face in targets]
+    ends = [(h.origin.index, h.end.index) for h in edges]
+    triangles = np.array(m.render.committed)
+    impacts = [_middle(*(h.origin.point for h in m.face_circulator(face))) for face in targets]
+    breaking = partial(simulate_breaking, m, circles=BREAKING.circles)
+    return {
+        "split_edge": (m.split_half_edge, edges, POINTS),
+        "split_face": (m.split_face, targets, POINTS),
+        **dict.fromkeys(("collapse_edge", STEPPING), (m.collapse_edge, edges)),
+        "create_mesh": (m.create_mesh, *CORNERS),
+        "find_edges": (partial(find_edges, triangles), *zip(*ends, strict=True)),
+        "simulate_breaking": (breaking, impacts),
+    }
+
+
+def _corrected(m: HalfEdgeMesh, faces: Array) -> dict[str, Calls]:
+    """The same as corrected."""
+    corners = m.face_vertices(faces).values.reshape(-1, 3)
+    edges = m.face_edges(faces).values.reshape(-1, 3)[:, 0].tolist()
+
+    def create(*points: Point) -> None:
+        m.add_face(*(m.add_vertex(it).vertex for it in points))
+
+    return {
+        "split_edge": (m.split_edge, edges, POINTS),
+        "split_face": (m.split_face, faces.tolist(), POINTS),
+        "collapse_edge": (m.collapse_edge, edges),
+        "create_mesh": (create, *CORNERS),
+        "find_edges": (
+            lambda a, b: m.edge_faces(m.find_edge(a, b)),
+            *corners[:, :2].T.tolist(),
+        ),
+        "simulate_breaking": (
+            lambda impact: shatter(m, impact, BREAKING),
+            m.points[corners].mean(axis=1).tolist(),
+        ),
+    }
+
+
+def _middle(*points: Point) -> Point:
+    x, y, z = (sum(it) / len(points) for it in zip(*points, strict=True))
+    return x, y, z
+
+
+def _work(step: Step) -> int:
+    """Fields of objects that a step accesses, and indices of triangles."""
+    given = [CountingArray(it) if isinstance(it, np.ndarray) else it for it in step.args]
+    fields = fields_accessed(partial(step.func, *given, **step.keywords))
+    return fields + sum(it.accesses for it in given if isinstance(it, CountingArray))
 
 
 def _count_faces(m: Any) -> int:

@@ -5,6 +5,7 @@ vertex circulator that scans, the search for duplicates, the builder that scans 
 and stops one short, the surgery that forgets references, the commits of the whole render mesh.
 ``experiments.claims.errata`` shows each of them beside the sound version,
 ``structures.half_edge_objects``. Nothing here checks anything, and errors are left as they are.
+The listings of breaking, and those of chapter 5, stand in ``structures.printed_breaking``.
 
 Lists shrink when an element is removed, as those of the thesis do, while every element keeps the
 index that it was given; ``faults`` says what does not hold together any more.
@@ -101,6 +102,15 @@ class AsPrinted(Described):
                     self.create_pair(pair, side)
                     break
         return face
+
+    def create_mesh(self, a: Point, b: Point, c: Point) -> None:
+        """``CreateMesh`` (thesis 3.3): a triangle, clockwise, beside what there is. Cost O(n)."""
+        one, two, three = map(self.create_vertex, (a, b, c))
+        first: Any = self.create_half_edge(one, None, None)
+        face = self.create_face(first)
+        second = self.create_half_edge(two, face, first)
+        first.next = self.create_half_edge(three, face, second)
+        self.generate_render_mesh()
 
     # Lists (thesis 3.2.3) ----------------------------------------------------------------------
 

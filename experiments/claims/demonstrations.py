@@ -12,7 +12,7 @@ import numpy as np
 
 import hem
 import structures
-from experiments.claims.errata import BOOK, MIDDLE, printed
+from experiments.claims.beside import BOOK, MIDDLE, printed
 from experiments.claims.source_code import code_facts, come_round_tests
 from hem.contract import QUERIES
 from structures.object_tools import HalfEdgeMeshBuilder

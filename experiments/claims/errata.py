@@ -1,50 +1,41 @@
 """The errata of the thesis and of the article, each shown by running what is published.
 
 Their texts stand in ``errata.toml``. A function for each runs the listing
-(``structures.as_printed``) beside the sound version. ``bench_printed`` measures how costs grow.
+(``structures.as_printed``) beside the sound version; those of thesis 4.4 on stand in
+``later_errata``. ``bench_printed`` measures how costs grow.
 """
 
 import tomllib
-from collections import Counter
 from collections.abc import Callable
-from dataclasses import replace
 from functools import partial
 from importlib.resources import files
-from typing import NamedTuple, cast
+from typing import NamedTuple
 
 import numpy as np
 
 import hem
 import structures
-from structures.as_printed import AsPrinted, render_arrays
+from experiments.claims import later_errata
+from experiments.claims.beside import (
+    BOOK,
+    LARGER,
+    MIDDLE,
+    SMALLER,
+    TETRAHEDRON,
+    TRIANGLE,
+    Shown,
+    attempt,
+    faults_of,
+    printed,
+    require_valid,
+    sound,
+)
+from structures.as_printed import AsPrinted
 from structures.half_edge_objects import HalfEdgeMesh, fields_accessed
-from structures.plankton import Plankton
 
 KNOWN = 9  # the first so many errata were found by reading, the others by running
 
-POINTS = np.vstack([np.eye(3), -np.eye(3)])
-OCTAHEDRON = hem.TriangleMesh(
-    POINTS, [(0, 1, 2), (1, 3, 2), (3, 4, 2), (4, 0, 2), (1, 0, 5), (3, 1, 5), (4, 3, 5), (0, 4, 5)]
-)
-TETRAHEDRON = hem.TriangleMesh(POINTS[:4], [(0, 2, 1), (0, 1, 3), (1, 2, 3), (2, 0, 3)])
-TRIANGLE = hem.TriangleMesh(POINTS[:3], [(0, 1, 2)])
-BOOK = hem.TriangleMesh(POINTS[:5], [(0, 1, 2), (1, 0, 3), (0, 1, 4)])  # three faces at one edge
-
-MIDDLE = (0.25, 0.25, 0.5)  # a position in the octahedron where nothing is yet
-
-GIVES_UP = 999  # after so many steps Plankton takes a vertex for a runaway (quoted in thesis 5)
-
-SMALLER, LARGER = 100, 400  # vertices of the two tori whose work is compared: four times as many
-
 MISPLACED = "corners of the render mesh at another position"
-
-
-class Shown(NamedTuple):
-    """What a run gave: of what is published, of the sound version; whether it is an erratum."""
-
-    printed: str
-    sound: str
-    confirmed: bool
 
 
 class Erratum(NamedTuple):
@@ -55,40 +46,6 @@ class Erratum(NamedTuple):
     says: str
     does: str
     show: Callable[[], Shown]
-
-
-def printed(mesh: hem.TriangleMesh = OCTAHEDRON, whole: bool = True) -> AsPrinted:
-    """The mesh as the listings build it."""
-    built = AsPrinted.build(*render_arrays(mesh.points, mesh.triangles), whole=whole)
-    built.generate_render_mesh()
-    return built
-
-
-def sound(mesh: hem.TriangleMesh = OCTAHEDRON) -> HalfEdgeMesh:
-    """The same mesh as the sound version builds it."""
-    return cast(HalfEdgeMesh, structures.build("half_edge_objects", mesh))
-
-
-def _faults(m: AsPrinted, about: str = "") -> tuple[Counter[str], str]:
-    """What does not hold together, of what has ``about`` in its name; and the same in words."""
-    faults = Counter({what: often for what, often in m.faults().items() if about in what})
-    return faults, "; ".join(f"{often} {what}" for what, often in faults.items()) or "nothing wrong"
-
-
-def _valid(s: HalfEdgeMesh) -> str:
-    s.validate()
-    return f"valid: {s.n_faces} faces, {s.n_edges} edges"
-
-
-def _attempt(call: Callable[[], object]) -> str:
-    """What becomes of a call that should be refused."""
-    try:
-        call()
-    except (hem.NonManifoldError, hem.TopologyError) as error:
-        return f"refused: {error.reason}"
-    except AttributeError as error:
-        return f"a null reference: {error}"
-    return "done"
 
 
 def _grows(
@@ -127,17 +84,19 @@ def _foreign_face() -> Shown:
     m, s = printed(), sound()
     m.split_half_edge(m.half_edges[0], MIDDLE)
     s.split_edge(s.half_edges[0].edge, MIDDLE)
-    faults, words = _faults(m)
-    return Shown(words, _valid(s), faults["half-edges with another face than the next one"] == 4)
+    faults, words = faults_of(m)
+    return Shown(
+        words, require_valid(s), faults["half-edges with another face than the next one"] == 4
+    )
 
 
 def _cleared_pairs() -> Shown:
     m, s = printed(), sound()
     m.collapse_edge(m.half_edges[0])
     s.collapse_edge(s.half_edges[0].edge)
-    faults, words = _faults(m, "half-edge")
+    faults, words = faults_of(m, "half-edge")
     cleared = faults["half-edges without an opposite, though there is one"]
-    return Shown(words, _valid(s), cleared == 4)
+    return Shown(words, require_valid(s), cleared == 4)
 
 
 def _kept_half_edge() -> Shown:
@@ -147,13 +106,13 @@ def _kept_half_edge() -> Shown:
     kept = sum("vertices with a half-edge that is gone" in m.faults() for m in meshes)
     s = sound()
     s.collapse_edge(s.half_edges[0].edge)
-    return Shown(f"after {kept} of 24 collapses a vertex keeps one", _valid(s), kept > 0)
+    return Shown(f"after {kept} of 24 collapses a vertex keeps one", require_valid(s), kept > 0)
 
 
 def _border_collapse() -> Shown:
     m, s = printed(TRIANGLE), sound(TRIANGLE)
-    words = _attempt(lambda: m.collapse_edge(m.half_edges[0]))
-    refusal = _attempt(lambda: s.collapse_edge(0))
+    words = attempt(lambda: m.collapse_edge(m.half_edges[0]))
+    refusal = attempt(lambda: s.collapse_edge(0))
     return Shown(words, refusal, "null" in words and "refused" in refusal)
 
 
@@ -162,7 +121,7 @@ def _no_link_condition() -> Shown:
     m.collapse_edge(m.half_edges[0])
     corners = [frozenset(h.origin.index for h in m.face_circulator(f)) for f in m.faces]
     coincident = len(corners) == 2 and len(set(corners)) == 1
-    refusal = _attempt(lambda: s.collapse_edge(0))
+    refusal = attempt(lambda: s.collapse_edge(0))
     return Shown("two coincident faces are left of a tetrahedron", refusal, coincident)
 
 
@@ -255,27 +214,14 @@ def _full_commit() -> Shown:
     )
 
 
-def _twice_as_many() -> Shown:
-    s = hem.generate("torus", LARGER).summary()
-    return Shown(
-        "n_v ≈ 2 n_t", f"n_t = {s.faces / s.vertices:g} n_v on a torus", s.faces == 2 * s.vertices
-    )
-
-
-def _bytes_left_out() -> Shown:
-    mesh = hem.generate("torus", LARGER)
-    total = sum(sound(mesh).clr_memory().values()) / len(mesh.points)
-    return Shown("228 bytes per vertex", f"{total:g} with all that the classes have", total > 228)
-
-
 def _colliding_indices() -> Shown:
     m, s = printed(), sound()
     m.remove_face(m.faces[0])
     m.split_face(m.faces[0], MIDDLE)
     s.remove_face(0)
     s.split_face(1, MIDDLE)
-    faults, words = _faults(m, "index")
-    return Shown(words, _valid(s), bool(faults))
+    faults, words = faults_of(m, "index")
+    return Shown(words, require_valid(s), bool(faults))
 
 
 def _shifted_render_mesh() -> Shown:
@@ -320,55 +266,15 @@ def _lonely_vertices() -> Shown:
 
 
 def _stolen_partner() -> Shown:
-    faults, words = _faults(printed(BOOK), "opposite has")
-    refusal = _attempt(lambda: sound(BOOK))
+    faults, words = faults_of(printed(BOOK), "opposite has")
+    refusal = attempt(lambda: sound(BOOK))
     return Shown(words, refusal, bool(faults) and refusal.startswith("refused"))
 
 
-def _runaway() -> Shown:
-    valence = 2_000
-    s = cast(Plankton, structures.build("plankton", hem.valence_mesh(valence, 2 * valence)))
-    hub = int(hem.valence_hubs(valence, 2 * valence)[0])
-    start = s.outgoing_half_edge(hub)
-    h, steps = s.next_half_edge(s.pair(start)), 0
-    while steps <= GIVES_UP and h != start:  # as quoted in thesis 5
-        h, steps = s.next_half_edge(s.pair(h)), steps + 1
-    return Shown(
-        f"gives up after {steps:,} of {valence:,} half-edges",
-        f"{s.valence(hub):,} half-edges",
-        h != start and s.valence(hub) == valence,
-    )
-
-
-def _needs_no_closed_mesh() -> Shown:
-    s = cast(Plankton, structures.build("plankton", hem.generate("grid", LARGER)))
-    border = [v for v in s.vertices().tolist() if s.vertex_naked_edges(v)]
-    answered = sum(s.valence(v) == len(s.vertex_vertices(v)) for v in border)
-    return Shown(
-        "“works only if no half-edge lacks its neighbor”",
-        f"comes round at all {answered} vertices on the border of a grid: it has half-edges, too",
-        answered == len(border) > 0,
-    )
-
-
-def _left_behind() -> Shown:
-    m, s = printed(), structures.build("half_edge", OCTAHEDRON)
-    before = list(m.faces)
-    m.split_face(m.faces[0], MIDDLE)
-    created = [face for face in m.faces if not any(face is it for it in before)]
-    only_there = replace(hem.fracture.MATERIALS["glass"], circles=())
-    rest = hem.fracture.shatter(s, np.full(3, 1 / 3), only_there).rest[0]
-    struck = np.isclose(rest.points[rest.triangles].sum(axis=2), 1).all(axis=1)
-    return Shown(
-        f"{len(created)} of the 3 parts of the face are new, and 1 stays behind",
-        f"{struck.sum()} parts of the face that was struck stay behind",
-        len(created) == 2 and not struck.any(),
-    )
-
-
 _TEXTS = tomllib.loads((files("experiments.claims") / "errata.toml").read_text("utf-8"))
+_SHOWS = vars(later_errata) | {name[1:]: it for name, it in globals().items() if name[0] == "_"}
 ERRATA = tuple(
-    Erratum(it["title"], it["source"], it["says"], it["does"], globals()[f"_{it['show']}"])
+    Erratum(it["title"], it["source"], it["says"], it["does"], _SHOWS[it["show"]])
     for it in _TEXTS["erratum"]
 )
 """All of them, in the order in which they are numbered from 1."""

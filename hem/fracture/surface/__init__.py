@@ -2,6 +2,6 @@
 
 from hem.fracture.surface.breaking import JUMP
 from hem.fracture.surface.nearest import Found, nearest_face, scanned
-from hem.fracture.surface.shatter import shatter
+from hem.fracture.surface.shatter import break_points, shatter
 
-__all__ = ["JUMP", "Found", "nearest_face", "scanned", "shatter"]
+__all__ = ["JUMP", "Found", "break_points", "nearest_face", "scanned", "shatter"]

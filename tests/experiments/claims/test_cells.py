@@ -31,7 +31,7 @@ SAID_OF_OPERATIONS = {
 }  # fmt: skip
 """What chapters 4 and 5 say of the cost of an operation, and of which structure."""
 
-SAID_OF_LISTINGS = "split_edge", "split_face", "collapse_edge", "collapse_stepping"
+SAID_OF_LISTINGS = "split_edge", "split_face", "collapse_edge", "collapse_stepping", "find_edges"
 """Those whose cost chapters 4 to 6 tell."""
 
 

@@ -6,8 +6,18 @@ import numpy as np
 import pytest
 
 import hem
-from experiments.claims.errata import ERRATA, KNOWN, OCTAHEDRON, printed, sound
+import structures
+from experiments.claims.beside import OCTAHEDRON, printed, sound
+from experiments.claims.errata import ERRATA, KNOWN
 from structures.as_printed import AsPrinted, render_arrays
+from structures.printed_breaking import (
+    breaking_points,
+    face_containing,
+    find_edges,
+    quad,
+    quoted_circulator,
+    simulate_breaking,
+)
 
 
 @pytest.mark.parametrize("number", range(len(ERRATA)))
@@ -48,3 +58,79 @@ def test_splitting_a_face_as_printed_keeps_the_references():
 
 def test_the_counter_of_faults_finds_none_in_a_mesh_without_any():
     assert printed(hem.generate("grid", 49)).faults() == {}
+
+
+def test_a_triangle_that_is_created_is_that_of_its_corners_and_is_rendered():
+    corners = [(0.0, 0.0, 0.0), (0.0, 1.0, 0.0), (1.0, 0.0, 0.0)]
+    m = AsPrinted()
+    m.create_mesh(*corners)
+    assert not m.faults()
+    assert (len(m.vertices), len(m.half_edges), len(m.faces)) == (3, 3, 1)
+    assert [m.render.points[it] for it in m.render.committed] == corners
+
+
+def test_the_square_that_is_created_is_two_triangles_that_face_one_way():
+    mesh = hem.mesh_from_render(*quad())
+    sides = mesh.points[mesh.triangles[:, 1:]] - mesh.points[mesh.triangles[:, :1]]
+    normals = np.cross(sides[:, 0], sides[:, 1])
+    assert normals.tolist() == [[0, 0, 1]] * 2
+    assert not printed(mesh).faults()
+
+
+@pytest.mark.parametrize("family", ["torus", "grid"])
+def test_the_search_finds_the_faces_that_have_both_corners(family):
+    triangles = hem.generate(family, 49).triangles
+    for a, b in [(0, 1), (5, 6), (1, 8), (3, 3 + 20)]:
+        both = np.flatnonzero((triangles == a).any(axis=1) & (triangles == b).any(axis=1))
+        assert find_edges(triangles.reshape(-1), a, b) == (3 * both).tolist()
+
+
+def flat(n: int = 100) -> hem.TriangleMesh:
+    """A square of ten units, level."""
+    mesh = hem.generate("grid", n)
+    points = np.zeros_like(mesh.points)
+    points[:, [0, 2]] = 10 * mesh.points[:, :2]
+    return hem.TriangleMesh(points, mesh.triangles)
+
+
+def area_of(triangles) -> float:
+    corners = np.array(triangles)
+    sides = corners[:, 1:] - corners[:, :1]
+    return float(np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1).sum() / 2)
+
+
+def test_the_shards_and_the_rest_are_the_surface_that_was_broken():
+    m = printed(flat())
+    shards = simulate_breaking(m, (-4.7, 0.0, 5.2), (5, 6))
+    pieces = [[it.render.points[k] for k in it.render.committed] for it in shards]
+    rest = [[h.origin.point for h in m.face_circulator(face)] for face in m.faces]
+    assert len(shards) == 8 + 2 * 11
+    assert area_of([*pieces, *rest]) == pytest.approx(100)
+
+
+def test_break_points_lie_in_their_circles_at_the_height_of_the_impact():
+    circles = (5, 60, 7)
+    points = np.array(breaking_points((1.0, 2.0, 3.0), circles, seed=4))
+    far = np.linalg.norm(points - (1, 2, 3), axis=1)
+    assert np.allclose(points[:, 1], 2)
+    assert (far <= np.repeat([0.5, 1.5, 2.5], circles)).all()
+    assert points.tolist() != np.array(breaking_points((1.0, 2.0, 3.0), circles, seed=5)).tolist()
+
+
+def test_a_face_contains_what_lies_between_its_corners_and_nothing_beside_it():
+    m = printed(flat())
+    rng = np.random.default_rng(5)
+    for face in m.faces[::7]:
+        corners = np.array([h.origin.point for h in m.face_circulator(face)])
+        inside = rng.dirichlet((2, 2, 2)) @ corners
+        assert face_containing(m, tuple(inside)) is face
+        assert face_containing(m, tuple(inside + np.array([0, 0.1, 0]))) is None
+    assert face_containing(m, (5.0, 0.0, 5.0)) is None
+
+
+def test_the_quoted_circulator_meets_every_half_edge_that_leaves_a_vertex():
+    s = structures.build("plankton", OCTAHEDRON)
+    for v in s.vertices().tolist():
+        met = list(quoted_circulator(s, s.outgoing_half_edge(v)))
+        starts = [h for h in s.half_edges().tolist() if s.start_vertex(h) == v]
+        assert sorted(met) == starts

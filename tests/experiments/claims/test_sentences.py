@@ -17,7 +17,7 @@ from experiments.claims import (
     sentence_claims,
 )
 from experiments.claims import demonstrations as shown
-from experiments.claims.errata import OCTAHEDRON, sound
+from experiments.claims.beside import OCTAHEDRON, sound
 from experiments.claims.quantities import QUANTITIES
 from experiments.claims.source_code import code_facts, come_round_tests
 from experiments.harness import Measurement
