@@ -157,15 +157,17 @@ def _corrected(m: HalfEdgeMesh, faces: Array) -> dict[str, Calls]:
     def create(*points: Point) -> None:
         m.add_face(*(m.add_vertex(it).vertex for it in points))
 
+    def faces_at(a: int, b: int) -> Array:
+        edge = m.find_edge(a, b)
+        assert edge is not None  # as a face has it
+        return m.edge_faces(edge)
+
     return {
         "split_edge": (m.split_edge, edges, POINTS),
         "split_face": (m.split_face, faces.tolist(), POINTS),
         "collapse_edge": (m.collapse_edge, edges),
         "create_mesh": (create, *CORNERS),
-        "find_edges": (
-            lambda a, b: m.edge_faces(m.find_edge(a, b)),
-            *corners[:, :2].T.tolist(),
-        ),
+        "find_edges": (faces_at, *corners[:, :2].T.tolist()),
         "simulate_breaking": (
             lambda impact: shatter(m, impact, BREAKING),
             m.points[corners].mean(axis=1).tolist(),
