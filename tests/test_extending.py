@@ -101,7 +101,9 @@ def test_the_table_shows_a_new_structure_and_a_new_experiment(extended):
 
 def test_the_report_shows_them_on_its_front_page_and_in_the_chapter_of_their_table(extended):
     made = "from experiments.report.notebooks import body; "
-    pages = python(extended, "-c", made + "print(body('index'), body('query_scaling'))", run="run")
+    shown = "print(body('index'), body('query_scaling'), body('structures'))"
+    pages = python(extended, "-c", made + shown, run="run")
+    assert '<h2 id="quarter_edge">Quarter-Edge</h2>' in pages
     for shown in ("Quarter-Edge", "Random walks", "Walk over faces"):
         assert shown in pages
 

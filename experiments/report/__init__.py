@@ -12,8 +12,9 @@ from typing import Any
 
 _PLACES = {
     "pages": (
-        "about_run", "answer", "browser", "chapter_list", "claim_tables", "errata", "frame_table",
-        "legend", "reasons", "sentences", "slopes", "tally", "text_table", "verdicts",
+        "Html", "about_run", "answer", "browser", "chapter_list", "claim_tables", "errata",
+        "frame_table", "legend", "reasons", "sentences", "slopes", "tally", "text_table",
+        "verdicts",
     ),
     "readme": ("write_readme",),
     "sections": ("traced",),

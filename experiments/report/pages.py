@@ -16,7 +16,7 @@ from experiments.claims.errata import Erratum
 from experiments.harness import Axis, Table
 from experiments.report import session
 from experiments.report.notebooks import page_titles
-from experiments.report.tables import by_subject, duration, tally_rows, two_digits
+from experiments.report.tables import by_subject, duration, spelled, tally_rows, two_digits
 from experiments.report.tables import legend as legend_lines
 from experiments.runs import Run, in_words, tables
 from structures import NAMED
@@ -48,7 +48,7 @@ def _templates() -> Environment:
         "claim_file": lambda judged: f"{session.CLAIMS}/{session.claim_file(judged)}",
         "static": lambda name: Html((files("experiments.report") / "static" / name).read_text()),
     }
-    environment.filters |= {"time": duration, "two_digits": two_digits}
+    environment.filters |= {"time": duration, "two_digits": two_digits, "spelled": spelled}
     return environment
 
 

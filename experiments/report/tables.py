@@ -259,3 +259,8 @@ def digits(value: float, count: int = 2) -> str:
 def two_digits(value: float) -> str:
     """A slope: 1.00, never -0.00."""
     return f"{round(value, 2) + 0:.2f}"
+
+
+def spelled(name: str) -> str:
+    """A name of a record or a field as one writes it."""
+    return name.replace("half_edge", "half-edge").replace("_", " ")

@@ -1,0 +1,277 @@
+"""Small meshes drawn record by record, so that one can follow who refers to whom.
+
+A drawing is SVG with a group per record; ``static/explore.js`` lets one choose a record and follow
+its references. Without scripts those of some records are drawn, and written beside it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any, NamedTuple
+
+import numpy as np
+
+import structures
+from experiments.harness import OPERATIONS
+from experiments.report.figures.meshes import hexagon
+from experiments.report.figures.records import Entry, Key, path, records
+from experiments.report.pages import Html, page
+from experiments.report.tables import spelled
+from hem.arrays import Array
+from hem.contract import Navigable, Structure
+
+SCALE, MARGIN = 110.0, 26.0
+ASIDE, SHORTER = 8.0, 0.17  # of a half-edge: beside its edge, and cut off at either end
+DOT, HEAD = 5.5, 6.0
+BEND = 0.14  # of an arrow between records
+
+CENTER, BESIDE = 0, 1  # the two inner vertices of the mesh that is drawn
+ABOVE, BELOW = 4, 8  # the other corners of the faces at the edge between them
+
+
+class Shape(NamedTuple):
+    """How a record looks: its outline as SVG has it, its middle, and where its index stands."""
+
+    outline: str
+    at: Array
+    label: Array
+
+
+class Pointer(NamedTuple):
+    """An arrow from one record to another, and where its words begin, end or have their middle."""
+
+    outline: str
+    words: str
+    label: Array
+    anchor: str
+
+
+@dataclass(frozen=True)
+class Drawing:
+    """What the template ``mesh.html.j2`` needs."""
+
+    shapes: Mapping[Key, Shape]
+    entries: Mapping[Key, Sequence[Entry]]
+    pointers: Sequence[Pointer]
+    marked: Mapping[Key, str]
+    shown: Collection[Key]
+
+    @property
+    def width(self) -> float:
+        """Of the picture."""
+        return 2 * (MARGIN + 1.7 * SCALE)
+
+    @property
+    def height(self) -> float:
+        """Of the picture."""
+        return 2 * (MARGIN + 1.05 * SCALE)
+
+    @property
+    def told(self) -> dict[str, list[Any]]:
+        """Every record with its references, for the script."""
+        return {f"{kind} {row}": list(its) for (kind, row), its in self.entries.items()}
+
+
+def drawn_records(s: Structure) -> tuple[dict[Key, list[Entry]], dict[Key, Shape]]:
+    """The records of a flat mesh, and how its elements are drawn."""
+    entries = records(s)
+    return entries, shapes_of(s, {kind for kind, _ in entries})
+
+
+def shapes_of(s: Structure, kinds: Collection[str]) -> dict[Key, Shape]:
+    """Every element of a flat mesh, as a record of one of these ``kinds`` where there are any."""
+    points = MARGIN + SCALE * (s.points[:, :2] * (1, -1) + (1.7, 1.05))
+    face = "triangle" if "triangle" in kinds else "face"
+    found: dict[Key, Shape] = {}
+    for f, corners in zip(s.faces().tolist(), s.face_vertices(), strict=True):
+        middle = points[corners].mean(axis=0)
+        found[face, f] = Shape(_polygon(0.86 * points[corners] + 0.14 * middle), middle, middle)
+    ends = {int(e): s.edge_vertices(int(e)) for e in s.edges()}
+    for number, (e, (a, b)) in enumerate(ends.items()):
+        middle = (points[a] + points[b]) / 2
+        line = _arrow(points[a], points[b], 0.12) if "edge" in kinds else _line(points[[a, b]])
+        found["edge", e if "edge" in kinds else number] = Shape(line, middle, middle)
+    if isinstance(s, Navigable):
+        for h in s.half_edges().tolist():
+            found["half_edge", h] = _half_edge(*points[[s.origin(h), s.tip(h)]])
+    for v in s.vertices().tolist():
+        away = points[v] - np.nanmean(points, axis=0)
+        found["vertex", v] = Shape(_dot(points[v]), points[v], points[v] + 13 * _unit(away))
+    return found
+
+
+def _half_edge(a: Array, b: Array) -> Shape:
+    left = _unit(b - a)[::-1] * (1, -1)  # y points down
+    a, b = a + ASIDE * left, b + ASIDE * left
+    middle = (a + b) / 2
+    return Shape(_arrow(a, b, SHORTER, left), middle, middle + 8 * left)
+
+
+def _arrow(a: Array, b: Array, shorter: float, side: Array | None = None) -> str:
+    """A line with a whole head, or half of one on a ``side``."""
+    a, b = a + shorter * (b - a), b - shorter * (b - a)
+    return f"{_line([a, b])}{_head(b, b - a, side)}"
+
+
+def _head(tip: Array, way: Array, side: Array | None = None) -> str:
+    back = tip - HEAD * _unit(way)
+    across = HEAD * 0.6 * (_unit(way)[::-1] * (1, -1) if side is None else side)
+    return _line([tip, back + across]) + (_line([tip, back - across]) if side is None else "")
+
+
+def pointer(shapes: Mapping[Key, Shape], start: Key, entry: Entry) -> Iterator[Pointer]:
+    """The arrows for a name in a record; none to what is not there."""
+    for value in entry.values:
+        end = entry.target, value
+        if end in shapes:
+            yield bent(shapes[start].at, shapes[end].at, spelled(entry.field))
+
+
+def bent(a: Array, b: Array, words: str) -> Pointer:
+    """A slightly bent arrow from a to b, as ``explore.js`` draws it, too."""
+    aside = _unit(b - a)[::-1] * (1, -1)
+    control = (a + b) / 2 + BEND * float(np.hypot(*(b - a))) * aside
+    line = f"M{_xy(a)}Q{_xy(control)} {_xy(b)}"
+    anchor = "middle" if abs(aside[0]) < 0.4 else "start" if aside[0] > 0 else "end"
+    return Pointer(line + _head(b, b - control), words, control + 4 * aside, anchor)
+
+
+def examples(entries: Mapping[Key, Sequence[Entry]]) -> list[Key]:
+    """A record of each kind, each reached from the one before, beginning with the inner vertex."""
+    found: dict[str, Key] = {}
+    waiting: list[Key] = [("vertex", CENTER)]
+    for key in waiting:
+        if key in entries and key[0] not in found:
+            found[key[0]] = key
+            waiting += [(it.target, v) for it in entries[key] for v in it.values]
+    for kind, row in entries:
+        found.setdefault(kind, (kind, row))
+    return list(found.values())
+
+
+def record(structure: type[Structure]) -> Html:
+    """A small mesh whose records can be chosen; one of each kind is told, the longest is drawn."""
+    entries, shapes = drawn_records(structure.build(hexagon()))
+    shown = examples(entries)
+    most = max(shown, key=lambda key: len(entries[key]))
+    arrows = [it for entry in entries[most] for it in pointer(shapes, most, entry)]
+    drawing = Drawing(shapes, entries, arrows, {most: "chosen"}, shown)
+    return page("mesh.html.j2", drawing=drawing, caption=f"{structure.title}, on a small mesh")
+
+
+def walk(structure: type[Structure], query: str) -> Html:
+    """The way that a query takes from the inner vertex, stop by stop, and what it finds."""
+    s = structure.build(hexagon())
+    found = getattr(s, query)(CENTER)
+    (entries, shapes), stops = drawn_records(s), path(s, query, CENTER)
+    places = [it.key for it in stops if it.key in shapes]
+    ways = pairwise(places)
+    arrows = [
+        bent(shapes[a].at, shapes[b].at, str(number)) for number, (a, b) in enumerate(ways, start=1)
+    ]
+    faces = {key: "found" for key in shapes if key[0] in ("face", "triangle") and key[1] in found}
+    drawing = Drawing(shapes, entries, arrows, faces, [])
+    caption = f"{structure.title}: {query.replace('_', ' → ')}"
+    return page("mesh.html.j2", drawing=drawing, caption=caption, stops=stops, found=found)
+
+
+def changes(before: Mapping[Key, Any], after: Mapping[Key, Any]) -> dict[Key, str]:
+    """Which records are new, and which refer to something else than before."""
+    return {
+        key: "changed" if key in before else "made"
+        for key, its in after.items()
+        if before.get(key) != its
+    }
+
+
+def _split_edge(s: Structure) -> Iterator[str]:
+    yield f"The edge between {CENTER} and {BESIDE} is to be split."
+    v = s.split_edge(_edge(s), (0, 0, 0)).vertex
+    yield "A new vertex on the edge. Each of the two faces at it has become two."
+    s.move_vertex(v, (0.1, 0.35, 0))
+    yield "The new vertex need not lie on the edge. To move it changes no reference."
+
+
+def _collapse_edge(s: Structure) -> Iterator[str]:
+    yield f"Vertex {CENTER} is to merge into vertex {BESIDE}."
+    s.move_vertex(CENTER, (0.2, 0.0, 0))
+    yield "Here it is moved on its way, which changes no reference."
+    s.collapse_edge(_edge(s), keep=BESIDE)
+    yield "The two faces at the edge are gone. Of the two edges beside each of them one is left."
+
+
+def _split_face(s: Structure) -> Iterator[str]:
+    face = int(s.edge_faces(_edge(s))[0])
+    yield f"Face {face} is to be split."
+    s.split_face(face, s.points[s.face_vertices(face)].mean(axis=0))
+    yield "A new vertex in the face, which has become three."
+
+
+def _flip_edge(s: Structure) -> Iterator[str]:
+    yield f"The edge between {CENTER} and {BESIDE} is to be flipped."
+    s.flip_edge(_edge(s))
+    yield "It has turned within its two faces."
+    s.flip_edge(_edge(s, ABOVE, BELOW))
+    yield "Flipped once more it joins the same vertices as before."
+
+
+def _edge(s: Structure, a: int = CENTER, b: int = BESIDE) -> int:
+    edge = s.find_edge(a, b)
+    assert edge is not None
+    return edge
+
+
+STEPS: dict[str, Callable[[Structure], Iterator[str]]] = {
+    "split_edge": _split_edge, "collapse_edge": _collapse_edge, "split_face": _split_face,
+    "flip_edge": _flip_edge,
+}  # fmt: skip
+"""By operation what is done for each frame but the first -> what is to be seen then."""
+
+
+def states(structure: type[Structure], operation: str) -> Iterator[tuple[str, Structure]]:
+    """The frames of an operation: words, and the one mesh as it is at that time."""
+    s = structure.build(hexagon())
+    for words in STEPS[operation](s):
+        yield words, s
+
+
+def operation(structure: type[Structure], name: str) -> Html:
+    """An operation frame by frame, each drawn from the mesh that it has left."""
+    kept = [(words, *drawn_records(s)) for words, s in states(structure, name)]
+    every = [entries for _, entries, _ in kept]
+    frames = []
+    for k, (words, entries, shapes) in enumerate(kept):
+        after = every[min(k + 1, len(every) - 1)]
+        marked = dict.fromkeys(entries.keys() - after.keys(), "gone")
+        marked |= changes(every[k - 1], entries) if k else {}
+        marked |= {} if k else dict.fromkeys(entries.keys() & changes(entries, after), "chosen")
+        frames.append((words, Drawing(shapes, entries, [], marked, [])))
+    return page("steps.html.j2", title=OPERATIONS[name], frames=frames)
+
+
+def by_half_edges() -> type[Structure]:
+    """The first structure that has half-edges: the one to show operations on."""
+    return next(it for it in structures.REGISTRY.values() if issubclass(it, Navigable))
+
+
+def _polygon(points: Array) -> str:
+    return _line(points) + "Z"
+
+
+def _line(points: Any) -> str:
+    return "M" + "L".join(map(_xy, points))
+
+
+def _dot(at: Array) -> str:
+    return f"M{_xy(at - (DOT, 0))}a{DOT} {DOT} 0 1 0 {2 * DOT} 0a{DOT} {DOT} 0 1 0 {-2 * DOT} 0Z"
+
+
+def _xy(at: Array) -> str:
+    return f"{at[0]:.1f} {at[1]:.1f}"
+
+
+def _unit(way: Array) -> Array:
+    unit: Array = way / max(float(np.hypot(*way)), 1e-9)
+    return unit

@@ -1,0 +1,165 @@
+"""What a structure records of a mesh: which record refers to which, its bytes, and its walks."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Iterator, Mapping
+from itertools import groupby
+from typing import Any, NamedTuple
+
+import numpy as np
+
+import hem
+from experiments.report.pages import Html, text_table
+from experiments.report.tables import spelled
+from hem.authoring import REFERENCE_TYPES, in_use, live
+from hem.contract import Structure
+
+Key = tuple[str, int]
+"""A record: its kind, as in ``Field.target``, and its index."""
+
+VERTICES = 10_000
+"""Of the closed mesh that is weighed: so many that what objects share counts little."""
+
+
+class Entry(NamedTuple):
+    """The references of a record under one name; -1 is none."""
+
+    field: str
+    target: str
+    values: tuple[int, ...]
+
+
+def records(s: Structure) -> dict[Key, list[Entry]]:
+    """Every live record and what it refers to; positions and other numbers are left out. O(n)."""
+    found: dict[Key, list[Entry]] = {}
+    for key, entry in _entries(s) if s.fields else _entries_of_objects(s):
+        found.setdefault(key, [])
+        if entry.target:
+            found[key].append(entry)
+    return found
+
+
+def _entries(s: Structure) -> Iterator[tuple[Key, Entry]]:
+    m = s.records
+    for field in s.fields:
+        kind, name = field.name.split(".")
+        values = in_use(m, s.fields, field)
+        for row in np.flatnonzero(live(m, s.fields, kind)).tolist():
+            referring = tuple(map(int, values[row])) if field.target else ()
+            yield (kind, row), Entry(name, field.target, referring)
+
+
+def _entries_of_objects(s: Structure) -> Iterator[tuple[Key, Entry]]:
+    """Of lists of objects: what stands in their slots, if it is of one of the lists."""
+    lists = s.records[:-1]
+    kinds = {type(it): elements.kind for elements in lists for it in elements}
+    for elements in lists:
+        for slot in next(iter(elements)).__slots__:
+            held = {it.index: getattr(it, slot) for it in elements}
+            targets = {kinds[type(it)] for it in held.values() if type(it) in kinds}
+            for index, value in held.items():
+                at = value.index if type(value) in kinds else -1
+                yield (elements.kind, index), Entry(slot, "".join(targets), (at,))
+
+
+class Term(NamedTuple):
+    """The bytes of a kind of record: how many there are per vertex, and its fields."""
+
+    kind: str
+    per_vertex: float
+    fields: Mapping[str, float]
+
+
+def byte_terms(structure: type[Structure], reference_bytes: int) -> list[Term]:
+    """What a vertex of a large closed mesh takes, with the records that come with it."""
+    s = structure.build(hem.generate("torus", VERTICES), reference_bytes)
+    counts = {"vertex": s.n_vertices, "edge": s.n_edges, "half_edge": s.n_half_edges}
+    taken: dict[str, dict[str, float]] = {}
+    for name, size in s.memory().items():
+        kind, field = name.split(".")
+        taken.setdefault(kind, {})[field] = size / counts.get(kind, s.n_faces)
+    return [
+        Term(kind, counts.get(kind, s.n_faces) / s.n_vertices, fields)
+        for kind, fields in taken.items()
+    ]
+
+
+def formula(terms: list[Term]) -> str:
+    """As chapter 7 of the thesis writes it: ``12 + 8 + 2 · 8 + 6 · 32 = 228``."""
+    own = [
+        f"{size:.4g}" for term in terms if term.kind == "vertex" for size in term.fields.values()
+    ]
+    others = [
+        f"{term.per_vertex:.4g} · {sum(term.fields.values()):.4g}"
+        for term in terms
+        if term.kind != "vertex"
+    ]
+    total = sum(term.per_vertex * sum(term.fields.values()) for term in terms)
+    return f"{' + '.join([*own, *others])} = {total:,.4g}"
+
+
+def reference_sizes(structure: type[Structure]) -> dict[int, list[Term]]:
+    """Its bytes by the size of a reference, the thesis' first; one if the size changes nothing."""
+    sizes = {it: byte_terms(structure, it) for it in sorted(REFERENCE_TYPES, reverse=True)}
+    different = {formula(terms): size for size, terms in reversed(sizes.items())}
+    return {size: sizes[size] for size in sorted(different.values(), reverse=True)}
+
+
+def byte_table(structure: type[Structure]) -> Html:
+    """The bytes per vertex of a large closed mesh, kind by kind, for every size of a reference."""
+    sizes = reference_sizes(structure)
+    rows = [
+        (
+            f"{size} bytes" if len(sizes) > 1 else "any",
+            spelled(term.kind),
+            f"{term.per_vertex:.4g}",
+            ", ".join(f"{spelled(it)} {width:.4g}" for it, width in term.fields.items()),
+            f"{term.per_vertex * sum(term.fields.values()):,.4g}",
+        )
+        for size, terms in sizes.items()
+        for term in terms
+    ]
+    sums = [
+        Html("<p>With references of {} bytes: {}</p>").format(size, formula(terms))
+        if len(sizes) > 1
+        else Html("<p>Whatever a reference takes: {}</p>").format(formula(terms))
+        for size, terms in sizes.items()
+    ]
+    heads = "A reference", "Record", "Per vertex", "Bytes of its fields", "Bytes per vertex"
+    return Html("").join([*sums, text_table(heads, rows)])
+
+
+class Stop(NamedTuple):
+    """A record on the way of a query, and which of its fields are read there, in order."""
+
+    key: Key
+    fields: list[str]
+
+
+def path(s: Structure, query: str, handle: int) -> list[Stop]:
+    """The way of a query through the records, as its kernel goes.
+
+    A stop at numbers that belong to no single record has the name of their array.
+    """
+    apart = {it.name: it.name.split(".")[1] for it in s.fields if it.width > 1 and not it.target}
+    reads = [
+        (apart.get(it.field, it.field).rpartition("."), it.row) for it in s.reads(query, handle)
+    ]
+    stops = groupby(reads, key=lambda it: (it[0][0] or it[0][2], it[1]))
+    return [Stop(key, [name for (*_, name), _ in read]) for key, read in stops]
+
+
+def described(structure: type[Structure]) -> str:
+    """What its file says of its records and invariants, as Markdown.
+
+    That is the file of the class, of one it inherits from, or of its records.
+    """
+    places: list[Any] = [*structure.__mro__, structure.records_type]
+    texts = [inspect.getdoc(inspect.getmodule(it)) or "" for it in places]
+    text = next((it for it in texts if "\nInvariants\n" in it), texts[0])
+    return (
+        text.replace("\n::\n", "\n")
+        .replace("::\n", ":\n")
+        .replace("\nInvariants\n", "\n**Invariants**\n")
+    )

@@ -1,0 +1,95 @@
+"use strict";
+// Drawings of records can be read without this. With it a click chooses a record, whose references
+// are drawn and can be followed; the frames of an operation are shown one at a time.
+(() => {
+  const SVG = "http://www.w3.org/2000/svg", BEND = 0.14, HEAD = 6;
+  const words = (name) => name.replace("half_edge", "half-edge").replaceAll("_", " ");
+  const unit = ([x, y]) => { const n = Math.hypot(x, y) || 1; return [x / n, y / n]; };
+
+  function element(name, attributes, text = "") {
+    const made = document.createElementNS(SVG, name);
+    for (const [key, value] of Object.entries(attributes)) made.setAttribute(key, value);
+    made.textContent = text;
+    return made;
+  }
+
+  // As drawings.bent draws it.
+  function bent([ax, ay], [bx, by]) {
+    const side = unit([by - ay, ax - bx]), far = BEND * Math.hypot(bx - ax, by - ay);
+    const control = [(ax + bx) / 2 + far * side[0], (ay + by) / 2 + far * side[1]];
+    const [x, y] = unit([bx - control[0], by - control[1]]);
+    const back = [bx - HEAD * x, by - HEAD * y], wide = HEAD * 0.6;
+    const line = `M${ax} ${ay}Q${control} ${bx} ${by}`;
+    const head = [1, -1].map((k) => `M${bx} ${by}L${back[0] + k * wide * y} ${back[1] - k * wide * x}`);
+    const anchor = Math.abs(side[0]) < 0.4 ? "middle" : side[0] > 0 ? "start" : "end";
+    const words = { x: control[0] + 4 * side[0], y: control[1] + 4 * side[1], style: `text-anchor:${anchor}` };
+    return { d: line + head.join(""), words };
+  }
+
+  function explore(figure) {
+    const records = JSON.parse(figure.querySelector("script").textContent);
+    const told = figure.querySelector(".told"), pointers = figure.querySelector(".pointers");
+    const shapes = new Map([...figure.querySelectorAll("[data-at]")].map((it) => [it.dataset.at, it]));
+    const place = (shape) => [Number(shape.dataset.x), Number(shape.dataset.y)];
+
+    function reference(start, field, target, value) {
+      const end = shapes.get(`${target} ${value}`);
+      if (value < 0) return "none";
+      if (!end) return `${words(target)} ${value}`;
+      const way = bent(place(start), place(end));
+      pointers.append(element("path", { d: way.d }), element("text", way.words, words(field)));
+      end.classList.add("pointed");
+      const follow = document.createElement("button");
+      follow.textContent = `${words(target)} ${value}`;
+      follow.addEventListener("click", () => { choose(end.dataset.at); told.querySelector("button")?.focus(); });
+      return follow;
+    }
+
+    function choose(key) {
+      const start = shapes.get(key), record = records[key];
+      for (const it of shapes.values()) it.classList.remove("chosen", "pointed");
+      start.classList.add("chosen");
+      pointers.replaceChildren();
+      const line = document.createElement("p"), name = document.createElement("b");
+      const [kind] = key.split(" ");
+      name.textContent = record ? words(key) : `this ${words(kind)}`;
+      line.append(name);
+      if (!record) line.append(" has no record: the structure keeps nothing of it.");
+      else if (!record.length) line.append(" refers to nothing.");
+      for (const [field, target, values] of record || []) {
+        line.append(` · ${words(field)} → `);
+        values.forEach((value, k) => line.append(k ? ", " : "", reference(start, field, target, value)));
+      }
+      told.replaceChildren(line);
+    }
+
+    for (const [key, shape] of shapes) shape.addEventListener("click", () => choose(key));
+    figure.classList.add("live");
+  }
+
+  function stepper(section) {
+    const frames = [...section.querySelectorAll("figure")];
+    const back = document.createElement("button"), on = document.createElement("button");
+    const at = document.createElement("span");
+    let shown = 0;
+    function show(index) {
+      shown = index;
+      frames.forEach((it, k) => { it.hidden = k !== shown; });
+      back.disabled = !shown;
+      on.disabled = shown === frames.length - 1;
+      at.textContent = ` ${shown + 1} of ${frames.length} `;
+    }
+    back.textContent = "‹ back";
+    on.textContent = "step ›";
+    back.addEventListener("click", () => show(shown - 1));
+    on.addEventListener("click", () => show(shown + 1));
+    const controls = document.createElement("p");
+    controls.append(back, at, on);
+    frames[0].before(controls);
+    section.classList.add("live");
+    show(0);
+  }
+
+  document.querySelectorAll("figure.mesh").forEach(explore);
+  document.querySelectorAll(".steps").forEach(stepper);
+})();

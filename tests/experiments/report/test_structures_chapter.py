@@ -1,0 +1,210 @@
+"""The chapter on the structures: its bytes, ways and frames against documents and triangles."""
+
+from __future__ import annotations
+
+import ast
+import inspect
+import re
+
+import numpy as np
+import pytest
+
+import hem
+import structures
+from experiments.claims import Exactly, load_claims
+from experiments.report import notebooks
+from experiments.report.figures import class_diagram, drawings, records
+from experiments.report.figures.meshes import hexagon
+from experiments.report.notebooks import page_titles
+from experiments.report.pages import page
+from experiments.report.pdf import BROWSER_VARIABLE, find_browser
+from structures import NAMES, REGISTRY, class_model
+from tests.experiments.chromium import Browser, started
+from tests.extent import OF_EACH_KIND
+
+PRINTED = {
+    it.structure: it.expects.value
+    for it in load_claims()
+    if isinstance(it.expects, Exactly) and it.expects.value
+}
+NAVIGABLE = [name for name in NAMES if REGISTRY[name].steps]
+
+
+def faces_at(v: int) -> set[int]:
+    """What the triangle list says."""
+    return set(np.flatnonzero((hexagon().triangles == v).any(axis=1)).tolist())
+
+
+@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("size", [8, 4])
+def test_the_terms_of_the_bytes_add_up_to_the_memory_of_a_mesh(name, size):
+    s = structures.build(name, hem.generate("torus", records.VERTICES), size)
+    terms = records.byte_terms(REGISTRY[name], size)
+    total = sum(it.per_vertex * width for it in terms for width in it.fields.values())
+    assert total * s.n_vertices == pytest.approx(sum(s.memory().values()))
+
+
+@pytest.mark.parametrize("name", PRINTED)
+def test_the_terms_are_those_of_the_document(name):
+    if name in REGISTRY:
+        formula = records.formula(records.byte_terms(REGISTRY[name], 8))
+        assert formula.endswith(f"= {PRINTED[name]:g}")
+
+
+def test_a_formula_is_written_as_the_thesis_does():
+    terms = [
+        records.Term("vertex", 1, {"point": 12, "half_edge": 8}),
+        records.Term("half_edge", 6, {"origin": 8, "next": 24}),
+    ]
+    assert records.formula(terms) == "12 + 8 + 6 · 32 = 212"
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_the_way_to_the_faces_ends_in_those_of_the_triangle_list(name):
+    shown = drawings.walk(REGISTRY[name], "vertex_faces")
+    found = re.findall(r'<g class="(?:face|triangle) found" data-at="\w+ (\d+)"', shown)
+    assert {int(it) for it in found} == faces_at(drawings.CENTER)
+    told = re.search(r"(\d+) reads, and the faces ([\d, ]+)", shown)
+    assert {int(it) for it in told[2].split(",")} == faces_at(drawings.CENTER)
+    s = structures.build(name, hexagon())
+    s.vertex_faces(drawings.CENTER)  # finds what is found when first asked
+    work = s.work("vertex_faces", np.array([drawings.CENTER]))[0]
+    stops = records.path(s, "vertex_faces", drawings.CENTER)
+    assert int(told[1]) == work == sum(len(it.fields) for it in stops)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_every_reference_leads_to_a_record_that_is_drawn(name):
+    entries, shapes = drawings.drawn_records(structures.build(name, hexagon()))
+    assert entries.keys() <= shapes.keys()
+    for its in entries.values():
+        for entry in its:
+            assert all(it == -1 or (entry.target, it) in shapes for it in entry.values)
+    assert len([key for key in shapes if key[0] == "vertex"]) == len(hexagon().points)
+    assert {key[1] for key in shapes if key[0] in ("face", "triangle")} == set(range(10))
+
+
+@pytest.mark.parametrize("name", NAVIGABLE)
+def test_a_half_edge_is_drawn_along_its_edge(name):
+    s = structures.build(name, hexagon())
+    points = drawings.MARGIN + drawings.SCALE * (hexagon().points[:, :2] * (1, -1) + (1.7, 1.05))
+    for h in s.half_edges().tolist():
+        start, end = points[[s.origin(h), s.tip(h)]]
+        shape = drawings.shapes_of(s, {"half_edge"})["half_edge", h]
+        first, last, *_ = re.findall(r"([\d.]+) ([\d.]+)", shape.outline)
+        way = np.array(last, float) - np.array(first, float)
+        assert way @ (end - start) > 0.6 * np.sum((end - start) ** 2)
+
+
+@pytest.mark.parametrize("name", OF_EACH_KIND)
+@pytest.mark.parametrize("operation", drawings.STEPS)
+def test_every_frame_of_an_operation_is_a_valid_mesh_of_the_same_disk(name, operation):
+    frames = 0
+    for _, s in drawings.states(REGISTRY[name], operation):
+        s.validate()
+        corners = s.to_triangles()
+        used, sides = np.unique(corners.triangles), corners.triangles[:, [0, 1, 1, 2, 2, 0]]
+        n_edges = len(np.unique(np.sort(sides.reshape(-1, 2), axis=1), axis=0))
+        assert len(used) - n_edges + len(corners.triangles) == 1
+        a, b, c = (corners.points[corners.triangles[:, i], :2].T for i in range(3))
+        (ux, uy), (vx, vy) = b - a, c - a
+        areas = ux * vy - uy * vx
+        assert areas.min() > -1e-6
+        assert areas.sum() / 2 == pytest.approx(1.7 * 1.05 * 4 / np.sqrt(2), rel=1e-5)
+        frames += 1
+    assert frames >= 2
+
+
+def test_new_records_are_marked_as_new():
+    shown = drawings.operation(drawings.by_half_edges(), "split_face")
+    made = re.findall(r'<g class="(\w+) made"', shown)
+    assert sorted(made) == ["face"] * 2 + ["half_edge"] * 6 + ["vertex"]
+
+
+def test_a_structure_is_described_by_its_own_file_or_that_of_what_it_is_made_of():
+    for structure in REGISTRY.values():
+        assert "**Invariants**\n\n- " in records.described(structure)
+
+    class Same(drawings.by_half_edges()):
+        name, title, abbreviation = "same", "Same", "Same"
+        claims = REGISTRY["plankton"].claims
+
+    assert records.described(Same) == records.described(drawings.by_half_edges())
+
+
+def test_the_class_diagram_has_what_the_source_of_the_classes_declares():
+    shown = class_diagram.class_diagram()
+    for node in ast.parse(inspect.getsource(class_model)).body:
+        if isinstance(node, ast.ClassDef) and node.name != "ElementList":
+            assert f">{node.name}</text>" in shown
+            for it in node.body:
+                if isinstance(it, ast.Assign) and it.targets[0].id == "__slots__":
+                    slots = [name.lstrip("_") for name in ast.literal_eval(it.value)]
+                    assert all(f">{name}: " in shown for name in slots)
+                if isinstance(it, ast.FunctionDef) and it.name[0] != "_" and not it.decorator_list:
+                    assert f">{it.name}()</text>" in shown
+    for held in ("next: HalfEdge", "origin: Vertex", "half_edge: HalfEdge", "items: Face [*]"):
+        assert f">{held}</text>" in shown
+
+
+# In a browser -------------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def chapter(tmp_path_factory):
+    file = tmp_path_factory.mktemp("chapter") / "structures.html"
+    content = {"titles": page_titles(), "here": "structures", "front": "index"}
+    file.write_text(page("page.html.j2", body=notebooks.body("structures"), **content), "utf-8")
+    return file.as_uri()
+
+
+@pytest.fixture(scope="module")
+def chromium():
+    if find_browser() is None:
+        pytest.skip(f"no Chromium or Chrome is installed; {BROWSER_VARIABLE} names one elsewhere")
+    with started() as browser:
+        yield browser
+
+
+def test_next_is_followed_round_a_face(chromium: Browser, chapter):
+    chromium.errors.clear()
+    chromium.size(1200)
+    chromium.open(chapter)
+    half_edge = drawings.by_half_edges().name
+    chromium.run(
+        "var figures = [...document.querySelectorAll('figure.mesh')];"
+        f"var its = figures.find(it => it.getBoundingClientRect().top >"
+        f" document.getElementById('{half_edge}').getBoundingClientRect().top);"
+        "its.querySelector('[data-at=\"half_edge 12\"]').dispatchEvent(new Event('click'))"
+    )
+    visited = []
+    for _ in range(3):
+        visited.append(chromium.run("its.querySelector('.told b').textContent"))
+        follow = "[...its.querySelector('.told p').childNodes].find(it => /next/.test(it.data))"
+        chromium.run(f"{follow}.nextElementSibling.click()")
+    assert chromium.run("its.querySelector('.told b').textContent") == visited[0]
+    assert visited == ["half-edge 12", "half-edge 13", "half-edge 14"]  # 3 f + i of face 4
+    assert chromium.run("its.querySelectorAll('.pointers path').length") == 4
+    assert chromium.errors == []
+
+
+def test_frames_are_stepped_through_one_at_a_time(chromium: Browser, chapter):
+    chromium.open(chapter)
+    shown = "[...document.querySelector('.steps').querySelectorAll('figure')].map(it => !it.hidden)"
+    assert chromium.run(shown) == [True, False, False]
+    chromium.run("document.querySelectorAll('.steps button')[1].click()")
+    assert chromium.run(shown) == [False, True, False]
+    chromium.run("document.querySelectorAll('.steps button')[0].click()")
+    assert chromium.run(shown) == [True, False, False]
+
+
+def test_without_scripts_every_frame_and_the_references_of_a_record_are_shown(chromium, chapter):
+    chromium.call("Emulation.setScriptExecutionDisabled", value=True)
+    try:
+        chromium.open(chapter)
+        frames = "[...document.querySelectorAll('.steps figure')].every(it => it.checkVisibility())"
+        assert chromium.run(frames)
+        told = chromium.run("[...document.querySelectorAll('.told')].map(it => it.textContent)")
+        assert sum("(drawn)" in it for it in told) == len(NAMES)
+    finally:
+        chromium.call("Emulation.setScriptExecutionDisabled", value=False)
