@@ -12,6 +12,7 @@ from types import FunctionType
 from typing import Any
 
 from numba import njit
+from numba.core.registry import CPUDispatcher
 
 from hem.arrays import Array
 
@@ -19,14 +20,36 @@ Kernel = Callable[..., Any]
 Kernels = Mapping[str, Kernel]
 """The kernels of one structure, by name."""
 
-kernel: Callable[[Kernel], Kernel] = njit(forceinline=True)
-"""Compiles a kernel or a part of one, inlined wherever it is called.
+WITHOUT_WRAPPERS = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+"""Of what compiled code calls: what Python would call takes a third of the compiling."""
 
-A call would push some forty fields of the records' arrays, which takes longer than most queries.
-"""
 
-part: Callable[[Kernel], Kernel] = njit
-"""Compiles a part of an algorithm that is large and called from several places: not inlined."""
+def _in_python(called: Any, *given: Any) -> Any:
+    """Run the source, as there is nothing compiled that Python could call."""
+    return called.py_func(*given)
+
+
+_INSIDE = type("Inside", (CPUDispatcher,), {"__call__": _in_python})
+
+
+def kernel(function: Kernel) -> Kernel:
+    """Compile a kernel or a part of one, inlined wherever it is called.
+
+    A call would push some forty fields of the records' arrays, which takes longer than most
+    queries. Called from Python it is run by Python.
+    """
+    return _inside(njit(forceinline=True, **WITHOUT_WRAPPERS)(function))
+
+
+def part(function: Kernel) -> Kernel:
+    """Compile a part of an algorithm that is large and called from several places: not inlined."""
+    return _inside(njit(**WITHOUT_WRAPPERS)(function))
+
+
+def _inside(compiled: Kernel) -> Kernel:
+    if isinstance(compiled, CPUDispatcher):  # and not Python, where Numba is told to leave it
+        compiled.__class__ = _INSIDE
+    return compiled
 
 
 VERTICES, EDGES, FACES, VERTEX_END, EDGE_END, FACE_END = range(6)

@@ -172,7 +172,9 @@ class Uses:
         function.__qualname__ = "_".join([*names, _digest(scope.values(), variant)])
         # To let other threads run would take longer than a query.
         nogil = template in (templates.batch, templates.sweep, templates.walk, templates.run)
-        compiled: Callable[..., Any] = njit(cache=True, nogil=nogil)(function)
+        compiled: Callable[..., Any] = njit(cache=True, nogil=nogil, no_cfunc_wrapper=True)(
+            function
+        )
         return compiled
 
 

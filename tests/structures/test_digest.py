@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
 import structures
+from hem.authoring.kernels import without
 from hem.engine import uses
 
 BAKED_IN = ("hem/edit.py", "hem/engine/pinned.py", "hem/authoring/operations/flip_edge.py")
@@ -37,3 +39,10 @@ def test_a_changed_file_gives_another_name(digest, file):
 
 def test_a_file_that_is_not_baked_in_changes_nothing(digest):
     assert digest("structures/half_edge.py") == digest("nothing of it")
+
+
+def test_a_kernel_called_from_python_is_run_by_python():
+    """It has no compiled entry for Python; without a source to run the process would end."""
+    numbers = np.array([3, 1, 3, 2])
+    assert without(numbers, 4, 3) == 2
+    assert numbers.tolist()[:2] == [1, 2]
