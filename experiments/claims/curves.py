@@ -117,6 +117,12 @@ class Curves:
         largest = sizes.astype(float).nlargest(1, "vertices")
         return float((largest["faces"] / largest["vertices"]).max())
 
+    @staticmethod
+    def reference(curve: Curve) -> Array | None:
+        """(k,) seconds of constant work beside each case; None where that was not measured."""
+        beside = curve.cases["reference"].to_numpy(float)
+        return None if np.isnan(beside).any() else beside
+
     def latencies(self, curve: Curve) -> Array:
         """(a, k): what each case may have waited for, beside it or in a part of its working set."""
         beside = curve.cases["latency"].to_numpy(float)

@@ -85,11 +85,12 @@ def _verdict(of_run: Curves, table: str, axis: Axis, curve: Curve, expected: str
     """Judge a claim along one axis; O(1) where none is made, as the class found is what matters."""
     # What reads nothing at all costs something all the same: the call.
     samples = [np.maximum(it, 1) if axis.exact else it for it in curve.samples]
-    latency = None if axis.exact else of_run.latencies(curve)
+    reference = None if axis.exact else of_run.reference(curve)
+    latency = None if axis.exact or reference is not None else of_run.latencies(curve)
     every = [it for it in experiments().values() if it.table and it.table.name == table]
     return judge(
         curve.sizes, samples, expected.removeprefix(BOUND), latency,
-        exact=axis.exact, latency_error=CASE_ERROR,
+        reference=reference, exact=axis.exact, latency_error=CASE_ERROR,
         unseen=any(axis in it.just_written for it in every),
         bound="upper" if expected.startswith(BOUND) else "tight",
     )  # fmt: skip

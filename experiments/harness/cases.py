@@ -36,7 +36,9 @@ class Measurement:
     ("work"), or bytes ("bytes"). ``handles``: queries per sample. ``working_set``: bytes of the
     structure's live records, or of the chased array in the latency experiment. ``valence``: that of
     the queried vertices where the experiment varies it. ``latency``: seconds per memory access in
-    the working set, measured beside the case. ``calibration``: seconds per step of the calibration
+    the working set, measured beside the case. ``reference``: seconds per query where the work is
+    that of a small mesh, as much memory is taken and the order is the same (see ``reference.py``).
+    ``calibration``: seconds per step of the calibration
     loop before each round. ``skipped``: why nothing was measured, else empty.
     ``noise``: how steady the machine was meanwhile, and how often the case was ``measured``.
     """
@@ -57,6 +59,7 @@ class Measurement:
     handles: int = 0
     checked: bool = False
     latency: float | None = None
+    reference: float | None = None
     samples: list[float] = field(default_factory=list)
     skipped: str = ""
     detail: dict[str, Any] = field(default_factory=dict)
@@ -170,8 +173,13 @@ def queried_handles(case: Case, s: Structure) -> Array:
             corners = (s.edge_vertices if source == "edge" else s.face_vertices)(handles).values
         hubs = hem.valence_hubs(case.valence, case.size)
         handles = handles[(corners < len(hubs)).reshape(len(handles), -1).any(axis=1)]
+    return in_order_of(case, handles)
+
+
+def in_order_of(case: Case, handles: Array) -> Array:
+    """Handles in the order in which a case asks."""
     if case.order == "random":
-        handles = np.random.default_rng(HANDLE_SEED).permutation(handles)
+        return np.random.default_rng(HANDLE_SEED).permutation(handles)
     return handles
 
 

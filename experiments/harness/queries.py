@@ -10,6 +10,7 @@ import numpy as np
 from experiments.harness.calibration import latency_now
 from experiments.harness.cases import Case, Measurement, queried_handles
 from experiments.harness.oracle import check_query
+from experiments.harness.reference import Reference
 from experiments.harness.timer import Timer
 from experiments.presets import Preset
 from hem.arrays import Array
@@ -39,7 +40,8 @@ def time_query(case: Case, preset: Preset, timer: Timer) -> Measurement:
 
     Successive rounds take successive handles and begin again only when all have been asked, so that
     a large mesh is not answered out of the caches by what the last round left there. All are asked
-    once before, so that a small one is.
+    once before, so that a small one is. Where sizes are compared by time, the reference loop is
+    timed before and after.
     """
     s, handles = checked_handles(case)
     sweep = s.prepare_sweep(case.query.name, handles)
@@ -50,15 +52,22 @@ def time_query(case: Case, preset: Preset, timer: Timer) -> Measurement:
         reason = f"one query takes {seconds:.3g} s, a case may take {preset.case_seconds} s"
         return case.result("time", s, skipped=reason)
     latency = latency_now(sum(s.memory().values()))
+    judged = case.family == preset.families[0] and s.compiled
+    reference = Reference(case, preset.sizes[0]) if judged else None
     if seconds * len(handles) < preset.case_seconds:
         sweep.run()
+        if reference:
+            reference.ask(reference.sweep)
+    beside = reference.seconds(-(-many // 4)) if reference else []
     windows = (np.arange(many) + many * k for k in count())
 
     def successive() -> tuple[Sweep]:
         return (sweep.some(next(windows) % len(handles)),)
 
     timed = timer(Sweep.run, setup=successive, rounds=rounds, per=many)
-    return case.result("time", s, latency=latency, **timed.fields)
+    beside += reference.seconds(-(-many // 4)) if reference else []
+    constant = float(np.median(beside)) if beside else None
+    return case.result("time", s, latency=latency, reference=constant, **timed.fields)
 
 
 def _seconds_per_query(sweep: Sweep, enough: float) -> float:

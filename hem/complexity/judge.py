@@ -70,6 +70,7 @@ def judge(
     sizes: ArrayLike, samples: Sequence[ArrayLike], expected: str = "O(1)",
     latency: ArrayLike | None = None, *, exact: bool = False,
     latency_error: float = LATENCY_ERROR, unseen: bool = False, bound: Bound = "tight",
+    reference: ArrayLike | None = None,
     confidence: float = 0.95, resamples: int = 200, seed: int = 0, variable: str | None = None,
 ) -> Verdict:  # fmt: skip
     """Judge whether costs measured at several sizes grow as claimed.
@@ -81,6 +82,8 @@ def judge(
     latency: (k,) the machine's memory latency at each working set, in any unit. A cost may then
     wait for memory to any degree, from not at all to entirely. Or (a, k): as any one row tells it.
     latency_error: how far, relatively, the latency may miss what the costs really waited for.
+    reference: (k,) instead of a latency, what the same code costs where it does the same work at
+    every size, on as much memory and in the same order: costs are judged in proportion to it.
     exact: the costs are counts of work, which no cache slows. With neither latency nor exact, a
     smooth slowdown of up to `selection.HIGHEST_SLOWDOWN` may have happened unseen: what it could
     explain violates nothing, and where it explains the costs better, nothing is confirmed.
@@ -96,17 +99,25 @@ def judge(
     Growth below `selection.GROWTH` over the sizes is taken for O(1): beside so large an intercept
     no class shows. Beside a tenfold slowdown by caches, growth below 1.5 may be missed as well.
     Times that grow by less than `selection.ACCUSING_GROWTH` violate no claim of slower growth.
-    The same input gives the same verdict. Takes milliseconds. Raises ValueError for malformed
-    input; data that are too few or too noisy are "undetermined".
+    No size decides times alone: where without it a consistent claim would be violated, or a
+    violated one the best, they are undetermined. The same input gives the same verdict. Takes
+    milliseconds. Raises ValueError for malformed input; data that are too few or too noisy are
+    "undetermined".
     """
     if bound not in ("tight", "upper"):
         raise ValueError(f'bound must be "tight" or "upper", not {bound!r}')
     claimed = canonical(expected, variable)
-    measured = _without_noisy_sizes(summarize(sizes, samples, latency))
-    costs, memory = account_for_memory(measured, exact, latency_error, unseen)
+    if reference is not None and latency is not None:
+        raise ValueError("give either latency or reference")
+    waits = latency if reference is None else np.ravel(reference)
+    measured = _without_noisy_sizes(summarize(sizes, samples, waits))
+    entire = reference is not None
+    costs, memory = account_for_memory(measured, exact, latency_error, unseen, entire)
     models = _compare(costs, memory, claimed)
     names, claim = models.names, models.names.index(claimed)
     outcome, reason = _decide(measured, models, claim, bound)
+    if not exact and (size := _hinge(outcome, measured, models, claim, bound)):
+        outcome, reason = "undetermined", f"One size decides: without {size:,g}, it is otherwise."
     fitted, _ = predict(models.design, models.fit)
     errors = np.sqrt(np.mean((fitted / costs.cost - 1) ** 2, axis=1))
     replicates = resample(costs, fitted[models.best], resamples, seed)
@@ -142,7 +153,7 @@ def _decide(costs: Costs, models: Comparison, claim: int, bound: Bound) -> tuple
         return "violated", f"The costs grow more than {names[claim]} does, however slow the memory."
     if not models.explained:
         return "undetermined", _unexplained(models)
-    kept = range(0 if bound == "upper" else claim, claim + 1)
+    kept = _kept(claim, bound)
     if best in kept:
         rivals = [m for m in range(len(names)) if m not in kept and not models.confirms(best, m)]
         if not rivals:
@@ -156,6 +167,30 @@ def _decide(costs: Costs, models: Comparison, claim: int, bound: Bound) -> tuple
     allowed = " once caches that no latency tells of are allowed for" if bent else ""
     reason = f"{names[best]} explains the costs best, but {close} cannot be ruled out{allowed}."
     return "undetermined", reason
+
+
+def _kept(claim: int, bound: Bound) -> range:
+    """The models that keep a claim."""
+    return range(0 if bound == "upper" else claim, claim + 1)
+
+
+def _hinge(
+    outcome: Outcome, costs: Costs, models: Comparison, claim: int, bound: Bound
+) -> float | None:
+    """The size that decides alone, if there is one.
+
+    Without it what is consistent would be violated, or a claim that is violated explains the rest
+    best.
+    """
+    if outcome == "undetermined" or models.outgrows(claim):
+        return None
+    for place, size in enumerate(costs.sizes):
+        fewer = models.without(place)
+        keeps = fewer.best in _kept(claim, bound)
+        accused = not keeps and _decide(costs, fewer, claim, bound)[0] == "violated"
+        if accused if outcome == "consistent" else keeps:
+            return float(size)
+    return None
 
 
 def _answer(costs: Costs, models: Comparison) -> str:

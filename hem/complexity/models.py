@@ -59,6 +59,12 @@ def measured_slowdowns(latency: Array, steps: int = 65) -> Slowdowns:
     return Slowdowns(np.vstack(intercept), np.vstack(scaling))
 
 
+def entire_slowdown(reference: Array) -> Slowdowns:
+    """What slows a loop of constant work slows the costs, intercept included, and by as much."""
+    rise = np.atleast_2d(reference / reference.min())
+    return Slowdowns(rise, rise)
+
+
 def unknown_slowdowns(sizes: Array, highest: float) -> Slowdowns:
     """Smooth steps in the range, up to `highest`: what caches might do when nobody measured."""
     x = np.log(sizes)

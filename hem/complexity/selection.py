@@ -23,6 +23,7 @@ from hem.complexity.models import (
     Fit,
     Slowdowns,
     design,
+    entire_slowdown,
     fit,
     measured_slowdowns,
     no_slowdown,
@@ -63,12 +64,13 @@ class Memory:
 
 
 def account_for_memory(
-    costs: Costs, exact: bool, latency_error: float, allow_unmeasured: bool
+    costs: Costs, exact: bool, latency_error: float, allow_unmeasured: bool, entire: bool = False
 ) -> tuple[Costs, Memory]:
     """The costs, with the latency's error added to theirs, and what caches may have done to them.
 
     exact: they are counts of work, which no cache slows. Times without a latency may have slowed
-    smoothly and unseen; with ``allow_unmeasured`` those beside a latency, too.
+    smoothly and unseen; with ``allow_unmeasured`` those beside a latency, too. ``entire``: the
+    latency is of a loop that waits as the costs do, so that they rise as much as it does.
     """
     nothing = no_slowdown(len(costs.sizes))
     unseen = unknown_slowdowns(costs.sizes, HIGHEST_SLOWDOWN)
@@ -78,8 +80,9 @@ def account_for_memory(
         return costs, Memory(nothing, unseen, False, ACCUSING_GROWTH, MISFIT, False, 2)
     if exact:
         raise ValueError("exact counts wait for no memory: give either latency or exact")
-    slowdowns, beside = measured_slowdowns(costs.latency), unseen if allow_unmeasured else None
-    memory = Memory(slowdowns, beside, True, ACCUSING_GROWTH, MISFIT_EXPLAINED, False, 3)
+    slowdowns = (entire_slowdown if entire else measured_slowdowns)(costs.latency)
+    beside, free = unseen if allow_unmeasured else None, 2 if entire else 3
+    memory = Memory(slowdowns, beside, True, ACCUSING_GROWTH, MISFIT_EXPLAINED, False, free)
     return replace(costs, error=np.sqrt(costs.error**2 + latency_error**2)), memory
 
 
@@ -102,11 +105,6 @@ class Comparison:
     weight: Array
     design: DesignMatrix
     fit: Fit
-    chi2: Array  # (m,) misfit of each model with the slowdowns that are known of
-    chi2_if_slowed: Array  # … or with unmeasured ones, whichever fits better
-    chi2_at_clear_growth: Array  # … of each model that grows clearly over the sizes
-    chi2_at_clear_growth_if_slowed: Array
-    grows_enough_to_reject: NDArray[np.bool_]  # (m,) it grew enough to violate a simpler claim
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -114,9 +112,42 @@ class Comparison:
         return self.design.names
 
     @property
+    def chi2(self) -> Array:
+        """(m,) misfit of each model with the slowdowns that are known of."""
+        return self.fit.chi2
+
+    @cached_property
+    def chi2_if_slowed(self) -> Array:
+        """(m,) that, or with unmeasured slowdowns, whichever fits better."""
+        return np.minimum(self.chi2, self._misfit(self.memory.unmeasured, GROWTH))
+
+    @cached_property
+    def chi2_at_clear_growth(self) -> Array:
+        """(m,) misfit of each model that grows clearly over the sizes."""
+        return self._misfit(self.memory.slowdowns, CLEAR_GROWTH)
+
+    @cached_property
+    def chi2_at_clear_growth_if_slowed(self) -> Array:
+        """(m,) that, or with unmeasured slowdowns, whichever fits better."""
+        unmeasured = self._misfit(self.memory.unmeasured, CLEAR_GROWTH)
+        return np.minimum(self.chi2_at_clear_growth, unmeasured)
+
+    @cached_property
+    def grows_enough_to_reject(self) -> NDArray[np.bool_]:
+        """(m,) whether a model grew enough to violate a simpler claim."""
+        _, steady = predict(self.design, self.fit)
+        return steady.max(axis=1) >= self.memory.growth_to_reject * steady.min(axis=1)
+
+    def _misfit(self, slowdowns: Slowdowns | None, growth: float) -> Array:
+        if slowdowns is None:
+            return np.full(len(self.names), np.inf)
+        models = design(self.costs.sizes, slowdowns, growth, self.names)
+        return fit(models, self.costs.cost, self.weight).chi2
+
+    @property
     def freedom(self) -> int:
         """Degrees of freedom of the residuals."""
-        return max(len(self.costs.sizes) - self.memory.parameters, 1)
+        return max(int(np.count_nonzero(self.weight)) - self.memory.parameters, 1)
 
     @property
     def explained(self) -> bool:
@@ -145,6 +176,11 @@ class Comparison:
     def margin(self) -> float:
         """Evidence of the best model against the runner-up."""
         return self.evidence(self.chi2[self.best], self.chi2[self.runner_up])
+
+    def without(self, size: int) -> "Comparison":
+        """The models fitted to all sizes but one, by its place."""
+        weight = np.where(np.arange(len(self.weight)) == size, 0, self.weight)
+        return replace(self, weight=weight, fit=fit(self.design, self.costs.cost, weight))
 
     def steady(self, costs: Array) -> Array:
         """Costs (..., k) with the memory's part, as the best model sees it in each row, removed."""
@@ -224,21 +260,5 @@ def compare_models(costs: Costs, memory: Memory, names: Sequence[str] = NAMES) -
 
 def _fit_models(costs: Costs, memory: Memory, names: Sequence[str]) -> Comparison:
     weight = 1 / (costs.cost * costs.error)
-
-    def misfit(slowdowns: Slowdowns, growth: float) -> Array:
-        return fit(design(costs.sizes, slowdowns, growth, names), costs.cost, weight).chi2
-
     models = design(costs.sizes, memory.slowdowns, GROWTH, names)
-    fitted = fit(models, costs.cost, weight)
-    _, steady = predict(models, fitted)
-    clear = misfit(memory.slowdowns, CLEAR_GROWTH)
-    if_slowed, clear_if_slowed = fitted.chi2, clear
-    if memory.unmeasured is not None:
-        if_slowed = np.minimum(if_slowed, misfit(memory.unmeasured, GROWTH))
-        clear_if_slowed = np.minimum(clear, misfit(memory.unmeasured, CLEAR_GROWTH))
-    grows_enough = steady.max(axis=1) >= memory.growth_to_reject * steady.min(axis=1)
-    return Comparison(
-        costs, memory, weight, models, fitted, fitted.chi2,
-        chi2_if_slowed=if_slowed, chi2_at_clear_growth=clear,
-        chi2_at_clear_growth_if_slowed=clear_if_slowed, grows_enough_to_reject=grows_enough,
-    )  # fmt: skip
+    return Comparison(costs, memory, weight, models, fit(models, costs.cost, weight))

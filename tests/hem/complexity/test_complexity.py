@@ -324,3 +324,61 @@ def test_malformed_input_is_named(change: dict[str, Any], message: str) -> None:
     good: dict[str, Any] = {"sizes": [1, 2, 3, 4], "samples": [[1], [1], [1], [1]]}
     with pytest.raises(ValueError, match=message):
         judge(**(good | change))
+
+
+def slowed_reference(sizes: Array) -> Array:
+    """What memory makes of constant work: level, then a step that no latency has the shape of."""
+    return 9e-9 * (1 + 3 / (1 + (3e4 / sizes) ** 4) + 15 / (1 + (2e6 / sizes) ** 2))
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_costs_are_judged_in_proportion_to_a_reference_of_constant_work(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    sizes = np.geomspace(200, 2e6, 9).round()
+    reference = slowed_reference(sizes)
+    seen = reference * rng.normal(1, 0.05, 9)
+    for name, growth in GROWTH.items():
+        cost = reference * growth(sizes) * rng.normal(1, 0.05, 9)
+        samples = [c * rng.normal(1, 0.02, 15) for c in cost]
+        verdict = judge(sizes, samples, name, reference=seen, latency_error=0.1)
+        assert (verdict.outcome, verdict.best) == ("consistent", name)
+        for other in ("O(1)", "O(√n)", "O(n)"):
+            outcome = judge(sizes, samples, other, reference=seen, latency_error=0.1).outcome
+            assert (outcome == "consistent") == (other == name)
+            assert (outcome == "violated") == (other != name), (other, name)
+
+
+def test_a_reference_that_stays_level_excuses_nothing() -> None:
+    sizes = np.geomspace(200, 2e6, 9)
+    samples = [[cost] * 5 for cost in slowed_reference(sizes)]
+    assert judge(sizes, samples, reference=np.full(9, 9e-9)).outcome != "consistent"
+    with pytest.raises(ValueError, match="either latency or reference"):
+        judge(sizes, samples, "O(1)", np.ones(9), reference=np.ones(9))
+
+
+@pytest.mark.parametrize("place", range(9))
+@pytest.mark.parametrize("factor", [0.01, 0.4, 2.5, 100])
+def test_no_single_size_decides(place: int, factor: float) -> None:
+    rng = np.random.default_rng(place)
+    sizes = np.geomspace(200, 2e6, 9)
+    for growth, claims in (("O(1)", ("O(log n)", "O(√n)", "O(n)")), ("O(n)", ("O(1)", "O(n²)"))):
+        cost = 3e-8 * GROWTH[growth](sizes)
+        cost[place] *= factor
+        samples = [c * rng.normal(1, 0.01, 15) for c in cost]
+        for told in ({"latency": np.ones(9)}, {"reference": np.ones(9)}):
+            true = judge(sizes, samples, growth, **told)
+            assert true.outcome != "violated", true.reason
+            for claim in claims:
+                assert judge(sizes, samples, claim, **told).outcome != "consistent"
+
+
+@pytest.mark.parametrize(("place", "cost"), [(8, 120.0), (0, 10.0)])
+def test_a_verdict_that_hinges_on_one_size_names_it(place: int, cost: float) -> None:
+    sizes = np.geomspace(4, 1024, 9)
+    samples = [[40.0 if i != place else cost] * 9 for i in range(9)]
+    verdict = judge(sizes, samples, "O(1)", np.ones(9), latency_error=0.15)
+    assert verdict.outcome == "undetermined"
+    assert f"without {sizes[place]:,g}," in verdict.reason
+    rest = [i for i in range(9) if i != place]
+    calm = judge(sizes[rest], [samples[i] for i in rest], "O(1)", np.ones(8), latency_error=0.15)
+    assert calm.outcome == "consistent"
