@@ -1,5 +1,5 @@
 """The command line: ``hem study``, ``table``, ``report``, ``meshes``, ``info``, ``fracture``,
-``check``, ``baseline update``, ``history``.
+``check``, ``baseline update``, ``history``, ``judge``.
 
 A command imports what it needs when it is run, so that help and mistakes are quick.
 """
@@ -20,6 +20,7 @@ from experiments.cli.check import baseline_app, check
 from experiments.cli.console import MESH, Commands, Repair, RunArgument, console, errors, run_folder
 from experiments.cli.fracture import fracture
 from experiments.cli.history import history
+from experiments.cli.judge import judge_file
 from experiments.cli.study import run_study
 
 app = typer.Typer(
@@ -148,6 +149,7 @@ def _numbers(*heads: str, title: str | None = None) -> Table:
 app.command()(fracture)
 app.add_typer(history, name="history")
 app.command()(check)
+app.command("judge")(judge_file)
 app.add_typer(baseline_app, name="baseline")
 app.add_typer(baseline_app, name="reference", hidden=True)
 

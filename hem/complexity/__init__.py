@@ -1,12 +1,17 @@
 """Does a measured cost grow as claimed? NumPy alone is needed.
 
 `judge(sizes, samples, "O(log n)")` gives a `Verdict`: consistent, violated or undetermined, and
-the reason.
+the reason. `measure(f, make_input).judge("O(n)")` measures a function first.
 """
 
 from hem.complexity.estimates import slope
+from hem.complexity.files import Curve, read_curves
 from hem.complexity.judge import Bound, Outcome, Verdict, judge
+from hem.complexity.measure import Measured, measure
 from hem.complexity.models import MODELS, NAMES
 from hem.complexity.notation import canonical, parse
 
-__all__ = ["MODELS", "NAMES", "Bound", "Outcome", "Verdict", "canonical", "judge", "parse", "slope"]
+__all__ = [
+    "MODELS", "NAMES", "Bound", "Curve", "Measured", "Outcome", "Verdict", "canonical", "judge",
+    "measure", "parse", "read_curves", "slope",
+]  # fmt: skip

@@ -69,7 +69,8 @@ def parse(claim: str, variable: str | None = None) -> Order:
         text = re.sub(pattern, plain, text)
     text = WORDS.get(text.strip(" ()"), text).strip()
     tokens = TOKEN.findall(text)
-    if not tokens or "".join(tokens) != re.sub(r"\s", "", text):
+    words = re.search(r"[a-z]{3}", re.sub("sqrt|log", " ", text))
+    if not tokens or words or "".join(tokens) != re.sub(r"\s", "", text):
         raise _unknown(claim)
     found = sorted({it for it in tokens if it[0].isalpha() and it not in ("sqrt", "log")})
     if variable is None and len(found) > 1:

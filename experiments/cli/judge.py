@@ -1,0 +1,86 @@
+"""The command ``hem judge``: name the class of costs that other tools measured."""
+
+import json
+import sys
+from dataclasses import asdict
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+from rich.table import Table
+from typer import Argument, Option
+
+from experiments.cli.console import console, user_errors
+
+CODES = {"consistent": 0, "violated": 1, "undetermined": 2}
+COLORS = {"consistent": "green", "violated": "red", "undetermined": "yellow"}
+
+
+def judge_file(
+    file: Annotated[
+        Path,
+        Argument(help="CSV, or JSON of pytest-benchmark, Google Benchmark or hyperfine."),
+    ],
+    expected: Annotated[str | None, Option(help='The class that is claimed: "O(n log n)".')] = None,
+    parameter: Annotated[
+        str | None, Option(help="What the sizes are of, where several parameters vary.")
+    ] = None,
+    upper: Annotated[bool, Option("--upper", help="Slower growth keeps the claim, too.")] = False,
+    exact: Annotated[
+        bool, Option("--exact", help="Costs are counts, which no cache slows.")
+    ] = False,
+    plot: Annotated[Path | None, Option(help="Draw the costs: .png, .svg or .pdf.")] = None,
+    as_json: Annotated[bool, Option("--json", help="Print JSON instead.")] = False,
+) -> None:
+    """Name the growth class of measured costs, and judge a claim.
+
+    A CSV has sizes in its first column and costs in the others; equal sizes are samples.
+    Exit code 0; 1: a claim is violated; 2: it cannot be told.
+
+    Example: hem judge benchmark.json --expected "O(n log n)" --plot costs.png
+    """
+    with user_errors(2):
+        from hem.complexity import judge, read_curves
+
+        bound: Any = "upper" if upper else "tight"
+        curves = read_curves(file, parameter)
+        verdicts = [
+            judge(it.sizes, it.samples, expected or "O(1)", exact=exact, bound=bound)
+            for it in curves
+        ]
+        if plot is not None:
+            from experiments.report.figures.costs import save_costs
+
+            save_costs(plot, curves, verdicts, expected is not None)
+        if as_json:
+            rows = [
+                {"function": it.name, "parameter": it.parameter, **_told(verdict, expected)}
+                for it, verdict in zip(curves, verdicts, strict=True)
+            ]
+            sys.stdout.write(json.dumps(rows, indent=1, ensure_ascii=False) + "\n")
+        else:
+            _print(curves, verdicts, expected)
+    if expected is not None:
+        codes = {CODES[it.outcome] for it in verdicts}
+        raise typer.Exit(1 if 1 in codes else max(codes))
+
+
+def _told(verdict: Any, expected: str | None) -> dict[str, Any]:
+    """What is known of a curve; nothing of a claim where none was made."""
+    of_claim = () if expected else ("outcome", "expected", "bound", "reason")
+    return {key: value for key, value in asdict(verdict).items() if key not in of_claim}
+
+
+def _print(curves: Any, verdicts: Any, expected: str | None) -> None:
+    table = Table(
+        "function", "sizes", "slope", "class", *(["claim", "verdict"] if expected else [])
+    )
+    for it, verdict in zip(curves, verdicts, strict=True):
+        said = f"[{COLORS[verdict.outcome]}]{verdict.outcome}[/]"
+        sizes = f"{len(it.sizes)}: {it.sizes[0]:g} … {it.sizes[-1]:g}"
+        row = (it.name, sizes, f"{verdict.raw_slope:.2f}", verdict.answer or "?")
+        table.add_row(*row, *((verdict.expected, said) if expected else ()))
+    console.print(table)
+    for it, verdict in zip(curves, verdicts, strict=True):
+        if expected:
+            console.print(f"{it.name}: {verdict.reason}", markup=False)

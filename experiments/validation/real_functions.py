@@ -1,0 +1,158 @@
+"""Judges on real functions: how often each names the class that a function is known to have.
+
+``python -m experiments.validation.real_functions`` measures every function of
+`experiments.validation.functions`, some ten minutes, and asks every judge. Functions by turns are
+those that the judge was tuned on, and those that it was not: the latter tell how good it is.
+``--busy`` keeps the other core busy with memory the while.
+"""
+
+import json
+import os
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from subprocess import DEVNULL, Popen
+from typing import Annotated, Any
+
+import numpy as np
+import pandas as pd
+import typer
+from typer import Option
+
+from experiments.runs import describe
+from experiments.validation.accuracy import UNDETERMINED, Judge, installed_judges
+from experiments.validation.functions import FUNCTIONS, Function
+from hem.complexity import Measured, canonical, measure
+
+RESULT = Path("results/reference/real_functions.json")
+COLUMNS = ["function", "growth", "source", "half", "neighbor", "judge", "answer"]
+HALVES = "tuned on", "held out"
+KINDS = ["right", "one of two", "wrong", UNDETERMINED]
+ASKED = {"right": 0.9, "wrong": 0.01}
+"""The least share to be named right of what was held out, alone or as one of two, and the largest
+to be named wrong."""
+
+ONE_THREAD = dict.fromkeys(("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS"), "1")
+"""A class is of work, not of how many cores share it."""
+
+POWERS = 2 ** np.arange(6, 21)
+NEIGHBOR = "import numpy as np\na = np.ones(2**24)\nwhile True: a += 1"
+
+
+@contextmanager
+def neighbor(busy: bool) -> Iterator[None]:
+    """A program beside that uses a core and the memory; or none."""
+    program = Popen([sys.executable, "-c", NEIGHBOR], stdout=DEVNULL) if busy else None
+    try:
+        yield
+    finally:
+        if program:
+            program.kill()
+            program.wait()
+
+
+def measure_function(it: Function, budget: float) -> Measured:
+    """What a function of the table costs by size."""
+    sizes = POWERS if it.powers else None
+    return measure(it.call, it.make, sizes, budget=budget, most=it.most)
+
+
+def answers_of(found: Measured, judges: dict[str, Judge]) -> dict[str, str]:
+    """What every judge says of the costs, ours with and without knowing the memory."""
+    told = {"hem": found.judge(resamples=2).answer}
+    told["hem, memory unknown"] = found.judge(latency=None, resamples=2).answer
+    for name, ask in judges.items():
+        if name != "hem":
+            told[name] = ask(found.sizes, found.samples, None) or ""
+    return {name: answer or UNDETERMINED for name, answer in told.items()}
+
+
+def kind_of(answer: str, growth: str) -> str:
+    """Whether an answer is right: the class alone, one of two that it names, or another."""
+    named = answer.split(" or ")
+    if answer == UNDETERMINED or growth not in named:
+        return UNDETERMINED if answer == UNDETERMINED else "wrong"
+    return "right" if len(named) == 1 else "one of two"
+
+
+def shares(answers: pd.DataFrame) -> pd.DataFrame:
+    """Functions by kind of answer: a row per half, neighbor and judge."""
+    kinds = [kind_of(*row) for row in answers[["answer", "growth"]].itertuples(index=False)]
+    keys = ["half", "neighbor", "judge"]
+    counted = answers.assign(kind=kinds).pivot_table(
+        index=keys, columns="kind", values="function", aggfunc="count", fill_value=0, sort=False
+    )
+    return counted.reindex(columns=KINDS, fill_value=0)
+
+
+def load_answers(path: Path = RESULT) -> tuple[dict[str, Any], pd.DataFrame]:
+    """What was measured when, and the answers."""
+    kept = json.loads(path.read_text("utf-8"))
+    return kept, pd.DataFrame(kept["rows"], columns=kept["columns"])
+
+
+def _rows(budget: float, busy: bool, measured: Path | None) -> Iterator[list[str]]:
+    """Measure, or read what was measured, and ask -> rows of the answers."""
+    judges, kept = installed_judges(), {}
+    if measured and measured.exists():
+        lines = map(json.loads, measured.read_text("utf-8").splitlines())
+        kept = {line.pop("function"): line for line in lines}
+    with neighbor(busy and len(kept) < len(FUNCTIONS)):
+        for i, it in enumerate(FUNCTIONS):
+            if line := kept.get(it.name):
+                samples = [np.array(row) for row in line["samples"]]
+                rest = (np.array(line[key]) for key in ("sizes", "working_sets", "memory"))
+                sizes, working_sets, memory = rest
+                found = Measured(sizes, samples, working_sets, memory)
+            else:
+                found = measure_function(it, budget)
+                if measured:
+                    _append(measured, it.name, found)
+            who = [
+                it.name,
+                canonical(it.growth),
+                it.source,
+                HALVES[i % 2],
+                "busy" if busy else "idle",
+            ]
+            for judge, answer in answers_of(found, judges).items():
+                yield [*who, judge, answer]
+
+
+def _append(path: Path, name: str, found: Measured) -> None:
+    line: dict[str, Any] = {"function": name, "samples": [row.tolist() for row in found.samples]}
+    for key in ("sizes", "working_sets", "memory"):
+        line[key] = getattr(found, key).tolist()
+    with path.open("a", encoding="utf-8") as file:
+        file.write(json.dumps(line) + "\n")
+
+
+def main(
+    output: Path = RESULT,
+    budget: Annotated[float, Option(help="Seconds per function.")] = 4.0,
+    busy: Annotated[bool, Option("--busy", help="Beside a program that uses memory.")] = False,
+    measured: Annotated[
+        Path | None, Option(help="Costs are kept in it; what it has is not measured again.")
+    ] = None,
+) -> None:
+    """Measure all functions, ask all judges, keep the answers and print the shares."""
+    if not ONE_THREAD.items() <= os.environ.items():  # read once, when NumPy is imported
+        os.execve(sys.executable, sys.orig_argv, os.environ | ONE_THREAD)
+    rows = list(_rows(budget, busy, measured))
+    other = [] if not output.exists() else load_answers(output)[1].to_numpy().tolist()
+    rows += [row for row in other if row[4] != rows[0][4]]
+    kept = {key: value for key, value in describe("").items() if key != "preset"}
+    kept |= {"budget": budget, "columns": COLUMNS, "rows": rows}
+    output.write_text(json.dumps(kept, indent=1, ensure_ascii=False) + "\n", "utf-8")
+    answers = pd.DataFrame(rows, columns=COLUMNS)
+    ours = answers[answers["judge"] == "hem"]
+    missed = [
+        kind_of(*row) != "right" for row in ours[["answer", "growth"]].itertuples(index=False)
+    ]
+    print(ours[missed][["function", "half", "neighbor", "growth", "answer"]].to_string(index=False))
+    print(shares(answers).to_string())
+
+
+if __name__ == "__main__":
+    typer.run(main)

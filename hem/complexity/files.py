@@ -1,0 +1,150 @@
+"""Costs by size out of the files that other tools write.
+
+Read are CSV and the JSON of pytest-benchmark, Google Benchmark and hyperfine.
+"""
+
+import csv
+import json
+import re
+from collections import defaultdict
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from hem.complexity.notation import Array
+
+
+class Row(NamedTuple):
+    """What a file says of one function at one place."""
+
+    name: str
+    parameters: dict[str, float]
+    samples: list[float]
+
+
+class Curve(NamedTuple):
+    """Costs of one function along one parameter."""
+
+    name: str
+    parameter: str
+    sizes: Array
+    samples: list[Array]
+
+
+def read_curves(path: Path, parameter: str | None = None) -> list[Curve]:
+    """The curves of a file, a function each, in the file's order.
+
+    parameter: the one that sizes are of; it may be left out where only one varies. The others are
+    held fixed: there is a curve for each of their values.
+    A CSV has the sizes in its first column and a function in each further one; rows of one size are
+    its samples. Raises ValueError that says what is wrong with the file, OSError if there is none.
+    """
+    text = path.read_text("utf-8-sig")
+    is_json = text.lstrip()[:1] in ("{", "[")
+    rows = list(_read_json(text, path) if is_json else _read_csv(text, path))
+    values: dict[str, set[float]] = defaultdict(set)
+    for row in rows:
+        for name, value in row.parameters.items():
+            values[name].add(value)
+    chosen = parameter or _varied({k: len(v) for k, v in values.items()}, path)
+    if chosen not in values:
+        known = ", ".join(values) or "none"
+        raise ValueError(f"{path} has no parameter {chosen!r}; there are: {known}")
+    return _curves([row for row in rows if chosen in row.parameters], chosen)
+
+
+def _varied(counts: dict[str, int], path: Path) -> str:
+    varied = [name for name, count in counts.items() if count > 1]
+    if len(varied) == 1:
+        return varied[0]
+    if not varied:
+        raise ValueError(f"{path} has no costs at different sizes: nothing varies in it")
+    raise ValueError(f"{path} varies {', '.join(varied)}: say which one with --parameter")
+
+
+def _curves(rows: Iterable[Row], parameter: str) -> list[Curve]:
+    found: dict[str, dict[float, list[float]]] = {}
+    for row in rows:
+        fixed = (f"{k}={v:g}" for k, v in row.parameters.items() if k != parameter)
+        cells = found.setdefault(", ".join([row.name, *fixed]), {})
+        cells.setdefault(row.parameters[parameter], []).extend(row.samples)
+    return [
+        Curve(name, parameter, np.array(sorted(cells)), [np.array(cells[n]) for n in sorted(cells)])
+        for name, cells in found.items()
+    ]
+
+
+def _read_csv(text: str, path: Path) -> Iterator[Row]:
+    lines = [line for line in csv.reader(text.splitlines()) if any(line)]
+    if not lines or len(lines[0]) < 2:
+        raise ValueError(f"{path} is no CSV of costs: sizes first, then a column per function")
+    headed = _number(lines[0][0]) is None
+    names = lines[0] if headed else ["n", *(f"column {i + 1}" for i in range(1, len(lines[0])))]
+    for number, line in enumerate(lines[headed:], 1 + headed):
+        size, *costs = map(_number, line)
+        if size is None or len(line) > len(names):
+            raise ValueError(f"{path}, row {number}: a size and a number per function are needed")
+        for name, cost in zip(names[1:], costs, strict=False):
+            if cost is not None:  # not every function was measured at every size
+                yield Row(name, {names[0]: size}, [cost])
+
+
+def _read_json(text: str, path: Path) -> Iterator[Row]:
+    try:
+        content = json.loads(text)
+        if "results" in content:
+            return iter([_hyperfine(it) for it in content["results"]])
+        if "machine_info" in content:
+            return iter([_pytest_benchmark(it) for it in content["benchmarks"]])
+        return iter(list(_google_benchmark(content["benchmarks"])))
+    except (KeyError, TypeError, AttributeError, json.JSONDecodeError) as error:
+        raise ValueError(
+            f"{path} is no JSON of pytest-benchmark, Google Benchmark or hyperfine: {error!r}"
+        ) from error
+
+
+def _hyperfine(result: dict[str, Any]) -> Row:
+    name, parameters = result["command"], {}
+    for key, value in result.get("parameters", {}).items():
+        if (number := _number(value)) is not None:
+            parameters[key] = number
+            name = re.sub(rf"\b{re.escape(str(value))}\b", "{" + key + "}", name)
+    return Row(name, parameters, result.get("times") or [result["mean"]])
+
+
+def _pytest_benchmark(benchmark: dict[str, Any]) -> Row:
+    given = {**(benchmark.get("extra_info") or {}), **(benchmark.get("params") or {})}
+    numbers = {key: _number(value) for key, value in given.items()}
+    parameters = {key: value for key, value in numbers.items() if value is not None}
+    named = [str(value) for key, value in given.items() if key not in parameters]
+    name = ", ".join([benchmark["name"].partition("[")[0], *named])
+    stats = benchmark["stats"]
+    return Row(name, parameters, stats.get("data") or [stats["median"]])
+
+
+def _google_benchmark(benchmarks: list[dict[str, Any]]) -> Iterator[Row]:
+    runs = [it for it in benchmarks if it.get("run_type", "iteration") == "iteration"]
+    for it in runs or [it for it in benchmarks if it.get("aggregate_name") == "median"]:
+        name, *arguments = it.get("run_name", it["name"]).split("/")
+        parameters = {}
+        for place, argument in enumerate(arguments):
+            key, _, value = argument.rpartition(":")
+            number = _number(value)
+            if number is None:
+                name += f"/{argument}"  # a template's, or a setting such as real_time
+            elif key not in ("iterations", "repeats", "threads", "min_time"):
+                parameters[key or ("n" if len(arguments) == 1 else f"argument {place + 1}")] = (
+                    number
+                )
+        yield Row(name, parameters, [it["cpu_time"]])
+
+
+def _number(value: Any) -> float | None:
+    if isinstance(value, bool):
+        return None
+    try:
+        return float(value)
+    except (TypeError, ValueError):
+        return None

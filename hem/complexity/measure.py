@@ -1,0 +1,177 @@
+"""Measure what a function costs by the size of its input, so that it can be judged.
+
+What spoils such measurements is kept out: the first calls do not count, the timer's own cost is
+taken off, rounds are interleaved over the sizes, and no input is used twice. Every size is asked
+about as much data as the largest, in many calls, so that the caches treat all sizes alike.
+"""
+
+import gc
+import pickle
+import tracemalloc
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from time import perf_counter
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from hem.complexity.judge import Verdict, judge
+from hem.complexity.memory import memory_times
+from hem.complexity.notation import Array
+
+Function = Callable[[Any], object]
+MakeInput = Callable[[int], Any]
+
+COUNT = 9  # sizes, where none are given
+TRIED = 8  # the size to see at whether a function changes its input
+FIRST = 4  # the first that is tried
+STEP = 1.3  # from one that is tried to the next; small, as costs may grow exponentially
+SMALLEST = 64  # where the largest is much larger: below that, it is the call that costs
+MOST_CALLS = 4_096  # in a sample
+LEAST_SECONDS = 2e-5  # of a sample, where inputs may be used again
+MEMORY_ERROR = 0.05  # relative error of what memory did to a call, beside what was measured
+
+
+@dataclass(frozen=True)
+class Measured:
+    """What a function cost by size, and what memory takes at each working set."""
+
+    sizes: Array  # (k,)
+    samples: list[Array]  # k times seconds per call
+    working_sets: Array  # (k,) bytes that a call reads, makes and leaves
+    memory: Array  # (3, k) seconds, as `memory_times` tells them
+
+    def judge(self, expected: str = "O(1)", **options: Any) -> Verdict:
+        """Judge a claim by these costs; options as of `hem.complexity.judge`."""
+        given: dict[str, Any] = {"latency": self.memory, "latency_error": MEMORY_ERROR} | options
+        return judge(self.sizes, self.samples, expected, **given)
+
+
+def measure(
+    f: Function, make_input: MakeInput, sizes: ArrayLike | None = None, *, budget: float = 5.0,
+    rounds: int = 15, fresh: bool | None = None, amortized: bool = False, most: int = 1_000_000,
+) -> Measured:  # fmt: skip
+    """Measure f(make_input(n)) for every size n.
+
+    make_input: what makes the input of one call; it is not timed. Where a cost has several
+    variables, it holds all but one fixed.
+    sizes: ascending, at least four over a range of four to be judged. Where none are given, nine up
+    to `most`, as far as the budget allows: about so many seconds in all.
+    rounds: samples per size. fresh: whether every call gets an input of its own. By default inputs
+    that f leaves as they were, as pickle sees it, are used again: quick functions need that.
+    amortized: f does a sequence of n operations, and the cost of one of them is asked for.
+
+    Raises ValueError for sizes that are not whole numbers from 1 on; what f raises goes through.
+    """
+    slot, given = budget / (COUNT * (rounds + 1)), None if sizes is None else _checked(sizes)
+    changed = _changes(f, make_input(given[0] if given else TRIED))  # warms up, too
+    fresh = changed if fresh is None else fresh
+    chosen = given or _choose_sizes(f, make_input, slot, most)
+    plans = [_plan(f, make_input, n, chosen[-1], slot, fresh) for n in chosen]
+    working_sets = np.array([_working_set(f, make_input, n) for n in chosen], float)
+    memory = memory_times(working_sets)
+    samples: list[list[float]] = [[] for _ in plans]
+    collecting = gc.isenabled()
+    gc.disable()
+    try:
+        for turn in range(rounds + 1):
+            for row, plan in list(zip(samples, plans, strict=True))[:: 1 - 2 * (turn % 2)]:
+                row.append(plan.sample(f))
+    finally:
+        if collecting:
+            gc.enable()
+    per = chosen if amortized else np.ones(len(chosen))
+    counted = [np.array(row[1:]) / k for row, k in zip(samples, per, strict=True)]
+    return Measured(np.array(chosen, float), counted, working_sets, memory)
+
+
+@dataclass(frozen=True)
+class _Plan:
+    """How one size is sampled."""
+
+    make: Callable[[], Any]
+    calls: int
+    pool: list[Any]  # inputs to be used again; empty where each call gets its own
+
+    def sample(self, f: Function) -> float:
+        """Seconds per call."""
+        inputs = self.pool or [self.make() for _ in range(self.calls)]
+        own = min(_seconds(None, inputs) for _ in range(2))
+        return max(_seconds(f, inputs) - own, 1e-9) / len(inputs)
+
+
+def _seconds(f: Function | None, inputs: Sequence[Any]) -> float:
+    """What calls take together, or no calls: the timer and the loop. Answers are freed after it."""
+    answers: list[Any] = []
+    keep = answers.append
+    if f is None:
+        begin = perf_counter()
+        for it in inputs:
+            keep(it)
+        return perf_counter() - begin
+    begin = perf_counter()
+    for it in inputs:
+        keep(f(it))
+    return perf_counter() - begin
+
+
+def _plan(f: Function, make: MakeInput, n: int, last: int, slot: float, fresh: bool) -> _Plan:
+    begin = perf_counter()
+    it = make(n)
+    made = perf_counter()
+    f(it)
+    both, call = perf_counter() - begin, perf_counter() - made
+    calls = int(np.clip(min(last / n, slot / max(both, 1e-9)), 1, MOST_CALLS))
+    if fresh:
+        return _Plan(lambda: make(n), calls, [])
+    again = int(np.clip(LEAST_SECONDS / max(calls * call, 1e-9), 1, MOST_CALLS))
+    return _Plan(lambda: make(n), calls, [make(n) for _ in range(calls)] * again)
+
+
+def _choose_sizes(f: Function, make_input: MakeInput, slot: float, most: int) -> list[int]:
+    """Nine sizes of equal ratio, up to what a call takes the whole slot for."""
+    n = FIRST
+    while n < most:
+        larger = min(max(n + 1, round(n * STEP)), most)
+        begin = perf_counter()
+        f(make_input(larger))
+        if perf_counter() - begin > slot:
+            break
+        n = larger
+    smallest = max(FIRST, min(SMALLEST, n // SMALLEST))
+    ends = smallest, max(n, 4 * FIRST)
+    return [int(size) for size in np.unique(np.geomspace(*ends, COUNT).round())]
+
+
+def _changes(f: Function, it: Any) -> bool:
+    """Whether a call changes its input, or may do so unseen."""
+    try:
+        before = pickle.dumps(it)
+    except Exception:  # whatever an object may say to being pickled
+        f(it)
+        return True
+    f(it)
+    return pickle.dumps(it) != before
+
+
+def _checked(sizes: ArrayLike) -> list[int]:
+    chosen = np.unique(np.asarray(sizes))
+    if chosen.ndim != 1 or not chosen.size or np.any(chosen < 1) or np.any(chosen % 1):
+        raise ValueError("sizes must be whole numbers, each at least 1")
+    return [int(n) for n in chosen]
+
+
+def _working_set(f: Function, make_input: MakeInput, n: int) -> int:
+    """Bytes of an input, and of what a call makes beside it; as Python and NumPy tell them."""
+    traced = tracemalloc.is_tracing()
+    if not traced:
+        tracemalloc.start()
+    before, _ = tracemalloc.get_traced_memory()
+    it = make_input(n)
+    tracemalloc.reset_peak()
+    f(it)
+    _, peak = tracemalloc.get_traced_memory()
+    if not traced:
+        tracemalloc.stop()
+    return max(peak - before, 1)

@@ -1,0 +1,66 @@
+"""What the machine's memory does to costs, measured where a function works.
+
+A function that goes from record to record waits for the memory's latency, one that reads along for
+its bandwidth, and one that makes something new for the system, which gives memory page by page.
+"""
+
+from collections.abc import Callable
+from time import perf_counter
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from hem.complexity.notation import Array
+
+LINE = 64  # bytes that come from memory together
+STEPS = 1_000  # accesses per sample
+SAMPLES = 5
+SMALLEST = 16 * 1024  # bytes; less than that is in the first cache, and beside what a call takes
+AT_BEST = 5e-9  # seconds: what a step from record to record takes at least, in the caches
+
+
+def memory_times(working_sets: ArrayLike) -> Array:
+    """(3, k) seconds: a dependent access, reading a byte, and writing a byte of new memory.
+
+    working_sets: (k,) bytes. Each is measured right now, as other tenants of the machine leave the
+    caches; takes some milliseconds per megabyte, and as much memory as the largest.
+    """
+    sets = np.maximum(np.asarray(working_sets, float), SMALLEST).astype(int)
+    chased = np.array([_chase(size) for size in sets])
+    least = min(float(chased.min()), _chase(SMALLEST))
+    read, written = ([per_byte(size) for size in sets] for per_byte in (_read, _write))
+    return np.array([chased - least + AT_BEST, read, written])
+
+
+def _chase(size: int) -> float:
+    """Seconds per step through a random cycle of lines, with what Python takes for a step."""
+    lines = size // LINE
+    order = np.random.default_rng(0).permutation(lines)
+    cycle = np.zeros(8 * lines, np.int64)
+    cycle[8 * order] = 8 * np.roll(order, -1)
+    follow, place, seconds = cycle.data, 0, []
+    for _ in range(SAMPLES):
+        begin = perf_counter()
+        for _ in range(STEPS):
+            place = follow[place]
+        seconds.append(perf_counter() - begin)
+    return float(np.median(seconds)) / STEPS
+
+
+def _read(size: int) -> float:
+    return _seconds_per_byte(np.ones(size // 8).sum, size)
+
+
+def _write(size: int) -> float:
+    return _seconds_per_byte(lambda: np.empty(size, np.uint8).fill(1), size)
+
+
+def _seconds_per_byte(call: Callable[[], object], size: int) -> float:
+    repeats = max(1, (1 << 20) // size)
+    seconds = []
+    for _ in range(SAMPLES):
+        begin = perf_counter()
+        for _ in range(repeats):
+            call()
+        seconds.append(perf_counter() - begin)
+    return float(np.median(seconds)) / repeats / size

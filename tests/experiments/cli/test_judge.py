@@ -1,0 +1,79 @@
+"""Laws of `hem judge`: the exit code is the verdict, and a mistake gets one clear line."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from experiments import cli
+
+SIZES = [100 * 4**k for k in range(6)]
+
+
+def hem(*arguments: str) -> tuple[int, str]:
+    cli.console.width = cli.errors.width = 200
+    result = CliRunner().invoke(cli.app, ["judge", *arguments])
+    return result.exit_code, result.stdout + result.stderr
+
+
+@pytest.fixture
+def costs(tmp_path: Path) -> Path:
+    """A quadratic function and a linear one."""
+    rows = [f"{n},{1e-9 * n**2 * k},{1e-8 * n * k}" for n in SIZES for k in (0.99, 1, 1.01, 1.02)]
+    file = tmp_path / "costs.csv"
+    file.write_text("\n".join(["n,pairs,scan", *rows]))
+    return file
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code"),
+    [
+        ((), 0),
+        (("--expected", "O(n)"), 1),
+        (("--expected", "O(n^2)", "--upper"), 0),
+        (("--expected", "n log n", "--upper"), 1),
+    ],
+)
+def test_the_exit_code_is_the_worst_verdict(costs: Path, arguments: tuple[str], code: int) -> None:
+    told, words = hem(str(costs), *arguments)
+    assert told == code
+    assert "O(n²)" in words
+
+
+def test_too_little_data_cannot_be_told(tmp_path: Path) -> None:
+    file = tmp_path / "few.csv"
+    file.write_text("n,a\n1,1\n2,2\n3,3\n")
+    code, words = hem(str(file), "--expected", "O(n)")
+    assert code == 2
+    assert "Too few sizes" in words
+
+
+def test_json_says_what_the_table_says(costs: Path) -> None:
+    _, words = hem(str(costs), "--json", "--expected", "linear")
+    pairs, scan = json.loads(words)
+    assert (pairs["function"], pairs["answer"], pairs["outcome"]) == ("pairs", "O(n²)", "violated")
+    assert (scan["function"], scan["answer"], scan["outcome"]) == ("scan", "O(n)", "consistent")
+    assert "outcome" not in json.loads(hem(str(costs), "--json")[1])[0]
+
+
+def test_costs_are_drawn_into_a_file(costs: Path, tmp_path: Path) -> None:
+    hem(str(costs), "--expected", "O(n)", "--plot", str(tmp_path / "costs.svg"))
+    assert "scan" in (tmp_path / "costs.svg").read_text()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (("none.csv",), "none.csv"),
+        (("{costs}", "--expected", "fast"), "unknown growth class 'fast'"),
+        (("{costs}", "--parameter", "m"), "no parameter 'm'; there are: n"),
+    ],
+)
+def test_a_mistake_gets_one_clear_line(costs: Path, arguments: list[str], message: str) -> None:
+    code, words = hem(*(it.format(costs=costs) for it in arguments))
+    assert code == 2
+    assert message in words
+    assert words.count("\n") == 1

@@ -1,0 +1,131 @@
+"""Laws of measuring, by a clock that runs as the measured function says."""
+
+import random
+from collections.abc import Iterator
+
+import numpy as np
+import pytest
+
+from hem.complexity import measure
+from hem.complexity import measure as measure_function
+from hem.complexity.memory import memory_times
+
+OVERHEAD = 1e-7
+
+
+class Clock:
+    """Seconds go by where a function works, and a little whenever the clock is read."""
+
+    now = 0.0
+
+    def __call__(self) -> float:
+        self.now += OVERHEAD
+        return self.now
+
+
+@pytest.fixture
+def clock(monkeypatch: pytest.MonkeyPatch) -> Iterator[Clock]:
+    made, module = Clock(), __import__("sys").modules[measure_function.__module__]
+    monkeypatch.setattr(module, "perf_counter", made)
+    monkeypatch.setattr(module, "memory_times", lambda sets: np.ones((3, len(sets))))
+    return made
+
+
+def test_samples_are_what_a_call_takes_without_the_timer(clock: Clock) -> None:
+    def work(n: int) -> None:
+        clock.now += 1e-6 * n**2
+
+    found = measure(work, lambda n: n, [10, 20, 40, 80, 160], rounds=4)
+    assert [len(row) for row in found.samples] == [4] * 5
+    for n, row in zip(found.sizes, found.samples, strict=True):
+        assert row == pytest.approx(np.full(4, 1e-6 * n**2))
+    assert found.judge("O(n²)").outcome == "consistent"
+    assert found.judge("O(n log n)").outcome == "violated"
+
+
+@pytest.mark.parametrize(
+    ("name", "power", "budget"), [("O(n)", 1, 1.0), ("O(n)", 1, 8.0), ("O(n³)", 3, 2.0)]
+)
+def test_sizes_are_chosen_within_the_budget(
+    clock: Clock, name: str, power: int, budget: float
+) -> None:
+    def work(n: int) -> None:
+        clock.now += 1e-8 * n**power
+
+    found = measure(work, lambda n: n, budget=budget)
+    assert clock.now <= 1.5 * budget
+    assert found.sizes[-1] >= 16 * found.sizes[0]
+    assert found.judge().answer == name
+
+
+def test_exponential_costs_are_found_before_they_explode(clock: Clock) -> None:
+    def work(n: int) -> None:
+        clock.now += 1e-7 * 2**n
+
+    found = measure(work, lambda n: n, budget=4.0)
+    assert found.sizes[-1] < 30
+    assert found.judge().answer == "O(2^n)"
+
+
+def test_what_changes_its_input_gets_a_new_one_for_each_call() -> None:
+    seen: list[int] = []
+    made: list[list[float]] = []
+
+    def make(n: int) -> list[float]:
+        made.append([random.random() for _ in range(n)])
+        return made[-1]
+
+    def sort(it: list[float]) -> None:
+        seen.append(id(it))
+        it.sort()
+
+    measure(sort, make, [8, 16, 32, 64], budget=0.05, rounds=2)
+    assert len(seen) == len(set(seen))
+
+
+def test_what_leaves_its_input_is_asked_again_often_enough_for_the_clock(clock: Clock) -> None:
+    calls = 0
+
+    def work(it: list[int]) -> int:
+        nonlocal calls
+        calls += 1
+        clock.now += 1e-9
+        return len(it)
+
+    found = measure(work, lambda n: list(range(n)), [4, 8, 16, 64], rounds=2)
+    assert calls > 4 * 2 * 100
+    assert found.judge("O(1)").outcome == "consistent"
+
+
+def test_rounds_are_interleaved_over_the_sizes(clock: Clock) -> None:
+    seen: list[int] = []
+    measure(seen.append, lambda n: n, [4, 8, 16, 32], rounds=3, fresh=True)
+    turns = [n for n, before in zip(seen, [0, *seen], strict=False) if n != before]
+    assert all(turns.count(n) >= 3 for n in (4, 8, 16, 32))
+
+
+def test_amortized_costs_are_of_one_operation(clock: Clock) -> None:
+    def sequence(n: int) -> None:
+        for i in range(n):
+            clock.now += 1e-6 * (1 + (i if i & (i - 1) == 0 else 0))  # as a list grows
+
+    found = measure(sequence, lambda n: n, [2**k for k in range(4, 12)], amortized=True)
+    assert found.judge("amortized O(1)").outcome == "consistent"
+    assert measure(sequence, lambda n: n, [16, 64, 256, 1024]).judge().answer == "O(n)"
+
+
+def test_working_sets_are_the_bytes_of_input_and_answer() -> None:
+    found = measure(np.copy, np.ones, [1_000, 10_000, 100_000, 1_000_000], budget=0.1, rounds=1)
+    assert found.working_sets == pytest.approx(16 * found.sizes, rel=0.2)
+
+
+def test_memory_is_told_at_every_working_set() -> None:
+    told = memory_times([1, 1e5, 1e7])
+    assert told.shape == (3, 3)
+    assert np.all(told > 0)
+
+
+@pytest.mark.parametrize("sizes", [[0, 1, 2, 3], [1.5, 2, 3], []])
+def test_sizes_that_are_none_are_refused(sizes: list[float]) -> None:
+    with pytest.raises(ValueError, match="sizes must be whole numbers"):
+        measure(len, list, sizes)
