@@ -10,18 +10,18 @@ import pickle
 import tracemalloc
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from time import perf_counter
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from hem.complexity.judge import Verdict, judge
-from hem.complexity.memory import memory_times
+from hem.complexity.memory import CLOCK, memory_times
 from hem.complexity.notation import Array
 
 Function = Callable[[Any], object]
 MakeInput = Callable[[int], Any]
+Clock = Callable[[], float]
 
 COUNT = 9  # sizes, where none are given
 TRIED = 8  # the size to see at whether a function changes its input
@@ -29,7 +29,7 @@ FIRST = 4  # the first that is tried
 STEP = 1.3  # from one that is tried to the next; small, as costs may grow exponentially
 SMALLEST = 64  # where the largest is much larger: below that, it is the call that costs
 MOST_CALLS = 4_096  # in a sample
-LEAST_SECONDS = 2e-5  # of a sample, where inputs may be used again
+LEAST_SECONDS = 1e-4  # of a sample, where inputs may be used again
 MEMORY_ERROR = 0.05  # relative error of what memory did to a call, beside what was measured
 
 
@@ -39,8 +39,8 @@ class Measured:
 
     sizes: Array  # (k,)
     samples: list[Array]  # k times seconds per call
-    working_sets: Array  # (k,) bytes that a call reads, makes and leaves
-    memory: Array  # (3, k) seconds, as `memory_times` tells them
+    working_sets: Array  # (2, k) bytes that a call, and all calls of a sample, read and make
+    memory: Array  # (6, k) seconds, as `memory_times` tells them of either
 
     def judge(self, expected: str = "O(1)", **options: Any) -> Verdict:
         """Judge a claim by these costs; options as of `hem.complexity.judge`."""
@@ -51,6 +51,7 @@ class Measured:
 def measure(
     f: Function, make_input: MakeInput, sizes: ArrayLike | None = None, *, budget: float = 5.0,
     rounds: int = 15, fresh: bool | None = None, amortized: bool = False, most: int = 1_000_000,
+    clock: Clock = CLOCK,
 ) -> Measured:  # fmt: skip
     """Measure f(make_input(n)) for every size n.
 
@@ -60,6 +61,7 @@ def measure(
     to `most`, as far as the budget allows: about so many seconds in all.
     rounds: samples per size. fresh: whether every call gets an input of its own. By default inputs
     that f leaves as they were, as pickle sees it, are used again: quick functions need that.
+    clock: with `time.perf_counter` waiting counts, too, for files, the network and other threads.
     amortized: f does a sequence of n operations, and the cost of one of them is asked for.
 
     Raises ValueError for sizes that are not whole numbers from 1 on; what f raises goes through.
@@ -67,17 +69,18 @@ def measure(
     slot, given = budget / (COUNT * (rounds + 1)), None if sizes is None else _checked(sizes)
     changed = _changes(f, make_input(given[0] if given else TRIED))  # warms up, too
     fresh = changed if fresh is None else fresh
-    chosen = given or _choose_sizes(f, make_input, slot, most)
-    plans = [_plan(f, make_input, n, chosen[-1], slot, fresh) for n in chosen]
-    working_sets = np.array([_working_set(f, make_input, n) for n in chosen], float)
-    memory = memory_times(working_sets)
+    chosen = given or _choose_sizes(f, make_input, slot, most, clock)
+    plans = [_plan(f, make_input, n, chosen[-1], slot, fresh, clock) for n in chosen]
+    bytes_per_call = np.array([_working_set(f, make_input, n) for n in chosen], float)
+    working_sets = np.array([bytes_per_call, bytes_per_call * [it.calls for it in plans]])
+    memory = np.vstack([memory_times(row) for row in working_sets])
     samples: list[list[float]] = [[] for _ in plans]
     collecting = gc.isenabled()
     gc.disable()
     try:
         for turn in range(rounds + 1):
             for row, plan in list(zip(samples, plans, strict=True))[:: 1 - 2 * (turn % 2)]:
-                row.append(plan.sample(f))
+                row.append(plan.sample(f, clock))
     finally:
         if collecting:
             gc.enable()
@@ -92,52 +95,61 @@ class _Plan:
 
     make: Callable[[], Any]
     calls: int
-    pool: list[Any]  # inputs to be used again; empty where each call gets its own
+    again: int  # times that each input is used in a sample; 0 where each call gets its own
+    pool: list[Any]
 
-    def sample(self, f: Function) -> float:
+    def sample(self, f: Function, clock: Clock) -> float:
         """Seconds per call."""
-        inputs = self.pool or [self.make() for _ in range(self.calls)]
-        own = min(_seconds(None, inputs) for _ in range(2))
-        return max(_seconds(f, inputs) - own, 1e-9) / len(inputs)
+        inputs = self.pool * self.again or [self.make() for _ in range(self.calls)]
+        own = min(_seconds(None, inputs, clock) for _ in range(2))
+        return max(_seconds(f, inputs, clock) - own, 1e-9) / len(inputs)
 
 
-def _seconds(f: Function | None, inputs: Sequence[Any]) -> float:
+def _seconds(f: Function | None, inputs: Sequence[Any], clock: Clock) -> float:
     """What calls take together, or no calls: the timer and the loop. Answers are freed after it."""
     answers: list[Any] = []
     keep = answers.append
     if f is None:
-        begin = perf_counter()
+        begin = clock()
         for it in inputs:
             keep(it)
-        return perf_counter() - begin
-    begin = perf_counter()
+        return clock() - begin
+    begin = clock()
     for it in inputs:
         keep(f(it))
-    return perf_counter() - begin
+    return clock() - begin
 
 
-def _plan(f: Function, make: MakeInput, n: int, last: int, slot: float, fresh: bool) -> _Plan:
-    begin = perf_counter()
-    it = make(n)
-    made = perf_counter()
-    f(it)
-    both, call = perf_counter() - begin, perf_counter() - made
+def _plan(
+    f: Function, make: MakeInput, n: int, last: int, slot: float, fresh: bool, clock: Clock
+) -> _Plan:
+    both, call = _seconds_of_one(f, make, n, clock)
     calls = int(np.clip(min(last / n, slot / max(both, 1e-9)), 1, MOST_CALLS))
     if fresh:
-        return _Plan(lambda: make(n), calls, [])
+        return _Plan(lambda: make(n), calls, 0, [])
     again = int(np.clip(LEAST_SECONDS / max(calls * call, 1e-9), 1, MOST_CALLS))
-    return _Plan(lambda: make(n), calls, [make(n) for _ in range(calls)] * again)
+    return _Plan(lambda: make(n), calls, again, [make(n) for _ in range(calls)])
 
 
-def _choose_sizes(f: Function, make_input: MakeInput, slot: float, most: int) -> list[int]:
+def _seconds_of_one(f: Function, make: MakeInput, n: int, clock: Clock) -> tuple[float, float]:
+    """What an input and a call take, and the call alone."""
+    begin = clock()
+    it = make(n)
+    made = clock()
+    f(it)
+    end = clock()
+    return end - begin, end - made
+
+
+def _choose_sizes(
+    f: Function, make_input: MakeInput, slot: float, most: int, clock: Clock
+) -> list[int]:
     """Nine sizes of equal ratio, up to what a call takes the whole slot for."""
     n = FIRST
     while n < most:
         larger = min(max(n + 1, round(n * STEP)), most)
-        begin = perf_counter()
-        f(make_input(larger))
-        if perf_counter() - begin > slot:
-            break
+        if all(_seconds_of_one(f, make_input, larger, clock)[0] > slot for _ in range(2)):
+            break  # twice, as one that was disturbed says little
         n = larger
     smallest = max(FIRST, min(SMALLEST, n // SMALLEST))
     ends = smallest, max(n, 4 * FIRST)

@@ -5,7 +5,7 @@ its bandwidth, and one that makes something new for the system, which gives memo
 """
 
 from collections.abc import Callable
-from time import perf_counter
+from time import get_clock_info, perf_counter, thread_time
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -16,7 +16,11 @@ LINE = 64  # bytes that come from memory together
 STEPS = 1_000  # accesses per sample
 SAMPLES = 5
 SMALLEST = 16 * 1024  # bytes; less than that is in the first cache, and beside what a call takes
+QUICKEST = 2e-11  # seconds that a byte takes at least, as a program reads it that does more
 AT_BEST = 5e-9  # seconds: what a step from record to record takes at least, in the caches
+Call = Callable[[], object]
+CLOCK = thread_time if get_clock_info("thread_time").resolution <= 1e-6 else perf_counter
+"""The processor's time: what other programs take meanwhile is of no function's cost."""
 
 
 def memory_times(working_sets: ArrayLike) -> Array:
@@ -40,27 +44,37 @@ def _chase(size: int) -> float:
     cycle[8 * order] = 8 * np.roll(order, -1)
     follow, place, seconds = cycle.data, 0, []
     for _ in range(SAMPLES):
-        begin = perf_counter()
+        begin = CLOCK()
         for _ in range(STEPS):
             place = follow[place]
-        seconds.append(perf_counter() - begin)
+        seconds.append(CLOCK() - begin)
     return float(np.median(seconds)) / STEPS
 
 
 def _read(size: int) -> float:
-    return _seconds_per_byte(np.ones(size // 8).sum, size)
+    few = np.ones(8)
+    return _seconds_per_byte(np.ones(size // 8).sum, few.sum, size)
 
 
 def _write(size: int) -> float:
-    return _seconds_per_byte(lambda: np.empty(size, np.uint8).fill(1), size)
+    def write(size: int = size) -> None:
+        np.empty(size, np.uint8).fill(1)
+
+    return _seconds_per_byte(write, lambda: write(8), size)
 
 
-def _seconds_per_byte(call: Callable[[], object], size: int) -> float:
+def _seconds_per_byte(call: Call, empty: Call, size: int) -> float:
+    """What a call takes beyond one that does next to nothing."""
     repeats = max(1, (1 << 20) // size)
+    beyond = _median_seconds(call, repeats) - _median_seconds(empty, repeats)
+    return max(beyond, 0.0) / size + QUICKEST
+
+
+def _median_seconds(call: Call, repeats: int) -> float:
     seconds = []
     for _ in range(SAMPLES):
-        begin = perf_counter()
+        begin = CLOCK()
         for _ in range(repeats):
             call()
-        seconds.append(perf_counter() - begin)
-    return float(np.median(seconds)) / repeats / size
+        seconds.append(CLOCK() - begin)
+    return float(np.median(seconds)) / repeats
