@@ -123,9 +123,14 @@ class Curves:
         beside = curve.cases["reference"].to_numpy(float)
         return None if np.isnan(beside).any() else beside
 
-    def latencies(self, curve: Curve) -> Array:
-        """(a, k): what each case may have waited for, beside it or in a part of its working set."""
+    def latencies(self, curve: Curve) -> Array | None:
+        """(a, k): what each case may have waited for, beside it or in a part of its working set.
+
+        None where it was not measured, or is not kept.
+        """
         beside = curve.cases["latency"].to_numpy(float)
+        if np.isnan(beside).any():
+            return None
         sets = np.maximum(curve.cases["working_set"].to_numpy(float), 1)
         within = [self.latency(sets / part) for part in PARTS]
         return np.vstack([beside, *(it for it in within if it is not None)])

@@ -33,7 +33,10 @@ HEAD = (
 
 LEAST_ROUNDS = 9  # rounds on either side with which a comparison of times can decide at all
 
-KEPT = ("id", "kind", "subject", "order", "family", "vertices", "faces", "valence")
+KEPT = (
+    *("id", "kind", "subject", "order", "family", "vertices", "faces", "valence"),
+    *("working_set", "latency", "reference"),
+)
 """What is kept of a case besides its samples and the calibration loop's readings."""
 
 

@@ -1,11 +1,14 @@
 """What a chapter works with: the run it reports, and where its links lead."""
 
 import os
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
+from experiments import carried
 from experiments.claims import JudgedClaim, judge_run
-from experiments.runs import Run, latest, load
+from experiments.regression import RUN
+from experiments.runs import RUNS, ResultsError, Run, latest, load
 
 RUN_VARIABLE = "HEM_RUN"  # the environment variable that tells a notebook which run to read
 CLAIMS = "claims"  # the folder beside the pages that holds the claims' figures and data
@@ -13,6 +16,10 @@ CLAIMS = "claims"  # the folder beside the pages that holds the claims' figures 
 
 class MissingError(ValueError):
     """What a cell would show was not measured, or cannot be shown here; the page says so."""
+
+    def _render_traceback_(self) -> list[str]:
+        """What a notebook shows of it."""
+        return [str(self)]
 
 
 @dataclass
@@ -42,15 +49,28 @@ def share(session: Session | None) -> None:
 def open_run() -> Session:
     """The run of this report; in a notebook of its own the one of ``HEM_RUN``, or the newest.
 
-    Raises ResultsError where there is none.
+    Where there is none it is the committed baseline, and the notebook says so. Raises ResultsError
+    for what is no run.
     """
     from experiments.report.style import show_figures  # which a terminal does not wait for
 
     show_figures()
     if _current is None:
-        share(read_session(os.environ.get(RUN_VARIABLE) or latest()))
+        share(read_session(os.environ.get(RUN_VARIABLE) or _newest_run()))
     assert _current is not None
     return _current
+
+
+def _newest_run() -> Path:
+    """The newest run, of this folder or of the checkout; without any the baseline."""
+    for root in (RUNS, carried(str(RUNS))):
+        with suppress(ResultsError):
+            return latest(root)
+    print(
+        "There is no run yet, so this is the committed baseline: a run reduced to what others are "
+        "compared with. What it leaves out is named where it would stand."
+    )
+    return carried("results/reference") / RUN
 
 
 def link(page: str, anchor: str = "") -> str:

@@ -139,7 +139,10 @@ def data(session: Session, judged: JudgedClaim) -> str:
         rows = [
             (case["vertices"], case["reference_bytes"], field, int(size))
             for case in cases.to_dict("records")
-            for field, size in {**case["detail"]["fields"], "all": case["samples"][0]}.items()
+            for field, size in {
+                **case["detail"].get("fields", {}),
+                "all": case["samples"][0],
+            }.items()
         ]
         table = pd.DataFrame(rows, columns=["vertices", "reference_bytes", "field", "bytes"])
     table["claimed"] = judged.claim.kind.value

@@ -32,7 +32,7 @@ def by_field(run: Run) -> Plot:
     """
     names = [name for name, structure in REGISTRY.items() if structure.compiled]
     every = (curves(run).memory(name, size).cases.tail(1) for name in names for size in (8, 4))
-    measured = [case for cases in every for case in cases.to_dict("records")]
+    measured = [it for cases in every for it in cases.to_dict("records") if it["detail"]]
     rows = list(dict.fromkeys(case["structure"] for case in measured))
     with styled():
         plot, axes = _rows([NAMED[name].title for name in rows], 1.25, 1.1)
@@ -110,7 +110,7 @@ def _parts(cases: pd.DataFrame, kind: str) -> dict[str, float]:
     """Bytes per vertex by what they are for, at the largest size."""
     sums = dict.fromkeys(PARTS, 0.0)
     for case in cases.tail(1).to_dict("records"):
-        for field, size in case["detail"][kind].items():
+        for field, size in case["detail"].get(kind, {}).items():
             known = {field, field.split(".")[1]}
             part = next(part for part, names in PARTS.items() if known & set(names))
             sums[part] += size / case["vertices"]
