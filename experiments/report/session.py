@@ -4,6 +4,7 @@ import os
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from experiments import carried
 from experiments.claims import JudgedClaim, judge_run
@@ -55,10 +56,25 @@ def open_run() -> Session:
     from experiments.report.style import show_figures  # which a terminal does not wait for
 
     show_figures()
+    _go_on_in_jupyter()
     if _current is None:
         share(read_session(os.environ.get(RUN_VARIABLE) or _newest_run()))
     assert _current is not None
     return _current
+
+
+def _go_on_in_jupyter() -> None:
+    """Have the cells below one that lacks a measurement run, as they do for a page."""
+    from IPython.core.getipython import get_ipython
+
+    shell: Any = get_ipython()
+    if hasattr(shell, "kernel") and _pass_over not in shell.events.callbacks["post_run_cell"]:
+        shell.events.register("post_run_cell", _pass_over)
+
+
+def _pass_over(result: Any) -> None:
+    if isinstance(result.error_in_exec, MissingError):
+        result.error_in_exec = None
 
 
 def _newest_run() -> Path:

@@ -15,7 +15,6 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 from scipy.optimize import isotonic_regression
 
 from experiments.harness import OPERATIONS, QUERIES_TABLE, Axis
-from experiments.report.session import MissingError
 from structures import NAMED
 
 STYLES: dict[str, dict[str, Any]] = {
@@ -52,10 +51,7 @@ def styled() -> Any:
 
 
 def show_figures() -> None:
-    """Let the interpreter that runs a notebook show plots as SVG and pictures as PNG.
-
-    In Jupyter a cell that lacks a measurement does not keep those below from being run.
-    """
+    """Let the interpreter that runs a notebook show plots as SVG and pictures as PNG."""
     from IPython.core.getipython import get_ipython
     from IPython.core.pylabtools import select_figure_formats
 
@@ -65,14 +61,6 @@ def show_figures() -> None:
         formatters = shell.display_formatter.formatters
         formatters["image/svg+xml"].for_type(Plot, svg)
         formatters["image/png"].for_type(Plot, lambda plot: None)
-    if hasattr(shell, "kernel") and _pass_over not in shell.events.callbacks["post_run_cell"]:
-        shell.events.register("post_run_cell", _pass_over)
-
-
-def _pass_over(result: Any) -> None:
-    """Take what was not measured for an outcome, not for a failure."""
-    if isinstance(result.error_in_exec, MissingError):
-        result.error_in_exec = None
 
 
 def svg(plot: Figure) -> str:
