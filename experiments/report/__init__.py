@@ -12,8 +12,8 @@ from typing import Any
 
 _PLACES = {
     "pages": (
-        "Html", "about_run", "answer", "browser", "chapter_list", "claim_tables", "errata",
-        "frame_table", "legend", "reasons", "sentences", "slopes", "tally", "text_table",
+        "Html", "about_run", "abstract", "answer", "browser", "chapter_list", "claim_tables",
+        "errata", "frame_table", "legend", "reasons", "sentences", "slopes", "tally", "text_table",
         "verdicts",
     ),
     "readme": ("write_readme",),

@@ -2,6 +2,7 @@
 
 from collections import Counter
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from functools import cache, partial
 from html import escape
 from importlib.resources import files
@@ -16,7 +17,14 @@ from experiments.claims.errata import Erratum
 from experiments.harness import Axis, Table
 from experiments.report import session
 from experiments.report.notebooks import page_titles
-from experiments.report.tables import by_subject, duration, spelled, tally_rows, two_digits
+from experiments.report.tables import (
+    by_subject,
+    duration,
+    german_numbers,
+    spelled,
+    tally_rows,
+    two_digits,
+)
 from experiments.report.tables import legend as legend_lines
 from experiments.runs import Run, in_words, tables
 from structures import NAMED
@@ -181,7 +189,31 @@ def frame_table(frame: pd.DataFrame) -> Html:
     return numbers(frame.to_numpy(), dict.fromkeys(frame.columns, str))
 
 
-def answer(text: str, rests: Mapping[str, str], needs: Sequence[float], missing: str) -> Html:
-    """One sentence of the front page with its links, or ``missing`` where a number is."""
+@dataclass(frozen=True)
+class Answer:
+    """An answer of the front page, and the same in German; both are shown by a template.
+
+    ``measured`` is false where the text says what is missing.
+    """
+
+    text: str
+    german: str
+    rests: Mapping[str, str]
+    measured: bool
+
+    def _repr_html_(self) -> str:
+        return str(table("answer", self.text, self.measured, self.rests))
+
+
+def answer(
+    text: str, german: str, rests: Mapping[str, str], needs: Sequence[float], missing: str
+) -> Answer:
+    """An answer with its links, or ``missing`` where a number is."""
     measured = all(value == value for value in needs)  # nan where nothing was measured
-    return table("answer", text if measured else missing, measured, rests)
+    german = german_numbers(german) if measured else "Dieser Lauf hat das nicht gemessen."
+    return Answer(text if measured else missing, german, rests, measured)
+
+
+def abstract(answers: Iterable[Answer]) -> Html:
+    """The same answers in German."""
+    return table("abstract", [it.german for it in answers])

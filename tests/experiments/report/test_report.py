@@ -14,7 +14,15 @@ import pytest
 
 from experiments.claims import CLAIMED, judge_run
 from experiments.harness import OPERATIONS, Axis
-from experiments.report import notebooks, readme, site, uses, write_report
+from experiments.report import (
+    abstract,
+    answer,
+    notebooks,
+    readme,
+    site,
+    uses,
+    write_report,
+)
 from experiments.report.figures import growth
 from experiments.report.session import Session, share
 from experiments.report.style import spread_apart
@@ -170,3 +178,25 @@ def test_labels_are_moved_as_little_as_need_be():
         spread = spread_apart(heights, 10)
         assert (np.diff(spread) >= 10 - 1e-9).all()
         assert np.isclose(np.mean(spread), np.mean(heights))
+
+
+def test_the_german_answers_have_the_numbers_of_the_english_ones(base_folder):
+    run = load(base_folder)
+    share(Session(run, judge_run(run)))
+    body = notebooks.body("index")
+    share(None)
+    english = re.findall(r'(?s)<p class="answer">(.*?)<span class="rests">', body)
+    german = re.findall(r"<li>(.*?)</li>", re.search(r'(?s)lang="de">(.*?)</ol>', body)[1])
+    assert len(english) == len(german) == 5
+    for here, there in zip(english, german, strict=True):
+        numbers = re.findall(r"\d[\d,.]*\d|\d", here)
+        swapped = [it.translate(str.maketrans(",.", ".,")) for it in numbers]
+        assert sorted(re.findall(r"\d[\d,.]*\d|\d", there)) == sorted(swapped)
+        assert re.search("[äöü]", there)
+    assert all(it in " ".join(german) for it in ("6,33-Fache", "bei 200.000 Dreiecken"))
+
+
+def test_what_was_not_measured_is_said_in_german_too():
+    missing = answer("2", german="2,5", rests={}, needs=(np.nan,), missing="nothing")
+    assert (missing.text, missing.measured) == ("nothing", False)
+    assert "nicht gemessen" in abstract([missing])
