@@ -1,5 +1,6 @@
 """Operations as they are measured: on which elements, on a copy that is made new each time."""
 
+from dataclasses import replace
 from functools import lru_cache, partial
 from time import perf_counter
 from typing import Any
@@ -11,7 +12,8 @@ import hem
 import structures
 from experiments.harness.calibration import latency_now
 from experiments.harness.cases import BASE, Case
-from experiments.harness.timer import Timer
+from experiments.harness.reference import copies, copies_of, small_case
+from experiments.harness.timer import Timed, Timer, time_rounds
 from experiments.presets import HUBS, Preset
 from hem.arrays import Array
 from hem.contract import Structure
@@ -25,6 +27,8 @@ NOT_SEARCHED = ("split_face",)
 SECONDS_PER_SCANNED_FACE = 5e-9
 SECONDS_PER_REBUILT_FACE = 20e-9
 """Where all neighbors are found anew."""
+MOST_IMPOSSIBLE = 0.5
+"""Part of the rounds that may be impossible, so that the others tell something."""
 MOST_ELEMENTS = 2_000
 FEWEST_OPERATIONS = 500
 MOST_TURNS = 16
@@ -33,7 +37,9 @@ MOST_TURNS = 16
 One mesh, so that a small one is found in the caches however many operations there is room for.
 """
 IDLE_CALLS = 15
-LEAST_SECONDS = 1e-8
+CYCLE = 2e-10
+"""Seconds of a clock cycle, at the least: no operation takes less."""
+REFERENCE_ROUNDS = 4
 ELEMENT_SEED = 22
 SMALL = 20_000
 """Faces up to which the outcome is judged from its triangles, and against the indexed mesh."""
@@ -127,6 +133,16 @@ class OperationBatch:
         task[END] = self.operations
         return float(np.median(seconds))
 
+    def each(self, timed: Timed, idle: float) -> tuple[Timed, float]:
+        """Rounds as seconds per operation, and the part of them that cannot be.
+
+        Those are left out: less than a clock cycle remains once an ``idle`` call is taken off.
+        """
+        seconds = (timed.samples - idle) / self.operations
+        possible = seconds >= CYCLE
+        kept = Timed(seconds[possible], timed.calibration[possible], timed.per * self.operations)
+        return kept, float(1 - possible.mean()) if len(seconds) else 0.0
+
     def restore(self) -> tuple[()]:
         """Make the mesh what it was, as the setup of a round.
 
@@ -175,7 +191,30 @@ def time_operations(case: Case, preset: Preset, timer: Timer) -> dict[str, Any]:
     turns = int(np.clip(FEWEST_OPERATIONS // batch.operations, 1, most))
     latency = latency_now(sum(s.memory().values()))
     timed = timer(batch.operate, setup=batch.restore, rounds=turns * preset.rounds, warmup=2)
-    timed = timed.averaged(turns)
-    seconds = np.maximum(timed.samples - batch.idle_seconds(), LEAST_SECONDS) / batch.operations
-    handles = turns * batch.operations
-    return {**timed.fields, "samples": seconds, "handles": handles, "latency": latency}
+    idle = batch.idle_seconds()
+    timed, impossible = batch.each(timed.averaged(turns), idle)
+    reference = _constant_work(case, preset, batch.operations, idle) if s.compiled else None
+    beside = {"latency": latency, "reference": reference, "noise": {"impossible": impossible}}
+    if impossible > MOST_IMPOSSIBLE:
+        return {**beside, "skipped": "the operations take no longer than a call that does none"}
+    return {**timed.fields, **beside}
+
+
+def _constant_work(case: Case, preset: Preset, count: int, idle: float) -> float | None:
+    """Seconds per operation where the work cannot grow, see ``reference.py``; after a copy, too.
+
+    None where sizes are not compared, and for what looks at the whole mesh.
+    """
+    if case.family not in (HUBS, preset.families[0]) or searches(case):
+        return None
+    small = small_case(case, preset)
+    s, _ = copies(small, case.vertices)
+    faces = copies_of(operation_faces(replace(small, subject=case.subject)), small, s)
+    if len(faces) > count:
+        faces = np.sort(np.random.default_rng(ELEMENT_SEED).choice(faces, count, replace=False))
+    batch = OperationBatch(s, str(case.subject), faces)
+    turns = int(np.clip(FEWEST_OPERATIONS // batch.operations, 1, MOST_TURNS))
+    rounds = turns * REFERENCE_ROUNDS
+    timed = time_rounds(batch.operate, setup=batch.restore, rounds=rounds)
+    each, _ = batch.each(timed.averaged(turns), idle)
+    return float(np.median(each.samples)) if len(each.samples) else None

@@ -53,7 +53,7 @@ def time_query(case: Case, preset: Preset, timer: Timer) -> Measurement:
         return case.result("time", s, skipped=reason)
     latency = latency_now(sum(s.memory().values()))
     judged = case.family == preset.families[0] and s.compiled
-    reference = Reference(case, preset.sizes[0]) if judged else None
+    reference = Reference(case, preset) if judged else None
     if seconds * len(handles) < preset.case_seconds:
         sweep.run()
         if reference:

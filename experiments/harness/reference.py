@@ -1,10 +1,13 @@
-"""What a query costs where its work cannot grow: what the memory alone does to it.
+"""What a case costs where its work cannot grow: what the memory alone does to it.
 
 Copies of the smallest mesh stand side by side, as many as make a mesh of a case's size. They take
 as much memory in the same records, and no walk leads from one to another. The compiled loop of the
 case itself asks them, in the order of the case, and is told the counts of one copy: what scans the
 mesh scans no more than that. So each answer takes the work of a small mesh, at every size, and the
 cost rises as the memory makes it: by misses that overlap, or wait for each other, as the query's.
+
+Operations number new elements, so theirs are the counts of all copies. A structure that looks at
+the whole mesh to operate has no reference; tests count that no other does more on more copies.
 """
 
 from dataclasses import replace
@@ -15,20 +18,22 @@ import numpy as np
 
 import structures
 from experiments.harness.cases import Case, in_order_of
+from experiments.presets import HUBS, Preset
 from hem.arrays import Array
 from hem.contract import Structure, Sweep
 from hem.meshes import TriangleMesh
 
 ROUNDS = 3
 """Before and after the rounds of a case, each a quarter as long as one of those."""
+SMALL_HUBS = 256
+"""Faces of the small mesh where the valence varies."""
 
 
 class Reference:
-    """The reference loop of one case, on copies of its mesh at the ``smallest`` size."""
+    """The reference loop of one case."""
 
-    def __init__(self, case: Case, smallest: int) -> None:
-        small = replace(case, size=smallest, subject=None, order=None)
-        self.structure, self.records = copies(small, case.vertices)
+    def __init__(self, case: Case, preset: Preset) -> None:
+        self.structure, self.records = copies(small_case(case, preset), case.vertices)
         handles = in_order_of(case, self.structure.handles(case.query.source))
         self.sweep = self.structure.prepare_sweep(case.query.name, handles)
         self._asked = 0
@@ -47,6 +52,20 @@ class Reference:
             seconds.append(self.ask(self.sweep.some(places)) / many)
             self._asked += many
         return seconds
+
+
+def small_case(case: Case, preset: Preset) -> Case:
+    """The small mesh that a case is compared with copies of, of the smallest valence."""
+    if case.family != HUBS:
+        return replace(case, size=preset.sizes[0], subject=None, order=None)
+    valence = preset.valences[0]
+    return replace(case, size=SMALL_HUBS, valence=valence, subject=None, order=None)
+
+
+def copies_of(faces: Array, small: Case, s: Structure) -> Array:
+    """Faces of a small mesh, in each of its copies."""
+    each = len(small.mesh().triangles)
+    return np.add.outer(each * np.arange(s.n_faces // each), faces).ravel()
 
 
 @lru_cache(maxsize=1)

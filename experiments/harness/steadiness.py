@@ -21,6 +21,8 @@ SLOWDOWN = 0.25
 """Part by which the loop may be slower than at its fastest …"""
 OFF_CPU = 0.10
 """… and part of its time that a case may wait for its core, before it counts as disturbed."""
+IMPOSSIBLE = 0.1
+"""The same for the part of its rounds that took less than can be, once idle calls are taken off."""
 REPEATS = 2
 """How often a disturbed case is measured again, at most."""
 BUSY = 0.10
@@ -64,13 +66,16 @@ class Watch:
 
 
 def disturbed(noise: dict[str, Any]) -> bool:
-    """Whether what a ``Watch`` saw is more than a time should be judged by."""
-    return bool(noise) and (noise["slowdown"] > SLOWDOWN or noise["off_cpu"] > OFF_CPU)
+    """Whether what a ``Watch`` saw is more than a time should be judged by, or cannot be."""
+    return bool(noise) and badness(noise) > 1
 
 
 def badness(noise: dict[str, Any]) -> float:
     """By how much a case was disturbed, to choose the calmest of several measurements of it."""
-    return max(noise["slowdown"] / SLOWDOWN, noise["off_cpu"] / OFF_CPU) if noise else np.inf
+    if not noise:
+        return np.inf
+    impossible = noise.get("impossible", 0.0) / IMPOSSIBLE
+    return max(noise["slowdown"] / SLOWDOWN, noise["off_cpu"] / OFF_CPU, impossible)
 
 
 @lru_cache(maxsize=1)

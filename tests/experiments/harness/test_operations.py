@@ -2,16 +2,29 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 import hem
 import structures
 from experiments.bench_workloads import KEPT, WORKLOADS
-from experiments.harness import HUBS, OPERATIONS, Case
+from experiments.harness import (
+    HUBS,
+    OPERATIONS,
+    PRESETS,
+    Case,
+    disturbed,
+    searches,
+    time_operations,
+    time_rounds,
+)
 from experiments.harness import operation_arguments as arguments
 from experiments.harness import operation_faces as faces_of
 from experiments.harness.operations import OperationBatch
+from experiments.harness.reference import copies, copies_of
+from experiments.harness.timer import Timed
 from tests.extent import OF_EACH_KIND
 
 
@@ -103,3 +116,46 @@ def test_smoothing_moves_every_vertex_to_the_mean_of_its_neighbors(order):
         near = np.unique(mesh.triangles[(mesh.triangles == v).any(axis=1)])
         expected = mesh.points[near[near != v]].mean(axis=0)
         assert np.allclose(s.points[v], expected, atol=1e-5)
+
+
+def counted(name: str, operation: str, size: int) -> list[int]:
+    """Elements that an operation reads and writes in some of the copies that make up a mesh."""
+    small = Case(name, "torus", 100)
+    s, _ = copies(small, size)
+    faces = copies_of(faces_of(replace(small, subject=operation)), small, s)[[0, 1, -1]]
+    s = s.copy()
+    return [s.operation_work(operation, *row) for row in arguments(s, operation, faces).tolist()]
+
+
+@pytest.mark.parametrize("operation", OPERATIONS)
+@pytest.mark.parametrize("name", structures.NAMES)
+def test_on_more_copies_an_operation_does_no_more_where_it_has_a_reference(name, operation):
+    if searches(Case(name, "torus", 100, operation)) or not structures.REGISTRY[name].compiled:
+        pytest.skip("it has none")
+    few, many = (counted(name, operation, size) for size in (400, 6400))
+    assert max(many) <= 1.1 * max(few)
+
+
+def test_what_cannot_be_is_left_out_and_told():
+    batch = OperationBatch(case("half_edge").build(), "split_face", faces_of(case("half_edge")))
+    idle, cycle = 2e-6, 2e-10
+    samples = np.array([idle + 4e-6, idle - 1e-6, idle + 0.5 * cycle, idle + 5e-6])
+    timed, impossible = batch.each(Timed(samples, np.arange(4.0), 2), idle)
+    assert impossible == 0.5
+    assert np.allclose(timed.samples * batch.operations, [4e-6, 5e-6])
+    assert timed.calibration.tolist() == [0, 3]
+    assert timed.per == 2 * batch.operations
+
+
+def test_operations_that_take_no_longer_than_idle_calls_are_skipped_and_measured_again(monkeypatch):
+    it = replace(case("half_edge"), order="batched")
+    kept = time_operations(it, PRESETS["smoke"], time_rounds)
+    assert "skipped" not in kept
+    assert kept["reference"] > 1e-9 < min(kept["samples"])
+    monkeypatch.setattr(OperationBatch, "idle_seconds", lambda batch: 1.0)
+    nothing = time_operations(it, PRESETS["smoke"], time_rounds)
+    assert "samples" not in nothing
+    assert "no longer than a call that does none" in nothing["skipped"]
+    calm = {"slowdown": 0.0, "off_cpu": 0.0}
+    assert not disturbed(calm)
+    assert disturbed({**calm, **nothing["noise"]})

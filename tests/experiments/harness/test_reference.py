@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -12,6 +14,7 @@ from structures import REGISTRY
 
 COMPILED = [name for name, kind in REGISTRY.items() if kind.compiled]
 SMALL = 64
+PRESET = replace(PRESETS["smoke"], sizes=(SMALL,))
 
 
 def work(reference: Reference, places: slice) -> np.ndarray:
@@ -27,7 +30,7 @@ def work(reference: Reference, places: slice) -> np.ndarray:
 def test_no_size_makes_the_reference_work_more(name: str, query: str) -> None:
     counts = []
     for size in (SMALL, 4 * SMALL, 32 * SMALL):
-        reference = Reference(Case(name, "torus", size, query, "consecutive"), SMALL)
+        reference = Reference(Case(name, "torus", size, query, "consecutive"), PRESET)
         of_one = len(reference.sweep.handles) * SMALL // size
         counts += [work(reference, slice(of_one)), work(reference, slice(-of_one, None))]
     assert sum(counts[2]) == pytest.approx(sum(counts[0]), rel=0.1)  # some structures hash
@@ -48,7 +51,7 @@ def test_copies_take_the_memory_of_one_mesh_of_their_size(name: str) -> None:
 @pytest.mark.parametrize("order", ["random", "consecutive"])
 def test_the_reference_asks_every_handle_in_turn(order: str) -> None:
     case = Case("half_edge", "torus", 4 * SMALL, "face_faces", order)
-    reference = Reference(case, SMALL)
+    reference = Reference(case, PRESET)
     handles = reference.sweep.handles
     assert np.array_equal(np.sort(handles), reference.structure.handles("face"))
     assert np.array_equal(handles, np.sort(handles)) == (order == "consecutive")
