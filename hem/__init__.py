@@ -8,6 +8,8 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:  # what type checkers and editors see; the table below says it to Python
+    from hem.contract.recording import Recording as Recording
+    from hem.contract.recording import record as record
     from hem.edit import Edit as Edit
     from hem.edit import Remapping as Remapping
     from hem.errors import MeshError as MeshError
@@ -40,6 +42,7 @@ if TYPE_CHECKING:  # what type checkers and editors see; the table below says it
     from hem.sources.valence import valence_mesh as valence_mesh
 
 _NAMES = {
+    "hem.contract.recording": ("Recording", "record"),
     "hem.edit": ("Edit", "Remapping"),
     "hem.errors": ("MeshError", "MeshWarning", "NonManifoldError", "TopologyError"),
     "hem.meshes": (

@@ -16,6 +16,7 @@ except ModuleNotFoundError as error:  # the library alone was installed
     raise SystemExit("hem: the commands need more: pip install 'hem-mesh[study]'") from error
 
 import hem
+from experiments.cli.advise import advise
 from experiments.cli.check import baseline_app, check
 from experiments.cli.console import MESH, Commands, Repair, RunArgument, console, errors, run_folder
 from experiments.cli.fracture import fracture
@@ -146,6 +147,7 @@ def _numbers(*heads: str, title: str | None = None) -> Table:
     return table
 
 
+app.command()(advise)
 app.command()(fracture)
 app.add_typer(history, name="history")
 app.command()(check)

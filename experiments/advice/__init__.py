@@ -1,0 +1,16 @@
+"""Which structure should hold a mesh: what a workload would take, predicted from a run.
+
+``find_workload`` reads how often what is asked and done; ``Prices`` tells what one costs, from the
+measurements of a run; ``advise`` ranks the structures, with intervals, reasons and limits.
+"""
+
+from experiments.advice.advise import Advice, Limits, Option, advise, flips
+from experiments.advice.needs import NEEDS
+from experiments.advice.predict import Forecast, fitted, predict
+from experiments.advice.prices import Prices
+from experiments.advice.workload import PRESETS, Measured, Row, Workload, find_workload, recorded
+
+__all__ = [
+    "NEEDS", "PRESETS", "Advice", "Forecast", "Limits", "Measured", "Option", "Prices", "Row",
+    "Workload", "advise", "find_workload", "fitted", "flips", "predict", "recorded",
+]  # fmt: skip

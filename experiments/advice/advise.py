@@ -1,0 +1,172 @@
+"""The structures for a mesh and a workload, the best first, and where that changes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+import hem
+from experiments import require_known
+from experiments.advice.needs import NEEDS, lacks
+from experiments.advice.predict import Forecast, is_told, predict
+from experiments.advice.prices import Prices
+from experiments.advice.workload import Workload, is_edit
+from hem.contract.recording import ANEW, PYTHON
+from structures import REGISTRY, build
+
+ALIKE = 1.1
+"""Within this factor two structures are alike."""
+
+FACTORS = tuple(float(2.0**k) for k in range(1, 13))
+SIZES = np.geomspace(50, 5_000_000, 51)
+"""Vertices at which the best structure is looked for."""
+
+BUILT_OF_OBJECTS = 20_000
+"""Faces up to which a structure of objects is built to be weighed."""
+
+
+@dataclass(frozen=True)
+class Limits:
+    """The most bytes, and the most seconds that an edit may take."""
+
+    bytes: float = np.inf
+    edit: float = np.inf
+
+
+@dataclass(frozen=True)
+class Option:
+    """A structure that could be taken: what it would take, and what keeps it behind the best."""
+
+    forecast: Forecast
+    bytes: int
+    edit: float
+    """Seconds of the slowest kind of edit, called from Python."""
+
+    behind: str = ""
+
+
+@dataclass(frozen=True)
+class Advice:
+    """Options, the best first; ``refused``: why not the others; ``flips``: where it changes."""
+
+    workload: Workload
+    faces: int
+    options: list[Option]
+    refused: dict[str, str]
+    flips: list[dict[str, Any]]
+
+
+def advise(
+    prices: Prices,
+    workload: Workload,
+    mesh: Any,
+    limits: Limits | None = None,
+    needs: Sequence[str] = (),
+) -> Advice:
+    """Rank the structures that can hold a mesh, are what is needed and stay within the limits.
+
+    Raises ValueError for a need that there is not.
+    """
+    require_known("need", needs, NEEDS)
+    limits = limits or Limits()
+    triangles = mesh.triangulated() if isinstance(mesh, hem.PolygonMesh) else mesh
+    faces = len(triangles.triangles)
+    options, refused = [], {}
+    for name in REGISTRY:
+        wrong = [words for need in needs if (words := lacks(name, need))]
+        try:
+            taken = _bytes(name, mesh, faces)
+        except hem.MeshError as error:
+            wrong.append(f"cannot hold it: {error}")
+            taken = 0
+        option = Option(
+            predict(prices, workload, name, faces), taken, _edit(prices, workload, name, faces)
+        )
+        wrong += _beyond(option, limits)
+        if not is_told(name, workload):
+            wrong.append("is interpreted, and the measured whole was compiled")
+        if wrong:
+            refused[name] = "; ".join(wrong)
+        else:
+            options.append(option)
+    options.sort(key=lambda it: it.forecast.seconds)
+    named = [replace(it, behind=_behind(options[0].forecast, it.forecast)) for it in options]
+    names = [it.forecast.structure for it in options]
+    return Advice(workload, faces, named, refused, flips(prices, workload, names, faces))
+
+
+def _beyond(option: Option, limits: Limits) -> list[str]:
+    wrong = []
+    if option.bytes > limits.bytes:
+        wrong.append(f"takes {option.bytes:,} bytes of {limits.bytes:,.0f}")
+    if option.edit > limits.edit:
+        wrong.append(f"an edit takes {1e3 * option.edit:.3g} ms of {1e3 * limits.edit:.3g}")
+    return wrong
+
+
+def _bytes(name: str, mesh: Any, faces: int) -> int:
+    """Exactly, by building it; of objects in proportion to a small mesh."""
+    if REGISTRY[name].compiled or faces <= BUILT_OF_OBJECTS:
+        return sum(build(name, mesh).memory().values())
+    small = hem.generate("torus", 1000)
+    return round(sum(build(name, small).memory().values()) * faces / len(small.triangles))
+
+
+def _edit(prices: Prices, workload: Workload, name: str, faces: float) -> float:
+    edits = {it.what for it in workload.rows if is_edit(it.what)}
+    anew = prices.price(name, ANEW, faces).seconds if edits else 0.0
+    found = [prices.price(name, it, faces, caller=PYTHON).seconds + anew for it in edits]
+    return max(found, default=0.0)
+
+
+def _behind(best: Forecast, other: Forecast) -> str:
+    """What costs a structure most that the best one does not pay."""
+    if other.seconds <= ALIKE * best.seconds:
+        return ""
+    more = {it: cost - best.parts.get(it, 0.0) for it, cost in other.parts.items()}
+    return max(more, key=lambda it: more[it], default="")
+
+
+def flips(
+    prices: Prices, workload: Workload, names: Iterable[str], faces: float
+) -> list[dict[str, Any]]:
+    """Where another structure is the best: at which number of vertices, at how many more edits.
+
+    Only where it is ahead by more than ``ALIKE``. Sizes are those that were measured.
+    """
+    names = list(names)
+    if len(names) < 2:
+        return []
+
+    def best(at: Callable[[str], Forecast], now: str) -> str:
+        costs = {name: at(name).seconds for name in names}
+        least = min(costs, key=lambda it: costs[it])
+        return least if costs[now] > ALIKE * costs[least] else now
+
+    first = best(lambda it: predict(prices, workload, it, faces), names[0])
+    low, high = prices.measured
+    sizes = [n for n in SIZES if low <= 2 * n <= high]
+    ways = {
+        "vertices": [
+            [(n, workload, 2 * n) for n in sizes if 2 * n >= faces],
+            [(n, workload, 2 * n) for n in reversed(sizes) if 2 * n < faces],
+        ],
+        "edits": [
+            [(k, workload.more_edits(k), faces) for k in FACTORS],
+            [(1 / k, workload.more_edits(1 / k), faces) for k in FACTORS],
+        ],
+    }
+    if not any(is_edit(it.what) for it in workload.rows):
+        del ways["edits"]
+    found = []
+    for kind, directions in ways.items():
+        for points in directions:
+            for x, given, many in points:
+                other = best(lambda it, w=given, f=many: predict(prices, w, it, f), first)  # type: ignore[misc]
+                if other != first:
+                    found.append({"of": kind, "at": float(x), "best": other})
+                    break
+    return found

@@ -1,0 +1,141 @@
+"""What a query or an operation costs on a structure, by size, from the measurements of a run."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+
+from experiments.claims import Curve, curves
+from experiments.harness import ANSWERING
+from experiments.runs import Run
+from hem.arrays import Array
+from hem.contract import OPERATIONS
+from hem.contract.recording import ANEW, CHECKED, PYTHON
+from structures import REGISTRY
+
+BY_QUERY = {
+    "face_left_of": "edge_faces",
+    "diamond": "edge_faces",
+    "are_joined": "vertex_vertices",
+}
+"""What kernels beside the queries are priced as: what they mostly do."""
+
+REBUILDING, ALONE = "flip_edge", "split_face"
+"""Where an edit has all neighbors found anew, the one takes that, and the other does without."""
+
+CALL = 6e-7
+"""Seconds of a call from Python, for a run that did not measure it."""
+
+BEYOND = 0.25
+"""How much less sure a price is for every factor e beyond the sizes that were measured."""
+
+
+class Price(NamedTuple):
+    """Seconds, and how far their logarithm may be off (one standard deviation)."""
+
+    seconds: float
+    spread: float
+
+
+class Prices:
+    """The prices of a run. What it has not measured has none: KeyError that says what."""
+
+    def __init__(self, run: Run) -> None:
+        self.run = run
+        self._found: dict[tuple[str, str, str, str], tuple[Array, Array, Array]] = {}
+
+    def price(
+        self, structure: str, what: str, faces: float, in_order: float = 0.0, caller: str = ""
+    ) -> Price:
+        """What one costs on a mesh of so many faces, ``in_order`` the share that is asked so."""
+        name = BY_QUERY.get(what, what).removeprefix(CHECKED)
+        rebuilds = REGISTRY[structure].rebuilds
+        if what == ANEW:
+            found = self._at(faces, "bench_operations", structure, REBUILDING, "batched")
+            return found if rebuilds else Price(0.0, 0.0)
+        if name in OPERATIONS:
+            # Finding neighbors anew has a row of its own.
+            alone = rebuilds or name not in self._operations
+            done = ALONE if alone else name
+            found = self._at(faces, "bench_operations", structure, done, "batched")
+        else:
+            orders = ("consecutive", in_order), ("random", 1 - in_order)
+            parts = [
+                (self._at(faces, "bench_queries", structure, name, order), share)
+                for order, share in orders
+                if share > 0
+            ]
+            seconds = sum(it.seconds * share for it, share in parts)
+            found = Price(seconds, max(it.spread for it, _ in parts))
+        call = self.call if caller == PYTHON and REGISTRY[structure].compiled else 0.0
+        return Price(found.seconds + call, found.spread)
+
+    def build(self, structure: str, faces: float) -> Price | None:
+        """What building takes, until it answers; None if the run does not tell."""
+        order = ANSWERING if REGISTRY[structure].rebuilds else "consecutive"
+        try:
+            return self._at(faces, "bench_build", structure, "", order)
+        except KeyError:
+            return None
+
+    @cached_property
+    def measured(self) -> tuple[float, float]:
+        """The fewest and the most faces that queries were measured at."""
+        sizes = self.run.cases.query("experiment == 'bench_queries'")["faces"].astype(float)
+        return (sizes.min(), sizes.max()) if len(sizes) else (float("nan"), float("nan"))
+
+    @cached_property
+    def call(self) -> float:
+        """Seconds that an operation takes longer from Python; queries are taken to do as well."""
+        found = []
+        for name, kind in REGISTRY.items():
+            for operation in self._operations if kind.compiled and not kind.rebuilds else ():
+                one, many = (
+                    curves(self.run).named("bench_operations", name, operation, order)
+                    for order in ("one by one", "batched")
+                )
+                if len(one) and len(many) and not kind.searches:
+                    sizes = one.sizes[0]
+                    found.append(one.centers[0] - np.interp(sizes, many.sizes, many.centers))
+        return float(np.median(found)) if found else CALL
+
+    @cached_property
+    def _operations(self) -> set[str]:
+        return set(self.run.cases.query("experiment == 'bench_operations'")["subject"])
+
+    def _at(self, faces: float, experiment: str, structure: str, subject: str, order: str) -> Price:
+        key = experiment, structure, subject, order
+        if key not in self._found:
+            self._found[key] = _points(
+                curves(self.run).named(experiment, structure, subject, order)
+            )
+        sizes, costs, spreads = self._found[key]
+        if not len(sizes):
+            raise KeyError(f"the run has not measured {' '.join(it for it in key if it)}")
+        x = np.log(max(faces, 1.0))
+        within = float(np.clip(x, sizes[0], sizes[-1]))
+        cost, spread = np.interp(within, sizes, costs), np.interp(within, sizes, spreads)
+        return Price(
+            float(np.exp(cost + _slope(sizes, costs) * max(x - within, 0.0))),
+            float(spread + BEYOND * abs(x - within)),
+        )
+
+
+def _points(curve: Curve) -> tuple[Array, Array, Array]:
+    """Logarithms of sizes and costs, and how far these may be off: rounds and bends."""
+    costs = np.log(np.maximum(curve.centers, 1e-12))
+    spread = [
+        float(np.subtract(*np.log(np.quantile(it, (0.84, 0.16))))) / 2 for it in curve.samples
+    ]
+    bends = np.zeros(len(costs))
+    bends[1:-1] = costs[1:-1] - (costs[:-2] + costs[2:]) / 2
+    return np.log(curve.sizes), costs, np.hypot(spread, bends)
+
+
+def _slope(sizes: Array, costs: Array) -> float:
+    """Along which a price is carried on beyond the last size."""
+    if len(sizes) < 2:
+        return 0.0
+    return float(np.clip(np.polyfit(sizes[-3:], costs[-3:], 1)[0], 0.0, 1.0))

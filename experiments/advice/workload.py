@@ -1,0 +1,151 @@
+"""A workload: a table of how often what is asked and done, per build or per frame."""
+
+from __future__ import annotations
+
+import csv
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass, fields, replace
+from pathlib import Path
+from typing import Any, Self
+
+from hem import Recording
+from hem.contract import OPERATIONS, QUERIES
+from hem.contract.recording import ANEW, BESIDE, CHECKED, COMPILED, PYTHON
+
+KNOWN = (*QUERIES, *OPERATIONS, *(f"{CHECKED}{it}" for it in OPERATIONS), *BESIDE, ANEW)
+"""What a row may count."""
+
+PER_FACE = {"": 0.0, "vertex": 0.5, "edge": 1.5, "face": 1.0}
+"""Elements per face of a large closed mesh."""
+
+BUILD, FRAME = "build", "frame"
+
+
+@dataclass(frozen=True)
+class Row:
+    """How often something is asked or done: ``times``, or so often for ``each`` element."""
+
+    what: str
+    times: float
+    each: str = ""
+    per: str = BUILD
+    in_order: float = 0.0
+    """The share of it that is near to what was asked before; the rest is at random."""
+
+    caller: str = COMPILED
+    """``compiled``, as in an algorithm or a batch, or ``python``: one call each."""
+
+    def __post_init__(self) -> None:
+        allowed: dict[str, Any] = {
+            "what": KNOWN, "each": PER_FACE, "per": (BUILD, FRAME), "caller": (COMPILED, PYTHON)
+        }  # fmt: skip
+        for name, known in allowed.items():
+            if getattr(self, name) not in known:
+                raise ValueError(
+                    f"{name} is {getattr(self, name)!r}; there are {', '.join(map(repr, known))}"
+                )
+        if not (self.times >= 0 and 0 <= self.in_order <= 1):
+            raise ValueError("times is a number from 0 on, in_order a share from 0 to 1")
+
+    def count(self, faces: float, frames: float) -> float:
+        """How often on a mesh of so many faces."""
+        many = PER_FACE[self.each] * faces if self.each else 1.0
+        return self.times * many * (frames if self.per == FRAME else 1.0)
+
+
+@dataclass(frozen=True)
+class Measured:
+    """What the whole workload takes on one structure, as its user has measured it.
+
+    What is left of it beside queries and operations is the program's own, on any structure.
+    """
+
+    structure: str
+    vertices: int
+    seconds: float
+
+
+@dataclass(frozen=True)
+class Workload:
+    """``builds``: how often the mesh is built, ``frames``: how many there are after a build."""
+
+    title: str
+    rows: tuple[Row, ...]
+    frames: float = 1.0
+    builds: float = 1.0
+    measured: Measured | None = None
+
+    def more_edits(self, times: float) -> Self:
+        """The same with so many times the operations."""
+        edited = (
+            replace(it, times=it.times * times) if is_edit(it.what) or it.what == ANEW else it
+            for it in self.rows
+        )
+        return replace(self, rows=tuple(edited))
+
+
+def is_edit(what: str) -> bool:
+    """Whether it is an operation that is done, and changes what is adjacent."""
+    return what in OPERATIONS and OPERATIONS[what].element != "vertex"
+
+
+def recorded(recording: Recording, title: str = "Recorded", each: str = "") -> Workload:
+    """A workload as it was recorded; ``each``: an element in proportion to which it grows."""
+    many = {"": 1.0, "vertex": recording.vertices, "face": recording.faces}[each]
+    rows = (Row(it.what, it.times / many, each, BUILD, it.in_order, it.caller)
+            for it in recording.rows)  # fmt: skip
+    return Workload(title, tuple(rows), builds=0.0)
+
+
+def find_workload(name: str) -> Workload:
+    """A preset, or a file: TOML as those of the presets, or CSV as ``hem.record`` saves it.
+
+    Raises ValueError that says what is wrong and where, OSError where a file cannot be read.
+    """
+    if name in PRESETS:
+        return PRESETS[name]
+    path = Path(name)
+    if not path.is_file():
+        raise ValueError(
+            f"there is no workload {name!r}: name a .toml or .csv file, or one of "
+            f"{', '.join(PRESETS)}"
+        )
+    try:
+        if path.suffix == ".csv":
+            with path.open(newline="", encoding="utf-8") as lines:
+                return _workload(
+                    {"title": path.stem, "builds": 0, "rows": list(csv.DictReader(lines))}
+                )
+        return _workload({"title": path.stem, **tomllib.loads(path.read_text("utf-8"))})
+    except (ValueError, TypeError) as error:
+        raise ValueError(f"{path}: {error}") from error
+
+
+def _workload(given: Mapping[str, Any]) -> Workload:
+    known = {it.name for it in fields(Workload)}
+    if unknown := sorted(set(given) - known):
+        raise ValueError(f"{', '.join(unknown)} is nothing that a workload has: {sorted(known)}")
+    if not given.get("rows"):
+        raise ValueError("it has no rows, such as [[rows]] with what and times")
+    rows = tuple(_row(place, it) for place, it in enumerate(given["rows"], 1))
+    measured = Measured(**given["measured"]) if "measured" in given else None
+    numbers = {it: float(given[it]) for it in ("frames", "builds") if it in given}
+    return Workload(str(given["title"]), rows, measured=measured, **numbers)
+
+
+def _row(place: int, given: Mapping[str, Any]) -> Row:
+    try:
+        numbers = {it: float(given[it]) for it in ("times", "in_order") if it in given}
+        return Row(**{**given, **numbers})
+    except (ValueError, TypeError) as error:
+        raise ValueError(f"row {place}: {error}") from error
+
+
+PRESETS: dict[str, Workload] = {
+    name: _workload(it)
+    for name, it in tomllib.loads(
+        Path(__file__).with_name("workloads.toml").read_text("utf-8")
+    ).items()
+}
+"""Usual workloads by name."""

@@ -1,0 +1,137 @@
+"""The command ``hem advise``."""
+
+from __future__ import annotations
+
+import json
+import sys
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+from rich.table import Table
+from typer import Argument, Option
+
+import hem
+from experiments.cli.check import BASELINE
+from experiments.cli.console import MESH, Repair, console, errors
+
+if TYPE_CHECKING:  # takes a second to import
+    from experiments.advice import Advice
+    from experiments.runs import Run
+
+NOTHING = 2
+"""Exit code where no structure suits."""
+
+
+def advise(
+    mesh: Annotated[str, Argument(help=MESH)],
+    workload: Annotated[
+        str, Option(help="drawn, picked, edited, simplified, remeshed; or a TOML or CSV file.")
+    ] = "drawn",
+    need: Annotated[
+        list[str] | None,
+        Option(help="edges, borders, polygons, attributes, edits; may be repeated."),
+    ] = None,
+    most_bytes: Annotated[float | None, Option("--bytes", help="The most it may take.")] = None,
+    worst_edit: Annotated[float | None, Option(help="The most ms that an edit may take.")] = None,
+    run: Annotated[
+        Path | None, Option(help="A run of this machine. Default: the committed baseline.")
+    ] = None,
+    as_json: Annotated[bool, Option("--json", help="Print JSON instead.")] = False,
+    repair: Repair = False,
+) -> None:
+    """Say which structure should hold a mesh, for what is asked of it and done to it.
+
+    A workload is a table of how often that is, per build or per frame:
+
+        frames = 600
+        [[rows]]
+        what = "vertex_faces"
+        times = 3
+        per = "frame"
+
+    `with hem.record(s) as workload:` counts what a program does; `workload.save("mine.csv")`.
+
+    Example: hem advise bunny --workload simplified --need borders --worst-edit 1
+
+    Exit code 0; 1: a mistake in what was asked; 2: no structure suits.
+    """
+    from experiments.advice import Limits, Prices, find_workload
+    from experiments.advice import advise as advised
+
+    limits = Limits(
+        *(
+            float("inf") if it is None else it
+            for it in (most_bytes, worst_edit and worst_edit / 1e3)
+        )
+    )
+    wanted, source = find_workload(workload), _run(run)
+    found = advised(Prices(source), wanted, hem.find_mesh(mesh, repair), limits, need or [])
+    if as_json:
+        sys.stdout.write(json.dumps(_as_data(found, source), indent=1) + "\n")
+    else:
+        _show(found, source, mesh)
+    if not found.options:
+        errors.print("hem: no structure suits; ask for less, or allow more")
+        raise typer.Exit(NOTHING)
+
+
+def _run(folder: Path | None) -> Run:
+    from experiments.regression import RUN
+    from experiments.runs import load
+
+    if folder is not None and not folder.is_dir():
+        raise ValueError(
+            f"{folder} holds no run: there is no such folder; make one with: hem study"
+        )
+    found = load(folder or BASELINE / RUN)
+    if found.machines:
+        raise ValueError(f"{found.folder} was measured by several machines: give one's folder")
+    return found
+
+
+def _as_data(found: Advice, run: Run) -> dict[str, Any]:
+    return {
+        "run": str(run.folder),
+        "machine": run.meta.get("machine", {}),
+        "faces": found.faces,
+        "workload": asdict(found.workload),
+        "options": [{**asdict(it.forecast), **_beside(it)} for it in found.options],
+        "refused": found.refused,
+        "flips": found.flips,
+    }
+
+
+def _beside(option: Any) -> dict[str, Any]:
+    return {"bytes": option.bytes, "edit": option.edit, "behind": option.behind}
+
+
+def _show(found: Advice, run: Run, mesh: str) -> None:
+    from experiments.report import duration
+    from structures import REGISTRY
+
+    cpu = run.meta.get("machine", {}).get("cpu", "an unknown machine")
+    console.print(f"[bold]{found.workload.title}[/], on {mesh} ({found.faces:,} faces).")
+    console.print(f"Predicted from {run.folder}, measured on {cpu}.\n", highlight=False)
+    table = Table("structure", "time", "nine of ten within", "bytes", "what costs it more")
+    for option in found.options:
+        it = option.forecast
+        within = f"{duration(it.low)} … {duration(it.high)}"
+        extra = it.parts.get(option.behind, 0.0)
+        behind = f"{option.behind}: {duration(extra)}" if option.behind else ""
+        title = REGISTRY[it.structure].title
+        table.add_row(title, duration(it.seconds), within, f"{option.bytes:,}", behind)
+    console.print(table)
+    for name, why in found.refused.items():
+        console.print(f"{REGISTRY[name].title} does not suit: {why}.", markup=False)
+    for flip in found.flips:
+        where = (
+            f"{flip['at']:,.0f} vertices"
+            if flip["of"] == "vertices"
+            else f"{flip['at']:g} × the edits"
+        )
+        console.print(f"At {where} {REGISTRY[flip['best']].title} is the best.")
+    untold = sorted({what for it in found.options for what in it.forecast.untold})
+    if untold:
+        console.print(f"Left out, as the run does not tell what it takes: {', '.join(untold)}.")

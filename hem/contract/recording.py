@@ -1,0 +1,241 @@
+"""How often a program asks a mesh and operates on it: what ``hem.record`` counts.
+
+Calls from Python are counted where they enter. What algorithms do is counted by running them
+uncompiled, with kernels that count, so that the table of a workload is found and not typed.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from functools import cache, partial
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from hem.authoring import ELEMENTS, NEEDS_ROOM, OPERATIONS, QUERIES, Kernel, Kernels
+from hem.contract.description import Algorithm
+from hem.contract.structure import Structure
+from hem.engine import CountingArray, interpreted
+from hem.errors import TopologyError
+from hem.whole_files import write_whole
+
+COMPILED, PYTHON = "compiled", "python"
+"""Where a question comes from: a compiled loop or a batch, or a single call from Python."""
+
+ANEW = "neighbors_anew"
+"""Row of a recording: how often neighbors were needed for the first time after an edit."""
+
+CHECKED = "can_"
+"""Before the name of an operation: tried and not done, as it was refused or only to be checked."""
+
+BESIDE = ("face_left_of", "diamond", "are_joined")
+"""Kernels that answer what takes looking at neighbors, beside the queries."""
+
+NEAR = 16
+"""Successive handles that are no farther apart lie in the same or in the next lines of a cache."""
+
+BITS = 31
+"""A handle of an edge that takes more bits than these holds a second number in them."""
+
+
+class Counted(NamedTuple):
+    """How often something was asked or done; ``in_order``: the share that was next to the last."""
+
+    what: str
+    caller: str
+    times: float
+    in_order: float
+
+
+class Recording:
+    """What was counted on one mesh, see ``record``."""
+
+    def __init__(self, s: Structure) -> None:
+        self.vertices, self.faces = s.n_vertices, s.n_faces
+        self._counts: dict[tuple[str, str], list[int]] = {}
+        self._last: dict[str, int] = {}
+        self._edited = False
+
+    def add(self, what: str, handles: Any, caller: str = PYTHON) -> None:
+        """Count what was asked or done for one handle, or for an array of them."""
+        if np.ndim(handles):
+            wide = np.asarray(handles).astype(np.int64)
+            near = np.abs(np.diff(np.where(wide >> BITS, wide >> BITS, wide))) <= NEAR
+            self._add(what, COMPILED, len(wide), int(near.sum()))
+        else:
+            place = int(handles) >> BITS or int(handles)
+            near_last = abs(place - self._last.get(what, place - NEAR - 1)) <= NEAR
+            self._last[what] = place
+            self._add(what, caller, 1, int(near_last))
+
+    def _add(self, what: str, caller: str, times: int, near: int) -> None:
+        if self._edited and needs_neighbors(what):
+            self._edited = False
+            self._add(ANEW, COMPILED, 1, 0)
+        self._edited |= what in OPERATIONS and OPERATIONS[what].element != "vertex"
+        row = self._counts.setdefault((what, caller), [0, 0])
+        row[0] += times
+        row[1] += near
+
+    @property
+    def rows(self) -> list[Counted]:
+        """What was counted, the most frequent first."""
+        counts = sorted(self._counts.items(), key=lambda it: -it[1][0])
+        return [
+            Counted(what, caller, times, round(near / times, 3))
+            for (what, caller), (times, near) in counts
+            if times
+        ]
+
+    def text(self, each: str = "") -> str:
+        """The rows as CSV, which ``hem advise`` reads: per mesh, or per ``vertex`` or ``face``.
+
+        KeyError for another element.
+        """
+        many = {"": 1, "vertex": max(self.vertices, 1), "face": max(self.faces, 1)}[each]
+        lines = io.StringIO()
+        out = csv.writer(lines, lineterminator="\n")
+        out.writerow(("what", "times", "each", "in_order", "caller"))
+        for it in self.rows:
+            out.writerow((it.what, f"{it.times / many:.6g}", each, it.in_order, it.caller))
+        return lines.getvalue()
+
+    def save(self, path: str | Path, each: str = "") -> None:
+        """Write ``text``. Raises OSError."""
+        write_whole(Path(path), self.text(each))
+
+
+def needs_neighbors(what: str) -> bool:
+    """Whether an answer takes more than what an element is made of."""
+    if what in QUERIES:
+        source, target = map(list(ELEMENTS).index, QUERIES[what])
+        return target >= source
+    name = what.removeprefix(CHECKED)
+    return name in BESIDE or (name in OPERATIONS and OPERATIONS[name].element == "edge")
+
+
+@contextmanager
+def record(s: Structure) -> Iterator[Recording]:
+    """Count what is asked of a mesh and done to it in the block -> a ``Recording``.
+
+    >>> with hem.record(s) as workload:
+    ...     hem.algorithms.smooth(s)
+    >>> workload.save("workload.csv", each="vertex")
+
+    Algorithms run uncompiled meanwhile, some hundred times slower, with the same outcome: take a
+    mesh of some hundred vertices. ``find_edge`` counts as the query that it searches by. What is
+    read of the whole mesh at once (``edges()``, ``points``) and steps along half-edges are not
+    counted. From one thread, and of one structure's meshes one at a time.
+    """
+    found, before = Recording(s), dict(vars(s))
+    own = {called: _counting(s, called, what, found) for called, what in _called(s)}
+    vars(s).update(own, run=partial(_run_counting, s, found))
+    try:
+        yield found
+    finally:
+        for called in (*own, "run"):
+            del vars(s)[called]
+        vars(s).update({called: it for called, it in before.items() if called in own})
+
+
+def _called(s: Structure) -> Iterator[tuple[str, str]]:
+    """The methods that are counted, and as what."""
+    named: dict[str, str] = {name: name for name in (*QUERIES, *OPERATIONS)}
+    for name, it in OPERATIONS.items():
+        named[CHECKED + name] = CHECKED + name
+        named[f"{name.removesuffix(it.element)}{ELEMENTS[it.element]}"] = name  # split_edges
+    named |= {"find_edge": "vertex_edges", "split_all_faces": "split_face", "operate": ""}
+    return ((called, what) for called, what in named.items() if hasattr(s, called))
+
+
+def _counting(s: Structure, called: str, what: str, found: Recording) -> Callable[..., Any]:
+    """A method that is counted as ``what``, or as what its first argument names."""
+    method = getattr(s, called)
+
+    def counted(*args: Any, **more: Any) -> Any:
+        name, given = (what, args) if what else (args[0], args[1:])
+        try:
+            result = method(*args, **more)
+        except TopologyError:
+            found.add(CHECKED + name.removeprefix(CHECKED), 0)
+            raise
+        handles = next(iter((*given, *more.values())), None)
+        if handles is None:  # all there are
+            handles = range(len(result))
+        found.add(name, 0 if called in OPERATIONS and np.ndim(handles) else handles)
+        return result
+
+    return counted
+
+
+# Algorithms ---------------------------------------------------------------------------------------
+
+
+class _Counting(NamedTuple):
+    """The kernels of a structure, uncompiled, those that are counted telling ``found[0]``."""
+
+    queries: Kernels
+    operations: Kernels
+    found: list[Recording | None]
+
+
+@cache
+def _kernels(kind: type[Structure]) -> _Counting:
+    """Made once, as algorithms keep what they make of kernels."""
+    found: list[Recording | None] = [None]
+
+    def counted(name: str, kernel: Kernel) -> Kernel:
+        answer = interpreted(kernel)
+
+        def ask(m: Any, handle: Any, *more: Any) -> Any:
+            if found[0] is not None:
+                found[0].add(name, int(handle), COMPILED)
+            return answer(m, int(handle), *more)
+
+        return ask
+
+    def operated(name: str, kernel: Kernel) -> Kernel:
+        perform = interpreted(kernel)
+
+        def do(m: Any, args: Any, point: Any, at: Any, out: Any, log: Any, dry: bool) -> int:
+            result = int(perform(m, args, point, at, out, log, dry))
+            if found[0] is not None and result != NEEDS_ROOM:
+                done = result >= 0 and not dry
+                found[0].add(name if done else CHECKED + name, int(args[0]), COMPILED)
+            return result
+
+        return do
+
+    own = {it: counted(it, kind.declared.kernels[it]) for it in (*QUERIES, *BESIDE)}
+    done = {it: operated(it, uses.kernel) for it, uses in kind.declared.operating.items()}
+    return _Counting({**kind.declared.kernels, **own}, done, found)
+
+
+@cache
+def _algorithm(kind: type[Structure], make: Algorithm) -> Kernel:
+    counting = _kernels(kind)
+    return interpreted(make(counting.queries, counting.operations))
+
+
+def _run_counting(s: Structure, recording: Recording, make: Algorithm, plan: Any) -> int:
+    """``Structure.run``, uncompiled and counted."""
+    found, algorithm = _kernels(type(s)).found, _algorithm(type(s), make)
+    *arrays, counts = s.records
+    seen = (CountingArray(it) if isinstance(it, np.ndarray) else it for it in arrays)
+    found[0] = recording
+    try:
+        return int(algorithm(type(s.records)(*seen, counts), _of_pythons_numbers(plan)))
+    finally:
+        found[0] = None
+
+
+def _of_pythons_numbers(plan: Any) -> Any:
+    """Integers of 1-D arrays become Python's own, which do not overflow and whose True is 1."""
+    if isinstance(plan, tuple):
+        return type(plan)(*map(_of_pythons_numbers, plan))
+    plain = isinstance(plan, np.ndarray) and plan.ndim == 1 and plan.dtype.kind in "iub"
+    return memoryview(plan) if plain and plan.flags.c_contiguous else plan

@@ -1,0 +1,213 @@
+"""Laws of advice: times are what a run says times how often, and what does not suit is not told."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+import hem
+from experiments import cli
+from experiments.advice import (
+    NEEDS,
+    PRESETS,
+    Limits,
+    Measured,
+    Prices,
+    Row,
+    Workload,
+    advise,
+    find_workload,
+    predict,
+    recorded,
+)
+from experiments.runs import Run, load
+from hem.contract import QUERIES
+from structures import REGISTRY
+from tests.experiments.made_runs import write_run
+
+COMPILED = [name for name, it in REGISTRY.items() if it.compiled]
+MESH = hem.generate("torus", 1_000)
+ASKED = Workload("asked", (Row("vertex_faces", 1_000.0),), builds=0)
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory: pytest.TempPathFactory) -> Run:
+    return load(write_run(tmp_path_factory.mktemp("advice") / "run"))
+
+
+@pytest.fixture(scope="module")
+def prices(run: Run) -> Prices:
+    return Prices(run)
+
+
+def seconds(run: Run, structure: str, query: str, order: str, faces: int) -> float:
+    """The median of a case, from the table of cases itself."""
+    found = run.cases.query(
+        "experiment == 'bench_queries' and structure == @structure and subject == @query "
+        "and order == @order and faces == @faces and family == 'torus'"
+    )
+    return float(np.median(found["samples"].iloc[0]))
+
+
+@pytest.mark.parametrize("structure", COMPILED)
+def test_what_was_measured_is_predicted_times_how_often(run, prices, structure) -> None:
+    cases = run.cases.query("experiment == 'bench_queries' and structure == @structure")
+    faces = int(cases["faces"].iloc[0])
+    rows = Row("vertex_faces", 30), Row("face_faces", 5, in_order=1)
+    found = predict(prices, Workload("mix", rows, builds=0), structure, faces)
+    expected = 30 * seconds(run, structure, "vertex_faces", "random", faces)
+    expected += 5 * seconds(run, structure, "face_faces", "consecutive", faces)
+    assert found.seconds == pytest.approx(expected, rel=1e-6)
+    assert found.low < found.seconds < found.high
+
+
+def test_prices_grow_between_sizes_as_at_them(prices: Prices) -> None:
+    costs = [prices.price("indexed", "vertex_faces", n).seconds for n in (1e3, 3e3, 1e4, 1e6)]
+    assert costs == sorted(costs)
+
+
+def test_the_least_time_comes_first_and_all_that_suit_are_told(prices: Prices) -> None:
+    found = advise(prices, ASKED, MESH)
+    times = [it.forecast.seconds for it in found.options]
+    assert times == sorted(times)
+    assert {it.forecast.structure for it in found.options} == set(REGISTRY)
+    assert not found.refused
+
+
+@pytest.mark.parametrize("need", NEEDS)
+def test_every_structure_is_an_option_or_refused_with_a_reason(prices: Prices, need: str) -> None:
+    found = advise(prices, ASKED, MESH, needs=[need])
+    names = [it.forecast.structure for it in found.options]
+    assert sorted([*names, *found.refused]) == sorted(REGISTRY)
+    assert all(found.refused.values())
+
+
+def test_needs_follow_from_what_structures_declare(prices: Prices) -> None:
+    found = advise(prices, ASKED, MESH, needs=["polygons"])
+    assert {it.forecast.structure for it in found.options} == {
+        name for name, it in REGISTRY.items() if it.holds_polygons
+    }
+
+
+def test_limits_refuse_what_takes_more(prices: Prices) -> None:
+    free = advise(prices, PRESETS["edited"], MESH)
+    bytes_of = {it.forecast.structure: it.bytes for it in free.options}
+    middle = sorted(bytes_of.values())[3]
+    found = advise(prices, PRESETS["edited"], MESH, Limits(bytes=middle))
+    assert {it.forecast.structure for it in found.options} == {
+        name for name, it in bytes_of.items() if it <= middle
+    }
+    assert not advise(prices, PRESETS["edited"], MESH, Limits(edit=1e-12)).options
+
+
+def test_bytes_are_those_of_the_structure(prices: Prices) -> None:
+    from structures import build
+
+    for it in advise(prices, ASKED, MESH).options:
+        assert it.bytes == sum(build(it.forecast.structure, MESH).memory().values())
+
+
+def test_a_program_s_own_part_is_what_its_measurement_leaves(prices: Prices) -> None:
+    alone = predict(prices, ASKED, "half_edge", 2_000).seconds
+    known = replace(ASKED, measured=Measured("half_edge", 1_000, alone + 0.25))
+    for name in COMPILED:
+        more = (
+            predict(prices, known, name, 2_000).seconds
+            - predict(prices, ASKED, name, 2_000).seconds
+        )
+        assert more == pytest.approx(0.25)
+
+
+def test_more_of_each_element_is_asked_of_a_larger_mesh(prices: Prices) -> None:
+    each = Workload("each", (Row("face_vertices", 2, each="face", in_order=1),), builds=0)
+    flat = prices.price("half_edge", "face_vertices", 20_000, 1.0).seconds
+    assert predict(prices, each, "half_edge", 20_000).seconds == pytest.approx(40_000 * flat)
+
+
+def test_a_flip_is_where_the_best_changes(prices: Prices) -> None:
+    for workload in PRESETS.values():
+        found = advise(prices, workload, MESH)
+        names = [it.forecast.structure for it in found.options]
+        for flip in found.flips:
+            if flip["of"] == "vertices":
+                costs = {n: predict(prices, workload, n, 2 * flip["at"]).seconds for n in names}
+            else:
+                more = workload.more_edits(flip["at"])
+                costs = {n: predict(prices, more, n, found.faces).seconds for n in names}
+            assert min(costs, key=costs.__getitem__) == flip["best"]
+
+
+def test_a_recording_is_a_workload_also_by_way_of_its_file(tmp_path) -> None:
+    s = REGISTRY["half_edge"].build(MESH)
+    with hem.record(s) as recording:
+        s.vertex_faces(np.arange(500))
+        s.split_face(3, (0, 0, 0))
+    recording.save(tmp_path / "mine.csv", each="vertex")
+    mine, same = find_workload(str(tmp_path / "mine.csv")), recorded(recording, "mine", "vertex")
+    assert mine.title == same.title
+    assert mine.builds == same.builds == 0
+    for one, other in zip(mine.rows, same.rows, strict=True):
+        assert replace(one, times=other.times) == other
+        assert one.times == pytest.approx(other.times, rel=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("title = 3\n", "no rows"),
+        ("rows = []\nspeed = 3\n", "speed is nothing that a workload has"),
+        ('[[rows]]\nwhat = "vertex_face"\ntimes = 1\n', "row 1: what is 'vertex_face'; there are"),
+        ('[[rows]]\nwhat = "vertex_faces"\ntimes = -1\n', "row 1: times is a number from 0 on"),
+        ('[[rows]]\nwhat = "vertex_faces"\ntime = 1\n', "row 1: .*'time'"),
+        ("what\n", "Expected '='"),
+    ],
+)
+def test_a_file_that_is_wrong_is_told_with_its_place(tmp_path, text: str, said: str) -> None:
+    path = tmp_path / "mine.toml"
+    path.write_text(text)
+    with pytest.raises(ValueError, match=rf"mine\.toml: .*{said}"):
+        find_workload(str(path))
+
+
+def told(*arguments: str) -> tuple[int, str]:
+    cli.console.width = cli.errors.width = 300
+    result = CliRunner().invoke(cli.app, ["advise", *arguments])
+    return result.exit_code, result.stdout + result.stderr
+
+
+def test_the_command_says_what_it_rests_on_and_tells_programs_the_same(run: Run) -> None:
+    folder = str(run.folder)
+    code, text = told("torus:1000", "--workload", "edited", "--run", folder)
+    assert code == 0
+    assert folder in text
+    code, text = told("torus:1000", "--workload", "edited", "--run", folder, "--json")
+    data = json.loads(text)
+    assert code == 0
+    assert [it["structure"] for it in data["options"]] == [
+        it.forecast.structure for it in advise(Prices(run), PRESETS["edited"], MESH).options
+    ]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code", "said"),
+    [
+        (["torus:1000", "--bytes", "1"], 2, "no structure suits"),
+        (["torus:1000", "--workload", "painted"], 1, "there is no workload 'painted'"),
+        (["torus:1000", "--need", "speed"], 1, "no need is called 'speed'; there are edges"),
+        (["torus:1000", "--run", "nowhere"], 1, "nowhere holds no run"),
+        (["dragon"], 1, "there is no model 'dragon'"),
+    ],
+)
+def test_mistakes_are_told_and_so_is_that_nothing_suits(arguments, code, said) -> None:
+    found = told(*arguments)
+    assert found[0] == code
+    assert said in found[1]
+
+
+def test_every_query_can_be_in_a_workload(prices: Prices) -> None:
+    rows = tuple(Row(name, 1) for name in QUERIES)
+    assert not predict(prices, Workload("all", rows, builds=0), "half_edge", 2_000).untold

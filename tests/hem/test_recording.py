@@ -1,0 +1,119 @@
+"""Laws of recordings: what was done is counted, and is done as without anybody counting."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import hem
+import structures
+from hem import algorithms
+from hem.contract.recording import ANEW, CHECKED, COMPILED, PYTHON
+
+INTERPRETED = next(name for name, it in structures.REGISTRY.items() if not it.compiled)
+COMPILED_ONE = next(
+    name for name, it in structures.REGISTRY.items() if it.compiled and not it.searches
+)
+TORUS = hem.generate("torus", 100)
+
+
+def build(name: str = COMPILED_ONE) -> structures.Structure:
+    return structures.build(name, TORUS)
+
+
+def counts(found: hem.Recording) -> dict[tuple[str, str], float]:
+    return {(it.what, it.caller): it.times for it in found.rows}
+
+
+@pytest.mark.parametrize("name", [INTERPRETED, COMPILED_ONE])
+def test_an_algorithm_that_is_counted_does_what_it_does_otherwise(name: str) -> None:
+    plain, counted = build(name), build(name)
+    faces = [3, 50, 3, 120]
+    found = algorithms.impacts(plain, faces)
+    with hem.record(counted) as workload:
+        assert algorithms.impacts(counted, faces) == found
+    assert np.array_equal(plain.triangles(), counted.triangles())
+    assert np.array_equal(plain.points, counted.points)
+    counted.validate()
+    # Of each impact: its docstring says which operations; three corners are asked for faces.
+    assert counts(workload)["split_face", COMPILED] == len(faces)
+    assert counts(workload)["split_edge", COMPILED] == len(faces)
+    assert counts(workload)["vertex_faces", COMPILED] == 3 * len(faces)
+
+
+def test_structures_are_asked_the_same_of_their_elements() -> None:
+    asked = []
+    for name in (INTERPRETED, COMPILED_ONE):
+        s = build(name)
+        with hem.record(s) as workload:
+            algorithms.impacts(s, [3, 50])
+        asked.append({it: n for it, n in counts(workload).items() if it[0] != "edge_vertices"})
+    assert asked[0] == asked[1]
+
+
+def test_calls_from_python_are_told_from_batches() -> None:
+    s = build()
+    with hem.record(s) as workload:
+        for v in (1, 2, 90):
+            s.vertex_faces(v)
+        s.vertex_faces(np.arange(10))
+        s.face_vertices()
+        s.find_edge(0, int(s.vertex_vertices(0)[0]))
+    found = counts(workload)
+    assert found["vertex_faces", PYTHON] == 3
+    assert found["vertex_faces", COMPILED] == 10
+    assert found["face_vertices", COMPILED] == s.n_faces
+    assert found["vertex_edges", PYTHON] == 1
+
+
+def test_what_lies_side_by_side_is_in_order_and_what_lies_apart_is_not() -> None:
+    s = structures.build(COMPILED_ONE, hem.generate("torus", 2_000))
+    with hem.record(s) as workload:
+        s.vertex_faces(np.arange(1_000))
+        s.face_vertices(np.arange(0, 4_000, 40))
+    shares = {it.what: it.in_order for it in workload.rows}
+    assert shares["vertex_faces"] == pytest.approx(1, abs=0.01)
+    assert shares["face_vertices"] == 0
+
+
+def test_what_is_refused_or_only_checked_is_no_edit() -> None:
+    tetrahedron = hem.TriangleMesh(
+        np.vstack([np.zeros(3), np.eye(3)]), [(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)]
+    )
+    s = structures.build(COMPILED_ONE, tetrahedron)
+    edge = int(s.edges()[0])
+    with hem.record(s) as workload:
+        assert not s.can_collapse_edge(edge)
+        with pytest.raises(hem.TopologyError):
+            s.collapse_edge(edge)
+    assert counts(workload) == {(f"{CHECKED}collapse_edge", PYTHON): 2}
+
+
+def test_neighbors_are_needed_anew_once_after_edits_that_are_followed_by_a_question() -> None:
+    s = build()
+    with hem.record(s) as workload:
+        s.split_face(0, (0, 0, 0))
+        s.split_face(1, (0, 0, 0))
+        s.face_vertices(0)  # its own corners: no neighbors
+        s.vertex_faces(0)
+        s.vertex_faces(1)
+    assert counts(workload)[ANEW, COMPILED] == 1
+
+
+def test_afterward_a_mesh_is_as_before() -> None:
+    s = build()
+    s.vertex_faces(0)
+    before = set(vars(s))
+    with pytest.raises(hem.MeshError), hem.record(s) as workload:  # noqa: PT012
+        s.face_faces(0)
+        s.face_faces(-1)
+    s.vertex_faces(3)
+    assert set(vars(s)) == before
+    assert counts(workload) == {("face_faces", PYTHON): 1}
+
+
+def test_a_recording_is_told_per_element_as_csv() -> None:
+    s = build()
+    with hem.record(s) as workload:
+        s.face_vertices(np.arange(50))
+    assert workload.text("vertex").splitlines()[1] == "face_vertices,0.5,vertex,0.98,compiled"
