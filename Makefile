@@ -24,7 +24,7 @@ define install
 endef
 
 .DEFAULT_GOAL := help
-.PHONY: help study test test-all demo soak mutants check format peers peers-cpp test-floor clean
+.PHONY: help study test test-all demo soak mutants check format peers peers-cpp test-floor docs clean
 
 help:  ## show this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -64,6 +64,10 @@ check: $(DEV)  ## check format, style, types and the way of imports
 	@$(BIN)/ruff check .
 	@$(BIN)/mypy
 	@$(BIN)/lint-imports
+
+docs: $(DEV)  ## write the site with tutorials, how-tos and the API
+	@NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --quiet
+	@echo "Site written. Open file://$(CURDIR)/build/site/index.html"
 
 format: $(DEV)  ## format the code
 	@$(BIN)/ruff format .

@@ -1,4 +1,4 @@
-"""Whatever the README and the docstrings show is run."""
+"""Whatever the README, the pages of the site and the docstrings show is run."""
 
 from __future__ import annotations
 
@@ -23,11 +23,20 @@ from experiments.cli import app
 
 ROOT = Path(__file__).parents[1]
 README = (ROOT / "README.md").read_text()
-BLOCKS = re.findall(r"(?ms)^```(\w*)\n(.*?)^```", README)
+PAGES = {path.name: path.read_text() for path in sorted((ROOT / "docs").glob("*.md"))}
+TEXT = "\n".join([README, (ROOT / "CONTRIBUTING.md").read_text(), *PAGES.values()])
+
+
+def blocks_of(text: str) -> list[tuple[str, str]]:
+    """Language and content of each; what has the title of a file is not meant to run by itself."""
+    return re.findall(r"(?ms)^```(\w*)\n(.*?)^```", text)
+
+
+BLOCKS = blocks_of(TEXT)
 LINES = [line.partition("#")[0].split() for _, text in BLOCKS for line in text.splitlines()]
-COMMANDS = [line[1:] for line in LINES if line[:1] == ["hem"]]
+COMMANDS = [list(it) for it in dict.fromkeys(tuple(it[1:]) for it in LINES if it[:1] == ["hem"])]
 QUICK = [it for it in COMMANDS if it[0] in ("info", "meshes")]
-PYTEST = re.findall(r"`python -m (pytest [^`]+)`", README)
+PYTEST = re.findall(r"`?python -m (pytest [^`#\n]+)", TEXT)
 
 
 def docstrings() -> Iterator[tuple[str, str]]:
@@ -67,13 +76,21 @@ def names(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
 
 
 def test_the_python_of_the_readme_runs_from_top_to_bottom(names: dict[str, Any]) -> None:
-    blocks = [text for language, text in BLOCKS if language == "python"]
+    blocks = [text for language, text in blocks_of(README) if language == "python"]
     assert len(blocks) >= 2
     for text in blocks:
         shown = [line for line in text.splitlines() if line]
         exec(compile("\n".join(shown), "README.md", "exec"), names)
     assert names["broken"].shards
     assert names["verdict"].outcome == "consistent"
+
+
+@pytest.mark.parametrize("page", [name for name in PAGES if "```python\n" in PAGES[name]])
+def test_the_python_of_a_page_runs_from_top_to_bottom_and_imports_what_it_uses(page: str) -> None:
+    given: dict[str, Any] = {"__name__": "page"}
+    for language, text in blocks_of(PAGES[page]):
+        if language == "python":
+            exec(compile(text, page, "exec"), given)
 
 
 def test_what_people_reach_for_first_has_an_example() -> None:
@@ -97,29 +114,29 @@ def test_code_in_a_docstring_runs(name: str, names: dict[str, Any]) -> None:
 
 
 @pytest.mark.parametrize("words", COMMANDS, ids=" ".join)
-def test_a_command_of_the_readme_is_one(words: list[str]) -> None:
+def test_a_command_that_is_shown_is_one(words: list[str]) -> None:
     command: Any = get_command(app)
     rest = words
-    while hasattr(command, "commands"):
+    while hasattr(command, "commands") and not rest[0].startswith("-"):
         command, rest = command.commands[rest[0].rstrip(";")], rest[1:]
     assert command.make_context("hem", rest).params is not None
 
 
 @pytest.mark.parametrize("words", QUICK, ids=" ".join)
-def test_a_quick_command_of_the_readme_runs(words: list[str]) -> None:
+def test_a_quick_command_that_is_shown_runs(words: list[str]) -> None:
     done = CliRunner().invoke(app, words)
     assert done.exit_code == 0, done.output
 
 
 @pytest.mark.parametrize(
-    "target", sorted(set(re.findall(r"(?:`|^)make (\w+)", README, re.MULTILINE)))
+    "target", sorted(set(re.findall(r"(?:`|^)make (\w+)", TEXT, re.MULTILINE)))
 )
-def test_a_target_of_the_readme_is_in_the_makefile(target: str) -> None:
+def test_a_target_that_is_shown_is_in_the_makefile(target: str) -> None:
     assert re.search(rf"^{target}:", (ROOT / "Makefile").read_text(), re.MULTILINE)
 
 
 @pytest.mark.parametrize("line", PYTEST)
-def test_a_line_of_pytest_in_the_readme_selects_something(line: str) -> None:
+def test_a_line_of_pytest_that_is_shown_selects_something(line: str) -> None:
     words = [sys.executable, "-m", *line.split(), "--collect-only", "-q"]
     done = subprocess.run(words, cwd=ROOT, capture_output=True, text=True)
     assert done.returncode == 0, done.stdout

@@ -1,8 +1,12 @@
-"""A structure is one file, an experiment is one file: both are found by table, report and check."""
+"""A structure is one file, an experiment is one file: both are found by table, report and check.
+
+The files are those that the tutorial shows.
+"""
 
 from __future__ import annotations
 
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -13,61 +17,11 @@ import pytest
 ROOT = Path(__file__).parents[1]
 COPIED = ("hem", "structures", "experiments", "notebooks", "results/reference", "tests")
 
-STRUCTURE = '''
-"""A half-edge mesh under another name: what a new structure's file declares."""
-
-from hem.contract import Claims, Look
-from structures.half_edge import HalfEdge
-
-
-class DirectedEdge(HalfEdge):
-    """As a half-edge mesh."""
-
-    name, title, abbreviation = "quarter_edge", "Quarter-Edge", "QEM"
-    look, thesis, order = Look("#7b2d8b", "D", ":"), False, 10
-    claims = Claims("a test: as a half-edge mesh", like="half_edge")
-'''
-
-EXPERIMENT = '''
-"""Work of a random walk over faces: what a new experiment's file declares."""
-
-import numpy as np
-
-from experiments.harness import Axis, Case, Experiment, Table
-
-STEPS = 5
-
-
-def cases(preset, structure):
-    """The judged family by size."""
-    family = preset.families[0]
-    return [Case(structure, family, size, "random_walk", "walked") for size in preset.work_sizes]
-
-
-def measure(case, preset, timer):
-    """Count a walk from face to face."""
-    s, rng = case.build(), np.random.default_rng(0)
-    face, work = int(s.faces()[0]), 0
-    for _ in range(STEPS):
-        work += int(s.work("face_faces", np.array([face]))[0])
-        face = int(rng.choice(s.face_faces(face)))
-    return case.result("work", s, [work], handles=1, checked=True)
-
-
-EXPERIMENT = Experiment(
-    title="Random walk",
-    kind="work",
-    cases=cases,
-    measure=measure,
-    copies=1,
-    turn=12,
-    table=Table("walks", "Random walks", {"random_walk": "Walk over faces"}, "query_scaling"),
-    axes={Axis.WORK_FACES: "walked"},
-    claims={"random_walk": {"*": "O(1)", "indexed": "O(n_t)"}},
-    source="a test",
+PAGE = (ROOT / "docs/structure.md").read_text()
+(STRUCTURE_FILE, STRUCTURE), (EXPERIMENT_FILE, EXPERIMENT) = re.findall(
+    r'(?ms)^```python title="(.*?)"\n(.*?)^```', PAGE
 )
-test_walk = EXPERIMENT.test
-'''
+"""What the page on adding them shows, and where it says that it belongs."""
 
 
 @pytest.fixture(scope="module")
@@ -76,8 +30,8 @@ def extended(tmp_path_factory: pytest.TempPathFactory) -> Path:
     tree = tmp_path_factory.mktemp("extended")
     for part in COPIED:
         shutil.copytree(ROOT / part, tree / part, symlinks=True)  # times stay: the cache is valid
-    (tree / "structures" / "quarter_edge.py").write_text(STRUCTURE)
-    (tree / "experiments" / "bench_random_walk.py").write_text(EXPERIMENT)
+    (tree / STRUCTURE_FILE).write_text(STRUCTURE)
+    (tree / EXPERIMENT_FILE).write_text(EXPERIMENT)
     made = "from pathlib import Path; from tests.experiments.made_runs import write_run; "
     python(tree, "-c", made + "write_run(Path('run'))")
     return tree

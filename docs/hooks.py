@@ -1,0 +1,155 @@
+"""What the site takes from elsewhere in the project, so that every fact stands once.
+
+Whole pages come from files that stand where readers of the code look for them, a section of
+another file where a page says ``{{ README.md#The library }}``, the commands from the program, and
+the pictures of the gallery from the code beside them.
+"""
+
+from __future__ import annotations
+
+import posixpath
+import re
+from pathlib import Path
+from typing import Any
+
+from mkdocs.structure.files import File, Files
+
+ROOT = Path(__file__).parents[1]
+
+PAGES = {
+    "answers.md": "report/README.md",
+    "algorithm.md": "hem/algorithms/README.md",
+    "architecture.md": "ARCHITECTURE.md",
+    "changelog.md": "CHANGELOG.md",
+    "contributing.md": "CONTRIBUTING.md",
+}
+"""By page the file it is."""
+
+PLACES = {source: page for page, source in PAGES.items()} | {"README.md": "index.md"}
+LINK = re.compile(r"(!?)\[([^\]]*)\]\(([^)#:\s]+)(#[^)\s]*)?\)")
+INCLUDED = re.compile(r"\{\{ (\S+?)#(.+?) \}\}")
+MADE = re.compile(r"(?s)```python\n(.*?)```\n\n!\[([^\]]*)\]\((gallery/\w+\.png)\)")
+
+
+def on_files(files: Files, config: Any) -> Files:
+    """Add what is made or stands elsewhere."""
+
+    def add(uri: str, content: str | bytes) -> None:
+        files.append(File.generated(config, uri, content=content))
+
+    for page, source in PAGES.items():
+        add(page, _relinked((ROOT / source).read_text("utf-8"), source, page))
+    for picture in (ROOT / "report").glob("*.png"):
+        add(f"report/{picture.name}", picture.read_bytes())
+    add("commands.md", _commands())
+    for code, _, uri in MADE.findall((ROOT / "docs/gallery.md").read_text("utf-8")):
+        if drawn := _drawn(code):
+            add(uri, drawn)
+    return files
+
+
+def on_page_markdown(markdown: str, page: Any, files: Files, **_: Any) -> str:
+    """Put sections of other files where they are asked for; say which pictures are missing."""
+
+    def included(found: re.Match[str]) -> str:
+        source, title = found.groups()
+        text = _section((ROOT / source).read_text("utf-8"), title)
+        return _relinked(text, source, page.file.src_uri)
+
+    def shown(found: re.Match[str]) -> str:
+        if files.get_file_from_path(found[3]):
+            return found[0]
+        return f"```python\n{found[1]}```\n\n*{found[2]}: to draw it needs OpenGL.*"
+
+    return MADE.sub(shown, INCLUDED.sub(included, markdown))
+
+
+def _section(text: str, title: str) -> str:
+    """What stands below a heading, or from the comment with this word to its end."""
+    patterns = f"(?ms)^<!-- {title} -->\n(.*?)^<!-- end of", f"(?ms)^## {title}\n(.*?)(?=^## |\\Z)"
+    for pattern in patterns:
+        if found := re.search(pattern, text):
+            return found[1].strip()
+    raise ValueError(f"nothing is headed {title!r}")
+
+
+def _relinked(text: str, source: str, page: str) -> str:
+    """Links between files as links between pages; what has no page is only named."""
+
+    def moved(found: re.Match[str]) -> str:
+        image, words, target, anchor = found.groups(default="")
+        path = posixpath.normpath(posixpath.join(posixpath.dirname(source), target))
+        path = PLACES.get(path, path)
+        if not image and path not in PLACES.values():
+            return words
+        return f"{image}[{words}]({posixpath.relpath(path, posixpath.dirname(page))}{anchor})"
+
+    return LINK.sub(moved, text)
+
+
+def _commands() -> str:
+    """Every command's help, as the program prints it."""
+    from typer.main import get_command
+
+    from experiments.cli import app
+
+    text = ["# The commands", "As `hem COMMAND --help` says."]
+
+    def describe(command: Any, name: str) -> None:
+        if hasattr(command, "commands"):
+            for word, inner in command.commands.items():
+                if not inner.hidden:
+                    describe(inner, f"{name} {word}")
+            return
+        context = command.make_context(name, [], resilient_parsing=True)
+        records = [it.get_help_record(context) for it in command.params if it.name != "help"]
+        rows = [(words.split("  ")[0], about) for words, about in filter(None, records)]
+        text.append(f"## {name}\n\n{command.help}")
+        if command.epilog:
+            text.append(command.epilog)
+        cells = ["| | |", "| --- | --- |"]
+        cells += [f"| `{words}` | {_cell(about)} |" for words, about in rows]
+        text.append("\n".join(cells if rows else []))
+
+    describe(get_command(app), "hem")
+    return "\n\n".join(text)
+
+
+def _cell(text: str) -> str:
+    return text.replace("|", "\\|").replace("[", "\\[")
+
+
+def _drawn(code: str) -> bytes | None:
+    """A PNG of what the code calls ``shown``; None where nothing can be drawn."""
+    from io import BytesIO
+
+    from PIL import Image
+
+    import hem
+    import structures
+    from hem.fracture.show import PicturesMissingError
+
+    names: dict[str, Any] = {"hem": hem, "structures": structures}
+    exec(compile(code, "gallery.md", "exec"), names)
+    try:
+        pixels = _picture(names["shown"])
+    except PicturesMissingError:
+        return None
+    file = BytesIO()
+    Image.fromarray(pixels).save(file, "png", optimize=True)
+    return file.getvalue()
+
+
+def _picture(shown: Any) -> Any:
+    from contextlib import closing
+
+    from hem import TriangleMesh
+    from hem.fracture.show import FractureScene, Picture
+
+    if isinstance(shown, FractureScene):
+        return shown.still((480, 400))
+    mesh = shown if isinstance(shown, TriangleMesh) else shown.to_triangles()
+    sand, up = (0.96, 0.82, 0.55), (0.0, 1.0, 0.0)
+    with closing(Picture(mesh.points, mesh.triangles, sand, (800, 560), up, wires=True)) as picture:
+        picture.look_at(mesh.points.astype(float))
+        return picture.image()

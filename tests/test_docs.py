@@ -1,0 +1,87 @@
+"""The site is built without a warning, opens from disk, and documents every public name."""
+
+from __future__ import annotations
+
+import re
+from html.parser import HTMLParser
+from pathlib import Path
+from urllib.parse import unquote, urlsplit
+
+import pytest
+
+import hem
+
+build = pytest.importorskip("mkdocs.commands.build", reason="the extra docs is not installed")
+
+ROOT = Path(__file__).parents[1]
+
+
+class Page(HTMLParser):
+    """What a page refers to, and what in it can be referred to."""
+
+    def __init__(self, path: Path) -> None:
+        super().__init__()
+        self.links: list[str] = []
+        self.loaded: list[str] = []
+        self.anchors: set[str] = set()
+        self.feed(path.read_text("utf-8"))
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        given = dict(attrs)
+        self.anchors.update(filter(None, (given.get("id"), given.get("name"))))
+        for key in ("href", "src"):
+            if target := given.get(key):
+                (self.links if tag == "a" else self.loaded).append(target)
+
+
+@pytest.fixture(scope="module")
+def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Built strictly: a warning is an error."""
+    from mkdocs.config import load_config
+
+    folder = tmp_path_factory.mktemp("site")
+    build.build(load_config(str(ROOT / "mkdocs.yml"), site_dir=str(folder), strict=True))
+    return folder
+
+
+@pytest.fixture(scope="module")
+def pages(site: Path) -> dict[Path, Page]:
+    found = {path: Page(path) for path in site.rglob("*.html") if path.name != "404.html"}
+    assert len(found) > 20
+    return found
+
+
+def test_every_link_leads_to_a_file_and_a_place_in_it(pages: dict[Path, Page]) -> None:
+    lost = []
+    for path, page in pages.items():
+        for link in page.links:
+            parts = urlsplit(link)
+            target = (path.parent / unquote(parts.path)).resolve() if parts.path else path
+            if parts.scheme:
+                continue
+            known = pages[target].anchors if target in pages else set()
+            if not target.is_file() or (parts.fragment and unquote(parts.fragment) not in known):
+                lost.append((path.name, link))
+    assert lost == []
+
+
+def test_a_page_loads_nothing_from_elsewhere(pages: dict[Path, Page]) -> None:
+    for path, page in pages.items():
+        for link in page.loaded:
+            assert not urlsplit(link).netloc, (path.name, link)
+            assert (path.parent / urlsplit(link).path).exists(), (path.name, link)
+
+
+def test_every_public_name_of_the_library_is_documented(pages: dict[Path, Page]) -> None:
+    anchors = set().union(*(page.anchors for page in pages.values()))
+    known = {it.rpartition(".")[2] for it in anchors}
+    assert set(hem.__all__) - known == set()
+    for room in hem._ROOMS:
+        assert f"hem.{room}" in anchors
+
+
+def test_no_page_shows_marks_that_were_not_read(site: Path) -> None:
+    for path in site.rglob("*.html"):
+        text = re.sub(r"(?s)<(pre|script|style).*?</\1>", "", path.read_text("utf-8"))
+        assert "{{ " not in text, path
+        assert "&gt;&gt;&gt; " not in text, path
