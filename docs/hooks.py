@@ -105,8 +105,6 @@ def _commands() -> str:
         records = [it.get_help_record(context) for it in command.params if it.name != "help"]
         rows = [(words.split("  ")[0], about) for words, about in filter(None, records)]
         text.append(f"## {name}\n\n{command.help}")
-        if command.epilog:
-            text.append(command.epilog)
         cells = ["| | |", "| --- | --- |"]
         cells += [f"| `{words}` | {_cell(about)} |" for words, about in rows]
         text.append("\n".join(cells if rows else []))

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import json
-import sys
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -14,7 +12,7 @@ from typer import Argument, Option
 
 import hem
 from experiments.cli.check import BASELINE
-from experiments.cli.console import MESH, Repair, console, errors
+from experiments.cli.console import AsJson, OfMesh, Repair, console, errors, print_json
 
 if TYPE_CHECKING:  # takes a second to import
     from experiments.advice import Advice
@@ -25,7 +23,7 @@ NOTHING = 2
 
 
 def advise(
-    mesh: Annotated[str, Argument(help=MESH)],
+    mesh: Annotated[str, Argument(**OfMesh)],
     workload: Annotated[
         str, Option(help="drawn, picked, edited, simplified, remeshed; or a TOML or CSV file.")
     ] = "drawn",
@@ -38,7 +36,7 @@ def advise(
     run: Annotated[
         Path | None, Option(help="A run of this machine. Default: the committed baseline.")
     ] = None,
-    as_json: Annotated[bool, Option("--json", help="Print JSON instead.")] = False,
+    as_json: AsJson = False,
     repair: Repair = False,
 ) -> None:
     """Say which structure should hold a mesh, for what is asked of it and done to it.
@@ -53,7 +51,7 @@ def advise(
 
     `with hem.record(s) as workload:` counts what a program does; `workload.save("mine.csv")`.
 
-    Example: hem advise bunny --workload simplified --need borders --worst-edit 1
+    Example: `hem advise bunny --workload simplified --need borders --worst-edit 1`
 
     Exit code 0; 1: a mistake in what was asked; 2: no structure suits.
     """
@@ -69,7 +67,7 @@ def advise(
     wanted, source = find_workload(workload), _run(run)
     found = advised(Prices(source), wanted, hem.find_mesh(mesh, repair), limits, need or [])
     if as_json:
-        sys.stdout.write(json.dumps(_as_data(found, source), indent=1) + "\n")
+        print_json(_as_data(found, source))
     else:
         _show(found, source, mesh)
     if not found.options:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import json
-import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -12,7 +10,15 @@ from rich.markup import escape
 from typer import Argument, Option
 
 from experiments import carried, require_known
-from experiments.cli.console import Structures, console, errors, run_folder, user_errors
+from experiments.cli.console import (
+    AsJson,
+    Structures,
+    console,
+    errors,
+    print_json,
+    run_folder,
+    user_errors,
+)
 
 if TYPE_CHECKING:  # takes a second to import, and `hem --help` has no need of it
     from experiments.regression import Compared, Measured
@@ -32,11 +38,14 @@ def check(
     beside: Annotated[Path | None, Option(help="Another checkout, to be timed beside.")] = None,
     structure: Structures = None,
     factor: Annotated[float | None, Option(help=FACTOR_HELP)] = None,
-    as_json: Annotated[bool, Option("--json", help="Print JSON instead.")] = False,
+    as_json: AsJson = False,
     markdown: Annotated[Path | None, Option(help="A summary, for a pull request.")] = None,
     baseline: Baseline = BASELINE,
 ) -> None:
-    """Compare with the baseline. Exit code 0; 1: something got worse; 2: it cannot be told."""
+    """Compare with the baseline. Exit code 0; 1: something got worse; 2: it cannot be told.
+
+    Example: `hem check results/runs/NAME --markdown check.md`
+    """
     with user_errors(2):  # 1 says that something got worse
         if factor is not None and not factor > 1:
             raise ValueError(f"--factor is more than 1, such as 1.5, not {factor:g}")
@@ -45,8 +54,7 @@ def check(
         from experiments.report import findings as shown
 
         if as_json:
-            content = shown.as_json(*compared)
-            sys.stdout.write(json.dumps(content, indent=1, ensure_ascii=False) + "\n")
+            print_json(shown.as_json(*compared))
         else:
             shown.show(*compared, console)
         if markdown is not None:
@@ -121,7 +129,10 @@ def update(
     yes: Annotated[bool, Option("--yes", help="Do not ask.")] = False,
     baseline: Baseline = HERE,
 ) -> None:
-    """Measure the counters, show what would change in the baseline, and write it."""
+    """Measure the counters, show what would change in the baseline, and write it.
+
+    Example: `hem baseline update results/runs/NAME`
+    """
     chosen = run_folder(run) if run else None
     from experiments import regression
 

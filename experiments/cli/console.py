@@ -1,8 +1,12 @@
 """What the commands share: where they print, which run they mean, how they tell mistakes."""
 
+import json
+import sys
 import warnings
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
+from importlib import import_module
+from math import isfinite
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -15,14 +19,48 @@ from typer.core import TyperGroup
 console = Console(highlight=False)
 errors = Console(stderr=True, highlight=False, soft_wrap=True)
 
+
+def completed(module: str, *names: str) -> Callable[[str], list[str]]:
+    """What completes a word to names of a module, which is imported when a shell asks."""
+
+    def complete(incomplete: str) -> list[str]:
+        known: list[Iterable[str]] = [getattr(import_module(module), it) for it in names]
+        return [it for some in known for it in some if it.startswith(incomplete)]
+
+    return complete
+
+
+AsJson = Annotated[bool, Option("--json", help="Print JSON instead.")]
 RunArgument = Annotated[
     Path | None, Argument(help="The folder of a run; the newest if it is not given.")
 ]
 Structures = Annotated[
-    list[str] | None, Option("--structure", help="Measure just this one; may be repeated.")
-]
-MESH = "A mesh file, a model (bunny), or a family and size (sphere:2000)."
+    list[str] | None, Option(
+        "--structure", help="Measure just this one; may be repeated.",
+        autocompletion=completed("structures", "NAMED"),
+    ),
+]  # fmt: skip
+OfMesh: dict[str, Any] = {
+    "help": "A mesh file, a model (bunny), or a family and size (sphere:2000).",
+    "autocompletion": completed("hem.sources", "SAMPLES", "FAMILIES"),
+}
+"""What a mesh is named by."""
 Repair = Annotated[bool, Option("--repair", help="Repair what is not manifold first.")]
+
+
+def print_json(content: Any) -> None:
+    """For other programs, in UTF-8 and on standard output."""
+    text = json.dumps(_strict(content), indent=1, ensure_ascii=False, allow_nan=False)
+    sys.stdout.write(text + "\n")
+
+
+def _strict(content: Any) -> Any:
+    """The same without NaN and infinity, which JSON has no words for: null."""
+    if isinstance(content, dict):
+        return {key: _strict(it) for key, it in content.items()}
+    if isinstance(content, list | tuple):
+        return [_strict(it) for it in content]
+    return None if isinstance(content, float) and not isfinite(content) else content
 
 
 def run_folder(run: Path | None) -> Path:

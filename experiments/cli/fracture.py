@@ -11,7 +11,7 @@ from typing import Annotated, Any
 import typer
 from typer import Argument, Option
 
-from experiments.cli.console import MESH, Repair, console, errors
+from experiments.cli.console import OfMesh, Repair, completed, console, errors
 
 Method = StrEnum("Method", ["voronoi", "tetra", "surface"])
 Format = StrEnum("Format", ["glb", "obj", "ply"])
@@ -41,15 +41,17 @@ POINT: Any = {"metavar": "X,Y,Z", "parser": _parser(
 PIXELS: Any = {"metavar": "WIDTHxHEIGHT", "parser": _parser(
     int, "x", lambda w, h: min(w, h) >= 64 and max(w, h) <= 4096 and 0.25 <= w / h <= 4,
     "a width and a height of 64 … 4096 pixels, not too narrow, as in 640x480")}
-Model = Annotated[str, Argument(help=MESH)]
+Model = Annotated[str, Argument(**OfMesh)]
 Impact = Annotated[Any, Option(**POINT, help="Where it is struck. Default: in view, to the left.")]
 Direction = Annotated[Any, Option(**POINT, help="Where the blow goes. Default: into the surface.")]
-OfMaterial = Annotated[str, Option(help="What it is of: glass, ceramic, stone, wood, ice.")]
+OfMaterial = Annotated[str, Option(help="What it is of: glass, ceramic, stone, wood, ice.",
+    autocompletion=completed("hem.fracture", "MATERIALS"))]
 Materials = Annotated[Path | None, Option(help="A toml file of other materials to choose from.")]
 Force = Annotated[float, Option(min=1e-9, max=1e9, help="How hard it is struck, in J/kg.")]
 HowBroken = Annotated[Method | None, Option(
     help="How it breaks. Default: voronoi, or surface if open.")]
-Holder = Annotated[str, Option(help="What holds the mesh, for tetra and surface.")]
+Holder = Annotated[str, Option(help="What holds the mesh, for tetra and surface.",
+    autocompletion=completed("structures", "NAMES"))]
 Seed = Annotated[int, Option(min=0, help="Other seeds, other shards.")]
 Scale = Annotated[float, Option(min=1e-9, max=1e9,
     help="Multiply the model first; its unit is taken as a meter.")]
@@ -72,7 +74,10 @@ def fracture(
     repair: Repair = False, wrap: Wrap = False, up: Up = None, format: Formats = None,
     out: Out = None, seconds: Seconds = None, animation: Animation = True, size: Pixels = "640x480",
 ) -> None:
-    """Break a model: pieces, a picture, an animation of them flying, and all in numbers."""
+    """Break a model: pieces, a picture, an animation of them flying, and all in numbers.
+
+    Example: `hem fracture bunny --material glass --force 10 --out broken`
+    """
     from experiments.report import fracture_scenes
     from hem import fracture as breaking
 

@@ -1,13 +1,12 @@
 """The commands ``hem history add`` and ``hem history show``."""
 
-import json
 from pathlib import Path
 from typing import Annotated
 
 import typer
 from typer import Argument, Option
 
-from experiments.cli.console import RunArgument, console, errors, run_folder
+from experiments.cli.console import AsJson, RunArgument, console, errors, print_json, run_folder
 
 history = typer.Typer(help="What became of the claims from commit to commit.", no_args_is_help=True)
 HISTORY = Path("results/history.jsonl")
@@ -16,7 +15,10 @@ FileOption = Annotated[Path, Option("--file", help="The history, a line per run.
 
 @history.command()
 def add(run: RunArgument = None, file: FileOption = HISTORY) -> None:
-    """Append a finished run. What is there already is not added again."""
+    """Append a finished run. What is there already is not added again.
+
+    Example: `hem history add results/runs/NAME`
+    """
     folder = run_folder(run)
     from experiments.regression import append_run, read_history, record_run
     from experiments.runs import load, noise
@@ -51,9 +53,12 @@ def show(
     ] = None,
     last: Annotated[int | None, Option(min=1, help="Show so many runs; judge by all.")] = None,
     slopes: Annotated[bool, Option("--slopes", help="The slopes and intervals.")] = False,
-    as_json: Annotated[bool, Option("--json", help="All as JSON, for other programs.")] = False,
+    as_json: AsJson = False,
 ) -> None:
-    """Print figures and verdicts by commit, and mark where they changed."""
+    """Print figures and verdicts by commit, and mark where they changed.
+
+    Example: `hem history show half_edge/vertex_faces --last 10`
+    """
     from experiments.regression import Trends, read_history
     from experiments.report import history_tables
 
@@ -63,9 +68,7 @@ def show(
         raise ValueError(f"there is no run in {file}; begin with: hem study, hem history add")
     trends = Trends(kept).only(machine, preset)
     if as_json:
-        content = history_tables.as_json(trends, claim, last)
-        text = json.dumps(content, indent=1, allow_nan=False)
-        console.print(text, soft_wrap=True, markup=False)
+        print_json(history_tables.as_json(trends, claim, last))
     else:
         history_tables.show(trends, claim, console, last, slopes)
     _warn(kept.faults)

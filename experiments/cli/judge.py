@@ -1,7 +1,5 @@
 """The command ``hem judge``: name the class of costs that other tools measured."""
 
-import json
-import sys
 from dataclasses import asdict
 from pathlib import Path
 from typing import Annotated, Any
@@ -10,7 +8,7 @@ import typer
 from rich.table import Table
 from typer import Argument, Option
 
-from experiments.cli.console import console, user_errors
+from experiments.cli.console import AsJson, console, print_json, user_errors
 
 CODES = {"consistent": 0, "violated": 1, "undetermined": 2}
 COLORS = {"consistent": "green", "violated": "red", "undetermined": "yellow"}
@@ -30,14 +28,14 @@ def judge_file(
         bool, Option("--exact", help="Costs are counts, which no cache slows.")
     ] = False,
     plot: Annotated[Path | None, Option(help="Draw the costs: .png, .svg or .pdf.")] = None,
-    as_json: Annotated[bool, Option("--json", help="Print JSON instead.")] = False,
+    as_json: AsJson = False,
 ) -> None:
     """Name the growth class of measured costs, and judge a claim.
 
     A CSV has sizes in its first column and costs in the others; equal sizes are samples.
     Exit code 0; 1: a claim is violated; 2: it cannot be told.
 
-    Example: hem judge benchmark.json --expected "O(n log n)" --plot costs.png
+    Example: `hem judge benchmark.json --expected "O(n log n)" --plot costs.png`
     """
     with user_errors(2):
         from hem.complexity import judge, read_curves
@@ -53,11 +51,12 @@ def judge_file(
 
             save_costs(plot, curves, verdicts, expected is not None)
         if as_json:
-            rows = [
-                {"function": it.name, "parameter": it.parameter, **_told(verdict, expected)}
-                for it, verdict in zip(curves, verdicts, strict=True)
-            ]
-            sys.stdout.write(json.dumps(rows, indent=1, ensure_ascii=False) + "\n")
+            print_json(
+                [
+                    {"function": it.name, "parameter": it.parameter, **_told(verdict, expected)}
+                    for it, verdict in zip(curves, verdicts, strict=True)
+                ]
+            )
         else:
             _print(curves, verdicts, expected)
     if expected is not None:

@@ -9,7 +9,7 @@ from rich.markup import escape
 from typer import Option
 
 from experiments import require_known
-from experiments.cli.console import Repair, Structures, console, errors
+from experiments.cli.console import OfMesh, Repair, Structures, completed, console, errors
 from experiments.presets import PRESETS
 
 DEFAULT = "quick"
@@ -19,7 +19,12 @@ DEFAULT = "quick"
 def run_study(
     preset: Annotated[
         str | None,
-        Option("--preset", "--profile", help="How much. Default: quick; a wrong one lists all."),
+        Option(
+            "--preset",
+            "--profile",
+            help="How much. Default: quick; a wrong one lists all.",
+            autocompletion=completed("experiments.presets", "PRESETS"),
+        ),
     ] = None,
     resume: Annotated[bool, Option("--resume", help="Resume the newest unfinished run.")] = False,
     run: Annotated[Path | None, Option(help="With --resume: which, finished or not.")] = None,
@@ -28,7 +33,9 @@ def run_study(
     experiment: Annotated[
         list[str] | None, Option(help="Run just this one; may be repeated.")
     ] = None,
-    mesh: Annotated[str | None, Option(help="Measure on this mesh, and on versions of it.")] = None,
+    mesh: Annotated[
+        str | None, Option(**OfMesh | {"help": "Measure on this mesh, and on versions of it."})
+    ] = None,
     repair: Repair = False,
     seed: Annotated[int | None, Option(help="Of the order of the cases.")] = None,
     pin: Annotated[bool | None, Option(help="Whether to stay on one core (yes).")] = None,
@@ -41,6 +48,8 @@ def run_study(
 
     A case that would not fit into memory is skipped and says so; HEM_MEMORY=8G pretends that there
     is so much.
+
+    Example: `hem study --mesh model.ply --structure half_edge`
     """
     if run and not resume:
         raise ValueError(f"to resume {run}, say --resume as well")

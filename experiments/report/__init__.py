@@ -21,7 +21,7 @@ _PLACES = {
     "session": ("MissingError", "claim_link", "link", "open_run", "project_file"),
     "site": ("write_pdf", "write_report"),
     "style": ("show_figures",),
-    "tables": ("digits", "duration", "show_claims"),
+    "tables": ("claims_as_json", "digits", "duration", "show_claims"),
 }  # fmt: skip
 """The public names by their file."""
 

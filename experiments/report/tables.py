@@ -4,6 +4,7 @@ import re
 from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
+from typing import Any
 
 from rich import box
 from rich.console import Console
@@ -23,7 +24,7 @@ from experiments.claims import (
     tally,
 )
 from experiments.report.session import MissingError
-from experiments.runs import load, noise, tables
+from experiments.runs import Run, load, noise, tables
 from structures import NAMED, THESIS
 
 COLORS = {
@@ -158,10 +159,8 @@ def show_claims(
     run_folder: Path, console: Console, every: bool = False, slopes: bool = False
 ) -> None:
     """Print the claims of a run and their verdicts: of the thesis' four structures, or of all."""
-    run, shown = load(run_folder), NAMED if every else THESIS
-    claims = [it for it in judge_run(run) if it.claim.structure in shown and it.was_measured]
-    if not claims:
-        raise MissingError(f"{run_folder} holds no measurements of these structures: try --all")
+    run = load(run_folder)
+    claims = _shown_claims(run, every)
     console.print(f"[bold]{run.folder.name}[/], preset {run.meta.get('preset')}", highlight=False)
     for name, table in tables().items():
         mine = [it for it in claims if it.claim.table == name]
@@ -178,6 +177,52 @@ def show_claims(
     console.print("\n[bold]Who claims what, of all structures[/]")
     show_rows(console, tally_rows(judge_run(run)))
     console.print("\n".join(legend()), style="dim", highlight=False)
+
+
+def _shown_claims(run: Run, every: bool) -> list[JudgedClaim]:
+    """What was measured, of the thesis' structures or of all. Raises MissingError for nothing."""
+    shown = NAMED if every else THESIS
+    claims = [it for it in judge_run(run) if it.claim.structure in shown and it.was_measured]
+    if not claims:
+        raise MissingError(f"{run.folder} holds no measurements of these structures: try --all")
+    return claims
+
+
+def claims_as_json(run_folder: Path, every: bool = False) -> dict[str, Any]:
+    """What ``show_claims`` prints, slopes included, as records; NaN where there is no number."""
+    run = load(run_folder)
+    return {
+        "run": run.folder.name,
+        "preset": run.meta.get("preset"),
+        "too_busy": bool(noise(run).too_busy),
+        "claims": [_record(it) for it in _shown_claims(run, every)],
+    }
+
+
+def _record(judged: JudgedClaim) -> dict[str, Any]:
+    """A judged claim in words and numbers."""
+    claim = judged.claim
+    said = {key: getattr(claim, key) for key in ("key", "table", "title", "structure", "source")}
+    axes = [
+        {
+            "measure": axis.measure,
+            "variable": axis.symbol,
+            "outcome": it.outcome if claim.claims_something else Outcome.NO_CLAIM.value,
+            "found": it.best,
+            **{key: float(getattr(it, key)) for key in ("slope", "slope_low", "slope_high")},
+        }
+        for axis, it in judged.verdicts.items()
+    ]
+    return said | {
+        "kind": claim.kind.value,
+        "claimed": claim.printed,
+        "outcome": judged.outcome.value,
+        "found": judged.found,
+        "reason": judged.reason,
+        "axes": axes,
+        "accesses": float(judged.work),
+        "seconds": float(judged.seconds),
+    }
 
 
 def _cell(judged: JudgedClaim) -> str:

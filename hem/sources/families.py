@@ -173,3 +173,4 @@ FAMILIES: dict[str, Family] = {
         closed=True, random=True, smallest=100, make=_isosurface,
     ),
 }  # fmt: skip
+"""The families by name, which ``generate`` makes."""

@@ -67,3 +67,4 @@ SAMPLES: dict[str, Sample] = {
     ),
     "teapot": Sample("the Utah teapot, from its patches at any tessellation", teapot),
 }
+"""The models by name, which ``sample`` reads."""
