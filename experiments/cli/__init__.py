@@ -1,5 +1,5 @@
 """The command line: ``hem study``, ``table``, ``report``, ``meshes``, ``info``, ``fracture``,
-``check``, ``baseline update``, ``history``, ``judge``.
+``check``, ``baseline update``, ``history``, ``judge``, ``advise``.
 
 A command imports what it needs when it is run, so that help and mistakes are quick.
 """
@@ -14,9 +14,102 @@ try:
 except ModuleNotFoundError as error:  # the library alone was installed
     raise SystemExit("hem: the commands need more: pip install 'hem-mesh[study]'") from error
 
-app.command()(advise)
+from experiments.cli.advise import advise
+from experiments.cli.check import baseline_app, check
+from experiments.cli.console import (
+    AsJson,
+    Commands,
+    RunArgument,
+    console,
+    errors,
+    print_json,
+    run_folder,
+)
+from experiments.cli.fracture import fracture
+from experiments.cli.history import history
+from experiments.cli.judge import judge_file
+from experiments.cli.meshes import info, meshes
+from experiments.cli.study import run_study
+
+app = typer.Typer(
+    cls=Commands,
+    help="Triangle-mesh data structures, measured and held against what a thesis claims of them.",
+    no_args_is_help=True,
+    rich_markup_mode="markdown",  # which fills the lines of a paragraph
+    pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+PAGES, DOCUMENT = Path("report/html"), Path("report/report.pdf")
+"""Where the report goes."""
+
+
+def _show_version(wanted: bool) -> None:
+    if wanted:
+        console.print(f"hem {version('hem-mesh')}")
+        raise typer.Exit
+
+
+@app.callback()
+def _options(
+    show_version: Annotated[
+        bool, Option("--version", callback=_show_version, is_eager=True, help="Say which.")
+    ] = False,
+) -> None:
+    pass
+
+
+app.command("study")(run_study)
+
+
+@app.command("table")
+def show_table(
+    run: RunArgument = None,
+    every: Annotated[bool, Option("--all", help="All structures, and the listings.")] = False,
+    slopes: Annotated[bool, Option("--slopes", help="The slopes and their intervals.")] = False,
+    as_json: AsJson = False,
+) -> None:
+    """Print what the thesis claims of each structure, with the verdicts of a run.
+
+    Example: `hem table --all --slopes`
+    """
+    folder = run_folder(run)
+    from experiments import report
+
+    if as_json:
+        print_json(report.claims_as_json(folder, every))
+    else:
+        report.show_claims(folder, console, every, slopes)
+
+
+@app.command("report")
+def write_report(
+    run: RunArgument = None,
+    output: Annotated[
+        Path | None, Option(help=f"Where it goes. Default: {PAGES}, with --pdf {DOCUMENT}.")
+    ] = None,
+    page: Annotated[bool, Option("--page", help="Just the page that is committed.")] = False,
+    pdf: Annotated[bool, Option("--pdf", help="One document to print; needs Chromium.")] = False,
+) -> None:
+    """Run the notebooks on a run and write the report: pages that open from disk.
+
+    Example: `hem report results/runs/NAME --output pages`
+    """
+    folder = run_folder(run)
+    from experiments import report
+
+    if page:
+        done = f"Page written: {report.write_readme(folder, Path('report'))}"
+    elif pdf:
+        done = f"Document written: {report.write_pdf(folder, output or DOCUMENT)}"
+    else:
+        front = report.write_report(folder, output or PAGES)
+        done = f"Report written. Open {front.resolve().as_uri()}"
+    console.print(done, soft_wrap=True)
+
+
 app.command()(meshes)
 app.command()(info)
+app.command()(advise)
 app.command()(fracture)
 app.add_typer(history, name="history")
 app.command()(check)
