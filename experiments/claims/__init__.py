@@ -21,13 +21,14 @@ from experiments.claims.claim import (
     tally,
 )
 from experiments.claims.curves import Curve, Curves, curves
+from experiments.claims.families import BY_TIME, Family, judge_families
 from experiments.claims.kept import judge_run
 from experiments.claims.quantities import MIXES, break_even, judge_sentences, sentence_claims
 from experiments.claims.verdicts import judge_cells
 
 __all__ = [
-    "CLAIMED", "MEMORY", "MIXES", "NOT_POSSIBLE", "NO_CLAIM", "SENTENCES", "Between", "Claim",
-    "Curve", "Curves", "Exactly", "Growth", "JudgedClaim", "Kind", "Outcome", "break_even",
-    "curves", "judge_cells", "judge_run", "judge_sentences", "load_claims", "sentence_claims",
-    "tally",
+    "BY_TIME", "CLAIMED", "MEMORY", "MIXES", "NOT_POSSIBLE", "NO_CLAIM", "SENTENCES", "Between",
+    "Claim", "Curve", "Curves", "Exactly", "Family", "Growth", "JudgedClaim", "Kind", "Outcome",
+    "break_even", "curves", "judge_cells", "judge_families", "judge_run", "judge_sentences",
+    "load_claims", "sentence_claims", "tally",
 ]  # fmt: skip

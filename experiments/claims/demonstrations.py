@@ -77,6 +77,26 @@ def coincident_vertices(mesh: hem.TriangleMesh = TOUCHING) -> Iterable[float]:
     yield len(s.points) - len(np.unique(s.points, axis=0))
 
 
+def outgoing_kept(side: int = 6) -> Iterable[float]:
+    """The share of vertices whose half-edge stays the same as a face closes the ring around them.
+
+    Of a sheet of triangles, side by side, that is made row by row.
+    """
+    points = [(x, y, 0) for y in range(side) for x in range(side)]
+    corners = [(i, i + 1, i + side) for i in range(side * (side - 1)) if (i + 1) % side]
+    corners = [it for a, b, c in corners for it in ((a, b, c), (b, c + 1, c))]
+    s, kept = Plankton.build(hem.PolygonMesh(points, corners[:1])), []
+    for face in corners[1:]:
+        before = [s.outgoing_half_edge(v) for v in face]
+        s.add_face(*face)
+        kept += [
+            s.outgoing_half_edge(v) == was
+            for v, was in zip(face, before, strict=True)
+            if not s.vertex_naked_edges(v)
+        ]
+    yield float(np.mean(kept))
+
+
 def half_edges_per_face() -> Iterable[float]:
     """How many half-edges name each face after a split as it is published."""
     m = printed()

@@ -19,6 +19,7 @@ from experiments.claims.beside import (
     printed,
     sound,
 )
+from experiments.claims.demonstrations import TOUCHING, coincident_vertices
 from hem.fracture import MATERIALS, shatter
 from hem.fracture.surface import break_points
 from structures.class_model import HalfEdge, Vertex
@@ -196,3 +197,11 @@ def closed_only() -> Shown:
         f"{s.n_edges:,} edges and {held:,} bytes, {held / s.n_vertices:.3g} per vertex and not 228",
         edges < s.n_edges and told < held,
     )
+
+
+def coincident() -> Shown:
+    """Vertices at the position of another, of triangles that touch: as they are, and welded."""
+    welded = hem.mesh_from_render(TOUCHING.points, TOUCHING.triangles[:, [0, 2, 1]].reshape(-1))
+    found, left = (int(*coincident_vertices(it)) for it in (TOUCHING, welded))
+    words = "vertices at the position of another, in a valid half-edge mesh"
+    return Shown(f"{found} {words}", f"{left} where points are welded before", found > 0 == left)

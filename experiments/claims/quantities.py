@@ -277,6 +277,7 @@ QUANTITIES: dict[str, Quantity] = {
     "books_built": lambda of_run: shown.books_built(),
     "polygon_corners": lambda of_run: shown.polygon_corners(),
     "article_invariants": lambda of_run: shown.article_invariants(),
+    "outgoing_kept": lambda of_run: shown.outgoing_kept(),
     "coincident": lambda of_run: shown.coincident_vertices(),
     "almost_free": lambda of_run: _slopes(of_run, PAIRS, ("face_faces",), "queries"),
     "stored_previous": lambda of_run: _work_ratios(of_run, *PAIRS, HALF, QUERIES),

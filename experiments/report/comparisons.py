@@ -3,17 +3,20 @@
 Each raises MissingError where nothing of it was measured.
 """
 
+from collections import Counter
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
 from experiments.bench_fracture import FIND, SHATTER, VISITED, WAYS
-from experiments.claims import MIXES, curves
+from experiments.claims import BY_TIME, MIXES, Family, curves
 from experiments.harness import BASE, Axis
-from experiments.report.pages import Heads, Html, numbers
+from experiments.report.pages import Heads, Html, numbers, text_table
+from experiments.report.session import MissingError, claim_link
 from experiments.report.style import TITLES
-from experiments.report.tables import digits, duration, two_digits
+from experiments.report.tables import SHOWN, digits, duration, two_digits
 from experiments.runs import Run
 from hem.complexity import Verdict, judge
 from structures import NAMES, REGISTRY
@@ -57,6 +60,52 @@ def bytes_by_mesh(run: Run, width: int = 8) -> Html:
     ]
     heads: dict[str, Any] = {"": str, "vertices": _count, "faces per vertex": two_digits}
     return numbers(rows, heads | {REGISTRY[name].title: _one_digit for name in measured})
+
+
+def by_family(families: Sequence[Family]) -> Html:
+    """What became of the claims on queries on each family, by time, and what the first denies."""
+    if not families:
+        raise MissingError("This run has not timed any query.")
+    heads = (
+        "Family", "vertices", "edges at a vertex", "at most", *(it.label for it in BY_TIME),
+        f"not as on the {families[0].name}",
+    )  # fmt: skip
+    return text_table(heads, [_family_row(it, families[0]) for it in families])
+
+
+def _family_row(it: Family, first: Family) -> tuple[Any, ...]:
+    counts = [Counter(it.outcomes(axis).values()) for axis in BY_TIME]
+    marks = [" ".join(f"{many[kind]} {kind.mark}" for kind in SHOWN) for many in counts]
+    against = [
+        Html('<a href="{}">{}, {}</a>').format(
+            claim_link(claim.key), REGISTRY[claim.structure].title, judged.claim.title
+        )
+        + f": {it.outcomes(axis)[claim.key]} by {axis.label}"
+        for axis in BY_TIME
+        for judged in it.against(first, axis)
+        for claim in [judged.claim]
+    ]
+    mesh = it.largest
+    mean = two_digits(2 * mesh["edges"] / mesh["vertices"])
+    size, most = (f"{mesh[name]:,}" for name in ("vertices", "valence_max"))
+    return it.name, size, mean, most, *marks, Html("<br>").join(against) or "–"
+
+
+def families_in_words(families: Sequence[Family]) -> Html:
+    """Which families say something else than the judged one, and how their valences differ."""
+    first, *others = families
+    denied = {it.name: sum(len(list(it.against(first, axis))) for axis in BY_TIME) for it in others}
+    means = [2 * it.largest["edges"] / it.largest["vertices"] for it in families]
+    if not others:
+        return Html(f"<p>Queries were timed on one family alone, the {first.name}.</p>")
+    named = ", ".join(f"{name} ({many})" for name, many in denied.items() if many)
+    found = f"the other way round on: {named}." if named else "the other way round on none of them."
+    return Html(
+        f"<p>{len(others)} families were timed beside the {first.name}. Of the cells that time "
+        f"decides on both, so many come out {found} A vertex has {two_digits(min(means))} to "
+        f"{two_digits(max(means))} edges on average in all of them, as it must on a large mesh, "
+        f"and {max(it.largest['valence_max'] for it in families)} at most.</p>"
+    )
 
 
 def shattering(run: Run) -> Html:

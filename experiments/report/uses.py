@@ -126,6 +126,37 @@ def beside(run: Run, one: str, other: str) -> Html:
     )
 
 
+def by_valence(run: Run) -> pd.DataFrame:
+    """The time of each query by structure, at the least, a middle and the largest valence.
+
+    Compiled structures; rows are query and valence. Raises MissingError where none was measured.
+    """
+    names = [name for name, it in REGISTRY.items() if it.compiled]
+    rows = {}
+    for query in QUERIES:
+        found = {it: curves(run).curve(Axis.TIME_VALENCE, it, query) for it in names}
+        costs = {it: pd.Series(one.centers, one.sizes) for it, one in found.items() if len(one)}
+        table = pd.DataFrame(costs).dropna()
+        for place in (0, len(table) // 2, -1) if len(table) > 2 and not run.machines else ():
+            rows[query, int(table.index[place])] = table.iloc[place]
+    if not rows:
+        raise MissingError("This run has not measured queries by valence.")
+    return pd.DataFrame(rows).T
+
+
+def fastest_by_valence(run: Run) -> Html:
+    """The fastest structures for each query, by valence, with their times."""
+    table = by_valence(run)
+    valences = sorted({valence for _, valence in table.index})
+    rows = []
+    for query in table.index.unique(level=0):
+        found = [table.loc[(query, it)].sort_values(kind="stable") for it in valences]
+        rows.append(
+            (QUERIES[query].title, *(f"{best(it)}, {duration(it.iloc[0])}" for it in found))
+        )
+    return text_table(["", *(f"{it:,} edges at the vertex" for it in valences)], rows)
+
+
 def best(found: pd.Series) -> str:
     """The titles of the structures that are alike the best one, as in a sentence."""
     alike = [
