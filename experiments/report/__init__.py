@@ -12,7 +12,7 @@ from typing import Any
 
 _PLACES = {
     "pages": (
-        "Html", "about_run", "abstract", "answer", "browser", "chapter_list", "claim_tables",
+        "Html", "about_run", "abstract", "answer", "browser", "chapter_list", "claim_tables", "closing",
         "errata", "frame_table", "legend", "reasons", "sentences", "slopes", "tally", "text_table",
         "verdicts",
     ),
@@ -21,7 +21,7 @@ _PLACES = {
     "session": ("MissingError", "claim_link", "link", "open_run", "project_file"),
     "site": ("write_pdf", "write_report"),
     "style": ("show_figures",),
-    "tables": ("claims_as_json", "digits", "duration", "show_claims"),
+    "tables": ("claims_as_json", "digits", "duration", "show_claims", "table_1_in_words"),
 }  # fmt: skip
 """The public names by their file."""
 

@@ -19,9 +19,13 @@ from experiments.report.style import TITLES
 from experiments.report.tables import SHOWN, digits, duration, two_digits
 from experiments.runs import Run
 from hem.complexity import Verdict, judge
+from hem.contract import QUERIES
 from structures import NAMES, REGISTRY
 
 ARRAYS, OBJECTS = "half_edge", "half_edge_objects"
+
+FLAT = 1.1
+"""Work that grows by no more than this, from the smallest mesh to the largest, does not grow."""
 
 
 def objects_against_arrays(run: Run) -> Html:
@@ -172,3 +176,54 @@ def _one_digit(value: float) -> str:
 def _slope(verdict: Verdict) -> str:
     slope, low, high = map(two_digits, (verdict.slope, verdict.slope_low, verdict.slope_high))
     return f"{slope} ({low} … {high}), {verdict.best}"
+
+
+def bytes_in_words(run: Run) -> Html:
+    """How many times as much half-edges take as triangles by index, with references of each width.
+
+    Raises MissingError where one was not weighed.
+    """
+    found = {
+        width: [curves(run).bytes_per_vertex(name, width) for name in (ARRAYS, BASE)]
+        for width in (8, 4)
+    }
+    if np.isnan(list(found.values())).any():
+        raise MissingError("This run has not weighed a half-edge and an indexed mesh.")
+    said = [
+        f"With references of {width} bytes a half-edge mesh takes {one:.4g} bytes per vertex and "
+        f"an indexed mesh {other:.4g}: {one / other:.2f} times as many."
+        for width, (one, other) in found.items()
+    ]
+    return Html(
+        f"<p>{' '.join(said)} An index of 4 bytes names 2³¹ records, more than fit into memory "
+        "here: nothing speaks for references of 8 bytes but a language that has no others.</p>"
+    )
+
+
+def waiting_in_words(run: Run) -> Html:
+    """How the times of queries grow whose work does not, beside the latency of the memory.
+
+    Of compiled structures. Raises MissingError where none was measured.
+    """
+    measured, grown = curves(run), []
+    for name in (it for it in NAMES if REGISTRY[it].compiled and not run.machines):
+        for query in QUERIES:
+            work, *times = (
+                measured.curve(axis, name, query) for axis in (Axis.WORK_FACES, *BY_TIME)
+            )
+            if all(len(it) > 1 for it in (work, *times)) and work.largest < FLAT * work.centers[0]:
+                grown.append([it.largest / it.centers[0] for it in times])
+    sets = measured.curve(Axis.RANDOM_FACES, ARRAYS, "vertex_faces").cases
+    latency = measured.latency(sets["working_set"].to_numpy(float))
+    if not grown or latency is None:
+        raise MissingError("This run has not counted and timed the same queries.")
+    in_order, at_random = np.median(grown, axis=0)
+    waited = latency[-1] / latency[0]
+    small, large = (int(sets["faces"].iloc[place]) for place in (0, -1))
+    so = "an O(1) query does not do more, it waits longer" if at_random < waited else ""
+    return Html(
+        f"<p>{len(grown)} queries on compiled structures do no more work on a larger mesh. From "
+        f"{small:,} to {large:,} faces their time grows {digits(in_order)}-fold in order and "
+        f"{digits(at_random)}-fold at random (medians), and that of a memory access "
+        f"{digits(waited)}-fold{': <b>' * bool(so)}{so}{'</b>' * bool(so)}.</p>"
+    )

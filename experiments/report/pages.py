@@ -1,5 +1,6 @@
 """HTML from the templates: whole pages, the claim browser, and the tables that chapters show."""
 
+import re
 from collections import Counter
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -57,6 +58,7 @@ def _templates() -> Environment:
         "static": lambda name: Html((files("experiments.report") / "static" / name).read_text()),
     }
     environment.filters |= {"time": duration, "two_digits": two_digits, "spelled": spelled}
+    environment.filters["where"] = lambda source: re.split("[:;,]", source)[0]
     return environment
 
 
@@ -217,3 +219,26 @@ def answer(
 def abstract(answers: Iterable[Answer]) -> Html:
     """The same answers in German."""
     return table("abstract", [it.german for it in answers])
+
+
+DENIED = "not "
+"""What a claim's key begins with where a sentence rests on what refutes it."""
+
+
+def closing(claims: Iterable[JudgedClaim], points: Mapping[str, Sequence[str]]) -> Html:
+    """What a chapter comes to, sentence by sentence, each with the claims that it rests on.
+
+    ``points``: by sentence the keys of claims that must be consistent, or with "not " before them
+    violated. Where the run says something else, so does the page. Braces in a sentence are what was
+    found of these claims. Raises KeyError for a claim that there is none of.
+    """
+    judged = {it.claim.key: it for it in claims}
+    rows = []
+    for text, keys in points.items():
+        rests = [judged[key.removeprefix(DENIED)] for key in keys]
+        expected = [
+            Outcome.VIOLATED if key.startswith(DENIED) else Outcome.CONSISTENT for key in keys
+        ]
+        follows = [it.outcome for it in rests] == expected
+        rows.append((text.format(*(it.found for it in rests)), follows, rests))
+    return table("closing", rows)

@@ -23,6 +23,7 @@ from experiments.claims import (
     judge_run,
     tally,
 )
+from experiments.harness import QUERIES_TABLE
 from experiments.report.session import MissingError
 from experiments.runs import Run, load, noise, tables
 from structures import NAMED, THESIS
@@ -77,6 +78,26 @@ def tally_rows(claims: Iterable[JudgedClaim]) -> list[list[str]]:
                 cells = [_counted(kind, it) for it in (decides, *timed)]
                 rows.append([f"{kind.value}, {place}", str(len(of_kind)), *cells])
     return rows
+
+
+def table_1_in_words(claims: Iterable[JudgedClaim]) -> str:
+    """What became of the cells that table 1 prints, by what is counted and by time at random."""
+    cells = [
+        it
+        for it in claims
+        if it.claim.table == QUERIES_TABLE.name
+        and it.claim.kind is Kind.PRINTED
+        and it.claim.claims_something
+    ]
+    outcomes = Counter(it.outcome for it in cells)
+    counts = ", ".join(f"{outcomes[it]} {it.value}" for it in SHOWN if outcomes[it])
+    at_random = Counter(it.outcomes["random"] for it in cells if it.outcomes)
+    timed = ", ".join(f"{at_random[it]} {it.value}" for it in SHOWN if at_random[it])
+    return (
+        f"Of the {len(cells)} cells that table 1 of the thesis prints, memory accesses and bytes "
+        f"find {counts}. By time in random order {at_random.total()} cells are judged: {timed}; "
+        "memory slows what does no more work."
+    )
 
 
 def _counted(kind: Kind, counts: Counter[Outcome]) -> str:

@@ -7,7 +7,7 @@ from contextlib import suppress
 import pytest
 from rich.console import Console
 
-from experiments.claims import break_even, curves, judge_run
+from experiments.claims import break_even, curves, judge_families, judge_run
 from experiments.harness import OPERATIONS, Axis
 from experiments.report import comparisons, notebooks, pages, uses
 from experiments.report.figures import growth, memory, picking, real_time
@@ -33,6 +33,10 @@ SHOWN = {
     "references": lambda run, claims: memory.references(run),
     "objects": lambda run, claims: comparisons.objects_against_arrays(run),
     "bytes by mesh": lambda run, claims: comparisons.bytes_by_mesh(run),
+    "bytes in words": lambda run, claims: comparisons.bytes_in_words(run),
+    "waiting": lambda run, claims: comparisons.waiting_in_words(run),
+    "families": lambda run, claims: comparisons.by_family(judge_families(run, claims)),
+    "by valence": lambda run, claims: uses.fastest_by_valence(run),
     "uses": lambda run, claims: uses.recommended(run),
     "pairs": lambda run, claims: uses.beside(run, "plankton", "half_edge"),
     "waits": lambda run, claims: real_time.waits(run),

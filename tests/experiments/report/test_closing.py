@@ -1,0 +1,100 @@
+"""Laws of what chapters end with: a sentence stands only where the run bears it out."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+
+from experiments.claims import JudgedClaim, judge_run
+from experiments.report import MissingError, comparisons, pages, uses
+from experiments.report.tables import table_1_in_words
+from experiments.runs import Run, load
+from hem.contract import QUERIES
+from structures import REGISTRY
+from tests.experiments.made_runs import LAWS, write_run
+
+HOLDS, DENIED = "half_edge/face_faces", "as_printed/split_edge/listings"
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory: pytest.TempPathFactory) -> Run:
+    """All claims hold but those on the published splits."""
+    return load(
+        write_run(
+            tmp_path_factory.mktemp("closing"),
+            lambda structure, subject, printed: (
+                LAWS["O(n_t)"] if structure == "as_printed" and "split" in subject else None
+            ),
+        )
+    )
+
+
+@pytest.fixture(scope="module")
+def claims(run: Run) -> list[JudgedClaim]:
+    return judge_run(run)
+
+
+@pytest.mark.parametrize(
+    ("keys", "follows"),
+    [
+        ([HOLDS], True),
+        ([f"not {DENIED}"], True),
+        ([HOLDS, f"not {DENIED}"], True),
+        ([DENIED], False),
+        ([f"not {HOLDS}"], False),
+        ([HOLDS, DENIED], False),
+    ],
+)
+def test_a_sentence_is_borne_out_where_all_that_it_rests_on_is_so(claims, keys, follows) -> None:
+    text = pages.closing(claims, {"It is so.": keys})
+    assert ("does not bear it out: It is so." in text) != follows
+    assert all(f"#{key.removeprefix('not ')}" in text for key in keys)
+
+
+def test_a_sentence_tells_what_was_found(claims) -> None:
+    text = pages.closing(claims, {"It costs {1}, and not {0}.": [HOLDS, f"not {DENIED}"]})
+    assert "It costs O(n_t), and not O(1)." in text
+
+
+def test_a_sentence_cannot_rest_on_a_claim_that_there_is_none_of(claims) -> None:
+    with pytest.raises(KeyError, match="half_edge/walks"):
+        pages.closing(claims, {"It is so.": ["half_edge/walks"]})
+
+
+def test_how_much_more_half_edges_take_is_what_they_were_weighed(run) -> None:
+    text = comparisons.bytes_in_words(run)
+    cases = run.cases.query("experiment == 'bench_memory'")
+    for width in (8, 4):
+        held = {
+            it.structure: it.samples[0] / it.vertices
+            for it in cases[cases["reference_bytes"] == width].itertuples()
+        }
+        assert f"{held['half_edge'] / held['indexed']:.2f} times as many" in text
+
+
+def test_table_1_is_counted_from_its_cells(claims) -> None:
+    assert table_1_in_words(claims).startswith(
+        "Of the 30 cells that table 1 of the thesis prints, memory accesses and bytes find "
+        "30 consistent. By time in random order 26 cells are judged: 26 consistent"
+    )
+
+
+def test_the_fastest_by_valence_is_the_least_of_the_medians(run) -> None:
+    table = uses.by_valence(run)
+    cases = run.cases[run.cases["valence"].notna() & (run.cases["experiment"] == "bench_valence")]
+    for (query, valence), row in table.iterrows():
+        asked = cases[(cases["subject"] == query) & (cases["valence"] == valence)]
+        medians = {
+            it.structure: sorted(it.samples)[len(it.samples) // 2]
+            for it in asked.itertuples()
+            if REGISTRY[it.structure].compiled
+        }
+        assert row.to_dict() == pytest.approx(medians)
+    assert set(table.index.unique(level=0)) == set(QUERIES)
+
+
+def test_what_waits_is_told_where_the_latency_is_known(run) -> None:
+    with pytest.raises(MissingError, match="counted and timed"):
+        comparisons.waiting_in_words(run)  # these runs have no latency of their own
+    assert not re.search("nan", comparisons.bytes_in_words(run))
