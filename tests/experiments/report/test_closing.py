@@ -7,12 +7,13 @@ import re
 import pytest
 
 from experiments.claims import JudgedClaim, judge_run
+from experiments.harness import Measurement
 from experiments.report import MissingError, comparisons, pages, uses
 from experiments.report.tables import table_1_in_words
-from experiments.runs import Run, load
+from experiments.runs import CaseFile, Run, load
 from hem.contract import QUERIES
 from structures import REGISTRY
-from tests.experiments.made_runs import LAWS, write_run
+from tests.experiments.made_runs import LAWS, SIZES, write_run
 
 HOLDS, DENIED = "half_edge/face_faces", "as_printed/split_edge/listings"
 
@@ -20,14 +21,17 @@ HOLDS, DENIED = "half_edge/face_faces", "as_printed/split_edge/listings"
 @pytest.fixture(scope="module")
 def run(tmp_path_factory: pytest.TempPathFactory) -> Run:
     """All claims hold but those on the published splits."""
-    return load(
-        write_run(
-            tmp_path_factory.mktemp("closing"),
-            lambda structure, subject, printed: (
-                LAWS["O(n_t)"] if structure == "as_printed" and "split" in subject else None
-            ),
-        )
+    folder = write_run(
+        tmp_path_factory.mktemp("closing"),
+        lambda structure, subject, printed: (
+            LAWS["O(n_t)"] if structure == "as_printed" and "split" in subject else None
+        ),
     )
+    latency = CaseFile(folder, "bench_latency", "machine")
+    for size in (60 * SIZES[0], 60 * SIZES[-1]):
+        seconds = [1e-10 * size / (60 * SIZES[0])]
+        latency.add(Measurement(str(size), "time", working_set=size, samples=seconds))
+    return load(folder)
 
 
 @pytest.fixture(scope="module")
@@ -94,7 +98,14 @@ def test_the_fastest_by_valence_is_the_least_of_the_medians(run) -> None:
     assert set(table.index.unique(level=0)) == set(QUERIES)
 
 
-def test_what_waits_is_told_where_the_latency_is_known(run) -> None:
+def test_what_waits_is_told_beside_the_latency(run) -> None:
+    text = comparisons.waiting_in_words(run)
+    grown = r"grows (0\.9\d|1\.0)-fold in order and (0\.9\d|1\.0)-fold at random"
+    assert re.search(grown, text)
+    assert "that of a memory access 1,000-fold: <b>an O(1) query" in text
+
+
+def test_what_waits_is_not_told_without_the_latency(run) -> None:
+    cases = run.cases[run.cases["experiment"] != "bench_latency"]
     with pytest.raises(MissingError, match="counted and timed"):
-        comparisons.waiting_in_words(run)  # these runs have no latency of their own
-    assert not re.search("nan", comparisons.bytes_in_words(run))
+        comparisons.waiting_in_words(Run(run.folder, run.meta, cases, run.skipped))
