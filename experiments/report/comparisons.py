@@ -71,7 +71,7 @@ def by_family(families: Sequence[Family]) -> Html:
     if not families:
         raise MissingError("This run has not timed any query.")
     heads = (
-        "Family", "vertices", "edges at a vertex", "at most", *(it.label for it in BY_TIME),
+        "Family", "vertices", "edges at a vertex", "most at one", *(it.label for it in BY_TIME),
         f"not as on the {families[0].name}",
     )  # fmt: skip
     return text_table(heads, [_family_row(it, families[0]) for it in families])
@@ -103,10 +103,10 @@ def families_in_words(families: Sequence[Family]) -> Html:
     if not others:
         return Html(f"<p>Queries were timed on one family alone, the {first.name}.</p>")
     named = ", ".join(f"{name} ({many})" for name, many in denied.items() if many)
-    found = f"the other way round on: {named}." if named else "the other way round on none of them."
+    found = f"on: {named}" if named else "on none of them"
     return Html(
-        f"<p>{len(others)} families were timed beside the {first.name}. Of the cells that time "
-        f"decides on both, so many come out {found} A vertex has {two_digits(min(means))} to "
+        f"<p>{len(others)} families were timed beside the {first.name}. Cells that time decides on "
+        f"both come out the other way round {found}. A vertex has {two_digits(min(means))} to "
         f"{two_digits(max(means))} edges on average in all of them, as it must on a large mesh, "
         f"and {max(it.largest['valence_max'] for it in families)} at most.</p>"
     )
@@ -152,15 +152,15 @@ def face_finding(run: Run, structure: str = ARRAYS) -> Html:
 
 
 def overtaking(table: pd.DataFrame) -> Html:
-    """After how many queries or edits per build a structure overtakes, on the largest mesh."""
+    """After how many queries or edits a structure overtakes, building included, on the largest mesh."""
     largest = table[table["vertices"] == table.groupby("subject")["vertices"].transform("max")]
     rows = [
         (MIXES[subject], REGISTRY[structure].title, vertices, times, times / vertices)
         for subject, structure, vertices, times in largest.to_numpy()
     ]
     heads: Heads = {
-        "": str, "structure": str, "vertices": _count, "per build": digits,
-        "per build and vertex": digits,
+        "": str, "structure": str, "vertices": _count, "until repaid": digits,
+        "until repaid, per vertex": digits,
     }  # fmt: skip
     return numbers(rows, heads)
 

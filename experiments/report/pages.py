@@ -58,7 +58,7 @@ def _templates() -> Environment:
         "static": lambda name: Html((files("experiments.report") / "static" / name).read_text()),
     }
     environment.filters |= {"time": duration, "two_digits": two_digits, "spelled": spelled}
-    environment.filters["where"] = lambda source: re.split("[:;,]", source)[0]
+    environment.filters["where"] = lambda source: re.split("[:;]|, (?!abstract|table)", source)[0]
     return environment
 
 

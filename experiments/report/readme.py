@@ -41,7 +41,7 @@ DRAWN: dict[str, tuple[str, Callable[[Run], Figure]]] = {
     ),
     "shards": ("Breaking a surface", growth.shards_per_second),
     "overtaking": (
-        "Queries and edits per build until the indexed mesh is overtaken",
+        "Queries and edits until the indexed mesh is overtaken, building included",
         growth.overtaking,
     ),
 }

@@ -198,7 +198,7 @@ def overtaking(run: Run) -> Plot:
     titles = {name: title.capitalize() for name, title in MIXES.items()}
     what = "building and queries or operations of the same meshes, beside an indexed mesh"
     shape: dict[str, Any] = {"also": also, "room": 0.3, "columns": 4, "size": (2.75, 2.9)}
-    return _draw(table, titles, "vertices", what, "how many per build", **shape)
+    return _draw(table, titles, "vertices", what, "how many until building is repaid", **shape)
 
 
 def shards_per_second(run: Run) -> Plot:
