@@ -152,7 +152,7 @@ def face_finding(run: Run, structure: str = ARRAYS) -> Html:
 
 
 def overtaking(table: pd.DataFrame) -> Html:
-    """After how many queries or edits a structure overtakes, building included, on the largest mesh."""
+    """After how many queries or edits a structure has repaid its building, on the largest mesh."""
     largest = table[table["vertices"] == table.groupby("subject")["vertices"].transform("max")]
     rows = [
         (MIXES[subject], REGISTRY[structure].title, vertices, times, times / vertices)
