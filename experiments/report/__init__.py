@@ -12,9 +12,9 @@ from typing import Any
 
 _PLACES = {
     "pages": (
-        "Html", "about_run", "abstract", "answer", "browser", "chapter_list", "claim_tables", "closing",
-        "errata", "frame_table", "legend", "reasons", "sentences", "slopes", "tally", "text_table",
-        "verdicts",
+        "Html", "about_run", "abstract", "answer", "browser", "chapter_list", "claim_tables",
+        "closing", "errata", "frame_table", "legend", "reasons", "sentences", "slopes", "tally",
+        "text_table", "verdicts",
     ),
     "readme": ("write_readme",),
     "sections": ("traced",),
