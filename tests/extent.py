@@ -17,7 +17,7 @@ EVERYTHING = os.environ.get("HEM_TEST") == "everything"
 
 def some(count: int) -> int:
     """How many of so many random cases are tried."""
-    return count if EVERYTHING else -(-count // 3)
+    return count if EVERYTHING else -(-count // 6)
 
 
 exhaustive = pytest.mark.exhaustive

@@ -54,7 +54,7 @@ def test_a_small_mesh_gets_finer_versions_only(tmp_path):
 def test_a_run_keeps_its_mesh_and_is_called_by_it(tmp_path):
     file = tmp_path / "model.ply"
     hem.save(hem.generate("torus", 500), file)
-    folder = begin(tmp_path, "memory", "work", mesh=str(file))
+    folder = begin(tmp_path, "memory", "work", mesh=str(file), structures=["triangle_neighbor"])
     file.unlink()
     go_on(folder)
     assert read_meta(folder)["preset"] == "smoke on model.ply"
