@@ -58,14 +58,14 @@ def time_query(case: Case, preset: Preset, timer: Timer) -> Measurement:
         sweep.run()
         if reference:
             reference.ask(reference.sweep)
-    beside = reference.seconds(-(-many // 4)) if reference else []
+    beside = reference.seconds(preset.round_seconds / 4) if reference else []
     windows = (np.arange(many) + many * k for k in count())
 
     def successive() -> tuple[Sweep]:
         return (sweep.some(next(windows) % len(handles)),)
 
     timed = timer(Sweep.run, setup=successive, rounds=rounds, per=many)
-    beside += reference.seconds(-(-many // 4)) if reference else []
+    beside += reference.seconds(preset.round_seconds / 4) if reference else []
     constant = float(np.median(beside)) if beside else None
     return case.result("time", s, latency=latency, reference=constant, **timed.fields)
 

@@ -25,6 +25,9 @@ from hem.meshes import TriangleMesh
 
 ROUNDS = 3
 """Before and after the rounds of a case, each a quarter as long as one of those."""
+TRIED = 1_000
+"""Handles that are asked to know how many make a round, and the fewest of one."""
+MOST_HANDLES = 250_000
 SMALL_HUBS = 256
 """Faces of the small mesh where the valence varies."""
 
@@ -44,14 +47,15 @@ class Reference:
         sweep.loop(sweep.handles, sweep.out, *self.records)
         return perf_counter() - begin
 
-    def seconds(self, many: int) -> list[float]:
-        """Seconds per query of some rounds of so many; each goes on where the last one ended."""
-        seconds = []
-        for _ in range(ROUNDS):
+    def seconds(self, long: float) -> list[float]:
+        """Seconds per query of some rounds about so ``long``; each goes on where the last ended."""
+        many, seconds = TRIED, []
+        for _ in range(1 + ROUNDS):
             places = (self._asked + np.arange(many)) % len(self.sweep.handles)
             seconds.append(self.ask(self.sweep.some(places)) / many)
             self._asked += many
-        return seconds
+            many = int(np.clip(long / seconds[0], TRIED, MOST_HANDLES))
+        return seconds[1:]
 
 
 def small_case(case: Case, preset: Preset) -> Case:

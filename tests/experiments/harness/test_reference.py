@@ -55,11 +55,12 @@ def test_the_reference_asks_every_handle_in_turn(order: str) -> None:
     handles = reference.sweep.handles
     assert np.array_equal(np.sort(handles), reference.structure.handles("face"))
     assert np.array_equal(handles, np.sort(handles)) == (order == "consecutive")
-    asked = []
-    reference.ask = lambda sweep: asked.extend(sweep.handles) or 1.0  # type: ignore[method-assign]
-    assert reference.seconds(100) == [0.01] * 3
-    reference.seconds(100)
-    assert np.array_equal(asked, np.resize(handles, 600))
+    asked: list[np.ndarray] = []
+    reference.ask = lambda it: asked.append(it.handles) or 1e-6 * len(it.handles)  # type: ignore
+    assert reference.seconds(2e-3) == 3 * [1e-6]
+    reference.seconds(2e-3)
+    assert [len(it) for it in asked] == 2 * [1000, 2000, 2000, 2000]
+    assert np.array_equal(np.concatenate(asked), np.resize(handles, 14_000))
 
 
 @pytest.mark.parametrize(("family", "measured"), [("torus", True), ("sphere", False)])
