@@ -255,20 +255,21 @@ def _cell(judged: JudgedClaim) -> str:
 
 
 def _show_slopes(console: Console, claims: Sequence[JudgedClaim]) -> None:
-    """By structure a line per claim and axis: slope, interval, the class found, the verdict."""
+    """By structure a line per claim and axis: both slopes, the class found, the verdict."""
     for structure in dict.fromkeys(judged.claim.structure for judged in claims):
-        rows = [("", "axis", "slope", "interval", "claimed", "found", "")]
+        rows = [("", "axis", "raw slope", "memory out", "interval", "claimed", "found", "")]
         for judged in (it for it in claims if it.claim.structure == structure):
             for axis, it in judged.verdicts.items():
-                low, slope, high = map(two_digits, (it.slope_low, it.slope, it.slope_high))
+                low, high = two_digits(it.slope_low), two_digits(it.slope_high)
+                slopes = two_digits(it.raw_slope), two_digits(it.slope)
                 claimed = judged.claim.claims_something
                 outcome = Outcome(it.outcome) if claimed else Outcome.NO_CLAIM
                 mark = judged.claim.kind.marks([outcome])
                 found = (it.expected if claimed else "", it.best, mark)
-                measured = (f"{axis.measure} {axis.symbol}", slope, f"{low}…{high}")
+                measured = (f"{axis.measure} {axis.symbol}", *slopes, f"{low}…{high}")
                 rows.append((judged.claim.title, *measured, *found))
         if len(rows) > 1:
-            show_rows(console, rows, NAMED[structure].title, numbers=["slope"])
+            show_rows(console, rows, NAMED[structure].title, numbers=["raw slope", "memory out"])
 
 
 def _summary(claims: Sequence[JudgedClaim]) -> str:

@@ -14,6 +14,7 @@ from experiments.harness import Axis
 from experiments.report import style
 from experiments.report.session import Session, claim_file, open_run
 from experiments.report.style import GRAY, RED, STYLES, Plot
+from experiments.report.tables import two_digits
 from hem.complexity import parse
 
 Array = NDArray[np.float64]
@@ -76,7 +77,9 @@ def _draw_growth(axes: Axes, curve: Curve, judged: JudgedClaim, axis: Axis) -> N
     axes.vlines(curve.sizes, found["smallest"], found["largest"], color=color, linewidth=1.2)
     axes.plot(curve.sizes, found["center"], "o", color=color)
     _name(axes, style.axis_label(axis))
-    axes.set(xscale="log", yscale="log", xlabel=style.VARIABLES[axis.variable])
+    raw, slope = two_digits(verdict.raw_slope), two_digits(verdict.slope)
+    slopes = f"slope {raw}" if axis.exact else f"slope {raw}, memory out {slope}"
+    axes.set(xscale="log", yscale="log", xlabel=f"{style.VARIABLES[axis.variable]}; {slopes}")
     every = found.to_numpy(float)
     logs = np.log10(every[every > 0] if (every > 0).any() else [1.0])
     middle, half = (logs.min() + logs.max()) / 2, max(np.ptp(logs) / 2 * 1.1 + 0.05, 0.8)

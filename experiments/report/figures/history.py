@@ -15,7 +15,7 @@ from experiments.report.style import STYLES, TITLES, grid, label_ends, styled
 from structures import NAMES, REGISTRY
 
 PANELS = {
-    "slope_time": "Slope in n_t, by time",
+    "slope_time": "Slope in n_t, by time, the memory's part taken out",
     "work": "Work at the largest size",
     "bytes": "Bytes per vertex",
     "time": "Time, in memory accesses",
