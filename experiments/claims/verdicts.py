@@ -2,7 +2,8 @@
 
 Work counts are exact, so they decide; time is judged beside them. Asked in consecutive order, a
 query finds what it needs in the caches, and time shows its steps. Asked at random it waits for
-memory, which is slower the larger the mesh. Both are judged against the latency measured beside.
+memory, which is slower the larger the mesh. Both are judged in proportion to the reference beside
+them, the same code where its work cannot grow; without one, against the latency of the memory.
 """
 
 from collections.abc import Mapping, Sequence
