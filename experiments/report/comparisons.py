@@ -174,8 +174,10 @@ def _one_digit(value: float) -> str:
 
 
 def _slope(verdict: Verdict) -> str:
+    """With the memory's part taken out, and as measured."""
     slope, low, high = map(two_digits, (verdict.slope, verdict.slope_low, verdict.slope_high))
-    return f"{slope} ({low} … {high}), {verdict.best}"
+    raw = two_digits(verdict.raw_slope)
+    return f"{slope} ({low} … {high}), {verdict.best}; as measured {raw}"
 
 
 def bytes_in_words(run: Run) -> Html:
