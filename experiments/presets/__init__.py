@@ -123,7 +123,7 @@ class Preset:
         if rounds * seconds <= allowed:
             return ""
         return (
-            f"takes {seconds:.0f} s and more a round, and {allowed:.0f} s are given to all rounds"
+            f"would take {seconds:.0f} s a round or more; all rounds together get {allowed:.0f} s"
         )
 
     def work_points(self) -> list[tuple[str, int, int | None]]:
