@@ -139,7 +139,7 @@ def test_the_committed_page_has_the_tables_and_its_pictures(base_folder, tmp_pat
     assert "| Split face | O(1) ○○ | O(1) (✓✓) | O(1) (✓✓) | O(1) ✓✓ |" in text
     assert "| Named by its three corners | O(n_t) ✓✓ |" in text
     assert all(f"## In sentences: {kind.about}" in text for kind in CLAIMED)
-    assert "| printed, in tables | 40 | 40 ✓ |" in text
+    assert "| printed, in tables | 41 | 41 ✓ |" in text
     assert "6.33 | ✓ consistent |" in text
     pictures = re.findall(r"\((\w+\.png)\)", text)
     assert len(pictures) == 3
