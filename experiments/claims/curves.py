@@ -90,6 +90,24 @@ class Curves:
         """What a claim is judged by along an axis."""
         return self.curve(axis, claim.structure, claim.subject, claim.table)
 
+    def on_one_mesh(self, claim: Claim) -> tuple[int, float, float]:
+        """The faces of the largest mesh on which work was counted and timed, and both there.
+
+        Asked at random where that was measured; zero and nan where there is no such mesh.
+        """
+        timed = self.of(claim, Axis.RANDOM_FACES)
+        every = [
+            self.of(claim, Axis.WORK_FACES),
+            timed if len(timed) else self.of(claim, Axis.TIME_FACES),
+        ]
+        work, seconds = (
+            dict(zip(it.sizes.tolist(), it.centers.tolist(), strict=True)) for it in every
+        )
+        both = work.keys() & seconds.keys()
+        return (
+            (int(max(both)), work[max(both)], seconds[max(both)]) if both else (0, np.nan, np.nan)
+        )
+
     def named(
         self, experiment: str, structure: str, subject: str = "", order: str = "", width: int = 4
     ) -> Curve:

@@ -13,7 +13,7 @@ import pandas as pd
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
-from experiments.claims import SENTENCES, JudgedClaim, Kind, Outcome
+from experiments.claims import SENTENCES, JudgedClaim, Kind, Outcome, curves
 from experiments.claims.errata import Erratum
 from experiments.harness import Axis, Table
 from experiments.report import session
@@ -103,7 +103,8 @@ def verdicts(claims: Iterable[JudgedClaim], name: str) -> Html:
 
 def slopes(claims: Iterable[JudgedClaim], name: str) -> Html:
     """The same with the slopes along every axis, their intervals, and what a query costs."""
-    return table("slopes", *by_subject(claims, name), list(Axis))
+    measured = curves(session.open_run().run)
+    return table("slopes", *by_subject(claims, name), list(Axis), measured)
 
 
 def sentences(claims: Iterable[JudgedClaim], kind: str) -> Html:

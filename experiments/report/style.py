@@ -3,12 +3,14 @@
 import io
 from collections import defaultdict
 from collections.abc import Sequence
+from colorsys import hls_to_rgb, rgb_to_hls
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from matplotlib import rc_context, rc_params_from_file
 from matplotlib.axes import Axes
+from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
@@ -145,8 +147,14 @@ def label_ends(axes: Axes, gap: float = 10.5) -> None:
         for (height, end, line), place in zip(ends, places, strict=True):
             axes.annotate(
                 str(line.get_label()), end, (5, place - height), textcoords="offset points",
-                annotation_clip=False, color=line.get_color(), va="center", fontsize=8,
+                annotation_clip=False, color=darker(line.get_color()), va="center", fontsize=8,
             )  # fmt: skip
+
+
+def darker(color: Any) -> tuple[float, ...]:
+    """A color as small letters have to have it to be read on white."""
+    hue, lightness, saturation = rgb_to_hls(*to_rgb(color))
+    return hls_to_rgb(hue, min(lightness, 0.3), saturation)
 
 
 def spread_apart(heights: list[float], gap: float) -> list[float]:
