@@ -165,11 +165,11 @@ def split_as_printed() -> Figure:
 
 
 def quad_splits(structure: str) -> Figure:
-    """Figure 6: the diagonal of a quad split in the middle, a quarter up its side, and off it."""
+    """Figure 6: a quad split in its middle, a quarter up its left side, and a unit off that."""
     places = {
         "in the middle": ((0, 2), (0.5, 0.5, 0)),
-        "a quarter up the left side": ((0, 3), (0.0, 0.25, 0)),
-        "off the edge": ((0, 2), (0.75, 0.4, 0)),
+        "a quarter up\nits left side": ((0, 3), (0.0, 0.25, 0)),
+        "a unit left\nof that side": ((0, 3), (-1.0, 0.5, 0)),
     }
     every = [_step("The quad", structures.build(structure, quad()), edges=[(0, 2)])]
     for title, (edge, place) in places.items():
