@@ -29,13 +29,15 @@ TEXT = "\n".join([README, (ROOT / "CONTRIBUTING.md").read_text(), *PAGES.values(
 
 def blocks_of(text: str) -> list[tuple[str, str]]:
     """Language and content of each; what has the title of a file is not meant to run by itself."""
-    return re.findall(r"(?ms)^```(\w*)\n(.*?)^```", text)
+    found = re.findall(r"(?ms)^```(\w*)([^\n]*)\n(.*?)^```", text)
+    return [(language, content) for language, titled, content in found if not titled]
 
 
 BLOCKS = blocks_of(TEXT)
 LINES = [line.partition("#")[0].split() for _, text in BLOCKS for line in text.splitlines()]
 COMMANDS = [list(it) for it in dict.fromkeys(tuple(it[1:]) for it in LINES if it[:1] == ["hem"])]
 QUICK = [it for it in COMMANDS if it[0] in ("info", "meshes")]
+FILES = dict(re.findall(r'(?ms)^```python title="([^"/]+)"\n(.*?)^```', TEXT))
 PYTEST = re.findall(r"`?python -m (pytest [^`#\n]+)", TEXT)
 
 
@@ -137,7 +139,11 @@ def test_a_target_that_is_shown_is_in_the_makefile(target: str) -> None:
 
 @pytest.mark.parametrize("line", PYTEST)
 def test_a_line_of_pytest_that_is_shown_selects_something(line: str) -> None:
-    words = [sys.executable, "-m", *line.split(), "--collect-only", "-q"]
-    done = subprocess.run(words, cwd=ROOT, capture_output=True, text=True)
-    assert done.returncode == 0, done.stdout
+    for name, text in FILES.items():
+        Path(name).write_text(text)
+    place = Path.cwd() if line.split()[1] in FILES else ROOT
+    plugin = ["-p", "hem.complexity.pytest_plugin"]  # as where hem is installed anew
+    words = [sys.executable, "-m", *line.split(), *plugin, "--collect-only", "-q"]
+    done = subprocess.run(words, cwd=place, capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout + done.stderr
     assert "::" in done.stdout
