@@ -121,7 +121,10 @@ def test_a_command_that_is_shown_is_one(words: list[str]) -> None:
     rest = words
     while hasattr(command, "commands") and not rest[0].startswith("-"):
         command, rest = command.commands[rest[0].rstrip(";")], rest[1:]
-    assert command.make_context("hem", rest).params is not None
+    if hasattr(command, "commands"):  # an option of all commands, which would act when it is read
+        assert rest[0] in {name for it in command.params for name in it.opts}
+    else:
+        assert command.make_context("hem", rest).params is not None
 
 
 @pytest.mark.parametrize("words", QUICK, ids=" ".join)

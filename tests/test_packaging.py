@@ -1,25 +1,40 @@
-"""The wheel holds what the checkout reads, and whatever is imported is declared."""
+"""The wheel holds what the checkout reads and works without it; what is imported is declared."""
 
 from __future__ import annotations
 
 import ast
+import json
 import os
 import re
 import shutil
 import subprocess
 import sys
 import tomllib
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from importlib.metadata import packages_distributions
 from itertools import chain
 from pathlib import Path
+from urllib.parse import unquote, urlsplit
 
+import numpy as np
 import pytest
+
+import hem
+from tests.extent import exhaustive
 
 ROOT = Path(__file__).parents[1]
 PACKAGES = ("hem", "structures", "experiments")
 FOLDERS = ("notebooks", "results/reference")
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+
+
+GUARD = ROOT / "docs/guard.md"
+
+
+def shown(page: Path, titled: bool = False) -> list[tuple[str, str]]:
+    """Title and content of the blocks of Python that have a title, or of those that have none."""
+    found = re.findall(r'(?ms)^```python(?: title="(.*?)")?\n(.*?)^```', page.read_text())
+    return [(title, text) for title, text in found if bool(title) is titled]
 
 
 def names(requirements: list[str]) -> set[str]:
@@ -36,8 +51,8 @@ EXTRAS = {extra: names(lines) for extra, lines in PROJECT["optional-dependencies
 
 
 @pytest.fixture(scope="module")
-def site(tmp_path_factory) -> Path:
-    """A folder with the project as pip would install it, built from a copy without a checkout."""
+def wheel(tmp_path_factory) -> Path:
+    """Built from a copy without a checkout."""
     source, built = tmp_path_factory.mktemp("source"), tmp_path_factory.mktemp("built")
     for name in ("pyproject.toml", "setup.py", "README.md", "LICENSE"):
         shutil.copy(ROOT / name, source)
@@ -46,8 +61,40 @@ def site(tmp_path_factory) -> Path:
         shutil.copytree(ROOT / folder, source / folder, ignore=ignored)
     code = f"from setuptools.build_meta import build_wheel; build_wheel({str(built)!r})"
     subprocess.run([sys.executable, "-c", code], cwd=source, check=True, capture_output=True)
-    shutil.unpack_archive(next(built.glob("*.whl")), built / "site", "zip")
-    return built / "site"
+    return next(built.glob("*.whl"))
+
+
+@pytest.fixture(scope="module")
+def site(wheel) -> Path:
+    """A folder with the project as pip would install it."""
+    shutil.unpack_archive(wheel, wheel.parent / "site", "zip")
+    return wheel.parent / "site"
+
+
+Installed = Callable[..., str]
+
+
+@pytest.fixture(scope="module")
+def installed(wheel, tmp_path_factory) -> Installed:
+    """What runs a program of an environment in which the wheel alone was installed, far away."""
+    place, folder = tmp_path_factory.mktemp("environment"), tmp_path_factory.mktemp("elsewhere")
+    subprocess.run([sys.executable, "-m", "venv", str(place)], check=True)
+    unset = {"PYTHONPATH", "VIRTUAL_ENV", "HEM_RUN", "HEM_HISTORY"}
+    environment = {key: it for key, it in os.environ.items() if key not in unset}
+    hem.save(hem.generate("torus", 400), folder / "model.ply")
+    hem.save(hem.PolygonMesh(np.eye(4, 3), [(0, 1, 2, 3)]), folder / "house.obj")
+
+    def run(program: str, *arguments: str, code: int = 0) -> str:
+        done = subprocess.run(
+            [str(place / "bin" / program), *arguments], cwd=folder, env=environment, text=True,
+            capture_output=True,
+        )  # fmt: skip
+        assert done.returncode == code, done.stdout + done.stderr
+        return done.stdout + done.stderr
+
+    wanted = f"{wheel}[study,fracture]"
+    run("pip", "install", "--quiet", wanted, "--constraint", str(ROOT / "constraints.txt"))
+    return run
 
 
 def files(root: Path) -> set[str]:
@@ -93,6 +140,39 @@ def test_an_installed_study_finds_its_notebooks_and_its_baseline(site, tmp_path)
         text=True, capture_output=True, check=True,
     ).stdout.split()  # fmt: skip
     assert found == [str(site / "experiments/carried" / folder) for folder in FOLDERS]
+
+
+@exhaustive
+def test_an_installed_study_measures_and_reports_away_from_the_checkout(installed):
+    where = installed("python", "-c", "import hem, experiments; print(hem.__file__)")
+    assert not Path(where.strip()).is_relative_to(ROOT)
+    said = installed("hem", "study", "--preset", "smoke", "--structure", "indexed")
+    assert "Now: hem table, hem report" in said
+    told = json.loads(installed("hem", "table", "--json"))
+    assert {it["structure"] for it in told["claims"]} == {"indexed"}
+    page = unquote(urlsplit(installed("hem", "report").split()[-1]).path)
+    assert len(list(Path(page).parent.glob("*.html"))) > 5
+
+
+@exhaustive
+def test_an_installed_plugin_tells_pytest_what_grows(installed):
+    text = dict(shown(GUARD, titled=True))["test_growth.py"]
+    write = "import sys; open('test_growth.py', 'w').write(sys.argv[1])"
+    installed("python", "-c", write, text)
+    options = ("--complexity-violated", "pass", "-W", "ignore")  # a busy machine fails nothing
+    said = installed("python", "-m", "pytest", "test_growth.py", *options)
+    assert "2 passed" in said
+    assert "test_sorting: " in said
+
+
+@exhaustive
+@pytest.mark.parametrize(
+    "page", [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))], ids=str
+)
+def test_the_examples_of_a_page_run_where_hem_is_installed(installed, page):
+    code = "\n".join(text for _, text in shown(page))
+    if code:
+        installed("python", "-c", code)
 
 
 def test_without_the_study_the_command_says_what_to_install():

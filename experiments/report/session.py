@@ -107,8 +107,8 @@ def claim_file(judged: JudgedClaim) -> str:
 
 
 def project_file(path: str) -> Path:
-    """A file that comes with the checkout. Raises MissingError where the package is installed."""
-    found = Path(__file__).parents[2] / path
+    """A file of the checkout, or as a wheel carries it. Raises MissingError if that has it not."""
+    found = carried(str(Path(path).parent)) / Path(path).name
     if not found.exists():
         raise MissingError(f"This needs {path}, which comes with the source repository.")
     return found
