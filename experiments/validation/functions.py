@@ -91,6 +91,11 @@ def _points(n: int) -> Any:
     return np.random.default_rng(n).random((n, 3))
 
 
+def _sphere(n: int) -> Any:  # all on the hull: of points in a cube most are seen just once
+    points = _points(n) - 0.5
+    return points / np.linalg.norm(points, axis=1, keepdims=True)
+
+
 def _asked(n: int) -> list[int]:
     return random.choices(range(n), k=KEYS)
 
@@ -270,7 +275,7 @@ FUNCTIONS: tuple[Function, ...] = (
         lambda n: (scipy.spatial.cKDTree(_points(n)), _points(KEYS)), lambda s: s[0].query(s[1]),
         SCIPY),
     Function("cdist", "O(n²)", _points, lambda p: scipy.spatial.distance.cdist(p, p), SCIPY),
-    Function("ConvexHull in space", "O(n log n)", _points, scipy.spatial.ConvexHull,
+    Function("ConvexHull of a sphere", "O(n log n)", _sphere, scipy.spatial.ConvexHull,
         "Barber et al., Quickhull"),
     Function("scipy.stats.rankdata", "O(n log n)", _array, scipy.stats.rankdata,
         SCIPY + ": it sorts"),

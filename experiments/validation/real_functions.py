@@ -28,11 +28,10 @@ from hem.complexity import Measured, canonical, measure
 RESULT = Path("results/reference/real_functions.json")
 COLUMNS = ["function", "growth", "source", "half", "neighbor", "judge", "answer"]
 HALVES = "tuned on", "held out"
-KINDS = ["right", "one of two", "wrong", UNDETERMINED]
-ASKED = {"right": 0.9, "wrong": 0.01}
-"""The least share to be named right of what was held out, alone or as one of two, and the largest
-to be named wrong."""
+NEIGHBORS = "shared", "busy"
+"""The machine as other programs leave it, and with one more that keeps core and memory busy."""
 
+KINDS = ["right", "one of two", "wrong", UNDETERMINED]
 ONE_THREAD = dict.fromkeys(("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS"), "1")
 """A class is of work, not of how many cores share it."""
 
@@ -86,6 +85,17 @@ def shares(answers: pd.DataFrame) -> pd.DataFrame:
     return counted.reindex(columns=KINDS, fill_value=0)
 
 
+def markdown(answers: pd.DataFrame) -> str:
+    """The shares of what was held out, as a table of a page."""
+    table = shares(answers).loc[HALVES[1]]
+    rows = [
+        [f"{judge}, {neighbor} machine", *map(str, row)]
+        for (neighbor, judge), row in zip(table.index, table.to_numpy().tolist(), strict=True)
+    ]
+    lines = [["judge", *KINDS], ["---"] * 5, *rows]
+    return "\n".join(f"| {' | '.join(line)} |" for line in lines)
+
+
 def load_answers(path: Path = RESULT) -> tuple[dict[str, Any], pd.DataFrame]:
     """What was measured when, and the answers."""
     kept = json.loads(path.read_text("utf-8"))
@@ -114,7 +124,7 @@ def _rows(budget: float, busy: bool, measured: Path | None) -> Iterator[list[str
                 canonical(it.growth),
                 it.source,
                 HALVES[i % 2],
-                "busy" if busy else "idle",
+                NEIGHBORS[busy],
             ]
             for judge, answer in answers_of(found, judges).items():
                 yield [*who, judge, answer]

@@ -32,6 +32,7 @@ MAX_SCATTER = 0.4  # relative scatter of samples beyond which nothing is conclud
 MAX_ERROR = 0.12  # relative error of a size's cost beyond which the size is left out …
 MOST_LEFT_OUT = 0.25  # … if so few of the sizes are like that; otherwise nothing is concluded
 STEEPER = 2.1  # slope of the larger half of the sizes beyond which steep classes are asked about
+APART = 0.2  # of exponents: a power law closer to a class is that class, bent by memory
 
 
 @dataclass(frozen=True)
@@ -69,7 +70,7 @@ class Verdict:
 def judge(
     sizes: ArrayLike, samples: Sequence[ArrayLike], expected: str = "O(1)",
     latency: ArrayLike | None = None, *, exact: bool = False,
-    latency_error: float = LATENCY_ERROR, unseen: bool = False, bound: Bound = "tight",
+    latency_error: float = LATENCY_ERROR, unseen: float = False, bound: Bound = "tight",
     reference: ArrayLike | None = None,
     confidence: float = 0.95, resamples: int = 200, seed: int = 0, variable: str | None = None,
 ) -> Verdict:  # fmt: skip
@@ -88,7 +89,8 @@ def judge(
     smooth slowdown of up to `selection.HIGHEST_SLOWDOWN` may have happened unseen: what it could
     explain violates nothing, and where it explains the costs better, nothing is confirmed.
     unseen: beside a latency, too, what such a slowdown could explain violates nothing; for costs
-    of what was found in the caches in another state than what the latency was measured on.
+    of what was found in the caches in another state than what the latency was measured on. A number
+    above 1 says how high: then it also confirms nothing that such a slowdown explains better.
     bound: "tight" takes the claim for the class itself, as a table of growth classes means it;
     "upper" for a bound, which slower growth keeps too.
 
@@ -197,11 +199,15 @@ def _answer(costs: Costs, models: Comparison) -> str:
     if _doubt(costs):
         return ""
     if models.explained:
-        every = range(len(models.names))
-        open_ = [m for m in every if m == models.best or not models.confirms(models.best, m)]
-        return " or ".join(models.names[m] for m in open_) if len(open_) <= 2 else ""
+        best, every = models.best, range(len(models.names))
+        ruled_out = [m for m in every if models.confirms(best, m) and models.refutes(best, m)]
+        open_ = [models.names[m] for m in every if m == best or m not in ruled_out]
+        return " or ".join(open_) if len(open_) <= 2 else ""
     cost = models.costs
-    power = Order(power=round(max(float(slope(cost.sizes, cost.cost)), 0.0), 2)).name
+    exponent = round(max(float(slope(cost.sizes, cost.cost)), 0.0), 2)
+    if any(abs(exponent - known) < APART for known in (0, 0.5, 1, 2, 3)):
+        return ""
+    power = Order(power=exponent).name
     law = compare_models(cost, models.memory, sorted({NAMES[0], power}, key=parse))
     return power if law.explained and law.names[law.best] == power else ""
 

@@ -10,6 +10,7 @@ import pickle
 import tracemalloc
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -30,7 +31,8 @@ STEP = 1.3  # from one that is tried to the next; small, as costs may grow expon
 SMALLEST = 64  # where the largest is much larger: below that, it is the call that costs
 MOST_CALLS = 4_096  # in a sample
 LEAST_SECONDS = 1e-4  # of a sample, where inputs may be used again
-MEMORY_ERROR = 0.05  # relative error of what memory did to a call, beside what was measured
+MEMORY_ERROR = 0.05  # relative error of what memory did to a call, beside what was measured …
+UNSEEN = 2.0  # … and the slowdown that allocators and caches cause beside it, over the sizes
 
 
 @dataclass(frozen=True)
@@ -39,13 +41,15 @@ class Measured:
 
     sizes: Array  # (k,)
     samples: list[Array]  # k times seconds per call
-    working_sets: Array  # (2, k) bytes that a call, and all calls of a sample, read and make
-    memory: Array  # (6, k) seconds, as `memory_times` tells them of either
+    working_sets: Array  # (3, k) bytes of a call, of all calls of a sample, and in between
+    memory: Array  # (9, k) seconds, as `memory_times` tells them of each
 
     def judge(self, expected: str = "O(1)", **options: Any) -> Verdict:
         """Judge a claim by these costs; options as of `hem.complexity.judge`."""
-        given: dict[str, Any] = {"latency": self.memory, "latency_error": MEMORY_ERROR} | options
-        return judge(self.sizes, self.samples, expected, **given)
+        given: dict[str, Any] = {"latency": self.memory, "latency_error": MEMORY_ERROR}
+        if options.get("latency", 0) is not None:
+            given["unseen"] = UNSEEN
+        return judge(self.sizes, self.samples, expected, **given | options)
 
 
 def measure(
@@ -70,10 +74,11 @@ def measure(
     changed = _changes(f, make_input(given[0] if given else TRIED))  # warms up, too
     fresh = changed if fresh is None else fresh
     chosen = given or _choose_sizes(f, make_input, slot, most, clock)
-    plans = [_plan(f, make_input, n, chosen[-1], slot, fresh, clock) for n in chosen]
+    plans = _plan(f, make_input, chosen, slot, fresh, clock)
     bytes_per_call = np.array([_working_set(f, make_input, n) for n in chosen], float)
-    working_sets = np.array([bytes_per_call, bytes_per_call * [it.calls for it in plans]])
-    memory = np.vstack([memory_times(row) for row in working_sets])
+    calls = np.array([it.calls for it in plans], float)
+    working_sets = bytes_per_call * [calls**0, calls, calls**0.5]
+    memory = np.vstack(np.split(memory_times(working_sets.ravel()), 3, axis=1))
     samples: list[list[float]] = [[] for _ in plans]
     collecting = gc.isenabled()
     gc.disable()
@@ -121,14 +126,18 @@ def _seconds(f: Function | None, inputs: Sequence[Any], clock: Clock) -> float:
 
 
 def _plan(
-    f: Function, make: MakeInput, n: int, last: int, slot: float, fresh: bool, clock: Clock
-) -> _Plan:
-    both, call = _seconds_of_one(f, make, n, clock)
-    calls = int(np.clip(min(last / n, slot / max(both, 1e-9)), 1, MOST_CALLS))
-    if fresh:
-        return _Plan(lambda: make(n), calls, 0, [])
-    again = int(np.clip(LEAST_SECONDS / max(calls * call, 1e-9), 1, MOST_CALLS))
-    return _Plan(lambda: make(n), calls, again, [make(n) for _ in range(calls)])
+    f: Function, make: MakeInput, sizes: list[int], slot: float, fresh: bool, clock: Clock
+) -> list[_Plan]:
+    """As many calls at each size as ask for as much data, and as much work, as the largest."""
+    tried = [min(_seconds_of_one(f, make, n, clock) for _ in range(2)) for n in sizes]
+    plans = []
+    for n, (both, call) in zip(sizes, np.maximum(tried, 1e-9), strict=True):
+        most = min(sizes[-1] / n, tried[-1][1] / call, slot / both)
+        calls = int(np.clip(most, 1, MOST_CALLS))
+        again = 0 if fresh else int(np.clip(LEAST_SECONDS / (calls * call), 1, MOST_CALLS))
+        pool = [] if fresh else [make(n) for _ in range(calls)]
+        plans.append(_Plan(partial(make, n), calls, again, pool))
+    return plans
 
 
 def _seconds_of_one(f: Function, make: MakeInput, n: int, clock: Clock) -> tuple[float, float]:

@@ -30,10 +30,16 @@ def memory_times(working_sets: ArrayLike) -> Array:
     caches; takes some milliseconds per megabyte, and as much memory as the largest.
     """
     sets = np.maximum(np.asarray(working_sets, float), SMALLEST).astype(int)
-    chased = np.array([_chase(size) for size in sets])
-    least = min(float(chased.min()), _chase(SMALLEST))
-    read, written = ([per_byte(size) for size in sets] for per_byte in (_read, _write))
-    return np.array([chased - least + AT_BEST, read, written])
+    distinct, place = np.unique(sets, return_inverse=True)
+    chased, read, written = (
+        _rising(np.array([take(size) for size in distinct])) for take in (_chase, _read, _write)
+    )
+    return np.array([chased - chased[0] + AT_BEST, read, written])[:, place]
+
+
+def _rising(times: Array) -> Array:
+    """What is left where each is no more than that of any larger set: disturbances only add."""
+    return np.minimum.accumulate(times[::-1])[::-1]
 
 
 def _chase(size: int) -> float:

@@ -64,16 +64,18 @@ class Memory:
 
 
 def account_for_memory(
-    costs: Costs, exact: bool, latency_error: float, allow_unmeasured: bool, entire: bool = False
+    costs: Costs, exact: bool, latency_error: float, allow_unmeasured: float, entire: bool = False
 ) -> tuple[Costs, Memory]:
     """The costs, with the latency's error added to theirs, and what caches may have done to them.
 
     exact: they are counts of work, which no cache slows. Times without a latency may have slowed
-    smoothly and unseen; with ``allow_unmeasured`` those beside a latency, too. ``entire``: the
+    smoothly and unseen; with ``allow_unmeasured`` those beside a latency, too: by so much at most,
+    where it is more than 1, and then nothing is confirmed in spite of it either. ``entire``: the
     latency is of a loop that waits as the costs do, so that they rise as much as it does.
     """
     nothing = no_slowdown(len(costs.sizes))
-    unseen = unknown_slowdowns(costs.sizes, HIGHEST_SLOWDOWN)
+    limited = allow_unmeasured > 1
+    unseen = unknown_slowdowns(costs.sizes, allow_unmeasured if limited else HIGHEST_SLOWDOWN)
     if costs.latency is None:
         if exact:
             return costs, Memory(nothing, None, True, 1.0, MISFIT_EXPLAINED, True, 2)
@@ -82,7 +84,8 @@ def account_for_memory(
         raise ValueError("exact counts wait for no memory: give either latency or exact")
     slowdowns = (entire_slowdown if entire else measured_slowdowns)(costs.latency)
     beside, free = unseen if allow_unmeasured else None, 2 if entire else 3
-    memory = Memory(slowdowns, beside, True, ACCUSING_GROWTH, MISFIT_EXPLAINED, False, free)
+    growth = ACCUSING_GROWTH
+    memory = Memory(slowdowns, beside, not limited, growth, MISFIT_EXPLAINED, False, free)
     return replace(costs, error=np.sqrt(costs.error**2 + latency_error**2)), memory
 
 

@@ -1,0 +1,66 @@
+"""Laws of trying judges on real functions: each can be called, and answers are counted once."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pandas as pd
+import pytest
+
+from experiments.validation import real_functions
+from experiments.validation.functions import CACHE_BOUND, FUNCTIONS
+from hem.complexity import canonical
+
+ROOT = Path(__file__).parents[3]
+
+
+def test_there_are_enough_functions_of_known_cost_with_their_source() -> None:
+    assert len(FUNCTIONS) >= 2 * 30
+    assert len({it.name for it in FUNCTIONS}) == len(FUNCTIONS)
+    assert all(it.source and canonical(it.growth) == it.growth for it in FUNCTIONS)
+    assert sum(it.most == CACHE_BOUND for it in FUNCTIONS) >= 6
+
+
+@pytest.mark.parametrize("it", FUNCTIONS, ids=lambda it: it.name)
+def test_every_function_can_be_called_at_small_sizes(it) -> None:
+    for n in (5, 8, 64) if it.growth != "O(2^n)" else (5, 8):
+        it.call(it.make(n))
+
+
+@pytest.mark.parametrize(
+    ("answer", "kind"),
+    [
+        ("O(n)", "right"),
+        ("O(n) or O(n log n)", "one of two"),
+        ("O(1) or O(log n)", "wrong"),
+        ("O(n²)", "wrong"),
+        ("O(n^1.2)", "wrong"),
+        ("undetermined", "undetermined"),
+    ],
+)
+def test_answers_are_of_one_kind(answer: str, kind: str) -> None:
+    assert real_functions.kind_of(answer, "O(n)") == kind
+
+
+def test_every_judge_is_counted_on_every_function_once() -> None:
+    _, answers = real_functions.load_answers(ROOT / real_functions.RESULT)
+    names = [it.name for it in FUNCTIONS]
+    for _, rows in answers.groupby(["neighbor", "judge"]):
+        assert rows["function"].tolist() == names
+    counted = real_functions.shares(answers).sum(axis=1)
+    assert set(counted) == {len(FUNCTIONS) // 2}
+    assert set(answers["neighbor"]) <= set(real_functions.NEIGHBORS)
+
+
+def test_the_readme_shows_the_kept_answers() -> None:
+    _, answers = real_functions.load_answers(ROOT / real_functions.RESULT)
+    table = real_functions.markdown(answers)
+    assert table in (ROOT / "hem" / "complexity" / "README.md").read_text("utf-8")
+
+
+def test_ours_is_wrong_least_often_of_all_judges() -> None:
+    _, answers = real_functions.load_answers(ROOT / real_functions.RESULT)
+    wrong = real_functions.shares(answers)["wrong"].unstack("judge")
+    ours = wrong.pop("hem")
+    rivals: pd.DataFrame = wrong.drop(columns="hem, memory unknown")
+    assert all((rivals.sub(ours, axis=0) > 0).all(axis=1))
