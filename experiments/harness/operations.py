@@ -12,7 +12,7 @@ import hem
 import structures
 from experiments.harness.calibration import latency_now
 from experiments.harness.cases import BASE, Case
-from experiments.harness.reference import copies, copies_of, small_case
+from experiments.harness.reference import copies, copies_of, small_case, typical
 from experiments.harness.timer import Timed, Timer, time_rounds
 from experiments.presets import HUBS, Preset
 from hem.arrays import Array
@@ -217,4 +217,4 @@ def _constant_work(case: Case, preset: Preset, count: int, idle: float) -> float
     rounds = turns * REFERENCE_ROUNDS
     timed = time_rounds(batch.operate, setup=batch.restore, rounds=rounds)
     each, _ = batch.each(timed.averaged(turns), idle)
-    return float(np.median(each.samples)) if len(each.samples) else None
+    return typical(each.samples)

@@ -10,7 +10,7 @@ import numpy as np
 from experiments.harness.calibration import latency_now
 from experiments.harness.cases import Case, Measurement, queried_handles
 from experiments.harness.oracle import check_query
-from experiments.harness.reference import Reference
+from experiments.harness.reference import Reference, typical
 from experiments.harness.timer import Timer
 from experiments.presets import Preset
 from hem.arrays import Array
@@ -66,8 +66,7 @@ def time_query(case: Case, preset: Preset, timer: Timer) -> Measurement:
 
     timed = timer(Sweep.run, setup=successive, rounds=rounds, per=many)
     beside += reference.seconds(preset.round_seconds / 4) if reference else []
-    constant = float(np.median(beside)) if beside else None
-    return case.result("time", s, latency=latency, reference=constant, **timed.fields)
+    return case.result("time", s, latency=latency, reference=typical(beside), **timed.fields)
 
 
 def _seconds_per_query(sweep: Sweep, enough: float) -> float:
