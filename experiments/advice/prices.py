@@ -87,6 +87,12 @@ class Prices:
         return (sizes.min(), sizes.max()) if len(sizes) else (float("nan"), float("nan"))
 
     @cached_property
+    def step(self) -> float:
+        """Seconds per step of the calibration loop, the median beside all rounds."""
+        readings = self.run.cases["calibration"].map(np.median).dropna()
+        return float(readings.median())
+
+    @cached_property
     def call(self) -> float:
         """Seconds that an operation takes longer from Python; queries are taken to do as well."""
         found = []

@@ -48,10 +48,25 @@ class Row:
         if not (self.times >= 0 and 0 <= self.in_order <= 1):
             raise ValueError("times is a number from 0 on, in_order a share from 0 to 1")
 
+    @property
+    def per_frame(self) -> bool:
+        """Whether it is asked in every frame."""
+        return self.per == FRAME
+
+    @property
+    def share_of_faces(self) -> float:
+        """How many elements of its kind there are per face; 0 where it is as often on any mesh."""
+        return PER_FACE[self.each]
+
+    @property
+    def edits(self) -> bool:
+        """Whether there is more of it where there are more edits."""
+        return is_edit(self.what) or self.what == ANEW
+
     def count(self, faces: float, frames: float) -> float:
         """How often on a mesh of so many faces."""
-        many = PER_FACE[self.each] * faces if self.each else 1.0
-        return self.times * many * (frames if self.per == FRAME else 1.0)
+        many = self.share_of_faces * faces if self.each else 1.0
+        return self.times * many * (frames if self.per_frame else 1.0)
 
 
 @dataclass(frozen=True)
@@ -78,10 +93,7 @@ class Workload:
 
     def more_edits(self, times: float) -> Self:
         """The same with so many times the operations."""
-        edited = (
-            replace(it, times=it.times * times) if is_edit(it.what) or it.what == ANEW else it
-            for it in self.rows
-        )
+        edited = (replace(it, times=it.times * times) if it.edits else it for it in self.rows)
         return replace(self, rows=tuple(edited))
 
 

@@ -20,6 +20,7 @@ _PLACES = {
     "sections": ("traced",),
     "session": ("MissingError", "claim_link", "link", "open_run", "project_file"),
     "site": ("write_pdf", "write_report"),
+    "sliders": ("advice_sliders",),
     "style": ("show_figures",),
     "tables": ("claims_as_json", "digits", "duration", "show_claims", "table_1_in_words"),
 }  # fmt: skip

@@ -8,20 +8,23 @@ quarter of an hour of a machine's whole attention, most of it to compile.
 """
 
 import json
+import os
 import tempfile
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 from pathlib import Path
-from statistics import median
-from time import perf_counter
+from time import process_time
 from typing import Any, NamedTuple
 
 import numpy as np
+import pandas as pd
 import typer
 
 import hem
 import structures
 from experiments.advice import Measured, Prices, Workload, predict, recorded
+from experiments.bench_workloads import WORKLOADS
+from experiments.harness.calibration import calibration_loop
 from experiments.runs import describe, load, study
 from hem import algorithms
 from hem.contract import QUERIES, Structure
@@ -36,13 +39,15 @@ RECORDED, TIMED = "torus:400", "torus:2000"
 ON = ("torus:20000", "sphere:5000", "terrain:5000", "cow", "bunny")
 """The meshes that are predicted."""
 
-ROUNDS = 5
-LONGEST = 4.0
-"""Seconds a program may take; where more is predicted it is not run."""
+ROUNDS = 15
+LONGEST = 2.0
+"""Seconds a program may take; where more is predicted it is not run, and no further rounds are."""
 
 ALIKE = 1.1
-MIXES = 4
-STEPS = 60
+MIXES, STEPS, BATCH, SPLITS = 6, 20, (500, 3_000), 100
+"""How many random mixes there are, and their batches: how many, of how many, and of splits."""
+
+ASKED = 1_000
 
 COMPILED = [name for name, it in structures.REGISTRY.items() if it.compiled]
 BASE = next(
@@ -60,32 +65,31 @@ class Program(NamedTuple):
 
 
 def _impacts(s: Structure) -> None:
-    algorithms.impacts(s, np.random.default_rng(1).integers(0, s.n_faces, 100))
+    algorithms.impacts(s, np.random.default_rng(1).integers(0, s.n_faces, 1_000))
 
 
 def _mix(seed: int) -> Callable[[Structure], None]:
-    """Batches of queries at random or in order, and batches of splits, as drawn by the seed."""
+    """Batches of queries at random or in order, some with splits, as drawn by the seed."""
 
     def run(s: Structure) -> None:
         rng = np.random.default_rng(seed)
-        names = rng.choice(list(QUERIES), 4, replace=False)
+        names = rng.choice(list(QUERIES), 3, replace=False)
         for step in range(STEPS):
-            query = QUERIES[str(rng.choice(names))]
-            handles = s.handles(query.source)
-            count = int(rng.integers(50, 400))
-            first = int(rng.integers(len(handles)))
-            some = first + np.arange(count) if step % 2 else rng.integers(len(handles), size=count)
-            getattr(s, query.name)(handles[some % len(handles)])
-            if seed % 2 and step % 20 == 0:
-                faces = rng.choice(s.faces(), 20, replace=False)
-                s.split_faces(faces, np.zeros((20, 3)))
+            query, count = QUERIES[str(rng.choice(names))], int(rng.integers(*BATCH))
+            first, n = int(rng.integers(s.n_vertices)), s.n_vertices
+            some = (first + np.arange(count)) % n if step % 2 else rng.integers(n, size=count)
+            asked = s.face_edges(some).values[::3] if query.source == "edge" else some
+            getattr(s, query.name)(asked)
+            if seed % 2 and step % 5 == 0:
+                faces = rng.choice(n, SPLITS, replace=False)
+                s.split_faces(faces, np.zeros((SPLITS, 3)))
 
     return run
 
 
 def _asking(s: Structure) -> None:
     """What a plug-in does: one question after the other, from Python."""
-    for v in np.random.default_rng(2).integers(0, s.n_vertices, 300).tolist():
+    for v in np.random.default_rng(2).integers(0, s.n_vertices, ASKED).tolist():
         for f in s.vertex_faces(v).tolist():
             s.face_vertices(f)
         s.vertex_vertices(v)
@@ -104,6 +108,10 @@ PROGRAMS = {
     "split and collapse": Program(algorithms.split_and_collapse),
     "shatter": Program(lambda s: hem.fracture.shatter(s, s.points[s.vertices()[0]]), ""),
     "asking from Python": Program(_asking, ""),
+    **{
+        f"{name} from Python": Program(it.from_python, "" if name == "impacts" else "vertex")
+        for name, it in WORKLOADS.items()
+    },
     **{f"mix {seed}": Program(_mix(seed), "") for seed in range(MIXES)},
 }
 
@@ -116,24 +124,29 @@ def learned(prices: Prices, name: str) -> Workload:
         program.run(s)
     workload = recorded(recording, name, program.each)
     mesh = hem.find_mesh(TIMED)
-    known = Measured(BASE, len(mesh.points), timed(program, BASE, mesh))
+    known = Measured(BASE, len(mesh.points), timed(prices, program, BASE, mesh))
     return replace(workload, measured=known)
 
 
-def timed(program: Program, structure: str, mesh: Any) -> float:
-    """Seconds, the median of some rounds on copies."""
+def timed(prices: Prices, program: Program, structure: str, mesh: Any) -> float:
+    """Seconds of the processor, the least of some rounds on copies: others on it only add.
+
+    At the speed that the machine had when the prices were measured.
+    """
+    program.run(structures.build(structure, hem.find_mesh(RECORDED)))  # compiles
     s, seconds = structures.build(structure, mesh), []
-    for _ in range(ROUNDS + 1):
+    s.scratch(0)  # counts the edges, once per mesh
+    for _ in range(ROUNDS):
         copy = s.copy()
-        copy.scratch(0)
         if structures.REGISTRY[structure].rebuilds:
             copy.vertex_faces(0)
-        begin = perf_counter()
+        before, begin = calibration_loop(), process_time()
         program.run(copy)
-        seconds.append(perf_counter() - begin)
+        took = process_time() - begin
+        seconds.append(took * prices.step / ((before + calibration_loop()) / 2))
         if sum(seconds) > LONGEST:
             break
-    return median(seconds[1:] or seconds)
+    return min(seconds)
 
 
 def compare(prices: Prices, name: str, mesh_name: str) -> dict[str, Any]:
@@ -146,14 +159,14 @@ def compare(prices: Prices, name: str, mesh_name: str) -> dict[str, Any]:
         row = {"structure": structure, "low": found.low, "high": found.high}
         row |= {"predicted": found.seconds, "taken": None}
         if found.seconds < LONGEST:
-            row["taken"] = timed(PROGRAMS[name], structure, mesh)
+            row["taken"] = timed(prices, PROGRAMS[name], structure, mesh)
         rows.append(row)
     return {"program": name, "mesh": mesh_name, "faces": faces, "structures": rows}
 
 
-def pairs() -> Iterator[tuple[str, str]]:
+def pairs(names: Iterable[str]) -> Iterator[tuple[str, str]]:
     """Every program on two of the meshes, in turn."""
-    for place, name in enumerate(PROGRAMS):
+    for place, name in enumerate(names):
         for step in (0, 2):
             yield name, ON[(place + step) % len(ON)]
 
@@ -164,7 +177,8 @@ def figures(rows: list[dict[str, Any]]) -> dict[str, Any]:
         it for row in rows for it in row["structures"] if it["taken"] and it["structure"] != BASE
     ]
     errors = [abs(it["predicted"] / it["taken"] - 1) for it in told]
-    right = [_is_right(row["structures"]) for row in rows]
+    ran = (row["structures"] for row in rows)
+    right = [_is_right(it) for it in ran if any(one["taken"] for one in it)]
     return {
         "workloads": len(rows),
         "predictions": len(told),
@@ -182,6 +196,29 @@ def _is_right(rows: list[dict[str, Any]]) -> bool:
     return bool(chosen["taken"] <= ALIKE * min(it["taken"] for it in ran))
 
 
+def _ratios(row: dict[str, Any]) -> dict[str, float]:
+    """What was predicted, by what it took."""
+    ran = (it for it in row["structures"] if it["taken"])
+    return {it["structure"]: round(it["predicted"] / it["taken"], 2) for it in ran}
+
+
+def table(kept: dict[str, Any]) -> pd.DataFrame:
+    """A row per program: how far off its predictions were, and whether the best was told."""
+    rows = []
+    for name in dict.fromkeys(row["program"] for row in kept["rows"]):
+        mine = [row for row in kept["rows"] if row["program"] == name]
+        found = figures(mine)
+        cells = {
+            "Program": name.capitalize(),
+            "on": ", ".join(row["mesh"] for row in mine),
+            "off by, median": f"{found['median_error']:.0%}",
+            "within the interval": f"{found['within_interval']:.0%}",
+            "best structure told": f"{found['winner_right'] * len(mine):.0f} of {len(mine)}",
+        }
+        rows.append(cells)
+    return pd.DataFrame(rows)
+
+
 def in_words(kept: dict[str, Any]) -> str:
     """Say what was kept in a sentence."""
     return (
@@ -191,18 +228,23 @@ def in_words(kept: dict[str, Any]) -> str:
     )
 
 
-def main(output: Path = RESULT, run: Path | None = None) -> None:
-    """Measure, predict, compare, keep. ``run``: prices that this machine measured before."""
+def main(output: Path = RESULT, run: Path | None = None, program: list[str] | None = None) -> None:
+    """Measure, predict, compare, keep. ``run``: prices that this machine measured before.
+
+    ``program``: just these.
+    """
+    os.sched_setaffinity(0, {max(os.sched_getaffinity(0))})  # prices are those of one core
     with tempfile.TemporaryDirectory(prefix="hem-advice-") as root:
         folder = run or study.begin(PRESET, Path(root), COMPILED, NEEDED)
         if run is None:
             study.run(folder)
         prices = Prices(load(folder))
         rows = []
-        for name, mesh in pairs():
+        for name, mesh in pairs(program or PROGRAMS):
             rows.append(compare(prices, name, mesh))
-            print(name, mesh, figures(rows[-1:]), flush=True)
+            print(name, mesh, _ratios(rows[-1]), flush=True)
     kept = {key: value for key, value in describe(PRESET).items() if key != "schema"}
+    kept |= {"prices": str(prices.run.folder.name), "finished": prices.run.meta.get("finished")}
     kept |= {"learned_from": BASE, **figures(rows), "rows": rows}
     output.write_text(json.dumps(kept, indent=1) + "\n", "utf-8")
     print(in_words(kept))

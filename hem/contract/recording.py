@@ -56,7 +56,7 @@ class Recording:
 
     def __init__(self, s: Structure) -> None:
         self.vertices, self.faces = s.n_vertices, s.n_faces
-        self._counts: dict[tuple[str, str], list[int]] = {}
+        self._counts = {(ANEW, COMPILED): [0, 0]}  # said also where it never was so
         self._last: dict[str, int] = {}
         self._edited = False
 
@@ -86,9 +86,8 @@ class Recording:
         """What was counted, the most frequent first."""
         counts = sorted(self._counts.items(), key=lambda it: -it[1][0])
         return [
-            Counted(what, caller, times, round(near / times, 3))
+            Counted(what, caller, times, round(near / max(times, 1), 3))
             for (what, caller), (times, near) in counts
-            if times
         ]
 
     def text(self, each: str = "") -> str:

@@ -1,0 +1,57 @@
+"""Sliders of advice: the page tells the order that is predicted, from disk and alone."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from pathlib import Path
+
+import pandas as pd
+import pytest
+
+from experiments.advice import PRESETS, Prices
+from experiments.report import MissingError, advice_sliders
+from experiments.runs import Run, load
+from structures import REGISTRY
+from tests.experiments.chromium import started
+from tests.experiments.made_runs import write_run
+
+SHOWN = "[...document.querySelectorAll('tbody tr')].map(row => row.cells[0].textContent)"
+CHOOSE = "s => { s.value = {place}; s.dispatchEvent(new Event('input')); }"
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory: pytest.TempPathFactory) -> Run:
+    return load(write_run(tmp_path_factory.mktemp("sliders") / "run"))
+
+
+def test_the_page_tells_the_predicted_order(run: Run, tmp_path: Path) -> None:
+    html = advice_sliders(run)
+    assert "://" not in html
+    assert "src=" not in html
+    page = tmp_path / "sliders.html"
+    page.write_text(f"<meta charset=utf-8>{html}", "utf-8")
+    prices, faces = Prices(run), 20_000  # the sliders begin at 10,000 vertices
+    with started() as browser:
+        browser.open(page.as_uri())
+        for place, workload in enumerate(PRESETS.values()):
+            browser.run(
+                f"({CHOOSE.replace('{place}', str(place))})(document.querySelector('select'))"
+            )
+            costs = {
+                REGISTRY[name].title: sum(
+                    row.count(faces, workload.frames)
+                    * prices.price(name, row.what, faces, row.in_order).seconds
+                    for row in workload.rows
+                )
+                for name in REGISTRY
+            }
+            shown = [costs[title] for title in browser.run(SHOWN)]
+            assert len(shown) == len(REGISTRY)
+            assert all(b > 0.95 * a for a, b in pairwise(shown))
+        assert not browser.errors
+
+
+def test_a_run_without_queries_says_so(run: Run) -> None:
+    empty = Run(run.folder, run.meta, run.cases[:0], pd.DataFrame())
+    with pytest.raises(MissingError, match="has not measured what advice rests on"):
+        advice_sliders(empty)
