@@ -11,7 +11,7 @@ import numpy as np
 import hem
 from experiments import require_known
 from experiments.advice.needs import NEEDS, lacks
-from experiments.advice.predict import Forecast, is_told, predict
+from experiments.advice.predict import Forecast, predict
 from experiments.advice.prices import Prices
 from experiments.advice.workload import Workload, is_edit
 from hem.contract.recording import ANEW, PYTHON
@@ -86,7 +86,7 @@ def advise(
             predict(prices, workload, name, faces), taken, _edit(prices, workload, name, faces)
         )
         wrong += _beyond(option, limits)
-        if not is_told(name, workload):
+        if workload.measured and not REGISTRY[name].compiled:
             wrong.append("is interpreted, and the measured whole was compiled")
         if wrong:
             refused[name] = "; ".join(wrong)

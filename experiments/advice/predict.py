@@ -10,9 +10,8 @@ from experiments.advice.prices import Price, Prices
 from experiments.advice.workload import Row, Workload, is_edit
 from hem.contract import OPERATIONS
 from hem.contract.recording import ANEW, COMPILED
-from structures import REGISTRY
 
-UNMODELED = 0.2
+UNMODELED = 0.3
 """How far a logarithm is off beside what rounds and sizes tell: what is asked in a program finds
 other things in the caches than what is asked alone."""
 
@@ -104,8 +103,3 @@ def _with_anew(rows: tuple[Row, ...]) -> tuple[Row, ...]:
         return rows
     edits = (it for it in rows if is_edit(it.what))
     return (*rows, *(Row(ANEW, it.times, it.each, it.per, 0.0, COMPILED) for it in edits))
-
-
-def is_told(structure: str, workload: Workload) -> bool:
-    """Whether the program's own part holds for a structure: not where it is interpreted."""
-    return REGISTRY[structure].compiled or workload.measured is None
