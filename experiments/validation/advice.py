@@ -209,7 +209,7 @@ def table(kept: dict[str, Any]) -> pd.DataFrame:
         mine = [row for row in kept["rows"] if row["program"] == name]
         found = figures(mine)
         cells = {
-            "Program": name.capitalize(),
+            "Program": name[0].upper() + name[1:].replace("_", " "),
             "on": ", ".join(row["mesh"] for row in mine),
             "off by, median": f"{found['median_error']:.0%}",
             "within the interval": f"{found['within_interval']:.0%}",
@@ -224,7 +224,8 @@ def in_words(kept: dict[str, Any]) -> str:
     return (
         "Of {workloads} workloads, {predictions} predictions: off by {median_error:.0%} in the "
         "median, {within_30_percent:.0%} within 30 %, {within_interval:.0%} within the interval; "
-        "the best structure was told in {winner_right:.0%}.".format(**kept)
+        "the best structure was told in {winner_right:.0%}. Meanwhile {load:.0f} processes wanted "
+        "the machine.".format(**kept)
     )
 
 
@@ -244,6 +245,7 @@ def main(output: Path = RESULT, run: Path | None = None, program: list[str] | No
             rows.append(compare(prices, name, mesh))
             print(name, mesh, _ratios(rows[-1]), flush=True)
     kept = {key: value for key, value in describe(PRESET).items() if key != "schema"}
+    kept |= {"load": os.getloadavg()[0]}
     kept |= {"prices": str(prices.run.folder.name), "finished": prices.run.meta.get("finished")}
     kept |= {"learned_from": BASE, **figures(rows), "rows": rows}
     output.write_text(json.dumps(kept, indent=1) + "\n", "utf-8")
