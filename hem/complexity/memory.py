@@ -15,6 +15,7 @@ from hem.complexity.notation import Array
 LINE = 64  # bytes that come from memory together
 STEPS = 1_000  # accesses per sample
 SAMPLES = 5
+LARGEST = 1 << 28  # bytes; what takes more is measured as this
 SMALLEST = 16 * 1024  # bytes; less than that is in the first cache, and beside what a call takes
 QUICKEST = 2e-11  # seconds that a byte takes at least, as a program reads it that does more
 AT_BEST = 5e-9  # seconds: what a step from record to record takes at least, in the caches
@@ -29,7 +30,7 @@ def memory_times(working_sets: ArrayLike) -> Array:
     working_sets: (k,) bytes. Each is measured right now, as other tenants of the machine leave the
     caches; takes some milliseconds per megabyte, and as much memory as the largest.
     """
-    sets = np.maximum(np.asarray(working_sets, float), SMALLEST).astype(int)
+    sets = np.clip(np.asarray(working_sets, float), SMALLEST, LARGEST).astype(int)
     distinct, place = np.unique(sets, return_inverse=True)
     chased, read, written = (
         _rising(np.array([take(size) for size in distinct])) for take in (_chase, _read, _write)

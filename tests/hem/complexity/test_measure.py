@@ -127,6 +127,13 @@ def test_memory_is_told_at_every_working_set() -> None:
     assert np.all(told > 0)
 
 
+def test_what_no_machine_has_room_for_is_measured_as_the_largest(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr("hem.complexity.memory.LARGEST", 1 << 20)
+    assert (memory_times([1e5, 1 << 20, 1e15])[:, 1:].std(axis=1) == 0).all()
+
+
 @pytest.mark.parametrize("sizes", [[0, 1, 2, 3], [1.5, 2, 3], []])
 def test_sizes_that_are_none_are_refused(sizes: list[float]) -> None:
     with pytest.raises(ValueError, match="sizes must be whole numbers"):
