@@ -8,11 +8,16 @@ from hem.contract import QUERIES
 
 
 def cases(preset: Preset, structure: str) -> list[Case]:
-    """All cases of one structure; those on the same mesh follow each other."""
+    """All cases of one structure; those on the same mesh follow each other.
+
+    Of families that are not the judged one, every second size.
+    """
+    judged, *others = preset.families
+    meshes = [(judged, preset.sizes), *((family, preset.sizes[::2]) for family in others)]
     return [
         Case(structure, family, size, query, order)
-        for family in preset.families
-        for size in preset.sizes
+        for family, sizes in meshes
+        for size in sizes
         for query in QUERIES
         for order in ORDERS
     ]
