@@ -12,6 +12,7 @@ import os
 import tempfile
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
+from functools import cache, partial
 from pathlib import Path
 from time import process_time
 from typing import Any, NamedTuple
@@ -33,14 +34,14 @@ RESULT = Path("results/reference/advice.json")
 NEEDED = ("bench_queries", "bench_operations", "bench_build")
 PRESET = "quick"
 
-RECORDED, TIMED = "torus:400", "torus:2000"
+RECORDED, TIMED = "torus:400", "torus:5000"
 """The meshes that programs are recorded on, and timed on to learn their own part."""
 
 ON = ("torus:20000", "sphere:5000", "terrain:5000", "cow", "bunny")
 """The meshes that are predicted."""
 
 ROUNDS = 15
-LONGEST = 2.0
+LONGEST = 1.0
 """Seconds a program may take; where more is predicted it is not run, and no further rounds are."""
 
 ALIKE = 1.1
@@ -124,43 +125,54 @@ def learned(prices: Prices, name: str) -> Workload:
         program.run(s)
     workload = recorded(recording, name, program.each)
     mesh = hem.find_mesh(TIMED)
-    known = Measured(BASE, len(mesh.points), timed(prices, program, BASE, mesh))
+    known = Measured(BASE, len(mesh.points), timed(prices, program, [BASE], mesh)[BASE])
     return replace(workload, measured=known)
 
 
-def timed(prices: Prices, program: Program, structure: str, mesh: Any) -> float:
-    """Seconds of the processor, the least of some rounds on copies: others on it only add.
+def timed(prices: Prices, program: Program, names: Iterable[str], mesh: Any) -> dict[str, float]:
+    """Seconds of the processor by structure, the least of some rounds on copies.
 
-    At the speed that the machine had when the prices were measured.
+    The structures take turns, so that what slows the machine slows them all, and times are those at
+    the speed that it had when the prices were measured.
     """
-    program.run(structures.build(structure, hem.find_mesh(RECORDED)))  # compiles
-    s, seconds = structures.build(structure, mesh), []
-    s.scratch(0)  # counts the edges, once per mesh
+    held = {}
+    for name in names:
+        program.run(structures.build(name, hem.find_mesh(RECORDED)))  # compiles
+        held[name] = structures.build(name, mesh)
+        held[name].scratch(0)  # counts the edges, once per mesh
+    least, spent = dict.fromkeys(held, np.inf), dict.fromkeys(held, 0.0)
     for _ in range(ROUNDS):
-        copy = s.copy()
-        if structures.REGISTRY[structure].rebuilds:
-            copy.vertex_faces(0)
-        before, begin = calibration_loop(), process_time()
-        program.run(copy)
-        took = process_time() - begin
-        seconds.append(took * prices.step / ((before + calibration_loop()) / 2))
-        if sum(seconds) > LONGEST:
-            break
-    return min(seconds)
+        for name, s in held.items():
+            if spent[name] < LONGEST:
+                seconds, factor = _one(program, s, prices.step)
+                spent[name] += seconds
+                least[name] = min(least[name], seconds * factor)
+    return least
 
 
-def compare(prices: Prices, name: str, mesh_name: str) -> dict[str, Any]:
+def _one(program: Program, s: Structure, step: float) -> tuple[float, float]:
+    """Seconds of one round, and their factor on a machine whose calibration loop takes ``step``."""
+    copy = s.copy()
+    if structures.REGISTRY[s.name].rebuilds:
+        copy.vertex_faces(0)
+    before, begin = calibration_loop(), process_time()
+    program.run(copy)
+    seconds = process_time() - begin
+    return seconds, step / ((before + calibration_loop()) / 2)
+
+
+def compare(prices: Prices, workload: Workload, name: str, mesh_name: str) -> dict[str, Any]:
     """Predict a program on a mesh for every structure, then run it on all that are not hopeless."""
-    workload, mesh = learned(prices, name), hem.find_mesh(mesh_name, triangulate=True)
+    mesh = hem.find_mesh(mesh_name, triangulate=True)
     faces = len(mesh.triangles)
-    rows = []
-    for structure in COMPILED:
-        found = predict(prices, workload, structure, faces)
-        row = {"structure": structure, "low": found.low, "high": found.high}
-        row |= {"predicted": found.seconds, "taken": None}
-        if found.seconds < LONGEST:
-            row["taken"] = timed(prices, PROGRAMS[name], structure, mesh)
-        rows.append(row)
+    told = [predict(prices, workload, structure, faces) for structure in COMPILED]
+    hopeful = [it.structure for it in told if it.seconds < LONGEST]
+    taken = timed(prices, PROGRAMS[name], hopeful, mesh)
+    rows = [
+        {"structure": it.structure, "low": it.low, "high": it.high, "predicted": it.seconds,
+         "taken": taken.get(it.structure)}
+        for it in told
+    ]  # fmt: skip
     return {"program": name, "mesh": mesh_name, "faces": faces, "structures": rows}
 
 
@@ -240,9 +252,9 @@ def main(output: Path = RESULT, run: Path | None = None, program: list[str] | No
         if run is None:
             study.run(folder)
         prices = Prices(load(folder))
-        rows = []
+        known, rows = cache(partial(learned, prices)), []
         for name, mesh in pairs(program or PROGRAMS):
-            rows.append(compare(prices, name, mesh))
+            rows.append(compare(prices, known(name), name, mesh))
             print(name, mesh, _ratios(rows[-1]), flush=True)
     kept = {key: value for key, value in describe(PRESET).items() if key != "schema"}
     kept |= {"load": os.getloadavg()[0]}
