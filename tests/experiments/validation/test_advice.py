@@ -41,6 +41,13 @@ def test_the_best_is_told_where_it_is_at_most_a_tenth_behind(second: float, righ
     assert found["winner_right"] == right
 
 
+@pytest.mark.parametrize(("predicted", "among"), [(1.05, True), (1.2, False)])
+def test_the_best_is_among_those_alike_up_to_a_tenth(predicted: float, among: bool) -> None:
+    a, b = OTHERS[:2]
+    found = advice.figures([row((a, 1, 3), (b, predicted, 1))])
+    assert found["best_among_alike"] == among
+
+
 def test_a_program_on_two_meshes_is_one_row_of_the_table() -> None:
     a, b = OTHERS[:2]
     rows = [row((a, 1, 1), (b, 2, 2)), row((a, 1, 1), (b, 2, 2))]
