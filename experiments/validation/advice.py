@@ -3,7 +3,7 @@
 ``python -m experiments.validation.advice`` measures queries, operations and building on this
 machine, and then programs that no price was made of: the algorithms, breaking a surface, mixes
 drawn at random, on families and real models. What a program does is recorded on a small torus and
-one structure; its own part comes from timing it there. Every other structure is predicted. Takes a
+one structure; its own part comes from timing it there. Every other structure is predicted. Takes
 half an hour of a machine's whole attention, most of it to compile.
 """
 
