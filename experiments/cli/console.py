@@ -85,7 +85,10 @@ def user_errors(code: int = 1) -> Iterator[None]:
     except BrokenPipeError:  # whoever read, `| head`, has what he wants; Click ends quietly
         raise
     except (ValueError, OSError, ImportError) as error:
-        errors.print(f"[bold red]hem:[/] {escape(str(error))}")
+        told: object = error
+        if isinstance(error, OSError) and error.filename is not None:
+            told = f"{error.filename}: {error.strerror}"
+        errors.print(f"[bold red]hem:[/] {escape(str(told))}")
         raise typer.Exit(code) from error
     except Exception as error:
         if code == 1 or isinstance(error, typer.Exit):

@@ -217,7 +217,7 @@ def waiting_in_words(run: Run) -> Html:
                 grown.append([it.largest / it.centers[0] for it in times])
     sets = measured.curve(Axis.RANDOM_FACES, ARRAYS, "vertex_faces").cases
     latency = measured.latency(sets["working_set"].to_numpy(float))
-    if not grown or latency is None:
+    if not grown or sets.empty or latency is None:
         raise MissingError("This run has not counted and timed the same queries.")
     in_order, at_random = np.median(grown, axis=0)
     waited = latency[-1] / latency[0]

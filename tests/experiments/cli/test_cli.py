@@ -40,6 +40,7 @@ def hem(*arguments: str) -> tuple[int, str]:
         (["report"], "there is no run"),
         (["info", "no_such_file.ply"], "no_such_file.ply"),
         (["info", "bunnny"], "bunnny"),
+        (["history", "show", "--file", "."], ".: Is a directory"),
         (["meshes", "--size", "3"], "reachable"),
     ],
 )
