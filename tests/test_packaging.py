@@ -92,7 +92,7 @@ def installed(wheel, tmp_path_factory) -> Installed:
         assert done.returncode == code, done.stdout + done.stderr
         return done.stdout + done.stderr
 
-    wanted = f"{wheel}[study,fracture]"
+    wanted = f"{wheel}[study,fracture,viz]"
     run("pip", "install", "--quiet", wanted, "--constraint", str(ROOT / "constraints.txt"))
     return run
 
