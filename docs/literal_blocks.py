@@ -9,7 +9,8 @@ from typing import Any
 
 from griffe import Extension, Module, Object
 
-LITERAL = re.compile(r"(?m)::\n\n((?: {4}.*\n?|\n(?= {4}))+)")
+from experiments.report.figures.records import fenced
+
 ROW = re.compile(r"(?m)^([\w`, …]+?) {2,}(?=\S)")
 SESSION = re.compile(r"(?m)^(>>> .*\n?(?:^(?!\s*$).*\n?)*)")
 
@@ -20,7 +21,7 @@ class LiteralBlocks(Extension):
     def on_instance(self, *, obj: Object, **_: Any) -> None:
         """Fence its blocks."""
         if obj.docstring:
-            text = LITERAL.sub(_fenced, obj.docstring.value + "\n")
+            text = fenced(obj.docstring.value + "\n")
             text = ROW.sub(r"- \1: ", text)
             text = SESSION.sub(lambda it: f"```pycon\n{it[1].rstrip()}\n```\n", text)
             obj.docstring.value = text
@@ -30,8 +31,3 @@ class LiteralBlocks(Extension):
         if not pkg.exports:
             own = (it for it in pkg.members.values() if it.is_alias)
             pkg.exports = [it.name for it in own if it.target_path.startswith(f"{pkg.path}.")]
-
-
-def _fenced(found: re.Match[str]) -> str:
-    block = re.sub(r"(?m)^ {4}", "", found[1]).rstrip()
-    return f":\n\n```text\n{block}\n```\n\n"

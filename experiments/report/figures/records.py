@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import inspect
+import re
+import textwrap
 from collections.abc import Iterator, Mapping
 from itertools import groupby
 from typing import Any, NamedTuple
@@ -158,8 +160,14 @@ def described(structure: type[Structure]) -> str:
     places: list[Any] = [*structure.__mro__, structure.records_type]
     texts = [inspect.getdoc(inspect.getmodule(it)) or "" for it in places]
     text = next((it for it in texts if "\nInvariants\n" in it), texts[0])
-    return (
-        text.replace("\n::\n", "\n")
-        .replace("::\n", ":\n")
-        .replace("\nInvariants\n", "\n**Invariants**\n")
-    )
+    return fenced(text).replace("\nInvariants\n", "\n**Invariants**\n")
+
+
+def fenced(text: str) -> str:
+    """A docstring whose drawings and examples, behind a double colon, are blocks of Markdown."""
+
+    def block(found: re.Match[str]) -> str:
+        words, lines = found[1] and f"{found[1]}:", textwrap.dedent(found[2]).rstrip()
+        return f"{words}\n\n```text\n{lines}\n```\n"
+
+    return re.sub(r"(?m)(^|\S)::\n\n((?: +.*(?:\n|\Z)|\n(?= ))+)", block, text)

@@ -132,6 +132,13 @@ def test_a_structure_is_described_by_its_own_file_or_that_of_what_it_is_made_of(
     assert records.described(Same) == records.described(drawings.by_half_edges())
 
 
+def test_a_drawing_in_a_docstring_is_one_block_however_its_lines_are_indented():
+    for structure in REGISTRY.values():
+        outside = re.sub(r"```text\n.*?\n```", "", records.described(structure), flags=re.DOTALL)
+        assert not re.search("[│╲╱▲]", outside), structure.name
+    assert records.fenced("See::\n\n   a\n b\n\nEnd") == "See:\n\n```text\n  a\nb\n```\n\nEnd"
+
+
 def test_the_class_diagram_has_what_the_source_of_the_classes_declares():
     shown = class_diagram.class_diagram()
     for node in ast.parse(inspect.getsource(class_model)).body:
