@@ -121,10 +121,12 @@ def needs_neighbors(what: str) -> bool:
 def record(s: Structure) -> Iterator[Recording]:
     """Count what is asked of a mesh and done to it in the block -> a ``Recording``.
 
+    >>> import hem, structures
+    >>> s = structures.build("half_edge", hem.generate("torus", 100))
     >>> with hem.record(s) as workload:
     ...     hem.algorithms.smooth(s)
-    >>> workload.save("workload.csv", each="vertex")
 
+    ``workload.save("workload.csv", each="vertex")`` writes the table that ``hem advise`` reads.
     Algorithms run uncompiled meanwhile, some hundred times slower, with the same outcome: take a
     mesh of some hundred vertices. ``find_edge`` counts as the query that it searches by. What is
     read of the whole mesh at once (``edges()``, ``points``) and steps along half-edges are not
