@@ -41,7 +41,7 @@ STEPPING = "collapse_stepping"
 LISTINGS = {
     "build": "Build from a render mesh",
     **{name: OPERATIONS[name] for name in ("split_edge", "split_face", "collapse_edge")},
-    STEPPING: "Collapse edge, with a circulator that steps",
+    STEPPING: "Collapse edge, stepping",
     "create_mesh": "Create a triangle",
     "find_edges": "Find the faces at an edge",
     "simulate_breaking": "Break a surface",
