@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -141,12 +141,12 @@ def flips(
     if len(names) < 2:
         return []
 
-    def best(at: Callable[[str], Forecast], now: str) -> str:
-        costs = {name: at(name).seconds for name in names}
+    def best(given: Workload, many: float, now: str) -> str:
+        costs = {name: predict(prices, given, name, many).seconds for name in names}
         least = min(costs, key=lambda it: costs[it])
         return least if costs[now] > ALIKE * costs[least] else now
 
-    first = best(lambda it: predict(prices, workload, it, faces), names[0])
+    first = best(workload, faces, names[0])
     low, high = prices.measured
     sizes = [n for n in SIZES if low <= 2 * n <= high]
     ways = {
@@ -165,7 +165,7 @@ def flips(
     for kind, directions in ways.items():
         for points in directions:
             for x, given, many in points:
-                other = best(lambda it, w=given, f=many: predict(prices, w, it, f), first)  # type: ignore[misc]
+                other = best(given, many, first)
                 if other != first:
                     found.append({"of": kind, "at": float(x), "best": other})
                     break

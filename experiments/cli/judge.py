@@ -50,24 +50,20 @@ def judge_file(
             from experiments.report.figures.costs import save_costs
 
             save_costs(plot, curves, verdicts, expected is not None)
-        if as_json:
-            print_json(
-                [
-                    {"function": it.name, "parameter": it.parameter, **_told(verdict, expected)}
-                    for it, verdict in zip(curves, verdicts, strict=True)
-                ]
-            )
-        else:
-            _print(curves, verdicts, expected)
+        (_print_data if as_json else _print)(curves, verdicts, expected)
     if expected is not None:
         codes = {CODES[it.outcome] for it in verdicts}
         raise typer.Exit(1 if 1 in codes else max(codes))
 
 
-def _told(verdict: Any, expected: str | None) -> dict[str, Any]:
-    """What is known of a curve; nothing of a claim where none was made."""
+def _print_data(curves: Any, verdicts: Any, expected: str | None) -> None:
+    """What is known of the curves; nothing of a claim where none was made."""
     of_claim = () if expected else ("outcome", "expected", "bound", "reason")
-    return {key: value for key, value in asdict(verdict).items() if key not in of_claim}
+    rows = []
+    for it, verdict in zip(curves, verdicts, strict=True):
+        known = {key: value for key, value in asdict(verdict).items() if key not in of_claim}
+        rows.append({"function": it.name, "parameter": it.parameter, **known})
+    print_json(rows)
 
 
 def _print(curves: Any, verdicts: Any, expected: str | None) -> None:

@@ -11,9 +11,8 @@ import pytest
 from experiments.claims import judge_run
 from experiments.report import write_report
 from experiments.report.notebooks import page_titles
-from experiments.report.pdf import BROWSER_VARIABLE, find_browser
 from experiments.runs import load
-from tests.experiments.chromium import Browser, started
+from tests.experiments.chromium import Browser
 
 PAGES = tuple(page_titles())
 SHOWN = "[...document.querySelectorAll('.entry')].filter(it => it.checkVisibility())"
@@ -25,14 +24,6 @@ COUNT = "document.getElementById('shown').textContent"
 def report(tmp_path_factory, base_folder) -> Path:
     """The pages of a whole report."""
     return write_report(base_folder, tmp_path_factory.mktemp("report") / "html").parent
-
-
-@pytest.fixture(scope="module")
-def chromium():
-    if find_browser() is None:
-        pytest.skip(f"no Chromium or Chrome is installed; {BROWSER_VARIABLE} names one elsewhere")
-    with started() as browser:
-        yield browser
 
 
 @pytest.fixture

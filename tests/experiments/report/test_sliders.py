@@ -12,7 +12,7 @@ from experiments.advice import PRESETS, Prices
 from experiments.report import MissingError, advice_sliders
 from experiments.runs import Run, load
 from structures import REGISTRY
-from tests.experiments.chromium import started
+from tests.experiments.chromium import Browser
 from tests.experiments.made_runs import write_run
 
 SHOWN = "[...document.querySelectorAll('tbody tr')].map(row => row.cells[0].textContent)"
@@ -24,31 +24,28 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> Run:
     return load(write_run(tmp_path_factory.mktemp("sliders") / "run"))
 
 
-def test_the_page_tells_the_predicted_order(run: Run, tmp_path: Path) -> None:
+def test_the_page_tells_the_predicted_order(chromium: Browser, run: Run, tmp_path: Path) -> None:
     html = advice_sliders(run)
     assert "://" not in html
     assert "src=" not in html
     page = tmp_path / "sliders.html"
     page.write_text(f"<meta charset=utf-8>{html}", "utf-8")
     prices, faces = Prices(run), 20_000  # the sliders begin at 10,000 vertices
-    with started() as browser:
-        browser.open(page.as_uri())
-        for place, workload in enumerate(PRESETS.values()):
-            browser.run(
-                f"({CHOOSE.replace('{place}', str(place))})(document.querySelector('select'))"
+    chromium.open(page.as_uri())
+    for place, workload in enumerate(PRESETS.values()):
+        chromium.run(f"({CHOOSE.replace('{place}', str(place))})(document.querySelector('select'))")
+        costs = {
+            REGISTRY[name].title: sum(
+                row.count(faces, workload.frames)
+                * prices.price(name, row.what, faces, row.in_order).seconds
+                for row in workload.rows
             )
-            costs = {
-                REGISTRY[name].title: sum(
-                    row.count(faces, workload.frames)
-                    * prices.price(name, row.what, faces, row.in_order).seconds
-                    for row in workload.rows
-                )
-                for name in REGISTRY
-            }
-            shown = [costs[title] for title in browser.run(SHOWN)]
-            assert len(shown) == len(REGISTRY)
-            assert all(b > 0.95 * a for a, b in pairwise(shown))
-        assert not browser.errors
+            for name in REGISTRY
+        }
+        shown = [costs[title] for title in chromium.run(SHOWN)]
+        assert len(shown) == len(REGISTRY)
+        assert all(b > 0.95 * a for a, b in pairwise(shown))
+    assert not chromium.errors
 
 
 def test_a_run_without_queries_says_so(run: Run) -> None:

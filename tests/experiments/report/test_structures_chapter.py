@@ -17,9 +17,8 @@ from experiments.report.figures import class_diagram, drawings, records
 from experiments.report.figures.meshes import hexagon
 from experiments.report.notebooks import page_titles
 from experiments.report.pages import page
-from experiments.report.pdf import BROWSER_VARIABLE, find_browser
 from structures import NAMES, REGISTRY, class_model
-from tests.experiments.chromium import Browser, started
+from tests.experiments.chromium import Browser
 from tests.extent import OF_EACH_KIND
 
 PRINTED = {
@@ -163,14 +162,6 @@ def chapter(tmp_path_factory):
     content = {"titles": page_titles(), "here": "structures", "front": "index"}
     file.write_text(page("page.html.j2", body=notebooks.body("structures"), **content), "utf-8")
     return file.as_uri()
-
-
-@pytest.fixture(scope="module")
-def chromium():
-    if find_browser() is None:
-        pytest.skip(f"no Chromium or Chrome is installed; {BROWSER_VARIABLE} names one elsewhere")
-    with started() as browser:
-        yield browser
 
 
 def test_next_is_followed_round_a_face(chromium: Browser, chapter):
