@@ -46,13 +46,14 @@ def cases(preset: Preset, structure: str) -> list[Case]:
     family, faces = preset.families[0], preset.operation_faces
     by_size = [(family, size, None) for size in preset.operation_sizes]
     by_valence = [(HUBS, faces, k) for k in preset.valences if k <= faces // FEWEST_HUBS]
-    singly = [(operation, "one by one") for operation in OPERATIONS]
+    operations = preset.operations or tuple(OPERATIONS)
+    singly = [(operation, "one by one") for operation in operations]
     rendered = [("split_face", order) for order in RENDERED]
     return [
         *(
             Case(structure, family, size, operation, "batched", valence)
             for family, size, valence in (*by_size, *by_valence)
-            for operation in OPERATIONS
+            for operation in operations
         ),
         *(
             Case(structure, family, size, operation, order)

@@ -56,8 +56,7 @@ class Reference:
         """Seconds per query of some rounds about so ``long``; each goes on where the last ended."""
         many, seconds = TRIED, []
         for _ in range(1 + ROUNDS):
-            places = (self._asked + np.arange(many)) % len(self.sweep.handles)
-            seconds.append(self.ask(self.sweep.some(places)) / many)
+            seconds.append(self.ask(self.sweep.successive(self._asked, many)) / many)
             self._asked += many
             many = int(np.clip(long / seconds[0], TRIED, MOST_HANDLES))
         return seconds[1:]

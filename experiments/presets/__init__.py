@@ -41,11 +41,11 @@ class Preset:
     ``families[0]`` is the judged one: its valence is the same at every size. Structures made of
     objects are operated on up to ``object_vertices``, asked and built of three times as many; what
     the thesis prints is built of ``printed_sizes``. Operations are done one by one at
-    ``single_sizes``. ``workloads``: those that are timed, all for none; ``skipped``: experiments
-    that are not part of it. A round is one sample; ``round_seconds`` is how long it should last,
-    ``case_seconds`` what a case may take in all, but for ``fewest_rounds`` that last long.
-    ``valence_faces`` stay in the caches that a core has to itself: beyond, neighbors on the machine
-    make cases of one curve differ threefold.
+    ``single_sizes``. ``operations``, ``workloads``: those that are timed, all for none;
+    ``skipped``: experiments that are not part of it. A round is one sample; ``round_seconds`` is
+    how long it should last, ``case_seconds`` what a case may take in all, but for ``fewest_rounds``
+    that last long. ``valence_faces`` stay in the caches that a core has to itself: beyond,
+    neighbors on the machine make cases of one curve differ threefold.
     """
 
     what: str
@@ -60,6 +60,7 @@ class Preset:
     operation_sizes: tuple[int, ...] = sizes[1:]
     operation_faces: int = 65_536
     single_sizes: tuple[int, ...] = sizes[1::2]
+    operations: tuple[str, ...] = ()
     workload_sizes: tuple[int, ...] = _geometric(100, 100_000, 2)
     workloads: tuple[str, ...] = ()
     real_time_sizes: tuple[int, ...] = (1_000, 10_000, 100_000, 1_000_000)
@@ -109,6 +110,7 @@ class Preset:
             single_sizes=sizes,
             workload_sizes=sizes,
             real_time_sizes=sizes,
+            operations=(),
             workloads=(),
             skipped=NOT_OF_ONE_MESH,
         )
@@ -169,6 +171,7 @@ PRESETS = {
         operation_sizes=_geometric(100, 100_000, 4 / 3),
         operation_faces=32_768,
         single_sizes=(1_000,),
+        operations=("split_edge", "split_face", "collapse_edge", "flip_edge"),
         workload_sizes=(1_000, 10_000),
         workloads=("vertex_normals", "impacts"),
         real_time_sizes=(1_000, 10_000),

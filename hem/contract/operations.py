@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -64,6 +63,7 @@ class Operations:
     def __init__(self, state: State, queries: Queries, followers: Followers) -> None:
         self._state, self._queries, self._followers = state, queries, followers
         self._operations = state.declared.operations
+        self._known: dict[str, Bound] = {}
 
     # One at a time ---------------------------------------------------------------------------
 
@@ -71,7 +71,7 @@ class Operations:
         """An operation as a function of its first handle, a point and two more handles."""
         state, publish = self._state, self._followers.publish
         subscribers, attributes = self._followers.subscribers, self._followers.attributes
-        perform, address, _, args, position, result = self._bound[operation]
+        perform, address, _, args, position, result = self._bound(operation)
         names_a_vertex = self._operations[operation].names_a_vertex
         takes_a_point = self._operations[operation].takes_a_point
 
@@ -105,7 +105,7 @@ class Operations:
 
     def may(self, operation: str, edge: Any) -> bool:
         """Whether an operation on an edge would be done; TopologyError if there is no edge."""
-        perform, address, task, args, _, result = self._bound[operation]
+        perform, address, task, args, _, result = self._bound(operation)
         try:
             args[0] = edge
             args[1] = -1
@@ -133,13 +133,14 @@ class Operations:
         corners = 3 * (more + 3)  # a split face: three entries for each
         state.lengthen(max(2 * neighbors, corners) + 2 * ENTRIES)
 
-    @cached_property
-    def _bound(self) -> dict[str, Bound]:
-        """Every operation, bound; by name."""
-        self._queries.count_edges()
-        return {operation: self._bind(operation) for operation in self._operations}
+    def _bound(self, operation: str) -> Bound:
+        """An operation, bound once."""
+        if operation not in self._known:
+            self._known[operation] = self._bind(operation)
+        return self._known[operation]
 
     def _bind(self, operation: str) -> Bound:
+        self._queries.count_edges()
         state = self._state
         task, args = np.array([DO, 0, 1]), np.full((1, 3), -1, np.int64)
         points, result = np.zeros((1, 3), np.float32), np.zeros(1, np.int64)
@@ -213,7 +214,7 @@ class Operations:
 
         Ends at one that is refused, unless the ``mode`` is another. Nobody is told.
         """
-        state, perform, n = self._state, self._bound[operation].perform, len(args)
+        state, perform, n = self._state, self._bound(operation).perform, len(args)
         results, logs, done = np.zeros(n, np.int64), [], 0
         vertices, faces = self._operations[operation].growth
         lasting = state.declared.lasting.get(operation)
@@ -263,7 +264,8 @@ class Operations:
         """See ``Structure.reserve``."""
         self._state.make_room(splits, 2 * splits)
         self._state.widen(splits)
-        for operation in self._bound:
+        for operation in self._operations:
+            self._bound(operation)
             self.make_way(operation)
 
     def prepare(self, operation: str, args: ArrayLike, points: ArrayLike | None) -> Prepared:
@@ -272,7 +274,7 @@ class Operations:
         rows = arguments.rows(rows) if rows.ndim == 1 else np.ascontiguousarray(rows)
         if rows.ndim != 2 or rows.shape[1] < 3:
             raise MeshError(f"{operation} takes (n,) or (n, 3) handles, not {rows.shape}")
-        state, perform, n = self._state, self._bound[operation].perform, len(rows)
+        state, perform, n = self._state, self._bound(operation).perform, len(rows)
         vertices, faces = self._operations[operation].growth
         state.make_room(vertices * n, faces * n)
         state.count_valence()

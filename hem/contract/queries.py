@@ -47,9 +47,12 @@ class Sweep(NamedTuple):
     counts: bytes
     """What the mesh counted when the handles were checked."""
 
-    def some(self, places: Any) -> Sweep:
-        """The same for the handles at some of their places."""
-        return self._replace(handles=self.handles[places])
+    def successive(self, begin: int, many: int) -> Sweep:
+        """The same for so many handles from a place on; after the last comes the first again."""
+        begin %= len(self.handles)
+        rest = self.handles[begin : begin + many]
+        again = np.resize(self.handles, many - len(rest))
+        return self._replace(handles=np.concatenate([rest, again]))
 
     def run(self) -> int:
         """Ask in one compiled loop, keeping nothing -> a checksum.

@@ -8,7 +8,7 @@ from then on a call passes two integers.
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import cache
+from functools import cache, cached_property
 from typing import Any
 
 import numpy as np
@@ -26,10 +26,14 @@ class Pinned:
     """
 
     def __init__(self, *arrays: NDArray[Any]) -> None:
-        self.kind = types.Tuple([typeof(array) for array in arrays])
         self._arrays = arrays
         self._image = np.array(_described(arrays), np.int64)
         self.address = int(self._image.ctypes.data)
+
+    @cached_property
+    def kind(self) -> Any:
+        """Their types, as the compiler has them: not every use asks, and to tell takes 50 µs."""
+        return types.Tuple([typeof(array) for array in self._arrays])
 
     def replace(self, *arrays: NDArray[Any]) -> None:
         """Put others of the same types at the same address."""
