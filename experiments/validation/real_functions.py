@@ -1,8 +1,8 @@
 """Judges on real functions: how often each names the class that a function is known to have.
 
-``python -m experiments.validation.real_functions`` measures every function of
-`experiments.validation.functions`, some ten minutes, and asks every judge. Functions by turns are
-those that the judge was tuned on, and those that it was not: the latter tell how good it is.
+``python -m experiments.validation.real_functions`` measures every function of known cost, some ten
+minutes, and asks every judge. The judge was tuned on those of `experiments.validation.functions`;
+those of `held_out` it had not seen, and tell how good it is.
 ``--busy`` keeps the other core busy with memory the while.
 """
 
@@ -23,11 +23,15 @@ from typer import Option
 from experiments.runs import describe
 from experiments.validation.accuracy import UNDETERMINED, Judge, installed_judges
 from experiments.validation.functions import FUNCTIONS, Function
-from hem.complexity import Measured, canonical, measure
+from experiments.validation.held_out import HELD_OUT
+from hem.complexity import Measured, canonical, measure, parse
+from hem.complexity.notation import Order
 
 RESULT = Path("results/reference/real_functions.json")
 COLUMNS = ["function", "growth", "source", "half", "neighbor", "judge", "answer"]
-HALVES = "tuned on", "held out"
+HALVES = {"tuned on": FUNCTIONS, "held out": HELD_OUT}
+HELD = "held out"
+SAME_POWER = 0.1  # of exponents: a power law that is told by so much is right
 NEIGHBORS = "shared", "busy"
 """The machine as other programs leave it, and with one more that keeps core and memory busy."""
 
@@ -69,10 +73,18 @@ def answers_of(found: Measured, judges: dict[str, Judge]) -> dict[str, str]:
 
 def kind_of(answer: str, growth: str) -> str:
     """Whether an answer is right: the class alone, one of two that it names, or another."""
-    named = answer.split(" or ")
-    if answer == UNDETERMINED or growth not in named:
-        return UNDETERMINED if answer == UNDETERMINED else "wrong"
+    if answer == UNDETERMINED:
+        return UNDETERMINED
+    named, known = answer.split(" or "), parse(growth)
+    if not any(it == growth or _same_power(parse(it), known) for it in named):
+        return "wrong"
     return "right" if len(named) == 1 else "one of two"
+
+
+def _same_power(told: Order, known: Order) -> bool:
+    """Whether one fractional power is told as another close by."""
+    fractions = told.power % 0.5 and known.power % 0.5
+    return bool(fractions) and abs(told.power - known.power) <= SAME_POWER and told.logs == 0
 
 
 def shares(answers: pd.DataFrame) -> pd.DataFrame:
@@ -87,7 +99,7 @@ def shares(answers: pd.DataFrame) -> pd.DataFrame:
 
 def markdown(answers: pd.DataFrame) -> str:
     """The shares of what was held out, as a table of a page."""
-    table = shares(answers).loc[HALVES[1]]
+    table = shares(answers).loc[HELD]
     rows = [
         [f"{judge}, {neighbor} machine", *map(str, row)]
         for (neighbor, judge), row in zip(table.index, table.to_numpy().tolist(), strict=True)
@@ -108,8 +120,9 @@ def _rows(budget: float, busy: bool, measured: Path | None) -> Iterator[list[str
     if measured and measured.exists():
         lines = map(json.loads, measured.read_text("utf-8").splitlines())
         kept = {line.pop("function"): line for line in lines}
-    with neighbor(busy and len(kept) < len(FUNCTIONS)):
-        for i, it in enumerate(FUNCTIONS):
+    functions = [(half, it) for half, some in HALVES.items() for it in some]
+    with neighbor(busy and len(kept) < len(functions)):
+        for half, it in functions:
             if line := kept.get(it.name):
                 samples = [np.array(row) for row in line["samples"]]
                 rest = (np.array(line[key]) for key in ("sizes", "working_sets", "memory"))
@@ -123,7 +136,7 @@ def _rows(budget: float, busy: bool, measured: Path | None) -> Iterator[list[str
                 it.name,
                 canonical(it.growth),
                 it.source,
-                HALVES[i % 2],
+                half,
                 NEIGHBORS[busy],
             ]
             for judge, answer in answers_of(found, judges).items():

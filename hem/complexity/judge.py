@@ -17,6 +17,7 @@ from hem.complexity.models import NAMES, STEEP, predict
 from hem.complexity.notation import Order, canonical, parse
 from hem.complexity.selection import (
     LATENCY_ERROR,
+    MOST_WOBBLE,
     Comparison,
     Memory,
     account_for_memory,
@@ -209,7 +210,9 @@ def _answer(costs: Costs, models: Comparison) -> str:
         return ""
     power = Order(power=exponent).name
     law = compare_models(cost, models.memory, sorted({NAMES[0], power}, key=parse))
-    return power if law.explained and law.names[law.best] == power else ""
+    close = np.sqrt(np.mean((predict(law.design, law.fit)[0][-1] / cost.cost - 1) ** 2))
+    told = law.explained and law.names[law.best] == power and close <= MOST_WOBBLE
+    return power if told else ""
 
 
 def _without_noisy_sizes(costs: Costs) -> Costs:

@@ -1,8 +1,9 @@
 """Measure what a function costs by the size of its input, so that it can be judged.
 
 What spoils such measurements is kept out: the first calls do not count, the timer's own cost is
-taken off, rounds are interleaved over the sizes, and no input is used twice. Every size is asked
-about as much data as the largest, in many calls, so that the caches treat all sizes alike.
+taken off, and rounds are interleaved over the sizes. Where an input and its answer fit into the
+caches they are there when they are timed: those sizes tell of work alone. Larger ones wait for
+memory, and are held to what those tell.
 """
 
 import gc
@@ -11,12 +12,14 @@ import tracemalloc
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
+from time import perf_counter
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from hem.complexity.judge import Verdict, judge
+from hem.complexity.estimates import slope
+from hem.complexity.measured import Measured
 from hem.complexity.memory import CLOCK, memory_times
 from hem.complexity.notation import Array
 
@@ -24,32 +27,17 @@ Function = Callable[[Any], object]
 MakeInput = Callable[[int], Any]
 Clock = Callable[[], float]
 
-COUNT = 9  # sizes, where none are given
+COUNT = 20  # sizes, where none are given
 TRIED = 8  # the size to see at whether a function changes its input
 FIRST = 4  # the first that is tried
-STEP = 1.3  # from one that is tried to the next; small, as costs may grow exponentially
-SMALLEST = 64  # where the largest is much larger: below that, it is the call that costs
-MOST_CALLS = 4_096  # in a sample
-LEAST_SECONDS = 1e-4  # of a sample, where inputs may be used again
-MEMORY_ERROR = 0.05  # relative error of what memory did to a call, beside what was measured …
-UNSEEN = 2.0  # … and the slowdown that allocators and caches cause beside it, over the sizes
-
-
-@dataclass(frozen=True)
-class Measured:
-    """What a function cost by size, and what memory takes at each working set."""
-
-    sizes: Array  # (k,)
-    samples: list[Array]  # k times seconds per call
-    working_sets: Array  # (3, k) bytes of a call, of all calls of a sample, and in between
-    memory: Array  # (9, k) seconds, as `memory_times` tells them of each
-
-    def judge(self, expected: str = "O(1)", **options: Any) -> Verdict:
-        """Judge a claim by these costs; options as of `hem.complexity.judge`."""
-        given: dict[str, Any] = {"latency": self.memory, "latency_error": MEMORY_ERROR}
-        if options.get("latency", 0) is not None:
-            given["unseen"] = UNSEEN
-        return judge(self.sizes, self.samples, expected, **given | options)
+STEP, FAR, WIDER = 1.3, 64, 1.7
+"""From one that is tried to the next: small up to `FAR`, as costs may grow exponentially."""
+COSTLIER = 1_000_000  # a call of the largest size than one of the smallest, at most …
+REACH = 8  # … where the largest size remains so many times the smallest
+BATCH = 1 << 18  # bytes of the inputs of a sample, where one takes less: they fit into caches
+MOST_CALLS = 4_096  # in a pass
+PASS = 2e-4  # seconds of one, where a call takes less
+PASSES = 3  # of which the quickest counts, as the first finds its inputs out of the caches
 
 
 def measure(
@@ -61,7 +49,7 @@ def measure(
 
     make_input: what makes the input of one call; it is not timed. Where a cost has several
     variables, it holds all but one fixed.
-    sizes: ascending, at least four over a range of four to be judged. Where none are given, nine up
+    sizes: ascending, at least four over a range of four to be judged. Where none are given, 20 up
     to `most`, as far as the budget allows: about so many seconds in all.
     rounds: samples per size. fresh: whether every call gets an input of its own. By default inputs
     that f leaves as they were, as pickle sees it, are used again: quick functions need that.
@@ -70,15 +58,17 @@ def measure(
 
     Raises ValueError for sizes that are not whole numbers from 1 on; what f raises goes through.
     """
-    slot, given = budget / (COUNT * (rounds + 1)), None if sizes is None else _checked(sizes)
+    given = None if sizes is None else _checked(sizes)
     changed = _changes(f, make_input(given[0] if given else TRIED))  # warms up, too
     fresh = changed if fresh is None else fresh
-    chosen = given or _choose_sizes(f, make_input, slot, most, clock)
-    plans = _plan(f, make_input, chosen, slot, fresh, clock)
-    bytes_per_call = np.array([_working_set(f, make_input, n) for n in chosen], float)
-    calls = np.array([it.calls for it in plans], float)
-    working_sets = bytes_per_call * [calls**0, calls, calls**0.5]
-    memory = np.vstack(np.split(memory_times(working_sets.ravel()), 3, axis=1))
+    turn = budget / (rounds + 1)
+    chosen = given or _choose_sizes(f, make_input, turn, most, fresh, clock)
+    working_sets = _working_sets(f, make_input, chosen, turn)
+    plans = [
+        _plan(f, partial(make_input, n), size, fresh, clock)
+        for n, size in zip(chosen, working_sets, strict=True)
+    ]
+    memory = memory_times(working_sets)
     samples: list[list[float]] = [[] for _ in plans]
     collecting = gc.isenabled()
     gc.disable()
@@ -100,69 +90,88 @@ class _Plan:
 
     make: Callable[[], Any]
     calls: int
-    again: int  # times that each input is used in a sample; 0 where each call gets its own
-    pool: list[Any]
+    again: int  # times that each input is used in a pass
+    passes: int
+    pool: list[Any]  # inputs for all rounds; where there are none, each makes its own
 
     def sample(self, f: Function, clock: Clock) -> float:
-        """Seconds per call."""
-        inputs = self.pool * self.again or [self.make() for _ in range(self.calls)]
+        """Seconds per call, of the quickest pass."""
+        pool = self.pool or [self.make() for _ in range(self.calls)]
+        return min(self._pass(f, pool * self.again, clock) for _ in range(self.passes))
+
+    def _pass(self, f: Function, inputs: list[Any], clock: Clock) -> float:
         own = min(_seconds(None, inputs, clock) for _ in range(2))
         return max(_seconds(f, inputs, clock) - own, 1e-9) / len(inputs)
 
 
 def _seconds(f: Function | None, inputs: Sequence[Any], clock: Clock) -> float:
-    """What calls take together, or no calls: the timer and the loop. Answers are freed after it."""
-    answers: list[Any] = []
-    keep = answers.append
+    """What calls take together, the freeing of answers included; or no calls: timer and loop."""
     if f is None:
         begin = clock()
-        for it in inputs:
-            keep(it)
+        for _ in inputs:
+            pass
         return clock() - begin
     begin = clock()
     for it in inputs:
-        keep(f(it))
+        f(it)
     return clock() - begin
 
 
-def _plan(
-    f: Function, make: MakeInput, sizes: list[int], slot: float, fresh: bool, clock: Clock
-) -> list[_Plan]:
-    """As many calls at each size as ask for as much data, and as much work, as the largest."""
-    tried = [min(_seconds_of_one(f, make, n, clock) for _ in range(2)) for n in sizes]
-    plans = []
-    for n, (both, call) in zip(sizes, np.maximum(tried, 1e-9), strict=True):
-        most = min(sizes[-1] / n, tried[-1][1] / call, slot / both)
-        calls = int(np.clip(most, 1, MOST_CALLS))
-        again = 0 if fresh else int(np.clip(LEAST_SECONDS / (calls * call), 1, MOST_CALLS))
-        pool = [] if fresh else [make(n) for _ in range(calls)]
-        plans.append(_Plan(partial(make, n), calls, again, pool))
-    return plans
+def _plan(f: Function, make: Callable[[], Any], size: float, fresh: bool, clock: Clock) -> _Plan:
+    """As many calls as the clock needs, on inputs that fit into the caches together."""
+    made, call = np.min([_seconds_of_one(f, make, clock) for _ in range(2)], axis=0)
+    call = max(call, 1e-9)
+    calls = int(np.clip(min(BATCH / size, PASS / (made + call)), 1, MOST_CALLS))
+    if fresh:
+        return _Plan(make, calls, 1, 1, [])
+    again = int(np.clip(PASS / (calls * call), 1, MOST_CALLS))
+    passes = PASSES if calls * call <= 10 * PASS else 1
+    pool = [] if made < call else [make() for _ in range(calls)]
+    return _Plan(make, calls, again, passes, pool)
 
 
-def _seconds_of_one(f: Function, make: MakeInput, n: int, clock: Clock) -> tuple[float, float]:
-    """What an input and a call take, and the call alone."""
+def _seconds_of_one(f: Function, make: Callable[[], Any], clock: Clock) -> tuple[float, float]:
+    """What an input takes, and what a call."""
     begin = clock()
-    it = make(n)
+    it = make()
     made = clock()
     f(it)
     end = clock()
-    return end - begin, end - made
+    return made - begin, end - made
 
 
 def _choose_sizes(
-    f: Function, make_input: MakeInput, slot: float, most: int, clock: Clock
+    f: Function, make_input: MakeInput, turn: float, most: int, fresh: bool, clock: Clock
 ) -> list[int]:
-    """Nine sizes of equal ratio, up to what a call takes the whole slot for."""
-    n = FIRST
-    while n < most:
-        larger = min(max(n + 1, round(n * STEP)), most)
-        if all(_seconds_of_one(f, make_input, larger, clock)[0] > slot for _ in range(2)):
-            break  # twice, as one that was disturbed says little
-        n = larger
-    smallest = max(FIRST, min(SMALLEST, n // SMALLEST))
-    ends = smallest, max(n, 4 * FIRST)
-    return [int(size) for size in np.unique(np.geomspace(*ends, COUNT).round())]
+    """Sizes of equal ratio, up to where a turn of all of them takes as long as it may."""
+    n, tried = FIRST, list[tuple[int, float]]()
+    while True:
+        taken = [_seconds_of_one(f, partial(make_input, n), clock) for _ in range(2)]
+        made, call = np.min(taken, axis=0)  # of two, as one that was disturbed says little
+        tried.append((n, float(call + made * (1 if fresh else 0.1))))
+        if len(tried) > 1 and _seconds_of_turn(tried) > turn:
+            tried.pop()
+            break
+        if n >= most:
+            break
+        n = min(max(n + 1, round(n * (STEP if n < FAR else WIDER))), most)
+    low, high = _ends(tried)
+    return [int(size) for size in np.unique(np.geomspace(low, high, COUNT).round())]
+
+
+def _ends(tried: list[tuple[int, float]]) -> tuple[int, int]:
+    """The smallest size and the largest, of those that were tried, with what each takes."""
+    last, longest = tried[-1]
+    telling = next(n for n, seconds in tried if seconds * COSTLIER >= longest)
+    return max(FIRST, min(telling, last // REACH)), max(last, REACH * FIRST // 2)
+
+
+def _seconds_of_turn(tried: list[tuple[int, float]]) -> float:
+    """What one sample of each size takes, were these the sizes."""
+    known, seconds = np.log(np.array(tried)).T
+    low, high = np.log(_ends(tried))
+    sizes = np.linspace(low, high, COUNT)
+    return float(np.maximum(np.exp(np.interp(sizes, known, seconds)), PASSES * PASS).sum())
 
 
 def _changes(f: Function, it: Any) -> bool:
@@ -181,6 +190,22 @@ def _checked(sizes: ArrayLike) -> list[int]:
     if chosen.ndim != 1 or not chosen.size or np.any(chosen < 1) or np.any(chosen % 1):
         raise ValueError("sizes must be whole numbers, each at least 1")
     return [int(n) for n in chosen]
+
+
+def _working_sets(
+    f: Function, make_input: MakeInput, sizes: Sequence[int], longest: float
+) -> Array:
+    """Bytes of a call by size; beyond what takes longer to be told, they go on as they grew."""
+    told: list[float] = []
+    for n in sizes:
+        begin = perf_counter()
+        told.append(_working_set(f, make_input, n))
+        if perf_counter() - begin > longest:
+            break
+    few = slice(-4, len(told))
+    grown = slope(np.array(sizes, float)[: len(told)][few], np.array(told[few])) if told[1:] else 1
+    rest = np.array(sizes[len(told) :], float) / sizes[len(told) - 1]
+    return np.concatenate([told, told[-1] * rest**grown])
 
 
 def _working_set(f: Function, make_input: MakeInput, n: int) -> int:

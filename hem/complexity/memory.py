@@ -15,7 +15,7 @@ from hem.complexity.notation import Array
 LINE = 64  # bytes that come from memory together
 STEPS = 1_000  # accesses per sample
 SAMPLES = 5
-LARGEST = 1 << 28  # bytes; what takes more is measured as this
+LARGEST = 1 << 26  # bytes; what takes more is measured as this
 SMALLEST = 16 * 1024  # bytes; less than that is in the first cache, and beside what a call takes
 QUICKEST = 2e-11  # seconds that a byte takes at least, as a program reads it that does more
 AT_BEST = 5e-9  # seconds: what a step from record to record takes at least, in the caches
