@@ -66,15 +66,25 @@ def show_table(
     run: RunArgument = None,
     every: Annotated[bool, Option("--all", help="All structures, and the listings.")] = False,
     slopes: Annotated[bool, Option("--slopes", help="The slopes and their intervals.")] = False,
+    peers: Annotated[bool, Option("--peers", help="Other libraries beside ours.")] = False,
     as_json: AsJson = False,
 ) -> None:
     """Print what the thesis claims of each structure, with the verdicts of a run.
 
+    With --peers what was measured of other libraries, by `hem study --peers`.
+
     Example: `hem table --all --slopes`
     """
-    folder = run_folder(run)
     from experiments import report
 
+    if peers:
+        given = run_folder(run) if run else None
+        if as_json:
+            print_json(report.peers_as_json(given))
+        else:
+            report.show_peers(given, console)
+        return
+    folder = run_folder(run)
     if as_json:
         print_json(report.claims_as_json(folder, every))
     else:

@@ -28,11 +28,16 @@ def run_study(
     ] = None,
     resume: Annotated[bool, Option("--resume", help="Resume the newest unfinished run.")] = False,
     run: Annotated[Path | None, Option(help="With --resume: which, finished or not.")] = None,
-    output: Annotated[Path, Option(help="Where the runs are kept.")] = Path("results/runs"),
+    output: Annotated[
+        Path | None, Option(help="Where the runs are kept (results/runs, peers in it).")
+    ] = None,
     structure: Structures = None,
     experiment: Annotated[
         list[str] | None, Option(help="Run just this one; may be repeated.")
     ] = None,
+    peers: Annotated[
+        bool, Option("--peers", help="Other libraries beside ours, and nothing else.")
+    ] = False,
     mesh: Annotated[
         str | None, Option(**OfMesh | {"help": "Measure on this mesh, and on versions of it."})
     ] = None,
@@ -46,6 +51,8 @@ def run_study(
     With --mesh on a mesh of your own, coarser and finer versions of it, where a slope is wanted: a
     file, a model (bunny), or a family and size (sphere:2000).
 
+    With --peers other libraries, as many as are installed; the extra peers has them.
+
     A case that would not fit into memory is skipped and says so; HEM_MEMORY=8G pretends that there
     is so much.
 
@@ -55,7 +62,7 @@ def run_study(
         raise ValueError(f"to resume {run}, say --resume as well")
     require_known("preset", [preset or DEFAULT], PRESETS)  # before anything heavy is imported
     from experiments.harness import memory
-    from experiments.runs import cluster, latest, study
+    from experiments.runs import PEER_RUNS, RUNS, cluster, latest, study
 
     memory.available()  # whether HEM_MEMORY can be read
     if workers:
@@ -64,6 +71,9 @@ def run_study(
         cluster.require(workers)
     if repair and not mesh:
         raise ValueError("--repair is about a mesh: say --mesh as well")
+    output = output or (PEER_RUNS if peers else RUNS)
+    if peers and not resume:
+        experiment = [*(experiment or []), *_other_libraries()]
     options: dict[str, Any] = {"preset": preset, "seed": seed, "pin": pin}
     options |= {"structures": structure, "experiments": experiment}
     given = {key: it for key, it in options.items() if it not in (None, [])}
@@ -76,6 +86,21 @@ def run_study(
         given |= {"mesh": mesh, "repair": repair}
         folder = study.begin(given.pop("preset", DEFAULT), output, **given)
     _measure(folder, workers)
+
+
+def _other_libraries() -> list[str]:
+    """The experiments on other libraries; says which of these are missing.
+
+    Raises ValueError where all are.
+    """
+    from experiments.peers import OURS, installed, missing
+    from experiments.runs import experiments
+
+    for title, distribution in missing().items():
+        errors.print(f"{title} is not installed, and left out (pip install {distribution})")
+    if installed() == [OURS]:
+        raise ValueError("no other library is installed: pip install 'hem-mesh[peers]'")
+    return [name for name, it in experiments().items() if it.by_name]
 
 
 def _require_as_begun(folder: Path, given: dict[str, Any], workers: str | None) -> None:

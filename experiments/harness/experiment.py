@@ -82,8 +82,9 @@ class Experiment:
     decides, and the order of handles that holds the measurements along each axis.
     ``just_written``: the axes whose cases run on a mesh that was copied just before, so that the
     latency measured beside them may miss what they waited for. ``baseline_orders``: the orders
-    whose times enter the baseline. ``claims``: for subjects of its own, the growth class that is
-    expected of each structure (or of ``ANYONE``), with ``source``: who expects it.
+    whose times enter the baseline. ``by_name``: it is measured only where it is named. ``claims``:
+    for subjects of its own, the growth class that is expected of each structure (or of ``ANYONE``),
+    with ``source``: who expects it.
     """
 
     title: str
@@ -98,6 +99,7 @@ class Experiment:
     axes: Mapping[Axis, str] = field(default_factory=dict)
     just_written: frozenset[Axis] = frozenset()
     baseline_orders: tuple[str, ...] = ()
+    by_name: bool = False
     claims: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
     source: str = ""
 

@@ -16,6 +16,10 @@ _PLACES = {
         "closing", "errata", "frame_table", "legend", "reasons", "sentences", "slopes", "tally",
         "text_table", "verdicts",
     ),
+    "peers": (
+        "about", "measured_peers", "page_table", "peers_as_json", "portraits", "refusals",
+        "show_peers",
+    ),
     "readme": ("write_readme",),
     "sections": ("traced",),
     "session": ("MissingError", "claim_link", "link", "open_run", "project_file"),

@@ -120,7 +120,7 @@ def plan(folder: Path) -> list[Job]:
     jobs = [
         Job(name, structure, preset, int(meta["seed"]), bool(meta["pin"]), mesh)
         for name, declared in catalog().items()
-        if (name in wanted if wanted else name not in extent.skipped)
+        if (name in wanted if wanted else not (declared.by_name or name in extent.skipped))
         for structure in declared.structures
         if not chosen or structure in chosen or structure not in NAMED
     ]

@@ -1,0 +1,119 @@
+"""Other libraries beside our half-edge mesh: queries, operations, building, algorithms, bytes.
+
+Each as its manual has it used, through Python: a query asked of one element after the other at
+random, and where a library has a call for it of all at once. Every answer is checked against the
+triangle list before it is timed. Measured only where it is asked for: ``hem study --peers``.
+"""
+
+from dataclasses import replace
+
+from experiments.harness import HUBS, OPERATIONS, Case, Experiment, Measurement, Preset, Timer
+from experiments.peers import (
+    ALGORITHMS,
+    BAD_INPUT,
+    BUILD,
+    BULK,
+    BYTES,
+    LOOPED,
+    PEERS,
+    SINGLE,
+    SIX,
+    Peer,
+    installed,
+    measuring,
+    told_by_child,
+)
+from hem.contract import QUERIES
+
+ALGORITHM_VERTICES = 20_000
+"""Vertices at most of what algorithms are given."""
+
+
+def sizes(preset: Preset, peer: Peer) -> list[int]:
+    """Numbers of vertices that a library is measured at."""
+    return [it for it in preset.sizes if not peer.objects or it <= common(preset)]
+
+
+def common(preset: Preset) -> int:
+    """The largest size that all are measured at, objects too."""
+    return max(it for it in preset.sizes if it <= 3 * preset.object_vertices)
+
+
+def cases(preset: Preset, structure: str) -> list[Case]:
+    """What a library has a call for; nothing where it is not installed."""
+    if structure not in installed():
+        return []
+    peer, family = PEERS[structure], preset.families[0]
+    by_size = sizes(preset, peer)
+    hubs = min(preset.valence_faces, 10 * preset.object_vertices) if peer.objects else 0
+    whole = max(it for it in by_size if it <= ALGORITHM_VERTICES)
+    looped = [(it, LOOPED) for it in QUERIES if it in peer.loops]
+    asked = [*((it, SINGLE) for it in peer.single), *looped]
+    bulk = [(it, BULK) for it in peer.bulk]
+    done = [*((it, SINGLE) for it in peer.operations), *((it, BULK) for it in peer.batches)]
+    return [
+        *(
+            Case(structure, family, size, *it)
+            for size in by_size
+            for it in (*asked, *bulk, (BUILD, None))
+        ),
+        *(
+            Case(structure, HUBS, hubs or preset.valence_faces, *it, valence)
+            for valence in preset.valences
+            for it in asked
+        ),
+        *(Case(structure, family, common(preset), *it) for it in done),
+        *(Case(structure, family, whole, it) for it in peer.algorithms),
+        *(Case(structure, family, whole, it, LOOPED) for it in SIX if it in peer.loops),
+        *(Case(structure, family, by_size[-1], it) for it in (BYTES, *BAD_INPUT)),
+    ]
+
+
+def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
+    """Measure one case; skipped where its library is installed and cannot be imported."""
+    try:
+        return _measure(case, preset, timer)
+    except ImportError as error:
+        return case.not_measured("time", f"cannot be imported: {error}")
+
+
+def _measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
+    """Check and time a case; bytes and bad input are told by processes of their own."""
+    what, version = str(case.subject), {"version": PEERS[case.structure].version}
+    if what == BYTES or what in BAD_INPUT:
+        return _told(case, what, version)
+    given = case, preset, timer
+    if case.order == LOOPED or (what == BUILD and BUILD in PEERS[case.structure].loops):
+        fields = measuring.read_looped(case, preset)
+    elif what in QUERIES:
+        fields = (measuring.time_bulk if case.order == BULK else measuring.time_single)(*given)
+        fields |= measuring.beside(case)
+    elif what in OPERATIONS:
+        fields = measuring.time_operations(*given, batched=case.order == BULK)
+    elif what in ALGORITHMS:
+        fields = measuring.time_algorithm(*given)
+    else:
+        fields = measuring.time_building(*given)
+    beside = {it: fields.pop(it) for it in ("working_set",) if it in fields}
+    return replace(case.result("time", None, **fields, detail=version), **beside)
+
+
+def _told(case: Case, what: str, version: dict[str, str]) -> Measurement:
+    found = told_by_child(case.structure, case.family, case.size)[what]
+    if what != BYTES:
+        return case.result("trial", None, detail={**version, "found": found})
+    if found is None:
+        return case.result(BYTES, None, skipped="the process that was weighed ended")
+    return case.result(BYTES, None, [found], detail=version)
+
+
+EXPERIMENT = Experiment(
+    title="Other libraries",
+    cases=cases,
+    measure=measure,
+    copies=2,
+    turn=90,
+    structures=tuple(PEERS),
+    by_name=True,
+)
+test_peers = EXPERIMENT.test

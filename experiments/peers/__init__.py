@@ -1,0 +1,15 @@
+"""Other libraries, measured as our structures are: one file per library, and ours beside them.
+
+``PEERS`` has every library by the name of its file. ``installed`` and ``missing`` tell which can be
+measured here; nothing of a library is imported before it is. ``experiments/bench_peers.py`` says
+what is measured of them.
+"""
+
+from experiments.peers.peer import ALGORITHMS, BUILD, BULK, BYTES, LOOPED, SINGLE, SIX, Peer
+from experiments.peers.registry import OURS, PEERS, installed, missing
+from experiments.peers.trials import BAD_INPUT, told_by_child
+
+__all__ = [
+    "ALGORITHMS", "BAD_INPUT", "BUILD", "BULK", "BYTES", "LOOPED", "OURS", "PEERS", "SINGLE", "SIX",
+    "Peer", "installed", "missing", "told_by_child",
+]  # fmt: skip

@@ -1,0 +1,1 @@
+"""One file per library: what it calls its queries, operations and algorithms."""

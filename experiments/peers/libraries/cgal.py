@@ -1,0 +1,15 @@
+"""CGAL's Surface_mesh, in C++."""
+
+from functools import partial
+
+from experiments.peers.program import header_version, peer
+
+PEER = peer(
+    "CGAL",
+    "libcgal-dev",
+    partial(header_version, "CGAL/version.h", r"define CGAL_VERSION (\S+)"),
+    "Ranges such as `faces_around_target` around an element, `reserve` before adding, "
+    "`CGAL::Euler` for operations after `does_satisfy_link_condition`.",
+    "Exact arithmetic, and on it Booleans, remeshing, hulls, Delaunay triangulations and most of "
+    "computational geometry; its algorithms take other meshes, too.",
+)

@@ -1,0 +1,82 @@
+"""COMPAS: half-edges in dictionaries, all in Python."""
+
+from collections.abc import Callable
+from operator import attrgetter
+from typing import Any
+
+import numpy as np
+
+from experiments.peers.peer import Mesh, Peer
+from hem.arrays import Array
+
+
+def _build(points: Array, triangles: Array) -> Mesh:
+    from compas.datastructures import Mesh as CompasMesh
+
+    return CompasMesh.from_vertices_and_faces(points.tolist(), triangles.tolist())
+
+
+def _ends(m: Mesh) -> Array:
+    return np.array(list(m.edges()))
+
+
+def _handles(m: Mesh, element: str, numbers: list[int]) -> list[Any]:
+    """An edge is the pair of its vertices."""
+    if element != "edge":
+        return numbers
+    ends = _ends(m)
+    return [tuple(it) for it in ends[numbers].tolist()]
+
+
+def _known(query: str) -> Callable[[Mesh], Callable[[Any], Any]]:
+    """What asks; where there is no face it says None, here −1."""
+
+    def bind(m: Mesh) -> Callable[[Any], Any]:
+        ask = getattr(m, query)
+        return lambda edge: [-1 if it is None else it for it in ask(edge)]
+
+    return bind
+
+
+def _insert(m: Mesh, numbers: list[int], places: Array) -> int:
+    for face, place in zip(numbers, places.tolist(), strict=True):
+        m.insert_vertex(face, xyz=place)
+    return len(numbers)
+
+
+def _collapse(m: Mesh, numbers: list[int], places: Array) -> int:
+    faces = m.number_of_faces()
+    for edge in _handles(m, "edge", numbers):
+        if m.has_edge(edge):
+            m.collapse_edge(edge)
+    return int(faces - m.number_of_faces()) // 2
+
+
+PEER = Peer(
+    title="COMPAS",
+    distribution="compas",
+    module="compas",
+    manual="Methods of the mesh for one element, by keys; edges are pairs of vertices. For larger "
+    "meshes its manual points to libigl and others behind plug-ins.",
+    more="Polygons, attributes of any kind on every element, serialization, networks and "
+    "volumetric meshes beside it, plug-ins into Rhino and Blender.",
+    build=_build,
+    faces=lambda m: int(m.number_of_faces()),
+    ends=_ends,
+    handles=_handles,
+    single={
+        "vertex_vertices": attrgetter("vertex_neighbors"),
+        "vertex_edges": attrgetter("vertex_edges"),
+        "vertex_faces": attrgetter("vertex_faces"),
+        "edge_faces": _known("edge_faces"),
+        "face_vertices": attrgetter("face_vertices"),
+        "face_edges": attrgetter("face_halfedges"),
+        "face_faces": attrgetter("face_neighbors"),
+    },
+    operations={"split_face": _insert, "collapse_edge": _collapse},
+    algorithms={
+        "vertex_normals": lambda m: [m.vertex_normal(it) for it in m.vertices()],
+        "smooth": lambda m: m.smooth_centroid(kmax=1, damping=1.0),
+    },
+    objects=True,
+)

@@ -1,0 +1,144 @@
+"""MeshLib: half-edges in arrays, named by typed indices."""
+
+from collections.abc import Callable
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from experiments.peers.peer import Mesh, Peer
+from hem.arrays import Array
+
+
+def _build(points: Array, triangles: Array) -> Mesh:
+    from meshlib.mrmeshnumpy import meshFromFacesVerts
+
+    return meshFromFacesVerts(triangles, points)
+
+
+def _handles(m: Mesh, element: str, numbers: list[int]) -> list[Any]:
+    """An edge is named by one of its two half-edges."""
+    from meshlib.mrmeshpy import EdgeId, FaceId, VertId
+
+    made: Callable[[int], Any] = {"vertex": VertId, "face": FaceId}.get(element, EdgeId)
+    return [made(number * (2 if element == "edge" else 1)) for number in numbers]
+
+
+def _ends(m: Mesh) -> Array:
+    every = _handles(m, "edge", range(m.topology.undirectedEdgeSize()))  # type: ignore[arg-type]
+    org, dest = m.topology.org, m.topology.dest
+    return np.array([(int(org(it)), int(dest(it))) for it in every])
+
+
+def _around(ring: str, read: str) -> Callable[[Mesh], Callable[[Any], list[int]]]:
+    """What reads each half-edge around a vertex or in a face."""
+
+    def bind(m: Mesh) -> Callable[[Any], list[int]]:
+        from meshlib import mrmeshpy
+
+        topology, walk = m.topology, getattr(mrmeshpy, ring)
+        if read == "undirected":
+            return lambda handle: [int(it.undirected()) for it in walk(topology, handle)]
+        at = getattr(topology, read)
+        return lambda handle: [int(at(it)) for it in walk(topology, handle)]
+
+    return bind
+
+
+def _both(one: str, other: str) -> Callable[[Mesh], Callable[[Any], list[int]]]:
+    """What reads both sides or both ends of an edge."""
+
+    def bind(m: Mesh) -> Callable[[Any], list[int]]:
+        first, second = getattr(m.topology, one), getattr(m.topology, other)
+        return lambda edge: [int(first(edge)), int(second(edge))]
+
+    return bind
+
+
+def _corners(m: Mesh) -> Array:
+    from meshlib.mrmeshnumpy import getNumpyFaces
+
+    return np.asarray(getNumpyFaces(m.topology))
+
+
+def _split(kind: str, m: Mesh, numbers: list[int], places: Array) -> int:
+    from meshlib.mrmeshpy import Vector3f
+
+    split = m.splitFace if kind == "face" else m.splitEdge
+    for handle, place in zip(_handles(m, kind, numbers), places.tolist(), strict=True):
+        split(handle, Vector3f(*place))
+    return len(numbers)
+
+
+def _flip(m: Mesh, numbers: list[int], places: Array) -> int:
+    topology = m.topology
+    for edge in _handles(m, "edge", numbers):
+        topology.flipEdge(edge)
+    return len(numbers)
+
+
+def _collapse(m: Mesh, numbers: list[int], places: Array) -> int:
+    """It says whether it refused by what is left; what is told of lost edges is not needed."""
+    topology = m.topology
+    faces = topology.numValidFaces()
+    for edge in _handles(m, "edge", numbers):
+        if not topology.isLoneEdge(edge):
+            topology.collapseEdge(edge, lambda lost, kept: None)
+    return int(faces - topology.numValidFaces()) // 2
+
+
+def _normals(m: Mesh) -> Array:
+    from meshlib import mrmeshnumpy, mrmeshpy
+
+    return np.asarray(mrmeshnumpy.toNumpyArray(mrmeshpy.computePerVertNormals(m)))
+
+
+def _smooth(m: Mesh) -> None:
+    from meshlib import mrmeshpy
+
+    params = mrmeshpy.MeshRelaxParams()
+    params.iterations = 1
+    mrmeshpy.relax(m, params)
+
+
+def _simplify(m: Mesh, faces: int) -> int:
+    from meshlib import mrmeshpy
+
+    settings = mrmeshpy.DecimateSettings()
+    settings.maxError = np.finfo(np.float32).max
+    settings.maxDeletedFaces = m.topology.numValidFaces() - faces
+    mrmeshpy.decimateMesh(m, settings)
+    return int(m.topology.numValidFaces())
+
+
+PEER = Peer(
+    title="MeshLib",
+    distribution="meshlib",
+    module="meshlib",
+    manual="Arrays in and out by `mrmeshnumpy`; `orgRing` and `leftRing` of the topology around "
+    "one element. Whole tasks are single calls, and its answer to most questions.",
+    more="Offsets, Boolean operations, distances, registration, hole filling, point clouds and "
+    "voxels, on many threads and partly on graphics processors. Free for research only.",
+    build=_build,
+    faces=lambda m: int(m.topology.numValidFaces()),
+    ends=_ends,
+    handles=_handles,
+    single={
+        "vertex_vertices": _around("orgRing", "dest"),
+        "vertex_edges": _around("orgRing", "undirected"),
+        "vertex_faces": _around("orgRing", "left"),
+        "edge_vertices": _both("org", "dest"),
+        "edge_faces": _both("left", "right"),
+        "face_vertices": _around("leftRing", "org"),
+        "face_edges": _around("leftRing", "undirected"),
+        "face_faces": _around("leftRing", "right"),
+    },
+    bulk={"face_vertices": _corners},
+    operations={
+        "split_edge": partial(_split, "edge"),
+        "split_face": partial(_split, "face"),
+        "collapse_edge": _collapse,
+        "flip_edge": _flip,
+    },
+    algorithms={"vertex_normals": _normals, "smooth": _smooth, "simplify": _simplify},
+)

@@ -1,0 +1,68 @@
+"""Open3D: its half-edge mesh, made of its mesh of triangles."""
+
+from collections.abc import Callable
+from operator import attrgetter
+from typing import Any
+
+import numpy as np
+
+from experiments.peers.peer import Mesh, Peer, Rows
+from hem.arrays import Array
+
+
+def _build(points: Array, triangles: Array) -> Mesh:
+    from open3d import geometry, utility
+
+    given = utility.Vector3dVector(points), utility.Vector3iVector(triangles)
+    return geometry.HalfEdgeTriangleMesh.create_from_triangle_mesh(geometry.TriangleMesh(*given))
+
+
+def _flat(m: Mesh) -> Any:
+    """The mesh of triangles, which most of its methods are about."""
+    from open3d.geometry import TriangleMesh
+
+    return TriangleMesh(m.vertices, m.triangles)
+
+
+def _around(read: Callable[[Any], int]) -> Callable[[Mesh], Callable[[int], list[int]]]:
+    """What reads each half-edge that leaves a vertex; the lists are asked for once."""
+
+    def bind(m: Mesh) -> Callable[[int], list[int]]:
+        half_edges, leaving = m.half_edges, m.ordered_half_edge_from_vertex
+        return lambda vertex: [read(half_edges[it]) for it in leaving[vertex]]
+
+    return bind
+
+
+def _neighbors(m: Mesh) -> Rows:
+    flat = _flat(m)
+    flat.compute_adjacency_list()
+    return flat.adjacency_list
+
+
+def _normals(m: Mesh) -> Array:
+    return np.asarray(_flat(m).compute_vertex_normals().vertex_normals)
+
+
+PEER = Peer(
+    title="Open3D",
+    distribution="open3d",
+    module="open3d",
+    manual="`half_edges` and `ordered_half_edge_from_vertex` as lists, `adjacency_list` once it "
+    "was computed; what changes a mesh makes another one of triangles.",
+    more="Point clouds, registration, reconstruction from depth images, voxels, drawing, learning; "
+    "the half-edge mesh is a small part of it.",
+    build=_build,
+    faces=lambda m: len(m.triangles),
+    single={
+        "vertex_vertices": _around(lambda it: it.vertex_indices[1]),
+        "vertex_faces": _around(attrgetter("triangle_index")),
+        "face_vertices": lambda m: m.triangles.__getitem__,
+    },
+    bulk={"vertex_vertices": _neighbors},
+    algorithms={
+        "vertex_normals": _normals,
+        "smooth": lambda m: _flat(m).filter_smooth_laplacian(1, 1.0),
+        "simplify": lambda m, faces: len(_flat(m).simplify_quadric_decimation(faces).triangles),
+    },
+)

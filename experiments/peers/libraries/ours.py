@@ -1,0 +1,136 @@
+"""Our own half-edge mesh, asked as the libraries are: through calls of Python."""
+
+from collections.abc import Callable
+from functools import partial
+from operator import attrgetter, methodcaller
+from typing import Any
+
+import numba
+import numpy as np
+
+import hem
+import structures
+from experiments.harness import time_rounds
+from experiments.peers.peer import SIX, Mesh, Peer, Rows
+from hem import algorithms
+from hem.arrays import Array
+from hem.contract import QUERIES
+
+STRUCTURE = "half_edge"
+"""Most of the libraries hold half-edges, too."""
+
+
+def _build(points: Array, triangles: Array) -> Mesh:
+    return structures.build(STRUCTURE, hem.TriangleMesh(points, triangles))
+
+
+def _handles(m: Mesh, element: str, numbers: list[int]) -> list[int]:
+    """An edge is named by one of its half-edges."""
+    return m.edges()[numbers].tolist() if element == "edge" else numbers
+
+
+def _ends_of(m: Mesh, edges: Array) -> Array:
+    return m.edge_vertices(edges).values.reshape(-1, 2)
+
+
+def _ask_all(query: str, m: Mesh) -> Rows:
+    answer = getattr(m, query)()
+    return answer.values, answer.offsets
+
+
+def _one_by_one(operation: str, m: Mesh, numbers: list[int], places: Array) -> int:
+    operate, done = getattr(m, operation), 0
+    handles = _handles(m, operation.split("_")[1], numbers)
+    rows: Any = zip(handles, *([places] if operation in SPLIT else []), strict=True)
+    for row in rows:
+        try:
+            operate(*row)
+        except hem.TopologyError:
+            continue
+        done += 1
+    return done
+
+
+def _make_room(m: Mesh, many: int) -> None:
+    m.reserve(many)
+    m.split_face(0, m.points[0])  # compiles, and has the operations ready
+
+
+def _all_at_once(operation: str, m: Mesh, numbers: list[int], places: Array) -> int:
+    handles = _handles(m, operation.split("_")[1], numbers)
+    operate = getattr(m, f"{operation}s")
+    if operation in SPLIT:
+        return len(operate(handles, places))
+    return int(operate(handles).sum())
+
+
+def _simplify(m: Mesh, faces: int) -> int:
+    algorithms.simplify(m, faces=faces)
+    return int(m.n_faces)
+
+
+def _looped(
+    points: Array, triangles: Array, few: int = 0, rounds: int = 0, whole: int = 0
+) -> dict[str, Any]:
+    """What compiled loops take on one thread, as ``program.cpp`` tells it of others."""
+    threads = numba.get_num_threads()
+    numba.set_num_threads(1)
+    try:
+        return {"times": _times(_build(points, triangles), few, rounds, whole), "answers": {}}
+    finally:
+        numba.set_num_threads(threads)
+
+
+def _times(s: Mesh, few: int, rounds: int, whole: int) -> dict[str, list[float]]:
+    times = {}
+    for query, it in QUERIES.items():
+        handles = np.random.default_rng(7).permutation(_at(s, it.source, few))[:ASKED]
+        sweep = s.prepare_sweep(query, handles)
+        times[query] = [took / len(handles) for took in _rounds(sweep.run, tuple, rounds)]
+    for name, algorithm in algorithms.SIX.items() if whole else ():
+        times[name] = _rounds(algorithm, lambda: (s.copy(),), whole)
+    return times
+
+
+def _at(s: Mesh, source: str, few: int) -> Array:
+    """The vertices below ``few`` and the edges and faces at them, or all."""
+    every = s.handles(source)
+    if not few or source == "vertex":
+        return every[:few] if few else every
+    corners = getattr(s, f"{source}_vertices")(every).values.reshape(len(every), -1)
+    return every[(corners < few).any(axis=1)]
+
+
+def _rounds(
+    call: Callable[..., Any], setup: Callable[[], tuple[Any, ...]], many: int
+) -> list[float]:
+    return time_rounds(call, setup=setup, rounds=many).samples.tolist()
+
+
+ASKED = 20_000
+"""Elements in a round of a compiled loop, as in ``program.cpp``."""
+SPLIT = "split_edge", "split_face"
+PEER = Peer(
+    title="Half-edge (ours)",
+    distribution="hem-mesh",
+    module="hem",
+    manual="A call with one handle, or with all: the same method.",
+    more="",
+    build=_build,
+    faces=attrgetter("n_faces"),
+    ends=methodcaller("edge_array"),
+    handles=_handles,
+    named=_ends_of,
+    single={query: attrgetter(query) for query in QUERIES},
+    bulk={query: partial(_ask_all, query) for query in QUERIES},
+    operations={it: partial(_one_by_one, it) for it in (*SPLIT, "collapse_edge", "flip_edge")},
+    batches={it: partial(_all_at_once, it) for it in (*SPLIT, "collapse_edge")},
+    make_room=_make_room,
+    algorithms={
+        "vertex_normals": algorithms.vertex_normals,
+        "smooth": algorithms.smooth,
+        "simplify": _simplify,
+    },
+    looped=_looped,
+    loops=(*QUERIES, *SIX),
+)

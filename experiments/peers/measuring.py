@@ -1,0 +1,271 @@
+"""How a library is measured: asked, operated on, built, and given whole meshes."""
+
+import signal
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import replace
+from functools import lru_cache
+from itertools import count
+from time import perf_counter
+from typing import Any, NamedTuple
+
+import numpy as np
+import psutil
+
+import hem
+import structures
+from experiments.harness import BASE, Case, Preset, Timer, operation_faces
+from experiments.harness.calibration import latency_now
+from experiments.harness.oracle import CheckFailedError, pack
+from experiments.peers.checks import check_rows, check_told, row
+from experiments.peers.peer import Peer
+from experiments.peers.registry import PEERS
+from hem.algorithms import vertex_normals
+from hem.arrays import Array
+
+CHECKED = 3
+SEED = 23
+MOST_HANDLES = 20_000
+FACES_MORE = {"split_edge": 2, "split_face": 2, "collapse_edge": -2, "flip_edge": 0}
+"""What an operation does to the number of faces of a closed mesh."""
+COSINE = 0.9
+"""Of the angle between normals, at least: libraries weight faces differently."""
+PART = 10
+"""Simplified to one face of so many."""
+
+Fields = dict[str, Any]
+
+
+class Built(NamedTuple):
+    """A library's mesh, with the bytes that its process grew by, and the vertices of its edges."""
+
+    mesh: Any
+    working_set: int
+    ends: Array
+
+
+def _given(case: Case) -> tuple[Array, Array]:
+    """Positions and triangles, as libraries take them."""
+    mesh = case.mesh()
+    return mesh.points.astype(np.float64), mesh.triangles.astype(np.int32)
+
+
+@lru_cache(maxsize=1)
+def _built(case: Case) -> Built:
+    peer, process, given = PEERS[case.structure], psutil.Process(), _given(case)
+    before = process.memory_info().rss
+    m = peer.build(*given)
+    grown = max(process.memory_info().rss - before, given[0].nbytes + given[1].nbytes)
+    ends = np.asarray(peer.ends(m)) if peer.ends else np.zeros((0, 2), np.int64)
+    return Built(m, grown, ends)
+
+
+def _numbers(case: Case, source: str, ends: Array) -> Array:
+    """The elements that a case asks, at random; where the valence varies those at hubs."""
+    rows = {
+        "vertex": np.arange(len(case.mesh().points))[:, None],
+        "edge": ends,
+        "face": case.mesh().triangles,
+    }[source]
+    numbers = np.random.default_rng(SEED).permutation(len(rows))
+    if case.valence is not None:
+        hubs = len(hem.valence_hubs(case.valence, case.size))
+        numbers = numbers[(rows[numbers] < hubs).any(axis=1)]
+    return numbers[:MOST_HANDLES]
+
+
+def _check(case: Case, built: Built, numbers: Array, answers: list[Any]) -> None:
+    """Compare what was answered at some elements with the triangle list."""
+    peer, keys = PEERS[case.structure], numbers
+    if case.query.source == "edge":
+        keys = built.ends[numbers]
+
+    def named(edges: Array) -> Array:
+        return peer.named(built.mesh, edges) if peer.named else built.ends[edges]
+
+    check_rows(peer.title, case.query, case.mesh().triangles, keys, answers, named)
+
+
+@contextmanager
+def _at_most(seconds: float) -> Iterator[list[bool]]:
+    """Have what runs in Python end after so long -> a list that is emptied where it was."""
+    in_time = [True]
+    if not hasattr(signal, "setitimer"):  # on Windows it ends when it ends
+        yield in_time
+        return
+
+    def ring(*_: Any) -> None:
+        raise TimeoutError
+
+    before = signal.signal(signal.SIGALRM, ring)
+    signal.setitimer(signal.ITIMER_REAL, seconds)
+    try:
+        yield in_time
+    except TimeoutError:
+        in_time.clear()
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, before)
+
+
+def time_single(case: Case, preset: Preset, timer: Timer) -> Fields:
+    """Ask one element after the other, other ones every round, until all were asked."""
+    peer, query, built = (
+        PEERS[case.structure],
+        case.query,
+        _built(replace(case, subject=None, order=None)),
+    )
+    numbers = _numbers(case, query.source, built.ends)
+    handles = list(peer.handles(built.mesh, query.source, numbers.tolist()))
+    ask = peer.single[query.name](built.mesh)
+    begin = perf_counter()
+    with _at_most(preset.case_seconds) as in_time:
+        ask(handles[0])
+    if not in_time or perf_counter() - begin > preset.case_seconds / preset.fewest_rounds:
+        reason = f"one query takes too long for the {preset.case_seconds} s of a case"
+        return {"skipped": reason}
+    _check(case, built, numbers[:CHECKED], [ask(it) for it in handles[:CHECKED]])
+    begin = perf_counter()
+    for handle in handles[:CHECKED]:
+        ask(handle)
+    seconds = (perf_counter() - begin) / CHECKED
+    many = int(np.clip(preset.round_seconds / seconds, 1, len(handles)))
+    windows = (np.arange(many) + many * k for k in count())
+
+    def some() -> tuple[list[Any]]:
+        return ([handles[it] for it in (next(windows) % len(handles)).tolist()],)
+
+    def ask_each(chosen: list[Any]) -> None:
+        for handle in chosen:
+            ask(handle)
+
+    if seconds * len(handles) < preset.case_seconds:
+        ask_each(handles)
+    rounds = preset.affordable_rounds(seconds * many)
+    return timer(ask_each, setup=some, rounds=rounds, per=many).fields
+
+
+def time_bulk(case: Case, preset: Preset, timer: Timer) -> Fields:
+    """Ask of all elements at once -> seconds per element."""
+    peer, query, built = (
+        PEERS[case.structure],
+        case.query,
+        _built(replace(case, subject=None, order=None)),
+    )
+    ask = peer.bulk[query.name]
+    begin = perf_counter()
+    rows = ask(peer.fresh(built.mesh))
+    seconds = perf_counter() - begin
+    few = _numbers(case, query.source, built.ends)[:CHECKED]
+    _check(case, built, few, [row(rows, it) for it in few.tolist()])
+    mesh = case.mesh()
+    many = {"vertex": len(mesh.points), "edge": len(built.ends), "face": len(mesh.triangles)}
+    kept: list[Any] = []  # so that freeing is not timed
+
+    def ready() -> tuple[Any]:
+        kept.clear()
+        return (peer.fresh(built.mesh),)
+
+    return timer(
+        lambda m: kept.append(ask(m)),
+        setup=ready,
+        rounds=preset.affordable_rounds(seconds),
+        per=many[query.source],
+    ).fields
+
+
+def time_building(case: Case, preset: Preset, timer: Timer) -> Fields:
+    """Build from arrays."""
+    peer, given = PEERS[case.structure], _given(case)
+    begin = perf_counter()
+    m = peer.build(*given)
+    seconds = perf_counter() - begin
+    _require(peer, peer.faces(m) == len(given[1]), f"{peer.faces(m)} faces of {len(given[1])}")
+    rounds = preset.affordable_rounds(seconds)
+    return timer(peer.build, setup=lambda: given, rounds=rounds).fields
+
+
+def _apart(case: Case) -> Array:
+    """Elements to operate on, the same for all libraries, see ``operation_faces``."""
+    faces = operation_faces(case)
+    if str(case.subject).endswith("face"):
+        return faces
+    ends = pack(_built(replace(case, subject=None, order=None)).ends)
+    order = np.argsort(ends)
+    wanted = pack(case.mesh().triangles[faces][:, :2])
+    return order[np.searchsorted(ends, wanted, sorter=order)]
+
+
+def time_operations(case: Case, preset: Preset, timer: Timer, batched: bool) -> Fields:
+    """Operate on elements far apart, of a new mesh every round -> seconds per operation."""
+    peer, operation, given = PEERS[case.structure], str(case.subject), _given(case)
+    operate = (peer.batches if batched else peer.operations)[operation]
+    numbers = _apart(case).tolist()
+    places = np.random.default_rng(SEED).random((len(numbers), 3))
+
+    def ready() -> tuple[Any, ...]:
+        m = peer.build(*given)
+        if peer.make_room:
+            peer.make_room(m, len(numbers))
+        return m, numbers, places
+
+    m, *_ = ready()
+    before = peer.faces(m)
+    begin = perf_counter()
+    done = operate(m, numbers, places)
+    seconds = perf_counter() - begin
+    faces = before + FACES_MORE[operation] * len(numbers)
+    left = peer.faces(m)
+    _require(peer, (done, left) == (len(numbers), faces), f"{done} × {operation}, {left} faces")
+    rounds = preset.affordable_rounds(seconds)
+    return timer(operate, setup=ready, rounds=rounds, per=done).fields
+
+
+def time_algorithm(case: Case, preset: Preset, timer: Timer) -> Fields:
+    """Give an algorithm a whole mesh, a new one every round -> seconds."""
+    peer, name, given = PEERS[case.structure], str(case.subject), _given(case)
+    more = [len(given[1]) // PART] if name == "simplify" else []
+
+    def ready() -> tuple[Any, ...]:
+        return peer.build(*given), *more
+
+    begin = perf_counter()
+    found = peer.algorithms[name](*ready())
+    seconds = perf_counter() - begin
+    if name == "simplify":
+        _require(peer, abs(found - more[0]) <= more[0] / PART, f"{found} faces for {more[0]}")
+    elif name == "vertex_normals":
+        ours = vertex_normals(structures.build(BASE, case.mesh()))
+        cosine = (np.asarray(found) * ours).sum(axis=1).min()
+        _require(peer, cosine > COSINE, f"normals are turned by {np.arccos(cosine):.2f}")
+    rounds = preset.affordable_rounds(seconds)
+    return timer(peer.algorithms[name], setup=ready, rounds=rounds).fields
+
+
+@lru_cache(maxsize=2)
+def _looped(case: Case, rounds: int, whole: int) -> dict[str, list[float]]:
+    """What compiled loops took on a mesh, by subject, once some answers were checked."""
+    peer, given = PEERS[case.structure], _given(case)
+    assert peer.looped is not None  # or there is no such case
+    few = 0 if case.valence is None else len(hem.valence_hubs(case.valence, case.size))
+    told = peer.looped(*given, few, rounds, whole)
+    check_told(peer.title, given[1], told["answers"])
+    return dict(told["times"])
+
+
+def read_looped(case: Case, preset: Preset) -> Fields:
+    """Times that a program took of itself."""
+    whole = 0 if case.valence else preset.fewest_rounds
+    samples = _looped(replace(case, subject=None, order=None), preset.rounds, whole)
+    return {"samples": samples[str(case.subject)], "handles": 1, "checked": True}
+
+
+def _require(peer: Peer, holds: bool, otherwise: str) -> None:
+    if not holds:
+        raise CheckFailedError(f"{peer.title}: {otherwise}")
+
+
+def beside(case: Case) -> Fields:
+    """What a case works on, and the memory's latency there."""
+    working_set = _built(replace(case, subject=None, order=None)).working_set
+    return {"working_set": working_set, "latency": latency_now(working_set)}

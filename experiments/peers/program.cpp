@@ -1,0 +1,303 @@
+// CGAL's Surface_mesh and OpenMesh in C++, used as their manuals have it, in float32: queries in a loop, and the six
+// algorithms of Sieger & Botsch (2011, section 4) as in hem/algorithms/sieger_botsch.py, written once over what the two
+// libraries have in common.
+// Arguments: the library, a file of points (float32, 3 each), one of triangles (int32, 3 each), a number of vertices to
+// ask at (0 for all), the rounds of queries, and those of building and of the algorithms.
+// Prints a JSON object: "times": subject -> seconds each round, per query or as a whole; "answers": query -> what was
+// asked and answered of a few elements; "faces", "bytes", and "collapsed", whether the first edge may be, with the faces "left".
+#include <CGAL/Simple_cartesian.h>
+#include <CGAL/Surface_mesh.h>
+#include <CGAL/boost/graph/Euler_operations.h>
+#include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <random>
+#include <string>
+#include <unistd.h>
+#include <vector>
+
+using P = OpenMesh::Vec3f;
+std::vector<P> points;
+std::vector<int> corners;
+const int asked = 20000, checked = 3;
+
+struct Cgal {
+  using Point = CGAL::Simple_cartesian<float>::Point_3;
+  using M = CGAL::Surface_mesh<Point>;
+  using V = M::Vertex_index;
+  using F = M::Face_index;
+  using E = M::Edge_index;
+  M m;
+  void reserve(size_t nv, size_t ne, size_t nf) { m.reserve(nv, ne, nf); }
+  V add(P p) { return m.add_vertex(Point(p[0], p[1], p[2])); }
+  void add(V a, V b, V c) { m.add_face(a, b, c); }
+  size_t vertices() { return m.number_of_vertices(); }
+  size_t edges() { return m.number_of_edges(); }
+  size_t faces() { return m.number_of_faces(); }
+  P at(V v) { const Point &p = m.point(v); return P(p.x(), p.y(), p.z()); }
+  void move(V v, P p) { m.point(v) = Point(p[0], p[1], p[2]); }
+  bool on_border(V v) { return m.is_border(v); }
+  template <class Visit> void around(V v, Visit visit) { for (auto w : m.vertices_around_target(m.halfedge(v))) visit(w); }
+  template <class Visit> void faces_at(V v, Visit visit) { for (auto f : m.faces_around_target(m.halfedge(v))) if (f != M::null_face()) visit(f); }
+  template <class Visit> void corners_of(F f, Visit visit) { for (auto v : m.vertices_around_face(m.halfedge(f))) visit(v); }
+  template <class Visit> void edges_at(V v, Visit visit) { for (auto h : m.halfedges_around_target(m.halfedge(v))) visit(m.edge(h)); }
+  template <class Visit> void edges_of(F f, Visit visit) { for (auto h : m.halfedges_around_face(m.halfedge(f))) visit(m.edge(h)); }
+  template <class Visit> void beside(F f, Visit visit) { for (auto h : m.halfedges_around_face(m.halfedge(f))) if (auto g = m.face(m.opposite(h)); g != M::null_face()) visit(g); }
+  template <class Visit> void ends(E e, Visit visit) { visit(m.vertex(e, 0)); visit(m.vertex(e, 1)); }
+  template <class Visit> void sides(E e, Visit visit) { for (int i : {0, 1}) if (auto f = m.face(m.halfedge(e, i)); f != M::null_face()) visit(f); }
+  bool collapse_first() { E e(0); bool may = CGAL::Euler::does_satisfy_link_condition(e, m); if (may) CGAL::Euler::collapse_edge(e, m); return may; }
+  void split(F f, P p) { move(m.target(CGAL::Euler::add_center_vertex(m.halfedge(f), m)), p); }
+  void flip(int i) { E e(i); if (!m.is_border(e)) CGAL::Euler::flip_edge(m.halfedge(e), m); }
+  void collapse(V v) { auto e = m.edge(m.halfedge(v)); if (CGAL::Euler::does_satisfy_link_condition(e, m)) CGAL::Euler::collapse_edge(e, m); }
+  void compact() { m.collect_garbage(); }
+};
+
+struct Open {
+  using M = OpenMesh::TriMesh_ArrayKernelT<>;
+  using V = M::VertexHandle;
+  using F = M::FaceHandle;
+  using E = M::EdgeHandle;
+  M m;
+  Open() { m.request_vertex_status(); m.request_edge_status(); m.request_halfedge_status(); m.request_face_status(); }
+  void reserve(size_t nv, size_t ne, size_t nf) { m.reserve(nv, ne, nf); }
+  V add(P p) { return m.add_vertex(p); }
+  void add(V a, V b, V c) { m.add_face(a, b, c); }
+  size_t vertices() { return m.n_vertices(); }
+  size_t edges() { return m.n_edges(); }
+  size_t faces() { return m.n_faces(); }
+  P at(V v) { return m.point(v); }
+  void move(V v, P p) { m.set_point(v, p); }
+  bool on_border(V v) { return m.is_boundary(v); }
+  template <class Visit> void around(V v, Visit visit) { for (auto w : m.vv_range(v)) visit(w); }
+  template <class Visit> void faces_at(V v, Visit visit) { for (auto f : m.vf_range(v)) visit(f); }
+  template <class Visit> void corners_of(F f, Visit visit) { for (auto v : m.fv_range(f)) visit(v); }
+  template <class Visit> void edges_at(V v, Visit visit) { for (E e : m.ve_range(v)) visit(e); }
+  template <class Visit> void edges_of(F f, Visit visit) { for (E e : m.fe_range(f)) visit(e); }
+  template <class Visit> void beside(F f, Visit visit) { for (auto g : m.ff_range(f)) visit(g); }
+  template <class Visit> void ends(E e, Visit visit) { for (int i : {0, 1}) visit(m.to_vertex_handle(m.halfedge_handle(e, i))); }
+  template <class Visit> void sides(E e, Visit visit) { for (int i : {0, 1}) if (auto f = m.face_handle(m.halfedge_handle(e, i)); f.is_valid()) visit(f); }
+  bool collapse_first() { auto h = m.halfedge_handle(E(0), 0); bool may = m.is_collapse_ok(h); if (may) m.collapse(h); return may; }
+  void split(F f, P p) { m.split(f, m.add_vertex(p)); }
+  void flip(int i) { E e(i); if (!m.is_boundary(e)) m.flip(e); }
+  void collapse(V v) { auto h = m.halfedge_handle(v); if (m.is_collapse_ok(h)) m.collapse(h); }
+  void compact() { m.garbage_collection(); }
+};
+
+int number(Cgal::V v) { return int(v); }
+int number(Cgal::E e) { return int(e); }
+int number(Cgal::F f) { return int(f); }
+int number(OpenMesh::BaseHandle h) { return h.idx(); }
+
+double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+// Bytes of the process that it shares with no other.
+size_t own_bytes() {
+  size_t size, resident, shared;
+  std::ifstream("/proc/self/statm") >> size >> resident >> shared;
+  return (resident - shared) * sysconf(_SC_PAGESIZE);
+}
+
+bool first = true;
+void name(const std::string &text) {
+  std::printf("%s\"%s\": ", first ? "" : ", ", text.c_str());
+  first = false;
+}
+void list(const char *format, const std::vector<double> &values) {
+  std::printf("[");
+  for (size_t i = 0; i < values.size(); i++) std::printf("%s", i ? ", " : ""), std::printf(format, values[i]);
+  std::printf("]");
+}
+
+template <class L> struct Measured {
+  using V = typename L::V;
+  using F = typename L::F;
+  using E = typename L::E;
+
+  static L build() {
+    L s;
+    s.reserve(points.size(), corners.size() / 2, corners.size() / 3);
+    for (P p : points) s.add(p);
+    for (size_t i = 0; i < corners.size(); i += 3) s.add(V(corners[i]), V(corners[i + 1]), V(corners[i + 2]));
+    return s;
+  }
+  static P middle(L &s, F f) {
+    P sum(0, 0, 0);
+    s.corners_of(f, [&](V v) { sum += s.at(v); });
+    return sum / 3.f;
+  }
+  template <class Part> static std::vector<P> averages(L &s, Part part) {
+    std::vector<P> found(s.vertices());
+    for (size_t i = 0; i < found.size(); i++) {
+      V v(i);
+      P sum(0, 0, 0);
+      int n = 0;
+      if (!s.on_border(v)) s.around(v, [&](V w) { sum += s.at(w); n++; });
+      found[i] = n ? s.at(v) + (sum / float(n) - s.at(v)) * part(n) : s.at(v);
+    }
+    return found;
+  }
+  static void move(L &s, const std::vector<P> &places) {
+    for (size_t i = 0; i < places.size(); i++) s.move(V(i), places[i]);
+  }
+  static void split_all(L &s) {
+    size_t nv = s.vertices(), ne = s.edges(), nf = s.faces();
+    s.reserve(nv + nf, ne + 3 * nf, 3 * nf);
+    for (size_t i = 0; i < nf; i++) s.split(F(i), middle(s, F(i)));
+  }
+
+  static long circulator(L &s) {
+    long count = 0;
+    for (size_t i = 0; i < s.vertices(); i++) s.around(V(i), [&](V w) { count += w != V(i); });
+    for (size_t i = 0; i < s.faces(); i++) s.corners_of(F(i), [&](V v) { count += v.idx() >= 0; });
+    return count;
+  }
+  static long barycenter(L &s) {
+    P sum(0, 0, 0);
+    for (size_t i = 0; i < s.faces(); i++) s.corners_of(F(i), [&](V v) { sum += s.at(v); });
+    sum /= 3.f * s.faces();
+    for (size_t i = 0; i < s.vertices(); i++) s.move(V(i), s.at(V(i)) - sum);
+    return s.faces();
+  }
+  static long normals(L &s) {
+    std::vector<P> of_faces(s.faces()), found(s.vertices());
+    for (size_t i = 0; i < of_faces.size(); i++) {
+      P at[3];
+      int n = 0;
+      s.corners_of(F(i), [&](V v) { at[n++] = s.at(v); });
+      of_faces[i] = (at[1] - at[0]) % (at[2] - at[0]);
+    }
+    for (size_t i = 0; i < found.size(); i++) {
+      P sum(0, 0, 0);
+      s.faces_at(V(i), [&](F f) { sum += of_faces[f.idx()]; });
+      found[i] = sum / sum.norm();
+    }
+    return found.back() == found.back() ? found.size() : 1;
+  }
+  static long smoothing(L &s) {
+    move(s, averages(s, [](int) { return 1.f; }));
+    return s.vertices();
+  }
+  static long subdivision(L &s) {
+    size_t edges = s.edges();
+    auto places = averages(s, [](int n) { return (4 - 2 * std::cos(2 * float(M_PI) / n)) / 9; });
+    split_all(s);
+    for (size_t i = 0; i < edges; i++) s.flip(i);
+    move(s, places);
+    return s.faces();
+  }
+  static long collapse(L &s) {
+    size_t old = s.vertices();
+    split_all(s);
+    for (size_t i = old, end = s.vertices(); i < end; i++) s.collapse(V(i));
+    s.compact();
+    return s.faces();
+  }
+
+  // Edges as their two vertices.
+  static void key(L &s, E e, std::vector<double> &into) { s.ends(e, [&](V v) { into.push_back(number(v)); }); }
+  template <class H> static void key(L &, H h, std::vector<double> &into) { into.push_back(number(h)); }
+
+  // Ask some elements in random order, round by round; answers are summed, as a caller would use them.
+  template <class H, class Ask> static void query(L &s, const char *title, const std::vector<int> &chosen, int rounds, bool check, Ask ask) {
+    name(title);
+    if (check) {
+      std::printf("[");
+      for (int i = 0; i < checked && i < int(chosen.size()); i++) {
+        std::vector<double> of, found;
+        key(s, H(chosen[i]), of);
+        ask(H(chosen[i]), [&](auto h) { key(s, h, found); });
+        std::printf(i ? ", [" : "[");
+        list("%.0f", of);
+        std::printf(", ");
+        list("%.0f", found);
+        std::printf("]");
+      }
+      std::printf("]");
+      return;
+    }
+    std::vector<double> seconds;
+    for (int round = -1; round < rounds; round++) {
+      long sum = 0;
+      double begin = now();
+      for (int i : chosen) ask(H(i), [&](auto h) { sum += number(h); });
+      if (round >= 0) seconds.push_back((now() - begin) / chosen.size() + (sum == -1));
+    }
+    list("%.9g", seconds);
+  }
+
+  // All queries: answers to check, or times. Of the vertices below `few` and what is at them, or of all.
+  static void queries(L &s, int few, int rounds, bool check) {
+    std::vector<int> vertices, edges, faces;
+    for (size_t i = 0; i < s.vertices(); i++) if (!few || int(i) < few) vertices.push_back(i);
+    for (size_t i = 0; i < s.edges(); i++) {
+      bool at = !few;
+      s.ends(E(i), [&](V v) { at = at || number(v) < few; });
+      if (at) edges.push_back(i);
+    }
+    for (size_t i = 0; i < s.faces(); i++) {
+      bool at = !few;
+      s.corners_of(F(i), [&](V v) { at = at || number(v) < few; });
+      if (at) faces.push_back(i);
+    }
+    for (auto *chosen : {&vertices, &edges, &faces}) {
+      std::shuffle(chosen->begin(), chosen->end(), std::mt19937(7));
+      if (chosen->size() > asked) chosen->resize(asked);
+    }
+    first = true;
+    query<V>(s, "vertex_vertices", vertices, rounds, check, [&](V v, auto visit) { s.around(v, visit); });
+    query<V>(s, "vertex_edges", vertices, rounds, check, [&](V v, auto visit) { s.edges_at(v, visit); });
+    query<V>(s, "vertex_faces", vertices, rounds, check, [&](V v, auto visit) { s.faces_at(v, visit); });
+    query<E>(s, "edge_vertices", edges, rounds, check, [&](E e, auto visit) { s.ends(e, visit); });
+    query<E>(s, "edge_faces", edges, rounds, check, [&](E e, auto visit) { s.sides(e, visit); });
+    query<F>(s, "face_vertices", faces, rounds, check, [&](F f, auto visit) { s.corners_of(f, visit); });
+    query<F>(s, "face_edges", faces, rounds, check, [&](F f, auto visit) { s.edges_of(f, visit); });
+    query<F>(s, "face_faces", faces, rounds, check, [&](F f, auto visit) { s.beside(f, visit); });
+  }
+
+  static void run(int few, int rounds, int whole) {
+    size_t before = own_bytes();
+    L s = build();
+    size_t bytes = own_bytes() - before, faces = s.faces();
+    std::printf("{\"bytes\": %zu, \"faces\": %zu, \"answers\": {", bytes, faces);
+    if (rounds) queries(s, few, rounds, true);
+    std::printf("}, \"times\": {");
+    if (rounds) queries(s, few, rounds, false);
+    struct { const char *title; long (*call)(L &); } six[] = {{"build", nullptr}, {"circulator", circulator}, {"barycenter", barycenter}, {"normals", normals}, {"smoothing", smoothing}, {"subdivision", subdivision}, {"collapse", collapse}};
+    for (auto &it : six) {
+      if (!whole) break;
+      std::vector<double> seconds;
+      for (int round = -1; round < whole; round++) {
+        double begin = now();
+        L fresh = build();
+        if (it.call) {
+          begin = now();
+          if (!it.call(fresh)) std::exit(1);
+        }
+        if (round >= 0) seconds.push_back(now() - begin);
+      }
+      name(it.title);
+      list("%.9g", seconds);
+    }
+    bool collapsed = !rounds && s.edges() && s.collapse_first();
+    s.compact();
+    std::printf("}, \"collapsed\": %s, \"left\": %zu}\n", collapsed ? "true" : "false", s.faces());
+  }
+};
+
+template <class T> void load(const char *name, std::vector<T> &into) {
+  std::ifstream file(name, std::ios::binary | std::ios::ate);
+  into.resize(file.tellg() / sizeof(T));
+  file.seekg(0);
+  file.read((char *)into.data(), into.size() * sizeof(T));
+}
+
+int main(int, char **arguments) {
+  load(arguments[2], points);
+  load(arguments[3], corners);
+  auto run = std::string(arguments[1]) == "CGAL" ? Measured<Cgal>::run : Measured<Open>::run;
+  run(std::atoi(arguments[4]), std::atoi(arguments[5]), std::atoi(arguments[6]));
+}

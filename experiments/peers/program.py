@@ -1,0 +1,99 @@
+"""Libraries in C++: one program, compiled where Debian's packages are, that measures itself.
+
+It is timed inside, in loops of its own; Python gives it a mesh, and reads what it tells.
+"""
+
+import hashlib
+import json
+import re
+import shutil
+import subprocess
+from collections.abc import Callable
+from functools import lru_cache, partial
+from operator import itemgetter
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+import numpy as np
+
+from experiments.peers.peer import BUILD, SIX, Mesh, Peer
+from hem.arrays import Array
+from hem.contract import QUERIES
+from hem.sources.cache import cache_folder
+
+SOURCE = Path(__file__).with_name("program.cpp")
+COMPILER = "g++"
+OPTIONS = ("-std=c++17", "-O3", "-DNDEBUG", "-march=native")
+HEADERS = Path("/usr/include")
+LOOPS = (*(it for it in QUERIES if it != "edge_edges"), *SIX, BUILD)
+"""Neither library walks from an edge to those at its ends."""
+
+
+@lru_cache(maxsize=1)
+def compiled() -> Path:
+    """The program; it takes half a minute to compile, and is kept. Raises OSError with the words of
+    the compiler.
+    """
+    known = SOURCE.read_bytes() + " ".join(OPTIONS).encode()
+    program = cache_folder() / f"peers-{hashlib.blake2b(known, digest_size=8).hexdigest()}"
+    if not program.exists():
+        program.parent.mkdir(parents=True, exist_ok=True)
+        fresh = program.with_suffix(".new")
+        command = [COMPILER, *OPTIONS, str(SOURCE), "-o", str(fresh), "-lOpenMeshCore"]
+        done = subprocess.run(command, capture_output=True, text=True)
+        if done.returncode:
+            raise OSError(f"{SOURCE} cannot be compiled here:\n{done.stderr}")
+        fresh.replace(program)
+    return program
+
+
+def tell(
+    library: str, points: Array, triangles: Array, few: int = 0, rounds: int = 0, whole: int = 0
+) -> dict[str, Any]:
+    """What the program tells of a mesh, see ``program.cpp``; raises OSError where it ends."""
+    with TemporaryDirectory() as folder:
+        files = [Path(folder) / name for name in ("points", "triangles")]
+        points.astype(np.float32).tofile(files[0])
+        triangles.astype(np.int32).tofile(files[1])
+        command = [*map(str, (compiled(), library, *files, few, rounds, whole))]
+        done = subprocess.run(command, capture_output=True, text=True)
+    if done.returncode:
+        raise OSError(f"ends with {done.returncode}: {done.stderr.strip()}")
+    return dict(json.loads(done.stdout.splitlines()[-1]))
+
+
+def header_version(header: str, pattern: str) -> str:
+    """The version that a header names; empty where it or a compiler is not installed."""
+    path = HEADERS / header
+    found = re.search(pattern, path.read_text(errors="replace")) if path.exists() else None
+    if found is None or not shutil.which(COMPILER):
+        return ""
+    return found[1] if "." in found[1] else ".".join(f"{int(found[1], 16) >> 8:x}")
+
+
+def peer(library: str, package: str, version: Callable[[], str], manual: str, more: str) -> Peer:
+    """A library of the program."""
+    return Peer(
+        title=f"{library} (C++)",
+        distribution=package,
+        module="",
+        manual=manual,
+        more=more,
+        build=partial(tell, library),
+        faces=itemgetter("faces"),
+        weigh=_weigh,
+        collapse=_collapsed,
+        looped=partial(tell, library),
+        loops=LOOPS,
+        told_version=version,
+    )
+
+
+def _weigh(m: Mesh) -> int:
+    return int(m["bytes"])
+
+
+def _collapsed(m: Mesh) -> int:
+    m["faces"] = m["left"]
+    return int(m["collapsed"])

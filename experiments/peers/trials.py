@@ -1,0 +1,155 @@
+"""What a library does to its process: the bytes it takes, and what it makes of bad input.
+
+Each is asked in a process of its own, as some end it: ``python -m experiments.peers.trials``.
+"""
+
+import json
+import re
+import signal
+import subprocess
+import sys
+from collections.abc import Callable
+from functools import lru_cache
+from typing import Any, NamedTuple
+
+import numpy as np
+
+import hem
+from experiments.harness.oracle import CheckFailedError
+from experiments.peers.checks import check_rows
+from experiments.peers.peer import BYTES, Mesh, Peer
+from experiments.peers.registry import PEERS
+from hem.arrays import Array
+from hem.contract import QUERIES
+
+PATIENCE = 120
+"""Seconds after which a process that says nothing is given up."""
+MARK = "told: "
+"""What a line begins with that is not a library's own."""
+
+WORDS = 160
+"""Characters kept of what is said."""
+
+STRIP = 5
+CORNERS = np.stack([np.cos(np.arange(STRIP)), np.sin(np.arange(STRIP)), np.arange(STRIP) % 2], 1)
+TETRAHEDRON = [(0, 2, 1), (0, 1, 3), (1, 2, 3), (2, 0, 3)]
+
+
+class Bad(NamedTuple):
+    """What a mesh of triangles cannot be, or must not become: ``collapse`` its first edge."""
+
+    title: str
+    triangles: list[tuple[int, int, int]]
+    collapse: bool = False
+
+
+BAD_INPUT = {
+    "three_faces": Bad("Three faces at an edge", [(0, 1, 2), (1, 0, 3), (0, 1, 4)]),
+    "two_fans": Bad("Two fans at a vertex", [(0, 1, 2), (0, 3, 4)]),
+    "moebius": Bad("A Möbius strip", [(i, (i + 1) % 5, (i + 2) % 5) for i in range(STRIP)]),
+    "tetrahedron": Bad("A collapse in a tetrahedron", TETRAHEDRON, True),
+}
+"""By name. In the strip of five triangles the last joins the first turned over."""
+
+
+def give(peer: Peer, bad: Bad) -> tuple[str, str]:
+    """Whether a library refuses bad input, and its words or what came of it."""
+    triangles = np.array(bad.triangles, np.int32)
+    points = CORNERS[: triangles.max() + 1].astype(np.float64)
+    try:
+        m = peer.build(points, triangles)
+        if not bad.collapse:
+            return _held(peer, m, triangles)
+        collapse = peer.collapse or _collapse_first(peer, points)
+        if collapse is None:
+            return "N/A", "collapses no edges"
+        if not collapse(m):
+            return "refused", "by its own test"
+        return "accepted", f"faces left: {peer.faces(m)}"
+    except Exception as error:
+        return "refused", f"{type(error).__name__}: {_plain(str(error))}"[:WORDS]
+
+
+def _collapse_first(peer: Peer, points: Array) -> Callable[[Mesh], int] | None:
+    operate = peer.operations.get("collapse_edge")
+    return (lambda m: operate(m, [0], points[:1])) if operate else None
+
+
+def _held(peer: Peer, m: Mesh, triangles: Array) -> tuple[str, str]:
+    """Whether what was accepted is all there, and answers as the triangle list does."""
+    kept, given = peer.faces(m), len(triangles)
+    if kept != given:
+        return "changed", f"{kept} of {given} faces are there"
+    for query in ("vertex_faces", "vertex_vertices"):
+        if ask := peer.single.get(query):
+            numbers = np.arange(triangles.max() + 1)
+            handles = peer.handles(m, "vertex", numbers.tolist())
+            try:
+                answers = [*map(ask(m), handles)]
+                check_rows(peer.title, QUERIES[query], triangles, numbers, answers)
+            except CheckFailedError:
+                return "changed", f"all faces are there, and {query} leaves some out"
+    return "accepted", "all faces are there"
+
+
+def _plain(words: str) -> str:
+    """Words without colors, and without where in a C++ source they were said."""
+    uncolored = re.sub(r"\x1b\[[\d;]*m", "", words)
+    return " ".join(re.sub(r"^.*\.cpp:\d+: ", "", uncolored, flags=re.DOTALL).split())
+
+
+def weigh(peer: Peer, points: Array, triangles: Array) -> int:
+    """Bytes by which the process grows that builds a mesh: of its own, not shared (USS)."""
+    import psutil
+
+    process = psutil.Process()
+    small = hem.generate("torus", 400)
+    peer.build(small.points.astype(np.float64), small.triangles.astype(np.int32))  # loads it all
+    before = process.memory_full_info().uss
+    kept = peer.build(points.copy(), triangles.copy())  # who keeps these has them weighed
+    grown = process.memory_full_info().uss - before
+    return peer.weigh(kept) if peer.weigh else int(grown)
+
+
+@lru_cache
+def told_by_child(name: str, family: str, size: int) -> dict[str, Any]:
+    """What processes of their own tell of a library: the ``BYTES`` of a mesh, None if it ended;
+    and by name what becomes of each bad input, ``("ended", how)`` where the process did.
+    """
+    told: dict[str, Any] = {}
+    left = [f"{BYTES} {family} {size}", *BAD_INPUT]
+    while left:
+        command = [sys.executable, "-m", __name__, name, *left]
+        try:
+            done = subprocess.run(command, capture_output=True, text=True, timeout=PATIENCE)
+            lines, how = done.stdout.splitlines(), _ending(done.returncode)
+        except subprocess.TimeoutExpired as error:
+            lines, how = bytes(error.stdout or b"").decode().splitlines(), "it said nothing more"
+        told |= dict(json.loads(line[len(MARK) :]) for line in lines if line.startswith(MARK))
+        left = [task for task in left if task.split()[0] not in told]
+        if left:
+            lost, *_ = left.pop(0).split()
+            told[lost] = None if lost == BYTES else ("ended", how)
+    return told
+
+
+def _ending(code: int) -> str:
+    return signal.Signals(-code).name if code < 0 else f"exit code {code}"
+
+
+def main(name: str, *tasks: str) -> None:
+    """Print what becomes of each task, a line of JSON each."""
+    peer = PEERS[name]
+    for task, *about in map(str.split, tasks):
+        if task == BYTES:
+            family, size = about
+            mesh = hem.generate(family, int(size))
+            given = mesh.points.astype(np.float64), mesh.triangles.astype(np.int32)
+            found: Any = weigh(peer, *given)
+        else:
+            found = give(peer, BAD_INPUT[task])
+        print(MARK + json.dumps([task, found]), flush=True)
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])

@@ -1,0 +1,307 @@
+"""Other libraries beside our half-edge mesh: tables for a terminal, for a page and for programs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from rich.console import Console
+
+from experiments.claims import Curve, Growth, Outcome, curves, load_claims
+from experiments.harness import HUBS, OPERATIONS
+from experiments.peers import (
+    ALGORITHMS,
+    BAD_INPUT,
+    BUILD,
+    BULK,
+    BYTES,
+    LOOPED,
+    OURS,
+    PEERS,
+    SINGLE,
+    SIX,
+)
+from experiments.report.pages import Html, text_table
+from experiments.report.session import MissingError
+from experiments.report.tables import digits, duration, show_rows
+from experiments.runs import PEER_RUNS, ResultsError, Run, in_words, latest, load
+from hem.complexity import Verdict, judge
+from hem.contract import QUERIES
+
+EXPERIMENT = "bench_peers"
+LIKE = "half_edge"
+"""The structure of ours that stands beside the libraries, and whose claims theirs are held to."""
+MISSING = "Other libraries were not measured here: hem study --peers does that."
+CASE_ERROR = 0.15
+"""How far cases of one curve stray beyond what their rounds tell, as for our structures."""
+NONE = "N/A"
+
+
+def measured_peers(run: Run) -> Peers:
+    """What a run measured of other libraries; where it did not, the newest run of them did."""
+    here = Peers(run)
+    if not here.names:
+        with suppress(ResultsError):
+            return Peers(load(latest(PEER_RUNS)))
+    return here
+
+
+@dataclass(frozen=True)
+class Cell:
+    """What became of one subject on one library.
+
+    ``seconds`` at the largest size that ours was measured at, too, and ``ratio``: how many times
+    ours that is. ``verdicts``: by the thesis' sign of what varies.
+    """
+
+    seconds: float
+    ratio: float
+    size: int
+    verdicts: Mapping[str, Verdict]
+
+    @property
+    def found(self) -> str:
+        """The class found, such as ``O(n_ev)``."""
+        grown = [it.best[2:-1].replace("n", sign) for sign, it in self.verdicts.items()]
+        factors = [it for it in grown if it != "1"]
+        return f"O({' · '.join(factors) or 1})" if grown else ""
+
+    @property
+    def marks(self) -> str:
+        """What became of the claim by faces and by valence."""
+        return "".join(Outcome(it.outcome).mark for it in self.verdicts.values())
+
+    @property
+    def text(self) -> str:
+        """Such as ``O(n_ev) ✓✓ 3.1 ×``."""
+        return " ".join(filter(None, (self.found, self.marks, f"{digits(self.ratio)} ×")))
+
+
+class Peers:
+    """A run as far as it is about other libraries."""
+
+    def __init__(self, run: Run) -> None:
+        self.run = run
+        self.cases = run.cases[run.cases["experiment"] == EXPERIMENT]
+        self.names = [it for it in PEERS if (self.cases["structure"] == it).any()]
+
+    @property
+    def others(self) -> list[str]:
+        """The libraries but ours."""
+        return [it for it in self.names if it != OURS]
+
+    @property
+    def absent(self) -> list[str]:
+        """The titles of libraries that were not measured."""
+        return [it.title for name, it in PEERS.items() if name not in self.names]
+
+    def _by_size(self, name: str, subject: str, order: str) -> Curve:
+        return curves(self.run).named(EXPERIMENT, name, subject, order)
+
+    def _by_valence(self, name: str, subject: str, order: str) -> Curve:
+        at_hubs = (self.cases["structure"] == name) & (self.cases["family"] == HUBS)
+        asked = (self.cases["subject"] == subject) & (self.cases["order"] == order)
+        found = self.cases[at_hubs & asked]
+        return Curve("valence", found.sort_values("valence"))
+
+    @cached_property
+    def _claims(self) -> dict[str, Mapping[str, str]]:
+        """By query what our structure is claimed to cost, by variable."""
+        mine = (it for it in load_claims() if it.structure == LIKE)
+        return {it.subject: it.classes for it in mine if isinstance(it.expects, Growth)}
+
+    def cell(self, name: str, subject: str, order: str = "") -> Cell | None:
+        """One subject on one library, judged where it is a query; None where it has no call."""
+        curve, ours = (self._by_size(it, subject, order) for it in (name, OURS))
+        if not len(curve):
+            return None
+        both = [it for it in curve.by_size.index if it in ours.by_size.index]
+        size = max(both or curve.by_size.index)
+        seconds = float(curve.by_size[size])
+        ratio = seconds / float(ours.by_size[size]) if both else np.nan
+        return Cell(seconds, ratio, int(size), self._verdicts(name, subject, order))
+
+    def _verdicts(self, name: str, subject: str, order: str) -> dict[str, Verdict]:
+        if subject not in QUERIES:
+            return {}
+        claimed = self._claims.get(subject, {}) if order != BULK else {}
+        every = {
+            "n_t": self._by_size(name, subject, order),
+            "n_ev": self._by_valence(name, subject, order),
+        }
+        return {sign: self._judged(it, claimed) for sign, it in every.items() if len(it)}
+
+    def _judged(self, curve: Curve, claimed: Mapping[str, str]) -> Verdict:
+        return judge(
+            curve.sizes, curve.samples, claimed.get(curve.variable, "O(1)"),
+            curves(self.run).latencies(curve), latency_error=CASE_ERROR,
+        )  # fmt: skip
+
+    def bytes_per_vertex(self, name: str) -> float:
+        """As the process sees them."""
+        found = self.cases[(self.cases["structure"] == name) & (self.cases["kind"] == BYTES)]
+        return (
+            float(found["samples"].iloc[0][0] / found["vertices"].iloc[0]) if len(found) else np.nan
+        )
+
+    def version(self, name: str) -> str:
+        """The version that was measured."""
+        return str(self.cases[self.cases["structure"] == name]["detail"].iloc[0]["version"])
+
+    def trial(self, name: str, bad: str) -> tuple[str, str]:
+        """What became of bad input, in a word and in more."""
+        found = self.cases[(self.cases["structure"] == name) & (self.cases["subject"] == bad)]
+        return tuple(found["detail"].iloc[0]["found"]) if len(found) else ("", "")
+
+    def title(self, name: str) -> str:
+        """As it stands above a column."""
+        return PEERS[name].title
+
+    def overview(self) -> list[list[str]]:
+        """Version, bytes and building, a row for each; the heads first."""
+        rows = [["", "version", "bytes per vertex", "build a vertex", "of ours"]]
+        for name in self.names:
+            cell, size = self.cell(name, BUILD), self.bytes_per_vertex(name)
+            built = [duration(cell.seconds / cell.size), f"{digits(cell.ratio)} ×"] if cell else []
+            weighed = f"{size:,.0f}" if size == size else "?"
+            rows.append([self.title(name), self.version(name), weighed, *(built or ["?", "?"])])
+        return rows
+
+    def compared(self, title: str) -> list[list[str]]:
+        """A group of ``GROUPS``: a row per subject, ours first, and those that have any of it."""
+        subjects = GROUPS[title]
+        cells = {
+            name: [self.cell(name, it, order) for it, (_, order) in subjects.items()]
+            for name in self.names
+        }
+        shown = [name for name in self.names if any(cells[name])]
+        texts = {it: self._texts(it, cells[it]) for it in shown}
+        rows = [
+            [head, *(texts[it][place] for it in shown)]
+            for place, (head, _) in enumerate(subjects.values())
+            if any(cells[it][place] for it in shown)
+        ]
+        return [["", *map(self.title, shown)], *rows]
+
+    def _texts(self, name: str, cells: Sequence[Cell | None]) -> list[str]:
+        """What is beside ours as ratios; ours in seconds."""
+        if name != OURS:
+            return [it.text if it else NONE for it in cells]
+        return [f"{duration(it.seconds)} {it.found}".strip() if it else NONE for it in cells]
+
+    def trials(self) -> list[list[str]]:
+        """What each library makes of bad input, in a word; the heads first."""
+        rows = [["", *(it.title for it in BAD_INPUT.values())]]
+        return rows + [
+            [self.title(name), *(self.trial(name, bad)[0] for bad in BAD_INPUT)]
+            for name in self.names
+        ]
+
+
+GROUPS: dict[str, dict[str, tuple[str, str]]] = {
+    "Queries, one after the other": {it: (q.title, SINGLE) for it, q in QUERIES.items()},
+    "Queries, all at once": {it: (q.title, BULK) for it, q in QUERIES.items()},
+    "Queries, in a compiled loop": {it: (q.title, LOOPED) for it, q in QUERIES.items()},
+    "Operations, one after the other": {it: (title, SINGLE) for it, title in OPERATIONS.items()},
+    "Operations, all at once": {it: (title, BULK) for it, title in OPERATIONS.items()},
+    "Algorithms": {it: (title, "") for it, title in ALGORITHMS.items()},
+    "Algorithms of Sieger & Botsch, compiled": {it: (title, LOOPED) for it, title in SIX.items()},
+}
+"""By title what is compared: by subject the head of its row, and the order of its cases."""
+READING = (
+    "A query's growth by faces and by valence, and whether that is what the thesis claims of a "
+    "half-edge mesh; then how many times as long as ours it takes, on the largest mesh of both. "
+    "All of them are called from Python. N/A: the library has no call for it."
+)
+
+
+def _of_folder(folder: Path | None) -> Peers:
+    """Those of a run, or of the newest run of them. Raises MissingError where it has none."""
+    try:
+        peers = Peers(load(folder or latest(PEER_RUNS)))
+    except ResultsError as error:
+        raise error if folder else MissingError(MISSING) from None
+    if not peers.names:
+        raise MissingError(MISSING)
+    return peers
+
+
+def show_peers(folder: Path | None, console: Console) -> None:
+    """Print all that was measured of other libraries."""
+    peers = _of_folder(folder)
+    console.print(f"[bold]{peers.run.folder.name}[/], preset {peers.run.meta.get('preset')}")
+    numbers = "bytes per vertex", "build a vertex", "of ours"
+    show_rows(console, peers.overview(), "Other libraries", numbers)
+    for title in GROUPS:
+        if len(rows := peers.compared(title)) > 1:
+            show_rows(console, rows, title)
+    show_rows(console, peers.trials(), "Bad input")
+    console.print(READING, style="dim")
+    if peers.absent:
+        console.print(f"Not installed: {', '.join(peers.absent)}.", style="dim")
+
+
+def peers_as_json(folder: Path | None) -> dict[str, Any]:
+    """The same as records; NaN where there is no number."""
+    peers = _of_folder(folder)
+    return {
+        "run": peers.run.folder.name,
+        "preset": peers.run.meta.get("preset"),
+        "absent": peers.absent,
+        "libraries": [
+            {
+                "name": name,
+                "title": peers.title(name),
+                "version": peers.version(name),
+                "bytes_per_vertex": peers.bytes_per_vertex(name),
+                "bad_input": {bad: list(peers.trial(name, bad)) for bad in BAD_INPUT},
+                "subjects": list(_records(peers, name)),
+            }
+            for name in peers.names
+        ],
+    }
+
+
+def _records(peers: Peers, name: str) -> Iterator[dict[str, Any]]:
+    subjects = [(it, order) for group in GROUPS.values() for it, (_, order) in group.items()]
+    for subject, order in [(BUILD, ""), *subjects]:
+        if cell := peers.cell(name, subject, order):
+            outcomes = {sign: it.outcome for sign, it in cell.verdicts.items()}
+            yield {"subject": subject, "way": order, "seconds": cell.seconds, "found": cell.found,
+                   "vertices": cell.size, "of_ours": cell.ratio, "outcomes": outcomes}  # fmt: skip
+
+
+def page_table(rows: Sequence[Sequence[Any]]) -> Html:
+    """Rows on a page, their heads first. Raises MissingError where there is no other."""
+    heads, *body = rows
+    if not body:
+        raise MissingError(MISSING)
+    return text_table(heads, body)
+
+
+def about(peers: Peers) -> Html:
+    """Where they were measured, and what was not installed there. Raises MissingError."""
+    if not peers.names:
+        raise MissingError(MISSING)
+    lost = f" Not installed there: {', '.join(peers.absent)}." if peers.absent else ""
+    return Html("<p>{}</p>").format(f"{in_words(peers.run)}{lost}")
+
+
+def portraits(peers: Peers) -> Html:
+    """How each library's manual has it used, and what it does that ours does not."""
+    rows = [(peers.title(it), PEERS[it].manual, PEERS[it].more) for it in peers.others]
+    return page_table([("Library", "As its manual has it used", "What it does beyond ours"), *rows])
+
+
+def refusals(peers: Peers) -> Html:
+    """What each library makes of bad input, with its own words."""
+    rows = [
+        (peers.title(name), *(": ".join(filter(None, peers.trial(name, bad))) for bad in BAD_INPUT))
+        for name in peers.names
+    ]
+    return page_table([("", *(it.title for it in BAD_INPUT.values())), *rows])

@@ -1,0 +1,138 @@
+"""Laws of measuring other libraries: each answer is checked first, and nobody stops the others."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from experiments import bench_peers
+from experiments.harness import PRESETS, Measurement, time_rounds
+from experiments.harness.oracle import CheckFailedError
+from experiments.peers import (
+    BAD_INPUT,
+    BULK,
+    BYTES,
+    OURS,
+    PEERS,
+    SINGLE,
+    installed,
+    missing,
+    trials,
+)
+from experiments.runs import experiments, study
+from hem.contract import QUERIES
+from tests.experiments.peers.slow_library import ABSENT, LIAR, LIBRARY
+
+PRESET = replace(PRESETS["smoke"], case_seconds=0.01, round_seconds=0.001)
+
+
+@pytest.fixture
+def library(monkeypatch):
+    monkeypatch.setitem(PEERS, "slow", LIBRARY)
+    return "slow"
+
+
+def measured(name: str, **wanted) -> list[Measurement]:
+    """What is measured of a library on the smallest meshes."""
+    cases = [
+        it
+        for it in bench_peers.cases(PRESET, name)
+        if all(getattr(it, key) == value for key, value in wanted.items())
+    ]
+    return [bench_peers.measure(it, PRESET, time_rounds) for it in cases]
+
+
+@pytest.mark.parametrize("name", installed())
+def test_every_library_that_is_here_answers_as_the_triangle_list_says(name):
+    found = measured(name, size=PRESET.sizes[0])
+    asked = {(it.subject, it.order) for it in found if it.checked}
+    assert asked >= {(it, SINGLE) for it in PEERS[name].single}
+    assert asked >= {(it, BULK) for it in PEERS[name].bulk}
+    assert all(np.all(np.array(it.samples) > 0) for it in found)
+
+
+@pytest.mark.parametrize("name", installed())
+def test_every_operation_and_algorithm_leaves_the_faces_it_should(name):
+    peer = PEERS[name]
+    for subject in {*peer.operations, *peer.batches, *peer.algorithms}:
+        assert all(it.samples for it in measured(name, subject=subject))
+
+
+def test_a_library_is_asked_at_hubs_where_the_valence_varies(library):
+    found = [it for it in measured(library, subject="vertex_faces") if it.valence]
+    assert [it.valence for it in found] == list(PRESET.valences)
+
+
+def test_objects_are_measured_on_meshes_that_are_no_larger_than_for_ours(library):
+    large = replace(PRESETS["quick"], sizes=(100, 3_000, 100_000))
+    sizes = {it.size for it in bench_peers.cases(large, library) if it.subject in QUERIES}
+    assert 100_000 not in sizes
+    assert {100, 3_000} <= sizes
+
+
+@pytest.mark.parametrize("order", [SINGLE, BULK])
+def test_a_wrong_answer_is_told_with_both_answers_and_not_timed(monkeypatch, order):
+    monkeypatch.setitem(PEERS, "liar", LIAR)
+    with pytest.raises(CheckFailedError, match=r"vertex_faces\(\d+\) gives .*the triangle list"):
+        measured("liar", subject="vertex_faces", order=order)
+
+
+def test_a_library_that_is_not_installed_is_named_and_has_no_cases(monkeypatch):
+    monkeypatch.setitem(PEERS, "absent", ABSENT)
+    assert missing()["Absent"] == "no-such-distribution"
+    assert bench_peers.cases(PRESET, "absent") == []
+
+
+def test_what_is_measured_of_nobody_is_an_error_that_names_it():
+    with pytest.raises(ValueError, match="'vertex_colors' is none of vertex_vertices"):
+        replace(LIBRARY, bulk={"vertex_colors": None})
+
+
+def test_ours_refuses_every_bad_input():
+    assert {trials.give(PEERS[OURS], bad)[0] for bad in BAD_INPUT.values()} == {"refused"}
+
+
+def test_what_a_library_accepts_drops_or_cannot_do_is_told_apart(library):
+    found = {name: trials.give(LIBRARY, bad) for name, bad in BAD_INPUT.items()}
+    assert found["moebius"] == ("accepted", "all faces are there")
+    assert found["tetrahedron"][0] == "N/A"
+    fewer = replace(LIBRARY, faces=lambda m: 1)
+    assert trials.give(fewer, BAD_INPUT["two_fans"]) == ("changed", "1 of 2 faces are there")
+
+
+def test_the_bad_strip_has_one_side_and_is_manifold_but_for_that():
+    strip = np.array(BAD_INPUT["moebius"].triangles)
+    directed = strip[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
+    _, uses = np.unique(np.sort(directed), axis=0, return_counts=True)
+    assert uses.max() == 2
+    assert len(np.unique(directed, axis=0)) < len(directed)  # some edge runs the same way twice
+
+
+def test_a_process_that_ends_is_told_and_what_is_left_is_tried_in_another():
+    told = trials.told_by_child("no such library", "torus", 100)
+    assert told.pop(BYTES) is None
+    assert told == dict.fromkeys(BAD_INPUT, ("ended", "exit code 1"))
+
+
+def test_a_process_grows_by_what_ours_takes():
+    told = trials.told_by_child(OURS, "torus", 20_000)
+    assert told[BYTES] > 100 * 20_000  # 120 bytes per vertex, less what was free before
+    assert {it[0] for name, it in told.items() if name != BYTES} == {"refused"}
+
+
+def test_a_study_measures_other_libraries_only_where_it_is_asked_to(tmp_path):
+    by_name = {name for name, it in experiments().items() if it.by_name}
+    assert by_name == {"bench_peers"}
+    folder = study.begin("smoke", tmp_path)
+    assert not by_name & {it.experiment for it in study.plan(folder)}
+    folder = study.begin("smoke", tmp_path, experiments=["peers"])
+    assert {it.structure for it in study.plan(folder)} == set(installed())
+
+
+def test_other_libraries_decide_no_claim_and_enter_no_baseline():
+    declared = experiments()["bench_peers"]
+    assert declared.table is None
+    assert not declared.axes
+    assert not declared.baseline_orders
