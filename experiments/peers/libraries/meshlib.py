@@ -25,7 +25,7 @@ def _handles(m: Mesh, element: str, numbers: list[int]) -> list[Any]:
 
 
 def _ends(m: Mesh) -> Array:
-    every = _handles(m, "edge", range(m.topology.undirectedEdgeSize()))  # type: ignore[arg-type]
+    every = _handles(m, "edge", [*range(m.topology.undirectedEdgeSize())])
     org, dest = m.topology.org, m.topology.dest
     return np.array([(int(org(it)), int(dest(it))) for it in every])
 

@@ -1,13 +1,11 @@
-"""Laws of comparing with peers: rounds are interleaved, and who is missing is skipped."""
+"""Laws of timing against budgets: rounds are interleaved, and few where they take long."""
 
 from __future__ import annotations
-
-from time import sleep
 
 import numpy as np
 import pytest
 
-from experiments.validation import budgets, peers
+from experiments.validation import budgets
 from experiments.validation.budgets import Task, time_interleaved
 
 
@@ -31,17 +29,3 @@ def test_what_takes_long_is_timed_once(monkeypatch: pytest.MonkeyPatch) -> None:
     calls: list[None] = []
     time_interleaved([Task(lambda: calls.append(None))])
     assert len(calls) == 2  # the first one warms up
-
-
-def test_a_budget_is_met_by_the_ratio_of_the_medians() -> None:
-    slow, fast = Task(lambda: sleep(0.02)), Task(lambda: None)
-    assert peers.compare("sleep", 2.0, fast, slow).met
-    assert not peers.compare("sleep", 2.0, slow, fast).met
-
-
-def test_a_peer_that_is_not_installed_is_skipped_and_said_so(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    monkeypatch.setattr(peers, "MODULES", {"here": "json", "absent": "no_such_module"})
-    assert list(peers.import_peers()) == ["here"]
-    assert "absent is skipped: No module named 'no_such_module'" in capsys.readouterr().out
