@@ -2,8 +2,9 @@
 
 Work counts are exact, so they decide; time is judged beside them. Asked in consecutive order, a
 query finds what it needs in the caches, and time shows its steps. Asked at random it waits for
-memory, which is slower the larger the mesh. Both are judged in proportion to the reference beside
-them, the same code where its work cannot grow; without one, against the latency of the memory.
+memory, which is slower the larger the mesh. Constant costs are judged in proportion to the
+reference beside them, the same code where its work cannot grow. What is claimed to grow goes
+through more memory than that; it, and what has no reference, is judged by the memory's latency.
 """
 
 from collections.abc import Mapping, Sequence
@@ -19,7 +20,8 @@ from hem.complexity import Verdict, judge
 
 CASE_ERROR = 0.15
 """How far cases of one curve stray, beyond what their own rounds tell: each is measured within some
-milliseconds, and other tenants of the machine slow its caches for longer than that."""
+milliseconds, and other tenants of the machine slow its caches for longer than that. A reference is
+one more case, and strays as much."""
 
 FLAT = 0.5  # slope in n_ev below which what grows comes on top of a larger part that does not
 
@@ -86,12 +88,14 @@ def _verdict(of_run: Curves, table: str, axis: Axis, curve: Curve, expected: str
     """Judge a claim along one axis; O(1) where none is made, as the class found is what matters."""
     # What reads nothing at all costs something all the same: the call.
     samples = [np.maximum(it, 1) if axis.exact else it for it in curve.samples]
-    reference = None if axis.exact else of_run.reference(curve)
+    constant = expected.removeprefix(BOUND) == "O(1)"
+    reference = of_run.reference(curve) if constant and not axis.exact else None
     latency = None if axis.exact or reference is not None else of_run.latencies(curve)
     every = [it for it in experiments().values() if it.table and it.table.name == table]
     return judge(
         curve.sizes, samples, expected.removeprefix(BOUND), latency,
-        reference=reference, exact=axis.exact, latency_error=CASE_ERROR,
+        reference=reference, exact=axis.exact,
+        latency_error=CASE_ERROR * (1 if reference is None else np.sqrt(2)),
         unseen=reference is None and any(axis in it.just_written for it in every),
         bound="upper" if expected.startswith(BOUND) else "tight",
     )  # fmt: skip

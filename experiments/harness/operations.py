@@ -1,6 +1,5 @@
 """Operations as they are measured: on which elements, on a copy that is made new each time."""
 
-from dataclasses import replace
 from functools import lru_cache, partial
 from time import perf_counter
 from typing import Any
@@ -40,7 +39,10 @@ IDLE_CALLS = 15
 CYCLE = 2e-10
 """Seconds of a clock cycle, at the least: no operation takes less."""
 REFERENCE_ROUNDS = 4
+"""Before and after the rounds of a case."""
 ELEMENT_SEED = 22
+CHOICES = 16
+"""Of elements in the small mesh of a reference: its copies are not all operated on alike."""
 SMALL = 20_000
 """Faces up to which the outcome is judged from its triangles, and against the indexed mesh."""
 
@@ -50,10 +52,7 @@ def operation_faces(case: Case, count: int = MOST_ELEMENTS) -> Array:
 
     Where the valence varies each has a hub as its first corner.
     """
-    chosen = _apart(case.family, case.size, case.valence)
-    if len(chosen) > count:
-        chosen = np.sort(np.random.default_rng(ELEMENT_SEED).choice(chosen, count, replace=False))
-    return chosen
+    return _some(_apart(case.family, case.size, case.valence), count)
 
 
 def searches(case: Case) -> bool:
@@ -62,8 +61,8 @@ def searches(case: Case) -> bool:
     return (kind.searches or kind.rebuilds) and case.subject not in NOT_SEARCHED
 
 
-@lru_cache(maxsize=2)
-def _apart(family: str, size: int, valence: int | None) -> Array:
+@lru_cache(maxsize=2 + CHOICES)
+def _apart(family: str, size: int, valence: int | None, seed: int = ELEMENT_SEED) -> Array:
     mesh = Case(BASE, family, size, valence=valence).mesh()
     if family == HUBS:
         hubs = hem.valence_hubs(int(valence or 0), size)[::2]  # one of each bipyramid
@@ -76,7 +75,7 @@ def _apart(family: str, size: int, valence: int | None) -> Array:
     joined = coo_array((np.ones(ends.shape[1], np.bool_), tuple(ends)), (n, n)).tocsr()
     begin, neighbors = joined.indptr, joined.indices
     taken, chosen = np.zeros(n, np.bool_), []
-    tried = np.random.default_rng(ELEMENT_SEED).permutation(len(mesh.triangles))
+    tried = np.random.default_rng(seed).permutation(len(mesh.triangles))
     for face in tried[: 40 * MOST_ELEMENTS].tolist():
         corners = mesh.triangles[face].tolist()
         ring = np.concatenate([neighbors[begin[v] : begin[v + 1]] for v in corners])
@@ -121,16 +120,22 @@ class OperationBatch:
         # As bare as can be, but for the call itself, see ``idle_seconds``.
         self.operate = partial(self._prepared.perform, self._prepared.pinned.address)
 
+    def idle(self) -> float:
+        """Call for no operation -> seconds."""
+        task = self._prepared.task
+        task[END] = 0
+        begin = perf_counter()
+        self.operate()
+        seconds = perf_counter() - begin
+        task[END] = self.operations
+        return seconds
+
     def idle_seconds(self) -> float:
         """What a call takes that does no operation: about as long as a few of them."""
-        task, seconds = self._prepared.task, []
-        task[END] = 0
+        seconds = []
         for _ in range(IDLE_CALLS if self.mesh.compiled else 1):
-            self.restore()
-            begin = perf_counter()
-            self.operate()
-            seconds.append(perf_counter() - begin)
-        task[END] = self.operations
+            self.ready()
+            seconds.append(self.idle())
         return float(np.median(seconds))
 
     def each(self, timed: Timed, idle: float) -> tuple[Timed, float]:
@@ -150,6 +155,16 @@ class OperationBatch:
         chase of as much memory, read before, was measured to wait up to three times as long.
         """
         self.mesh.restore(self._fresh)
+        return ()
+
+    def ready(self) -> tuple[()]:
+        """Restore, then call for nothing, as the setup of a round.
+
+        A copy drives from the caches what a call needs itself. To find that again takes as long as
+        dozens of operations, and another time each round.
+        """
+        self.restore()
+        self.idle()
         return ()
 
 
@@ -190,18 +205,21 @@ def time_operations(case: Case, preset: Preset, timer: Timer) -> dict[str, Any]:
         most = int(np.clip(preset.round_seconds / (each * batch.operations), 1, most))
     turns = int(np.clip(FEWEST_OPERATIONS // batch.operations, 1, most))
     latency = latency_now(sum(s.memory().values()))
-    timed = timer(batch.operate, setup=batch.restore, rounds=turns * preset.rounds, warmup=2)
     idle = batch.idle_seconds()
+    constant = _constant_work(case, preset, batch.operations) if s.compiled else None
+    beside = _rounds_of(constant, turns, idle)
+    timed = timer(batch.operate, setup=batch.ready, rounds=turns * preset.rounds, warmup=2)
+    beside += _rounds_of(constant, turns, idle)
     timed, impossible = batch.each(timed.averaged(turns), idle)
-    reference = _constant_work(case, preset, batch.operations, idle) if s.compiled else None
-    beside = {"latency": latency, "reference": reference, "noise": {"impossible": impossible}}
+    noise = {"impossible": impossible}
+    told = {"latency": latency, "reference": typical(beside), "noise": noise}
     if impossible > MOST_IMPOSSIBLE:
-        return {**beside, "skipped": "the operations take no longer than a call that does none"}
-    return {**timed.fields, **beside}
+        return {**told, "skipped": "the operations take no longer than a call that does none"}
+    return {**timed.fields, **told}
 
 
-def _constant_work(case: Case, preset: Preset, count: int, idle: float) -> float | None:
-    """Seconds per operation where the work cannot grow, see ``reference.py``; after a copy, too.
+def _constant_work(case: Case, preset: Preset, count: int) -> OperationBatch | None:
+    """As many operations whose work cannot grow, see ``reference.py``; after a copy, too.
 
     None where sizes are not compared, and for what looks at the whole mesh.
     """
@@ -209,12 +227,25 @@ def _constant_work(case: Case, preset: Preset, count: int, idle: float) -> float
         return None
     small = small_case(case, preset)
     s, _ = copies(small, case.vertices)
-    faces = copies_of(operation_faces(replace(small, subject=case.subject)), small, s)
-    if len(faces) > count:
-        faces = np.sort(np.random.default_rng(ELEMENT_SEED).choice(faces, count, replace=False))
-    batch = OperationBatch(s, str(case.subject), faces)
-    turns = int(np.clip(FEWEST_OPERATIONS // batch.operations, 1, MOST_TURNS))
+    mesh = small.family, small.size, small.valence
+    faces = copies_of([_apart(*mesh, seed) for seed in range(CHOICES)], small, s)
+    if case.family == HUBS:  # at distances as even as theirs, which is easily foreseen
+        hubs = len(_apart(case.family, case.size, case.valence))
+        faces = faces[np.linspace(0, len(faces) - 1, hubs).astype(int)]
+    return OperationBatch(s, str(case.subject), _some(faces, count))
+
+
+def _some(faces: Array, count: int) -> Array:
+    """So many of the faces, or all if there are no more; ascending."""
+    if len(faces) <= count:
+        return faces
+    return np.sort(np.random.default_rng(ELEMENT_SEED).choice(faces, count, replace=False))
+
+
+def _rounds_of(batch: OperationBatch | None, turns: int, idle: float) -> list[float]:
+    """Seconds per operation of some rounds of a reference; none without one."""
+    if batch is None:
+        return []
     rounds = turns * REFERENCE_ROUNDS
-    timed = time_rounds(batch.operate, setup=batch.restore, rounds=rounds)
-    each, _ = batch.each(timed.averaged(turns), idle)
-    return typical(each.samples)
+    timed = time_rounds(batch.operate, setup=batch.ready, rounds=rounds)
+    return list(batch.each(timed.averaged(turns), idle)[0].samples)

@@ -58,14 +58,14 @@ def time_query(case: Case, preset: Preset, timer: Timer) -> Measurement:
         sweep.run()
         if reference:
             reference.ask(reference.sweep)
-    beside = reference.seconds(preset.round_seconds / 4) if reference else []
+    beside = reference.seconds(many) if reference else []
     begins = count(0, many)
 
     def successive() -> tuple[Sweep]:
         return (sweep.successive(next(begins), many),)
 
     timed = timer(Sweep.run, setup=successive, rounds=rounds, per=many)
-    beside += reference.seconds(preset.round_seconds / 4) if reference else []
+    beside += reference.seconds(many) if reference else []
     return case.result("time", s, latency=latency, reference=typical(beside), **timed.fields)
 
 

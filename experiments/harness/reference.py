@@ -10,31 +10,34 @@ Operations number new elements, so theirs are the counts of all copies. A struct
 the whole mesh to operate has no reference; tests count that no other does more on more copies.
 """
 
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import lru_cache
-from time import perf_counter
 
 import numpy as np
 
+import hem
 import structures
 from experiments.harness.cases import Case, in_order_of
+from experiments.harness.timer import time_rounds
 from experiments.presets import HUBS, Preset
 from hem.arrays import Array
 from hem.contract import Structure, Sweep
 from hem.meshes import TriangleMesh
 
-ROUNDS = 3
-"""Before and after the rounds of a case, each a quarter as long as one of those."""
-TRIED = 1_000
-"""Handles that are asked to know how many make a round, and the fewest of one."""
-MOST_HANDLES = 250_000
+ROUNDS = 2
+"""Before and after the rounds of a case, each of as many handles as those."""
+FEWEST_HANDLES = 1_000
 SMALL_HUBS = 256
 """Faces of the small mesh where the valence varies."""
 
 
-def typical(seconds: Array | list[float]) -> float | None:
-    """Of some rounds the quicker quartile, as delays only add; None of none."""
-    return float(np.quantile(seconds, 0.25)) if len(seconds) else None
+def typical(seconds: Sequence[float]) -> float | None:
+    """The median of some rounds, as a case is told by; None of none.
+
+    Their quicker quartile would lie below by as much as rounds scatter: a fifth on large meshes.
+    """
+    return float(np.median(seconds)) if len(seconds) else None
 
 
 class Reference:
@@ -46,20 +49,26 @@ class Reference:
         self.sweep = self.structure.prepare_sweep(case.query.name, handles)
         self._asked = 0
 
-    def ask(self, sweep: Sweep) -> float:
-        """Ask some of the handles -> seconds."""
-        begin = perf_counter()
+    def ask(self, sweep: Sweep) -> None:
+        """Ask some of the handles."""
         sweep.loop(sweep.handles, sweep.out, *self.records)
-        return perf_counter() - begin
 
-    def seconds(self, long: float) -> list[float]:
-        """Seconds per query of some rounds about so ``long``; each goes on where the last ended."""
-        many, seconds = TRIED, []
-        for _ in range(1 + ROUNDS):
-            seconds.append(self.ask(self.sweep.successive(self._asked, many)) / many)
+    def seconds(self, many: int) -> list[float]:
+        """Seconds per query of some rounds; each goes on where the last ended.
+
+        Of as many handles as a round of the case: what a round begins with, and the handles
+        themselves, then weigh as much in both.
+        """
+        many = max(many, FEWEST_HANDLES)
+
+        def successive() -> tuple[Sweep]:
+            begin = self._asked
             self._asked += many
-            many = int(np.clip(long / seconds[0], TRIED, MOST_HANDLES))
-        return seconds[1:]
+            return (self.sweep.successive(begin, many),)
+
+        first = int(self._asked == 0)
+        timed = time_rounds(self.ask, setup=successive, rounds=ROUNDS, warmup=first, per=many)
+        return list(timed.samples)
 
 
 def small_case(case: Case, preset: Preset) -> Case:
@@ -70,10 +79,12 @@ def small_case(case: Case, preset: Preset) -> Case:
     return replace(case, size=SMALL_HUBS, valence=valence, subject=None, order=None)
 
 
-def copies_of(faces: Array, small: Case, s: Structure) -> Array:
-    """Faces of a small mesh, in each of its copies."""
+def copies_of(chosen: Sequence[Array], small: Case, s: Structure) -> Array:
+    """Faces of a small mesh in its copies, ascending: those of one choice after another in turn."""
     each = len(small.mesh().triangles)
-    return np.add.outer(each * np.arange(s.n_faces // each), faces).ravel()
+    places = _places(small, each, s.n_faces // each)
+    ways = len(chosen)
+    return np.sort(np.concatenate([places[i::ways, it].ravel() for i, it in enumerate(chosen)]))
 
 
 @lru_cache(maxsize=1)
@@ -83,10 +94,34 @@ def copies(small: Case, vertices: int) -> tuple[Structure, tuple[Array, ...]]:
     The counts among the records are those of one copy.
     """
     mesh = small.mesh()
-    count = max(1, round(vertices / len(mesh.points)))
-    first = len(mesh.points) * np.arange(count, dtype=mesh.triangles.dtype)
-    triangles = (mesh.triangles + first[:, None, None]).reshape(-1, 3)
-    many = TriangleMesh(np.tile(mesh.points, (count, 1)), triangles)
-    s = structures.build(small.structure, many, small.reference_bytes)
+    n_points, n_faces = len(mesh.points), len(mesh.triangles)
+    count = max(1, round(vertices / n_points))
+    hubs = len(hem.valence_hubs(int(small.valence), small.size)) if small.valence else 0
+    vertex, face = _places(small, n_points, count, hubs), _places(small, n_faces, count)
+    points = np.empty((count * n_points, 3), mesh.points.dtype)
+    triangles = np.empty((count * n_faces, 3), mesh.triangles.dtype)
+    points[vertex], triangles[face] = mesh.points, vertex[:, mesh.triangles]
+    s = structures.build(small.structure, TriangleMesh(points, triangles), small.reference_bytes)
     one = structures.build(small.structure, mesh, small.reference_bytes)
     return s, s.records._replace(counts=one.records.counts)
+
+
+@lru_cache(maxsize=2)
+def _places(small: Case, n: int, count: int, hubs: int = 0) -> Array:
+    """(count, n): where each of n elements of a small mesh stands, in each of its copies.
+
+    As in one large mesh, so that a query finds in the caches what one did just before. In that
+    neighbors stand a row apart: copies stand side by side, in as many rows as each has copies, and
+    of a row of copies come first the first rows of each. Where the valence varies, copies stand
+    behind each other, but for their ``hubs``, which come first.
+    """
+    copy, element = np.divmod(np.arange(count * n), n)
+    if small.family == HUBS:
+        order = np.argsort(element >= hubs, kind="stable")
+    else:
+        parts = max(1, round(np.sqrt(len(small.mesh().points))))
+        row = copy // max(1, round(np.sqrt(count)))
+        order = np.argsort(row * parts + element * parts // n, kind="stable")
+    places = np.empty(count * n, np.int64)
+    places[order] = np.arange(count * n)
+    return places.reshape(count, n)

@@ -82,13 +82,15 @@ class Preset:
         if structure not in REGISTRY or REGISTRY[structure].compiled:
             return self
         most = self.object_vertices
-        by_vertices = "operation_sizes", "single_sizes", "workload_sizes", "fracture_sizes"
+        by_vertices = "single_sizes", "workload_sizes", "fracture_sizes"
         operated = (*by_vertices, "real_time_sizes")
         limits = {"sizes": 3 * most, "build_sizes": 3 * most, **dict.fromkeys(operated, most)}
         smaller: dict[str, Any] = {
             name: tuple(size for size in getattr(self, name) if size <= limit)
             for name, limit in limits.items()
         }
+        # A few interpreted operations last long enough, so the smallest mesh will do, too.
+        smaller["operation_sizes"] = tuple(size for size in self.sizes if size <= most)
         smaller["valence_faces"] = min(self.valence_faces, 10 * most)
         smaller["operation_faces"] = min(self.operation_faces, most)
         return replace(self, **smaller)

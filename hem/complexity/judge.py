@@ -154,9 +154,10 @@ def _decide(costs: Costs, models: Comparison, claim: int, bound: Bound) -> tuple
         return "undetermined", doubt
     if models.outgrows(claim):
         return "violated", f"The costs grow more than {names[claim]} does, however slow the memory."
-    if not models.explained:
-        return "undetermined", _unexplained(models)
     kept = _kept(claim, bound)
+    below = bound == "upper" and best in kept  # then it matters little which class it is
+    if not (models.fits if below else models.explained):
+        return "undetermined", _unexplained(models)
     if best in kept:
         rivals = [m for m in range(len(names)) if m not in kept and not models.confirms(best, m)]
         if not rivals:

@@ -122,7 +122,7 @@ def counted(name: str, operation: str, size: int) -> list[int]:
     """Elements that an operation reads and writes in some of the copies that make up a mesh."""
     small = Case(name, "torus", 100)
     s, _ = copies(small, size)
-    faces = copies_of(faces_of(replace(small, subject=operation)), small, s)[[0, 1, -1]]
+    faces = copies_of([faces_of(replace(small, subject=operation))], small, s)[[0, 1, -1]]
     s = s.copy()
     return [s.operation_work(operation, *row) for row in arguments(s, operation, faces).tolist()]
 

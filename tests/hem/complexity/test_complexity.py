@@ -356,6 +356,15 @@ def test_a_reference_that_stays_level_excuses_nothing() -> None:
         judge(sizes, samples, "O(1)", np.ones(9), reference=np.ones(9))
 
 
+def test_a_bound_is_kept_by_what_grows_late_and_little_and_not_by_what_outgrows_it() -> None:
+    sizes = 2.0 ** np.arange(2, 13)
+    scan_and_walk = 37e-6 + 4e-9 * sizes  # the walk shows at the largest sizes alone
+    for cost, outcome in ((scan_and_walk, "consistent"), (1e-9 * sizes**2, "violated")):
+        samples = [c * np.linspace(0.99, 1.01, 9) for c in cost]
+        verdict = judge(sizes, samples, "O(n)", np.ones(11), latency_error=0.15, bound="upper")
+        assert verdict.outcome == outcome, verdict.reason
+
+
 @pytest.mark.parametrize("place", range(9))
 @pytest.mark.parametrize("factor", [0.01, 0.4, 2.5, 100])
 def test_no_single_size_decides(place: int, factor: float) -> None:
