@@ -21,7 +21,7 @@ def some(count: int) -> int:
 
 
 exhaustive = pytest.mark.exhaustive
-"""A test of what is tested otherwise, too, with other data."""
+"""A test of what is tested otherwise, too, with other data; or that waits for many processes."""
 
 _half_edges_first = sorted(NAMES, key=lambda name: not issubclass(REGISTRY[name], Navigable))
 _chosen = {(REGISTRY[it].compiled, REGISTRY[it].searches): it for it in reversed(_half_edges_first)}

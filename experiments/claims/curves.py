@@ -112,12 +112,13 @@ class Curves:
         self, experiment: str, structure: str, subject: str = "", order: str = "", width: int = 4
     ) -> Curve:
         """The judged family's cases of an experiment by size; ``width``: bytes of a reference."""
-        known = {"experiment": experiment, "structure": structure, "family": self.judged_family}
-        wanted = self.cases["valence"].isna() & (self.cases["reference_bytes"] == width)
-        for name, value in {**known, "subject": subject, "order": order}.items():
+        cases = self.cases.iloc[self._jobs.get((experiment, structure), [])]
+        wanted = cases["valence"].isna() & (cases["reference_bytes"] == width)
+        known = {"family": self.judged_family, "subject": subject, "order": order}
+        for name, value in known.items():
             if value != "":
-                wanted &= self.cases[name] == value
-        return Curve("faces", self.cases[wanted].sort_values("faces"))
+                wanted &= cases[name] == value
+        return Curve("faces", cases[wanted].sort_values("faces"))
 
     def memory(self, structure: str, width: int = 8) -> Curve:
         """The bytes of a structure by size."""
@@ -169,6 +170,10 @@ class Curves:
     def _rows(self) -> dict[Any, Any]:
         by = ["experiment", "order", "structure", "subject", "family"]
         return self.cases.groupby(by).indices
+
+    @cached_property
+    def _jobs(self) -> dict[Any, Any]:
+        return self.cases.groupby(["experiment", "structure"]).indices
 
 
 @lru_cache(maxsize=4)

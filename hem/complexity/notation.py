@@ -6,6 +6,7 @@ faster. Constant factors do not matter, and of a sum the term that grows fastest
 
 import re
 from collections.abc import Iterator
+from functools import lru_cache
 from math import exp, log
 from typing import NamedTuple
 
@@ -58,6 +59,7 @@ SPELLED = (
 TOKEN = re.compile(r"\s*(sqrt|log|[a-z](?:_\w+)?|\d+(?:\.\d+)?(?:/\d+)?|[()^+])")
 
 
+@lru_cache(maxsize=256)
 def parse(claim: str, variable: str | None = None) -> Order:
     """The order that a claim names, in one variable: the others are held fixed.
 

@@ -20,6 +20,7 @@ from experiments.cli.console import console, errors
 from experiments.report.fracture_scenes import break_up, default_impact, model
 from hem.fracture import MATERIALS
 from hem.fracture.show.scene import on_surface
+from tests.extent import exhaustive
 from tests.pictures import require_pictures
 
 require_pictures()
@@ -186,6 +187,7 @@ def test_skin_is_told_from_the_walls_of_cuts():
         assert (~skin[far < 0.9]).all()
 
 
+@exhaustive
 def test_the_demo_is_one_page_that_needs_no_network(tmp_path):
     case = demo.CASES[-1]._replace(forces=(0.5, 2))
     page = demo.write(tmp_path / "demo", (case,), size=(64, 64))

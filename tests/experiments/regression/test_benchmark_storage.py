@@ -12,6 +12,8 @@ from tempfile import TemporaryDirectory
 
 import pytest
 
+from tests.extent import exhaustive
+
 ROOT = Path(__file__).parents[3]
 COMMAND = (
     "experiments/bench_queries.py --profile smoke --structure half_edge "
@@ -55,7 +57,9 @@ def test_what_is_saved_is_per_query_and_says_what_it_is_of(saved):
         assert stats["median"] < 1e-4  # one query; a round of them lasts 0.2 ms
 
 
-@pytest.mark.parametrize(("factor", "code"), [(1000.0, 0), (0.001, 1)])
+@pytest.mark.parametrize(
+    ("factor", "code"), [pytest.param(1000.0, 0, marks=exhaustive), (0.001, 1)]
+)
 def test_a_comparison_fails_if_and_only_if_it_got_slower(saved, tmp_path, factor, code):
     """As if it had been a thousand times as slow, and as fast, before."""
     path, found = content(saved)
@@ -81,6 +85,7 @@ def below():
         yield Path(folder)
 
 
+@exhaustive
 def test_another_machine_is_not_compared_silently(saved, below):
     path, found = content(saved)
     found["machine_info"]["cpu"]["brand_raw"] = "another"

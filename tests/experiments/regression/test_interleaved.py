@@ -8,6 +8,7 @@ from experiments.regression import HERE, Change, compare_trees, exit_code, inter
 from experiments.regression.interleaved import PairTimed
 from experiments.regression.significance import Comparison
 from hem.contract import QUERIES
+from tests.extent import exhaustive
 
 
 def pair(change: str, ratio: float = 1.0) -> PairTimed:
@@ -48,6 +49,7 @@ def test_a_tree_is_slower_only_if_no_pair_of_processes_says_otherwise(pairs, cha
     assert ENDED not in pairs or "could not be timed: it ended" in findings[0].why
 
 
+@exhaustive
 def test_a_tree_beside_itself_is_timed_and_not_worse(monkeypatch):
     # One pair takes seconds; what several say together has its own test.
     monkeypatch.setattr(interleaved, "PAIRS", 1)

@@ -49,6 +49,7 @@ def test_the_run_that_is_opened_is_the_baseline_and_a_newer_one_takes_its_place(
     assert session.open_run().run.folder.resolve() == base_folder.resolve()
 
 
+@exhaustive
 def test_in_jupyter_what_is_missing_is_said_and_the_cells_below_are_run(tmp_path, monkeypatch):
     kept = carried("results/reference/run")
     monkeypatch.setenv(session.RUN_VARIABLE, str(kept))

@@ -37,6 +37,7 @@ def _patient(monkeypatch):
     monkeypatch.setattr(cluster, "CONNECT_SECONDS", PATIENCE_SECONDS)
 
 
+@exhaustive
 def test_an_interrupted_study_is_resumed_with_what_its_machines_have_measured(
     tmp_path, two_machines
 ):
@@ -67,6 +68,7 @@ def test_an_interrupted_study_is_resumed_with_what_its_machines_have_measured(
     assert len(load(folder).meta["resumed"]) == 1
 
 
+@exhaustive
 def test_work_is_spread_kept_apart_and_tried_elsewhere_when_a_machine_is_lost(
     tmp_path, two_machines
 ):

@@ -14,6 +14,7 @@ from experiments.validation import accuracy
 from experiments.validation.synthetic import CONDITIONS, GROWTH, make_curves
 from structures import THESIS
 from tests.experiments.made_runs import LIKE_THE_THESIS, write_run
+from tests.extent import exhaustive
 
 REFERENCE = Path(__file__).parents[3] / "results" / "reference"
 
@@ -42,6 +43,7 @@ def test_a_sound_run_is_determined_and_one_without_data_is_not(tmp_path: Path) -
     assert accuracy.determined_shares(emptied).loc["Table 1"].tolist() == [claimed, 0, 0]
 
 
+@exhaustive
 def test_half_of_the_timed_curves_missing_is_half_of_the_claims_undetermined(
     tmp_path: Path,
 ) -> None:

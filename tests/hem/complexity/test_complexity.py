@@ -27,7 +27,7 @@ def outcomes(name: str, condition: str) -> tuple[Counter[str], Counter[str]]:
     return true, false
 
 
-WAITED_FOR = "O(1)", "O(n)", "O(n log n)"
+WAITED_FOR = "O(1)", "O(n log n)"
 
 
 @pytest.mark.parametrize(

@@ -13,7 +13,7 @@ from hem.fracture.bodies.cells import cells
 from hem.fracture.bodies.solid import require_body
 from hem.fracture.bodies.voronoi import voronoi
 from hem.meshes.edges import undirected_edges
-from tests.extent import some
+from tests.extent import exhaustive, some
 from tests.hem.fracture.solids import (
     NAMES,
     as_trimesh,
@@ -151,6 +151,7 @@ def test_shards_lie_closer_together_near_the_impact():
     assert thirds[0] < thirds[1] < thirds[2]
 
 
+@exhaustive
 def test_the_same_seed_gives_the_same_pieces_in_another_process():
     code = (
         "import hem, hashlib; from hem.fracture.bodies.voronoi import voronoi;"
