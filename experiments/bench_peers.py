@@ -46,7 +46,7 @@ def cases(preset: Preset, structure: str) -> list[Case]:
     peer, family = PEERS[structure], preset.families[0]
     by_size = sizes(preset, peer)
     hubs = min(preset.valence_faces, 10 * preset.object_vertices) if peer.objects else 0
-    whole = max(it for it in by_size if it <= ALGORITHM_VERTICES)
+    whole = {common(preset), max(it for it in by_size if it <= ALGORITHM_VERTICES)}
     looped = [(it, LOOPED) for it in QUERIES if it in peer.loops]
     asked = [*((it, SINGLE) for it in peer.single), *looped]
     bulk = [(it, BULK) for it in peer.bulk]
@@ -63,8 +63,8 @@ def cases(preset: Preset, structure: str) -> list[Case]:
             for it in asked
         ),
         *(Case(structure, family, common(preset), *it) for it in done),
-        *(Case(structure, family, whole, it) for it in peer.algorithms),
-        *(Case(structure, family, whole, it, LOOPED) for it in SIX if it in peer.loops),
+        *(Case(structure, family, size, it) for size in whole for it in peer.algorithms),
+        *(Case(structure, family, max(whole), it, LOOPED) for it in SIX if it in peer.loops),
         *(Case(structure, family, by_size[-1], it) for it in (BYTES, *BAD_INPUT)),
     ]
 

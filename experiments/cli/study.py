@@ -85,7 +85,7 @@ def run_study(
     else:
         given |= {"mesh": mesh, "repair": repair}
         folder = study.begin(given.pop("preset", DEFAULT), output, **given)
-    _measure(folder, workers)
+    _measure(folder, workers, "hem table --peers" if peers else "hem table, hem report")
 
 
 def _other_libraries() -> list[str]:
@@ -117,8 +117,8 @@ def _require_as_begun(folder: Path, given: dict[str, Any], workers: str | None) 
         raise ValueError(f"{folder} is of a cluster: resume it with --workers tcp://…")
 
 
-def _measure(folder: Path, workers: str | None) -> None:
-    """Measure what a run lacks, and say how it went and what to do now."""
+def _measure(folder: Path, workers: str | None, now: str) -> None:
+    """Measure what a run lacks, and say how it went and what to do ``now``."""
     from experiments.cli.progress import show_progress
     from experiments.runs import CannotWriteError, cluster, load, noise, study
 
@@ -145,4 +145,4 @@ def _measure(folder: Path, workers: str | None) -> None:
         console.print(f"{len(run.skipped)} cases were skipped; hem report says which and why.")
     seen = noise(run)
     console.print(seen.words, style="yellow" if seen.too_busy else None)
-    console.print(f"Done in {perf_counter() - begin:.0f} s. Now: hem table, hem report")
+    console.print(f"Done in {perf_counter() - begin:.0f} s. Now: {now}")

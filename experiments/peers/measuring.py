@@ -243,21 +243,24 @@ def time_algorithm(case: Case, preset: Preset, timer: Timer) -> Fields:
 
 
 @lru_cache(maxsize=2)
-def _looped(case: Case, rounds: int, whole: int) -> dict[str, list[float]]:
-    """What compiled loops took on a mesh, by subject, once some answers were checked."""
+def _looped(case: Case, rounds: int, whole: int) -> tuple[dict[str, list[float]], Fields]:
+    """What compiled loops took on a mesh, by subject, and the memory beside it.
+
+    Some answers are checked.
+    """
     peer, given = PEERS[case.structure], _given(case)
     assert peer.looped is not None  # or there is no such case
     few = 0 if case.valence is None else len(hem.valence_hubs(case.valence, case.size))
     told = peer.looped(*given, few, rounds, whole)
     check_told(peer.title, given[1], told["answers"])
-    return dict(told["times"])
+    return told["times"], _memory(told["bytes"])
 
 
 def read_looped(case: Case, preset: Preset) -> Fields:
     """Times that a program took of itself."""
     whole = 0 if case.valence else preset.fewest_rounds
-    samples = _looped(replace(case, subject=None, order=None), preset.rounds, whole)
-    return {"samples": samples[str(case.subject)], "handles": 1, "checked": True}
+    samples, memory = _looped(replace(case, subject=None, order=None), preset.rounds, whole)
+    return {"samples": samples[str(case.subject)], "handles": 1, "checked": True, **memory}
 
 
 def _require(peer: Peer, holds: bool, otherwise: str) -> None:
@@ -267,5 +270,8 @@ def _require(peer: Peer, holds: bool, otherwise: str) -> None:
 
 def beside(case: Case) -> Fields:
     """What a case works on, and the memory's latency there."""
-    working_set = _built(replace(case, subject=None, order=None)).working_set
+    return _memory(_built(replace(case, subject=None, order=None)).working_set)
+
+
+def _memory(working_set: int) -> Fields:
     return {"working_set": working_set, "latency": latency_now(working_set)}

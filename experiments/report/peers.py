@@ -25,7 +25,7 @@ from experiments.peers import (
     PEERS,
     SINGLE,
     SIX,
-)
+)  # fmt: skip
 from experiments.report.pages import Html, text_table
 from experiments.report.session import MissingError
 from experiments.report.tables import digits, duration, show_rows
@@ -216,7 +216,7 @@ GROUPS: dict[str, dict[str, tuple[str, str]]] = {
 READING = (
     "A query's growth by faces and by valence, and whether that is what the thesis claims of a "
     "half-edge mesh; then how many times as long as ours it takes, on the largest mesh of both. "
-    "All of them are called from Python. N/A: the library has no call for it."
+    "But for compiled loops all are called from Python. N/A: the library has no call for it."
 )
 
 
@@ -281,7 +281,7 @@ def page_table(rows: Sequence[Sequence[Any]]) -> Html:
     heads, *body = rows
     if not body:
         raise MissingError(MISSING)
-    return text_table(heads, body)
+    return text_table(heads, [[it.replace(" ×", "\u00a0×") for it in row] for row in body])
 
 
 def about(peers: Peers) -> Html:

@@ -76,7 +76,9 @@ def _looped(
     threads = numba.get_num_threads()
     numba.set_num_threads(1)
     try:
-        return {"times": _times(_build(points, triangles), few, rounds, whole), "answers": {}}
+        s = _build(points, triangles)
+        times = _times(s, few, rounds, whole)
+        return {"times": times, "answers": {}, "bytes": sum(s.memory().values())}
     finally:
         numba.set_num_threads(threads)
 
