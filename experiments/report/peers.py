@@ -280,7 +280,7 @@ def page_table(rows: Sequence[Sequence[Any]]) -> Html:
     """Rows on a page, their heads first. Raises MissingError where there is no other."""
     heads, *body = rows
     if not body:
-        raise MissingError(MISSING)
+        raise MissingError("This was not measured of any library.")
     return text_table(heads, [[it.replace(" ×", "\u00a0×") for it in row] for row in body])
 
 
