@@ -24,8 +24,14 @@ from experiments.peers import (
 from experiments.runs import experiments, study
 from hem.contract import QUERIES
 from tests.experiments.peers.slow_library import ABSENT, LIAR, LIBRARY
+from tests.extent import exhaustive
 
-PRESET = replace(PRESETS["smoke"], case_seconds=0.01, round_seconds=0.001)
+HERE = [
+    pytest.param(name, marks=exhaustive if PEERS[name].loops and name != OURS else ())
+    for name in installed()
+]
+"""The libraries that are here; those in C++, which are compiled first, where all is tested."""
+PRESET = replace(PRESETS["smoke"], case_seconds=60, round_seconds=0.001)
 
 
 @pytest.fixture
@@ -44,7 +50,7 @@ def measured(name: str, **wanted) -> list[Measurement]:
     return [bench_peers.measure(it, PRESET, time_rounds) for it in cases]
 
 
-@pytest.mark.parametrize("name", installed())
+@pytest.mark.parametrize("name", HERE)
 def test_every_library_that_is_here_answers_as_the_triangle_list_says(name):
     found = measured(name, size=PRESET.sizes[0])
     asked = {(it.subject, it.order) for it in found if it.checked}
@@ -53,7 +59,7 @@ def test_every_library_that_is_here_answers_as_the_triangle_list_says(name):
     assert all(np.all(np.array(it.samples) > 0) for it in found)
 
 
-@pytest.mark.parametrize("name", installed())
+@pytest.mark.parametrize("name", HERE)
 def test_every_operation_and_algorithm_leaves_the_faces_it_should(name):
     peer = PEERS[name]
     for subject in {*peer.operations, *peer.batches, *peer.algorithms}:
@@ -77,6 +83,21 @@ def test_a_wrong_answer_is_told_with_both_answers_and_not_timed(monkeypatch, ord
     monkeypatch.setitem(PEERS, "liar", LIAR)
     with pytest.raises(CheckFailedError, match=r"vertex_faces\(\d+\) gives .*the triangle list"):
         measured("liar", subject="vertex_faces", order=order)
+
+
+def test_a_library_in_python_whose_answer_takes_too_long_is_stopped_and_skipped(monkeypatch):
+    def forever(handle):
+        while True:
+            pass
+
+    endless = replace(LIBRARY, single={"vertex_faces": lambda m: forever}, bulk={})
+    monkeypatch.setitem(PEERS, "endless", endless)
+    monkeypatch.setattr(
+        "tests.experiments.peers.test_peers.PRESET", replace(PRESET, case_seconds=1)
+    )
+    found = measured("endless", subject="vertex_faces", family="torus")
+    assert found
+    assert all("takes longer than the 1 s" in it.skipped and not it.samples for it in found)
 
 
 def test_a_library_that_is_not_installed_is_named_and_has_no_cases(monkeypatch):
@@ -110,10 +131,11 @@ def test_the_bad_strip_has_one_side_and_is_manifold_but_for_that():
     assert len(np.unique(directed, axis=0)) < len(directed)  # some edge runs the same way twice
 
 
-def test_a_process_that_ends_is_told_and_what_is_left_is_tried_in_another():
+def test_a_process_that_ends_is_told_and_what_is_left_is_tried_in_another(monkeypatch):
+    monkeypatch.setattr(trials, "BAD_INPUT", ["two_fans"])
     told = trials.told_by_child("no such library", "torus", 100)
     assert told.pop(BYTES) is None
-    assert told == dict.fromkeys(BAD_INPUT, ("ended", "exit code 1"))
+    assert told == {"two_fans": ("ended", "exit code 1")}
 
 
 def test_a_process_grows_by_what_ours_takes():
