@@ -61,7 +61,7 @@ def searches(case: Case) -> bool:
     return (kind.searches or kind.rebuilds) and case.subject not in NOT_SEARCHED
 
 
-@lru_cache(maxsize=2 + CHOICES)
+@lru_cache(maxsize=4 * CHOICES)
 def _apart(family: str, size: int, valence: int | None, seed: int = ELEMENT_SEED) -> Array:
     mesh = Case(BASE, family, size, valence=valence).mesh()
     if family == HUBS:
