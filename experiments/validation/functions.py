@@ -76,19 +76,19 @@ def _bytes(n: int) -> bytes:
 
 
 def _array(n: int) -> Any:
-    return np.random.default_rng(n).random(n)
+    return np.random.default_rng().random(n)
 
 
 def _matrix(n: int) -> Any:
-    return np.random.default_rng(n).random((n, n)) + n * np.eye(n)
+    return np.random.default_rng().random((n, n)) + n * np.eye(n)
 
 
 def _sparse(n: int) -> Any:
-    return scipy.sparse.random_array((n, n), density=min(5 / n, 1), format="csr", rng=n)
+    return scipy.sparse.random_array((n, n), density=min(5 / n, 1), format="csr")
 
 
 def _points(n: int) -> Any:
-    return np.random.default_rng(n).random((n, 3))
+    return np.random.default_rng().random((n, 3))
 
 
 def _sphere(n: int) -> Any:  # all on the hull: of points in a cube most are seen just once
@@ -254,9 +254,9 @@ FUNCTIONS: tuple[Function, ...] = (
         lambda n: (np.arange(n), np.array(_asked(n))), lambda s: np.searchsorted(*s),
         "numpy.org/doc: binary search"),
     Function("array[random indices]", "O(n)",
-        lambda n: (_array(n), np.random.default_rng(n).permutation(n)), lambda s: s[0][s[1]], NUMPY,
+        lambda n: (_array(n), np.random.default_rng().permutation(n)), lambda s: s[0][s[1]], NUMPY,
         most=CACHE_BOUND),
-    Function("np.bincount", "O(n)", lambda n: np.random.default_rng(n).integers(0, 100, n),
+    Function("np.bincount", "O(n)", lambda n: np.random.default_rng().integers(0, 100, n),
         np.bincount, NUMPY),
     Function("np.histogram, 10 bins", "O(n)", _array, np.histogram, NUMPY),
     Function("np.outer", "O(n²)", _array, lambda a: np.outer(a, a), NUMPY),

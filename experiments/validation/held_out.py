@@ -1,7 +1,8 @@
 """Real functions of known cost that no judge was tuned on: they tell how good one is.
 
 Written down before any judge was asked about them. What is decided by their answers makes them
-functions to tune on, and asks for others here. See `experiments.validation.functions`.
+functions to tune on, as it did of `SEEN`, and asks for others. See
+`experiments.validation.functions`.
 """
 
 import array
@@ -15,6 +16,7 @@ import hashlib
 import heapq
 import itertools
 import math
+import operator
 import random
 import re
 import statistics
@@ -29,6 +31,7 @@ import numpy as np
 import scipy
 import scipy.cluster.hierarchy
 import scipy.linalg
+import scipy.ndimage
 import scipy.signal
 import scipy.sparse.csgraph
 import scipy.spatial
@@ -41,6 +44,7 @@ from experiments.validation.functions import (
     CPYTHON,
     KEYS,
     LAPACK,
+    LOOP,
     NUMPY,
     PYDOC,
     SCIPY,
@@ -59,11 +63,11 @@ def _floats(n: int) -> list[float]:
 
 
 def _array(n: int) -> Any:
-    return np.random.default_rng(n).random(n)
+    return np.random.default_rng().random(n)
 
 
 def _matrix(n: int) -> Any:
-    return np.random.default_rng(n).random((n, n)) + n * np.eye(n)
+    return np.random.default_rng().random((n, n)) + n * np.eye(n)
 
 
 def _symmetric(n: int) -> Any:
@@ -71,7 +75,7 @@ def _symmetric(n: int) -> Any:
 
 
 def _graph(n: int) -> Any:
-    return scipy.sparse.random_array((n, n), density=min(5 / n, 1), format="csr", rng=n)
+    return scipy.sparse.random_array((n, n), density=min(5 / n, 1), format="csr")
 
 
 def _asked(n: int) -> list[int]:
@@ -182,8 +186,86 @@ def _size(n: int) -> int:
     return n
 
 
+def _add_and_discard(given: tuple[set[int], list[int]]) -> None:
+    held, keys = given
+    for key in keys:
+        held.add(-key)
+        held.discard(-key)
+
+
+def _squarings(n: int) -> float:
+    power, base = 1.0, 1.0000001
+    while n:
+        power, base, n = power * base if n & 1 else power, base * base, n >> 1
+    return power
+
+
+def _euclid(n: int) -> int:
+    a, b = n, round(n * 0.6180339887)
+    while b:
+        a, b = b, a % b
+    return a
+
+
+def _divisors(n: int) -> int:
+    return sum(n % d == 0 for d in range(1, math.isqrt(n) + 1))
+
+
+def _heapsort(it: list[float]) -> list[float]:
+    heap: list[float] = []
+    for value in it:
+        heapq.heappush(heap, value)
+    return [heapq.heappop(heap) for _ in it]
+
+
+def _merge_sort(it: list[float]) -> list[float]:
+    if len(it) < 2:
+        return it
+    half = len(it) // 2
+    return list(heapq.merge(_merge_sort(it[:half]), _merge_sort(it[half:])))
+
+
+def _insertion_sort(it: list[int]) -> None:
+    for i in range(1, len(it)):
+        value, place = it[i], i
+        while place and it[place - 1] > value:
+            it[place] = it[place - 1]
+            place -= 1
+        it[place] = value
+
+
+def _selection_sort(it: list[float]) -> None:
+    for i in range(len(it)):
+        least = min(range(i, len(it)), key=it.__getitem__)
+        it[i], it[least] = it[least], it[i]
+
+
+def _pascal(n: int) -> list[float]:
+    row = [1.0]
+    for _ in range(n):
+        row = [a + b for a, b in zip([0.0, *row], [*row, 0.0], strict=True)]
+    return row
+
+
+def _matrix_of_lists(n: int) -> list[list[float]]:
+    return [_floats(n) for _ in range(n)]
+
+
+def _multiply(a: list[list[float]]) -> list[list[float]]:
+    columns = list(zip(*a, strict=True))
+    return [[sum(map(operator.mul, row, column)) for column in columns] for row in a]
+
+
+def _triples(it: list[int]) -> int:
+    return sum(a + b == c for a in it for b in it for c in it)
+
+
+def _sums(it: list[int], total: int = 0) -> int:
+    return _sums(it[1:], total) + _sums(it[1:], total + it[0]) if it else total
+
+
 # fmt: off
-HELD_OUT: tuple[Function, ...] = (
+SEEN: tuple[Function, ...] = (
     Function("dict[str], 1,000 random", "O(1)",
         lambda n: _looked_up(dict.fromkeys(_words(n))), _ask, WIKI),
     Function("OrderedDict.move_to_end, 1,000 random", "O(1)",
@@ -272,7 +354,7 @@ HELD_OUT: tuple[Function, ...] = (
     Function("np.polyfit, degree 3", "O(n)", lambda n: (np.linspace(0, 1, n), _array(n)),
         lambda s: np.polyfit(s[0], s[1], 3), LAPACK),
     Function("np.sort of uint16, stable", "O(n)",
-        lambda n: np.random.default_rng(n).integers(0, 2**16, n, np.uint16),
+        lambda n: np.random.default_rng().integers(0, 2**16, n, np.uint16),
         lambda a: np.sort(a, kind="stable"), SORT + ": radix sort", most=CACHE_BOUND),
     Function("np.sort of float64, stable", "O(n log n)", _array,
         lambda a: np.sort(a, kind="stable"), SORT, most=CACHE_BOUND),
@@ -298,16 +380,79 @@ HELD_OUT: tuple[Function, ...] = (
         scipy.sparse.csgraph.minimum_spanning_tree, GRAPH + ": it sorts"),
     Function("csgraph.floyd_warshall", "O(n³)", _matrix, scipy.sparse.csgraph.floyd_warshall,
         GRAPH),
-    Function("Delaunay, 2D", "O(n log n)", lambda n: np.random.default_rng(n).random((n, 2)),
+    Function("Delaunay, 2D", "O(n log n)", lambda n: np.random.default_rng().random((n, 2)),
         scipy.spatial.Delaunay, "Barber et al., Quickhull"),
-    Function("pdist", "O(n²)", lambda n: np.random.default_rng(n).random((n, 3)),
+    Function("pdist", "O(n²)", lambda n: np.random.default_rng().random((n, 3)),
         scipy.spatial.distance.pdist, SCIPY),
-    Function("linkage, single", "O(n²)", lambda n: np.random.default_rng(n).random((n, 3)),
+    Function("linkage, single", "O(n²)", lambda n: np.random.default_rng().random((n, 3)),
         scipy.cluster.hierarchy.linkage, SCIPY),
     Function("scipy.signal.find_peaks", "O(n)", _array, scipy.signal.find_peaks, SCIPY),
     Function("savgol_filter", "O(n)", lambda n: _array(max(n, 11)),
         lambda a: scipy.signal.savgol_filter(a, 11, 3), SCIPY),
     Function("scipy.stats.kendalltau", "O(n log n)", lambda n: (_array(n), _array(n + 1)[:n]),
         lambda s: scipy.stats.kendalltau(*s), SCIPY + ": Knight's algorithm"),
+)
+
+HELD_OUT: tuple[Function, ...] = (
+    Function("set.add and discard, 1,000 times", "O(1)", lambda n: (set(range(n)), _asked(n)),
+        _add_and_discard, WIKI),
+    Function("bytes[i], 1,000 random", "O(1)", lambda n: (random.randbytes(n), _asked(n)), _ask,
+        CPYTHON, most=CACHE_BOUND),
+    Function("tuple[i], 1,000 random", "O(1)", lambda n: (tuple(_floats(n)), _asked(n)), _ask,
+        WIKI),
+    Function("dict[float], 1,000 random", "O(1)",
+        lambda n: _looked_up(dict.fromkeys(_floats(n))), _ask, WIKI),
+    Function("np.take, 1,000 random", "O(1)",
+        lambda n: (np.zeros(n), np.array(_asked(n))), lambda s: np.take(*s), NUMPY,
+        most=CACHE_BOUND),
+    Function("bisect in floats, 1,000 random", "O(log n)", lambda n: (sorted(_floats(n)),
+        _floats(KEYS)), _bisect, PYDOC),
+    Function("power by squarings", "O(log n)", _size, _squarings, CLRS),
+    Function("Euclid's algorithm", "O(log n)", _size, _euclid, CLRS),
+    Function("divisors up to the root", "O(√n)", _size, _divisors, LOOP),
+    Function("list.extend", "O(n)", _floats, lambda s: [].extend(s), WIKI),
+    Function("list.count", "O(n)", lambda n: list(range(n)), lambda s: s.count(-1), CPYTHON),
+    Function("set | set", "O(n)", lambda n: (set(_floats(n)), set(_floats(n))),
+        lambda s: s[0] | s[1], WIKI),
+    Function("dict of pairs", "O(n)", lambda n: list(enumerate(_floats(n))), dict, WIKI),
+    Function("sum(dict.values)", "O(n)", lambda n: dict(enumerate(_floats(n))),
+        lambda s: sum(s.values()), WIKI),
+    Function("map(str) and join", "O(n)", _floats, lambda s: ",".join(map(str, s)), PYDOC),
+    Function("list of a comprehension", "O(n)", _floats, lambda s: [x * x for x in s if x < 0.5],
+        LOOP),
+    Function("itertools.chain", "O(n)", lambda n: [[1.5, 2.5]] * n,
+        lambda s: list(itertools.chain.from_iterable(s)), PYDOC),
+    Function("str.splitlines", "O(n)", lambda n: "line\n" * n, str.splitlines, CPYTHON),
+    Function("str.translate", "O(n)", _letters, lambda s: s.translate({97: 98}), CPYTHON),
+    Function("re.sub", "O(n)", _letters, lambda s: re.sub("[aeiou]", "-", s), CPYTHON),
+    Function("zlib.adler32", "O(n)", random.randbytes, zlib.adler32, "RFC 1950"),
+    Function("hashlib.md5", "O(n)", random.randbytes, lambda s: hashlib.md5(s).digest(),
+        "RFC 1321"),
+    Function("statistics.variance", "O(n)", _floats, statistics.variance, PYDOC),
+    Function("math.fsum", "O(n)", _floats, math.fsum, PYDOC),
+    Function("np.var", "O(n)", _array, np.var, NUMPY, most=CACHE_BOUND),
+    Function("np.clip", "O(n)", _array, lambda a: np.clip(a, 0.2, 0.8), NUMPY, most=CACHE_BOUND),
+    Function("np.sin", "O(n)", _array, np.sin, NUMPY, most=CACHE_BOUND),
+    Function("np.where", "O(n)", _array, lambda a: np.where(a > 0.5, a, 0.0), NUMPY,
+        most=CACHE_BOUND),
+    Function("np.cumprod", "O(n)", _array, np.cumprod, NUMPY, most=CACHE_BOUND),
+    Function("gaussian_filter1d", "O(n)", _array,
+        lambda a: scipy.ndimage.gaussian_filter1d(a, 2), SCIPY),
+    Function("sorted, integers at random", "O(n log n)",
+        lambda n: random.sample(range(2 * n), n), sorted, WIKI),
+    Function("sorted, strings at random", "O(n log n)",
+        lambda n: random.sample(_words(2 * n), n), sorted, WIKI),
+    Function("heap sort", "O(n log n)", _floats, _heapsort, CLRS),
+    Function("merge sort", "O(n log n)", _floats, _merge_sort, CLRS),
+    Function("np.lexsort", "O(n log n)", lambda n: (_array(n), _array(n)), np.lexsort, SORT),
+    Function("insertion sort, reversed", "O(n²)", lambda n: list(range(n, 0, -1)),
+        _insertion_sort, CLRS),
+    Function("selection sort", "O(n²)", _floats, _selection_sort, CLRS),
+    Function("Pascal's triangle", "O(n²)", _size, _pascal, LOOP),
+    Function("matrix + matrix.T", "O(n²)", _matrix, lambda a: a + a.T, NUMPY),
+    Function("matrix times matrix, by hand", "O(n³)", _matrix_of_lists, _multiply, CLRS),
+    Function("three loops over a list", "O(n³)", lambda n: list(range(n)), _triples,
+        LOOP),
+    Function("sums of all subsets", "O(2^n)", lambda n: list(range(n)), _sums, CLRS),
 )
 # fmt: on

@@ -1,8 +1,8 @@
 """Judges on real functions: how often each names the class that a function is known to have.
 
 ``python -m experiments.validation.real_functions`` measures every function of known cost, some ten
-minutes, and asks every judge. The judge was tuned on those of `experiments.validation.functions`;
-those of `held_out` it had not seen, and tell how good it is.
+minutes, and asks every judge. The judge was tuned on those of `experiments.validation.functions`
+and on those that it has seen; those held out tell how good it is.
 ``--busy`` keeps the other core busy with memory the while.
 """
 
@@ -23,13 +23,13 @@ from typer import Option
 from experiments.runs import describe
 from experiments.validation.accuracy import UNDETERMINED, Judge, installed_judges
 from experiments.validation.functions import FUNCTIONS, Function
-from experiments.validation.held_out import HELD_OUT
+from experiments.validation.held_out import HELD_OUT, SEEN
 from hem.complexity import Measured, canonical, measure, parse
 from hem.complexity.notation import Order
 
 RESULT = Path("results/reference/real_functions.json")
 COLUMNS = ["function", "growth", "source", "half", "neighbor", "judge", "answer"]
-HALVES = {"tuned on": FUNCTIONS, "held out": HELD_OUT}
+HALVES = {"tuned on": (*FUNCTIONS, *SEEN), "held out": HELD_OUT}
 HELD = "held out"
 SAME_POWER = 0.1  # of exponents: a power law that is told by so much is right
 NEIGHBORS = "shared", "busy"

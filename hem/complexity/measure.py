@@ -36,8 +36,9 @@ COSTLIER = 1_000_000  # a call of the largest size than one of the smallest, at 
 REACH = 8  # … where the largest size remains so many times the smallest
 BATCH = 1 << 18  # bytes of the inputs of a sample, where one takes less: they fit into caches
 MOST_CALLS = 4_096  # in a pass
-PASS = 2e-4  # seconds of one, where a call takes less
-PASSES = 3  # of which the quickest counts, as the first finds its inputs out of the caches
+PASS = 2e-4  # seconds of one at least …
+LONGER = 5  # … and so many times that at most, where a call takes less
+PASSES = 2  # of which the quickest counts, as the first finds its inputs out of the caches
 
 
 def measure(
@@ -47,8 +48,8 @@ def measure(
 ) -> Measured:  # fmt: skip
     """Measure f(make_input(n)) for every size n.
 
-    make_input: what makes the input of one call; it is not timed. Where a cost has several
-    variables, it holds all but one fixed.
+    make_input: what makes the input of one call; it is not timed. What it draws at random it draws
+    anew each time. Where a cost has several variables, it holds all but one fixed.
     sizes: ascending, at least four over a range of four to be judged. Where none are given, 20 up
     to `most`, as far as the budget allows: about so many seconds in all.
     rounds: samples per size. fresh: whether every call gets an input of its own. By default inputs
@@ -118,16 +119,18 @@ def _seconds(f: Function | None, inputs: Sequence[Any], clock: Clock) -> float:
 
 
 def _plan(f: Function, make: Callable[[], Any], size: float, fresh: bool, clock: Clock) -> _Plan:
-    """As many calls as the clock needs, on inputs that fit into the caches together."""
+    """As many calls as the clock needs, on as many inputs as fit into the caches together.
+
+    Of few the processor would learn by heart which way they branch.
+    """
     made, call = np.min([_seconds_of_one(f, make, clock) for _ in range(2)], axis=0)
     call = max(call, 1e-9)
-    calls = int(np.clip(min(BATCH / size, PASS / (made + call)), 1, MOST_CALLS))
-    if fresh:
-        return _Plan(make, calls, 1, 1, [])
-    again = int(np.clip(PASS / (calls * call), 1, MOST_CALLS))
-    passes = PASSES if calls * call <= 10 * PASS else 1
-    pool = [] if made < call else [make() for _ in range(calls)]
-    return _Plan(make, calls, again, passes, pool)
+    each_round = fresh or made < call
+    most = PASS * LONGER / (made + call if each_round else max(made / LONGER, call))
+    calls = int(np.clip(min(BATCH / size, most), 1, MOST_CALLS))
+    again = 1 if fresh else int(np.clip(PASS / (calls * call), 1, MOST_CALLS))
+    passes = PASSES if not fresh and calls * call <= PASS * LONGER else 1
+    return _Plan(make, calls, again, passes, [] if each_round else [make() for _ in range(calls)])
 
 
 def _seconds_of_one(f: Function, make: Callable[[], Any], clock: Clock) -> tuple[float, float]:
@@ -171,7 +174,7 @@ def _seconds_of_turn(tried: list[tuple[int, float]]) -> float:
     known, seconds = np.log(np.array(tried)).T
     low, high = np.log(_ends(tried))
     sizes = np.linspace(low, high, COUNT)
-    return float(np.maximum(np.exp(np.interp(sizes, known, seconds)), PASSES * PASS).sum())
+    return float(np.maximum(np.exp(np.interp(sizes, known, seconds)), PASS * LONGER).sum())
 
 
 def _changes(f: Function, it: Any) -> bool:

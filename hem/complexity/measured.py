@@ -17,7 +17,8 @@ MEMORY_ERROR = 0.05  # relative error of what memory did to a call, beside what 
 UNSEEN = 2.0  # … and the slowdown that allocators and caches cause beside it, over the sizes …
 BENT = 4.0  # … or this, where sizes in the caches do not tell that there is less
 CACHED_ERROR = 0.03  # the same for sizes that are in the caches …
-UNSEEN_CACHED = 1.15  # … as a first cache is quicker than a second
+UNSEEN_CACHED = 1.15  # … as a first cache is quicker than a second …
+UNSEEN_LARGE = 1.3  # … and where no small size tells the fixed cost
 CACHED = 2.0  # factor by which an access takes longer than at the smallest size, in the caches
 FEWEST_CACHED = 6  # sizes that may decide for all
 KEPT = 256  # the largest of the integers that Python keeps: larger ones are read from memory
@@ -57,17 +58,16 @@ class Measured:
 
     def _parts(self, steep: bool, expected: str, options: dict[str, Any]) -> list[Verdict]:
         """What some of the sizes tell, the most telling ones first, where the others go on so."""
-        cost = self._cost
-        fits = self.memory[0] < CACHED * self.memory[0].min()
+        cost, fits = self._cost, self.memory[0] < CACHED * self.memory[0].min()
         room = 1 if fits.all() else 2  # what fills the caches is driven out by the rest
         alone = self.working_sets <= self.working_sets[fits].max() / room
-        large = self.sizes > KEPT
         parts = (
             [self._judge(cost * COSTLY > cost.max(), UNSEEN, expected, options)] if steep else []
         )
+        some = (alone, UNSEEN_CACHED), (alone & (self.sizes > KEPT), UNSEEN_LARGE)
         parts += [
-            self._judge(few, 0, expected, options)
-            for few in (alone, alone & large, fits, fits & large)
+            self._judge(few, unseen, expected, options, cached=True)
+            for few, unseen in some
             if np.count_nonzero(few) >= min(FEWEST_CACHED, len(few))
         ]
         return [it for it in parts if _names_a_class(it) and self._goes_on(it, fits)]
@@ -77,14 +77,15 @@ class Measured:
         return np.array([np.median(row) for row in self.samples])
 
     def _judge(
-        self, of: NDArray[np.bool_], unseen: float, expected: str, options: dict[str, Any]
-    ) -> Verdict:
-        """Judge some sizes by their quicker samples; `unseen` is 0 of those in the caches."""
+        self, of: NDArray[np.bool_], unseen: float, expected: str, options: dict[str, Any],
+        cached: bool = False,
+    ) -> Verdict:  # fmt: skip
+        """Judge some sizes by their quicker samples."""
         given: dict[str, Any] = {"latency": self.memory[:, of], "latency_error": MEMORY_ERROR}
-        if not unseen:
+        if cached:
             given = {"latency": np.ones(of.sum()), "latency_error": CACHED_ERROR}
         if options.get("latency", 0) is not None:
-            given["unseen"] = unseen or UNSEEN_CACHED
+            given["unseen"] = unseen
         rows = [row for row, asked in zip(self.samples, of, strict=True) if asked]
         quick = [np.sort(row)[: int(np.ceil(QUICKER * len(row)))] for row in rows]
         return judge(self.sizes[of], quick, expected, **given | options)
@@ -93,7 +94,7 @@ class Measured:
         """Whether larger sizes cost what smaller ones tell, and no more besides than the memory."""
         terms, rise = told.coefficients[told.best], self.memory[0] / self.memory[0].min()
         off = self._cost / (terms["fixed"] + terms["factor"] * parse(told.best)(self.sizes))
-        return bool(np.all(cached | ((off > 1 / UNSEEN) & (off < 2 * UNSEEN * rise))))
+        return bool(np.all(cached | ((off > 1 / UNSEEN) & (off < UNSEEN + rise / 2))))
 
 
 def _names_a_class(it: Verdict) -> bool:
