@@ -66,8 +66,11 @@ class Cell:
 
     @property
     def found(self) -> str:
-        """The class found, such as ``O(n_ev)``."""
-        grown = [it.best[2:-1].replace("n", sign) for sign, it in self.verdicts.items()]
+        """The class found, such as ``O(n_ev)``; empty where several fit, or none."""
+        answers = {sign: it.answer for sign, it in self.verdicts.items()}
+        if any(not it or " or " in it for it in answers.values()):
+            return ""
+        grown = [it[2:-1].replace("n", sign) for sign, it in answers.items()]
         factors = [it for it in grown if it != "1"]
         return f"O({' · '.join(factors) or 1})" if grown else ""
 
@@ -78,8 +81,9 @@ class Cell:
 
     @property
     def text(self) -> str:
-        """Such as ``O(n_ev) ✓✓ 3.1 ×``."""
-        return " ".join(filter(None, (self.found, self.marks, f"{digits(self.ratio)} ×")))
+        """Such as ``O(n_ev) ✓✓ 3.1 ×``; the time where ours has none to be compared with."""
+        taken = f"{digits(self.ratio)} ×" if self.ratio == self.ratio else duration(self.seconds)
+        return " ".join(filter(None, (self.found, self.marks, taken)))
 
 
 class Peers:
@@ -167,9 +171,10 @@ class Peers:
         rows = [["", "version", "bytes per vertex", "build a vertex", "of ours"]]
         for name in self.names:
             cell, size = self.cell(name, BUILD), self.bytes_per_vertex(name)
-            built = [duration(cell.seconds / cell.size), f"{digits(cell.ratio)} ×"] if cell else []
+            built = duration(cell.seconds / cell.size) if cell else "?"
+            ratio = f"{digits(cell.ratio)} ×" if cell and cell.ratio == cell.ratio else "?"
             weighed = f"{size:,.0f}" if size == size else "?"
-            rows.append([self.title(name), self.version(name), weighed, *(built or ["?", "?"])])
+            rows.append([self.title(name), self.version(name), weighed, built, ratio])
         return rows
 
     def compared(self, title: str) -> list[list[str]]:
@@ -214,8 +219,9 @@ GROUPS: dict[str, dict[str, tuple[str, str]]] = {
 }
 """By title what is compared: by subject the head of its row, and the order of its cases."""
 READING = (
-    "A query's growth by faces and by valence, and whether that is what the thesis claims of a "
-    "half-edge mesh; then how many times as long as ours it takes, on the largest mesh of both. "
+    "A query's growth by faces and by valence where one class fits, and whether it is what the "
+    "thesis claims of a half-edge mesh (?: cannot be told); then how many times as long as ours it "
+    "takes, on the largest mesh of both. "
     "But for compiled loops all are called from Python. N/A: the library has no call for it."
 )
 
