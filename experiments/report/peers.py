@@ -40,6 +40,8 @@ MISSING = "Other libraries were not measured here: hem study --peers does that."
 CASE_ERROR = 0.15
 """How far cases of one curve stray beyond what their rounds tell, as for our structures."""
 NONE = "N/A"
+PER_ELEMENT = {"faces": "O(1)"}
+"""What is claimed of a call that asks all elements, for each of them."""
 
 
 def measured_peers(run: Run) -> Peers:
@@ -56,13 +58,15 @@ class Cell:
     """What became of one subject on one library.
 
     ``seconds`` at the largest size that ours was measured at, too, and ``ratio``: how many times
-    ours that is. ``verdicts``: by the thesis' sign of what varies.
+    ours that is. ``verdicts``: by the thesis' sign of what varies; ``claimed``: whether it claims
+    anything.
     """
 
     seconds: float
     ratio: float
     size: int
     verdicts: Mapping[str, Verdict]
+    claimed: bool
 
     @property
     def found(self) -> str:
@@ -76,7 +80,9 @@ class Cell:
 
     @property
     def marks(self) -> str:
-        """What became of the claim by faces and by valence."""
+        """What became of the claim by faces and by valence; empty where there is none."""
+        if not self.claimed:
+            return ""
         return "".join(Outcome(it.outcome).mark for it in self.verdicts.values())
 
     @property
@@ -128,12 +134,13 @@ class Peers:
         size = max(both or curve.by_size.index)
         seconds = float(curve.by_size[size])
         ratio = seconds / float(ours.by_size[size]) if both else np.nan
-        return Cell(seconds, ratio, int(size), self._verdicts(name, subject, order))
+        claimed = PER_ELEMENT if order == BULK else self._claims.get(subject, {})
+        verdicts = self._verdicts(name, subject, order, claimed) if subject in QUERIES else {}
+        return Cell(seconds, ratio, int(size), verdicts, bool(claimed))
 
-    def _verdicts(self, name: str, subject: str, order: str) -> dict[str, Verdict]:
-        if subject not in QUERIES:
-            return {}
-        claimed = self._claims.get(subject, {}) if order != BULK else {}
+    def _verdicts(
+        self, name: str, subject: str, order: str, claimed: Mapping[str, str]
+    ) -> dict[str, Verdict]:
         every = {
             "n_t": self._by_size(name, subject, order),
             "n_ev": self._by_valence(name, subject, order),
@@ -277,7 +284,8 @@ def _records(peers: Peers, name: str) -> Iterator[dict[str, Any]]:
     subjects = [(it, order) for group in GROUPS.values() for it, (_, order) in group.items()]
     for subject, order in [(BUILD, ""), *subjects]:
         if cell := peers.cell(name, subject, order):
-            outcomes = {sign: it.outcome for sign, it in cell.verdicts.items()}
+            claimed = cell.claimed
+            outcomes = {sign: it.outcome for sign, it in cell.verdicts.items() if claimed}
             yield {"subject": subject, "way": order, "seconds": cell.seconds, "found": cell.found,
                    "vertices": cell.size, "of_ours": cell.ratio, "outcomes": outcomes}  # fmt: skip
 

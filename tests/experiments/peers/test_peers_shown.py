@@ -36,6 +36,7 @@ def cases(slower: int, grows: int):
     for n in SIZES:
         for order in (SINGLE, BULK):
             yield case("vertex_faces", order, 1e-6 * (n / 100) ** grows, n)
+        yield case("vertex_vertices", SINGLE, 1e-6, n)
         yield case(BUILD, None, 1e-7 * n, n)
     for valence in VALENCES:
         yield case("vertex_faces", SINGLE, 1e-7 * valence, family=HUBS, valence=valence)
@@ -75,6 +76,7 @@ def test_the_table_fits_and_shows_class_verdict_and_ratio(run):
     assert "1.2.3" in text
     assert "O(n_t · n_ev) ✗✓ 3,000 ×" in text  # 3 times as long, and 1,000 times as large a mesh
     assert "3.0 ×" in text  # building
+    assert "O(1) 3.0 ×" in text  # of the neighbors of a vertex the thesis claims nothing
     assert "300" in text  # bytes per vertex
 
 
@@ -82,7 +84,8 @@ def test_as_json_it_has_every_library_and_subject(run):
     content = json.loads(printed("table", str(run), "--peers", "--json"))
     ours, slow = content["libraries"]
     assert slow["bytes_per_vertex"] == 300
-    asked = next(it for it in slow["subjects"] if it["way"] == SINGLE)
+    asked = next(it for it in slow["subjects"] if it["subject"] == "vertex_faces")
+    assert asked["way"] == SINGLE
     assert asked["outcomes"] == {"n_t": "violated", "n_ev": "consistent"}
     assert asked["of_ours"] == pytest.approx(3_000)
     assert all(it["of_ours"] == 1 for it in ours["subjects"])
