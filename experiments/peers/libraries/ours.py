@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from functools import partial
 from operator import attrgetter, methodcaller
+from time import thread_time
 from typing import Any
 
 import numba
@@ -88,10 +89,19 @@ def _times(s: Mesh, few: int, rounds: int, whole: int) -> dict[str, list[float]]
     for query, it in QUERIES.items():
         handles = np.random.default_rng(7).permutation(_at(s, it.source, few))[:ASKED]
         sweep = s.prepare_sweep(query, handles)
-        times[query] = [took / len(handles) for took in _rounds(sweep.run, tuple, rounds)]
+        times[query] = [
+            took / len(handles) for took in time_rounds(sweep.run, rounds=rounds).samples.tolist()
+        ]
     for name, algorithm in algorithms.SIX.items() if whole else ():
-        times[name] = _rounds(algorithm, lambda: (s.copy(),), whole)
+        times[name] = [_processor_seconds(algorithm, s.copy()) for _ in range(1 + whole)][1:]
     return times
+
+
+def _processor_seconds(algorithm: Callable[[Any], Any], s: Mesh) -> float:
+    """As ``program.cpp`` takes them: other programs make the least difference to these."""
+    begin = thread_time()
+    algorithm(s)
+    return thread_time() - begin
 
 
 def _at(s: Mesh, source: str, few: int) -> Array:
@@ -101,12 +111,6 @@ def _at(s: Mesh, source: str, few: int) -> Array:
         return every[:few] if few else every
     corners = getattr(s, f"{source}_vertices")(every).values.reshape(len(every), -1)
     return every[(corners < few).any(axis=1)]
-
-
-def _rounds(
-    call: Callable[..., Any], setup: Callable[[], tuple[Any, ...]], many: int
-) -> list[float]:
-    return time_rounds(call, setup=setup, rounds=many).samples.tolist()
 
 
 ASKED = 20_000
