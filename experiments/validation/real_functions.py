@@ -3,7 +3,7 @@
 ``python -m experiments.validation.real_functions`` measures every function of known cost, some ten
 minutes, and asks every judge. The judge was tuned on those of `experiments.validation.functions`
 and on those that it has seen; those held out tell how good it is.
-``--busy`` keeps the other core busy with memory the while.
+``--busy`` measures the latter alone, and keeps the other core busy with memory the while.
 """
 
 import json
@@ -120,7 +120,8 @@ def _rows(budget: float, busy: bool, measured: Path | None) -> Iterator[list[str
     if measured and measured.exists():
         lines = map(json.loads, measured.read_text("utf-8").splitlines())
         kept = {line.pop("function"): line for line in lines}
-    functions = [(half, it) for half, some in HALVES.items() for it in some]
+    halves = {HELD: HELD_OUT} if busy else HALVES
+    functions = [(half, it) for half, some in halves.items() for it in some]
     with neighbor(busy and len(kept) < len(functions)):
         for half, it in functions:
             if line := kept.get(it.name):
