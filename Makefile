@@ -24,7 +24,7 @@ define install
 endef
 
 .DEFAULT_GOAL := help
-.PHONY: help study test test-all demo soak mutants check format peers test-floor docs clean
+.PHONY: help study test test-all demo soak mutants check format peers peers-cpp test-floor docs clean
 
 help:  ## show this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -81,6 +81,10 @@ peers: $(STUDY)  ## measure other libraries beside ours, and print what came out
 	|| for peer in openmesh libigl meshlib compas open3d bpy; do \
 		$(BIN)/python -m pip --disable-pip-version-check --quiet install $$peer --constraint constraints.txt >/dev/null 2>&1; done || true
 	@$(BIN)/hem study --peers
+	@$(BIN)/hem table --peers
+
+peers-cpp: $(STUDY)  ## the same of the libraries in C++ alone, where their packages are installed
+	@$(BIN)/hem study --peers --structure ours --structure cgal --structure openmesh_cpp
 	@$(BIN)/hem table --peers
 
 test-floor:  ## run all tests with the oldest versions that are supported

@@ -64,7 +64,12 @@ def cases(preset: Preset, structure: str) -> list[Case]:
         ),
         *(Case(structure, family, common(preset), *it) for it in done),
         *(Case(structure, family, size, it) for size in whole for it in peer.algorithms),
-        *(Case(structure, family, max(whole), it, LOOPED) for it in SIX if it in peer.loops),
+        *(
+            Case(structure, family, size, it, LOOPED)
+            for size in by_size
+            for it in SIX
+            if it in peer.loops
+        ),
         *(Case(structure, family, by_size[-1], it) for it in (BYTES, *BAD_INPUT)),
     ]
 

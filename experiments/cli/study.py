@@ -73,7 +73,7 @@ def run_study(
         raise ValueError("--repair is about a mesh: say --mesh as well")
     output = output or (PEER_RUNS if peers else RUNS)
     if peers and not resume:
-        experiment = [*(experiment or []), *_other_libraries()]
+        experiment = [*(experiment or []), *_other_libraries(structure)]
     options: dict[str, Any] = {"preset": preset, "seed": seed, "pin": pin}
     options |= {"structures": structure, "experiments": experiment}
     given = {key: it for key, it in options.items() if it not in (None, [])}
@@ -88,17 +88,18 @@ def run_study(
     _measure(folder, workers, "hem table --peers" if peers else "hem table, hem report")
 
 
-def _other_libraries() -> list[str]:
+def _other_libraries(chosen: list[str] | None) -> list[str]:
     """The experiments on other libraries; says which of these are missing.
 
-    Raises ValueError where all are.
+    Raises ValueError where all are, and for a name that none has.
     """
-    from experiments.peers import OURS, installed, missing
+    from experiments.peers import OURS, PEERS, installed, missing
     from experiments.runs import experiments
 
-    for title, distribution in missing().items():
+    require_known("library", chosen or [], PEERS)
+    for title, distribution in missing(chosen or PEERS).items():
         errors.print(f"{title} is not installed, and left out (pip install {distribution})")
-    if installed() == [OURS]:
+    if not set(installed()) & set(chosen or PEERS) - {OURS}:
         raise ValueError("no other library is installed: pip install 'hem-mesh[peers]'")
     return [name for name, it in experiments().items() if it.by_name]
 

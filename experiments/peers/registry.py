@@ -1,5 +1,6 @@
 """Every library that has a file in this room."""
 
+from collections.abc import Collection
 from importlib import import_module
 from pathlib import Path
 
@@ -25,6 +26,6 @@ def installed() -> list[str]:
     return [name for name, it in PEERS.items() if it.version]
 
 
-def missing() -> dict[str, str]:
-    """The others: by title the distribution that has them."""
-    return {it.title: it.distribution for it in PEERS.values() if not it.version}
+def missing(wanted: Collection[str] = PEERS) -> dict[str, str]:
+    """Those of the wanted ones that cannot: by title the distribution that has them."""
+    return {PEERS[it].title: PEERS[it].distribution for it in wanted if not PEERS[it].version}

@@ -79,7 +79,8 @@ def begin(
     """
     short = [name.removeprefix("bench_") for name in experiments]
     require_known("experiment", short, [name.removeprefix("bench_") for name in catalog()])
-    require_known("structure", structures, NAMED)
+    others = [it for name in short for it in catalog()[f"bench_{name}"].structures]
+    require_known("structure", structures, list(dict.fromkeys([*NAMED, *others])))
     require_known("preset", [preset], PRESETS)
     chosen = {"structures": list(structures), "experiments": [f"bench_{name}" for name in short]}
     title = "-".join([preset, *([own_mesh.called(mesh)] if mesh else [])])
@@ -116,13 +117,14 @@ def plan(folder: Path) -> list[Job]:
     """All jobs of a run, in the order of the experiments."""
     meta, mesh = store.read_meta(folder), own_mesh.of_run(folder)
     preset, wanted, chosen = preset_of(meta), meta["experiments"], meta["structures"]
+    named = set(chosen) <= set(NAMED)  # and no library: then these are measured alone
     extent = PRESETS[preset].on(*mesh) if mesh else PRESETS[preset]
     jobs = [
         Job(name, structure, preset, int(meta["seed"]), bool(meta["pin"]), mesh)
         for name, declared in catalog().items()
         if (name in wanted if wanted else not (declared.by_name or name in extent.skipped))
         for structure in declared.structures
-        if not chosen or structure in chosen or structure not in NAMED
+        if not chosen or structure in chosen or (structure not in NAMED and named)
     ]
     return [job for job in jobs if job.ids]
 

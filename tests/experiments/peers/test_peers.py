@@ -158,3 +158,10 @@ def test_other_libraries_decide_no_claim_and_enter_no_baseline():
     assert declared.table is None
     assert not declared.axes
     assert not declared.baseline_orders
+
+
+def test_libraries_that_are_named_are_measured_alone(tmp_path):
+    begun = study.begin("smoke", tmp_path, experiments=["peers"], structures=[OURS])
+    assert {job.structure for job in study.plan(begun)} == {OURS}
+    with pytest.raises(ValueError, match="no structure is called 'ours'"):
+        study.begin("smoke", tmp_path, experiments=["latency"], structures=[OURS])
