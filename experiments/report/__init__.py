@@ -11,6 +11,7 @@ from importlib import import_module
 from typing import Any
 
 _PLACES = {
+    "figures.sliders": ("advice_sliders",),
     "pages": (
         "Html", "about_run", "abstract", "answer", "browser", "chapter_list", "claim_tables",
         "closing", "errata", "frame_table", "legend", "reasons", "sentences", "slopes", "tally",
@@ -24,7 +25,6 @@ _PLACES = {
     "sections": ("traced",),
     "session": ("MissingError", "claim_link", "link", "open_run", "project_file"),
     "site": ("write_pdf", "write_report"),
-    "sliders": ("advice_sliders",),
     "style": ("show_figures",),
     "tables": ("claims_as_json", "digits", "duration", "show_claims", "table_1_in_words"),
 }  # fmt: skip

@@ -70,18 +70,9 @@ def measure(
         for n, size in zip(chosen, working_sets, strict=True)
     ]
     memory = memory_times(working_sets)
-    samples: list[list[float]] = [[] for _ in plans]
-    collecting = gc.isenabled()
-    gc.disable()
-    try:
-        for turn in range(rounds + 1):
-            for row, plan in list(zip(samples, plans, strict=True))[:: 1 - 2 * (turn % 2)]:
-                row.append(plan.sample(f, clock))
-    finally:
-        if collecting:
-            gc.enable()
+    samples = _interleaved(f, plans, rounds, clock)
     per = chosen if amortized else np.ones(len(chosen))
-    counted = [np.array(row[1:]) / k for row, k in zip(samples, per, strict=True)]
+    counted = [np.array(row) / k for row, k in zip(samples, per, strict=True)]
     return Measured(np.array(chosen, float), counted, working_sets, memory)
 
 
@@ -103,6 +94,26 @@ class _Plan:
     def _pass(self, f: Function, inputs: list[Any], clock: Clock) -> float:
         own = min(_seconds(None, inputs, clock) for _ in range(2))
         return max(_seconds(f, inputs, clock) - own, 1e-9) / len(inputs)
+
+
+def _interleaved(
+    f: Function, plans: Sequence[_Plan], rounds: int, clock: Clock
+) -> list[list[float]]:
+    """Samples of each size, a round of all sizes after the other, up and down in turn.
+
+    After one that does not count.
+    """
+    samples: list[list[float]] = [[] for _ in plans]
+    collecting = gc.isenabled()
+    gc.disable()
+    try:
+        for turn in range(rounds + 1):
+            for row, plan in list(zip(samples, plans, strict=True))[:: 1 - 2 * (turn % 2)]:
+                row.append(plan.sample(f, clock))
+    finally:
+        if collecting:
+            gc.enable()
+    return [row[1:] for row in samples]
 
 
 def _seconds(f: Function | None, inputs: Sequence[Any], clock: Clock) -> float:
