@@ -206,7 +206,7 @@ def time_operations(case: Case, preset: Preset, timer: Timer) -> dict[str, Any]:
     turns = int(np.clip(FEWEST_OPERATIONS // batch.operations, 1, most))
     latency = latency_now(sum(s.memory().values()))
     idle = batch.idle_seconds()
-    constant = _constant_work(case, preset, batch.operations) if s.compiled else None
+    constant = constant_work(case, preset, batch.operations) if s.compiled else None
     beside = _rounds_of(constant, turns, idle)
     timed = timer(batch.operate, setup=batch.ready, rounds=turns * preset.rounds, warmup=2)
     beside += _rounds_of(constant, turns, idle)
@@ -218,7 +218,7 @@ def time_operations(case: Case, preset: Preset, timer: Timer) -> dict[str, Any]:
     return {**timed.fields, **told}
 
 
-def _constant_work(case: Case, preset: Preset, count: int) -> OperationBatch | None:
+def constant_work(case: Case, preset: Preset, count: int) -> OperationBatch | None:
     """As many operations whose work cannot grow, see ``reference.py``; after a copy, too.
 
     None where sizes are not compared, and for what looks at the whole mesh.
@@ -230,7 +230,7 @@ def _constant_work(case: Case, preset: Preset, count: int) -> OperationBatch | N
     mesh = small.family, small.size, small.valence
     faces = copies_of([_apart(*mesh, seed) for seed in range(CHOICES)], small, s)
     if case.family == HUBS:  # at distances as even as theirs, which is easily foreseen
-        hubs = len(_apart(case.family, case.size, case.valence))
+        hubs = min(len(_apart(case.family, case.size, case.valence)), len(faces))
         faces = faces[np.linspace(0, len(faces) - 1, hubs).astype(int)]
     return OperationBatch(s, str(case.subject), _some(faces, count))
 

@@ -22,7 +22,7 @@ from experiments.harness import (
 )
 from experiments.harness import operation_arguments as arguments
 from experiments.harness import operation_faces as faces_of
-from experiments.harness.operations import OperationBatch
+from experiments.harness.operations import OperationBatch, constant_work
 from experiments.harness.reference import copies, copies_of
 from experiments.harness.timer import Timed
 from tests.extent import OF_EACH_KIND
@@ -46,6 +46,15 @@ def test_where_the_valence_varies_each_element_is_at_a_hub_of_its_own():
     faces, hubs = faces_of(it), hem.valence_hubs(16, 2048)
     first = it.mesh().triangles[faces, 0]
     assert set(first) == set(hubs[::2])
+
+
+@pytest.mark.parametrize("valence", [4, 8, 16])
+def test_a_reference_operates_on_no_element_twice(valence):
+    it = replace(case("half_edge", HUBS, valence), subject="remove_face")
+    batch = constant_work(it, replace(PRESETS["standard"], valences=(4,)), len(faces_of(it)))
+    before = batch.mesh.n_faces
+    batch.operate()
+    assert 0 < batch.operations == before - batch.mesh.n_faces
 
 
 @pytest.mark.parametrize("operation", OPERATIONS)

@@ -61,7 +61,7 @@ SHOWN = {
 """What the chapters show of a run."""
 
 EVERYWHERE = {"sentences", "expectations", "tally", "reasons"}
-PARTS = [*NAMES, *experiments()]
+PARTS = [*NAMES, *(name for name, it in experiments().items() if not it.by_name)]
 WAITED_FOR = *OF_EACH_KIND, "bench_queries", "bench_memory"
 LAYOUT = "matplotlib.layout_engine.ConstrainedLayoutEngine"
 
