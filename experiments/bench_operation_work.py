@@ -6,7 +6,6 @@ Each is done uncompiled on a copy of the mesh. The counts are exact and the same
 import numpy as np
 
 from experiments.harness import (
-    OPERATIONS,
     OPERATIONS_TABLE,
     Axis,
     Case,
@@ -14,6 +13,7 @@ from experiments.harness import (
     Measurement,
     Preset,
     Timer,
+    measured_operations,
     operation_arguments,
     operation_faces,
     validate_operated,
@@ -28,7 +28,7 @@ def cases(preset: Preset, structure: str) -> list[Case]:
     return [
         Case(structure, family, size, operation, "counted", valence)
         for family, size, valence in preset.work_points()
-        for operation in OPERATIONS
+        for operation in measured_operations(preset)
     ]
 
 

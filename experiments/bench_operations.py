@@ -13,7 +13,6 @@ import numpy as np
 import hem
 from experiments.harness import (
     HUBS,
-    OPERATIONS,
     OPERATIONS_TABLE,
     Axis,
     Case,
@@ -21,6 +20,7 @@ from experiments.harness import (
     Measurement,
     Preset,
     Timer,
+    measured_operations,
     operation_arguments,
     operation_faces,
     searches,
@@ -46,7 +46,7 @@ def cases(preset: Preset, structure: str) -> list[Case]:
     family, faces = preset.families[0], preset.operation_faces
     by_size = [(family, size, None) for size in preset.operation_sizes]
     by_valence = [(HUBS, faces, k) for k in preset.valences if k <= faces // FEWEST_HUBS]
-    operations = preset.operations or tuple(OPERATIONS)
+    operations = measured_operations(preset)
     singly = [(operation, "one by one") for operation in operations]
     rendered = [("split_face", order) for order in RENDERED]
     return [

@@ -13,6 +13,7 @@ from experiments.harness.experiment import (
     Experiment,
     Keep,
     Table,
+    measured_operations,
 )
 from experiments.harness.operations import (
     operation_arguments,
@@ -30,6 +31,6 @@ __all__ = [
     "ANSWERING", "ANYONE", "BASE", "CLOCK", "HUBS", "OPERATIONS", "OPERATIONS_TABLE",
     "ORDERS", "PRESETS", "QUERIES_TABLE", "Axis", "BenchmarkTimer", "Case", "Experiment", "Keep",
     "Measurement", "Preset", "Table", "Timer", "Watch", "badness", "checked_handles", "disturbed",
-    "in_random_order", "operation_arguments", "operation_faces", "searches", "shuffled",
-    "time_operations", "time_query", "time_rounds", "validate_operated",
+    "in_random_order", "measured_operations", "operation_arguments", "operation_faces", "searches",
+    "shuffled", "time_operations", "time_query", "time_rounds", "validate_operated",
 ]  # fmt: skip

@@ -52,6 +52,11 @@ class Axis(Enum):
         self.unit, self.scale = ("", 1.0) if self.exact else ("ns", 1e9)
 
 
+def measured_operations(preset: Preset) -> tuple[str, ...]:
+    """The operations that a preset has measured."""
+    return preset.operations or tuple(OPERATIONS)
+
+
 @dataclass(frozen=True)
 class Table:
     """A table of the report: its name, its title, and a row per subject with the row's title.

@@ -41,7 +41,7 @@ class Preset:
     ``families[0]`` is the judged one: its valence is the same at every size. Structures made of
     objects are operated on up to ``object_vertices``, asked and built of three times as many; what
     the thesis prints is built of ``printed_sizes``. Operations are done one by one at
-    ``single_sizes``. ``operations``, ``workloads``: those that are timed, all for none;
+    ``single_sizes``. ``operations``, ``workloads``: those that are measured, all for none;
     ``skipped``: experiments that are not part of it. A round is one sample; ``round_seconds`` is
     how long it should last, ``case_seconds`` what a case may take in all, but for ``fewest_rounds``
     that last long. ``valence_faces`` stay in the caches that a core has to itself: beyond,

@@ -30,6 +30,7 @@ EXTENT = replace(
     work_sizes=(100, 200, 400, 800),  # the fewest that a class can be judged from
     valences=(4, 8, 16, 32),
     work_faces=1024,
+    operations=(),
     printed_sizes=(50, 100),
 )
 
