@@ -51,6 +51,12 @@ from experiments.validation.functions import (
     SORT,
     WIKI,
     Function,
+    asked,
+    floats,
+    itself,
+    matrix,
+    sparse_matrix,
+    uniform,
 )
 
 LONG = "CPython, Objects/longobject.c"
@@ -58,28 +64,8 @@ GRAPH = "docs.scipy.org, csgraph"
 SQUARE_BOUND = math.isqrt(CACHE_BOUND)
 
 
-def _floats(n: int) -> list[float]:
-    return [random.random() for _ in range(n)]
-
-
-def _array(n: int) -> Any:
-    return np.random.default_rng().random(n)
-
-
-def _matrix(n: int) -> Any:
-    return np.random.default_rng().random((n, n)) + n * np.eye(n)
-
-
 def _symmetric(n: int) -> Any:
-    return _matrix(n) + _matrix(n).T
-
-
-def _graph(n: int) -> Any:
-    return scipy.sparse.random_array((n, n), density=min(5 / n, 1), format="csr")
-
-
-def _asked(n: int) -> list[int]:
-    return random.choices(range(n), k=KEYS)
+    return matrix(n) + matrix(n).T
 
 
 def _bits(n: int) -> int:
@@ -182,10 +168,6 @@ def _bytes_by_adding(n: int) -> bytes:
     return made
 
 
-def _size(n: int) -> int:
-    return n
-
-
 def _add_and_discard(given: tuple[set[int], list[int]]) -> None:
     held, keys = given
     for key in keys:
@@ -248,7 +230,7 @@ def _pascal(n: int) -> list[float]:
 
 
 def _matrix_of_lists(n: int) -> list[list[float]]:
-    return [_floats(n) for _ in range(n)]
+    return [floats(n) for _ in range(n)]
 
 
 def _multiply(a: list[list[float]]) -> list[list[float]]:
@@ -271,38 +253,38 @@ SEEN: tuple[Function, ...] = (
     Function("OrderedDict.move_to_end, 1,000 random", "O(1)",
         lambda n: _looked_up(collections.OrderedDict.fromkeys(range(n))), _move_to_end, PYDOC),
     Function("array.array[i], 1,000 random", "O(1)",
-        lambda n: (array.array("d", bytes(8 * n)), _asked(n)), _ask, CPYTHON, most=CACHE_BOUND),
+        lambda n: (array.array("d", bytes(8 * n)), asked(n)), _ask, CPYTHON, most=CACHE_BOUND),
     Function("array[1,000 random indices]", "O(1)",
-        lambda n: (_array(n), np.array(_asked(n))), lambda s: s[0][s[1]], NUMPY, most=CACHE_BOUND),
+        lambda n: (uniform(n), np.array(asked(n))), lambda s: s[0][s[1]], NUMPY, most=CACHE_BOUND),
     Function("bisect in array.array, 1,000 random", "O(log n)",
-        lambda n: (array.array("q", range(n)), _asked(n)), _bisect, PYDOC),
+        lambda n: (array.array("q", range(n)), asked(n)), _bisect, PYDOC),
     Function("binary search by hand, 1,000 random", "O(log n)",
-        lambda n: (list(range(n)), _asked(n)), _halve, CLRS),
-    Function("heapq.heappushpop, 1,000 to the bottom", "O(log n)", lambda n: sorted(_floats(n)),
+        lambda n: (list(range(n)), asked(n)), _halve, CLRS),
+    Function("heapq.heappushpop, 1,000 to the bottom", "O(log n)", lambda n: sorted(floats(n)),
         _push_and_pop, CLRS),
     Function("trial division of a prime", "O(√n)", _prime, _divide, CLRS, most=100_000_000),
     Function("tuple(list)", "O(n)", lambda n: list(range(n)), tuple, WIKI),
     Function("list[n // 2:]", "O(n)", lambda n: list(range(n)), lambda s: s[len(s) // 2:], WIKI),
     Function("list.pop(0)", "O(n)", lambda n: list(range(n)), lambda s: s.pop(0), WIKI),
-    Function("hash(tuple)", "O(n)", lambda n: tuple(_floats(n)), hash, CPYTHON),
+    Function("hash(tuple)", "O(n)", lambda n: tuple(floats(n)), hash, CPYTHON),
     Function("set <= set", "O(n)", lambda n: (set(range(n)), set(range(n))),
         lambda s: s[0] <= s[1], WIKI),
     Function("Counter.most_common(10)", "O(n)",
         lambda n: collections.Counter(random.choices(range(n), k=n)),
         lambda s: s.most_common(10), PYDOC + ", heapq.nlargest"),
-    Function("itertools.accumulate", "O(n)", _floats, lambda s: list(itertools.accumulate(s)),
+    Function("itertools.accumulate", "O(n)", floats, lambda s: list(itertools.accumulate(s)),
         PYDOC),
     Function("itertools.groupby", "O(n)", lambda n: [i // 10 for i in range(n)],
         lambda s: [key for key, _ in itertools.groupby(s)], PYDOC),
     Function("heapq.merge, two lists", "O(n)", lambda n: (list(range(n)), list(range(n))),
         lambda s: list(heapq.merge(*s)), CLRS),
-    Function("functools.reduce", "O(n)", _floats, lambda s: functools.reduce(max, s), PYDOC),
-    Function("statistics.fmean", "O(n)", _floats, statistics.fmean, PYDOC),
+    Function("functools.reduce", "O(n)", floats, lambda s: functools.reduce(max, s), PYDOC),
+    Function("statistics.fmean", "O(n)", floats, statistics.fmean, PYDOC),
     Function("statistics.mode", "O(n)", lambda n: random.choices(range(100), k=n),
         statistics.mode, CPYTHON),
     Function("struct.unpack", "O(n)", lambda n: random.randbytes(8 * n),
         lambda s: struct.unpack(f"{len(s) // 8}d", s), PYDOC),
-    Function("array.array of a list", "O(n)", _floats, lambda s: array.array("d", s), CPYTHON),
+    Function("array.array of a list", "O(n)", floats, lambda s: array.array("d", s), CPYTHON),
     Function("bytes.hex", "O(n)", random.randbytes, bytes.hex, CPYTHON),
     Function("hashlib.blake2b", "O(n)", random.randbytes, lambda s: hashlib.blake2b(s).digest(),
         "RFC 7693"),
@@ -318,7 +300,7 @@ SEEN: tuple[Function, ...] = (
     Function("ast.parse", "O(n)", lambda n: "x = y + 1\n" * n, ast.parse, "PEP 617"),
     Function("ElementTree.fromstring", "O(n)", lambda n: f"<a>{'<b>text</b>' * n}</a>",
         ElementTree.fromstring, "libexpat.github.io: one pass"),
-    Function("sorted, by a key", "O(n log n)", _floats, lambda s: sorted(s, key=float.__neg__),
+    Function("sorted, by a key", "O(n log n)", floats, lambda s: sorted(s, key=float.__neg__),
         WIKI),
     Function("int * int, n bits", "O(n^1.585)", lambda n: (_bits(n), _bits(n)),
         lambda s: s[0] * s[1], LONG + ": Karatsuba"),
@@ -335,50 +317,50 @@ SEEN: tuple[Function, ...] = (
         "owasp.org, ReDoS"),
     Function("re, a repeat of repeats", "O(2^n)", lambda n: "a" * n + "c",
         re.compile("(a+)+b").match, "owasp.org, ReDoS"),
-    Function("bubble sort", "O(n²)", _floats, _bubble, CLRS),
+    Function("bubble sort", "O(n²)", floats, _bubble, CLRS),
     Function("edit distance", "O(n²)", lambda n: (_letters(n), _letters(n)), _edits, CLRS),
-    Function("towers of Hanoi", "O(2^n)", _size, _hanoi, CLRS),
-    Function("a tuple built by adding", "O(n²)", _size, _tuple_by_adding,
+    Function("towers of Hanoi", "O(2^n)", itself, _hanoi, CLRS),
+    Function("a tuple built by adding", "O(n²)", itself, _tuple_by_adding,
         PYDOC + ", sequence types"),
-    Function("bytes built by adding", "O(n²)", _size, _bytes_by_adding,
+    Function("bytes built by adding", "O(n²)", itself, _bytes_by_adding,
         PYDOC + ", sequence types"),
-    Function("np.dot of vectors", "O(n)", _array, lambda a: a @ a, LAPACK, most=CACHE_BOUND),
-    Function("np.argmax", "O(n)", _array, np.argmax, NUMPY, most=CACHE_BOUND),
-    Function("np.diff", "O(n)", _array, np.diff, NUMPY, most=CACHE_BOUND),
-    Function("array[array > 0.5]", "O(n)", _array, lambda a: a[a > 0.5], NUMPY, most=CACHE_BOUND),
-    Function("np.roll", "O(n)", _array, lambda a: np.roll(a, 7), NUMPY, most=CACHE_BOUND),
-    Function("scipy.special.erf", "O(n)", _array, scipy.special.erf, NUMPY, most=CACHE_BOUND),
-    Function("array.tolist", "O(n)", _array, lambda a: a.tolist(), NUMPY),
-    Function("np.digitize, 10 bins", "O(n)", _array,
+    Function("np.dot of vectors", "O(n)", uniform, lambda a: a @ a, LAPACK, most=CACHE_BOUND),
+    Function("np.argmax", "O(n)", uniform, np.argmax, NUMPY, most=CACHE_BOUND),
+    Function("np.diff", "O(n)", uniform, np.diff, NUMPY, most=CACHE_BOUND),
+    Function("array[array > 0.5]", "O(n)", uniform, lambda a: a[a > 0.5], NUMPY, most=CACHE_BOUND),
+    Function("np.roll", "O(n)", uniform, lambda a: np.roll(a, 7), NUMPY, most=CACHE_BOUND),
+    Function("scipy.special.erf", "O(n)", uniform, scipy.special.erf, NUMPY, most=CACHE_BOUND),
+    Function("array.tolist", "O(n)", uniform, lambda a: a.tolist(), NUMPY),
+    Function("np.digitize, 10 bins", "O(n)", uniform,
         lambda a: np.digitize(a, np.linspace(0, 1, 10)), NUMPY),
-    Function("np.polyfit, degree 3", "O(n)", lambda n: (np.linspace(0, 1, n), _array(n)),
+    Function("np.polyfit, degree 3", "O(n)", lambda n: (np.linspace(0, 1, n), uniform(n)),
         lambda s: np.polyfit(s[0], s[1], 3), LAPACK),
     Function("np.sort of uint16, stable", "O(n)",
         lambda n: np.random.default_rng().integers(0, 2**16, n, np.uint16),
         lambda a: np.sort(a, kind="stable"), SORT + ": radix sort", most=CACHE_BOUND),
-    Function("np.sort of float64, stable", "O(n log n)", _array,
+    Function("np.sort of float64, stable", "O(n log n)", uniform,
         lambda a: np.sort(a, kind="stable"), SORT, most=CACHE_BOUND),
-    Function("np.intersect1d", "O(n log n)", lambda n: (_array(n), _array(n + 1)),
+    Function("np.intersect1d", "O(n log n)", lambda n: (uniform(n), uniform(n + 1)),
         lambda s: np.intersect1d(*s), SORT + ": it sorts"),
     Function("np.searchsorted, n random keys", "O(n log n)",
-        lambda n: (np.sort(_array(n)), _array(n + 1)[:n]), lambda s: np.searchsorted(*s),
+        lambda n: (np.sort(uniform(n)), uniform(n + 1)[:n]), lambda s: np.searchsorted(*s),
         "numpy.org/doc: binary search"),
-    Function("np.fft.fft, powers of two", "O(n log n)", _array, np.fft.fft,
+    Function("np.fft.fft, powers of two", "O(n log n)", uniform, np.fft.fft,
         "numpy.org/doc, numpy.fft", powers=True),
-    Function("array.T.copy", "O(n²)", _matrix, lambda a: a.T.copy(), NUMPY, most=SQUARE_BOUND),
-    Function("np.linalg.solve", "O(n³)", _matrix, lambda a: np.linalg.solve(a, a[0]), LAPACK),
+    Function("array.T.copy", "O(n²)", matrix, lambda a: a.T.copy(), NUMPY, most=SQUARE_BOUND),
+    Function("np.linalg.solve", "O(n³)", matrix, lambda a: np.linalg.solve(a, a[0]), LAPACK),
     Function("np.linalg.eigvalsh", "O(n³)", _symmetric, np.linalg.eigvalsh, LAPACK),
-    Function("solve_triangular", "O(n²)", _matrix,
+    Function("solve_triangular", "O(n²)", matrix,
         lambda a: scipy.linalg.solve_triangular(a, a[0]), LAPACK),
-    Function("solve_toeplitz", "O(n²)", lambda n: _array(n) + n * (np.arange(n) == 0),
+    Function("solve_toeplitz", "O(n²)", lambda n: uniform(n) + n * (np.arange(n) == 0),
         lambda a: scipy.linalg.solve_toeplitz(a, a), SCIPY + ": Levinson"),
-    Function("csgraph.connected_components", "O(n)", _graph,
+    Function("csgraph.connected_components", "O(n)", sparse_matrix,
         scipy.sparse.csgraph.connected_components, GRAPH),
-    Function("csgraph.dijkstra, from one", "O(n log n)", _graph,
+    Function("csgraph.dijkstra, from one", "O(n log n)", sparse_matrix,
         functools.partial(scipy.sparse.csgraph.dijkstra, indices=0), GRAPH),
-    Function("csgraph.minimum_spanning_tree", "O(n log n)", _graph,
+    Function("csgraph.minimum_spanning_tree", "O(n log n)", sparse_matrix,
         scipy.sparse.csgraph.minimum_spanning_tree, GRAPH + ": it sorts"),
-    Function("csgraph.floyd_warshall", "O(n³)", _matrix, scipy.sparse.csgraph.floyd_warshall,
+    Function("csgraph.floyd_warshall", "O(n³)", matrix, scipy.sparse.csgraph.floyd_warshall,
         GRAPH),
     Function("Delaunay, 2D", "O(n log n)", lambda n: np.random.default_rng().random((n, 2)),
         scipy.spatial.Delaunay, "Barber et al., Quickhull"),
@@ -386,39 +368,39 @@ SEEN: tuple[Function, ...] = (
         scipy.spatial.distance.pdist, SCIPY),
     Function("linkage, single", "O(n²)", lambda n: np.random.default_rng().random((n, 3)),
         scipy.cluster.hierarchy.linkage, SCIPY),
-    Function("scipy.signal.find_peaks", "O(n)", _array, scipy.signal.find_peaks, SCIPY),
-    Function("savgol_filter", "O(n)", lambda n: _array(max(n, 11)),
+    Function("scipy.signal.find_peaks", "O(n)", uniform, scipy.signal.find_peaks, SCIPY),
+    Function("savgol_filter", "O(n)", lambda n: uniform(max(n, 11)),
         lambda a: scipy.signal.savgol_filter(a, 11, 3), SCIPY),
-    Function("scipy.stats.kendalltau", "O(n log n)", lambda n: (_array(n), _array(n + 1)[:n]),
+    Function("scipy.stats.kendalltau", "O(n log n)", lambda n: (uniform(n), uniform(n + 1)[:n]),
         lambda s: scipy.stats.kendalltau(*s), SCIPY + ": Knight's algorithm"),
 )
 
 HELD_OUT: tuple[Function, ...] = (
-    Function("set.add and discard, 1,000 times", "O(1)", lambda n: (set(range(n)), _asked(n)),
+    Function("set.add and discard, 1,000 times", "O(1)", lambda n: (set(range(n)), asked(n)),
         _add_and_discard, WIKI),
-    Function("bytes[i], 1,000 random", "O(1)", lambda n: (random.randbytes(n), _asked(n)), _ask,
+    Function("bytes[i], 1,000 random", "O(1)", lambda n: (random.randbytes(n), asked(n)), _ask,
         CPYTHON, most=CACHE_BOUND),
-    Function("tuple[i], 1,000 random", "O(1)", lambda n: (tuple(_floats(n)), _asked(n)), _ask,
+    Function("tuple[i], 1,000 random", "O(1)", lambda n: (tuple(floats(n)), asked(n)), _ask,
         WIKI),
     Function("dict[float], 1,000 random", "O(1)",
-        lambda n: _looked_up(dict.fromkeys(_floats(n))), _ask, WIKI),
+        lambda n: _looked_up(dict.fromkeys(floats(n))), _ask, WIKI),
     Function("np.take, 1,000 random", "O(1)",
-        lambda n: (np.zeros(n), np.array(_asked(n))), lambda s: np.take(*s), NUMPY,
+        lambda n: (np.zeros(n), np.array(asked(n))), lambda s: np.take(*s), NUMPY,
         most=CACHE_BOUND),
-    Function("bisect in floats, 1,000 random", "O(log n)", lambda n: (sorted(_floats(n)),
-        _floats(KEYS)), _bisect, PYDOC),
-    Function("power by squarings", "O(log n)", _size, _squarings, CLRS),
-    Function("Euclid's algorithm", "O(log n)", _size, _euclid, CLRS),
-    Function("divisors up to the root", "O(√n)", _size, _divisors, LOOP),
-    Function("list.extend", "O(n)", _floats, lambda s: [].extend(s), WIKI),
+    Function("bisect in floats, 1,000 random", "O(log n)", lambda n: (sorted(floats(n)),
+        floats(KEYS)), _bisect, PYDOC),
+    Function("power by squarings", "O(log n)", itself, _squarings, CLRS),
+    Function("Euclid's algorithm", "O(log n)", itself, _euclid, CLRS),
+    Function("divisors up to the root", "O(√n)", itself, _divisors, LOOP),
+    Function("list.extend", "O(n)", floats, lambda s: [].extend(s), WIKI),
     Function("list.count", "O(n)", lambda n: list(range(n)), lambda s: s.count(-1), CPYTHON),
-    Function("set | set", "O(n)", lambda n: (set(_floats(n)), set(_floats(n))),
+    Function("set | set", "O(n)", lambda n: (set(floats(n)), set(floats(n))),
         lambda s: s[0] | s[1], WIKI),
-    Function("dict of pairs", "O(n)", lambda n: list(enumerate(_floats(n))), dict, WIKI),
-    Function("sum(dict.values)", "O(n)", lambda n: dict(enumerate(_floats(n))),
+    Function("dict of pairs", "O(n)", lambda n: list(enumerate(floats(n))), dict, WIKI),
+    Function("sum(dict.values)", "O(n)", lambda n: dict(enumerate(floats(n))),
         lambda s: sum(s.values()), WIKI),
-    Function("map(str) and join", "O(n)", _floats, lambda s: ",".join(map(str, s)), PYDOC),
-    Function("list of a comprehension", "O(n)", _floats, lambda s: [x * x for x in s if x < 0.5],
+    Function("map(str) and join", "O(n)", floats, lambda s: ",".join(map(str, s)), PYDOC),
+    Function("list of a comprehension", "O(n)", floats, lambda s: [x * x for x in s if x < 0.5],
         LOOP),
     Function("itertools.chain", "O(n)", lambda n: [[1.5, 2.5]] * n,
         lambda s: list(itertools.chain.from_iterable(s)), PYDOC),
@@ -428,28 +410,28 @@ HELD_OUT: tuple[Function, ...] = (
     Function("zlib.adler32", "O(n)", random.randbytes, zlib.adler32, "RFC 1950"),
     Function("hashlib.md5", "O(n)", random.randbytes, lambda s: hashlib.md5(s).digest(),
         "RFC 1321"),
-    Function("statistics.variance", "O(n)", _floats, statistics.variance, PYDOC),
-    Function("math.fsum", "O(n)", _floats, math.fsum, PYDOC),
-    Function("np.var", "O(n)", _array, np.var, NUMPY, most=CACHE_BOUND),
-    Function("np.clip", "O(n)", _array, lambda a: np.clip(a, 0.2, 0.8), NUMPY, most=CACHE_BOUND),
-    Function("np.sin", "O(n)", _array, np.sin, NUMPY, most=CACHE_BOUND),
-    Function("np.where", "O(n)", _array, lambda a: np.where(a > 0.5, a, 0.0), NUMPY,
+    Function("statistics.variance", "O(n)", floats, statistics.variance, PYDOC),
+    Function("math.fsum", "O(n)", floats, math.fsum, PYDOC),
+    Function("np.var", "O(n)", uniform, np.var, NUMPY, most=CACHE_BOUND),
+    Function("np.clip", "O(n)", uniform, lambda a: np.clip(a, 0.2, 0.8), NUMPY, most=CACHE_BOUND),
+    Function("np.sin", "O(n)", uniform, np.sin, NUMPY, most=CACHE_BOUND),
+    Function("np.where", "O(n)", uniform, lambda a: np.where(a > 0.5, a, 0.0), NUMPY,
         most=CACHE_BOUND),
-    Function("np.cumprod", "O(n)", _array, np.cumprod, NUMPY, most=CACHE_BOUND),
-    Function("gaussian_filter1d", "O(n)", _array,
+    Function("np.cumprod", "O(n)", uniform, np.cumprod, NUMPY, most=CACHE_BOUND),
+    Function("gaussian_filter1d", "O(n)", uniform,
         lambda a: scipy.ndimage.gaussian_filter1d(a, 2), SCIPY),
     Function("sorted, integers at random", "O(n log n)",
         lambda n: random.sample(range(2 * n), n), sorted, WIKI),
     Function("sorted, strings at random", "O(n log n)",
         lambda n: random.sample(_words(2 * n), n), sorted, WIKI),
-    Function("heap sort", "O(n log n)", _floats, _heapsort, CLRS),
-    Function("merge sort", "O(n log n)", _floats, _merge_sort, CLRS),
-    Function("np.lexsort", "O(n log n)", lambda n: (_array(n), _array(n)), np.lexsort, SORT),
+    Function("heap sort", "O(n log n)", floats, _heapsort, CLRS),
+    Function("merge sort", "O(n log n)", floats, _merge_sort, CLRS),
+    Function("np.lexsort", "O(n log n)", lambda n: (uniform(n), uniform(n)), np.lexsort, SORT),
     Function("insertion sort, reversed", "O(n²)", lambda n: list(range(n, 0, -1)),
         _insertion_sort, CLRS),
-    Function("selection sort", "O(n²)", _floats, _selection_sort, CLRS),
-    Function("Pascal's triangle", "O(n²)", _size, _pascal, LOOP),
-    Function("matrix + matrix.T", "O(n²)", _matrix, lambda a: a + a.T, NUMPY),
+    Function("selection sort", "O(n²)", floats, _selection_sort, CLRS),
+    Function("Pascal's triangle", "O(n²)", itself, _pascal, LOOP),
+    Function("matrix + matrix.T", "O(n²)", matrix, lambda a: a + a.T, NUMPY),
     Function("matrix times matrix, by hand", "O(n³)", _matrix_of_lists, _multiply, CLRS),
     Function("three loops over a list", "O(n³)", lambda n: list(range(n)), _triples,
         LOOP),
