@@ -1,7 +1,8 @@
 """How far judge and gate can be trusted, and how quickly things break; run by hand.
 
 Each file is a command, ``python -m experiments.validation.NAME``: ``accuracy`` asks judges about
-synthetic curves, ``aa`` runs the A/A test of the gates, ``mutants`` injects faults that the gates
-must catch, ``budgets`` times a fracture.
+synthetic curves and ``real_functions`` about functions of known cost, ``advice`` holds predictions
+to what was measured, ``aa`` runs the A/A test of the gates, ``mutants`` injects faults that the
+gates must catch, ``budgets`` times how things break.
 Nobody imports them but the notebook on accuracy.
 """

@@ -118,7 +118,7 @@ PEER = Peer(
     manual="Arrays in and out by `mrmeshnumpy`; `orgRing` and `leftRing` of the topology around "
     "one element. Whole tasks are single calls, and its answer to most questions.",
     more="Offsets, Boolean operations, distances, registration, hole filling, point clouds and "
-    "voxels, on many threads and partly on graphics processors. Free for research only.",
+    "voxels, on many threads and partly on graphics processors. Not free for commercial use.",
     build=_build,
     faces=lambda m: int(m.topology.numValidFaces()),
     ends=_ends,
