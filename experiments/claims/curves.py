@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
+from numpy.typing import NDArray
 
 from experiments.claims.claim import Claim
 from experiments.harness import HUBS, QUERIES_TABLE, Axis
@@ -15,6 +16,8 @@ from hem.arrays import Array
 PARTS = (4, 16)
 """By how much less than its working set a query or an operation may touch: one of several arrays,
 or what was just copied. It then waits for memory as a smaller mesh does."""
+
+_NONE = np.zeros(0, np.intp)
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,7 +51,7 @@ class Curve:
         center = np.mean if self.measure == "work" else np.median
         return np.array([float(center(it)) for it in self.samples])
 
-    @property
+    @cached_property
     def by_size(self) -> pd.Series:
         """The cost of each case by its number of vertices."""
         return pd.Series(self.centers, self.cases["vertices"].astype(int), dtype=float)
@@ -64,6 +67,7 @@ class Curves:
 
     def __init__(self, run: Run) -> None:
         self.cases = run.cases
+        self._made: dict[tuple[str, bytes], Curve] = {}
 
     @cached_property
     def judged_family(self) -> str | None:
@@ -82,9 +86,8 @@ class Curves:
         """The cases along one axis: of the judged family, or of the hubs."""
         source = _sources().get((table or table_of(subject), axis))
         family = HUBS if axis.variable == "valence" else self.judged_family
-        rows = self._rows.get((*source, structure, subject, family), []) if source else []
-        cases = self.cases.iloc[rows].sort_values(axis.variable)
-        return Curve(axis.variable, cases)
+        rows = self._rows.get((*source, structure, subject, family), _NONE) if source else _NONE
+        return self._along(axis.variable, rows)
 
     def of(self, claim: Claim, axis: Axis) -> Curve:
         """What a claim is judged by along an axis."""
@@ -112,13 +115,19 @@ class Curves:
         self, experiment: str, structure: str, subject: str = "", order: str = "", width: int = 4
     ) -> Curve:
         """The judged family's cases of an experiment by size; ``width``: bytes of a reference."""
-        cases = self.cases.iloc[self._jobs.get((experiment, structure), [])]
-        wanted = cases["valence"].isna() & (cases["reference_bytes"] == width)
+        rows = self._jobs.get((experiment, structure), _NONE)
+        rows = rows[np.isnan(self._columns["valence"][rows].astype(float))]
         known = {"family": self.judged_family, "subject": subject, "order": order}
-        for name, value in known.items():
-            if value != "":
-                wanted &= cases[name] == value
-        return Curve("faces", cases[wanted].sort_values("faces"))
+        for name, value in {**known, "reference_bytes": width}.items():
+            rows = rows if value == "" else rows[self._columns[name][rows] == value]
+        return self._along("faces", rows)
+
+    def _along(self, variable: str, rows: NDArray[np.intp]) -> Curve:
+        """The cases in some rows; the same curve each time, so that it is summed up once."""
+        key = variable, rows.tobytes()
+        if key not in self._made:
+            self._made[key] = Curve(variable, self.cases.iloc[rows].sort_values(variable))
+        return self._made[key]
 
     def memory(self, structure: str, width: int = 8) -> Curve:
         """The bytes of a structure by size."""
@@ -165,6 +174,10 @@ class Curves:
     def _latency(self) -> Curve:
         cases = self.cases[self.cases["experiment"] == "bench_latency"]
         return Curve("working_set", cases.sort_values("working_set"))
+
+    @cached_property
+    def _columns(self) -> dict[str, NDArray[Any]]:
+        return {str(name): column.to_numpy() for name, column in self.cases.items()}
 
     @cached_property
     def _rows(self) -> dict[Any, Any]:

@@ -6,6 +6,7 @@ Each gives the values that a sentence is judged by.
 from collections import Counter
 from collections.abc import Iterable, Mapping
 from contextlib import suppress
+from functools import cache
 from typing import Any, cast
 
 import numpy as np
@@ -124,6 +125,7 @@ def walks_without_test() -> Iterable[float]:
     yield sum(come_round_tests([walk]) == 0 for walk in walks)
 
 
+@cache
 def handling(*facts: str, mine: str = HALF, other: str = WINGED) -> Iterable[float]:
     """Counts in the code of all queries and operations, one structure's by another's."""
     names = [*QUERIES, *(it for it in _kernels(mine) if it.endswith("_records"))]

@@ -12,7 +12,7 @@ import os
 import socket
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
-from dataclasses import asdict, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, Self
 
@@ -99,7 +99,7 @@ class CaseFile:
     def add(self, *measurements: Measurement) -> None:
         """Append measurements. Raises CannotWriteError, and leaves the file as it was."""
         changed = (
-            {name: value for name, value in asdict(it).items() if value != DEFAULTS[name]}
+            {name: value for name, value in vars(it).items() if value != DEFAULTS[name]}
             for it in measurements
         )
         lines = [*([] if self._bytes else [self._head]), *changed]

@@ -135,7 +135,8 @@ def fit(models: DesignMatrix, costs: Array, weight: Array) -> Fit:
     pure, mixed = models.columns()
     u, v, t = pure * weight, mixed * weight, costs * weight
     uu, vv, uv = (np.maximum((p * q).sum(-1), 1e-30) for p, q in ((u, u), (v, v), (u, v)))
-    ut, vt = (np.tensordot(t, column, axes=(-1, -1)) for column in (u, v))
+    # Not by BLAS, whose threads wait for each other, up to 60 times as long, beside other work.
+    ut, vt = (np.einsum("...k,msk->...ms", t, column) for column in (u, v))
     det = uu * vv - uv * uv
     regular = det > 1e-12 * uu * vv
     safe = np.where(regular, det, 1.0)
