@@ -20,6 +20,11 @@ def some(count: int) -> int:
     return count if EVERYTHING else -(-count // 6)
 
 
+def apart(step: int) -> int:
+    """How far apart the elements are that are edited, of one in so many."""
+    return step if EVERYTHING else 5 * step
+
+
 exhaustive = pytest.mark.exhaustive
 """A test of what is tested otherwise, too, with other data; or that waits for many processes."""
 

@@ -160,7 +160,7 @@ def _memory(bytes_per_vertex: float | None, reference_bytes: int) -> Measurement
     fields = {"vertex.point": size}
     detail = {"fields": fields, "clr": fields, "traced": size, "peak": size}
     return Measurement(
-        id=f"torus/1000/{reference_bytes}", kind="bytes", family="torus", vertices=1000,
+        id=f"torus/1000/{reference_bytes}", kind="bytes", family="torus", vertices=1000, faces=2000,
         reference_bytes=reference_bytes, samples=[float(size)], detail=detail,
     )  # fmt: skip
 

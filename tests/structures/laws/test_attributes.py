@@ -13,6 +13,7 @@ import pytest
 import hem
 import structures
 from hem.contract import Navigable, Structure
+from tests.extent import apart
 from tests.structures.conftest import octahedron, shuffled
 from tests.structures.test_polygons import mixed
 
@@ -73,10 +74,10 @@ def edit_much(s: Structure) -> None:
     faces = s.faces()[::4]
     s.split_faces(faces, [between(s, row, 2) for row in s.face_vertices(faces)])
     s.split_all_faces()
-    for edge in s.edges()[::6].tolist():
+    for edge in s.edges()[:: apart(6)].tolist():
         with contextlib.suppress(hem.TopologyError):
             s.flip_edge(edge)
-    s.collapse_edges(s.edges()[::7])
+    s.collapse_edges(s.edges()[:: apart(7)])
     with contextlib.suppress(hem.TopologyError):
         s.remove_vertex(int(s.vertices()[-1]))
 
