@@ -23,6 +23,9 @@ define install
 	|| $$pip install --editable '.[$(2)]' --constraint $(3)
 endef
 
+# Where this is set, every one of some hundred processes would compile all of Python's modules anew.
+unexport PYTHONDONTWRITEBYTECODE
+
 .DEFAULT_GOAL := help
 .PHONY: help study test test-all demo soak mutants check format peers peers-cpp test-floor docs clean
 

@@ -6,6 +6,8 @@ are more random cases there, too.
 """
 
 import os
+from collections.abc import Collection, Iterable
+from typing import Any
 
 import pytest
 
@@ -27,6 +29,12 @@ def apart(step: int) -> int:
 
 exhaustive = pytest.mark.exhaustive
 """A test of what is tested otherwise, too, with other data; or that waits for many processes."""
+
+
+def waiting_for(few: Collection[Any], every: Iterable[Any]) -> list[Any]:
+    """The parameters of a test: but for a few they are ``exhaustive``."""
+    return [pytest.param(it, marks=() if it in few else exhaustive) for it in every]
+
 
 _half_edges_first = sorted(NAMES, key=lambda name: not issubclass(REGISTRY[name], Navigable))
 _chosen = {(REGISTRY[it].compiled, REGISTRY[it].searches): it for it in reversed(_half_edges_first)}

@@ -7,7 +7,7 @@ import pytest
 from numpy.typing import NDArray
 
 from experiments.regression.significance import Comparison, compare_rounds
-from tests.extent import exhaustive
+from tests.extent import some, waiting_for
 
 Array = NDArray[np.float64]
 Noise = Callable[[np.random.Generator, int, float], Array]
@@ -45,7 +45,7 @@ def own_level(rng: np.random.Generator, n: int, sd: float) -> Array:
 
 
 NOISES = [white, drifting, autocorrelated, heavy_tailed, bimodal, delayed, own_level]
-SOME_NOISES = [*NOISES[:2], *(pytest.param(it, marks=exhaustive) for it in NOISES[2:])]
+SOME_NOISES = waiting_for(NOISES[:2], NOISES)
 
 
 def two_runs(
@@ -69,13 +69,13 @@ def changes(noise: Noise, slower: float, count: int, seed: int, fewest: int = 9)
 
 @pytest.mark.parametrize("noise", SOME_NOISES)
 def test_the_same_code_raises_at_most_one_alarm_in_a_thousand(noise: Noise) -> None:
-    found = changes(noise, 1.0, 1000, 1)
+    found = changes(noise, 1.0, some(1000), 1)
     assert found.count("worse") + found.count("better") <= 1
 
 
 @pytest.mark.parametrize("noise", [white, own_level, drifting, autocorrelated])
 def test_a_slow_down_by_three_tenths_is_found(noise: Noise) -> None:
-    found = changes(noise, 1.3, 400, 2)
+    found = changes(noise, 1.3, some(400), 2)
     wanted = 0.95 if noise is white else 0.85
     assert found.count("worse") >= wanted * len(found)
     assert "better" not in found
@@ -83,7 +83,7 @@ def test_a_slow_down_by_three_tenths_is_found(noise: Noise) -> None:
 
 @pytest.mark.parametrize("noise", SOME_NOISES)
 def test_a_slow_down_twofold_is_found_under_every_noise(noise: Noise) -> None:
-    found = changes(noise, 2.0, 200, 3, fewest=20)
+    found = changes(noise, 2.0, some(200), 3, fewest=20)
     assert found.count("worse") >= 0.9 * len(found)
 
 

@@ -13,7 +13,7 @@ from experiments import carried
 from experiments.report import notebooks, session
 from experiments.report import peers as libraries
 from experiments.runs import load
-from tests.extent import exhaustive
+from tests.extent import exhaustive, waiting_for
 
 FEW = ("index", "comparison_table", "memory", "real_time")
 
@@ -31,7 +31,7 @@ def _nothing_measured(tmp_path, monkeypatch):
 
 @pytest.mark.parametrize(
     "name",
-    [pytest.param(it, marks=() if it in FEW else exhaustive) for it in notebooks.page_titles()],
+    waiting_for(FEW, notebooks.page_titles()),
 )
 def test_a_notebook_runs_to_its_end_on_the_baseline(name):
     text = notebooks.body(name)

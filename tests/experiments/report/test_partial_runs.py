@@ -16,7 +16,7 @@ from experiments.report.tables import show_claims
 from experiments.runs import experiments, load, tables
 from structures import NAMES
 from tests.experiments.made_runs import write_run
-from tests.extent import OF_EACH_KIND, exhaustive
+from tests.extent import OF_EACH_KIND, waiting_for
 
 SHOWN = {
     **{axis.key: lambda run, claims, axis=axis: growth.scaling(run, axis) for axis in Axis},
@@ -62,7 +62,7 @@ SHOWN = {
 
 EVERYWHERE = {"sentences", "expectations", "tally", "reasons"}
 PARTS = [*NAMES, *(name for name, it in experiments().items() if not it.by_name)]
-WAITED_FOR = *OF_EACH_KIND, "bench_queries", "bench_memory"
+FEW = *OF_EACH_KIND, "bench_queries", "bench_memory"
 LAYOUT = "matplotlib.layout_engine.ConstrainedLayoutEngine"
 
 
@@ -80,11 +80,7 @@ def open_part(tmp_path, part: str) -> Session:
     return session
 
 
-@pytest.mark.parametrize("part", [
-    pytest.param(it, marks=() if it in WAITED_FOR else exhaustive)
-    for it in PARTS
-    if it != "bench_latency"
-])  # fmt: skip
+@pytest.mark.parametrize("part", waiting_for(FEW, (it for it in PARTS if it != "bench_latency")))
 def test_what_was_measured_is_shown_and_the_rest_is_named_as_missing(tmp_path, monkeypatch, part):
     # What is shown is looked at here, and not where it stands.
     for placing in ("experiments.report.style.label_ends", f"{LAYOUT}.execute"):

@@ -13,7 +13,7 @@ from experiments.runs import cluster, load, read_meta, study
 from experiments.runs.worker import Job
 from tests.experiments.cli.test_cli import hem
 from tests.experiments.small_study import PATIENCE_SECONDS, Recorder, begin, samples
-from tests.extent import exhaustive
+from tests.extent import exhaustive, waiting_for
 
 
 @pytest.fixture(scope="module")
@@ -118,7 +118,7 @@ def test_without_dask_it_is_said_how_to_get_it(tmp_path, monkeypatch):
 
 @pytest.mark.parametrize(
     "address",
-    ["tcp://127.0.0.1:1", *(pytest.param(it, marks=exhaustive) for it in ("nonsense", "tcp://"))],
+    waiting_for(["tcp://127.0.0.1:1"], ["tcp://127.0.0.1:1", "nonsense", "tcp://"]),
 )
 def test_without_a_cluster_it_is_said_how_to_start_one(tmp_path, monkeypatch, address):
     pytest.importorskip("distributed")

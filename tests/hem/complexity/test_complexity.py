@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from experiments.validation.synthetic import CONDITIONS, GROWTH, make_curve, make_curves
 from hem.complexity import Verdict, judge
-from tests.extent import exhaustive
+from tests.extent import some, waiting_for
 
 Array = NDArray[np.float64]
 
@@ -27,12 +27,7 @@ def outcomes(name: str, condition: str) -> tuple[Counter[str], Counter[str]]:
     return true, false
 
 
-WAITED_FOR = "O(1)", "O(n log n)"
-
-
-@pytest.mark.parametrize(
-    "name", [pytest.param(it, marks=() if it in WAITED_FOR else exhaustive) for it in GROWTH]
-)
+@pytest.mark.parametrize("name", waiting_for(["O(n log n)"], GROWTH))
 def test_curves_of_known_class_are_judged_right_and_hardly_ever_wrong(name: str) -> None:
     wrong = judged = 0
     for condition in CONDITIONS:
@@ -62,7 +57,7 @@ def test_pure_noise_is_undetermined(kind: str, latency: Array | None) -> None:
     rng = np.random.default_rng(1)
     sizes = np.geomspace(100, 1e6, 7)
     decided = 0
-    for i in range(150):
+    for i in range(6 * some(25)):
         claim = list(GROWTH)[i % 6]
         verdict = judge(sizes, noise_alone(rng, kind), claim, latency, resamples=8)
         decided += verdict.outcome != "undetermined"

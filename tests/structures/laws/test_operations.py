@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 import hem
 import structures
-from tests.extent import exhaustive, some
+from tests.extent import some, waiting_for
 from tests.structures.conftest import OF_ARRAYS, octahedron, shuffled, strip
 from tests.structures.histories.actions import (
     BATCHES,
@@ -186,7 +186,7 @@ def test_what_a_collapse_keeps_stays_where_it_is_and_so_do_the_edges_it_had(name
         assert len(spokes & set(s.vertex_edges(a).tolist())) == len(spokes) - 1
 
 
-@pytest.mark.parametrize("reference_bytes", [4, pytest.param(8, marks=exhaustive)])
+@pytest.mark.parametrize("reference_bytes", waiting_for([4], [4, 8]))
 def test_batches_do_what_one_by_one_does(name, reference_bytes):
     one, many = (structures.build(name, hem.generate("grid", 400), reference_bytes) for _ in "12")
     rng = np.random.default_rng(2)

@@ -7,7 +7,7 @@ import hem
 import structures
 from hem.fracture import MATERIALS, require_body, tetrahedra
 from hem.fracture.bodies.overlap import crossing, overlapping
-from tests.extent import OF_EACH_KIND
+from tests.extent import OF_EACH_KIND, some, waiting_for
 from tests.hem.fracture.laws import body, holders, require_body_laws, struck
 
 SEEDS = {"plate": 100, "sphere": 100, "bunny": 4, "teapot": 20}
@@ -18,7 +18,7 @@ SEEDS = {"plate": 100, "sphere": 100, "bunny": 4, "teapot": 20}
 def test_tetrahedra_and_rest_are_closed_and_make_up_the_body(model):
     mesh = body(model)
     original = structures.build("half_edge", mesh)
-    for seed in range(SEEDS[model]):
+    for seed in range(some(SEEDS[model])):
         s, name = original.copy(), list(MATERIALS)[seed % len(MATERIALS)]
         broken = tetrahedra(s, struck(mesh, seed), name, (0.5, 3.0)[seed % 2], seed)
         s.validate()
@@ -27,7 +27,7 @@ def test_tetrahedra_and_rest_are_closed_and_make_up_the_body(model):
         assert len(broken.shards) > 10
 
 
-@pytest.mark.parametrize("model", ["plate", "sphere", "teapot"])
+@pytest.mark.parametrize("model", waiting_for(["plate"], ["plate", "sphere", "teapot"]))
 def test_every_position_inside_lies_in_one_piece(model):
     mesh = body(model)
     for seed in range(3):
@@ -55,7 +55,7 @@ def test_the_rest_does_not_cross_itself(model):
 
 def test_all_structures_give_the_same_tetrahedra():
     mesh = body("sphere")
-    for seed in range(10):
+    for seed in range(some(10)):
         broken = [
             tetrahedra(structures.build(name, mesh), struck(mesh, seed), "glass", 2.0, seed)
             for name in OF_EACH_KIND
