@@ -10,10 +10,13 @@ from urllib.parse import unquote, urlsplit
 import pytest
 
 import hem
+from tests.extent import exhaustive
 
 build = pytest.importorskip("mkdocs.commands.build", reason="the extra docs is not installed")
 
 ROOT = Path(__file__).parents[1]
+
+pytestmark = exhaustive  # to build the site takes longer than to see what is wrong with it
 
 
 class Page(HTMLParser):

@@ -35,8 +35,10 @@ def test_right_wrong_and_undetermined_are_told_apart() -> None:
     assert per_class.to_numpy().sum() == 36
 
 
-def test_a_sound_run_is_determined_and_one_without_data_is_not(tmp_path: Path) -> None:
-    run = load(write_run(tmp_path / "sound"))
+def test_a_sound_run_is_determined_and_one_without_data_is_not(
+    base_folder: Path, tmp_path: Path
+) -> None:
+    run = load(base_folder)
     claimed = 26 + 8 * len(LIKE_THE_THESIS)
     assert accuracy.determined_shares(judge_run(run)).loc["Table 1"].tolist() == [claimed, 1, 1]
     emptied = judge_run(type(run)(tmp_path / "empty", run.meta, run.cases.iloc[:0], run.skipped))
