@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any, overload
 
 import numpy as np
@@ -36,7 +37,8 @@ class Ragged:
 
     def to_list(self) -> list[list[int]]:
         """The rows as lists. Cost O(values)."""
-        return [row.tolist() for row in self]
+        values, ends = self.values.tolist(), self.offsets.tolist()
+        return [values[start:end] for start, end in pairwise(ends)]
 
     @overload
     def __getitem__(self, i: int) -> NDArray[Any]: ...
@@ -60,7 +62,7 @@ class Ragged:
         return self.values[self.offsets[i] : self.offsets[i + 1]]
 
     def __iter__(self) -> Iterator[NDArray[Any]]:
-        return (self[i] for i in range(len(self)))
+        return (self.values[start:end] for start, end in pairwise(self.offsets.tolist()))
 
     def __repr__(self) -> str:
         shown = ", ".join(str(row.tolist()) for row in self[:SHOWN])
