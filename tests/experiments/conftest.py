@@ -26,6 +26,7 @@ def base_folder(tmp_path_factory):
 
 
 @pytest.fixture(scope="session")
-def base(base_folder):
-    """The line of that run."""
-    return record_run(load(base_folder))
+def base(tmp_path_factory):
+    """The line of such a run of some structures."""
+    folder, some = tmp_path_factory.mktemp("some"), ("indexed", "half_edge", "plankton")
+    return record_run(load(write_run(folder, only=lambda _, it: it in some)))

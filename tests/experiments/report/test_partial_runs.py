@@ -62,7 +62,7 @@ SHOWN = {
 
 EVERYWHERE = {"sentences", "expectations", "tally", "reasons"}
 PARTS = [*NAMES, *(name for name, it in experiments().items() if not it.by_name)]
-FEW = *OF_EACH_KIND, "bench_queries", "bench_memory"
+FEW = *OF_EACH_KIND, "bench_queries"
 LAYOUT = "matplotlib.layout_engine.ConstrainedLayoutEngine"
 
 

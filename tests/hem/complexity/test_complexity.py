@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from experiments.validation.synthetic import CONDITIONS, GROWTH, make_curve, make_curves
 from hem.complexity import Verdict, judge
-from tests.extent import some, waiting_for
+from tests.extent import exhaustive, some
 
 Array = NDArray[np.float64]
 
@@ -27,7 +27,8 @@ def outcomes(name: str, condition: str) -> tuple[Counter[str], Counter[str]]:
     return true, false
 
 
-@pytest.mark.parametrize("name", waiting_for(["O(n log n)"], GROWTH))
+@exhaustive
+@pytest.mark.parametrize("name", GROWTH)
 def test_curves_of_known_class_are_judged_right_and_hardly_ever_wrong(name: str) -> None:
     wrong = judged = 0
     for condition in CONDITIONS:
