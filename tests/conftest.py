@@ -26,3 +26,8 @@ def pytest_collection_finish() -> None:
     """What was imported stays: to look for garbage in it took a twentieth of the time."""
     gc.collect()
     gc.freeze()
+
+
+def pytest_unconfigure() -> None:
+    """At the end all of it is garbage; what was written in C++ tells of what is left."""
+    gc.unfreeze()

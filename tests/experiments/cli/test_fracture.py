@@ -115,7 +115,7 @@ def test_a_sphere_breaks_into_all_that_is_promised(tmp_path):
         (["plate"], "surface"),
         (["plate:100", "--structure", "half_edge", "--direction", "0,0,-1"], "surface"),
         (["sphere:162", "--method", "tetra", "--impact", "0,1,0"], "tetra"),
-        (["terrain:100", "--wrap"], "voronoi"),
+        pytest.param(["terrain:100", "--wrap"], "voronoi", marks=exhaustive),
     ],
 )
 def test_every_method_can_be_had_and_the_same_call_gives_the_same(arguments, method, tmp_path):

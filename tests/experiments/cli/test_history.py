@@ -15,6 +15,7 @@ from experiments.report import frame_table, history_tables
 from experiments.report.figures import history as history_figures
 from experiments.runs import load
 from tests.experiments.histories import CLAIM, MACHINES, line, stepped
+from tests.extent import waiting_for
 
 runner = CliRunner()
 NAME = "half_edge/vertex_faces"
@@ -181,7 +182,7 @@ def test_what_was_measured_on_other_sizes_is_not_compared(base, tmp_path):
     assert "Different presets are not compared" in hem("show", "--file", str(path))[1]
 
 
-@pytest.mark.parametrize("count", [1, 2, 30])
+@pytest.mark.parametrize("count", waiting_for([1, 30], [1, 2, 30]))
 def test_figures_and_page_are_there_for_any_number_of_runs(base, tmp_path, count):
     trends = Trends(read_history(stepped(tmp_path / "history.jsonl", base, count)))
     figure = history_figures.by_commit(trends, "vertex_faces")

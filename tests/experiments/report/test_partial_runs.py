@@ -105,7 +105,7 @@ def test_the_front_page_says_what_was_not_measured(tmp_path, part):
     assert body.count("<details") > 100
 
 
-@pytest.mark.parametrize("part", ["plankton", "bench_work"])
+@pytest.mark.parametrize("part", waiting_for(["plankton"], ["plankton", "bench_work"]))
 @pytest.mark.parametrize("slopes", [False, True])
 def test_the_table_in_a_terminal_shows_what_there_is(tmp_path, capsys, part, slopes):
     session = open_part(tmp_path, part)

@@ -6,6 +6,7 @@ from scipy.spatial import cKDTree
 import hem
 from hem.fracture.bodies.solid import require_body
 from hem.fracture.bodies.voronoi import voronoi
+from tests.extent import waiting_for
 from tests.hem.fracture.solids import (
     body,
     dumbbell,
@@ -30,7 +31,9 @@ def probed(pieces, size):
     return {pair for pair in pairs if pair[0] != pair[1]}
 
 
-@pytest.mark.parametrize("name", ["plate", "sphere", "dumbbell", "hollow"])
+@pytest.mark.parametrize(
+    "name", waiting_for(["plate", "dumbbell"], ["plate", "sphere", "dumbbell", "hollow"])
+)
 def test_neighbors_are_those_that_face_each_other(name):
     made = {"dumbbell": dumbbell, "hollow": hollow_sphere}
     it = require_body(made[name]()) if name in made else body(name)
