@@ -9,7 +9,7 @@ import pytest
 import hem
 from hem.sources.cache import cached
 from hem.sources.valence import valence_hubs
-from tests.extent import EVERYTHING
+from tests.extent import exhaustive
 
 SIZES = (100, 137, 400, 2_500, 10_000)
 
@@ -49,7 +49,8 @@ def test_a_family_is_one_surface_wound_outward_or_upward(family: str, n: int) ->
 @pytest.mark.parametrize(
     ("family", "n", "reached"),
     [
-        *[("torus", n, n) for n in (100, 400, 10_000, *[1_000_000][:EVERYTHING])],
+        *[("torus", n, n) for n in (100, 400, 10_000)],
+        pytest.param("torus", 1_000_000, 1_000_000, marks=exhaustive),
         ("sphere", 162, 162), ("sphere", 100, 162), ("sphere", 60, 42), ("sphere", 10_000, 10_242),
         ("grid", 100, 100), ("grid", 64, 64), ("cone", 60, 60), ("cone", 101, 101),
         ("terrain", 10_000, 10_000),
