@@ -29,13 +29,13 @@ def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
     s = structures.build(*given)
     s.validate()
     assert np.array_equal(np.sort(s.to_triangles().triangles), np.sort(mesh.triangles))
-    build = _answering if case.order == ANSWERING else structures.build
+
+    def build_and_ask(*given: Any) -> None:
+        structures.build(*given).vertex_faces(0)
+
+    build = build_and_ask if case.order == ANSWERING else structures.build
     timed = timer(build, setup=lambda: given, rounds=preset.rounds)
     return case.result("time", s, **timed.fields)
-
-
-def _answering(*given: Any) -> None:
-    structures.build(*given).vertex_faces(0)
 
 
 EXPERIMENT = Experiment(title="Time to build", cases=cases, measure=measure, copies=3, turn=50)

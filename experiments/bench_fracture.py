@@ -36,8 +36,7 @@ WAYS: dict[str, Callable[[Structure, Array], Found]] = {
 VISITED = "faces looked at"
 IMPACTS = 64
 IMPACT_SEED = 31
-MARGIN = 1e-6
-"""Nearer than this part of the mesh to where the scan ends is the same place."""
+MARGIN = 1e-6  # nearer than this part of the mesh to where the scan ends is the same place
 REFERENCE = "half_edge"
 """The structure whose shards the others must give, and on which looks at faces are counted."""
 ASKED_PER_BREAK_POINT = 30
@@ -47,12 +46,8 @@ ASKED_PER_BREAK_POINT = 30
 def cases(preset: Preset, structure: str) -> list[Case]:
     """Both at every size; the faces that are looked at, which all structures share, on one."""
     ways = [*WAYS, *(f"{way}, {VISITED}" for way in WAYS if structure == REFERENCE)]
-    family = preset.families[0]
-    return [
-        Case(structure, family, size, query, order)
-        for size in preset.fracture_sizes
-        for query, order in [(SHATTER, None), *((FIND, way) for way in ways)]
-    ]
+    kinds, family = [(SHATTER, None), *((FIND, way) for way in ways)], preset.families[0]
+    return [Case(structure, family, size, *it) for size in preset.fracture_sizes for it in kinds]
 
 
 def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
@@ -61,8 +56,7 @@ def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
     searches = s.searches or (s.rebuilds and case.subject == SHATTER)
     scans = _neighbors_asked(case, s) if searches else 0
     # With a round to check it, and one to warm up.
-    reason = preset.why_too_slow(scans, s.n_faces, preset.fewest_rounds + 2)
-    if reason:
+    if reason := preset.why_too_slow(scans, s.n_faces, preset.fewest_rounds + 2):
         return case.result(EXPERIMENT.kind_of(case), s, skipped=reason)
     return (_shatter if case.subject == SHATTER else _find)(case, s, preset, timer)
 
@@ -126,11 +120,7 @@ def _impacts(s: Structure) -> Floats:
 
 
 EXPERIMENT = Experiment(
-    title="Breaking a surface",
-    cases=cases,
-    measure=measure,
-    copies=10,
-    turn=70,
+    title="Breaking a surface", cases=cases, measure=measure, copies=10, turn=70,
     counted=tuple(f"{way}, {VISITED}" for way in WAYS),
-)
+)  # fmt: skip
 test_fracture = EXPERIMENT.test

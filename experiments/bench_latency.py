@@ -22,10 +22,8 @@ def cases(preset: Preset, structure: str) -> list[Case]:
 
 def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
     """Time the chase; every line must be visited before the first comes again."""
-    chain = random_cycle(case.size // LINE)
+    chain, place = random_cycle(case.size // LINE), 0
     assert chase(chain, 0, len(chain) // LINE_WORDS) == 0
-
-    place = 0
 
     def go_on() -> None:
         nonlocal place
@@ -36,11 +34,7 @@ def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
 
 
 EXPERIMENT = Experiment(
-    title="Latency of the memory",
-    cases=cases,
-    measure=measure,
-    structures=("machine",),
-    copies=0,
-    turn=30,
-)
+    title="Latency of the memory", cases=cases, measure=measure, structures=("machine",),
+    copies=0, turn=30,
+)  # fmt: skip
 test_latency = EXPERIMENT.test

@@ -9,8 +9,7 @@ from experiments.harness import Case, Experiment, Measurement, Preset, Timer
 from hem.room import behind
 from structures.half_edge_objects import HalfEdgeMesh
 
-SMALLEST = 1_000
-"""Vertices from which on a mesh is weighed."""
+SMALLEST = 1_000  # vertices from which on a mesh is weighed
 
 
 def cases(preset: Preset, structure: str) -> list[Case]:
@@ -47,7 +46,5 @@ def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
     return case.result("bytes", s, model, checked=True, detail=detail)
 
 
-EXPERIMENT = Experiment(
-    title="Bytes", kind="bytes", cases=cases, measure=measure, copies=2, turn=20
-)
+EXPERIMENT = Experiment("Bytes", cases, measure, kind="bytes", copies=2, turn=20)
 test_memory = EXPERIMENT.test

@@ -7,38 +7,25 @@ split from Python, with the room made before.
 
 import numpy as np
 
-from experiments.harness import (
-    Axis,
-    Case,
-    Experiment,
-    Measurement,
-    Preset,
-    Table,
-    Timer,
-    operation_faces,
-    validate_operated,
-)
+from experiments.harness import Axis, Case, Experiment, Measurement, Preset, Table, Timer
 from experiments.harness.calibration import latency_now
+from experiments.harness.operations import operation_faces, validate_operated
 from hem.contract import Structure
 from structures import NAMES, REGISTRY
 
 BY_INDEX, BY_CORNERS = "split_by_index", "split_by_corners"
 NAMINGS = {BY_INDEX: "Named by its index", BY_CORNERS: "Named by its three corners"}
-COUNTED, TIMED = "counted", "timed"
-"""The kinds of cases: work, and time."""
+COUNTED, TIMED = "counted", "timed"  # the kinds of cases: work, and time
 SPLITS = 10
 CENTER = (0.0, 0.0, 0.0)
 
 
 def cases(preset: Preset, structure: str) -> list[Case]:
     """Both ways to name a face: work and time at the sizes of operations."""
-    sizes = {COUNTED: preset.work_sizes, TIMED: preset.operation_sizes}
-    return [
-        Case(structure, preset.families[0], size, naming, order)
-        for order, of_order in sizes.items()
-        for size in of_order
-        for naming in NAMINGS
-    ]
+    sizes = [(COUNTED, it) for it in preset.work_sizes]
+    sizes += [(TIMED, it) for it in preset.operation_sizes]
+    family = preset.families[0]
+    return [Case(structure, family, size, it, order) for order, size in sizes for it in NAMINGS]
 
 
 def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
@@ -50,10 +37,18 @@ def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
         raise AssertionError(f"{case.id} on {case.structure}: another face has these corners")
     if case.order == COUNTED:
         copy = s.copy()
-        found = 0 if by_index else _work_to_find(s, named[0][0])
-        samples = np.array([found + copy.operation_work("split_face", faces[0])])
+        work = copy.operation_work("split_face", faces[0])
+        if not by_index:  # the search of `find_face`, and a look at every face that it finds
+            around, looks = s.vertex_faces(named[0][0]), np.array([named[0][0]])
+            work += s.work("vertex_faces", looks).sum() + s.work("face_vertices", around).sum()
         validate_operated(copy)
-        return case.result("work", s, samples, handles=1, checked=True)
+        return case.result("work", s, [work], handles=1, checked=True)
+
+    def ready() -> tuple[Structure]:  # a copy with room for the splits, whose methods are bound
+        copy = s.copy()
+        copy.reserve(2 * SPLITS)
+        copy.find_face(*copy.face_vertices(0).tolist())
+        return (copy,)
 
     def split(copy: Structure) -> None:
         for face, corners in zip(faces, named, strict=True):
@@ -62,36 +57,15 @@ def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
             copy.split_face(found, CENTER)
 
     latency = latency_now(sum(s.memory().values()))
-    rounds = preset.fewest_rounds + 2
-    timed = timer(split, setup=lambda: (_ready(s),), rounds=rounds, warmup=1, per=len(faces))
+    timed = timer(split, setup=ready, rounds=preset.fewest_rounds + 2, per=len(faces))
     return case.result("time", s, **timed.fields, latency=latency)
 
 
-def _work_to_find(s: Structure, a: int) -> int:
-    """The accesses of ``find_face``: of the search, and of a look at every face that it finds."""
-    faces = s.vertex_faces(a)
-    return int(s.work("vertex_faces", np.array([a])).sum() + s.work("face_vertices", faces).sum())
-
-
-def _ready(s: Structure) -> Structure:
-    """A copy with room for the splits, whose methods are bound."""
-    copy = s.copy()
-    copy.reserve(2 * SPLITS)
-    copy.find_face(*copy.face_vertices(0).tolist())
-    return copy
-
-
 EXPERIMENT = Experiment(
-    title="Splitting a face by its name",
-    cases=cases,
-    measure=measure,
-    copies=3,
-    turn=44,
-    structures=tuple(name for name in NAMES if REGISTRY[name].searches),
-    counted=(COUNTED,),
+    title="Splitting a face by its name", cases=cases, measure=measure, copies=3, turn=44,
+    structures=tuple(name for name in NAMES if REGISTRY[name].searches), counted=(COUNTED,),
     table=Table("naming", "Split face, by how the face is named", NAMINGS, "operations"),
     axes={Axis.WORK_FACES: COUNTED, Axis.TIME_FACES: TIMED},
-    just_written=frozenset({Axis.TIME_FACES}),
-    baseline_orders=(TIMED,),
-)
+    just_written=frozenset({Axis.TIME_FACES}), baseline_orders=(TIMED,),
+)  # fmt: skip
 test_naming = EXPERIMENT.test

@@ -3,24 +3,11 @@
 Each is done uncompiled on a copy of the mesh. The counts are exact and the same on every machine.
 """
 
-import numpy as np
+from experiments.harness import OPERATIONS_TABLE, Axis, Case, Experiment, Measurement, Preset, Timer
+from experiments.harness.experiment import measured_operations
+from experiments.harness.operations import operation_arguments, operation_faces, validate_operated
 
-from experiments.harness import (
-    OPERATIONS_TABLE,
-    Axis,
-    Case,
-    Experiment,
-    Measurement,
-    Preset,
-    Timer,
-    measured_operations,
-    operation_arguments,
-    operation_faces,
-    validate_operated,
-)
-
-SEARCHED = 1
-"""One search of the whole mesh reads as much as another."""
+SEARCHED = 1  # one search of the whole mesh reads as much as another
 
 
 def cases(preset: Preset, structure: str) -> list[Case]:
@@ -35,23 +22,16 @@ def cases(preset: Preset, structure: str) -> list[Case]:
 def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
     """Count what operations read and write, and check what they make of the mesh."""
     s, operation = case.build().copy(), str(case.subject)
-    few = s.searches or s.rebuilds
-    faces = operation_faces(case, SEARCHED if few else case.repetitions)
+    faces = operation_faces(case, SEARCHED if s.searches or s.rebuilds else case.repetitions)
     rows = operation_arguments(s, operation, faces).tolist()
     s = s.copy()  # which knows nothing of what was asked meanwhile
     work = [s.operation_work(operation, *row) for row in rows]
     validate_operated(s)
-    return case.result("work", case.build(), np.array(work), handles=1, checked=True)
+    return case.result("work", case.build(), work, handles=1, checked=True)
 
 
 EXPERIMENT = Experiment(
-    title="Work of operations",
-    kind="work",
-    cases=cases,
-    measure=measure,
-    copies=3,
-    turn=11,
-    table=OPERATIONS_TABLE,
-    axes={Axis.WORK_FACES: "counted", Axis.WORK_VALENCE: "counted"},
-)
+    title="Work of operations", kind="work", cases=cases, measure=measure, copies=3, turn=11,
+    table=OPERATIONS_TABLE, axes={Axis.WORK_FACES: "counted", Axis.WORK_VALENCE: "counted"},
+)  # fmt: skip
 test_operation_work = EXPERIMENT.test

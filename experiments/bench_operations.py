@@ -11,32 +11,18 @@ from typing import Any
 import numpy as np
 
 import hem
-from experiments.harness import (
-    HUBS,
-    OPERATIONS_TABLE,
-    Axis,
-    Case,
-    Experiment,
-    Measurement,
-    Preset,
-    Timer,
-    measured_operations,
-    operation_arguments,
-    operation_faces,
-    searches,
-    time_operations,
-)
+from experiments.harness import Axis, Case, Experiment, Measurement, Preset, Timer
+from experiments.harness.experiment import OPERATIONS_TABLE, measured_operations
+from experiments.harness.operations import operation_arguments, operation_faces, time_operations
+from experiments.presets import HUBS
 from hem.contract import Structure
 
 FEWEST_HUBS = 64
 """In a mesh whose valence is varied; with fewer operations at a time they are not worth timing."""
 SINGLE_FACES = 50
-SCANNED_FACES = 5
-"""How many are operated on one by one where each takes a scan of the mesh."""
+SCANNED_FACES = 5  # how many are operated on one by one where each takes a scan of the mesh
 
 Ending = Callable[[], Any]
-
-
 RENDERED = EACH, TOGETHER, ANEW = "rendered", "in a transaction", "render mesh built anew"
 """Ways to keep a render mesh up to date, by the name of the order in a case."""
 
@@ -44,23 +30,19 @@ RENDERED = EACH, TOGETHER, ANEW = "rendered", "in a transaction", "render mesh b
 def cases(preset: Preset, structure: str) -> list[Case]:
     """Batched by size and by valence; one by one, and with a render mesh, at some of the sizes."""
     family, faces = preset.families[0], preset.operation_faces
-    by_size = [(family, size, None) for size in preset.operation_sizes]
-    by_valence = [(HUBS, faces, k) for k in preset.valences if k <= faces // FEWEST_HUBS]
+    meshes: list[tuple[str, int, int | None]]
+    meshes = [(family, size, None) for size in preset.operation_sizes]
+    meshes += [(HUBS, faces, k) for k in preset.valences if k <= faces // FEWEST_HUBS]
     operations = measured_operations(preset)
-    singly = [(operation, "one by one") for operation in operations]
-    rendered = [("split_face", order) for order in RENDERED]
-    return [
-        *(
-            Case(structure, family, size, operation, "batched", valence)
-            for family, size, valence in (*by_size, *by_valence)
-            for operation in operations
-        ),
-        *(
-            Case(structure, family, size, operation, order)
-            for size in preset.single_sizes
-            for operation, order in (*singly, *rendered)
-        ),
+    batched = [
+        Case(structure, where, size, operation, "batched", valence)
+        for where, size, valence in meshes
+        for operation in operations
     ]
+    singly = [(operation, "one by one") for operation in operations]
+    singly += [("split_face", order) for order in RENDERED]
+    sizes = preset.single_sizes
+    return batched + [Case(structure, family, size, *it) for size in sizes for it in singly]
 
 
 def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
@@ -84,7 +66,7 @@ def _follow(order: str, s: Structure) -> Ending:
 
 def _time_one_by_one(case: Case, preset: Preset, timer: Timer) -> dict[str, Any]:
     s, operation, order = case.build(), str(case.subject), str(case.order)
-    few = SCANNED_FACES if order == ANEW or searches(case) else SINGLE_FACES
+    few = SCANNED_FACES if order == ANEW or case.searches else SINGLE_FACES
     first, *faces = operation_faces(case, few).tolist()
     done = len(operation_arguments(s.copy(), operation, np.array(faces)))
     given = 3 if operation == "add_face" else 1
@@ -107,14 +89,8 @@ def _time_one_by_one(case: Case, preset: Preset, timer: Timer) -> dict[str, Any]
 
 
 EXPERIMENT = Experiment(
-    title="Time of operations",
-    cases=cases,
-    measure=measure,
-    copies=22,
-    turn=42,
-    table=OPERATIONS_TABLE,
-    axes={Axis.TIME_FACES: "batched", Axis.TIME_VALENCE: "batched"},
-    just_written=frozenset({Axis.TIME_FACES}),
-    baseline_orders=("batched",),
-)
+    title="Time of operations", cases=cases, measure=measure, copies=22, turn=42,
+    table=OPERATIONS_TABLE, axes={Axis.TIME_FACES: "batched", Axis.TIME_VALENCE: "batched"},
+    just_written=frozenset({Axis.TIME_FACES}), baseline_orders=("batched",),
+)  # fmt: skip
 test_operation = EXPERIMENT.test

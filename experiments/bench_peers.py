@@ -6,27 +6,14 @@ triangle list before it is timed. Measured only where it is asked for: ``hem stu
 """
 
 from dataclasses import replace
+from functools import partial
 
+from experiments import peers
 from experiments.harness import HUBS, OPERATIONS, Case, Experiment, Measurement, Preset, Timer
-from experiments.peers import (
-    ALGORITHMS,
-    BAD_INPUT,
-    BUILD,
-    BULK,
-    BYTES,
-    LOOPED,
-    PEERS,
-    SINGLE,
-    SIX,
-    Peer,
-    installed,
-    measuring,
-    told_by_child,
-)
+from experiments.peers import BUILD, BULK, BYTES, LOOPED, PEERS, SINGLE, Peer, measuring
 from hem.contract import QUERIES
 
-ALGORITHM_VERTICES = 20_000
-"""Vertices at most of what algorithms are given."""
+ALGORITHM_VERTICES = 20_000  # vertices at most of what algorithms are given
 
 
 def sizes(preset: Preset, peer: Peer) -> list[int]:
@@ -41,36 +28,25 @@ def common(preset: Preset) -> int:
 
 def cases(preset: Preset, structure: str) -> list[Case]:
     """What a library has a call for; nothing where it is not installed."""
-    if structure not in installed():
+    if structure not in peers.installed():
         return []
-    peer, family = PEERS[structure], preset.families[0]
-    by_size = sizes(preset, peer)
-    hubs = min(preset.valence_faces, 10 * preset.object_vertices) if peer.objects else 0
+    peer, by_size = PEERS[structure], sizes(preset, PEERS[structure])
+    most = 10 * preset.object_vertices if peer.objects else preset.valence_faces
+    hubs = partial(Case, structure, HUBS, min(preset.valence_faces, most))
+    case = partial(Case, structure, preset.families[0])
     whole = {common(preset), max(it for it in by_size if it <= ALGORITHM_VERTICES)}
-    looped = [(it, LOOPED) for it in QUERIES if it in peer.loops]
-    asked = [*((it, SINGLE) for it in peer.single), *looped]
-    bulk = [(it, BULK) for it in peer.bulk]
+    asked = [*((it, SINGLE) for it in peer.single)]
+    asked += [(it, LOOPED) for it in QUERIES if it in peer.loops]
+    everywhere = [*asked, *((it, BULK) for it in peer.bulk), (BUILD, None)]
     done = [*((it, SINGLE) for it in peer.operations), *((it, BULK) for it in peer.batches)]
+    looped = [it for it in peers.SIX if it in peer.loops]
     return [
-        *(
-            Case(structure, family, size, *it)
-            for size in by_size
-            for it in (*asked, *bulk, (BUILD, None))
-        ),
-        *(
-            Case(structure, HUBS, hubs or preset.valence_faces, *it, valence)
-            for valence in preset.valences
-            for it in asked
-        ),
-        *(Case(structure, family, common(preset), *it) for it in done),
-        *(Case(structure, family, size, it) for size in whole for it in peer.algorithms),
-        *(
-            Case(structure, family, size, it, LOOPED)
-            for size in by_size
-            for it in SIX
-            if it in peer.loops
-        ),
-        *(Case(structure, family, by_size[-1], it) for it in (BYTES, *BAD_INPUT)),
+        *(case(size, *it) for size in by_size for it in everywhere),
+        *(hubs(*it, valence) for valence in preset.valences for it in asked),
+        *(case(common(preset), *it) for it in done),
+        *(case(size, it) for size in whole for it in peer.algorithms),
+        *(case(size, it, LOOPED) for size in by_size for it in looped),
+        *(case(by_size[-1], it) for it in (BYTES, *peers.BAD_INPUT)),
     ]
 
 
@@ -84,18 +60,24 @@ def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
 
 def _measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
     """Check and time a case; bytes and bad input are told by processes of their own."""
-    what, version = str(case.subject), {"version": PEERS[case.structure].version}
-    if what == BYTES or what in BAD_INPUT:
-        return _told(case, what, version)
+    what, peer = str(case.subject), PEERS[case.structure]
+    version = {"version": peer.version}
+    if what == BYTES or what in peers.BAD_INPUT:
+        found = peers.told_by_child(case.structure, case.family, case.size)[what]
+        if what != BYTES:
+            return case.result("trial", None, detail={**version, "found": found})
+        if found is None:
+            return case.result(BYTES, None, skipped="the process that was weighed ended")
+        return case.result(BYTES, None, [found], detail=version)
     given = case, preset, timer
-    if case.order == LOOPED or (what == BUILD and BUILD in PEERS[case.structure].loops):
+    if case.order == LOOPED or (what == BUILD and BUILD in peer.loops):
         fields = measuring.read_looped(case, preset)
     elif what in QUERIES:
         fields = (measuring.time_bulk if case.order == BULK else measuring.time_single)(*given)
         fields |= measuring.beside(case)
     elif what in OPERATIONS:
         fields = measuring.time_operations(*given, batched=case.order == BULK)
-    elif what in ALGORITHMS:
+    elif what in peers.ALGORITHMS:
         fields = measuring.time_algorithm(*given)
     else:
         fields = measuring.time_building(*given)
@@ -103,22 +85,8 @@ def _measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
     return replace(case.result("time", None, **fields, detail=version), **beside)
 
 
-def _told(case: Case, what: str, version: dict[str, str]) -> Measurement:
-    found = told_by_child(case.structure, case.family, case.size)[what]
-    if what != BYTES:
-        return case.result("trial", None, detail={**version, "found": found})
-    if found is None:
-        return case.result(BYTES, None, skipped="the process that was weighed ended")
-    return case.result(BYTES, None, [found], detail=version)
-
-
 EXPERIMENT = Experiment(
-    title="Other libraries",
-    cases=cases,
-    measure=measure,
-    copies=2,
-    turn=90,
-    structures=tuple(PEERS),
-    by_name=True,
-)
+    title="Other libraries", cases=cases, measure=measure, copies=2, turn=90,
+    structures=tuple(PEERS), by_name=True,
+)  # fmt: skip
 test_peers = EXPERIMENT.test

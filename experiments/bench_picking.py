@@ -10,6 +10,7 @@ are not put elsewhere, so that a ray may meet more of them; hence it is timed af
 import logging
 from functools import cache
 from importlib.util import find_spec
+from itertools import product
 from time import perf_counter
 from typing import Any
 
@@ -25,10 +26,8 @@ RAY, FOLLOWING, NEIGHBORS = "ray", "follow_edit", "neighbors"
 REBUILT, REFITTED = "rebuilt", "refitted"
 
 PICKS, EDITS, PICK_SEED = 100, 60, 24
-FEW_PICKS = 4
-"""How many picks a sample has where neighbors are searched for."""
-SCANS = 4
-"""How often a pick scans the mesh there."""
+FEW_PICKS = 4  # how many picks a sample has where neighbors are searched for
+SCANS = 4  # how often a pick scans the mesh there
 
 WITHOUT = "needs the package warp-lang, which is not installed: pip install hem-mesh[picking]"
 
@@ -65,10 +64,7 @@ class Picker:
 
     def refit(self) -> None:
         """Compute the boxes again, or make the tree anew where there were too few. O(n)."""
-        if self._fits:
-            self._tree.refit()
-        else:
-            self.rebuild()
+        (self._tree.refit if self._fits else self.rebuild)()
 
     def face(self, origin: ArrayLike, direction: ArrayLike) -> int:
         """The first face that a ray hits, from either side, or -1."""
@@ -107,12 +103,9 @@ def cases(preset: Preset, structure: str) -> list[Case]:
     """What is around a face on every structure; rays on one, as the render mesh is the same."""
     kinds: list[tuple[str, str | None]] = [(NEIGHBORS, None)]
     if structure == BASE:
-        kinds += [(what, how) for what in (RAY, FOLLOWING) for how in (REBUILT, REFITTED)]
-    return [
-        Case(structure, preset.families[0], size, subject, order)
-        for size in preset.real_time_sizes
-        for subject, order in kinds
-    ]
+        kinds += product((RAY, FOLLOWING), (REBUILT, REFITTED))
+    family, sizes = preset.families[0], preset.real_time_sizes
+    return [Case(structure, family, size, *it) for size in sizes for it in kinds]
 
 
 def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
@@ -156,7 +149,11 @@ def _time_neighbors(case: Case, s: Structure, preset: Preset, timer: Timer) -> M
     if s.searches and reason:
         return case.result("time", s, skipped=reason)
     hits = np.random.default_rng(PICK_SEED).choice(s.faces(), picks).tolist()
-    _check(s, hits[0])
+    corners = s.face_vertices(hits[0])
+    common = np.isin(s.triangles(), corners).sum(axis=1)  # by which around is told, too
+    around = np.unique(s.vertex_faces(corners).values), np.sort(s.face_faces(hits[0]))
+    if not all(map(np.array_equal, around, (np.flatnonzero(common), np.flatnonzero(common == 2)))):
+        raise AssertionError(f"around face {hits[0]} of {s.title} there are others")
 
     def ask() -> None:
         for face in hits:
@@ -170,23 +167,12 @@ def _time_neighbors(case: Case, s: Structure, preset: Preset, timer: Timer) -> M
     return case.result("time", s, **timer(ask, rounds=rounds, per=picks).fields)
 
 
-def _check(s: Structure, face: int) -> None:
-    """What is around a face is what has corners in common with it."""
-    corners = s.face_vertices(face)
-    common = np.isin(s.triangles(), corners).sum(axis=1)
-    around = np.unique(s.vertex_faces(corners).values), np.sort(s.face_faces(face))
-    if not all(map(np.array_equal, around, (np.flatnonzero(common), np.flatnonzero(common == 2)))):
-        raise AssertionError(f"around face {face} of {s.title} there are others")
-
-
 def aimed(s: Structure, count: int) -> list[tuple[Floats, Floats]]:
     """Rays from outside of the mesh to as many faces, at random; to their middle, but no center."""
     faces = np.random.default_rng(PICK_SEED).choice(s.faces(), count)
     corners = s.points[s.face_vertices(faces).values.reshape(-1, 3)].astype(np.float64)
     goals = np.einsum("c,kcx->kx", (0.25, 0.33, 0.42), corners)
-    low, high = (
-        getattr(np, it)(s.points, axis=0).astype(np.float64) for it in ("nanmin", "nanmax")
-    )
+    low, high = (it(s.points, axis=0).astype(np.float64) for it in (np.nanmin, np.nanmax))
     eye = high + (high - low) * (0.31, 0.47, 1.13)
     return [(eye, goal - eye) for goal in goals]
 

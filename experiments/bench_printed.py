@@ -13,18 +13,10 @@ from typing import Any
 import numpy as np
 
 import structures
-from experiments.harness import (
-    OPERATIONS,
-    Axis,
-    Case,
-    Experiment,
-    Measurement,
-    Preset,
-    Table,
-    Timer,
-    operation_faces,
-)
+from experiments.harness import Axis, Case, Experiment, Measurement, Preset, Table, Timer
 from experiments.harness.calibration import latency_now
+from experiments.harness.experiment import OPERATIONS
+from experiments.harness.operations import operation_faces
 from hem.arrays import Array
 from hem.engine import CountingArray
 from hem.fracture import MATERIALS, shatter
@@ -48,8 +40,7 @@ LISTINGS = {
 }
 """``STEPPING`` is the published collapse, with the one repair that chapter 6 asks for. The faces at
 an edge are searched for on an indexed mesh as published, and on half-edges as corrected."""
-COUNTED, TIMED = "counted", "timed"
-"""The kinds of cases: work, and time."""
+COUNTED, TIMED = "counted", "timed"  # the kinds of cases: work, and time
 TIMED_OPERATIONS = 9
 COUNTED_OPERATIONS = 3
 WARM_UP = 2
@@ -69,8 +60,7 @@ CORNERS = [[(x + i, y, z) for x, _, i in POINTS] for y, z in ((9.0, 8.0), (8.0, 
 """The corners of triangles there: their first ones, their second and their third."""
 
 Step = partial[Any]
-Calls = tuple[Any, ...]
-"""Something to call, and its arguments, each a list."""
+Calls = tuple[Any, ...]  # something to call, and its arguments, each a list
 
 
 def cases(preset: Preset, structure: str) -> list[Case]:
@@ -99,12 +89,10 @@ def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
         fields = {**timed.fields, "latency": latency}
         steps = steps[: len(steps) - len(list(waiting))]  # but one with --benchmark-disable
     broken_out = (case.subject, case.structure) == ("simulate_breaking", MENDED)
-    more = BROKEN_OUT if broken_out else MORE_FACES[str(case.subject)]
-    expected = before + more * len(steps)
+    expected = before + len(steps) * (BROKEN_OUT if broken_out else MORE_FACES[str(case.subject)])
     if faces() != expected:
         raise AssertionError(f"{case.id} on {case.structure}: {faces()} faces, not {expected}")
-    kind = EXPERIMENT.kind_of(case)
-    return case.result(kind, None, reference_bytes=8, **fields)
+    return case.result(EXPERIMENT.kind_of(case), None, reference_bytes=8, **fields)
 
 
 def _steps(case: Case, most: int) -> tuple[list[Step], Callable[[], int]]:
@@ -137,7 +125,8 @@ def _published(m: AsPrinted, faces: Array) -> dict[str, Calls]:
     edges = [face.half_edge for face in targets]
     ends = [(h.origin.index, h.end.index) for h in edges]
     triangles = np.array(m.render.committed)
-    impacts = [_middle(*(h.origin.point for h in m.face_circulator(face))) for face in targets]
+    corners = [[h.origin.point for h in m.face_circulator(face)] for face in targets]
+    impacts = [tuple(np.mean(it, axis=0).tolist()) for it in corners]
     breaking = partial(simulate_breaking, m, circles=BREAKING.circles)
     return {
         "split_edge": (m.split_half_edge, edges, POINTS),
@@ -175,11 +164,6 @@ def _corrected(m: HalfEdgeMesh, faces: Array) -> dict[str, Calls]:
     }
 
 
-def _middle(*points: Point) -> Point:
-    x, y, z = (sum(it) / len(points) for it in zip(*points, strict=True))
-    return x, y, z
-
-
 def _work(step: Step) -> int:
     """Fields of objects that a step accesses, and indices of triangles."""
     given = [CountingArray(it) if isinstance(it, np.ndarray) else it for it in step.args]
@@ -199,23 +183,15 @@ def _build(structure: str, mesh: TriangleMesh) -> Any:
         built: Any = HalfEdgeMeshBuilder.records(mesh)
     else:
         built = AsPrinted.build(*render_arrays(mesh.points, mesh.triangles), whole=True)
-    if len(built.faces) != len(mesh.triangles):
-        raise AssertionError(
-            f"{structure} builds {len(built.faces)} of {len(mesh.triangles)} faces"
-        )
+    if len(built.faces) != (count := len(mesh.triangles)):
+        raise AssertionError(f"{structure} builds {len(built.faces)} of {count} faces")
     return built
 
 
 EXPERIMENT = Experiment(
-    title="The listings, published and corrected",
-    cases=cases,
-    measure=measure,
-    structures=(AsPrinted.name, MENDED),
-    copies=3,
-    turn=43,
-    counted=(COUNTED,),
+    title="The listings, published and corrected", cases=cases, measure=measure, copies=3, turn=43,
+    structures=(AsPrinted.name, MENDED), counted=(COUNTED,),
     table=Table("listings", "The listings, as published and corrected", LISTINGS, "errata"),
-    axes={Axis.WORK_FACES: COUNTED, Axis.TIME_FACES: TIMED},
-    baseline_orders=(TIMED,),
-)
+    axes={Axis.WORK_FACES: COUNTED, Axis.TIME_FACES: TIMED}, baseline_orders=(TIMED,),
+)  # fmt: skip
 test_listing = EXPERIMENT.test

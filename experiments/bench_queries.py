@@ -24,13 +24,8 @@ def cases(preset: Preset, structure: str) -> list[Case]:
 
 
 EXPERIMENT = Experiment(
-    title="Time of queries, by size",
-    cases=cases,
-    measure=time_query,
-    copies=3,
-    turn=40,
-    table=QUERIES_TABLE,
-    axes={Axis.TIME_FACES: "consecutive", Axis.RANDOM_FACES: "random"},
+    title="Time of queries, by size", cases=cases, measure=time_query, copies=3, turn=40,
+    table=QUERIES_TABLE, axes={Axis.TIME_FACES: "consecutive", Axis.RANDOM_FACES: "random"},
     baseline_orders=("consecutive", "random"),
-)
+)  # fmt: skip
 test_query = EXPERIMENT.test

@@ -10,17 +10,8 @@ from typing import Any
 import numpy as np
 
 import hem
-from experiments.harness import (
-    Case,
-    Experiment,
-    Measurement,
-    Preset,
-    Timer,
-    operation_arguments,
-    operation_faces,
-    searches,
-    validate_operated,
-)
+from experiments.harness import Case, Experiment, Measurement, Preset, Timer
+from experiments.harness.operations import operation_arguments, operation_faces, validate_operated
 from hem.contract import Structure
 
 EDITED = "split_edge", "split_face", "collapse_edge", "flip_edge"
@@ -35,11 +26,8 @@ COMPACTIONS = 5
 def cases(preset: Preset, structure: str) -> list[Case]:
     """Edits with room and without, and the compaction that follows them, by size."""
     kinds = (EDITS, RESERVED), (EDITS, GROWING), (COMPACT, None)
-    return [
-        Case(structure, preset.families[0], size, subject, order)
-        for size in preset.real_time_sizes
-        for subject, order in kinds
-    ]
+    family, sizes = preset.families[0], preset.real_time_sizes
+    return [Case(structure, family, size, *it) for size in sizes for it in kinds]
 
 
 def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
@@ -47,7 +35,9 @@ def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
     s = case.build()
     edits = _planned(case, s)
     if case.subject == COMPACT:
-        timed = timer(_compact, setup=lambda: (_edited(s, edits),), rounds=COMPACTIONS, warmup=1)
+        timed = timer(
+            lambda it: it.compact(), setup=lambda: (_edited(s, edits),), rounds=COMPACTIONS
+        )
         return case.result("time", s, **timed.fields)
     _edited(s, edits[:8])  # compiles
     copy = s.copy()
@@ -56,22 +46,29 @@ def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
     if case.order == RESERVED:
         copy.reserve(len(edits))
         render.reserve(len(edits))
-    render.subscribe(lambda upload: uploads.append(_bytes(upload)))
+
+    def count_bytes(upload: hem.Upload) -> None:
+        ranges = upload.vertices, upload.triangles
+        uploads.append(int(12 * sum(np.diff(it).sum() for it in ranges)))
+
+    render.subscribe(count_bytes)
     following = iter(edits)
     timed = timer(
         lambda edit: copy.operate(edit[0], edit[1], point=edit[2]),
         setup=lambda: (next(following),), rounds=len(edits), warmup=0,
     )  # fmt: skip
     validate_operated(copy)
-    if len(timed.samples):  # and not just compiled
-        _check(render, copy)
+    afresh = hem.RenderMesh(copy)
+    pairs = (render.points, afresh.points), (render.indices, afresh.indices)
+    if len(timed.samples) and not all(np.array_equal(*it) for it in pairs):  # not just compiled
+        raise AssertionError("the render mesh is not in step")
     detail = {"uploads": uploads, "render": render.points.nbytes + render.indices.nbytes}
     return case.result("time", s, **timed.fields, detail=detail)
 
 
 def _planned(case: Case, s: Structure) -> list[tuple[str, int, Any]]:
     """Operations in turn, each at a place of its own, where it may be done."""
-    faces = operation_faces(case, MOST_SEARCHING if searches(case) else MOST_EDITS)
+    faces = operation_faces(case, MOST_SEARCHING if case.searches else MOST_EDITS)
     rows = {it: operation_arguments(s, it, faces[k :: len(EDITED)]) for k, it in enumerate(EDITED)}
     turns = (iter(rows[it][:, 0].tolist()) for it in EDITED)
     named: list[tuple[str, int, Any]] = []
@@ -91,22 +88,6 @@ def _edited(s: Structure, edits: list[tuple[str, int, Any]]) -> Structure:
     for name, handle, point in edits:
         copy.operate(name, handle, point=point)
     return copy
-
-
-def _compact(s: Structure) -> None:
-    s.compact()
-
-
-def _bytes(upload: hem.Upload) -> int:
-    """What a commit has to be uploaded."""
-    return int(12 * sum(np.diff(it).sum() for it in (upload.vertices, upload.triangles)))
-
-
-def _check(render: hem.RenderMesh, s: Structure) -> None:
-    afresh = hem.RenderMesh(s)
-    for mine, others in ((render.points, afresh.points), (render.indices, afresh.indices)):
-        if not np.array_equal(mine, others):
-            raise AssertionError("the render mesh is not in step")
 
 
 EXPERIMENT = Experiment(title="Real time", cases=cases, measure=measure, copies=8, turn=65)

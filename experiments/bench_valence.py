@@ -14,13 +14,7 @@ def cases(preset: Preset, structure: str) -> list[Case]:
 
 
 EXPERIMENT = Experiment(
-    title="Time of queries, by valence",
-    cases=cases,
-    measure=time_query,
-    copies=2,
-    turn=41,
-    table=QUERIES_TABLE,
-    axes={Axis.TIME_VALENCE: "random"},
-    baseline_orders=("random",),
-)
+    title="Time of queries, by valence", cases=cases, measure=time_query, copies=2, turn=41,
+    table=QUERIES_TABLE, axes={Axis.TIME_VALENCE: "random"}, baseline_orders=("random",),
+)  # fmt: skip
 test_valence = EXPERIMENT.test

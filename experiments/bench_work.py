@@ -4,16 +4,8 @@ The counts are exact and the same on every machine. They come from uncompiled co
 are small; that is enough, as nothing disturbs them.
 """
 
-from experiments.harness import (
-    QUERIES_TABLE,
-    Axis,
-    Case,
-    Experiment,
-    Measurement,
-    Preset,
-    Timer,
-    checked_handles,
-)
+from experiments.harness import QUERIES_TABLE, Axis, Case, Experiment, Measurement, Preset, Timer
+from experiments.harness.queries import checked_handles
 from hem.contract import QUERIES
 
 
@@ -34,13 +26,7 @@ def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
 
 
 EXPERIMENT = Experiment(
-    title="Work of queries",
-    kind="work",
-    cases=cases,
-    measure=measure,
-    copies=1,
-    turn=10,
-    table=QUERIES_TABLE,
-    axes={Axis.WORK_FACES: "random", Axis.WORK_VALENCE: "random"},
-)
+    title="Work of queries", kind="work", cases=cases, measure=measure, copies=1, turn=10,
+    table=QUERIES_TABLE, axes={Axis.WORK_FACES: "random", Axis.WORK_VALENCE: "random"},
+)  # fmt: skip
 test_work = EXPERIMENT.test

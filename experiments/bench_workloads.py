@@ -16,19 +16,10 @@ from experiments.harness import BASE, Case, Experiment, Measurement, Preset, Tim
 from hem import algorithms
 from hem.contract import QUERIES, Structure
 
-KEPT = 0.1
-"""The part of the vertices that a simplification leaves."""
-
-IMPACTS = 100
-IMPACT_SEED = 23
-
-SMALL = 400
-"""Vertices of the mesh on which all structures must give the same."""
-
-
-REBUILT = 20
-"""About how many scans it takes to find all neighbors anew."""
-
+KEPT = 0.1  # the part of the vertices that a simplification leaves
+IMPACTS, IMPACT_SEED = 100, 23
+SMALL = 400  # vertices of the mesh on which all structures must give the same
+REBUILT = 20  # about how many scans it takes to find all neighbors anew
 COMPILED, FROM_PYTHON = "compiled", "from Python"
 
 
@@ -95,19 +86,15 @@ def subdivision(s: Structure) -> int:
     return len(centers)
 
 
-def _wanted(s: Structure, part: float = KEPT) -> int:
-    return max(4, int(part * s.n_vertices))
-
-
 def _simplify(s: Structure) -> int:
     before = s.n_vertices
-    algorithms.simplify(s, vertices=_wanted(s), by="shortest_edge")
+    algorithms.simplify(s, vertices=max(4, int(KEPT * before)), by="shortest_edge")
     return before - s.n_vertices
 
 
 def simplification(s: Structure, part: float = KEPT) -> int:
     """Collapse the shortest edge there is until ``part`` of the vertices is left -> how many."""
-    wanted = _wanted(s, part)
+    wanted = max(4, int(part * s.n_vertices))
     ends = np.sort(s.edge_vertices(s.edges()).values.reshape(-1, 2))
     lengths = np.linalg.norm(s.points[ends[:, 0]] - s.points[ends[:, 1]], axis=1)
     queue = [(x, a, b) for x, (a, b) in zip(lengths.tolist(), ends.tolist(), strict=True)]
@@ -181,8 +168,7 @@ def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
     s, workload = case.build(), WORKLOADS[str(case.subject)]
     units, run = IMPACTS if case.subject == "impacts" else s.n_vertices, workload.run(case.order)
     scans = units * (workload.scans * s.searches + REBUILT * workload.edits * s.rebuilds)
-    reason = preset.why_too_slow(scans, s.n_faces, preset.fewest_rounds)
-    if reason:
+    if reason := preset.why_too_slow(scans, s.n_faces, preset.fewest_rounds):
         return case.result("time", s, skipped=reason)
     _check(case, run)
     ready = _ready(s)

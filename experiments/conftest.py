@@ -17,21 +17,11 @@ from typing import Any
 
 import pytest
 
-from experiments.harness import (
-    CLOCK,
-    PRESETS,
-    BenchmarkTimer,
-    Case,
-    Experiment,
-    Keep,
-    Measurement,
-    Preset,
-    Watch,
-    in_random_order,
-    memory,
-    own_mesh,
-    steadiness,
-)
+from experiments.harness import Case, Experiment, Measurement, memory, own_mesh, steadiness
+from experiments.harness.cases import in_random_order
+from experiments.harness.experiment import Keep
+from experiments.harness.timer import CLOCK, BenchmarkTimer
+from experiments.presets import PRESETS, Preset
 from experiments.runs.store import CannotWriteError, CaseFile
 from experiments.runs.worker import AGAIN, COMPILE, DEFAULT_SEED, MEASURE
 
@@ -45,15 +35,11 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     group.addoption("--structure", action="append", help="measure just this one; may be repeated")
     group.addoption("--run", type=Path, help="the folder that keeps the results, case by case")
     group.addoption("--pin", action="store_true", help="stay on one core, where that is allowed")
-    group.addoption(
-        "--case-seed", type=int, default=DEFAULT_SEED, help="seed of the order of the cases"
-    )
-    group.addoption(
-        "--action",
-        default=MEASURE,
-        choices=[MEASURE, AGAIN, COMPILE],
-        help="measure what the run lacks, what was disturbed, or compile for one case of each kind",
-    )
+    words = "seed of the order of the cases"
+    group.addoption("--case-seed", type=int, default=DEFAULT_SEED, help=words)
+    words = "measure what the run lacks, what was disturbed, or compile for one case of each kind"
+    actions = [MEASURE, AGAIN, COMPILE]
+    group.addoption("--action", default=MEASURE, choices=actions, help=words)
 
 
 def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
@@ -67,7 +53,7 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
 
 
 def _cases(config: pytest.Config, experiment: Experiment, structure: str) -> list[Case]:
-    cases = experiment.cases(_preset(config, structure), structure)
+    cases = experiment.cases(_extent(config).of(structure), structure)
     action = config.getoption("--action")
     if action == COMPILE:  # the smallest case of each kind
         cases = sorted(cases, key=lambda case: case.size, reverse=True)
@@ -76,10 +62,6 @@ def _cases(config: pytest.Config, experiment: Experiment, structure: str) -> lis
     chosen = file.disturbed if action == AGAIN else {it.id for it in cases} - file.cases.keys()
     seed = f"{config.getoption('--case-seed')} {experiment.name} {structure}"
     return in_random_order([case for case in cases if case.id in chosen], seed)
-
-
-def _preset(config: pytest.Config, structure: str) -> Preset:
-    return _extent(config).of(structure)
 
 
 @cache
@@ -103,7 +85,7 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 @pytest.fixture
 def preset(request: pytest.FixtureRequest, case: Case) -> Preset:
     """How much to measure."""
-    return _preset(request.config, case.structure)
+    return _extent(request.config).of(case.structure)
 
 
 @pytest.fixture(scope="module")
@@ -135,11 +117,10 @@ def keep(request: pytest.FixtureRequest, case: Case, core: int | None) -> Keep:
             except CannotWriteError as error:
                 pytest.exit(str(error), returncode=pytest.ExitCode.INTERNAL_ERROR)
 
-    reason = memory.why_too_large(case, experiment.copies)
-    if reason:
+    if reason := memory.why_too_large(case, experiment.copies):
         add(case.not_measured(experiment.kind_of(case), reason))
         pytest.skip(reason)
-    watch = Watch()
+    watch = steadiness.Watch()
 
     def keep_result(result: Measurement) -> None:
         result = replace(result, noise={**result.noise, **watch.seen(), "core": core})

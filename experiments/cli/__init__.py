@@ -39,8 +39,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-PAGES, DOCUMENT = Path("report/html"), Path("report/report.pdf")
-"""Where the report goes."""
+PAGES, DOCUMENT = Path("report/html"), Path("report/report.pdf")  # where the report goes
 
 
 def _show_version(wanted: bool) -> None:

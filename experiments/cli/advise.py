@@ -18,8 +18,7 @@ if TYPE_CHECKING:  # takes a second to import
     from experiments.advice import Advice
     from experiments.runs import Run
 
-NOTHING = 2
-"""Exit code where no structure suits."""
+NOTHING = 2  # exit code where no structure suits
 
 
 def advise(

@@ -12,8 +12,7 @@ from experiments import require_known
 from experiments.cli.console import OfMesh, Repair, Structures, completed, console, errors
 from experiments.presets import PRESETS
 
-DEFAULT = "quick"
-"""The preset of a study that names none."""
+DEFAULT = "quick"  # the preset of a study that names none
 
 
 def run_study(

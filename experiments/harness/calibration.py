@@ -10,14 +10,10 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-WORDS = 2_048
-"""int64 in the table that the calibration loop walks: 16 KB, found in the first cache."""
+WORDS = 2_048  # int64 in the table that the calibration loop walks: 16 KB, found in the first cache
 STEPS = 2_000
 WALKS = 5
-
-LINE = 64
-LINE_WORDS = LINE // 8
-"""A cache line in bytes, and in int64."""
+LINE, LINE_WORDS = 64, 8  # a cache line in bytes, and in int64
 CHASE_STEPS = 4_000
 SAMPLES = 5
 MOST_WARMING = 1_000_000

@@ -18,8 +18,7 @@ from hem.arrays import Array
 from hem.contract import QUERIES, Query, Structure
 from hem.meshes import MeshSummary, TriangleMesh
 
-BASE = "indexed"
-"""The structure that the others are compared with: what a renderer stores."""
+BASE = "indexed"  # the structure that the others are compared with: what a renderer stores
 
 OF_MADE, OF_OWN = 3, 60
 """How often accesses are counted where all vertices are alike, and in a mesh of one's own."""
@@ -38,9 +37,9 @@ class Measurement:
     the queried vertices where the experiment varies it. ``latency``: seconds per memory access in
     the working set, measured beside the case. ``reference``: seconds per query where the work is
     that of a small mesh, as much memory is taken and the order is the same (see ``reference.py``).
-    ``calibration``: seconds per step of the calibration
-    loop before each round. ``skipped``: why nothing was measured, else empty.
-    ``noise``: how steady the machine was meanwhile, and how often the case was ``measured``.
+    ``calibration``: seconds per step of the calibration loop before each round. ``skipped``: why
+    nothing was measured, else empty. ``noise``: how steady the machine was meanwhile, and how often
+    the case was ``measured``.
     """
 
     id: str
@@ -99,6 +98,12 @@ class Case:
         return OF_OWN if own_mesh.is_own(self.family) and not searches else OF_MADE
 
     @property
+    def searches(self) -> bool:
+        """Whether its operation looks at the whole mesh each time; to split a face none does."""
+        kind = structures.REGISTRY[self.structure]
+        return (kind.searches or kind.rebuilds) and self.subject != "split_face"
+
+    @property
     def vertices(self) -> int:
         """How many vertices its mesh is asked for; 0 for a sample, which has as many as it has."""
         return self.size // 2 if self.family == HUBS else self.size
@@ -119,16 +124,10 @@ class Case:
     ) -> Measurement:
         """The case as measured, with the facts of its mesh and the bytes of the structure."""
         mesh = _summary(self.family, self.size, self.valence)
-        return self._measurement(
-            kind,
-            vertices=mesh.vertices,
-            edges=mesh.edges,
-            faces=mesh.faces,
-            valence_max=mesh.valence_max,
-            working_set=0 if s is None else sum(s.memory().values()),
-            samples=np.asarray(samples, float).tolist(),
-            **more,
-        )
+        counts = {it: getattr(mesh, it) for it in ("vertices", "edges", "faces", "valence_max")}
+        working_set = 0 if s is None else sum(s.memory().values())
+        samples = np.asarray(samples, float).tolist()
+        return self._measurement(kind, working_set=working_set, samples=samples, **counts, **more)
 
     def not_measured(self, kind: str, reason: str) -> Measurement:
         """The case where its mesh was not even made; its counts are about those asked for."""
@@ -137,7 +136,7 @@ class Case:
 
     def _measurement(self, kind: str, **fields: Any) -> Measurement:
         names = "id", "subject", "order", "family", "valence", "reference_bytes"
-        return Measurement(kind=kind, **{**{name: getattr(self, name) for name in names}, **fields})
+        return Measurement(kind=kind, **{name: getattr(self, name) for name in names} | fields)
 
 
 def in_random_order(cases: Sequence[Case], seed: int | str) -> list[Case]:
@@ -167,10 +166,9 @@ def queried_handles(case: Case, s: Structure) -> Array:
     source = case.query.source
     handles = s.handles(source)
     if case.valence is not None:
-        if source == "vertex":
-            corners = handles
-        else:
-            corners = (s.edge_vertices if source == "edge" else s.face_vertices)(handles).values
+        corners = handles
+        if source != "vertex":
+            corners = getattr(s, f"{source}_vertices")(handles).values
         hubs = hem.valence_hubs(case.valence, case.size)
         handles = handles[(corners < len(hubs)).reshape(len(handles), -1).any(axis=1)]
     return in_order_of(case, handles)
@@ -178,9 +176,8 @@ def queried_handles(case: Case, s: Structure) -> Array:
 
 def in_order_of(case: Case, handles: Array) -> Array:
     """Handles in the order in which a case asks."""
-    if case.order == "random":
-        return np.random.default_rng(HANDLE_SEED).permutation(handles)
-    return handles
+    random = np.random.default_rng(HANDLE_SEED)
+    return random.permutation(handles) if case.order == "random" else handles
 
 
 def shuffled(mesh: TriangleMesh) -> TriangleMesh:
@@ -198,8 +195,8 @@ def _mesh(family: str, size: int, valence: int | None, renumbered: bool) -> Tria
         return shuffled(_mesh(family, size, valence, False))
     if family == HUBS:
         return hem.valence_mesh(int(valence or 0), size)
-    if (own := own_mesh.version(family, size)) is not None:
-        return own
+    if own_mesh.is_own(family):
+        return own_mesh.version(family, size)
     return hem.sample(family) if family in hem.SAMPLES else hem.generate(family, size)
 
 

@@ -13,12 +13,10 @@ from experiments.presets import Preset
 from hem.contract import QUERIES
 from structures import NAMES
 
-Keep = Callable[[Measurement], None]
-"""What a measurement is handed to."""
+Keep = Callable[[Measurement], None]  # what a measurement is handed to
 
 KINDS = ("time", "work", "bytes")
-ANYONE = "*"
-"""In an experiment's claims: every structure that is not named."""
+ANYONE = "*"  # in an experiment's claims: every structure that is not named
 
 MEASURED = "split_edge", "split_face", "collapse_edge", "flip_edge", "add_face", "remove_face"
 OPERATIONS = {name: name.replace("_", " ").capitalize() for name in MEASURED}

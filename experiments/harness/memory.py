@@ -16,8 +16,7 @@ from experiments.harness.cases import Case
 from experiments.presets import HUBS
 from structures import REGISTRY
 
-SHARE = 0.7
-"""The part of the available memory that a case may take."""
+SHARE = 0.7  # the part of the available memory that a case may take
 VARIABLE = "HEM_MEMORY"
 """Environment variable that says how much memory there is, such as ``500M``, ``8G`` or bytes."""
 SMALL = 400
@@ -26,8 +25,7 @@ OTHER_MESH_BYTES = 1_600
 """Bytes per vertex of a mesh while it is made, renumbered and checked: the sphere's and more."""
 OBJECTS_BYTES = 2_500
 """Bytes per vertex of what is as published: objects, with the render mesh beside them."""
-BUILDING = 3
-"""How much more than what remains of it a compiled structure takes while it is built."""
+BUILDING = 3  # how much more than what remains of it a compiled structure takes while it is built
 CHASE_COPIES = 3
 UNITS = {"": 1, "K": 1 << 10, "M": 1 << 20, "G": 1 << 30, "T": 1 << 40}
 CGROUP = "/sys/fs/cgroup"

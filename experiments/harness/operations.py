@@ -18,16 +18,11 @@ from hem.arrays import Array
 from hem.contract import Structure
 from hem.engine import END
 from hem.meshes import undirected_edges
-from structures import REGISTRY
 
 ON_EDGES = ("split_edge", "collapse_edge", "flip_edge")
-NOT_SEARCHED = ("split_face",)
-"""What does not search the whole mesh even where nothing is known of neighbors."""
 SECONDS_PER_SCANNED_FACE = 5e-9
-SECONDS_PER_REBUILT_FACE = 20e-9
-"""Where all neighbors are found anew."""
-MOST_IMPOSSIBLE = 0.5
-"""Part of the rounds that may be impossible, so that the others tell something."""
+SECONDS_PER_REBUILT_FACE = 20e-9  # where all neighbors are found anew
+MOST_IMPOSSIBLE = 0.5  # part of the rounds that may be so, for the others to tell something
 MOST_ELEMENTS = 2_000
 FEWEST_OPERATIONS = 500
 MOST_TURNS = 16
@@ -36,15 +31,11 @@ MOST_TURNS = 16
 One mesh, so that a small one is found in the caches however many operations there is room for.
 """
 IDLE_CALLS = 15
-CYCLE = 2e-10
-"""Seconds of a clock cycle, at the least: no operation takes less."""
-REFERENCE_ROUNDS = 4
-"""Before and after the rounds of a case."""
+CYCLE = 2e-10  # seconds of a clock cycle, at the least: no operation takes less
+REFERENCE_ROUNDS = 4  # before and after the rounds of a case
 ELEMENT_SEED = 22
-CHOICES = 16
-"""Of elements in the small mesh of a reference: its copies are not all operated on alike."""
-SMALL = 20_000
-"""Faces up to which the outcome is judged from its triangles, and against the indexed mesh."""
+CHOICES = 16  # of elements in a reference's small mesh: its copies are not all operated on alike
+SMALL = 20_000  # faces up to which triangles are looked at, and compared with the indexed mesh
 
 
 def operation_faces(case: Case, count: int = MOST_ELEMENTS) -> Array:
@@ -53,12 +44,6 @@ def operation_faces(case: Case, count: int = MOST_ELEMENTS) -> Array:
     Where the valence varies each has a hub as its first corner.
     """
     return _some(_apart(case.family, case.size, case.valence), count)
-
-
-def searches(case: Case) -> bool:
-    """Whether every operation of a case looks at the whole mesh."""
-    kind = REGISTRY[case.structure]
-    return (kind.searches or kind.rebuilds) and case.subject not in NOT_SEARCHED
 
 
 @lru_cache(maxsize=4 * CHOICES)
@@ -122,12 +107,11 @@ class OperationBatch:
 
     def idle(self) -> float:
         """Call for no operation -> seconds."""
-        task = self._prepared.task
-        task[END] = 0
+        self._prepared.task[END] = 0
         begin = perf_counter()
         self.operate()
         seconds = perf_counter() - begin
-        task[END] = self.operations
+        self._prepared.task[END] = self.operations
         return seconds
 
     def idle_seconds(self) -> float:
@@ -175,12 +159,12 @@ def validate_operated(operated: Structure) -> None:
         hem.require_sound(operated.to_triangles())
 
 
-def _operated(name: str, case: Case, faces: Array) -> list[tuple[int, ...]]:
+def _operated(name: str, case: Case, faces: Array) -> list[list[int]]:
     batch = OperationBatch(structures.build(name, case.mesh()), str(case.subject), faces)
     batch.operate()
     rows = batch.mesh.triangles()
     turned = (rows.argmin(axis=1)[:, None] + np.arange(3)) % 3
-    return sorted(map(tuple, np.take_along_axis(rows, turned, axis=1).tolist()))
+    return sorted(np.take_along_axis(rows, turned, axis=1).tolist())
 
 
 def time_operations(case: Case, preset: Preset, timer: Timer) -> dict[str, Any]:
@@ -190,7 +174,7 @@ def time_operations(case: Case, preset: Preset, timer: Timer) -> dict[str, Any]:
     """
     s, faces = case.build(), operation_faces(case)
     each = s.n_faces * (SECONDS_PER_REBUILT_FACE if s.rebuilds else SECONDS_PER_SCANNED_FACE)
-    if searches(case):
+    if case.searches:
         faces = faces[: max(4, int(preset.round_seconds / each))]
     batch = OperationBatch(s, str(case.subject), faces)
     if batch.operate() < batch.operations:
@@ -201,7 +185,7 @@ def time_operations(case: Case, preset: Preset, timer: Timer) -> dict[str, Any]:
         if mine != other:
             raise AssertionError(f"{case.id} on {case.structure} gives another mesh than {BASE}")
     most = MOST_TURNS if s.compiled else 1  # interpreted ones last long enough, and long rebuilds
-    if s.rebuilds and searches(case):
+    if s.rebuilds and case.searches:
         most = int(np.clip(preset.round_seconds / (each * batch.operations), 1, most))
     turns = int(np.clip(FEWEST_OPERATIONS // batch.operations, 1, most))
     latency = latency_now(sum(s.memory().values()))
@@ -223,7 +207,7 @@ def constant_work(case: Case, preset: Preset, count: int) -> OperationBatch | No
 
     None where sizes are not compared, and for what looks at the whole mesh.
     """
-    if case.family not in (HUBS, preset.families[0]) or searches(case):
+    if case.family not in (HUBS, preset.families[0]) or case.searches:
         return None
     small = small_case(case, preset)
     s, _ = copies(small, case.vertices)
@@ -246,6 +230,5 @@ def _rounds_of(batch: OperationBatch | None, turns: int, idle: float) -> list[fl
     """Seconds per operation of some rounds of a reference; none without one."""
     if batch is None:
         return []
-    rounds = turns * REFERENCE_ROUNDS
-    timed = time_rounds(batch.operate, setup=batch.ready, rounds=rounds)
+    timed = time_rounds(batch.operate, setup=batch.ready, rounds=turns * REFERENCE_ROUNDS)
     return list(batch.each(timed.averaged(turns), idle)[0].samples)

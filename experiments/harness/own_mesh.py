@@ -18,8 +18,7 @@ from hem.sources import find_mesh
 FOLDER = "mesh"
 SMALLEST, LARGEST = 100, 1_000_000
 """Vertices of the coarsest and the finest version, but for the mesh itself."""
-COARSER = 4
-"""How many coarser versions there are at the most; each has a quarter of the vertices."""
+COARSER = 4  # how many coarser versions there are at the most; each has a quarter of the vertices
 FINE_ENOUGH = 20_000
 """Vertices up to which there are finer versions of a small mesh; there is always one."""
 
@@ -63,7 +62,7 @@ def of_run(folder: Path) -> OwnMesh | None:
     """The mesh of a run that is on one's own; its cases find it from here on."""
     for kept in (folder / FOLDER).glob("*"):
         _folders[kept.name] = kept
-        return kept.name, tuple(_files(kept.name))
+        return kept.name, tuple(sorted(int(path.stem) for path in kept.glob("*.npz")))
     return None
 
 
@@ -72,18 +71,11 @@ def is_own(name: str) -> bool:
     return name in _folders
 
 
-def version(name: str, size: int) -> TriangleMesh | None:
-    """The version with about so many vertices of what cases call so, if it is one's own."""
-    if not is_own(name):
-        return None
-    files = _files(name)
+def version(name: str, size: int) -> TriangleMesh:
+    """The version with about so many vertices of what is one's own."""
+    files = {int(path.stem): path for path in _folders[name].glob("*.npz")}
     with np.load(files[min(files, key=lambda n: abs(np.log(n / size)))]) as arrays:
         return TriangleMesh(arrays["points"], arrays["triangles"])
-
-
-def _files(name: str) -> dict[int, Path]:
-    """The file of each version by its number of vertices, ascending."""
-    return dict(sorted((int(path.stem), path) for path in _folders[name].glob("*.npz")))
 
 
 def _coarser(mesh: TriangleMesh) -> Iterator[TriangleMesh]:

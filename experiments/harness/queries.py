@@ -16,11 +16,9 @@ from experiments.presets import Preset
 from hem.arrays import Array
 from hem.contract import Structure, Sweep
 
-MOST_HANDLES = 1_000_000
+MOST_HANDLES, CHECKED_HANDLES = 1_000_000, 3
 FEWEST_ROUNDS = 5
-CHECKED_HANDLES = 3
-TRIES = 3
-"""Times that a number of handles is tried before it is believed to last long enough."""
+TRIES = 3  # times that a number of handles is tried before it is believed to last long enough
 
 
 def checked_handles(case: Case) -> tuple[Structure, Array]:

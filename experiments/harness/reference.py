@@ -25,11 +25,9 @@ from hem.arrays import Array
 from hem.contract import Structure, Sweep
 from hem.meshes import TriangleMesh
 
-ROUNDS = 2
-"""Before and after the rounds of a case, each of as many handles as those."""
+ROUNDS = 2  # before and after the rounds of a case, each of as many handles as those
 FEWEST_HANDLES = 1_000
-SMALL_HUBS = 256
-"""Faces of the small mesh where the valence varies."""
+SMALL_HUBS = 256  # faces of the small mesh where the valence varies
 
 
 def typical(seconds: Sequence[float]) -> float | None:
@@ -73,10 +71,10 @@ class Reference:
 
 def small_case(case: Case, preset: Preset) -> Case:
     """The small mesh that a case is compared with copies of, of the smallest valence."""
-    if case.family != HUBS:
-        return replace(case, size=preset.sizes[0], subject=None, order=None)
-    valence = preset.valences[0]
-    return replace(case, size=SMALL_HUBS, valence=valence, subject=None, order=None)
+    size, valence = preset.sizes[0], case.valence
+    if case.family == HUBS:
+        size, valence = SMALL_HUBS, preset.valences[0]
+    return replace(case, size=size, valence=valence, subject=None, order=None)
 
 
 def copies_of(chosen: Sequence[Array], small: Case, s: Structure) -> Array:

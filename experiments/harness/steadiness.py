@@ -5,6 +5,7 @@ core, was disturbed: it is measured again, and the calmest measurement is kept.
 """
 
 import os
+from contextlib import suppress
 from functools import lru_cache
 from time import perf_counter, process_time, sleep
 from typing import Any
@@ -15,18 +16,12 @@ import psutil
 from experiments.harness.calibration import calibration_loop
 
 READINGS = 5
-FIRST_READINGS = 50
-"""Readings at the start of a process, to know how fast the loop can be."""
-SLOWDOWN = 0.25
-"""Part by which the loop may be slower than at its fastest …"""
-OFF_CPU = 0.10
-"""… and part of its time that a case may wait for its core, before it counts as disturbed."""
-IMPOSSIBLE = 0.1
-"""The same for the part of its rounds that took less than can be, once idle calls are taken off."""
-REPEATS = 2
-"""How often a disturbed case is measured again, at most."""
-BUSY = 0.10
-"""Share of disturbed cases above which times should not be judged by."""
+FIRST_READINGS = 50  # readings at the start of a process, to know how fast the loop can be
+SLOWDOWN = 0.25  # part by which the loop may be slower than at its fastest …
+OFF_CPU = 0.10  # … and part of its time that a case may wait for its core: beyond, it is disturbed
+IMPOSSIBLE = 0.1  # the same of its rounds that took less than can be, idle calls taken off
+REPEATS = 2  # how often a disturbed case is measured again, at most
+BUSY = 0.10  # share of disturbed cases above which times should not be judged by
 WATCHED_SECONDS = 0.1
 
 
@@ -89,16 +84,13 @@ def pin() -> int | None:
 
     None where the system has no such call or refuses it; then the process moves about as before.
     """
-    cores = allowed_cores()
-    if not cores:
-        return None
-    try:
-        os.sched_setaffinity(0, cores)
-        core = calmest(cores)
-        os.sched_setaffinity(0, {core})
-    except OSError:
-        return None
-    return core
+    with suppress(OSError):
+        if cores := allowed_cores():
+            os.sched_setaffinity(0, cores)
+            core = calmest(cores)
+            os.sched_setaffinity(0, {core})
+            return core
+    return None
 
 
 def calmest(cores: list[int], seconds: float = WATCHED_SECONDS) -> int:

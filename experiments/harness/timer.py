@@ -43,8 +43,7 @@ class Timed:
         return {**rows, "handles": self.per, "checked": True}
 
 
-Timer = Callable[..., Timed]
-"""``time_rounds``, or a ``BenchmarkTimer``, which is called likewise."""
+Timer = Callable[..., Timed]  # `time_rounds`, or a `BenchmarkTimer`, which is called likewise
 
 
 def time_rounds(
@@ -80,8 +79,7 @@ class UnitClock:
         return perf_counter() / self.per
 
 
-CLOCK = UnitClock()
-"""The clock that ``conftest`` gives to pytest-benchmark."""
+CLOCK = UnitClock()  # the clock that `conftest` gives to pytest-benchmark
 
 
 class BenchmarkTimer:

@@ -15,8 +15,7 @@ ANSWERING = "until it answers"
 """Of what finds its neighbors only when it is asked: as generated, built and asked once."""
 VALENCES = tuple(2**k for k in range(2, 13))
 
-SECONDS_PER_FACE = 1e-9
-"""What a scan of the mesh takes at the least."""
+SECONDS_PER_FACE = 1e-9  # what a scan of the mesh takes at the least
 LONGEST = 20
 """How many times the seconds of a case all its rounds may take, where each searches the mesh."""
 

@@ -32,8 +32,7 @@ HINTS = {
     (errno.EFBIG,): "allow for larger files there",
 }
 """What to do about an error of the system."""
-ROOM_BYTES = 1 << 16
-"""What must be free in a folder for it to be worth measuring into."""
+ROOM_BYTES = 1 << 16  # what must be free in a folder for it to be worth measuring into
 
 DEFAULTS = vars(Measurement("", ""))
 

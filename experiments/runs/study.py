@@ -32,11 +32,9 @@ from experiments.runs.worker import AGAIN, COMPILE, Job, WorkerDiedError, end_of
 from structures import NAMED, REGISTRY
 
 ROOT = Path(__file__).parents[2]
-COMPILED = "hem", "structures", "experiments/harness"
-"""Where the sources are that Numba compiles."""
+COMPILED = "hem", "structures", "experiments/harness"  # where the sources are that Numba compiles
 
-ON = " on "
-"""Between a preset and one's own mesh, in the name of what was measured."""
+ON = " on "  # between a preset and one's own mesh, in the name of what was measured
 
 REPEATING_SHARE = 0.5
 """Disturbed cases are measured again for at most this part of the time that all cases took."""

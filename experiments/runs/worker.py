@@ -18,8 +18,7 @@ from experiments.harness import PRESETS, Case
 from experiments.runs.catalog import experiments
 from experiments.runs.store import CaseFile, require_room, writing
 
-ENDING_SECONDS = 5
-"""How long a worker may take to end before it is killed."""
+ENDING_SECONDS = 5  # how long a worker may take to end before it is killed
 LINES_SHOWN = 15
 DEFAULT_SEED = 1
 MEASURE, AGAIN, COMPILE = "measure", "again", "compile"

@@ -28,8 +28,7 @@ MEASURED = ("bench_work", "bench_queries", "bench_valence")
 """What a run measures: what table 1 is judged by. The work tells the family that is judged."""
 PRESET = "quick"
 ALARMS = (Change.WORSE, Change.BETTER)
-LARGEST_SHARE = 1e-3
-"""False alarms per comparison that are accepted."""
+LARGEST_SHARE = 1e-3  # false alarms per comparison that are accepted
 
 
 def measure_run(root: Path, seed: int) -> Measured:

@@ -43,8 +43,7 @@ DETERMINED = {"work": 0.95, "time": 0.85}
 Judge = Callable[[Array, Sequence[Array], Array | None], str | None]
 
 NANOSECONDS = 1e9
-ROOTLESS = [name for name in GROWTH if name != "O(√n)"]
-"""What those know that have no O(√n)."""
+ROOTLESS = [name for name in GROWTH if name != "O(√n)"]  # what those know that have no O(√n)
 
 
 def hem_judge(sizes: Array, samples: Sequence[Array], latency: Array | None) -> str | None:

@@ -37,8 +37,7 @@ PRESET = "quick"
 RECORDED, TIMED = "torus:400", "torus:5000"
 """The meshes that programs are recorded on, and timed on to learn their own part."""
 
-ON = ("torus:20000", "sphere:5000", "terrain:5000", "cow", "bunny")
-"""The meshes that are predicted."""
+ON = ("torus:20000", "sphere:5000", "terrain:5000", "cow", "bunny")  # the meshes that are predicted
 
 ROUNDS = 15
 LONGEST = 1.0

@@ -24,14 +24,12 @@ from experiments.harness import time_rounds
 from hem.fracture import MATERIALS, Material, require_body, shatter, voronoi
 
 ROUNDS = 5
-SECONDS = 4.0
-"""After so long no further round begins: fewer of them tell apart what takes seconds."""
+SECONDS = 4.0  # after so long no further round begins: fewer of them tell apart what takes seconds
 
 VERTICES = 100_000
 NARROW = BREAKING[True]
 WIDE = replace(NARROW, scale=MATERIALS["glass"].scale)
-INDEXED_ROUNDS = 2
-"""On the indexed mesh a round takes seconds."""
+INDEXED_ROUNDS = 2  # on the indexed mesh a round takes seconds
 
 
 @dataclass(frozen=True)

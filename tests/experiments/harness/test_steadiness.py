@@ -8,14 +8,9 @@ import sys
 import time
 from itertools import pairwise
 
-from experiments.harness import (
-    Case,
-    Watch,
-    badness,
-    disturbed,
-    in_random_order,
-    steadiness,
-)
+from experiments.harness import Case, badness, disturbed, steadiness
+from experiments.harness.cases import in_random_order
+from experiments.harness.steadiness import Watch
 
 CALM = {"fastest": 1e-4, "before": 1e-4, "after": 1.01e-4, "slowdown": 0.01, "off_cpu": 0.0}
 

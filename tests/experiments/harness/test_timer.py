@@ -9,9 +9,9 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
-from experiments.harness import PRESETS, BenchmarkTimer, time_rounds
+from experiments.harness import PRESETS, time_rounds
 from experiments.harness.queries import _seconds_per_query
-from experiments.harness.timer import UnitClock
+from experiments.harness.timer import BenchmarkTimer, UnitClock
 from hem.contract import Sweep
 
 
