@@ -81,8 +81,7 @@ class Preset:
         if structure not in REGISTRY or REGISTRY[structure].compiled:
             return self
         most = self.object_vertices
-        by_vertices = "single_sizes", "workload_sizes", "fracture_sizes"
-        operated = (*by_vertices, "real_time_sizes")
+        operated = "single_sizes", "workload_sizes", "fracture_sizes", "real_time_sizes"
         limits = {"sizes": 3 * most, "build_sizes": 3 * most, **dict.fromkeys(operated, most)}
         smaller: dict[str, Any] = {
             name: tuple(size for size in getattr(self, name) if size <= limit)
@@ -99,22 +98,13 @@ class Preset:
 
         What a valence costs is measured on the hubs, as always.
         """
+        few = tuple(it for it in sizes if it <= LARGEST_COUNTED)
         return replace(
-            self,
-            what=f"{self.what.partition(',')[0]}, on {mesh}",
-            families=(mesh,),
-            models=(),
-            sizes=sizes,
-            work_sizes=tuple(it for it in sizes if it <= LARGEST_COUNTED),
-            build_sizes=sizes,
-            operation_sizes=sizes,
-            single_sizes=sizes,
-            workload_sizes=sizes,
-            real_time_sizes=sizes,
-            operations=(),
-            workloads=(),
-            skipped=NOT_OF_ONE_MESH,
-        )
+            self, what=f"{self.what.partition(',')[0]}, on {mesh}", families=(mesh,), models=(),
+            sizes=sizes, build_sizes=sizes, operation_sizes=sizes, single_sizes=sizes,
+            workload_sizes=sizes, real_time_sizes=sizes, work_sizes=few,
+            operations=(), workloads=(), skipped=NOT_OF_ONE_MESH,
+        )  # fmt: skip
 
     def affordable_rounds(self, seconds: float) -> int:
         """How many rounds of so many seconds there is time for."""
@@ -136,74 +126,43 @@ class Preset:
         return [*((self.families[0], size, None) for size in self.work_sizes), *hubs]
 
 
+# fmt: off
 PRESETS = {
     "smoke": Preset(
         what="a few small cases of everything, to see that it all works, some 2 minutes",
-        families=("torus",),
-        sizes=(100, 400),
-        valences=(4, 8),
-        valence_faces=64,
-        work_sizes=(100, 400),
-        work_faces=128,
-        build_sizes=(100, 1_000),
-        operation_sizes=(100, 400),
-        operation_faces=256,
-        single_sizes=(100,),
-        workload_sizes=(100, 400),
-        real_time_sizes=(400,),
-        fracture_sizes=(100, 400),
-        object_vertices=400,
-        printed_sizes=(50, 100),
-        models=("teapot",),
-        rounds=5,
-        round_seconds=0.0002,
-        case_seconds=0.5,
-        latency_mib=1,
+        families=("torus",), sizes=(100, 400), valences=(4, 8), valence_faces=64,
+        work_sizes=(100, 400), work_faces=128, build_sizes=(100, 1_000),
+        operation_sizes=(100, 400), operation_faces=256, single_sizes=(100,),
+        workload_sizes=(100, 400), real_time_sizes=(400,), fracture_sizes=(100, 400),
+        object_vertices=400, printed_sizes=(50, 100), models=("teapot",),
+        rounds=5, round_seconds=0.0002, case_seconds=0.5, latency_mib=1,
     ),
     "quick": Preset(
         what="what decides the claims, on one family up to 100,000 vertices, some 3 minutes",
-        families=("torus",),
-        sizes=_geometric(100, 100_000, 4 / 3),
-        valences=VALENCES[::2],
-        work_sizes=_geometric(100, 3_200, 2),
-        work_faces=8_192,
-        build_sizes=_geometric(100, 100_000, 1),
-        build_reference_bytes=(4,),
-        operation_sizes=_geometric(100, 100_000, 4 / 3),
-        operation_faces=32_768,
-        single_sizes=(1_000,),
+        families=("torus",), sizes=_geometric(100, 100_000, 4 / 3), valences=VALENCES[::2],
+        work_sizes=_geometric(100, 3_200, 2), work_faces=8_192,
+        build_sizes=_geometric(100, 100_000, 1), build_reference_bytes=(4,),
+        operation_sizes=_geometric(100, 100_000, 4 / 3), operation_faces=32_768,
         operations=("split_edge", "split_face", "collapse_edge", "flip_edge"),
-        workload_sizes=(1_000, 10_000),
-        workloads=("vertex_normals", "impacts"),
-        real_time_sizes=(1_000, 10_000),
-        fracture_sizes=_geometric(100, 10_000, 1),
-        object_vertices=1_100,
-        printed_sizes=(50, 100, 200, 400),
-        models=("teapot", "bunny"),
-        rounds=9,
-        round_seconds=0.002,
-        case_seconds=0.25,
-        latency_mib=32,
-        skipped=("bench_fracture",),
+        single_sizes=(1_000,), real_time_sizes=(1_000, 10_000),
+        workload_sizes=(1_000, 10_000), workloads=("vertex_normals", "impacts"),
+        fracture_sizes=_geometric(100, 10_000, 1), object_vertices=1_100,
+        printed_sizes=(50, 100, 200, 400), models=("teapot", "bunny"), skipped=("bench_fracture",),
+        rounds=9, round_seconds=0.002, case_seconds=0.25, latency_mib=32,
     ),
     "standard": Preset("one family of each kind up to 1,000,000 vertices, about an hour"),
     "full": Preset(
         what="every family up to 1,000,000 vertices with finer steps, some two hours",
         families=("torus", "sphere", "grid", "cone", "terrain", "isosurface"),
-        sizes=_geometric(100, 1_000_000, 4),
-        work_sizes=_geometric(100, 32_000, 4),
+        sizes=_geometric(100, 1_000_000, 4), work_sizes=_geometric(100, 32_000, 4),
         build_sizes=_geometric(100, 1_000_000, 4),
-        operation_sizes=_geometric(100, 1_000_000, 4),
-        operation_faces=131_072,
+        operation_sizes=_geometric(100, 1_000_000, 4), operation_faces=131_072,
         single_sizes=_geometric(100, 1_000_000, 4)[::2],
         workload_sizes=_geometric(100, 100_000, 4),
-        fracture_sizes=_geometric(100, 1_000_000, 2)[1:],
-        object_vertices=10_000,
+        fracture_sizes=_geometric(100, 1_000_000, 2)[1:], object_vertices=10_000,
         printed_sizes=_geometric(50, 1_600, 6),
         models=("teapot", "cow", "airplane", "bunny", "bone"),
-        rounds=25,
-        round_seconds=0.01,
-        case_seconds=5.0,
-        latency_mib=1024,
+        rounds=25, round_seconds=0.01, case_seconds=5.0, latency_mib=1024,
     ),
 }
+# fmt: on

@@ -10,7 +10,7 @@ attention.
 import json
 import tempfile
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Sequence
 from itertools import combinations
 from pathlib import Path
 from typing import Any
@@ -27,7 +27,6 @@ RESULT = Path("results/reference/aa.json")
 MEASURED = ("bench_work", "bench_queries", "bench_valence")
 """What a run measures: what table 1 is judged by. The work tells the family that is judged."""
 PRESET = "quick"
-ALARMS = (Change.WORSE, Change.BETTER)
 LARGEST_SHARE = 1e-3  # false alarms per comparison that are accepted
 
 
@@ -42,16 +41,14 @@ def compare_pair(before: Measured, after: Measured) -> dict[str, Any]:
     """Count what the gate says of two runs, where there is a verdict to be lost or won."""
     open_twice = (Change.UNDETERMINED, Change.UNDETERMINED)
     findings = regression.compare_runs(before, after).findings
-    return count_findings(
-        it for it in findings if it.random and (it.before, it.after) != open_twice
-    )
+    told = [it for it in findings if it.random and (it.before, it.after) != open_twice]
+    return count_findings(told)
 
 
-def count_findings(findings: Iterable[Finding]) -> dict[str, Any]:
+def count_findings(findings: Sequence[Finding]) -> dict[str, Any]:
     """How often the gate said what, and its alarms in words."""
-    findings = list(findings)
     outcomes = Counter(finding.change for finding in findings)
-    alarms = (it for it in findings if it.change in ALARMS)
+    alarms = (it for it in findings if it.change in (Change.WORSE, Change.BETTER))
     return {
         "comparisons": len(findings),
         "same": outcomes[Change.SAME],
@@ -61,9 +58,8 @@ def count_findings(findings: Iterable[Finding]) -> dict[str, Any]:
     }
 
 
-def sum_counts(rows: Iterable[dict[str, Any]]) -> dict[str, int]:
+def sum_counts(rows: Sequence[dict[str, Any]]) -> dict[str, int]:
     """Sum up rows: comparisons, alarms, those left open, and how often these were too many."""
-    rows = list(rows)
     return {
         "comparisons": sum(row["comparisons"] for row in rows),
         "alarms": sum(len(row["alarms"]) for row in rows),
@@ -94,9 +90,8 @@ def main(runs: int = 7, interleaved: int = 20, output: Path = RESULT) -> None:
     kept |= {"factor": regression.RUN_FACTOR, "factor_interleaved": regression.INTERLEAVED_FACTOR}
     with copied_tree() as copy:
         for k in range(interleaved):
-            findings = regression.compare_trees(
-                copy, regression.HERE, [STRUCTURES[k % len(STRUCTURES)]]
-            )
+            structure = STRUCTURES[k % len(STRUCTURES)]
+            findings = regression.compare_trees(copy, structures=[structure])
             kept["interleaved"].append(count_findings(findings))
             print("interleaved", kept["interleaved"][-1], flush=True)
     with tempfile.TemporaryDirectory(prefix="hem-aa-") as root:

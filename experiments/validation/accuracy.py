@@ -12,7 +12,6 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
 from importlib.metadata import version
 from importlib.util import find_spec
-from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -30,11 +29,9 @@ UNDETERMINED = Outcome.UNDETERMINED.value
 COLUMNS = ["judge", "condition", "growth", "answer", "count"]
 
 ASKED = {
-    "steady": (0.95, 0.005),
-    "prefetched": (0.95, 0.005),
-    "latency known": (0.90, 0.01),
+    "steady": (0.95, 0.005), "prefetched": (0.95, 0.005), "latency known": (0.90, 0.01),
     "latency unknown": (0.0, 0.05),
-}
+}  # fmt: skip
 """By condition: the least share to be named right, and the largest to be named wrong."""
 
 DETERMINED = {"work": 0.95, "time": 0.85}
@@ -106,11 +103,8 @@ def _points(sizes: Array, samples: Sequence[Array]) -> tuple[Array, Array]:
 
 
 JUDGES: dict[str, Judge] = {
-    "hem": hem_judge,
-    "bigo": bigo,
-    "big-o": big_o,
-    "Google Benchmark": google_benchmark,
-}
+    "hem": hem_judge, "bigo": bigo, "big-o": big_o, "Google Benchmark": google_benchmark,
+}  # fmt: skip
 """By name. Those of packages that are not installed fail when asked: see ``installed_judges``."""
 
 PACKAGES = {"bigo": "bigO", "big-o": "big_o"}
@@ -125,11 +119,11 @@ def installed_judges() -> dict[str, Judge]:
 
 def count_answers(judges: dict[str, Judge], curves: Iterable[SyntheticCurve]) -> pd.DataFrame:
     """Ask every judge about every curve -> a row per judge, condition, true class and answer."""
-    counts = Counter[tuple[str, str, str, str]]()
-    for curve in curves:
-        for name, ask in judges.items():
-            answer = ask(curve.sizes, curve.samples, curve.latency) or UNDETERMINED
-            counts[name, curve.condition, curve.growth, answer] += 1
+    counts = Counter(
+        (name, it.condition, it.growth, ask(it.sizes, it.samples, it.latency) or UNDETERMINED)
+        for it in curves
+        for name, ask in judges.items()
+    )
     return pd.DataFrame([[*key, count] for key, count in counts.items()], columns=COLUMNS)
 
 
@@ -139,9 +133,8 @@ def answer_shares(answers: pd.DataFrame) -> pd.DataFrame:
     kind[answers["answer"] == answers["growth"]] = "right"
     kind[answers["answer"] == UNDETERMINED] = UNDETERMINED
     counts = answers.assign(kind=kind).pivot_table(
-        index=["judge", "condition"], columns="kind", values="count", aggfunc="sum", fill_value=0,
-        sort=False,
-    )  # fmt: skip
+        "count", ["judge", "condition"], "kind", aggfunc="sum", fill_value=0, sort=False
+    )
     counts = counts.reindex(columns=["right", "wrong", UNDETERMINED], fill_value=0)
     return counts.div(counts.sum(axis=1), axis=0)
 
@@ -197,8 +190,9 @@ def describe_origin(kept: dict[str, Any]) -> str:
 
 def main(output: Path = RESULT) -> None:
     """Ask every judge about every curve, keep the answers, and print the shares."""
-    kinds = product(CONDITIONS, GROWTH)
-    curves = [it for condition, growth in kinds for it in make_curves(growth, condition)]
+    curves = [
+        it for condition in CONDITIONS for name in GROWTH for it in make_curves(name, condition)
+    ]
     judges = installed_judges()
     answers = count_answers(judges, curves)
     kept = {key: value for key, value in describe("").items() if key != "preset"}

@@ -10,7 +10,7 @@ half an hour of a machine's whole attention, most of it to compile.
 import json
 import os
 import tempfile
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable
 from dataclasses import replace
 from functools import cache, partial
 from pathlib import Path
@@ -36,9 +36,7 @@ PRESET = "quick"
 
 RECORDED, TIMED = "torus:400", "torus:5000"
 """The meshes that programs are recorded on, and timed on to learn their own part."""
-
 ON = ("torus:20000", "sphere:5000", "terrain:5000", "cow", "bunny")  # the meshes that are predicted
-
 ROUNDS = 15
 LONGEST = 1.0
 """Seconds a program may take; where more is predicted it is not run, and no further rounds are."""
@@ -49,11 +47,8 @@ MIXES, STEPS, BATCH, SPLITS = 6, 20, (500, 3_000), 100
 
 ASKED = 1_000
 
-COMPILED = [name for name, it in structures.REGISTRY.items() if it.compiled]
-BASE = next(
-    name for name in COMPILED
-    if not (structures.REGISTRY[name].searches or structures.REGISTRY[name].rebuilds)
-)  # fmt: skip
+COMPILED = {name: it for name, it in structures.REGISTRY.items() if it.compiled}
+BASE = next(name for name, it in COMPILED.items() if not (it.searches or it.rebuilds))
 """What programs are recorded and timed on."""
 
 
@@ -143,21 +138,16 @@ def timed(prices: Prices, program: Program, names: Iterable[str], mesh: Any) -> 
     for _ in range(ROUNDS):
         for name, s in held.items():
             if spent[name] < LONGEST:
-                seconds, factor = _one(program, s, prices.step)
+                copy = s.copy()
+                if s.rebuilds:
+                    copy.vertex_faces(0)
+                before, begin = calibration_loop(), process_time()
+                program.run(copy)
+                seconds = process_time() - begin
+                loop = (before + calibration_loop()) / 2
                 spent[name] += seconds
-                least[name] = min(least[name], seconds * factor)
+                least[name] = min(least[name], seconds * (prices.step / loop))
     return least
-
-
-def _one(program: Program, s: Structure, step: float) -> tuple[float, float]:
-    """Seconds of one round, and their factor on a machine whose calibration loop takes ``step``."""
-    copy = s.copy()
-    if structures.REGISTRY[s.name].rebuilds:
-        copy.vertex_faces(0)
-    before, begin = calibration_loop(), process_time()
-    program.run(copy)
-    seconds = process_time() - begin
-    return seconds, step / ((before + calibration_loop()) / 2)
 
 
 def compare(prices: Prices, workload: Workload, name: str, mesh_name: str) -> dict[str, Any]:
@@ -167,19 +157,11 @@ def compare(prices: Prices, workload: Workload, name: str, mesh_name: str) -> di
     told = [predict(prices, workload, structure, faces) for structure in COMPILED]
     hopeful = [it.structure for it in told if it.seconds < LONGEST]
     taken = timed(prices, PROGRAMS[name], hopeful, mesh)
-    rows = [
-        {"structure": it.structure, "low": it.low, "high": it.high, "predicted": it.seconds,
-         "taken": taken.get(it.structure)}
-        for it in told
-    ]  # fmt: skip
+    rows = []
+    for it in told:
+        row = {"structure": it.structure, "low": it.low, "high": it.high, "predicted": it.seconds}
+        rows.append({**row, "taken": taken.get(it.structure)})
     return {"program": name, "mesh": mesh_name, "faces": faces, "structures": rows}
-
-
-def pairs(names: Iterable[str]) -> Iterator[tuple[str, str]]:
-    """Every program on two of the meshes, in turn."""
-    for place, name in enumerate(names):
-        for step in (0, 2):
-            yield name, ON[(place + step) % len(ON)]
 
 
 def figures(rows: list[dict[str, Any]]) -> dict[str, Any]:
@@ -195,27 +177,17 @@ def figures(rows: list[dict[str, Any]]) -> dict[str, Any]:
         "median_error": float(np.median(errors)),
         "within_30_percent": float(np.mean(np.array(errors) <= 0.3)),
         "within_interval": float(np.mean([it["low"] <= it["taken"] <= it["high"] for it in told])),
-        "winner_right": float(np.mean([_is_right(it) for it in ran if it])),
-        "best_among_alike": float(np.mean([_is_among(it) for it in ran if it])),
+        "winner_right": float(np.mean([_is_alike(it, "predicted", "taken") for it in ran if it])),
+        "best_among_alike": float(
+            np.mean([_is_alike(it, "taken", "predicted") for it in ran if it])
+        ),
     }
 
 
-def _is_right(ran: list[dict[str, Any]]) -> bool:
-    """Whether the predicted best is alike the best; what was not run is far behind."""
-    chosen = min(ran, key=lambda it: it["predicted"])
-    return bool(chosen["taken"] <= ALIKE * min(it["taken"] for it in ran))
-
-
-def _is_among(ran: list[dict[str, Any]]) -> bool:
-    """Whether the best is among those that are predicted to be alike."""
-    best = min(ran, key=lambda it: it["taken"])
-    return bool(best["predicted"] <= ALIKE * min(it["predicted"] for it in ran))
-
-
-def _ratios(row: dict[str, Any]) -> dict[str, float]:
-    """What was predicted, by what it took."""
-    ran = (it for it in row["structures"] if it["taken"])
-    return {it["structure"]: round(it["predicted"] / it["taken"], 2) for it in ran}
+def _is_alike(ran: list[dict[str, Any]], best_by: str, told_by: str) -> bool:
+    """Whether the best by one figure is alike the best by the other; what did not run is not."""
+    best = min(ran, key=lambda it: it[best_by])
+    return bool(best[told_by] <= ALIKE * min(it[told_by] for it in ran))
 
 
 def table(kept: dict[str, Any]) -> pd.DataFrame:
@@ -224,15 +196,16 @@ def table(kept: dict[str, Any]) -> pd.DataFrame:
     for name in dict.fromkeys(row["program"] for row in kept["rows"]):
         mine = [row for row in kept["rows"] if row["program"] == name]
         found = figures(mine)
-        cells = {
-            "Program": name[0].upper() + name[1:].replace("_", " "),
-            "on": ", ".join(row["mesh"] for row in mine),
-            "off by, median": f"{found['median_error']:.0%}",
-            "within the interval": f"{found['within_interval']:.0%}",
-            "best structure told": f"{found['winner_right'] * len(mine):.0f} of {len(mine)}",
-        }
+        cells = (
+            name[0].upper() + name[1:].replace("_", " "),
+            ", ".join(row["mesh"] for row in mine),
+            f"{found['median_error']:.0%}",
+            f"{found['within_interval']:.0%}",
+            f"{found['winner_right'] * len(mine):.0f} of {len(mine)}",
+        )
         rows.append(cells)
-    return pd.DataFrame(rows)
+    heads = "Program", "on", "off by, median", "within the interval", "best structure told"
+    return pd.DataFrame(rows, columns=heads)
 
 
 def in_words(kept: dict[str, Any]) -> str:
@@ -253,14 +226,18 @@ def main(output: Path = RESULT, run: Path | None = None, program: list[str] | No
     """
     os.sched_setaffinity(0, {max(os.sched_getaffinity(0))})  # prices are those of one core
     with tempfile.TemporaryDirectory(prefix="hem-advice-") as root:
-        folder = run or study.begin(PRESET, Path(root), COMPILED, NEEDED)
+        folder = run or study.begin(PRESET, Path(root), list(COMPILED), NEEDED)
         if run is None:
             study.run(folder)
         prices = Prices(load(folder))
         known, rows = cache(partial(learned, prices)), []
-        for name, mesh in pairs(program or PROGRAMS):
+        names = list(program or PROGRAMS)  # every one on two of the meshes, in turn
+        pairs = [(name, ON[(k + n) % len(ON)]) for k, name in enumerate(names) for n in (0, 2)]
+        for name, mesh in pairs:
             rows.append(compare(prices, known(name), name, mesh))
-            print(name, mesh, _ratios(rows[-1]), flush=True)
+            ran = [it for it in rows[-1]["structures"] if it["taken"]]
+            ratios = {it["structure"]: round(it["predicted"] / it["taken"], 2) for it in ran}
+            print(name, mesh, ratios, flush=True)
     kept = {key: value for key, value in describe(PRESET).items() if key != "schema"}
     kept |= {"load": os.getloadavg()[0]}
     kept |= {"prices": str(prices.run.folder.name), "finished": prices.run.meta.get("finished")}

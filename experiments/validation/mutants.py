@@ -82,10 +82,9 @@ def run_gate(tree: Path, structure: str = "", timed: bool = False) -> dict[str, 
     command = [sys.executable, "-m", "experiments.cli", "check", "--json"]
     command += ["--structure", structure] if structure else []
     command += ["--beside", str(HERE)] if timed else []
+    output: dict[str, Any] = {"capture_output": True, "text": True}
     try:
-        done = subprocess.run(
-            command, cwd=tree, capture_output=True, text=True, timeout=LONGEST_SECONDS
-        )
+        done = subprocess.run(command, cwd=tree, timeout=LONGEST_SECONDS, **output)
         report = json.loads(done.stdout)
     except subprocess.TimeoutExpired as error:
         return {"status": 2, "worse": [], "error": str(error)}

@@ -1,8 +1,7 @@
 """Judges on real functions: how often each names the class that a function is known to have.
 
 ``python -m experiments.validation.real_functions`` measures every function of known cost, some ten
-minutes, and asks every judge. The judge was tuned on those of `experiments.validation.functions`
-and on those that it has seen; those held out tell how good it is.
+minutes, and asks every judge. Ours was tuned on some; those held out tell how good it is.
 ``--busy`` measures the latter alone, and keeps the other core busy with memory the while.
 """
 
@@ -13,7 +12,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from subprocess import DEVNULL, Popen
-from typing import Annotated, Any
+from typing import Annotated
 
 import numpy as np
 import pandas as pd
@@ -22,10 +21,9 @@ from typer import Option
 
 from experiments.runs import describe
 from experiments.validation.accuracy import UNDETERMINED, Judge, installed_judges
-from experiments.validation.functions import FUNCTIONS, Function
-from experiments.validation.held_out import HELD_OUT, SEEN
+from experiments.validation.accuracy import load_accuracy as load_answers
+from experiments.validation.functions import FUNCTIONS, HELD_OUT, SEEN
 from hem.complexity import Measured, canonical, measure, parse
-from hem.complexity.notation import Order
 
 RESULT = Path("results/reference/real_functions.json")
 COLUMNS = ["function", "growth", "source", "half", "neighbor", "judge", "answer"]
@@ -55,19 +53,12 @@ def neighbor(busy: bool) -> Iterator[None]:
             program.wait()
 
 
-def measure_function(it: Function, budget: float) -> Measured:
-    """What a function of the table costs by size."""
-    sizes = POWERS if it.powers else None
-    return measure(it.call, it.make, sizes, budget=budget, most=it.most)
-
-
 def answers_of(found: Measured, judges: dict[str, Judge]) -> dict[str, str]:
     """What every judge says of the costs, ours with and without knowing the memory."""
     told = {"hem": found.judge(resamples=2).answer}
     told["hem, memory unknown"] = found.judge(latency=None, resamples=2).answer
-    for name, ask in judges.items():
-        if name != "hem":
-            told[name] = ask(found.sizes, found.samples, None) or ""
+    others = {name: ask for name, ask in judges.items() if name != "hem"}
+    told |= {name: ask(found.sizes, found.samples, None) or "" for name, ask in others.items()}
     return {name: answer or UNDETERMINED for name, answer in told.items()}
 
 
@@ -76,23 +67,25 @@ def kind_of(answer: str, growth: str) -> str:
     if answer == UNDETERMINED:
         return UNDETERMINED
     named, known = answer.split(" or "), parse(growth)
-    if not any(it == growth or _same_power(parse(it), known) for it in named):
+    right = growth in named
+    for told in map(parse, named):  # one fractional power may be told as another close by
+        fractions = told.power % 0.5 and known.power % 0.5 and told.logs == 0
+        right |= bool(fractions) and abs(told.power - known.power) <= SAME_POWER
+    if not right:
         return "wrong"
     return "right" if len(named) == 1 else "one of two"
 
 
-def _same_power(told: Order, known: Order) -> bool:
-    """Whether one fractional power is told as another close by."""
-    fractions = told.power % 0.5 and known.power % 0.5
-    return bool(fractions) and abs(told.power - known.power) <= SAME_POWER and told.logs == 0
+def _with_kinds(answers: pd.DataFrame) -> pd.DataFrame:
+    kinds = [kind_of(*row) for row in answers[["answer", "growth"]].itertuples(index=False)]
+    return answers.assign(kind=kinds)
 
 
 def shares(answers: pd.DataFrame) -> pd.DataFrame:
     """Functions by kind of answer: a row per half, neighbor and judge."""
-    kinds = [kind_of(*row) for row in answers[["answer", "growth"]].itertuples(index=False)]
     keys = ["half", "neighbor", "judge"]
-    counted = answers.assign(kind=kinds).pivot_table(
-        index=keys, columns="kind", values="function", aggfunc="count", fill_value=0, sort=False
+    counted = _with_kinds(answers).pivot_table(
+        "function", keys, "kind", aggfunc="count", fill_value=0, sort=False
     )
     return counted.reindex(columns=KINDS, fill_value=0)
 
@@ -108,12 +101,6 @@ def markdown(answers: pd.DataFrame) -> str:
     return "\n".join(f"| {' | '.join(line)} |" for line in lines)
 
 
-def load_answers(path: Path = RESULT) -> tuple[dict[str, Any], pd.DataFrame]:
-    """What was measured when, and the answers."""
-    kept = json.loads(path.read_text("utf-8"))
-    return kept, pd.DataFrame(kept["rows"], columns=kept["columns"])
-
-
 def _rows(budget: float, busy: bool, measured: Path | None) -> Iterator[list[str]]:
     """Measure, or read what was measured, and ask -> rows of the answers."""
     judges, kept = installed_judges(), {}
@@ -125,31 +112,19 @@ def _rows(budget: float, busy: bool, measured: Path | None) -> Iterator[list[str
     with neighbor(busy and len(kept) < len(functions)):
         for half, it in functions:
             if line := kept.get(it.name):
-                samples = [np.array(row) for row in line["samples"]]
-                rest = (np.array(line[key]) for key in ("sizes", "working_sets", "memory"))
-                sizes, working_sets, memory = rest
-                found = Measured(sizes, samples, working_sets, memory)
+                samples = [np.array(row) for row in line.pop("samples")]
+                rest = {key: np.array(values) for key, values in line.items()}
+                found = Measured(samples=samples, **rest)
             else:
-                found = measure_function(it, budget)
+                sizes = POWERS if it.powers else None
+                found = measure(it.call, it.make, sizes, budget=budget, most=it.most)
                 if measured:
-                    _append(measured, it.name, found)
-            who = [
-                it.name,
-                canonical(it.growth),
-                it.source,
-                half,
-                NEIGHBORS[busy],
-            ]
+                    line = {"function": it.name, **vars(found)}
+                    with measured.open("a", encoding="utf-8") as file:
+                        file.write(json.dumps(line, default=np.ndarray.tolist) + "\n")
+            who = [it.name, canonical(it.growth), it.source, half, NEIGHBORS[busy]]
             for judge, answer in answers_of(found, judges).items():
                 yield [*who, judge, answer]
-
-
-def _append(path: Path, name: str, found: Measured) -> None:
-    line: dict[str, Any] = {"function": name, "samples": [row.tolist() for row in found.samples]}
-    for key in ("sizes", "working_sets", "memory"):
-        line[key] = getattr(found, key).tolist()
-    with path.open("a", encoding="utf-8") as file:
-        file.write(json.dumps(line) + "\n")
 
 
 def main(
@@ -169,12 +144,10 @@ def main(
     kept = {key: value for key, value in describe("").items() if key != "preset"}
     kept |= {"budget": budget, "columns": COLUMNS, "rows": rows}
     output.write_text(json.dumps(kept, indent=1, ensure_ascii=False) + "\n", "utf-8")
-    answers = pd.DataFrame(rows, columns=COLUMNS)
-    ours = answers[answers["judge"] == "hem"]
-    missed = [
-        kind_of(*row) != "right" for row in ours[["answer", "growth"]].itertuples(index=False)
-    ]
-    print(ours[missed][["function", "half", "neighbor", "growth", "answer"]].to_string(index=False))
+    answers = _with_kinds(pd.DataFrame(rows, columns=COLUMNS))
+    missed = answers[(answers["judge"] == "hem") & (answers["kind"] != "right")]
+    shown = ["function", "half", "neighbor", "growth", "answer"]
+    print(missed[shown].to_string(index=False))
     print(shares(answers).to_string())
 
 

@@ -6,6 +6,7 @@ that the memory causes. Everything follows from a seed.
 """
 
 from collections.abc import Callable, Iterator
+from itertools import product
 from typing import NamedTuple
 
 import numpy as np
@@ -30,12 +31,9 @@ CONDITIONS = {
     "latency unknown": "a tenfold slowdown, and no latency given",
 }
 """What the memory does to a curve, and whether the judge is told its latency."""
-
 SLOWED = ("latency known", "latency unknown")
 TOLD = ("prefetched", "latency known")
-
-INTERCEPTS = (0.0, 1.0)
-NOISES = (0.02, 0.05, 0.1)
+KINDS = list(product((0.0, 1.0), (0.02, 0.05, 0.1)))  # intercepts, and noises
 
 
 class SyntheticCurve(NamedTuple):
@@ -55,14 +53,13 @@ def make_curves(
 
     ``count`` must be a multiple of 6: ValueError else. The same seed gives the same curves.
     """
-    kinds = [(intercept, noise) for intercept in INTERCEPTS for noise in NOISES]
-    if count % len(kinds):
-        raise ValueError(f"count must be a multiple of {len(kinds)}, not {count}")
+    if count % len(KINDS):
+        raise ValueError(f"count must be a multiple of {len(KINDS)}, not {count}")
     place = list(GROWTH).index(growth), list(CONDITIONS).index(condition)
     rng = np.random.default_rng([seed, *place])
-    for intercept, noise in kinds:
-        for _ in range(count // len(kinds)):
-            yield make_curve(rng, growth, condition, intercept, noise)
+    for kind in KINDS:
+        for _ in range(count // len(KINDS)):
+            yield make_curve(rng, growth, condition, *kind)
 
 
 def make_curve(
