@@ -23,14 +23,19 @@ def check_rows(
     CheckFailedError naming library, query, element and both answers.
     """
     for place, asked in enumerate(keys.tolist()):
-        key = int(pack(np.array([asked]))[0]) if query.source == "edge" else asked
-        expected = neighbors(triangles, query, key)
         answer = _sorted(row(rows, place), named if query.target == "edge" else None)
-        if not np.array_equal(answer, expected):
-            raise CheckFailedError(
-                f"{title}: {query.name}({asked}) gives {answer.tolist()}, "
-                f"the triangle list {expected.tolist()}"
-            )
+        _require_same(title, query, triangles, asked, answer)
+
+
+def _require_same(title: str, query: Query, triangles: Array, asked: Any, answer: Array) -> None:
+    """``asked``: a vertex or face, or the two vertices of an edge; ``answer``: ascending."""
+    key = int(pack(np.array([asked]))[0]) if query.source == "edge" else asked
+    expected = neighbors(triangles, query, key)
+    if not np.array_equal(answer, expected):
+        raise CheckFailedError(
+            f"{title}: {query.name}({asked}) gives {answer.tolist()}, "
+            f"the triangle list {expected.tolist()}"
+        )
 
 
 def row(rows: Rows, place: int) -> Array:
@@ -54,11 +59,7 @@ def check_told(title: str, triangles: Array, told: Mapping[str, Any]) -> None:
     for name, every in told.items():
         query = QUERIES[name]
         for asked, answer in every:
-            key = int(pack(np.array([asked]))[0]) if query.source == "edge" else int(asked[0])
             given = np.array(answer).reshape(-1, 2 if query.target == "edge" else 1)
             found = pack(given) if query.target == "edge" else given[:, 0]
-            expected = neighbors(triangles, query, key)
-            if not np.array_equal(np.unique(found), expected):
-                raise CheckFailedError(
-                    f"{title}: {name}({asked}) gives {answer}, not {expected.tolist()}"
-                )
+            key = asked if query.source == "edge" else int(asked[0])
+            _require_same(title, query, triangles, key, np.unique(found))

@@ -49,12 +49,19 @@ def _given(case: Case) -> tuple[Array, Array]:
     return mesh.points.astype(np.float64), mesh.triangles.astype(np.int32)
 
 
+def _took(call: Callable[..., Any], *given: Any) -> tuple[Any, float]:
+    """What a call gives, and the seconds it takes."""
+    begin = perf_counter()
+    found = call(*given)
+    return found, perf_counter() - begin
+
+
 @lru_cache(maxsize=1)
 def _built(case: Case) -> Built:
     peer, process, given = PEERS[case.structure], psutil.Process(), _given(case)
     before = process.memory_info().rss
     m = peer.build(*given)
-    grown = max(process.memory_info().rss - before, given[0].nbytes + given[1].nbytes)
+    grown = max(process.memory_info().rss - before, sum(it.nbytes for it in given))
     ends = np.asarray(peer.ends(m)) if peer.ends else np.zeros((0, 2), np.int64)
     return Built(m, grown, ends)
 
@@ -66,11 +73,9 @@ def _mesh_of(case: Case) -> Built:
 
 def _numbers(case: Case, source: str, ends: Array) -> Array:
     """The elements that a case asks, at random; where the valence varies those at hubs."""
-    rows = {
-        "vertex": np.arange(len(case.mesh().points))[:, None],
-        "edge": ends,
-        "face": case.mesh().triangles,
-    }[source]
+    mesh = case.mesh()
+    vertices = np.arange(len(mesh.points))[:, None]
+    rows = {"vertex": vertices, "edge": ends, "face": mesh.triangles}[source]
     numbers = np.random.default_rng(SEED).permutation(len(rows))
     if case.valence is not None:
         hubs = len(hem.valence_hubs(case.valence, case.size))
@@ -80,9 +85,8 @@ def _numbers(case: Case, source: str, ends: Array) -> Array:
 
 def _check(case: Case, built: Built, numbers: Array, answers: list[Any]) -> None:
     """Compare what was answered at some elements with the triangle list."""
-    peer, keys = PEERS[case.structure], numbers
-    if case.query.source == "edge":
-        keys = built.ends[numbers]
+    peer = PEERS[case.structure]
+    keys = built.ends[numbers] if case.query.source == "edge" else numbers
 
     def named(edges: Array) -> Array:
         return peer.named(built.mesh, edges) if peer.named else built.ends[edges]
@@ -122,19 +126,17 @@ def time_single(case: Case, preset: Preset, timer: Timer) -> Fields:
     if peer.objects and not _ends_within(preset.case_seconds, ask, handles[0]):
         return {"skipped": f"one query takes longer than the {preset.case_seconds} s of a case"}
     _check(case, built, numbers[:CHECKED], [ask(it) for it in handles[:CHECKED]])
-    begin = perf_counter()
-    for handle in handles[:CHECKED]:
-        ask(handle)
-    seconds = (perf_counter() - begin) / CHECKED
+
+    def ask_each(chosen: list[Any]) -> None:
+        for handle in chosen:
+            ask(handle)
+
+    seconds = _took(ask_each, handles[:CHECKED])[1] / CHECKED
     many = int(np.clip(preset.round_seconds / seconds, 1, len(handles)))
     windows = (np.arange(many) + many * k for k in count())
 
     def some() -> tuple[list[Any]]:
         return ([handles[it] for it in (next(windows) % len(handles)).tolist()],)
-
-    def ask_each(chosen: list[Any]) -> None:
-        for handle in chosen:
-            ask(handle)
 
     if seconds * len(handles) < preset.case_seconds:
         ask_each(handles)
@@ -146,9 +148,7 @@ def time_bulk(case: Case, preset: Preset, timer: Timer) -> Fields:
     """Ask of all elements at once -> seconds per element."""
     peer, query, built = PEERS[case.structure], case.query, _mesh_of(case)
     ask = peer.bulk[query.name]
-    begin = perf_counter()
-    rows = ask(peer.fresh(built.mesh))
-    seconds = perf_counter() - begin
+    rows, seconds = _took(ask, peer.fresh(built.mesh))
     few = _numbers(case, query.source, built.ends)[:CHECKED]
     _check(case, built, few, [row(rows, it) for it in few.tolist()])
     mesh = case.mesh()
@@ -159,20 +159,14 @@ def time_bulk(case: Case, preset: Preset, timer: Timer) -> Fields:
         kept.clear()
         return (peer.fresh(built.mesh),)
 
-    return timer(
-        lambda m: kept.append(ask(m)),
-        setup=ready,
-        rounds=preset.affordable_rounds(seconds),
-        per=many[query.source],
-    ).fields
+    rounds, per = preset.affordable_rounds(seconds), many[query.source]
+    return timer(lambda m: kept.append(ask(m)), setup=ready, rounds=rounds, per=per).fields
 
 
 def time_building(case: Case, preset: Preset, timer: Timer) -> Fields:
     """Build from arrays."""
     peer, given = PEERS[case.structure], _given(case)
-    begin = perf_counter()
-    m = peer.build(*given)
-    seconds = perf_counter() - begin
+    m, seconds = _took(peer.build, *given)
     _require(peer, peer.faces(m) == len(given[1]), f"{peer.faces(m)} faces of {len(given[1])}")
     rounds = preset.affordable_rounds(seconds)
     return timer(peer.build, setup=lambda: given, rounds=rounds).fields
@@ -203,11 +197,8 @@ def time_operations(case: Case, preset: Preset, timer: Timer, batched: bool) -> 
         return m, numbers, places
 
     m, *_ = ready()
-    before = peer.faces(m)
-    begin = perf_counter()
-    done = operate(m, numbers, places)
-    seconds = perf_counter() - begin
-    faces = before + FACES_MORE[operation] * len(numbers)
+    faces = peer.faces(m) + FACES_MORE[operation] * len(numbers)
+    done, seconds = _took(operate, m, numbers, places)
     left = peer.faces(m)
     _require(peer, (done, left) == (len(numbers), faces), f"{done} × {operation}, {left} faces")
     rounds = preset.affordable_rounds(seconds)
@@ -222,9 +213,7 @@ def time_algorithm(case: Case, preset: Preset, timer: Timer) -> Fields:
     def ready() -> tuple[Any, ...]:
         return peer.build(*given), *more
 
-    begin = perf_counter()
-    found = peer.algorithms[name](*ready())
-    seconds = perf_counter() - begin
+    found, seconds = _took(peer.algorithms[name], *ready())
     if name == "simplify":
         _require(peer, abs(found - more[0]) <= more[0] / PART, f"{found} faces for {more[0]}")
     elif name == "vertex_normals":

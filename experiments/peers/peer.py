@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from importlib import import_module
 from importlib.metadata import PackageNotFoundError, version
 from importlib.util import find_spec
 from typing import Any
@@ -31,12 +32,20 @@ SIX = {name: name.capitalize() for name in algorithms.SIX}
 """The algorithms of Sieger & Botsch, which are timed in compiled loops."""
 
 
-def _unchanged(m: Mesh) -> Mesh:
-    return m
+class Lazy:
+    """A module of a library, imported when something of it is first asked for."""
+
+    def __init__(self, name: str) -> None:
+        self._name = name
+
+    def __getattr__(self, name: str) -> Any:
+        value = self.__dict__[name] = getattr(import_module(self._name), name)
+        return value
 
 
-def _numbers(m: Mesh, element: str, numbers: list[int]) -> Sequence[Any]:
-    return numbers
+def row_of(rows: Callable[[Mesh], Any]) -> Callable[[Mesh], Callable[[Any], Any]]:
+    """What reads the row of one element, of an array that was asked for once."""
+    return lambda m: rows(m).__getitem__
 
 
 @dataclass(frozen=True)
@@ -58,22 +67,22 @@ class Peer:
     subjects that it tells of. ``weigh``: the bytes of a mesh that knows them; ``collapse``:
     collapses its first edge, or refuses to. ``told_version``: where no distribution of Python
     tells it. ``objects``: its meshes are Python's objects, and smaller ones are measured.
+    ``module``: where its name is not that of the distribution.
     ``manual``: how its manual has it used, here too; ``more``: what it does that ours does not.
     """
 
     title: str
     distribution: str
-    module: str
     manual: str
     more: str
     build: Callable[[Array, Array], Mesh]
     faces: Callable[[Mesh], int]
     ends: Callable[[Mesh], Any] | None = None
-    handles: Callable[[Mesh, str, list[int]], Sequence[Any]] = _numbers
+    handles: Callable[[Mesh, str, list[int]], Sequence[Any]] = lambda m, element, numbers: numbers
     named: Callable[[Mesh, Array], Array] | None = None
     single: Mapping[str, Callable[[Mesh], Callable[[Any], Any]]] = field(default_factory=dict)
     bulk: Mapping[str, Callable[[Mesh], Rows]] = field(default_factory=dict)
-    fresh: Callable[[Mesh], Mesh] = _unchanged
+    fresh: Callable[[Mesh], Mesh] = lambda m: m
     operations: Mapping[str, Callable[[Mesh, list[int], Array], int]] = field(default_factory=dict)
     batches: Mapping[str, Callable[[Mesh, list[int], Array], int]] = field(default_factory=dict)
     make_room: Callable[[Mesh, int], object] | None = None
@@ -84,6 +93,7 @@ class Peer:
     collapse: Callable[[Mesh], int] | None = None
     told_version: Callable[[], str] | None = None
     objects: bool = False
+    module: str = ""
 
     def __post_init__(self) -> None:
         """Raises ValueError for what is measured of nobody."""
@@ -105,4 +115,4 @@ class Peer:
             found = version(self.distribution)
         except PackageNotFoundError:
             return ""
-        return found if find_spec(self.module.partition(".")[0]) else ""
+        return found if find_spec(self.module or self.distribution) else ""

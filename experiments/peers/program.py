@@ -32,9 +32,7 @@ LOOPS = (*(it for it in QUERIES if it != "edge_edges"), *SIX, BUILD)
 
 @lru_cache(maxsize=1)
 def compiled() -> Path:
-    """The program; it takes half a minute to compile, and is kept. Raises OSError with the words of
-    the compiler.
-    """
+    """The program, compiled in half a minute and kept; raises OSError with the compiler's words."""
     known = SOURCE.read_bytes() + " ".join(OPTIONS).encode()
     program = cache_folder() / f"peers-{hashlib.blake2b(known, digest_size=8).hexdigest()}"
     if not program.exists():
@@ -74,24 +72,12 @@ def header_version(header: str, pattern: str) -> str:
 
 def peer(library: str, package: str, version: Callable[[], str], manual: str, more: str) -> Peer:
     """A library of the program."""
+    tells = partial(tell, library)
     return Peer(
-        title=f"{library} (C++)",
-        distribution=package,
-        module="",
-        manual=manual,
-        more=more,
-        build=partial(tell, library),
-        faces=itemgetter("faces"),
-        weigh=_weigh,
-        collapse=_collapsed,
-        looped=partial(tell, library),
-        loops=LOOPS,
+        f"{library} (C++)", package, manual, more, build=tells, faces=itemgetter("faces"),
+        weigh=itemgetter("bytes"), collapse=_collapsed, looped=tells, loops=LOOPS,
         told_version=version,
-    )
-
-
-def _weigh(m: Mesh) -> int:
-    return int(m["bytes"])
+    )  # fmt: skip
 
 
 def _collapsed(m: Mesh) -> int:

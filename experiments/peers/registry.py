@@ -10,15 +10,12 @@ OURS = "ours"
 """The file of our own half-edge mesh, which stands beside the libraries."""
 
 
-def _found() -> dict[str, Peer]:
-    """By the name of its file; ours first."""
-    files = sorted(path.stem for path in (Path(__file__).parent / "libraries").glob("[!_]*.py"))
-    modules = {name: import_module(f"experiments.peers.libraries.{name}") for name in files}
-    found = {name: it.PEER for name, it in modules.items()}
-    return {name: found[name] for name in sorted(found, key=lambda name: name != OURS)}
-
-
-PEERS: dict[str, Peer] = _found()
+_FILES = (path.stem for path in (Path(__file__).parent / "libraries").glob("[!_]*.py"))
+PEERS: dict[str, Peer] = {
+    name: import_module(f"experiments.peers.libraries.{name}").PEER
+    for name in sorted(_FILES, key=lambda name: (name != OURS, name))
+}
+"""By the name of its file; ours first."""
 
 
 def installed() -> list[str]:

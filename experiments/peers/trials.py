@@ -10,7 +10,6 @@ import re
 import signal
 import subprocess
 import sys
-from collections.abc import Callable
 from contextlib import suppress
 from functools import lru_cache
 from typing import Any, NamedTuple
@@ -64,19 +63,16 @@ def give(peer: Peer, bad: Bad) -> tuple[str, str]:
         m = peer.build(points, triangles)
         if not bad.collapse:
             return _held(peer, m, triangles)
-        collapse = peer.collapse or _collapse_first(peer, points)
-        if collapse is None:
+        if peer.collapse:
+            done = peer.collapse(m)
+        elif operate := peer.operations.get("collapse_edge"):
+            done = operate(m, [0], points[:1])
+        else:
             return "N/A", "collapses no edges"
-        if not collapse(m):
-            return "refused", "by its own test"
-        return "accepted", f"faces left: {peer.faces(m)}"
+        left = f"faces left: {peer.faces(m)}"
+        return ("accepted", left) if done else ("refused", "by its own test")
     except Exception as error:
         return "refused", f"{type(error).__name__}: {_plain(str(error))}"[:WORDS]
-
-
-def _collapse_first(peer: Peer, points: Array) -> Callable[[Mesh], int] | None:
-    operate = peer.operations.get("collapse_edge")
-    return (lambda m: operate(m, [0], points[:1])) if operate else None
 
 
 def _held(peer: Peer, m: Mesh, triangles: Array) -> tuple[str, str]:
@@ -84,10 +80,10 @@ def _held(peer: Peer, m: Mesh, triangles: Array) -> tuple[str, str]:
     kept, given = peer.faces(m), len(triangles)
     if kept != given:
         return "changed", f"{kept} of {given} faces are there"
+    numbers = np.arange(triangles.max() + 1)
+    handles = peer.handles(m, "vertex", numbers.tolist())
     for query in ("vertex_faces", "vertex_vertices"):
         if ask := peer.single.get(query):
-            numbers = np.arange(triangles.max() + 1)
-            handles = peer.handles(m, "vertex", numbers.tolist())
             try:
                 answers = [*map(ask(m), handles)]
                 check_rows(peer.title, QUERIES[query], triangles, numbers, answers)
@@ -132,7 +128,8 @@ def told_by_child(name: str, family: str, size: int) -> dict[str, Any]:
         command = [sys.executable, "-m", __name__, name, *left]
         try:
             done = subprocess.run(command, capture_output=True, text=True, timeout=PATIENCE)
-            lines, how = done.stdout.splitlines(), _ending(done.returncode)
+            lines, code = done.stdout.splitlines(), done.returncode
+            how = signal.Signals(-code).name if code < 0 else f"exit code {code}"
         except subprocess.TimeoutExpired as error:
             lines, how = bytes(error.stdout or b"").decode().splitlines(), "it said nothing more"
         told |= dict(json.loads(line[len(MARK) :]) for line in lines if line.startswith(MARK))
@@ -143,19 +140,13 @@ def told_by_child(name: str, family: str, size: int) -> dict[str, Any]:
     return told
 
 
-def _ending(code: int) -> str:
-    return signal.Signals(-code).name if code < 0 else f"exit code {code}"
-
-
 def main(name: str, *tasks: str) -> None:
     """Print what becomes of each task, a line of JSON each."""
     peer = PEERS[name]
     for task, *about in map(str.split, tasks):
         if task == BYTES:
-            family, size = about
-            mesh = hem.generate(family, int(size))
-            given = mesh.points.astype(np.float64), mesh.triangles.astype(np.int32)
-            found: Any = weigh(peer, *given)
+            mesh = hem.generate(about[0], int(about[1]))
+            found: Any = weigh(peer, mesh.points.astype(float), mesh.triangles.astype(np.int32))
         else:
             found = give(peer, BAD_INPUT[task])
         print(MARK + json.dumps([task, found]), flush=True)

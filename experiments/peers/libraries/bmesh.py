@@ -1,25 +1,20 @@
 """BMesh: Blender's mesh for editing, in which edges list the loops of their faces."""
 
 from collections.abc import Callable
-from importlib import import_module
 from operator import attrgetter
 from typing import Any
 
 import numpy as np
 
-from experiments.peers.peer import Mesh, Peer
+from experiments.peers.peer import Lazy, Mesh, Peer
 from hem.arrays import Array
 
-
-def _bmesh() -> Any:
-    """The module; it is there once Blender is."""
-    import_module("bpy")
-    return import_module("bmesh")
+bpy, bmesh = Lazy("bpy"), Lazy("bmesh")
+"""The second is there once the first was asked for something."""
 
 
 def _build(points: Array, triangles: Array) -> Mesh:
     """By way of Blender's mesh in arrays, which takes them at once."""
-    bmesh, bpy = _bmesh(), import_module("bpy")
     flat = bpy.data.meshes.new("built")
     flat.vertices.add(len(points))
     flat.vertices.foreach_set("co", points.astype(np.float32).ravel())
@@ -48,20 +43,17 @@ def _listed(name: str) -> Callable[[Mesh], Callable[[Any], list[int]]]:
 
 
 def _poke(m: Mesh, numbers: list[int], places: Array) -> int:
-    bmesh = _bmesh()
     for face in _handles(m, "face", numbers):
         bmesh.ops.poke(m, faces=[face])
     return len(numbers)
 
 
 def _poke_all(m: Mesh, numbers: list[int], places: Array) -> int:
-    bmesh = _bmesh()
     bmesh.ops.poke(m, faces=_handles(m, "face", numbers))
     return len(numbers)
 
 
 def _collapse(m: Mesh, numbers: list[int], places: Array) -> int:
-    bmesh = _bmesh()
     done = 0
     for edge in _handles(m, "edge", numbers):
         if edge.is_valid:
@@ -71,7 +63,6 @@ def _collapse(m: Mesh, numbers: list[int], places: Array) -> int:
 
 
 def _rotate(m: Mesh, numbers: list[int], places: Array) -> int:
-    bmesh = _bmesh()
     turned = [bmesh.utils.edge_rotate(edge) for edge in _handles(m, "edge", numbers)]
     return sum(it is not None for it in turned)
 
@@ -82,7 +73,6 @@ def _normals(m: Mesh) -> Array:
 
 
 def _smooth(m: Mesh) -> None:
-    bmesh = _bmesh()
     axes = {f"use_axis_{it}": True for it in "xyz"}
     bmesh.ops.smooth_vert(m, verts=m.verts, factor=1.0, **axes)
 
@@ -90,7 +80,6 @@ def _smooth(m: Mesh) -> None:
 PEER = Peer(
     title="BMesh (Blender)",
     distribution="bpy",
-    module="bpy",
     manual="Lists of each element (`link_edges`, `link_faces`, `verts`) and loops from face to "
     "face; operators `bmesh.ops` of many elements at a time.",
     more="Faces of any number of corners and edges of any number of faces, layers of "

@@ -6,14 +6,14 @@ from typing import Any
 
 import numpy as np
 
-from experiments.peers.peer import Mesh, Peer
+from experiments.peers.peer import Lazy, Mesh, Peer
 from hem.arrays import Array
+
+structures = Lazy("compas.datastructures")
 
 
 def _build(points: Array, triangles: Array) -> Mesh:
-    from compas.datastructures import Mesh as CompasMesh
-
-    return CompasMesh.from_vertices_and_faces(points.tolist(), triangles.tolist())
+    return structures.Mesh.from_vertices_and_faces(points.tolist(), triangles.tolist())
 
 
 def _ends(m: Mesh) -> Array:
@@ -24,8 +24,7 @@ def _handles(m: Mesh, element: str, numbers: list[int]) -> list[Any]:
     """An edge is the pair of its vertices."""
     if element != "edge":
         return numbers
-    ends = _ends(m)
-    return [tuple(it) for it in ends[numbers].tolist()]
+    return [tuple(it) for it in _ends(m)[numbers].tolist()]
 
 
 def _known(query: str) -> Callable[[Mesh], Callable[[Any], Any]]:
@@ -55,7 +54,6 @@ def _collapse(m: Mesh, numbers: list[int], places: Array) -> int:
 PEER = Peer(
     title="COMPAS",
     distribution="compas",
-    module="compas",
     manual="Methods of the mesh for one element, by keys; edges are pairs of vertices. For larger "
     "meshes its manual points to libigl and others behind plug-ins.",
     more="Polygons, attributes of any kind on every element, serialization, networks and "

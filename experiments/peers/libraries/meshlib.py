@@ -6,21 +6,15 @@ from typing import Any
 
 import numpy as np
 
-from experiments.peers.peer import Mesh, Peer
+from experiments.peers.peer import Lazy, Mesh, Peer
 from hem.arrays import Array
 
-
-def _build(points: Array, triangles: Array) -> Mesh:
-    from meshlib.mrmeshnumpy import meshFromFacesVerts
-
-    return meshFromFacesVerts(triangles, points)
+arrays, mr = Lazy("meshlib.mrmeshnumpy"), Lazy("meshlib.mrmeshpy")
 
 
 def _handles(m: Mesh, element: str, numbers: list[int]) -> list[Any]:
     """An edge is named by one of its two half-edges."""
-    from meshlib.mrmeshpy import EdgeId, FaceId, VertId
-
-    made: Callable[[int], Any] = {"vertex": VertId, "face": FaceId}.get(element, EdgeId)
+    made = {"vertex": mr.VertId, "face": mr.FaceId}.get(element, mr.EdgeId)
     return [made(number * (2 if element == "edge" else 1)) for number in numbers]
 
 
@@ -34,9 +28,7 @@ def _around(ring: str, read: str) -> Callable[[Mesh], Callable[[Any], list[int]]
     """What reads each half-edge around a vertex or in a face."""
 
     def bind(m: Mesh) -> Callable[[Any], list[int]]:
-        from meshlib import mrmeshpy
-
-        topology, walk = m.topology, getattr(mrmeshpy, ring)
+        topology, walk = m.topology, getattr(mr, ring)
         if read == "undirected":
             return lambda handle: [int(it.undirected()) for it in walk(topology, handle)]
         at = getattr(topology, read)
@@ -55,18 +47,10 @@ def _both(one: str, other: str) -> Callable[[Mesh], Callable[[Any], list[int]]]:
     return bind
 
 
-def _corners(m: Mesh) -> Array:
-    from meshlib.mrmeshnumpy import getNumpyFaces
-
-    return np.asarray(getNumpyFaces(m.topology))
-
-
 def _split(kind: str, m: Mesh, numbers: list[int], places: Array) -> int:
-    from meshlib.mrmeshpy import Vector3f
-
     split = m.splitFace if kind == "face" else m.splitEdge
     for handle, place in zip(_handles(m, kind, numbers), places.tolist(), strict=True):
-        split(handle, Vector3f(*place))
+        split(handle, mr.Vector3f(*place))
     return len(numbers)
 
 
@@ -87,39 +71,28 @@ def _collapse(m: Mesh, numbers: list[int], places: Array) -> int:
     return int(faces - topology.numValidFaces()) // 2
 
 
-def _normals(m: Mesh) -> Array:
-    from meshlib import mrmeshnumpy, mrmeshpy
-
-    return np.asarray(mrmeshnumpy.toNumpyArray(mrmeshpy.computePerVertNormals(m)))
-
-
 def _smooth(m: Mesh) -> None:
-    from meshlib import mrmeshpy
-
-    params = mrmeshpy.MeshRelaxParams()
+    params = mr.MeshRelaxParams()
     params.iterations = 1
-    mrmeshpy.relax(m, params)
+    mr.relax(m, params)
 
 
 def _simplify(m: Mesh, faces: int) -> int:
-    from meshlib import mrmeshpy
-
-    settings = mrmeshpy.DecimateSettings()
+    settings = mr.DecimateSettings()
     settings.maxError = np.finfo(np.float32).max
     settings.maxDeletedFaces = m.topology.numValidFaces() - faces
-    mrmeshpy.decimateMesh(m, settings)
+    mr.decimateMesh(m, settings)
     return int(m.topology.numValidFaces())
 
 
 PEER = Peer(
     title="MeshLib",
     distribution="meshlib",
-    module="meshlib",
     manual="Arrays in and out by `mrmeshnumpy`; `orgRing` and `leftRing` of the topology around "
     "one element. Whole tasks are single calls, and its answer to most questions.",
     more="Offsets, Boolean operations, distances, registration, hole filling, point clouds and "
     "voxels, on many threads and partly on graphics processors. Not free for commercial use.",
-    build=_build,
+    build=lambda points, triangles: arrays.meshFromFacesVerts(triangles, points),
     faces=lambda m: int(m.topology.numValidFaces()),
     ends=_ends,
     handles=_handles,
@@ -133,12 +106,16 @@ PEER = Peer(
         "face_edges": _around("leftRing", "undirected"),
         "face_faces": _around("leftRing", "right"),
     },
-    bulk={"face_vertices": _corners},
+    bulk={"face_vertices": lambda m: arrays.getNumpyFaces(m.topology)},
     operations={
         "split_edge": partial(_split, "edge"),
         "split_face": partial(_split, "face"),
         "collapse_edge": _collapse,
         "flip_edge": _flip,
     },
-    algorithms={"vertex_normals": _normals, "smooth": _smooth, "simplify": _simplify},
+    algorithms={
+        "vertex_normals": lambda m: arrays.toNumpyArray(mr.computePerVertNormals(m)),
+        "smooth": _smooth,
+        "simplify": _simplify,
+    },
 )

@@ -6,22 +6,20 @@ from typing import Any
 
 import numpy as np
 
-from experiments.peers.peer import Mesh, Peer, Rows
+from experiments.peers.peer import Lazy, Mesh, Peer, Rows
 from hem.arrays import Array
+
+geometry, utility = Lazy("open3d.geometry"), Lazy("open3d.utility")
 
 
 def _build(points: Array, triangles: Array) -> Mesh:
-    from open3d import geometry, utility
-
     given = utility.Vector3dVector(points), utility.Vector3iVector(triangles)
     return geometry.HalfEdgeTriangleMesh.create_from_triangle_mesh(geometry.TriangleMesh(*given))
 
 
 def _flat(m: Mesh) -> Any:
     """The mesh of triangles, which most of its methods are about."""
-    from open3d.geometry import TriangleMesh
-
-    return TriangleMesh(m.vertices, m.triangles)
+    return geometry.TriangleMesh(m.vertices, m.triangles)
 
 
 def _around(read: Callable[[Any], int]) -> Callable[[Mesh], Callable[[int], list[int]]]:
@@ -47,7 +45,6 @@ def _normals(m: Mesh) -> Array:
 PEER = Peer(
     title="Open3D",
     distribution="open3d",
-    module="open3d",
     manual="`half_edges` and `ordered_half_edge_from_vertex` as lists, `adjacency_list` once it "
     "was computed; what changes a mesh makes another one of triangles.",
     more="Point clouds, registration, reconstruction from depth images, voxels, drawing, learning; "

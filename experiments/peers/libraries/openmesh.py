@@ -5,14 +5,10 @@ from functools import partial
 from operator import methodcaller
 from typing import Any
 
-from experiments.peers.peer import Mesh, Peer
+from experiments.peers.peer import Lazy, Mesh, Peer
 from hem.arrays import Array
 
-
-def _build(points: Array, triangles: Array) -> Mesh:
-    from openmesh import TriMesh
-
-    return TriMesh(points, triangles)
+openmesh = Lazy("openmesh")
 
 
 def _handles(m: Mesh, element: str, numbers: list[int]) -> list[Any]:
@@ -70,8 +66,6 @@ def _normals(m: Mesh) -> Array:
 
 
 def _simplify(m: Mesh, faces: int) -> int:
-    import openmesh
-
     decimater, quadrics = openmesh.TriMeshDecimater(m), openmesh.TriMeshModQuadricHandle()
     decimater.add(quadrics)
     decimater.initialize()
@@ -83,12 +77,11 @@ def _simplify(m: Mesh, faces: int) -> int:
 PEER = Peer(
     title="OpenMesh",
     distribution="openmesh",
-    module="openmesh",
     manual="Iterators and circulators for one element, `ff_indices` and the like for all; "
     "`is_collapse_ok` and `is_flip_ok` before what they allow.",
     more="Polygons as well as triangles, properties of any type, subdivision and decimation by "
     "modules, files with colors and normals; and all of it in C++ with kernels of one's own.",
-    build=_build,
+    build=lambda points, triangles: openmesh.TriMesh(points, triangles),
     faces=lambda m: sum(not m.is_deleted(it) for it in m.faces()),
     ends=lambda m: m.ev_indices(),
     handles=_handles,

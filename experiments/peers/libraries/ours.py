@@ -1,6 +1,7 @@
 """Our own half-edge mesh, asked as the libraries are: through calls of Python."""
 
 from collections.abc import Callable
+from contextlib import suppress
 from functools import partial
 from operator import attrgetter, methodcaller
 from time import thread_time
@@ -30,10 +31,6 @@ def _handles(m: Mesh, element: str, numbers: list[int]) -> list[int]:
     return m.edges()[numbers].tolist() if element == "edge" else numbers
 
 
-def _ends_of(m: Mesh, edges: Array) -> Array:
-    return m.edge_vertices(edges).values.reshape(-1, 2)
-
-
 def _ask_all(query: str, m: Mesh) -> Rows:
     answer = getattr(m, query)()
     return answer.values, answer.offsets
@@ -44,11 +41,9 @@ def _one_by_one(operation: str, m: Mesh, numbers: list[int], places: Array) -> i
     handles = _handles(m, operation.split("_")[1], numbers)
     rows: Any = zip(handles, *([places] if operation in SPLIT else []), strict=True)
     for row in rows:
-        try:
+        with suppress(hem.TopologyError):
             operate(*row)
-        except hem.TopologyError:
-            continue
-        done += 1
+            done += 1
     return done
 
 
@@ -60,9 +55,7 @@ def _make_room(m: Mesh, many: int) -> None:
 def _all_at_once(operation: str, m: Mesh, numbers: list[int], places: Array) -> int:
     handles = _handles(m, operation.split("_")[1], numbers)
     operate = getattr(m, f"{operation}s")
-    if operation in SPLIT:
-        return len(operate(handles, places))
-    return int(operate(handles).sum())
+    return len(operate(handles, places)) if operation in SPLIT else int(operate(handles).sum())
 
 
 def _simplify(m: Mesh, faces: int) -> int:
@@ -88,10 +81,8 @@ def _times(s: Mesh, few: int, rounds: int, whole: int) -> dict[str, list[float]]
     times = {}
     for query, it in QUERIES.items():
         handles = np.random.default_rng(7).permutation(_at(s, it.source, few))[:ASKED]
-        sweep = s.prepare_sweep(query, handles)
-        times[query] = [
-            took / len(handles) for took in time_rounds(sweep.run, rounds=rounds).samples.tolist()
-        ]
+        timed = time_rounds(s.prepare_sweep(query, handles).run, rounds=rounds)
+        times[query] = (timed.samples / len(handles)).tolist()
     for name, algorithm in algorithms.SIX.items() if whole else ():
         times[name] = [_processor_seconds(algorithm, s.copy()) for _ in range(1 + whole)][1:]
     return times
@@ -126,7 +117,7 @@ PEER = Peer(
     faces=attrgetter("n_faces"),
     ends=methodcaller("edge_array"),
     handles=_handles,
-    named=_ends_of,
+    named=lambda m, edges: m.edge_vertices(edges).values.reshape(-1, 2),
     single={query: attrgetter(query) for query in QUERIES},
     bulk={query: partial(_ask_all, query) for query in QUERIES},
     operations={it: partial(_one_by_one, it) for it in (*SPLIT, "collapse_edge", "flip_edge")},
