@@ -6,11 +6,11 @@ measurements of a run; ``advise`` ranks the structures, with intervals, reasons 
 
 from experiments.advice.advise import Advice, Limits, Option, advise, flips
 from experiments.advice.needs import NEEDS
-from experiments.advice.predict import Forecast, fitted, predict
+from experiments.advice.predict import Forecast, predict
 from experiments.advice.prices import Prices
 from experiments.advice.workload import PRESETS, Measured, Row, Workload, find_workload, recorded
 
 __all__ = [
     "NEEDS", "PRESETS", "Advice", "Forecast", "Limits", "Measured", "Option", "Prices", "Row",
-    "Workload", "advise", "find_workload", "fitted", "flips", "predict", "recorded",
+    "Workload", "advise", "find_workload", "flips", "predict", "recorded",
 ]  # fmt: skip

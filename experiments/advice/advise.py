@@ -1,8 +1,6 @@
 """The structures for a mesh and a workload, the best first, and where that changes."""
 
-from __future__ import annotations
-
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -60,12 +58,9 @@ class Advice:
 
 
 def advise(
-    prices: Prices,
-    workload: Workload,
-    mesh: Any,
-    limits: Limits | None = None,
+    prices: Prices, workload: Workload, mesh: Any, limits: Limits | None = None,
     needs: Sequence[str] = (),
-) -> Advice:
+) -> Advice:  # fmt: skip
     """Rank the structures that can hold a mesh, are what is needed and stay within the limits.
 
     Raises ValueError for a need that there is not.
@@ -76,35 +71,26 @@ def advise(
     faces = len(triangles.triangles)
     options, refused = [], {}
     for name in REGISTRY:
-        wrong = [words for need in needs if (words := lacks(name, need))]
+        wrong, taken = [words for need in needs if (words := lacks(name, need))], 0
         try:
             taken = _bytes(name, mesh, faces)
         except hem.MeshError as error:
             wrong.append(f"cannot hold it: {error}")
-            taken = 0
-        option = Option(
-            predict(prices, workload, name, faces), taken, _edit(prices, workload, name, faces)
-        )
-        wrong += _beyond(option, limits)
+        edit = _edit(prices, workload, name, faces)
+        if taken > limits.bytes:
+            wrong.append(f"takes {taken:,} bytes of {limits.bytes:,.0f}")
+        if edit > limits.edit:
+            wrong.append(f"an edit takes {1e3 * edit:.3g} ms of {1e3 * limits.edit:.3g}")
         if workload.measured and not REGISTRY[name].compiled:
             wrong.append("is interpreted, and the measured whole was compiled")
         if wrong:
             refused[name] = "; ".join(wrong)
         else:
-            options.append(option)
+            options.append(Option(predict(prices, workload, name, faces), taken, edit))
     options.sort(key=lambda it: it.forecast.seconds)
     named = [replace(it, behind=_behind(options[0].forecast, it.forecast)) for it in options]
     names = [it.forecast.structure for it in options]
     return Advice(workload, faces, named, refused, flips(prices, workload, names, faces))
-
-
-def _beyond(option: Option, limits: Limits) -> list[str]:
-    wrong = []
-    if option.bytes > limits.bytes:
-        wrong.append(f"takes {option.bytes:,} bytes of {limits.bytes:,.0f}")
-    if option.edit > limits.edit:
-        wrong.append(f"an edit takes {1e3 * option.edit:.3g} ms of {1e3 * limits.edit:.3g}")
-    return wrong
 
 
 def _bytes(name: str, mesh: Any, faces: int) -> int:
@@ -131,13 +117,12 @@ def _behind(best: Forecast, other: Forecast) -> str:
 
 
 def flips(
-    prices: Prices, workload: Workload, names: Iterable[str], faces: float
+    prices: Prices, workload: Workload, names: Sequence[str], faces: float
 ) -> list[dict[str, Any]]:
     """Where another structure is the best: at which number of vertices, at how many more edits.
 
     Only where it is ahead by more than ``ALIKE``. Sizes are those that were measured.
     """
-    names = list(names)
     if len(names) < 2:
         return []
 
@@ -149,24 +134,18 @@ def flips(
     first = best(workload, faces, names[0])
     low, high = prices.measured
     sizes = [n for n in SIZES if low <= 2 * n <= high]
-    ways = {
-        "vertices": [
-            [(n, workload, 2 * n) for n in sizes if 2 * n >= faces],
-            [(n, workload, 2 * n) for n in reversed(sizes) if 2 * n < faces],
-        ],
-        "edits": [
-            [(k, workload.more_edits(k), faces) for k in FACTORS],
-            [(1 / k, workload.more_edits(1 / k), faces) for k in FACTORS],
-        ],
-    }
-    if not any(is_edit(it.what) for it in workload.rows):
-        del ways["edits"]
+    ways = [
+        ("vertices", [(n, workload, 2 * n) for n in sizes if 2 * n >= faces]),
+        ("vertices", [(n, workload, 2 * n) for n in reversed(sizes) if 2 * n < faces]),
+    ]
+    if any(is_edit(it.what) for it in workload.rows):
+        for factors in (FACTORS, [1 / it for it in FACTORS]):
+            ways.append(("edits", [(it, workload.more_edits(it), faces) for it in factors]))
     found = []
-    for kind, directions in ways.items():
-        for points in directions:
-            for x, given, many in points:
-                other = best(given, many, first)
-                if other != first:
-                    found.append({"of": kind, "at": float(x), "best": other})
-                    break
+    for kind, points in ways:
+        for x, given, many in points:
+            other = best(given, many, first)
+            if other != first:
+                found.append({"of": kind, "at": float(x), "best": other})
+                break
     return found

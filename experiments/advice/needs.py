@@ -1,7 +1,5 @@
 """What a structure must be able to do, found by trying it on a small mesh or as it declares."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from functools import cache
 

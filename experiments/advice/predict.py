@@ -1,8 +1,6 @@
 """What a workload takes on a structure: every row times its price, building, and its own part."""
 
-from __future__ import annotations
-
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -48,48 +46,39 @@ def predict(prices: Prices, workload: Workload, structure: str, faces: float) ->
         times = row.count(faces, workload.frames)
         found.setdefault(row.what, []).append(Price(times * one.seconds, one.spread))
     if workload.builds:
-        built = prices.build(structure, faces)
-        if built is None:
-            untold.append(BUILDING)
-        else:
+        if built := prices.build(structure, faces):
             found[BUILDING] = [Price(workload.builds * built.seconds, built.spread)]
+        else:
+            untold.append(BUILDING)
     if own := _own(prices, workload, faces):
         found[OWN] = [Price(own, 0.0)]
     parts = {what: sum(it.seconds for it in costs) for what, costs in found.items()}
     total = sum(parts.values())
     shares = [it.seconds * it.spread / total for costs in found.values() for it in costs if total]
     reach = np.exp(SIGMAS * np.hypot(UNMODELED, np.linalg.norm(shares)))
-    sizes = float(total / reach), float(total * reach)
-    return Forecast(structure, total, *sizes, parts, tuple(dict.fromkeys(untold)))
-
-
-def fitted(prices: Prices, workload: Workload) -> float:
-    """Seconds that the measured whole has beside what is predicted of it, 0 without one."""
-    if (known := workload.measured) is None:
-        return 0.0
-    alone = Workload(workload.title, workload.rows, workload.frames, workload.builds)
-    return known.seconds - predict(prices, alone, known.structure, 2.0 * known.vertices).seconds
+    low, high = float(total / reach), float(total * reach)
+    return Forecast(structure, total, low, high, parts, tuple(dict.fromkeys(untold)))
 
 
 def _own(prices: Prices, workload: Workload, faces: float) -> float:
-    """The program's own part, in proportion to how much there is to do."""
-    if workload.measured is None:
+    """The program's own part: what the whole was measured to take beside what is predicted of it.
+
+    In proportion to how much there is to do.
+    """
+    if (known := workload.measured) is None:
         return 0.0
-    then, now = (_counts(workload, it) for it in (2.0 * workload.measured.vertices, faces))
-    return max(0.0, fitted(prices, workload)) * (now / then if then else 1.0)
-
-
-def _counts(workload: Workload, faces: float) -> float:
-    return sum(row.count(faces, workload.frames) for row in workload.rows)
+    there = 2.0 * known.vertices
+    alone = predict(prices, replace(workload, measured=None), known.structure, there)
+    then, now = (sum(it.count(n, workload.frames) for it in workload.rows) for n in (there, faces))
+    return max(0.0, known.seconds - alone.seconds) * (now / then if then else 1.0)
 
 
 def _grown(workload: Workload, faces: float) -> float:
     """The faces half-way through the edits."""
     more = 0.0
-    for row in workload.rows:
-        if row.what in OPERATIONS:
-            gain = OPERATIONS[row.what].growth[1] or LOST.get(row.what, 0)
-            more += gain * row.count(faces, workload.frames)
+    for row in (it for it in workload.rows if it.what in OPERATIONS):
+        gain = OPERATIONS[row.what].growth[1] or LOST.get(row.what, 0)
+        more += gain * row.count(faces, workload.frames)
     return max(8.0, faces / 8, faces + more / 2)
 
 

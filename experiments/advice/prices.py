@@ -1,8 +1,7 @@
 """What a query or an operation costs on a structure, by size, from the measurements of a run."""
 
-from __future__ import annotations
-
 from functools import cached_property
+from itertools import product
 from typing import NamedTuple
 
 import numpy as np
@@ -15,11 +14,7 @@ from hem.contract import OPERATIONS
 from hem.contract.recording import ANEW, CHECKED, PYTHON
 from structures import REGISTRY
 
-BY_QUERY = {
-    "face_left_of": "edge_faces",
-    "diamond": "edge_faces",
-    "are_joined": "vertex_vertices",
-}
+BY_QUERY = {"face_left_of": "edge_faces", "diamond": "edge_faces", "are_joined": "vertex_vertices"}
 """What kernels beside the queries are priced as: what they mostly do."""
 
 REBUILDING, ALONE = "flip_edge", "split_face"
@@ -89,22 +84,21 @@ class Prices:
     @cached_property
     def step(self) -> float:
         """Seconds per step of the calibration loop, the median beside all rounds."""
-        readings = self.run.cases["calibration"].map(np.median).dropna()
-        return float(readings.median())
+        return float(self.run.cases["calibration"].map(np.median).median())
 
     @cached_property
     def call(self) -> float:
         """Seconds that an operation takes longer from Python; queries are taken to do as well."""
         found = []
-        for name, kind in REGISTRY.items():
-            for operation in self._operations if kind.compiled and not kind.rebuilds else ():
-                one, many = (
-                    curves(self.run).named("bench_operations", name, operation, order)
-                    for order in ("one by one", "batched")
-                )
-                if len(one) and len(many) and not kind.searches:
-                    sizes = one.sizes[0]
-                    found.append(one.centers[0] - np.interp(sizes, many.sizes, many.centers))
+        kinds = [it for it in REGISTRY.values() if it.compiled and not (it.rebuilds or it.searches)]
+        for kind, operation in product(kinds, self._operations):
+            one, many = (
+                curves(self.run).named("bench_operations", kind.name, operation, order)
+                for order in ("one by one", "batched")
+            )
+            if len(one) and len(many):
+                beside = np.interp(one.sizes[0], many.sizes, many.centers)
+                found.append(one.centers[0] - beside)
         return float(np.median(found)) if found else CALL
 
     @cached_property
@@ -114,27 +108,21 @@ class Prices:
     def _at(self, faces: float, experiment: str, structure: str, subject: str, order: str) -> Price:
         key = experiment, structure, subject, order
         if key not in self._found:
-            self._found[key] = _points(
-                curves(self.run).named(experiment, structure, subject, order)
-            )
+            self._found[key] = _points(curves(self.run).named(*key))
         sizes, costs, spreads = self._found[key]
         if not len(sizes):
-            raise KeyError(f"the run has not measured {' '.join(it for it in key if it)}")
+            raise KeyError(f"the run has not measured {' '.join(filter(None, key))}")
         x = np.log(max(faces, 1.0))
         within = float(np.clip(x, sizes[0], sizes[-1]))
         cost, spread = np.interp(within, sizes, costs), np.interp(within, sizes, spreads)
-        return Price(
-            float(np.exp(cost + _slope(sizes, costs) * max(x - within, 0.0))),
-            float(spread + BEYOND * abs(x - within)),
-        )
+        seconds = np.exp(cost + _slope(sizes, costs) * max(x - within, 0.0))
+        return Price(float(seconds), float(spread + BEYOND * abs(x - within)))
 
 
 def _points(curve: Curve) -> tuple[Array, Array, Array]:
     """Logarithms of sizes and costs, and how far these may be off: rounds and bends."""
     costs = np.log(np.maximum(curve.centers, 1e-12))
-    spread = [
-        float(np.subtract(*np.log(np.quantile(it, (0.84, 0.16))))) / 2 for it in curve.samples
-    ]
+    spread = [np.subtract(*np.log(np.quantile(it, (0.84, 0.16)))) / 2 for it in curve.samples]
     bends = np.zeros(len(costs))
     bends[1:-1] = costs[1:-1] - (costs[:-2] + costs[2:]) / 2
     return np.log(curve.sizes), costs, np.hypot(spread, bends)

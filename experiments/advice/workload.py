@@ -1,7 +1,5 @@
 """A workload: a table of how often what is asked and done, per build or per frame."""
 
-from __future__ import annotations
-
 import csv
 import tomllib
 from collections.abc import Mapping
@@ -42,9 +40,8 @@ class Row:
         }  # fmt: skip
         for name, known in allowed.items():
             if getattr(self, name) not in known:
-                raise ValueError(
-                    f"{name} is {getattr(self, name)!r}; there are {', '.join(map(repr, known))}"
-                )
+                there = ", ".join(map(repr, known))
+                raise ValueError(f"{name} is {getattr(self, name)!r}; there are {there}")
         if not (self.times >= 0 and 0 <= self.in_order <= 1):
             raise ValueError("times is a number from 0 on, in_order a share from 0 to 1")
 
@@ -123,13 +120,12 @@ def find_workload(name: str) -> Workload:
             f"there is no workload {name!r}: name a .toml or .csv file, or one of "
             f"{', '.join(PRESETS)}"
         )
+    given: dict[str, Any] = {"title": path.stem}
     try:
         if path.suffix == ".csv":
             with path.open(newline="", encoding="utf-8") as lines:
-                return _workload(
-                    {"title": path.stem, "builds": 0, "rows": list(csv.DictReader(lines))}
-                )
-        return _workload({"title": path.stem, **tomllib.loads(path.read_text("utf-8"))})
+                return _workload({**given, "builds": 0, "rows": list(csv.DictReader(lines))})
+        return _workload({**given, **tomllib.loads(path.read_text("utf-8"))})
     except (ValueError, TypeError) as error:
         raise ValueError(f"{path}: {error}") from error
 
@@ -154,10 +150,6 @@ def _row(place: int, given: Mapping[str, Any]) -> Row:
         raise ValueError(f"row {place}: {error}") from error
 
 
-PRESETS: dict[str, Workload] = {
-    name: _workload(it)
-    for name, it in tomllib.loads(
-        Path(__file__).with_name("workloads.toml").read_text("utf-8")
-    ).items()
-}
+_TEXT = Path(__file__).with_name("workloads.toml").read_text("utf-8")
+PRESETS = {name: _workload(it) for name, it in tomllib.loads(_TEXT).items()}
 """Usual workloads by name."""
