@@ -8,7 +8,7 @@ subjects, in its file.
 import tomllib
 from collections.abc import Iterator, Mapping, Sequence
 from importlib.resources import files
-from typing import Any, NamedTuple
+from typing import Any
 
 from experiments.claims.claim import (
     BOUND,
@@ -39,6 +39,11 @@ HOW = {
 
 Entry = Mapping[str, Any]
 """One entry of claims.toml."""
+Claimed = tuple[Any, Kind, str]
+"""What is printed, who claims it, and where or why."""
+Cell = tuple[Table, str, str, Claimed]
+"""A table, a subject and a structure, and what is claimed of them."""
+NOTHING: Claimed = NO_CLAIM, Kind.NOBODY, "nobody claims what it costs"
 
 
 def load_claims(text: str | None = None) -> list[Claim]:
@@ -46,78 +51,59 @@ def load_claims(text: str | None = None) -> list[Claim]:
 
     Raises ValueError naming the row for a subject, a structure, a class or a kind that is none.
     """
-    content = tomllib.loads(
-        text or (files("experiments.claims") / "claims.toml").read_text("utf-8")
-    )
+    known = files("experiments.claims") / "claims.toml"
+    content = tomllib.loads(text or known.read_text("utf-8"))
     rows: dict[tuple[str, str], list[Entry]] = {}
     for entry in map(_checked, content["row"]):
         name = entry.get("table") or table_of(entry["what"])
         rows.setdefault((name, entry["what"]), []).append(entry)
     cells = [cell for row, entries in rows.items() for cell in _of_row(*row, entries)]
     cells += [] if text else _of_experiments()
-    return [_claim(cell, content["classes"]) for cell in cells]
-
-
-class Cell(NamedTuple):
-    """What is claimed in one cell of a table, who claims it, and where or why."""
-
-    table: Table
-    subject: str
-    structure: str
-    printed: Any = NO_CLAIM
-    kind: Kind = Kind.NOBODY
-    source: str = "nobody claims what it costs"
+    return [_claim(content["classes"], *cell) for cell in cells]
 
 
 def _checked(entry: Entry) -> Entry:
     known = [MEMORY, *dict.fromkeys(it for table in tables().values() for it in table.subjects)]
-    what, unknown = entry.get("what"), set(entry) - {"what", "table", "kind", "source", *NAMED}
+    what, claimed = entry.get("what"), set(entry) - {"what", "table", "kind", "source"}
+    wrong = ""
     if what not in known:
         raise ValueError(f"claims.toml: no query is called {what!r}; there are {', '.join(known)}")
-    if unknown:
-        raise ValueError(f"claims.toml, row {what}: no structure is called {min(unknown)!r}")
-    if set(entry) & set(NAMED) and "source" not in entry:
-        raise ValueError(f"claims.toml, row {what}: no source is given")
-    if set(entry) & set(NAMED) and entry.get("kind") not in CLAIMED:
-        kinds = ", ".join(CLAIMED)
-        raise ValueError(f"claims.toml, row {what}: kind is {entry.get('kind')!r}, none of {kinds}")
-    if entry.get("table", table_of(what)) not in tables():
-        raise ValueError(f"claims.toml, row {what}: no table is called {entry['table']!r}")
+    if claimed - set(NAMED):
+        wrong = f"no structure is called {min(claimed - set(NAMED))!r}"
+    elif claimed and "source" not in entry:
+        wrong = "no source is given"
+    elif claimed and entry.get("kind") not in CLAIMED:
+        wrong = f"kind is {entry.get('kind')!r}, none of {', '.join(CLAIMED)}"
+    elif entry.get("table", table_of(what)) not in tables():
+        wrong = f"no table is called {entry['table']!r}"
+    if wrong:
+        raise ValueError(f"claims.toml, row {what}: {wrong}")
     return entry
 
 
 def _of_row(table_name: str, what: str, entries: Sequence[Entry]) -> Iterator[Cell]:
     """What is claimed in a row, and what the files of the other structures say of the subject."""
     table = tables()[table_name]
-    said = {
-        name: (entry[name], Kind(entry["kind"]), entry["source"])
-        for entry in entries
-        for name in NAMED
-        if name in entry
-    }
-    measured = [
-        name for it in experiments().values() if it.table is table for name in it.structures
-    ]
+    said: dict[str, Claimed] = {}
+    for entry in entries:
+        for name in set(entry) & set(NAMED):
+            said[name] = entry[name], Kind(entry["kind"]), entry["source"]
+    measured = {it for e in experiments().values() if e.table is table for it in e.structures}
     for name in NAMED:
-        if name in said:
-            yield Cell(table, what, name, *said[name])
-        elif name in measured:
-            yield Cell(table, what, name, *_own_claim(name, what, said))
+        if name in said or name in measured:
+            yield table, what, name, said.get(name) or _own_claim(name, what, said)
 
 
-def _own_claim(
-    name: str, what: str, said: Mapping[str, tuple[Any, Kind, str]]
-) -> tuple[()] | tuple[Any, Kind, str]:
+def _own_claim(name: str, what: str, said: Mapping[str, Claimed]) -> Claimed:
     """What a structure's file claims of a subject, by itself or as is ``said`` of another."""
     own: Claims | None = getattr(NAMED[name], "claims", None)
-    if own is None or what == MEMORY:
-        return ()
-    if what in own.costs:
-        return own.costs[what], Kind.EXPECTED, own.source
-    if own.like not in said:
-        return ()
-    printed, kind, _ = said[own.like]
-    return printed, Kind.EXPECTED if kind is Kind.EXPECTED else Kind.FOLLOWS, own.source
+    if own and what != MEMORY:
+        if what in own.costs:
+            return own.costs[what], Kind.EXPECTED, own.source
+        if own.like in said:
+            printed, kind, _ = said[own.like]
+            return printed, Kind.EXPECTED if kind is Kind.EXPECTED else Kind.FOLLOWS, own.source
+    return NOTHING
 
 
 def _of_experiments() -> Iterator[Cell]:
@@ -128,11 +114,14 @@ def _of_experiments() -> Iterator[Cell]:
             for name in it.structures:
                 printed = claimed.get(name, default)
                 kind = Kind.NOBODY if printed == NO_CLAIM else Kind.EXPECTED
-                yield Cell(it.table, what, name, printed, kind, it.source)
+                yield it.table, what, name, (printed, kind, it.source)
 
 
-def _claim(cell: Cell, classes: Mapping[str, Mapping[str, str]]) -> Claim:
-    table, what, structure, printed, kind, source = cell
+def _claim(
+    classes: Mapping[str, Mapping[str, str]],
+    table: Table, what: str, structure: str, claimed: Claimed,
+) -> Claim:  # fmt: skip
+    printed, kind, source = claimed
     suffix = "" if table.name in ("queries", "operations") else f"/{table.name}"
     name, title = NAMED[structure].title, table.subjects.get(what, MEMORY_TITLE)
     expects: Exactly | Growth

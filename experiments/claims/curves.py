@@ -59,7 +59,7 @@ class Curve:
     @property
     def largest(self) -> float:
         """The cost at the largest size, nan without any case."""
-        return float(self.centers[-1]) if len(self) else float("nan")
+        return float(self.centers[-1]) if len(self) else np.nan
 
 
 class Curves:
@@ -99,17 +99,13 @@ class Curves:
         Asked at random where that was measured; zero and nan where there is no such mesh.
         """
         timed = self.of(claim, Axis.RANDOM_FACES)
-        every = [
-            self.of(claim, Axis.WORK_FACES),
-            timed if len(timed) else self.of(claim, Axis.TIME_FACES),
-        ]
-        work, seconds = (
-            dict(zip(it.sizes.tolist(), it.centers.tolist(), strict=True)) for it in every
-        )
-        both = work.keys() & seconds.keys()
-        return (
-            (int(max(both)), work[max(both)], seconds[max(both)]) if both else (0, np.nan, np.nan)
-        )
+        timed = timed if len(timed) else self.of(claim, Axis.TIME_FACES)
+        every = self.of(claim, Axis.WORK_FACES), timed
+        work, seconds = (pd.Series(it.centers, it.sizes, dtype=float) for it in every)
+        both = work.index.intersection(seconds.index)
+        if both.empty:
+            return 0, np.nan, np.nan
+        return int(both.max()), float(work[both.max()]), float(seconds[both.max()])
 
     def named(
         self, experiment: str, structure: str, subject: str = "", order: str = "", width: int = 4
@@ -165,8 +161,7 @@ class Curves:
 
     def latency(self, working_sets: Array) -> Array | None:
         """Seconds per access at each working set, between those that were measured."""
-        curve = self._latency
-        if len(curve) == 0:
+        if not len(curve := self._latency):
             return None
         return np.exp(np.interp(np.log(working_sets), np.log(curve.sizes), np.log(curve.centers)))
 

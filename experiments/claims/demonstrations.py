@@ -4,7 +4,7 @@ Each gives the values that a sentence is judged by.
 """
 
 from collections import Counter
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from contextlib import suppress
 from functools import cache
 from typing import Any, cast
@@ -88,25 +88,18 @@ def outgoing_kept(side: int = 6) -> Iterable[float]:
     corners = [it for a, b, c in corners for it in ((a, b, c), (b, c + 1, c))]
     s, kept = Plankton.build(hem.PolygonMesh(points, corners[:1])), []
     for face in corners[1:]:
-        before = [s.outgoing_half_edge(v) for v in face]
+        before = {v: s.outgoing_half_edge(v) for v in face}
         s.add_face(*face)
-        kept += [
-            s.outgoing_half_edge(v) == was
-            for v, was in zip(face, before, strict=True)
-            if not s.vertex_naked_edges(v)
-        ]
+        closed = [v for v in face if not s.vertex_naked_edges(v)]
+        kept += [s.outgoing_half_edge(v) == before[v] for v in closed]
     yield float(np.mean(kept))
 
 
-def half_edges_per_face() -> Iterable[float]:
-    """How many half-edges name each face after a split as it is published."""
-    m = printed()
-    m.split_half_edge(m.half_edges[0], MIDDLE)
-    yield from half_edges_named(m)
-
-
-def half_edges_named(m: Any) -> Iterable[float]:
-    """How many half-edges name each face of a mesh of objects."""
+def half_edges_per_face(m: Any = None) -> Iterable[float]:
+    """How many half-edges name each face of a mesh of objects, after a published split of one."""
+    if m is None:
+        m = printed()
+        m.split_half_edge(m.half_edges[0], MIDDLE)
     naming = Counter(id(h.face) for h in m.half_edges)
     return [naming[id(face)] for face in m.faces]
 
@@ -120,18 +113,15 @@ def two_steps_back(mesh: Any = None) -> Iterable[float]:
 
 def walks_without_test() -> Iterable[float]:
     """The edge-based structures whose walk around a vertex never asks whether it came round."""
-    edge_based = [it for it in (*HALF_EDGES, WINGED) if structures.REGISTRY[it].compiled]
-    walks = [structures.REGISTRY[it].kernels["vertex_faces"] for it in edge_based]
+    edge_based = (structures.REGISTRY[it] for it in (*HALF_EDGES, WINGED))
+    walks = [it.kernels["vertex_faces"] for it in edge_based if it.compiled]
     yield sum(come_round_tests([walk]) == 0 for walk in walks)
 
 
 @cache
 def handling(*facts: str, mine: str = HALF, other: str = WINGED) -> Iterable[float]:
     """Counts in the code of all queries and operations, one structure's by another's."""
-    names = [*QUERIES, *(it for it in _kernels(mine) if it.endswith("_records"))]
-    one, two = (code_facts(_kernels(it)[name] for name in names) for it in (mine, other))
+    kernels, others = (structures.REGISTRY[it].kernels for it in (mine, other))
+    names = [*QUERIES, *(it for it in kernels if it.endswith("_records"))]
+    one, two = (code_facts(it[name] for name in names) for it in (kernels, others))
     return [getattr(one, fact) / getattr(two, fact) for fact in facts]
-
-
-def _kernels(structure: str) -> Mapping[str, Any]:
-    return structures.REGISTRY[structure].kernels

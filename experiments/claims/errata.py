@@ -15,21 +15,8 @@ import numpy as np
 
 import hem
 import structures
-from experiments.claims import later_errata
-from experiments.claims.beside import (
-    BOOK,
-    LARGER,
-    MIDDLE,
-    SMALLER,
-    TETRAHEDRON,
-    TRIANGLE,
-    Shown,
-    attempt,
-    faults_of,
-    printed,
-    require_valid,
-    sound,
-)
+from experiments.claims import beside, later_errata
+from experiments.claims.beside import Shown, attempt, faults_of, printed, require_valid, sound
 from structures.as_printed import AsPrinted
 from structures.half_edge_objects import HalfEdgeMesh, fields_accessed
 
@@ -55,25 +42,25 @@ def _grows(
 ) -> Shown:  # fmt: skip
     """How the work of a call on a mesh and what is built of it grows from torus to torus."""
     work = []
-    for n in (SMALLER, LARGER):
+    for n in (beside.SMALLER, beside.LARGER):
         mesh = hem.generate("torus", n)
         m, s = printed(mesh), sound(mesh)
         s.move_vertex(0, s.points[0])  # binds the operations
         calls = partial(as_printed, mesh, m), partial(as_sound, mesh, s)
         work.append([fields_accessed(call) for call in calls])
     one, other = (large / small for small, large in zip(*work, strict=True))
-    words = f"× the work in a mesh of {LARGER // SMALLER} × the vertices"
+    words = f"× the work in a mesh of {beside.LARGER // beside.SMALLER} × the vertices"
     return Shown(f"{one:.1f} {words}", f"{other:.1f} {words}", one > at_least and other < at_most)
 
 
 def _last_triangle() -> Shown:
     m, s = printed(whole=False), sound()
     faces, unpaired = len(m.faces), sum(h.opposite is None for h in m.half_edges)
-    return Shown(
-        f"{faces} faces, {unpaired} half-edges without a partner",
-        f"{s.n_faces} faces, {sum(h.opposite is None for h in s.half_edges)} without a partner",
-        (faces, unpaired) == (7, 3),
+    corrected = (
+        f"{s.n_faces} faces, {sum(h.opposite is None for h in s.half_edges)} without a partner"
     )
+    words = f"{faces} faces, {unpaired} half-edges without a partner"
+    return Shown(words, corrected, (faces, unpaired) == (7, 3))
 
 
 def _quadratic_builder() -> Shown:
@@ -82,12 +69,11 @@ def _quadratic_builder() -> Shown:
 
 def _foreign_face() -> Shown:
     m, s = printed(), sound()
-    m.split_half_edge(m.half_edges[0], MIDDLE)
-    s.split_edge(s.half_edges[0].edge, MIDDLE)
+    m.split_half_edge(m.half_edges[0], beside.MIDDLE)
+    s.split_edge(s.half_edges[0].edge, beside.MIDDLE)
     faults, words = faults_of(m)
-    return Shown(
-        words, require_valid(s), faults["half-edges with another face than the next one"] == 4
-    )
+    lost = faults["half-edges with another face than the next one"]
+    return Shown(words, require_valid(s), lost == 4)
 
 
 def _cleared_pairs() -> Shown:
@@ -110,14 +96,14 @@ def _kept_half_edge() -> Shown:
 
 
 def _border_collapse() -> Shown:
-    m, s = printed(TRIANGLE), sound(TRIANGLE)
+    m, s = printed(beside.TRIANGLE), sound(beside.TRIANGLE)
     words = attempt(lambda: m.collapse_edge(m.half_edges[0]))
     refusal = attempt(lambda: s.collapse_edge(0))
     return Shown(words, refusal, "null" in words and "refused" in refusal)
 
 
 def _no_link_condition() -> Shown:
-    m, s = printed(TETRAHEDRON), sound(TETRAHEDRON)
+    m, s = printed(beside.TETRAHEDRON), sound(beside.TETRAHEDRON)
     m.collapse_edge(m.half_edges[0])
     corners = [frozenset(h.origin.index for h in m.face_circulator(f)) for f in m.faces]
     coincident = len(corners) == 2 and len(set(corners)) == 1
@@ -137,11 +123,9 @@ def _inverted_commit() -> Shown:
     with render.transaction():
         s.split_face(1, (9, 9, 1))
         within = render.commits - single
-    return Shown(
-        f"{commits[0]} commits outside a transaction, {commits[1]} inside",
-        f"{single} outside, {within} inside",
-        (*commits, single, within) == (0, 1, 1, 0),
-    )
+    words = f"{commits[0]} commits outside a transaction, {commits[1]} inside"
+    confirmed = (*commits, single, within) == (0, 1, 1, 0)
+    return Shown(words, f"{single} outside, {within} inside", confirmed)
 
 
 def _search_for_duplicates() -> Shown:
@@ -175,11 +159,9 @@ def _there_and_back() -> Shown:
         asked = ("edge_faces", s.vertex_edges(hub).values[:1]), ("vertex_edges", hub)
         reads.append([int(s.work(query, handles)[0]) for query, handles in asked])
     (there, back), (still_there, further_back) = reads
-    return Shown(
-        f"from an edge to its faces {there} accesses at a valence of 8, {still_there} at 64",
-        f"from a vertex to its edges {back} and {further_back}, as table 1 says",
-        there == still_there and further_back > 4 * back,
-    )
+    words = f"from an edge to its faces {there} accesses at a valence of 8, {still_there} at 64"
+    also = f"from a vertex to its edges {back} and {further_back}, as table 1 says"
+    return Shown(words, also, there == still_there and further_back > 4 * back)
 
 
 def _silent_weld() -> Shown:
@@ -187,17 +169,15 @@ def _silent_weld() -> Shown:
     there = m.vertices[3].point
     m.split_face(m.faces[0], there)
     s.split_face(0, there)
-    return Shown(
-        f"{len(m.vertices)} vertices after a split at the position of another",
-        f"{s.n_vertices} vertices",
-        (len(m.vertices), s.n_vertices) == (6, 7),
-    )
+    many = len(m.vertices), s.n_vertices
+    words = f"{many[0]} vertices after a split at the position of another"
+    return Shown(words, f"{many[1]} vertices", many == (6, 7))
 
 
 def _full_commit() -> Shown:
     sizes: list[int] = []
     uploads: list[int] = []
-    for n in (SMALLER, LARGER):
+    for n in (beside.SMALLER, beside.LARGER):
         mesh = hem.generate("torus", n)
         m, s = printed(mesh), sound(mesh)
         m.split_half_edge(m.half_edges[0], (9.0, 9.0, 9.0))
@@ -207,19 +187,17 @@ def _full_commit() -> Shown:
         s.split_edge(s.half_edges[0].edge, (9, 9, 9))  # makes room
         render.subscribe(lambda upload: uploads.append(int(np.diff(upload.triangles).sum())))
         s.split_face(0, (9, 9, 8))
-    return Shown(
-        f"a split hands over {sizes[0]:,} and {sizes[1]:,} indices",
-        f"it touches {uploads[0]} and {uploads[1]} triangles",
-        sizes[1] > 3.5 * sizes[0] and max(uploads) <= 40,
-    )
+    words = f"a split hands over {sizes[0]:,} and {sizes[1]:,} indices"
+    touched = f"it touches {uploads[0]} and {uploads[1]} triangles"
+    return Shown(words, touched, sizes[1] > 3.5 * sizes[0] and max(uploads) <= 40)
 
 
 def _colliding_indices() -> Shown:
     m, s = printed(), sound()
     m.remove_face(m.faces[0])
-    m.split_face(m.faces[0], MIDDLE)
+    m.split_face(m.faces[0], beside.MIDDLE)
     s.remove_face(0)
-    s.split_face(1, MIDDLE)
+    s.split_face(1, beside.MIDDLE)
     faults, words = faults_of(m, "index")
     return Shown(words, require_valid(s), bool(faults))
 
@@ -229,15 +207,12 @@ def _shifted_render_mesh() -> Shown:
     m.collapse_edge(m.half_edges[0])
     render = hem.RenderMesh(s)
     s.collapse_edge(s.half_edges[0].edge)
-    wrong = m.faults().get(MISPLACED, 0)
+    wrong, faces = m.faults().get(MISPLACED, 0), len(render.to_triangles().triangles)
     beyond = max(m.render.committed) >= len(m.render.points)
-    words = ", some beyond the last point" if beyond else ""
-    kept = render.to_triangles()
-    return Shown(
-        f"{wrong} of {3 * len(m.faces)} corners show another position{words}",
-        f"the render mesh has the {len(kept.triangles)} faces of the structure",
-        wrong > 0 and len(kept.triangles) == s.n_faces,
-    )
+    words = f"{wrong} of {3 * len(m.faces)} corners show another position"
+    words += ", some beyond the last point" if beyond else ""
+    kept = f"the render mesh has the {faces} faces of the structure"
+    return Shown(words, kept, wrong > 0 and faces == s.n_faces)
 
 
 def _doubled_render_point() -> Shown:
@@ -245,36 +220,30 @@ def _doubled_render_point() -> Shown:
     for i, z in enumerate((0.5, 0.25)):
         m.split_half_edge(m.half_edges[i], (0.25, 0.25, z))
         s.split_edge(s.half_edges[i].edge, (0.25, 0.25, z))
-    points, misplaced = len(m.render.points), m.faults().get(MISPLACED, 0)
-    return Shown(
-        f"{points} points for {len(m.vertices)} vertices, {misplaced} corners at another position",
-        f"{len(hem.RenderMesh(s).points) // 3} points for {s.n_vertices} vertices",
-        points == len(m.vertices) + 2 and misplaced > 0,
-    )
+    points, vertices = len(m.render.points), len(m.vertices)
+    misplaced = m.faults().get(MISPLACED, 0)
+    words = f"{points} points for {vertices} vertices, {misplaced} corners at another position"
+    also = f"{len(hem.RenderMesh(s).points) // 3} points for {s.n_vertices} vertices"
+    return Shown(words, also, points == vertices + 2 and misplaced > 0)
 
 
 def _lonely_vertices() -> Shown:
-    m, s = printed(TRIANGLE), sound(TRIANGLE)
+    m, s = printed(beside.TRIANGLE), sound(beside.TRIANGLE)
     m.remove_face(m.faces[0])
     s.remove_face(0)
     s.validate()
-    return Shown(
-        f"{len(m.vertices)} vertices are left, though the listing means to remove them",
-        f"{s.n_vertices} vertices are left, as documented: remove_face keeps vertices",
-        len(m.vertices) == 3,
-    )
+    words = f"{len(m.vertices)} vertices are left, though the listing means to remove them"
+    also = f"{s.n_vertices} vertices are left, as documented: remove_face keeps vertices"
+    return Shown(words, also, len(m.vertices) == 3)
 
 
 def _stolen_partner() -> Shown:
-    faults, words = faults_of(printed(BOOK), "opposite has")
-    refusal = attempt(lambda: sound(BOOK))
+    faults, words = faults_of(printed(beside.BOOK), "opposite has")
+    refusal = attempt(lambda: sound(beside.BOOK))
     return Shown(words, refusal, bool(faults) and refusal.startswith("refused"))
 
 
 _TEXTS = tomllib.loads((files("experiments.claims") / "errata.toml").read_text("utf-8"))
 _SHOWS = vars(later_errata) | {name[1:]: it for name, it in globals().items() if name[0] == "_"}
-ERRATA = tuple(
-    Erratum(it["title"], it["source"], it["says"], it["does"], _SHOWS[it["show"]])
-    for it in _TEXTS["erratum"]
-)
+ERRATA = tuple(Erratum(**{**it, "show": _SHOWS[it["show"]]}) for it in _TEXTS["erratum"])
 """All of them, in the order in which they are numbered from 1."""

@@ -16,7 +16,7 @@ from experiments.harness import QUERIES_TABLE, Axis
 from experiments.runs import Run
 
 BY_TIME = Axis.TIME_FACES, Axis.RANDOM_FACES
-DETERMINED = Outcome.CONSISTENT, Outcome.VIOLATED
+DETERMINED = {Outcome.CONSISTENT, Outcome.VIOLATED}
 
 
 class Family(NamedTuple):
@@ -35,8 +35,7 @@ class Family(NamedTuple):
         """The claims that hold on one of the two families, and are violated on the other."""
         mine, others = self.outcomes(axis), other.outcomes(axis)
         for it in self.claims:
-            both = {found.get(it.claim.key) for found in (mine, others)}
-            if both == set(DETERMINED):
+            if {mine.get(it.claim.key), others.get(it.claim.key)} == DETERMINED:
                 yield it
 
 
@@ -47,8 +46,8 @@ def judge_families(run: Run, judged: Sequence[JudgedClaim]) -> list[Family]:
     """
     first = curves(run).judged_family
     timed = run.cases[run.cases["experiment"].isin(("bench_queries", "bench_latency"))]
-    asked = [it for it in judged if it.claim.table == QUERIES_TABLE.name]
-    asked = [it for it in asked if it.claim.claims_something and it.claim.subject != MEMORY]
+    queries = [it for it in judged if it.claim.table == QUERIES_TABLE.name]
+    asked = [it for it in queries if it.claim.claims_something and it.claim.subject != MEMORY]
     largest = timed[timed["experiment"] == "bench_queries"].sort_values("vertices")
     meshes = {name: of_family.iloc[-1] for name, of_family in largest.groupby("family")}
     families = []

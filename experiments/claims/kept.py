@@ -65,7 +65,10 @@ def _plain(judged: JudgedClaim) -> dict[str, Any]:
 
 def _judged(claim: Claim, row: dict[str, Any]) -> JudgedClaim:
     kept = row["verdicts"]
-    verdicts = {axis: Verdict(**kept[axis.key]) for axis in Axis if axis.key in kept}
-    outcomes = {measure: Outcome(it) for measure, it in row["outcomes"].items()}
-    values = {"outcome": Outcome(row["outcome"]), "outcomes": outcomes, "verdicts": verdicts}
-    return JudgedClaim(claim, **{**row, **values, "values": np.array(row["values"], float)})
+    read = {
+        "outcome": Outcome(row["outcome"]),
+        "outcomes": {measure: Outcome(it) for measure, it in row["outcomes"].items()},
+        "verdicts": {axis: Verdict(**kept[axis.key]) for axis in Axis if axis.key in kept},
+        "values": np.array(row["values"], float),
+    }
+    return JudgedClaim(claim, **{**row, **read})

@@ -10,15 +10,7 @@ import numpy as np
 
 import hem
 import structures
-from experiments.claims.beside import (
-    LARGER,
-    MIDDLE,
-    OCTAHEDRON,
-    Shown,
-    attempt,
-    printed,
-    sound,
-)
+from experiments.claims.beside import LARGER, MIDDLE, OCTAHEDRON, Shown, attempt, printed, sound
 from experiments.claims.demonstrations import TOUCHING, coincident_vertices
 from hem.fracture import MATERIALS, shatter
 from hem.fracture.surface import break_points
@@ -39,11 +31,10 @@ IMPACT = (-4.7, 5.2)  # in a plate of ten by ten, inside a face
 def _plate(across: int) -> tuple[hem.TriangleMesh, tuple[float, float, float]]:
     """A square of 10 units over x and another axis, and an impact on it."""
     flat = hem.generate("grid", 100)
-    points = np.zeros_like(flat.points)
+    points, impact = np.zeros_like(flat.points), np.zeros(3)
     points[:, [0, across]] = 10 * flat.points[:, :2]
-    impact = [0.0, 0.0, 0.0]
-    impact[0], impact[across] = IMPACT
-    x, y, z = impact
+    impact[[0, across]] = IMPACT
+    x, y, z = impact.tolist()
     return hem.TriangleMesh(points, flat.triangles), (x, y, z)
 
 
@@ -59,11 +50,9 @@ def height_kept() -> Shown:
         corrected.append(len(scattered) - outside)
     words = f"of {sum(GLASS.circles)} break points on a level plate, {{}} on an upright one"
     (level, upright), (even, also_upright) = published, corrected
-    return Shown(
-        f"{level} {words.format(upright)}",
-        f"{even} {words.format(also_upright)}",
-        upright < level / 2 and even == also_upright,
-    )
+    confirmed = upright < level / 2 and even == also_upright
+    said = f"{level} {words.format(upright)}", f"{even} {words.format(also_upright)}"
+    return Shown(*said, confirmed)
 
 
 def discs() -> Shown:
@@ -73,9 +62,8 @@ def discs() -> Shown:
     far = [np.linalg.norm(it[-count:], axis=1) for it in every]
     inside, also = (int((it < before).sum()) for it in far)
     words = f"of {count} break points of the last circle lie in the one before it"
-    return Shown(
-        f"{inside} {words}", f"{also} {words}: kept, as breaking is finer inside", inside > 0
-    )
+    kept = f"{also} {words}: kept, as breaking is finer inside"
+    return Shown(f"{inside} {words}", kept, inside > 0)
 
 
 def left_behind() -> Shown:
@@ -84,17 +72,12 @@ def left_behind() -> Shown:
     shards = simulate_breaking(m, MIDDLE, ())
     points = [[h.origin.point for h in m.face_circulator(face)] for face in m.faces]
     rest = shatter(s, MIDDLE, replace(GLASS, circles=())).rest[0]
-    left, also = (_of_struck(it) for it in (points, rest.points[rest.triangles]))
-    return Shown(
-        f"{len(shards)} shards, and {left} part of the face that was struck stays behind",
-        f"{also} parts of the face that was struck stay behind",
-        left > 0 == also,
-    )
-
-
-def _of_struck(corners: Any) -> int:
-    """Of the triangles (n, 3, 3) those in the octahedron's first face, where x + y + z = 1."""
-    return int(np.isclose(np.array(corners).sum(axis=2), 1).all(axis=1).sum())
+    every = np.array(points), rest.points[rest.triangles]  # (n, 3, 3)
+    # The first face of the octahedron is where x + y + z = 1.
+    left, also = (int(np.isclose(it.sum(axis=2), 1).all(axis=1).sum()) for it in every)
+    words = "of the face that was struck"
+    printed_words = f"{len(shards)} shards, and {left} part {words} stays behind"
+    return Shown(printed_words, f"{also} parts {words} stay behind", left > 0 == also)
 
 
 def runaway() -> Shown:
@@ -107,11 +90,8 @@ def runaway() -> Shown:
             steps += 1
     except LookupError:
         gives_up = True
-    return Shown(
-        f"gives up after {steps:,} of {valence:,} half-edges",
-        f"{s.valence(hub):,} half-edges",
-        gives_up and s.valence(hub) == valence,
-    )
+    words, around = f"gives up after {steps:,} of {valence:,} half-edges", s.valence(hub)
+    return Shown(words, f"{around:,} half-edges", gives_up and around == valence)
 
 
 def needs_no_closed_mesh() -> Shown:
@@ -132,11 +112,8 @@ def guard_one_short() -> Shown:
     count = len(s.half_edges())
     given = next(quoted_circulator(s, count), None)
     refusal = attempt(lambda: s.next_half_edge(count))
-    return Shown(
-        f"gives half-edge {given} of a mesh whose last one is {count - 1}",
-        refusal,
-        given == count and refusal.startswith("refused"),
-    )
+    words = f"gives half-edge {given} of a mesh whose last one is {count - 1}"
+    return Shown(words, refusal, given == count and refusal.startswith("refused"))
 
 
 def other_types() -> Shown:
@@ -174,9 +151,8 @@ def _is_declared(kind: type[Any], of: type[Any], value: Any) -> bool:
 def twice_as_many() -> Shown:
     """Faces per vertex."""
     s = hem.generate("torus", LARGER).summary()
-    return Shown(
-        "n_v ≈ 2 n_t", f"n_t = {s.faces / s.vertices:g} n_v on a torus", s.faces == 2 * s.vertices
-    )
+    counted = f"n_t = {s.faces / s.vertices:g} n_v on a torus"
+    return Shown("n_v ≈ 2 n_t", counted, s.faces == 2 * s.vertices)
 
 
 def bytes_left_out() -> Shown:
@@ -190,11 +166,11 @@ def closed_only() -> Shown:
     """Bytes of a mesh with a border, beside the sum of thesis 7 for its vertices and faces."""
     mesh = hem.generate("grid", LARGER)
     s = structures.build("winged_edge", mesh, 8)
-    held, edges = sum(s.memory().values()), 1.5 * s.n_faces
-    told = 20 * s.n_vertices + 8 * s.n_faces + 64 * edges
+    held, edges, n = sum(s.memory().values()), 1.5 * s.n_faces, s.n_vertices
+    told = 20 * n + 8 * s.n_faces + 64 * edges
     return Shown(
-        f"{edges:,.0f} edges and {told:,.0f} bytes by 7.3, of a grid of {s.n_vertices} vertices",
-        f"{s.n_edges:,} edges and {held:,} bytes, {held / s.n_vertices:.3g} per vertex and not 228",
+        f"{edges:,.0f} edges and {told:,.0f} bytes by 7.3, of a grid of {n} vertices",
+        f"{s.n_edges:,} edges and {held:,} bytes, {held / n:.3g} per vertex and not 228",
         edges < s.n_edges and told < held,
     )
 

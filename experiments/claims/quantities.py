@@ -20,6 +20,7 @@ import structures
 from experiments.claims import demonstrations as shown
 from experiments.claims.claim import SENTENCES, Between, Claim, JudgedClaim, Kind, Outcome
 from experiments.claims.curves import Curves, curves
+from experiments.claims.demonstrations import HALF, HALF_EDGES, WINGED
 from experiments.harness import ANSWERING, BASE, OPERATIONS, Axis
 from experiments.runs import Run
 from hem.arrays import Array
@@ -30,9 +31,7 @@ Quantity = Callable[[Curves], Iterable[float]]
 
 LARGER = 990  # vertices from which on a mesh is spoken of: others are built and scanned in no time
 
-HALF, WINGED, DIRECTED = "half_edge", "winged_edge", "directed_edge"
-NEIGHBOR, ADJACENCY = "triangle_neighbor", "indexed_adjacency"
-HALF_EDGES = (HALF, "half_edge_objects", "plankton")
+NEIGHBOR, ADJACENCY, DIRECTED = "triangle_neighbor", "indexed_adjacency", "directed_edge"
 PAIRS = ("plankton",)
 SPLITS, COLLAPSE = ("split_edge", "split_face"), ("collapse_edge",)
 AT_EDGES = "split_edge", "collapse_edge", "flip_edge"
@@ -55,14 +54,14 @@ def sentence_claims() -> list[Claim]:
     content = tomllib.loads((files("experiments.claims") / "sentences.toml").read_text("utf-8"))
     claims = []
     for row in content["sentence"]:
-        name, says = row["quantity"], row["says"]
+        name, says, kind = row["quantity"], row["says"], Kind(row["kind"])
         if name not in QUANTITIES:
             known = ", ".join(QUANTITIES)
             raise ValueError(f"sentences.toml: {says!r} rests on {name!r}; there are {known}")
         bounds = {end: float(row[end]) for end in ("low", "high") if end in row}
         expects = Between(name, row["measured"], **bounds, every=row.get("every", False))
-        kind, key = Kind(row["kind"]), f"sentence/{name}"
-        claims.append(Claim(key, says, kind, row["source"], SENTENCES, says, expects))
+        claim = Claim(f"sentence/{name}", says, kind, row["source"], SENTENCES, says, expects)
+        claims.append(claim)
     return claims
 
 
@@ -88,8 +87,8 @@ def _span(values: Array) -> str:
     if not len(values):
         return "–"
     values = np.round(values, 6) + 0
-    low, high = f"{values.min():.3g}", f"{values.max():.3g}"
-    return low if low == high else f"{low} … {high}"
+    ends = f"{values.min():.3g}", f"{values.max():.3g}"
+    return " … ".join(dict.fromkeys(ends))
 
 
 def break_even(of_run: Curves) -> pd.DataFrame:
@@ -128,9 +127,9 @@ def _work(of_run: Curves, structure: str, subject: str) -> Array:
 def _work_ratios(of_run: Curves, mine: str, other: str, subjects: Iterable[str]) -> Iterable[float]:
     """The work at the largest size, one structure's by another's."""
     for subject in subjects:
-        costs, others = (_work(of_run, name, subject)[-1:] for name in (mine, other))
+        costs, others = (_work(of_run, name, subject) for name in (mine, other))
         if len(costs) and len(others):
-            yield float(costs[0] / others[0])
+            yield float(costs[-1] / others[-1])
 
 
 def _bytes_ratio(of_run: Curves, mine: str, other: str) -> Iterable[float]:
@@ -175,18 +174,18 @@ def _static(of_run: Curves) -> Iterable[float]:
     """Building and bytes, and what a pass over all faces takes."""
     yield from _time_ratios(of_run, "bench_build", order="consecutive")
     yield from _bytes_ratio(of_run, HALF, BASE)
-    yield from _time_ratios(of_run, "bench_workloads", "vertex_normals", "compiled").loc[LARGER:]
+    yield from _workload(of_run, "vertex_normals")
 
 
-def _dynamic(of_run: Curves) -> Iterable[float]:
+def _workload(of_run: Curves, name: str) -> Iterable[float]:
     """Compiled: from Python the interpreter would be measured, which is the same for both."""
-    yield from _time_ratios(of_run, "bench_workloads", "impacts", "compiled").loc[LARGER:]
+    yield from _time_ratios(of_run, "bench_workloads", name, "compiled").loc[LARGER:]
 
 
 def _detail(of_run: Curves, operation: str, workload: str) -> Iterable[float]:
     """One operation at a time, and all that a workload does of it."""
     yield from _time_ratios(of_run, "bench_operations", operation, "batched").loc[LARGER:]
-    yield from _time_ratios(of_run, "bench_workloads", workload, "compiled").loc[LARGER:]
+    yield from _workload(of_run, workload)
 
 
 def _more_bytes(of_run: Curves) -> Iterable[float]:
@@ -213,17 +212,6 @@ def _pays_at_most(of_run: Curves) -> Iterable[float]:
             yield times[-1] / times[0]
 
 
-def _valence_slopes(
-    of_run: Curves, names: Iterable[str], subjects: Iterable[str]
-) -> Iterable[float]:
-    """The log-log slopes of work in the valence, at its largest values: beyond what is constant."""
-    for name in names:
-        for subject in subjects:
-            curve = of_run.curve(Axis.WORK_VALENCE, name, subject)
-            if len(curve) > 1:
-                yield float(slope(curve.sizes[-2:], np.maximum(curve.centers[-2:], 1)))
-
-
 def _edits_per_build(of_run: Curves) -> Iterable[float]:
     """Edge splits per vertex after which the half-edge mesh has overtaken, at the larger sizes."""
     wanted = "structure == @HALF and subject == 'split_edge' and vertices >= @LARGER"
@@ -232,14 +220,18 @@ def _edits_per_build(of_run: Curves) -> Iterable[float]:
 
 
 def _slopes(
-    of_run: Curves, names: Iterable[str], subjects: Iterable[str], table: str
+    of_run: Curves, names: Iterable[str], subjects: Iterable[str], table: str = ""
 ) -> Iterable[float]:
-    """The log-log slopes of work in the number of faces; what reads nothing counts as one."""
-    for name in names:
-        for subject in subjects:
-            curve = of_run.curve(Axis.WORK_FACES, name, subject, table)
-            if len(curve) > 1:
-                yield float(slope(curve.sizes, np.maximum(curve.centers, 1)))
+    """The log-log slopes of work, of what reads nothing as of one access.
+
+    In the number of faces, or without a ``table`` in the valence at its largest values: there what
+    is constant counts little.
+    """
+    axis, last = (Axis.WORK_FACES, None) if table else (Axis.WORK_VALENCE, -2)
+    for name, subject in itertools.product(names, subjects):
+        curve = of_run.curve(axis, name, subject, table)
+        if len(curve) > 1:
+            yield float(slope(curve.sizes[last:], np.maximum(curve.centers[last:], 1)))
 
 
 LISTED = ("as_printed",)
@@ -254,7 +246,7 @@ QUANTITIES: dict[str, Quantity] = {
     "soup": lambda of_run: [SOUP_BYTES * of_run.faces_per_vertex / of_run.bytes_per_vertex(BASE)],
     "answers": _answers,
     "come_round": lambda of_run: shown.walks_without_test(),
-    "edges_both_ways": lambda of_run: _valence_slopes(of_run, (WINGED,), BETWEEN_EDGES),
+    "edges_both_ways": lambda of_run: _slopes(of_run, (WINGED,), BETWEEN_EDGES),
     "directions": lambda of_run: shown.handling("direction_tests"),
     "handling": lambda of_run: shown.handling("branches", "lines"),
     "previous": lambda of_run: shown.two_steps_back(),
@@ -266,9 +258,9 @@ QUANTITIES: dict[str, Quantity] = {
     "published_collapse": lambda of_run: _slopes(of_run, LISTED, COLLAPSE, "listings"),
     "outlook": lambda of_run: _slopes(of_run, LISTED, (*SPLITS, STEPPING), "listings"),
     "corrected_collapse": lambda of_run: _slopes(of_run, HALF_EDGES, COLLAPSE, "operations"),
-    "collapse_by_valence": lambda of_run: _valence_slopes(of_run, HALF_EDGES, COLLAPSE),
+    "collapse_by_valence": lambda of_run: _slopes(of_run, HALF_EDGES, COLLAPSE),
     "static": _static,
-    "dynamic": _dynamic,
+    "dynamic": lambda of_run: _workload(of_run, "impacts"),
     "subdivision": lambda of_run: _detail(of_run, "split_face", "subdivision"),
     "reduction": lambda of_run: _detail(of_run, "collapse_edge", "simplification"),
     "larger_meshes": _pays_at_most,

@@ -8,7 +8,7 @@ import ast
 import inspect
 import textwrap
 from collections.abc import Callable, Iterable, Iterator
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeGuard
 
 from hem.authoring import Kernel
 
@@ -31,10 +31,9 @@ class CodeFacts(NamedTuple):
 def code_facts(kernels: Iterable[Kernel]) -> CodeFacts:
     """The counts of some kernels together, each part once."""
     kernels = list(kernels)
-    nodes = [node for part in _parts(kernels) for node in ast.walk(_tree(part))]
-    branches = ast.If, ast.IfExp, ast.While
+    nodes, branches = list(_nodes(kernels)), (ast.If, ast.IfExp, ast.While)
     return CodeFacts(
-        sum(any(map(_tests_direction, _comparisons(it))) for it in kernels),
+        sum(any(map(_tests_direction, _nodes([it]))) for it in kernels),
         sum(isinstance(it, branches) for it in nodes),
         sum(isinstance(it, ast.stmt) and not _says_nothing(it) for it in nodes),
     )
@@ -42,19 +41,12 @@ def code_facts(kernels: Iterable[Kernel]) -> CodeFacts:
 
 def come_round_tests(kernels: Iterable[Kernel]) -> int:
     """How often a loop in some kernels asks whether it is back at where it began."""
-    loops = [
-        node
-        for part in _parts(kernels)
-        for node in ast.walk(_tree(part))
-        if isinstance(node, ast.While)
-    ]
-    within = (it for loop in loops for it in ast.walk(loop) if isinstance(it, ast.Compare))
-    return sum(_compares(it, ast.Name, ast.Name) for it in within)
+    loops = (it for it in _nodes(kernels) if isinstance(it, ast.While))
+    return sum(_compares(it, ast.Name, ast.Name) for loop in loops for it in ast.walk(loop))
 
 
-def _comparisons(kernel: Kernel) -> Iterator[ast.Compare]:
-    nodes = (node for part in _parts([kernel]) for node in ast.walk(_tree(part)))
-    return (it for it in nodes if isinstance(it, ast.Compare))
+def _nodes(kernels: Iterable[Kernel]) -> Iterator[ast.AST]:
+    return (node for part in _parts(kernels) for node in ast.walk(_tree(part)))
 
 
 def _parts(kernels: Iterable[Kernel]) -> Iterator[Callable[..., Any]]:
@@ -62,16 +54,16 @@ def _parts(kernels: Iterable[Kernel]) -> Iterator[Callable[..., Any]]:
     waiting, met, written = list(kernels), set(), set()
     while waiting:
         kernel = waiting.pop()
-        function: Callable[..., Any] = getattr(kernel, "py_func", kernel)
         if kernel in met:
             continue
         met.add(kernel)
-        if function.__code__ not in written:
-            written.add(function.__code__)
+        function: Callable[..., Any] = getattr(kernel, "py_func", kernel)
+        code = function.__code__
+        if code not in written:
+            written.add(code)
             yield function
         known = {**function.__globals__, **inspect.getclosurevars(function).nonlocals}
-        names = *function.__code__.co_names, *function.__code__.co_freevars
-        called: list[Any] = [known.get(name) for name in names]
+        called: list[Any] = [known.get(name) for name in (*code.co_names, *code.co_freevars)]
         waiting += [it for it in called if hasattr(it, "py_func")]
 
 
@@ -81,16 +73,21 @@ def _tree(function: Callable[..., Any]) -> ast.FunctionDef:
     return tree
 
 
-def _tests_direction(it: ast.Compare) -> bool:
-    read = _compares(it, ast.Subscript, ast.Name)
-    return read and any(isinstance(n, ast.Name) and n.id == RECORDS for n in ast.walk(it.left))
+def _tests_direction(it: ast.AST) -> bool:
+    if not _compares(it, ast.Subscript, ast.Name):
+        return False
+    return any(isinstance(n, ast.Name) and n.id == RECORDS for n in ast.walk(it.left))
 
 
-def _compares(it: ast.Compare, one: type[ast.expr], other: type[ast.expr]) -> bool:
+def _compares(it: ast.AST, one: type[ast.expr], other: type[ast.expr]) -> TypeGuard[ast.Compare]:
     """Whether it says that something of these two sorts is equal, or that it is not."""
-    left, right = it.left, it.comparators[0]
-    equal = len(it.ops) == 1 and isinstance(it.ops[0], ast.Eq | ast.NotEq)
-    return equal and isinstance(left, one) and isinstance(right, other)
+    return (
+        isinstance(it, ast.Compare)
+        and len(it.ops) == 1
+        and isinstance(it.ops[0], ast.Eq | ast.NotEq)
+        and isinstance(it.left, one)
+        and isinstance(it.comparators[0], other)
+    )
 
 
 def _says_nothing(it: ast.stmt) -> bool:

@@ -34,26 +34,22 @@ def judge_cells(run: Run, claims: Sequence[Claim] | None = None) -> list[JudgedC
 
 
 def _judge_bytes(of_run: Curves, claim: Claim) -> JudgedClaim:
-    found = of_run.bytes_per_vertex(claim.structure)
-    if np.isnan(found):
-        outcome = Outcome.UNDETERMINED if claim.claims_something else Outcome.NO_CLAIM
-        return JudgedClaim(claim, outcome, "?")
-    outcome, reason = _outcome_of_bytes(found, claim, of_run.faces_per_vertex)
-    return JudgedClaim(claim, outcome, f"{found:,.4g}", reason, values=np.array([found]))
-
-
-def _outcome_of_bytes(found: float, claim: Claim, faces_per_vertex: float) -> tuple[Outcome, str]:
-    """The outcome, and why. What is claimed is of two faces per vertex, as on a torus."""
+    """What is claimed is of two faces per vertex, as on a torus."""
+    found, faces = of_run.bytes_per_vertex(claim.structure), of_run.faces_per_vertex
+    measured, reason = not np.isnan(found), ""
+    outcome = Outcome.UNDETERMINED
     if not claim.claims_something:
-        return Outcome.NO_CLAIM, ""
-    if Exactly(found) == claim.expects:
-        return Outcome.CONSISTENT, ""
-    if faces_per_vertex == 2:
-        return Outcome.VIOLATED, ""
-    if Exactly(round(found)) == claim.expects:
-        return Outcome.CONSISTENT, "To the byte."
-    few = f"The claim is of two faces per vertex, and this mesh has {faces_per_vertex:.4g}."
-    return Outcome.UNDETERMINED, few
+        outcome = Outcome.NO_CLAIM
+    elif Exactly(found) == claim.expects:
+        outcome = Outcome.CONSISTENT
+    elif measured and faces == 2:
+        outcome = Outcome.VIOLATED
+    elif measured and Exactly(round(found)) == claim.expects:
+        outcome, reason = Outcome.CONSISTENT, "To the byte."
+    elif measured:
+        reason = f"The claim is of two faces per vertex, and this mesh has {faces:.4g}."
+    values = np.array([found] if measured else [])
+    return JudgedClaim(claim, outcome, f"{found:,.4g}" if measured else "?", reason, values=values)
 
 
 def _judge_growth(of_run: Curves, claim: Claim) -> JudgedClaim:
@@ -75,12 +71,11 @@ def _judge_growth(of_run: Curves, claim: Claim) -> JudgedClaim:
     counted = any(axis.exact for axis in axes)
     measure = "work" if counted else "time"
     timed = Axis.RANDOM_FACES if Axis.RANDOM_FACES in axes else Axis.TIME_FACES
+    found = _class_found([axis for axis in axes if axis.measure == measure], verdicts)
+    reason = " ".join(it.reason for axis, it in verdicts.items() if axis.exact == counted)
     return JudgedClaim(
-        claim, outcomes[measure],
-        _class_found([axis for axis in axes if axis.measure == measure], verdicts),
-        " ".join(it.reason for axis, it in verdicts.items() if axis.exact == counted),
-        outcomes if claim.claims_something else {}, verdicts,
-        work=cases[Axis.WORK_FACES].largest, seconds=cases[timed].largest,
+        claim, outcomes[measure], found, reason, outcomes if claim.claims_something else {},
+        verdicts, work=cases[Axis.WORK_FACES].largest, seconds=cases[timed].largest,
     )  # fmt: skip
 
 
@@ -103,9 +98,9 @@ def _verdict(of_run: Curves, table: str, axis: Axis, curve: Curve, expected: str
 
 def _class_found(axes: Sequence[Axis], verdicts: Mapping[Axis, Verdict]) -> str:
     """What was measured in the table's own terms, such as ``O(n_ev)``; ``?`` where it was not."""
-    if not axes or any(axis not in verdicts for axis in axes):
+    if not axes or not verdicts.keys() >= set(axes):
         return "?"
-    grown = [axis for axis in axes if verdicts[axis].best != "O(1)"]
-    factors = [verdicts[axis].best[2:-1].replace("n", axis.symbol) for axis in grown]
+    best = {axis: verdicts[axis].best for axis in axes}
+    factors = [it[2:-1].replace("n", axis.symbol) for axis, it in best.items() if it != "O(1)"]
     flat = any(axis.variable == "valence" and verdicts[axis].slope < FLAT for axis in axes)
     return f"O({(' + ' if flat else ' · ').join(factors) or '1'})"

@@ -165,7 +165,7 @@ def test_a_split_as_published_is_not_conforming_and_a_corrected_one_is(run):
     assert outcome(run, "conforming") == "violated"
     s = sound()
     s.split_edge(s.half_edges[0].edge, (0.25, 0.25, 0.5))
-    assert set(shown.half_edges_named(s)) == {3}
+    assert set(shown.half_edges_per_face(s)) == {3}
 
 
 def test_welded_points_do_not_coincide():
