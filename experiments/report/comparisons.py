@@ -5,6 +5,7 @@ Each raises MissingError where nothing of it was measured.
 
 from collections import Counter
 from collections.abc import Sequence
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -16,7 +17,7 @@ from experiments.harness import BASE, Axis
 from experiments.report.pages import Heads, Html, numbers, text_table
 from experiments.report.session import MissingError, claim_link
 from experiments.report.style import TITLES
-from experiments.report.tables import SHOWN, digits, duration, two_digits
+from experiments.report.tables import SHOWN, count, digits, duration, two_digits
 from experiments.runs import Run
 from hem.complexity import Verdict, judge
 from hem.contract import QUERIES
@@ -41,29 +42,30 @@ def objects_against_arrays(run: Run) -> Html:
         if not np.isnan(costs).all():
             rows.append((title, *costs, costs[3] / costs[2], size))
     heads: Heads = {
-        "": str, "accesses, arrays": _count, "accesses, objects": _count,
+        "": str, "accesses, arrays": count, "accesses, objects": count,
         "time, arrays (compiled)": duration, "time, objects (Python)": duration,
-        "slower": lambda value: f"{digits(value)} ×", "vertices": _count,
+        "slower": lambda value: f"{digits(value)} ×", "vertices": count,
     }  # fmt: skip
     return numbers(rows, heads)
 
 
+def bytes_held(run: Run, width: int) -> pd.DataFrame:
+    """The bytes of structures on the largest mesh of each family; ``width``: of a reference."""
+    cases = run.cases.query("experiment == 'bench_memory' and reference_bytes == @width")
+    cases = cases.assign(bytes=cases["samples"].map(np.median))
+    largest = cases[cases["vertices"] == cases.groupby("family")["vertices"].transform("max")]
+    mesh = ["family", "vertices", "faces"]
+    table = largest.pivot_table("bytes", mesh, "structure", sort=False)
+    return table[[name for name in NAMES if name in table]]
+
+
 def bytes_by_mesh(run: Run, width: int = 8) -> Html:
     """Bytes per vertex on every mesh, the largest of each family; ``width``: of a reference."""
-    cases = run.cases.query("experiment == 'bench_memory' and reference_bytes == @width")
-    cases = cases.assign(each=[it[0] for it in cases["samples"]] / cases["vertices"])
-    largest = cases[cases["vertices"] == cases.groupby("family")["vertices"].transform("max")]
-    of_mesh = ["family", "vertices", "faces"]
-    table = largest.pivot_table(index=of_mesh, columns="structure", values="each")
-    measured = [name for name in NAMES if name in table]
-    rows = [
-        (family, vertices, faces / vertices, *sizes)
-        for (family, vertices, faces), sizes in zip(
-            table.index, table[measured].to_numpy(), strict=True
-        )
-    ]
-    heads: dict[str, Any] = {"": str, "vertices": _count, "faces per vertex": two_digits}
-    return numbers(rows, heads | {REGISTRY[name].title: _one_digit for name in measured})
+    table = bytes_held(run, width).sort_index()
+    every: Any = table.T.items()
+    rows = [(family, n, faces / n, *(sizes / n)) for (family, n, faces), sizes in every]
+    heads: dict[str, Any] = {"": str, "vertices": count, "faces per vertex": two_digits}
+    return numbers(rows, heads | {REGISTRY[str(it)].title: _one_digit for it in table})
 
 
 def by_family(families: Sequence[Family]) -> Html:
@@ -78,17 +80,16 @@ def by_family(families: Sequence[Family]) -> Html:
 
 
 def _family_row(it: Family, first: Family) -> tuple[Any, ...]:
-    counts = [Counter(it.outcomes(axis).values()) for axis in BY_TIME]
-    marks = [" ".join(f"{many[kind]} {kind.mark}" for kind in SHOWN) for many in counts]
-    against = [
-        Html('<a href="{}">{}, {}</a>').format(
-            claim_link(claim.key), REGISTRY[claim.structure].title, judged.claim.title
-        )
-        + f": {it.outcomes(axis)[claim.key]} by {axis.label}"
-        for axis in BY_TIME
-        for judged in it.against(first, axis)
-        for claim in [judged.claim]
-    ]
+    marks, against = [], []
+    for axis in BY_TIME:
+        outcomes = it.outcomes(axis)
+        counts = Counter(outcomes.values())
+        marks.append(" ".join(f"{counts[kind]} {kind.mark}" for kind in SHOWN))
+        for judged in it.against(first, axis):
+            claim = judged.claim
+            link, title = claim_link(claim.key), f"{REGISTRY[claim.structure].title}, {claim.title}"
+            said = f": {outcomes[claim.key]} by {axis.label}"
+            against.append(Html('<a href="{}">{}</a>{}').format(link, title, said))
     mesh = it.largest
     mean = two_digits(2 * mesh["edges"] / mesh["vertices"])
     size, most = (f"{mesh[name]:,}" for name in ("vertices", "valence_max"))
@@ -98,10 +99,10 @@ def _family_row(it: Family, first: Family) -> tuple[Any, ...]:
 def families_in_words(families: Sequence[Family]) -> Html:
     """Which families say something else than the judged one, and how their valences differ."""
     first, *others = families
-    denied = {it.name: sum(len(list(it.against(first, axis))) for axis in BY_TIME) for it in others}
-    means = [2 * it.largest["edges"] / it.largest["vertices"] for it in families]
     if not others:
         return Html(f"<p>Queries were timed on one family alone, the {first.name}.</p>")
+    denied = {it.name: sum(len(list(it.against(first, axis))) for axis in BY_TIME) for it in others}
+    means = [2 * it.largest["edges"] / it.largest["vertices"] for it in families]
     named = ", ".join(f"{name} ({many})" for name, many in denied.items() if many)
     found = f"on: {named}" if named else "on none of them"
     return Html(
@@ -118,14 +119,13 @@ def shattering(run: Run) -> Html:
     cases = pd.concat([it.cases.assign(cost=it.centers) for it in found])
     base = cases[cases["structure"] == BASE].set_index("vertices")["cost"]
     shared: Any = cases[cases["vertices"] <= base.index.max()] if len(base) else cases
-    rows = [
-        (REGISTRY[it.structure].title, it.vertices, it.handles, it.handles * it.cost, 1 / it.cost,
-         base.get(it.vertices, np.nan) / it.cost)
-        for it in shared.groupby("structure", sort=False).tail(1).itertuples()
-    ]  # fmt: skip
+    rows = []
+    for it in shared.groupby("structure", sort=False).tail(1).itertuples():
+        title, times = REGISTRY[it.structure].title, base.get(it.vertices, np.nan) / it.cost
+        rows.append((title, it.vertices, it.handles, it.handles * it.cost, 1 / it.cost, times))
     heads: Heads = {
-        "": str, "vertices": _count, "shards": _count, "in all": duration,
-        "shards per second": _count, "times faster than indexed": digits,
+        "": str, "vertices": count, "shards": count, "in all": duration,
+        "shards per second": count, "times faster than indexed": digits,
     }  # fmt: skip
     return numbers(rows, heads)
 
@@ -134,19 +134,17 @@ def face_finding(run: Run, structure: str = ARRAYS) -> Html:
     """How the ways to find a face grow with the number of faces, one row each."""
     rows = []
     for way in WAYS:
-        counted, timed = (
-            curves(run).named("bench_fracture", structure, FIND, order)
-            for order in (f"{way}, {VISITED}", way)
-        )
-        if len(counted) and len(timed):
+        orders = f"{way}, {VISITED}", way
+        found = [curves(run).named("bench_fracture", structure, FIND, it) for it in orders]
+        if all(map(len, found)):
+            counted, timed = found
             latency = timed.cases["latency"].astype(float)
             work = judge(counted.sizes, counted.samples, exact=True)
             time = judge(timed.sizes, timed.samples, latency=latency)
-            looked_at = float(np.median(counted.samples[-1]))
-            rows.append((way, work, time, looked_at, timed.largest))
+            rows.append((way, work, time, float(np.median(counted.samples[-1])), timed.largest))
     heads: Heads = {
         "": str, "faces looked at: slope": _slope, "time: slope": _slope,
-        "faces, largest mesh, median": _count, "time, largest mesh": duration,
+        "faces, largest mesh, median": count, "time, largest mesh": duration,
     }  # fmt: skip
     return numbers(rows, heads)
 
@@ -154,19 +152,14 @@ def face_finding(run: Run, structure: str = ARRAYS) -> Html:
 def overtaking(table: pd.DataFrame) -> Html:
     """After how many queries or edits a structure has repaid its building, on the largest mesh."""
     largest = table[table["vertices"] == table.groupby("subject")["vertices"].transform("max")]
-    rows = [
-        (MIXES[subject], REGISTRY[structure].title, vertices, times, times / vertices)
-        for subject, structure, vertices, times in largest.to_numpy()
-    ]
+    rows = []
+    for subject, structure, n, times in largest.to_numpy():
+        rows.append((MIXES[subject], REGISTRY[structure].title, n, times, times / n))
     heads: Heads = {
-        "": str, "structure": str, "vertices": _count, "until repaid": digits,
+        "": str, "structure": str, "vertices": count, "until repaid": digits,
         "until repaid, per vertex": digits,
     }  # fmt: skip
     return numbers(rows, heads)
-
-
-def _count(value: float) -> str:
-    return f"{value:,.0f}" if value == value else "–"
 
 
 def _one_digit(value: float) -> str:
@@ -185,10 +178,8 @@ def bytes_in_words(run: Run) -> Html:
 
     Raises MissingError where one was not weighed.
     """
-    found = {
-        width: [curves(run).bytes_per_vertex(name, width) for name in (ARRAYS, BASE)]
-        for width in (8, 4)
-    }
+    names, weigh = (ARRAYS, BASE), curves(run).bytes_per_vertex
+    found = {width: [weigh(name, width) for name in names] for width in (8, 4)}
     if np.isnan(list(found.values())).any():
         raise MissingError("This run has not weighed a half-edge and an indexed mesh.")
     said = [
@@ -208,13 +199,11 @@ def waiting_in_words(run: Run) -> Html:
     Of compiled structures. Raises MissingError where none was measured.
     """
     measured, grown = curves(run), []
-    for name in (it for it in NAMES if REGISTRY[it].compiled and not run.machines):
-        for query in QUERIES:
-            work, *times = (
-                measured.curve(axis, name, query) for axis in (Axis.WORK_FACES, *BY_TIME)
-            )
-            if all(len(it) > 1 for it in (work, *times)) and work.largest < FLAT * work.centers[0]:
-                grown.append([it.largest / it.centers[0] for it in times])
+    names = [it for it in NAMES if REGISTRY[it].compiled and not run.machines]
+    for asked in product(names, QUERIES):
+        work, *times = found = [measured.curve(it, *asked) for it in (Axis.WORK_FACES, *BY_TIME)]
+        if all(len(it) > 1 for it in found) and work.largest < FLAT * work.centers[0]:
+            grown.append([it.largest / it.centers[0] for it in times])
     sets = measured.curve(Axis.RANDOM_FACES, ARRAYS, "vertex_faces").cases
     latency = measured.latency(sets["working_set"].to_numpy(float))
     if not grown or sets.empty or latency is None:
@@ -222,10 +211,10 @@ def waiting_in_words(run: Run) -> Html:
     in_order, at_random = np.median(grown, axis=0)
     waited = latency[-1] / latency[0]
     small, large = (int(sets["faces"].iloc[place]) for place in (0, -1))
-    so = "an O(1) query does not do more, it waits longer" if at_random < waited else ""
+    so = ": <b>an O(1) query does not do more, it waits longer</b>" if at_random < waited else ""
     return Html(
         f"<p>{len(grown)} queries on compiled structures do no more work on a larger mesh. From "
         f"{small:,} to {large:,} faces their time grows {digits(in_order)}-fold in order and "
         f"{digits(at_random)}-fold at random (medians), and that of a memory access "
-        f"{digits(waited)}-fold{': <b>' * bool(so)}{so}{'</b>' * bool(so)}.</p>"
+        f"{digits(waited)}-fold{so}.</p>"
     )

@@ -36,10 +36,8 @@ def show(findings: Sequence[Finding], notes: Sequence[str], console: Console) ->
     for title, color, chosen in _by_change(findings):
         console.print(f"[bold {color}]{title}: {len(chosen):,}[/]")
         for claim, part in groupby(chosen[:MOST], lambda finding: finding.claim):
-            if claim:
-                console.print(f"[dim]{escape(claim)}[/]", highlight=False)
-            for finding in part:
-                console.print(escape(line(finding)), highlight=False)
+            lines = [f"[dim]{escape(claim)}[/]"] if claim else []
+            console.print(*lines, *(escape(line(it)) for it in part), sep="\n", highlight=False)
         if len(chosen) > MOST:
             console.print(f"  … and {len(chosen) - MOST:,} more; all of them with --json")
     last = [f"Note: {note}" for note in notes] + [f"Compared: {count_same(findings)}"]
@@ -100,6 +98,5 @@ def as_markdown(findings: Sequence[Finding], notes: Sequence[str]) -> str:
 
 def _by_change(findings: Sequence[Finding]) -> Iterator[tuple[str, str, list[Finding]]]:
     for change, (title, color) in TITLES.items():
-        chosen = [finding for finding in findings if finding.change == change]
-        if chosen:
+        if chosen := [it for it in findings if it.change == change]:
             yield title, color, chosen

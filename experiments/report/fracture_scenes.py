@@ -10,14 +10,8 @@ from numpy.typing import ArrayLike
 import hem
 import structures
 from hem.fracture import Blow, Fracture, Material, motion, shatter, tetrahedra, voronoi, wrapped
-from hem.fracture.show import (
-    FRAMES_PER_SECOND,
-    GRAVITY,
-    Flight,
-    FractureScene,
-    default_impact,
-    flight,
-)
+from hem.fracture.show import FRAMES_PER_SECOND, GRAVITY, Flight, FractureScene, default_impact
+from hem.fracture.show import flight as fly
 
 METHODS = ("voronoi", "tetra", "surface")
 PLATE = "plate"  # another name of the family grid: a sheet that stands upright
@@ -48,7 +42,7 @@ class Broken(NamedTuple):
         """How the pieces fly for so many seconds, in pictures for some more."""
         frames = round(3.2 * FRAMES_PER_SECOND)
         options: Any = {"up": scene.up, "floor": scene.floor, "held": self.held, "ease": EASE}
-        return flight(self.fracture, self.motion, seconds, frames, **options)
+        return fly(self.fracture, self.motion, seconds, frames, **options)
 
 
 def model(
@@ -59,21 +53,17 @@ def model(
     What is read is mended first with ``repair``; then it is multiplied by ``scale``, and with
     ``wrap`` it is the body around that. Raises MeshError for what there is not.
     """
-    mesh, up = _read(name, repair)
+    family, colon, size = name.partition(":")
+    if Path(name).exists():
+        mesh, up = hem.load(name, repair, triangulate=True), "y"
+    else:
+        kind = f"grid:{size if colon else 144}" if family == PLATE else name
+        mesh, up = hem.find_mesh(kind, repair, triangulate=True), UP.get(family, "y")
     if not len(mesh.triangles):
         raise hem.MeshError(f"there is nothing to break: {name} has no faces")
     if scale != 1:
         mesh = hem.TriangleMesh(mesh.points * np.float32(scale), mesh.triangles)
     return (wrapped(mesh) if wrap else mesh), up
-
-
-def _read(name: str, repair: bool) -> tuple[hem.TriangleMesh, str]:
-    family, colon, size = name.partition(":")
-    if Path(name).exists():
-        return hem.load(name, repair, triangulate=True), "y"
-    if family == PLATE:
-        name = f"grid:{size}" if colon else "grid:144"
-    return hem.find_mesh(name, repair, triangulate=True), UP.get(family, "y")
 
 
 def break_up(
@@ -94,8 +84,8 @@ def break_up(
     if impact is None:
         impact, way = default_impact(mesh, up)
         direction = way if direction is None else direction
-    toward = (0, 0, 1) if direction is None else direction
-    given = Blow(np.asarray(impact), np.asarray(toward), force)  # checked before all is broken
+    toward = np.asarray((0, 0, 1) if direction is None else direction)
+    given = Blow(np.asarray(impact), toward, force)  # checked before all is broken
     if method == "voronoi":
         fracture = voronoi(mesh, impact, material, force, seed, direction)
     elif method == "tetra":

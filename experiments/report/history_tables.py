@@ -12,7 +12,7 @@ from rich.console import Console
 
 from experiments.claims import Outcome
 from experiments.regression import MEASURES, OUTCOMES, Trends
-from experiments.report.tables import show_rows, two_digits
+from experiments.report.tables import SHOWN, show_rows, two_digits
 from structures import NAMED
 
 FEW = 6  # claims that get a table each; more of them share one
@@ -91,23 +91,19 @@ def runs_frame(trends: Trends) -> pd.DataFrame:
 def _count_outcomes(outcomes: pd.Series) -> str:
     """How many claims have each outcome, such as ``85✓ 3✗``."""
     counts = Counter(outcomes)
-    shown = (Outcome.CONSISTENT, Outcome.VIOLATED, Outcome.UNDETERMINED)
-    return " ".join(f"{counts[it]}{it.mark}" for it in shown if counts[it])
+    return " ".join(f"{counts[it]}{it.mark}" for it in SHOWN if counts[it])
 
 
 def changes_frame(trends: Trends) -> pd.DataFrame:
     """A row per change of a verdict or a figure, in the order of the commits."""
     changes = trends.changes
-    return pd.DataFrame(
-        {
-            "run": changes["run"],
-            "at": changes["run"].map(trends.about["commit"]),
-            "claim": changes["claim"].map(short_claim),
-            "figure": changes["measure"].replace(SHORT),
-            "before → after": changes["before"].map(_mark) + " → " + changes["after"].map(_mark),
-            "machine": changes["machine"].replace("", "any"),
-        }
+    frame = changes[["run"]].assign(
+        at=changes["run"].map(trends.about["commit"]),
+        claim=changes["claim"].map(short_claim),
+        figure=changes["measure"].replace(SHORT),
     )
+    frame["before → after"] = changes["before"].map(_mark) + " → " + changes["after"].map(_mark)
+    return frame.assign(machine=changes["machine"].replace("", "any"))
 
 
 def _mark(outcome: str) -> str:
@@ -144,8 +140,8 @@ def _figure(row: Any) -> str:
     if pd.isna(row.before):
         return text
     change = row.after - row.before
-    absolute = measure.slope or not row.before
-    step = f"{change:+.2f}" if absolute else f"{change / row.before:+.1%}"
+    relative = row.before and not measure.slope
+    step = f"{change / row.before:+.1%}" if relative else f"{change:+.2f}"
     return f"{text} {'▲' if change > 0 else '▼'}{step}"
 
 

@@ -41,12 +41,9 @@ def body(name: str) -> str:
     """Execute a notebook -> its page's body, without code. ResultsError names it if one fails."""
     notebook = nbformat.read(carried("notebooks") / f"{name}.ipynb", as_version=4)
     execute(notebook, name)
-    exporter = HTMLExporter(
-        template_name="chapter",
-        extra_template_basedirs=[str(Path(__file__).parent / "templates")],
-        exclude_anchor_links=True,
-    )
-    return str(exporter.from_notebook_node(notebook)[0])
+    places = [str(Path(__file__).parent / "templates")]
+    look: dict[str, Any] = {"template_name": "chapter", "extra_template_basedirs": places}
+    return str(HTMLExporter(**look, exclude_anchor_links=True).from_notebook_node(notebook)[0])
 
 
 def execute(notebook: Any, name: str) -> None:

@@ -17,16 +17,8 @@ from experiments.claims import SENTENCES, JudgedClaim, Kind, Outcome, curves
 from experiments.claims.errata import Erratum
 from experiments.harness import Axis, Table
 from experiments.report import session
+from experiments.report import tables as written
 from experiments.report.notebooks import page_titles
-from experiments.report.tables import (
-    by_subject,
-    duration,
-    german_numbers,
-    spelled,
-    tally_rows,
-    two_digits,
-)
-from experiments.report.tables import legend as legend_lines
 from experiments.runs import Run, in_words, tables
 from structures import NAMED
 
@@ -57,7 +49,9 @@ def _templates() -> Environment:
         "claim_file": lambda judged: f"{session.CLAIMS}/{session.claim_file(judged)}",
         "static": lambda name: Html((files("experiments.report") / "static" / name).read_text()),
     }
-    environment.filters |= {"time": duration, "two_digits": two_digits, "spelled": spelled}
+    environment.filters |= {
+        "time": written.duration, "two_digits": written.two_digits, "spelled": written.spelled,
+    }  # fmt: skip
     environment.filters["where"] = lambda source: re.split("[:;]|, (?!abstract|table)", source)[0]
     return environment
 
@@ -98,13 +92,13 @@ def filters(claims: Sequence[JudgedClaim]) -> dict[str, dict[str, tuple[str, int
 
 def verdicts(claims: Iterable[JudgedClaim], name: str) -> Html:
     """A table of claims at a glance: what is printed, and whether it holds."""
-    return table("verdicts", *by_subject(claims, name))
+    return table("verdicts", *written.by_subject(claims, name))
 
 
 def slopes(claims: Iterable[JudgedClaim], name: str) -> Html:
     """The same with the slopes along every axis, their intervals, and what a query costs."""
     measured = curves(session.open_run().run)
-    return table("slopes", *by_subject(claims, name), list(Axis), measured)
+    return table("slopes", *written.by_subject(claims, name), list(Axis), measured)
 
 
 def sentences(claims: Iterable[JudgedClaim], kind: str) -> Html:
@@ -115,13 +109,13 @@ def sentences(claims: Iterable[JudgedClaim], kind: str) -> Html:
 
 def tally(claims: Iterable[JudgedClaim]) -> Html:
     """How many claims of each kind came out how."""
-    heads, *rows = tally_rows(claims)
+    heads, *rows = written.tally_rows(claims)
     return table("words", heads, rows)
 
 
 def legend() -> Html:
     """How the cells of tables are to be read."""
-    return table("legend", legend_lines())
+    return table("legend", written.legend())
 
 
 def claim_tables(claims: Collection[JudgedClaim]) -> Html:
@@ -182,9 +176,8 @@ def numbers(rows: Iterable[Sequence[Any]], heads: Heads) -> Html:
     return table("numbers", list(heads), written)
 
 
-def text_table(heads: Sequence[str], rows: Sequence[Sequence[Any]]) -> Html:
-    """A table of words below their heads."""
-    return table("words", heads, rows)
+text_table = partial(table, "words")
+"""A table of words below their heads: ``text_table(heads, rows)``."""
 
 
 def frame_table(frame: pd.DataFrame) -> Html:
@@ -213,17 +206,13 @@ def answer(
 ) -> Answer:
     """An answer with its links, or ``missing`` where a number is."""
     measured = all(value == value for value in needs)  # nan where nothing was measured
-    german = german_numbers(german) if measured else "Dieser Lauf hat das nicht gemessen."
+    german = written.german_numbers(german) if measured else "Dieser Lauf hat das nicht gemessen."
     return Answer(text if measured else missing, german, rests, measured)
 
 
 def abstract(answers: Iterable[Answer]) -> Html:
     """The same answers in German."""
     return table("abstract", [it.german for it in answers])
-
-
-DENIED = "not "
-"""What a claim's key begins with where a sentence rests on what refutes it."""
 
 
 def closing(claims: Iterable[JudgedClaim], points: Mapping[str, Sequence[str]]) -> Html:
@@ -236,10 +225,9 @@ def closing(claims: Iterable[JudgedClaim], points: Mapping[str, Sequence[str]]) 
     judged = {it.claim.key: it for it in claims}
     rows = []
     for text, keys in points.items():
-        rests = [judged[key.removeprefix(DENIED)] for key in keys]
-        expected = [
-            Outcome.VIOLATED if key.startswith(DENIED) else Outcome.CONSISTENT for key in keys
-        ]
+        rests = [judged[key.removeprefix("not ")] for key in keys]
+        denied = [key.startswith("not ") for key in keys]
+        expected = [Outcome.VIOLATED if it else Outcome.CONSISTENT for it in denied]
         follows = [it.outcome for it in rests] == expected
         rows.append((text.format(*(it.found for it in rests)), follows, rests))
     return table("closing", rows)

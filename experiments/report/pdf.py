@@ -30,14 +30,13 @@ def find_browser() -> str | None:
 
 def require_browser() -> str:
     """The program that prints. Raises PrintError saying what to install."""
-    browser = find_browser()
-    if browser is None:
-        raise PrintError(
-            "a PDF is printed by Chromium or Chrome, and neither was found: install one (on Debian "
-            f"and Ubuntu: apt install chromium), or name its program in {BROWSER_VARIABLE}; or "
-            "open the report in any browser and print it from there"
-        )
-    return browser
+    if browser := find_browser():
+        return browser
+    raise PrintError(
+        "a PDF is printed by Chromium or Chrome, and neither was found: install one (on Debian and "
+        f"Ubuntu: apt install chromium), or name its program in {BROWSER_VARIABLE}; or open the "
+        "report in any browser and print it from there"
+    )
 
 
 def print_pdf(page: Path, output: Path) -> Path:
@@ -48,9 +47,7 @@ def print_pdf(page: Path, output: Path) -> Path:
             "--virtual-time-budget=20000", f"--print-to-pdf={output}", page.resolve().as_uri(),
         ]  # fmt: skip
         try:
-            done = subprocess.run(
-                command, capture_output=True, text=True, timeout=PATIENCE, check=False
-            )
+            done = subprocess.run(command, capture_output=True, text=True, timeout=PATIENCE)
         except subprocess.TimeoutExpired as late:
             raise PrintError(f"{command[0]} did not print within {PATIENCE} s") from late
     if not output.exists():

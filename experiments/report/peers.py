@@ -1,7 +1,5 @@
 """Other libraries beside our half-edge mesh: tables for a terminal, for a page and for programs."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
@@ -10,22 +8,13 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pandas as pd
 from rich.console import Console
 
 from experiments.claims import Curve, Growth, Outcome, curves, load_claims
 from experiments.harness import HUBS, OPERATIONS
-from experiments.peers import (
-    ALGORITHMS,
-    BAD_INPUT,
-    BUILD,
-    BULK,
-    BYTES,
-    LOOPED,
-    OURS,
-    PEERS,
-    SINGLE,
-    SIX,
-)  # fmt: skip
+from experiments.peers import BAD_INPUT, BUILD, BULK, BYTES, LOOPED, OURS, PEERS, SINGLE
+from experiments.peers.peer import ALGORITHMS, SIX
 from experiments.report.pages import Html, text_table
 from experiments.report.session import MissingError
 from experiments.report.tables import digits, duration, show_rows
@@ -44,7 +33,7 @@ PER_ELEMENT = {"faces": "O(1)"}
 """What is claimed of a call that asks all elements, for each of them."""
 
 
-def measured_peers(run: Run) -> Peers:
+def measured_peers(run: Run) -> "Peers":
     """What a run measured of other libraries; where it did not, the newest run of them did."""
     here = Peers(run)
     if not here.names:
@@ -79,45 +68,32 @@ class Cell:
         return f"O({' · '.join(factors) or 1})" if grown else ""
 
     @property
-    def marks(self) -> str:
-        """What became of the claim by faces and by valence; empty where there is none."""
-        if not self.claimed:
-            return ""
-        return "".join(Outcome(it.outcome).mark for it in self.verdicts.values())
-
-    @property
     def text(self) -> str:
-        """Such as ``O(n_ev) ✓✓ 3.1 ×``; the time where ours has none to be compared with."""
+        """Such as ``O(n_ev) ✓✓ 3.1 ×``: what became of the claim by faces and by valence, if any.
+
+        The time where ours has none to be compared with.
+        """
+        marks = (Outcome(it.outcome).mark for it in self.verdicts.values() if self.claimed)
         taken = f"{digits(self.ratio)} ×" if self.ratio == self.ratio else duration(self.seconds)
-        return " ".join(filter(None, (self.found, self.marks, taken)))
+        return " ".join(filter(None, (self.found, "".join(marks), taken)))
 
 
 class Peers:
-    """A run as far as it is about other libraries."""
+    """A run as far as it is about other libraries: what was measured, and what is ``absent``."""
 
     def __init__(self, run: Run) -> None:
         self.run = run
         self.cases = run.cases[run.cases["experiment"] == EXPERIMENT]
-        self.names = [it for it in PEERS if (self.cases["structure"] == it).any()]
+        measured = set(self.cases["structure"])
+        self.names = [it for it in PEERS if it in measured]
+        self.absent = [it.title for name, it in PEERS.items() if name not in measured]
 
-    @property
-    def others(self) -> list[str]:
-        """The libraries but ours."""
-        return [it for it in self.names if it != OURS]
-
-    @property
-    def absent(self) -> list[str]:
-        """The titles of libraries that were not measured."""
-        return [it.title for name, it in PEERS.items() if name not in self.names]
-
-    def _by_size(self, name: str, subject: str, order: str) -> Curve:
-        return curves(self.run).named(EXPERIMENT, name, subject, order)
-
-    def _by_valence(self, name: str, subject: str, order: str) -> Curve:
-        at_hubs = (self.cases["structure"] == name) & (self.cases["family"] == HUBS)
-        asked = (self.cases["subject"] == subject) & (self.cases["order"] == order)
-        found = self.cases[at_hubs & asked]
-        return Curve("valence", found.sort_values("valence"))
+    def _cases(self, name: str, **wanted: Any) -> pd.DataFrame:
+        """Those of a library that have these values."""
+        found = self.cases[self.cases["structure"] == name]
+        for column, value in wanted.items():
+            found = found[found[column] == value]
+        return found
 
     @cached_property
     def _claims(self) -> dict[str, Mapping[str, str]]:
@@ -127,51 +103,40 @@ class Peers:
 
     def cell(self, name: str, subject: str, order: str = "") -> Cell | None:
         """One subject on one library, judged where it is a query; None where it has no call."""
-        curve, ours = (self._by_size(it, subject, order) for it in (name, OURS))
+        of_run = curves(self.run)
+        curve, ours = (of_run.named(EXPERIMENT, it, subject, order) for it in (name, OURS))
         if not len(curve):
             return None
-        both = [it for it in curve.by_size.index if it in ours.by_size.index]
-        size = max(both or curve.by_size.index)
+        both = curve.by_size.index.intersection(ours.by_size.index)
+        size = max(both if len(both) else curve.by_size.index)
         seconds = float(curve.by_size[size])
-        ratio = seconds / float(ours.by_size[size]) if both else np.nan
+        ratio = seconds / float(ours.by_size[size]) if len(both) else np.nan
         claimed = PER_ELEMENT if order == BULK else self._claims.get(subject, {})
-        verdicts = self._verdicts(name, subject, order, claimed) if subject in QUERIES else {}
+        verdicts = {}
+        if subject in QUERIES:
+            at_hubs = self._cases(name, family=HUBS, subject=subject, order=order)
+            by_valence = Curve("valence", at_hubs.sort_values("valence"))
+            for sign, it in (("n_t", curve), ("n_ev", by_valence)):
+                if len(it):
+                    expected, latencies = claimed.get(it.variable, "O(1)"), of_run.latencies(it)
+                    verdicts[sign] = judge(
+                        it.sizes, it.samples, expected, latencies, latency_error=CASE_ERROR
+                    )
         return Cell(seconds, ratio, int(size), verdicts, bool(claimed))
-
-    def _verdicts(
-        self, name: str, subject: str, order: str, claimed: Mapping[str, str]
-    ) -> dict[str, Verdict]:
-        every = {
-            "n_t": self._by_size(name, subject, order),
-            "n_ev": self._by_valence(name, subject, order),
-        }
-        return {sign: self._judged(it, claimed) for sign, it in every.items() if len(it)}
-
-    def _judged(self, curve: Curve, claimed: Mapping[str, str]) -> Verdict:
-        return judge(
-            curve.sizes, curve.samples, claimed.get(curve.variable, "O(1)"),
-            curves(self.run).latencies(curve), latency_error=CASE_ERROR,
-        )  # fmt: skip
 
     def bytes_per_vertex(self, name: str) -> float:
         """As the process sees them."""
-        found = self.cases[(self.cases["structure"] == name) & (self.cases["kind"] == BYTES)]
-        return (
-            float(found["samples"].iloc[0][0] / found["vertices"].iloc[0]) if len(found) else np.nan
-        )
+        found = self._cases(name, kind=BYTES)
+        return float((found["samples"].str[0].astype(float) / found["vertices"]).max())
 
     def version(self, name: str) -> str:
         """The version that was measured."""
-        return str(self.cases[self.cases["structure"] == name]["detail"].iloc[0]["version"])
+        return str(self._cases(name)["detail"].iloc[0]["version"])
 
     def trial(self, name: str, bad: str) -> tuple[str, str]:
         """What became of bad input, in a word and in more."""
-        found = self.cases[(self.cases["structure"] == name) & (self.cases["subject"] == bad)]
+        found = self._cases(name, subject=bad)
         return tuple(found["detail"].iloc[0]["found"]) if len(found) else ("", "")
-
-    def title(self, name: str) -> str:
-        """As it stands above a column."""
-        return PEERS[name].title
 
     def overview(self) -> list[list[str]]:
         """Version, bytes and building, a row for each; the heads first."""
@@ -181,38 +146,35 @@ class Peers:
             built = duration(cell.seconds / cell.size) if cell else "?"
             ratio = f"{digits(cell.ratio)} ×" if cell and cell.ratio == cell.ratio else "?"
             weighed = f"{size:,.0f}" if size == size else "?"
-            rows.append([self.title(name), self.version(name), weighed, built, ratio])
+            rows.append([PEERS[name].title, self.version(name), weighed, built, ratio])
         return rows
 
     def compared(self, title: str) -> list[list[str]]:
         """A group of ``GROUPS``: a row per subject, ours first, and those that have any of it."""
-        subjects = GROUPS[title]
-        cells = {
-            name: [self.cell(name, it, order) for it, (_, order) in subjects.items()]
-            for name in self.names
-        }
-        shown = [name for name in self.names if any(cells[name])]
-        texts = {it: self._texts(it, cells[it]) for it in shown}
-        rows = [
-            [head, *(texts[it][place] for it in shown)]
-            for place, (head, _) in enumerate(subjects.values())
-            if any(cells[it][place] for it in shown)
-        ]
-        return [["", *map(self.title, shown)], *rows]
+        shown, texts = [], []
+        for name in self.names:
+            cells = [self.cell(name, it, order) for it, (_, order) in GROUPS[title].items()]
+            if any(cells):
+                shown.append(PEERS[name].title)
+                texts.append([_text(it, name == OURS) for it in cells])
+        heads = [head for head, _ in GROUPS[title].values()]
+        rows = [list(row) for row in zip(heads, *texts, strict=True)]
+        return [["", *shown], *(row for row in rows if {*row[1:]} - {NONE})]
 
-    def _texts(self, name: str, cells: Sequence[Cell | None]) -> list[str]:
-        """What is beside ours as ratios; ours in seconds."""
-        if name != OURS:
-            return [it.text if it else NONE for it in cells]
-        return [f"{duration(it.seconds)} {it.found}".strip() if it else NONE for it in cells]
-
-    def trials(self) -> list[list[str]]:
-        """What each library makes of bad input, in a word; the heads first."""
+    def trials(self, in_full: bool = False) -> list[list[str]]:
+        """What each library makes of bad input, in a word or with its own; the heads first."""
         rows = [["", *(it.title for it in BAD_INPUT.values())]]
-        return rows + [
-            [self.title(name), *(self.trial(name, bad)[0] for bad in BAD_INPUT)]
-            for name in self.names
-        ]
+        for name in self.names:
+            told = [self.trial(name, bad)[: 2 if in_full else 1] for bad in BAD_INPUT]
+            rows.append([PEERS[name].title, *(": ".join(filter(None, it)) for it in told)])
+        return rows
+
+
+def _text(cell: Cell | None, ours: bool) -> str:
+    """What is beside ours as ratios; ours in seconds."""
+    if cell is None:
+        return NONE
+    return f"{duration(cell.seconds)} {cell.found}".strip() if ours else cell.text
 
 
 GROUPS: dict[str, dict[str, tuple[str, str]]] = {
@@ -269,7 +231,7 @@ def peers_as_json(folder: Path | None) -> dict[str, Any]:
         "libraries": [
             {
                 "name": name,
-                "title": peers.title(name),
+                "title": PEERS[name].title,
                 "version": peers.version(name),
                 "bytes_per_vertex": peers.bytes_per_vertex(name),
                 "bad_input": {bad: list(peers.trial(name, bad)) for bad in BAD_INPUT},
@@ -284,8 +246,7 @@ def _records(peers: Peers, name: str) -> Iterator[dict[str, Any]]:
     subjects = [(it, order) for group in GROUPS.values() for it, (_, order) in group.items()]
     for subject, order in [(BUILD, ""), *subjects]:
         if cell := peers.cell(name, subject, order):
-            claimed = cell.claimed
-            outcomes = {sign: it.outcome for sign, it in cell.verdicts.items() if claimed}
+            outcomes = {sign: it.outcome for sign, it in cell.verdicts.items() if cell.claimed}
             yield {"subject": subject, "way": order, "seconds": cell.seconds, "found": cell.found,
                    "vertices": cell.size, "of_ours": cell.ratio, "outcomes": outcomes}  # fmt: skip
 
@@ -308,14 +269,11 @@ def about(peers: Peers) -> Html:
 
 def portraits(peers: Peers) -> Html:
     """How each library's manual has it used, and what it does that ours does not."""
-    rows = [(peers.title(it), PEERS[it].manual, PEERS[it].more) for it in peers.others]
-    return page_table([("Library", "As its manual has it used", "What it does beyond ours"), *rows])
+    heads = "Library", "As its manual has it used", "What it does beyond ours"
+    others = [PEERS[name] for name in peers.names if name != OURS]
+    return page_table([heads, *((it.title, it.manual, it.more) for it in others)])
 
 
 def refusals(peers: Peers) -> Html:
     """What each library makes of bad input, with its own words."""
-    rows = [
-        (peers.title(name), *(": ".join(filter(None, peers.trial(name, bad))) for bad in BAD_INPUT))
-        for name in peers.names
-    ]
-    return page_table([("", *(it.title for it in BAD_INPUT.values())), *rows])
+    return page_table(peers.trials(in_full=True))

@@ -9,17 +9,10 @@ from matplotlib.figure import Figure
 
 from experiments.claims import CLAIMED
 from experiments.harness import OPERATIONS, QUERIES_TABLE, Axis
-from experiments.report import uses
+from experiments.report import tables, uses
 from experiments.report.figures import fracture, growth, memory, meshes
 from experiments.report.pages import each_table, or_missing
 from experiments.report.session import read_session, share
-from experiments.report.tables import (
-    legend,
-    markdown,
-    markdown_rows,
-    sentences_markdown,
-    tally_rows,
-)
 from experiments.runs import Run, in_words
 
 TIMES = partial(growth.scaling, axis=Axis.TIME_FACES)
@@ -61,10 +54,13 @@ def write_readme(run_folder: Path, folder: Path) -> Path:
     folder.mkdir(parents=True, exist_ok=True)
     recommended = partial(uses.recommended_markdown, run)
     parts = {"Which structure for which use": or_missing(recommended, MISSING)}
-    parts |= {"Who claims what": markdown_rows(tally_rows(claims)), "How to read it": _read()}
-    parts |= each_table(claims, markdown, MISSING)
+    parts |= {
+        "Who claims what": tables.markdown_rows(tables.tally_rows(claims)),
+        "How to read it": "\n\n".join(tables.legend()),
+    }
+    parts |= each_table(claims, tables.markdown, MISSING)
     for kind in CLAIMED:
-        parts[f"In sentences: {kind.about}"] = sentences_markdown(claims, kind)
+        parts[f"In sentences: {kind.about}"] = tables.sentences_markdown(claims, kind)
     for name, (title, draw) in DRAWN.items():
         picture = partial(_draw, run, draw, folder / f"{name}.png", title)
         parts[title] = or_missing(picture, MISSING)
@@ -74,14 +70,10 @@ def write_readme(run_folder: Path, folder: Path) -> Path:
     page.write_text(f"# The thesis, measured\n\n{made} {in_words(run)}\n\n{text}\n", "utf-8")
     readme = folder.parent / "README.md"
     if readme.exists():
-        table = f"{parts[QUERIES_TABLE.title]}\n\n{' '.join(legend())}"
+        table = f"{parts[QUERIES_TABLE.title]}\n\n{' '.join(tables.legend())}"
         text = re.sub(MARKED, lambda it: f"{it[1]}\n{table}\n{it[2]}", readme.read_text("utf-8"))
         readme.write_text(text, "utf-8")
     return page
-
-
-def _read() -> str:
-    return "\n\n".join(legend())
 
 
 def _draw(run: Run, draw: Callable[[Run], Figure], file: Path, title: str) -> str:

@@ -1,7 +1,5 @@
 """From the thesis to here: its sections, where each is done, and what became of its claims."""
 
-from __future__ import annotations
-
 import re
 import tomllib
 from collections import Counter
@@ -16,7 +14,7 @@ from experiments.report.notebooks import page_titles
 from experiments.report.pages import Html, text_table
 from experiments.report.session import claim_link, link
 
-TABLE, ERRATUM = r"table \d+", r"errat(?:um|a) \d+"
+NOT_OF_SECTIONS = r"table \d+|errat(?:um|a) \d+"
 """Numbers in a source that are not those of sections."""
 
 
@@ -48,7 +46,7 @@ def cited(source: str) -> set[str]:
         return {other[0]}
     if not document.startswith("thesis"):
         return set()
-    numbers = re.findall(r"\d(?:\.\d)*", re.sub(f"{TABLE}|{ERRATUM}", "", document))
+    numbers = re.findall(r"\d(?:\.\d)*", re.sub(NOT_OF_SECTIONS, "", document))
     known = {it.of for it in sections()}
     found = {it if it in known else it.rpartition(".")[0] for it in numbers}
     return found | ({"abstract"} if "abstract" in document else set())
@@ -68,21 +66,15 @@ def _row(section: Section, printed: Sequence[JudgedClaim]) -> tuple[str, str, Ht
     chapter = Html('<a href="{}">{}</a>').format(
         link(section.chapter), page_titles()[section.chapter]
     )
-    where = Html("<br>").join(
-        [chapter, *(Html("<code>{}</code>").format(it) for it in section.done)]
-    )
-    became = [
-        Html('{} <a href="{}">{}</a>').format(it.mark, claim_link(it.claim.key), it.claim.text)
-        for it in said
-    ]
+    where = Html("<br>").join([chapter, *map(Html("<code>{}</code>").format, section.done)])
+    line = Html('{} <a href="{}">{}</a>').format
+    became = [line(it.mark, claim_link(it.claim.key), it.claim.text) for it in said]
     if cells:
         counted = ", ".join(f"{count} {mark}" for mark, count in cells.items())
         became.append(Html("cells of its tables: {}").format(counted))
-    wrong = [
-        f"{number}. {it.title}"
-        for number, it in enumerate(ERRATA, start=1)
-        if section.of in cited(re.sub("^quoted in ", "", it.source))
-    ]
+    numbered = [f"{number}. {it.title}" for number, it in enumerate(ERRATA, start=1)]
+    sources = [re.sub("^quoted in ", "", it.source) for it in ERRATA]
+    wrong = [it for it, by in zip(numbered, sources, strict=True) if section.of in cited(by)]
     if wrong:
         listed = Html("<br>").join(wrong)
         became.append(Html('<a href="{}">errata</a>:<br>{}').format(link("errata"), listed))

@@ -93,7 +93,7 @@ def link(page: str, anchor: str = "") -> str:
     """Where a link to a page, or to a place on it, leads: printed all pages are one."""
     if _current and _current.printed:
         return f"#{anchor or page}"
-    return f"{page}.html" + (f"#{anchor}" if anchor else "")
+    return f"{page}.html#{anchor}" if anchor else f"{page}.html"
 
 
 def claim_link(key: str) -> str:

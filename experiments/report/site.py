@@ -61,10 +61,8 @@ def _write_parts(session: Session, folder: Path) -> dict[str, str]:
     keys = [it.claim.key for it in session.claims]
     with _workers(session) as pool:
         bodies = {name: pool.submit(body, name) for name in page_titles()}
-        drawn = [
-            pool.submit(write_claims, keys[start : start + BATCH], folder / CLAIMS)
-            for start in range(0, len(keys), BATCH)
-        ]
+        batches = [keys[start : start + BATCH] for start in range(0, len(keys), BATCH)]
+        drawn = [pool.submit(write_claims, batch, folder / CLAIMS) for batch in batches]
         every: list[Future[Any]] = [*drawn, *bodies.values()]
         for part in as_completed(every):
             part.result()  # the first that fails ends all
@@ -102,9 +100,9 @@ def _begin(session: Session) -> None:
 def _require_replaceable(output: Path) -> None:
     """Raise ResultsError unless there is nothing at ``output``, or a report, to be replaced."""
     known = {f"{name}.html" for name in page_titles()} | {CLAIMS}
-    if output.exists() and not (
-        output.is_dir() and all(path.name in known for path in output.iterdir())
-    ):
+    if output.is_dir() and all(path.name in known for path in output.iterdir()):
+        return
+    if output.exists():
         raise ResultsError(
             f"{output} is no report, and would be replaced by one: choose a folder that is not "
             "there yet, or empty"

@@ -4,6 +4,7 @@ import io
 from collections import defaultdict
 from collections.abc import Sequence
 from colorsys import hls_to_rgb, rgb_to_hls
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -13,21 +14,17 @@ from matplotlib.axes import Axes
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
+from matplotlib.ticker import LogLocator, NullLocator
 from scipy.optimize import isotonic_regression
 
 from experiments.harness import OPERATIONS, QUERIES_TABLE, Axis
 from structures import NAMED
 
 STYLES: dict[str, dict[str, Any]] = {
-    name: {
-        "label": it.abbreviation,
-        "color": it.look.color,
-        "marker": it.look.marker,
-        "linestyle": it.look.line,
-    }
+    name: {"label": it.abbreviation, "linestyle": it.look.line,
+           "color": it.look.color, "marker": it.look.marker}
     for name, it in NAMED.items()
-}
+}  # fmt: skip
 """How Matplotlib draws the line of a structure, as each declares it: the same in every plot."""
 
 TITLES = {**QUERIES_TABLE.subjects, **OPERATIONS}
@@ -41,15 +38,12 @@ BLUE = "#2f7fc1"
 
 APART = 40.0  # points between the ends of two lines from which on their labels cannot meet
 RC = rc_params_from_file(Path(__file__).parent / "static" / "hem.mplstyle", False, False)
+styled = partial(rc_context, RC)
+"""A context in which figures are made."""
 
 
 class Plot(Figure):
     """A figure of lines, bars and words, which a page shows as SVG; pictures are PNG."""
-
-
-def styled() -> Any:
-    """A context in which figures are made."""
-    return rc_context(RC)
 
 
 def show_figures() -> None:
@@ -89,7 +83,7 @@ def short_numbers(axes: Axes) -> None:
     """Ticks at powers of ten alone, as 1k and 10k: what else there is takes long to draw."""
     for direction in (axes.xaxis, axes.yaxis):
         direction.set_major_locator(LogLocator(numticks=7))
-        direction.set_major_formatter(FuncFormatter(lambda value, _: compact(value)))
+        direction.set_major_formatter(lambda value, _: compact(value))
         direction.set_minor_locator(NullLocator())
 
 
@@ -119,8 +113,7 @@ def finish_panels(figure: Figure, every: Sequence[Axes], room: float = 0.17) -> 
         axes.set_xlim(low, high * (high / low) ** room)
         if not labeled(axes):
             axes.text(0.5, 0.5, "not measured", transform=axes.transAxes, ha="center", color=GRAY)
-    layout = figure.get_layout_engine()
-    if layout:
+    if layout := figure.get_layout_engine():
         layout.execute(figure)
         figure.set_layout_engine("none")
     for axes in every:
@@ -133,8 +126,7 @@ def label_ends(axes: Axes, gap: float = 10.5) -> None:
     Lines that end elsewhere, by more than ``APART`` points, are not in each other's way. Call it
     when the axes' limits stand.
     """
-    figure = axes.get_figure(root=True)
-    assert figure is not None
+    figure: Any = axes.get_figure(root=True)
     groups: dict[int, list[tuple[float, Any, Line2D]]] = defaultdict(list)
     for line in labeled(axes):
         end = np.asarray(line.get_xydata())[-1]

@@ -35,11 +35,7 @@ COLORS = {
 }
 """What is colored in a terminal, as regular expressions."""
 
-MEASURES = {
-    "decides": "work, bytes, value",
-    "time": "time in order",
-    "random": "time at random",
-}
+MEASURES = {"decides": "work, bytes, value", "time": "time in order", "random": "time at random"}
 """The heads of a tally; what is exact decides."""
 
 SHOWN = Outcome.CONSISTENT, Outcome.VIOLATED, Outcome.UNDETERMINED
@@ -49,12 +45,11 @@ def legend() -> list[str]:
     """How to read a cell, in lines: the order of its marks, and whose claim they stand for."""
     words = ", ".join(f"{it.mark} {it.value}" for it in SHOWN)
     marks = {kind: " ".join(kind.marks([it]) for it in SHOWN) for kind in CLAIMED}
+    whose = "; ".join(f"{marks[kind]} {kind.about}" for kind in CLAIMED)
     return [
         "Each cell has what is claimed, and its marks: by work (memory accesses), by time in "
         "order, and for queries by time at random. Work is exact, and it decides.",
-        f"{words}. Whose claim it is: "
-        + "; ".join(f"{marks[kind]} {kind.about}" for kind in CLAIMED)
-        + ".",
+        f"{words}. Whose claim it is: {whose}.",
         f"{NO_CLAIM} {Kind.NOBODY.about}. {NOT_POSSIBLE}: table 1 prints this, as the structure "
         "keeps no record of an edge; found is what it costs to name the edge by its vertices.",
     ]
@@ -62,33 +57,26 @@ def legend() -> list[str]:
 
 def tally_rows(claims: Iterable[JudgedClaim]) -> list[list[str]]:
     """How many claims of each kind came out how, the heads first: in tables, then in sentences."""
-    every = list(claims)
+    every = [it for it in claims if it.claim.claims_something]
     rows = [["", "claims", *MEASURES.values()]]
     for kind in CLAIMED:
+        of_kind = [it for it in every if it.claim.kind is kind]
         for place, inside in (("in tables", False), ("in sentences", True)):
-            mine = [it for it in every if (it.claim.table == SENTENCES) == inside]
-            of_kind = [it for it in mine if it.claim.kind is kind and it.claim.claims_something]
-            counts = tally(of_kind)
-            decides = sum(
-                (counts.get((kind, it), Counter()) for it in ("work", "bytes", "sentence")),
-                Counter[Outcome](),
-            )
-            timed = [counts.get((kind, it), Counter()) for it in list(MEASURES)[1:]]
-            if of_kind:
+            mine = [it for it in of_kind if (it.claim.table == SENTENCES) == inside]
+            counts = tally(mine)
+            timed = [counts.pop((kind, it), Counter()) for it in list(MEASURES)[1:]]
+            decides = sum(counts.values(), Counter[Outcome]())
+            if mine:
                 cells = [_counted(kind, it) for it in (decides, *timed)]
-                rows.append([f"{kind.value}, {place}", str(len(of_kind)), *cells])
+                rows.append([f"{kind.value}, {place}", str(len(mine)), *cells])
     return rows
 
 
 def table_1_in_words(claims: Iterable[JudgedClaim]) -> str:
     """What became of the cells that table 1 prints, by what is counted and by time at random."""
-    cells = [
-        it
-        for it in claims
-        if it.claim.table == QUERIES_TABLE.name
-        and it.claim.kind is Kind.PRINTED
-        and it.claim.claims_something
-    ]
+    in_table = [it for it in claims if it.claim.table == QUERIES_TABLE.name]
+    printed = [it for it in in_table if it.claim.kind is Kind.PRINTED]
+    cells = [it for it in printed if it.claim.claims_something]
     outcomes = Counter(it.outcome for it in cells)
     counts = ", ".join(f"{outcomes[it]} {it.value}" for it in SHOWN if outcomes[it])
     at_random = Counter(it.outcomes["random"] for it in cells if it.outcomes)
@@ -114,7 +102,7 @@ def show_rows(
     As many columns beside each other as there is room for; the first one is repeated, without the
     rows that have nothing else. rows: the heads first. numbers: the heads that are flush right.
     """
-    every = [list(row) for row in rows]
+    every = list(rows)
     widths = [max(map(len, column)) + 2 for column in zip(*every, strict=True)]
     start = 1
     while start < len(widths):
@@ -125,8 +113,8 @@ def show_rows(
         table.pad_edge, table.padding = False, (0, 1, 0, 0)
         heads, *body = ([row[0], *row[start:stop]] for row in every)
         for head in heads:
-            table.add_column(head, style="" if head else "bold", no_wrap=True)
-            table.columns[-1].justify = "right" if head in numbers else "left"
+            justify: Any = "right" if head in numbers else "left"
+            table.add_column(head, style="" if head else "bold", no_wrap=True, justify=justify)
         for row in body:
             if any(row[1:]):
                 table.add_row(*map(_colored, row))
@@ -170,11 +158,9 @@ def _texts(
 ) -> list[list[str]]:
     """The same as texts, the heads first; ``head``: the attribute that names a structure."""
     columns, rows = by_subject(claims, name)
-    body = [
-        [title, *(cell(row[it]) if it in row else "" for it in columns)]
-        for title, row in rows.items()
-    ]
-    return [["", *(getattr(NAMED[it], head) for it in columns)], *body]
+    heads = ["", *(getattr(NAMED[it], head) for it in columns)]
+    cells = ([cell(row[it]) if it in row else "" for it in columns] for row in rows.values())
+    return [heads, *([title, *row] for title, row in zip(rows, cells, strict=True))]
 
 
 def show_claims(
@@ -185,16 +171,14 @@ def show_claims(
     claims = _shown_claims(run, every)
     console.print(f"[bold]{run.folder.name}[/], preset {run.meta.get('preset')}", highlight=False)
     for name, table in tables().items():
-        mine = [it for it in claims if it.claim.table == name]
-        if mine:
+        if mine := [it for it in claims if it.claim.table == name]:
             console.print(f"\n[bold]{table.title}[/]", highlight=False)
             if slopes:
                 _show_slopes(console, mine)
             else:
                 show_rows(console, _texts(mine, name, "abbreviation", _cell))
             console.print(_summary(mine), highlight=False)
-    seen = noise(run)
-    if seen.too_busy:
+    if (seen := noise(run)).too_busy:
         console.print(f"[yellow]{seen.words}[/]", highlight=False)
     console.print("\n[bold]Who claims what, of all structures[/]")
     show_rows(console, tally_rows(judge_run(run)))
@@ -213,38 +197,24 @@ def _shown_claims(run: Run, every: bool) -> list[JudgedClaim]:
 def claims_as_json(run_folder: Path, every: bool = False) -> dict[str, Any]:
     """What ``show_claims`` prints, slopes included, as records; NaN where there is no number."""
     run = load(run_folder)
-    return {
-        "run": run.folder.name,
-        "preset": run.meta.get("preset"),
-        "too_busy": bool(noise(run).too_busy),
-        "claims": [_record(it) for it in _shown_claims(run, every)],
-    }
+    about = {"run": run.folder.name, "preset": run.meta.get("preset")}
+    claims = [_record(it) for it in _shown_claims(run, every)]
+    return {**about, "too_busy": bool(noise(run).too_busy), "claims": claims}
 
 
 def _record(judged: JudgedClaim) -> dict[str, Any]:
     """A judged claim in words and numbers."""
     claim = judged.claim
     said = {key: getattr(claim, key) for key in ("key", "table", "title", "structure", "source")}
-    axes = [
-        {
-            "measure": axis.measure,
-            "variable": axis.symbol,
-            "outcome": it.outcome if claim.claims_something else Outcome.NO_CLAIM.value,
-            "found": it.best,
-            **{key: float(getattr(it, key)) for key in ("slope", "slope_low", "slope_high")},
-        }
-        for axis, it in judged.verdicts.items()
-    ]
-    return said | {
-        "kind": claim.kind.value,
-        "claimed": claim.printed,
-        "outcome": judged.outcome.value,
-        "found": judged.found,
-        "reason": judged.reason,
-        "axes": axes,
-        "accesses": float(judged.work),
-        "seconds": float(judged.seconds),
-    }
+    said |= {"kind": claim.kind.value, "claimed": claim.printed, "outcome": judged.outcome.value}
+    axes = []
+    for axis, it in judged.verdicts.items():
+        slopes = {key: float(getattr(it, key)) for key in ("slope", "slope_low", "slope_high")}
+        outcome = it.outcome if claim.claims_something else Outcome.NO_CLAIM.value
+        about = {"measure": axis.measure, "variable": axis.symbol, "outcome": outcome}
+        axes.append({**about, "found": it.best, **slopes})
+    costs = {"accesses": float(judged.work), "seconds": float(judged.seconds)}
+    return said | {"found": judged.found, "reason": judged.reason, "axes": axes} | costs
 
 
 def _cell(judged: JudgedClaim) -> str:
@@ -297,12 +267,11 @@ def markdown(claims: Iterable[JudgedClaim], name: str) -> str:
 
 def sentences_markdown(claims: Iterable[JudgedClaim], kind: Kind) -> str:
     """The claims of a kind that are sentences, as a table for a page."""
-    rows = [
-        (it.claim.text, it.claim.source, bounds.measured, bounds.words, it.found,
-         f"{it.mark} {it.words}")
-        for it in claims
-        if it.claim.kind is kind and isinstance(bounds := it.claim.expects, Between)
-    ]  # fmt: skip
+    rows = []
+    for it in (judged for judged in claims if judged.claim.kind is kind):
+        if isinstance(bounds := it.claim.expects, Between):
+            said = it.claim.text, it.claim.source, bounds.measured, bounds.words
+            rows.append((*said, it.found, f"{it.mark} {it.words}"))
     heads = "what is said", "where, or why", "measured by", "claimed", "found", ""
     return markdown_rows([heads, *rows])
 
@@ -323,6 +292,11 @@ def digits(value: float, count: int = 2) -> str:
     rounded = float(f"{value:.{count - 1}e}")
     behind = count - 1 - int(f"{abs(rounded):e}".partition("e")[2])
     return f"{rounded:,.{max(behind, 0)}f}"
+
+
+def count(value: float) -> str:
+    """A whole number: 12,000; a dash where there is none."""
+    return f"{value:,.0f}" if value == value else NO_CLAIM
 
 
 def two_digits(value: float) -> str:

@@ -1,9 +1,8 @@
 """Which structure for which use: every structure beside the best one, by what decides the use."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 import pandas as pd
@@ -41,9 +40,7 @@ def queries(measured: Curves, structure: str) -> pd.Series:
 
 def workload(name: str) -> Costs:
     """A compiled workload."""
-    return lambda measured, structure: (
-        measured.named("bench_workloads", structure, name, COMPILED).by_size
-    )
+    return lambda measured, it: measured.named("bench_workloads", it, name, COMPILED).by_size
 
 
 def per_vertex(value: float) -> str:
@@ -53,35 +50,33 @@ def per_vertex(value: float) -> str:
 
 @dataclass(frozen=True)
 class Use:
-    """What a mesh is used for, and the cost that decides which structure should hold it."""
+    """What a mesh is used for, and the cost that decides which structure should hold it.
+
+    ``suits``: whether a structure can be used so at all. ``largest``: compared on the largest mesh
+    that all were measured on, or on the smallest.
+    """
 
     title: str
     compared: str
     costs: Costs
     written: Callable[[float], str] = duration
     suits: Callable[[type[Structure]], bool] = lambda structure: True
-    """Whether a structure can be used so at all."""
-
     largest: bool = True
-    """Compared on the largest mesh that all were measured on, or on the smallest."""
 
+
+weighed = partial(Use, compared="bytes per vertex", costs=bytes_per_vertex, written=per_vertex)
+EIGHT = "the eight queries of table 1, asked at random"
 
 USES = {
-    "drawn": Use("Only drawn", "bytes per vertex", bytes_per_vertex, per_vertex),
+    "drawn": weighed("Only drawn"),
     "normals": Use("Drawn, normals renewed", "vertex normals", workload("vertex_normals")),
-    "asked": Use("Picked and measured", "the eight queries of table 1, asked at random", queries),
+    "asked": Use("Picked and measured", EIGHT, queries),
     "edited": Use("Edited in real time", "an impact, as in a game", workload("impacts")),
     "simplified": Use("Simplified", "a vertex, to a tenth of them", workload("simplification")),
-    "tight": Use(
-        "Asked for neighbors, memory tight", "bytes per vertex", bytes_per_vertex, per_vertex,
-        lambda structure: not structure.searches,
-    ),
-    "polygons": Use(
-        "Of polygons", "bytes per vertex", bytes_per_vertex, per_vertex,
-        lambda structure: structure.holds_polygons,
-    ),
-    "small": Use("Small", "the eight queries of table 1, asked at random", queries, largest=False),
-}  # fmt: skip
+    "tight": weighed("Asked for neighbors, memory tight", suits=lambda it: not it.searches),
+    "polygons": weighed("Of polygons", suits=lambda it: it.holds_polygons),
+    "small": Use("Small", EIGHT, queries, largest=False),
+}
 """A new use is one line here."""
 
 
@@ -131,13 +126,13 @@ def by_valence(run: Run) -> pd.DataFrame:
 
     Compiled structures; rows are query and valence. Raises MissingError where none was measured.
     """
-    names = [name for name, it in REGISTRY.items() if it.compiled]
+    names = [name for name, it in REGISTRY.items() if it.compiled and not run.machines]
     rows = {}
     for query in QUERIES:
         found = {it: curves(run).curve(Axis.TIME_VALENCE, it, query) for it in names}
         costs = {it: pd.Series(one.centers, one.sizes) for it, one in found.items() if len(one)}
         table = pd.DataFrame(costs).dropna()
-        for place in (0, len(table) // 2, -1) if len(table) > 2 and not run.machines else ():
+        for place in (0, len(table) // 2, -1) if len(table) > 2 else ():
             rows[query, int(table.index[place])] = table.iloc[place]
     if not rows:
         raise MissingError("This run has not measured queries by valence.")
@@ -151,18 +146,15 @@ def fastest_by_valence(run: Run) -> Html:
     rows = []
     for query in table.index.unique(level=0):
         found = [table.loc[(query, it)].sort_values(kind="stable") for it in valences]
-        rows.append(
-            (QUERIES[query].title, *(f"{best(it)}, {duration(it.iloc[0])}" for it in found))
-        )
+        cells = [f"{best(it)}, {duration(it.iloc[0])}" for it in found]
+        rows.append((QUERIES[query].title, *cells))
     return text_table(["", *(f"{it:,} edges at the vertex" for it in valences)], rows)
 
 
 def best(found: pd.Series) -> str:
     """The titles of the structures that are alike the best one, as in a sentence."""
-    alike = [
-        REGISTRY[str(name)].title for name, cost in found.items() if cost <= ALIKE * found.iloc[0]
-    ]
-    return " or ".join(alike)
+    alike = found[found <= ALIKE * found.min()]
+    return " or ".join(REGISTRY[str(name)].title for name in alike.index)
 
 
 HEADS = "Use", "What is compared", "Vertices", "The best first"
@@ -179,23 +171,17 @@ def recommended_markdown(run: Run) -> str:
 
 
 def _rows(run: Run, bold: str, pair: str) -> list[tuple[str, str, str, str]]:
+    """The structures with their costs: those that are alike the best one bold."""
     rows: list[tuple[str, str, str, str]] = []
     for name, use in USES.items():
         found = ranking(run, name)
-        if len(found):
-            rows.append(
-                (use.title, use.compared, f"{found.name:,}", _in_order(found, use, bold, pair))
-            )
+        words: list[str] = []
+        for structure, cost in found.items():
+            title, ratio = REGISTRY[str(structure)].title, cost / found.iloc[0]
+            beside = f"{digits(ratio)} ×" if words else use.written(cost)
+            words.append(pair.format(bold.format(title) if ratio <= ALIKE else title, beside))
+        if words:
+            rows.append((use.title, use.compared, f"{found.name:,}", Html(" · ".join(words))))
     if not rows:
         raise MissingError("This run has not measured what decides between structures.")
     return rows
-
-
-def _in_order(found: pd.Series, use: Use, bold: str, pair: str) -> Html:
-    """The structures with their costs: those that are alike the best one bold."""
-    least, words = found.iloc[0], []
-    for place, (name, cost) in enumerate(found.items()):
-        title, ratio = REGISTRY[str(name)].title, cost / least
-        beside = use.written(cost) if place == 0 else f"{digits(ratio)} ×"
-        words.append(pair.format(bold.format(title) if ratio <= ALIKE else title, beside))
-    return Html(" · ".join(words))

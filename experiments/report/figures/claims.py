@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
-from matplotlib.ticker import FuncFormatter, NullLocator
+from matplotlib.ticker import NullLocator
 from numpy.typing import NDArray
 
 from experiments.claims import Between, Curve, Exactly, JudgedClaim, curves
@@ -29,8 +29,7 @@ def write_claims(keys: list[str], folder: Path) -> None:
     session = open_run()
     for judged in session.claims:
         if judged.claim.key in keys:
-            plot = draw(session, judged)
-            if plot is not None:
+            if plot := draw(session, judged):
                 (folder / f"{claim_file(judged)}.svg").write_text(style.svg(plot), "utf-8")
             (folder / f"{claim_file(judged)}.csv").write_text(data(session, judged), "utf-8")
 
@@ -48,7 +47,7 @@ def draw(session: Session, judged: JudgedClaim) -> Plot | None:
         elif isinstance(judged.claim.expects, Between):
             plot.set_size_inches(WIDTH * 1.3, 1.1)
             plot.subplots_adjust(0.06, 0.34, 0.94, 0.78)
-            _draw_values(plot.subplots(), np.asarray(judged.values, float), judged.claim.expects)
+            _draw_values(plot.subplots(), judged.values, judged.claim.expects)
         for place, axis in enumerate(judged.verdicts, start=1):
             panel = plot.add_subplot(1, len(judged.verdicts), place)
             _draw_growth(panel, curves(session.run).of(judged.claim, axis), judged, axis)
@@ -97,9 +96,7 @@ def _summary(curve: Curve) -> pd.DataFrame:
 def _name(axes: Axes, title: str) -> None:
     """A title, and plain numbers across."""
     axes.set_title(title, fontsize=9, fontweight="normal", color=GRAY)
-    axes.xaxis.set_major_formatter(
-        FuncFormatter(lambda value, _: style.compact(round(value, 9) + 0))
-    )
+    axes.xaxis.set_major_formatter(lambda value, _: style.compact(round(value, 9) + 0))
     axes.xaxis.set_minor_locator(NullLocator())
 
 
@@ -139,14 +136,11 @@ def data(session: Session, judged: JudgedClaim) -> str:
         table = pd.DataFrame({"value": judged.values, "low": bounds.low, "high": bounds.high})
     else:
         cases = curves(session.run).memory(judged.claim.structure).cases
-        rows = [
-            (case["vertices"], case["reference_bytes"], field, int(size))
-            for case in cases.to_dict("records")
-            for field, size in {
-                **case["detail"].get("fields", {}),
-                "all": case["samples"][0],
-            }.items()
-        ]
+        rows = []
+        for case in cases.to_dict("records"):
+            sizes = {**case["detail"].get("fields", {}), "all": case["samples"][0]}
+            about = case["vertices"], case["reference_bytes"]
+            rows += [(*about, field, int(size)) for field, size in sizes.items()]
         table = pd.DataFrame(rows, columns=["vertices", "reference_bytes", "field", "bytes"])
     table["claimed"] = judged.claim.kind.value
     return table.to_csv(index=False, lineterminator="\n", float_format="%.6g")
@@ -154,15 +148,12 @@ def data(session: Session, judged: JudgedClaim) -> str:
 
 def _cases(curve: Curve, axis: Axis) -> pd.DataFrame:
     cases = curve.cases.reset_index(drop=True)
+    numbers = cases[["valence", "valence_max", "latency"]].astype(float)
     facts: dict[str, Any] = {
-        "measure": axis.measure,
-        "variable": axis.variable,
-        **{it: cases[it] for it in ("experiment", "order", "family")},
-        **{it: cases[it].astype(int) for it in ("vertices", "faces")},
-        "valence": cases["valence"].astype(float).fillna(cases["valence_max"].astype(float)),
-        "samples": cases["samples"].map(len),
-        **{str(name): it for name, it in _summary(curve).items()},
-        "unit": "accesses" if axis.exact else "seconds",
-        "latency_seconds": cases["latency"].astype(float),
-    }
+        "measure": axis.measure, "variable": axis.variable,
+        **cases[["experiment", "order", "family"]], **cases[["vertices", "faces"]].astype(int),
+        "valence": numbers["valence"].fillna(numbers["valence_max"]),
+        "samples": cases["samples"].map(len), **_summary(curve),
+        "unit": "accesses" if axis.exact else "seconds", "latency_seconds": numbers["latency"],
+    }  # fmt: skip
     return pd.DataFrame(facts)

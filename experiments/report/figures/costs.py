@@ -4,7 +4,6 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
-from matplotlib.figure import Figure
 
 from experiments.report.style import BLUE, GRAY, RED, grid, styled
 from hem.complexity import Curve, Verdict, parse
@@ -13,13 +12,10 @@ from hem.complexity import Curve, Verdict, parse
 def save_costs(
     path: Path, curves: Sequence[Curve], verdicts: Sequence[Verdict], claimed: bool
 ) -> None:
-    """Draw costs on logarithmic axes into a file, whose ending says of what kind."""
-    with styled():
-        plot_costs(curves, verdicts, claimed).savefig(path)
+    """Draw samples on logarithmic axes, and the class that explains them best; in gray the claimed.
 
-
-def plot_costs(curves: Sequence[Curve], verdicts: Sequence[Verdict], claimed: bool) -> Figure:
-    """Samples, and the class that explains them best; in gray the one that is claimed."""
+    ``path``: its ending says what kind of file it becomes.
+    """
     with styled():
         figure, panels = grid([it.name for it in curves], (4.2, 2.8), min(len(curves), 3))
         for axes, curve, verdict in zip(panels, curves, verdicts, strict=True):
@@ -33,4 +29,4 @@ def plot_costs(curves: Sequence[Curve], verdicts: Sequence[Verdict], claimed: bo
                 axes.plot(np.full(len(samples), size), samples, ".", color=BLUE, markersize=3)
             axes.set(xscale="log", yscale="log", xlabel=curve.parameter, ylabel="cost")
             axes.legend()
-        return figure
+        figure.savefig(path)

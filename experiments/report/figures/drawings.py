@@ -4,9 +4,7 @@ A drawing is SVG with a group per record; ``static/explore.js`` lets one choose 
 its references. Without scripts those of some records are drawn, and written beside it.
 """
 
-from __future__ import annotations
-
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any, NamedTuple
@@ -15,7 +13,7 @@ import numpy as np
 
 import structures
 from experiments.harness import OPERATIONS
-from experiments.report.figures.meshes import hexagon
+from experiments.report.figures.meshes import edge_of, hexagon
 from experiments.report.figures.records import Entry, Key, path, records
 from experiments.report.pages import Html, page
 from experiments.report.tables import spelled
@@ -52,21 +50,13 @@ class Pointer(NamedTuple):
 class Drawing:
     """What the template ``mesh.html.j2`` needs."""
 
+    width, height = 2 * (MARGIN + 1.7 * SCALE), 2 * (MARGIN + 1.05 * SCALE)
+
     shapes: Mapping[Key, Shape]
     entries: Mapping[Key, Sequence[Entry]]
     pointers: Sequence[Pointer]
     marked: Mapping[Key, str]
     shown: Collection[Key]
-
-    @property
-    def width(self) -> float:
-        """Of the picture."""
-        return 2 * (MARGIN + 1.7 * SCALE)
-
-    @property
-    def height(self) -> float:
-        """Of the picture."""
-        return 2 * (MARGIN + 1.05 * SCALE)
 
     @property
     def told(self) -> dict[str, list[Any]]:
@@ -87,12 +77,12 @@ def shapes_of(s: Structure, kinds: Collection[str]) -> dict[Key, Shape]:
     found: dict[Key, Shape] = {}
     for f, corners in zip(s.faces().tolist(), s.face_vertices(), strict=True):
         middle = points[corners].mean(axis=0)
-        found[face, f] = Shape(_polygon(0.86 * points[corners] + 0.14 * middle), middle, middle)
-    ends = {int(e): s.edge_vertices(int(e)) for e in s.edges()}
-    for number, (e, (a, b)) in enumerate(ends.items()):
-        middle = (points[a] + points[b]) / 2
-        line = _arrow(points[a], points[b], 0.12) if "edge" in kinds else _line(points[[a, b]])
-        found["edge", e if "edge" in kinds else number] = Shape(line, middle, middle)
+        outline = f"{_line(0.86 * points[corners] + 0.14 * middle)}Z"
+        found[face, f] = Shape(outline, middle, middle)
+    for number, (e, ends) in enumerate((int(e), s.edge_vertices(int(e))) for e in s.edges()):
+        a, b = points[ends]
+        line = _arrow(a, b, 0.12) if "edge" in kinds else _line([a, b])
+        found["edge", e if "edge" in kinds else number] = Shape(line, (a + b) / 2, (a + b) / 2)
     if isinstance(s, Navigable):
         for h in s.half_edges().tolist():
             found["half_edge", h] = _half_edge(*points[[s.origin(h), s.tip(h)]])
@@ -112,7 +102,7 @@ def _half_edge(a: Array, b: Array) -> Shape:
 def _arrow(a: Array, b: Array, shorter: float, side: Array | None = None) -> str:
     """A line with a whole head, or half of one on a ``side``."""
     a, b = a + shorter * (b - a), b - shorter * (b - a)
-    return f"{_line([a, b])}{_head(b, b - a, side)}"
+    return _line([a, b]) + _head(b, b - a, side)
 
 
 def _head(tip: Array, way: Array, side: Array | None = None) -> str:
@@ -121,12 +111,14 @@ def _head(tip: Array, way: Array, side: Array | None = None) -> str:
     return _line([tip, back + across]) + (_line([tip, back - across]) if side is None else "")
 
 
-def pointer(shapes: Mapping[Key, Shape], start: Key, entry: Entry) -> Iterator[Pointer]:
-    """The arrows for a name in a record; none to what is not there."""
-    for value in entry.values:
-        end = entry.target, value
-        if end in shapes:
-            yield bent(shapes[start].at, shapes[end].at, spelled(entry.field))
+def _pointers(
+    shapes: Mapping[Key, Shape], start: Key, entries: Iterable[Entry]
+) -> Iterator[Pointer]:
+    """The arrows for the names in a record; none to what is not there."""
+    for entry in entries:
+        for end in ((entry.target, value) for value in entry.values):
+            if end in shapes:
+                yield bent(shapes[start].at, shapes[end].at, spelled(entry.field))
 
 
 def bent(a: Array, b: Array, words: str) -> Pointer:
@@ -156,7 +148,7 @@ def record(structure: type[Structure]) -> Html:
     entries, shapes = drawn_records(structure.build(hexagon()))
     shown = examples(entries)
     most = max(shown, key=lambda key: len(entries[key]))
-    arrows = [it for entry in entries[most] for it in pointer(shapes, most, entry)]
+    arrows = list(_pointers(shapes, most, entries[most]))
     drawing = Drawing(shapes, entries, arrows, {most: "chosen"}, shown)
     return page("mesh.html.j2", drawing=drawing, caption=f"{structure.title}, on a small mesh")
 
@@ -166,29 +158,24 @@ def walk(structure: type[Structure], query: str) -> Html:
     s = structure.build(hexagon())
     found = getattr(s, query)(CENTER)
     (entries, shapes), stops = drawn_records(s), path(s, query, CENTER)
-    places = [it.key for it in stops if it.key in shapes]
-    ways = pairwise(places)
-    arrows = [
-        bent(shapes[a].at, shapes[b].at, str(number)) for number, (a, b) in enumerate(ways, start=1)
-    ]
+    places = [shapes[it.key].at for it in stops if it.key in shapes]
+    ways = enumerate(pairwise(places), start=1)
+    arrows = [bent(a, b, str(number)) for number, (a, b) in ways]
     faces = {key: "found" for key in shapes if key[0] in ("face", "triangle") and key[1] in found}
     drawing = Drawing(shapes, entries, arrows, faces, [])
     caption = f"{structure.title}: {query.replace('_', ' → ')}"
     return page("mesh.html.j2", drawing=drawing, caption=caption, stops=stops, found=found)
 
 
-def changes(before: Mapping[Key, Any], after: Mapping[Key, Any]) -> dict[Key, str]:
+def _changes(before: Mapping[Key, Any], after: Mapping[Key, Any]) -> dict[Key, str]:
     """Which records are new, and which refer to something else than before."""
-    return {
-        key: "changed" if key in before else "made"
-        for key, its in after.items()
-        if before.get(key) != its
-    }
+    different = [key for key, its in after.items() if before.get(key) != its]
+    return {key: "changed" if key in before else "made" for key in different}
 
 
 def _split_edge(s: Structure) -> Iterator[str]:
     yield f"The edge between {CENTER} and {BESIDE} is to be split."
-    v = s.split_edge(_edge(s), (0, 0, 0)).vertex
+    v = s.split_edge(edge_of(s), (0, 0, 0)).vertex
     yield "A new vertex on the edge. Each of the two faces at it has become two."
     s.move_vertex(v, (0.1, 0.35, 0))
     yield "The new vertex need not lie on the edge. To move it changes no reference."
@@ -198,12 +185,12 @@ def _collapse_edge(s: Structure) -> Iterator[str]:
     yield f"Vertex {CENTER} is to merge into vertex {BESIDE}."
     s.move_vertex(CENTER, (0.2, 0.0, 0))
     yield "Here it is moved on its way, which changes no reference."
-    s.collapse_edge(_edge(s), keep=BESIDE)
+    s.collapse_edge(edge_of(s), keep=BESIDE)
     yield "The two faces at the edge are gone. Of the two edges beside each of them one is left."
 
 
 def _split_face(s: Structure) -> Iterator[str]:
-    face = int(s.edge_faces(_edge(s))[0])
+    face = int(s.edge_faces(edge_of(s))[0])
     yield f"Face {face} is to be split."
     s.split_face(face, s.points[s.face_vertices(face)].mean(axis=0))
     yield "A new vertex in the face, which has become three."
@@ -211,22 +198,13 @@ def _split_face(s: Structure) -> Iterator[str]:
 
 def _flip_edge(s: Structure) -> Iterator[str]:
     yield f"The edge between {CENTER} and {BESIDE} is to be flipped."
-    s.flip_edge(_edge(s))
+    s.flip_edge(edge_of(s))
     yield "It has turned within its two faces."
-    s.flip_edge(_edge(s, ABOVE, BELOW))
+    s.flip_edge(edge_of(s, ABOVE, BELOW))
     yield "Flipped once more it joins the same vertices as before."
 
 
-def _edge(s: Structure, a: int = CENTER, b: int = BESIDE) -> int:
-    edge = s.find_edge(a, b)
-    assert edge is not None
-    return edge
-
-
-STEPS: dict[str, Callable[[Structure], Iterator[str]]] = {
-    "split_edge": _split_edge, "collapse_edge": _collapse_edge, "split_face": _split_face,
-    "flip_edge": _flip_edge,
-}  # fmt: skip
+STEPS = {it.__name__[1:]: it for it in (_split_edge, _collapse_edge, _split_face, _flip_edge)}
 """By operation what is done for each frame but the first -> what is to be seen then."""
 
 
@@ -240,13 +218,14 @@ def states(structure: type[Structure], operation: str) -> Iterator[tuple[str, St
 def operation(structure: type[Structure], name: str) -> Html:
     """An operation frame by frame, each drawn from the mesh that it has left."""
     kept = [(words, *drawn_records(s)) for words, s in states(structure, name)]
-    every = [entries for _, entries, _ in kept]
     frames = []
     for k, (words, entries, shapes) in enumerate(kept):
-        after = every[min(k + 1, len(every) - 1)]
+        after = kept[min(k + 1, len(kept) - 1)][1]
         marked = dict.fromkeys(entries.keys() - after.keys(), "gone")
-        marked |= changes(every[k - 1], entries) if k else {}
-        marked |= {} if k else dict.fromkeys(entries.keys() & changes(entries, after), "chosen")
+        if k:
+            marked |= _changes(kept[k - 1][1], entries)
+        else:
+            marked |= dict.fromkeys(entries.keys() & _changes(entries, after), "chosen")
         frames.append((words, Drawing(shapes, entries, [], marked, [])))
     return page("steps.html.j2", title=OPERATIONS[name], frames=frames)
 
@@ -254,10 +233,6 @@ def operation(structure: type[Structure], name: str) -> Html:
 def by_half_edges() -> type[Structure]:
     """The first structure that has half-edges: the one to show operations on."""
     return next(it for it in structures.REGISTRY.values() if issubclass(it, Navigable))
-
-
-def _polygon(points: Array) -> str:
-    return _line(points) + "Z"
 
 
 def _line(points: Any) -> str:

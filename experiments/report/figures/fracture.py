@@ -97,8 +97,7 @@ def turnable_pieces(broken: Broken) -> str:
 
 def _title(broken: Broken) -> str:
     found = broken.fracture
-    parts = found.mass.volumes / found.mass.volumes.sum()
-    shards = parts[: len(found.shards)]
+    shards = (found.mass.volumes / found.mass.volumes.sum())[: len(found.shards)]
     return (
         f"{found.material.name.capitalize()}, {broken.blow.force:g} J/kg: {len(shards):,} shards, "
         f"{shards.sum():.0%} of the volume, the median one {100 * np.median(shards):.2g}%"

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
-from matplotlib.ticker import FuncFormatter, LogLocator
+from matplotlib.ticker import LogLocator
 
 from experiments.bench_fracture import FIND, SHATTER, VISITED, WAYS
 from experiments.bench_printed import EXPERIMENT as PRINTED
@@ -90,7 +90,7 @@ def _costs(run: Run, axis: Axis, subjects: Iterable[str], table: str = "") -> pd
     return pd.concat([it.cases.assign(cost=axis.scale * it.centers) for it in found])
 
 
-def _timed(run: Run, experiment: str, scale: float) -> pd.DataFrame:
+def timed(run: Run, experiment: str, scale: float) -> pd.DataFrame:
     """The cases of an experiment, each with the median of its times as ``cost``."""
     cases = run.cases[run.cases["experiment"] == experiment]
     return cases.assign(cost=scale * cases["samples"].map(np.median).astype(float))
@@ -150,7 +150,7 @@ def listings(run: Run, axis: Axis = Axis.WORK_FACES) -> Plot:
 
 def building(run: Run) -> Plot:
     """Time to build, per vertex, against size: meshes as generated, and renumbered at random."""
-    cases = _timed(run, "bench_build", 1e9).query("reference_bytes == 4")
+    cases = timed(run, "bench_build", 1e9).query("reference_bytes == 4")
     cases = cases.assign(cost=cases["cost"] / cases["vertices"])
     titles = {"consecutive": "Building, as generated", "random": "Building, renumbered at random"}
     if (cases["order"] == ANSWERING).any():
@@ -161,7 +161,7 @@ def building(run: Run) -> Plot:
 
 def rendering(run: Run, structure: str = "half_edge") -> Plot:
     """What a render mesh adds to one edit from Python, by size."""
-    cases = _timed(run, "bench_operations", 1e6)
+    cases = timed(run, "bench_operations", 1e6)
     cases = cases[cases["structure"] == structure]
     look = {"color": STYLES[structure]["color"], "marker": "o"}
     styles = {order: look | it for order, it in RENDERED.items()}
@@ -177,7 +177,7 @@ def workloads(run: Run, order: str = COMPILED) -> Plot:
     def also(axes: Axes, name: str) -> None:
         axes.set_ylabel(f"time per {WORKLOADS[name].unit}, µs")
 
-    cases = _timed(run, "bench_workloads", 1e6)
+    cases = timed(run, "bench_workloads", 1e6)
     cases = cases[cases["order"] == order]
     measured = set(cases["subject"]) or WORKLOADS.keys()
     titles = {name: it.title for name, it in WORKLOADS.items() if name in measured}
@@ -186,13 +186,12 @@ def workloads(run: Run, order: str = COMPILED) -> Plot:
 
 def overtaking(run: Run) -> Plot:
     """After how many queries or edits per build each structure overtakes the indexed mesh."""
-    table = break_even(curves(run))
-    table = table[np.isfinite(table["times"].astype(float))]
+    table = break_even(curves(run)).query("times < inf")
     table = table.assign(cost=table["times"].clip(lower=1e-9))
 
     def also(axes: Axes, _: str) -> None:
         axes.set_yscale("symlog")
-        axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+        axes.yaxis.set_major_formatter(lambda value, _: f"{value:g}")
         axes.set_ylim(0, 2 * max([1.0, *table["times"]]))
 
     titles = {name: title.capitalize() for name, title in MIXES.items()}
@@ -203,7 +202,7 @@ def overtaking(run: Run) -> Plot:
 
 def shards_per_second(run: Run) -> Plot:
     """How many shards each structure makes a second, by size."""
-    cases = _timed(run, "bench_fracture", 1.0)
+    cases = timed(run, "bench_fracture", 1.0)
     cases = cases.assign(cost=1 / cases["cost"])
     titles, label = {SHATTER: "Breaking a surface around an impact"}, "shards per second"
     return _draw(cases, titles, "faces", "how a surface breaks", label, size=(7.5, 3.5))
@@ -211,15 +210,15 @@ def shards_per_second(run: Run) -> Plot:
 
 def face_finding(run: Run, structure: str = "half_edge") -> Plot:
     """Finding the face under an impact in three ways: faces looked at, and time."""
-    looks = zip(WAYS, ((BLUE, "o"), (RED, "D"), (GRAY, "s")), strict=True)
-    styles = {way: {"label": way, "color": color, "marker": it} for way, (color, it) in looks}
+    looks = zip(WAYS, (BLUE, RED, GRAY), "oDs", strict=True)
+    styles = {way: {"label": way, "color": color, "marker": it} for way, color, it in looks}
     titles = {VISITED: VISITED.capitalize(), "": "Time each, µs"}
     found = []
     for way in WAYS:
-        for measure, order in ((VISITED, f"{way}, {VISITED}"), ("", way)):
+        for measure, order, scale in ((VISITED, f"{way}, {VISITED}", 1.0), ("", way, 1e6)):
             curve = curves(run).named("bench_fracture", structure, FIND, order)
-            cost = (1.0 if measure else 1e6) * curve.centers
-            found.append(curve.cases.assign(cost=cost, way=way, measure=measure))
-    shape: dict[str, Any] = {"room": 0.45, "plain": True, "size": (5.2, 3.2)}
-    shape |= {"panel": "measure", "by": "way", "styles": styles}
-    return _draw(pd.concat(found), titles, "faces", "how a face is found", **shape)
+            costs: dict[str, Any] = {"cost": scale * curve.centers, "way": way, "measure": measure}
+            found.append(curve.cases.assign(**costs))
+    shape: dict[str, Any] = {"room": 0.45, "plain": True, "size": (5.2, 3.2), "panel": "measure"}
+    what = "how a face is found"
+    return _draw(pd.concat(found), titles, "faces", what, by="way", styles=styles, **shape)

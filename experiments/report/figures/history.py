@@ -21,7 +21,7 @@ PANELS = {
     "time": "Time, in memory accesses",
 }
 """What is drawn of a query by commit, and its title."""
-FROM_ZERO = ("slope_time",)
+SLOPE = "slope_time"
 LABELS = 12  # commits that are named below a panel, at most
 SPREAD = 0.03  # how far apart structures' intervals are drawn, as part of the width, to ten runs
 STRONGEST = 1.5  # the ratio to its usual time from which on a color is as strong as can be
@@ -36,20 +36,19 @@ def by_commit(trends: Trends, subject: str) -> Figure:
     """
     rows = _of_newest(trends)
     with styled():
-        titles = [
-            it if key == "bytes" else f"{it}: {TITLES[subject]}" for key, it in PANELS.items()
-        ]
+        ends = {key: "" if key == "bytes" else f": {TITLES[subject]}" for key in PANELS}
+        titles = [title + ends[key] for key, title in PANELS.items()]
         figure, panels = grid(titles, (5.5, 2.9), 2, sharex=True)
         for axes, measure in zip(panels, PANELS, strict=True):
-            axes.set_yscale("linear" if measure in FROM_ZERO else "log")
+            sloped = measure == SLOPE
+            axes.set_yscale("linear" if sloped else "log")
             mine = rows[rows["subject"] == (MEMORY if measure == "bytes" else subject)]
             for _, line in mine[mine["measure"] == measure].groupby(["structure", "machine"]):
                 _draw_line(axes, trends, line)
-            low = axes.dataLim.y0 if measure in FROM_ZERO else axes.dataLim.minposy
-            high = axes.dataLim.y1
+            low, high = axes.dataLim.y0 if sloped else axes.dataLim.minposy, axes.dataLim.y1
             if axes.lines and np.isfinite([low, high]).all():  # no noise is to look like news
-                sloped = min(low, 0) - 0.25, max(high, 1) + 0.15
-                axes.set_ylim(sloped if measure in FROM_ZERO else (low / 2.5, high * 2.5))
+                room = min(low, 0) - 0.25, max(high, 1) + 0.15
+                axes.set_ylim(room if sloped else (low / 2.5, high * 2.5))
             _name_commits(axes, trends, room=0.2)
         figure.draw_without_rendering()
         for axes in panels:
@@ -75,12 +74,12 @@ def _of_newest(trends: Trends) -> pd.DataFrame:
 def _draw_line(axes: Axes, trends: Trends, line: pd.DataFrame) -> None:
     """One structure on one machine; slopes with their intervals, a bit beside each other's."""
     last = line.iloc[-1]
-    look, sloped = STYLES[last["structure"]], last["measure"] in FROM_ZERO
+    look, sloped = STYLES[last["structure"]], last["measure"] == SLOPE
     width = SPREAD * min(len(trends.runs), 10) if sloped else 0.0
     part = NAMES.index(last["structure"]) / max(len(NAMES) - 1, 1)
     x, y = line["run"].to_numpy() + width * (part - 0.5), line["value"].to_numpy(float)
-    other = {"label": "_"} if last["here"] else {"label": "_", "linestyle": ":", "alpha": 0.5}
-    axes.plot(x, y, **(look | other))
+    other = {} if last["here"] else {"linestyle": ":", "alpha": 0.5}
+    axes.plot(x, y, **(look | other | {"label": "_"}))
     if sloped:
         axes.vlines(x, line["low"], line["high"], color=look["color"], linewidth=1, alpha=0.6)
     stepped = line["before"].notna().to_numpy()
@@ -94,9 +93,8 @@ def _draw_line(axes: Axes, trends: Trends, line: pd.DataFrame) -> None:
 
 def _changed(trends: Trends, claims: Iterable[str]) -> pd.DataFrame:
     """Where the verdicts of some claims by work changed."""
-    rows = trends.verdicts
-    wanted = rows["changed"] & (rows["measure"] == OUTCOMES["outcome"])
-    return rows[wanted & rows["claim"].isin(list(claims))]
+    rows = trends.verdicts[trends.verdicts["changed"] & trends.verdicts["claim"].isin(list(claims))]
+    return rows[rows["measure"] == OUTCOMES["outcome"]]
 
 
 def _mark(axes: Axes, x: Any, y: Any, what: str, color: str, size: int) -> None:

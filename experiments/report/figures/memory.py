@@ -64,11 +64,10 @@ def references(run: Run) -> Plot:
         "objects, as the thesis' runtime lays them out (model)": (objects, 8, "clr"),
         "objects, in Python (measured)": (objects, 8, "fields"),
     }
-    bars = {
-        title: (name, parts)
-        for title, (name, size, kind) in held.items()
-        if (parts := _parts(curves(run).memory(name, size).cases, kind))
-    }
+    bars = {}
+    for title, (name, size, kind) in held.items():
+        if parts := _parts(curves(run).memory(name, size).cases, kind):
+            bars[title] = name, parts
     with styled():
         plot, axes = _rows(list(bars), 0.6, 0.5)
         for row, (name, parts) in enumerate(bars.values()):

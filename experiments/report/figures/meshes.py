@@ -42,8 +42,7 @@ def hexagon() -> hem.TriangleMesh:
     points = np.vstack([[-0.6, 0.0], [0.6, 0.0], ring])
     fans = [(1, i) for i in (6, 7, 8, 9)] + [(0, i) for i in (2, 3, 4, 5)]
     triangles = [(center, 2 + i % 8, 2 + (i + 1) % 8) for center, i in fans]
-    triangles += [(0, 1, 4), (1, 0, 8)]
-    return hem.TriangleMesh(np.column_stack([points, np.zeros(10)]), triangles)
+    return hem.TriangleMesh(np.pad(points, ((0, 0), (0, 1))), [*triangles, (0, 1, 4), (1, 0, 8)])
 
 
 def quad() -> hem.TriangleMesh:
@@ -54,9 +53,9 @@ def quad() -> hem.TriangleMesh:
 
 def steps(every: Sequence[Step], labels: bool = True) -> Figure:
     """Flat meshes side by side, with their vertices numbered."""
-    titles = [title for title, _, _ in every]
     with styled():
-        figure, panels = grid(titles, (3.1, 2.7), sharex=True, sharey=True)
+        size = (3.1, 2.7)
+        figure, panels = grid([title for title, *_ in every], size, sharex=True, sharey=True)
         for axes, (_, s, shown) in zip(panels, every, strict=True):
             _draw_flat(axes, s, shown, labels)
     return figure
@@ -65,9 +64,8 @@ def steps(every: Sequence[Step], labels: bool = True) -> Figure:
 def _draw_flat(axes: Axes, s: Structure, shown: dict[str, Any], labels: bool) -> None:
     corners, flat = s.face_vertices(s.faces()), s.points[:, :2]
     marked = np.isin(s.faces(), list(shown.get("faces", ())))
-    colors = np.where(marked, TOUCHED, PAPER)
-    outlines = [flat[row] for row in corners]
-    axes.add_collection(PolyCollection(outlines, facecolors=colors, edgecolors=INK))
+    look: dict[str, Any] = {"facecolors": np.where(marked, TOUCHED, PAPER), "edgecolors": INK}
+    axes.add_collection(PolyCollection([flat[row] for row in corners], **look))
     for a, b in shown.get("edges", ()):
         axes.plot(*flat[[a, b]].T, color=STRONG, linewidth=2.6, solid_capstyle="round")
     for a, b in shown.get("arrows", ()):
@@ -91,7 +89,8 @@ def _step(title: str, s: Structure, edit: hem.Edit | None = None, **marked: Any)
     return title, s.copy(), marked
 
 
-def _edge(s: Structure, a: int, b: int) -> int:
+def edge_of(s: Structure, a: int = 0, b: int = 1) -> int:
+    """The edge that joins two vertices; in the hexagon the inner ones."""
     edge = s.find_edge(a, b)
     assert edge is not None
     return edge
@@ -140,13 +139,11 @@ def polygon_steps() -> Figure:
 def split_edge_steps(structure: str) -> Figure:
     """Figure 5: an edge is split, inside and on the border."""
     s = structures.build(structure, hexagon())
-    edge = _edge(s, 0, 1)
+    edge = edge_of(s)
     before = _step("An edge, and the faces at it", s, faces=s.edge_faces(edge), edges=[(0, 1)])
-    edit = s.split_edge(edge, (0, 0.0, 0))
-    inside = _step("split: 1 vertex, 3 edges,\n2 faces more", s, edit)
-    edit = s.split_edge(_edge(s, 2, 3), 0.5 * (s.points[2] + s.points[3]))
-    border = _step("on the border: 1 vertex,\n2 edges, 1 face more", s, edit)
-    return steps([before, inside, border])
+    inside = _step("split: 1 vertex, 3 edges,\n2 faces more", s, s.split_edge(edge, (0, 0.0, 0)))
+    edit = s.split_edge(edge_of(s, 2, 3), 0.5 * (s.points[2] + s.points[3]))
+    return steps([before, inside, _step("on the border: 1 vertex,\n2 edges, 1 face more", s, edit)])
 
 
 def split_as_printed() -> Figure:
@@ -174,14 +171,14 @@ def quad_splits(structure: str) -> Figure:
     every = [_step("The quad", structures.build(structure, quad()), edges=[(0, 2)])]
     for title, (edge, place) in places.items():
         s = structures.build(structure, quad())
-        every.append(_step(title, s, s.split_edge(_edge(s, *edge), place)))
+        every.append(_step(title, s, s.split_edge(edge_of(s, *edge), place)))
     return steps(every)
 
 
 def collapse_steps(structure: str) -> Figure:
     """Figure 7: an edge collapses into one of its ends."""
     s = structures.build(structure, hexagon())
-    edge, ends = _edge(s, 0, 1), [(0, 1)]
+    edge, ends = edge_of(s), [(0, 1)]
     before = _step("Vertex 0 is to merge into 1", s, faces=s.vertex_faces(0), edges=ends)
     gone = _step("These two faces vanish", s, faces=s.edge_faces(edge), edges=ends)
     edit = s.collapse_edge(edge, keep=1)
@@ -201,10 +198,10 @@ def split_face_steps(structure: str) -> Figure:
 def flip_steps(structure: str) -> Figure:
     """An edge is turned within its two faces, and turned back."""
     s = structures.build(structure, hexagon())
-    edge = _edge(s, 0, 1)
+    edge = edge_of(s)
     before = _step("An edge", s, faces=s.edge_faces(edge), edges=[(0, 1)])
     flipped = _step("flipped: no count changes", s, s.flip_edge(edge), edges=[(4, 8)])
-    edit = s.flip_edge(_edge(s, 4, 8))
+    edit = s.flip_edge(edge_of(s, 4, 8))
     return steps([before, flipped, _step("flipped again: as it was", s, edit, edges=[(0, 1)])])
 
 
@@ -263,12 +260,11 @@ def turnable(shown: hem.TriangleMesh | FractureScene, caption: str, up: str = "y
     Of a mesh one sees the edges; a slider moves the pieces of a fracture apart. Arrow keys turn it,
     too, and the wheel zooms. Some 15 bytes a face. O(n).
     """
+    colors, piece = np.full((len(shown.triangles), 3), SAND), np.zeros(len(shown.points))
+    ways = np.zeros((1, 3))
     if isinstance(shown, FractureScene):
         colors, piece = shown.colors, shown.piece
         ways = shown.exploded(1.0) - shown.fracture.mass.centers
-    else:
-        colors, piece = np.full((len(shown.triangles), 3), SAND), np.zeros(len(shown.points))
-        ways = np.zeros((1, 3))
     used = shown.points[np.unique(shown.triangles)]
     middle = (used.max(axis=0) + used.min(axis=0)) / 2
     reach = float(np.linalg.norm(used - middle, axis=1).max())

@@ -1,11 +1,10 @@
 """Picking: a run in; what a ray, an edit and the question after a hit take."""
 
-import numpy as np
 import pandas as pd
 
 from experiments.bench_picking import FOLLOWING, NEIGHBORS, RAY, REBUILT, REFITTED
 from experiments.report import style
-from experiments.report.figures.growth import draw_lines
+from experiments.report.figures.growth import draw_lines, timed
 from experiments.report.pages import Html
 from experiments.report.session import MissingError
 from experiments.report.style import BLUE, GRAY, RED, STYLES, Plot
@@ -26,15 +25,14 @@ def picks(run: Run) -> Plot:
     """The time of each part of a pick by size: what rays take, and the neighbors by structure."""
     cases = _cases(run)
     asked = cases["subject"] == NEIGHBORS
-    parts = cases["subject"] + ", " + cases["order"].fillna("")
+    cases["part"] = cases["subject"] + ", " + cases["order"].fillna("")
     titles = ["the ray, and following an edit", "the neighbors of what was hit"]
     with style.styled():
         figure, every = style.panels(titles, (4.6, 3.2), 2, sharex=True, sharey=True)
-        draw_lines(every[0], cases.assign(part=parts)[~asked], "vertices", "part", WAYS, marker=".")
+        draw_lines(every[0], cases[~asked], "vertices", "part", WAYS, marker=".")
         draw_lines(every[1], cases[asked], "vertices", "structure", STYLES)
-        for axes in every:
-            axes.set(xlabel=style.VARIABLES["vertices"])
-        every[0].set_ylabel("time, µs")
+        for axes, label in zip(every, ("time, µs", ""), strict=True):
+            axes.set(xlabel=style.VARIABLES["vertices"], ylabel=label)
         style.finish_panels(figure, every, 0.6)
     return figure
 
@@ -62,7 +60,7 @@ def in_words(run: Run) -> Html:
 
 
 def _cases(run: Run) -> pd.DataFrame:
-    cases = run.cases[run.cases["experiment"] == "bench_picking"]
+    cases = timed(run, "bench_picking", 1e6)
     if cases.empty:
         raise MissingError("This run has not measured picking.")
-    return cases.assign(cost=1e6 * cases["samples"].map(np.median))
+    return cases

@@ -7,10 +7,11 @@ import pandas as pd
 
 from experiments.bench_real_time import COMPACT, EDITS, GROWING, RESERVED
 from experiments.report import style
+from experiments.report.comparisons import bytes_held
 from experiments.report.pages import Heads, Html, numbers
 from experiments.report.session import MissingError
 from experiments.report.style import STYLES, Plot
-from experiments.report.tables import duration
+from experiments.report.tables import count, duration
 from experiments.runs import Run
 from structures import NAMES, REGISTRY
 
@@ -31,7 +32,7 @@ def waits(run: Run) -> Plot:
         for axes, order in zip(every, titles, strict=True):
             axes.axvline(1e6 * FRAME, color=style.GRAY, linewidth=1)
             axes.set(xlabel="time of an edit, µs", ylabel="" if axes is every[1] else LABEL)
-            for case in _rows(cases[cases["order"] == order]):
+            for case in cases[cases["order"] == order].to_dict("records"):
                 slower = np.arange(len(case["samples"]), 0, -1) / len(case["samples"])
                 look = {**STYLES[case["structure"]], "marker": ""}
                 axes.step(1e6 * np.sort(case["samples"]), slower, where="pre", **look)
@@ -43,17 +44,16 @@ def waits(run: Run) -> Plot:
 def frames(run: Run) -> Html:
     """What an edit takes, and how many a frame has time for; at the largest size of each."""
     rows = []
-    for case in _rows(_edits(run)):
+    for case in _edits(run).to_dict("records"):
         seconds, uploads = np.array(case["samples"]), case["detail"]["uploads"]
-        rows.append((
-            REGISTRY[case["structure"]].title, case["vertices"], case["order"] == RESERVED,
-            *np.percentile(seconds, [50, 99]), seconds.max(), _in_a_frame(seconds),
-            np.median(uploads), max(uploads),
-        ))  # fmt: skip
+        title, reserved = REGISTRY[case["structure"]].title, case["order"] == RESERVED
+        half, most = np.percentile(seconds, [50, 99])
+        times = half, most, seconds.max(), _in_a_frame(seconds)
+        rows.append((title, case["vertices"], reserved, *times, np.median(uploads), max(uploads)))
     heads: Heads = {
-        "": str, "vertices": _count, "room": lambda there: "made" if there else "grows",
+        "": str, "vertices": count, "room": lambda there: "made" if there else "grows",
         "median": duration, "99 of 100": duration, "longest": duration,
-        "edits in a frame": str, "uploaded, bytes": _count, "at most": _count,
+        "edits in a frame": str, "uploaded, bytes": count, "at most": count,
     }  # fmt: skip
     return numbers(rows, heads)
 
@@ -61,10 +61,9 @@ def frames(run: Run) -> Html:
 def compactions(run: Run) -> Html:
     """How long it takes to drop what is dead, at every size."""
     cases = _cases(run, COMPACT)
-    table = cases.assign(seconds=cases["samples"].map(np.median)).pivot_table(
-        index="structure", columns="vertices", values="seconds", sort=False
-    )
-    rows = [(REGISTRY[str(it)].title, *table.loc[it]) for it in table.index]
+    seconds = cases.assign(seconds=cases["samples"].map(np.median))
+    table = seconds.pivot_table("seconds", "structure", "vertices", sort=False)
+    rows = [(REGISTRY[str(name)].title, *sizes) for name, sizes in table.iterrows()]
     return numbers(rows, {"": str, **{f"{size:,} vertices": duration for size in table.columns}})
 
 
@@ -74,21 +73,21 @@ def weights(run: Run) -> Html:
     A renderer is given a position, a normal and a texture coordinate per vertex, and three indices
     per face, of 16 bits where these are enough.
     """
-    cases = run.cases[(run.cases["experiment"] == "bench_memory") & (run.cases["skipped"] == "")]
-    if cases.empty:
+    table = bytes_held(run, 4)
+    if table.empty:
         raise MissingError("This run has not measured bytes.")
-    cases = cases[cases["reference_bytes"] == 4].assign(bytes=cases["samples"].map(np.median))
-    largest = cases.groupby("family")["vertices"].transform("max")
-    meshes = cases[cases["vertices"] == largest].pivot_table(
-        index=["family", "vertices", "faces"], columns="structure", values="bytes", sort=False
-    )
-    held = [name for name in NAMES if name in meshes]
-    rows = []
-    for (family, vertices, faces), sizes in zip(meshes.index, meshes[held].to_numpy(), strict=True):
+    rows: list[Any] = []
+    every: Any = table.T.items()
+    for (family, vertices, faces), sizes in every:
         shown = vertices * PER_VERTEX + faces * 3 * (2 if vertices <= MOST_OF_16_BITS else 4)
         rows.append((family, vertices, faces, shown, *(shown + sizes)))
-    heads: Heads = {"": str, "vertices": _count, "faces": _count, "renderer": _megabytes}
-    return numbers(rows, {**heads, **{f"+ {REGISTRY[it].abbreviation}": _megabytes for it in held}})
+    heads: dict[str, Any] = {"": str, "vertices": count, "faces": count, "renderer": _megabytes}
+    heads |= {f"+ {REGISTRY[str(it)].abbreviation}": _megabytes for it in table}
+    return numbers(rows, heads)
+
+
+def _megabytes(value: float) -> str:
+    return f"{value / 1e6:.3g} MB" if value == value else "–"
 
 
 def _in_a_frame(seconds: Any) -> str:
@@ -96,7 +95,7 @@ def _in_a_frame(seconds: Any) -> str:
     ends = np.append(0.0, np.cumsum(seconds))
     fits = np.searchsorted(ends, ends + FRAME, side="right") - 1 - np.arange(len(ends))
     whole = fits[ends + FRAME <= ends[-1]]  # frames that end before the edits do
-    return _count(whole.min()) if len(whole) else f"all {_count(len(seconds))}"
+    return count(whole.min()) if len(whole) else f"all {count(len(seconds))}"
 
 
 def _edits(run: Run) -> pd.DataFrame:
@@ -107,24 +106,9 @@ def _edits(run: Run) -> pd.DataFrame:
 
 
 def _cases(run: Run, subject: str) -> pd.DataFrame:
-    cases = run.cases
-    mine = cases[(cases["experiment"] == "bench_real_time") & (cases["subject"] == subject)]
-    mine = mine[mine["skipped"] == ""]
+    mine = run.cases.query("experiment == 'bench_real_time' and subject == @subject")
     if mine.empty:
         raise MissingError("This run has not measured single edits.")
     place = mine["structure"].map(NAMES.index)
-    return mine.assign(place=place).sort_values(
-        ["place", "vertices", "order"], ascending=[True, True, False]
-    )
-
-
-def _rows(cases: pd.DataFrame) -> list[dict[str, Any]]:
-    return [{str(key): it for key, it in row.items()} for row in cases.to_dict("records")]
-
-
-def _megabytes(value: float) -> str:
-    return f"{value / 1e6:.3g} MB" if value == value else "–"
-
-
-def _count(value: float) -> str:
-    return f"{value:,.0f}"
+    by = ["place", "vertices", "order"]
+    return mine.assign(place=place).sort_values(by, ascending=[True, True, False])

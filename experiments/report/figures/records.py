@@ -1,7 +1,5 @@
 """What a structure records of a mesh: which record refers to which, its bytes, and its walks."""
 
-from __future__ import annotations
-
 import inspect
 import re
 import textwrap
@@ -36,9 +34,7 @@ def records(s: Structure) -> dict[Key, list[Entry]]:
     """Every live record and what it refers to; positions and other numbers are left out. O(n)."""
     found: dict[Key, list[Entry]] = {}
     for key, entry in _entries(s) if s.fields else _entries_of_objects(s):
-        found.setdefault(key, [])
-        if entry.target:
-            found[key].append(entry)
+        found.setdefault(key, []).extend([entry] if entry.target else [])
     return found
 
 
@@ -81,53 +77,39 @@ def byte_terms(structure: type[Structure], reference_bytes: int) -> list[Term]:
     for name, size in s.memory().items():
         kind, field = name.split(".")
         taken.setdefault(kind, {})[field] = size / counts.get(kind, s.n_faces)
-    return [
-        Term(kind, counts.get(kind, s.n_faces) / s.n_vertices, fields)
-        for kind, fields in taken.items()
-    ]
+    many = {kind: counts.get(kind, s.n_faces) / s.n_vertices for kind in taken}
+    return [Term(kind, many[kind], fields) for kind, fields in taken.items()]
 
 
 def formula(terms: list[Term]) -> str:
     """As chapter 7 of the thesis writes it: ``12 + 8 + 2 · 8 + 6 · 32 = 228``."""
-    own = [
-        f"{size:.4g}" for term in terms if term.kind == "vertex" for size in term.fields.values()
-    ]
-    others = [
-        f"{term.per_vertex:.4g} · {sum(term.fields.values()):.4g}"
-        for term in terms
-        if term.kind != "vertex"
-    ]
+    parts = []
+    for kind, per_vertex, fields in sorted(terms, key=lambda it: it.kind != "vertex"):
+        if kind == "vertex":
+            parts += [f"{size:.4g}" for size in fields.values()]
+        else:
+            parts.append(f"{per_vertex:.4g} · {sum(fields.values()):.4g}")
     total = sum(term.per_vertex * sum(term.fields.values()) for term in terms)
-    return f"{' + '.join([*own, *others])} = {total:,.4g}"
-
-
-def reference_sizes(structure: type[Structure]) -> dict[int, list[Term]]:
-    """Its bytes by the size of a reference, the thesis' first; one if the size changes nothing."""
-    sizes = {it: byte_terms(structure, it) for it in sorted(REFERENCE_TYPES, reverse=True)}
-    different = {formula(terms): size for size, terms in reversed(sizes.items())}
-    return {size: sizes[size] for size in sorted(different.values(), reverse=True)}
+    return f"{' + '.join(parts)} = {total:,.4g}"
 
 
 def byte_table(structure: type[Structure]) -> Html:
-    """The bytes per vertex of a large closed mesh, kind by kind, for every size of a reference."""
-    sizes = reference_sizes(structure)
-    rows = [
-        (
-            f"{size} bytes" if len(sizes) > 1 else "any",
-            spelled(term.kind),
-            f"{term.per_vertex:.4g}",
-            ", ".join(f"{spelled(it)} {width:.4g}" for it, width in term.fields.items()),
-            f"{term.per_vertex * sum(term.fields.values()):,.4g}",
-        )
-        for size, terms in sizes.items()
-        for term in terms
-    ]
-    sums = [
-        Html("<p>With references of {} bytes: {}</p>").format(size, formula(terms))
-        if len(sizes) > 1
-        else Html("<p>Whatever a reference takes: {}</p>").format(formula(terms))
-        for size, terms in sizes.items()
-    ]
+    """The bytes per vertex of a large closed mesh, kind by kind.
+
+    For every size of a reference, the thesis' first; for one where the size changes nothing.
+    """
+    every = {it: byte_terms(structure, it) for it in sorted(REFERENCE_TYPES)}
+    alone = {formula(terms): size for size, terms in every.items()}  # those that differ
+    sizes = {size: every[size] for size in sorted(alone.values(), reverse=True)}
+    sums, rows = [], []
+    for size, terms in sizes.items():
+        of = f"With references of {size} bytes" if len(sizes) > 1 else "Whatever a reference takes"
+        sums.append(Html("<p>{}: {}</p>").format(of, formula(terms)))
+        for kind, per_vertex, fields in terms:
+            widths = ", ".join(f"{spelled(it)} {width:.4g}" for it, width in fields.items())
+            each, taken = f"{per_vertex:.4g}", f"{per_vertex * sum(fields.values()):,.4g}"
+            width = f"{size} bytes" if len(sizes) > 1 else "any"
+            rows.append((width, spelled(kind), each, widths, taken))
     heads = "A reference", "Record", "Per vertex", "Bytes of its fields", "Bytes per vertex"
     return Html("").join([*sums, text_table(heads, rows)])
 
@@ -145,10 +127,9 @@ def path(s: Structure, query: str, handle: int) -> list[Stop]:
     A stop at numbers that belong to no single record has the name of their array.
     """
     apart = {it.name: it.name.split(".")[1] for it in s.fields if it.width > 1 and not it.target}
-    reads = [
-        (apart.get(it.field, it.field).rpartition("."), it.row) for it in s.reads(query, handle)
-    ]
-    stops = groupby(reads, key=lambda it: (it[0][0] or it[0][2], it[1]))
+    reads = ((apart.get(it.field, it.field), it.row) for it in s.reads(query, handle))
+    split = ((field.rpartition("."), row) for field, row in reads)
+    stops = groupby(split, key=lambda it: (it[0][0] or it[0][2], it[1]))
     return [Stop(key, [name for (*_, name), _ in read]) for key, read in stops]
 
 

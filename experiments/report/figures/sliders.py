@@ -1,12 +1,10 @@
 """Advice to play with: sliders for a mesh and a workload, and the structures in order."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np
 
-from experiments.advice import PRESETS, Prices
+from experiments.advice import PRESETS, Prices, Row
 from experiments.report.pages import Html, page
 from experiments.report.session import MissingError
 from experiments.runs import Run
@@ -31,32 +29,23 @@ def advice_sliders(run: Run) -> Html:
         structures = [_prices(prices, name, whats, sizes) for name in REGISTRY]
     except KeyError as error:
         raise MissingError(f"This run cannot advise: {error.args[0]}.") from error
-    data = {"sizes": sizes.tolist(), "structures": structures, "workloads": _presets()}
+    presets = [
+        {"title": it.title, "frames": it.frames, "rows": list(map(_row, it.rows))}
+        for it in PRESETS.values()
+    ]
+    data = {"sizes": sizes.tolist(), "structures": structures, "workloads": presets}
     return page("sliders.html.j2", data=data)
 
 
 def _prices(prices: Prices, name: str, whats: list[str], sizes: Any) -> dict[str, Any]:
     """Seconds by what is asked: at random and in order, at each size."""
-    costs = {
-        what: [
-            [float(f"{prices.price(name, what, n, share).seconds:.3g}") for n in sizes]
-            for share in (0.0, 1.0)
-        ]
-        for what in whats
-    }
+    costs = {}
+    for what in whats:
+        priced = [[prices.price(name, what, n, it).seconds for n in sizes] for it in (0.0, 1.0)]
+        costs[what] = [[float(f"{it:.3g}") for it in seconds] for seconds in priced]
     return {"title": REGISTRY[name].title, "costs": costs}
 
 
-def _presets() -> list[dict[str, Any]]:
-    """Rows as ``[what, times, faces each, per frame, in order, edit]``."""
-    return [
-        {
-            "title": it.title,
-            "frames": it.frames,
-            "rows": [
-                [row.what, row.times, row.share_of_faces, row.per_frame, row.in_order, row.edits]
-                for row in it.rows
-            ],
-        }
-        for it in PRESETS.values()
-    ]
+def _row(row: Row) -> list[Any]:
+    """What, times, faces each, per frame, in order, edit."""
+    return [row.what, row.times, row.share_of_faces, row.per_frame, row.in_order, row.edits]
