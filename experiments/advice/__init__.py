@@ -4,8 +4,7 @@
 measurements of a run; ``advise`` ranks the structures, with intervals, reasons and limits.
 """
 
-from experiments.advice.advise import Advice, Limits, Option, advise, flips
-from experiments.advice.needs import NEEDS
+from experiments.advice.advise import NEEDS, Advice, Limits, Option, advise, flips
 from experiments.advice.predict import Forecast, predict
 from experiments.advice.prices import Prices
 from experiments.advice.workload import PRESETS, Measured, Row, Workload, find_workload, recorded

@@ -1,6 +1,6 @@
 """The structures for a mesh and a workload, the best first, and where that changes."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -8,12 +8,11 @@ import numpy as np
 
 import hem
 from experiments import require_known
-from experiments.advice.needs import NEEDS, lacks
 from experiments.advice.predict import Forecast, predict
 from experiments.advice.prices import Prices
 from experiments.advice.workload import Workload, is_edit
 from hem.contract.recording import ANEW, PYTHON
-from structures import REGISTRY, build
+from structures import REGISTRY, Structure, build
 
 ALIKE = 1.1
 """Within this factor two structures are alike."""
@@ -24,6 +23,33 @@ SIZES = np.geomspace(50, 5_000_000, 51)
 
 BUILT_OF_OBJECTS = 20_000
 """Faces up to which a structure of objects is built to be weighed."""
+
+
+def _records_edges(kind: type[Structure]) -> bool:
+    try:
+        build(kind.name, hem.generate("torus", 100)).edge_attribute("needed")  # refused without
+    except hem.MeshError:
+        return False
+    return True
+
+
+def _has_borders(kind: type[Structure]) -> bool:
+    try:
+        build(kind.name, hem.generate("grid", 100))
+    except hem.MeshError:
+        return False
+    return True
+
+
+NEEDS: dict[str, tuple[str, Callable[[type[Structure]], bool]]] = {
+    "edges": ("records no edges", _records_edges),
+    "borders": ("holds closed meshes only", _has_borders),
+    "polygons": ("holds triangles only", lambda it: it.holds_polygons),
+    "attributes": ("keeps no values of edges", _records_edges),
+    "edits": ("looks at the whole mesh for an edit", lambda it: not (it.searches or it.rebuilds)),
+}
+"""By name: what is wrong with a structure that cannot, and whether it can. ``edits`` is for what
+is drawn while it is edited."""
 
 
 @dataclass(frozen=True)
@@ -70,8 +96,9 @@ def advise(
     triangles = mesh.triangulated() if isinstance(mesh, hem.PolygonMesh) else mesh
     faces = len(triangles.triangles)
     options, refused = [], {}
-    for name in REGISTRY:
-        wrong, taken = [words for need in needs if (words := lacks(name, need))], 0
+    for name, kind in REGISTRY.items():
+        wrong = [NEEDS[it][0] for it in needs if not NEEDS[it][1](kind)]
+        taken = 0
         try:
             taken = _bytes(name, mesh, faces)
         except hem.MeshError as error:
@@ -81,7 +108,7 @@ def advise(
             wrong.append(f"takes {taken:,} bytes of {limits.bytes:,.0f}")
         if edit > limits.edit:
             wrong.append(f"an edit takes {1e3 * edit:.3g} ms of {1e3 * limits.edit:.3g}")
-        if workload.measured and not REGISTRY[name].compiled:
+        if workload.measured and not kind.compiled:
             wrong.append("is interpreted, and the measured whole was compiled")
         if wrong:
             refused[name] = "; ".join(wrong)

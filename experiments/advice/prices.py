@@ -52,18 +52,15 @@ class Prices:
             return found if rebuilds else Price(0.0, 0.0)
         if name in OPERATIONS:
             # Finding neighbors anew has a row of its own.
-            alone = rebuilds or name not in self._operations
-            done = ALONE if alone else name
+            done = ALONE if rebuilds or name not in self._operations else name
             found = self._at(faces, "bench_operations", structure, done, "batched")
         else:
-            orders = ("consecutive", in_order), ("random", 1 - in_order)
-            parts = [
-                (self._at(faces, "bench_queries", structure, name, order), share)
-                for order, share in orders
-                if share > 0
-            ]
-            seconds = sum(it.seconds * share for it, share in parts)
-            found = Price(seconds, max(it.spread for it, _ in parts))
+            seconds = spread = 0.0
+            for order, share in (("consecutive", in_order), ("random", 1 - in_order)):
+                if share > 0:
+                    one = self._at(faces, "bench_queries", structure, name, order)
+                    seconds, spread = seconds + share * one.seconds, max(spread, one.spread)
+            found = Price(seconds, spread)
         call = self.call if caller == PYTHON and REGISTRY[structure].compiled else 0.0
         return Price(found.seconds + call, found.spread)
 

@@ -31,8 +31,8 @@ class Broken(NamedTuple):
     @property
     def held(self) -> list[int]:
         """The pieces that stay where they are: of a surface the largest part of the rest."""
-        shards, rest = len(self.fracture.shards), len(self.fracture.rest)
-        return [shards] if rest and not self.fracture.closed else []
+        held = self.fracture.rest and not self.fracture.closed
+        return [len(self.fracture.shards)] if held else []
 
     def scene(self) -> FractureScene:
         """How it is drawn."""

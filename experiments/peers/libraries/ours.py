@@ -1,7 +1,6 @@
 """Our own half-edge mesh, asked as the libraries are: through calls of Python."""
 
 from collections.abc import Callable
-from contextlib import suppress
 from functools import partial
 from operator import attrgetter, methodcaller
 from time import thread_time
@@ -41,9 +40,11 @@ def _one_by_one(operation: str, m: Mesh, numbers: list[int], places: Array) -> i
     handles = _handles(m, operation.split("_")[1], numbers)
     rows: Any = zip(handles, *([places] if operation in SPLIT else []), strict=True)
     for row in rows:
-        with suppress(hem.TopologyError):
+        try:
             operate(*row)
-            done += 1
+        except hem.TopologyError:
+            continue
+        done += 1
     return done
 
 

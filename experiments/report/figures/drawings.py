@@ -85,18 +85,15 @@ def shapes_of(s: Structure, kinds: Collection[str]) -> dict[Key, Shape]:
         found["edge", e if "edge" in kinds else number] = Shape(line, (a + b) / 2, (a + b) / 2)
     if isinstance(s, Navigable):
         for h in s.half_edges().tolist():
-            found["half_edge", h] = _half_edge(*points[[s.origin(h), s.tip(h)]])
+            a, b = points[[s.origin(h), s.tip(h)]]
+            left = _unit(b - a)[::-1] * (1, -1)  # y points down
+            a, b = a + ASIDE * left, b + ASIDE * left
+            line, middle = _arrow(a, b, SHORTER, left), (a + b) / 2
+            found["half_edge", h] = Shape(line, middle, middle + 8 * left)
     for v in s.vertices().tolist():
         away = points[v] - np.nanmean(points, axis=0)
         found["vertex", v] = Shape(_dot(points[v]), points[v], points[v] + 13 * _unit(away))
     return found
-
-
-def _half_edge(a: Array, b: Array) -> Shape:
-    left = _unit(b - a)[::-1] * (1, -1)  # y points down
-    a, b = a + ASIDE * left, b + ASIDE * left
-    middle = (a + b) / 2
-    return Shape(_arrow(a, b, SHORTER, left), middle, middle + 8 * left)
 
 
 def _arrow(a: Array, b: Array, shorter: float, side: Array | None = None) -> str:

@@ -20,11 +20,9 @@ APART = 0.4  # how far shards are drawn from their places, as part of the way to
 FORCES = (1.0, 10.0, 50.0)
 CENTER = (0.47, 0.52)
 IMPACTS = {
-    "About the middle": (0.5, 0.5),
-    "Off the middle": (0.3, 0.72),
-    "Near a side": (0.86, 0.5),
-    "In a corner": (0.06, 0.06),
-}
+    "About the middle": (0.5, 0.5), "Off the middle": (0.3, 0.72),
+    "Near a side": (0.86, 0.5), "In a corner": (0.06, 0.06),
+}  # fmt: skip
 """Where a plate of side 1 is struck."""
 
 

@@ -15,13 +15,9 @@ from structures import NAMED, REGISTRY
 PARTS = {
     "positions": ("vertex.point",),
     "references": ("half_edge", "origin", "face", "next", "opposite", "twin"),
-    "indices": ("index",),
-    "event": ("position_changed",),
-    "headers": ("header",),
-    "padding": ("padding",),
-    "lists": ("list",),
-    "objects": ("object",),
-}
+    "indices": ("index",), "event": ("position_changed",), "headers": ("header",),
+    "padding": ("padding",), "lists": ("list",), "objects": ("object",),
+}  # fmt: skip
 """What bytes are for, by the names of their fields."""
 
 

@@ -39,11 +39,10 @@ def records(s: Structure) -> dict[Key, list[Entry]]:
 
 
 def _entries(s: Structure) -> Iterator[tuple[Key, Entry]]:
-    m = s.records
     for field in s.fields:
         kind, name = field.name.split(".")
-        values = in_use(m, s.fields, field)
-        for row in np.flatnonzero(live(m, s.fields, kind)).tolist():
+        values = in_use(s.records, s.fields, field)
+        for row in np.flatnonzero(live(s.records, s.fields, kind)).tolist():
             referring = tuple(map(int, values[row])) if field.target else ()
             yield (kind, row), Entry(name, field.target, referring)
 
