@@ -14,15 +14,9 @@ from experiments.claims.beside import LARGER, MIDDLE, OCTAHEDRON, Shown, attempt
 from experiments.claims.demonstrations import TOUCHING, coincident_vertices
 from hem.fracture import MATERIALS, shatter
 from hem.fracture.surface import break_points
+from structures import printed_breaking as listings
 from structures.class_model import HalfEdge, Vertex
 from structures.plankton import Plankton
-from structures.printed_breaking import (
-    breaking_points,
-    face_containing,
-    quad,
-    quoted_circulator,
-    simulate_breaking,
-)
 
 GLASS = MATERIALS["glass"]
 IMPACT = (-4.7, 5.2)  # in a plate of ten by ten, inside a face
@@ -43,8 +37,8 @@ def height_kept() -> Shown:
     published, corrected = [], []
     for across in (2, 1):
         mesh, impact = _plate(across)
-        m, scattered = printed(mesh), breaking_points(impact, GLASS.circles)
-        published.append(sum(face_containing(m, it) is not None for it in scattered))
+        m, scattered = printed(mesh), listings.breaking_points(impact, GLASS.circles)
+        published.append(sum(listings.face_containing(m, it) is not None for it in scattered))
         s = structures.build("half_edge", mesh)
         outside = shatter(s, impact, GLASS, scale=1.0).counts["outside"]
         corrected.append(len(scattered) - outside)
@@ -58,7 +52,7 @@ def height_kept() -> Shown:
 def discs() -> Shown:
     """How many break points of the largest circle lie in the one before it."""
     count, before = GLASS.circles[-1], len(GLASS.circles) - 1.5
-    every = breaking_points((0.0, 0.0, 0.0), GLASS.circles), break_points(GLASS, 0, 1.0)
+    every = listings.breaking_points((0.0, 0.0, 0.0), GLASS.circles), break_points(GLASS, 0, 1.0)
     far = [np.linalg.norm(it[-count:], axis=1) for it in every]
     inside, also = (int((it < before).sum()) for it in far)
     words = f"of {count} break points of the last circle lie in the one before it"
@@ -69,7 +63,7 @@ def discs() -> Shown:
 def left_behind() -> Shown:
     """What stays of the face that is struck."""
     m, s = printed(), structures.build("half_edge", OCTAHEDRON)
-    shards = simulate_breaking(m, MIDDLE, ())
+    shards = listings.simulate_breaking(m, MIDDLE, ())
     points = [[h.origin.point for h in m.face_circulator(face)] for face in m.faces]
     rest = shatter(s, MIDDLE, replace(GLASS, circles=())).rest[0]
     every = np.array(points), rest.points[rest.triangles]  # (n, 3, 3)
@@ -86,7 +80,7 @@ def runaway() -> Shown:
     s = cast(Plankton, structures.build("plankton", hem.valence_mesh(valence, 2 * valence)))
     hub, steps, gives_up = int(hem.valence_hubs(valence, 2 * valence)[0]), 0, False
     try:
-        for _ in quoted_circulator(s, s.outgoing_half_edge(hub)):
+        for _ in listings.quoted_circulator(s, s.outgoing_half_edge(hub)):
             steps += 1
     except LookupError:
         gives_up = True
@@ -110,7 +104,7 @@ def guard_one_short() -> Shown:
     """The half-edge behind the last one, as the quoted guard and as ours take it."""
     s = cast(Plankton, structures.build("plankton", OCTAHEDRON))
     count = len(s.half_edges())
-    given = next(quoted_circulator(s, count), None)
+    given = next(listings.quoted_circulator(s, count), None)
     refusal = attempt(lambda: s.next_half_edge(count))
     words = f"gives half-edge {given} of a mesh whose last one is {count - 1}"
     return Shown(words, refusal, given == count and refusal.startswith("refused"))
@@ -121,7 +115,7 @@ def other_types() -> Shown:
     m, s = printed(), sound()
     mine, other = m.faces[0], s.faces[0]
     around = s.faces.circulator(other)
-    points, _ = quad()
+    points, _ = listings.quad()
     published = [
         (list, Vertex, [it.point for it in m.vertices]),  # 3.3.1: List<Vertex>, of points
         (HalfEdge, HalfEdge, m.face_circulator(mine)),  # 3.3.1: HalfEdge, a List of them
