@@ -209,10 +209,7 @@ class JudgedClaim:
 
 
 def tally(claims: Iterable[JudgedClaim]) -> dict[tuple[Kind, str], Counter[Outcome]]:
-    """How many claims of each kind came out how, by measure.
-
-    Measures are those of growth, ``bytes`` and ``sentence``; who claims nothing is left out.
-    """
+    """How many claims came out how, by kind and measure: of growth, ``bytes`` or ``sentence``."""
     counts: dict[tuple[Kind, str], Counter[Outcome]] = {}
     for it in claims:
         if it.claim.claims_something:

@@ -1,7 +1,4 @@
-"""Quantities that no run has to measure: something is built and looked at, or counted in the code.
-
-Each gives the values that a sentence is judged by.
-"""
+"""Quantities that no run has to measure: something is built and looked at, or counted in code."""
 
 from collections import Counter
 from collections.abc import Iterable
@@ -78,11 +75,9 @@ def coincident_vertices(mesh: hem.TriangleMesh = TOUCHING) -> Iterable[float]:
     yield len(s.points) - len(np.unique(s.points, axis=0))
 
 
-def outgoing_kept(side: int = 6) -> Iterable[float]:
-    """The share of vertices whose half-edge stays the same as a face closes the ring around them.
-
-    Of a sheet of triangles, side by side, that is made row by row.
-    """
+def outgoing_kept() -> Iterable[float]:
+    """The share of vertices whose half-edge stays the same as a face closes the ring at them."""
+    side = 6
     points = [(x, y, 0) for y in range(side) for x in range(side)]
     corners = [(i, i + 1, i + side) for i in range(side * (side - 1)) if (i + 1) % side]
     corners = [it for a, b, c in corners for it in ((a, b, c), (b, c + 1, c))]
@@ -119,9 +114,9 @@ def walks_without_test() -> Iterable[float]:
 
 
 @cache
-def handling(*facts: str, mine: str = HALF, other: str = WINGED) -> Iterable[float]:
-    """Counts in the code of all queries and operations, one structure's by another's."""
-    kernels, others = (structures.REGISTRY[it].kernels for it in (mine, other))
+def handling(*facts: str, mine: str = HALF) -> Iterable[float]:
+    """Counts in the code of all queries and operations, by those of the winged-edge mesh."""
+    kernels, others = (structures.REGISTRY[it].kernels for it in (mine, WINGED))
     names = [*QUERIES, *(it for it in kernels if it.endswith("_records"))]
     one, two = (code_facts(it[name] for name in names) for it in (kernels, others))
     return [getattr(one, fact) / getattr(two, fact) for fact in facts]

@@ -40,10 +40,7 @@ class Family(NamedTuple):
 
 
 def judge_families(run: Run, judged: Sequence[JudgedClaim]) -> list[Family]:
-    """All families whose queries were timed, the judged one first; takes some seconds.
-
-    ``judged``: the claims of the run, which are those of the judged family.
-    """
+    """All families whose queries were timed, the judged one first: its claims are ``judged``."""
     first = curves(run).judged_family
     timed = run.cases[run.cases["experiment"].isin(("bench_queries", "bench_latency"))]
     queries = [it for it in judged if it.claim.table == QUERIES_TABLE.name]

@@ -28,11 +28,7 @@ PLAIN = ("outcome", "outcomes", "found", "reason", "work", "seconds")
 
 @lru_cache(maxsize=4)
 def judge_run(run: Run) -> list[JudgedClaim]:
-    """Every cell of every table, then every sentence.
-
-    A run is judged once, which takes some seconds; what a finished one gave is kept beside it, if
-    that may be written to.
-    """
+    """Every cell of every table, then every sentence: judged once, which takes some seconds."""
     path, state = run.folder / "derived" / "judged.json", _state(run.folder)
     with suppress(OSError, ValueError, KeyError, TypeError):
         content = json.loads(path.read_text("utf-8"))

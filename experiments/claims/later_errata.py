@@ -1,7 +1,4 @@
-"""The errata of thesis 4.4 to 7, and of listings that no compiler takes, each shown by a run.
-
-See ``experiments.claims.errata``.
-"""
+"""The errata of thesis 4.4 to 7, and of listings that no compiler takes, as in ``errata.py``."""
 
 from dataclasses import replace
 from typing import Any, cast

@@ -226,10 +226,7 @@ def time_algorithm(case: Case, preset: Preset, timer: Timer) -> Fields:
 
 @lru_cache(maxsize=2)
 def _looped(case: Case, rounds: int, whole: int) -> tuple[dict[str, list[float]], Fields]:
-    """What compiled loops took on a mesh, by subject, and the memory beside it.
-
-    Some answers are checked.
-    """
+    """What compiled loops took on a mesh, by subject, and the memory beside it; checked."""
     peer, given = PEERS[case.structure], _given(case)
     assert peer.looped is not None  # or there is no such case
     few = 0 if case.valence is None else len(hem.valence_hubs(case.valence, case.size))

@@ -1,7 +1,4 @@
-"""Tables of numbers: objects against arrays, and what it takes to break a surface.
-
-Each raises MissingError where nothing of it was measured.
-"""
+"""Tables of numbers, and the same in words. Each raises MissingError where nothing was measured."""
 
 from collections import Counter
 from collections.abc import Sequence
@@ -59,9 +56,9 @@ def bytes_held(run: Run, width: int) -> pd.DataFrame:
     return table[[name for name in NAMES if name in table]]
 
 
-def bytes_by_mesh(run: Run, width: int = 8) -> Html:
-    """Bytes per vertex on every mesh, the largest of each family; ``width``: of a reference."""
-    table = bytes_held(run, width).sort_index()
+def bytes_by_mesh(run: Run) -> Html:
+    """Bytes per vertex on the largest mesh of each family, with references of 8 bytes."""
+    table = bytes_held(run, 8).sort_index()
     every: Any = table.T.items()
     rows = [(family, n, faces / n, *(sizes / n)) for (family, n, faces), sizes in every]
     heads: dict[str, Any] = {"": str, "vertices": count, "faces per vertex": two_digits}
@@ -130,12 +127,12 @@ def shattering(run: Run) -> Html:
     return numbers(rows, heads)
 
 
-def face_finding(run: Run, structure: str = ARRAYS) -> Html:
+def face_finding(run: Run) -> Html:
     """How the ways to find a face grow with the number of faces, one row each."""
     rows = []
     for way in WAYS:
         orders = f"{way}, {VISITED}", way
-        found = [curves(run).named("bench_fracture", structure, FIND, it) for it in orders]
+        found = [curves(run).named("bench_fracture", ARRAYS, FIND, it) for it in orders]
         if all(map(len, found)):
             counted, timed = found
             latency = timed.cases["latency"].astype(float)
@@ -174,10 +171,7 @@ def _slope(verdict: Verdict) -> str:
 
 
 def bytes_in_words(run: Run) -> Html:
-    """How many times as much half-edges take as triangles by index, with references of each width.
-
-    Raises MissingError where one was not weighed.
-    """
+    """How many times as much half-edges take as triangles by index; MissingError if not weighed."""
     names, weigh = (ARRAYS, BASE), curves(run).bytes_per_vertex
     found = {width: [weigh(name, width) for name in names] for width in (8, 4)}
     if np.isnan(list(found.values())).any():
@@ -201,7 +195,8 @@ def waiting_in_words(run: Run) -> Html:
     measured, grown = curves(run), []
     names = [it for it in NAMES if REGISTRY[it].compiled and not run.machines]
     for asked in product(names, QUERIES):
-        work, *times = found = [measured.curve(it, *asked) for it in (Axis.WORK_FACES, *BY_TIME)]
+        found = [measured.curve(it, *asked) for it in (Axis.WORK_FACES, *BY_TIME)]
+        work, *times = found
         if all(len(it) > 1 for it in found) and work.largest < FLAT * work.centers[0]:
             grown.append([it.largest / it.centers[0] for it in times])
     sets = measured.curve(Axis.RANDOM_FACES, ARRAYS, "vertex_faces").cases

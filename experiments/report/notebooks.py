@@ -24,10 +24,7 @@ FRONT = "index"  # the notebook of the front page
 
 @cache
 def page_titles() -> dict[str, str]:
-    """The titles of the pages by the name of their notebook, in the order they are read.
-
-    Both stand in the notebook's metadata. Raises ResultsError for a notebook without them.
-    """
+    """The titles of pages by notebook, in reading order; ResultsError where one has none."""
     found = {}
     for path in carried("notebooks").glob("*.ipynb"):
         about = nbformat.read(path, as_version=4).metadata
@@ -47,10 +44,7 @@ def body(name: str) -> str:
 
 
 def execute(notebook: Any, name: str) -> None:
-    """Run every cell; its outputs go into the notebook, pictures described by their heading.
-
-    A cell that lacks a measurement or a package says so and the next one is run.
-    """
+    """Run every cell into the notebook; one that lacks a measurement or package says so instead."""
     InteractiveShell.clear_instance()
     shell: Any = InteractiveShell.instance(config=Config({"HistoryManager": {"enabled": False}}))
     heading = name

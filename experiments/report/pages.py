@@ -187,10 +187,7 @@ def frame_table(frame: pd.DataFrame) -> Html:
 
 @dataclass(frozen=True)
 class Answer:
-    """An answer of the front page, and the same in German; both are shown by a template.
-
-    ``measured`` is false where the text says what is missing.
-    """
+    """An answer of the front page, also in German; if not ``measured``, it says what is missing."""
 
     text: str
     german: str

@@ -41,10 +41,7 @@ def write_report(run_folder: Path, output: Path) -> Path:
 
 
 def write_pdf(run_folder: Path, output: Path) -> Path:
-    """Write the report of a run as one document to print -> ``output``.
-
-    Raises ResultsError as ``write_report`` does, and PrintError without a browser to print it.
-    """
+    """Write the report as one document to print -> ``output``; PrintError without a browser."""
     pdf.require_browser()  # rather now than after the notebooks
     session = read_session(run_folder, printed=True)
     with _beside(output) as fresh:

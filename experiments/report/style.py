@@ -36,6 +36,7 @@ FADED = "#efefef"
 RED = "#c23b22"
 BLUE = "#2f7fc1"
 
+GAP = 10.5  # points from one label to the next
 APART = 40.0  # points between the ends of two lines from which on their labels cannot meet
 RC = rc_params_from_file(Path(__file__).parent / "static" / "hem.mplstyle", False, False)
 styled = partial(rc_context, RC)
@@ -120,8 +121,8 @@ def finish_panels(figure: Figure, every: Sequence[Axes], room: float = 0.17) -> 
         label_ends(axes)
 
 
-def label_ends(axes: Axes, gap: float = 10.5) -> None:
-    """Write each line's label to the right of its end, above the axis, ``gap`` points apart.
+def label_ends(axes: Axes) -> None:
+    """Write each line's label to the right of its end, above the axis, ``GAP`` points apart.
 
     Lines that end elsewhere, by more than ``APART`` points, are not in each other's way. Call it
     when the axes' limits stand.
@@ -134,8 +135,8 @@ def label_ends(axes: Axes, gap: float = 10.5) -> None:
         groups[round(x / APART)].append((y, end, line))
     for ends in groups.values():
         ends.sort(key=lambda it: it[0])
-        lowest = axes.bbox.y0 * 72 / figure.dpi + gap * (np.arange(len(ends)) + 0.5)
-        places = np.maximum(spread_apart([height for height, _, _ in ends], gap), lowest)
+        lowest = axes.bbox.y0 * 72 / figure.dpi + GAP * (np.arange(len(ends)) + 0.5)
+        places = np.maximum(spread_apart([height for height, _, _ in ends], GAP), lowest)
         for (height, end, line), place in zip(ends, places, strict=True):
             axes.annotate(
                 str(line.get_label()), end, (5, place - height), textcoords="offset points",

@@ -97,10 +97,7 @@ def ranking(run: Run, name: str) -> pd.Series:
 
 
 def beside(run: Run, one: str, other: str) -> Html:
-    """How many queries two structures answer faster than each other, at random, and their bytes.
-
-    Raises MissingError if there is no mesh that both were measured on.
-    """
+    """How many queries each of two structures answers faster, and their bytes; or MissingError."""
     measured = curves(run)
     costs = {
         query: [measured.curve(Axis.RANDOM_FACES, it, query).by_size for it in (one, other)]

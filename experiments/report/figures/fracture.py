@@ -26,8 +26,9 @@ IMPACTS = {
 """Where a plate of side 1 is struck."""
 
 
-def plate(squares: int = 5) -> hem.TriangleMesh:
+def plate() -> hem.TriangleMesh:
     """A flat plate of side 1, of squares cut in two, as the thesis breaks it."""
+    squares = 5
     n = squares + 1
     a = (np.arange(squares) + n * np.arange(squares)[:, None]).ravel()
     y, x = np.divmod(np.arange(n * n), n) / np.array([[squares], [squares]])

@@ -159,13 +159,12 @@ def building(run: Run) -> Plot:
     return _draw(cases, titles, "vertices", "building", "time per vertex, ns", **shape)
 
 
-def rendering(run: Run, structure: str = "half_edge") -> Plot:
-    """What a render mesh adds to one edit from Python, by size."""
-    cases = timed(run, "bench_operations", 1e6)
-    cases = cases[cases["structure"] == structure]
-    look = {"color": STYLES[structure]["color"], "marker": "o"}
+def rendering(run: Run) -> Plot:
+    """What a render mesh adds to one edit of a half-edge mesh from Python, by size."""
+    cases = timed(run, "bench_operations", 1e6).query("structure == 'half_edge'")
+    look = {"color": STYLES["half_edge"]["color"], "marker": "o"}
     styles = {order: look | it for order, it in RENDERED.items()}
-    titles = {"split_face": f"Splitting a face from Python, {NAMED[structure].title.lower()} mesh"}
+    titles = {"split_face": "Splitting a face from Python, half-edge mesh"}
     shape: dict[str, Any] = {"room": 0.75, "plain": True, "size": (7.5, 3.3), "styles": styles}
     what, label = "operations with a render mesh", "time per edit, µs"
     return _draw(cases, titles, "faces", what, label, by="order", **shape)
@@ -208,7 +207,7 @@ def shards_per_second(run: Run) -> Plot:
     return _draw(cases, titles, "faces", "how a surface breaks", label, size=(7.5, 3.5))
 
 
-def face_finding(run: Run, structure: str = "half_edge") -> Plot:
+def face_finding(run: Run) -> Plot:
     """Finding the face under an impact in three ways: faces looked at, and time."""
     looks = zip(WAYS, (BLUE, RED, GRAY), "oDs", strict=True)
     styles = {way: {"label": way, "color": color, "marker": it} for way, color, it in looks}
@@ -216,7 +215,7 @@ def face_finding(run: Run, structure: str = "half_edge") -> Plot:
     found = []
     for way in WAYS:
         for measure, order, scale in ((VISITED, f"{way}, {VISITED}", 1.0), ("", way, 1e6)):
-            curve = curves(run).named("bench_fracture", structure, FIND, order)
+            curve = curves(run).named("bench_fracture", "half_edge", FIND, order)
             costs: dict[str, Any] = {"cost": scale * curve.centers, "way": way, "measure": measure}
             found.append(curve.cases.assign(**costs))
     shape: dict[str, Any] = {"room": 0.45, "plain": True, "size": (5.2, 3.2), "panel": "measure"}

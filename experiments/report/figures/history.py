@@ -113,14 +113,14 @@ def _name_commits(axes: Axes, trends: Trends, room: float = 0.0) -> None:
     axes.set_xlim(-0.5, count - 0.5 + room * max(count, 1))
 
 
-def departures(trends: Trends, measure: str = "time") -> Figure:
-    """How far every claim of every structure is from its usual figure, run by run, as colors.
+def departures(trends: Trends) -> Figure:
+    """How far every claim of every structure is from its usual time, run by run, as colors.
 
-    Of the newest run's profile and, for times, its machine. A ring is a step to a new level, a
+    Of the newest run's profile and machine. A ring is a step to a new level, a
     cross a verdict by work that changed.
     """
     rows = _of_newest(trends)
-    rows = rows[rows["here"] & (rows["measure"] == measure) & (rows["value"] > 0)]
+    rows = rows[rows["here"] & (rows["measure"] == "time") & (rows["value"] > 0)]
     ends = (1 / STRONGEST, 1.0, STRONGEST)
     ticks, names = np.log(ends), [f"{it - 1:+.0%}" if it != 1 else "as usual" for it in ends]
     with styled():
@@ -130,7 +130,7 @@ def departures(trends: Trends, measure: str = "time") -> Figure:
             image = _departures(axes, trends, rows[rows["structure"] == structure])
             norm = TwoSlopeNorm(0.0, ticks[0], ticks[-1])
             drawn = axes.imshow(image, cmap="RdBu_r", norm=norm, aspect="auto")
-        bar = figure.colorbar(drawn, ax=panels, shrink=0.5, label=PANELS[measure])
+        bar = figure.colorbar(drawn, ax=panels, shrink=0.5, label=PANELS["time"])
         bar.set_ticks(ticks.tolist(), labels=names)
     return figure
 

@@ -22,10 +22,7 @@ PARTS = {
 
 
 def by_field(run: Run) -> Plot:
-    """Bytes per vertex, stacked by field: as published, modeled with 8 and 4 bytes, and as traced.
-
-    Of what is made of arrays; ``references`` has the objects.
-    """
+    """Bytes per vertex of arrays, stacked by field: as published, as modeled, and as traced."""
     names = [name for name, structure in REGISTRY.items() if structure.compiled]
     every = (curves(run).memory(name, size).cases.tail(1) for name in names for size in (8, 4))
     measured = [it for cases in every for it in cases.to_dict("records") if it["detail"]]

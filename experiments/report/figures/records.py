@@ -133,10 +133,7 @@ def path(s: Structure, query: str, handle: int) -> list[Stop]:
 
 
 def described(structure: type[Structure]) -> str:
-    """What its file says of its records and invariants, as Markdown.
-
-    That is the file of the class, of one it inherits from, or of its records.
-    """
+    """What its file, or one it is built on, says of its records and invariants, as Markdown."""
     places: list[Any] = [*structure.__mro__, structure.records_type]
     texts = [inspect.getdoc(inspect.getmodule(it)) or "" for it in places]
     text = next((it for it in texts if "\nInvariants\n" in it), texts[0])

@@ -15,10 +15,7 @@ POINTS = 9
 
 
 def advice_sliders(run: Run) -> Html:
-    """The prices of a run, for what the presets count, in a page part that needs nothing else.
-
-    Raises MissingError where the run has not measured them.
-    """
+    """The prices of a run, for what the presets count, on a page; MissingError without them."""
     prices = Prices(run)
     low, high = prices.measured
     if run.machines or not low < high:
