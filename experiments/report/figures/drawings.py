@@ -4,7 +4,7 @@ A drawing is SVG with a group per record; ``static/explore.js`` lets one choose 
 its references. Without scripts those of some records are drawn, and written beside it.
 """
 
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any, NamedTuple
@@ -108,16 +108,6 @@ def _head(tip: Array, way: Array, side: Array | None = None) -> str:
     return _line([tip, back + across]) + (_line([tip, back - across]) if side is None else "")
 
 
-def _pointers(
-    shapes: Mapping[Key, Shape], start: Key, entries: Iterable[Entry]
-) -> Iterator[Pointer]:
-    """The arrows for the names in a record; none to what is not there."""
-    for entry in entries:
-        for end in ((entry.target, value) for value in entry.values):
-            if end in shapes:
-                yield bent(shapes[start].at, shapes[end].at, spelled(entry.field))
-
-
 def bent(a: Array, b: Array, words: str) -> Pointer:
     """A slightly bent arrow from a to b, as ``explore.js`` draws it, too."""
     aside = _unit(b - a)[::-1] * (1, -1)
@@ -145,7 +135,10 @@ def record(structure: type[Structure]) -> Html:
     entries, shapes = drawn_records(structure.build(hexagon()))
     shown = examples(entries)
     most = max(shown, key=lambda key: len(entries[key]))
-    arrows = list(_pointers(shapes, most, entries[most]))
+    arrows = []
+    for entry in entries[most]:  # none to what is not there
+        ends = (shapes.get((entry.target, it)) for it in entry.values)
+        arrows += [bent(shapes[most].at, it.at, spelled(entry.field)) for it in ends if it]
     drawing = Drawing(shapes, entries, arrows, {most: "chosen"}, shown)
     return page("mesh.html.j2", drawing=drawing, caption=f"{structure.title}, on a small mesh")
 
