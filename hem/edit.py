@@ -1,7 +1,5 @@
 """What an operation did, for those who follow it."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from functools import cached_property
 from typing import NamedTuple

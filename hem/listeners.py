@@ -1,7 +1,5 @@
 """Who is told of what happens to something, and for how long."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 

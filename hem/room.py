@@ -12,8 +12,6 @@ Copies and pickles hold what is viewed.
   to be, and 32 MB in any case. Windows, where addresses are counted as memory, gives as much again.
 """
 
-from __future__ import annotations
-
 import math
 import os
 from typing import Any

@@ -11,8 +11,6 @@ Lists shrink when an element is removed, as those of the thesis do, while every 
 index that it was given; ``faults`` says what does not hold together any more.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from typing import Any, Self
 
@@ -131,8 +129,7 @@ class AsPrinted(Described):
         half_edge.face, half_edge.next = face, following
         vertex.half_edge = half_edge
         self.half_edges.append(half_edge)
-        found: HalfEdge = half_edge
-        return found
+        return half_edge
 
     def create_face(self, half_edge: HalfEdge) -> Face:
         """``CreateFace``: sets the references of both; its index is the count of the list."""

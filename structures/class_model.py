@@ -153,8 +153,7 @@ class ElementList(Generic[Element]):
         if found is None:
             many = ELEMENTS.get(self.kind, f"{self.kind}s")
             raise MeshError(f"no such {self.kind} in this mesh (any more)", **{many: [index]})
-        element: Element = found
-        return element
+        return found
 
     def __iter__(self) -> Iterator[Element]:
         """The live elements, by index."""

@@ -21,8 +21,6 @@ Invariants
 Bytes per vertex: Python's own (``memory``), and those of the thesis' runtime (``clr_memory``).
 """
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Callable
 from typing import Any, Self
@@ -445,20 +443,17 @@ class HalfEdgeMesh(Navigable):
     @property
     def vertices(self) -> VertexList:
         """The vertices as objects; called, their handles."""
-        found: VertexList = self.records.vertices
-        return found
+        return self.records.vertices
 
     @property
     def half_edges(self) -> HalfEdgeList:
         """The half-edges as objects; called, their indices."""
-        found: HalfEdgeList = self.records.half_edges
-        return found
+        return self.records.half_edges
 
     @property
     def faces(self) -> FaceList:
         """The faces as objects; called, their handles."""
-        found: FaceList = self.records.faces
-        return found
+        return self.records.faces
 
     @property
     def points(self) -> NDArray[np.float32]:

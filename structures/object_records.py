@@ -1,7 +1,5 @@
 """The lists of ``structures.half_edge_objects``: made of a mesh, and to and from arrays."""
 
-from __future__ import annotations
-
 import gc
 from collections.abc import Iterator
 from contextlib import contextmanager

@@ -3,8 +3,6 @@
 See ``structures.half_edge_objects`` for the mesh itself.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 

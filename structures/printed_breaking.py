@@ -4,8 +4,6 @@ Told anew over ``structures.as_printed``. What a listing calls and no document p
 it can be. Nothing here checks anything, and errors are left as they are.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from math import cos, pi, sin, sqrt
 from random import Random

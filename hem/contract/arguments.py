@@ -1,7 +1,5 @@
 """What users hand to operations, checked and brought into shape."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 

@@ -5,8 +5,6 @@ keeps its rows. What it creates gets them by the attribute's rule, from what it 
 (``Edit.vertex_parents``, ``Edit.face_parents``).
 """
 
-from __future__ import annotations
-
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 from typing import Any, Literal

@@ -1,7 +1,5 @@
 """What a structure's class declares: its names, look and claims, its records and kernels."""
 
-from __future__ import annotations
-
 import inspect
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field

@@ -1,7 +1,5 @@
 """What follows every edit of a mesh: its attributes, then whoever subscribed."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Walking a mesh by its half-edges, on structures that record them."""
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple, Protocol, overload
 
 import numpy as np

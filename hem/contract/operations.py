@@ -1,7 +1,5 @@
 """How an operation is done: checked, tried, given room where there is none, and logged."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any, NamedTuple
 

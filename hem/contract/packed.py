@@ -1,7 +1,5 @@
 """Edges without a record of their own: named by their two vertices, or marked by them."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any
 
@@ -68,13 +66,11 @@ class MarkedStorage(Storage):
         """See ``Storage.edges``."""
         h = self.live(records, "half_edge")
         names = self._step("edge", records, h)
-        found: NDArray[np.int64] = names[names >> BITS == h]
-        return found
+        return names[names >> BITS == h]
 
     def edge_names(self, records: Any, edges: NDArray[np.int64]) -> NDArray[np.int64]:
         """See ``Storage.edge_names``."""
-        names: NDArray[np.int64] = self._step("edge", records, edges >> BITS)
-        return names
+        return self._step("edge", records, edges >> BITS)
 
     def lasting_names(self, records: Any, edges: NDArray[np.int64]) -> NDArray[np.int64]:
         """See ``Storage.lasting_names``: ``smaller end << 32 | larger end``."""

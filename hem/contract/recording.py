@@ -4,8 +4,6 @@ Calls from Python are counted where they enter. What algorithms do is counted by
 uncompiled, with kernels that count, so that the table of a workload is found and not typed.
 """
 
-from __future__ import annotations
-
 import csv
 import io
 from collections.abc import Callable, Iterator

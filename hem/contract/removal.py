@@ -4,8 +4,6 @@ One after the other is not always possible. A ring of faces, for one, has a last
 would leave two parts that meet in a vertex, until the next one is gone.
 """
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np

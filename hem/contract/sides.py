@@ -1,7 +1,5 @@
 """Values of edges and half-edges where an operation moves these from place to place."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 
@@ -108,5 +106,4 @@ class SideAttribute(MovingAttribute):
 
 def sides_of(faces: Array) -> Array:
     """(3 n,) the sides of faces (n,)."""
-    sides: Array = (3 * faces.astype(np.int64)[:, None] + np.arange(3)).reshape(-1)
-    return sides
+    return (3 * faces.astype(np.int64)[:, None] + np.arange(3)).reshape(-1)

@@ -1,7 +1,5 @@
 """How the records of a structure are held: what follows from its fields, whatever the mesh."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, ClassVar
 

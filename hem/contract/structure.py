@@ -1,7 +1,5 @@
 """The contract: what every mesh data structure offers, derived from its kernels."""
 
-from __future__ import annotations
-
 from abc import abstractmethod
 from collections.abc import Callable, Mapping
 from functools import cached_property

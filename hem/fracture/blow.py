@@ -1,7 +1,5 @@
 """The blow: how its energy decides where a body breaks, and how the pieces fly."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -176,8 +174,7 @@ def kinetic_energies(mass: Mass, motion: Motion) -> Floats:
     """(n,) joules: of each piece."""
     moving = mass.masses * dot(motion.velocities, motion.velocities)
     turning = np.einsum("ni,nij,nj->n", motion.spins, mass.inertias, motion.spins)
-    energies: Floats = (moving + turning) / 2
-    return energies
+    return (moving + turning) / 2
 
 
 def kinetic_energy(mass: Mass, motion: Motion) -> float:

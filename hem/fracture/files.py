@@ -1,7 +1,5 @@
 """Pieces as files, and what they are in numbers; nothing is left half-written."""
 
-from __future__ import annotations
-
 import os
 import tempfile
 from collections.abc import Callable, Iterator

@@ -1,7 +1,5 @@
 """Parts that nothing holds together."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from hem.meshes import TriangleMesh, components, used_only

@@ -7,8 +7,6 @@ piece, so that a piece far from zero keeps its digits. Everything is float64, an
 all pieces are worked through together: O(faces), whatever the number of pieces.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """Materials: how what is hit breaks, as data."""
 
-from __future__ import annotations
-
 import os
 import tomllib
 from collections.abc import Mapping

@@ -1,7 +1,5 @@
 """What a mesh broke into, and what the pieces weigh."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property

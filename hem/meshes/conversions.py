@@ -1,7 +1,5 @@
 """From the meshes of other libraries; the way there is a method of every mesh."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

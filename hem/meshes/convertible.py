@@ -1,7 +1,5 @@
 """What every mesh is: points and faces that do not change, and that other libraries can have."""
 
-from __future__ import annotations
-
 from abc import ABC, abstractmethod
 from importlib import import_module
 from typing import Any, Self

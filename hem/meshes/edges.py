@@ -13,8 +13,7 @@ def half_edges(triangles: Triangles) -> tuple[Indices, Indices]:
 
 def edge_keys(start: Indices, end: Indices) -> Indices:
     """(k,): one number per undirected edge, ascending as its vertices are, the smaller first."""
-    keys: Indices = (np.minimum(start, end) << 32) | np.maximum(start, end)
-    return keys
+    return (np.minimum(start, end) << 32) | np.maximum(start, end)
 
 
 def key_vertices(keys: Indices) -> Indices:

@@ -15,8 +15,7 @@ from hem.errors import MeshError
 
 def corners(points: Array, triangles: Array) -> Floats:
     """(m, 3, 3): where the corners of triangles (m, 3) are."""
-    found: Floats = points[triangles].astype(np.float64)
-    return found
+    return points[triangles].astype(np.float64)
 
 
 def dot(a: Array, b: Array) -> Any:
@@ -31,8 +30,7 @@ def length(vectors: Array) -> Any:
 
 def unit(vectors: Array) -> Floats:
     """Of length 1, (…, 3); what has no length becomes NaN."""
-    scaled: Floats = vectors / length(vectors)[..., None]
-    return scaled
+    return vectors / length(vectors)[..., None]
 
 
 def direction(given: ArrayLike) -> Floats:
@@ -57,14 +55,12 @@ def position(given: object, what: str = "a position") -> Floats:
 
 def normals(corners: Array) -> Floats:
     """(m, 3): outward, of twice the area's length."""
-    found: Floats = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    return found
+    return np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
 
 
 def areas(corners: Array) -> Floats:
     """(m,): of triangles."""
-    found: Floats = length(normals(corners)) / 2
-    return found
+    return length(normals(corners)) / 2
 
 
 def volume(corners: Array) -> float:

@@ -1,7 +1,5 @@
 """A mesh as points and polygons: what files with quads and n-gons hold."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np
@@ -87,8 +85,7 @@ def repeats_a_corner(faces: Ragged) -> Bools:
     face = np.repeat(np.arange(len(faces)), faces.counts)
     order = np.lexsort((faces.values, face))
     alike = (np.diff(faces.values[order]) == 0) & (np.diff(face[order]) == 0)
-    repeats: Bools = np.bincount(face[order][1:][alike], minlength=len(faces)) > 0
-    return repeats
+    return np.bincount(face[order][1:][alike], minlength=len(faces)) > 0
 
 
 def _validated(faces: Faces, n: int) -> Ragged:

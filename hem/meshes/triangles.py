@@ -136,8 +136,7 @@ class TriangleMesh(Convertible):
 def repeated_corners(triangles: Triangles) -> Bools:
     """Which triangles use a vertex twice. (m,) bool, O(m)."""
     a, b, c = triangles.T
-    repeated: Bools = (a == b) | (b == c) | (c == a)
-    return repeated
+    return (a == b) | (b == c) | (c == a)
 
 
 def validated_points(points: ArrayLike, dtype: DTypeLike) -> Points:

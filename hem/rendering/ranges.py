@@ -1,7 +1,5 @@
 """Which ranges of a render mesh have to be uploaded."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

@@ -65,8 +65,7 @@ def apply(
 
 def intersecting_faces(mesh: TriangleMesh) -> Indices:
     """(k,): the faces that other faces go through."""
-    found: Indices = _WORKER.ask("crossing", mesh=_arrays(mesh))
-    return found
+    return _WORKER.ask("crossing", mesh=_arrays(mesh))
 
 
 def load_file(path: Path) -> tuple[Any, Any]:

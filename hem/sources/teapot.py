@@ -71,8 +71,7 @@ def _blend(control: Numbers, n: int) -> Numbers:
     p = [control[..., i, None, :] for i in range(4)]
     ends = s * s * s * p[0] + t * t * t * p[3]
     middle = 3 * (s * t * s) * p[1] + 3 * (t * s * t) * p[2]
-    blended: Numbers = ends + middle
-    return blended
+    return ends + middle
 
 
 def _cells(n: int) -> Corners:

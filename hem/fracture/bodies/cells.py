@@ -4,8 +4,6 @@ Two cells on either side of a wall have the very same triangles there, one the o
 do cells and what is left when they are taken out, and nothing is between them, not even slivers.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any

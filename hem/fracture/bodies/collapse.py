@@ -1,7 +1,5 @@
 """Taking out what rounding has left of no length, so that a closed surface stays closed."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from hem.arrays import Array, Bools

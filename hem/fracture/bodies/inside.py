@@ -4,8 +4,6 @@ Only + - and *, element by element and in one order: the answers are the same on
 Triangles are given as their corners, (m, 3, 3) float64.
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from hem.arrays import Floats, Indices

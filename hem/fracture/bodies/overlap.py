@@ -5,8 +5,6 @@ enough to try the normals of their faces and the vector products of their edges 
 Manocha, OBBTree, 1996). Bodies that touch, in a point, an edge or a face, do not overlap.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

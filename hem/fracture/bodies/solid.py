@@ -1,7 +1,5 @@
 """Bodies: meshes with an inside, which is what can be broken through."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -62,8 +60,7 @@ class Body:
     def contains(self, points: ArrayLike) -> Bools:
         """Which of k positions (k, 3) are inside: (k,). Cost O(faces) each."""
         at = np.asarray(points, np.float64).reshape(-1, 3)
-        inside: Bools = windings(self.corners, at) > 0
-        return inside
+        return windings(self.corners, at) > 0
 
 
 def require_body(mesh: TriangleMesh) -> Body:

@@ -12,8 +12,6 @@ The rest is the body with a pit for each shard: the very operation that splits a
 makes it of the face, so that it stays closed.
 """
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Any
 

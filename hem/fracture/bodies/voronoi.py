@@ -1,7 +1,5 @@
 """Breaking a body into Voronoi cells around the impact (the thesis' outlook: other methods)."""
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Which pieces have walls in common, from the triangles that their walls consist of."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import NamedTuple
 

@@ -1,7 +1,5 @@
 """Where a mesh is struck unless it is said: where the camera sees it."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from hem.arrays import Array

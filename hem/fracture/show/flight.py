@@ -4,8 +4,6 @@ A piece meets the floor with its convex hull and nothing else: pieces pass throu
 the floor friction stops it and it tips onto the side it can lie on. All is in closed form.
 """
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 import numpy as np

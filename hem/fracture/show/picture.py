@@ -1,7 +1,5 @@
 """Shaded pictures of meshes, drawn off-screen by PyVista: no display is needed, and no GPU."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 from functools import cache

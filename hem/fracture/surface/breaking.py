@@ -13,8 +13,6 @@ A face is measured in its own plane, its corners taken from the smallest one on:
          a─────────b
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 

@@ -7,8 +7,6 @@
              ╱ ░ ╲
 """
 
-from __future__ import annotations
-
 import numpy as np
 
 from hem.arrays import Array, Indices

@@ -1,7 +1,5 @@
 """The face nearest to a position: by walking there, and by looking at every face."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import numpy as np

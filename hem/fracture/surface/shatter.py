@@ -7,8 +7,6 @@ index of its face stays behind), and so do faces that would be left hanging in a
 that the rest is a sound mesh.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from functools import cached_property
 from typing import Any, overload
