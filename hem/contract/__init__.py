@@ -29,27 +29,8 @@ from hem.contract.storage import HANDLE_TYPES, Storage
 from hem.contract.structure import Structure
 
 __all__ = [
-    "ELEMENTS",
-    "HANDLE_TYPES",
-    "OPERATIONS",
-    "QUERIES",
-    "REFERENCE_TYPES",
-    "STEPS",
-    "Algorithm",
-    "Attribute",
-    "Claims",
-    "Described",
-    "Look",
-    "MarkedEdges",
-    "Navigable",
-    "PackedEdges",
-    "PackedStorage",
-    "Prepared",
-    "Query",
-    "Remaining",
-    "Storage",
-    "Structure",
-    "Sweep",
-    "arguments",
+    "ELEMENTS", "HANDLE_TYPES", "OPERATIONS", "QUERIES", "REFERENCE_TYPES", "STEPS", "Algorithm",
+    "Attribute", "Claims", "Described", "Look", "MarkedEdges", "Navigable", "PackedEdges",
+    "PackedStorage", "Prepared", "Query", "Remaining", "Storage", "Structure", "Sweep", "arguments",
     "remaining",
-]
+]  # fmt: skip

@@ -21,15 +21,20 @@ def rows(handles: Array | Sequence[int], ends: Array | int = -1) -> Array:
     return arguments
 
 
+def integers(called: str, values: ArrayLike, dimensions: tuple[int, ...] = (0, 1)) -> Array:
+    """One handle or a row of them; MeshError for what is no such integers."""
+    given = np.asarray(values)
+    if given.ndim not in dimensions or (given.size and given.dtype.kind not in "iu"):
+        one = "one handle or " if 0 in dimensions else ""
+        raise MeshError(
+            f"{called} takes {one}a 1-D array of integers, not {given.dtype} of shape {given.shape}"
+        )
+    return given
+
+
 def handles(called: str, values: ArrayLike) -> Array:
     """(n,) int64; MeshError for what is no row of integers."""
-    given = np.asarray(values)
-    if given.ndim != 1 or (given.size and not np.issubdtype(given.dtype, np.integer)):
-        raise MeshError(
-            f"{called} takes a 1-D array of handles (integers), not {given.dtype} of shape "
-            f"{given.shape}"
-        )
-    return given.astype(np.int64)
+    return integers(called, values, (1,)).astype(np.int64)
 
 
 def positions(called: str, points: ArrayLike, n: int) -> Array:
@@ -44,10 +49,9 @@ def positions(called: str, points: ArrayLike, n: int) -> Array:
         raise MeshError(f"{called} takes one point per handle, ({n}, 3), not {given.shape}")
     with np.errstate(over="ignore"):
         kept = np.ascontiguousarray(given, np.float32)
-    if not np.isfinite(kept).all():
-        raise MeshError(
-            Refusal.NOT_FINITE.words, rows=np.flatnonzero(~np.isfinite(kept).all(axis=1))
-        )
+    bad = ~np.isfinite(kept).all(axis=1)
+    if bad.any():
+        raise MeshError(Refusal.NOT_FINITE.words, rows=np.flatnonzero(bad))
     return kept
 
 

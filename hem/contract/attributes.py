@@ -5,7 +5,6 @@ keeps its rows. What it creates gets them by the attribute's rule, from what it 
 (``Edit.vertex_parents``, ``Edit.face_parents``).
 """
 
-from abc import ABC, abstractmethod
 from collections.abc import Callable
 from typing import Any, Literal
 
@@ -14,9 +13,10 @@ from numpy.typing import ArrayLike, DTypeLike
 
 from hem.arrays import Array
 from hem.authoring import ENDS
+from hem.contract import arguments
 from hem.contract.state import State
 from hem.contract.surveying import Surveying
-from hem.edit import Edit, generations, whole_faces
+from hem.edit import Edit, Remapping, generations, whole_faces
 from hem.errors import MeshError
 from hem.listeners import Listeners
 from hem.ragged import Ragged
@@ -53,7 +53,8 @@ class Attribute:
     ) -> None:
         self.mesh, self._state = mesh, state
         self.element, self.name, self.default = element, name, default
-        self.on_split = on_split or self._usual_rule()
+        between = element in ("vertex", "corner") and default.dtype.kind == "f"
+        self.on_split = on_split or ("interpolate" if between else "copy")
         if self.on_split not in RULES:
             raise MeshError(f"on_split is one of {', '.join(RULES)}, not {on_split!r}")
         if self.on_split == "interpolate" and default.dtype.kind != "f":
@@ -94,7 +95,8 @@ class Attribute:
     def follow(self, edit: Edit) -> None:
         """Carry the values over an edit that was just done. Cost O(edit)."""
         if edit.remapping is not None:
-            self._renumber(edit)
+            self._renumber(edit.remapping)
+            self._look_at_all()
         else:
             self._grow()
             self._inherit(edit)
@@ -106,11 +108,13 @@ class Attribute:
     def restore(self, state: tuple[Array, ...]) -> None:
         """Have the values of a ``state`` again."""
         self._rows = state[0].copy()
+        self._look_at_all()
 
     def clear(self) -> None:
         """Have the default everywhere, as if just made."""
         self._rows = self._fresh(0)
         self._grow()
+        self._look_at_all()
 
     # Behind it ---------------------------------------------------------------------------------
 
@@ -118,22 +122,13 @@ class Attribute:
     def _end(self) -> int:
         return int(self.mesh.records.counts[ENDS.get(self.element, ENDS["face"])])
 
-    def _usual_rule(self) -> Rule:
-        lies_somewhere = self.element in ("vertex", "corner")
-        return "interpolate" if lies_somewhere and self.default.dtype.kind == "f" else "copy"
-
     def _fresh(self, *rows: int) -> Array:
         return np.tile(self.default, rows + (1,) * self.default.ndim)
 
     def _checked(self, handles: Any) -> Any:
         """One handle or an array of them, if they name live elements."""
-        rows = np.asarray(handles)
-        if rows.ndim > 1 or (rows.size and not np.issubdtype(rows.dtype, np.integer)):
-            raise MeshError(
-                f"{self!r} takes one handle or a 1-D array of them, not {handles!r:.60}"
-            )
+        rows = arguments.integers(repr(self), handles).astype(np.int64)
         self._grow()
-        rows = rows.astype(np.int64)
         element = "face" if self.element == "corner" else self.element
         self._state.require(element, np.atleast_1d(rows))
         return rows
@@ -142,16 +137,17 @@ class Attribute:
         """Have a row for every handle. An edit that was interrupted may not have seen to it."""
         self._rows = enlarged(self._rows, self._end, self.default)
 
-    def _renumber(self, edit: Edit) -> None:
-        old, new = self._moved(edit)
+    def _look_at_all(self) -> None:
+        """Keep anew whatever a kind of attribute keeps of the mesh beside the values."""
+
+    def _renumber(self, remapping: Remapping) -> None:
+        old, new = self._moved(remapping)
         rows, self._rows = self._rows, self._fresh(self._end)
         self._rows[new] = rows[old]
 
-    def _moved(self, edit: Edit) -> tuple[Array, Array]:
+    def _moved(self, remapping: Remapping) -> tuple[Array, Array]:
         """Old rows and new ones of what is live, after ``compact``."""
-        assert edit.remapping is not None
-        of = edit.remapping
-        number = of.vertices if self.element == "vertex" else of.faces
+        number = remapping.vertices if self.element == "vertex" else remapping.faces
         old = np.flatnonzero(number >= 0)
         return old, number[old]
 
@@ -180,10 +176,7 @@ class Attribute:
 class EdgeAttribute(Attribute):
     """Of edges or half-edges. The new part of an edge that is split has what the old part has."""
 
-    @property
-    def _mesh(self) -> Any:
-        """The mesh, which records edges, or half-edges."""
-        return self.mesh
+    mesh: Any  # it records edges, or half-edges
 
     def _checked(self, handles: Any) -> Any:
         rows = super()._checked(handles)
@@ -191,9 +184,8 @@ class EdgeAttribute(Attribute):
             return self._state.edge_names(np.atleast_1d(rows)).reshape(rows.shape)
         return rows
 
-    def _moved(self, edit: Edit) -> tuple[Array, Array]:
-        assert edit.remapping is not None
-        number = edit.remapping.edges(np.arange(len(self._rows)))
+    def _moved(self, remapping: Remapping) -> tuple[Array, Array]:
+        number = remapping.edges(np.arange(len(self._rows)))
         old = np.flatnonzero(number >= 0)
         return old, number[old]
 
@@ -202,7 +194,7 @@ class EdgeAttribute(Attribute):
             return
         for v, ends in zip(edit.created_vertices.tolist(), edit.vertex_parents, strict=True):
             if len(ends) == 2:
-                old, new = (self._mesh.find_edge(v, int(end)) for end in ends)
+                old, new = (self.mesh.find_edge(v, int(end)) for end in ends)
                 for one, other in self._sides(v, old, new):
                     self._rows[other] = self._rows[one]
 
@@ -212,46 +204,22 @@ class EdgeAttribute(Attribute):
             return []
         if self.element == "edge":
             return [(old, new)]
-        mesh = self._mesh
+        mesh = self.mesh
         apart = (mesh.origin(old) == middle) == (mesh.origin(new) == middle)
         one, other = [old, mesh.twin(old)], [new, mesh.twin(new)]
         pairs = zip(one, other[::-1] if apart else other, strict=True)
         return [(h, g) for h, g in pairs if h >= 0 and g >= 0]
 
 
-class MovingAttribute(EdgeAttribute, ABC):
-    """Values that go where half-edges go, which nobody tells: it is kept how these ran.
-
-    They are looked at anew where all may have changed.
-    """
-
-    @abstractmethod
-    def _look_at_all(self) -> None: ...
-
-    def clear(self) -> None:
-        """See ``Attribute.clear``."""
-        super().clear()
-        self._look_at_all()
-
-    def restore(self, state: tuple[Array, ...]) -> None:
-        """See ``Attribute.restore``."""
-        super().restore(state)
-        self._look_at_all()
-
-    def _renumber(self, edit: Edit) -> None:
-        super()._renumber(edit)
-        self._look_at_all()
-
-
-class HalfEdgeAttribute(MovingAttribute):
-    """Of half-edges. Values go where their half-edges go.
+class HalfEdgeAttribute(EdgeAttribute):
+    """Of half-edges. Values go where their half-edges go, of which it is kept how they ran.
 
     An edge keeps its handle when one of its faces is taken away, and so the half-edge that is left
     may move into the place of the one that is gone.
     """
 
     def _inherit(self, edit: Edit) -> None:
-        mesh, faces = self._mesh, np.concatenate([edit.changed_faces, edit.created_faces])
+        mesh, faces = self.mesh, np.concatenate([edit.changed_faces, edit.created_faces])
         if len(edit.removed_faces):
             known = edit.removed_faces < len(self._within)  # or an edit was interrupted
             h = self._within[edit.removed_faces[known]].reshape(-1)
@@ -270,7 +238,7 @@ class HalfEdgeAttribute(MovingAttribute):
 
     def _look_at(self, faces: Array) -> None:
         """Keep how the half-edges of these faces run. Cost O(corners)."""
-        mesh, wide = self._mesh, max(3, self.mesh.most_corners)
+        mesh, wide = self.mesh, max(3, self.mesh.most_corners)
         self._ran = enlarged(self._ran, len(self._rows))
         self._within = enlarged(widened(self._within, wide), self.mesh.face_end)
         self._within[faces] = -1
@@ -357,11 +325,10 @@ class CornerAttribute(Attribute):
         super()._grow()
         self._keys = enlarged(self._keys, len(self._rows))
 
-    def _renumber(self, edit: Edit) -> None:
-        assert edit.remapping is not None
-        old, new = self._moved(edit)
-        keys = np.append(edit.remapping.vertices, -1)[self._keys[old]]
-        super()._renumber(edit)
+    def _renumber(self, remapping: Remapping) -> None:
+        old, new = self._moved(remapping)
+        keys = np.append(remapping.vertices, -1)[self._keys[old]]
+        super()._renumber(remapping)
         self._keys = np.full(self._rows.shape[:2], -1, np.int32)
         self._keys[new] = keys
 

@@ -20,14 +20,14 @@ Algorithm = Callable[[Kernels, Kernels], Kernel]
 
 @dataclass(frozen=True)
 class Look:
-    """A line in every plot. The colors differ in lightness, so that they can be told in gray."""
+    """A line in every plot. The colors differ in lightness, so that they can be told in gray.
+
+    ``color`` as ``#e69f00``; ``marker`` and ``line`` as Matplotlib has them: ``o``, ``--``.
+    """
 
     color: str
-    """As ``#e69f00``."""
-
     marker: str
     line: str
-    """Both as Matplotlib has them: ``o``, ``--``."""
 
 
 @dataclass(frozen=True)
@@ -68,11 +68,8 @@ class Described:
         super().__init_subclass__()
         if abstract:
             return
-        parts = ("name", "title", "abbreviation", "look")
-        missing = [it for it in parts if not hasattr(cls, it)]
-        if not cls.thesis and not hasattr(cls, "claims"):
-            missing.append("claims")
-        if missing:
+        parts = ("name", "title", "abbreviation", "look", *(() if cls.thesis else ("claims",)))
+        if missing := [it for it in parts if not hasattr(cls, it)]:
             raise TypeError(f"{place_of(cls)} does not say: {', '.join(missing)}")
 
 
@@ -98,18 +95,22 @@ class Declared:
         self.storage = cls.storage(cls.fields, self.step if self.steps else None)
         self._uses, self._records = self.storage.uses, cls.records_type
         self._algorithms: dict[Algorithm, Uses] = {}
-        self.queries = {name: self._derived(self._query(name)) for name in QUERIES}
+        self.queries = {
+            name: self._derived(self._kernel(name, f"(m, {name[0]}, out) -> count"))
+            for name in QUERIES
+        }
         self.operating = {name: self._derived(self._operation(name)) for name in self.operations}
         self.lasting: dict[str, Uses] = {}
         if not cls.stable_edge_handles:
-            of_edges = [it for it in self.operations if self.operations[it].element == "edge"]
-            self.lasting = {name: self._derived(self._of_lasting_names(name)) for name in of_edges}
+            between = self._kernel("edge_between", "(m, a, b) -> edge or -1")
+            for name, uses in self.operating.items():
+                if self.operations[name].element == "edge":
+                    self.lasting[name] = self._derived(named_by_ends(uses.kernel, between))
         lacking = {it.kernel for it in self.steps.values()} - self.kernels.keys()
         if lacking:
             raise TypeError(f"{self._place} has no kernels of steps: {sorted(lacking)}")
-        self.stepping = {
-            name: self._derived(self.kernels[it.kernel]) for name, it in self.steps.items()
-        }
+        stepping = ((name, self.kernels[it.kernel]) for name, it in self.steps.items())
+        self.stepping = {name: self._derived(kernel) for name, kernel in stepping}
 
     def exists(self, element: str) -> Kernel:
         """Whether there is one; a half-edge that names its edge is one where that is."""
@@ -152,21 +153,13 @@ class Declared:
         if missing:
             raise TypeError(f"{self._place} does not say: {', '.join(missing)}")
         claimed = cls.claims.costs if hasattr(cls, "claims") else {}
-        unknown = sorted(set(claimed) - {*QUERIES, *OPERATIONS})
-        if unknown:
-            raise TypeError(
-                f"{self._place}: claims of what is no query and no operation: {unknown}"
-            )
+        if unknown := sorted(set(claimed) - {*QUERIES, *OPERATIONS}):
+            raise TypeError(f"{self._place}: claims of no query and no operation: {unknown}")
 
-    def _query(self, name: str) -> Kernel:
+    def _kernel(self, name: str, called: str) -> Kernel:
         if name not in self.kernels:
-            raise TypeError(f"{self._place} has no kernel {name}(m, {name[0]}, out) -> count")
+            raise TypeError(f"{self._place} has no kernel {name}{called}")
         return self.kernels[name]
-
-    def _of_lasting_names(self, name: str) -> Kernel:
-        if "edge_between" not in self.kernels:
-            raise TypeError(f"{self._place} has no kernel edge_between(m, a, b) -> edge or -1")
-        return named_by_ends(self.operating[name].kernel, self.kernels["edge_between"])
 
     def _operation(self, name: str) -> Kernel:
         make = self.operations[name].make

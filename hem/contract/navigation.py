@@ -11,40 +11,25 @@ from hem.contract.structure import Structure, attribute_method, made_once
 
 
 class Step(NamedTuple):
-    """A step from one element to another."""
+    """A step from one element to another, taken by ``kernel(m, handle) -> handle``."""
 
     source: str
     target: str
     kernel: str
-    """What the kernel is called that takes it, ``kernel(m, handle) -> handle``."""
-
     words: str
 
-    @property
-    def text(self) -> str:
-        """The docstring of its method."""
-        source = self.source.replace("_", "-")
-        return (
-            f"Of a {source}: {self.words}; -1 where there is none.\n\n"
-            "One handle gives a handle, an array of handles (n,) an array. Cost O(1). Raises\n"
-            f"MeshError for a handle that names no {source} of this mesh."
-        )
 
-
+_H = "half_edge"
 STEPS = {
-    "next": Step("half_edge", "half_edge", "following", "the half-edge after it in its face"),
-    "previous": Step("half_edge", "half_edge", "previous", "the half-edge before it in its face"),
-    "twin": Step(
-        "half_edge", "half_edge", "twin", "the half-edge of its edge that runs the other way"
-    ),
-    "origin": Step("half_edge", "vertex", "origin", "the vertex where it starts"),
-    "tip": Step("half_edge", "vertex", "tip", "the vertex where it ends"),
-    "face": Step("half_edge", "face", "face", "the face that it lies in"),
-    "edge": Step("half_edge", "edge", "edge_of", "its edge"),
-    "vertex_half_edge": Step(
-        "vertex", "half_edge", "leaving", "a half-edge that leaves the vertex"
-    ),
-    "face_half_edge": Step("face", "half_edge", "within", "a half-edge of the face"),
+    "next": Step(_H, _H, "following", "the half-edge after it in its face"),
+    "previous": Step(_H, _H, "previous", "the half-edge before it in its face"),
+    "twin": Step(_H, _H, "twin", "the half-edge of its edge that runs the other way"),
+    "origin": Step(_H, "vertex", "origin", "the vertex where it starts"),
+    "tip": Step(_H, "vertex", "tip", "the vertex where it ends"),
+    "face": Step(_H, "face", "face", "the face that it lies in"),
+    "edge": Step(_H, "edge", "edge_of", "its edge"),
+    "vertex_half_edge": Step("vertex", _H, "leaving", "a half-edge that leaves the vertex"),
+    "face_half_edge": Step("face", _H, "within", "a half-edge of the face"),
 }
 """Every step by name."""
 
@@ -59,7 +44,13 @@ class StepMethod(Protocol):
 
 
 def _step_method(name: str) -> Any:
-    return made_once(STEPS[name].text, lambda self: self._queries.step(name))
+    source = STEPS[name].source.replace("_", "-")
+    text = (
+        f"Of a {source}: {STEPS[name].words}; -1 where there is none.\n\n"
+        "One handle gives a handle, an array of handles (n,) an array. Cost O(1). Raises\n"
+        f"MeshError for a handle that names no {source} of this mesh."
+    )
+    return made_once(text, lambda self: self._queries.step(name))
 
 
 class Navigable(Structure, abstract=True):

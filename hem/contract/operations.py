@@ -32,13 +32,12 @@ class Bound(NamedTuple):
 
 
 class Prepared(NamedTuple):
-    """Operations that only wait to be run."""
+    """Operations that only wait to be run; ``results`` (n,): what became of each, < 0: refused."""
 
     perform: Callable[[int], int]
     pinned: Any
     task: Array
     results: Array
-    """(n,): what became of each; a refusal is negative."""
 
     def check(self) -> Bools:
         """Change nothing -> (n,) which of them would be done."""
@@ -133,11 +132,8 @@ class Operations:
 
     def _bound(self, operation: str) -> Bound:
         """An operation, bound once."""
-        if operation not in self._known:
-            self._known[operation] = self._bind(operation)
-        return self._known[operation]
-
-    def _bind(self, operation: str) -> Bound:
+        if operation in self._known:
+            return self._known[operation]
         self._queries.count_edges()
         state = self._state
         task, args = np.array([DO, 0, 1]), np.full((1, 3), -1, np.int64)
@@ -146,14 +142,15 @@ class Operations:
         pinned = state.pin(lambda its: (*own, its.out["edge"], np.asarray(its.log)))
         perform = state.declared.operating[operation].perform(pinned)
         views = [memoryview(it.reshape(-1).data) for it in own[:4]]
-        return Bound(perform, pinned.address, views[0], views[1], views[2], views[3])
+        bound = self._known[operation] = Bound(perform, pinned.address, *views)
+        return bound
 
     # Many at once ----------------------------------------------------------------------------
 
-    def all(self, called: str, operation: str, handles: Array, points: ArrayLike) -> Handles:
+    def all(self, called: str, operation: str, given: ArrayLike, points: ArrayLike) -> Handles:
         """Do an operation for all handles, or for none if one is refused -> the vertices."""
+        handles, element = arguments.handles(called, given), self._operations[operation].element
         positions = arguments.positions(called, points, len(handles))
-        element = self._operations[operation].element
         self.require_different(called, element, handles)
         args = arguments.rows(handles)
         if element == "edge":
@@ -166,8 +163,9 @@ class Operations:
         self._followers.publish(Edit(called, -1, log))
         return results.astype(np.int32)
 
-    def require_different(self, called: str, element: str, handles: Array) -> None:
-        """Raise for handles that name nothing, and for elements that are named twice."""
+    def require_different(self, called: str, element: str, given: ArrayLike) -> Array:
+        """The handles (n,) int64; raises for those of nothing, and for one named twice."""
+        handles = arguments.handles(called, given)
         try:
             self._state.require(element, handles)
         except MeshError as error:
@@ -177,6 +175,7 @@ class Operations:
         if len(again):
             many = ELEMENTS[element]
             raise TopologyError(f"{called} takes different {many}, each once", **{many: again})
+        return handles
 
     def persist(self, called: str, operation: str, args: Array) -> Bools:
         """Do an operation for every row of ``args`` (n, 3) but those refused -> which were done."""
@@ -277,9 +276,9 @@ class Operations:
         state.make_room(vertices * n, faces * n)
         state.count_valence()
         state.widen(2 * n)  # an operation adds at most 2 to a valence
-        positions = (
-            arguments.NO_POINT if points is None else arguments.positions("prepare", points, n)
-        )
+        positions = arguments.NO_POINT
+        if points is not None:
+            positions = arguments.positions("prepare", points, n)
         valence = int(state.records.counts[VALENCE])
         entries = n * (3 * valence + ENTRIES) + 2 * (valence + 2 * n + ENTRIES)
         results, log = np.zeros(n, np.int64), np.empty(entries, np.int64)

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from hem.arrays import Array, Handles, Points
 from hem.authoring import EDGES, ELEMENTS, QUERIES, SIDES, UNKNOWN, VALENCE, WIDTH, Field
+from hem.contract import arguments
 from hem.contract.state import State
 from hem.contract.storage import HANDLE_TYPES, refuse_handles
 from hem.edit import FACE
@@ -44,8 +45,7 @@ class Sweep(NamedTuple):
     handles: Array
     out: Any
     state: State
-    counts: bytes
-    """What the mesh counted when the handles were checked."""
+    counts: bytes  # what the mesh counted when the handles were checked
 
     def successive(self, begin: int, many: int) -> Sweep:
         """The same for so many handles from a place on; after the last comes the first again."""
@@ -114,12 +114,7 @@ class Queries:
 
     def _checked(self, name: str, handles: ArrayLike) -> NDArray[Any]:
         """(n,) handles for a query; MeshError unless they all name elements of this mesh."""
-        source, wanted = QUERIES[name].source, np.asarray(handles)
-        if wanted.ndim != 1 or (wanted.size and not np.issubdtype(wanted.dtype, np.integer)):
-            raise MeshError(
-                f"{name} takes one {source} handle or a 1-D array of integers, "
-                f"not {wanted.dtype} of shape {wanted.shape}"
-            )
+        source, wanted = QUERIES[name].source, arguments.integers(name, handles, (1,))
         self._state.require(source, wanted)
         return np.ascontiguousarray(wanted, HANDLE_TYPES[source])
 
@@ -148,12 +143,7 @@ class Queries:
     def _walk(self, name: str, handles: Any) -> Any:
         """Any handles for a step, checked."""
         step, state = self._declared.steps[name], self._state
-        asked: Array = np.asarray(handles)
-        if asked.ndim > 1 or (asked.size and not np.issubdtype(asked.dtype, np.integer)):
-            raise MeshError(
-                f"{name} takes one {step.source} handle or a 1-D array of integers, not "
-                f"{handles!r:.60}"
-            )
+        asked = arguments.integers(name, handles)
         rows = np.atleast_1d(asked).astype(np.int64)
         found = np.empty(len(rows), HANDLE_TYPES.get(step.target, np.int64))
         end = self._declared.walks[name](rows, found, *state.records)
@@ -209,9 +199,8 @@ class Queries:
         done = copy(entries, points, indices, state.out["face"], *state.records)
         if done < len(entries):
             kind = "vertices" if entries[done] & 7 < FACE else "faces"
-            raise MeshError(
-                "no row for what an edit touched", **{kind: entries[done : done + 1] >> 3}
-            )
+            rows = {kind: entries[done : done + 1] >> 3}
+            raise MeshError("no row for what an edit touched", **rows)
 
     # For measuring -----------------------------------------------------------------------------
 
@@ -232,8 +221,7 @@ class Queries:
         (wanted,), out = self._ready(name, np.array([handle]))
         state = self._state
         state.prepare(name)
-        uses = self._declared.queries[name]
-        return uses.reads(int(wanted), out, state.records, fields)
+        return self._declared.queries[name].reads(int(wanted), out, state.records, fields)
 
     def _ready(self, name: str, handles: NDArray[Any]) -> tuple[NDArray[Any], Any]:
         """Handles that were checked, and scratch for the answers to each."""

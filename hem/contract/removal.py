@@ -27,15 +27,15 @@ from hem.errors import TopologyError
 
 
 class Remaining(NamedTuple):
-    """The corners (k,) that other faces have at the vertices of the faces to be taken away."""
+    """The corners (k,) that other faces have at the vertices of the faces to be taken away.
+
+    ``following`` and ``before`` are the vertices beside the corner in its face.
+    """
 
     vertex: NDArray[np.int64]
     face: NDArray[np.int64]
     following: NDArray[np.int64]
-    """The next corner of the face."""
-
     before: NDArray[np.int64]
-    """The corner before it."""
 
     @property
     def edges(self) -> NDArray[np.int64]:

@@ -8,14 +8,14 @@ from numpy.typing import ArrayLike
 
 from hem.arrays import Array
 from hem.authoring.marked import BITS
-from hem.contract.attributes import EdgeAttribute, MovingAttribute, enlarged
-from hem.edit import Edit
+from hem.contract.attributes import EdgeAttribute, enlarged
+from hem.edit import Edit, Remapping
 
 Way = tuple[int, int]
 """Where a half-edge starts, and where it ends."""
 
 
-class SideAttribute(MovingAttribute):
+class SideAttribute(EdgeAttribute):
     """Of edges or half-edges that are the sides of faces: side i of face f has row 3 f + i.
 
     It is kept how every side ran when it was last looked at. After an edit the sides of the faces
@@ -28,7 +28,7 @@ class SideAttribute(MovingAttribute):
         self._rows[rows] = values
         if self.element == "edge":
             rows = np.atleast_1d(rows)
-            twin = self._mesh.twin(rows)
+            twin = self.mesh.twin(rows)
             self._rows[twin[twin >= 0]] = self._rows[rows[twin >= 0]]
         self._listeners.tell(np.atleast_1d(np.asarray(handles)))
 
@@ -38,9 +38,8 @@ class SideAttribute(MovingAttribute):
         rows = super(EdgeAttribute, self)._checked(handles)
         return rows >> BITS if self.element == "edge" else rows
 
-    def _moved(self, edit: Edit) -> tuple[Array, Array]:
-        assert edit.remapping is not None
-        faces = edit.remapping.faces
+    def _moved(self, remapping: Remapping) -> tuple[Array, Array]:
+        faces = remapping.faces
         old = np.flatnonzero(faces >= 0)
         return sides_of(old), sides_of(faces[old])
 
@@ -50,7 +49,7 @@ class SideAttribute(MovingAttribute):
 
     def _look_at(self, sides: Array) -> list[Way]:
         """Keep how these sides run -> that."""
-        ways = np.stack([self._mesh.origin(sides), self._mesh.tip(sides)], axis=1)
+        ways = np.stack([self.mesh.origin(sides), self.mesh.tip(sides)], axis=1)
         self._ran = enlarged(self._ran, len(self._rows))
         self._ran[sides] = ways
         return [(a, b) for a, b in ways.tolist()]
@@ -68,7 +67,7 @@ class SideAttribute(MovingAttribute):
         sources = [was.get(way, heir(k)) for k, way in enumerate(now)]
         source = np.array(sources, np.int64)
         if self.element == "edge":  # the face beyond a new one may know it
-            beyond = self._mesh.twin(sides)
+            beyond = self.mesh.twin(sides)
             apart = (source < 0) & (beyond >= 0) & ~np.isin(beyond, sides)
             source[apart] = beyond[apart]
         values = self._rows[source]

@@ -34,11 +34,8 @@ Step = Callable[[str, Any, Array], NDArray[np.int64]]
 class Storage:
     """Records in arrays, a row for each. Another way to hold them is a subclass."""
 
-    uses: ClassVar[type[Uses]] = Uses
-    """How kernels become what is called."""
-
-    pinned: ClassVar[type[Any]] = Pinned
-    """How records and scratch are handed to kernels time and again."""
+    uses: ClassVar[type[Uses]] = Uses  # how kernels become what is called
+    pinned: ClassVar[type[Any]] = Pinned  # how records and scratch are handed to kernels
 
     def __init__(self, fields: Sequence[Field], step: Step | None) -> None:
         self.fields, self._step = fields, step

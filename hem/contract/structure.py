@@ -327,22 +327,19 @@ class Structure(Described, Surveying, abstract=True):
 
         All are checked before any is split. Subscribers hear of one edit.
         """
-        handles = arguments.handles("split_edges", edges)
-        return self._operations.all("split_edges", "split_edge", handles, points)
+        return self._operations.all("split_edges", "split_edge", edges, points)
 
     def split_faces(self, faces: ArrayLike, points: ArrayLike) -> Handles:
         """Split different faces (k,) at points (k, 3), in order -> the new vertices (k,) int32.
 
         All are checked before any is split. Subscribers hear of one edit.
         """
-        handles = arguments.handles("split_faces", faces)
-        return self._operations.all("split_faces", "split_face", handles, points)
+        return self._operations.all("split_faces", "split_face", faces, points)
 
     def split_all_faces(self) -> Handles:
         """Split every face at its centroid -> the new vertices. A face for every side. O(n_t)."""
         faces = self.faces()
-        points = centroids(self, faces)
-        return self._operations.all("split_all_faces", "split_face", faces, points)
+        return self._operations.all("split_all_faces", "split_face", faces, centroids(self, faces))
 
     def collapse_edges(self, edges: ArrayLike, keep: ArrayLike | None = None) -> Bools:
         """Collapse edges (k,) in order, skipping what is gone or refused -> which were done.
@@ -358,10 +355,8 @@ class Structure(Described, Surveying, abstract=True):
             ends = arguments.handles("collapse_edges", keep)
             ends[ends == -1] = NO_VERTEX
         if len(ends) != len(handles):
-            raise MeshError(
-                f"collapse_edges takes one vertex to keep per edge, not {len(ends)} "
-                f"for {len(handles)}"
-            )
+            given = f"{len(ends)} for {len(handles)}"
+            raise MeshError(f"collapse_edges takes one vertex to keep per edge, not {given}")
         rows = arguments.rows(handles, ends)
         if self.told_one_by_one:
             return self._operations.one_by_one(self._do["collapse_edge"], rows)
@@ -369,8 +364,7 @@ class Structure(Described, Surveying, abstract=True):
 
     def move_vertices(self, vertices: ArrayLike, points: ArrayLike) -> None:
         """Give different vertices (k,) the positions (k, 3). One edit. Cost O(k)."""
-        handles = arguments.handles("move_vertices", vertices)
-        self._operations.all("move_vertices", "move_vertex", handles, points)
+        self._operations.all("move_vertices", "move_vertex", vertices, points)
 
     def remove_faces(self, faces: ArrayLike) -> None:
         """Take different faces (k,) away, all at once or none; vertices stay.
@@ -378,8 +372,7 @@ class Structure(Described, Surveying, abstract=True):
         Refused where two fans of what is left would meet in one vertex. Subscribers hear of one
         edit. Cost: that of ``vertex_faces`` at all the corners.
         """
-        handles = arguments.handles("remove_faces", faces)
-        self._operations.require_different("remove_faces", "face", handles)
+        handles = self._operations.require_different("remove_faces", "face", faces)
         if len(handles):
             self._remove("remove_faces", handles)
 
@@ -389,8 +382,7 @@ class Structure(Described, Surveying, abstract=True):
         1 vertex fewer. Refused where two fans of what is left would meet in one vertex. Cost: that
         of ``vertex_faces`` at the vertex and its neighbors.
         """
-        handle = arguments.handles("remove_vertex", [vertex])
-        self._operations.require_different("remove_vertex", "vertex", handle)
+        handle = self._operations.require_different("remove_vertex", "vertex", [vertex])
         faces = self.vertex_faces(handle).values.astype(np.int64)
         return self._remove("remove_vertex", faces, int(vertex))
 
@@ -561,19 +553,13 @@ class Structure(Described, Surveying, abstract=True):
         return taken | {"dead and room to grow": spare, "scratch": self._state.scratch_bytes}
 
     def _live_bytes(self) -> dict[str, int]:
-        counts = {
-            "vertex": self.n_vertices,
-            "edge": self.n_edges,
-            "half_edge": self.n_half_edges,
-            "face": self.n_faces,
-            "triangle": self.n_faces,
-        }
-        return {
-            field.name: counts[field.element]
-            * field.width
-            * int(getattr(self.records, field.array).itemsize)
-            for field in self.fields
-        }
+        counts = {"vertex": self.n_vertices, "edge": self.n_edges, "half_edge": self.n_half_edges}
+        counts |= dict.fromkeys(("face", "triangle"), self.n_faces)
+        taken = {}
+        for it in self.fields:
+            size = int(getattr(self.records, it.array).itemsize)
+            taken[it.name] = counts[it.element] * it.width * size
+        return taken
 
     # For measuring; nobody else needs it -----------------------------------------------------
 

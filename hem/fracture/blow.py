@@ -14,20 +14,11 @@ from hem.fracture.material import Material
 from hem.fracture.pieces import Fracture
 from hem.meshes.measures import direction, dot, length, position
 
-MOST_SITES = 1000
-"""However strong a blow is, it makes no more cells than this."""
-
-LEAST_REACH, MOST_REACH = 0.01, 2.0
-"""A blow reaches so many diagonals: less would make dust, and more than all there is to strike."""
-
-STRIKER = 0.1
-"""The mass of what strikes, as a part of the mass of what is struck."""
-
-ANCHORS = 96
-"""Around the broken part stand so many sites whose cells stay whole."""
-
-TRIES = 200
-"""So many positions are tried for each site wanted, and at least 20,000, until all are inside."""
+MOST_SITES = 1000  # however strong a blow is, it makes no more cells than this
+LEAST_REACH, MOST_REACH = 0.01, 2.0  # in diagonals: less makes dust, and more finds nothing more
+STRIKER = 0.1  # the mass of what strikes, as a part of the mass of what is struck
+ANCHORS = 96  # so many sites around the broken part, whose cells stay whole
+TRIES = 200  # positions for each site wanted, and at least 20,000, until all are inside
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,24 +65,20 @@ class Blow:
 class Sites(NamedTuple):
     """Where a body breaks."""
 
-    points: Floats
-    """(k, 3): inside the body; their cells break off."""
-
-    anchors: Floats
-    """(a, 3): around them, inside or not; their cells stay whole."""
-
-    outside: int
-    """How many positions were outside and given up."""
+    points: Floats  # (k, 3): inside the body; their cells break off
+    anchors: Floats  # (a, 3): around them, inside or not; their cells stay whole
+    outside: int  # how many positions were outside and given up
 
 
 class Motion(NamedTuple):
-    """How pieces set off."""
+    """How pieces set off.
+
+    velocities  (n, 3) m / s: of the centers of mass
+    spins       (n, 3) rad / s: about the centers of mass
+    """
 
     velocities: Floats
-    """(n, 3) m / s: of the centers of mass."""
-
     spins: Floats
-    """(n, 3) rad / s: about the centers of mass."""
 
 
 def sites(
@@ -115,9 +102,8 @@ def sites(
     """
     random = generator(seed)
     reach, tight = blow.reach(material, diagonal), blow.tightness()
-    anchors = blow.impact + _directions(random, ANCHORS) * (
-        reach * (1.1 + 0.4 * random.random(ANCHORS))[:, None]
-    )
+    around = _directions(random, ANCHORS)
+    anchors = blow.impact + around * (reach * (1.1 + 0.4 * random.random(ANCHORS))[:, None])
     wanted = blow.count(material)
     found, tried = np.zeros((0, 3)), 0
     while len(found) < wanted and tried < max(TRIES * wanted, 20_000):
@@ -157,10 +143,8 @@ def motion(fracture: Fracture, blow: Blow, seed: int | None = None) -> Motion:
     # What rounding leaves of a single piece's burst is no motion to be scaled up.
     real = own > 1e-20 * kinetic_energy(mass, thrown)
     scale = math.sqrt(blow.force) * math.sqrt(part / own) if real else 0.0
-    carried = _carried(mass, whole, _struck(whole, blow))
-    return Motion(
-        carried.velocities + scale * burst.velocities, carried.spins + scale * burst.spins
-    )
+    velocities, spins = _carried(mass, whole, _struck(whole, blow))
+    return Motion(velocities + scale * burst.velocities, spins + scale * burst.spins)
 
 
 def momentum(mass: Mass, motion: Motion, about: Floats) -> tuple[Floats, Floats]:

@@ -103,14 +103,10 @@ def _move(beside: Path, target: Path, aside: Path) -> None:
 def _save_glb(fracture: Fracture, folder: Path, up: ArrayLike) -> list[Path]:
     import trimesh
 
-    color = [int(fracture.material.color[i : i + 2], 16) for i in (1, 3, 5)]
     look = trimesh.visual.material.PBRMaterial(
-        name=fracture.material.name,
-        baseColorFactor=[*color, 255],
-        roughnessFactor=0.5,
-        metallicFactor=0.0,
-        doubleSided=True,
-    )
+        name=fracture.material.name, baseColorFactor=[*fracture.material.rgb, 255],
+        roughnessFactor=0.5, metallicFactor=0.0, doubleSided=True,
+    )  # fmt: skip
     scene = trimesh.Scene()
     for name, piece in zip(names(fracture), fracture.pieces, strict=True):
         shown = trimesh.Trimesh(piece.points, piece.triangles, process=False)
@@ -125,12 +121,8 @@ def _upright(up: ArrayLike) -> Any:
     """The (4, 4) transform that turns ``up`` to y, as glTF has it."""
     from scipy.spatial.transform import Rotation
 
-    top = np.asarray(up, float) / np.linalg.norm(np.asarray(up, float))
     turn = np.eye(4)
-    axis, cosine = np.cross(top, (0.0, 1.0, 0.0)), float(top[1])
-    length = float(np.linalg.norm(axis))
-    axis = axis / length if length > 0 else np.array([1.0, 0.0, 0.0])
-    turn[:3, :3] = Rotation.from_rotvec(axis * np.arctan2(length, cosine)).as_matrix()
+    turn[:3, :3] = Rotation.align_vectors([(0, 1, 0)], [np.asarray(up, float)])[0].as_matrix()
     return turn
 
 

@@ -14,24 +14,23 @@ import numpy as np
 
 from hem.arrays import Floats, Indices
 from hem.errors import MeshError
-from hem.meshes import TriangleMesh
+from hem.meshes import TriangleMesh, joined
 from hem.meshes.measures import areas, dot
 
 
 class Mass(NamedTuple):
-    """How heavy pieces are, and where: what decides how they move. All float64."""
+    """How heavy pieces are, and where: what decides how they move. All float64.
+
+    volumes   (n,): of closed pieces, or area × thickness of pieces of a sheet
+    masses    (n,) kg
+    centers   (n, 3): the centers of mass
+    inertias  (n, 3, 3) kg m²: about the centers
+    """
 
     volumes: Floats
-    """(n,): of closed pieces, or area × thickness of pieces of a sheet."""
-
     masses: Floats
-    """(n,) kg."""
-
     centers: Floats
-    """(n, 3): the centers of mass."""
-
     inertias: Floats
-    """(n, 3, 3) kg m²: about the centers."""
 
 
 def of_bodies(meshes: Sequence[TriangleMesh], density: float) -> Mass:
@@ -64,12 +63,11 @@ def _positive(value: float, what: str) -> float:
 
 def _corners(meshes: Sequence[TriangleMesh]) -> tuple[Floats, Indices, Floats]:
     """(m, 3, 3) corners of all triangles from their piece's origin, whose they are, the origins."""
-    points = np.concatenate([np.zeros((0, 3)), *(mesh.points for mesh in meshes)])
-    starts = np.cumsum([0, *(len(mesh.points) for mesh in meshes)])
+    nothing = np.zeros((0, 3)), np.zeros((0, 3), int)
+    points, triangles = joined([nothing, *((mesh.points, mesh.triangles) for mesh in meshes)])
     counts = [len(mesh.triangles) for mesh in meshes]
     owner = np.repeat(np.arange(len(meshes)), counts)
-    triangles = np.concatenate([np.zeros((0, 3), int), *(mesh.triangles for mesh in meshes)])
-    corners = points[triangles + starts[owner, None]]
+    corners = points[triangles]
     origins = np.zeros((len(meshes), 3))
     filled = np.flatnonzero(counts)
     if len(filled):  # those without triangles begin where the next one does

@@ -31,6 +31,11 @@ class Material:
     burst: float
     color: str = "#b0b0b0"
 
+    @property
+    def rgb(self) -> bytes:
+        """Its color as three numbers, sRGB in 0 … 255."""
+        return bytes.fromhex(self.color[1:])
+
     def __post_init__(self) -> None:
         object.__setattr__(self, "circles", tuple(self.circles))
         wrong = [it for it in _POSITIVE if not _is_positive(getattr(self, it))]

@@ -1,5 +1,6 @@
 """What hangs together, and what is used."""
 
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
@@ -21,6 +22,14 @@ def components(n: int, pairs: Array) -> tuple[int, Indices]:
     joined = coo_array((np.ones(len(pairs), bool), (pairs[:, 0], pairs[:, 1])), shape=(n, n))
     count, label = connected_components(joined, directed=False)
     return int(count), label.astype(np.int64)
+
+
+def joined(parts: Iterable[tuple[Array, Array]]) -> tuple[Array, Array]:
+    """The points (n, 3) and the triangles (m, 3) of several meshes in two arrays."""
+    points, triangles = zip(*parts, strict=True)
+    starts = np.cumsum([0, *map(len, points[:-1])])
+    shifted = [rows + start for rows, start in zip(triangles, starts, strict=True)]
+    return np.concatenate(points), np.concatenate(shifted)
 
 
 def used_only(points: NDArray[Any], triangles: Array) -> tuple[NDArray[Any], Indices]:

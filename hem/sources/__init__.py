@@ -8,19 +8,6 @@ from hem.sources.samples import SAMPLES, Sample, sample
 from hem.sources.valence import valence_hubs, valence_mesh
 
 __all__ = [
-    "FAMILIES",
-    "SAMPLES",
-    "Family",
-    "Sample",
-    "as_mesh",
-    "cache_folder",
-    "encoded",
-    "find_mesh",
-    "generate",
-    "load",
-    "load_polygons",
-    "sample",
-    "save",
-    "valence_hubs",
-    "valence_mesh",
-]
+    "FAMILIES", "SAMPLES", "Family", "Sample", "as_mesh", "cache_folder", "encoded", "find_mesh",
+    "generate", "load", "load_polygons", "sample", "save", "valence_hubs", "valence_mesh",
+]  # fmt: skip

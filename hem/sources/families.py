@@ -51,16 +51,13 @@ def generate(family: str, n_vertices: int, seed: int = 0) -> TriangleMesh:
             f"{LARGEST:,}, {chosen.sizes}"
         )
     variant = seed if chosen.random else 0
-    return cached(
-        f"{family}-{n_vertices}-{variant}-{_made_by()}",
-        lambda: _made(chosen, n_vertices, variant),
-    )
 
+    def make() -> TriangleMesh:
+        mesh = chosen.make(n_vertices, variant)
+        require_manifold(mesh)
+        return mesh
 
-def _made(family: Family, n_vertices: int, seed: int) -> TriangleMesh:
-    mesh = family.make(n_vertices, seed)
-    require_manifold(mesh)
-    return mesh
+    return cached(f"{family}-{n_vertices}-{variant}-{_made_by()}", make)
 
 
 @cache

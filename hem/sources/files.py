@@ -18,30 +18,21 @@ from hem.errors import MeshError, MeshWarning
 from hem.meshes import PolygonMesh, TriangleMesh, repeats_a_corner, require_triangles, simplest
 from hem.meshes.conversions import from_any
 from hem.ragged import Ragged
+from hem.sources import text
 from hem.sources.ctm import besides, promised_bytes
 from hem.sources.meshlab import MeshlabError, load_file, save_file
 from hem.sources.ply import read_ply, write_ply
 from hem.sources.repair import repaired
-from hem.sources.text import (
-    Parts,
-    cut_short,
-    read_obj,
-    read_off,
-    read_stl,
-    uniform,
-    write_obj,
-    write_off,
-    write_stl,
-)
+from hem.sources.text import Parts, cut_short, uniform
 from hem.whole_files import write_whole
 
 FilePath = str | os.PathLike[str]
 _COMMON = "ply, obj, off, stl, 3ds, dae, wrl, x3d, ctm"
 _READERS: dict[str, Callable[[bytes], Parts]] = {
-    "ply": read_ply, "obj": read_obj, "off": read_off, "stl": read_stl,
+    "ply": read_ply, "obj": text.read_obj, "off": text.read_off, "stl": text.read_stl,
 }  # fmt: skip
 _WRITERS: dict[str, Callable[[Points, Ragged], bytes]] = {
-    "ply": write_ply, "obj": write_obj, "off": write_off, "stl": write_stl,
+    "ply": write_ply, "obj": text.write_obj, "off": text.write_off, "stl": text.write_stl,
 }  # fmt: skip
 _BESIDE = {
     "texture coordinates": rb'"TEXCOORD|\bTextureCoordinate\b',

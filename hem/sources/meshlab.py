@@ -23,13 +23,9 @@ from hem.meshes import TriangleMesh
 # Shared libraries that pymeshlab's wheel needs from the system (found with ldd), and the Debian
 # and Ubuntu packages that hold them.
 SYSTEM_LIBRARIES = {
-    "libGL.so.1": "libgl1",
-    "libOpenGL.so.0": "libopengl0",
-    "libGLX.so.0": "libglx0",
-    "libX11.so.6": "libx11-6",
-    "libxcb.so.1": "libxcb1",
-    "libgmp.so.10": "libgmp10",
-}
+    "libGL.so.1": "libgl1", "libOpenGL.so.0": "libopengl0", "libGLX.so.0": "libglx0",
+    "libX11.so.6": "libx11-6", "libxcb.so.1": "libxcb1", "libgmp.so.10": "libgmp10",
+}  # fmt: skip
 _ALWAYS = ("libgl1", "libopengl0")
 _ABSENT = re.compile(r"(lib[\w+-]+\.so[.\d]*): cannot open shared object file")
 

@@ -3,6 +3,7 @@
 import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
@@ -32,38 +33,32 @@ def sample(name: str, **options: Any) -> TriangleMesh:
     return look_up(name, SAMPLES, "sample").make(**options)
 
 
-def _from_file(name: str) -> Callable[..., TriangleMesh]:
-    def make(repair: bool = False) -> TriangleMesh:
-        with warnings.catch_warnings(action="ignore", category=MeshWarning):
-            return load(_sample_file(name), repair, triangulate=True)
-
-    return make
-
-
-def _sample_file(name: str) -> Path:
+def _from_file(name: str, repair: bool = False) -> TriangleMesh:
     package = find_spec("pymeshlab")
     if package is None or package.origin is None:
         raise MeshError("the models come with pymeshlab: pip install 'hem-mesh[study]'")
     file = Path(package.origin).parent / "tests" / "sample_meshes" / name
     if not file.exists():
         raise MeshError(f"this pymeshlab came without its sample meshes: there is no {file}")
-    return file
+    with warnings.catch_warnings(action="ignore", category=MeshWarning):
+        return load(file, repair, triangulate=True)
+
+
+def _of_file(what: str, name: str) -> Sample:
+    return Sample(what, partial(_from_file, name))
 
 
 SAMPLES: dict[str, Sample] = {
-    "bunny": Sample("the Stanford bunny: closed, 28,088 vertices", _from_file("bunny.obj")),
-    "cow": Sample("a cow: closed, 2,904 vertices", _from_file("cow.obj")),
-    "airplane": Sample(
-        "an airplane: closed, 7,017 vertices, 1,617 of them without faces",
-        _from_file("airplane.obj"),
+    "bunny": _of_file("the Stanford bunny: closed, 28,088 vertices", "bunny.obj"),
+    "cow": _of_file("a cow: closed, 2,904 vertices", "cow.obj"),
+    "airplane": _of_file(
+        "an airplane: closed, 7,017 vertices, 1,617 of them without faces", "airplane.obj"
     ),
-    "bone": Sample(
-        "a bone: closed, 1,872 vertices, 359 of them without faces", _from_file("bone.ply")
-    ),
-    "face": Sample(
+    "bone": _of_file("a bone: closed, 1,872 vertices, 359 of them without faces", "bone.ply"),
+    "face": _of_file(
         "one range scan of a face: 85,849 vertices, a ragged border, 17 pieces, and six "
         "vertices where two fans meet, which only repair=True makes a surface",
-        _from_file("rangemaps/face000.ply"),
+        "rangemaps/face000.ply",
     ),
     "teapot": Sample("the Utah teapot, from its patches at any tessellation", teapot),
 }

@@ -10,11 +10,9 @@ from importlib.resources import files
 import numpy as np
 from numpy.typing import NDArray
 
+from hem.arrays import Bools, Floats, Indices
 from hem.errors import MeshError
-from hem.meshes import TriangleMesh
-
-Numbers = NDArray[np.float64]
-Corners = NDArray[np.int64]
+from hem.meshes import TriangleMesh, joined
 
 # What is welded together. The handle touches the body in a single point of both, where a weld
 # would make a vertex of two fans, which is no surface.
@@ -40,20 +38,19 @@ def teapot(tessellation: int = 10, welded: bool = True) -> TriangleMesh:
     _, parts = _control_points()
     if not welded:
         return _tessellated(np.ones(len(parts), bool), tessellation)
-    return _together(
-        [_tessellated(np.isin(parts, shell), tessellation).welded() for shell in _SHELLS]
-    )
+    shells = [_tessellated(np.isin(parts, it), tessellation).welded() for it in _SHELLS]
+    return TriangleMesh(*joined((it.points, it.triangles) for it in shells))
 
 
 @cache
-def _control_points() -> tuple[Numbers, NDArray[np.str_]]:
+def _control_points() -> tuple[Floats, NDArray[np.str_]]:
     """(32, 4, 4, 3) points, and the part that each patch belongs to."""
     data = json.loads(files("hem.sources").joinpath("teapot.json").read_text(encoding="utf-8"))
     patches = np.array(data["patches"]).reshape(-1, 4, 4)
     return np.array(data["points"])[patches], np.array(data["parts"])
 
 
-def _tessellated(chosen: NDArray[np.bool_], n: int) -> TriangleMesh:
+def _tessellated(chosen: Bools, n: int) -> TriangleMesh:
     control, _ = _control_points()
     points = _blend(_blend(control[chosen], n).swapaxes(1, 2), n)
     one_patch = _cells(n)
@@ -61,7 +58,7 @@ def _tessellated(chosen: NDArray[np.bool_], n: int) -> TriangleMesh:
     return TriangleMesh(points.reshape(-1, 3), (start[:, None, None] + one_patch).reshape(-1, 3))
 
 
-def _blend(control: Numbers, n: int) -> Numbers:
+def _blend(control: Floats, n: int) -> Floats:
     """Bézier curves over the last but one axis, (…, 4, 3), at n + 1 parameters: (…, n + 1, 3).
 
     The sum pairs the terms that change places when a curve is run backwards, so that two patches
@@ -74,14 +71,8 @@ def _blend(control: Numbers, n: int) -> Numbers:
     return ends + middle
 
 
-def _cells(n: int) -> Corners:
+def _cells(n: int) -> Indices:
     """Two triangles for each of the n² cells between (n + 1)² vertices."""
     grid = np.arange((n + 1) ** 2).reshape(n + 1, n + 1)
     a, b, c, d = grid[:-1, :-1], grid[1:, :-1], grid[1:, 1:], grid[:-1, 1:]
     return np.stack([a, b, c, a, c, d], axis=2).reshape(-1, 3)
-
-
-def _together(meshes: list[TriangleMesh]) -> TriangleMesh:
-    starts = np.cumsum([0, *(len(mesh.points) for mesh in meshes)])
-    triangles = [mesh.triangles + start for mesh, start in zip(meshes, starts, strict=False)]
-    return TriangleMesh(np.concatenate([mesh.points for mesh in meshes]), np.concatenate(triangles))

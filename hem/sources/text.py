@@ -6,8 +6,8 @@ handed on, for the mesh to refuse by their rows.
 
 import re
 from collections.abc import Iterable
-from itertools import chain, pairwise
-from typing import Any, NamedTuple
+from itertools import chain
+from typing import NamedTuple
 
 import numpy as np
 
@@ -130,14 +130,15 @@ def read_stl(data: bytes) -> Parts:
 def write_obj(points: Points, faces: Ragged) -> bytes:
     """Text with the counts at its head, every digit and all corners of every face."""
     head = f"# Vertices: {len(points)}\n# Faces: {len(faces)}\n"
-    rows = ["f " + " ".join(map(str, row)) for row in _lists(faces, 1)]
+    counted = Ragged(faces.offsets, faces.values + 1)
+    rows = ["f " + " ".join(map(str, row)) for row in counted.to_list()]
     return "\n".join([head, *_positions("v ", points), *rows, ""]).encode()
 
 
 def write_off(points: Points, faces: Ragged) -> bytes:
     """Text with every digit and all corners of every face."""
     head = f"OFF\n{len(points)} {len(faces)} 0"
-    rows = [" ".join(map(str, (len(row), *row))) for row in _lists(faces)]
+    rows = [" ".join(map(str, (len(row), *row))) for row in faces.to_list()]
     return "\n".join([head, *_positions("", points), *rows, ""]).encode()
 
 
@@ -163,8 +164,3 @@ def _positions(before: str, points: Points) -> list[str]:
     digits = 17 if points.dtype == np.float64 else 9
     row = before + " ".join([f"%.{digits}g"] * 3)
     return [row % tuple(point) for point in points.tolist()]
-
-
-def _lists(faces: Ragged, add: int = 0) -> Any:
-    values, ends = (faces.values + add).tolist(), faces.offsets.tolist()
-    return (values[start:end] for start, end in pairwise(ends))

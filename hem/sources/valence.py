@@ -11,10 +11,10 @@ of k vertices, and a strip of triangles that makes up the number of faces:
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hem.arrays import Floats, Indices
 from hem.errors import MeshError
-from hem.meshes import TriangleMesh
+from hem.meshes import TriangleMesh, joined
 
 _LEAST = 3
 _SPACING = 3.0
@@ -29,11 +29,7 @@ def valence_mesh(valence: int, n_faces: int) -> TriangleMesh:
     """
     count = len(valence_hubs(valence, n_faces)) // 2
     rest = n_faces - 2 * valence * count
-    points, triangles = _bipyramids(valence, count)
-    strip_points, strip = _strip(rest)
-    return TriangleMesh(
-        np.concatenate([points, strip_points]), np.concatenate([triangles, strip + len(points)])
-    )
+    return TriangleMesh(*joined([_bipyramids(valence, count), _strip(rest)]))
 
 
 def valence_hubs(valence: int, n_faces: int) -> range:
@@ -46,7 +42,7 @@ def valence_hubs(valence: int, n_faces: int) -> range:
     return range(n_faces // (2 * valence) * 2)
 
 
-def _bipyramids(valence: int, count: int) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+def _bipyramids(valence: int, count: int) -> tuple[Floats, Indices]:
     which = np.arange(count)
     side = int(np.ceil(np.sqrt(count)))
     centers = _SPACING * np.stack([which % side, which // side, 0 * which], axis=1)
@@ -64,7 +60,7 @@ def _bipyramids(valence: int, count: int) -> tuple[NDArray[np.float64], NDArray[
     return np.concatenate([hubs.reshape(-1, 3), rims.reshape(-1, 3)]), triangles.reshape(-1, 3)
 
 
-def _strip(n_faces: int) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+def _strip(n_faces: int) -> tuple[Floats, Indices]:
     """A zigzag band of triangles below the bipyramids, counterclockwise from above."""
     if n_faces == 0:
         return np.zeros((0, 3)), np.zeros((0, 3), np.int64)

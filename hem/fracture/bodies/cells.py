@@ -64,25 +64,18 @@ def cells(sites: Floats, center: Floats, radius: float) -> Cells:
     extent = max(radius, float(np.abs(sites - center).max()))
     far = center + _FAR * extent * np.concatenate([np.eye(3), -np.eye(3)])
     diagram = Voronoi(np.concatenate([sites, far]))
-    triangles, walls = [], []
-    for wall, corners in enumerate(diagram.ridge_vertices):
-        if -1 not in corners:  # infinite walls lie between two of the six
-            fan = [(corners[0], b, c) for b, c in pairwise(corners[1:])]
-            triangles += fan
-            walls += [wall] * len(fan)
-    pairs, of = np.asarray(diagram.ridge_points, np.int64), np.array(walls)
-    outward = _outward(diagram, pairs)[of]
-    front = np.where(outward, pairs[of, 0], pairs[of, 1])
-    back = np.where(outward, pairs[of, 1], pairs[of, 0])
-    return Cells(sites, diagram.vertices, np.array(triangles, np.int64), of, front, back)
-
-
-def _outward(diagram: Any, pairs: Indices) -> Bools:
-    """Which walls run counterclockwise as seen from the second of their two sites."""
-    found = np.zeros(len(pairs), bool)
-    across = diagram.points[pairs[:, 1]] - diagram.points[pairs[:, 0]]
-    for wall, corners in enumerate(diagram.ridge_vertices):
-        polygon = diagram.vertices[corners]
-        arms = polygon[1:] - polygon[0]
-        found[wall] = np.cross(arms[:-1], arms[1:]).sum(axis=0) @ across[wall] > 0
-    return found
+    triangles, walls, sides = [], [], []
+    pairs = diagram.ridge_points.tolist()
+    for wall, (corners, (a, b)) in enumerate(zip(diagram.ridge_vertices, pairs, strict=True)):
+        if -1 in corners:  # infinite walls lie between two of the six
+            continue
+        arms = diagram.vertices[corners[1:]] - diagram.vertices[corners[0]]
+        across = diagram.points[b] - diagram.points[a]
+        from_b = np.cross(arms[:-1], arms[1:]).sum(axis=0) @ across > 0  # counterclockwise
+        fan = [(corners[0], *two) for two in pairwise(corners[1:])]
+        triangles += fan
+        walls += [wall] * len(fan)
+        sides += [(a, b) if from_b else (b, a)] * len(fan)
+    front, back = np.array(sides, np.int64).T
+    made = np.array(triangles, np.int64), np.array(walls)
+    return Cells(sites, diagram.vertices, *made, front, back)

@@ -17,20 +17,13 @@ from hem.fracture.material import Material
 from hem.fracture.material import material as named
 from hem.fracture.pieces import Fracture
 from hem.fracture.surface.nearest import closest
-from hem.meshes import TriangleMesh
+from hem.meshes import TriangleMesh, joined
 from hem.meshes.measures import bounds, corners, length, normals, position
 
-VANISHING = 1e-9
-"""A piece of less than this part of the body's volume is dropped."""
-
-_THIN = 4
-"""So is one thinner than so many roundings of the largest coordinate, which would be flat."""
-
-_CLOSE = 1e-6
-"""Sites nearer to each other than this part of the diagonal are one."""
-
-_TOUCH = 1e-9
-"""Pieces are neighbors that share more than this part of the diagonal's square."""
+VANISHING = 1e-9  # a piece of less than this part of the body's volume is dropped
+_THIN = 4  # so is one thinner than so many roundings of the largest coordinate, nearly flat
+_CLOSE = 1e-6  # sites nearer to each other than this part of the diagonal are one
+_TOUCH = 1e-9  # pieces are neighbors that share more than this part of the diagonal's square
 
 
 def voronoi(
@@ -72,6 +65,7 @@ def voronoi(
     blow = _aimed(body, position(impact, "an impact"), direction, force)
     plan = _scattered(body, blow, chosen, seed) if sites is None else _given(body, sites)
     made = _cut(body, plan)
+    pieces, least = [*made.shards, *made.rest], _TOUCH * body.diagonal**2
     return Fracture(
         method="voronoi",
         material=chosen,
@@ -87,7 +81,9 @@ def voronoi(
             "vanished": made.vanished,
         },
         diagonal=body.diagonal,
-        find_neighbors=lambda: _neighbors(made, body.diagonal),
+        find_neighbors=lambda: touching(
+            [it.mesh for it in pieces], [it.walls for it in pieces], least
+        ),
     )
 
 
@@ -143,12 +139,8 @@ def _scattered(body: Body, blow: Blow, material: Material, seed: int) -> _Plan:
 
 def _given(body: Body, sites: ArrayLike) -> _Plan:
     points = np.asarray(sites)
-    if (
-        points.ndim != 2
-        or points.shape[1] != 3
-        or not len(points)
-        or points.dtype.kind not in "iuf"
-    ):
+    rows = points.ndim == 2 and points.shape[1] == 3 and len(points)
+    if not rows or points.dtype.kind not in "iuf":
         raise MeshError(f"sites are a row of three numbers each, not {points.shape}")
     bad = ~np.isfinite(points).all(axis=1)
     if bad.any():
@@ -198,52 +190,31 @@ def _remainder(body: Body, cut: Cells, breaking: int, label: int) -> Any:
         return manifold3d.Manifold.batch_boolean([body.manifold, *each], manifold3d.OpType.Subtract)
 
 
+def _corners(mesh: TriangleMesh) -> Floats:
+    return corners(mesh.points, mesh.triangles)
+
+
 def _parts(made: Any, grain: _Grain) -> tuple[list[_Piece], int]:
     """The connected parts, the largest first, and how many vanished.
 
     manifold3d gives a hollow as a part of its own, inside out; here it belongs to what is around.
     """
-    found = made.decompose()
-    real = sorted((part for part in found if _is_real(part, grain)), key=_volume, reverse=True)
-    pieces = [_piece(part, grain.label) for part in real if _volume(part) > 0]
-    hollows = [part for part in real if _volume(part) < 0]
-    for hollow in hollows:
-        inner = _piece(hollow, grain.label)
-        at = inner.mesh.points[:1].astype(np.float64)
-        around = [i for i, part in enumerate(pieces) if windings(_corners(part.mesh), at)[0] > 0]
+    found, pieces, vanished = made.decompose(), [], 0
+    for part in sorted(found, key=lambda it: it.volume(), reverse=True):
+        volume = abs(part.volume())
+        if not (volume > grain.volume and 2 * volume > grain.thickness * part.surface_area()):
+            vanished += 1
+            continue
+        mesh, labels = from_manifold(part)
+        walls = labels - grain.label
+        if part.volume() > 0:
+            pieces.append(_Piece(mesh, walls))
+            continue
+        at = mesh.points[:1].astype(np.float64)
+        around = [i for i, (it, _) in enumerate(pieces) if windings(_corners(it), at)[0] > 0]
         # The smallest around is the last. Rounding may put a vertex on the surface: then no other.
         chosen = around[-1] if around else 0
-        pieces[chosen] = _hollowed(pieces[chosen], inner)
-    return pieces, len(found) - len(real)
-
-
-def _is_real(part: Any, grain: _Grain) -> bool:
-    volume = abs(_volume(part))
-    return volume > grain.volume and 2 * volume > grain.thickness * float(part.surface_area())
-
-
-def _piece(part: Any, label: int) -> _Piece:
-    mesh, labels = from_manifold(part)
-    return _Piece(mesh, labels - label)
-
-
-def _hollowed(outer: _Piece, inner: _Piece) -> _Piece:
-    points = np.concatenate([outer.mesh.points, inner.mesh.points])
-    shifted = inner.mesh.triangles + len(outer.mesh.points)
-    triangles = np.concatenate([outer.mesh.triangles, shifted])
-    return _Piece(TriangleMesh(points, triangles), np.concatenate([outer.walls, inner.walls]))
-
-
-def _corners(mesh: TriangleMesh) -> Floats:
-    return corners(mesh.points, mesh.triangles)
-
-
-def _volume(made: Any) -> float:
-    return float(made.volume())
-
-
-def _neighbors(made: _Made, diagonal: float) -> Indices:
-    pieces = made.shards + made.rest
-    return touching(
-        [piece.mesh for piece in pieces], [piece.walls for piece in pieces], _TOUCH * diagonal**2
-    )
+        outer = pieces[chosen]
+        both = joined((it.points, it.triangles) for it in (outer.mesh, mesh))
+        pieces[chosen] = _Piece(TriangleMesh(*both), np.concatenate([outer.walls, walls]))
+    return pieces, vanished

@@ -19,18 +19,7 @@ from hem.fracture.show.picture import (
 from hem.fracture.show.scene import FRAMES_PER_SECOND, FractureScene, save_animation
 
 __all__ = [
-    "AXES",
-    "FRAMES_PER_SECOND",
-    "GRAVITY",
-    "Flight",
-    "FractureScene",
-    "Image",
-    "Picture",
-    "PicturesMissingError",
-    "Size",
-    "default_impact",
-    "flight",
-    "load_pyvista",
-    "save_animation",
+    "AXES", "FRAMES_PER_SECOND", "GRAVITY", "Flight", "FractureScene", "Image", "Picture",
+    "PicturesMissingError", "Size", "default_impact", "flight", "load_pyvista", "save_animation",
     "view_direction",
-]
+]  # fmt: skip

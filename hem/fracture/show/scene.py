@@ -1,11 +1,10 @@
 """Pictures and animations of a fracture: its pieces in place, moved apart, and flying."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Self
 
 import numpy as np
 
@@ -13,7 +12,7 @@ from hem.arrays import Array, Bools
 from hem.fracture.pieces import Fracture
 from hem.fracture.show.flight import Flight
 from hem.fracture.show.picture import AXES, Image, Picture, Size, load_pyvista
-from hem.meshes import TriangleMesh
+from hem.meshes import TriangleMesh, joined
 
 FRAMES_PER_SECOND = 25
 _GAP = 0.018
@@ -29,23 +28,16 @@ class FractureScene:
     floor: float
     points: Array
     triangles: Array
-    colors: Array
-    """(m, 3): sRGB in 0 … 1."""
-
-    piece: Array
-    """(n,): of each point."""
+    colors: Array  # (m, 3): sRGB in 0 … 1
+    piece: Array  # (n,): of each point
 
     @classmethod
-    def build(cls, fracture: Fracture, mesh: TriangleMesh, up: str = "y") -> FractureScene:
+    def build(cls, fracture: Fracture, mesh: TriangleMesh, up: str = "y") -> Self:
         """How the pieces of ``mesh`` look: its skin in the material's color, cuts darker."""
         pieces = fracture.pieces
-        counts = [len(each.points) for each in pieces]
-        starts = np.cumsum([0, *counts[:-1]])
-        points = np.concatenate([each.points for each in pieces]).astype(float)
-        triangles = np.concatenate(
-            [each.triangles + start for each, start in zip(pieces, starts, strict=True)]
-        )
-        piece = np.repeat(np.arange(len(pieces)), counts)
+        points, triangles = joined((each.points, each.triangles) for each in pieces)
+        points = points.astype(float)
+        piece = np.repeat(np.arange(len(pieces)), [len(each.points) for each in pieces])
         skin = on_surface(points[triangles], mesh) if fracture.closed else True
         floor = float((mesh.points[np.unique(mesh.triangles)] @ np.array(AXES[up])).min())
         colors = _colors(fracture, np.broadcast_to(skin, len(triangles)), piece[triangles[:, 0]])
@@ -158,6 +150,6 @@ def save_animation(
 
 def _colors(fracture: Fracture, skin: Array, piece: Array) -> Array:
     """(m, 3): the material's, darker and richer inside, every piece a little different."""
-    base = np.array([int(fracture.material.color[i : i + 2], 16) for i in (1, 3, 5)]) / 255
+    base = np.array([*fracture.material.rgb]) / 255
     tint = 1 + (0.07 if fracture.closed else 0.25) * ((piece * 0.6180339887) % 1 - 0.5)
     return np.clip(np.where(skin[:, None], base, 0.8 * base**1.4) * tint[:, None], 0, 1)

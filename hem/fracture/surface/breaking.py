@@ -22,7 +22,10 @@ from hem.arrays import Array
 from hem.authoring import ALLOWED, FACE_END, FACES, NEEDS_ROOM, Kernel, kernel, part
 
 NOWHERE, ON_VERTEX, ON_EDGE, IN_FACE = -1, 0, 1, 2
-"""What became of a break point: off the surface, on a vertex (no split), or splits of either."""
+OUTCOMES = {
+    "in a face": IN_FACE, "on an edge": ON_EDGE, "on a vertex": ON_VERTEX, "outside": NOWHERE,
+}  # fmt: skip
+"""What became of the break points, in words: the first two split, the others are dropped."""
 
 JUMP = -1
 """Begin a walk where it is likely to be short."""
@@ -58,26 +61,16 @@ class Plan(NamedTuple):
 def make_plan(target: Array, tolerance: float, out: Array, log: Array, **given: Array) -> Plan:
     """A plan with scratch of its own."""
     k = len(given.get("offsets", ()))
-    own = {
-        "target": np.array(target, np.float64),
-        "tolerance": np.array([tolerance]),
-        "frame": np.zeros((2, 3)),
-        "offsets": np.zeros((k, 2)),
-        "landed_at": np.zeros((k, 3)),
-        "landed_on": np.zeros(k, np.int64),
-        "outcome": np.full(k, NOWHERE),
-        "start": np.zeros(1, np.int64),
-        "visited": np.zeros(1, np.int64),
-        "corners": np.zeros(3, np.int64),
-        "xyz": np.zeros((3, 3)),
-        "normal": np.zeros(3),
-        "heights": np.zeros(3),
-        "longest": np.zeros(1),
-        "at": np.zeros(6, np.int64),
-        "args": np.full(3, -1),
-        "point": np.zeros(3, np.float32),
-    }
-    return Plan(**(own | given), out=out, log=log)
+    floats: dict[str, Any] = {
+        "frame": (2, 3), "offsets": (k, 2), "landed_at": (k, 3),
+        "xyz": (3, 3), "normal": 3, "heights": 3, "longest": 1,
+    }  # fmt: skip
+    integers = {"landed_on": k, "start": 1, "visited": 1, "corners": 3, "at": 6}
+    own = {name: np.zeros(shape) for name, shape in floats.items()}
+    own |= {name: np.zeros(n, np.int64) for name, n in integers.items()}
+    own |= {"target": np.array(target, np.float64), "tolerance": np.array([tolerance])}
+    own |= {"outcome": np.full(k, NOWHERE), "args": np.full(3, -1)}
+    return Plan(**(own | given), point=np.zeros(3, np.float32), out=out, log=log)
 
 
 @kernel
@@ -116,20 +109,6 @@ def lowest_side(plan: Plan) -> int:
         if plan.heights[i] < plan.heights[side]:
             side = i
     return side
-
-
-class Survey(NamedTuple):
-    """What all of it takes, made of the queries of one structure."""
-
-    measure: Kernel
-    across: Kernel
-    walk: Kernel
-
-
-def surveying(k: Mapping[str, Kernel]) -> Survey:
-    """Make the kernels that measure a face, cross one of its sides, and walk toward a point."""
-    measure, across = measuring(k), crossing(k)
-    return Survey(measure, across, walking(measure, across))
 
 
 def measuring(k: Mapping[str, Kernel]) -> Kernel:
@@ -223,7 +202,8 @@ def finding(k: Mapping[str, Kernel], operations: Mapping[str, Kernel]) -> Kernel
 
     -1 where there is no face to begin at, or the walk ends in one without area.
     """
-    measure, _, walk = surveying(k)
+    measure = measuring(k)
+    walk = walking(measure, crossing(k))
     face_vertices, face_exists, coordinate = k["face_vertices"], k["face_exists"], k["coordinate"]
 
     @part
@@ -273,7 +253,7 @@ def exit_side(plan: Plan, toward: Array, far: float, a: int, b: int) -> tuple[fl
     return step, side
 
 
-def landing(survey: Survey) -> Kernel:
+def landing(measure: Kernel, across: Kernel) -> Kernel:
     """Make ``land(m, f, at, toward, far, plan) -> face``: go straight over the surface.
 
     From position ``at`` in face f, along the unit vector ``toward`` in its plane, ``far`` units on;
@@ -281,7 +261,6 @@ def landing(survey: Survey) -> Kernel:
     on polyhedral surfaces, 1998), so that in a plane it is a straight line. ``at`` and ``toward``
     move along. -1: over the border, or into a face without area.
     """
-    measure, across = survey.measure, survey.across
 
     @part
     def land(m: Any, f: int, at: Array, toward: Array, far: float, plan: Plan) -> int:
@@ -400,9 +379,9 @@ def breaking(k: Mapping[str, Kernel], operations: Mapping[str, Kernel]) -> Kerne
     ``plan.start`` is the face under it. There must be room for everything beforehand. The
     result is negative if there was not.
     """
-    survey = surveying(k)
-    measure, walk = survey.measure, survey.walk
-    split, send_out = splitting(k, operations, measure), sending(landing(survey))
+    measure, across = measuring(k), crossing(k)
+    walk, send_out = walking(measure, across), sending(landing(measure, across))
+    split = splitting(k, operations, measure)
 
     @kernel
     def split_near(m: Any, f: int, p: Array, plan: Plan) -> int:

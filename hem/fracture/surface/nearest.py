@@ -13,25 +13,22 @@ from hem.fracture.surface.breaking import JUMP, dot, finding, make_plan
 from hem.meshes.measures import corners, diagonal, length
 from hem.meshes.measures import position as as_position
 
-NEAR = 0.05
-"""How far from its face a walk may end and be believed; a part of the face's longest side."""
-
-FAR = 0.5
-"""How far from the surface a position may be at all; a part of the diagonal."""
+NEAR = 0.05  # how far from its face a walk may end and be believed: of the face's longest side
+FAR = 0.5  # how far from the surface a position may be at all: a part of the diagonal
 
 
 class Found(NamedTuple):
-    """The face nearest to a position, and how it was found."""
+    """The face nearest to a position, and how it was found.
+
+    point    (3,): where on the face
+    visited  how many faces were looked at
+    scanned  whether every face was
+    """
 
     face: int
     point: Floats
-    """(3,): where on the face."""
-
     visited: int
-    """How many faces were looked at."""
-
     scanned: bool
-    """Whether every face was."""
 
 
 def nearest_face(structure: Structure, position: ArrayLike, start: int = JUMP) -> Found:

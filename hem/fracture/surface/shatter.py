@@ -9,7 +9,7 @@ that the rest is a sound mesh.
 
 from collections.abc import Callable, Sequence
 from functools import cached_property
-from typing import Any, overload
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -23,33 +23,14 @@ from hem.fracture.islands import islands
 from hem.fracture.material import MATERIALS, Material
 from hem.fracture.material import material as named
 from hem.fracture.pieces import Fracture
-from hem.fracture.surface.breaking import (
-    IN_FACE,
-    NOWHERE,
-    ON_EDGE,
-    ON_VERTEX,
-    Plan,
-    breaking,
-    make_plan,
-)
+from hem.fracture.surface.breaking import OUTCOMES, Plan, breaking, make_plan
 from hem.fracture.surface.hanging import hanging
 from hem.fracture.surface.nearest import corner_vertices, face_corners, nearest_face
 from hem.meshes import TriangleMesh
 from hem.meshes.measures import bounds, length, normals, unit
 
-TOLERANCE = 1e-5
-"""What is nearer than this to a vertex or an edge lies on it; a part of the diagonal."""
-
-ROUNDING = 32 * float(np.finfo(np.float32).eps)
-"""The least tolerance; a part of the largest coordinate."""
-
-OUTCOMES = {
-    "in a face": IN_FACE,
-    "on an edge": ON_EDGE,
-    "on a vertex": ON_VERTEX,
-    "outside": NOWHERE,
-}
-"""What became of the break points, in words: the first two split, the others are dropped."""
+TOLERANCE = 1e-5  # what is nearer to a vertex or an edge lies on it: a part of the diagonal
+ROUNDING = 32 * float(np.finfo(np.float32).eps)  # at least: a part of the largest coordinate
 
 
 class LazyMeshes(Sequence[TriangleMesh]):
@@ -65,11 +46,7 @@ class LazyMeshes(Sequence[TriangleMesh]):
     def __len__(self) -> int:
         return len(self._meshes)
 
-    @overload
-    def __getitem__(self, index: int) -> TriangleMesh: ...
-    @overload
-    def __getitem__(self, index: slice) -> list[TriangleMesh]: ...
-    def __getitem__(self, index: int | slice) -> TriangleMesh | list[TriangleMesh]:
+    def __getitem__(self, index: Any) -> Any:
         """One mesh, or some."""
         return self._meshes[index]
 
@@ -142,12 +119,13 @@ def in_place(
     """The fracture of what ``break_surface`` broke; the structure keeps the rest."""
     left = structure.to_triangles()  # now: the structure may change before the rest is asked for
     rest = LazyMeshes(lambda: islands(left))
+    became = {words: int((broken.outcome == it).sum()) for words, it in OUTCOMES.items()}
     return Fracture(
         impact=broken.target,
         direction=-np.cross(broken.frame[0], broken.frame[1]),
         shards=shards,
         rest=rest,
-        counts=outcomes(broken) | counts,
+        counts=became | counts,
         find_neighbors=lambda: sharing_edges([*shards, *rest]),
         **told,
     )
@@ -177,11 +155,6 @@ def break_surface(
     split = Edit("break_surface", -1, touched)
     new = np.union1d(split.created_faces, split.changed_faces).astype(np.int64)
     return plan, new, size
-
-
-def outcomes(broken: Plan) -> dict[str, int]:
-    """How many break points came to what, by the words of ``OUTCOMES``."""
-    return {words: int((broken.outcome == code).sum()) for words, code in OUTCOMES.items()}
 
 
 def _require_triangles(structure: Structure) -> None:
@@ -239,7 +212,7 @@ def sharing_edges(pieces: Sequence[TriangleMesh]) -> Indices:
     _, vertex = np.unique(corners.reshape(-1, 3), axis=0, return_inverse=True)
     vertex = vertex.reshape(-1, 3)
     sides = np.sort(np.concatenate([vertex, np.roll(vertex, -1, axis=1)]).reshape(2, -1).T)
-    owners = np.tile(np.repeat(owner, 3), 1)
+    owners = np.repeat(owner, 3)
     order = np.lexsort((owners, sides[:, 1], sides[:, 0]))
     sides, owners = sides[order], owners[order]
     same = (sides[1:] == sides[:-1]).all(axis=1) & (owners[1:] != owners[:-1])
