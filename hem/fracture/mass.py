@@ -14,7 +14,7 @@ import numpy as np
 
 from hem.arrays import Floats, Indices
 from hem.errors import MeshError
-from hem.meshes import TriangleMesh, joined
+from hem.meshes import NOTHING, TriangleMesh, joined
 from hem.meshes.measures import areas, dot
 
 
@@ -63,8 +63,7 @@ def _positive(value: float, what: str) -> float:
 
 def _corners(meshes: Sequence[TriangleMesh]) -> tuple[Floats, Indices, Floats]:
     """(m, 3, 3) corners of all triangles from their piece's origin, whose they are, the origins."""
-    nothing = np.zeros((0, 3)), np.zeros((0, 3), int)
-    points, triangles = joined([nothing, *((mesh.points, mesh.triangles) for mesh in meshes)])
+    points, triangles = joined([NOTHING, *((mesh.points, mesh.triangles) for mesh in meshes)])
     counts = [len(mesh.triangles) for mesh in meshes]
     owner = np.repeat(np.arange(len(meshes)), counts)
     corners = points[triangles]

@@ -3,7 +3,7 @@
 `hem.meshes.measures` has bounds, lengths, areas, normals and volume.
 """
 
-from hem.meshes.components import components, joined, used_only
+from hem.meshes.components import NOTHING, components, joined, used_only
 from hem.meshes.edges import undirected_edges
 from hem.meshes.manifold import (
     euler_number,
@@ -19,8 +19,8 @@ from hem.meshes.triangles import TriangleMesh, repeated_corners
 from hem.meshes.weld import clusters
 
 __all__ = [
-    "MeshSummary", "PolygonMesh", "TriangleMesh", "clusters", "components", "euler_number",
-    "joined", "non_manifold_edges", "repeated_corners", "repeats_a_corner", "require_manifold",
-    "require_sound", "require_triangles", "same_way_edges", "simplest", "split_vertices",
-    "undirected_edges", "used_only",
+    "NOTHING", "MeshSummary", "PolygonMesh", "TriangleMesh", "clusters", "components",
+    "euler_number", "joined", "non_manifold_edges", "repeated_corners", "repeats_a_corner",
+    "require_manifold", "require_sound", "require_triangles", "same_way_edges", "simplest",
+    "split_vertices", "undirected_edges", "used_only",
 ]  # fmt: skip

@@ -24,6 +24,10 @@ def components(n: int, pairs: Array) -> tuple[int, Indices]:
     return int(count), label.astype(np.int64)
 
 
+NOTHING: tuple[Array, Array] = np.zeros((0, 3)), np.zeros((0, 3), np.int64)
+"""No points and no triangles."""
+
+
 def joined(parts: Iterable[tuple[Array, Array]]) -> tuple[Array, Array]:
     """The points (n, 3) and the triangles (m, 3) of several meshes in two arrays."""
     points, triangles = zip(*parts, strict=True)

@@ -1,23 +1,18 @@
 """Mending what keeps a mesh from being a surface, with pymeshlab's own repair filters."""
 
+from hem import meshes
 from hem.errors import NonManifoldError
-from hem.meshes import (
-    TriangleMesh,
-    non_manifold_edges,
-    require_manifold,
-    same_way_edges,
-    split_vertices,
-)
+from hem.meshes import TriangleMesh, require_manifold
 from hem.sources.meshlab import apply
 
 # Each filter is applied only where its fault is found: they leave a sound mesh as it is, but they
 # may renumber. In this order, since winding can only be made coherent along manifold edges.
 _REPAIRS = (
-    (non_manifold_edges, "meshing_remove_duplicate_faces"),
-    (non_manifold_edges, "meshing_repair_non_manifold_edges"),
-    (same_way_edges, "meshing_remove_duplicate_faces"),
-    (same_way_edges, "meshing_re_orient_faces_coherently"),
-    (split_vertices, "meshing_repair_non_manifold_vertices"),
+    (meshes.non_manifold_edges, "meshing_remove_duplicate_faces"),
+    (meshes.non_manifold_edges, "meshing_repair_non_manifold_edges"),
+    (meshes.same_way_edges, "meshing_remove_duplicate_faces"),
+    (meshes.same_way_edges, "meshing_re_orient_faces_coherently"),
+    (meshes.split_vertices, "meshing_repair_non_manifold_vertices"),
 )
 
 

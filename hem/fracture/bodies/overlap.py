@@ -5,13 +5,10 @@ enough to try the normals of their faces and the vector products of their edges 
 Manocha, OBBTree, 1996). Bodies that touch, in a point, an edge or a face, do not overlap.
 """
 
-from typing import Any
-
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
-Array = NDArray[Any]
+from hem.arrays import Array
 
 # The faces of a tetrahedron by three corners, and its edges; a triangle has the first of each.
 _FACES = np.array([(0, 1, 2), (0, 1, 3), (1, 2, 3), (2, 0, 3)])
@@ -27,9 +24,7 @@ def overlapping(tetrahedra: Array, least: float) -> Array:
     found = np.zeros(len(tetrahedra), np.bool_)
     for i in range(len(tetrahedra)):
         for j in range(i):
-            if _boxes_meet(tetrahedra[i], tetrahedra[j]) and _overlap(
-                tetrahedra[i], tetrahedra[j], least
-            ):
+            if _overlap(tetrahedra[i], tetrahedra[j], least):
                 found[i] = found[j] = True
     return found
 
@@ -40,9 +35,7 @@ def crossing(tetrahedra: Array, triangles: Array, least: float) -> Array:
     found = np.zeros(len(tetrahedra), np.bool_)
     for i in range(len(tetrahedra)):
         for j in range(len(triangles)):
-            if _boxes_meet(tetrahedra[i], triangles[j]) and _overlap(
-                tetrahedra[i], triangles[j], least
-            ):
+            if _overlap(tetrahedra[i], triangles[j], least):
                 found[i] = True
                 break
     return found
@@ -65,6 +58,8 @@ def _boxes_meet(a: Array, b: Array) -> bool:
 @njit(cache=True)
 def _overlap(a: Array, b: Array, least: float) -> bool:
     """Whether no axis is found on which the shadows overlap by ``least`` at most."""
+    if not _boxes_meet(a, b):
+        return False
     axis = np.zeros(3)
     for body in (a, b):
         for f in range(4 if len(body) == 4 else 1):

@@ -7,18 +7,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from hem import meshes
 from hem.arrays import Array, Bools, Floats, Indices
 from hem.errors import MeshError
 from hem.fracture.bodies.collapse import collapsed
 from hem.fracture.bodies.inside import windings
-from hem.meshes import (
-    TriangleMesh,
-    components,
-    non_manifold_edges,
-    same_way_edges,
-    undirected_edges,
-    used_only,
-)
+from hem.meshes import TriangleMesh, components, used_only
 from hem.meshes.measures import corners, diagonal, volume
 from hem.sources.meshlab import apply, intersecting_faces
 
@@ -54,8 +48,8 @@ class Body:
     @cached_property
     def manifold(self) -> Any:
         """The body for manifold3d; face i of the mesh is face i there, whatever is cut off it."""
-        points = self.mesh.points.astype(np.float64)
-        return to_manifold(points, self.mesh.triangles, np.arange(len(self.mesh.triangles)))
+        points, triangles = self.mesh.points.astype(np.float64), self.mesh.triangles
+        return to_manifold(points, triangles, np.arange(len(triangles)))
 
     def contains(self, points: ArrayLike) -> Bools:
         """Which of k positions (k, 3) are inside: (k,). Cost O(faces) each."""
@@ -116,10 +110,8 @@ def to_manifold(points: Floats, triangles: Array, labels: Array) -> Any:
     """
     import manifold3d
 
-    faces = np.ascontiguousarray(triangles, np.uint64)
-    mesh = manifold3d.Mesh64(
-        np.ascontiguousarray(points), faces, face_id=np.ascontiguousarray(labels, np.uint64)
-    )
+    faces, ids = (np.ascontiguousarray(it, np.uint64) for it in (triangles, labels))
+    mesh = manifold3d.Mesh64(np.ascontiguousarray(points), faces, face_id=ids)
     made = manifold3d.Manifold(mesh)
     if made.status() != manifold3d.Error.NoError:
         raise MeshError(f"manifold3d takes the mesh for no body: {made.status()}")
@@ -143,17 +135,18 @@ def from_manifold(made: Any) -> tuple[TriangleMesh, Indices]:
 
 def _require_closed(mesh: TriangleMesh) -> None:
     """Raise MeshError unless each edge is in two faces that run along it in opposite directions."""
-    edges, faces = undirected_edges(mesh.triangles)
+    edges, faces = meshes.undirected_edges(mesh.triangles)
     border = edges[faces == 1]
     if len(border):
         some = f"{len(border):,} border edge{'s' if len(border) > 1 else ''}"
         raise MeshError(f"the mesh is open, with {some}; {_INSTEAD}", edges=border)
-    crowded, twisted = non_manifold_edges(mesh.triangles), same_way_edges(mesh.triangles)
-    if len(crowded) or len(twisted):
+    finders = meshes.non_manifold_edges, meshes.same_way_edges
+    bad = np.concatenate([find(mesh.triangles) for find in finders])
+    if len(bad):
         raise MeshError(
             "more than two faces meet at an edge, or two that run the same way along it; mend it "
             f"(hem.load and hem.sample take repair=True), {_INSTEAD}",
-            edges=np.concatenate([crowded, twisted]),
+            edges=bad,
         )
 
 

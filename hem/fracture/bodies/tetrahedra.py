@@ -31,17 +31,11 @@ from hem.fracture.surface.shatter import break_surface, in_place
 from hem.meshes import TriangleMesh
 from hem.meshes.measures import areas, dot, length, normals, unit
 
-SLENDER = 3.0
-"""A shard is at most so many times as deep as its face is wide."""
-
-LEAN = 0.9
-"""The part of half the angle between two faces that a side may lean."""
-
-RAISED = 0.7
-"""What is left of the depth of a shard that is in the way of another one."""
-
-SHALLOW = 0.02
-"""What is less deep than this part of its width is left in place."""
+SLENDER = 3.0  # a shard is at most so many times as deep as its face is wide
+LEAN = 0.9  # the part of half the angle between two faces that a side may lean
+RAISED = 0.7  # what is left of the depth of a shard that is in the way of another one
+SHALLOW = 0.02  # what is less deep than this part of its width is left in place
+_SIDES = [(0, 1, 2), (0, 3, 1), (1, 3, 2), (2, 3, 0)]  # a, b, c as seen from outside, d below
 
 
 def tetrahedra(
@@ -79,7 +73,8 @@ def tetrahedra(
     deep = _free(structure, faces, solids, size)
     solids = solids[deep]
     structure.split_faces(faces[deep], solids[:, 3])
-    shards = [_mesh(it) for it in _split_inside(solids, broken.target, force, random)]
+    split = _split_inside(solids, broken.target, force, random)
+    shards = [TriangleMesh(it, _SIDES) for it in split]
     inside = (len(shards) - len(solids)) // 3
     return in_place(
         structure, broken, shards, {"inside": inside, "too shallow": int((~deep).sum())},
@@ -142,27 +137,18 @@ def _free(structure: Structure, faces: Array, solids: Array, size: float) -> Boo
 
 def _split_inside(solids: Array, impact: Array, force: float, random: Any) -> Floats:
     """(n, 4, 3): the tetrahedra, those nearest to the impact as four each."""
-    count = round(len(solids) * (1 - 1 / (1 + force / 10)))
     far = length(solids.mean(axis=1) - impact)
-    nearest = np.argsort(far, kind="stable")[:count]
+    nearest = np.argsort(far, kind="stable")[: round(len(solids) * (1 - 1 / (1 + force / 10)))]
     weights = 0.1 + random((len(solids), 4))
     at = (weights[:, :, None] * solids).sum(axis=1) / weights.sum(axis=1)[:, None]
     at = at.astype(np.float32).astype(np.float64)
-    parts = []
-    for i, solid in enumerate(solids):
-        if i not in nearest:
-            parts.append(solid)
-            continue
-        for j in range(4):
-            part = solid.copy()
-            part[j] = at[i]
-            parts.append(part)
-    return np.array(parts).reshape(-1, 4, 3)
-
-
-def _mesh(solid: Array) -> TriangleMesh:
-    """A tetrahedron as a mesh: its corners a, b, c as seen from outside, and d below."""
-    return TriangleMesh(solid, [(0, 1, 2), (0, 3, 1), (1, 3, 2), (2, 3, 0)])
+    counts = np.ones(len(solids), int)
+    counts[nearest] = 4
+    parts = np.repeat(solids, counts, axis=0)
+    first = (np.cumsum(counts) - counts)[nearest]
+    for corner in range(4):
+        parts[first + corner, corner] = at[nearest]
+    return parts
 
 
 def _units(corners: Array) -> Floats:

@@ -6,12 +6,12 @@ from typing import NamedTuple
 import numpy as np
 
 from hem.arrays import Floats, Indices
-from hem.meshes import TriangleMesh
+from hem.meshes import NOTHING, TriangleMesh, joined
 from hem.meshes.measures import corners, length, normals
 
 
 class _Walls(NamedTuple):
-    """All triangles of walls, of all pieces."""
+    """All triangles of walls, of all pieces, ordered by wall."""
 
     wall: Indices  # (t,): which wall between two sites
     piece: Indices  # (t,)
@@ -41,19 +41,14 @@ def touching(pieces: Sequence[TriangleMesh], labels: Sequence[Indices], least: f
 
 
 def _gathered(pieces: Sequence[TriangleMesh], labels: Sequence[Indices]) -> _Walls:
-    """The triangles of walls, ordered by wall."""
-    on_wall = [label >= 0 for label in labels]
-    wall = np.concatenate(
-        [np.zeros(0, np.int64), *(x[on] for x, on in zip(labels, on_wall, strict=True))]
-    )
-    each = [
-        corners(mesh.points, mesh.triangles[on]) for mesh, on in zip(pieces, on_wall, strict=True)
-    ]
-    all_corners = np.concatenate([np.zeros((0, 3, 3)), *each])
-    piece = np.repeat(np.arange(len(pieces)), [len(found) for found in each])
-    order = np.argsort(wall, kind="stable")
-    across = normals(all_corners[order])
-    return _Walls(wall[order], piece[order], all_corners[order], across, length(across) / 2)
+    all_labels = np.concatenate([np.zeros(0, np.int64), *labels])
+    points, triangles = joined([NOTHING, *((it.points, it.triangles) for it in pieces)])
+    piece = np.repeat(np.arange(len(pieces)), [len(it.triangles) for it in pieces])
+    order = np.argsort(all_labels, kind="stable")
+    order = order[all_labels[order] >= 0]
+    at = corners(points, triangles[order])
+    across = normals(at)
+    return _Walls(all_labels[order], piece[order], at, across, length(across) / 2)
 
 
 def _sides(walls: _Walls, of_wall: Indices) -> tuple[Indices, Indices]:

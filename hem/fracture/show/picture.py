@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from hem.arrays import Array, Floats
+from hem.meshes.measures import unit
 
 Image = NDArray[np.uint8]
 Size = tuple[int, int]
@@ -87,9 +88,8 @@ class Picture:
         self.points, self.triangles = np.asarray(points, float), triangles
         mesh = pyvista.PolyData.from_regular_faces(self.points, triangles)
         mesh.point_data["vertex"] = np.arange(len(points))
-        mesh.cell_data["color"] = np.rint(
-            255 * np.broadcast_to(np.asarray(colors, float), (len(triangles), 3))
-        ).astype(np.uint8)
+        each = np.broadcast_to(np.asarray(colors, float), (len(triangles), 3))
+        mesh.cell_data["color"] = np.rint(255 * each).astype(np.uint8)
         self.mesh = mesh.compute_normals(
             feature_angle=0.0 if wires else _CREASE, split_vertices=True, consistent_normals=False
         )
@@ -138,11 +138,12 @@ class Picture:
         camera = self.plotter.camera
         camera.position, camera.up, camera.view_angle = eye, self.up, _FIELD_OF_VIEW
         camera.focal_point = eye - toward * (depth.mean() - min(far_x, far_y))
-        far = float(
-            np.linalg.norm(np.ptp(points, axis=0)) + np.linalg.norm(eye - points.mean(axis=0))
-        )
+        extent, apart = np.ptp(points, axis=0), eye - points.mean(axis=0)
+        far = float(np.linalg.norm(extent) + np.linalg.norm(apart))
         camera.clipping_range = (0.01 * far, 10 * far)
-        self.light = unit(1.25 * self.up - 0.75 * right + 0.55 * unit(_level(toward, self.up)))
+        self.light = unit(
+            1.25 * self.up - 0.75 * right + 0.55 * unit(toward - (toward @ self.up) * self.up)
+        )
         self.plotter.remove_all_lights()
         for way, strength in ((self.light, 0.62), (self.up, 0.2), (toward, 0.24)):
             lamp = pyvista.Light(position=way, focal_point=(0, 0, 0), intensity=strength)
@@ -240,20 +241,10 @@ def view_direction(up: ArrayLike, azimuth: float = AZIMUTH, elevation: float = E
     return np.asarray(np.cos(lifted) * level + np.sin(lifted) * top)
 
 
-def unit(vectors: Array) -> Floats:
-    """Vectors (…, 3) of length 1; those of no length stay."""
-    length = np.linalg.norm(vectors, axis=-1, keepdims=True)
-    return np.asarray(vectors / np.where(length > 0, length, 1))
-
-
 def _apex(across: Array, depth: Array, slope: float) -> tuple[float, float]:
     """Where the apex of a wedge of this slope stands that just holds all points."""
     left, right = (across - slope * depth).max(), (-across - slope * depth).max()
     return float(left - right) / 2, float(-(left + right) / (2 * slope))
-
-
-def _level(way: Array, up: Array) -> Array:
-    return way - (way @ up) * up
 
 
 def _cone(axis: Array, spread: float, count: int) -> Array:
