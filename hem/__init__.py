@@ -7,51 +7,34 @@ A name is imported when it is first asked for, so that ``import hem`` is quick a
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+__all__ = [
+    "FAMILIES", "SAMPLES", "Edit", "MeshError", "MeshSummary", "MeshWarning", "NonManifoldError",
+    "PolygonMesh", "Ragged", "Recording", "Remapping", "RenderMesh", "TopologyError",
+    "TriangleMesh", "Upload", "as_mesh", "find_mesh", "from_meshio", "from_pyvista", "from_trimesh",
+    "generate", "load", "load_polygons", "mesh_from_render", "record", "require_manifold",
+    "require_sound", "sample", "save", "split_at_seams", "valence_hubs", "valence_mesh",
+]  # fmt: skip
+
 if TYPE_CHECKING:  # what type checkers and editors see; the table below says it to Python
-    from hem.contract.recording import Recording as Recording
-    from hem.contract.recording import record as record
-    from hem.edit import Edit as Edit
-    from hem.edit import Remapping as Remapping
-    from hem.errors import MeshError as MeshError
-    from hem.errors import MeshWarning as MeshWarning
-    from hem.errors import NonManifoldError as NonManifoldError
-    from hem.errors import TopologyError as TopologyError
-    from hem.meshes import MeshSummary as MeshSummary
-    from hem.meshes import PolygonMesh as PolygonMesh
-    from hem.meshes import TriangleMesh as TriangleMesh
-    from hem.meshes import require_manifold as require_manifold
-    from hem.meshes import require_sound as require_sound
-    from hem.meshes.conversions import from_meshio as from_meshio
-    from hem.meshes.conversions import from_pyvista as from_pyvista
-    from hem.meshes.conversions import from_trimesh as from_trimesh
-    from hem.ragged import Ragged as Ragged
-    from hem.rendering import RenderMesh as RenderMesh
-    from hem.rendering import Upload as Upload
-    from hem.rendering import mesh_from_render as mesh_from_render
-    from hem.rendering import split_at_seams as split_at_seams
-    from hem.sources.families import FAMILIES as FAMILIES
-    from hem.sources.families import generate as generate
-    from hem.sources.files import as_mesh as as_mesh
-    from hem.sources.files import load as load
-    from hem.sources.files import load_polygons as load_polygons
-    from hem.sources.files import save as save
-    from hem.sources.named import find_mesh as find_mesh
-    from hem.sources.samples import SAMPLES as SAMPLES
-    from hem.sources.samples import sample as sample
-    from hem.sources.valence import valence_hubs as valence_hubs
-    from hem.sources.valence import valence_mesh as valence_mesh
+    from hem.contract.recording import Recording, record
+    from hem.edit import Edit, Remapping
+    from hem.errors import MeshError, MeshWarning, NonManifoldError, TopologyError
+    from hem.meshes import MeshSummary, PolygonMesh, TriangleMesh, require_manifold, require_sound
+    from hem.meshes.conversions import from_meshio, from_pyvista, from_trimesh
+    from hem.ragged import Ragged
+    from hem.rendering import RenderMesh, Upload, mesh_from_render, split_at_seams
+    from hem.sources.families import FAMILIES, generate
+    from hem.sources.files import as_mesh, load, load_polygons, save
+    from hem.sources.named import find_mesh
+    from hem.sources.samples import SAMPLES, sample
+    from hem.sources.valence import valence_hubs, valence_mesh
 
 _NAMES = {
     "hem.contract.recording": ("Recording", "record"),
     "hem.edit": ("Edit", "Remapping"),
     "hem.errors": ("MeshError", "MeshWarning", "NonManifoldError", "TopologyError"),
-    "hem.meshes": (
-        "MeshSummary",
-        "PolygonMesh",
-        "TriangleMesh",
-        "require_manifold",
-        "require_sound",
-    ),
+    "hem.meshes": ("MeshSummary", "PolygonMesh", "TriangleMesh", "require_manifold",
+        "require_sound"),
     "hem.meshes.conversions": ("from_meshio", "from_pyvista", "from_trimesh"),
     "hem.ragged": ("Ragged",),
     "hem.rendering": ("RenderMesh", "Upload", "mesh_from_render", "split_at_seams"),
@@ -60,11 +43,9 @@ _NAMES = {
     "hem.sources.named": ("find_mesh",),
     "hem.sources.samples": ("SAMPLES", "sample"),
     "hem.sources.valence": ("valence_hubs", "valence_mesh"),
-}
+}  # fmt: skip
 _MODULES = {name: module for module, names in _NAMES.items() for name in names}
 _ROOMS = ("algorithms", "complexity", "contract", "fracture", "meshes", "rendering", "sources")
-
-__all__ = sorted(_MODULES)
 
 
 def __getattr__(name: str) -> Any:

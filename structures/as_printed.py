@@ -11,7 +11,6 @@ Lists shrink when an element is removed, as those of the thesis do, while every 
 index that it was given; ``faults`` says what does not hold together any more.
 """
 
-from collections.abc import Iterator, Sequence
 from typing import Any, Self
 
 import numpy as np
@@ -83,11 +82,8 @@ class AsPrinted(Described):
     def add_triangle(self, a: Vertex, b: Vertex, c: Vertex) -> Face:
         """Three half-edges and a face, and the pairs found by a scan of all. Cost O(n_t)."""
         corners = a.index, b.index, c.index
-        pairs = [
-            h
-            for h in self.half_edges
-            if h.origin.index in corners and h.next.origin.index in corners
-        ]
+        near = (h for h in self.half_edges if h.origin.index in corners)
+        pairs = [h for h in near if h.next.origin.index in corners]
         one = self.create_half_edge(a, None, None)
         face = self.create_face(one)
         two = self.create_half_edge(b, face, one)
@@ -273,19 +269,18 @@ class AsPrinted(Described):
                 v.half_edge is not None and v.half_edge not in self.half_edges
                 for v in self.vertices
             ),
-            "elements with the index of another": sum(_repeated(it) for it in self._lists()),
+            "elements with the index of another": sum(
+                len(elements) - len({it.index for it in elements})
+                for elements in (self.vertices, self.half_edges, self.faces)
+            ),
             "corners of the render mesh at another position": self._misplaced(),
         }
         return {what: often for what, often in found.items() if often}
 
-    def _lists(self) -> Iterator[Sequence[Any]]:
-        yield from (self.vertices, self.half_edges, self.faces)
-
     def _unpaired(self) -> int:
         sides = {(h.origin, h.next.origin) for h in self.half_edges}
-        return sum(
-            h.opposite is None and (h.next.origin, h.origin) in sides for h in self.half_edges
-        )
+        alone = [h for h in self.half_edges if h.opposite is None]
+        return sum((h.next.origin, h.origin) in sides for h in alone)
 
     def _misplaced(self) -> int:
         """Corners of the triangles that are kept for rendering, of the faces there are."""
@@ -320,7 +315,3 @@ def _step_around(vertex: Vertex) -> list[HalfEdge]:
         found.append(h)
         h = h.previous.opposite
     return found
-
-
-def _repeated(elements: Sequence[Any]) -> int:
-    return len(elements) - len({it.index for it in elements})

@@ -21,7 +21,7 @@ from typing import Any, Generic, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from hem.contract import ELEMENTS
+from hem.contract import ELEMENTS, HANDLE_TYPES
 from hem.errors import MeshError
 from hem.listeners import Listeners
 
@@ -164,8 +164,8 @@ class ElementList(Generic[Element]):
         return len(self.items) - self.items.count(None)
 
     def __call__(self) -> NDArray[Any]:
-        """(n,) the indices of all live elements, ascending."""
-        return np.flatnonzero(self.alive())
+        """(n,) the indices of all live elements, ascending, as handles."""
+        return np.flatnonzero(self.alive()).astype(HANDLE_TYPES.get(self.kind, np.int64))
 
     def alive(self) -> NDArray[np.bool_]:
         """(end,) bool: which positions hold a live element."""
@@ -200,10 +200,6 @@ class VertexList(ElementList[Vertex]):
                 vertex.position_changed = self.event
             else:
                 vertex.position_changed.tell_mesh = tell_mesh
-
-    def __call__(self) -> NDArray[np.int32]:
-        """(n,) int32: the handles of all live vertices, ascending."""
-        return super().__call__().astype(np.int32)
 
     def create(self, point: Point) -> Vertex:
         """Append a vertex. No duplicate is searched for. Cost O(1)."""
@@ -241,10 +237,6 @@ class FaceList(ElementList[Face]):
 
     __slots__ = ()
     kind = "face"
-
-    def __call__(self) -> NDArray[np.int32]:
-        """(n,) int32: the handles of all live faces, ascending."""
-        return super().__call__().astype(np.int32)
 
     def create(self, a: HalfEdge, b: HalfEdge, c: HalfEdge) -> Face:
         """Append a face of three half-edges that are to follow each other. Cost O(1)."""

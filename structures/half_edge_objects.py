@@ -28,17 +28,7 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from hem.authoring import (
-    EDGE_END,
-    LEFT,
-    RIGHT,
-    A,
-    C,
-    D,
-    Kernel,
-    append_face,
-    walks,
-)
+from hem.authoring import EDGE_END, LEFT, RIGHT, A, C, D, Kernel, append_face, walks
 from hem.contract import Claims, Look, Navigable
 from hem.edit import CHANGED, VERTEX, Edit
 from hem.engine import counting
@@ -59,6 +49,7 @@ from structures.object_records import (
     ObjectRecords,
     ObjectStorage,
     build_records,
+    index_of,
     positions,
     to_arrays,
 )
@@ -117,10 +108,6 @@ def edge_vertices(m: ObjectRecords, e: int, out: Any) -> int:
     return 2
 
 
-def _index(element: Any) -> int:
-    return -1 if element is None else int(element.index)
-
-
 def step(give: Give) -> Kernel:
     """Make a step ``take(m, h)``: ``give`` of the half-edge with index h. Cost O(1)."""
 
@@ -132,13 +119,13 @@ def step(give: Give) -> Kernel:
 
 following, previous = step(lambda h: h.next.index), step(lambda h: h.previous.index)
 origin, tip = step(lambda h: h.origin.index), step(lambda h: h.end.index)
-twin, face = step(lambda h: _index(h.opposite)), step(lambda h: h.face.index)
+twin, face = step(lambda h: index_of(h.opposite)), step(lambda h: h.face.index)
 edge_of = step(lambda h: h.edge)
 
 
 def leaving(m: ObjectRecords, v: int) -> int:
     """The half-edge that is recorded at vertex v, or -1."""
-    return _index(m.vertices.items[v].half_edge)
+    return index_of(m.vertices.items[v].half_edge)
 
 
 def within(m: ObjectRecords, f: int) -> int:
@@ -174,23 +161,17 @@ def face_faces(m: ObjectRecords, f: int, out: Any) -> int:
 # What operations need to know, and what they change (see hem.authoring.operations) --------------
 
 
-def _exists(items: list[Any], index: int) -> bool:
-    return 0 <= index < len(items) and items[index] is not None
+def recorded(elements: int) -> Kernel:
+    """Make ``exists(m, index)``: whether a list, by its place in the records, has it live."""
+
+    def exists(m: Any, index: int) -> bool:
+        items = m[elements].items
+        return 0 <= index < len(items) and items[index] is not None
+
+    return exists
 
 
-def vertex_exists(m: ObjectRecords, v: int) -> bool:
-    """Whether v is a live vertex."""
-    return _exists(m.vertices.items, v)
-
-
-def edge_exists(m: ObjectRecords, e: int) -> bool:
-    """Whether e is a live half-edge."""
-    return _exists(m.half_edges.items, e)
-
-
-def face_exists(m: ObjectRecords, f: int) -> bool:
-    """Whether f is a live face."""
-    return _exists(m.faces.items, f)
+vertex_exists, edge_exists, face_exists = recorded(0), recorded(1), recorded(2)
 
 
 def coordinate(m: ObjectRecords, v: int, i: int) -> float:
@@ -237,10 +218,7 @@ def diamond(m: ObjectRecords, e: int, at: Any) -> int:
 
 def find_half_edge(m: ObjectRecords, a: int, b: int) -> HalfEdge | None:
     """The half-edge that runs a → b, if there is one. Cost O(n_ev)."""
-    for h in around(m.vertices.items[a])[0]:
-        if h.end.index == b:
-            return h
-    return None
+    return next((h for h in around(m.vertices.items[a])[0] if h.end.index == b), None)
 
 
 def are_joined(m: ObjectRecords, a: int, b: int) -> bool:
@@ -500,8 +478,7 @@ class HalfEdgeMesh(Navigable):
 
     def clr_memory(self) -> dict[str, int]:
         """Bytes per field as the runtime of the thesis would lay its classes out: a model."""
-        counts = {it.kind: len(it) for it in self.records[:-1]}
-        return clr_memory(counts)
+        return clr_memory({it.kind: len(it) for it in self.records[:-1]})
 
     def validate(self) -> None:
         """Check the objects themselves, then as arrays what ``structures.half_edge`` requires."""

@@ -64,11 +64,7 @@ def build_records(mesh: TriangleMesh) -> ObjectRecords:
         for f, corners in enumerate(mesh.triangles.tolist()):
             h = 3 * f
             a, b, c = corners
-            sides = ab, bc, ca = (
-                HalfEdge(h, vertices[a]),
-                HalfEdge(h + 1, vertices[b]),
-                HalfEdge(h + 2, vertices[c]),
-            )
+            sides = ab, bc, ca = [HalfEdge(h + i, vertices[v]) for i, v in enumerate(corners)]
             face = Face(f, ab)
             ab.face = bc.face = ca.face = face
             ab.next, bc.next, ca.next = bc, ca, ab
@@ -96,27 +92,19 @@ def positions(m: ObjectRecords) -> NDArray[np.float32]:
 
 def to_arrays(m: ObjectRecords) -> HalfEdgeRecords:
     """The same half-edges by index, as ``structures.half_edge`` has them. O(n_v + n_t)."""
-    half_edge = [
-        (-1,) * 4
-        if h is None
-        else (h.origin.index, h.face.index, h.next.index, _index_of(h.opposite))
-        for h in m.half_edges.items
-    ]
-    leaving = [-1 if v is None else _index_of(v.half_edge) for v in m.vertices.items]
+    half_edge = np.full((len(m.half_edges.items), 4), -1, np.int32)
+    for h in m.half_edges:
+        half_edge[h.index] = h.origin.index, h.face.index, h.next.index, index_of(h.opposite)
+    leaving = [-1 if v is None else index_of(v.half_edge) for v in m.vertices.items]
     within = [-1 if f is None else f.half_edge.index for f in m.faces.items]
-    counts = m.counts.copy()
-    ends = VERTEX_ROOM, FACE_ROOM, EDGE_ROOM
-    counts[list(ends)] = len(leaving), len(within), len(half_edge)
-    return HalfEdgeRecords(
-        positions(m),
-        np.array(leaving, np.int32),
-        np.array(within, np.int32),
-        np.array(half_edge, np.int32).reshape(-1, 4),
-        counts,
-    )
+    counts, ends = m.counts.copy(), [VERTEX_ROOM, FACE_ROOM, EDGE_ROOM]
+    counts[ends] = len(leaving), len(within), len(half_edge)
+    known = np.array(leaving, np.int32), np.array(within, np.int32)
+    return HalfEdgeRecords(positions(m), *known, half_edge, counts)
 
 
-def _index_of(element: Any) -> int:
+def index_of(element: Any) -> int:
+    """The index of an element; -1 for None."""
     return -1 if element is None else int(element.index)
 
 
@@ -142,10 +130,8 @@ def from_arrays(arrays: HalfEdgeRecords) -> ObjectRecords:
             HalfEdge(i, vertices[row[0]]) if row[1] >= 0 else None
             for i, row in enumerate(half_edge)
         ]
-        faces: list[Any] = [
-            Face(f, half_edges[h]) if h >= 0 else None
-            for f, h in enumerate(arrays.face_half_edge.tolist())
-        ]
+        within = enumerate(arrays.face_half_edge.tolist())
+        faces: list[Any] = [Face(f, half_edges[h]) if h >= 0 else None for f, h in within]
         for h, (_, face, following, opposite) in zip(half_edges, half_edge, strict=True):
             if h is not None:
                 h.face, h.next = faces[face], half_edges[following]

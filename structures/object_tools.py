@@ -6,6 +6,7 @@ See ``structures.half_edge_objects`` for the mesh itself.
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from hem.edit import Edit
 from hem.rendering import mesh_from_render
 from structures.class_model import Face, HalfEdge, Vertex
 from structures.half_edge_objects import HalfEdgeMesh
@@ -36,32 +37,32 @@ class HalfEdgeMeshBuilder:
         return np.array(points, np.float32).reshape(-1), np.array(indices, np.int32)
 
 
-class EdgeSplittingBehaviour:
-    """Splits edges of a mesh, and remembers the faces that it made (thesis 4.1)."""
+class _SplittingBehaviour:
+    """Splits a mesh, and remembers the faces that it made."""
 
     def __init__(self, mesh: HalfEdgeMesh) -> None:
         self.mesh = mesh
         self.created_faces: list[Face] = []
+
+    def _remember(self, edit: Edit) -> Vertex:
+        self.created_faces += [self.mesh.faces[f] for f in edit.created_faces.tolist()]
+        return self.mesh.vertices[edit.vertex]
+
+
+class EdgeSplittingBehaviour(_SplittingBehaviour):
+    """Splits edges of a mesh, and remembers the faces that it made (thesis 4.1)."""
 
     def split_half_edge(self, half_edge: HalfEdge, point: ArrayLike) -> Vertex:
         """Put a new vertex on an edge -> the vertex. See ``Structure.split_edge``."""
-        edit = self.mesh.split_edge(half_edge.edge, point)
-        self.created_faces += [self.mesh.faces[f] for f in edit.created_faces.tolist()]
-        return self.mesh.vertices[edit.vertex]
+        return self._remember(self.mesh.split_edge(half_edge.edge, point))
 
 
-class FaceSplittingBehaviour:
+class FaceSplittingBehaviour(_SplittingBehaviour):
     """Splits faces of a mesh, and remembers the faces that it made (thesis 4.3)."""
-
-    def __init__(self, mesh: HalfEdgeMesh) -> None:
-        self.mesh = mesh
-        self.created_faces: list[Face] = []
 
     def split_face(self, face: Face, point: ArrayLike) -> Vertex:
         """Put a new vertex into a face -> the vertex. See ``Structure.split_face``."""
-        edit = self.mesh.split_face(face.index, point)
-        self.created_faces += [self.mesh.faces[f] for f in edit.created_faces.tolist()]
-        return self.mesh.vertices[edit.vertex]
+        return self._remember(self.mesh.split_face(face.index, point))
 
     def split_all_faces(self) -> list[Vertex]:
         """Split every face at its centroid, as one edit -> the new vertices."""

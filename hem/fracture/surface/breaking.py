@@ -88,11 +88,7 @@ def minus(a: Array, b: Array) -> tuple[float, float, float]:
 @kernel
 def cross(a: Array, b: Array) -> tuple[float, float, float]:
     """The vector product."""
-    return (
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
-    )
+    return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
 
 
 @kernel
