@@ -25,7 +25,7 @@ def integers(called: str, values: ArrayLike, dimensions: tuple[int, ...] = (0, 1
     """One handle or a row of them; MeshError for what is no such integers."""
     given = np.asarray(values)
     if given.ndim not in dimensions or (given.size and given.dtype.kind not in "iu"):
-        one = "one handle or " if 0 in dimensions else ""
+        one = "one handle or " if 0 in dimensions else "handles: "
         raise MeshError(
             f"{called} takes {one}a 1-D array of integers, not {given.dtype} of shape {given.shape}"
         )
