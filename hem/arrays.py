@@ -12,11 +12,6 @@ Floats = NDArray[np.float64]
 Points = NDArray[np.floating[Any]]
 """(n, 3): positions, float32, and float64 where a mesh was asked to keep them so."""
 
-Triangles = NDArray[np.int32]
-"""(n, 3): the corners of triangles, counterclockwise from outside."""
-
-Indices = NDArray[np.int64]
-"""Indices of elements, computed from a mesh."""
-
-Handles = NDArray[np.int32]
-"""Handles of vertices or faces, as queries answer them."""
+Triangles = NDArray[np.int32]  # (n, 3): the corners of triangles, counterclockwise from outside
+Indices = NDArray[np.int64]  # indices of elements, computed from a mesh
+Handles = NDArray[np.int32]  # handles of vertices or faces, as queries answer them

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterator
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -29,6 +29,10 @@ class Remapping(NamedTuple):
 
     edges: Callable[[ArrayLike], NDArray[np.int64]]
     """Handles of edges, (k,) old ones -> (k,) new ones."""
+
+
+def _listed(code: int) -> Any:
+    return property(lambda edit: edit._found[code])
 
 
 class Edit:
@@ -66,35 +70,15 @@ class Edit:
         ]
         return f"Edit({self.kind}: {', '.join(parts) or 'nothing'})"
 
-    @property
-    def created_vertices(self) -> Handles:
-        """(k,) int32, ascending."""
-        return self._found[VERTEX + CREATED]
-
-    @property
-    def changed_vertices(self) -> Handles:
-        """(k,) int32, ascending: those at another position."""
-        return self._found[VERTEX + CHANGED]
-
-    @property
-    def removed_vertices(self) -> Handles:
-        """(k,) int32, ascending."""
-        return self._found[VERTEX + REMOVED]
-
-    @property
-    def created_faces(self) -> Handles:
-        """(k,) int32, ascending."""
-        return self._found[FACE + CREATED]
-
-    @property
-    def changed_faces(self) -> Handles:
-        """(k,) int32, ascending: those with other corners."""
-        return self._found[FACE + CHANGED]
-
-    @property
-    def removed_faces(self) -> Handles:
-        """(k,) int32, ascending."""
-        return self._found[FACE + REMOVED]
+    created_vertices: Handles = _listed(VERTEX + CREATED)
+    """(k,) int32, ascending; so are the others."""
+    changed_vertices: Handles = _listed(VERTEX + CHANGED)
+    """Those at another position."""
+    removed_vertices: Handles = _listed(VERTEX + REMOVED)
+    created_faces: Handles = _listed(FACE + CREATED)
+    changed_faces: Handles = _listed(FACE + CHANGED)
+    """Those with other corners."""
+    removed_faces: Handles = _listed(FACE + REMOVED)
 
     @cached_property
     def vertex_parents(self) -> Ragged:

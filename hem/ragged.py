@@ -10,8 +10,7 @@ from typing import Any, overload
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-SHOWN = 3
-"""Rows that ``repr`` shows."""
+SHOWN = 3  # rows that ``repr`` shows
 
 
 @dataclass(frozen=True, eq=False)

@@ -27,11 +27,8 @@ SLACK, SLACK_BYTES = 16, 1 << 20
 ADDRESSES = 8 if os.name != "nt" else 1
 """How many times the rows that it needs an array has addresses for once it was moved."""
 
-FRESH = 32 << 20
-"""Bytes from which on malloc takes memory fresh from the system (glibc: M_MMAP_THRESHOLD)."""
-
-SMALL = 1 << 16
-"""Bytes up to which to move an array is nothing."""
+FRESH = 32 << 20  # bytes from which on malloc takes fresh memory (glibc: M_MMAP_THRESHOLD)
+SMALL = 1 << 16  # bytes up to which to move an array is nothing
 
 
 class _Room:

@@ -34,31 +34,13 @@ from hem.edit import CHANGED, VERTEX, Edit
 from hem.engine import counting
 from hem.errors import MeshError
 from hem.meshes import TriangleMesh
-from structures.class_model import (
-    FaceList,
-    HalfEdge,
-    HalfEdgeList,
-    Vertex,
-    VertexList,
-    around,
-    clr_memory,
-)
+from structures import class_model, object_records
+from structures.class_model import FaceList, HalfEdge, HalfEdgeList, Vertex, VertexList, around
 from structures.half_edge import HalfEdge as HalfEdgeArrays
-from structures.object_records import (
-    COUNTED,
-    ObjectRecords,
-    ObjectStorage,
-    build_records,
-    index_of,
-    positions,
-    to_arrays,
-)
+from structures.object_records import COUNTED, ObjectRecords, ObjectStorage, index_of
 
-SHARED = 257
-"""Integers below this one are shared by all who use them."""
-
-Give = Callable[[HalfEdge], int]
-"""What a query or a step gives of a half-edge."""
+SHARED = 257  # integers below this one are shared by all who use them
+Give = Callable[[HalfEdge], int]  # what a query or a step gives of a half-edge
 
 
 def around_vertex(give: Give, last: Give | None = None) -> Kernel:
@@ -406,7 +388,7 @@ class HalfEdgeMesh(Navigable):
     @classmethod
     def build(cls, mesh: TriangleMesh, reference_bytes: int = 4) -> Self:
         """See ``Structure.build``; a reference takes what Python gives it."""
-        return cls(build_records(mesh))
+        return cls(object_records.build_records(mesh))
 
     @classmethod
     def create(cls, a: ArrayLike, b: ArrayLike, c: ArrayLike) -> Self:
@@ -436,7 +418,7 @@ class HalfEdgeMesh(Navigable):
     @property
     def points(self) -> NDArray[np.float32]:
         """(n, 3) float32: positions by vertex, NaN for dead ones; gathered anew. Cost O(n_v)."""
-        return positions(self.records)
+        return object_records.positions(self.records)
 
     def subscribe(self, callback: Callable[[Edit], Any]) -> Callable[[], None]:
         """See ``Structure.subscribe``; also told when the ``point`` of a vertex is set."""
@@ -478,12 +460,12 @@ class HalfEdgeMesh(Navigable):
 
     def clr_memory(self) -> dict[str, int]:
         """Bytes per field as the runtime of the thesis would lay its classes out: a model."""
-        return clr_memory({it.kind: len(it) for it in self.records[:-1]})
+        return class_model.clr_memory({it.kind: len(it) for it in self.records[:-1]})
 
     def validate(self) -> None:
         """Check the objects themselves, then as arrays what ``structures.half_edge`` requires."""
         self._require_invariants()
-        HalfEdgeArrays(to_arrays(self.records)).validate()
+        HalfEdgeArrays(object_records.to_arrays(self.records)).validate()
 
     def _require_invariants(self) -> None:
         """Every element stands in its list, and every reference leads to one that does."""

@@ -8,34 +8,19 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from hem import authoring
 from hem.arrays import Array
-from hem.authoring import (
-    EDGE_ROOM,
-    EDGES,
-    ENDLESS,
-    FACE_ROOM,
-    FACES,
-    VALENCE,
-    VERTEX_END,
-    VERTEX_ROOM,
-    VERTICES,
-    counted,
-)
+from hem.authoring import EDGES, ENDLESS, FACES, VALENCE, VERTEX_END, VERTICES, counted
 from hem.contract import Storage
 from hem.engine import Held, InterpretedUses
 from hem.meshes import TriangleMesh, require_manifold
-from structures.class_model import (
-    ElementList,
-    Face,
-    FaceList,
-    HalfEdge,
-    HalfEdgeList,
-    Vertex,
-    VertexList,
-)
+from structures import class_model
+from structures.class_model import Face, FaceList, HalfEdge, HalfEdgeList, Vertex, VertexList
 from structures.half_edge import HalfEdgeRecords
 
-COUNTED = (Vertex, HalfEdge, Face, ElementList)
+ROOM = [authoring.VERTEX_ROOM, authoring.EDGE_ROOM, authoring.FACE_ROOM]
+
+COUNTED = (Vertex, HalfEdge, Face, class_model.ElementList)
 """The classes whose fields count as work when they are read or written."""
 
 
@@ -97,8 +82,8 @@ def to_arrays(m: ObjectRecords) -> HalfEdgeRecords:
         half_edge[h.index] = h.origin.index, h.face.index, h.next.index, index_of(h.opposite)
     leaving = [-1 if v is None else index_of(v.half_edge) for v in m.vertices.items]
     within = [-1 if f is None else f.half_edge.index for f in m.faces.items]
-    counts, ends = m.counts.copy(), [VERTEX_ROOM, FACE_ROOM, EDGE_ROOM]
-    counts[ends] = len(leaving), len(within), len(half_edge)
+    counts = m.counts.copy()
+    counts[ROOM] = len(leaving), len(half_edge), len(within)
     known = np.array(leaving, np.int32), np.array(within, np.int32)
     return HalfEdgeRecords(positions(m), *known, half_edge, counts)
 
@@ -113,7 +98,7 @@ def count_records(
 ) -> Array:
     """The array ``counts`` for lists that grow by themselves."""
     count = counted(len(vertices.items), n_edges, len(faces.items), len(half_edges.items))
-    count[[VERTEX_ROOM, EDGE_ROOM, FACE_ROOM]] = ENDLESS
+    count[ROOM] = ENDLESS
     count[VERTICES], count[FACES] = len(vertices), len(faces)
     return count
 
@@ -140,7 +125,7 @@ def from_arrays(arrays: HalfEdgeRecords) -> ObjectRecords:
             if vertex is not None and leaving >= 0:
                 vertex.half_edge = half_edges[leaving]
     counts = arrays.counts.copy()
-    counts[[VERTEX_ROOM, EDGE_ROOM, FACE_ROOM]] = ENDLESS
+    counts[ROOM] = ENDLESS
     return ObjectRecords(VertexList(vertices), HalfEdgeList(half_edges), FaceList(faces), counts)
 
 
@@ -157,7 +142,7 @@ class ObjectStorage(Storage):
 
     def alive(self, records: Any, element: str, rows: Any = slice(None)) -> NDArray[np.bool_]:
         """See ``Storage.alive``."""
-        lists: dict[str, ElementList[Any]] = {"vertex": records.vertices, "face": records.faces}
+        lists: dict[str, Any] = {"vertex": records.vertices, "face": records.faces}
         items = lists.get(element, records.half_edges).items
         chosen = items[rows] if isinstance(rows, slice) else [items[row] for row in rows.tolist()]
         return np.array([it is not None for it in chosen], np.bool_)
@@ -169,7 +154,7 @@ class ObjectStorage(Storage):
     def compacted(self, records: Any) -> tuple[ObjectRecords, dict[str, Array]]:
         """See ``Storage.compacted``; the lists stay the same."""
         m, number = records, {}
-        lists: dict[str, ElementList[Any]] = {it.kind: it for it in m[:-1]}
+        lists: dict[str, Any] = {it.kind: it for it in m[:-1]}
         for kind, elements in lists.items():
             alive = elements.alive()
             number[kind] = np.where(alive, np.cumsum(alive) - 1, -1)

@@ -16,9 +16,7 @@ from structures.as_printed import AsPrinted
 from structures.class_model import Face, Point
 from structures.plankton import Plankton
 
-NEAR = 1e-5
-"""How far beside a triangle a point may lie that it contains; a part of its size."""
-
+NEAR = 1e-5  # how far beside a triangle a point may lie that it contains; a part of its size
 RUNAWAY = 999
 
 

@@ -10,8 +10,7 @@ from hem.arrays import Array
 from hem.authoring import Refusal
 from hem.errors import MeshError
 
-NO_POINT = np.zeros((1, 3), np.float32)
-"""The positions of operations that take none."""
+NO_POINT = np.zeros((1, 3), np.float32)  # the positions of operations that take none
 
 
 def rows(handles: Array | Sequence[int], ends: Array | int = -1) -> Array:

@@ -28,11 +28,8 @@ or the default, which it also gets where it has no parents."""
 
 RULES = ("interpolate", "copy", "default")
 
-ROUNDING = 1e-6
-"""Faces that are flatter than this part of their length have no direction across."""
-
-ALIKE = 1e-5
-"""Values of two corners that differ by less, and by less than this part of them, are no seam."""
+ROUNDING = 1e-6  # faces that are flatter than this part of their length have no direction across
+ALIKE = 1e-5  # corners whose values differ by less, or by this part of them, are at no seam
 
 
 class Attribute:
@@ -141,15 +138,13 @@ class Attribute:
         """Keep anew whatever a kind of attribute keeps of the mesh beside the values."""
 
     def _renumber(self, remapping: Remapping) -> None:
-        old, new = self._moved(remapping)
+        number = self._numbers(remapping)
         rows, self._rows = self._rows, self._fresh(self._end)
-        self._rows[new] = rows[old]
+        self._rows[number[number >= 0]] = rows[: len(number)][number >= 0]
 
-    def _moved(self, remapping: Remapping) -> tuple[Array, Array]:
-        """Old rows and new ones of what is live, after ``compact``."""
-        number = remapping.vertices if self.element == "vertex" else remapping.faces
-        old = np.flatnonzero(number >= 0)
-        return old, number[old]
+    def _numbers(self, remapping: Remapping) -> Array:
+        """The new row of every old one after ``compact``, -1 for what is dead."""
+        return remapping.vertices if self.element == "vertex" else remapping.faces
 
     def _inherit(self, edit: Edit) -> None:
         """Give what was created its rows."""
@@ -184,10 +179,8 @@ class EdgeAttribute(Attribute):
             return self._state.edge_names(np.atleast_1d(rows)).reshape(rows.shape)
         return rows
 
-    def _moved(self, remapping: Remapping) -> tuple[Array, Array]:
-        number = remapping.edges(np.arange(len(self._rows)))
-        old = np.flatnonzero(number >= 0)
-        return old, number[old]
+    def _numbers(self, remapping: Remapping) -> Array:
+        return remapping.edges(np.arange(len(self._rows)))
 
     def _inherit(self, edit: Edit) -> None:
         if self.on_split == "default":
@@ -326,11 +319,10 @@ class CornerAttribute(Attribute):
         self._keys = enlarged(self._keys, len(self._rows))
 
     def _renumber(self, remapping: Remapping) -> None:
-        old, new = self._moved(remapping)
-        keys = np.append(remapping.vertices, -1)[self._keys[old]]
+        number, old = self._numbers(remapping), np.append(remapping.vertices, -1)[self._keys]
         super()._renumber(remapping)
         self._keys = np.full(self._rows.shape[:2], -1, np.int32)
-        self._keys[new] = keys
+        self._keys[number[number >= 0]] = old[: len(number)][number >= 0]
 
     def _inherit(self, edit: Edit) -> None:
         """All corners of what was touched are written anew, as a face may begin elsewhere."""

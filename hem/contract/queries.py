@@ -19,12 +19,8 @@ from hem.engine import Read
 from hem.errors import MeshError
 from hem.ragged import Ragged
 
-MOST = 1 << 63
-"""More than any handle."""
-
-ALL: Any = object()
-"""Stands for the handles of all live elements."""
-
+MOST = 1 << 63  # more than any handle
+ALL: Any = object()  # stands for the handles of all live elements
 NUMPY_INTEGERS = frozenset(np.dtype(it).type for it in np.typecodes["AllInteger"])
 """What a loop over an array of handles gives."""
 

@@ -24,20 +24,13 @@ from hem.whole_files import write_whole
 COMPILED, PYTHON = "compiled", "python"
 """Where a question comes from: a compiled loop or a batch, or a single call from Python."""
 
-ANEW = "neighbors_anew"
-"""Row of a recording: how often neighbors were needed for the first time after an edit."""
-
-CHECKED = "can_"
-"""Before the name of an operation: tried and not done, as it was refused or only to be checked."""
-
+ANEW = "neighbors_anew"  # a row: how often neighbors were needed for the first time after an edit
+CHECKED = "can_"  # before an operation: tried and not done, being refused or only to be checked
 BESIDE = ("face_left_of", "diamond", "are_joined")
 """Kernels that answer what takes looking at neighbors, beside the queries."""
 
-NEAR = 16
-"""Successive handles that are no farther apart lie in the same or in the next lines of a cache."""
-
-BITS = 31
-"""A handle of an edge that takes more bits than these holds a second number in them."""
+NEAR = 16  # handles no farther apart lie in the same or the next lines of a cache
+BITS = 31  # a handle of an edge that takes more bits than these holds a second number in them
 
 
 class Counted(NamedTuple):

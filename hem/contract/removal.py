@@ -9,18 +9,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from hem import authoring
 from hem.arrays import Array
-from hem.authoring import (
-    EDGES,
-    ENTRIES,
-    FACES,
-    VERTICES,
-    Kernel,
-    Kernels,
-    Refusal,
-    kernel,
-    log_element,
-)
+from hem.authoring import EDGES, FACES, VERTICES, Kernel, Kernels, kernel, log_element
 from hem.contract.surveying import Surveying
 from hem.edit import FACE, REMOVED, VERTEX
 from hem.errors import TopologyError
@@ -104,11 +95,11 @@ def planned(s: Surveying, called: str, faces: Array, vertex: int) -> Removal:
     left = remaining(s, faces)
     pinched = left.pinched()
     if len(pinched):
-        raise TopologyError(f"cannot {called}: {Refusal.BETWEEN.words}", vertices=pinched)
+        raise TopologyError(f"cannot {called}: {authoring.Refusal.BETWEEN.words}", vertices=pinched)
     vertices, first = np.unique(left.vertex, return_index=True)
     anchors = np.stack([vertices, left.face[first]], axis=1)
     counted = np.array([vanishing_edges(s, faces, left), vertex])
-    return Removal(faces, anchors, counted, np.zeros(len(faces) + ENTRIES, np.int64))
+    return Removal(faces, anchors, counted, np.zeros(len(faces) + authoring.ENTRIES, np.int64))
 
 
 def removing(k: Kernels, operations: Kernels) -> Kernel:

@@ -11,8 +11,7 @@ from hem.authoring.marked import BITS
 from hem.contract.attributes import EdgeAttribute, enlarged
 from hem.edit import Edit, Remapping
 
-Way = tuple[int, int]
-"""Where a half-edge starts, and where it ends."""
+Way = tuple[int, int]  # where a half-edge starts, and where it ends
 
 
 class SideAttribute(EdgeAttribute):
@@ -38,10 +37,8 @@ class SideAttribute(EdgeAttribute):
         rows = super(EdgeAttribute, self)._checked(handles)
         return rows >> BITS if self.element == "edge" else rows
 
-    def _moved(self, remapping: Remapping) -> tuple[Array, Array]:
-        faces = remapping.faces
-        old = np.flatnonzero(faces >= 0)
-        return sides_of(old), sides_of(faces[old])
+    def _numbers(self, remapping: Remapping) -> Array:
+        return np.where(np.repeat(remapping.faces < 0, 3), -1, sides_of(remapping.faces))
 
     def _look_at_all(self) -> None:
         self._ran = np.full((self._end, 2), -1)

@@ -9,27 +9,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from hem import authoring
 from hem.arrays import Array, Bools
-from hem.authoring import (
-    EDGE_END,
-    EDGE_GROWTH,
-    EDGE_ROOM,
-    FACE_END,
-    FACE_ROOM,
-    FACES,
-    QUERIES,
-    SIDES,
-    VALENCE,
-    VERTEX_END,
-    VERTEX_ROOM,
-    WIDTH,
-    in_slices,
-    slice_count,
-)
+from hem.authoring import FACES, QUERIES, SIDES, VALENCE, WIDTH, in_slices, slice_count
 from hem.contract.description import Declared
 from hem.contract.storage import HANDLE_TYPES
 from hem.engine import move
 from hem.ragged import Ragged
+
+ENDS = [authoring.VERTEX_END, authoring.EDGE_END, authoring.FACE_END]
+ROOMS = [authoring.VERTEX_ROOM, authoring.EDGE_ROOM, authoring.FACE_ROOM]
 
 TYPICAL_NEIGHBORS = {"vertex": 7, "edge": 11, "face": 3}
 """Room to begin with for the answers to a batch, per element; it grows where it is too small."""
@@ -146,11 +135,9 @@ class State:
     def make_room(self, vertices: int, faces: int) -> None:
         """Make room for so many new elements. O(1) each in the long run."""
         counts = self.records.counts
-        if (
-            counts[VERTEX_END] + vertices > counts[VERTEX_ROOM]
-            or counts[FACE_END] + faces > counts[FACE_ROOM]
-            or counts[EDGE_END] + counts[EDGE_GROWTH] * faces > counts[EDGE_ROOM]
-        ):
+        edges = counts[authoring.EDGE_GROWTH] * faces
+        wanted = np.array([vertices, edges, faces]) + counts[ENDS]
+        if (wanted > counts[ROOMS]).any():
             self.records = self.storage.with_room(self.records, vertices, faces)
             self._repin()
 
@@ -186,7 +173,7 @@ class State:
     def count_valence(self) -> int:
         """The bound on the valence made exact: operations only ever raise it. Cost O(n_t)."""
         counts = self.records.counts
-        times = np.zeros(counts[VERTEX_END], np.int32)
+        times = np.zeros(counts[authoring.VERTEX_END], np.int32)
         corners = self.storage.row(int(counts[SIDES]), HANDLE_TYPES["vertex"])
         tally = self.declared.queries["face_vertices"].tally
         tally(self.live("face"), times, corners, *self.records)

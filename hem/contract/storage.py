@@ -6,20 +6,9 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from hem import authoring
 from hem.arrays import Array, Bools
-from hem.authoring import (
-    ELEMENTS,
-    ENDS,
-    FACE_END,
-    FACES,
-    VERTEX_END,
-    VERTICES,
-    Field,
-    compacted,
-    copied,
-    grown,
-    live,
-)
+from hem.authoring import ELEMENTS, ENDS, FACE_END, FACES, VERTEX_END, VERTICES, Field
 from hem.engine import Pinned, Uses
 from hem.errors import MeshError
 
@@ -42,7 +31,7 @@ class Storage:
 
     def alive(self, records: Any, element: str, rows: Any = slice(None)) -> Bools:
         """(end,) bool: which of the records of a kind are live, or which of ``rows``. O(rows)."""
-        return live(records, self.fields, element, rows)
+        return authoring.live(records, self.fields, element, rows)
 
     def live(self, records: Any, element: str) -> NDArray[Any]:
         """(k,): the handles of all live elements of a kind that is recorded, ascending."""
@@ -91,11 +80,11 @@ class Storage:
 
     def with_room(self, records: Any, vertices: int, faces: int) -> Any:
         """The records with room for so many more elements, in arrays of their own if need be."""
-        return grown(records, self.fields, vertices, faces)
+        return authoring.grown(records, self.fields, vertices, faces)
 
     def compacted(self, records: Any) -> tuple[Any, dict[str, Array]]:
         """The live records without gaps, and the new number of each old one by kind."""
-        return compacted(records, self.fields)
+        return authoring.compacted(records, self.fields)
 
     def renumbered(self, edges: ArrayLike, number: Mapping[str, Array]) -> NDArray[np.int64]:
         """(k,): the new handles of old edges (k,) after ``compacted``, -1 for those that went."""
@@ -106,7 +95,7 @@ class Storage:
 
     def saved(self, records: Any) -> Any:
         """What ``loaded`` and ``put_back`` need, in arrays of its own."""
-        return copied(records)
+        return authoring.copied(records)
 
     def loaded(self, saved: Any) -> Any:
         """The records of what was ``saved``, which is theirs from here on."""

@@ -8,18 +8,9 @@ from typing import Any, ClassVar, NamedTuple, Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from hem import authoring
 from hem.arrays import Array, Bools, Handles, Points
-from hem.authoring import (
-    ENTRIES,
-    OF_ARRAYS,
-    OPERATIONS,
-    QUERIES,
-    Field,
-    Kernel,
-    Operation,
-    kernels_of,
-    require_records,
-)
+from hem.authoring import OPERATIONS, QUERIES, Field, Kernel, Operation
 from hem.contract import arguments
 from hem.contract.attributes import Attribute, CornerAttribute, EdgeAttribute
 from hem.contract.description import Algorithm, Declared, Described
@@ -142,8 +133,8 @@ class Structure(Described, Surveying, abstract=True):
         if abstract:
             return
         if "records_type" in cls.__dict__:
-            own = cls.__dict__.get("kernels") or kernels_of(cls.__module__)
-            cls.kernels = {**OF_ARRAYS, **own}
+            own = cls.__dict__.get("kernels") or authoring.kernels_of(cls.__module__)
+            cls.kernels = {**authoring.OF_ARRAYS, **own}
         cls.declared = Declared(cls)
 
     def __init__(self, records: Any) -> None:
@@ -165,7 +156,7 @@ class Structure(Described, Surveying, abstract=True):
 
         Raises MeshError that names the broken invariant and the elements that break it.
         """
-        require_records(self.records, self.fields)
+        authoring.require_records(self.records, self.fields)
         self._require_invariants()
 
     @abstractmethod
@@ -435,7 +426,7 @@ class Structure(Described, Surveying, abstract=True):
         self._queries.count_edges()
         self._state.make_room(splits, 2 * splits)
         self._state.widen(more)
-        return self._state.out["edge"], np.zeros(ENTRIES * (more + 2), np.int64)
+        return self._state.out["edge"], np.zeros(authoring.ENTRIES * (more + 2), np.int64)
 
     @property
     def followed(self) -> bool:

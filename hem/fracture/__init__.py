@@ -7,10 +7,9 @@
 from hem.fracture.blow import Blow, Motion, kinetic_energy, motion
 from hem.fracture.bodies import Body, require_body, tetrahedra, voronoi, wrapped
 from hem.fracture.files import describe, names, require_writable, save_pieces, whole
-from hem.fracture.islands import islands
 from hem.fracture.mass import Mass
 from hem.fracture.material import MATERIALS, Material, material, materials
-from hem.fracture.pieces import Fracture
+from hem.fracture.pieces import Fracture, islands
 from hem.fracture.surface import JUMP, Found, nearest_face, scanned, shatter
 
 __all__ = [

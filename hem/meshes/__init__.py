@@ -3,7 +3,7 @@
 `hem.meshes.measures` has bounds, lengths, areas, normals and volume.
 """
 
-from hem.meshes.components import NOTHING, components, joined, used_only
+from hem.meshes.components import NOTHING, clusters, components, joined, used_only
 from hem.meshes.edges import undirected_edges
 from hem.meshes.manifold import (
     euler_number,
@@ -16,7 +16,6 @@ from hem.meshes.manifold import (
 from hem.meshes.polygons import PolygonMesh, repeats_a_corner, require_triangles, simplest
 from hem.meshes.summary import MeshSummary
 from hem.meshes.triangles import TriangleMesh, repeated_corners
-from hem.meshes.weld import clusters
 
 __all__ = [
     "NOTHING", "MeshSummary", "PolygonMesh", "TriangleMesh", "clusters", "components",

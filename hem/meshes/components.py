@@ -1,4 +1,4 @@
-"""What hangs together, and what is used."""
+"""What hangs together, what lies in one place, and what is used."""
 
 from collections.abc import Iterable
 from typing import Any
@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from hem.arrays import Array, Indices
+from hem.arrays import Array, Indices, Points
 
 
 def components(n: int, pairs: Array) -> tuple[int, Indices]:
@@ -40,3 +40,26 @@ def used_only(points: NDArray[Any], triangles: Array) -> tuple[NDArray[Any], Ind
     """The points that triangles (m, 3) use, in the order they had, and the triangles by them."""
     used, renumbered = np.unique(triangles, return_inverse=True)
     return points[used], renumbered.reshape(-1, 3)
+
+
+def clusters(points: Points, tolerance: float) -> tuple[Indices, NDArray[np.int32]]:
+    """The first vertex of each cluster in ascending order, and the cluster of each vertex.
+
+    Two vertices are in one cluster when their positions are equal (-0.0 equals 0.0), or when a
+    chain of steps of at most `tolerance` leads from one to the other. O(n log n), and with a
+    tolerance the number of pairs that close besides.
+    """
+    whole = (points + points.dtype.type(0)).view(f"V{3 * points.itemsize}").ravel()  # no -0.0
+    _, first, label = np.unique(whole, return_index=True, return_inverse=True)
+    order = np.argsort(first)
+    rank = np.empty(len(first), np.int32)
+    rank[order] = np.arange(len(first), dtype=np.int32)
+    first, cluster = first[order], rank[label]
+    if tolerance > 0:
+        from scipy.spatial import cKDTree
+
+        pairs = cKDTree(points[first]).query_pairs(tolerance, output_type="ndarray")
+        _, part = components(len(first), pairs)  # numbered by their first, too
+        first = first[np.unique(part, return_index=True)[1]]
+        cluster = part.astype(np.int32)[cluster]
+    return first, cluster

@@ -9,15 +9,14 @@ from numpy.typing import ArrayLike, DTypeLike, NDArray
 from hem.arrays import Bools, Floats, Points, Triangles
 from hem.errors import MeshError, MeshWarning
 from hem.meshes import measures
+from hem.meshes.components import clusters
 from hem.meshes.convertible import Convertible, library
 from hem.meshes.edges import undirected_edges
-from hem.meshes.weld import clusters
 from hem.ragged import Ragged
 
 _MOST_ELEMENTS = np.iinfo(np.int32).max
 _MIXED = np.sqrt([2.0, 3.0, 5.0])
-_NOISE = 1e-12
-"""What computing positions in float64 leaves between equal ones, of the largest coordinate."""
+_NOISE = 1e-12  # what float64 leaves between equal positions, of the largest coordinate
 
 
 class TriangleMesh(Convertible):

@@ -9,8 +9,7 @@ from hem.sources.families import FAMILIES, generate
 from hem.sources.files import as_mesh, load
 from hem.sources.samples import SAMPLES, sample
 
-USUAL_SIZE = 2_000
-"""Vertices of a family that is named without a size."""
+USUAL_SIZE = 2_000  # vertices of a family that is named without a size
 
 
 @overload

@@ -14,8 +14,7 @@ from hem.arrays import Bools, Floats, Indices
 from hem.fracture.bodies.solid import to_manifold
 from hem.meshes import used_only
 
-_FAR = 4.0
-"""How far off the six sites are that close the outer cells, in radii of all that matters."""
+_FAR = 4.0  # how far off six sites are that close the outer cells, in radii of all that matters
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,7 +5,6 @@ where they are while they fly; `default_impact` is where a camera sees a mesh st
 loaded when the first picture is drawn.
 """
 
-from hem.fracture.show.aim import default_impact
 from hem.fracture.show.flight import GRAVITY, Flight, flight
 from hem.fracture.show.picture import (
     AXES,
@@ -13,6 +12,7 @@ from hem.fracture.show.picture import (
     Picture,
     PicturesMissingError,
     Size,
+    default_impact,
     load_pyvista,
     view_direction,
 )

@@ -18,8 +18,7 @@ GRAVITY = 9.81
 """m/s²"""
 
 BOUNCE, FRICTION = 0.25, 0.5
-_RATE = 200
-"""Moments a second at which it is seen whether a piece has met the floor."""
+_RATE = 200  # moments a second at which it is seen whether a piece has met the floor
 
 
 class Flight(NamedTuple):
@@ -29,17 +28,10 @@ class Flight(NamedTuple):
     ``rotations[f, i] @ (p - mass.centers[i]) + positions[f, i]``.
     """
 
-    times: Floats
-    """(f,) s after the blow."""
-
-    positions: Floats
-    """(f, n, 3): of the centers of mass."""
-
-    rotations: Floats
-    """(f, n, 3, 3)"""
-
-    at_rest: Bools
-    """(n,): which lie still at the end."""
+    times: Floats  # (f,) s after the blow
+    positions: Floats  # (f, n, 3): of the centers of mass
+    rotations: Floats  # (f, n, 3, 3)
+    at_rest: Bools  # (n,): which lie still at the end
 
 
 def flight(

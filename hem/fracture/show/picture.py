@@ -1,4 +1,7 @@
-"""Shaded pictures of meshes, drawn off-screen by PyVista: no display is needed, and no GPU."""
+"""Shaded pictures of meshes, drawn off-screen by PyVista: no display is needed, and no GPU.
+
+And where a mesh is struck unless it is said: where the camera sees it.
+"""
 
 import subprocess
 import sys
@@ -9,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from hem.arrays import Array, Floats
+from hem.meshes import TriangleMesh
 from hem.meshes.measures import unit
 
 Image = NDArray[np.uint8]
@@ -17,12 +21,8 @@ Size = tuple[int, int]
 AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 AZIMUTH, ELEVATION = 30.0, 18.0
 
-PAPER = (244, 243, 241)
-"""The floor far away, and what is behind everything: a warm near-white, sRGB."""
-
-_CREASE = 30.0
-"""Degrees. Sharper edges stay sharp; across all others the shading is smooth."""
-
+PAPER = (244, 243, 241)  # sRGB: the floor far away, and what is behind everything
+_CREASE = 30.0  # degrees. Sharper edges stay sharp; across all others the shading is smooth
 _FIELD_OF_VIEW = 26.0
 _CELLS, _SAMPLES = 400, 40_000
 
@@ -239,6 +239,28 @@ def view_direction(up: ArrayLike, azimuth: float = AZIMUTH, elevation: float = E
     start = np.roll(top, 1)
     level = np.cos(around) * start + np.sin(around) * np.cross(top, start)
     return np.asarray(np.cos(lifted) * level + np.sin(lifted) * top)
+
+
+def default_impact(mesh: TriangleMesh, up: str = "y") -> tuple[Array, Array]:
+    """A point that the camera sees, to the left of the middle, and the way into it: two (3,)."""
+    used = mesh.points[np.unique(mesh.triangles)].astype(float)
+    middle = (used.max(axis=0) + used.min(axis=0)) / 2
+    way = -view_direction(AXES[up], -5.0, 22.0)
+    return first_hit(mesh, middle - float(np.ptp(used, axis=0).sum()) * way, way), way
+
+
+def first_hit(mesh: TriangleMesh, start: Array, way: Array) -> Array:
+    """Where a ray first meets a mesh, or else the vertex nearest to its way: (3,). O(m)."""
+    a, b, c = (mesh.points[mesh.triangles].astype(float) - start).transpose(1, 0, 2)
+    sides = np.stack([np.cross(a, b) @ way, np.cross(b, c) @ way, np.cross(c, a) @ way])
+    normal = np.cross(b - a, c - a)
+    slope = normal @ way
+    met = ((sides >= 0).all(axis=0) | (sides <= 0).all(axis=0)) & (slope != 0)
+    far = np.einsum("ij,ij->i", normal[met], a[met]) / slope[met]
+    if (far > 0).any():
+        return np.asarray(start + far[far > 0].min() * way)
+    off = mesh.points[np.unique(mesh.triangles)].astype(float) - start
+    return np.asarray(start + off[np.linalg.norm(np.cross(off, way), axis=1).argmin()])
 
 
 def _apex(across: Array, depth: Array, slope: float) -> tuple[float, float]:

@@ -30,8 +30,7 @@ OUTCOMES = {
 JUMP = -1
 """Begin a walk where it is likely to be short."""
 
-CROSSINGS_PER_ROOT = 16
-"""Faces that a walk may visit per square root of their number; who needs more is going round."""
+CROSSINGS_PER_ROOT = 16  # faces a walk may visit per root of their number; then it goes round
 
 
 class Plan(NamedTuple):

@@ -19,10 +19,9 @@ from hem.contract import Attribute, Structure
 from hem.edit import Edit
 from hem.errors import MeshError
 from hem.fracture.blow import generator
-from hem.fracture.islands import islands
 from hem.fracture.material import MATERIALS, Material
 from hem.fracture.material import material as named
-from hem.fracture.pieces import Fracture
+from hem.fracture.pieces import Fracture, islands
 from hem.fracture.surface.breaking import OUTCOMES, Plan, breaking, make_plan
 from hem.fracture.surface.hanging import hanging
 from hem.fracture.surface.nearest import corner_vertices, face_corners, nearest_face
