@@ -127,11 +127,7 @@ class PositionChangedEvent(Listeners):
 
     def __init__(self, tell_mesh: Callable[[Vertex], Any] | None = None) -> None:
         super().__init__()
-        self.tell_mesh = tell_mesh or _tell_nobody
-
-
-def _tell_nobody(vertex: Vertex) -> None:
-    """There is no mesh that would be told."""
+        self.tell_mesh = tell_mesh or (lambda vertex: None)
 
 
 Element = TypeVar("Element", Vertex, HalfEdge, Face)

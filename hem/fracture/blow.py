@@ -82,11 +82,7 @@ class Motion(NamedTuple):
 
 
 def sites(
-    blow: Blow,
-    material: Material,
-    diagonal: float,
-    inside: Callable[[Floats], Bools],
-    seed: int,
+    blow: Blow, material: Material, diagonal: float, inside: Callable[[Floats], Bools], seed: int
 ) -> Sites:
     """Break points inside a body, gathered round the impact.
 

@@ -1,5 +1,6 @@
 """Materials: how what is hit breaks, as data."""
 
+import math
 import os
 import tomllib
 from collections.abc import Mapping
@@ -38,7 +39,11 @@ class Material:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "circles", tuple(self.circles))
-        wrong = [it for it in _POSITIVE if not _is_positive(getattr(self, it))]
+        wrong = []
+        for it in ("density", "thickness", "scale", "sites", "reach", "burst"):
+            value = getattr(self, it)
+            if not (isinstance(value, int | float) and 0 < value < math.inf):
+                wrong.append(it)
         if not all(isinstance(count, int) and count >= 0 for count in self.circles):
             wrong.append("circles")
         if self.burst > 1:
@@ -49,13 +54,6 @@ class Material:
                 f"{', '.join(repr(getattr(self, it)) for it in wrong)}; numbers are positive, "
                 "circles are counts of break points, and burst is a part of 1"
             )
-
-
-_POSITIVE = ("density", "thickness", "scale", "sites", "reach", "burst")
-
-
-def _is_positive(value: Any) -> bool:
-    return isinstance(value, int | float) and 0 < value < float("inf")
 
 
 def materials(path: str | os.PathLike[str] = _OWN) -> dict[str, Material]:

@@ -42,13 +42,6 @@ def split_vertices(triangles: Triangles) -> Indices:
     return np.flatnonzero(np.bincount(vertex_of_fan) > 1)
 
 
-def repeated_faces(triangles: Triangles) -> Indices:
-    """Faces with the same three corners as an earlier one, either way round: (k,) faces."""
-    corners = np.sort(triangles, axis=1)
-    _, first = np.unique(corners, axis=0, return_index=True)
-    return np.setdiff1d(np.arange(len(triangles)), first)
-
-
 def euler_number(mesh: TriangleMesh) -> int:
     """V - E + F over the vertices that have faces."""
     vertices = np.unique(mesh.triangles)
@@ -62,7 +55,8 @@ def require_sound(mesh: TriangleMesh, euler: int | None = None) -> None:
     MeshError with the elements.
     """
     require_manifold(mesh)
-    again = repeated_faces(mesh.triangles)
+    _, first = np.unique(np.sort(mesh.triangles, axis=1), axis=0, return_index=True)
+    again = np.setdiff1d(np.arange(len(mesh.triangles)), first)
     if len(again):
         raise MeshError("faces have the same three corners as others", faces=again)
     if euler is not None and euler_number(mesh) != euler:

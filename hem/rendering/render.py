@@ -215,10 +215,7 @@ def mesh_from_render(
     points: ArrayLike, indices: ArrayLike, tolerance: float = 0.0, *, values: ArrayLike
 ) -> tuple[TriangleMesh, Array]: ...
 def mesh_from_render(
-    points: ArrayLike,
-    indices: ArrayLike,
-    tolerance: float = 0.0,
-    values: ArrayLike | None = None,
+    points: ArrayLike, indices: ArrayLike, tolerance: float = 0.0, values: ArrayLike | None = None
 ) -> TriangleMesh | tuple[TriangleMesh, Array]:
     """The surface behind a render mesh, for any structure.
 

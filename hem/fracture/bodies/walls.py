@@ -1,5 +1,6 @@
 """Which pieces have walls in common, from the triangles that their walls consist of."""
 
+from collections import defaultdict
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -29,13 +30,13 @@ def touching(pieces: Sequence[TriangleMesh], labels: Sequence[Indices], least: f
     O(t log t) for t triangles on walls, and quadratic in those of such a wall.
     """
     walls = _gathered(pieces, labels)
-    pairs: dict[tuple[int, int], float] = {}
+    pairs: dict[tuple[int, int], float] = defaultdict(float)
     ends = np.flatnonzero(np.diff(walls.wall)) + 1
     for of_wall in np.split(np.arange(len(walls.wall)), ends):
         one, other = _sides(walls, of_wall)
         for here, there in ((one, other), (other, one)):
             for pair, area in _met(walls, here, there).items():
-                pairs[pair] = max(pairs.get(pair, 0.0), area)
+                pairs[pair] = max(pairs[pair], area)
     found = sorted(pair for pair, area in pairs.items() if area > least)
     return np.array(found, np.int64).reshape(-1, 2)
 
@@ -69,11 +70,10 @@ def _met(walls: _Walls, here: Indices, there: Indices) -> dict[tuple[int, int], 
         facing = np.full(len(here), theirs[0])
     else:
         facing = _facing(walls, here, there)
-    met: dict[tuple[int, int], float] = {}
+    met: dict[tuple[int, int], float] = defaultdict(float)
     for a, b, area in zip(ours.tolist(), facing.tolist(), walls.areas[here].tolist(), strict=True):
         if b >= 0 and a != b:
-            pair = (min(a, b), max(a, b))
-            met[pair] = met.get(pair, 0.0) + area
+            met[min(a, b), max(a, b)] += area
     return met
 
 

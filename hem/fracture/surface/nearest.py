@@ -80,13 +80,19 @@ def corner_vertices(structure: Structure, faces: Array) -> Array:
     larger = np.asarray(faces)[found.counts > 3]
     if len(larger):
         raise MeshError(
-            "a point is looked for on triangles; cut the polygons first, with "
+            "only triangles can be broken, and points sought on them; cut the polygons first, with "
             "structures.build(name, mesh.triangulated())",
             faces=larger,
         )
     vertices = found.values.reshape(-1, 3)
     turned = (vertices.argmin(axis=1)[:, None] + np.arange(3)) % 3
     return np.take_along_axis(vertices, turned, axis=1)
+
+
+def require_triangles(structure: Structure) -> None:
+    """Raise MeshError that names the faces of more corners, where there are any."""
+    if structure.most_corners > 3:
+        corner_vertices(structure, structure.faces())
 
 
 def face_corners(structure: Structure, faces: Array) -> Floats:

@@ -24,7 +24,12 @@ from hem.fracture.material import material as named
 from hem.fracture.pieces import Fracture, islands
 from hem.fracture.surface.breaking import OUTCOMES, Plan, breaking, make_plan
 from hem.fracture.surface.hanging import hanging
-from hem.fracture.surface.nearest import corner_vertices, face_corners, nearest_face
+from hem.fracture.surface.nearest import (
+    corner_vertices,
+    face_corners,
+    nearest_face,
+    require_triangles,
+)
 from hem.meshes import TriangleMesh
 from hem.meshes.measures import bounds, length, normals, unit
 
@@ -98,13 +103,12 @@ def _chosen(
         return material
     if material.element != "face" or material.mesh is not structure:
         raise MeshError(f"{material!r} is no attribute of the faces of this mesh")
-    _require_triangles(structure)
+    require_triangles(structure)
     face = nearest_face(structure, impact).face
     known, place = list(MATERIALS.values()), material[face]
     if not 0 <= place < len(known):
-        raise MeshError(
-            f"material {place} is none of {len(known)}: {', '.join(MATERIALS)}", faces=[face]
-        )
+        words = f"material {place} is none of {len(known)}: {', '.join(MATERIALS)}"
+        raise MeshError(words, faces=[face])
     return known[int(place)]
 
 
@@ -138,7 +142,7 @@ def break_surface(
     scale: float | None = None,
 ) -> tuple[Plan, Indices, float]:
     """Split all that ``shatter`` splits -> what became of it, the split faces, the diagonal."""
-    _require_triangles(structure)
+    require_triangles(structure)
     found = nearest_face(structure, impact)
     low, high = bounds(structure.points)
     size = float(length(high - low))
@@ -154,18 +158,6 @@ def break_surface(
     split = Edit("break_surface", -1, touched)
     new = np.union1d(split.created_faces, split.changed_faces).astype(np.int64)
     return plan, new, size
-
-
-def _require_triangles(structure: Structure) -> None:
-    if structure.most_corners > 3:
-        faces = structure.faces()
-        wrong = faces[structure.face_vertices(faces).counts > 3]
-        if len(wrong):
-            raise MeshError(
-                "only triangles can be shattered; cut the polygons first, with "
-                "structures.build(name, mesh.triangulated())",
-                faces=wrong,
-            )
 
 
 def break_points(material: Material, seed: int, step: float) -> Floats:
