@@ -5,9 +5,9 @@ from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from hem.arrays import Array, Handles
+from hem.arrays import Array, Handles, Indices
 from hem.ragged import Ragged
 
 CREATED, CHANGED, REMOVED = range(3)
@@ -27,7 +27,7 @@ class Remapping(NamedTuple):
     faces: Handles
     """(old faces, dead ones included): new face by old."""
 
-    edges: Callable[[ArrayLike], NDArray[np.int64]]
+    edges: Callable[[ArrayLike], Indices]
     """Handles of edges, (k,) old ones -> (k,) new ones."""
 
 

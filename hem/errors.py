@@ -1,7 +1,9 @@
 """What can be wrong with a mesh, or with an operation on it. Every error names the elements."""
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
+
+from hem.arrays import Indices
 
 _SHOWN = 6
 
@@ -15,7 +17,7 @@ class _ElementsError(ValueError):
     """
 
     reason: str
-    elements: dict[str, NDArray[np.int64]]
+    elements: dict[str, Indices]
 
     def __init__(self, message: str, **elements: ArrayLike) -> None:
         self.reason = message
@@ -25,7 +27,7 @@ class _ElementsError(ValueError):
         super().__init__(f"{message} ({'; '.join(listed)})" if listed else message)
 
 
-def _listed(found: NDArray[np.int64]) -> str:
+def _listed(found: Indices) -> str:
     shown = ", ".join(_one(element) for element in found[:_SHOWN].tolist())
     return f"{shown} and {len(found) - _SHOWN:,} more" if len(found) > _SHOWN else shown
 

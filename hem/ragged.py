@@ -8,7 +8,9 @@ from itertools import pairwise
 from typing import Any, overload
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
+
+from hem.arrays import Array, Indices
 
 SHOWN = 3  # rows that ``repr`` shows
 
@@ -20,8 +22,8 @@ class Ragged:
     ``offsets``: (n + 1,) int64, from 0. ``values``: (offsets[n],) integers.
     """
 
-    offsets: NDArray[np.int64]
-    values: NDArray[Any]
+    offsets: Indices
+    values: Array
 
     def __len__(self) -> int:
         return len(self.offsets) - 1
@@ -40,10 +42,10 @@ class Ragged:
         return [values[start:end] for start, end in pairwise(ends)]
 
     @overload
-    def __getitem__(self, i: int) -> NDArray[Any]: ...
+    def __getitem__(self, i: int) -> Array: ...
     @overload
-    def __getitem__(self, i: slice | NDArray[Any]) -> Ragged: ...
-    def __getitem__(self, i: int | slice | NDArray[Any]) -> NDArray[Any] | Ragged:
+    def __getitem__(self, i: slice | Array) -> Ragged: ...
+    def __getitem__(self, i: int | slice | Array) -> Array | Ragged:
         """The i-th row, a view, in O(1); of a slice or an array of places a ``Ragged`` of theirs.
 
         Raises IndexError outside ``-len … len - 1``.
@@ -60,7 +62,7 @@ class Ragged:
         i %= n
         return self.values[self.offsets[i] : self.offsets[i + 1]]
 
-    def __iter__(self) -> Iterator[NDArray[Any]]:
+    def __iter__(self) -> Iterator[Array]:
         return (self.values[start:end] for start, end in pairwise(self.offsets.tolist()))
 
     def __repr__(self) -> str:
@@ -68,7 +70,7 @@ class Ragged:
         return f"Ragged({len(self):,} rows: {shown}{', …' if len(self) > SHOWN else ''})"
 
     @property
-    def following(self) -> NDArray[np.int64]:
+    def following(self) -> Indices:
         """(offsets[n],) int64: where the next value of the row stands, behind the last the first.
 
         So the sides of faces follow from their corners.
@@ -78,6 +80,6 @@ class Ragged:
         return places
 
     @property
-    def counts(self) -> NDArray[np.int64]:
+    def counts(self) -> Indices:
         """(n,) int64: the length of every row."""
         return np.diff(self.offsets)

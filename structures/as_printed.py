@@ -14,8 +14,9 @@ index that it was given; ``faults`` says what does not hold together any more.
 from typing import Any, Self
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from hem.arrays import Array
 from hem.contract import Claims, Described, Look
 from structures.class_model import Face, FaceList, HalfEdge, Point, Vertex
 
@@ -293,9 +294,7 @@ class AsPrinted(Described):
         return wrong
 
 
-def render_arrays(
-    points: NDArray[Any], triangles: NDArray[Any]
-) -> tuple[NDArray[Any], NDArray[Any]]:
+def render_arrays(points: Array, triangles: Array) -> tuple[Array, Array]:
     """Counterclockwise triangles as a render mesh has them: points, and clockwise flat indices."""
     return points, triangles[:, [0, 2, 1]].reshape(-1)
 

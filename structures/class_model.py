@@ -19,8 +19,8 @@ from collections.abc import Callable, Iterator, Mapping
 from typing import Any, Generic, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hem.arrays import Array, Bools
 from hem.contract import ELEMENTS, HANDLE_TYPES
 from hem.errors import MeshError
 from hem.listeners import Listeners
@@ -159,11 +159,11 @@ class ElementList(Generic[Element]):
         """Number of live elements. Cost O(n)."""
         return len(self.items) - self.items.count(None)
 
-    def __call__(self) -> NDArray[Any]:
+    def __call__(self) -> Array:
         """(n,) the indices of all live elements, ascending, as handles."""
         return np.flatnonzero(self.alive()).astype(HANDLE_TYPES.get(self.kind, np.int64))
 
-    def alive(self) -> NDArray[np.bool_]:
+    def alive(self) -> Bools:
         """(end,) bool: which positions hold a live element."""
         return np.array([it is not None for it in self.items], np.bool_)
 

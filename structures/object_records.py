@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hem import authoring
-from hem.arrays import Array
+from hem.arrays import Array, Bools
 from hem.authoring import EDGES, ENDLESS, FACES, VALENCE, VERTEX_END, VERTICES, counted
 from hem.contract import Storage
 from hem.engine import Held, InterpretedUses
@@ -140,7 +140,7 @@ class ObjectStorage(Storage):
 
     uses, pinned = ObjectUses, Held
 
-    def alive(self, records: Any, element: str, rows: Any = slice(None)) -> NDArray[np.bool_]:
+    def alive(self, records: Any, element: str, rows: Any = slice(None)) -> Bools:
         """See ``Storage.alive``."""
         lists: dict[str, Any] = {"vertex": records.vertices, "face": records.faces}
         items = lists.get(element, records.half_edges).items

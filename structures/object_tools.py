@@ -6,6 +6,7 @@ See ``structures.half_edge_objects`` for the mesh itself.
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from hem.arrays import Handles
 from hem.edit import Edit
 from hem.rendering import mesh_from_render
 from structures.class_model import Face, HalfEdge, Vertex
@@ -29,7 +30,7 @@ class HalfEdgeMeshBuilder:
         return HalfEdgeMesh.build(mesh_from_render(points, indices, tolerance))
 
     @staticmethod
-    def to_render_mesh(mesh: HalfEdgeMesh) -> tuple[NDArray[np.float32], NDArray[np.int32]]:
+    def to_render_mesh(mesh: HalfEdgeMesh) -> tuple[NDArray[np.float32], Handles]:
         """Flat points (3 n,) and clockwise indices (3 m,) by the face circulator. O(n_v + n_t)."""
         number = {v.index: i for i, v in enumerate(mesh.vertices)}
         points = [v.point for v in mesh.vertices]

@@ -7,9 +7,8 @@ from functools import cached_property
 from typing import Any, ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
-from hem.arrays import Array
+from hem.arrays import Array, Indices
 from hem.authoring import OPERATIONS, QUERIES, Kernel, Kernels
 from hem.authoring.marked import named_by_ends
 from hem.engine import Uses
@@ -117,7 +116,7 @@ class Declared:
         own = self.kernels.get(f"{element}_exists")
         return own or self.kernels[f"{element.removeprefix('half_')}_exists"]
 
-    def step(self, name: str, records: Any, handles: Array) -> NDArray[np.int64]:
+    def step(self, name: str, records: Any, handles: Array) -> Indices:
         """Where a step leads from each of the live ``handles`` (n,) int64."""
         found = np.empty(len(handles), np.int64)
         self.walks[name](handles, found, *records)

@@ -2,9 +2,7 @@
 
 from typing import Any, NamedTuple, Protocol, overload
 
-import numpy as np
-from numpy.typing import NDArray
-
+from hem.arrays import Array, Indices
 from hem.contract.attributes import HalfEdgeAttribute
 from hem.contract.following import AttributeMethod
 from hem.contract.structure import Structure, attribute_method, made_once
@@ -40,7 +38,7 @@ class StepMethod(Protocol):
     @overload
     def __call__(self, handles: int) -> int: ...
     @overload
-    def __call__(self, handles: NDArray[Any] | list[int]) -> NDArray[Any]: ...
+    def __call__(self, handles: Array | list[int]) -> Array: ...
 
 
 def _step_method(name: str) -> Any:
@@ -78,6 +76,6 @@ class Navigable(Structure, abstract=True):
         "edge then, as for corners.",
     )
 
-    def half_edges(self) -> NDArray[np.int64]:
+    def half_edges(self) -> Indices:
         """(n_half_edges,) int64: the handles of all live half-edges, ascending. Cost O(n_e)."""
         return self._state.live("half_edge")

@@ -4,9 +4,9 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from hem.arrays import Array, Bools
+from hem.arrays import Array, Bools, Indices
 from hem.authoring import EDGE_END, ENDLESS, FACE_ROOM, VERTEX_END
 from hem.authoring.marked import BITS, MARK, scatter
 from hem.contract.navigation import Navigable
@@ -26,7 +26,7 @@ class PackedStorage(Storage):
         if not legal.all():
             refuse_handles("edge", handles[~legal])
 
-    def renumbered(self, edges: ArrayLike, number: Mapping[str, Array]) -> NDArray[np.int64]:
+    def renumbered(self, edges: ArrayLike, number: Mapping[str, Array]) -> Indices:
         """See ``Storage.renumbered``."""
         handles = np.asarray(edges, np.int64)
         known, n = handles >= 0, len(number["vertex"])
@@ -62,17 +62,17 @@ class MarkedStorage(Storage):
             rows = slice(None, None, 3) if isinstance(rows, slice) else 3 * rows.astype(np.int64)
         return super().alive(records, element, rows)
 
-    def edges(self, records: Any) -> NDArray[np.int64]:
+    def edges(self, records: Any) -> Indices:
         """See ``Storage.edges``."""
         h = self.live(records, "half_edge")
         names = self._step("edge", records, h)
         return names[names >> BITS == h]
 
-    def edge_names(self, records: Any, edges: NDArray[np.int64]) -> NDArray[np.int64]:
+    def edge_names(self, records: Any, edges: Indices) -> Indices:
         """See ``Storage.edge_names``."""
         return self._step("edge", records, edges >> BITS)
 
-    def lasting_names(self, records: Any, edges: NDArray[np.int64]) -> NDArray[np.int64]:
+    def lasting_names(self, records: Any, edges: Indices) -> Indices:
         """See ``Storage.lasting_names``: ``smaller end << 32 | larger end``."""
         known, names = self._are_edges(records, edges), np.full(len(edges), -1)
         h = edges[known] >> BITS
@@ -88,7 +88,7 @@ class MarkedStorage(Storage):
         if not known.all():
             refuse_handles("edge", handles[~known])
 
-    def _are_edges(self, records: Any, handles: NDArray[np.int64]) -> Bools:
+    def _are_edges(self, records: Any, handles: Indices) -> Bools:
         """(n,) which handles name an edge."""
         h = handles >> BITS
         known: Bools = (h >= 0) & (h < records.counts[EDGE_END])
@@ -110,7 +110,7 @@ class MarkedStorage(Storage):
         new[h] = place << BITS | np.bitwise_xor(*marks)
         return records, number | {"face": of[::3] // 3, "mark": was, "edge": new}
 
-    def renumbered(self, edges: ArrayLike, number: Mapping[str, Array]) -> NDArray[np.int64]:
+    def renumbered(self, edges: ArrayLike, number: Mapping[str, Array]) -> Indices:
         """See ``Storage.renumbered``."""
         handles = np.asarray(edges, np.int64)
         h = handles >> BITS

@@ -7,9 +7,9 @@ from functools import cached_property
 from typing import Any, NamedTuple, Protocol, overload
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from hem.arrays import Array, Handles, Points
+from hem.arrays import Array, Handles, Indices, Points
 from hem.authoring import EDGES, ELEMENTS, QUERIES, SIDES, UNKNOWN, VALENCE, WIDTH, Field
 from hem.contract import arguments
 from hem.contract.state import State
@@ -29,9 +29,9 @@ class QueryMethod(Protocol):
     """A query as a method: one handle -> 1-D array; an array of handles, or all -> ``Ragged``."""
 
     @overload
-    def __call__(self, handles: int) -> NDArray[Any]: ...
+    def __call__(self, handles: int) -> Array: ...
     @overload
-    def __call__(self, handles: NDArray[Any] | list[int] = ...) -> Ragged: ...
+    def __call__(self, handles: Array | list[int] = ...) -> Ragged: ...
 
 
 class Sweep(NamedTuple):
@@ -108,7 +108,7 @@ class Queries:
             refuse_handles("edge", wanted[answers.counts == 0])
         return answers
 
-    def _checked(self, name: str, handles: ArrayLike) -> NDArray[Any]:
+    def _checked(self, name: str, handles: ArrayLike) -> Array:
         """(n,) handles for a query; MeshError unless they all name elements of this mesh."""
         source, wanted = QUERIES[name].source, arguments.integers(name, handles, (1,))
         self._state.require(source, wanted)
@@ -149,13 +149,13 @@ class Queries:
 
     # What follows from them ------------------------------------------------------------------
 
-    def handles(self, element: str) -> NDArray[Any]:
+    def handles(self, element: str) -> Array:
         """The handles of all elements of one kind; KeyError for no such kind."""
         if element not in ELEMENTS:
             raise KeyError(element)
         return self.edges() if element == "edge" else self._state.live(element)
 
-    def edges(self) -> NDArray[np.int64]:
+    def edges(self) -> Indices:
         """(n_edges,): each undirected edge once, ascending; searched for if none is recorded."""
         recorded = self._state.storage.edges(self._state.records)
         return np.unique(self.ask("face_edges").values) if recorded is None else recorded
@@ -200,7 +200,7 @@ class Queries:
 
     # For measuring -----------------------------------------------------------------------------
 
-    def sweep(self, name: str, handles: NDArray[Any]) -> Sweep:
+    def sweep(self, name: str, handles: Array) -> Sweep:
         """See ``Structure.prepare_sweep``."""
         wanted, out = self._ready(name, handles)
         self.count_edges()
@@ -208,7 +208,7 @@ class Queries:
         loop, counts = self._declared.queries[name].sweep, self._state.records.counts
         return Sweep(loop, wanted, out, self._state, counts.tobytes())
 
-    def work(self, name: str, handles: NDArray[Any]) -> NDArray[np.int64]:
+    def work(self, name: str, handles: Array) -> Indices:
         """See ``Structure.work``."""
         return self._declared.queries[name].work(*self._ready(name, handles), self._state.records)
 
@@ -219,7 +219,7 @@ class Queries:
         state.prepare(name)
         return self._declared.queries[name].reads(int(wanted), out, state.records, fields)
 
-    def _ready(self, name: str, handles: NDArray[Any]) -> tuple[NDArray[Any], Any]:
+    def _ready(self, name: str, handles: Array) -> tuple[Array, Any]:
         """Handles that were checked, and scratch for the answers to each."""
         wanted = self._checked(name, handles)
         self._state.widen()

@@ -7,10 +7,9 @@ would leave two parts that meet in a vertex, until the next one is gone.
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from hem import authoring
-from hem.arrays import Array
+from hem.arrays import Array, Indices
 from hem.authoring import EDGES, FACES, VERTICES, Kernel, Kernels, kernel, log_element
 from hem.contract.surveying import Surveying
 from hem.edit import FACE, REMOVED, VERTEX
@@ -23,17 +22,17 @@ class Remaining(NamedTuple):
     ``following`` and ``before`` are the vertices beside the corner in its face.
     """
 
-    vertex: NDArray[np.int64]
-    face: NDArray[np.int64]
-    following: NDArray[np.int64]
-    before: NDArray[np.int64]
+    vertex: Indices
+    face: Indices
+    following: Indices
+    before: Indices
 
     @property
-    def edges(self) -> NDArray[np.int64]:
+    def edges(self) -> Indices:
         """(2 k,): the edges at the vertex, as ``vertex << 32 | other end``."""
         return self.vertex << 32 | np.stack([self.following, self.before])
 
-    def pinched(self) -> NDArray[np.int64]:
+    def pinched(self) -> Indices:
         """The vertices in which more than one fan of faces would be left, ascending. O(k log k).
 
         A fan of k faces that is not closed has k + 1 edges there.

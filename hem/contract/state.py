@@ -7,10 +7,9 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from hem import authoring
-from hem.arrays import Array, Bools
+from hem.arrays import Array, Bools, Indices
 from hem.authoring import FACES, QUERIES, SIDES, VALENCE, WIDTH, in_slices, slice_count
 from hem.contract.description import Declared
 from hem.contract.storage import HANDLE_TYPES
@@ -72,7 +71,7 @@ class State:
 
     # What is there ---------------------------------------------------------------------------
 
-    def live(self, element: str) -> NDArray[Any]:
+    def live(self, element: str) -> Array:
         """The handles of all live elements of a kind that is recorded, ascending."""
         return self.storage.live(self.records, element)
 
@@ -84,7 +83,7 @@ class State:
         """Raise MeshError if any of ``handles`` (n,) names no live element of the mesh. O(n)."""
         self.storage.require(self.records, element, handles)
 
-    def edge_names(self, edges: NDArray[np.int64]) -> NDArray[np.int64]:
+    def edge_names(self, edges: Indices) -> Indices:
         """(n,): the one name of each live edge, where an edge has two handles."""
         return self.storage.edge_names(self.records, edges)
 
@@ -92,7 +91,7 @@ class State:
         """See ``Storage.prepare``."""
         self.storage.prepare(self.records, query)
 
-    def answers(self, query: str, handles: NDArray[Any], width: int) -> Ragged:
+    def answers(self, query: str, handles: Array, width: int) -> Ragged:
         """The answers for live ``handles``, each of which has at most ``width`` neighbors."""
         self.prepare(query)
         source, target = QUERIES[query]
@@ -101,7 +100,7 @@ class State:
         room = np.empty(typical * n + slice_count(n) * width, HANDLE_TYPES[target])
         batch, records = self.declared.queries[query].batch, self.records
 
-        def answer(begin: int, end: int, part: int) -> tuple[slice, NDArray[Any]]:
+        def answer(begin: int, end: int, part: int) -> tuple[slice, Array]:
             mine, own = slice(begin, end), slice(typical * begin, typical * end)
             values = room[own.start + part * width : own.stop + (part + 1) * width]
             return mine, batch(handles[mine], offsets[mine], values, width, *records)

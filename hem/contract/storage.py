@@ -4,10 +4,10 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any, ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from hem import authoring
-from hem.arrays import Array, Bools
+from hem.arrays import Array, Bools, Indices
 from hem.authoring import ELEMENTS, ENDS, FACE_END, FACES, VERTEX_END, VERTICES, Field
 from hem.engine import Pinned, Uses
 from hem.errors import MeshError
@@ -16,7 +16,7 @@ HANDLE_TYPES = {"vertex": np.int32, "edge": np.int64, "face": np.int32}
 """The type of the handles by kind of element."""
 
 
-Step = Callable[[str, Any, Array], NDArray[np.int64]]
+Step = Callable[[str, Any, Array], Indices]
 """``step(name, records, handles)``: where a step along half-edges leads from each, all live."""
 
 
@@ -33,14 +33,14 @@ class Storage:
         """(end,) bool: which of the records of a kind are live, or which of ``rows``. O(rows)."""
         return authoring.live(records, self.fields, element, rows)
 
-    def live(self, records: Any, element: str) -> NDArray[Any]:
+    def live(self, records: Any, element: str) -> Array:
         """(k,): the handles of all live elements of a kind that is recorded, ascending."""
         handle = HANDLE_TYPES.get(element, np.int64)
         if _any_dead(records, element):
             return np.flatnonzero(self.alive(records, element)).astype(handle, copy=False)
         return np.arange(records.counts[ENDS[element]], dtype=handle)
 
-    def edges(self, records: Any) -> NDArray[np.int64] | None:
+    def edges(self, records: Any) -> Indices | None:
         """(n_edges,): the handles of all live edges, ascending; None if none is recorded."""
         if self._step is not None:
             h = self.live(records, "half_edge")
@@ -48,11 +48,11 @@ class Storage:
         recorded = any(it.element == "edge" for it in self.fields)
         return self.live(records, "edge") if recorded else None
 
-    def edge_names(self, records: Any, edges: NDArray[np.int64]) -> NDArray[np.int64]:
+    def edge_names(self, records: Any, edges: Indices) -> Indices:
         """(n,): the one name of each live edge, where an edge has two handles."""
         return edges if self._step is None else self._step("edge", records, edges)
 
-    def lasting_names(self, records: Any, edges: NDArray[np.int64]) -> NDArray[np.int64]:
+    def lasting_names(self, records: Any, edges: Indices) -> Indices:
         """(n,): names of edges that last whatever is done to others; -1 for what is no edge."""
         return edges
 
@@ -86,7 +86,7 @@ class Storage:
         """The live records without gaps, and the new number of each old one by kind."""
         return authoring.compacted(records, self.fields)
 
-    def renumbered(self, edges: ArrayLike, number: Mapping[str, Array]) -> NDArray[np.int64]:
+    def renumbered(self, edges: ArrayLike, number: Mapping[str, Array]) -> Indices:
         """(k,): the new handles of old edges (k,) after ``compacted``, -1 for those that went."""
         recorded = next(it for it in ("half_edge", "edge") if it in number)
         old, numbers = np.asarray(edges, np.int64), np.append(number[recorded], -1)
@@ -124,7 +124,7 @@ def _any_dead(records: Any, element: str) -> bool:
     return bool(records.counts[alive] < records.counts[end])
 
 
-def refuse_handles(element: str, handles: NDArray[Any]) -> None:
+def refuse_handles(element: str, handles: Array) -> None:
     """Raise the MeshError for ``handles`` that name no element of the mesh."""
     words = f"no such {element.replace('_', '-')} in this mesh"
     raise MeshError(words, **{ELEMENTS.get(element, f"{element}s"): handles})

@@ -6,10 +6,10 @@ from functools import cached_property
 from typing import Any, ClassVar, NamedTuple, Self
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from hem import authoring
-from hem.arrays import Array, Bools, Handles, Points
+from hem.arrays import Array, Bools, Handles, Indices, Points
 from hem.authoring import OPERATIONS, QUERIES, Field, Kernel, Operation
 from hem.contract import arguments
 from hem.contract.attributes import Attribute, CornerAttribute, EdgeAttribute
@@ -194,11 +194,11 @@ class Structure(Described, Surveying, abstract=True):
         """See ``Surveying.faces``."""
         return self._state.live("face")
 
-    def edges(self) -> NDArray[np.int64]:
+    def edges(self) -> Indices:
         """(n_edges,) int64: the handles of all live edges, ascending, each undirected edge once."""
         return self._queries.edges()
 
-    def handles(self, element: str) -> NDArray[Any]:
+    def handles(self, element: str) -> Array:
         """The handles of all elements of one kind: ``vertex``, ``edge`` or ``face``."""
         return self._queries.handles(element)
 
@@ -554,18 +554,18 @@ class Structure(Described, Surveying, abstract=True):
 
     # For measuring; nobody else needs it -----------------------------------------------------
 
-    def sweep(self, query: str, handles: NDArray[Any]) -> int:
+    def sweep(self, query: str, handles: Array) -> int:
         """Answer ``query`` for every handle in one compiled loop, keeping nothing -> a checksum.
 
         Raises MeshError for what names nothing, KeyError for no query.
         """
         return self.prepare_sweep(query, handles).run()
 
-    def prepare_sweep(self, query: str, handles: NDArray[Any]) -> Sweep:
+    def prepare_sweep(self, query: str, handles: Array) -> Sweep:
         """Check handles for a ``sweep``, which is run later: what the experiments time."""
         return self._queries.sweep(query, handles)
 
-    def work(self, query: str, handles: NDArray[Any]) -> NDArray[np.int64]:
+    def work(self, query: str, handles: Array) -> Indices:
         """(n,) int64: elements of the structure's arrays read to answer ``query``, per handle.
 
         Exact and the same on every machine; runs uncompiled. Raises as ``sweep``.

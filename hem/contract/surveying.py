@@ -6,9 +6,9 @@ from abc import ABC, abstractmethod
 from typing import Any, overload
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from hem.arrays import Array, Bools, Handles, Points
+from hem.arrays import Array, Bools, Floats, Handles, Indices, Points
 from hem.authoring import FACE_END, FACES, SIDES, VERTEX_END, VERTICES
 from hem.contract.queries import QueryMethod
 from hem.errors import MeshError
@@ -85,7 +85,7 @@ class Surveying(ABC):
     @overload
     def valence(self, vertices: int) -> int: ...
     @overload
-    def valence(self, vertices: ArrayLike | None = None) -> NDArray[np.int64]: ...
+    def valence(self, vertices: ArrayLike | None = None) -> Indices: ...
     def valence(self, vertices: Any = None) -> Any:
         """How many edges a vertex has, or each of (n,), or of all. Cost: ``vertex_vertices``."""
         return _each(self.vertex_vertices, vertices)
@@ -177,7 +177,7 @@ def _from_smallest(rows: Ragged) -> list[list[int]]:
     return [row[(k := row.index(min(row))) :] + row[:k] for row in found]
 
 
-def centroids(mesh: Surveying, faces: Handles) -> NDArray[np.float64]:
+def centroids(mesh: Surveying, faces: Handles) -> Floats:
     """(n, 3): the middle of the corners of each face, the same on every structure."""
     corners = mesh.face_vertices(faces)
     values = corners.values

@@ -1,7 +1,6 @@
 """What hangs together, what lies in one place, and what is used."""
 
 from collections.abc import Iterable
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,7 +35,7 @@ def joined(parts: Iterable[tuple[Array, Array]]) -> tuple[Array, Array]:
     return np.concatenate(points), np.concatenate(shifted)
 
 
-def used_only(points: NDArray[Any], triangles: Array) -> tuple[NDArray[Any], Indices]:
+def used_only(points: Array, triangles: Array) -> tuple[Array, Indices]:
     """The points that triangles (m, 3) use, in the order they had, and the triangles by them."""
     used, renumbered = np.unique(triangles, return_inverse=True)
     return points[used], renumbered.reshape(-1, 3)

@@ -4,9 +4,9 @@ import warnings
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, DTypeLike, NDArray
+from numpy.typing import ArrayLike, DTypeLike
 
-from hem.arrays import Bools, Floats, Points, Triangles
+from hem.arrays import Array, Bools, Floats, Points, Triangles
 from hem.errors import MeshError, MeshWarning
 from hem.meshes import measures
 from hem.meshes.components import clusters
@@ -154,7 +154,7 @@ def validated_points(points: ArrayLike, dtype: DTypeLike) -> Points:
     return kept
 
 
-def _tell_of_equal(given: NDArray[Any], kept: Points) -> None:
+def _tell_of_equal(given: Array, kept: Points) -> None:
     """Warn of different positions that have become equal: the first of them, and each other."""
     sums = np.sort(measures.dot(kept.astype(np.float64), _MIXED))
     if (sums[1:] != sums[:-1]).all():  # equal positions have equal sums, and others seldom
@@ -186,13 +186,13 @@ def _unit_or_zero(vectors: Floats) -> Floats:
     return np.divide(vectors, lengths, out=np.zeros_like(vectors), where=lengths > 0)
 
 
-def own(given: NDArray[Any], dtype: DTypeLike) -> NDArray[Any]:
+def own(given: Array, dtype: DTypeLike) -> Array:
     """The array as this type, and where the caller could still write to it a copy of it."""
     kept = np.ascontiguousarray(given, dtype)
     return kept.copy() if given.flags.writeable and np.shares_memory(kept, given) else kept
 
 
-def _rows_of_three(values: ArrayLike, name: str, kinds: str) -> NDArray[Any]:
+def _rows_of_three(values: ArrayLike, name: str, kinds: str) -> Array:
     try:
         rows = np.asarray(values)
     except ValueError as error:
@@ -208,7 +208,7 @@ def _rows_of_three(values: ArrayLike, name: str, kinds: str) -> NDArray[Any]:
     return rows
 
 
-def _out_of_range(given: NDArray[Any], n: int) -> str:
+def _out_of_range(given: Array, n: int) -> str:
     if n == 0:
         return "there are triangles, but no points"
     beyond = ", some beyond int32" if given.max() > _MOST_ELEMENTS else ""
@@ -223,7 +223,7 @@ def refuse(bad: Bools, message: str, kind: str = "rows") -> None:
         raise MeshError(message, **{kind: np.flatnonzero(bad.reshape(len(bad), -1).any(axis=1))})
 
 
-def read_only(array: NDArray[Any]) -> NDArray[Any]:
+def read_only(array: Array) -> Array:
     """A view that cannot be written to."""
     view = array.view()
     view.flags.writeable = False

@@ -16,9 +16,9 @@ from typing import Any, NamedTuple, overload
 
 import numpy as np
 from numba import njit
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from hem.arrays import Array, Handles, Points
+from hem.arrays import Array, Handles, Indices, Points
 from hem.contract import Attribute, Structure
 from hem.edit import CHANGED, FACE, PARENT, VERTEX, Edit
 from hem.errors import MeshError
@@ -26,7 +26,7 @@ from hem.listeners import Listeners
 from hem.meshes import TriangleMesh, clusters, repeated_corners, used_only
 from hem.room import longer, rows
 
-Ranges = NDArray[np.int64]
+Ranges = Indices
 NEARBY = 32  # elements a range may include without need, for fewer ranges to upload
 
 
