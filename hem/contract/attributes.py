@@ -40,14 +40,9 @@ class Attribute:
     """
 
     def __init__(
-        self,
-        mesh: Surveying,
-        state: State,
-        element: str,
-        name: str,
-        default: Array,
+        self, mesh: Surveying, state: State, element: str, name: str, default: Array,
         on_split: Rule | None = None,
-    ) -> None:
+    ) -> None:  # fmt: skip
         self.mesh, self._state = mesh, state
         self.element, self.name, self.default = element, name, default
         between = element in ("vertex", "corner") and default.dtype.kind == "f"

@@ -66,13 +66,9 @@ class AttributeMethod:
         self._element, self._kind = element, kind
 
     def __call__(
-        self,
-        name: str,
-        dtype: DTypeLike | None = None,
-        shape: int | tuple[int, ...] = (),
-        default: ArrayLike = 0,
-        on_split: Rule | None = None,
-    ) -> Attribute:
+        self, name: str, dtype: DTypeLike | None = None, shape: int | tuple[int, ...] = (),
+        default: ArrayLike = 0, on_split: Rule | None = None,
+    ) -> Attribute:  # fmt: skip
         """As ``Structure.vertex_attribute`` says."""
         mesh, element = self._mesh, self._element
         if element == "edge" and mesh.emulated:

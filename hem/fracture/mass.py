@@ -77,13 +77,9 @@ def _corners(meshes: Sequence[TriangleMesh]) -> tuple[Floats, Indices, Floats]:
 
 
 def _mass(
-    corners: Floats,
-    owner: Indices,
-    origins: Floats,
-    volumes: Floats,
-    parts: tuple[int, int],
+    corners: Floats, owner: Indices, origins: Floats, volumes: Floats, parts: tuple[int, int],
     density: float,
-) -> Mass:
+) -> Mass:  # fmt: skip
     """The masses from the volume of each triangle's simplex, (m,).
 
     Over a simplex with corners v and their sum s, the mean of x is s / n, and that of x xᵀ is

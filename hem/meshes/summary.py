@@ -45,14 +45,9 @@ def summarize(n: int, n_faces: int, edges: Indices, faces_per_edge: Indices) -> 
     used = valence[valence > 0] if len(edges) else np.zeros(1, np.int64)
     unreferenced = int(np.count_nonzero(valence == 0))
     return MeshSummary(
-        vertices=n,
-        edges=len(edges),
-        faces=n_faces,
+        vertices=n, edges=len(edges), faces=n_faces,
         border_edges=int(np.count_nonzero(faces_per_edge == 1)),
         components=components(n, edges)[0] - unreferenced,
-        euler=n - unreferenced - len(edges) + n_faces,
-        unreferenced=unreferenced,
-        valence_min=int(used.min()),
-        valence_mean=float(used.mean()),
-        valence_max=int(used.max()),
-    )
+        euler=n - unreferenced - len(edges) + n_faces, unreferenced=unreferenced,
+        valence_min=int(used.min()), valence_mean=float(used.mean()), valence_max=int(used.max()),
+    )  # fmt: skip

@@ -39,12 +39,9 @@ class NoMeshlabError(MeshError):
 
 
 def apply(
-    filter_name: str,
-    mesh: TriangleMesh | None = None,
-    /,
-    percent: dict[str, float] | None = None,
+    filter_name: str, mesh: TriangleMesh | None = None, /, percent: dict[str, float] | None = None,
     **parameters: Any,
-) -> TriangleMesh:
+) -> TriangleMesh:  # fmt: skip
     """What a filter of pymeshlab makes of `mesh`, or of nothing.
 
     `percent`: parameters in percent of the diagonal. Raises MeshError with pymeshlab's own words

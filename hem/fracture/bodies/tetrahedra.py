@@ -39,12 +39,9 @@ _SIDES = [(0, 1, 2), (0, 3, 1), (1, 3, 2), (2, 3, 0)]  # a, b, c as seen from ou
 
 
 def tetrahedra(
-    structure: Structure,
-    impact: ArrayLike,
-    material: Material | str = "glass",
-    force: float = 1.0,
+    structure: Structure, impact: ArrayLike, material: Material | str = "glass", force: float = 1.0,
     seed: int = 0,
-) -> Fracture:
+) -> Fracture:  # fmt: skip
     """Break tetrahedra out of the body that a structure holds, in place -> the pieces.
 
     impact  (3,): taken to the nearest point of the surface

@@ -27,14 +27,10 @@ _TOUCH = 1e-9  # pieces are neighbors that share more than this part of the diag
 
 
 def voronoi(
-    mesh: TriangleMesh | Body,
-    impact: ArrayLike,
-    material: Material | str = "glass",
-    force: float = 1.0,
-    seed: int = 0,
-    direction: ArrayLike | None = None,
+    mesh: TriangleMesh | Body, impact: ArrayLike, material: Material | str = "glass",
+    force: float = 1.0, seed: int = 0, direction: ArrayLike | None = None,
     sites: ArrayLike | None = None,
-) -> Fracture:
+) -> Fracture:  # fmt: skip
     """Break a body into the Voronoi cells of sites around the impact.
 
     impact     (3,): where it is struck; the nearest point of the surface is

@@ -35,16 +35,9 @@ class Flight(NamedTuple):
 
 
 def flight(
-    fracture: Fracture,
-    motion: Any,
-    seconds: float = 1.0,
-    frames: int = 60,
-    *,
-    up: ArrayLike = (0.0, 1.0, 0.0),
-    floor: float = 0.0,
-    held: ArrayLike = (),
-    ease: float = 1.0,
-) -> Flight:
+    fracture: Fracture, motion: Any, seconds: float = 1.0, frames: int = 60, *,
+    up: ArrayLike = (0.0, 1.0, 0.0), floor: float = 0.0, held: ArrayLike = (), ease: float = 1.0,
+) -> Flight:  # fmt: skip
     """The flight of a fracture's pieces from the velocities and spins of a motion.
 
     ``frames`` moments from 0 to ``seconds``, both included, at (i / last) ** ``ease`` of it: with
@@ -94,7 +87,7 @@ class _Piece:
         turn = self._tip(spin, landing, tipping)
         rotations = _turned(part[:, None] * turn) @ rotations
         hop = np.maximum(-BOUNCE * sinking * after - GRAVITY / 2 * after**2, 0)
-        height = positions @ self.up - self._reach(rotations) - self.floor
+        height = self._height(positions, rotations)
         lift = np.where(after > 0, hop - height, np.maximum(-height, 0))
         rest = after[-1] > max(stop, 10 * tipping)
         return positions + lift[:, None] * self.up, rotations, bool(rest)
@@ -103,24 +96,23 @@ class _Piece:
         fallen = self.center + t[:, None] * velocity - (GRAVITY / 2 * t**2)[:, None] * self.up
         return fallen, _turned(t[:, None] * spin)
 
-    def _reach(self, rotations: Floats) -> Floats:
-        """(f,) how far below its center the piece reaches."""
-        return -(np.swapaxes(rotations, 1, 2) @ self.up @ self.corners.T).min(axis=1)
+    def _height(self, positions: Floats, rotations: Floats) -> Floats:
+        """(f,) how far above the floor the lowest corner is."""
+        lowest = (np.swapaxes(rotations, 1, 2) @ self.up @ self.corners.T).min(axis=1)
+        return positions @ self.up + lowest - self.floor
 
     def _landing(self, velocity: Floats, spin: Floats, end: float) -> float:
         """When it first touches the floor on its way down, or else ``end``."""
         t = np.linspace(0, end, max(2, int(end * _RATE)))
-        positions, rotations = self._free(velocity, spin, t)
-        low = positions @ self.up - self._reach(rotations) - self.floor
+        low = self._height(*self._free(velocity, spin, t))
         met = (low <= 1e-6 * np.abs(self.corners).max()) & (velocity @ self.up <= GRAVITY * t)
         return float(t[met.argmax()]) if met.any() else end
 
     def _tip(self, spin: Floats, landing: float, ahead: float) -> Floats:
         """The rotation vector from how it lands to how it lies: onto the side it is tipping to."""
-        down = -(_turned(spin[None] * landing)[0].T @ self.up)
-        soon = -(_turned(spin[None] * (landing + ahead))[0].T @ self.up)
-        side = self.sides[(self.sides @ (down + soon)).argmax()]
-        turned = _turned(spin[None] * landing)[0] @ side
+        down, soon = _turned(spin * np.array([[landing], [landing + ahead]]))
+        side = self.sides[(self.sides @ -((down + soon).T @ self.up)).argmax()]
+        turned = down @ side
         axis, cosine = np.cross(turned, -self.up), float(turned @ -self.up)
         sine = float(np.linalg.norm(axis))
         return axis / sine * np.arctan2(sine, cosine) if sine > 1e-9 else np.zeros(3)

@@ -73,16 +73,10 @@ class Picture:
     """
 
     def __init__(
-        self,
-        points: Array,
-        triangles: Array,
-        colors: ArrayLike,
-        size: Size,
-        up: ArrayLike = AXES["y"],
-        floor: float | None = None,
-        gloss: float = 0.2,
+        self, points: Array, triangles: Array, colors: ArrayLike, size: Size,
+        up: ArrayLike = AXES["y"], floor: float | None = None, gloss: float = 0.2,
         wires: bool = False,
-    ) -> None:
+    ) -> None:  # fmt: skip
         pyvista = load_pyvista()
         self.size, self.up, self.floor = size, np.asarray(up, float), floor
         self.points, self.triangles = np.asarray(points, float), triangles

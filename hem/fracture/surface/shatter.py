@@ -56,12 +56,9 @@ class LazyMeshes(Sequence[TriangleMesh]):
 
 
 def shatter(
-    structure: Structure,
-    impact: ArrayLike,
-    material: Material | str | Attribute = "glass",
-    seed: int = 0,
-    scale: float | None = None,
-) -> Fracture:
+    structure: Structure, impact: ArrayLike, material: Material | str | Attribute = "glass",
+    seed: int = 0, scale: float | None = None,
+) -> Fracture:  # fmt: skip
     """Break the surface that a structure holds, in place, around an impact (3,) -> the pieces.
 
     The impact is taken to the nearest point of the surface. ``material``: one, its name, or an
@@ -113,34 +110,24 @@ def _chosen(
 
 
 def in_place(
-    structure: Structure,
-    broken: Plan,
-    shards: Sequence[TriangleMesh],
-    counts: dict[str, int],
+    structure: Structure, broken: Plan, shards: Sequence[TriangleMesh], counts: dict[str, int],
     **told: Any,
-) -> Fracture:
+) -> Fracture:  # fmt: skip
     """The fracture of what ``break_surface`` broke; the structure keeps the rest."""
     left = structure.to_triangles()  # now: the structure may change before the rest is asked for
     rest = LazyMeshes(lambda: islands(left))
     became = {words: int((broken.outcome == it).sum()) for words, it in OUTCOMES.items()}
     return Fracture(
-        impact=broken.target,
-        direction=-np.cross(broken.frame[0], broken.frame[1]),
-        shards=shards,
-        rest=rest,
-        counts=became | counts,
-        find_neighbors=lambda: sharing_edges([*shards, *rest]),
+        impact=broken.target, direction=-np.cross(broken.frame[0], broken.frame[1]), shards=shards,
+        rest=rest, counts=became | counts, find_neighbors=lambda: sharing_edges([*shards, *rest]),
         **told,
-    )
+    )  # fmt: skip
 
 
 def break_surface(
-    structure: Structure,
-    impact: ArrayLike,
-    material: Material,
-    seed: int,
+    structure: Structure, impact: ArrayLike, material: Material, seed: int,
     scale: float | None = None,
-) -> tuple[Plan, Indices, float]:
+) -> tuple[Plan, Indices, float]:  # fmt: skip
     """Split all that ``shatter`` splits -> what became of it, the split faces, the diagonal."""
     require_triangles(structure)
     found = nearest_face(structure, impact)
