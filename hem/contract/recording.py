@@ -167,17 +167,12 @@ def _counting(s: Structure, called: str, what: str, found: Recording) -> Callabl
 # Algorithms ---------------------------------------------------------------------------------------
 
 
-class _Counting(NamedTuple):
-    """The kernels of a structure, uncompiled, those that are counted telling ``found[0]``."""
-
-    queries: Kernels
-    operations: Kernels
-    found: list[Recording | None]
-
-
 @cache
-def _kernels(kind: type[Structure]) -> _Counting:
-    """Made once, as algorithms keep what they make of kernels."""
+def _kernels(kind: type[Structure]) -> tuple[Kernels, Kernels, list[Recording | None]]:
+    """Queries and operations, uncompiled, those that are counted telling ``found[0]``; and that.
+
+    Made once, as algorithms keep what they make of kernels.
+    """
     found: list[Recording | None] = [None]
 
     def counted(name: str, kernel: Kernel) -> Kernel:
@@ -204,18 +199,18 @@ def _kernels(kind: type[Structure]) -> _Counting:
 
     own = {it: counted(it, kind.declared.kernels[it]) for it in (*QUERIES, *BESIDE)}
     done = {it: operated(it, uses.kernel) for it, uses in kind.declared.operating.items()}
-    return _Counting({**kind.declared.kernels, **own}, done, found)
+    return {**kind.declared.kernels, **own}, done, found
 
 
 @cache
 def _algorithm(kind: type[Structure], make: Algorithm) -> Kernel:
-    counting = _kernels(kind)
-    return interpreted(make(counting.queries, counting.operations))
+    queries, operations, _ = _kernels(kind)
+    return interpreted(make(queries, operations))
 
 
 def _run_counting(s: Structure, recording: Recording, make: Algorithm, plan: Any) -> int:
     """``Structure.run``, uncompiled and counted."""
-    found, algorithm = _kernels(type(s)).found, _algorithm(type(s), make)
+    (*_, found), algorithm = _kernels(type(s)), _algorithm(type(s), make)
     *arrays, counts = s.records
     seen = (CountingArray(it) if isinstance(it, np.ndarray) else it for it in arrays)
     found[0] = recording

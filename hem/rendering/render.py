@@ -172,8 +172,8 @@ class RenderMesh:
     def _commit(self) -> None:
         self.commits += 1
         if self._resized:
-            everything = ([(0, n)] if n else [] for n in (self._n_vertices, self._n_triangles))
-            parts = [np.array(it, np.int64).reshape(-1, 2) for it in everything]
+            ends = self._n_vertices, self._n_triangles
+            parts = [np.array([(0, n)], np.int64)[: min(n, 1)] for n in ends]
             written = dict.fromkeys(self._written, parts[0])
         else:
             parts = list(dirty_ranges(self._pending, NEARBY))

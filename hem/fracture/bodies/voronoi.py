@@ -10,8 +10,7 @@ from hem.errors import MeshError
 from hem.fracture.blow import Blow
 from hem.fracture.blow import sites as sites_of
 from hem.fracture.bodies.cells import Cells, cells
-from hem.fracture.bodies.inside import windings
-from hem.fracture.bodies.solid import Body, from_manifold, require_body
+from hem.fracture.bodies.solid import Body, from_manifold, require_body, windings
 from hem.fracture.bodies.walls import touching
 from hem.fracture.material import Material
 from hem.fracture.material import material as named
@@ -61,26 +60,14 @@ def voronoi(
     blow = _aimed(body, position(impact, "an impact"), direction, force)
     plan = _scattered(body, blow, chosen, seed) if sites is None else _given(body, sites)
     made = _cut(body, plan)
-    pieces, least = [*made.shards, *made.rest], _TOUCH * body.diagonal**2
+    shards, rest = ([it.mesh for it in pieces] for pieces in (made.shards, made.rest))
+    walls, least = [it.walls for it in made.shards + made.rest], _TOUCH * body.diagonal**2
+    counts = {"used": plan.breaking, "outside": plan.outside + made.missed}
     return Fracture(
-        method="voronoi",
-        material=chosen,
-        seed=seed,
-        impact=blow.impact,
-        direction=blow.direction,
-        shards=[piece.mesh for piece in made.shards],
-        rest=[piece.mesh for piece in made.rest],
-        counts={
-            "used": plan.breaking,
-            "outside": plan.outside + made.missed,
-            "repeated": plan.repeated,
-            "vanished": made.vanished,
-        },
-        diagonal=body.diagonal,
-        find_neighbors=lambda: touching(
-            [it.mesh for it in pieces], [it.walls for it in pieces], least
-        ),
-    )
+        "voronoi", chosen, seed, blow.impact, blow.direction, shards, rest,
+        counts | {"repeated": plan.repeated, "vanished": made.vanished}, body.diagonal,
+        find_neighbors=lambda: touching(shards + rest, walls, least),
+    )  # fmt: skip
 
 
 class _Plan(NamedTuple):
@@ -95,14 +82,6 @@ class _Plan(NamedTuple):
 class _Piece(NamedTuple):
     mesh: TriangleMesh
     walls: Indices  # (m,): the wall that each face is on, or negative
-
-
-class _Grain(NamedTuple):
-    """What is too small to be a piece, and the label of the first wall."""
-
-    volume: float
-    thickness: float
-    label: int
 
 
 class _Made(NamedTuple):
@@ -159,17 +138,17 @@ def _cut(body: Body, plan: _Plan) -> _Made:
     low, high = bounds(body.mesh.points)
     cut = cells(plan.sites, (low + high) / 2, body.diagonal / 2)
     thin = _THIN * float(np.spacing(np.abs(body.mesh.points).max()))
-    grain = _Grain(VANISHING * body.volume, thin, len(body.mesh.triangles))
+    label = len(body.mesh.triangles)  # of the first wall
     shards: list[_Piece] = []
     missed = vanished = 0
     for site in range(plan.breaking):
-        parts, lost = _parts(cut.cell(site, grain.label) ^ body.manifold, grain)
+        parts, lost = _parts(cut.cell(site, label) ^ body.manifold, body, thin)
         shards += parts
         missed += not parts and not lost
         vanished += lost
     rest: list[_Piece] = []
     if plan.breaking < len(plan.sites):
-        rest, lost = _parts(_remainder(body, cut, plan.breaking, grain.label), grain)
+        rest, lost = _parts(_remainder(body, cut, plan.breaking, label), body, thin)
         vanished += lost
     return _Made(shards, rest, missed, vanished)
 
@@ -186,28 +165,25 @@ def _remainder(body: Body, cut: Cells, breaking: int, label: int) -> Any:
         return manifold3d.Manifold.batch_boolean([body.manifold, *each], manifold3d.OpType.Subtract)
 
 
-def _corners(mesh: TriangleMesh) -> Floats:
-    return corners(mesh.points, mesh.triangles)
-
-
-def _parts(made: Any, grain: _Grain) -> tuple[list[_Piece], int]:
-    """The connected parts, the largest first, and how many vanished.
+def _parts(made: Any, body: Body, thin: float) -> tuple[list[_Piece], int]:
+    """The connected parts, the largest first, and how many were too small and vanished.
 
     manifold3d gives a hollow as a part of its own, inside out; here it belongs to what is around.
     """
     found, pieces, vanished = made.decompose(), [], 0
     for part in sorted(found, key=lambda it: it.volume(), reverse=True):
-        volume = abs(part.volume())
-        if not (volume > grain.volume and 2 * volume > grain.thickness * part.surface_area()):
+        size = abs(part.volume())
+        if not (size > VANISHING * body.volume and 2 * size > thin * part.surface_area()):
             vanished += 1
             continue
         mesh, labels = from_manifold(part)
-        walls = labels - grain.label
+        walls = labels - len(body.mesh.triangles)
         if part.volume() > 0:
             pieces.append(_Piece(mesh, walls))
             continue
         at = mesh.points[:1].astype(np.float64)
-        around = [i for i, (it, _) in enumerate(pieces) if windings(_corners(it), at)[0] > 0]
+        shells = [corners(it.points, it.triangles) for it, _ in pieces]
+        around = [i for i, shell in enumerate(shells) if windings(shell, at)[0] > 0]
         # The smallest around is the last. Rounding may put a vertex on the surface: then no other.
         chosen = around[-1] if around else 0
         outer = pieces[chosen]
