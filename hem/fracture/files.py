@@ -102,7 +102,10 @@ def _move(beside: Path, target: Path, aside: Path) -> None:
 
 def _save_glb(fracture: Fracture, folder: Path, up: ArrayLike) -> list[Path]:
     import trimesh
+    from scipy.spatial.transform import Rotation
 
+    upright = np.eye(4)  # glTF has y up
+    upright[:3, :3] = Rotation.align_vectors([(0, 1, 0)], [np.asarray(up, float)])[0].as_matrix()
     look = trimesh.visual.material.PBRMaterial(
         name=fracture.material.name, baseColorFactor=[*fracture.material.rgb, 255],
         roughnessFactor=0.5, metallicFactor=0.0, doubleSided=True,
@@ -111,19 +114,10 @@ def _save_glb(fracture: Fracture, folder: Path, up: ArrayLike) -> list[Path]:
     for name, piece in zip(names(fracture), fracture.pieces, strict=True):
         shown = trimesh.Trimesh(piece.points, piece.triangles, process=False)
         shown.visual = trimesh.visual.TextureVisuals(material=look)
-        scene.add_geometry(shown, node_name=name, geom_name=name, transform=_upright(up))
+        scene.add_geometry(shown, node_name=name, geom_name=name, transform=upright)
     path = folder / "pieces.glb"
     path.write_bytes(scene.export(file_type="glb"))
     return [path]
-
-
-def _upright(up: ArrayLike) -> Any:
-    """The (4, 4) transform that turns ``up`` to y, as glTF has it."""
-    from scipy.spatial.transform import Rotation
-
-    turn = np.eye(4)
-    turn[:3, :3] = Rotation.align_vectors([(0, 1, 0)], [np.asarray(up, float)])[0].as_matrix()
-    return turn
 
 
 def _save_obj(fracture: Fracture, folder: Path, up: ArrayLike) -> list[Path]:

@@ -68,16 +68,14 @@ def require_manifold(mesh: TriangleMesh) -> None:
     crowded = non_manifold_edges(mesh.triangles)
     twisted = same_way_edges(mesh.triangles)
     split = split_vertices(mesh.triangles)
-    findings = {
-        "{} in more than two faces": (len(crowded), "edge", "edges"),
-        "{} along which both faces run the same way": (len(twisted), "edge", "edges"),
-        "{} where more than one fan of faces meets": (len(split), "vertex", "vertices"),
-    }
-    found = [
-        words.format(f"{k:,} {one if k == 1 else many}")
-        for words, (k, one, many) in findings.items()
-        if k
-    ]
+    found = []
+    for bad, one, many, words in (
+        (crowded, "edge", "edges", "in more than two faces"),
+        (twisted, "edge", "edges", "along which both faces run the same way"),
+        (split, "vertex", "vertices", "where more than one fan of faces meets"),
+    ):
+        if len(bad):
+            found.append(f"{len(bad):,} {one if len(bad) == 1 else many} {words}")
     if not found:
         return
     edges = np.concatenate([crowded, twisted])
