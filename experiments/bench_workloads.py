@@ -7,7 +7,7 @@ and is what claims rest on, and as a loop in Python, which measures the interpre
 import heapq
 from collections.abc import Callable
 from time import perf_counter
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -24,31 +24,35 @@ COMPILED, FROM_PYTHON = "compiled", "from Python"
 
 
 class Workload(NamedTuple):
-    """One workload, on a mesh that is its own, ``compiled`` and ``from_python``.
+    """One workload, on a mesh that is its own, ``compiled`` and ``from_python``; see ``UNITS``.
 
-    Either tells how many ``unit`` it has done. ``scans``: about how many scans of the whole mesh it
-    takes per unit where neighbors are searched for, so that what would take hours is skipped
-    beforehand. ``edits``: how many edits per unit are followed by such a question.
+    ``scans``: about how many scans of the whole mesh it takes per unit where neighbors are searched
+    for, so that what would take hours is skipped beforehand. ``edits``: how many edits per unit are
+    followed by such a question.
     """
 
     title: str
     unit: str
     scans: float
     edits: int
-    compiled: Callable[[Structure], int]
-    from_python: Callable[[Structure], int]
+    compiled: Callable[[Structure], Any]
+    from_python: Callable[[Structure], None]
 
-    def run(self, order: str | None) -> Callable[[Structure], int]:
+    def run(self, order: str | None) -> Callable[[Structure], Any]:
         """The way that an order names."""
         return self.compiled if order == COMPILED else self.from_python
 
 
-def _normals(s: Structure) -> int:
-    algorithms.vertex_normals(s)
-    return s.n_vertices
+UNITS: dict[str, Callable[[Structure, Structure], int]] = {
+    "vertex": lambda before, after: before.n_vertices,
+    "face": lambda before, after: before.n_faces,
+    "collapse": lambda before, after: before.n_vertices - after.n_vertices,
+    "impact": lambda before, after: IMPACTS,
+}
+"""How many units a workload has done, from the structure before and after it."""
 
 
-def vertex_normals(s: Structure) -> int:
+def vertex_normals(s: Structure) -> None:
     """Add every face's normal to its corners: a pass over the faces, no neighbors asked."""
     corners = s.face_vertices(s.faces()).values.reshape(-1, 3)
     a, b, c = (s.points[corners[:, i]] for i in range(3))
@@ -56,75 +60,54 @@ def vertex_normals(s: Structure) -> int:
     for i in range(3):
         np.add.at(normals, corners[:, i], of_faces)
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
-    return s.n_vertices
 
 
-def _smooth(s: Structure) -> int:
-    algorithms.smooth(s)
-    return s.n_vertices
-
-
-def smoothing(s: Structure) -> int:
+def smoothing(s: Structure) -> None:
     """Move every vertex to the mean of its neighbors, once."""
     vertices = s.vertices()
     rings = s.vertex_vertices(vertices)
     sums = np.add.reduceat(s.points[rings.values].astype(np.float64), rings.offsets[:-1])
     s.move_vertices(vertices, sums / rings.counts[:, None])
-    return len(vertices)
 
 
-def _split(s: Structure) -> int:
-    return len(s.split_all_faces())
-
-
-def subdivision(s: Structure) -> int:
+def subdivision(s: Structure) -> None:
     """Split every face at its centroid."""
     corners = s.face_vertices(s.faces()).values.reshape(-1, 3)
     centers = s.points[corners].mean(axis=1)
     for face, center in zip(s.faces().tolist(), centers, strict=True):
         s.split_face(face, center)
-    return len(centers)
 
 
-def _simplify(s: Structure) -> int:
-    before = s.n_vertices
-    algorithms.simplify(s, vertices=max(4, int(KEPT * before)), by="shortest_edge")
-    return before - s.n_vertices
+def _simplify(s: Structure) -> None:
+    algorithms.simplify(s, vertices=max(4, int(KEPT * s.n_vertices)), by="shortest_edge")
 
 
-def simplification(s: Structure, part: float = KEPT) -> int:
-    """Collapse the shortest edge there is until ``part`` of the vertices is left -> how many."""
+def simplification(s: Structure, part: float = KEPT) -> None:
+    """Collapse the shortest edge there is until ``part`` of the vertices is left."""
     wanted = max(4, int(part * s.n_vertices))
     ends = np.sort(s.edge_vertices(s.edges()).values.reshape(-1, 2))
     lengths = np.linalg.norm(s.points[ends[:, 0]] - s.points[ends[:, 1]], axis=1)
     queue = [(x, a, b) for x, (a, b) in zip(lengths.tolist(), ends.tolist(), strict=True)]
     heapq.heapify(queue)
-    alive, collapsed = np.ones(len(s.points), np.bool_), 0
+    alive = np.ones(len(s.points), np.bool_)
     while queue and s.n_vertices > wanted:
         _, a, b = heapq.heappop(queue)
         edge = s.find_edge(a, b) if alive[a] and alive[b] else None
         if edge is None or not s.can_collapse_edge(edge):
             continue
         s.collapse_edge(edge, keep=b)
-        alive[a], collapsed = False, collapsed + 1
+        alive[a] = False
         ring = s.vertex_vertices(b)
         lengths = np.linalg.norm(s.points[ring] - s.points[b], axis=1)
         for x, v in zip(lengths.tolist(), ring.tolist(), strict=True):
             heapq.heappush(queue, (x, min(v, b), max(v, b)))
-    return collapsed
 
 
-def _hit(s: Structure) -> list[int]:
-    faces: list[int] = np.random.default_rng(IMPACT_SEED).integers(0, s.n_faces, IMPACTS).tolist()
-    return faces
+def _hit(s: Structure) -> Any:
+    return np.random.default_rng(IMPACT_SEED).integers(0, s.n_faces, IMPACTS).tolist()
 
 
-def _impacts(s: Structure) -> int:
-    algorithms.impacts(s, _hit(s))
-    return IMPACTS
-
-
-def impacts(s: Structure) -> int:
+def impacts(s: Structure) -> None:
     """As in a game: split the face that is hit, ask what is around, split an edge there."""
     for face in _hit(s):
         corners = s.face_vertices(face)
@@ -137,18 +120,20 @@ def impacts(s: Structure) -> int:
         if edge is not None:
             s.split_edge(edge, (s.points[new] + s.points[min(ring)]) / 2)
         s.face_faces(face)
-    return IMPACTS
 
 
 WORKLOADS = {
-    "vertex_normals": Workload("Vertex normals", "vertex", 0, 0, _normals, vertex_normals),
-    "smoothing": Workload("Smoothing", "vertex", 3, 0, _smooth, smoothing),
-    "subdivision": Workload("Subdivision of all faces", "face", 0, 0, _split, subdivision),
+    "vertex_normals": Workload(
+        "Vertex normals", "vertex", 0, 0, algorithms.vertex_normals, vertex_normals),
+    "smoothing": Workload("Smoothing", "vertex", 3, 0, algorithms.smooth, smoothing),
+    "subdivision": Workload(
+        "Subdivision of all faces", "face", 0, 0, lambda s: s.split_all_faces(), subdivision),
     "simplification": Workload(
-        "Simplification to a tenth", "collapse", 35, 1, _simplify, simplification
-    ),
-    "impacts": Workload("Impacts, as in a game", "impact", 30, 2, _impacts, impacts),
-}
+        "Simplification to a tenth", "collapse", 35, 1, _simplify, simplification),
+    "impacts": Workload(
+        "Impacts, as in a game", "impact", 30, 2,
+        lambda s: algorithms.impacts(s, _hit(s)), impacts),
+}  # fmt: skip
 """Every workload by name. A new one is its two functions and one line here."""
 
 
@@ -171,10 +156,11 @@ def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
     if reason := preset.why_too_slow(scans, s.n_faces, preset.fewest_rounds):
         return case.result("time", s, skipped=reason)
     _check(case, run)
-    ready = _ready(s)
+    done = _ready(s)
     begin = perf_counter()
-    units = run(ready)
+    run(done)
     rounds = preset.affordable_rounds(perf_counter() - begin)
+    units = UNITS[workload.unit](s, done)
     timed = timer(run, setup=lambda: (_ready(s),), rounds=rounds, warmup=0, per=units)
     return case.result("time", s, **timed.fields)
 
@@ -192,7 +178,7 @@ def _ready(s: Structure) -> Structure:
     return copy
 
 
-def _check(case: Case, run: Callable[[Structure], int]) -> None:
+def _check(case: Case, run: Callable[[Structure], Any]) -> None:
     """On a small mesh the outcome is the same on every structure."""
     mesh = Case(case.structure, case.family, SMALL).mesh()
     mine, other = (structures.build(name, mesh) for name in (case.structure, BASE))

@@ -76,18 +76,15 @@ def show_table(
     """
     from experiments import report
 
-    if peers:
-        given = run_folder(run) if run else None
-        if as_json:
-            print_json(report.peers_as_json(given))
-        else:
-            report.show_peers(given, console)
-        return
-    folder = run_folder(run)
-    if as_json:
-        print_json(report.claims_as_json(folder, every))
+    folder = None if peers and run is None else run_folder(run)
+    if peers and as_json:
+        print_json(report.peers_as_json(folder))
+    elif peers:
+        report.show_peers(folder, console)
+    elif as_json:
+        print_json(report.claims_as_json(run_folder(run), every))
     else:
-        report.show_claims(folder, console, every, slopes)
+        report.show_claims(run_folder(run), console, every, slopes)
 
 
 @app.command("report")
@@ -116,10 +113,8 @@ def write_report(
     console.print(done, soft_wrap=True)
 
 
-app.command()(meshes)
-app.command()(info)
-app.command()(advise)
-app.command()(fracture)
+for command in (meshes, info, advise, fracture):
+    app.command()(command)
 app.add_typer(history, name="history")
 app.command()(check)
 app.command("judge")(judge_file)

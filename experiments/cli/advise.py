@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import asdict
+from math import inf
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 from rich.table import Table
@@ -54,19 +55,21 @@ def advise(
 
     Exit code 0; 1: a mistake in what was asked; 2: no structure suits.
     """
-    from experiments.advice import Limits, Prices, find_workload
-    from experiments.advice import advise as advised
+    from experiments import advice
 
-    limits = Limits(
-        *(
-            float("inf") if it is None else it
-            for it in (most_bytes, worst_edit and worst_edit / 1e3)
-        )
-    )
-    wanted, source = find_workload(workload), _run(run)
-    found = advised(Prices(source), wanted, hem.find_mesh(mesh, repair), limits, need or [])
+    edit = inf if worst_edit is None else worst_edit / 1e3
+    limits = advice.Limits(inf if most_bytes is None else most_bytes, edit)
+    wanted, source = advice.find_workload(workload), _run(run)
+    of_mesh = hem.find_mesh(mesh, repair)
+    found = advice.advise(advice.Prices(source), wanted, of_mesh, limits, need or [])
     if as_json:
-        print_json(_as_data(found, source))
+        options = [asdict(it) for it in found.options]
+        print_json({
+            "run": str(source.folder), "machine": source.meta.get("machine", {}),
+            "faces": found.faces, "workload": asdict(found.workload),
+            "options": [it.pop("forecast") | it for it in options],
+            "refused": found.refused, "flips": found.flips,
+        })  # fmt: skip
     else:
         _show(found, source, mesh)
     if not found.options:
@@ -79,29 +82,12 @@ def _run(folder: Path | None) -> Run:
     from experiments.runs import load
 
     if folder is not None and not folder.is_dir():
-        raise ValueError(
-            f"{folder} holds no run: there is no such folder; make one with: hem study"
-        )
+        none = "there is no such folder; make one with: hem study"
+        raise ValueError(f"{folder} holds no run: {none}")
     found = load(folder or BASELINE / RUN)
     if found.machines:
         raise ValueError(f"{found.folder} was measured by several machines: give one's folder")
     return found
-
-
-def _as_data(found: Advice, run: Run) -> dict[str, Any]:
-    return {
-        "run": str(run.folder),
-        "machine": run.meta.get("machine", {}),
-        "faces": found.faces,
-        "workload": asdict(found.workload),
-        "options": [{**asdict(it.forecast), **_beside(it)} for it in found.options],
-        "refused": found.refused,
-        "flips": found.flips,
-    }
-
-
-def _beside(option: Any) -> dict[str, Any]:
-    return {"bytes": option.bytes, "edit": option.edit, "behind": option.behind}
 
 
 def _show(found: Advice, run: Run, mesh: str) -> None:
@@ -113,22 +99,17 @@ def _show(found: Advice, run: Run, mesh: str) -> None:
     console.print(f"Predicted from {run.folder}, measured on {cpu}.\n", highlight=False)
     table = Table("structure", "time", "nine of ten within", "bytes", "what costs it more")
     for option in found.options:
-        it = option.forecast
+        it, behind = option.forecast, option.behind
         within = f"{duration(it.low)} … {duration(it.high)}"
-        extra = it.parts.get(option.behind, 0.0)
-        behind = f"{option.behind}: {duration(extra)}" if option.behind else ""
+        extra = f"{behind}: {duration(it.parts.get(behind, 0.0))}" if behind else ""
         title = REGISTRY[it.structure].title
-        table.add_row(title, duration(it.seconds), within, f"{option.bytes:,}", behind)
+        table.add_row(title, duration(it.seconds), within, f"{option.bytes:,}", extra)
     console.print(table)
     for name, why in found.refused.items():
         console.print(f"{REGISTRY[name].title} does not suit: {why}.", markup=False)
     for flip in found.flips:
-        where = (
-            f"{flip['at']:,.0f} vertices"
-            if flip["of"] == "vertices"
-            else f"{flip['at']:g} × the edits"
-        )
-        console.print(f"At {where} {REGISTRY[flip['best']].title} is the best.")
+        form = "{at:,.0f} vertices" if flip["of"] == "vertices" else "{at:g} × the edits"
+        console.print(f"At {form.format(**flip)} {REGISTRY[flip['best']].title} is the best.")
     untold = sorted({what for it in found.options for what in it.forecast.untold})
     if untold:
         console.print(f"Left out, as the run does not tell what it takes: {', '.join(untold)}.")

@@ -29,7 +29,6 @@ Baseline = Annotated[
 ]
 HERE = Path("results/reference")
 BASELINE = HERE if HERE.is_dir() else carried("results/reference")
-
 FACTOR_HELP = "How many times slower is worse. Default: 2 from run to run, 1.15 interleaved."
 
 
@@ -78,9 +77,8 @@ def _compare(
     runs = chosen and (gate.load_baseline(gate.RUN, folder), gate.reduce_run(_load(chosen)))
     factors: dict[str, Any] = {} if factor is None else {"factor": factor}
     after = gate.measure_counters(structures)
-    findings, notes = gate.compare_counters(
-        before.only(structures) if structures else before, after
-    )
+    before = before.only(structures) if structures else before
+    findings, notes = gate.compare_counters(before, after)
     if structures:
         notes.append(f"just {', '.join(structures)} was measured")
     if runs:
@@ -103,9 +101,8 @@ def _load(folder: Path) -> Run:
         )
     run = load(folder)
     if run.cases.empty:
-        raise ValueError(
-            f"{folder} holds no case; resume it with: hem study --resume --run {folder}"
-        )
+        resuming = f"hem study --resume --run {folder}"
+        raise ValueError(f"{folder} holds no case; resume it with: {resuming}")
     return run
 
 
@@ -138,7 +135,11 @@ def update(
 
     # Mistakes are told before anything is measured.
     of_run = {regression.RUN: _finished(chosen)} if chosen else {}
-    fresh = {regression.COUNTERS: _complete(regression.measure_counters())} | of_run
+    counters = regression.measure_counters()
+    for case in counters.run.skipped.to_dict("records"):
+        where = f"{case['experiment']}/{case['structure']}/{case['id']}"
+        raise ValueError(f"{where} could not be measured, so nothing is kept: {case['skipped']}")
+    fresh = {regression.COUNTERS: counters} | of_run
     changed = {part: it for part, it in fresh.items() if _print_difference(part, it, baseline)}
     if not changed:
         console.print(f"{baseline} says just this already.")
@@ -153,13 +154,6 @@ def update(
     for part, measured in changed.items():
         regression.save_baseline(part, measured, baseline)
     console.print(f"Written to {baseline}; look at it with: git diff --stat {baseline}")
-
-
-def _complete(counters: Measured) -> Measured:
-    for case in counters.run.skipped.to_dict("records"):
-        where = f"{case['experiment']}/{case['structure']}/{case['id']}"
-        raise ValueError(f"{where} could not be measured, so nothing is kept: {case['skipped']}")
-    return counters
 
 
 def _finished(folder: Path) -> Measured:

@@ -138,14 +138,11 @@ def _animate(broken: Any, scene: Any, seconds: float, size: Size, folder: Path) 
     images = list(track(frames, "Animation", count, console=console, transient=True))
     save_animation(images, folder / "fracture.gif")
     return {
-        "file": "fracture.gif",
-        "seconds": seconds,
-        "frames": count,
+        "file": "fracture.gif", "seconds": seconds, "frames": count,
         "frames_a_second": FRAMES_PER_SECOND,
         "slowed_on_average": count / FRAMES_PER_SECOND / seconds,
-        "times_s": flight.times.round(6).tolist(),
-        "at_rest": int(flight.at_rest.sum()),
-    }
+        "times_s": flight.times.round(6).tolist(), "at_rest": int(flight.at_rest.sum()),
+    }  # fmt: skip
 
 
 def _print_summary(broken: Any, folder: Path, files: list[str]) -> None:

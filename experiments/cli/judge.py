@@ -16,8 +16,7 @@ COLORS = {"consistent": "green", "violated": "red", "undetermined": "yellow"}
 
 def judge_file(
     file: Annotated[
-        Path,
-        Argument(help="CSV, or JSON of pytest-benchmark, Google Benchmark or hyperfine."),
+        Path, Argument(help="CSV, or JSON of pytest-benchmark, Google Benchmark or hyperfine.")
     ],
     expected: Annotated[str | None, Option(help='The class that is claimed: "O(n log n)".')] = None,
     parameter: Annotated[
@@ -40,12 +39,9 @@ def judge_file(
     with user_errors(2):
         from hem.complexity import judge, read_curves
 
-        bound: Any = "upper" if upper else "tight"
+        options: Any = {"exact": exact, "bound": "upper" if upper else "tight"}
         curves = read_curves(file, parameter)
-        verdicts = [
-            judge(it.sizes, it.samples, expected or "O(1)", exact=exact, bound=bound)
-            for it in curves
-        ]
+        verdicts = [judge(it.sizes, it.samples, expected or "O(1)", **options) for it in curves]
         if plot is not None:
             from experiments.report.figures.costs import save_costs
 
@@ -67,14 +63,14 @@ def _print_data(curves: Any, verdicts: Any, expected: str | None) -> None:
 
 
 def _print(curves: Any, verdicts: Any, expected: str | None) -> None:
-    table = Table(
-        "function", "sizes", "slope", "class", *(["claim", "verdict"] if expected else [])
-    )
+    heads = "function", "sizes", "slope", "class", "claim", "verdict"
+    shown = len(heads) if expected else 4
+    table = Table(*heads[:shown])
     for it, verdict in zip(curves, verdicts, strict=True):
         said = f"[{COLORS[verdict.outcome]}]{verdict.outcome}[/]"
         sizes = f"{len(it.sizes)}: {it.sizes[0]:g} … {it.sizes[-1]:g}"
-        row = (it.name, sizes, f"{verdict.raw_slope:.2f}", verdict.answer or "?")
-        table.add_row(*row, *((verdict.expected, said) if expected else ()))
+        row = it.name, sizes, f"{verdict.raw_slope:.2f}", verdict.answer or "?"
+        table.add_row(*(*row, verdict.expected, said)[:shown])
     console.print(table)
     for it, verdict in zip(curves, verdicts, strict=True):
         if expected:

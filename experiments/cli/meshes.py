@@ -49,9 +49,7 @@ def _listed(made: dict[str, tuple[hem.TriangleMesh, str, str]]) -> list[dict[str
 
 
 def info(
-    mesh: Annotated[str, Argument(**OfMesh)],
-    repair: Repair = False,
-    as_json: AsJson = False,
+    mesh: Annotated[str, Argument(**OfMesh)], repair: Repair = False, as_json: AsJson = False
 ) -> None:
     """Say what a mesh consists of, and which structure can hold it in how many bytes.
 

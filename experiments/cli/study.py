@@ -15,36 +15,28 @@ from experiments.presets import PRESETS
 DEFAULT = "quick"  # the preset of a study that names none
 
 
+# fmt: off
 def run_study(
-    preset: Annotated[
-        str | None,
-        Option(
-            "--preset",
-            "--profile",
-            help="How much. Default: quick; a wrong one lists all.",
-            autocompletion=completed("experiments.presets", "PRESETS"),
-        ),
-    ] = None,
+    preset: Annotated[str | None, Option(
+        "--preset", "--profile", help="How much. Default: quick; a wrong one lists all.",
+        autocompletion=completed("experiments.presets", "PRESETS"))] = None,
     resume: Annotated[bool, Option("--resume", help="Resume the newest unfinished run.")] = False,
     run: Annotated[Path | None, Option(help="With --resume: which, finished or not.")] = None,
-    output: Annotated[
-        Path | None, Option(help="Where the runs are kept (results/runs, peers in it).")
-    ] = None,
+    output: Annotated[Path | None, Option(
+        help="Where the runs are kept (results/runs, peers in it).")] = None,
     structure: Structures = None,
-    experiment: Annotated[
-        list[str] | None, Option(help="Run just this one; may be repeated.")
-    ] = None,
-    peers: Annotated[
-        bool, Option("--peers", help="Other libraries beside ours, and nothing else.")
-    ] = False,
-    mesh: Annotated[
-        str | None, Option(**OfMesh | {"help": "Measure on this mesh, and on versions of it."})
-    ] = None,
+    experiment: Annotated[list[str] | None, Option(
+        help="Run just this one; may be repeated.")] = None,
+    peers: Annotated[bool, Option(
+        "--peers", help="Other libraries beside ours, and nothing else.")] = False,
+    mesh: Annotated[str | None, Option(
+        **OfMesh | {"help": "Measure on this mesh, and on versions of it."})] = None,
     repair: Repair = False,
     seed: Annotated[int | None, Option(help="Of the order of the cases.")] = None,
     pin: Annotated[bool | None, Option(help="Whether to stay on one core (yes).")] = None,
     workers: Annotated[str | None, Option(help="A Dask scheduler, tcp://host:port.")] = None,
 ) -> None:
+    # fmt: on
     """Measure every structure. The results go to a new folder, case by case.
 
     With --mesh on a mesh of your own, coarser and finer versions of it, where a slope is wanted: a

@@ -7,7 +7,7 @@ they said of every claim when they were measured, a line per claim.
 
 import json
 import shutil
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Self
@@ -30,14 +30,12 @@ HEAD = (
     *("started", "finished", "run", "too_busy"),
 )
 """What is kept of the head of a run."""
-
-LEAST_ROUNDS = 9  # rounds on either side with which a comparison of times can decide at all
-
 KEPT = (
     *("id", "kind", "subject", "order", "family", "vertices", "faces", "valence"),
     *("working_set", "latency", "reference"),
 )
 """What is kept of a case besides its samples and the calibration loop's readings."""
+LEAST_ROUNDS = 9  # rounds on either side with which a comparison of times can decide at all
 
 
 @dataclass(frozen=True)
@@ -63,8 +61,9 @@ def reduce_run(run: Run) -> Measured:
     meta = {**run.meta, "run": run.folder.resolve().name, "too_busy": noise(run).too_busy}
     cases = run.cases[[_is_comparable(case) for case in run.cases.to_dict("records")]].copy()
     timed = cases["kind"] == "time"
-    for column in ("samples", "calibration"):
-        cases.loc[timed, column] = cases.loc[timed, column].map(_short)
+    for column in ("samples", "calibration"):  # four digits are more than a clock tells
+        short = cases.loc[timed, column].map(lambda rounds: [float(f"{it:.4g}") for it in rounds])
+        cases.loc[timed, column] = short
     cases["samples"] = cases["samples"].map(np.asarray)
     kept = Run(run.folder, {key: meta.get(key) for key in HEAD}, cases, run.skipped[:0])
     return Measured(kept, claim_figures(run))
@@ -78,11 +77,6 @@ def _is_comparable(case: Mapping[Any, Any]) -> bool:
     return wanted and len(case["calibration"]) > 0 and len(case["samples"]) >= LEAST_ROUNDS
 
 
-def _short(seconds: Iterable[float]) -> list[float]:
-    """Four digits, which is more than a clock tells."""
-    return [float(f"{it:.4g}") for it in seconds]
-
-
 def load_baseline(part: str, folder: Path = FOLDER) -> Measured:
     """The counters or the run of the baseline. Raises ResultsError that names the way out."""
     try:
@@ -90,9 +84,8 @@ def load_baseline(part: str, folder: Path = FOLDER) -> Measured:
         lines = (folder / part / CLAIMS).read_text("utf-8").splitlines()
         return Measured(run, {claim.pop("claim"): claim for claim in map(json.loads, lines)})
     except (ValueError, OSError, KeyError) as error:
-        raise ResultsError(
-            f"the baseline cannot be read: {error}. Make it anew: {UPDATE[part]}"
-        ) from error
+        told = f"the baseline cannot be read: {error}. Make it anew: {UPDATE[part]}"
+        raise ResultsError(told) from error
 
 
 def save_baseline(part: str, measured: Measured, folder: Path = FOLDER) -> None:

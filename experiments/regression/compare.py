@@ -6,7 +6,9 @@ whole: it got slower only if most of its cases say so, each by significance and 
 the calibration loop that ran beside its rounds.
 """
 
+from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from itertools import groupby
 from typing import Any, NamedTuple
 
@@ -34,9 +36,7 @@ did not; a query that becomes linear moves its slope by 1. Where nothing is clai
 compared."""
 
 MACHINE = [("machine", it) for it in ("cpu", "cores", "caches", "machines")]
-MACHINE += [("versions", "numba")]
-"""What must be the same for times to be comparable."""
-
+MACHINE += [("versions", "numba")]  # what must be the same for times to be comparable
 Row = Mapping[Any, Any]  # a case as a row of a run
 
 
@@ -80,9 +80,8 @@ def compare_runs(before: Measured, after: Measured, factor: float = FACTOR) -> C
     busy = [name for name, it in (("run", new), ("baseline", old)) if it.get("too_busy")]
     if busy:
         claims = [it for it in claims if not it.random]
-        command = UPDATE[RUN] if busy == ["baseline"] else "hem study"
         why = f"the machine was too busy to judge the {busy[0]} by time"
-        findings.append(_no_times(why, command))
+        findings.append(_no_times(why, UPDATE[RUN] if busy == ["baseline"] else "hem study"))
     elif other := _other_machine(old, new):
         notes.append(f"times are not compared: {other}; from now on they are: {UPDATE[RUN]}")
     else:
@@ -93,10 +92,10 @@ def compare_runs(before: Measured, after: Measured, factor: float = FACTOR) -> C
 def describe_difference(before: Measured, after: Measured) -> list[str]:
     """What would change if the second became the baseline, a line each; times are just counted."""
     findings = [*compare_counters(before, after).findings, *_compare_claims(before, after)]
-    changed = [it for it in findings if it.change != Change.SAME]
+    changed = (it for it in findings if it.change != Change.SAME)
     lines = [f"{it.kind} {it.where}: {it.difference}" for it in changed]
     times = [it for it in _pair_cases(before.run, after.run)[0] if it.kind == Kind.TIME]
-    rounds = [[list(row["samples"]) if row else [] for row in it[2:4]] for it in times]
+    rounds = ([list(row["samples"]) if row else [] for row in it[2:4]] for it in times)
     anew = sum(old != new for old, new in rounds)
     return [*lines, f"times: {anew:,} of {len(times):,} cases anew"] if anew else lines
 
@@ -161,7 +160,6 @@ def _show(values: Sequence[Any]) -> str:
 
 
 def _compare_counts(pairs: Iterable[Pair], part: str) -> Iterator[Finding]:
-    """Work and bytes, to the last count."""
     for case, kind, before, after, why in pairs:
         if kind != Kind.TIME:
             old, new = (row and [int(it) for it in row["samples"]] for row in (before, after))
@@ -175,11 +173,11 @@ def compare_values(old: Sequence[int], new: Sequence[int]) -> tuple[Change, str]
     """
     if old == new:
         return Change.SAME, ""
-    more = any(before < after for before, after in zip(old, new, strict=False))
-    if len(old) == len(new):
-        return Change.WORSE if more else Change.BETTER, ""
-    more |= sum(new) > sum(old)
-    return Change.WORSE if more else Change.BETTER, f"{len(new)} instead of {len(old)} values"
+    more, why = any(before < after for before, after in zip(old, new, strict=False)), ""
+    if len(old) != len(new):
+        more |= sum(new) > sum(old)
+        why = f"{len(new)} instead of {len(old)} values"
+    return Change.WORSE if more else Change.BETTER, why
 
 
 def _pair_claims(
@@ -208,12 +206,11 @@ def compare_classes(before: Sequence[str], after: Sequence[str]) -> tuple[Change
     claim, too: so does an index that is hidden in a structure without one.
     """
     (old, was), (new, now) = before, after
-    decided = {"violated": Change.WORSE, "consistent": Change.BETTER}
     change = Change.UNDETERMINED
     if (old, was) == (new, now):
         change = Change.SAME
     elif was != now and was != Outcome.NO_CLAIM:
-        change = decided.get(now, change)
+        change = {"violated": Change.WORSE, "consistent": Change.BETTER}.get(now, change)
     elif was == now != Outcome.UNDETERMINED and old in CLASSES and new in CLASSES:
         change = Change.WORSE if CLASSES.index(new) > CLASSES.index(old) else Change.BETTER
     return change, ""
@@ -239,7 +236,7 @@ def _compare_claims(before: Measured, after: Measured) -> Iterator[Finding]:
                 if random and change in (Change.WORSE, Change.BETTER) and change not in told:
                     change, why = Change.UNDETERMINED, "its slopes are as before"
                 yield Finding(
-                    change, Kind.CLASS, key, was, now, why, axis=axis, random=random, **said
+                    change, Kind.CLASS, key, was, now, why, "", axis, **said, random=random
                 )
 
 
@@ -252,22 +249,21 @@ def _compare_slopes(key: CaseKey, old: Figures, new: Figures, claim: str) -> Ite
             change = Change.WORSE if now[1] > was[2] + drift else Change.SAME
             change = Change.BETTER if now[2] < was[1] - drift else change
             before, after = ("{:.3f} [{:.3f}, {:.3f}]".format(*it) for it in (was, now))
-            where, random = f"{axis.symbol}, {axis.label}", not axis.exact
-            yield Finding(
-                change, Kind.SLOPE, key, before, after, axis=where, claim=claim, random=random
-            )
+            where = f"{axis.symbol}, {axis.label}"
+            told = Finding(change, Kind.SLOPE, key, before, after, axis=where, claim=claim)
+            yield replace(told, random=not axis.exact)
 
 
 def _find_gone(pairs: Iterable[Pair]) -> tuple[list[Finding], list[Pair]]:
     """A finding for each experiment on a structure of which the run has no case; the others."""
     findings, others = [], []
     for key, group in groupby(pairs, lambda it: it.case[:2]):
-        cases = list(group)
+        cases, change = list(group), Change.UNDETERMINED
         if any(it.after is not None for it in cases):
             others += cases
         else:
-            case, were = CaseKey(*key), f"{len(cases):,} cases"
-            findings.append(Finding(Change.UNDETERMINED, cases[0].kind, case, were, "none"))
+            were = f"{len(cases):,} cases"
+            findings.append(Finding(change, cases[0].kind, CaseKey(*key), were, "none"))
     return findings, others
 
 
@@ -291,11 +287,10 @@ def _compare_times(pairs: Sequence[Pair], factor: float) -> list[Finding]:
         return [_no_times("the baseline has no times that can be compared", UPDATE[RUN])]
     if not any(it.after for it in pairs):
         return [_no_times("the run has no times that can be compared")]
-    curves: dict[tuple[CaseKey, str], list[Pair]] = {}
+    curves: dict[tuple[CaseKey, str], list[Pair]] = defaultdict(list)
     for pair in pairs:
         axis = Axis.TIME_VALENCE if pair.case.valence else Axis.TIME_FACES
-        key = CaseKey(*pair.case[:3], order=pair.case.order)
-        curves.setdefault((key, axis.symbol), []).append(pair)
+        curves[CaseKey(*pair.case[:3], order=pair.case.order), axis.symbol].append(pair)
     return [_compare_curve(*key, cases, factor) for key, cases in curves.items()]
 
 

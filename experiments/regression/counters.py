@@ -7,7 +7,7 @@ show. No time is taken.
 
 import tracemalloc
 from collections.abc import Callable, Collection, Iterable, Iterator
-from dataclasses import asdict, replace
+from dataclasses import astuple, replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -56,9 +56,7 @@ def measure_counters(chosen: Collection[str] = ()) -> Measured:
         except Exception as error:  # whatever a broken structure does is a finding, not an end
             reason = f"{type(error).__name__}: {error}".splitlines()[0]
             measured = [replace(failed, skipped=reason)]
-        rows += [
-            {"experiment": experiment, "structure": structure, **asdict(it)} for it in measured
-        ]
+        rows += [(experiment, structure, *astuple(it)) for it in measured]
     cases = pd.DataFrame(rows, columns=["experiment", "structure", *Measurement.__annotations__])
     cases["samples"] = cases["samples"].map(lambda samples: np.asarray(samples, float))
     skipped = cases["skipped"] != ""
@@ -102,17 +100,15 @@ def _growing(name: str) -> Iterator[Measurement]:
     """Bytes of the arrays each time they are made anew while faces are split one by one."""
     case = Case(name, EXTENT.families[0], GROWING)
     s = structures.build(name, case.mesh())
-    sizes = [_size(s)]
-    for face in range(SPLITS):
-        s.split_face(face, (0.0, 0.0, 0.0))
-        if _size(s) != sizes[-1]:
-            sizes.append(_size(s))
+    sizes: list[int] = []
+    for face in range(SPLITS + 1):
+        size = sum(array.nbytes for array in s.arrays)
+        if size not in sizes[-1:]:
+            sizes.append(size)
+        if face < SPLITS:
+            s.split_face(face, (0.0, 0.0, 0.0))
     s.validate()
     yield _weighed(case, f"arrays while {SPLITS} faces are split", sizes)
-
-
-def _size(s: Structure) -> int:
-    return sum(array.nbytes for array in s.arrays)
 
 
 def _weighed(case: Case, part: str, sizes: list[int], reference_bytes: int = 0) -> Measurement:
@@ -138,16 +134,11 @@ def _weigh(make: Callable[[], Structure]) -> tuple[Structure, int]:
     NumPy tells tracemalloc of every array, wherever it hides; Python's own objects, which take
     other sizes in other versions, are skipped, and so are addresses without memory.
     """
+    of_arrays = tracemalloc.DomainFilter(inclusive=True, domain=tracemalloc_domain)
     tracemalloc.start()
     try:
-        before = _in_arrays()
         made = make()
-        return made, _in_arrays() - before - behind(*made.arrays)
+        traces = tracemalloc.take_snapshot().filter_traces([of_arrays]).traces
+        return made, sum(trace.size for trace in traces) - behind(*made.arrays)
     finally:
         tracemalloc.stop()
-
-
-def _in_arrays() -> int:
-    only = tracemalloc.DomainFilter(inclusive=True, domain=tracemalloc_domain)
-    snapshot = tracemalloc.take_snapshot().filter_traces([only])
-    return sum(trace.size for trace in snapshot.traces)

@@ -89,7 +89,6 @@ MOST_OPEN = 0.1
 """Part of what chance has a say in that may be left open, and one in any case if it is not all:
 machines are never quiet all the time, and a gate that is never passed is not looked at. Of all else
 nothing may be."""
-
 STRAYS = 1
 """Votes for slower that do not matter where most say that all is as before: other tenants of the
 machine were at work."""

@@ -13,10 +13,8 @@ from experiments.runs import ResultsError, Run, git, machine_id
 from hem.whole_files import append_whole
 
 SCHEMA = 2
-
 REQUIRED = {"commit": str, "started": str, "profile": str, "machine": dict, "claims": dict}
 """What every line has, and of what type."""
-
 Line = dict[str, Any]
 
 
@@ -35,18 +33,13 @@ def record_run(run: Run) -> Line:
     if "finished" not in meta:
         raise ResultsError(f"{run.folder} is not finished; go on with: hem study --resume")
     return {
-        "schema": SCHEMA,
-        "run": run.folder.resolve().name,
-        "commit": meta["commit"],
-        "committed": commit_date(meta["commit"]),
-        "dirty": meta["dirty"],
-        "started": meta["started"],
-        "profile": meta["preset"],
+        "schema": SCHEMA, "run": run.folder.resolve().name,
+        "commit": meta["commit"], "committed": commit_date(meta["commit"]), "dirty": meta["dirty"],
+        "started": meta["started"], "profile": meta["preset"],
         "structures": list(meta.get("structures", ())),
         "machine": {"id": machine_id(meta["machine"]), **meta["machine"]},
-        "versions": meta["versions"],
-        "claims": claim_figures(run),
-    }
+        "versions": meta["versions"], "claims": claim_figures(run),
+    }  # fmt: skip
 
 
 def commit_date(commit: str) -> str | None:

@@ -24,11 +24,9 @@ from hem.whole_files import write_whole
 
 ADDRESS = re.compile(r"[a-z]+://.+:\d+")
 CONNECT_SECONDS = 10
-VARIABLE = "HEM_MACHINE"
-"""Environment variable of a worker that names its machine, if its host's name is not enough."""
+VARIABLE = "HEM_MACHINE"  # names a worker's machine, if its host's name is not enough
 TASK = {"resources": {"machine": 1}, "retries": 2, "pure": False}
-WAIT = {"timeout": 60, "return_when": "FIRST_COMPLETED"}
-"""For a task, and for so many seconds for a machine when all are gone."""
+WAIT = {"timeout": 60, "return_when": "FIRST_COMPLETED"}  # and so long if all machines are gone
 
 Returned = tuple[bytes, str, dict[str, Any]]
 """What a machine returns of a job: its file, the end of its log, and what machine it is."""
@@ -41,17 +39,13 @@ class ClusterError(ValueError):
 def require(address: str) -> None:
     """Raise ClusterError unless a study can be sent to ``address``."""
     if find_spec("distributed") is None:
-        raise ClusterError(
-            "--workers needs Dask, which is not installed; install it with: "
-            "pip install 'hem-mesh[cluster]'"
-        )
+        how = "install it with: pip install 'hem-mesh[cluster]'"
+        raise ClusterError(f"--workers needs Dask, which is not installed; {how}")
     with _client(address) as client:
         workers = client.scheduler_info(n_workers=-1)["workers"].values()
         if not any("machine" in worker["resources"] for worker in workers):
-            raise ClusterError(
-                f"{address} has no workers for it; on each machine start one with: "
-                f"dask worker {address} --nthreads 1 --resources machine=1"
-            )
+            how = f"start one with: dask worker {address} --nthreads 1 --resources machine=1"
+            raise ClusterError(f"{address} has no workers for it; on each machine {how}")
 
 
 def run(folder: Path, address: str, observer: study.Observer | None = None) -> None:
@@ -83,16 +77,10 @@ def run(folder: Path, address: str, observer: study.Observer | None = None) -> N
             client.cancel(list(running), force=True)
         if failures:
             raise study.StudyFailedError("\n\n".join(failures))
-        study.finish(folder, _measured_by(folder))
-
-
-def _measured_by(folder: Path) -> dict[str, Any]:
-    """What measured a run: its one machine, or that there were several, whose times do not mix."""
-    used = sorted({path.parent for path in case_files(folder)} - {folder})
-    if len(used) == 1:
-        return dict(read_meta(used[0])["machine"])
-    names = [path.name.removeprefix("machine-") for path in used]
-    return {"cpu": f"{len(names)} machines", "machines": names}
+        used = sorted({path.parent for path in case_files(folder)} - {folder})
+        names = [path.name.removeprefix("machine-") for path in used]
+        several = {"cpu": f"{len(names)} machines", "machines": names}  # whose times do not mix
+        study.finish(folder, read_meta(used[0])["machine"] if len(used) == 1 else several)
 
 
 def measure_here(job: Job, commit: str) -> Returned:
@@ -112,10 +100,8 @@ def measure_alone(job: Job, commit: str, wanted: Callable[[], bool]) -> Returned
     host = os.environ.get(VARIABLE) or socket.gethostname()
     about = {**describe(job.preset), "host": host}
     if about["commit"] != commit:
-        raise ClusterError(
-            f"{host} runs commit {about['commit'][:12]}, the study {commit[:12]}: "
-            "bring them to the same and resume"
-        )
+        differ = f"{host} runs commit {about['commit'][:12]}, the study {commit[:12]}"
+        raise ClusterError(f"{differ}: bring them to the same and resume")
 
     def require_wanted(*_: Any) -> None:
         if not wanted():

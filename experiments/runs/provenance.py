@@ -11,6 +11,7 @@ from datetime import UTC, datetime
 from hashlib import sha256
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
+from subprocess import DEVNULL
 from typing import Any
 
 import psutil
@@ -33,22 +34,17 @@ def describe(preset: str) -> dict[str, Any]:
 def source() -> dict[str, Any]:
     """The commit that is run, and whether anything was changed since."""
     commit = git("rev-parse", "HEAD")
-    return {
-        "commit": commit or "unknown",
-        "dirty": bool(git("status", "--porcelain")) if commit else None,
-    }
+    dirty = bool(git("status", "--porcelain")) if commit else None
+    return {"commit": commit or "unknown", "dirty": dirty}
 
 
 def git(*arguments: str) -> str:
     """What git says of the checkout this runs in; empty where it says nothing."""
+    command = ["git", "-C", str(Path(__file__).parent), *arguments]
     try:
-        done = subprocess.run(
-            ["git", *arguments], cwd=Path(__file__).parent, capture_output=True, text=True,
-            check=True, timeout=60,
-        )  # fmt: skip
+        return subprocess.check_output(command, stderr=DEVNULL, text=True, timeout=60).strip()
     except (OSError, subprocess.SubprocessError):
         return ""
-    return done.stdout.strip()
 
 
 def now() -> str:
@@ -81,16 +77,17 @@ def machine_id(machine: dict[str, Any]) -> str:
         "memory_gib": round((machine.get("memory_bytes") or 0) / 2**30),
         "caches": machine.get("caches"),
         "platform": [*system[:1], *system[-1:]],
-        **{key: machine[key] for key in ("machines",) if machine.get(key)},
     }
+    if machine.get("machines"):
+        facts["machines"] = machine["machines"]
     return sha256(json.dumps(facts, sort_keys=True).encode()).hexdigest()[:8]
 
 
 def _cpu() -> str:
     info = Path("/proc/cpuinfo")
     text = info.read_text() if info.exists() else ""
-    names = re.findall(r"^model name\s*: *(.+?) *$", text, re.MULTILINE)
-    return str(names[0]) if names else platform.processor() or "unknown"
+    named = re.search(r"^model name\s*: *(.+?) *$", text, re.MULTILINE)
+    return named[1] if named else platform.processor() or "unknown"
 
 
 def _caches() -> dict[str, str]:

@@ -54,19 +54,13 @@ def load(folder: Path | str) -> Run:
     for name, count in meta.get("files", {}).items():
         if name not in files or len(files[name].measurements) < count:
             missing = f"{folder / name} is {'not whole' if name in files else 'missing'}"
-            raise store.DamagedError(
-                f"{missing}; measure its cases again with: {store.resuming(folder / name)}"
-            )
-    rows = [
-        {
-            "experiment": file.experiment,
-            "structure": file.structure,
-            "machine": "" if file.path.parent == folder else file.path.parent.name,
-            **vars(case),
-        }
-        for file in files.values()
-        for case in file.cases.values()
-    ]
+            again = f"measure its cases again with: {store.resuming(folder / name)}"
+            raise store.DamagedError(f"{missing}; {again}")
+    rows = []
+    for file in files.values():
+        machine = "" if file.path.parent == folder else file.path.parent.name
+        who = file.experiment, file.structure, machine
+        rows += [(*who, *vars(case).values()) for case in file.cases.values()]
     columns = ["experiment", "structure", "machine", *Measurement.__dataclass_fields__]
     cases = pd.DataFrame(rows, columns=columns)
     cases["samples"] = cases["samples"].map(lambda samples: np.asarray(samples, float))
@@ -127,14 +121,11 @@ def noise(run: Run) -> Noise:
     over = [it[when] / it["fastest"] - 1 for it in seen for when in ("before", "after")]
     share = len(bad) / max(len(seen), 1)
     return Noise(
-        cases=len(seen),
-        disturbed=len(bad),
+        cases=len(seen), disturbed=len(bad), share=share, too_busy=share > BUSY,
         repeated=sum(it.get("measured", 1) > 1 for it in seen),
         probe_spread=float(np.quantile(over or [0.0], 0.9)),
         worst={str(name): int(count) for name, count in worst.items()},
-        share=share,
-        too_busy=share > BUSY,
-    )
+    )  # fmt: skip
 
 
 def in_words(run: Run) -> str:

@@ -10,6 +10,7 @@ import hashlib
 import json
 import os
 import socket
+from collections import defaultdict
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import replace
@@ -76,10 +77,9 @@ class CaseFile:
     @property
     def cases(self) -> dict[str, Measurement]:
         """By id the calmest measurement of every case; its noise says how often it was measured."""
-        by_id: dict[str, list[Measurement]] = {}
+        by_id, cases = defaultdict[str, list[Measurement]](list), {}
         for it in self.measurements:
-            by_id.setdefault(it.id, []).append(it)
-        cases = {}
+            by_id[it.id].append(it)
         for key, every in by_id.items():
             calmest = min(every, key=lambda it: badness(it.noise))
             noise = calmest.noise and {**calmest.noise, "measured": len(every)}
@@ -89,11 +89,8 @@ class CaseFile:
     @property
     def disturbed(self) -> set[str]:
         """The ids of timed cases that were disturbed each time, and may be measured once more."""
-        return {
-            key
-            for key, it in self.cases.items()
-            if it.kind == "time" and disturbed(it.noise) and it.noise["measured"] <= REPEATS
-        }
+        timed = {key: it.noise for key, it in self.cases.items() if it.kind == "time"}
+        return {it for it, seen in timed.items() if disturbed(seen) and seen["measured"] <= REPEATS}
 
     def add(self, *measurements: Measurement) -> None:
         """Append measurements. Raises CannotWriteError, and leaves the file as it was."""
@@ -119,9 +116,8 @@ class CaseFile:
             if number:
                 self.measurements.append(Measurement(**content))
             elif content != self._head:
-                raise ResultsError(
-                    f"{where} is the head of another file, {content}: move the file away"
-                )
+                other = f"{where} is the head of another file, {content}"
+                raise ResultsError(f"{other}: move the file away")
             self._bytes += len(line) + 1
 
 
@@ -138,10 +134,8 @@ def read_meta(folder: Path) -> dict[str, Any]:
         raise ResultsError(f"{folder} holds no run: there is no {META} in it")
     meta = _unsealed(path.read_bytes(), str(path), f"move {folder} away, or put back a copy")
     if meta.get("schema") != SCHEMA:
-        raise ResultsError(
-            f"{path} has schema {meta.get('schema')}, this version reads {SCHEMA}: "
-            "measure it again with: hem study"
-        )
+        differ = f"{path} has schema {meta.get('schema')}, this version reads {SCHEMA}"
+        raise ResultsError(f"{differ}: measure it again with: hem study")
     return meta
 
 
@@ -205,10 +199,8 @@ def writing(path: Path) -> Iterator[None]:
         yield
     except OSError as error:
         hints = (hint for numbers, hint in HINTS.items() if error.errno in numbers)
-        hint = next(hints, "see to the disk")
-        raise CannotWriteError(
-            f"{path} cannot be written ({error.strerror or error}): {hint}"
-        ) from error
+        told = f"{path} cannot be written ({error.strerror or error})"
+        raise CannotWriteError(f"{told}: {next(hints, 'see to the disk')}") from error
 
 
 def resuming(path: Path) -> str:

@@ -8,7 +8,7 @@ takes seconds to begin.
 import hashlib
 import os
 import shutil
-from collections import Counter
+from collections import Counter, defaultdict
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from contextlib import closing, contextmanager, suppress
@@ -58,16 +58,9 @@ class StudyFailedError(RuntimeError):
 
 
 def begin(
-    preset: str,
-    root: Path = RUNS,
-    structures: Sequence[str] = (),
-    experiments: Sequence[str] = (),
-    *,
-    seed: int = Job.seed,
-    pin: bool = True,
-    mesh: str | None = None,
-    repair: bool = False,
-) -> Path:
+    preset: str, root: Path = RUNS, structures: Sequence[str] = (), experiments: Sequence[str] = (),
+    *, seed: int = Job.seed, pin: bool = True, mesh: str | None = None, repair: bool = False,
+) -> Path:  # fmt: skip
     """A new run folder, named by the time and the preset, with what is known before it runs.
 
     ``structures``, ``experiments``: just these, all of them for none; an experiment with or without
@@ -151,11 +144,9 @@ def run(folder: Path, observer: Observer | None = None) -> None:
 
 
 def compile_and_count(
-    folder: Path,
-    jobs: Sequence[Job],
-    compiled: Callable[[str, int, int], None],
+    folder: Path, jobs: Sequence[Job], compiled: Callable[[str, int, int], None],
     count: Callable[[list[Job], Event], None],
-) -> None:
+) -> None:  # fmt: skip
     """Compile what timed jobs need, and do those that only count, on all cores.
 
     ``compiled`` is told of each structure whose kernels are ready; ``count`` does the jobs of one
@@ -184,9 +175,9 @@ def compile_and_count(
 
 def _grouped(jobs: Iterable[Job], by: str) -> list[list[Job]]:
     """The jobs of each structure, or of each experiment, in the order of a study."""
-    groups: dict[str, list[Job]] = {}
+    groups: dict[str, list[Job]] = defaultdict(list)
     for job in jobs:
-        groups.setdefault(getattr(job, by), []).append(job)
+        groups[getattr(job, by)].append(job)
     return list(groups.values())
 
 
@@ -219,8 +210,14 @@ def _sources() -> bytes:
 def _measure(folder: Path, jobs: list[Job], observer: Observer, stop: Event) -> list[str]:
     """Measure jobs -> which failed, and why."""
     begin = monotonic()
+    done = Counter({job: len(job.ids) - len(job.left(folder)) for job in jobs})
     try:
-        _measure_once(folder, jobs, observer, stop)
+        with closing(perform(folder, jobs)) as finished:
+            for job in finished:
+                done[job] += 1
+                observer.measured(job, done[job])
+                if stop.is_set():
+                    return []
     except WorkerDiedError as error:
         left = [job for job in jobs if job.left(folder)]
         failures = [f"{job}:\n{error}" for job in left[:1]]
@@ -235,16 +232,6 @@ def _measure(folder: Path, jobs: list[Job], observer: Observer, stop: Event) -> 
     with suppress(WorkerDiedError):
         _measure_again(folder, jobs, now + REPEATING_SHARE * (now - begin))
     return failures
-
-
-def _measure_once(folder: Path, jobs: list[Job], observer: Observer, stop: Event) -> None:
-    done = Counter({job: len(job.ids) - len(job.left(folder)) for job in jobs})
-    with closing(perform(folder, jobs)) as finished:
-        for job in finished:
-            done[job] += 1
-            observer.measured(job, done[job])
-            if stop.is_set():
-                return
 
 
 def _measure_again(folder: Path, jobs: list[Job], until: float) -> None:
@@ -274,10 +261,10 @@ def prepared(folder: Path, say: Callable[[str], None]) -> Iterator[None]:
         if begun:
             was, here = meta.get("commit"), source()
             if was and was != here["commit"]:
+                differ = f"begun at commit {was[:12]}, and this is {here['commit'][:12]}"
                 raise store.ResultsError(
-                    f"{folder} was begun at commit {was[:12]}, and this is {here['commit'][:12]}: "
-                    "what they measure does not belong together; check that commit out, "
-                    "or begin a new run"
+                    f"{folder} was {differ}: what they measure does not belong together; "
+                    "check that commit out, or begin a new run"
                 )
             resumed = [*meta.get("resumed", []), {"at": now(), **here}]
             store.write_meta(folder, {**meta, "resumed": resumed})

@@ -82,10 +82,8 @@ def perform(folder: Path, jobs: Sequence[Job], action: str = MEASURE) -> Generat
     WorkerDiedError if it dies, CannotWriteError if there is no more room for results.
     """
     first, by_name = jobs[0], {f"{job.experiment} {job.structure}": job for job in jobs}
-    log = _log(folder, first, action)
-    command = [
-        str(EXPERIMENTS / f"{name}.py") for name in dict.fromkeys(it.experiment for it in jobs)
-    ]
+    log, files = _log(folder, first, action), dict.fromkeys(it.experiment for it in jobs)
+    command = [str(EXPERIMENTS / f"{name}.py") for name in files]
     command += [f"--structure={name}" for name in dict.fromkeys(it.structure for it in jobs)]
     command += ["--preset", first.preset, "--case-seed", str(first.seed), "--action", action]
     command += ["--run", str(folder.resolve())]
@@ -108,7 +106,11 @@ def perform(folder: Path, jobs: Sequence[Job], action: str = MEASURE) -> Generat
                 yield by_name[line.strip()]
             code = worker.wait()
         finally:
-            _end(worker)
+            worker.terminate()
+            try:
+                worker.wait(ENDING_SECONDS)
+            except subprocess.TimeoutExpired:
+                worker.kill()
     require_room(folder)
     if code not in (0, 1):  # pytest's: all passed, and some failed
         said = end_of_log(folder, first, action)
@@ -122,46 +124,36 @@ def _log(folder: Path, job: Job, action: str) -> Path:
 def end_of_log(folder: Path, job: Job, action: str = MEASURE) -> str:
     """The last lines of what workers printed whose first job it was."""
     log = _log(folder, job, action)
-    text = log.read_text(errors="replace") if log.exists() else ""
-    return "".join(text.splitlines(keepends=True)[-LINES_SHOWN:])
+    lines = log.read_text(errors="replace").splitlines(keepends=True) if log.exists() else []
+    return "".join(lines[-LINES_SHOWN:])
 
 
-def _end(worker: subprocess.Popen[str]) -> None:
-    if worker.poll() is None:
-        worker.terminate()
-        try:
-            worker.wait(ENDING_SECONDS)
-        except subprocess.TimeoutExpired:
-            worker.kill()
-            worker.wait()
-
-
+@dataclass
 class _Progress:
     """A plugin of pytest that says which experiment and structure a finished case belongs to."""
 
-    def __init__(self, study: TextIO) -> None:
-        self._study = study
+    study: TextIO
 
     def pytest_runtest_teardown(self, item: Any) -> None:
         case = item.callspec.params["case"]
         if isinstance(case, Case):  # and not what stands for none
-            print(item.path.stem, case.structure, file=self._study, flush=True)
+            print(item.path.stem, case.structure, file=self.study, flush=True)
 
 
 def main(command: list[str]) -> int:
     """Run pytest as a worker -> its exit code."""
     import pytest
 
-    Thread(target=_end_with_study, args=(os.dup(0),), daemon=True).start()
+    asked = os.dup(0)
+
+    def end_with_study() -> None:  # it has ended when its end of the pipe is closed
+        os.read(asked, 1)
+        os._exit(1)
+
+    Thread(target=end_with_study, daemon=True).start()
     study = os.fdopen(os.dup(1), "w")
     os.dup2(2, 1)  # what is printed goes to the log
     return int(pytest.main([*command, *PYTEST], plugins=[_Progress(study)]))
-
-
-def _end_with_study(study: int) -> None:
-    """End this process when the one that began it has ended, and its end of the pipe is closed."""
-    os.read(study, 1)
-    os._exit(1)
 
 
 if __name__ == "__main__":

@@ -7,7 +7,7 @@ import csv
 import json
 import re
 from collections import defaultdict
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -48,30 +48,22 @@ def read_curves(path: Path, parameter: str | None = None) -> list[Curve]:
     for row in rows:
         for name, value in row.parameters.items():
             values[name].add(value)
-    chosen = parameter or _varied({k: len(v) for k, v in values.items()}, path)
+    varied = [name for name, some in values.items() if len(some) > 1]
+    if not parameter and not varied:
+        raise ValueError(f"{path} has no costs at different sizes: nothing varies in it")
+    if not parameter and len(varied) > 1:
+        raise ValueError(f"{path} varies {', '.join(varied)}: say which one with --parameter")
+    chosen = parameter or varied[0]
     if chosen not in values:
         known = ", ".join(values) or "none"
         raise ValueError(f"{path} has no parameter {chosen!r}; there are: {known}")
-    return _curves([row for row in rows if chosen in row.parameters], chosen)
-
-
-def _varied(counts: dict[str, int], path: Path) -> str:
-    varied = [name for name, count in counts.items() if count > 1]
-    if len(varied) == 1:
-        return varied[0]
-    if not varied:
-        raise ValueError(f"{path} has no costs at different sizes: nothing varies in it")
-    raise ValueError(f"{path} varies {', '.join(varied)}: say which one with --parameter")
-
-
-def _curves(rows: Iterable[Row], parameter: str) -> list[Curve]:
-    found: dict[str, dict[float, list[float]]] = {}
+    found: dict[str, dict[float, list[float]]] = defaultdict(lambda: defaultdict(list))
     for row in rows:
-        fixed = (f"{k}={v:g}" for k, v in row.parameters.items() if k != parameter)
-        cells = found.setdefault(", ".join([row.name, *fixed]), {})
-        cells.setdefault(row.parameters[parameter], []).extend(row.samples)
+        if chosen in row.parameters:
+            fixed = (f"{k}={v:g}" for k, v in row.parameters.items() if k != chosen)
+            found[", ".join([row.name, *fixed])][row.parameters[chosen]] += row.samples
     return [
-        Curve(name, parameter, np.array(sorted(cells)), [np.array(cells[n]) for n in sorted(cells)])
+        Curve(name, chosen, np.array(sorted(cells)), [np.array(cells[n]) for n in sorted(cells)])
         for name, cells in found.items()
     ]
 
@@ -91,18 +83,17 @@ def _read_csv(text: str, path: Path) -> Iterator[Row]:
                 yield Row(name, {names[0]: size}, [cost])
 
 
-def _read_json(text: str, path: Path) -> Iterator[Row]:
+def _read_json(text: str, path: Path) -> list[Row]:
     try:
         content = json.loads(text)
         if "results" in content:
-            return iter([_hyperfine(it) for it in content["results"]])
+            return [_hyperfine(it) for it in content["results"]]
         if "machine_info" in content:
-            return iter([_pytest_benchmark(it) for it in content["benchmarks"]])
-        return iter(list(_google_benchmark(content["benchmarks"])))
+            return [_pytest_benchmark(it) for it in content["benchmarks"]]
+        return list(_google_benchmark(content["benchmarks"]))
     except (KeyError, TypeError, AttributeError, json.JSONDecodeError) as error:
-        raise ValueError(
-            f"{path} is no JSON of pytest-benchmark, Google Benchmark or hyperfine: {error!r}"
-        ) from error
+        known = "pytest-benchmark, Google Benchmark or hyperfine"
+        raise ValueError(f"{path} is no JSON of {known}: {error!r}") from error
 
 
 def _hyperfine(result: dict[str, Any]) -> Row:
@@ -129,22 +120,19 @@ def _google_benchmark(benchmarks: list[dict[str, Any]]) -> Iterator[Row]:
     for it in runs or [it for it in benchmarks if it.get("aggregate_name") == "median"]:
         name, *arguments = it.get("run_name", it["name"]).split("/")
         parameters = {}
-        for place, argument in enumerate(arguments):
+        for place, argument in enumerate(arguments, 1):
             key, _, value = argument.rpartition(":")
             number = _number(value)
             if number is None:
                 name += f"/{argument}"  # a template's, or a setting such as real_time
             elif key not in ("iterations", "repeats", "threads", "min_time"):
-                parameters[key or ("n" if len(arguments) == 1 else f"argument {place + 1}")] = (
-                    number
-                )
+                unnamed = "n" if len(arguments) == 1 else f"argument {place}"
+                parameters[key or unnamed] = number
         yield Row(name, parameters, [it["cpu_time"]])
 
 
 def _number(value: Any) -> float | None:
-    if isinstance(value, bool):
-        return None
     try:
-        return float(value)
+        return None if isinstance(value, bool) else float(value)
     except (TypeError, ValueError):
         return None

@@ -12,17 +12,11 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
+from hem.complexity import selection
 from hem.complexity.estimates import Costs, resample, slope, summarize
 from hem.complexity.models import NAMES, STEEP, predict
 from hem.complexity.notation import Order, canonical, parse
-from hem.complexity.selection import (
-    LATENCY_ERROR,
-    MOST_WOBBLE,
-    Comparison,
-    Memory,
-    account_for_memory,
-    compare_models,
-)
+from hem.complexity.selection import LATENCY_ERROR, MOST_WOBBLE, Comparison, compare_models
 
 Outcome = Literal["consistent", "violated", "undetermined"]
 Bound = Literal["tight", "upper"]
@@ -115,8 +109,11 @@ def judge(
     waits = latency if reference is None else np.ravel(reference)
     measured = _without_noisy_sizes(summarize(sizes, samples, waits))
     entire = reference is not None
-    costs, memory = account_for_memory(measured, exact, latency_error, unseen, entire)
-    models = _compare(costs, memory, claimed)
+    costs, memory = selection.account_for_memory(measured, exact, latency_error, unseen, entire)
+    names = tuple(sorted({*NAMES, claimed}, key=parse))
+    models, half = compare_models(costs, memory, names), len(costs.sizes) // 2
+    if slope(costs.sizes[half:], models.steady(costs.cost)[half:]) > STEEPER:
+        models = compare_models(costs, memory, sorted({*names, *STEEP}, key=parse))
     names, claim = models.names, models.names.index(claimed)
     outcome, reason = _decide(measured, models, claim, bound)
     if not exact and (size := _hinge(outcome, measured, models, claim, bound)):
@@ -126,38 +123,32 @@ def judge(
     replicates = resample(costs, fitted[models.best], resamples, seed)
     tails = [(1 - confidence) / 2, (1 + confidence) / 2]
     low, high = np.quantile(slope(costs.sizes, models.steady(replicates)), tails)
+    rise = models.design.slowdowns.scaling[models.fit.slowdown].max(axis=1)
+    terms = np.stack([models.fit.intercept, models.fit.factor, rise], axis=1).tolist()
+    coefficients = [dict(zip(("fixed", "factor", "rise"), row, strict=True)) for row in terms]
     return Verdict(
         outcome, claimed, bound, names[models.best], names[models.runner_up], models.margin,
         slope=float(slope(costs.sizes, models.steady(costs.cost))),
         slope_low=float(low), slope_high=float(high),
-        raw_slope=float(slope(costs.sizes, costs.cost)),
-        confidence=confidence, noise=costs.scatter, coefficients=_coefficients(models),
+        raw_slope=float(slope(costs.sizes, costs.cost)), confidence=confidence,
+        noise=costs.scatter, coefficients=dict(zip(names, coefficients, strict=True)),
         errors=dict(zip(names, errors.tolist(), strict=True)), reason=reason,
         answer=_answer(measured, models),
     )  # fmt: skip
 
 
-def _compare(costs: Costs, memory: Memory, claimed: str) -> Comparison:
-    """All classes held against one another; the steep ones where O(n²) is left behind."""
-    names = tuple(sorted({*NAMES, claimed}, key=parse))
-    models, half = compare_models(costs, memory, names), len(costs.sizes) // 2
-    steady = models.steady(costs.cost)
-    if slope(costs.sizes[half:], steady[half:]) <= STEEPER:
-        return models
-    return compare_models(costs, memory, sorted({*names, *STEEP}, key=parse))
-
-
 def _decide(costs: Costs, models: Comparison, claim: int, bound: Bound) -> tuple[Outcome, str]:
     names, best = models.names, models.best
-    doubt = _doubt(costs)
-    if doubt:
+    if doubt := _doubt(costs):
         return "undetermined", doubt
     if models.outgrows(claim):
         return "violated", f"The costs grow more than {names[claim]} does, however slow the memory."
     kept = _kept(claim, bound)
     below = bound == "upper" and best in kept  # then it matters little which class it is
     if not (models.fits if below else models.explained):
-        return "undetermined", _unexplained(models)
+        unknown = ", and caches that no latency tells of might have bent them"
+        hint = unknown if models.memory.unmeasured is not None else ""
+        return "undetermined", f"No class explains the costs: {names[best]} comes closest{hint}."
     if best in kept:
         rivals = [m for m in range(len(names)) if m not in kept and not models.confirms(best, m)]
         if not rivals:
@@ -233,16 +224,3 @@ def _doubt(costs: Costs) -> str:
     if costs.scatter > MAX_SCATTER or costs.error.max() > MAX_ERROR:
         return f"Too noisy: the samples of a size scatter by {costs.scatter:.0%}."
     return ""
-
-
-def _unexplained(models: Comparison) -> str:
-    unknown = ", and caches that no latency tells of might have bent them"
-    hint = unknown if models.memory.unmeasured is not None else ""
-    return f"No class explains the costs: {models.names[models.best]} comes closest{hint}."
-
-
-def _coefficients(models: Comparison) -> dict[str, dict[str, float]]:
-    rise = models.design.slowdowns.scaling[models.fit.slowdown].max(axis=1)
-    values = (it.tolist() for it in (models.fit.intercept, models.fit.factor, rise))
-    rows = zip(models.names, *values, strict=True)
-    return {name: {"fixed": c, "factor": a, "rise": r} for name, c, a, r in rows}

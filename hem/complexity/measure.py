@@ -65,15 +65,13 @@ def measure(
     turn = budget / (rounds + 1)
     chosen = given or _choose_sizes(f, make_input, turn, most, fresh, clock)
     working_sets = _working_sets(f, make_input, chosen, turn)
-    plans = [
-        _plan(f, partial(make_input, n), size, fresh, clock)
-        for n, size in zip(chosen, working_sets, strict=True)
-    ]
+    both = zip(chosen, working_sets, strict=True)
+    plans = [_plan(f, partial(make_input, n), size, fresh, clock) for n, size in both]
     memory = memory_times(working_sets)
     samples = _interleaved(f, plans, rounds, clock)
-    per = chosen if amortized else np.ones(len(chosen))
-    counted = [np.array(row) / k for row, k in zip(samples, per, strict=True)]
-    return Measured(np.array(chosen, float), counted, working_sets, memory)
+    ns = np.array(chosen, float)
+    counted = list(np.array(samples) / (ns[:, None] if amortized else 1))
+    return Measured(ns, counted, working_sets, memory)
 
 
 @dataclass(frozen=True)
@@ -159,14 +157,12 @@ def _choose_sizes(
 ) -> list[int]:
     """Sizes of equal ratio, up to where a turn of all of them takes as long as it may."""
     n, tried = FIRST, list[tuple[int, float]]()
-    while True:
+    while not tried or tried[-1][0] < most:
         taken = [_seconds_of_one(f, partial(make_input, n), clock) for _ in range(2)]
         made, call = np.min(taken, axis=0)  # of two, as one that was disturbed says little
         tried.append((n, float(call + made * (1 if fresh else 0.1))))
         if len(tried) > 1 and _seconds_of_turn(tried) > turn:
             tried.pop()
-            break
-        if n >= most:
             break
         n = min(max(n + 1, round(n * (STEP if n < FAR else WIDER))), most)
     low, high = _ends(tried)

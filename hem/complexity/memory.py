@@ -32,15 +32,11 @@ def memory_times(working_sets: ArrayLike) -> Array:
     """
     sets = np.clip(np.asarray(working_sets, float), SMALLEST, LARGEST).astype(int)
     distinct, place = np.unique(sets, return_inverse=True)
-    chased, read, written = (
-        _rising(np.array([take(size) for size in distinct])) for take in (_chase, _read, _write)
-    )
-    return np.array([chased - chased[0] + AT_BEST, read, written])[:, place]
-
-
-def _rising(times: Array) -> Array:
-    """What is left where each is no more than that of any larger set: disturbances only add."""
-    return np.minimum.accumulate(times[::-1])[::-1]
+    taken = np.array([[take(size) for size in distinct] for take in (_chase, _read, _write)])
+    # None is more than that of any larger set: disturbances only add.
+    rising = np.minimum.accumulate(taken[:, ::-1], axis=1)[:, ::-1]
+    rising[0] += AT_BEST - rising[0, 0]
+    return rising[:, place]
 
 
 def _chase(size: int) -> float:

@@ -110,10 +110,13 @@ class _Reader:
         self.token = next(self._tokens)
         return taken
 
+    def _took(self, expected: str) -> bool:
+        """Whether the next token is this one, and is taken."""
+        return self.token == expected and bool(self._take())
+
     def sum(self) -> Order:
         largest = self._product()
-        while self.token == "+":
-            self._take()
+        while self._took("+"):
             largest = max(largest, self._product())
         return largest
 
@@ -126,11 +129,9 @@ class _Reader:
     def _power(self) -> Order:
         number = self.token if self.token[:1].isdigit() else ""
         atom = self._atom()
-        if self.token != "^":
+        if not self._took("^"):
             return atom
-        self._take()
-        if number and self.token == self._variable:
-            self._take()
+        if number and self._took(self._variable):
             return Order(base=log(float(number)))
         return atom.to_the(self._number())
 
@@ -151,10 +152,7 @@ class _Reader:
         raise ValueError(token)
 
     def _log(self) -> Order:
-        exponent = 1.0
-        if self.token == "^":
-            self._take()
-            exponent = self._number()
+        exponent = self._number() if self._took("^") else 1.0
         inside = self._power()
         if inside.base:
             return Order(power=exponent)
@@ -163,9 +161,7 @@ class _Reader:
         return Order(logs=exponent) if inside.power else Order()
 
     def _number(self) -> float:
-        bracketed = self.token == "("
-        if bracketed:
-            self._take()
+        bracketed = self._took("(")
         over, _, under = self._take().partition("/")
         if bracketed:
             self._take(")")

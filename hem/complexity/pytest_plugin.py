@@ -78,8 +78,8 @@ class Complexity:
         options = dict(mark.kwargs) if mark else {}
         options |= {"expected": mark.args[0]} if mark and mark.args else {}
         options |= given
-        make = make_input or options.pop("make_input", None) or _size
-        options.pop("make_input", None)
+        marked = options.pop("make_input", None)
+        make: MakeInput = make_input or marked or int  # int: the size itself
         if not options.get("expected"):
             raise pytest.UsageError(f'{self._item.nodeid}: say what is claimed: expected="O(n)"')
         if hasattr(config, "workerinput"):
@@ -88,13 +88,15 @@ class Complexity:
         if budget := config.getoption("complexity_budget"):
             told["budget"] = budget
         self.verdict = verdict = measure(f, make, **told).judge(**options)
-        _keep(self._item, verdict)
-        _settle(config, f"{self._item.nodeid}: {verdict.outcome}: {_in_words(verdict)}", verdict)
+        found = f"it is {verdict.answer}, " if verdict.answer else ""
+        claimed = f"{verdict.expected} is claimed; {found}slope {verdict.slope:.2f}"
+        words = f"{self._item.nodeid}: {verdict.outcome}: {claimed}. {verdict.reason}"
+        config.stash[LINES].append(words)
+        if path := config.getoption("complexity_history"):
+            _keep(self._item, verdict, path)
+        if verdict.outcome != "consistent":
+            _settle(config, words, f"complexity_{verdict.outcome}")
         return verdict
-
-
-def _size(n: int) -> int:
-    return n
 
 
 @pytest.fixture
@@ -124,10 +126,7 @@ def pytest_pyfunc_call(pyfuncitem: pytest.Function) -> Iterator[None]:
     return (yield)
 
 
-def _settle(config: pytest.Config, words: str, verdict: Verdict) -> None:
-    if verdict.outcome == "consistent":
-        return
-    key = f"complexity_{verdict.outcome}"
+def _settle(config: pytest.Config, words: str, key: str) -> None:
     doing = config.getoption(key) or config.getini(key)
     if doing == "fail":
         pytest.fail(words, pytrace=False)
@@ -137,25 +136,15 @@ def _settle(config: pytest.Config, words: str, verdict: Verdict) -> None:
         raise pytest.UsageError(f"{key} is {', '.join(DOINGS)}, not {doing!r}")
 
 
-def _in_words(verdict: Verdict) -> str:
-    found = f"it is {verdict.answer}, " if verdict.answer else ""
-    return f"{verdict.expected} is claimed; {found}slope {verdict.slope:.2f}. {verdict.reason}"
-
-
-def _keep(item: pytest.Item, verdict: Verdict) -> None:
-    """Add a verdict to what is told at the end, and to the history."""
-    config = item.config
-    config.stash[LINES].append(f"{item.nodeid}: {verdict.outcome}: {_in_words(verdict)}")
-    path: Path | None = config.getoption("complexity_history")
-    if path is None:
-        return
-    now = {"test": item.nodeid, "commit": _commit(config.rootpath)}
+def _keep(item: pytest.Item, verdict: Verdict, path: Path) -> None:
+    """Add a verdict to the history, and what changed to what is told at the end."""
+    now = {"test": item.nodeid, "commit": _commit(item.config.rootpath)}
     now |= {"time": datetime.now(UTC).isoformat(timespec="seconds")}
     now |= {key: getattr(verdict, key) for key in TOLD}
     lines = path.read_text("utf-8").splitlines() if path.exists() else []
     earlier = [it for it in map(json.loads, lines) if it["test"] == item.nodeid]
     if earlier and (change := _change(earlier[-1], now)):
-        config.stash[CHANGES].append(f"{item.nodeid}: {change}")
+        item.config.stash[CHANGES].append(f"{item.nodeid}: {change}")
     path.parent.mkdir(parents=True, exist_ok=True)
     with path.open("a", encoding="utf-8") as file:
         file.write(json.dumps(now, ensure_ascii=False) + "\n")

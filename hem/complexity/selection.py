@@ -16,20 +16,9 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from hem.complexity import models as growth_models
 from hem.complexity.estimates import Costs, slope
-from hem.complexity.models import (
-    NAMES,
-    DesignMatrix,
-    Fit,
-    Slowdowns,
-    design,
-    entire_slowdown,
-    fit,
-    measured_slowdowns,
-    no_slowdown,
-    predict,
-    unknown_slowdowns,
-)
+from hem.complexity.models import NAMES, DesignMatrix, Fit, Slowdowns, design, fit, predict
 from hem.complexity.notation import Array
 
 LATENCY_ERROR = 0.03  # relative error of a measured latency, unless a caller knows better
@@ -73,18 +62,19 @@ def account_for_memory(
     where it is more than 1, and then nothing is confirmed in spite of it either. ``entire``: the
     latency is of a loop that waits as the costs do, so that they rise as much as it does.
     """
-    nothing = no_slowdown(len(costs.sizes))
+    nothing, growth = growth_models.no_slowdown(len(costs.sizes)), ACCUSING_GROWTH
     limited = allow_unmeasured > 1
-    unseen = unknown_slowdowns(costs.sizes, allow_unmeasured if limited else HIGHEST_SLOWDOWN)
+    highest = allow_unmeasured if limited else HIGHEST_SLOWDOWN
+    unseen = growth_models.unknown_slowdowns(costs.sizes, highest)
     if costs.latency is None:
         if exact:
             return costs, Memory(nothing, None, True, 1.0, MISFIT_EXPLAINED, True, 2)
-        return costs, Memory(nothing, unseen, False, ACCUSING_GROWTH, MISFIT, False, 2)
+        return costs, Memory(nothing, unseen, False, growth, MISFIT, False, 2)
     if exact:
         raise ValueError("exact counts wait for no memory: give either latency or exact")
-    slowdowns = (entire_slowdown if entire else measured_slowdowns)(costs.latency)
-    beside, free = unseen if allow_unmeasured else None, 2 if entire else 3
-    growth = ACCUSING_GROWTH
+    slow = growth_models.entire_slowdown if entire else growth_models.measured_slowdowns
+    slowdowns, beside = slow(costs.latency), unseen if allow_unmeasured else None
+    free = 2 if entire else 3
     memory = Memory(slowdowns, beside, not limited, growth, MISFIT_EXPLAINED, False, free)
     return replace(costs, error=np.sqrt(costs.error**2 + latency_error**2)), memory
 
@@ -228,11 +218,8 @@ class Comparison:
         beyond = np.tril(cost[:, None] / cost > ACCUSING_GROWTH * excused)
         pairs = np.argwhere(beyond)
         rising = np.all(cost[1:] > (1 - MOST_WOBBLE) * cost[:-1])  # noise alone is not
-        return (
-            bool(rising)
-            and not self.memory.exact
-            and all(np.any((pairs != size).all(axis=1)) for size in range(len(cost)))
-        )
+        without = (np.any((pairs != size).all(axis=1)) for size in range(len(cost)))
+        return bool(rising) and not self.memory.exact and all(without)
 
     def _near(self, model: int) -> bool:
         """Whether a model, as fitted, comes near its own slope at the largest sizes.
