@@ -54,19 +54,15 @@ def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
     """Time a fracture, or the search for faces, after its outcome was checked."""
     s = case.build()
     searches = s.searches or (s.rebuilds and case.subject == SHATTER)
-    scans = _neighbors_asked(case, s) if searches else 0
+    per_search = {"walk": np.sqrt(s.n_faces), "jump and walk": np.cbrt(s.n_faces), "scan": 0.0}
+    if case.subject == SHATTER:
+        scans = ASKED_PER_BREAK_POINT * sum(BREAKING[s.compiled].circles) * searches
+    else:
+        scans = IMPACTS * per_search[str(case.order).partition(",")[0]] * searches
     # With a round to check it, and one to warm up.
     if reason := preset.why_too_slow(scans, s.n_faces, preset.fewest_rounds + 2):
         return case.result(EXPERIMENT.kind_of(case), s, skipped=reason)
     return (_shatter if case.subject == SHATTER else _find)(case, s, preset, timer)
-
-
-def _neighbors_asked(case: Case, s: Structure) -> float:
-    """How often neighbors are asked for in a round, at the least."""
-    if case.subject == SHATTER:
-        return ASKED_PER_BREAK_POINT * sum(BREAKING[s.compiled].circles)
-    per_search = {"walk": np.sqrt(s.n_faces), "jump and walk": np.cbrt(s.n_faces), "scan": 0.0}
-    return float(IMPACTS * per_search[str(case.order).partition(",")[0]])
 
 
 def _shatter(case: Case, s: Structure, preset: Preset, timer: Timer) -> Measurement:

@@ -23,10 +23,7 @@ def cases(preset: Preset, structure: str) -> list[Case]:
 
 
 def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
-    """Weigh the structure; what the model counts must be just what the arrays hold.
-
-    Where there are none but objects, it is about what Python has handed out.
-    """
+    """Weigh the structure: the model counts just what arrays hold, and about what objects take."""
     mesh = case.mesh()
     structures.build(case.structure, mesh, case.reference_bytes)  # compiles, unweighed
     tracemalloc.start()

@@ -8,10 +8,7 @@ from hem.contract import QUERIES
 
 
 def cases(preset: Preset, structure: str) -> list[Case]:
-    """All cases of one structure; those on the same mesh follow each other.
-
-    Of families that are not the judged one, every second size.
-    """
+    """All cases of one structure, mesh by mesh; of families not judged every second size."""
     judged, *others = preset.families
     meshes = [(judged, preset.sizes), *((family, preset.sizes[::2]) for family in others)]
     return [

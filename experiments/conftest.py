@@ -104,10 +104,7 @@ def timer(benchmark: Any) -> Iterator[BenchmarkTimer]:
 
 @pytest.fixture
 def keep(request: pytest.FixtureRequest, case: Case, core: int | None) -> Keep:
-    """Keep a case's result in the run, and what it is about in pytest-benchmark's own JSON.
-
-    Skips the test, and keeps the reason, where there is not enough memory for the case.
-    """
+    """Keep a case's result in the run and for pytest-benchmark; too large a case is skipped."""
     config, experiment = request.config, request.module.EXPERIMENT
 
     def add(result: Measurement) -> None:

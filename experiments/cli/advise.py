@@ -59,8 +59,7 @@ def advise(
 
     edit = inf if worst_edit is None else worst_edit / 1e3
     limits = advice.Limits(inf if most_bytes is None else most_bytes, edit)
-    wanted, source = advice.find_workload(workload), _run(run)
-    of_mesh = hem.find_mesh(mesh, repair)
+    wanted, source, of_mesh = advice.find_workload(workload), _run(run), hem.find_mesh(mesh, repair)
     found = advice.advise(advice.Prices(source), wanted, of_mesh, limits, need or [])
     if as_json:
         options = [asdict(it) for it in found.options]

@@ -53,18 +53,8 @@ CASES = (
 )  # fmt: skip
 
 
-def main() -> None:
-    """Make all animations and the page."""
-    begun = perf_counter()
-    page = write(OUT).resolve().as_uri()
-    console.print(f"Done in {perf_counter() - begun:.0f} s. Open {page}", soft_wrap=True)
-
-
 def write(folder: Path, cases: tuple[DemoCase, ...] = CASES, size: tuple[int, int] = SIZE) -> Path:
-    """Run the commands, and write a page that shows what they made -> the page.
-
-    It needs no network.
-    """
+    """Run the commands, and write a page that shows what they made, without a network -> it."""
     from jinja2 import Environment
 
     shown = [(case, [_strike(case, it, size, folder) for it in case.forces]) for case in cases]
@@ -88,4 +78,6 @@ def _strike(case: DemoCase, force: float, size: tuple[int, int], folder: Path) -
 
 
 if __name__ == "__main__":
-    main()
+    begun = perf_counter()
+    page = write(OUT).resolve().as_uri()
+    console.print(f"Done in {perf_counter() - begun:.0f} s. Open {page}", soft_wrap=True)

@@ -80,10 +80,7 @@ def run_study(
 
 
 def _other_libraries(chosen: list[str] | None) -> list[str]:
-    """The experiments on other libraries; says which of these are missing.
-
-    Raises ValueError where all are, and for a name that none has.
-    """
+    """The experiments on libraries; tells those missing. ValueError for all, or for no name."""
     from experiments.peers import OURS, PEERS, installed, missing
     from experiments.runs import experiments
 

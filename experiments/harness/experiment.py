@@ -57,10 +57,7 @@ def measured_operations(preset: Preset) -> tuple[str, ...]:
 
 @dataclass(frozen=True)
 class Table:
-    """A table of the report: its name, its title, and a row per subject with the row's title.
-
-    ``chapter``: the notebook that is about it.
-    """
+    """A table of the report, a row per subject with its title; ``chapter``: its notebook."""
 
     name: str
     title: str

@@ -168,10 +168,7 @@ def _operated(name: str, case: Case, faces: Array) -> list[list[int]]:
 
 
 def time_operations(case: Case, preset: Preset, timer: Timer) -> dict[str, Any]:
-    """Time operations in compiled loops -> the fields of a measurement.
-
-    What they make is validated, and compared with the indexed mesh where that is quick.
-    """
+    """Time operations in compiled loops, and check what they make -> fields of a measurement."""
     s, faces = case.build(), operation_faces(case)
     each = s.n_faces * (SECONDS_PER_REBUILT_FACE if s.rebuilds else SECONDS_PER_SCANNED_FACE)
     if case.searches:
@@ -203,10 +200,7 @@ def time_operations(case: Case, preset: Preset, timer: Timer) -> dict[str, Any]:
 
 
 def constant_work(case: Case, preset: Preset, count: int) -> OperationBatch | None:
-    """As many operations whose work cannot grow, see ``reference.py``; after a copy, too.
-
-    None where sizes are not compared, and for what looks at the whole mesh.
-    """
+    """As many operations whose work cannot grow, see ``reference.py``; None if not compared."""
     if case.family not in (HUBS, preset.families[0]) or case.searches:
         return None
     small = small_case(case, preset)

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from hem.arrays import Array
 from hem.contract import Query, Structure
@@ -29,10 +30,8 @@ def check_query(s: Structure, mesh: TriangleMesh, query: Query, handles: Array) 
         found = named(s, answer) if query.target == "edge" else answer
         expected = neighbors(mesh.triangles, query, key)
         if sorted(found.tolist()) != expected.tolist():
-            raise CheckFailedError(
-                f"{s.name}.{query.name}({handle}) gives {sorted(found.tolist())}, "
-                f"the triangle list {expected.tolist()}"
-            )
+            told = f"{s.name}.{query.name}({handle}) gives {sorted(found.tolist())}"
+            raise CheckFailedError(f"{told}, the triangle list {expected.tolist()}")
 
 
 def named(s: Structure, edges: Array) -> Array:
@@ -47,10 +46,7 @@ def pack(pairs: Array) -> Array:
 
 
 def neighbors(triangles: Array, query: Query, key: int) -> Array:
-    """The sorted neighbors of one element, edges packed. Cost O(n_t).
-
-    ``key``: a vertex, a face, or an edge packed.
-    """
+    """The sorted neighbors of one vertex, face or packed edge; edges packed. Cost O(n_t)."""
     return np.unique(RULES[query.name](triangles, key))
 
 
@@ -65,11 +61,11 @@ def _spokes(triangles: Array, v: int) -> Array:
     return pack(np.stack([np.full_like(ring, v), ring], axis=1))
 
 
-def _ends(edge: int) -> tuple[int, int]:
-    return edge >> 32, edge & 0xFFFFFFFF
+def _ends(edge: int) -> list[int]:
+    return [edge >> 32, edge & 0xFFFFFFFF]
 
 
-def _shared(triangles: Array, corners: Array) -> Array:
+def _shared(triangles: Array, corners: ArrayLike) -> Array:
     """How many of the corners each face has."""
     return np.isin(triangles, corners).sum(axis=1)
 
@@ -80,7 +76,7 @@ RULES: dict[str, Callable[[Array, int], Any]] = {
     "vertex_faces": lambda t, v: np.flatnonzero((t == v).any(axis=1)),
     "edge_vertices": lambda t, e: _ends(e),
     "edge_edges": lambda t, e: np.setdiff1d(np.concatenate([_spokes(t, v) for v in _ends(e)]), [e]),
-    "edge_faces": lambda t, e: np.flatnonzero(_shared(t, np.array(_ends(e))) == 2),
+    "edge_faces": lambda t, e: np.flatnonzero(_shared(t, _ends(e)) == 2),
     "face_vertices": lambda t, f: t[f],
     "face_edges": lambda t, f: pack(np.stack([t[f], np.roll(t[f], -1)], axis=1)),
     "face_faces": lambda t, f: np.setdiff1d(np.flatnonzero(_shared(t, t[f]) >= 2), [f]),

@@ -87,10 +87,7 @@ def copies_of(chosen: Sequence[Array], small: Case, s: Structure) -> Array:
 
 @lru_cache(maxsize=1)
 def copies(small: Case, vertices: int) -> tuple[Structure, tuple[Array, ...]]:
-    """A structure on copies of a small mesh with about so many vertices in all, and its records.
-
-    The counts among the records are those of one copy.
-    """
+    """A structure on copies of a small mesh, about so many vertices; its counts are of one copy."""
     mesh = small.mesh()
     n_points, n_faces = len(mesh.points), len(mesh.triangles)
     count = max(1, round(vertices / n_points))

@@ -80,10 +80,7 @@ def allowed_cores() -> list[int]:
 
 
 def pin() -> int | None:
-    """Keep this process, and threads it starts later, on the calmest core -> which.
-
-    None where the system has no such call or refuses it; then the process moves about as before.
-    """
+    """Keep this process and its threads on the calmest core -> which; None where that cannot be."""
     with suppress(OSError):
         if cores := allowed_cores():
             os.sched_setaffinity(0, cores)

@@ -20,10 +20,7 @@ Setup = Callable[[], tuple[Any, ...]]
 
 @dataclass(frozen=True)
 class Timed:
-    """Rounds of a call: ``samples``, seconds per unit, and ``calibration``, seconds per step.
-
-    ``per``: how many units a round does.
-    """
+    """Rounds of ``per`` units: seconds per unit, and per step of the loop beside each."""
 
     samples: Array
     calibration: Array

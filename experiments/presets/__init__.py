@@ -94,10 +94,7 @@ class Preset:
         return replace(self, **smaller)
 
     def on(self, mesh: str, sizes: tuple[int, ...]) -> Self:
-        """The preset for one mesh at the sizes that there are of it.
-
-        What a valence costs is measured on the hubs, as always.
-        """
+        """The preset for one mesh at the sizes that there are of it; valences vary on the hubs."""
         few = tuple(it for it in sizes if it <= LARGEST_COUNTED)
         return replace(
             self, what=f"{self.what.partition(',')[0]}, on {mesh}", families=(mesh,), models=(),

@@ -54,10 +54,7 @@ class Measured:
 
 
 def reduce_run(run: Run) -> Measured:
-    """What of a run can be compared; judges it, which takes some seconds.
-
-    All that is counted, and the times that an experiment names for the baseline, to four digits.
-    """
+    """What of a run can be compared: counts, and named times to four digits. Judges it: seconds."""
     meta = {**run.meta, "run": run.folder.resolve().name, "too_busy": noise(run).too_busy}
     cases = run.cases[[_is_comparable(case) for case in run.cases.to_dict("records")]].copy()
     timed = cases["kind"] == "time"

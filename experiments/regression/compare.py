@@ -101,10 +101,7 @@ def describe_difference(before: Measured, after: Measured) -> list[str]:
 
 
 def _pair_cases(before: Run, after: Run) -> tuple[list[Pair], list[str]]:
-    """A pair for every case of either, or that the second run skipped; and notes.
-
-    Python's own objects take other bytes in another Python, so these are not compared then.
-    """
+    """A pair per case of either run; bytes of objects only from the same Python. And notes."""
     old, new, skipped = (
         {(row["experiment"], row["structure"], row["id"]): row for row in rows.to_dict("records")}
         for rows in (before.cases, after.cases, after.skipped)
@@ -140,10 +137,7 @@ def claim_of(case: CaseKey) -> str:
 def _finding(
     kind: Kind, case: CaseKey, old: Any, new: Any, part: str, why: str = "", **more: Any
 ) -> Finding:
-    """One thing compared exactly; what only one side has cannot be told.
-
-    ``part``: of the baseline. ``why``: why there is nothing new, if known.
-    """
+    """One thing compared exactly, of a ``part`` of the baseline; what one side lacks is open."""
     change, command = Change.UNDETERMINED, ""
     if new is None:
         why = why or "was not measured"

@@ -45,10 +45,7 @@ Task = tuple[str, str, Measurement, Callable[[], Iterable[Measurement]]]
 
 
 def measure_counters(chosen: Collection[str] = ()) -> Measured:
-    """Measure all counters, of these structures or of all: some ten seconds.
-
-    What raises is skipped with the reason: whoever compares must not pass it over.
-    """
+    """Measure all counters, some ten seconds; what raises is skipped with the reason, not lost."""
     rows = []
     for experiment, structure, failed, measure in _tasks(chosen):
         try:

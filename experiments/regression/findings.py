@@ -30,10 +30,7 @@ class Kind(StrEnum):
 
 
 class CaseKey(NamedTuple):
-    """A case; of a curve or a claim what its cases share, and nothing where they differ.
-
-    ``size``: faces. ``valence``: of the queried vertices, where the experiment varies it.
-    """
+    """A case, by its number of faces; of a curve or a claim what its cases share, else nothing."""
 
     experiment: str = ""
     structure: str = ""

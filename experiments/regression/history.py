@@ -48,10 +48,7 @@ def commit_date(commit: str) -> str | None:
 
 
 def read_history(path: Path) -> History:
-    """Read a history; without the file it is empty. Damaged lines are named and skipped.
-
-    Raises OSError if there is something that cannot be read.
-    """
+    """Read a history, if there is one; damaged lines are named and skipped. Raises OSError."""
     return _parse(path.read_bytes() if path.exists() else b"", path)
 
 

@@ -73,17 +73,15 @@ def compare_trees(
         why = f"{none}, so there is nothing to time interleaved"
         return [Finding(Change.UNDETERMINED, Kind.TIME, CaseKey("interleaved"), why=why)]
     timed: dict[Case, list[PairTimed]] = {case: [] for case in wanted}
+    still = set(wanted)
     for k in range(PAIRS + FURTHER):
-        still = [case for case in wanted if k < PAIRS or _is_in_doubt(timed[case])]
-        for case, pair in time_in_new_processes(before, after, still, factor):
+        asked = [case for case in wanted if case in still]
+        for case, pair in time_in_new_processes(before, after, asked, factor):
             timed[case].append(pair)
+            as_before = all(it.compared.change == Change.SAME for it in timed[case][:PAIRS])
+            if pair.error or (k + 1 >= PAIRS and as_before):  # further pairs could tell no more
+                still.discard(case)
     return [_judge(*case, timed[case]) for case in wanted]
-
-
-def _is_in_doubt(pairs: Sequence[PairTimed]) -> bool:
-    """Whether further pairs could tell more: not where one could not be timed."""
-    as_before = all(pair.compared.change == Change.SAME for pair in pairs[:PAIRS])
-    return not as_before and not any(pair.error for pair in pairs)
 
 
 def _judge(name: str, query: str, pairs: Sequence[PairTimed]) -> Finding:

@@ -5,18 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from experiments.claims import (
-    NO_CLAIM,
-    Claim,
-    Curves,
-    JudgedClaim,
-    Kind,
-    Outcome,
-    curves,
-    judge_cells,
-    judge_run,
-    load_claims,
-)
+from experiments import claims
+from experiments.claims import NO_CLAIM, Claim, Curves, JudgedClaim, Kind, Outcome, curves
 from experiments.harness import Axis
 from experiments.runs import Run, tables
 
@@ -25,10 +15,8 @@ LEAST_SLOPE = 0.01
 to the last digit."""
 
 LEAST_SIZES = 4  # sizes below which counts show no class
-
 DIGITS = 5
 NOTHING = 1e-12  # what rounding leaves of nothing
-
 Figures = dict[str, Any]  # what is kept of a claim, see `claim_figures`
 
 
@@ -42,15 +30,23 @@ def claim_figures(run: Run) -> dict[str, Figures]:
     the measurement; ``bytes`` per vertex.
     Judges the run, which takes some seconds.
     """
-    cells = [judged for judged in judge_run(run) if judged.claim.structure]
+    cells = [judged for judged in claims.judge_run(run) if judged.claim.structure]
     figures = {_name(judged.claim): _figures(run, judged) for judged in cells}
     return {name: kept for name, kept in figures.items() if kept}
 
 
 def class_figures(run: Run) -> dict[str, Figures]:
     """Of every claim the ``classes`` that its counts show, by axis, and what becomes of it."""
-    figures = {_name(it.claim): _classes(curves(run), it) for it in judge_cells(run)}
-    return {name: {"classes": classes} for name, classes in figures.items() if classes}
+    figures: dict[str, Figures] = {}
+    for judged in claims.judge_cells(run):
+        claim, classes = judged.claim, Figures()
+        for axis, verdict in judged.verdicts.items():
+            if len(curves(run).of(claim, axis)) >= LEAST_SIZES:
+                outcome = verdict.outcome if axis.variable in claim.classes else Outcome.NO_CLAIM
+                classes[axis.key] = [verdict.best, outcome]
+        if classes:
+            figures[_name(claim)] = {"classes": classes}
+    return figures
 
 
 def describe_claim(name: str) -> str:
@@ -71,21 +67,12 @@ def claimed_by(name: str) -> str:
 
 @cache
 def _claims() -> dict[str, Claim]:
-    return {_name(claim): claim for claim in load_claims()}
+    return {_name(claim): claim for claim in claims.load_claims()}
 
 
 def _name(claim: Claim) -> str:
     """The name of a claim in files: ``table/structure/subject``."""
     return f"{claim.table}/{claim.structure}/{claim.subject}"
-
-
-def _classes(of_run: Curves, judged: JudgedClaim) -> Figures:
-    claim, classes = judged.claim, Figures()
-    for axis, verdict in judged.verdicts.items():
-        if len(of_run.of(claim, axis)) >= LEAST_SIZES:
-            outcome = verdict.outcome if axis.variable in claim.classes else Outcome.NO_CLAIM
-            classes[axis.key] = [verdict.best, outcome]
-    return classes
 
 
 def _figures(run: Run, judged: JudgedClaim) -> Figures:

@@ -10,10 +10,7 @@ from experiments.harness import Experiment, Table
 
 @cache
 def experiments() -> dict[str, Experiment]:
-    """Every experiment by the name of its file, in the order of a study.
-
-    Raises ValueError naming the file that declares none, or one with another's cases.
-    """
+    """Every experiment by file, in a study's order. ValueError names a file without its own."""
     declared: dict[str, Experiment] = {}
     for name in (it.name for it in iter_modules(package.__path__) if it.name.startswith("bench_")):
         module = import_module(f"experiments.{name}")

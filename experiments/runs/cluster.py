@@ -49,10 +49,7 @@ def require(address: str) -> None:
 
 
 def run(folder: Path, address: str, observer: study.Observer | None = None) -> None:
-    """Measure what the folder lacks on the machines of a cluster, and mark the run finished.
-
-    As ``study.run``; raises ClusterError if the cluster is not there.
-    """
+    """Measure what the folder lacks on a cluster, as ``study.run``; ClusterError without one."""
     from distributed import wait
 
     observer = observer or study.Observer()
@@ -93,10 +90,7 @@ def measure_here(job: Job, commit: str) -> Returned:
 
 
 def measure_alone(job: Job, commit: str, wanted: Callable[[], bool]) -> Returned:
-    """Measure a job in a folder of its own, while nothing else of this machine is measured.
-
-    Raises ClusterError if other code runs here, or as soon as nobody wants the job any more.
-    """
+    """Measure a job alone on this machine. ClusterError for other code, or when nobody wants it."""
     host = os.environ.get(VARIABLE) or socket.gethostname()
     about = {**describe(job.preset), "host": host}
     if about["commit"] != commit:

@@ -41,10 +41,7 @@ class Run:
 
 
 def load(folder: Path | str) -> Run:
-    """Read a run. Raises ResultsError if there is none in ``folder``, or of another schema.
-
-    Of a damaged or missing file too: nothing is read as a run that is not all of what was measured.
-    """
+    """Read a run. ResultsError if there is none, of another schema, or less than was measured."""
     import pandas as pd
 
     folder = Path(folder)

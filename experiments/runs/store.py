@@ -55,10 +55,7 @@ class CannotWriteError(OSError):
 
 
 class CaseFile:
-    """The measurements of one experiment on one structure.
-
-    Raises DamagedError where the file is not what was written, ResultsError for another schema.
-    """
+    """Measurements of one experiment on one structure. DamagedError, or ResultsError."""
 
     def __init__(self, folder: Path, experiment: str, structure: str) -> None:
         self.path = folder / f"{experiment}.{structure}.jsonl"
@@ -146,10 +143,7 @@ def case_files(folder: Path) -> list[Path]:
 
 
 def set_aside_damaged(folder: Path) -> Iterator[Path]:
-    """Rename the damaged files of a run, so that their cases are measured again -> what they were.
-
-    Raises CannotWriteError.
-    """
+    """Rename the damaged files of a run, to be measured again -> which. Raises CannotWriteError."""
     for path in case_files(folder):
         try:
             CaseFile.at(path)

@@ -248,10 +248,7 @@ def _measure_again(folder: Path, jobs: list[Job], until: float) -> None:
 
 @contextmanager
 def prepared(folder: Path, say: Callable[[str], None]) -> Iterator[None]:
-    """Have a folder for oneself, with room in it and nothing damaged.
-
-    Raises ResultsError if a run would be resumed by other code than it was begun with.
-    """
+    """Have a folder for oneself, with room, nothing damaged. ResultsError for other code's."""
     with store.lock_run(folder):
         store.require_room(folder)
         begun = bool(store.case_files(folder))
@@ -272,10 +269,7 @@ def prepared(folder: Path, say: Callable[[str], None]) -> Iterator[None]:
 
 
 def finish(folder: Path, machine: dict[str, Any] | None = None) -> None:
-    """Mark a run as finished, with what it consists of and how steady the machine was.
-
-    ``machine``: what measured it, if it was not this one.
-    """
+    """Mark a run as finished: what it has, how steady the machine was, or another ``machine``."""
     paths = store.case_files(folder)
     files = {str(it.relative_to(folder)): len(store.CaseFile.at(it).measurements) for it in paths}
     more = {"finished": now(), "files": files, "noise": asdict(noise(load(folder)))}

@@ -34,10 +34,7 @@ PYTEST = (
 
 @dataclass(frozen=True)
 class Job:
-    """One experiment on one structure, in a preset's extent.
-
-    ``seed``: of the order of cases; ``pin``: to one core; ``mesh``: one's own, and its sizes.
-    """
+    """One experiment on one structure, its cases in a seeded order; ``mesh``: one's own."""
 
     experiment: str
     structure: str

@@ -69,10 +69,7 @@ def google_benchmark(
 
 
 def big_o(sizes: Array, samples: Sequence[Array], latency: Array | None = None) -> str | None:
-    """The package big-o (P. Berkes): least squares with an intercept, least residuals win.
-
-    It is given the least time of each size, as it measures. It has no O(√n).
-    """
+    """The package big-o (P. Berkes), least residuals of least times win; it has no O(√n)."""
     from big_o import complexities, infer_big_o_class
 
     theirs = "Constant", "Logarithmic", "Linear", "Linearithmic", "Quadratic"
@@ -83,10 +80,7 @@ def big_o(sizes: Array, samples: Sequence[Array], latency: Array | None = None) 
 
 
 def bigo(sizes: Array, samples: Sequence[Array], latency: Array | None = None) -> str | None:
-    """The package bigo (E. Berger, S. Freund): least squares with an intercept, Akaike's criterion.
-
-    It drops outliers by itself, and curves that it cannot fit.
-    """
+    """The package bigo (E. Berger, S. Freund), Akaike's criterion; it drops outliers by itself."""
     from bigO import bigO, models
 
     atexit.unregister(bigO.save_performance_data)  # or it leaves a file where one happens to be

@@ -220,10 +220,7 @@ def in_words(kept: dict[str, Any]) -> str:
 
 
 def main(output: Path = RESULT, run: Path | None = None, program: list[str] | None = None) -> None:
-    """Measure, predict, compare, keep. ``run``: prices that this machine measured before.
-
-    ``program``: just these.
-    """
+    """Measure, predict, compare, keep: ``program`` alone, by the prices of ``run`` where given."""
     os.sched_setaffinity(0, {max(os.sched_getaffinity(0))})  # prices are those of one core
     with tempfile.TemporaryDirectory(prefix="hem-advice-") as root:
         folder = run or study.begin(PRESET, Path(root), list(COMPILED), NEEDED)

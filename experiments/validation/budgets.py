@@ -20,7 +20,6 @@ from rich.table import Table
 import hem
 import structures
 from experiments.bench_fracture import BREAKING
-from experiments.harness import time_rounds
 from hem.fracture import MATERIALS, Material, require_body, shatter, voronoi
 
 ROUNDS = 5
@@ -49,32 +48,20 @@ def print_budgets(title: str, budgets: Iterable[Budget]) -> None:
 
 
 def time_interleaved(tasks: Sequence[Task], rounds: int = ROUNDS) -> list[float]:
-    """Median seconds of each task, a round of each after the other, after one that warms up.
-
-    A machine that slows down slows all of them.
-    """
+    """Median seconds of each task; in turn, as a machine that slows down slows all of them."""
     samples: list[list[float]] = [[] for _ in tasks]
-    begin = perf_counter()
+    started = perf_counter()
     for turn in range(rounds + 1):
-        if turn > 1 and perf_counter() - begin > SECONDS:
+        if turn > 1 and perf_counter() - started > SECONDS:
             break
         for task, kept in zip(tasks, samples, strict=True):
-            kept.append(_time_once(task))
+            given = task.setup()
+            gc.collect()
+            begin = perf_counter()
+            result = task.call(*given)  # held, so that freeing it is not timed
+            kept.append(perf_counter() - begin)
+            del given, result
     return [float(np.median(kept[1:])) for kept in samples]
-
-
-def _time_once(task: Task) -> float:
-    results: list[Any] = []  # kept, so that freeing them is not timed
-
-    def setup() -> tuple[Any, ...]:
-        given = task.setup()
-        gc.collect()
-        return given
-
-    def call(*given: Any) -> None:
-        results.append(task.call(*given))
-
-    return float(time_rounds(call, setup=setup, rounds=1, warmup=0).samples[0])
 
 
 def measure_surface() -> list[Budget]:

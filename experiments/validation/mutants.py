@@ -31,10 +31,7 @@ class MutantError(ValueError):
 
 @dataclass(frozen=True)
 class Mutant:
-    """A fault: texts in one file and what they become, and the gate that must catch it.
-
-    ``changes``: pairs of old and new texts, where it is more than one.
-    """
+    """A fault: a text or pairs of them (``changes``) in one file; a gate must catch it."""
 
     name: str
     structure: str

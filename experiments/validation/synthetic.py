@@ -73,7 +73,10 @@ def make_curve(
     latency = machine_latency(sizes * size_bytes)
     growing = GROWTH[growth](sizes)
     fixed = intercept * growing[0]
-    slow = _slowdown(latency, rng) if condition in SLOWED else np.ones_like(sizes)
+    slow = np.ones_like(sizes)
+    if condition in SLOWED:  # about tenfold, or less where the latency grows less
+        own = latency / latency[0]
+        slow += min(rng.uniform(8, 12) - 1, own.max() - 1) / (own.max() - 1) * (own - 1)
     cost = (fixed + growing) * slow if rng.random() < 0.5 else fixed + growing * slow
     count = rng.integers(5, 31)
     samples = [3e-9 * c * np.exp(rng.normal(0, noise, count)) for c in cost]
@@ -97,10 +100,3 @@ def _sizes(rng: np.random.Generator) -> tuple[Array, float]:
     low, high = (30, 400) if faces else (3e3, 4e4)
     sizes = np.geomspace(first, float(last), int(rng.integers(5, 10))).round()
     return sizes, float(np.exp(rng.uniform(np.log(low), np.log(high))))
-
-
-def _slowdown(latency: Array, rng: np.random.Generator) -> Array:
-    """How a latency slows a query down: about tenfold, or less where the latency grows less."""
-    own = latency / latency[0]
-    share = min(rng.uniform(8, 12) - 1, own.max() - 1) / (own.max() - 1)
-    return np.asarray(1 + share * (own - 1))

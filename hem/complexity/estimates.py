@@ -37,17 +37,7 @@ def summarize(
     """
     n = np.asarray(sizes, dtype=np.float64)
     cells = [np.asarray(cell, dtype=np.float64).ravel() for cell in samples]
-    waits = None if latency is None else np.atleast_2d(np.asarray(latency, dtype=np.float64))
-    _check(n, cells, waits)
-    order = np.argsort(n, kind="stable")
-    cells = [cells[i] for i in order]
-    error, scatter = _errors(cells)
-    cost = np.array([midmean(cell) for cell in cells])
-    waits = None if waits is None else waits[:, order]
-    return Costs(n[order], cells, waits, cost, error, scatter)
-
-
-def _check(n: Array, cells: list[Array], waits: Array | None) -> None:
+    waits = np.atleast_2d(np.ones(n.shape) if latency is None else np.asarray(latency, np.float64))
     if n.ndim != 1 or not n.size or not np.all(np.isfinite(n) & (n >= 1)):
         raise ValueError("sizes must be one row of numbers, each at least 1")
     if len(cells) != len(n):
@@ -55,10 +45,14 @@ def _check(n: Array, cells: list[Array], waits: Array | None) -> None:
     for size, cell in zip(n, cells, strict=True):
         if not cell.size or not np.all(np.isfinite(cell) & (cell > 0)):
             raise ValueError(f"samples at size {size:g} must be there, finite and positive")
-    if waits is not None and (
-        waits.shape[1:] != n.shape or not np.all(np.isfinite(waits) & (waits > 0))
-    ):
+    if waits.shape[1:] != n.shape or not np.all(np.isfinite(waits) & (waits > 0)):
         raise ValueError("latency must be one positive number per size")
+    order = np.argsort(n, kind="stable")
+    cells = [cells[i] for i in order]
+    error, scatter = _errors(cells)
+    cost = np.array([midmean(cell) for cell in cells])
+    told = None if latency is None else waits[:, order]
+    return Costs(n[order], cells, told, cost, error, scatter)
 
 
 def midmean(samples: Array) -> Array:

@@ -107,8 +107,10 @@ def judge(
     if reference is not None and latency is not None:
         raise ValueError("give either latency or reference")
     waits = latency if reference is None else np.ravel(reference)
-    measured = _without_noisy_sizes(summarize(sizes, samples, waits))
-    entire = reference is not None
+    measured, entire = summarize(sizes, samples, waits), reference is not None
+    noisy = measured.error > MAX_ERROR
+    if 0 < noisy.mean() <= MOST_LEFT_OUT:
+        measured = measured.only(np.flatnonzero(~noisy))
     costs, memory = selection.account_for_memory(measured, exact, latency_error, unseen, entire)
     names = tuple(sorted({*NAMES, claimed}, key=parse))
     models, half = compare_models(costs, memory, names), len(costs.sizes) // 2
@@ -172,11 +174,7 @@ def _kept(claim: int, bound: Bound) -> range:
 def _hinge(
     outcome: Outcome, costs: Costs, models: Comparison, claim: int, bound: Bound
 ) -> float | None:
-    """The size that decides alone, if there is one.
-
-    Without it what is consistent would be violated, or a claim that is violated explains the rest
-    best.
-    """
+    """The size that decides alone: without it the outcome is another, or the claim fits best."""
     if outcome == "undetermined" or models.outgrows(claim):
         return None
     for place, size in enumerate(costs.sizes):
@@ -205,13 +203,6 @@ def _answer(costs: Costs, models: Comparison) -> str:
     close = np.sqrt(np.mean((predict(law.design, law.fit)[0][-1] / cost.cost - 1) ** 2))
     told = law.explained and law.names[law.best] == power and close <= MOST_WOBBLE
     return power if told else ""
-
-
-def _without_noisy_sizes(costs: Costs) -> Costs:
-    """The costs of the sizes that are not drowned in noise, or of all if too many are."""
-    clear = np.flatnonzero(costs.error <= MAX_ERROR)
-    few_left_out = len(costs.sizes) - len(clear) <= MOST_LEFT_OUT * len(costs.sizes)
-    return costs.only(clear) if few_left_out and len(clear) < len(costs.sizes) else costs
 
 
 def _doubt(costs: Costs) -> str:

@@ -59,11 +59,14 @@ def measure(
 
     Raises ValueError for sizes that are not whole numbers from 1 on; what f raises goes through.
     """
-    given = None if sizes is None else _checked(sizes)
-    changed = _changes(f, make_input(given[0] if given else TRIED))  # warms up, too
+    given = np.unique([] if sizes is None else np.asarray(sizes))
+    if sizes is not None and (not given.size or np.any(given < 1) or np.any(given % 1)):
+        raise ValueError("sizes must be whole numbers, each at least 1")
+    changed = _changes(f, make_input(int(given[0]) if given.size else TRIED))  # warms up, too
     fresh = changed if fresh is None else fresh
     turn = budget / (rounds + 1)
-    chosen = given or _choose_sizes(f, make_input, turn, most, fresh, clock)
+    own = [int(n) for n in given]
+    chosen = own or _choose_sizes(f, make_input, turn, most, fresh, clock)
     working_sets = _working_sets(f, make_input, chosen, turn)
     both = zip(chosen, working_sets, strict=True)
     plans = [_plan(f, partial(make_input, n), size, fresh, clock) for n, size in both]
@@ -97,10 +100,7 @@ class _Plan:
 def _interleaved(
     f: Function, plans: Sequence[_Plan], rounds: int, clock: Clock
 ) -> list[list[float]]:
-    """Samples of each size, a round of all sizes after the other, up and down in turn.
-
-    After one that does not count.
-    """
+    """Samples of each size, rounds of all up and down in turn, after one that does not count."""
     samples: list[list[float]] = [[] for _ in plans]
     collecting = gc.isenabled()
     gc.disable()
@@ -193,13 +193,6 @@ def _changes(f: Function, it: Any) -> bool:
         return True
     f(it)
     return pickle.dumps(it) != before
-
-
-def _checked(sizes: ArrayLike) -> list[int]:
-    chosen = np.unique(np.asarray(sizes))
-    if chosen.ndim != 1 or not chosen.size or np.any(chosen < 1) or np.any(chosen % 1):
-        raise ValueError("sizes must be whole numbers, each at least 1")
-    return [int(n) for n in chosen]
 
 
 def _working_sets(

@@ -104,10 +104,7 @@ class DesignMatrix:
 def design(
     sizes: Array, slowdowns: Slowdowns, growth: float, names: Sequence[str] = NAMES
 ) -> DesignMatrix:
-    """Columns of models, each of which gains at least `growth` over the sizes, if it can.
-
-    names: of the models, O(1) first.
-    """
+    """Columns of models, O(1) first; each gains at least `growth` over the sizes, if it can."""
     f = np.array([parse(name)(sizes) for name in names])
     scale = np.maximum(f.max(1), 1e-9)
     f /= scale[:, None]

@@ -193,7 +193,7 @@ class Comparison:
             return ruled_out and (known or self.chi2_if_slowed[rival] >= own)
         ruled_out = self.evidence(own, self.chi2_at_clear_growth[rival]) >= AGAINST_COMPLEX
         unbent = known or self.chi2_at_clear_growth_if_slowed[rival] >= own
-        return ruled_out and unbent and self._no_better(rival, claimed)
+        return ruled_out and unbent and self.evidence(self.chi2[rival], own) < NO_BETTER
 
     def refutes(self, favored: int, claimed: int) -> bool:
         """Whether a model rules out a claim, even one that unmeasured caches may have bent."""
@@ -203,7 +203,7 @@ class Comparison:
             return ruled_out and bool(self.grows_enough_to_reject[favored])
         clear = self.chi2_at_clear_growth_if_slowed[claimed]
         ruled_out = self.evidence(own, clear) >= AGAINST_COMPLEX_CLAIM
-        return ruled_out and self._no_better(claimed, favored)
+        return ruled_out and self.evidence(self.chi2[claimed], own) < NO_BETTER
 
     def outgrows(self, claimed: int) -> bool:
         """Whether times grow more than a claim could by any slowdown, whichever size is left out.
@@ -230,9 +230,6 @@ class Comparison:
         sizes, steady = self.costs.sizes[last], predict(self.design, self.fit)[1][model, last]
         own = slope(sizes, np.maximum(self.design.growth[model, last], 1e-300))
         return bool(slope(sizes, steady) >= NEAR * own - 1e-9)
-
-    def _no_better(self, complex_: int, simpler: int) -> bool:
-        return self.evidence(self.chi2[complex_], self.chi2[simpler]) < NO_BETTER
 
 
 def compare_models(costs: Costs, memory: Memory, names: Sequence[str] = NAMES) -> Comparison:
