@@ -56,10 +56,19 @@ def advise(
     Exit code 0; 1: a mistake in what was asked; 2: no structure suits.
     """
     from experiments import advice
+    from experiments.regression import RUN
+    from experiments.runs import load
 
     edit = inf if worst_edit is None else worst_edit / 1e3
     limits = advice.Limits(inf if most_bytes is None else most_bytes, edit)
-    wanted, source, of_mesh = advice.find_workload(workload), _run(run), hem.find_mesh(mesh, repair)
+    wanted = advice.find_workload(workload)
+    if run is not None and not run.is_dir():
+        none = "there is no such folder; make one with: hem study"
+        raise ValueError(f"{run} holds no run: {none}")
+    source = load(run or BASELINE / RUN)
+    if source.machines:
+        raise ValueError(f"{source.folder} was measured by several machines: give one's folder")
+    of_mesh = hem.find_mesh(mesh, repair)
     found = advice.advise(advice.Prices(source), wanted, of_mesh, limits, need or [])
     if as_json:
         options = [asdict(it) for it in found.options]
@@ -74,19 +83,6 @@ def advise(
     if not found.options:
         errors.print("hem: no structure suits; ask for less, or allow more")
         raise typer.Exit(NOTHING)
-
-
-def _run(folder: Path | None) -> Run:
-    from experiments.regression import RUN
-    from experiments.runs import load
-
-    if folder is not None and not folder.is_dir():
-        none = "there is no such folder; make one with: hem study"
-        raise ValueError(f"{folder} holds no run: {none}")
-    found = load(folder or BASELINE / RUN)
-    if found.machines:
-        raise ValueError(f"{found.folder} was measured by several machines: give one's folder")
-    return found
 
 
 def _show(found: Advice, run: Run, mesh: str) -> None:

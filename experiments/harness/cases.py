@@ -115,9 +115,8 @@ class Case:
 
     def build(self) -> Structure:
         """The structure on the mesh; the last one built is kept."""
-        return _structure(
-            self.structure, self.family, self.size, self.valence, self.reference_bytes
-        )
+        mesh = self.family, self.size, self.valence
+        return _structure(self.structure, *mesh, self.reference_bytes)
 
     def result(
         self, kind: str, s: Structure | None, samples: ArrayLike = (), **more: Any

@@ -40,10 +40,8 @@ def why_too_large(case: Case, copies: int) -> str:
     needed, there = estimate(case, copies), available()
     if needed <= SHARE * there:
         return ""
-    return (
-        f"would take some {needed / UNITS['M']:,.0f} MiB of memory; "
-        f"{there / UNITS['M']:,.0f} MiB are available, of which a case may take {SHARE:.0%}"
-    )
+    left = f"{there / UNITS['M']:,.0f} MiB are available, of which a case may take {SHARE:.0%}"
+    return f"would take some {needed / UNITS['M']:,.0f} MiB of memory; {left}"
 
 
 def estimate(case: Case, copies: int) -> int:
@@ -93,8 +91,7 @@ def _left_in_cgroups() -> list[int]:
         except OSError:
             continue
         stat = Path(used).with_name("memory.stat")
-        lines = stat.read_text().splitlines() if stat.exists() else []
-        counts = dict(line.split() for line in lines)
+        counts = dict(map(str.split, stat.read_text().splitlines() if stat.exists() else []))
         files = int(counts.get("total_inactive_file") or counts.get("inactive_file") or 0)
         if most != "max":
             left.append(max(0, int(most) - taken + files))

@@ -110,11 +110,8 @@ class Preset:
     def why_too_slow(self, scans: float, faces: int, rounds: int) -> str:
         """Why a case that scans the mesh so often a round is skipped; empty if there is time."""
         seconds, allowed = scans * faces * SECONDS_PER_FACE, LONGEST * self.case_seconds
-        if rounds * seconds <= allowed:
-            return ""
-        return (
-            f"would take {seconds:.0f} s a round or more; all rounds together get {allowed:.0f} s"
-        )
+        why = f"would take {seconds:.0f} s a round or more; all rounds together get {allowed:.0f} s"
+        return why if rounds * seconds > allowed else ""
 
     def work_points(self) -> list[tuple[str, int, int | None]]:
         """Where work is counted: family, size, valence; one family by size, the hubs by valence."""

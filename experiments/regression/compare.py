@@ -13,6 +13,7 @@ from itertools import groupby
 from typing import Any, NamedTuple
 
 import numpy as np
+import pandas as pd
 
 from experiments.claims import Outcome
 from experiments.harness import Axis
@@ -109,21 +110,18 @@ def _pair_cases(before: Run, after: Run) -> tuple[list[Pair], list[str]]:
     was, now = (str((it.meta.get("versions") or {}).get("python", "")) for it in (before, after))
     other = was.rpartition(".")[0] != now.rpartition(".")[0]
     objects = {name for name, it in REGISTRY.items() if other and not it.compiled}
-    pairs = []
+    pairs, named = [], ("experiment", "structure", "subject", "family", "order")
     for key in sorted({*old, *new, *skipped}):
         row = new.get(key) or old.get(key) or skipped[key]
         why = str(skipped[key]["skipped"]) if key in skipped else ""
         if not (row["kind"] == Kind.BYTES and row["structure"] in objects):
-            pairs.append(Pair(_key_of(row), Kind(row["kind"]), old.get(key), new.get(key), why))
+            of_case = {name: row[name] for name in named if not pd.isna(row[name])}
+            valence = 0 if pd.isna(row["valence"]) else int(row["valence"])
+            case = CaseKey(**of_case, size=int(row["faces"]), valence=valence)
+            case = case._replace(reference_bytes=int(row["reference_bytes"]))
+            pairs.append(Pair(case, Kind(row["kind"]), old.get(key), new.get(key), why))
     note = f"Python {now}, the baseline has {was}: the bytes of its objects are not compared"
     return pairs, [note] if other else []
-
-
-def _key_of(row: Row) -> CaseKey:
-    columns = ("experiment", "structure", "subject", "family", "faces", "valence", "order")
-    known = {name: row[name] for name in columns if row[name] and row[name] == row[name]}  # no NaN
-    size, valence = (int(known.pop(name, 0)) for name in ("faces", "valence"))
-    return CaseKey(**known, size=size, valence=valence, reference_bytes=int(row["reference_bytes"]))
 
 
 def claim_of(case: CaseKey) -> str:

@@ -55,13 +55,11 @@ def now() -> str:
 def machine() -> dict[str, Any]:
     """The processor, its caches and the memory."""
     return {
-        "cpu": _cpu(),
-        "cores": os.cpu_count(),
-        "memory_bytes": psutil.virtual_memory().total,
+        "cpu": _cpu(), "cores": os.cpu_count(), "memory_bytes": psutil.virtual_memory().total,
         "caches": _caches(),
         "platform": f"{platform.system()} {platform.release()} {platform.machine()}",
         "python": sys.implementation.name,
-    }
+    }  # fmt: skip
 
 
 def machine_id(machine: dict[str, Any]) -> str:

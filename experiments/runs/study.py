@@ -74,8 +74,8 @@ def begin(
     require_known("structure", structures, list(dict.fromkeys([*NAMED, *others])))
     require_known("preset", [preset], PRESETS)
     chosen = {"structures": list(structures), "experiments": [f"bench_{name}" for name in short]}
-    title = "-".join([preset, *([own_mesh.called(mesh)] if mesh else [])])
-    folder = _new_folder(root, f"{datetime.now(UTC).strftime('%Y%m%d-%H%M%S')}-{title}")
+    name = f"{datetime.now(UTC).strftime('%Y%m%d-%H%M%S')}-{preset}"
+    folder = _new_folder(root, f"{name}-{own_mesh.called(mesh)}" if mesh else name)
     try:
         known = {**describe(preset), **chosen, "seed": seed, "pin": pin}
         if mesh:

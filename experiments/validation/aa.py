@@ -50,12 +50,10 @@ def count_findings(findings: Sequence[Finding]) -> dict[str, Any]:
     outcomes = Counter(finding.change for finding in findings)
     alarms = (it for it in findings if it.change in (Change.WORSE, Change.BETTER))
     return {
-        "comparisons": len(findings),
-        "same": outcomes[Change.SAME],
-        "undetermined": outcomes[Change.UNDETERMINED],
-        "exit_code": regression.exit_code(findings),
+        "comparisons": len(findings), "same": outcomes[Change.SAME],
+        "undetermined": outcomes[Change.UNDETERMINED], "exit_code": regression.exit_code(findings),
         "alarms": [f"{it.change}: {it.kind} {it.where} {it.difference}" for it in alarms],
-    }
+    }  # fmt: skip
 
 
 def sum_counts(rows: Sequence[dict[str, Any]]) -> dict[str, int]:

@@ -171,16 +171,15 @@ def figures(rows: list[dict[str, Any]]) -> dict[str, Any]:
     ]
     errors = [abs(it["predicted"] / it["taken"] - 1) for it in told]
     ran = [[it for it in row["structures"] if it["taken"]] for row in rows]
+    ran = [it for it in ran if it]
     return {
         "workloads": len(rows),
         "predictions": len(told),
         "median_error": float(np.median(errors)),
         "within_30_percent": float(np.mean(np.array(errors) <= 0.3)),
         "within_interval": float(np.mean([it["low"] <= it["taken"] <= it["high"] for it in told])),
-        "winner_right": float(np.mean([_is_alike(it, "predicted", "taken") for it in ran if it])),
-        "best_among_alike": float(
-            np.mean([_is_alike(it, "taken", "predicted") for it in ran if it])
-        ),
+        "winner_right": float(np.mean([_is_alike(it, "predicted", "taken") for it in ran])),
+        "best_among_alike": float(np.mean([_is_alike(it, "taken", "predicted") for it in ran])),
     }
 
 
@@ -196,14 +195,10 @@ def table(kept: dict[str, Any]) -> pd.DataFrame:
     for name in dict.fromkeys(row["program"] for row in kept["rows"]):
         mine = [row for row in kept["rows"] if row["program"] == name]
         found = figures(mine)
-        cells = (
-            name[0].upper() + name[1:].replace("_", " "),
-            ", ".join(row["mesh"] for row in mine),
-            f"{found['median_error']:.0%}",
-            f"{found['within_interval']:.0%}",
-            f"{found['winner_right'] * len(mine):.0f} of {len(mine)}",
-        )
-        rows.append(cells)
+        title, on = name[0].upper() + name[1:].replace("_", " "), (row["mesh"] for row in mine)
+        shares = (f"{found[key]:.0%}" for key in ("median_error", "within_interval"))
+        told = f"{found['winner_right'] * len(mine):.0f} of {len(mine)}"
+        rows.append((title, ", ".join(on), *shares, told))
     heads = "Program", "on", "off by, median", "within the interval", "best structure told"
     return pd.DataFrame(rows, columns=heads)
 

@@ -138,8 +138,14 @@ def _settle(config: pytest.Config, words: str, key: str) -> None:
 
 def _keep(item: pytest.Item, verdict: Verdict, path: Path) -> None:
     """Add a verdict to the history, and what changed to what is told at the end."""
-    now = {"test": item.nodeid, "commit": _commit(item.config.rootpath)}
-    now |= {"time": datetime.now(UTC).isoformat(timespec="seconds")}
+    asked = ["git", "-C", str(item.config.rootpath), "describe"]
+    asked += ["--always", "--abbrev=40", "--dirty=*"]
+    try:
+        commit = subprocess.check_output(asked, stderr=subprocess.DEVNULL, text=True).strip()
+    except (OSError, subprocess.CalledProcessError):
+        commit = "no commit"
+    time = datetime.now(UTC).isoformat(timespec="seconds")
+    now = {"test": item.nodeid, "commit": commit, "time": time}
     now |= {key: getattr(verdict, key) for key in TOLD}
     lines = path.read_text("utf-8").splitlines() if path.exists() else []
     earlier = [it for it in map(json.loads, lines) if it["test"] == item.nodeid]
@@ -160,14 +166,6 @@ def _change(before: dict[str, Any], now: dict[str, Any]) -> str:
         for it in (before, now)
     )
     return f"{was} at {before['commit'][:10]}; {became} at {now['commit'][:10]}"
-
-
-def _commit(root: Path) -> str:
-    asked = ["git", "-C", str(root), "describe", "--always", "--abbrev=40", "--dirty=*"]
-    try:
-        return subprocess.run(asked, capture_output=True, text=True, check=True).stdout.strip()
-    except (OSError, subprocess.CalledProcessError):
-        return "no commit"
 
 
 def pytest_terminal_summary(terminalreporter: Any, config: pytest.Config) -> None:
