@@ -116,7 +116,13 @@ def _steps(case: Case, most: int) -> tuple[list[Step], Callable[[], int]]:
     first = min(WARM_UP, len(steps) - 1)
     for step in steps[:first]:
         step()
-    return steps[first:], partial(_count_faces, m)
+
+    def count_faces() -> int:
+        if case.structure == MENDED:
+            m.validate()
+        return m.n_faces if case.structure == MENDED else len(m.faces)
+
+    return steps[first:], count_faces
 
 
 def _published(m: AsPrinted, faces: Array) -> dict[str, Calls]:
@@ -169,13 +175,6 @@ def _work(step: Step) -> int:
     given = [CountingArray(it) if isinstance(it, np.ndarray) else it for it in step.args]
     fields = fields_accessed(partial(step.func, *given, **step.keywords))
     return fields + sum(it.accesses for it in given if isinstance(it, CountingArray))
-
-
-def _count_faces(m: Any) -> int:
-    if isinstance(m, HalfEdgeMesh):
-        m.validate()
-        return m.n_faces
-    return len(m.faces)
 
 
 def _build(structure: str, mesh: TriangleMesh) -> Any:

@@ -69,7 +69,10 @@ def make_curve(
 
     intercept: in units of the growing part at the smallest size. noise: relative, of a sample.
     """
-    sizes, size_bytes = _sizes(rng)
+    faces = bool(rng.random() < 0.5)  # of a mesh, or valences of a vertex; and the bytes of one
+    first, last = (100, rng.choice([1e5, 1e6])) if faces else (4, 4096)
+    sizes = np.geomspace(first, float(last), int(rng.integers(5, 10))).round()
+    size_bytes = np.exp(rng.uniform(*np.log((30, 400) if faces else (3e3, 4e4))))
     latency = machine_latency(sizes * size_bytes)
     growing = GROWTH[growth](sizes)
     fixed = intercept * growing[0]
@@ -91,12 +94,3 @@ def machine_latency(working_set: Array) -> Array:
     for at, factor in ((32e3, 4 / 1.2), (1e6, 15 / 4), (30e6, 100 / 15)):
         latency *= factor ** (1 / (1 + np.exp((np.log(at) - x) / 0.35)))
     return latency
-
-
-def _sizes(rng: np.random.Generator) -> tuple[Array, float]:
-    """Faces of a mesh or valences of a vertex, and the bytes that one of them takes."""
-    faces = bool(rng.random() < 0.5)
-    first, last = (100, rng.choice([1e5, 1e6])) if faces else (4, 4096)
-    low, high = (30, 400) if faces else (3e3, 4e4)
-    sizes = np.geomspace(first, float(last), int(rng.integers(5, 10))).round()
-    return sizes, float(np.exp(rng.uniform(np.log(low), np.log(high))))

@@ -15,13 +15,7 @@ import numpy as np
 
 from hem.complexity.notation import Array
 
-
-class Row(NamedTuple):
-    """What a file says of one function at one place."""
-
-    name: str
-    parameters: dict[str, float]
-    samples: list[float]
+Row = tuple[str, dict[str, float], list[float]]  # a function's name, its parameters, its samples
 
 
 class Curve(NamedTuple):
@@ -45,8 +39,8 @@ def read_curves(path: Path, parameter: str | None = None) -> list[Curve]:
     is_json = text.lstrip()[:1] in ("{", "[")
     rows = list(_read_json(text, path) if is_json else _read_csv(text, path))
     values: dict[str, set[float]] = defaultdict(set)
-    for row in rows:
-        for name, value in row.parameters.items():
+    for _, parameters, _ in rows:
+        for name, value in parameters.items():
             values[name].add(value)
     varied = [name for name, some in values.items() if len(some) > 1]
     if not parameter and not varied:
@@ -58,10 +52,10 @@ def read_curves(path: Path, parameter: str | None = None) -> list[Curve]:
         known = ", ".join(values) or "none"
         raise ValueError(f"{path} has no parameter {chosen!r}; there are: {known}")
     found: dict[str, dict[float, list[float]]] = defaultdict(lambda: defaultdict(list))
-    for row in rows:
-        if chosen in row.parameters:
-            fixed = (f"{k}={v:g}" for k, v in row.parameters.items() if k != chosen)
-            found[", ".join([row.name, *fixed])][row.parameters[chosen]] += row.samples
+    for name, parameters, samples in rows:
+        if chosen in parameters:
+            fixed = (f"{k}={v:g}" for k, v in parameters.items() if k != chosen)
+            found[", ".join([name, *fixed])][parameters[chosen]] += samples
     return [
         Curve(name, chosen, np.array(sorted(cells)), [np.array(cells[n]) for n in sorted(cells)])
         for name, cells in found.items()
@@ -80,7 +74,7 @@ def _read_csv(text: str, path: Path) -> Iterator[Row]:
             raise ValueError(f"{path}, row {number}: a size and a number per function are needed")
         for name, cost in zip(names[1:], costs, strict=False):
             if cost is not None:  # not every function was measured at every size
-                yield Row(name, {names[0]: size}, [cost])
+                yield name, {names[0]: size}, [cost]
 
 
 def _read_json(text: str, path: Path) -> list[Row]:
@@ -102,7 +96,7 @@ def _hyperfine(result: dict[str, Any]) -> Row:
         if (number := _number(value)) is not None:
             parameters[key] = number
             name = re.sub(rf"\b{re.escape(str(value))}\b", "{" + key + "}", name)
-    return Row(name, parameters, result.get("times") or [result["mean"]])
+    return name, parameters, result.get("times") or [result["mean"]]
 
 
 def _pytest_benchmark(benchmark: dict[str, Any]) -> Row:
@@ -112,7 +106,7 @@ def _pytest_benchmark(benchmark: dict[str, Any]) -> Row:
     named = [str(value) for key, value in given.items() if key not in parameters]
     name = ", ".join([benchmark["name"].partition("[")[0], *named])
     stats = benchmark["stats"]
-    return Row(name, parameters, stats.get("data") or [stats["median"]])
+    return name, parameters, stats.get("data") or [stats["median"]]
 
 
 def _google_benchmark(benchmarks: list[dict[str, Any]]) -> Iterator[Row]:
@@ -128,7 +122,7 @@ def _google_benchmark(benchmarks: list[dict[str, Any]]) -> Iterator[Row]:
             elif key not in ("iterations", "repeats", "threads", "min_time"):
                 unnamed = "n" if len(arguments) == 1 else f"argument {place}"
                 parameters[key or unnamed] = number
-        yield Row(name, parameters, [it["cpu_time"]])
+        yield name, parameters, [it["cpu_time"]]
 
 
 def _number(value: Any) -> float | None:

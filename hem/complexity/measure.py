@@ -89,12 +89,11 @@ class _Plan:
 
     def sample(self, f: Function, clock: Clock) -> float:
         """Seconds per call, of the quickest pass."""
-        pool = self.pool or [self.make() for _ in range(self.calls)]
-        return min(self._pass(f, pool * self.again, clock) for _ in range(self.passes))
-
-    def _pass(self, f: Function, inputs: list[Any], clock: Clock) -> float:
-        own = min(_seconds(None, inputs, clock) for _ in range(2))
-        return max(_seconds(f, inputs, clock) - own, 1e-9) / len(inputs)
+        passes, inputs = [], (self.pool or [self.make() for _ in range(self.calls)]) * self.again
+        for _ in range(self.passes):
+            own = min(_seconds(None, inputs, clock) for _ in range(2))
+            passes.append(max(_seconds(f, inputs, clock) - own, 1e-9))
+        return min(passes) / len(inputs)
 
 
 def _interleaved(
