@@ -37,10 +37,8 @@ VISITED = "faces looked at"
 IMPACTS = 64
 IMPACT_SEED = 31
 MARGIN = 1e-6  # nearer than this part of the mesh to where the scan ends is the same place
-REFERENCE = "half_edge"
-"""The structure whose shards the others must give, and on which looks at faces are counted."""
-ASKED_PER_BREAK_POINT = 30
-"""Neighbors are asked for at least so often; where that is a scan, it takes what follows."""
+REFERENCE = "half_edge"  # the others must give its shards; looks at faces are counted on it
+ASKED_PER_BREAK_POINT = 30  # how often neighbors are asked for at least, each a scan for some
 
 
 def cases(preset: Preset, structure: str) -> list[Case]:

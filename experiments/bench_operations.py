@@ -17,8 +17,7 @@ from experiments.harness.operations import operation_arguments, operation_faces,
 from experiments.presets import HUBS
 from hem.contract import Structure
 
-FEWEST_HUBS = 64
-"""In a mesh whose valence is varied; with fewer operations at a time they are not worth timing."""
+FEWEST_HUBS = 64  # in a mesh whose valence is varied; fewer are not worth timing
 SINGLE_FACES = 50
 SCANNED_FACES = 5  # how many are operated on one by one where each takes a scan of the mesh
 

@@ -49,8 +49,7 @@ MORE_FACES = {
     **{"create_mesh": 1, "find_edges": 0, "simulate_breaking": 0},
 }
 """How many faces more there are after each, inside a surface."""
-BROKEN_OUT = -4
-"""The same of the corrected breaking: the face that is struck, and half of each beside it."""
+BROKEN_OUT = -4  # the same of the corrected breaking: a face, and half of each beside it
 BREAKING = replace(MATERIALS["wood"], scale=1e-3)
 """Its few break points lie near the impact: as corrected they fall on the face that is struck. As
 published they keep the impact's height, so that most miss the mesh and are searched for in vain."""

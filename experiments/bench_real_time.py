@@ -16,8 +16,7 @@ from hem.contract import Structure
 
 EDITED = "split_edge", "split_face", "collapse_edge", "flip_edge"
 EDITS, COMPACT = "single_edits", "compact"
-RESERVED, GROWING = "reserved", "not reserved"
-"""Whether there was room for all edits beforehand, or the arrays grow when they must."""
+RESERVED, GROWING = "reserved", "not reserved"  # whether there was room for all edits before
 
 MOST_EDITS, MOST_SEARCHING = 1_000, 200
 COMPACTIONS = 5

@@ -96,9 +96,8 @@ def _load(folder: Path) -> Run:
     from experiments.runs import load
 
     if mesh := own_mesh.of_run(folder):
-        raise ValueError(
-            f"{folder} is on {mesh[0]}, and the baseline is not: there is no comparing"
-        )
+        why = "the baseline is not: there is no comparing"
+        raise ValueError(f"{folder} is on {mesh[0]}, and {why}")
     run = load(folder)
     if run.cases.empty:
         resuming = f"hem study --resume --run {folder}"
@@ -111,7 +110,6 @@ DOUBTS = {
     "too_busy": "the machine was too busy to judge the run by time",
 }
 """What speaks against a run as a baseline."""
-
 baseline_app = typer.Typer(no_args_is_help=True)
 
 

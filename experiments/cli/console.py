@@ -76,10 +76,7 @@ def run_folder(run: Path | None) -> Path:
 
 @contextmanager
 def user_errors(code: int = 1) -> Iterator[None]:
-    """Turn what a user can mend, a missing package too, into one line and an exit code.
-
-    Where that is not 1, whatever else goes wrong as well: 1 has a meaning of its own there.
-    """
+    """Turn what a user can mend into a line and an exit code; all errors, where it is not 1."""
     try:
         yield
     except BrokenPipeError:  # whoever read, `| head`, has what he wants; Click ends quietly

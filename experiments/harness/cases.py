@@ -20,11 +20,8 @@ from hem.meshes import MeshSummary, TriangleMesh
 
 BASE = "indexed"  # the structure that the others are compared with: what a renderer stores
 
-OF_MADE, OF_OWN = 3, 60
-"""How often accesses are counted where all vertices are alike, and in a mesh of one's own."""
-
-SHUFFLE_SEED = 20
-HANDLE_SEED = 21
+OF_MADE, OF_OWN = 3, 60  # how often accesses are counted in a family, and in a mesh of one's own
+SHUFFLE_SEED, HANDLE_SEED = 20, 21
 
 
 @dataclass
@@ -139,11 +136,7 @@ class Case:
 
 
 def in_random_order(cases: Sequence[Case], seed: int | str) -> list[Case]:
-    """The cases in an order that the seed determines: random meshes, on each its cases at random.
-
-    What is asked of one mesh stays together, since building it anew for each question would take
-    longer than the asking.
-    """
+    """Random meshes, on each its cases at random, by the seed; it takes long to build anew."""
     random = Random(seed)
 
     def mesh(case: Case) -> tuple[str, int, int]:
@@ -179,19 +172,14 @@ def in_order_of(case: Case, handles: Array) -> Array:
     return random.permutation(handles) if case.order == "random" else handles
 
 
-def shuffled(mesh: TriangleMesh) -> TriangleMesh:
-    """The same surface with its vertices and faces renumbered at random."""
-    rng = np.random.default_rng(SHUFFLE_SEED)
-    number = rng.permutation(len(mesh.points)).astype(np.int32)
-    points = np.empty_like(mesh.points)
-    points[number] = mesh.points
-    return TriangleMesh(points, rng.permutation(number[mesh.triangles]))
-
-
 @lru_cache(maxsize=2)
 def _mesh(family: str, size: int, valence: int | None, renumbered: bool) -> TriangleMesh:
     if renumbered:
-        return shuffled(_mesh(family, size, valence, False))
+        mesh, rng = _mesh(family, size, valence, False), np.random.default_rng(SHUFFLE_SEED)
+        number = rng.permutation(len(mesh.points)).astype(np.int32)
+        points = np.empty_like(mesh.points)
+        points[number] = mesh.points
+        return TriangleMesh(points, rng.permutation(number[mesh.triangles]))
     if family == HUBS:
         return hem.valence_mesh(int(valence or 0), size)
     if own_mesh.is_own(family):

@@ -14,14 +14,12 @@ from hem.contract import QUERIES
 from structures import NAMES
 
 Keep = Callable[[Measurement], None]  # what a measurement is handed to
-
 KINDS = ("time", "work", "bytes")
 ANYONE = "*"  # in an experiment's claims: every structure that is not named
 
 MEASURED = "split_edge", "split_face", "collapse_edge", "flip_edge", "add_face", "remove_face"
 OPERATIONS = {name: name.replace("_", " ").capitalize() for name in MEASURED}
 """The operations that are measured, and how a table calls them."""
-
 SYMBOLS = {"faces": "n_t", "valence": "n_ev"}
 LABELS = {"work": "memory accesses", "time": "time in order", "random": "time in random order"}
 

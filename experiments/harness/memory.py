@@ -17,14 +17,11 @@ from experiments.presets import HUBS
 from structures import REGISTRY
 
 SHARE = 0.7  # the part of the available memory that a case may take
-VARIABLE = "HEM_MEMORY"
-"""Environment variable that says how much memory there is, such as ``500M``, ``8G`` or bytes."""
+VARIABLE = "HEM_MEMORY"  # says how much memory there is: `500M`, `8G` or bytes
 SMALL = 400
 MESH_BYTES = {"torus": 300, HUBS: 300}
-OTHER_MESH_BYTES = 1_600
-"""Bytes per vertex of a mesh while it is made, renumbered and checked: the sphere's and more."""
-OBJECTS_BYTES = 2_500
-"""Bytes per vertex of what is as published: objects, with the render mesh beside them."""
+OTHER_MESH_BYTES = 1_600  # per vertex while a mesh is made and checked: the sphere's and more
+OBJECTS_BYTES = 2_500  # per vertex of objects as published, with their render mesh
 BUILDING = 3  # how much more than what remains of it a compiled structure takes while it is built
 CHASE_COPIES = 3
 UNITS = {"": 1, "K": 1 << 10, "M": 1 << 20, "G": 1 << 30, "T": 1 << 40}

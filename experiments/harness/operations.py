@@ -39,10 +39,7 @@ SMALL = 20_000  # faces up to which triangles are looked at, and compared with t
 
 
 def operation_faces(case: Case, count: int = MOST_ELEMENTS) -> Array:
-    """Faces (k,) so far apart that what is done at one leaves the others as they are, ascending.
-
-    Where the valence varies each has a hub as its first corner.
-    """
+    """Faces (k,) too far apart to meet, ascending; at hubs each has one as its first corner."""
     return _some(_apart(case.family, case.size, case.valence), count)
 
 

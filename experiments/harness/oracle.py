@@ -19,10 +19,7 @@ class CheckFailedError(AssertionError):
 
 
 def check_query(s: Structure, mesh: TriangleMesh, query: Query, handles: Array) -> None:
-    """Compare the answers for ``handles`` (k,) with the triangle list. Cost O(k n_t).
-
-    Raises CheckFailedError naming the structure, the query, the handle and both answers.
-    """
+    """Compare answers for ``handles`` (k,) with the triangle list: CheckFailedError. O(k n_t)."""
     asked = getattr(s, query.name)
     keys = named(s, handles) if query.source == "edge" else handles
     for handle, key in zip(handles.tolist(), keys.tolist(), strict=True):

@@ -16,11 +16,9 @@ from hem.meshes import TriangleMesh
 from hem.sources import find_mesh
 
 FOLDER = "mesh"
-SMALLEST, LARGEST = 100, 1_000_000
-"""Vertices of the coarsest and the finest version, but for the mesh itself."""
+SMALLEST, LARGEST = 100, 1_000_000  # vertices of the coarsest and the finest version
 COARSER = 4  # how many coarser versions there are at the most; each has a quarter of the vertices
-FINE_ENOUGH = 20_000
-"""Vertices up to which there are finer versions of a small mesh; there is always one."""
+FINE_ENOUGH = 20_000  # vertices up to which there are finer versions; there is always one
 
 _HOLDER = next(
     name for name, it in structures.REGISTRY.items() if it.compiled and issubclass(it, Navigable)

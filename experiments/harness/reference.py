@@ -31,10 +31,7 @@ SMALL_HUBS = 256  # faces of the small mesh where the valence varies
 
 
 def typical(seconds: Sequence[float]) -> float | None:
-    """The median of some rounds, as a case is told by; None of none.
-
-    Their quicker quartile would lie below by as much as rounds scatter: a fifth on large meshes.
-    """
+    """The median of some rounds, as of a case: quartiles differ by their scatter. None of none."""
     return float(np.median(seconds)) if len(seconds) else None
 
 

@@ -6,23 +6,15 @@ They stand outside of their room so that a wrong name is told before anything he
 from dataclasses import dataclass, replace
 from typing import Any, Self
 
-HUBS = "hubs"
-"""The family of ``hem.valence_mesh``: its size is a number of faces, its valence the hubs'."""
+HUBS = "hubs"  # the family of `hem.valence_mesh`; its size is in faces, its valence the hubs'
 
-ORDERS = ("random", "consecutive")
-"""Of the handles that a query is asked for, and of the faces that a structure is built of."""
-ANSWERING = "until it answers"
-"""Of what finds its neighbors only when it is asked: as generated, built and asked once."""
+ORDERS = ("random", "consecutive")  # of handles that are asked for, and of faces to build of
+ANSWERING = "until it answers"  # of what finds neighbors when asked: built and asked once
 VALENCES = tuple(2**k for k in range(2, 13))
-
 SECONDS_PER_FACE = 1e-9  # what a scan of the mesh takes at the least
-LONGEST = 20
-"""How many times the seconds of a case all its rounds may take, where each searches the mesh."""
-
-LARGEST_COUNTED = 100_000
-"""Vertices of one's own mesh up to which accesses are counted, which Python does."""
-NOT_OF_ONE_MESH = "bench_fracture", "bench_printed"
-"""What a study of one's own mesh leaves out: bodies and the thesis' listings."""
+LONGEST = 20  # times the seconds of a case that rounds may take where each searches the mesh
+LARGEST_COUNTED = 100_000  # vertices of one's own mesh up to which accesses are counted
+NOT_OF_ONE_MESH = "bench_fracture", "bench_printed"  # bodies, and the thesis' listings
 
 
 def _geometric(first: int, last: int, per_decade: float) -> tuple[int, ...]:

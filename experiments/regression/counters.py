@@ -35,11 +35,8 @@ EXTENT = replace(
 )
 
 BYTES = "bytes"  # what stands for an experiment where bytes are counted here
-
 WEIGHED, GROWING = 1_000, 100  # vertices of the mesh that is weighed, and of that which grows
-
 SPLITS = 500  # how often one of its faces is split
-
 Task = tuple[str, str, Measurement, Callable[[], Iterable[Measurement]]]
 """An experiment, a structure, what is kept if nothing can be measured, and how it is."""
 
@@ -126,11 +123,8 @@ def _ask(s: Structure) -> Structure:
 
 
 def _weigh(make: Callable[[], Structure]) -> tuple[Structure, int]:
-    """Make something -> it, and the bytes of all arrays that were made and are still there.
-
-    NumPy tells tracemalloc of every array, wherever it hides; Python's own objects, which take
-    other sizes in other versions, are skipped, and so are addresses without memory.
-    """
+    """Make something -> it, and the bytes of arrays still there, without unwritten addresses."""
+    # NumPy tells of every array, wherever it hides; other objects differ between versions.
     of_arrays = tracemalloc.DomainFilter(inclusive=True, domain=tracemalloc_domain)
     tracemalloc.start()
     try:

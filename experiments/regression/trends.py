@@ -37,13 +37,10 @@ MEASURES = {
     "time": Measure("time", "relative", False, ("time_faces", "time_sizes")),
 }
 """What is followed. What is exact is comparable between machines."""
-
 OUTCOMES = {"outcome": "verdict by work", "outcome_time": "verdict by time"}
 """The verdicts of a claim; that by work is comparable between machines, and of memory by bytes."""
-
 SERIES = ["claim", "measure", "profile", "machine"]
 """What the figures of a series have in common; the machine is empty where any will do."""
-
 Rows = Iterator[tuple[Any, ...]]
 
 
@@ -64,10 +61,7 @@ class Trends:
         return pd.DataFrame(rows, columns=["commit", "preset", "machine"])
 
     def only(self, machine: str | None = None, preset: str | None = None) -> Self:
-        """The runs of one machine, by its first digits, or of one preset.
-
-        Raises ValueError that says which there are, if there are none or several machines.
-        """
+        """The runs of one machine, by first digits, or preset. ValueError says which there are."""
         about = self.about
         for what, wanted in (("machine", machine), ("preset", preset)):
             if wanted is not None:

@@ -63,11 +63,7 @@ def machine() -> dict[str, Any]:
 
 
 def machine_id(machine: dict[str, Any]) -> str:
-    """Eight hexadecimal digits that are the same as long as the machine is.
-
-    Of processor, cores, caches, GiB of memory, system and architecture; not of what an update or a
-    restart changes, such as the release of the kernel or some reserved megabytes.
-    """
+    """Eight hexadecimal digits of what no update or restart of the machine changes."""
     system = str(machine.get("platform", "")).split()
     facts = {
         "cpu": machine.get("cpu"),

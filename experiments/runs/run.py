@@ -16,8 +16,7 @@ if TYPE_CHECKING:  # it takes half a second, and a study has no need of it
     import pandas as pd
 
 RUNS = Path("results/runs")
-PEER_RUNS = RUNS / "peers"
-"""Those of other libraries, which are not the newest run of anything else."""
+PEER_RUNS = RUNS / "peers"  # of other libraries: the newest run of nothing else
 
 
 @dataclass(frozen=True, eq=False)  # judged once per run object

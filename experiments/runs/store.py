@@ -156,10 +156,7 @@ def set_aside_damaged(folder: Path) -> Iterator[Path]:
 
 @contextmanager
 def lock_run(folder: Path) -> Iterator[None]:
-    """Keep a run folder for this process. Raises InUseError naming the process that has it.
-
-    The lock is the operating system's: it goes when its process ends, however that was.
-    """
+    """Keep a run folder for as long as this process lives. InUseError names who has it."""
     lock, holder = FileLock(folder / ".lock", timeout=0), folder / ".holder"
     with writing(folder):
         try:

@@ -33,11 +33,8 @@ from structures import NAMED, REGISTRY
 
 ROOT = Path(__file__).parents[2]
 COMPILED = "hem", "structures", "experiments/harness"  # where the sources are that Numba compiles
-
 ON = " on "  # between a preset and one's own mesh, in the name of what was measured
-
-REPEATING_SHARE = 0.5
-"""Disturbed cases are measured again for at most this part of the time that all cases took."""
+REPEATING_SHARE = 0.5  # of the time that all cases took, at most, to measure disturbed ones again
 
 
 class Observer:

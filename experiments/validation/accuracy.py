@@ -34,8 +34,7 @@ ASKED = {
 }  # fmt: skip
 """By condition: the least share to be named right, and the largest to be named wrong."""
 
-DETERMINED = {"work": 0.95, "time": 0.85}
-"""Share of table 1's claims that must be determined, by measure, on the standard preset."""
+DETERMINED = {"work": 0.95, "time": 0.85}  # asked of table 1's claims on the standard preset
 
 Judge = Callable[[Array, Sequence[Array], Array | None], str | None]
 
@@ -101,8 +100,7 @@ JUDGES: dict[str, Judge] = {
 }  # fmt: skip
 """By name. Those of packages that are not installed fail when asked: see ``installed_judges``."""
 
-PACKAGES = {"bigo": "bigO", "big-o": "big_o"}
-"""The judges that are packages of their own, and the module of each."""
+PACKAGES = {"bigo": "bigO", "big-o": "big_o"}  # their modules
 
 
 def installed_judges() -> dict[str, Judge]:

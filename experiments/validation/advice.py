@@ -38,8 +38,7 @@ RECORDED, TIMED = "torus:400", "torus:5000"
 """The meshes that programs are recorded on, and timed on to learn their own part."""
 ON = ("torus:20000", "sphere:5000", "terrain:5000", "cow", "bunny")  # the meshes that are predicted
 ROUNDS = 15
-LONGEST = 1.0
-"""Seconds a program may take; where more is predicted it is not run, and no further rounds are."""
+LONGEST = 1.0  # seconds that a program may take to be run, and to be run again
 
 ALIKE = 1.1
 MIXES, STEPS, BATCH, SPLITS = 6, 20, (500, 3_000), 100

@@ -30,8 +30,7 @@ COLUMNS = ["function", "growth", "source", "half", "neighbor", "judge", "answer"
 HALVES = {"tuned on": (*FUNCTIONS, *SEEN), "held out": HELD_OUT}
 HELD = "held out"
 SAME_POWER = 0.1  # of exponents: a power law that is told by so much is right
-NEIGHBORS = "shared", "busy"
-"""The machine as other programs leave it, and with one more that keeps core and memory busy."""
+NEIGHBORS = "shared", "busy"  # the machine as it is left, and with one program more
 
 KINDS = ["right", "one of two", "wrong", UNDETERMINED]
 ONE_THREAD = dict.fromkeys(("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS"), "1")

@@ -65,10 +65,7 @@ def make_curves(
 def make_curve(
     rng: np.random.Generator, growth: str, condition: str, intercept: float, noise: float
 ) -> SyntheticCurve:
-    """Make one curve of a class. Half of the slowed ones have a slowed intercept, too.
-
-    intercept: in units of the growing part at the smallest size. noise: relative, of a sample.
-    """
+    """Make a curve with an intercept, slowed or not, in units of its start; noise is relative."""
     faces = bool(rng.random() < 0.5)  # of a mesh, or valences of a vertex; and the bytes of one
     first, last = (100, rng.choice([1e5, 1e6])) if faces else (4, 4096)
     sizes = np.geomspace(first, float(last), int(rng.integers(5, 10))).round()

@@ -82,10 +82,7 @@ def slope(sizes: Array, cost: Array) -> Array:
 
 
 def resample(costs: Costs, fitted: Array, count: int, seed: int) -> Array:
-    """(count, k) bootstrap replicates of the costs around a fit.
-
-    Each draws every size's samples anew, and turns its residual's sign at random.
-    """
+    """(count, k) bootstrap replicates: samples drawn anew, residuals' signs turned at random."""
     rng = np.random.default_rng(seed)
     cells = (c[rng.integers(len(c), size=(count, len(c)))] for c in costs.samples)
     drawn = np.stack([midmean(cell) for cell in cells], axis=1)

@@ -127,10 +127,7 @@ def _seconds(f: Function | None, inputs: Sequence[Any], clock: Clock) -> float:
 
 
 def _plan(f: Function, make: Callable[[], Any], size: float, fresh: bool, clock: Clock) -> _Plan:
-    """As many calls as the clock needs, on as many inputs as fit into the caches together.
-
-    Of few the processor would learn by heart which way they branch.
-    """
+    """As many calls as a clock needs, on inputs that caches hold; few are learned by heart."""
     made, call = np.min([_seconds_of_one(f, make, clock) for _ in range(2)], axis=0)
     call = max(call, 1e-9)
     each_round = fresh or made < call
