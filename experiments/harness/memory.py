@@ -52,7 +52,7 @@ def estimate(case: Case, copies: int) -> int:
     compiled = case.structure in REGISTRY and REGISTRY[case.structure].compiled
     each = _per_vertex(case.structure, case.reference_bytes)
     mesh = MESH_BYTES.get(case.family, OTHER_MESH_BYTES)
-    vertices = len(case.mesh().points) if not case.size else case.vertices
+    vertices = case.vertices or len(case.mesh().points)
     return int(vertices * (mesh + (BUILDING if compiled else 1) * each + copies * each))
 
 

@@ -20,7 +20,7 @@ from experiments.harness import Axis
 from experiments.regression.baseline import COUNTERS, RUN, UPDATE, Measured
 from experiments.regression.findings import CaseKey, Change, Finding, Kind, vote
 from experiments.regression.significance import compare_rounds
-from experiments.regression.snapshots import LEAST_SLOPE, Figures, claimed_by, describe_claim
+from experiments.regression.snapshots import LEAST_SLOPE, Figures, describe_claim
 from experiments.runs import Run, experiments
 from hem.complexity import NAMES as CLASSES
 from structures import REGISTRY
@@ -126,10 +126,10 @@ def _pair_cases(before: Run, after: Run) -> tuple[list[Pair], list[str]]:
 
 def claim_of(case: CaseKey) -> str:
     """The claim that a case bears on, in words: of its table, or on its structure's memory."""
-    declared = experiments().get(case.experiment)
-    if declared is None or declared.table is None:
-        return describe_claim(f"queries/{case.structure}/memory")
-    return describe_claim(f"{declared.table.name}/{case.structure}/{case.subject}")
+    declared, name = experiments().get(case.experiment), f"queries/{case.structure}/memory"
+    if declared and declared.table:
+        name = f"{declared.table.name}/{case.structure}/{case.subject}"
+    return describe_claim(name)[0]
 
 
 def _finding(
@@ -179,7 +179,7 @@ def _pair_claims(
     for name in dict.fromkeys((*before.claims, *after.claims)):
         _, structure, subject = name.split("/")
         key = CaseKey("", structure, subject)
-        said = {"claim": describe_claim(name), "claimed": claimed_by(name)}
+        said = dict(zip(("claim", "claimed"), describe_claim(name), strict=True))
         yield key, said, before.claims.get(name), after.claims.get(name)
 
 

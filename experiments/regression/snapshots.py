@@ -49,20 +49,15 @@ def class_figures(run: Run) -> dict[str, Figures]:
     return figures
 
 
-def describe_claim(name: str) -> str:
-    """A claim in words, as in "Table 1, Vertex → Faces: O(n_ev); thesis 3.1"; empty if unknown."""
+def describe_claim(name: str) -> tuple[str, str]:
+    """A claim as in "Table 1, Vertex → Faces: O(n_ev); thesis 3.1", and its kind; or nothing."""
     claim = _claims().get(name)
     if claim is None:
-        return ""
+        return "", ""
     printed = "nothing claimed" if claim.printed == NO_CLAIM else claim.printed
     who = "" if claim.kind is Kind.EXPECTED else f"{claim.kind}, "  # which its source says, too
-    return f"{tables()[claim.table].title}, {claim.title}: {printed}; {who}{claim.source}"
-
-
-def claimed_by(name: str) -> str:
-    """The kind of a claim: who says it; empty if unknown."""
-    claim = _claims().get(name)
-    return "" if claim is None else claim.kind.value
+    said = f"{tables()[claim.table].title}, {claim.title}: {printed}; {who}{claim.source}"
+    return said, claim.kind.value
 
 
 @cache

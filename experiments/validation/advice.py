@@ -58,10 +58,6 @@ class Program(NamedTuple):
     each: str = "vertex"
 
 
-def _impacts(s: Structure) -> None:
-    algorithms.impacts(s, np.random.default_rng(1).integers(0, s.n_faces, 1_000))
-
-
 def _mix(seed: int) -> Callable[[Structure], None]:
     """Batches of queries at random or in order, some with splits, as drawn by the seed."""
 
@@ -97,7 +93,9 @@ PROGRAMS = {
     "sqrt3 subdivision": Program(lambda s: algorithms.subdivide(s, "sqrt3")),
     "simplify": Program(lambda s: algorithms.simplify(s, vertices=s.n_vertices // 4)),
     "remesh": Program(lambda s: algorithms.remesh(s, iterations=1)),
-    "impacts": Program(_impacts, ""),
+    "impacts": Program(
+        lambda s: algorithms.impacts(s, np.random.default_rng(1).integers(0, s.n_faces, 1_000)), ""
+    ),
     "circulate": Program(algorithms.circulate),
     "split and collapse": Program(algorithms.split_and_collapse),
     "shatter": Program(lambda s: hem.fracture.shatter(s, s.points[s.vertices()[0]]), ""),
@@ -112,14 +110,12 @@ PROGRAMS = {
 
 def learned(prices: Prices, name: str) -> Workload:
     """What a program does, and its own part: from one structure on a torus."""
-    program = PROGRAMS[name]
+    program, mesh = PROGRAMS[name], hem.find_mesh(TIMED)
     s = structures.build(BASE, hem.find_mesh(RECORDED))
     with hem.record(s) as recording:
         program.run(s)
-    workload = recorded(recording, name, program.each)
-    mesh = hem.find_mesh(TIMED)
     known = Measured(BASE, len(mesh.points), timed(prices, program, [BASE], mesh)[BASE])
-    return replace(workload, measured=known)
+    return replace(recorded(recording, name, program.each), measured=known)
 
 
 def timed(prices: Prices, program: Program, names: Iterable[str], mesh: Any) -> dict[str, float]:
