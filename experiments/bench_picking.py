@@ -11,7 +11,6 @@ import logging
 from functools import cache
 from importlib.util import find_spec
 from itertools import product
-from time import perf_counter
 from typing import Any
 
 import numpy as np
@@ -19,6 +18,7 @@ from numpy.typing import ArrayLike
 
 import hem
 from experiments.harness import BASE, Case, Experiment, Measurement, Preset, Timer
+from experiments.harness.timer import seconds_of
 from hem.arrays import Array, Floats
 from hem.contract import Structure
 
@@ -126,9 +126,7 @@ def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
         s.split_face(face, s.points[s.face_vertices(face)].mean(axis=0))
         return ()
 
-    begin = perf_counter()
-    follow()
-    rounds = preset.affordable_rounds(perf_counter() - begin)
+    rounds = preset.affordable_rounds(seconds_of(follow))
     if case.subject == FOLLOWING:
         timed = timer(follow, setup=edit, rounds=rounds, warmup=1)
     else:
@@ -161,9 +159,7 @@ def _time_neighbors(case: Case, s: Structure, preset: Preset, timer: Timer) -> M
             for v in s.face_vertices(face).tolist():
                 s.vertex_faces(v)
 
-    begin = perf_counter()
-    ask()
-    rounds = preset.affordable_rounds(perf_counter() - begin)
+    rounds = preset.affordable_rounds(seconds_of(ask))
     return case.result("time", s, **timer(ask, rounds=rounds, per=picks).fields)
 
 

@@ -6,13 +6,14 @@ and is what claims rest on, and as a loop in Python, which measures the interpre
 
 import heapq
 from collections.abc import Callable
-from time import perf_counter
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
 
 import structures
 from experiments.harness import BASE, Case, Experiment, Measurement, Preset, Timer
+from experiments.harness.timer import seconds_of
 from hem import algorithms
 from hem.contract import QUERIES, Structure
 
@@ -157,9 +158,7 @@ def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
         return case.result("time", s, skipped=reason)
     _check(case, run)
     done = _ready(s)
-    begin = perf_counter()
-    run(done)
-    rounds = preset.affordable_rounds(perf_counter() - begin)
+    rounds = preset.affordable_rounds(seconds_of(partial(run, done)))
     units = UNITS[workload.unit](s, done)
     timed = timer(run, setup=lambda: (_ready(s),), rounds=rounds, warmup=0, per=units)
     return case.result("time", s, **timed.fields)

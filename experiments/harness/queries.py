@@ -1,9 +1,6 @@
 """Timing a query: as many handles per round as last long enough, and other ones every round."""
 
-from collections.abc import Callable
 from itertools import count
-from time import perf_counter
-from typing import Any
 
 import numpy as np
 
@@ -11,7 +8,7 @@ from experiments.harness.calibration import latency_now
 from experiments.harness.cases import Case, Measurement, queried_handles
 from experiments.harness.oracle import check_query
 from experiments.harness.reference import Reference, typical
-from experiments.harness.timer import Timer
+from experiments.harness.timer import Timer, seconds_of
 from experiments.presets import Preset
 from hem.arrays import Array
 from hem.contract import Structure, Sweep
@@ -72,16 +69,10 @@ def _seconds_per_query(sweep: Sweep, enough: float) -> float:
     many = 1
     while True:
         asked = sweep.successive(0, many)
-        seconds = _seconds(asked.run)
+        seconds = seconds_of(asked.run)
         for _ in range(TRIES - 1):
             if seconds >= enough:
-                seconds = min(seconds, _seconds(asked.run))
+                seconds = min(seconds, seconds_of(asked.run))
         if seconds >= enough or many >= MOST_HANDLES:
             return max(seconds / many, 1e-10)
         many *= 4
-
-
-def _seconds(call: Callable[[], Any]) -> float:
-    begin = perf_counter()
-    call()
-    return perf_counter() - begin

@@ -62,6 +62,13 @@ def time_rounds(
     return Timed(np.array(samples[warmup:]), np.array(calibration[warmup:]), per)
 
 
+def seconds_of(call: Callable[[], Any]) -> float:
+    """Seconds of one call."""
+    begin = perf_counter()
+    call()
+    return perf_counter() - begin
+
+
 class UnitClock:
     """A clock in which a round of ``per`` units lasts as long as one of them.
 

@@ -50,7 +50,7 @@ def test_one_delayed_try_leaves_no_round_with_too_few_handles(
     handles = np.arange(64)
     for delayed in range(5):
         s = Delayed(delayed)
-        monkeypatch.setattr("experiments.harness.queries.perf_counter", s.clock)
+        monkeypatch.setattr("experiments.harness.timer.perf_counter", s.clock)
         seconds = _seconds_per_query(
             Sweep(s.loop, handles, None, SimpleNamespace(records=Empty(np.zeros(0))), b""), 2e-4
         )
