@@ -29,7 +29,7 @@ The mesh itself stands in ``structures.plankton``, what is done with polygons in
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numba import njit
@@ -112,38 +112,42 @@ def around_vertex(give: Kernel) -> Kernel:
     None is given where it is negative.
     """
 
-    @kernel
-    def query(m: PlanktonRecords, v: int, out: Array) -> int:
-        first = m.vertex_half_edge[v]
-        h, count = first, 0
-        while h >= 0:
-            h = counterclockwise(m, h)
-            found = give(m, h)
-            if found >= 0:
-                out[count] = found
-                count += 1
-            if h == first:
-                break
-        return count
+    def visiting(visit: Kernel, turned: Kernel) -> Kernel:
+        @kernel
+        def visit_all(m: PlanktonRecords, v: int, state: Any, given: Any) -> Any:
+            first = m.vertex_half_edge[v]
+            h = first
+            while h >= 0:
+                h = counterclockwise(m, h)
+                found = give(m, h)
+                if found >= 0:
+                    state = visit(m, found, state, given)
+                if h == first:
+                    break
+            return state
 
-    return query
+        return visit_all
+
+    return walks.query_of(visiting)
 
 
 def round_face(give: Kernel) -> Kernel:
     """Make a query: ``give(m, h)`` of every half-edge of a face, from its first."""
 
-    @kernel
-    def query(m: PlanktonRecords, f: int, out: Array) -> int:
-        first = m.face_half_edge[f]
-        h, count = first, 0
-        while True:
-            out[count] = give(m, h)
-            count += 1
-            h = m.half_edge[h, NEXT]
-            if h == first:
-                return count
+    def visiting(visit: Kernel, turned: Kernel) -> Kernel:
+        @kernel
+        def visit_all(m: PlanktonRecords, f: int, state: Any, given: Any) -> Any:
+            first = m.face_half_edge[f]
+            h = first
+            while True:
+                state = visit(m, give(m, h), state, given)
+                h = m.half_edge[h, NEXT]
+                if h == first:
+                    return state
 
-    return query
+        return visit_all
+
+    return walks.query_of(visiting)
 
 
 vertex_vertices, vertex_edges = around_vertex(tip), around_vertex(edge_of)

@@ -97,10 +97,10 @@ def insert_vertex(
     left, right = m.half_edge[h, FACE_OF], m.half_edge[h ^ 1, FACE_OF]
     more_corners(m, left)
     more_corners(m, right)
-    log_element(log, VERTEX + CREATED, v)
-    log_element(log, PARENT, m.half_edge[h, START])
-    log_element(log, PARENT, m.half_edge[onward ^ 1, START])
-    log_faces(log, CHANGED, left, right)
+    log[0] = log_element(log, log[0], VERTEX + CREATED, v)
+    log[0] = log_element(log, log[0], PARENT, m.half_edge[h, START])
+    log[0] = log_element(log, log[0], PARENT, m.half_edge[onward ^ 1, START])
+    log[0] = log_faces(log, log[0], CHANGED, left, right)
     return v
 
 
@@ -160,8 +160,8 @@ def cut_across(
     set_loop_face(m, kept ^ 1, f)
     count_new(m, 1, 1)
     m.counts[VALENCE] += 1
-    log_faces(log, CHANGED, face, -1)
-    log_parts(log, f, 1, face)
+    log[0] = log_faces(log, log[0], CHANGED, face, -1)
+    log[0] = log_parts(log, log[0], f, 1, face)
     return int(kept)
 
 
@@ -214,8 +214,8 @@ def merge_faces(
     kill(m, h)
     take_away(m, 1, 1)
     more_corners(m, stays)
-    log_faces(log, CHANGED, stays, -1)
-    log_faces(log, REMOVED, goes, -1)
+    log[0] = log_faces(log, log[0], CHANGED, stays, -1)
+    log[0] = log_faces(log, log[0], REMOVED, goes, -1)
     return int(np.int64(stays))  # as wide as refusals
 
 
@@ -245,12 +245,12 @@ def split_vertex(
         return NEEDS_ROOM
     before_first = m.half_edge[first ^ 1, NEXT]
     w = new_vertex(m, point)
-    log_element(log, VERTEX + CREATED, w)
-    log_element(log, PARENT, v)
+    log[0] = log_element(log, log[0], VERTEX + CREATED, w)
+    log[0] = log_element(log, log[0], PARENT, v)
     last = first
     while True:
         m.half_edge[last, START] = w
-        log_faces(log, CHANGED, m.half_edge[last, FACE_OF], -1)
+        log[0] = log_faces(log, log[0], CHANGED, m.half_edge[last, FACE_OF], -1)
         if counterclockwise(m, last) == second:
             break
         last = counterclockwise(m, last)
@@ -266,7 +266,7 @@ def split_vertex(
     count_new(m, 1, 0)
     more_corners(m, left)
     more_corners(m, right)
-    log_faces(log, CHANGED, right, -1)
+    log[0] = log_faces(log, log[0], CHANGED, right, -1)
     return w
 
 
@@ -309,7 +309,7 @@ def kill_spokes(m: PlanktonRecords, first: int, stays: int, log: Array) -> int:
         link(m, m.half_edge[spoke ^ 1, PREVIOUS], m.half_edge[spoke, NEXT])
         if face != stays:
             m.face_half_edge[face] = -1
-            log_element(log, FACE + REMOVED, face)
+            log[0] = log_element(log, log[0], FACE + REMOVED, face)
         kill(m, spoke)
         spoke = following
         if spoke == first:
@@ -345,8 +345,8 @@ def erase_vertex(
     kill_vertex(m, v)
     m.counts[VERTICES] -= 1
     take_away(m, edges, edges - 1)
-    log_element(log, VERTEX + REMOVED, v)
-    log_faces(log, CHANGED, stays, -1)
+    log[0] = log_element(log, log[0], VERTEX + REMOVED, v)
+    log[0] = log_faces(log, log[0], CHANGED, stays, -1)
     return int(np.int64(stays))  # as wide as refusals
 
 

@@ -22,7 +22,7 @@ is named by its two vertices. Bytes per vertex with 8-byte references: 12 + 8 + 
 
 from __future__ import annotations
 
-from typing import NamedTuple, Self
+from typing import Any, NamedTuple, Self
 
 import numpy as np
 from numba import njit
@@ -38,6 +38,7 @@ from hem.authoring import (
     C,
     D,
     Field,
+    Kernel,
     append_face,
     counted,
     in_slices,
@@ -93,7 +94,7 @@ def counterclockwise(m: TriangleNeighborRecords, t: int, v: int) -> int:
 
 
 (first,) = steps.entries(TriangleNeighborRecords, "vertex_triangle")
-circulate = walks.circulator(clockwise, counterclockwise)
+around = walks.circulator(clockwise, counterclockwise)
 
 
 @kernel
@@ -102,29 +103,24 @@ def corner_after(m: TriangleNeighborRecords, t: int, v: int) -> int:
     return m.triangle[t, CORNER + (corner_of(m, t, v) + 1) % 3]
 
 
-around, fan = circulate(corner_after), circulate(walks.as_met)
+def neighbors(visit: Kernel, turned: Kernel) -> Kernel:
+    """Make the circulator of the vertices around one; an open fan has one more than triangles."""
+    circulate = around(corner_after, visit, turned)
+
+    @kernel
+    def visit_all(m: TriangleNeighborRecords, v: int, state: Any, given: Any) -> Any:
+        state, last = circulate(m, m.vertex_triangle[v], v, state, given)
+        if last < 0:
+            return state
+        before = m.triangle[last, CORNER + (corner_of(m, last, v) + 2) % 3]
+        return visit(m, before, state, given)
+
+    return visit_all
 
 
-@kernel
-def vertex_vertices(m: TriangleNeighborRecords, v: int, out: Array) -> int:
-    """Cost O(n_ev)."""
-    count, last = around(m, m.vertex_triangle[v], v, out)
-    if last < 0:
-        return count
-    out[count] = m.triangle[last, CORNER + (corner_of(m, last, v) + 2) % 3]
-    return count + 1
-
-
+vertex_vertices = walks.query_of(neighbors)  # cost O(n_ev), as the next two
 vertex_edges = packed.vertex_edges(vertex_vertices)
-
-
-@kernel
-def vertex_faces(m: TriangleNeighborRecords, v: int, out: Array) -> int:
-    """Cost O(n_ev)."""
-    count, _ = fan(m, m.vertex_triangle[v], v, out)
-    return count
-
-
+vertex_faces = walks.each(walks.from_vertex(first, around), walks.as_named)
 edge_edges = walks.edges_at_both_ends(edge_vertices, vertex_edges)
 
 
@@ -132,9 +128,8 @@ edge_edges = walks.edges_at_both_ends(edge_vertices, vertex_edges)
 def edge_faces(m: TriangleNeighborRecords, e: int, out: Array) -> int:
     """Cost O(n_ev): the triangles at one end are searched for the other."""
     a, b = e >> 32, e & 0xFFFFFFFF
-    around, _ = fan(m, m.vertex_triangle[a], a, out)
     count = 0
-    for k in range(around):
+    for k in range(vertex_faces(m, a, out)):
         t = out[k]
         if b == m.triangle[t, CORNER + corner_of(m, t, b)]:
             out[count] = t

@@ -164,7 +164,7 @@ def simplifying(k: Kernels, operations: Kernels) -> Kernel:
         for j in range(3):
             plan.work.point[j] = plan.target[j] + plan.middle[j]
         set_point(m, stays, plan.work.point)
-        log_element(plan.work.log, VERTEX + CHANGED, stays)
+        plan.work.log[0] = log_element(plan.work.log, plan.work.log[0], VERTEX + CHANGED, stays)
         for j in range(3):
             plan.xyz[stays, j] = np.float64(coordinate(m, stays, j)) - plan.middle[j]
         for j in range(WIDTH):

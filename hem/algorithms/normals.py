@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from hem.algorithms.arguments import require_mesh
-from hem.algorithms.parts import cross, locating, unit
+from hem.algorithms.parts import cornering, cross, locating, unit
 from hem.arrays import Array, Floats, Points
 from hem.authoring import Kernel, Kernels, kernel
 from hem.contract import Structure
@@ -23,16 +23,15 @@ class Plan(NamedTuple):
 
 
 def face_normal(k: Kernels) -> Kernel:
-    """Make ``normal(m, f, out) -> x, y, z``, as long as twice the area.
+    """Make ``normal(m, corners) -> x, y, z`` of a triangle, as long as twice the area.
 
     From the smallest corner on, so that it is the same to the last bit on every structure.
     """
-    face_vertices, where = k["face_vertices"], locating(k["coordinate"])
+    where = locating(k["coordinate"])
 
     @kernel
-    def normal(m: Any, f: int, out: Any) -> tuple[float, float, float]:
-        face_vertices(m, f, out)
-        a, b, c = out[0], out[1], out[2]
+    def normal(m: Any, corners: tuple[int, int, int]) -> tuple[float, float, float]:
+        a, b, c = corners
         if b < a and b < c:
             a, b, c = b, c, a
         elif c < a and c < b:
@@ -45,15 +44,15 @@ def face_normal(k: Kernels) -> Kernel:
 
 def normals(k: Kernels, operations: Kernels) -> Kernel:
     """Make ``find_normals(m, plan) -> 0``. Every structure has the faces in the same order."""
-    normal = face_normal(k)
+    corners, normal = cornering(k["face_vertices"]), face_normal(k)
 
     @kernel
     def find_normals(m: Any, plan: Plan) -> int:
-        found, out = plan.found, plan.out
+        found = plan.found
         for i in range(len(plan.faces)):
-            x, y, z = normal(m, plan.faces[i], out)
-            for j in range(3):
-                v = out[j]
+            at = corners(m, plan.faces[i], plan)
+            x, y, z = normal(m, at)
+            for v in at:
                 found[v, 0] += x
                 found[v, 1] += y
                 found[v, 2] += z

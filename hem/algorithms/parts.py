@@ -2,13 +2,24 @@
 
 from __future__ import annotations
 
+import math
 from functools import cache
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from hem.arrays import Array
-from hem.authoring import FACE_END, NEEDS_ROOM, Kernel, Kernels, Refusal, kernel, part
+from hem.authoring import (
+    FACE_END,
+    NEEDS_ROOM,
+    VALENCE,
+    Kernel,
+    Kernels,
+    Refusal,
+    kernel,
+    part,
+    visiting,
+)
 from hem.contract import Algorithm, Structure
 from hem.edit import CHANGED, VERTEX
 from hem.errors import MeshError
@@ -55,24 +66,31 @@ def doing(operation: Kernel) -> Kernel:
     return do
 
 
-def change(s: Structure, kind: str, make: Algorithm, plan: Any, splits: int = 0) -> int:
+def change(
+    s: Structure,
+    kind: str,
+    make: Algorithm,
+    plan: Any,
+    splits: int = 0,
+    valence: int | None = None,
+) -> int:
     """Run an algorithm that operates, in steps, until it is done -> its result. One edit.
 
     ``plan.work`` is put in. The algorithm answers ``NEEDS_ROOM`` as soon as an operation does, and
     goes on by its plan when it is called again. There is room for so many ``splits``; MeshError if
-    it wants more. Every operation is an edit of its own where ``told_one_by_one`` says so. An
-    interrupt leaves what was done so far, and told.
+    it wants more. ``valence``: as ``Structure.scratch`` has it. Every operation is an edit of its
+    own where ``told_one_by_one`` says so. An interrupt leaves what was done so far, and told.
     """
     operations = min(splits or STEP, s.n_faces + 64, STEP)
     logs: list[Array] = []  # copies, as the log is written over
     result, steps, idle = NEEDS_ROOM, 0, 0
-    out, log = s.scratch(splits, operations)
+    out, log = s.scratch(splits, operations, valence)
     try:
         while result == NEEDS_ROOM:
             if idle == 2:  # more scratch was no help
                 raise MeshError(f"{kind}: there is room for {splits} splits, and more are done")
             if steps == AT_ONCE:
-                steps, (out, log) = 0, s.scratch(0, operations)
+                steps, (out, log) = 0, s.scratch(0, operations, valence)
             try:
                 result = step(s, make, plan, out, log, 1 if s.told_one_by_one else operations)
             finally:
@@ -84,8 +102,15 @@ def change(s: Structure, kind: str, make: Algorithm, plan: Any, splits: int = 0)
             if s.told_one_by_one:
                 tell(s, kind, logs)
     finally:
+        s.scratch(0, 0, valence)
         tell(s, kind, logs)
     return result
+
+
+def most_faces_at_a_vertex(s: Structure) -> int:
+    """A bound on them. O(1), or O(n_t) if nobody has counted them yet."""
+    s.scratch(0)
+    return int(s.records.counts[VALENCE])
 
 
 def step(s: Structure, make: Algorithm, plan: Any, out: Any, log: Array, left: int) -> int:
@@ -115,10 +140,13 @@ def tell(s: Structure, kind: str, logs: list[Array]) -> None:
 
 @cache
 def locating(coordinate: Kernel) -> Kernel:
-    """Make ``where(m, v) -> x, y, z``, in float64 on every structure."""
+    """Make ``where(m, v) -> x, y, z``, in float64 on every structure.
+
+    What is asked of one plan may be handed in besides, see ``adding``.
+    """
 
     @kernel
-    def where(m: Any, v: int) -> tuple[float, float, float]:
+    def where(m: Any, v: int, plan: Any = None) -> tuple[float, float, float]:
         x, y, z = coordinate(m, v, 0), coordinate(m, v, 1), coordinate(m, v, 2)
         return np.float64(x), np.float64(y), np.float64(z)
 
@@ -138,40 +166,63 @@ def unit(x: float, y: float, z: float) -> tuple[float, float, float]:
     return (x / size, y / size, z / size) if size > 0 else (0.0, 0.0, 0.0)
 
 
-@kernel
-def plus(total: float, rest: float, x: float) -> tuple[float, float]:
-    """Add x to a sum and what rounding has cost it so far -> both (Neumaier's summation).
+def grid(largest: float, terms: int) -> float:
+    """What puts numbers up to ``largest`` on a grid of which sums of so many ``terms`` are exact.
 
-    Both together are exact for numbers of float32, so a sum does not depend on the order in which a
-    structure tells the neighbors.
+    So a sum does not depend on the order in which a structure tells the neighbors. A number x comes
+    there as ``(x + grid) - grid``, in float64, and loses what lies 52 bits below the largest sum.
+    Source: Demmel & Nguyen, Fast Reproducible Floating-Point Summation (2013).
     """
-    added = np.float64(x)
-    more = total + added
-    taken = more - total
-    return more, rest + ((total - (more - taken)) + (added - taken))
+    return 1.5 * 2.0 ** math.frexp(largest * max(terms, 2))[1]
+
+
+def extent(points: Array) -> float:
+    """The largest number of an array without regard to its sign, and to what is dead (NaN)."""
+    return float(
+        max(np.fmax.reduce(points, None, initial=0), -np.fmin.reduce(points, None, initial=0))
+    )
 
 
 @cache
-def summing(read: Kernel) -> Kernel:
-    """Make ``sum_of(source, out, n) -> x, y, z`` of ``read(source, it)`` of the first n in out.
+def adding(read: Kernel) -> Kernel:
+    """Make ``add(m, it, sums, plan) -> sums`` to visit with: ``read(m, it, plan) -> x, y, z``.
 
-    What rounding costs is summed up as well, see ``plus``.
+    The sums are how many there are, and theirs of x, y and z on ``plan.grid``, exactly.
     """
 
     @kernel
-    def sum_of(source: Any, out: Any, n: int) -> tuple[float, float, float]:
-        x = y = z = x_rest = y_rest = z_rest = 0.0
-        for i in range(n):
-            a, b, c = read(source, out[i])
-            x, x_rest = plus(x, x_rest, a)
-            y, y_rest = plus(y, y_rest, b)
-            z, z_rest = plus(z, z_rest, c)
-        return x + x_rest, y + y_rest, z + z_rest
+    def add(m: Any, it: int, sums: Any, plan: Any) -> Any:
+        x, y, z = read(m, it, plan)
+        grid, (n, a, b, c) = plan.grid, sums
+        return n + 1, a + (x + grid - grid), b + (y + grid - grid), c + (z + grid - grid)
 
-    return sum_of
+    return add
 
 
-class Corners(NamedTuple):
+NOTHING = 0, 0.0, 0.0, 0.0
+"""Sums to begin with."""
+
+
+@kernel
+def next_corner(m: Any, v: int, corners: tuple[int, int, int], plan: Any) -> tuple[int, int, int]:
+    """Visit the corners of a triangle for all three of them."""
+    return corners[1], corners[2], int(v)
+
+
+@cache
+def cornering(face_vertices: Kernel) -> Kernel:
+    """Make ``corners(m, f, plan) -> a, b, c``. The plan has scratch, ``out``."""
+    visit_all = visiting(face_vertices, next_corner)
+
+    @kernel
+    def corners(m: Any, f: int, plan: Any) -> tuple[int, int, int]:
+        found: tuple[int, int, int] = visit_all(m, f, (-1, -1, -1), plan)
+        return found
+
+    return corners
+
+
+class Counted(NamedTuple):
     """Whose corners are counted, and where."""
 
     faces: Array
@@ -181,14 +232,13 @@ class Corners(NamedTuple):
 
 def counting_corners(k: Kernels, operations: Kernels) -> Kernel:
     """Make ``count_corners(m, plan) -> 0``."""
-    face_vertices = k["face_vertices"]
+    corners = cornering(k["face_vertices"])
 
     @kernel
-    def count_corners(m: Any, plan: Corners) -> int:
-        out = plan.out
+    def count_corners(m: Any, plan: Counted) -> int:
         for i in range(len(plan.faces)):
-            for j in range(face_vertices(m, plan.faces[i], out)):
-                plan.faces_at[out[j]] += 1
+            for v in corners(m, plan.faces[i], plan):
+                plan.faces_at[v] += 1
         return 0
 
     return count_corners
@@ -197,7 +247,7 @@ def counting_corners(k: Kernels, operations: Kernels) -> Kernel:
 def count_faces_at(s: Structure) -> Array:
     """(n,) int32: how many faces each vertex is a corner of. Cost: ``face_vertices`` of all."""
     faces_at = np.zeros(len(s.points), np.int32)
-    s.run(counting_corners, Corners(s.faces(), faces_at, s.scratch(0)[0]))
+    s.run(counting_corners, Counted(s.faces(), faces_at, s.scratch(0)[0]))
     return faces_at
 
 

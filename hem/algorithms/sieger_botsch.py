@@ -13,12 +13,24 @@ import numpy as np
 
 from hem.algorithms.arguments import require_mesh, require_surface
 from hem.algorithms.normals import face_normal
-from hem.algorithms.parts import change, count_faces_at, doing, move, summing, unit
+from hem.algorithms.parts import (
+    NOTHING,
+    adding,
+    change,
+    cornering,
+    doing,
+    extent,
+    grid,
+    locating,
+    most_faces_at_a_vertex,
+    move,
+    unit,
+)
 from hem.algorithms.smoothing import smooth
 from hem.algorithms.sqrt3 import Plan, split_all_faces
 from hem.algorithms.subdivision import subdivide
 from hem.arrays import Array, Floats, Points
-from hem.authoring import NEEDS_ROOM, VERTEX_END, Kernel, Kernels, kernel
+from hem.authoring import NEEDS_ROOM, VERTEX_END, Kernel, Kernels, kernel, visiting
 from hem.contract import Structure
 
 
@@ -30,20 +42,25 @@ class Visit(NamedTuple):
     out: Any
 
 
+@kernel
+def count_others(m: Any, it: int, state: tuple[int, int], plan: Visit) -> tuple[int, int]:
+    """Visit to count what is another than what it is visited from."""
+    count, own = state
+    return count + (it != own), own
+
+
 def circulating(k: Kernels, operations: Kernels) -> Kernel:
     """Make ``circulate(m, plan) -> count``."""
-    vertex_vertices, face_vertices = k["vertex_vertices"], k["face_vertices"]
+    neighbors = visiting(k["vertex_vertices"], count_others)
+    corners = visiting(k["face_vertices"], count_others)
 
     @kernel
     def circulate(m: Any, plan: Visit) -> int:
-        count, out = 0, plan.out
+        count = 0
         for i in range(len(plan.vertices)):
-            v = plan.vertices[i]
-            for j in range(vertex_vertices(m, v, out)):
-                count += out[j] != v
+            count, _ = neighbors(m, plan.vertices[i], (count, int(plan.vertices[i])), plan)
         for i in range(len(plan.faces)):
-            for j in range(face_vertices(m, plan.faces[i], out)):
-                count += out[j] >= 0
+            count, _ = corners(m, plan.faces[i], (count, -1), plan)
         return count
 
     return circulate
@@ -59,52 +76,124 @@ def circulate(s: Structure) -> int:
     return s.run(circulating, Visit(s.vertices(), s.faces(), s.scratch(0)[0]))
 
 
+class Sum(NamedTuple):
+    """What is summed up."""
+
+    faces: Array
+    sums: Floats  # (3,)
+    grid: float  # for the corners of a face
+    out: Any
+
+
+def summing_corners(k: Kernels, operations: Kernels) -> Kernel:
+    """Make ``add_corners(m, plan) -> 0``. Every structure has the faces in the same order."""
+    add_all = visiting(k["face_vertices"], adding(locating(k["coordinate"])))
+
+    @kernel
+    def add_corners(m: Any, plan: Sum) -> int:
+        x = y = z = 0.0
+        for i in range(len(plan.faces)):
+            _, a, b, c = add_all(m, plan.faces[i], NOTHING, plan)
+            x, y, z = x + a, y + b, z + c
+        plan.sums[0], plan.sums[1], plan.sums[2] = x, y, z
+        return 0
+
+    return add_corners
+
+
+class Shift(NamedTuple):
+    """Who is moved against what, and where to."""
+
+    vertices: Array
+    by: Floats  # (3,)
+    places: Points
+
+
+def shifting(k: Kernels, operations: Kernels) -> Kernel:
+    """Make ``shift(m, plan) -> 0``."""
+    where = locating(k["coordinate"])
+
+    @kernel
+    def shift(m: Any, plan: Shift) -> int:
+        places, a, b, c = plan.places, plan.by[0], plan.by[1], plan.by[2]
+        for i in range(len(plan.vertices)):
+            v = plan.vertices[i]
+            x, y, z = where(m, v)
+            places[v, 0], places[v, 1], places[v, 2] = x - a, y - b, z - c
+        return 0
+
+    return shift
+
+
 def center(s: Structure) -> Floats:
     """Move a mesh so that the mean of all corners of all faces lies at the origin -> (3,) the mean.
 
     One edit. Cost O(n_v + n_t). MeshError for polygons.
     """
     require_mesh(s, "center")
-    vertices, times = s.vertices(), count_faces_at(s)
-    middle: Floats = times[vertices] @ s.points[vertices].astype(np.float64) / max(times.sum(), 1)
-    places = np.empty_like(s.points, np.float32)
-    move(s, "center", vertices, np.subtract(s.points, middle, places, casting="same_kind"))
+    middle = np.zeros(3)
+    s.run(summing_corners, Sum(s.faces(), middle, grid(extent(s.points), 3), s.scratch(0)[0]))
+    middle /= max(3 * s.n_faces, 1)
+    vertices, places = s.vertices(), np.zeros((len(s.points), 3), np.float32)
+    s.run(shifting, Shift(vertices, middle, places))
+    move(s, "center", vertices, places)
     return middle
 
 
-class Fans(NamedTuple):
+class Faces(NamedTuple):
     """Whose normals, and where they go."""
 
-    vertices: Array
     faces: Array
     of_faces: Array  # (face_end, 3) float32: as long as twice the area
+    out: Any
+
+
+def finding_normals(k: Kernels, operations: Kernels) -> Kernel:
+    """Make ``find(m, plan) -> 0``."""
+    corners, normal = cornering(k["face_vertices"]), face_normal(k)
+
+    @kernel
+    def find(m: Any, plan: Faces) -> int:
+        of_faces = plan.of_faces
+        for i in range(len(plan.faces)):
+            f = plan.faces[i]
+            of_faces[f, 0], of_faces[f, 1], of_faces[f, 2] = normal(m, corners(m, f, plan))
+        return 0
+
+    return find
+
+
+class Fans(NamedTuple):
+    """Around which vertices what is summed up, and where the directions go."""
+
+    vertices: Array
+    of_faces: Array
+    grid: float
     found: Array  # (n, 3) float32
     out: Any
 
 
 @kernel
-def row(array: Floats, i: int) -> tuple[float, float, float]:
-    """Three numbers of float32, in float64."""
-    return np.float64(array[i, 0]), np.float64(array[i, 1]), np.float64(array[i, 2])
+def normal_of(m: Any, f: int, plan: Fans) -> tuple[float, float, float]:
+    """The normal of a face, in float64."""
+    row = plan.of_faces
+    return np.float64(row[f, 0]), np.float64(row[f, 1]), np.float64(row[f, 2])
 
 
 def adding_around(k: Kernels, operations: Kernels) -> Kernel:
-    """Make ``add(m, plan) -> 0``: normals of faces, then their sums around each vertex."""
-    vertex_faces, normal, sum_of = k["vertex_faces"], face_normal(k), summing(row)
+    """Make ``add_around(m, plan) -> 0``."""
+    add_all = visiting(k["vertex_faces"], adding(normal_of))
 
     @kernel
-    def add(m: Any, plan: Fans) -> int:
-        found, of_faces, out = plan.found, plan.of_faces, plan.out
-        for i in range(len(plan.faces)):
-            f = plan.faces[i]
-            of_faces[f, 0], of_faces[f, 1], of_faces[f, 2] = normal(m, f, out)
+    def add_around(m: Any, plan: Fans) -> int:
+        found = plan.found
         for i in range(len(plan.vertices)):
             v = plan.vertices[i]
-            x, y, z = unit(*sum_of(of_faces, out, vertex_faces(m, v, out)))
-            found[v, 0], found[v, 1], found[v, 2] = x, y, z
+            _, x, y, z = add_all(m, v, NOTHING, plan)
+            found[v, 0], found[v, 1], found[v, 2] = unit(x, y, z)
         return 0
 
-    return add
+    return add_around
 
 
 def normals_around(s: Structure) -> Points:
@@ -114,8 +203,11 @@ def normals_around(s: Structure) -> Points:
     """
     require_mesh(s, "normals_around")
     found = np.zeros((len(s.points), 3), np.float32)
-    of_faces = np.empty((s.face_end, 3), np.float32)
-    s.run(adding_around, Fans(s.vertices(), s.faces(), of_faces, found, s.scratch(0)[0]))
+    of_faces = np.zeros((s.face_end, 3), np.float32)
+    out = s.scratch(0)[0]
+    s.run(finding_normals, Faces(s.faces(), of_faces, out))
+    step = grid(extent(of_faces), len(out) // 2)  # more than the faces at any vertex
+    s.run(adding_around, Fans(s.vertices(), of_faces, step, found, out))
     return found
 
 
@@ -150,7 +242,8 @@ def split_and_collapse(s: Structure) -> None:
     """
     require_mesh(s, "split_and_collapse")
     require_surface(s, "split_and_collapse")
-    change(s, "split_and_collapse", collapsing, split_all_faces(s, "split_and_collapse"))
+    split = split_all_faces(s, "split_and_collapse")
+    change(s, "split_and_collapse", collapsing, split, 0, most_faces_at_a_vertex(s))
     s.compact()
 
 

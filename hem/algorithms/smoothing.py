@@ -13,9 +13,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from hem.algorithms.arguments import require_count, require_mesh
-from hem.algorithms.parts import count_faces_at, locating, move, summing
+from hem.algorithms.parts import NOTHING, adding, count_faces_at, extent, grid, locating, move
 from hem.arrays import Array, Floats, Points
-from hem.authoring import Kernel, Kernels, kernel
+from hem.authoring import Kernel, Kernels, kernel, visiting
 from hem.contract import Structure
 from hem.naming import look_up
 
@@ -28,9 +28,10 @@ class Plan(NamedTuple):
 
     vertices: Array
     inside: Floats  # by number of neighbors: the part of the way to their mean
-    border: Floats  # (1,): that to the mean of the two neighbors along the border
-    faces_at: Array  # (n,) int32: how many faces a vertex has
+    border: float  # that to the mean of the two neighbors along the border
+    faces_at: Array  # (n,) int32: how many faces a vertex has; none if there is no border
     places: Points  # (n, 3) float32: where vertices come to lie
+    grid: float  # see ``parts.grid``
     out: Any
 
 
@@ -38,31 +39,30 @@ def averaging(k: Kernels, operations: Kernels) -> Kernel:
     """Make ``average(m, plan) -> 0``. A vertex on the border has more neighbors than faces."""
     vertex_vertices, face_left_of = k["vertex_vertices"], k["face_left_of"]
     where = locating(k["coordinate"])
-    sum_of = summing(where)
+    add = adding(where)
+    add_all = visiting(vertex_vertices, add)
 
     @kernel
-    def along_border(m: Any, v: int, n: int, out: Any) -> int:
-        """Keep the neighbors that v has an edge of one face with."""
-        left = 0
-        for i in range(n):
+    def add_border(m: Any, v: int, plan: Plan) -> tuple[int, float, float, float]:
+        """The sums of the neighbors that v has an edge of one face with."""
+        sums, out = NOTHING, plan.out
+        for i in range(vertex_vertices(m, v, out)):
             if face_left_of(m, v, out[i]) < 0 or face_left_of(m, out[i], v) < 0:
-                out[left] = out[i]
-                left += 1
-        return left
+                sums = add(m, out[i], sums, plan)
+        return sums
 
     @kernel
     def average(m: Any, plan: Plan) -> int:
-        out, border, places = plan.out, plan.border[0], plan.places
+        border, places = plan.border, plan.places
         for i in range(len(plan.vertices)):
             v = plan.vertices[i]
-            n = vertex_vertices(m, v, out)
+            n, a, b, c = add_all(m, v, NOTHING, plan)
             part = plan.inside[n]
-            if n > plan.faces_at[v]:
+            if len(plan.faces_at) > 0 and n > plan.faces_at[v]:
                 part = border
-                n = along_border(m, v, n, out) if border != 0 else 0
+                n, a, b, c = add_border(m, v, plan) if border != 0 else NOTHING
             x, y, z = where(m, v)
             if n > 0:
-                a, b, c = sum_of(m, out, n)
                 x, y, z = x + part * (a / n - x), y + part * (b / n - y), z + part * (c / n - z)
             places[v, 0], places[v, 1], places[v, 2] = x, y, z
         return 0
@@ -75,10 +75,12 @@ def averages(s: Structure, inside: Callable[[Array], Array], border: float = 0.0
     n, (out, _) = len(s.points), s.scratch(0)
     neighbors = np.arange(1.0, len(out) // 2)  # more than any vertex has
     parts = np.append(0.0, inside(neighbors))
-    own = np.array([border]), count_faces_at(s), np.zeros((n, 3), np.float32)
-    plan = Plan(s.vertices(), parts, *own, out)
-    s.run(averaging, plan)
-    return plan.places
+    closed = 2 * s.n_edges == 3 * s.n_faces
+    faces_at = np.zeros(0, np.int32) if closed else count_faces_at(s)
+    places = np.zeros((n, 3), np.float32)
+    step = grid(extent(s.points), len(parts))
+    s.run(averaging, Plan(s.vertices(), parts, border, faces_at, places, step, out))
+    return places
 
 
 def smooth(s: Structure, iterations: int = 1, method: str = "laplace") -> None:

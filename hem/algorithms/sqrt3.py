@@ -20,17 +20,21 @@ import numpy as np
 from hem.algorithms.arguments import require_mesh
 from hem.algorithms.parts import (
     NO_WORK,
+    NOTHING,
     Work,
+    adding,
     change,
     doing,
+    extent,
+    grid,
     locating,
+    most_faces_at_a_vertex,
     move,
-    summing,
     turning,
 )
 from hem.algorithms.smoothing import averages
 from hem.arrays import Array
-from hem.authoring import NEEDS_ROOM, Kernel, Kernels, kernel, part
+from hem.authoring import NEEDS_ROOM, Kernel, Kernels, kernel, part, visiting
 from hem.contract import Structure
 
 
@@ -38,6 +42,8 @@ class Plan(NamedTuple):
     """What is split or turned, and how far that is."""
 
     faces: Array
+    grid: float  # for the corners of a face
+    out: Any
     old: Array  # (1,) int64: how many vertices there were
     next: Array  # (1,) int64: the place of the next face
     work: Work
@@ -45,15 +51,15 @@ class Plan(NamedTuple):
 
 def splitting(k: Kernels, operations: Kernels) -> Kernel:
     """Make ``split_all(m, plan) -> 0``: every face at the mean of its corners."""
-    face_vertices, sum_of = k["face_vertices"], summing(locating(k["coordinate"]))
+    add_all = visiting(k["face_vertices"], adding(locating(k["coordinate"])))
     split_face = doing(operations["split_face"])
 
     @kernel
     def split_all(m: Any, plan: Plan) -> int:
-        out, point = plan.work.out, plan.work.point
+        point = plan.work.point
         while plan.next[0] < len(plan.faces):
             f = plan.faces[plan.next[0]]
-            x, y, z = sum_of(m, out, face_vertices(m, f, out))
+            _, x, y, z = add_all(m, f, NOTHING, plan)
             point[0], point[1], point[2] = x / 3, y / 3, z / 3
             if split_face(m, f, -1, plan.work) == NEEDS_ROOM:
                 return NEEDS_ROOM
@@ -70,10 +76,15 @@ def is_turned(plan: Plan, a: int, b: int) -> bool:
 
 
 def split_all_faces(s: Structure, kind: str) -> Plan:
-    """Put a vertex into the middle of every face. One edit -> the plan of what follows."""
-    old, faces = np.array([len(s.points)]), s.faces()
-    change(s, kind, splitting, Plan(faces, old, np.zeros(1, np.int64), NO_WORK), len(faces))
-    return Plan(faces, old, np.zeros(1, np.int64), NO_WORK)
+    """Put a vertex into the middle of every face. One edit -> the plan of what follows.
+
+    No vertex has more than twice as many faces as it had.
+    """
+    old, faces, out = np.array([len(s.points)]), s.faces(), s.scratch(0)[0]
+    plan = Plan(faces, grid(extent(s.points), 3), out, old, np.zeros(1, np.int64), NO_WORK)
+    change(s, kind, splitting, plan, len(faces), 2 * most_faces_at_a_vertex(s))
+    plan.next[0] = 0
+    return plan
 
 
 def sqrt3(s: Structure) -> None:
@@ -81,5 +92,6 @@ def sqrt3(s: Structure) -> None:
     require_mesh(s, "subdivide")
     places = averages(s, lambda n: (4 - 2 * np.cos(2 * np.pi / n)) / 9)
     vertices = s.vertices()
-    change(s, "subdivide", turning(is_turned), split_all_faces(s, "subdivide"))
+    split = split_all_faces(s, "subdivide")
+    change(s, "subdivide", turning(is_turned), split, 0, most_faces_at_a_vertex(s))
     move(s, "subdivide", vertices, places)

@@ -83,6 +83,7 @@ from hem.authoring.records import (
 )
 from hem.authoring.refusals import ALLOWED, NEEDS_ROOM, WORDS, Refusal
 from hem.authoring.slices import in_slices, slice_count
+from hem.authoring.walks import visiting
 
 __all__ = [
     "ALLOWED",
@@ -163,6 +164,7 @@ __all__ = [
     "steps",
     "vertex_exists",
     "vertex_maker",
+    "visiting",
     "walks",
     "without",
 ]

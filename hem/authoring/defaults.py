@@ -13,7 +13,7 @@ from hem.authoring.kernels import VERTEX_END, kernel, kernels_of
 @kernel
 def coordinate(m: Any, v: int, i: int) -> float:
     """x, y or z of vertex v; NaN if it is dead."""
-    return float(m.vertex_point[v, i])
+    return float(m.vertex_point[np.uint64(v), np.uint64(i)])
 
 
 @kernel

@@ -121,3 +121,22 @@ def distinct(out: Array, count: int) -> int:
             out[kept] = value
             kept += 1
     return kept
+
+
+FEW = 256
+"""Pairs of elements that are compared sooner than a table is made."""
+
+
+@kernel
+def count_shared(out: Array, one: int, other: int) -> int:
+    """How many of the first ``one`` elements are among the ``other`` after them; no two are alike.
+
+    What follows in ``out`` is overwritten, and may be these. Cost O(one + other) expected.
+    """
+    if one * other > FEW:
+        return one + other - int(distinct(out, one + other))
+    count = 0
+    for i in range(one):
+        for j in range(one, one + other):
+            count += out[i] == out[j]
+    return count

@@ -8,6 +8,7 @@ import numpy as np
 
 from hem.arrays import Array
 from hem.authoring.kernels import VERTEX_END, Kernel, kernel
+from hem.authoring.walks import query_of
 
 
 @kernel
@@ -45,23 +46,27 @@ def vertex_edges(vertex_vertices: Kernel) -> Kernel:
 
 def face_vertices(corner: Kernel) -> Kernel:
     """Make the kernel of the query of ``corner(m, f, i)``. Cost O(1)."""
-
-    @kernel
-    def face_vertices(m: Any, f: int, out: Array) -> int:
-        for i in range(3):
-            out[i] = corner(m, f, i)
-        return 3
-
-    return face_vertices
+    return _each_corner(corner)
 
 
 def face_edges(corner: Kernel) -> Kernel:
     """Make the kernel of the query of ``corner(m, f, i)``. Cost O(1)."""
 
     @kernel
-    def face_edges(m: Any, f: int, out: Array) -> int:
-        for i in range(3):
-            out[i] = pack(corner(m, f, i), corner(m, f, (i + 1) % 3))
-        return 3
+    def side(m: Any, f: int, i: int) -> int:
+        return pack(corner(m, f, i), corner(m, f, (i + 1) % 3))
 
-    return face_edges
+    return _each_corner(side)
+
+
+def _each_corner(give: Kernel) -> Kernel:
+    def visiting(visit: Kernel, turned: Kernel) -> Kernel:
+        @kernel
+        def visit_all(m: Any, f: int, state: Any, given: Any) -> Any:
+            for i in range(3):
+                state = visit(m, give(m, f, i), state, given)
+            return state
+
+        return visit_all
+
+    return query_of(visiting)

@@ -10,6 +10,8 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
+
 from hem.arrays import Array
 from hem.authoring.kernels import Kernel, kernel
 from hem.authoring.operations import LEFT, RIGHT, C, D
@@ -21,7 +23,7 @@ def column(records: type[Any], array: str, which: int) -> Kernel:
 
     @kernel
     def read(m: Any, it: int) -> int:
-        return int(m[place][it, which])
+        return int(m[place][np.uint64(it), which])
 
     return read
 
@@ -37,7 +39,7 @@ def entries(records: type[Any], *arrays: str) -> list[Kernel]:
     def entry(place: int) -> Kernel:
         @kernel
         def read(m: Any, it: int) -> int:
-            return int(m[place][it])
+            return int(m[place][np.uint64(it)])
 
         return read
 

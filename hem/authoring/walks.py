@@ -1,54 +1,26 @@
 """Walks around a vertex or a face, and the queries that follow: written once over the steps taken.
 
-A circulator writes what is given by all that it comes past: ``circulate(m, element, out) -> (count,
-last)``.
+A circulator visits what is given by all that it comes past: ``circulate(m, element, state, given)
+-> (state, last)``, with ``state = visit(m, it, state, given)`` for each. A query writes it down.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import cache
 from typing import Any
 
 from hem.arrays import Array
 from hem.authoring.kernels import Kernel, append_face, kernel, without
 
-Giving = Callable[[Kernel], Kernel]
-"""Makes a circulator that writes what the kernel gives."""
+Giving = Callable[[Kernel, Kernel, Kernel], Kernel]
+"""Makes a circulator of what is given, of how that is visited, and of what turns one way round."""
 
+Visiting = Callable[[Kernel, Kernel], Kernel]
+"""Makes ``visit_all(m, element, state, given) -> state`` of the last two."""
 
-def circulator(clockwise: Kernel, counterclockwise: Kernel) -> Giving:
-    """Make, for ``give(m, item, v)``, ``around(m, start, v, out) -> (count, last)``.
-
-    A step ``step(m, item, v)`` goes from one item at vertex ``v`` (a half-edge, an edge, a
-    triangle) to the next, or to a negative number at the border. What the items give comes
-    counterclockwise. A fan open at the border is circulated from both sides of ``start``; ``last``
-    is its last item, and -1 where the fan is closed. Cost O(valence).
-    """
-
-    def giving(give: Kernel) -> Kernel:
-        @kernel
-        def around(m: Any, start: int, v: int, out: Array) -> tuple[int, int]:
-            count, item = 0, start
-            while item >= 0:  # what is given is written at once: to come back to it takes longer
-                out[count] = give(m, item, v)
-                count += 1
-                item = clockwise(m, item, v)
-                if item == start:
-                    reverse(out, count)
-                    return count, -1
-            reverse(out, count)
-            last = start
-            item = counterclockwise(m, start, v) if count else -1
-            while item >= 0:
-                out[count] = give(m, item, v)
-                count += 1
-                last = item
-                item = counterclockwise(m, item, v)
-            return count, last
-
-        return around
-
-    return giving
+_VISITING: dict[Kernel, Visiting] = {}
+"""Of the queries that are made here."""
 
 
 @kernel
@@ -57,25 +29,132 @@ def as_met(m: Any, h: int, at: int) -> int:
     return h
 
 
+@kernel
+def write(m: Any, it: int, count: int, out: Array) -> int:
+    """Visit by writing down -> how many are written."""
+    out[count] = it
+    return count + 1
+
+
+@kernel
+def reverse(out: Array, count: int) -> int:
+    """Turn the first ``counts`` elements round, in place."""
+    first, last = 0, count - 1
+    while first < last:
+        out[first], out[last] = out[last], out[first]
+        first += 1
+        last -= 1
+    return count
+
+
+@kernel
+def in_any_order(given: Any, state: Any) -> Any:
+    """Stands for ``reverse`` where what was visited is not to be turned round."""
+    return state
+
+
+def query_of(visiting: Visiting) -> Kernel:
+    """Make a query, which writes down what is visited. Others may visit it otherwise."""
+    write_all = visiting(write, reverse)
+
+    @kernel
+    def query(m: Any, element: int, out: Array) -> int:
+        return int(write_all(m, element, 0, out))
+
+    _VISITING[query] = visiting
+    return query
+
+
+@cache
+def visiting(query: Kernel, visit: Kernel) -> Kernel:
+    """Make ``visit_all(m, element, state, given) -> state``, for a query and what to do with each.
+
+    ``visit(m, it, state, given) -> state`` is called for every answer, in any order: on the way,
+    where the query is a walk, which takes half the time of writing to scratch and reading again.
+    Else the answers are written to ``given.out``. ``state`` is a number, or a tuple of some.
+    """
+    if query in _VISITING:
+        return _VISITING[query](visit, in_any_order)
+
+    @kernel
+    def visit_all(m: Any, element: int, state: Any, given: Any) -> Any:
+        out = given.out
+        for i in range(query(m, element, out)):
+            state = visit(m, out[i], state, given)
+        return state
+
+    return visit_all
+
+
+@kernel
+def count_one(m: Any, it: int, count: int, given: Any) -> int:
+    """Visit by counting."""
+    return count + 1
+
+
+@cache
+def counting(query: Kernel) -> Kernel:
+    """Make ``count(m, element, out) -> int``: how many answers there are, not kept if it may be."""
+    if query not in _VISITING:
+        return query
+    count_all = visiting(query, count_one)
+
+    @kernel
+    def count(m: Any, element: int, out: Array) -> int:
+        return int(count_all(m, element, 0, out))
+
+    return count
+
+
+def circulator(clockwise: Kernel, counterclockwise: Kernel) -> Giving:
+    """Make, for ``give(m, item, v)``, ``around(m, start, v, state, given) -> (state, last)``.
+
+    A step ``step(m, item, v)`` goes from one item at vertex ``v`` (a half-edge, an edge, a
+    triangle) to the next, or to a negative number at the border. What the items give comes
+    counterclockwise. A fan open at the border is circulated from both sides of ``start``; ``last``
+    is its last item, and -1 where the fan is closed. Cost O(valence).
+    """
+
+    def giving(give: Kernel, visit: Kernel, turned: Kernel) -> Kernel:
+        @kernel
+        def around(m: Any, start: int, v: int, state: Any, given: Any) -> tuple[Any, int]:
+            item = start
+            while item >= 0:  # what is given is visited at once: to come back to it takes longer
+                state = visit(m, give(m, item, v), state, given)
+                item = clockwise(m, item, v)
+                if item == start:
+                    return turned(given, state), -1
+            state = turned(given, state)
+            last = start
+            item = counterclockwise(m, start, v) if start >= 0 else -1
+            while item >= 0:
+                state = visit(m, give(m, item, v), state, given)
+                last = item
+                item = counterclockwise(m, item, v)
+            return state, last
+
+        return around
+
+    return giving
+
+
 def from_vertex(first: Kernel, around: Giving, enter: Kernel = as_met) -> Giving:
     """Make, for ``give(m, h)``, the circulator of a vertex that begins at ``first(m, v)``.
 
     ``enter(m, it, v)`` is the half-edge that leaves v for what ``first`` leads to. O(valence).
     """
 
-    def giving(give: Kernel) -> Kernel:
+    def giving(give: Kernel, visit: Kernel, turned: Kernel) -> Kernel:
         @kernel
         def give_of(m: Any, h: int, v: int) -> int:
             return give(m, h)
 
-        walk = around(give_of)
+        walk = around(give_of, visit, turned)
 
         @kernel
-        def circulate(m: Any, v: int, out: Array) -> tuple[int, int]:
+        def circulate(m: Any, v: int, state: Any, given: Any) -> tuple[Any, int]:
             start = first(m, v)
-            if start < 0:
-                return 0, -1
-            return walk(m, enter(m, start, v), v, out)
+            return walk(m, enter(m, start, v) if start >= 0 else -1, v, state, given)
 
         return circulate
 
@@ -84,29 +163,44 @@ def from_vertex(first: Kernel, around: Giving, enter: Kernel = as_met) -> Giving
 
 def each(giving: Giving, give: Kernel) -> Kernel:
     """Make a query: what is given by every half-edge that a circulator comes past."""
-    circulate = giving(give)
-
-    @kernel
-    def query(m: Any, element: int, out: Array) -> int:
-        count, _ = circulate(m, element, out)
-        return count
-
-    return query
+    return query_of(_visiting_each(giving, give))
 
 
 def each_but_last(giving: Giving, give: Kernel) -> Kernel:
     """Make a query as ``each``, without the last half-edge if a fan is open.
 
-    It leaves the vertex along the border, and has no face.
+    It leaves the vertex along the border, and gives none: a negative number.
     """
-    circulate = giving(give)
+    write_all, visiting_each = giving(give, write, reverse), _visiting_each(giving, give)
 
     @kernel
     def query(m: Any, v: int, out: Array) -> int:
-        count, last = circulate(m, v, out)
+        count, last = write_all(m, v, 0, out)
         return count if last < 0 else count - 1
 
+    def visiting(visit: Kernel, turned: Kernel) -> Kernel:
+        @kernel
+        def visit_given(m: Any, it: int, state: Any, given: Any) -> Any:
+            return visit(m, it, state, given) if it >= 0 else state
+
+        return visiting_each(visit_given, turned)
+
+    _VISITING[query] = visiting
     return query
+
+
+def _visiting_each(giving: Giving, give: Kernel) -> Visiting:
+    def visiting(visit: Kernel, turned: Kernel) -> Kernel:
+        circulate = giving(give, visit, turned)
+
+        @kernel
+        def visit_all(m: Any, element: int, state: Any, given: Any) -> Any:
+            state, _ = circulate(m, element, state, given)
+            return state
+
+        return visit_all
+
+    return visiting
 
 
 def each_and_last(giving: Giving, give: Kernel, last_of: Kernel) -> Kernel:
@@ -114,17 +208,18 @@ def each_and_last(giving: Giving, give: Kernel, last_of: Kernel) -> Kernel:
 
     No half-edge leaves the vertex beyond it, but the edge and the neighbor are there.
     """
-    circulate = giving(give)
 
-    @kernel
-    def query(m: Any, v: int, out: Array) -> int:
-        count, last = circulate(m, v, out)
-        if last < 0:
-            return count
-        out[count] = last_of(m, last)
-        return count + 1
+    def visiting(visit: Kernel, turned: Kernel) -> Kernel:
+        circulate = giving(give, visit, turned)
 
-    return query
+        @kernel
+        def visit_all(m: Any, element: int, state: Any, given: Any) -> Any:
+            state, last = circulate(m, element, state, given)
+            return state if last < 0 else visit(m, last_of(m, last), state, given)
+
+        return visit_all
+
+    return query_of(visiting)
 
 
 def each_side(first: Kernel, following: Kernel, give: Kernel, enter: Kernel = as_met) -> Kernel:
@@ -133,16 +228,19 @@ def each_side(first: Kernel, following: Kernel, give: Kernel, enter: Kernel = as
     ``enter(m, it, f)`` is the half-edge in f of what ``first`` and ``following(m, h)`` lead to.
     """
 
-    @kernel
-    def query(m: Any, f: int, out: Array) -> int:
-        it = first(m, f)
-        for i in range(3):
-            h = enter(m, it, f)
-            out[i] = give(m, h)
-            it = following(m, h)
-        return 3
+    def visiting(visit: Kernel, turned: Kernel) -> Kernel:
+        @kernel
+        def visit_all(m: Any, f: int, state: Any, given: Any) -> Any:
+            it = first(m, f)
+            for _ in range(3):
+                h = enter(m, it, f)
+                state = visit(m, give(m, h), state, given)
+                it = following(m, h)
+            return state
 
-    return query
+        return visit_all
+
+    return query_of(visiting)
 
 
 def faces_across(
@@ -248,13 +346,3 @@ def joined_by_steps(first: Kernel, clockwise: Kernel, ends: Kernel, find: Kernel
         return True
 
     return joined
-
-
-@kernel
-def reverse(out: Array, count: int) -> None:
-    """Turn the first ``counts`` elements round, in place."""
-    first, last = 0, count - 1
-    while first < last:
-        out[first], out[last] = out[last], out[first]
-        first += 1
-        last -= 1

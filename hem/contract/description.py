@@ -142,7 +142,7 @@ class Declared:
         return self.queries["face_vertices"].copy_touched(exists, coordinate)
 
     def _derived(self, kernel: Kernel) -> Uses:
-        return self._uses(kernel, self._records)
+        return self._uses(kernel, self._records, self.storage.columns(self._records))
 
     def _require_parts(self, cls: Any) -> None:
         missing = [it for it in ("records_type", "fields") if not hasattr(cls, it)]

@@ -111,9 +111,10 @@ def removing(k: Kernels, operations: Kernels) -> Kernel:
 
     @kernel
     def remove(m: Any, plan: Removal) -> int:
+        log, end = plan.log, plan.log[0]
         for i in range(len(plan.faces)):
             remove_records(m, plan.faces[i])
-            log_element(plan.log, FACE + REMOVED, plan.faces[i])
+            end = log_element(log, end, FACE + REMOVED, plan.faces[i])
         for i in range(len(plan.anchors)):
             set_vertex_face(m, plan.anchors[i, 0], plan.anchors[i, 1])
         m.counts[FACES] -= len(plan.faces)
@@ -121,7 +122,8 @@ def removing(k: Kernels, operations: Kernels) -> Kernel:
         if plan.counted[1] >= 0:
             kill_vertex(m, plan.counted[1])
             m.counts[VERTICES] -= 1
-            log_element(plan.log, VERTEX + REMOVED, plan.counted[1])
+            end = log_element(log, end, VERTEX + REMOVED, plan.counted[1])
+        log[0] = end
         return 0
 
     return remove

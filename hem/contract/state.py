@@ -42,6 +42,7 @@ class State:
 
     def __init__(self, declared: Declared, records: Any) -> None:
         self.declared, self.storage = declared, declared.storage
+        self.storage.require_columns(records)
         self.records = records
         self._pins: list[tuple[Any, Callable[[State], tuple[Any, ...]]]] = []
         self._valence_counted = 0
@@ -140,13 +141,17 @@ class State:
             self.records = self.storage.with_room(self.records, vertices, faces)
             self._repin()
 
-    def widen(self, more: int = 0) -> None:
+    def widen(self, more: int = 0, most: int | None = None) -> None:
         """See that the answer to any query fits into the scratch, at a valence by so many larger.
 
-        It doubles, so its bytes are in proportion to the operations done, and so is the time to
-        count valences anew: O(1) per operation in the long run.
+        Or at the ``most`` that any vertex will have, where that is known. It doubles, so its bytes
+        are in proportion to the operations done, and so is the time to count valences anew: O(1)
+        per operation in the long run.
         """
         room, counts = len(self.out["edge"]), self.records.counts
+        if most is not None:
+            counts[VALENCE] = min(counts[VALENCE], most)
+            more = most - int(counts[VALENCE])
         if WIDTH * (counts[VALENCE] + more + 1) > room:
             if counts[VALENCE] > self._valence_counted + counts[FACES] // 8:
                 self.count_valence()

@@ -1,5 +1,6 @@
 """How the records of a structure are held: what follows from its fields, whatever the mesh."""
 
+from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, ClassVar
 
@@ -28,6 +29,24 @@ class Storage:
 
     def __init__(self, fields: Sequence[Field], step: Step | None) -> None:
         self.fields, self._step = fields, step
+
+    def columns(self, records: type[Any]) -> tuple[int, ...]:
+        """How many columns each array of such records has; 0 where its fields do not say."""
+        counts = Counter[str]()
+        for field in self.fields:
+            counts[field.array] += field.width
+        return tuple(counts[name] for name in records._fields)
+
+    def require_columns(self, records: Any) -> None:
+        """Raise TypeError if an array has another number of columns, as kernels rely on it."""
+        for name, array, count in zip(
+            records._fields, records, self.columns(type(records)), strict=True
+        ):
+            if count and array.ndim == 2 and array.shape[1] != count:
+                raise TypeError(
+                    f"{type(records).__name__}.{name} has {array.shape[1]} columns, "
+                    f"and its fields {count}"
+                )
 
     def alive(self, records: Any, element: str, rows: Any = slice(None)) -> Bools:
         """(end,) bool: which of the records of a kind are live, or which of ``rows``. O(rows)."""

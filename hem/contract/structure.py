@@ -417,15 +417,18 @@ class Structure(Described, Surveying, abstract=True):
         self._state.prepare()
         return int(self.declared.algorithm(make).run(plan, *self.records))
 
-    def scratch(self, splits: int, operations: int | None = None) -> tuple[Any, Array]:
+    def scratch(
+        self, splits: int, operations: int | None = None, valence: int | None = None
+    ) -> tuple[Any, Array]:
         """Make room for so many splits -> scratch and a log, for all of them or ``operations``.
 
-        Cost O(1) per split in the long run.
+        ``valence``: the most faces that any vertex has now and will have meanwhile, if the caller
+        knows; else every operation is taken to add one. Cost O(1) per split in the long run.
         """
         more = splits if operations is None else operations
         self._queries.count_edges()
         self._state.make_room(splits, 2 * splits)
-        self._state.widen(more)
+        self._state.widen(more, valence)
         return self._state.out["edge"], np.zeros(authoring.ENTRIES * (more + 2), np.int64)
 
     @property

@@ -54,9 +54,16 @@ def _described(arrays: tuple[NDArray[Any], ...]) -> list[int]:
     ]
 
 
+Columns = tuple[int, ...]
+"""How many columns each array of records has by its fields; 0 where they do not say."""
+
+
 @cache
-def loader(kind: Any) -> Callable[[int], Any]:
-    """Make ``load(address) -> arrays`` for compiled code, for arrays pinned as this ``kind``."""
+def loader(kind: Any, columns: Columns) -> Callable[[int], Any]:
+    """Make ``load(address) -> arrays`` for compiled code, for arrays pinned as this ``kind``.
+
+    The first of them are records with so many ``columns``.
+    """
 
     def load(context: Any, address: Any) -> Any:
         def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
@@ -66,7 +73,7 @@ def loader(kind: Any) -> Callable[[int], Any]:
                 raise TypeError("this version of Numba lays arrays out otherwise than hem expects")
             image = described.as_pointer()
             loaded = builder.load(builder.inttoptr(arguments[0], image))
-            return _without_owner(context, builder, kind, loaded)
+            return _without_owner(context, builder, kind, loaded, columns)
 
         return kind(types.intp), generate
 
@@ -74,25 +81,35 @@ def loader(kind: Any) -> Callable[[int], Any]:
     return loading
 
 
-def _borrow(context: Any, given: Any) -> Any:
-    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        return _without_owner(context, builder, given, arguments[0])
+@cache
+def borrower(columns: Columns = ()) -> Callable[[Any], Any]:
+    """Make ``borrowed(arrays)``: the same, of which compiled code counts no references.
 
-    return given(given), generate
+    Whoever calls keeps them alive. To count takes longer than most steps, and is no use to them.
+    """
+
+    def borrow(context: Any, given: Any) -> Any:
+        def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+            return _without_owner(context, builder, given, arguments[0], columns)
+
+        return given(given), generate
+
+    borrowing: Callable[[Any], Any] = intrinsic(borrow)
+    return borrowing
 
 
-borrowed: Callable[[Any], Any] = intrinsic(_borrow)
-"""The same arrays, or tuples of them, of which compiled code counts no references.
+def _without_owner(context: Any, builder: Any, kind: Any, value: Any, columns: Columns = ()) -> Any:
+    """A value whose arrays have neither an owner nor a parent, as the compiler can see.
 
-Whoever calls keeps them alive. To count takes longer than most steps, and is no use to them.
-"""
-
-
-def _without_owner(context: Any, builder: Any, kind: Any, value: Any) -> Any:
-    """A value whose arrays have neither an owner nor a parent, as the compiler can see."""
+    Of a tuple it can see how many ``columns`` the first have: to find a row by a number that it
+    knows takes one instruction, and else a product, on which every step of a walk would wait.
+    """
     if isinstance(kind, types.BaseTuple):
-        for i, part in enumerate(kind):
+        counts = (*columns, *(0 for _ in range(len(columns), len(kind))))
+        for i, (part, count) in enumerate(zip(kind, counts, strict=True)):
             own = _without_owner(context, builder, part, builder.extract_value(value, i))
+            if count and part.ndim == 2:
+                own = _with_columns(context, builder, part, own, count)
             value = builder.insert_value(value, own, i)
     if isinstance(kind, types.Array):
         array = context.make_array(kind)(context, builder, value)
@@ -100,3 +117,10 @@ def _without_owner(context: Any, builder: Any, kind: Any, value: Any) -> Any:
         array.parent = get_null_value(array.parent.type)
         return array._getvalue()
     return value
+
+
+def _with_columns(context: Any, builder: Any, kind: Any, value: Any, count: int) -> Any:
+    array = context.make_array(kind)(context, builder, value)
+    known = context.get_constant(types.intp, count)
+    array.shape = builder.insert_value(array.shape, known, 1)
+    return array._getvalue()

@@ -30,7 +30,7 @@ def unbound(*_: Any) -> Any:
 
 
 def itself(arrays: Any) -> Any:
-    """Stands where ``Uses`` puts ``borrowed`` if it compiles."""
+    """Stands where ``Uses`` puts what ``borrower`` makes, for records ``_OWN``, if it compiles."""
     return arrays
 
 
@@ -41,6 +41,7 @@ _EXISTS: Kernel = unbound
 _EDGE_VERTICES: Kernel = unbound
 _COORDINATE: Kernel = unbound
 _BORROWED: Callable[[Any], Any] = itself
+_OWN: Callable[[Any], Any] = itself
 
 
 def single(handle: int, address: int) -> Array:
@@ -65,7 +66,7 @@ def step(handle: int, address: int) -> int:
 
 def walk(handles: Array, found: Array, *arrays: Array) -> int:
     """One step from each of many handles -> the place of the first that names nothing."""
-    m = _RECORDS(*_BORROWED(arrays))
+    m = _RECORDS(*_OWN(arrays))
     for i in range(len(handles)):
         if not _EXISTS(m, handles[i]):
             return i
@@ -89,7 +90,7 @@ def perform(address: int) -> int:
 
 def batch(handles: Array, offsets: Array, values: Array, width: int, *arrays: Array) -> Array:
     """Many handles into offsets and values."""
-    m, room = _RECORDS(*_BORROWED(arrays)), _BORROWED(values)
+    m, room = _RECORDS(*_OWN(arrays)), _BORROWED(values)
     end = 0
     for i in range(len(handles)):
         offsets[i] = end
@@ -103,7 +104,7 @@ def batch(handles: Array, offsets: Array, values: Array, width: int, *arrays: Ar
 
 def sweep(handles: Array, out: Array, *arrays: Array) -> int:
     """Many handles with nothing kept, for timing -> a checksum."""
-    m = _RECORDS(*_BORROWED(arrays))
+    m = _RECORDS(*_OWN(arrays))
     checksum, out = 0, _BORROWED(out)
     for i in range(len(handles)):
         count = _KERNEL(m, handles[i], out)
@@ -115,7 +116,7 @@ def sweep(handles: Array, out: Array, *arrays: Array) -> int:
 
 def tally(handles: Array, times: Array, out: Array, *arrays: Array) -> None:
     """How many times each element is an answer, added to what ``times`` has."""
-    m, times, out = _RECORDS(*_BORROWED(arrays)), _BORROWED(times), _BORROWED(out)
+    m, times, out = _RECORDS(*_OWN(arrays)), _BORROWED(times), _BORROWED(out)
     for i in range(len(handles)):
         for j in range(_KERNEL(m, handles[i], out)):
             times[out[j]] += 1
@@ -126,7 +127,7 @@ def copy_touched(touched: Array, points: Array, indices: Array, out: Array, *arr
 
     Or the place of the first entry that names what is not there, or has no row.
     """
-    m = _RECORDS(*_BORROWED(arrays))
+    m = _RECORDS(*_OWN(arrays))
     if points.shape[1] != 3 or indices.shape[1] != 3 or m.counts[SIDES] > len(out):
         return 0
     vertices = min(len(points), m.counts[VERTEX_END])
@@ -151,7 +152,7 @@ def copy_touched(touched: Array, points: Array, indices: Array, out: Array, *arr
 
 def run(plan: Any, *arrays: Array) -> int:
     """An algorithm."""
-    result: int = _KERNEL(_RECORDS(*_BORROWED(arrays)), _BORROWED(plan))
+    result: int = _KERNEL(_RECORDS(*_OWN(arrays)), _BORROWED(plan))
     return result
 
 

@@ -23,17 +23,17 @@ from hem.arrays import Array
 from hem.authoring import Field, Kernel, field_at
 from hem.engine import templates
 from hem.engine.counting import CountingArray, Read, TracedArray, interpreted, source_of
-from hem.engine.pinned import borrowed, loader
+from hem.engine.pinned import Columns, borrower, loader
 
 SHARED = ("edit.py", "authoring/**/*.py", "engine/*.py")
 """What every structure's machine code is made of, beside its own files."""
 
 
 class Uses:
-    """The uses of one query kernel on one kind of records (a ``NamedTuple`` of arrays)."""
+    """The uses of one kernel on one kind of records: a ``NamedTuple`` of arrays of ``columns``."""
 
-    def __init__(self, kernel: Kernel, records: type[Any]) -> None:
-        self._kernel, self._records = kernel, records
+    def __init__(self, kernel: Kernel, records: type[Any], columns: Columns) -> None:
+        self._kernel, self._records, self._columns = kernel, records, columns
         self._made: dict[Any, Callable[..., Any]] = {}
 
     def single(self, pinned: Any, exists: Kernel) -> Callable[[int, Any], Array]:
@@ -64,7 +64,7 @@ class Uses:
 
     def _bound(self, template: Kernel, kind: Any, **scope: Any) -> Callable[..., Any]:
         """``template`` for arrays pinned as this ``kind``."""
-        return self._compiled(template, str(kind), _LOAD=loader(kind), **scope)
+        return self._compiled(template, str(kind), _LOAD=loader(kind, self._columns), **scope)
 
     @cached_property
     def batch(self) -> Callable[..., Array]:
@@ -165,11 +165,13 @@ class Uses:
     def _compile(
         self, template: Kernel, variant: str, scope: Mapping[str, Any]
     ) -> Callable[..., Any]:
-        own = {"_KERNEL": self._kernel, "_RECORDS": self._records, "_BORROWED": borrowed}
-        scope = {**own, **scope}
+        borrowed = {"_BORROWED": borrower(), "_OWN": borrower(self._columns)}
+        scope = {"_KERNEL": self._kernel, "_RECORDS": self._records, **borrowed, **scope}
         function = FunctionType(template.__code__, {**template.__globals__, **scope})
         names = template.__name__, self._records.__name__, source_of(self._kernel).__name__
-        function.__qualname__ = "_".join([*names, _digest(scope.values(), variant)])
+        function.__qualname__ = "_".join(
+            [*names, _digest(scope.values(), f"{variant} {self._columns}")]
+        )
         # To let other threads run would take longer than a query.
         nogil = template in (templates.batch, templates.sweep, templates.walk, templates.run)
         compiled: Callable[..., Any] = njit(cache=True, nogil=nogil, no_cfunc_wrapper=True)(

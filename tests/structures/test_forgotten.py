@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 
+import hem
 import structures
 
 SOURCE = (Path(structures.__file__).parent / "half_edge.py").read_text("utf-8")
@@ -51,6 +53,13 @@ def test_two_structures_of_one_name_are_refused(tmp_path, monkeypatch):
     monkeypatch.syspath_prepend(tmp_path)
     with pytest.raises(TypeError, match="are both called 'half_edge'"):
         structures.find_described([str(tmp_path / package)], package)
+
+
+def test_records_with_other_columns_than_their_fields_are_refused():
+    s = structures.build("half_edge", hem.generate("torus", 100))
+    wide = np.zeros((len(s.records.half_edge), 5), np.int32)
+    with pytest.raises(TypeError, match=r"HalfEdgeRecords.half_edge has 5 columns.* fields 4"):
+        structures.REGISTRY["half_edge"](s.records._replace(half_edge=wide))
 
 
 def test_a_claim_of_no_query_is_refused(tmp_path, monkeypatch):

@@ -68,7 +68,7 @@ def make(k: Kernels) -> Kernel:
         count_new(m, edges, 1)
         m.counts[SIDES] = max(m.counts[SIDES], n)
         m.counts[VALENCE] = max(m.counts[VALENCE] + 2, n)
-        log_faces(log, CREATED, f, -1)
+        log[0] = log_faces(log, log[0], CREATED, f, -1)
         return int(f)
 
     return add_face

@@ -27,12 +27,13 @@ from hem.authoring.kernels import (
     VERTICES,
     Kernel,
     Kernels,
-    distinct,
+    count_shared,
     kernel,
 )
 from hem.authoring.operations.parts import Operation, has_scratch, log_element
 from hem.authoring.operations.rules import LEFT, RIGHT, A, B, C, D, border, surface_edge
 from hem.authoring.refusals import ALLOWED, NEEDS_ROOM, Refusal
+from hem.authoring.walks import counting
 from hem.edit import CHANGED, FACE, REMOVED, VERTEX
 
 
@@ -61,19 +62,18 @@ def rule(k: Kernels) -> Kernel:
         around_a = vertex_vertices(m, at[A], out)
         border_a = on_border(m, at[A], around_a, out[around_a:])
         around_b = vertex_vertices(m, at[B], out[around_a:])
-        both = around_a + around_b
-        border_b = on_border(m, at[B], around_b, out[both:])
+        border_b = on_border(m, at[B], around_b, out[around_a + around_b :])
         if others == 1 and border_a and border_b:
             return Refusal.TWO_BORDERS
         closed = around_a == 3 and around_b == 3 and not border_a and not border_b
         if closed and triangles == 2 and are_triangles(m, at[A], at[C], at[C], at[B]):
             return Refusal.TETRAHEDRON
-        if both - distinct(out, both) != triangles:
+        if count_shared(out, around_a, around_b) != triangles:
             return Refusal.COMMON_NEIGHBOR
         if m.counts[SIDES] > 3:
             around_a = vertex_faces(m, at[A], out)
-            both = around_a + vertex_faces(m, at[B], out[around_a:])
-            if both - distinct(out, both) != others + 1:
+            around_b = vertex_faces(m, at[B], out[around_a:])
+            if count_shared(out, around_a, around_b) != others + 1:
                 return Refusal.SHARED_FACE
         return ALLOWED
 
@@ -106,6 +106,7 @@ def _parts(k: Kernels) -> tuple[Kernel, Kernel]:
 def make(k: Kernels) -> Kernel:
     """The operation for one structure."""
     may_collapse_edge, vertex_faces = rule(k), k["vertex_faces"]
+    count_faces = counting(vertex_faces)
     collapse_records, kill_vertex = k["collapse_records"], k["kill_vertex"]
 
     @kernel
@@ -124,18 +125,18 @@ def make(k: Kernels) -> Kernel:
             return ALLOWED
         drop = at[A] + at[B] - keep
         triangles = (at[C] >= 0) + (at[D] >= 0)  # which vanish; larger faces lose a corner
-        stay = vertex_faces(m, keep, out)
-        around = vertex_faces(m, drop, out)
+        stay = count_faces(m, keep, out)
+        around, end = vertex_faces(m, drop, out), log[0]
         for i in range(around):
             gone = (out[i] == at[LEFT] and at[C] >= 0) or (out[i] == at[RIGHT] and at[D] >= 0)
-            log_element(log, FACE + (REMOVED if gone else CHANGED), out[i])
+            end = log_element(log, end, FACE + (REMOVED if gone else CHANGED), out[i])
         collapse_records(m, args[0], at, drop, keep, around, out)
         kill_vertex(m, drop)
         m.counts[VERTICES] -= 1
         m.counts[EDGES] -= 1 + triangles
         m.counts[FACES] -= triangles
         m.counts[VALENCE] = max(m.counts[VALENCE], stay + around)
-        log_element(log, VERTEX + REMOVED, drop)
+        log[0] = log_element(log, end, VERTEX + REMOVED, drop)
         return int(keep)
 
     return collapse_edge

@@ -64,7 +64,7 @@ def make(k: Kernels) -> Kernel:
         else:
             flip_records(m, args[0], at, at[RIGHT], at[LEFT])
         m.counts[VALENCE] += 1
-        log_faces(log, CHANGED, at[LEFT], at[RIGHT])
+        log[0] = log_faces(log, log[0], CHANGED, at[LEFT], at[RIGHT])
         return ALLOWED
 
     return flip_edge

@@ -60,27 +60,32 @@ and the table is less than four times as large.
 
 
 @kernel
-def log_element(log: Array, what: int, index: int) -> None:
-    """Log what happened to a vertex or a face."""
-    log[0] += 1
-    log[log[0]] = (index << 3) | what
+def log_element(log: Array, end: int, what: int, index: int) -> int:
+    """Log what happened to a vertex or a face -> the new end of the log.
+
+    Who logs writes the end to ``log[0]`` once: to read it back each time takes longer.
+    """
+    log[end + 1] = (index << 3) | what
+    return end + 1
 
 
 @kernel
-def log_faces(log: Array, what: int, first: int, second: int) -> None:
-    """Log what happened to one or two faces; -1 is none."""
+def log_faces(log: Array, end: int, what: int, first: int, second: int) -> int:
+    """Log what happened to one or two faces, of which -1 is none -> the new end."""
     if first >= 0:
-        log_element(log, FACE + what, first)
+        end = log_element(log, end, FACE + what, first)
     if second >= 0:
-        log_element(log, FACE + what, second)
+        end = log_element(log, end, FACE + what, second)
+    return end
 
 
 @kernel
-def log_parts(log: Array, first: int, count: int, face: int) -> None:
-    """Log so many new faces, which were parts of one that there was."""
+def log_parts(log: Array, end: int, first: int, count: int, face: int) -> int:
+    """Log so many new faces, which were parts of one that there was -> the new end."""
     for i in range(count):
-        log_element(log, FACE + CREATED, first + i)
-        log_element(log, PARENT, face)
+        end = log_element(log, end, FACE + CREATED, first + i)
+        end = log_element(log, end, PARENT, face)
+    return end
 
 
 @kernel

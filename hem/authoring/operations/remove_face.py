@@ -67,7 +67,7 @@ def make(k: Kernels) -> Kernel:
         m.counts[EDGES] -= count_free_edges(m, out, n)
         remove_records(m, face)
         m.counts[FACES] -= 1
-        log_faces(log, REMOVED, face, -1)
+        log[0] = log_faces(log, log[0], REMOVED, face, -1)
         return ALLOWED
 
     return remove_face

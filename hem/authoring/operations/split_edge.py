@@ -56,13 +56,12 @@ def make(k: Kernels) -> Kernel:
         split_edge_records(m, args[0], at, v, f)
         count_new(m, 1 + faces, faces)
         m.counts[VALENCE] += 1
-        log_element(log, VERTEX + CREATED, v)
-        log_element(log, PARENT, at[A])
-        log_element(log, PARENT, at[B])
-        log_faces(log, CHANGED, at[LEFT], at[RIGHT])
-        log_parts(log, f, 1, at[LEFT] if at[LEFT] >= 0 else at[RIGHT])
-        if faces == 2:
-            log_parts(log, f + 1, 1, at[RIGHT])
+        end = log_element(log, log[0], VERTEX + CREATED, v)
+        end = log_element(log, end, PARENT, at[A])
+        end = log_element(log, end, PARENT, at[B])
+        end = log_faces(log, end, CHANGED, at[LEFT], at[RIGHT])
+        end = log_parts(log, end, f, 1, at[LEFT] if at[LEFT] >= 0 else at[RIGHT])
+        log[0] = log_parts(log, end, f + 1, faces - 1, at[RIGHT])
         return v
 
     return split_edge

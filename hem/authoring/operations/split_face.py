@@ -57,11 +57,11 @@ def make(k: Kernels) -> Kernel:
         split_face_records(m, face, v, f, out)
         count_new(m, sides, sides - 1)
         m.counts[VALENCE] += 1
-        log_element(log, VERTEX + CREATED, v)
+        end = log_element(log, log[0], VERTEX + CREATED, v)
         for i in range(sides):
-            log_element(log, PARENT, out[i])
-        log_faces(log, CHANGED, face, -1)
-        log_parts(log, f, sides - 1, face)
+            end = log_element(log, end, PARENT, out[i])
+        end = log_faces(log, end, CHANGED, face, -1)
+        log[0] = log_parts(log, end, f, sides - 1, face)
         return v
 
     return split_face

@@ -38,7 +38,7 @@ def make_move_vertex(k: Kernels) -> Kernel:
         if not has_room(m, 0, 0, log):
             return NEEDS_ROOM
         set_point(m, args[0], point)
-        log_element(log, VERTEX + CHANGED, args[0])
+        log[0] = log_element(log, log[0], VERTEX + CHANGED, args[0])
         return int(args[0])
 
     return move_vertex
@@ -60,7 +60,7 @@ def make_add_vertex(k: Kernels) -> Kernel:
             return NEEDS_ROOM
         v = new_vertex(m, point)
         clear_vertex(m, v)
-        log_element(log, VERTEX + CREATED, v)
+        log[0] = log_element(log, log[0], VERTEX + CREATED, v)
         return v
 
     return add_vertex

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pytest
 
 import hem
 import structures
 from hem import algorithms
+from hem.algorithms.parts import extent, grid
 from tests.hem.algorithms.meshes import dented
 
 CLOSED, OPEN = dented("torus", 400), dented("grid", 400)
@@ -21,6 +24,17 @@ def neighbors(mesh: hem.TriangleMesh) -> np.ndarray:
             joined[x, y] += 1
             joined[y, x] += 1
     return joined
+
+
+@pytest.mark.parametrize("scale", [0.0, 1e-38, 1.0, 3e38])
+def test_sums_on_a_grid_are_exact_in_any_order(scale: float) -> None:
+    rng = np.random.default_rng(3)
+    x = (scale * rng.uniform(-1, 1, 40) * 2.0 ** rng.integers(-60, 1, 40)).astype(np.float32)
+    step = grid(extent(x), len(x))
+    on_grid = [float(it) + step - step for it in x]
+    sums = {sum(on_grid[i] for i in rng.permutation(40)) for _ in range(50)}
+    assert sums == {math.fsum(on_grid)}
+    assert abs(sums.pop() - math.fsum(x.tolist())) <= 40 * extent(x) * 2.0**-46
 
 
 @pytest.mark.parametrize("mesh", [CLOSED, OPEN], ids=["closed", "open"])
