@@ -147,18 +147,12 @@ def set_twins(m: HalfEdgeRecords, g: int, h: int) -> None:
 
 
 @kernel
-def new_half_edges(m: HalfEdgeRecords, count: int) -> int:
-    """Append so many half-edges -> the first."""
+def new_half_edge(m: HalfEdgeRecords, origin: int) -> int:
+    """Append a half-edge that has no twin yet."""
     h = m.counts[EDGE_END]
-    m.counts[EDGE_END] = h + count
+    m.half_edge[h, ORIGIN], m.half_edge[h, TWIN] = origin, -1
+    m.counts[EDGE_END] += 1
     return int(h)
-
-
-@kernel
-def join(m: HalfEdgeRecords, a: int, b: int, h: int) -> None:
-    """Make an edge of the new half-edges h, from a to b, and h + 1, back."""
-    m.half_edge[h, ORIGIN], m.half_edge[h + 1, ORIGIN] = a, b
-    set_twins(m, h, h + 1)
 
 
 @kernel
@@ -175,20 +169,16 @@ def split_edge_records(m: HalfEdgeRecords, e: int, at: Array, v: int, f: int) ->
     on_left, on_right = -1, -1  # the halves of the edge from v to b
     if left >= 0:
         bc, ca = others(m, left)
-        on_left = new_half_edges(m, 3)
-        cv, vc = on_left + 1, on_left + 2
-        m.half_edge[on_left, ORIGIN], m.half_edge[on_left, TWIN] = v, -1
-        join(m, at[C], v, cv)
+        on_left, cv, vc = new_half_edge(m, v), new_half_edge(m, at[C]), new_half_edge(m, v)
+        set_twins(m, cv, vc)
         set_face(m, at[LEFT], left, vc, ca)
         set_face(m, f, on_left, bc, cv)
         set_vertices(m, on_left)
         f += 1
     if right >= 0:
         ad, db = others(m, right)
-        on_right = new_half_edges(m, 3)
-        vd, dv = on_right + 1, on_right + 2
-        m.half_edge[on_right, ORIGIN], m.half_edge[on_right, TWIN] = at[B], -1
-        join(m, v, at[D], vd)
+        on_right, vd, dv = new_half_edge(m, at[B]), new_half_edge(m, v), new_half_edge(m, at[D])
+        set_twins(m, vd, dv)
         m.half_edge[right, ORIGIN] = v
         set_face(m, at[RIGHT], right, ad, dv)
         set_face(m, f, on_right, vd, db)
@@ -204,11 +194,12 @@ def split_face_records(m: HalfEdgeRecords, face: int, v: int, f: int, corners: A
     bc, ca = others(m, ab)
     a, b, c = m.half_edge[ab, ORIGIN], m.half_edge[bc, ORIGIN], m.half_edge[ca, ORIGIN]
     corners[0], corners[1], corners[2] = a, b, c
-    av = new_half_edges(m, 6)
-    va, bv, vb, cv, vc = av + 1, av + 2, av + 3, av + 4, av + 5
-    join(m, a, v, av)
-    join(m, b, v, bv)
-    join(m, c, v, cv)
+    av, va = new_half_edge(m, a), new_half_edge(m, v)
+    bv, vb = new_half_edge(m, b), new_half_edge(m, v)
+    cv, vc = new_half_edge(m, c), new_half_edge(m, v)
+    set_twins(m, av, va)
+    set_twins(m, bv, vb)
+    set_twins(m, cv, vc)
     set_face(m, face, ab, bv, va)
     set_face(m, f, bc, cv, vb)
     set_face(m, f + 1, ca, av, vc)
@@ -298,10 +289,7 @@ def add_records(m: HalfEdgeRecords, corners: Array, f: int) -> None:
     """Cost O(n_ev)."""
     a, b, c = corners[0], corners[1], corners[2]
     ab, bc, ca = find_half_edge(m, b, a), find_half_edge(m, c, b), find_half_edge(m, a, c)
-    g = new_half_edges(m, 3)
-    h, i = g + 1, g + 2
-    for j in range(3):
-        m.half_edge[g + j, ORIGIN], m.half_edge[g + j, TWIN] = corners[j], -1
+    g, h, i = new_half_edge(m, a), new_half_edge(m, b), new_half_edge(m, c)
     if ab >= 0:
         set_twins(m, g, ab)
     if bc >= 0:

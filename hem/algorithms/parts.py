@@ -204,9 +204,9 @@ NOTHING = 0, 0.0, 0.0, 0.0
 
 
 @kernel
-def next_corner(m: Any, v: int, corners: tuple[int, int, int], plan: Any) -> tuple[int, int, int]:
+def next_corner(m: Any, v: int, corners: Any, plan: Any) -> tuple[Any, Any, Any]:
     """Visit the corners of a triangle for all three of them."""
-    return corners[1], corners[2], int(v)
+    return corners[1], corners[2], np.int64(v)
 
 
 @cache
