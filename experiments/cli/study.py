@@ -80,7 +80,7 @@ def run_study(
 
 
 def _other_libraries(chosen: list[str] | None) -> list[str]:
-    """The experiments on libraries; tells those missing. ValueError for all, or for no name."""
+    """The experiments on libraries; names what is not installed. ValueError if all is."""
     from experiments.peers import OURS, PEERS, installed, missing
     from experiments.runs import experiments
 

@@ -136,7 +136,7 @@ class Case:
 
 
 def in_random_order(cases: Sequence[Case], seed: int | str) -> list[Case]:
-    """Random meshes, on each its cases at random, by the seed; it takes long to build anew."""
+    """Meshes at random, on each its cases at random, as the seed says; each mesh is built once."""
     random = Random(seed)
 
     def mesh(case: Case) -> tuple[str, int, int]:

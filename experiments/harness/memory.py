@@ -66,7 +66,7 @@ def _per_vertex(structure: str, reference_bytes: int) -> float:
 
 
 def available() -> int:
-    """Bytes that system and control group leave, or as told: ValueError for what is no size."""
+    """Bytes that system and control group leave, or as told; ValueError if that is no size."""
     told = os.environ.get(VARIABLE)
     return size_of(told) if told else min([psutil.virtual_memory().available, *_left_in_cgroups()])
 

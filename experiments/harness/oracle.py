@@ -19,7 +19,7 @@ class CheckFailedError(AssertionError):
 
 
 def check_query(s: Structure, mesh: TriangleMesh, query: Query, handles: Array) -> None:
-    """Compare answers for ``handles`` (k,) with the triangle list: CheckFailedError. O(k n_t)."""
+    """Compare answers for ``handles`` (k,) with the triangle list; CheckFailedError. O(k n_t)."""
     asked = getattr(s, query.name)
     keys = named(s, handles) if query.source == "edge" else handles
     for handle, key in zip(handles.tolist(), keys.tolist(), strict=True):

@@ -19,7 +19,7 @@ TRIES = 3  # times that a number of handles is tried before it is believed to la
 
 
 def checked_handles(case: Case) -> tuple[Structure, Array]:
-    """The structure of a case and its handles, some of them checked: CheckFailedError."""
+    """The structure of a case and its handles; CheckFailedError if some answers are wrong."""
     s = case.build()
     handles = queried_handles(case, s)
     check_query(s, case.mesh(), case.query, handles[:CHECKED_HANDLES])

@@ -31,7 +31,7 @@ SMALL_HUBS = 256  # faces of the small mesh where the valence varies
 
 
 def typical(seconds: Sequence[float]) -> float | None:
-    """The median of some rounds, as of a case: quartiles differ by their scatter. None of none."""
+    """The median of some rounds, by which cases are told, too; None where there are no rounds."""
     return float(np.median(seconds)) if len(seconds) else None
 
 

@@ -61,7 +61,7 @@ class Trends:
         return pd.DataFrame(rows, columns=["commit", "preset", "machine"])
 
     def only(self, machine: str | None = None, preset: str | None = None) -> Self:
-        """The runs of one machine, by first digits, or preset. ValueError says which there are."""
+        """The runs of one machine or preset, by first letters; ValueError names those there are."""
         about = self.about
         for what, wanted in (("machine", machine), ("preset", preset)):
             if wanted is not None:

@@ -10,7 +10,7 @@ from experiments.harness import Experiment, Table
 
 @cache
 def experiments() -> dict[str, Experiment]:
-    """Every experiment by file, in a study's order. ValueError names a file without its own."""
+    """Every experiment by file, in a study's order; ValueError names a file that has none."""
     declared: dict[str, Experiment] = {}
     for name in (it.name for it in iter_modules(package.__path__) if it.name.startswith("bench_")):
         module = import_module(f"experiments.{name}")

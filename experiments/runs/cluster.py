@@ -49,7 +49,7 @@ def require(address: str) -> None:
 
 
 def run(folder: Path, address: str, observer: study.Observer | None = None) -> None:
-    """Measure what the folder lacks on a cluster, as ``study.run``; ClusterError without one."""
+    """Measure what the folder lacks on a cluster, as ``study.run``; ClusterError if none is."""
     from distributed import wait
 
     observer = observer or study.Observer()
@@ -90,7 +90,7 @@ def measure_here(job: Job, commit: str) -> Returned:
 
 
 def measure_alone(job: Job, commit: str, wanted: Callable[[], bool]) -> Returned:
-    """Measure a job alone on this machine. ClusterError for other code, or when nobody wants it."""
+    """Measure a job alone here; ClusterError if other code runs here, or nobody wants the job."""
     host = os.environ.get(VARIABLE) or socket.gethostname()
     about = {**describe(job.preset), "host": host}
     if about["commit"] != commit:

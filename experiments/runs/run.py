@@ -40,7 +40,7 @@ class Run:
 
 
 def load(folder: Path | str) -> Run:
-    """Read a run. ResultsError if there is none, of another schema, or less than was measured."""
+    """Read a run; ResultsError if there is none, it has another schema, or something was lost."""
     import pandas as pd
 
     folder = Path(folder)

@@ -55,7 +55,7 @@ class CannotWriteError(OSError):
 
 
 class CaseFile:
-    """Measurements of one experiment on one structure. DamagedError, or ResultsError."""
+    """Measurements of one experiment on one structure; raises DamagedError or ResultsError."""
 
     def __init__(self, folder: Path, experiment: str, structure: str) -> None:
         self.path = folder / f"{experiment}.{structure}.jsonl"

@@ -245,7 +245,7 @@ def _measure_again(folder: Path, jobs: list[Job], until: float) -> None:
 
 @contextmanager
 def prepared(folder: Path, say: Callable[[str], None]) -> Iterator[None]:
-    """Have a folder for oneself, with room, nothing damaged. ResultsError for other code's."""
+    """A folder for oneself, with room and nothing damaged; ResultsError if other code began it."""
     with store.lock_run(folder):
         store.require_room(folder)
         begun = bool(store.case_files(folder))

@@ -38,7 +38,7 @@ def write(m: Any, it: int, count: int, out: Array) -> int:
 
 @kernel
 def reverse(out: Array, count: int) -> int:
-    """Turn the first ``counts`` elements round, in place."""
+    """Turn the first ``count`` elements round, in place."""
     first, last = 0, count - 1
     while first < last:
         out[first], out[last] = out[last], out[first]

@@ -21,7 +21,7 @@ def rows(handles: Array | Sequence[int], ends: Array | int = -1) -> Array:
 
 
 def integers(called: str, values: ArrayLike, dimensions: tuple[int, ...] = (0, 1)) -> Array:
-    """One handle or a row of them; MeshError for what is no such integers."""
+    """One handle or a row of them; MeshError for anything but such integers."""
     given = np.asarray(values)
     if given.ndim not in dimensions or (given.size and given.dtype.kind not in "iu"):
         one = "one handle or " if 0 in dimensions else "handles: "
