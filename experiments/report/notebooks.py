@@ -78,7 +78,8 @@ def _output(data: Any, metadata: Any, heading: str) -> Any:
     metadata, texts = dict(metadata or {}), dict(data)
     for kind, value in data.items():
         if kind.startswith("image/"):
-            metadata[kind] = {"alt": f"Plot: {heading}", **metadata.get(kind, {})}
+            shown = metadata.get(kind, {})
+            metadata[kind] = shown | {"alt": f"Plot: {heading}. {shown.get('alt', '')}".strip()}
         if isinstance(value, bytes):
             texts[kind] = b64encode(value).decode()
     return nbformat.v4.new_output("display_data", data=texts, metadata=metadata)

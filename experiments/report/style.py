@@ -56,7 +56,7 @@ def show_figures() -> None:
     if shell:
         select_figure_formats(shell, {"retina"})  # type: ignore[no-untyped-call]
         formatters = shell.display_formatter.formatters
-        formatters["image/svg+xml"].for_type(Plot, svg)
+        formatters["image/svg+xml"].for_type(Plot, lambda plot: (svg(plot), {"alt": words(plot)}))
         formatters["image/png"].for_type(Plot, lambda plot: None)
 
 
@@ -66,6 +66,20 @@ def svg(plot: Figure) -> str:
     with styled():
         plot.savefig(file, format="svg", transparent=True, metadata={"Date": None})
     return file.getvalue()
+
+
+def words(plot: Figure) -> str:
+    """A plot for those who do not see it: its panels, and from where to where each line goes."""
+    told = []
+    for axes in (it for it in plot.axes if it.get_visible()):
+        lines = []
+        for line in labeled(axes):
+            ends = np.asarray(line.get_ydata(), float)[[0, -1]]
+            first, last = (compact(float(f"{y:.2g}")) for y in ends)
+            lines.append(f"{line.get_label()} {first} to {last}")
+        about = ", ".join(filter(None, [axes.get_title("left"), axes.get_ylabel()]))
+        told.append(f"{about}: {'; '.join(lines)}")
+    return ". ".join(told)
 
 
 def panels(

@@ -29,6 +29,13 @@ RENDERED: dict[str, dict[str, Any]] = {
 }
 """The ways to keep a render mesh up to date, by the order of their cases, and their lines."""
 
+LINEAR: dict[str, Any] = {
+    "color": "#c9c9c9",
+    "linewidth": 0.6,
+    "linestyle": (0, (1, 3)),
+    "zorder": 0,
+}
+
 
 def draw_lines(
     axes: Axes, cases: pd.DataFrame, x: str, by: str, styles: Mapping[str, Any], **look: Any
@@ -45,11 +52,12 @@ def _draw(
     cases: pd.DataFrame, titles: Mapping[str, str], x: str, what: str, ylabel: str = "", *,
     panel: str = "subject", by: str = "structure", styles: Mapping[str, Any] = STYLES,
     also: Callable[[Axes, str], None] | None = None, room: float = 0.17, plain: bool = False,
-    **layout: Any,
+    diagonals: bool = False, **layout: Any,
 ) -> Plot:  # fmt: skip
     """A panel per title, of the cases with its value in the column ``panel``: lines as above.
 
-    ``also``: draws what else is in a panel. Raises MissingError if none has anything to draw.
+    ``also``: draws what else is in a panel; ``diagonals``: with lines to tell linear growth by.
+    Raises MissingError if none has anything to draw.
     """
     with style.styled():
         figure, every = style.panels(list(titles.values()), **layout)
@@ -74,6 +82,10 @@ def _draw(
             low, high = _heights(*every)
             every[0].set_ylim(low / 2.2, high * 2.2)
         style.finish_panels(figure, every, room)
+        for axes in every if diagonals else ():
+            (left, right), (low, high) = axes.get_xlim(), axes.get_ylim()
+            for y in np.geomspace(low * left / right, high, 8)[1:-1]:
+                axes.axline((left, y), (right, y * right / left), **LINEAR)
     return figure
 
 
@@ -108,7 +120,8 @@ def scaling(run: Run, axis: Axis, subjects: Iterable[str] = QUERIES) -> Plot:
     costs = _costs(run, axis, titles)
     also = partial(_draw_order_and_latency, run) if in_both_orders else None
     what, label = f"{axis.label} by {axis.variable}", style.axis_label(axis)
-    return _draw(costs, titles, axis.variable, what, label, also=also, sharex=True, sharey=True)
+    shape: dict[str, Any] = {"diagonals": True, "sharex": True, "sharey": True}
+    return _draw(costs, titles, axis.variable, what, label, also=also, **shape)
 
 
 def overview(run: Run) -> Plot:

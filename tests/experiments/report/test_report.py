@@ -25,7 +25,7 @@ from experiments.report import (
 )
 from experiments.report.figures import growth
 from experiments.report.session import Session, share
-from experiments.report.style import spread_apart
+from experiments.report.style import panels, spread_apart, styled, words
 from experiments.runs import ResultsError, load
 from tests.experiments.small_study import wait_for
 
@@ -167,6 +167,14 @@ def test_labels_do_not_overlap_and_stay_inside_the_figure(base_folder, name):
         for i, box in enumerate(boxes):
             assert figure.bbox.x1 >= box.x1
             assert not any(box.overlaps(other) for other in boxes[i + 1 :])
+
+
+def test_who_does_not_see_a_plot_is_told_its_panels_and_where_its_lines_go():
+    with styled():
+        plot, (axes, _) = panels(["Faces", "Edges"])
+        axes.plot([1, 10, 100], [2, 300, 15_000], label="TNS")
+        axes.set_ylabel("time, ns")
+    assert words(plot) == "Faces, time, ns: TNS 2 to 15k. Edges: "
 
 
 def test_labels_are_moved_as_little_as_need_be():
