@@ -17,7 +17,7 @@ Invariants
 
 Who walks around a vertex must find it again among the corners of every triangle on the way. An edge
 is named by its two vertices. Bytes per vertex with 8-byte references: 12 + 8 + 2 · 48 = 116
-(thesis 7.2).
+(thesis 7.2). Source: Shirley & Marschner, Fundamentals of Computer Graphics (2010), p. 269.
 """
 
 from __future__ import annotations

@@ -23,7 +23,7 @@ Invariants
 Who walks must look at every edge which way round it lies. The kernels therefore walk *directed*
 edges 2e + side: from tail to head with side 0, from head to tail with side 1; adding the side to a
 left-hand column gives the column to read. Bytes per vertex with 8-byte references:
-12 + 8 + 2 · 8 + 3 · 64 = 228 (thesis 7.3).
+12 + 8 + 2 · 8 + 3 · 64 = 228 (thesis 7.3). Source: Shirley & Marschner (2010), p. 273.
 """
 
 from __future__ import annotations
