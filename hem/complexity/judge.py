@@ -162,7 +162,7 @@ def _decide(costs: Costs, models: Comparison, claim: int, bound: Bound) -> tuple
     close, memory = ", ".join(names[m] for m in rivals), models.memory
     bent = memory.unmeasured is not None and not (memory.latency_known and best in kept)
     allowed = " once caches that no latency tells of are allowed for" if bent else ""
-    reason = f"{names[best]} explains the costs best, but {close} cannot be ruled out{allowed}."
+    reason = f"{names[best]} explains the costs best, and {close} about as well{allowed}."
     return "undetermined", reason
 
 
