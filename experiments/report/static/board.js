@@ -6,9 +6,14 @@
   const entries = [...document.querySelectorAll(".entry")];
   const buttons = [...form.querySelectorAll("button[data-group]")];
   const groups = ["outcome", "claimed", "structure", "kind"];
+  const heads = entries.map((it) => it.querySelector("summary"));
   const plain = (text) => text.toLowerCase().replace(/[-_→]/g, " ").replace(/\s+/g, " ");
   const words = new Map(entries.map((it) => [it, plain([it.id, it.dataset.outcome,
     it.querySelector("summary").textContent, it.querySelector(".words").textContent].join(" "))]));
+
+  function reachable(head) { // by Tab: one of many claims, the others from it by arrow keys
+    for (const it of heads) it.tabIndex = it === head ? 0 : -1;
+  }
 
   function chosen(group) {
     return buttons.filter((it) => it.dataset.group === group && it.ariaPressed === "true")
@@ -35,6 +40,7 @@
     shown.textContent = count === entries.length ? `${count} claims`
       : `${count} of ${entries.length} claims`;
     none.hidden = count > 0;
+    reachable(heads.find((it) => !it.parentElement.hidden));
   }
 
   function reset() {
@@ -57,6 +63,16 @@
       update();
     });
   }
+  document.getElementById("board").addEventListener("focusin", (event) => {
+    if (heads.includes(event.target)) reachable(event.target);
+  });
+  document.getElementById("board").addEventListener("keydown", (event) => {
+    const step = { ArrowDown: 1, ArrowUp: -1 }[event.key];
+    const seen = heads.filter((it) => !it.parentElement.hidden), from = seen.indexOf(event.target);
+    if (!step || from < 0 || !seen[from + step]) return;
+    event.preventDefault();
+    seen[from + step].focus();
+  });
   form.addEventListener("submit", (event) => event.preventDefault());
   search.addEventListener("input", update);
   document.getElementById("all").addEventListener("click", reset);

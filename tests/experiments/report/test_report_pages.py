@@ -210,6 +210,12 @@ def test_claims_unfold_by_the_keyboard_and_controls_have_names(front):
             "Input.dispatchKeyEvent", type=kind, key="Enter", text="\r" * (kind == "keyDown")
         )
     assert front.run("document.querySelector('.entry').open")
+    heads = "[...document.querySelectorAll('.entry summary')]"
+    for key, there in (("Shift", 0), ("ArrowDown", 1), ("ArrowDown", 2), ("ArrowUp", 1)):
+        front.call("Input.dispatchKeyEvent", type="keyDown", key=key)
+        assert front.run(f"{heads}.indexOf(document.activeElement)") == there
+        assert front.run(f"{heads}.findIndex(it => it.tabIndex === 0)") == there
+        assert front.run(f"{heads}.filter(it => it.tabIndex === 0).length") == 1
     unnamed = [
         node["role"]["value"]
         for node in front.call("Accessibility.getFullAXTree")["nodes"]
