@@ -10,7 +10,17 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from hem.arrays import Array, Handles, Indices, Points
-from hem.authoring import EDGES, ELEMENTS, QUERIES, SIDES, UNKNOWN, VALENCE, WIDTH, Field
+from hem.authoring import (
+    EDGES,
+    ELEMENTS,
+    QUERIES,
+    SIDES,
+    UNKNOWN,
+    VALENCE,
+    WIDTH,
+    Field,
+    in_slices,
+)
 from hem.contract import arguments
 from hem.contract.state import State
 from hem.contract.storage import HANDLE_TYPES, refuse_handles
@@ -140,10 +150,14 @@ class Queries:
         """Any handles for a step, checked."""
         step, state = self._declared.steps[name], self._state
         asked = arguments.integers(name, handles)
-        rows = np.atleast_1d(asked).astype(np.int64)
+        rows = np.require(np.atleast_1d(asked), np.int64, ["C", "W"])  # as the walk is compiled for
         found = np.empty(len(rows), HANDLE_TYPES.get(step.target, np.int64))
-        end = self._declared.walks[name](rows, found, *state.records)
-        if end < len(rows) or step.source == "vertex":
+        walk, records = self._declared.walks[name], state.records
+
+        def all_are_there(begin: int, end: int, _: int) -> bool:
+            return walk(rows[begin:end], found[begin:end], *records) == end - begin
+
+        if not all(in_slices(all_are_there, len(rows))) or step.source == "vertex":
             state.require(step.source, rows)
         return found if asked.ndim else int(found[0])
 

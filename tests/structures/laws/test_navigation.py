@@ -96,6 +96,20 @@ def test_a_batch_is_its_single_steps(walked: Navigable, name: str) -> None:
 
 
 @pytest.mark.parametrize("name", STEPS)
+def test_slices_of_a_batch_side_by_side_are_the_batch(walked: Navigable, name: str, monkeypatch):
+    step, source = getattr(walked, name), STEPS[name].source
+    handles = walked.half_edges() if source == "half_edge" else walked.handles(source)
+    alone = step(handles)
+    monkeypatch.setattr("hem.authoring.slices.slice_count", lambda n: min(n, 3) or 1)
+    handles.flags.writeable = False  # others than the loop is compiled for
+    for given in (handles, handles.astype(np.uint32), np.repeat(handles, 2)[::2], handles[:1]):
+        assert np.array_equal(step(given), alone[: len(given)])
+    for place in (0, len(handles) // 2, len(handles) - 1):
+        with pytest.raises(MeshError, match="no such"):
+            step(np.concatenate([handles[:place], [10**6], handles[place + 1 :]]))
+
+
+@pytest.mark.parametrize("name", STEPS)
 def test_what_is_no_half_edge_is_refused(walked: Navigable, name: str) -> None:
     s, step = walked, getattr(walked, name)
     for wrong in (-1, 10**6, 1 << 70, [0, -1], [10**6], 0.5, "0", None, [[0]]):
