@@ -35,7 +35,6 @@ from __future__ import annotations
 from typing import Any, ClassVar, NamedTuple, Self
 
 import numpy as np
-from numba import njit
 
 from hem.arrays import Array
 from hem.authoring import (
@@ -59,6 +58,7 @@ from hem.authoring import (
     without,
 )
 from hem.contract import Claims, Look, PackedEdges, PackedStorage
+from hem.engine import kept
 from hem.errors import MeshError
 from hem.meshes import TriangleMesh
 from hem.room import longer, rows
@@ -87,7 +87,7 @@ def slot(b: int, begin: int, end: int) -> int:
     return begin + ((b * 0x9E3779B1 & 0xFFFFFFFF) * (end - begin) >> 32)
 
 
-@njit(cache=True)
+@kept
 def find_neighbors(m: IndexedAdjacencyRecords) -> None:
     """Fill the rows and the map, unless they are standing. Cost O(n_v + n_t)."""
     if m.standing[0]:

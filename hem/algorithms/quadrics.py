@@ -9,11 +9,11 @@ are sums of rows. Source: Garland & Heckbert, Surface Simplification Using Quadr
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
 from hem.algorithms.parts import cross, unit
 from hem.arrays import Array, Floats
 from hem.authoring import kernel
+from hem.engine import kept
 
 WIDTH = 11
 
@@ -34,7 +34,7 @@ def add_plane(row: Array, normal: tuple[float, ...], point: Array, weight: float
         row[i] += weight * parts[i]
 
 
-@njit(cache=True)
+@kept
 def quadrics(points: Floats, triangles: Array, borders: Array) -> Floats:
     """(n, 11): by vertex, the planes of its faces and borders, weighted by area.
 

@@ -40,7 +40,7 @@ from hem.engine.counting import CountingArray, Read, interpreted
 from hem.engine.objects import Held, InterpretedUses, counting
 from hem.engine.pinned import Pinned
 from hem.engine.templates import BEGIN, CHECK, DO, END, MODE, PERSIST, move
-from hem.engine.uses import Uses
+from hem.engine.uses import Uses, kept
 
 __all__ = [
     "BEGIN",
@@ -57,5 +57,6 @@ __all__ = [
     "Uses",
     "counting",
     "interpreted",
+    "kept",
     "move",
 ]

@@ -180,6 +180,13 @@ class Uses:
         return compiled
 
 
+def kept(function: Kernel) -> Kernel:
+    """Compile a function that uses what stands in other files, and is kept on disk like a use."""
+    function.__qualname__ += f"_{_digest([function], '')}"
+    compiled: Kernel = njit(cache=True)(function)
+    return compiled
+
+
 def _digest(bound: Iterable[Any], variant: str) -> str:
     """Of records, kernels and all that they call: the files they stand in, and which they are."""
     parts = {part for it in bound for part in _parts(it, set())}

@@ -15,12 +15,12 @@ from types import MappingProxyType
 from typing import Any, NamedTuple, overload
 
 import numpy as np
-from numba import njit
 from numpy.typing import ArrayLike
 
 from hem.arrays import Array, Handles, Indices, Points
 from hem.contract import Attribute, Structure
 from hem.edit import CHANGED, FACE, PARENT, VERTEX, Edit
+from hem.engine import kept
 from hem.errors import MeshError
 from hem.listeners import Listeners
 from hem.meshes import TriangleMesh, clusters, repeated_corners, used_only
@@ -259,7 +259,7 @@ def dirty_ranges(touched: Sequence[ArrayLike], nearby: int) -> tuple[Ranges, Ran
     return ranges[0, :vertices], ranges[1, :triangles]
 
 
-@njit(cache=True)
+@kept
 def _runs(log: Array, nearby: int, ranges: Array) -> Array:
     count = np.zeros(2, np.int64)
     for entry in log:

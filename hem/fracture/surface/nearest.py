@@ -3,11 +3,11 @@
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import ArrayLike
 
 from hem.arrays import Array, Floats
 from hem.contract import Structure
+from hem.engine import kept
 from hem.errors import MeshError
 from hem.fracture.surface.breaking import JUMP, dot, finding, make_plan
 from hem.meshes.measures import corners, diagonal, length
@@ -104,28 +104,7 @@ def _words(p: Array) -> str:
     return f"({', '.join(f'{x:.6g}' for x in p.tolist())})"
 
 
-@njit(cache=True)
-def closest(corners: Array, p: Array) -> tuple[int, Array]:
-    """Of triangles (k, 3, 3) the first nearest to p (3,), and the point on it. Cost O(k).
-
-    By the regions of a triangle: Ericson, Real-Time Collision Detection, 5.1.5.
-    """
-    best, least, point = -1, np.inf, np.zeros(3)
-    for i in range(len(corners)):
-        u, v, w = _weights(corners[i], p)
-        apart = 0.0
-        for j in range(3):
-            apart += (
-                u * corners[i, 0, j] + v * corners[i, 1, j] + w * corners[i, 2, j] - p[j]
-            ) ** 2
-        if apart < least:
-            best, least = i, apart
-            for j in range(3):
-                point[j] = u * corners[i, 0, j] + v * corners[i, 1, j] + w * corners[i, 2, j]
-    return best, point
-
-
-@njit(cache=True)
+@kept
 def _weights(t: Array, p: Array) -> tuple[float, float, float]:
     """The barycentric weights of the point of a triangle that is nearest to p."""
     ab, ac, ap = t[1] - t[0], t[2] - t[0], p - t[0]
@@ -157,3 +136,24 @@ def _weights(t: Array, p: Array) -> tuple[float, float, float]:
     if not total > 0:  # no area: between the first corner and the one that is farther from it
         return 1.0, 0.0, 0.0
     return a / total, b / total, c / total
+
+
+@kept
+def closest(corners: Array, p: Array) -> tuple[int, Array]:
+    """Of triangles (k, 3, 3) the first nearest to p (3,), and the point on it. Cost O(k).
+
+    By the regions of a triangle: Ericson, Real-Time Collision Detection, 5.1.5.
+    """
+    best, least, point = -1, np.inf, np.zeros(3)
+    for i in range(len(corners)):
+        u, v, w = _weights(corners[i], p)
+        apart = 0.0
+        for j in range(3):
+            apart += (
+                u * corners[i, 0, j] + v * corners[i, 1, j] + w * corners[i, 2, j] - p[j]
+            ) ** 2
+        if apart < least:
+            best, least = i, apart
+            for j in range(3):
+                point[j] = u * corners[i, 0, j] + v * corners[i, 1, j] + w * corners[i, 2, j]
+    return best, point
