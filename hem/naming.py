@@ -11,7 +11,7 @@ T = TypeVar("T")
 
 def look_up(name: str, known: Mapping[str, T], kind: str) -> T:
     """What has this name. Raises MeshError with the names there are, and the nearest one."""
-    if name in known:
+    if isinstance(name, str) and name in known:
         return known[name]
     near = difflib.get_close_matches(str(name), known, n=1)
     meant = f"; did you mean {near[0]!r}?" if near else ""

@@ -130,13 +130,14 @@ class Plankton(Navigable):
 
     def vertex_half_edges(self, vertex: int) -> NDArray[np.int64]:
         """(valence,) the half-edges that leave a vertex, counterclockwise, of any valence."""
-        edges = self.vertex_edges(int(vertex))
+        edges = self.vertex_edges(arguments.integer("vertex_half_edges", "vertex", vertex))
         starts = self.records.half_edge[edges, START]
         return edges + (starts != vertex)
 
     def face_half_edges(self, face: int) -> NDArray[np.int64]:
         """(corners,) the half-edges round a face, from its first."""
-        edges, corners = self.face_edges(int(face)), self.face_vertices(int(face))
+        face = arguments.integer("face_half_edges", "face", face)
+        edges, corners = self.face_edges(face), self.face_vertices(face)
         return edges + (self.records.half_edge[edges, START] != corners)
 
     # What the mesh is like ----------------------------------------------------------------------
@@ -220,8 +221,7 @@ class Plankton(Navigable):
             return super().add_face(*corners)
         if len(corners) < 3:
             raise MeshError(f"add_face takes three corners or more, not {len(corners)}")
-        row = arguments.handles("add_face", corners)[None, :]
-        return self._polygonal("add_face", "add_face", row)[1]
+        return self._polygonal("add_face", "add_face", *corners)[1]
 
     def split_edge(self, edge: int, point: ArrayLike, triangles: bool = True) -> Edit:
         """Put a new vertex on an edge; each face there becomes two.
@@ -243,14 +243,13 @@ class Plankton(Navigable):
         both corners are joined already. Cost O(n).
         """
         if isinstance(point, int | np.integer):
-            return self._polygonal("split_face", "cut_across", arguments.rows([face], int(point)))[
-                0
-            ]
+            return self._polygonal("split_face", "cut_across", face, point)[0]
         return super().split_face(face, point)
 
     def stellate(self, face: int, point: ArrayLike | None = None) -> Edit:
         """Join all corners of a face to a new vertex, in their middle unless a point is given."""
-        middle = self.points[self.face_vertices(int(face))].mean(axis=0, dtype=np.float64)
+        self._operations.require_different("stellate", "face", [face])
+        middle = self.points[self.face_vertices(face)].mean(axis=0, dtype=np.float64)
         return super().split_face(face, middle if point is None else point)
 
     def merge_faces(self, half_edge: int) -> int:
@@ -259,7 +258,7 @@ class Plankton(Navigable):
         1 edge and 1 face fewer. Refused at the border, and where the faces meet at other corners
         than the ends of the edge. Cost O(corners).
         """
-        return self._polygonal("merge_faces", "merge_faces", arguments.rows([half_edge]))[0]
+        return self._polygonal("merge_faces", "merge_faces", half_edge)[0]
 
     def split_vertex(self, first: int, second: int, point: ArrayLike | None = None) -> Edit:
         """Split the vertex that two half-edges leave in two that an edge joins.
@@ -269,9 +268,9 @@ class Plankton(Navigable):
         the edge. Without a point the new vertex lies where the old one does. Cost O(n_ev).
         """
         if point is None:
+            self._operations.require_different("split_vertex", "half_edge", [first])
             point = self.points[self.start_vertex(first)]
-        args = arguments.rows([first], second)
-        return self._polygonal("split_vertex", "split_vertex", args, point)[1]
+        return self._polygonal("split_vertex", "split_vertex", first, second, point=point)[1]
 
     def erase_center_vertex(self, vertex: int) -> int:
         """Take a vertex inside the surface away; its faces become one -> that.
@@ -279,8 +278,7 @@ class Plankton(Navigable):
         1 vertex, n edges and n - 1 faces fewer. Refused at the border, and where the faces meet at
         other corners than the neighbors of the vertex. Cost O(corners).
         """
-        args = arguments.rows([vertex])
-        return self._polygonal("erase_center_vertex", "erase_vertex", args)[0]
+        return self._polygonal("erase_center_vertex", "erase_vertex", vertex)[0]
 
     def truncate_vertex(self, vertex: int, fraction: float = 1 / 3) -> int:
         """Cut a corner off: a face of n corners takes the place of a vertex of n edges -> it.
@@ -290,6 +288,7 @@ class Plankton(Navigable):
         """
         if not 0 < fraction < 1:
             raise MeshError(f"a vertex is truncated at a fraction between 0 and 1, not {fraction}")
+        self._operations.require_different("truncate_vertex", "vertex", [vertex])
         spokes = self.vertex_half_edges(vertex)
         if len(spokes) < 3 or self.vertex_naked_edges(vertex):
             raise TopologyError(
@@ -337,7 +336,7 @@ class Plankton(Navigable):
         return face, points, points[rows.following]
 
     def _polygonal(
-        self, called: str, operation: str, args: Array, point: ArrayLike | None = None
+        self, called: str, operation: str, *handles: Any, point: ArrayLike | None = None
     ) -> tuple[int, Edit]:
         """Do one operation -> its result and its edit, of which the subscribers are told."""
         points = (
@@ -345,6 +344,9 @@ class Plankton(Navigable):
             if point is None
             else arguments.positions(called, np.asarray(point)[None], 1)
         )
+        element = self.operations[operation].element
+        row = [arguments.integer(called, element, it) for it in handles]
+        args = np.array([[*row, -1, -1][: max(3, len(row))]])
         results, log = self._operations.run(operation, args, points)
         result = int(results[0])
         if result < 0:

@@ -10,6 +10,7 @@ from hem.arrays import Array
 from hem.authoring import Refusal
 from hem.errors import MeshError
 
+MOST = 1 << 63  # more than any handle
 NO_POINT = np.zeros((1, 3), np.float32)  # the positions of operations that take none
 
 
@@ -18,6 +19,20 @@ def rows(handles: Array | Sequence[int], ends: Array | int = -1) -> Array:
     arguments = np.full((len(handles), 3), -1, np.int64)
     arguments[:, 0], arguments[:, 1] = handles, ends
     return arguments
+
+
+def integer(called: str, element: str, handle: Any) -> int:
+    """One handle; MeshError for what is no such integer."""
+    if isinstance(handle, np.ndarray) and handle.ndim == 0:
+        handle = handle[()]
+    if not isinstance(handle, int | np.integer) or isinstance(handle, bool):
+        raise MeshError(
+            f"{called} takes a {element} handle (an integer) or an array of them, "
+            f"not {type(handle).__name__} {handle!r}"
+        )
+    if not -MOST <= handle < MOST:
+        raise MeshError(f"{called}: there is no such {element}: {handle}")
+    return int(handle)
 
 
 def integers(called: str, values: ArrayLike, dimensions: tuple[int, ...] = (0, 1)) -> Array:
@@ -56,10 +71,10 @@ def positions(called: str, points: ArrayLike, n: int) -> Array:
 
 def refusal(operation: str, args: tuple[Any, ...], point: Any) -> MeshError:
     """The error for arguments of one operation that are no handles, or no point."""
-    args = tuple(it for it in args if it is not None)
+    args = tuple(it for it in args if it is not ...)
     wrong = [it for it in args if not isinstance(it, int | np.integer) or isinstance(it, bool)]
     if wrong:
         return MeshError(f"{operation} takes handles (integers), not {wrong[0]!r}")
-    if any(not -(1 << 63) <= it < 1 << 63 for it in args):
+    if any(not -MOST <= it < MOST for it in args):
         return MeshError(f"{operation}: there is no such element: {max(args, key=abs)}")
     return MeshError(f"{operation} takes a point of three finite float32 numbers, not {point!r}")

@@ -72,13 +72,15 @@ class Operations:
         names_a_vertex = self._operations[operation].names_a_vertex
         takes_a_point = self._operations[operation].takes_a_point
 
-        def do(a: Any, point: Any = None, b: Any = None, c: Any = None) -> Edit:
+        def do(a: Any, point: Any = None, b: Any = ..., c: Any = ...) -> Edit:
             # What programs do a million times takes no detours here.
             try:
+                if type(a) is bool or type(b) is bool or type(c) is bool:
+                    raise TypeError  # they would count as 1 and 0
                 args[0] = a
-                if b is not None:
+                if b is not ...:
                     args[1] = b
-                    if c is not None:
+                    if c is not ...:
                         args[2] = c
                 if takes_a_point:
                     place = point.tolist() if type(point) is np.ndarray else point
@@ -104,6 +106,8 @@ class Operations:
         """Whether an operation on an edge would be done; TopologyError if there is no edge."""
         perform, address, task, args, _, result = self._bound(operation)
         try:
+            if type(edge) is bool:
+                raise TypeError  # it would count as 1 or 0
             args[0] = edge
             args[1] = -1
         except (TypeError, ValueError, OverflowError) as error:
@@ -267,9 +271,9 @@ class Operations:
 
     def prepare(self, operation: str, args: ArrayLike, points: ArrayLike | None) -> Prepared:
         """See ``Structure.prepare``."""
-        rows = np.asarray(args, np.int64)
-        rows = arguments.rows(rows) if rows.ndim == 1 else np.ascontiguousarray(rows)
-        if rows.ndim != 2 or rows.shape[1] < 3:
+        given = arguments.integers(operation, args, (1, 2)).astype(np.int64)
+        rows = arguments.rows(given) if given.ndim == 1 else np.ascontiguousarray(given)
+        if rows.shape[1] < 3:
             raise MeshError(f"{operation} takes (n,) or (n, 3) handles, not {rows.shape}")
         state, perform, n = self._state, self._bound(operation).perform, len(rows)
         vertices, faces = self._operations[operation].growth
@@ -290,8 +294,10 @@ class Operations:
         """See ``Structure.operation_work``."""
         if not 1 <= len(handles) <= 3:
             raise MeshError(f"{operation} takes one to three handles, not {len(handles)}")
+        element = self._operations[operation].element
+        row = [arguments.integer(operation, element, it) for it in handles]
         self.make_way(operation)
-        state, row = self._state, [*handles, -1, -1][:3]
+        state, row = self._state, [*row, -1, -1][:3]
         log, position = state.log, np.asarray(point, np.float32)
         log[0] = 0
         work = state.declared.operating[operation].operation_work

@@ -21,7 +21,8 @@ class PackedStorage(Storage):
         """See ``Storage.require``; whether an edge joins the two is not looked at."""
         if element != "edge":
             return super().require(records, element, handles)
-        smaller, larger = handles >> 32, handles & 0xFFFFFFFF
+        names = handles.astype(np.int64)
+        smaller, larger = names >> 32, names & 0xFFFFFFFF
         legal = (smaller >= 0) & (smaller < larger) & (larger < records.counts[VERTEX_END])
         if not legal.all():
             refuse_handles("edge", handles[~legal])

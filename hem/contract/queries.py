@@ -22,6 +22,7 @@ from hem.authoring import (
     in_slices,
 )
 from hem.contract import arguments
+from hem.contract.arguments import MOST, integer
 from hem.contract.state import State
 from hem.contract.storage import HANDLE_TYPES, refuse_handles
 from hem.edit import FACE
@@ -29,7 +30,6 @@ from hem.engine import Read
 from hem.errors import MeshError
 from hem.ragged import Ragged
 
-MOST = 1 << 63  # more than any handle
 ALL: Any = object()  # stands for the handles of all live elements
 NUMPY_INTEGERS = frozenset(np.dtype(it).type for it in np.typecodes["AllInteger"])
 """What a loop over an array of handles gives."""
@@ -105,7 +105,7 @@ class Queries:
             handles = self.handles(source)
         if np.ndim(handles):
             return self._ask_many(name, handles)
-        return self._ask_many(name, [_as_integer(handles, name, source)])[0].copy()
+        return self._ask_many(name, [integer(name, source, handles)])[0].copy()
 
     def _ask_many(self, name: str, handles: ArrayLike) -> Ragged:
         wanted = self._checked(name, handles)
@@ -184,8 +184,8 @@ class Queries:
     def find_edge(self, a: Any, b: Any) -> int | None:
         """See ``Structure.find_edge``."""
         find, address = self._find_edge
-        a, b = _as_integer(a, "find_edge", "vertex"), _as_integer(b, "find_edge", "vertex")
-        found = find(a, b, address) if -MOST <= min(a, b) <= max(a, b) < MOST else -1
+        a, b = integer("find_edge", "vertex", a), integer("find_edge", "vertex", b)
+        found = find(a, b, address)
         if found >= 0:
             return found
         self._state.require("vertex", np.array([a, b]))
@@ -238,14 +238,3 @@ class Queries:
         wanted = self._checked(name, handles)
         self._state.widen()
         return wanted, self._state.out[QUERIES[name].target]
-
-
-def _as_integer(handle: Any, called: str, element: str) -> int:
-    if isinstance(handle, np.ndarray) and handle.ndim == 0:
-        handle = handle[()]
-    if isinstance(handle, int | np.integer) and not isinstance(handle, bool):
-        return int(handle)
-    raise MeshError(
-        f"{called} takes a {element} handle (an integer) or an array of them, "
-        f"not {type(handle).__name__} {handle!r}"
-    )

@@ -1,5 +1,6 @@
 """The contract: what every mesh data structure offers, derived from its kernels."""
 
+import operator
 from abc import abstractmethod
 from collections.abc import Callable, Mapping
 from functools import cached_property
@@ -243,7 +244,8 @@ class Structure(Described, Surveying, abstract=True):
         ``handles``: one to three. Raises KeyError for no operation.
         """
         first, *more = handles or (-1,)
-        return self._do[operation](first, point, *more)
+        ends = [NO_VERTEX if it == -1 else it for it in more]
+        return self._do[operation](first, point, *ends, *[-1] * (2 - len(ends)))
 
     def split_edge(self, edge: int, point: ArrayLike) -> Edit:
         """Put a new vertex on an edge; each face there becomes two. The point may lie anywhere.
@@ -398,7 +400,7 @@ class Structure(Described, Surveying, abstract=True):
         edit.remapping = Remapping(
             number["vertex"].astype(np.int32),
             faces.astype(np.int32),
-            lambda edges: renumbered(edges, number),
+            lambda edges: renumbered(arguments.handles("Remapping.edges", edges), number),
         )
         self._followers.publish(edit)
         return edit.remapping
@@ -584,7 +586,7 @@ class Structure(Described, Surveying, abstract=True):
 
         Room for records, and scratch for as many operations of any kind. O(n_v + n_t).
         """
-        self._operations.reserve(splits)
+        self._operations.reserve(operator.index(splits))
 
     def prepare(self, operation: str, args: ArrayLike, points: ArrayLike | None = None) -> Prepared:
         """Have operations ready to be run in one compiled loop, untold to anyone: for measuring.

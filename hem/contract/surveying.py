@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 
 from hem.arrays import Array, Bools, Floats, Handles, Indices, Points
 from hem.authoring import FACE_END, FACES, SIDES, VERTEX_END, VERTICES
+from hem.contract.arguments import integer
 from hem.contract.queries import QueryMethod
 from hem.errors import MeshError
 from hem.meshes import components
@@ -104,8 +105,11 @@ class Surveying(ABC):
         return on_border if isinstance(on_border, np.ndarray) else bool(on_border)
 
     def find_face(self, a: int, b: int, c: int) -> int | None:
-        """The face of three vertices, whichever way it runs, or None. Cost: ``vertex_faces``."""
-        faces = self.vertex_faces(a)
+        """The face of three vertices, whichever way it runs, or None. Cost: ``vertex_faces``.
+
+        Raises MeshError if one of them is no vertex.
+        """
+        faces, *_ = (self.vertex_faces(integer("find_face", "vertex", v)) for v in (a, b, c))
         for face, row in zip(faces.tolist(), self.face_vertices(faces), strict=True):
             if sorted(row.tolist()) == sorted((a, b, c)):
                 return face

@@ -56,6 +56,8 @@ class RenderMesh:
     """
 
     def __init__(self, structure: Structure, attributes: Sequence[Attribute] = ()) -> None:
+        if not isinstance(structure, Structure):
+            raise MeshError(f"a render mesh follows a structure, not {type(structure)}; build one")
         self.structure = structure
         self.commits = 0
         self.attributes = {it.name: it for it in attributes}

@@ -76,6 +76,25 @@ def test_a_face_too_many_is_found_at_a_vertex_of_large_valence(name):
         structures.build(name, hem.TriangleMesh(mesh.points, again))
 
 
+@pytest.mark.parametrize("name", [it for it in NEEDS_MANIFOLD if it in OF_ARRAYS])
+def test_more_half_edges_than_int32_can_name_are_refused(name, monkeypatch):
+    monkeypatch.setattr("hem.authoring.pairing.MOST_HALF_EDGES", 599)
+    assert structures.build(name, hem.generate("grid", 100)).n_faces == 162
+    with pytest.raises(hem.MeshError, match="200 faces have more half-edges"):
+        structures.build(name, hem.generate("torus", 100))
+
+
+@pytest.mark.parametrize("name", OF_ARRAYS)
+def test_more_elements_than_references_can_name_find_no_room(name, monkeypatch):
+    def large(array, used, length):
+        return np.broadcast_to(array[:1], (length, *array.shape[1:]))  # takes no memory
+
+    monkeypatch.setattr("hem.authoring.records.longer", large)
+    s = structures.build(name, hem.generate("torus", 100))
+    with pytest.raises(hem.MeshError, match="more than references of 4 bytes"):
+        s.reserve(1_200_000_000)
+
+
 @pytest.mark.parametrize("reference_bytes", [4, 8])
 def test_a_renumbered_mesh_is_the_same_surface(name, reference_bytes):
     mesh = shuffled(hem.generate("torus", 900), seed=3)
@@ -102,7 +121,8 @@ def test_every_byte_of_the_arrays_is_a_field_of_the_thesis(name):
 
 
 @pytest.mark.parametrize(
-    ("structure", "size"), [("half-edge", 4), ("half_edge", 2), ("half_edge", None)]
+    ("structure", "size"),
+    [("half-edge", 4), (["indexed"], 4), ("half_edge", 2), ("half_edge", None)],
 )
 def test_a_name_or_size_that_does_not_exist_is_refused(structure, size):
     with pytest.raises(hem.MeshError, match=r"half_edge|4 or 8"):

@@ -317,6 +317,56 @@ def test_a_refusal_says_why_and_changes_nothing(case):
     assert state(s) == before
 
 
+OF_POLYGONS = {
+    "merge_faces": lambda s, h: s.merge_faces(h),
+    "split_vertex": lambda s, h: s.split_vertex(h, 9),
+    "split_vertex, second": lambda s, h: s.split_vertex(9, h),
+    "split_vertex at a point": lambda s, h: s.split_vertex(h, 9, (0, 0, 0)),
+    "split_face": lambda s, h: s.split_face(h, 9),
+    "insert_vertex": lambda s, h: s.split_edge(h, (0, 0, 0), triangles=False),
+    "erase_center_vertex": lambda s, v: s.erase_center_vertex(v),
+    "truncate_vertex": lambda s, v: s.truncate_vertex(v),
+    "stellate": lambda s, f: s.stellate(f),
+    "add_face": lambda s, v: s.add_face(1, 2, 3, v),
+}
+ASKED_OF_POLYGONS = {
+    "vertex_half_edges": lambda s, v: s.vertex_half_edges(v),
+    "face_half_edges": lambda s, f: s.face_half_edges(f),
+    "vertex_naked_edges": lambda s, v: s.vertex_naked_edges(v),
+    "face_naked_edges": lambda s, f: s.face_naked_edges(f),
+    "find_half_edge": lambda s, v: s.find_half_edge(v, 1),
+}
+
+
+@pytest.mark.parametrize("call", OF_POLYGONS)
+def test_what_names_nothing_is_not_operated_on(call):
+    s = plankton(sheet())
+    vertex, half_edge, face = 0, s.find_edge(0, 1), 24
+    s.collapse_edge(half_edge, keep=1)
+    s.remove_face(face)
+    dead = {"stellate": face, "add_face": vertex}
+    dead |= dict.fromkeys(("erase_center_vertex", "truncate_vertex"), vertex)
+    before = state(s)
+    for handle in (dead.get(call, half_edge), -1, 10_000, 2**40):
+        with pytest.raises(hem.TopologyError, match="no such"):
+            OF_POLYGONS[call](s, handle)
+    for wrong in (0.5, 1.0, "1", None, True, [1], np.array([1]), 2**70):
+        with pytest.raises(hem.MeshError, match=r"handle|no such"):
+            OF_POLYGONS[call](s, wrong)
+    assert state(s) == before
+
+
+@pytest.mark.parametrize("call", ASKED_OF_POLYGONS)
+@pytest.mark.parametrize("wrong", [0.5, 1.0, "1", None, True, -1, 10_000, 2**70])
+def test_what_names_nothing_has_no_half_edges(call, wrong):
+    with pytest.raises(hem.MeshError):
+        ASKED_OF_POLYGONS[call](plankton(sheet()), wrong)
+
+
+def test_no_half_edge_joins_a_vertex_to_itself():
+    assert plankton(CUBE).find_half_edge(3, 3) is None
+
+
 def test_faces_that_meet_twice_are_not_merged():
     s = plankton(octahedron())
     s.erase_center_vertex(0)

@@ -203,6 +203,12 @@ def test_there_and_back_keeps_the_mesh_even_after_edits(s):
     assert triples[0] == triples[1]
 
 
+@pytest.mark.parametrize("given", [hem.generate("torus", 100), None, "model.ply"])
+def test_what_is_no_structure_is_not_followed(given):
+    with pytest.raises(hem.MeshError, match="follows a structure, not"):
+        hem.RenderMesh(given)
+
+
 @pytest.mark.parametrize(
     ("points", "indices"),
     [

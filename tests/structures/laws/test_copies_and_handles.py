@@ -7,6 +7,7 @@ import gc
 import importlib
 import pickle
 import sys
+import tracemalloc
 import weakref
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
@@ -17,10 +18,10 @@ import pytest
 
 import hem
 import structures
-from hem.contract import QUERIES, Structure
+from hem.contract import QUERIES, STEPS, Navigable, Structure
 from hem.errors import MeshError, TopologyError
 from hem.ragged import Ragged
-from tests.structures.test_polygons import CUBE, plankton, sheet
+from tests.structures.test_polygons import CUBE, mixed, plankton, sheet
 
 COPIES: dict[str, Callable[[Structure], Structure]] = {
     "copy": lambda s: s.copy(),
@@ -64,6 +65,21 @@ def test_a_copy_answers_for_itself(name: str, how: str, edited: bool) -> None:
     s.validate()
 
 
+@pytest.mark.parametrize("how", COPIES)
+def test_a_copy_of_nothing_or_of_polygons_is_its_own(name: str, how: str) -> None:
+    polygons = [CUBE, mixed()] if structures.REGISTRY[name].holds_polygons else []
+    for mesh in (hem.TriangleMesh([], []), *polygons):
+        s = structures.build(name, mesh)
+        before = answers(s)
+        other = COPIES[how](s)
+        assert other.same_as(s)
+        other.add_vertex((1, 2, 3))
+        other.split_all_faces()
+        other.validate()
+        assert not other.same_as(s)
+        assert answers(s) == before
+
+
 def test_a_mesh_is_pickled_and_copied_read_only() -> None:
     for mesh in (hem.generate("grid", 9), CUBE):
         for how in (copy.copy, copy.deepcopy, lambda it: pickle.loads(pickle.dumps(it))):
@@ -97,16 +113,48 @@ def test_a_dead_handle_is_refused_whatever_died_with_it(name: str) -> None:
         s.find_edge(drop, 50)
 
 
-def test_an_edge_that_died_without_a_face_is_refused() -> None:
+@pytest.mark.parametrize("died", ["collapse_edge", "merge_faces"])
+def test_an_edge_that_died_without_a_face_is_refused(died: str) -> None:
     s = plankton(sheet())
     edge = s.find_edge(14, 15)
     assert edge is not None
-    s.collapse_edge(edge)
+    getattr(s, died)(edge)
     s.validate()
     for asked in (edge, [edge]):
         for query in ("edge_vertices", "edge_edges", "edge_faces"):
             with pytest.raises(MeshError, match="no such edge"):
                 getattr(s, query)(asked)
+    of_half_edges = [name for name, step in STEPS.items() if step.source == "half_edge"]
+    for half_edge in (edge, edge ^ 1):
+        for step in of_half_edges:
+            for asked in (half_edge, [half_edge]):
+                with pytest.raises(MeshError, match="no such half-edge"):
+                    getattr(s, step)(asked)
+
+
+def test_a_handle_is_checked_by_its_own_record_whatever_died_before(name: str) -> None:
+    """What is allocated meanwhile is as little on a large mesh: no mark of another is looked at."""
+    peaks = []
+    for n in (100, 2_500):
+        s = structures.build(name, hem.generate("torus", n))
+        s.collapse_edge(collapsible(s))
+        edge, half_edge = s.find_edge(50, 51), s.edges()[-1:]
+        asked: list[Callable[[], Any]] = [
+            lambda s=s: s.find_edge(50, 51),
+            lambda s=s: s.vertex_faces(np.array([50, 51])),
+            lambda s=s: s.face_vertices([70]),
+            lambda s=s, e=edge: s.edge_vertices([e]),
+        ]
+        if isinstance(s, Navigable):
+            asked.append(lambda s=s, h=half_edge: s.origin(s.face_half_edge([70])))
+        for ask in asked:
+            ask()  # finds what is found when first asked
+        tracemalloc.start()
+        for ask in asked:
+            ask()
+        peaks.append(tracemalloc.get_traced_memory()[1])
+        tracemalloc.stop()
+    assert peaks[1] < peaks[0] + 1_000
 
 
 def test_split_edges_of_polygons_is_refused_as_a_whole() -> None:
@@ -134,15 +182,23 @@ def test_no_edge_joins_a_vertex_to_itself_and_none_is_found_for_a_fraction(name:
             s.find_edge(a, 1)  # type: ignore[arg-type]
 
 
-def test_numpy_integers_are_handles(name: str) -> None:
+def test_numpy_integers_are_handles_and_take_the_way_of_pythons(
+    name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
     s = structures.build(name, hem.generate("grid", 25))
+
+    def unexpected(*_: Any) -> None:
+        raise AssertionError("they go the way of arrays")
+
     for query in QUERIES:
         handle = s.handles(QUERIES[query].source)[1]
         expected = getattr(s, query)(int(handle)).tolist()
         kinds = (np.int32, np.int64, np.uint8, np.uint64)
-        for kind in (it for it in kinds if handle <= np.iinfo(it).max):
-            assert getattr(s, query)(kind(handle)).tolist() == expected
-    for wrong in (True, np.bool_(True), 1.0, "1"):
+        with monkeypatch.context() as patched:
+            patched.setattr(s._queries, "_ask_many", unexpected)
+            for kind in (it for it in kinds if handle <= np.iinfo(it).max):
+                assert getattr(s, query)(kind(handle)).tolist() == expected
+    for wrong in (True, np.bool_(True), 1.0, "1", 2**70):
         with pytest.raises(MeshError):
             s.vertex_faces(wrong)  # type: ignore[call-overload]
 
@@ -151,11 +207,16 @@ def test_threads_that_only_read_get_their_own_answers(name: str) -> None:
     s = structures.build(name, hem.generate("torus", 400))
     vertices = s.vertices().tolist()
     expected = {v: s.vertex_faces(v).tolist() for v in vertices}
+    edges = {v: s.find_edge(v, int(s.vertex_vertices(v)[0])) for v in vertices}
     rounds = 40 if s.compiled else 4
 
     def read(seed: int) -> int:
         order = np.random.default_rng(seed).permutation(vertices).tolist() * rounds
-        return sum(s.vertex_faces(v).tolist() != expected[v] for v in order)
+        return sum(
+            s.vertex_faces(v).tolist() != expected[v]
+            or s.find_edge(v, int(s.vertex_vertices(v)[0])) != edges[v]
+            for v in order
+        )
 
     with ThreadPoolExecutor(4) as pool:
         assert list(pool.map(read, range(4))) == [0] * 4
@@ -235,7 +296,12 @@ def test_nothing_is_left_and_compacted_twice(name: str) -> None:
 def test_a_remapping_knows_no_edge_before_the_first(name: str) -> None:
     s = structures.build(name, hem.generate("grid", 25))
     s.collapse_edge(collapsible(s))
-    assert s.compact().edges([-1]).tolist() == [-1]
+    remapping = s.compact()
+    assert remapping.edges([-1]).tolist() == [-1]
+    assert remapping.edges([]).tolist() == []
+    for wrong in ([0.5], ["0"], 0, [[0]], [True]):
+        with pytest.raises(MeshError, match="handles"):
+            remapping.edges(wrong)
 
 
 def test_either_half_edge_names_its_edge() -> None:
@@ -329,10 +395,12 @@ def test_who_listens_twice_is_told_once_after_ending_one_of_them_twice() -> None
 
 
 def test_offsets_that_do_not_fit_are_refused() -> None:
-    for offsets in ([0, 5], [1, 3], []):
-        rows = Ragged(np.array(offsets, np.int64), np.array([0, 1, 2]))
-        with pytest.raises(MeshError, match="offsets"):
+    for offsets in ([0, 5], [1, 3], [], [0, 5, 3], [0, 2, 1, 3], [[0, 3]], [0.0, 3.0]):
+        rows = Ragged(np.array(offsets), np.array([0, 1, 2]))
+        with pytest.raises(MeshError, match=r"offsets|three corners"):
             hem.PolygonMesh(np.eye(3), rows)
+    of_lists: Any = [0, 3], [0, 1, 2]
+    assert hem.PolygonMesh(np.eye(3), Ragged(*of_lists)).faces.to_list() == [[0, 1, 2]]
 
 
 ALGORITHM = """

@@ -118,8 +118,12 @@ OPERATIONS = {
     "split_face": lambda s, h: s.split_face(h, (0, 0, 0)),
     "split_faces": lambda s, h: s.split_faces([h], [(0, 0, 0)]),
     "remove_face": lambda s, h: s.remove_face(h),
+    "remove_faces": lambda s, h: s.remove_faces([h]),
+    "remove_vertex": lambda s, h: s.remove_vertex(h),
     "move_vertex": lambda s, h: s.move_vertex(h, (0, 0, 0)),
     "add_face": lambda s, h: s.add_face(h, 1, 2),
+    "add_face, second corner": lambda s, h: s.add_face(0, h, 2),
+    "add_face, third corner": lambda s, h: s.add_face(0, 2, h),
 }
 
 
@@ -130,7 +134,7 @@ def test_a_dead_or_foreign_handle_is_refused(name, operation):
     edit = s.collapse_edge(gone, keep=0)
     dead = {"edge": gone, "face": int(edit.removed_faces[0])}
     dead |= {"faces": dead["face"], "edges": gone, "vertex": 1}
-    kind = operation.rpartition("_")[2] if operation != "add_face" else "vertex"
+    kind = operation.rpartition("_")[2] if "add_face" not in operation else "vertex"
     before = faces_of(s)
     for handle in (dead[kind], -1, 10_000, 2**40, -(2**40)):
         with pytest.raises(hem.TopologyError, match="no such"):
@@ -139,11 +143,50 @@ def test_a_dead_or_foreign_handle_is_refused(name, operation):
 
 
 @pytest.mark.parametrize("operation", OPERATIONS)
-@pytest.mark.parametrize("wrong", [1.5, "7", None, 2**70])
+def test_on_a_mesh_without_faces_there_is_nothing_to_operate_on(name, operation):
+    for points in ([], np.eye(3)):
+        s = structures.build(name, hem.TriangleMesh(points, []))
+        with pytest.raises(hem.TopologyError, match="no such"):
+            OPERATIONS[operation](s, 7)
+        assert not s.collapse_edges([0, 7]).any()
+        s.validate()
+
+
+@pytest.mark.parametrize("operation", OPERATIONS)
+@pytest.mark.parametrize("wrong", [1.5, "7", None, 2**70, True, [0], np.array([0])])
 def test_what_is_no_handle_is_refused(name, operation, wrong):
     s = structures.build(name, octahedron())
-    with pytest.raises(hem.MeshError):
+    s.remove_face(0)
+    s.add_face(*octahedron().triangles[0].tolist())  # no corner of it is taken for one left out
+    before = s.copy()
+    with pytest.raises(hem.MeshError, match=r"handle|no such"):
         OPERATIONS[operation](s, wrong)
+    assert s.same_as(before)
+
+
+@pytest.mark.parametrize("wrong", [1.5, "7", None, 2**63, 2**70, True, [1], np.array([1]), -1, 99])
+def test_what_is_no_vertex_has_no_edge_and_no_face(name, wrong):
+    s = structures.build(name, octahedron())
+    for corners in ((wrong, 1), (1, wrong)):
+        with pytest.raises(hem.MeshError, match="vertex"):
+            s.find_edge(*corners)
+    for corners in ((wrong, 1, 2), (0, wrong, 2), (0, 1, wrong)):
+        with pytest.raises(hem.MeshError, match="vertex"):
+            s.find_face(*corners)
+
+
+def test_no_operation_takes_what_is_left_out_from_the_one_before(name):
+    s = structures.build(name, hem.generate("torus", 100))
+    a, b = s.edge_array()[0].tolist()
+    s.collapse_edge(s.find_edge(a, b), keep=a)
+    edge = next(it for it in s.edges().tolist()[::-1] if s.can_collapse_edge(it))
+    for keep in (-1, -2):
+        with pytest.raises(hem.TopologyError, match="not an end"):
+            s.operate("collapse_edge", edge, keep)
+    assert s.operate("collapse_edge", edge).removed_vertices.size == 1
+    for corners in ((0, 1, 2, 3), ()):
+        with pytest.raises(hem.MeshError, match="one to three"):
+            s.operation_work("add_face", *corners)
 
 
 @pytest.mark.parametrize(
@@ -274,8 +317,8 @@ def test_operations_are_prepared_by_their_first_handle_or_all_three(name):
     whole = np.stack([edges, *2 * [np.full_like(edges, -1)]], axis=1)
     assert s.prepare("flip_edge", edges).check().all()
     assert s.prepare("flip_edge", whole).check().all()
-    for wrong in (whole[:, :1], whole[:, :2], whole[None]):
-        with pytest.raises(hem.MeshError, match="handles, not"):
+    for wrong in (whole[:, :1], whole[:, :2], whole[None], edges + 0.5, ["0"], 0):
+        with pytest.raises(hem.MeshError, match=r"takes .*handles"):
             s.prepare("flip_edge", wrong)
     foreign = np.array([-1, 10_000, 10**9, 2**40])
     assert not s.prepare("split_edge", foreign, np.zeros((4, 3))).check().any()

@@ -7,6 +7,7 @@ import pytest
 
 import hem
 import structures
+from hem.contract import QUERIES
 from hem.errors import MeshError
 from hem.meshes import undirected_edges
 from tests.structures.test_polygons import CUBE, plankton, sheet
@@ -124,6 +125,11 @@ def test_rows_of_different_lengths() -> None:
     assert rows.to_list() == [[1, 2], [], [3], [4, 5, 6]]
     assert rows[1:3].to_list() == [[], [3]]
     assert rows[::-2].to_list() == [[4, 5, 6], []]
+    assert rows[[3, 0]].to_list() == rows[np.array([3, 0])].to_list() == [[4, 5, 6], [1, 2]]
+    assert [rows[i].tolist() for i in (-1, np.int64(0))] == [[4, 5, 6], [1, 2]]
+    for outside in (4, -5):
+        with pytest.raises(IndexError, match="of 4 rows"):
+            rows[outside]
     assert repr(rows) == "Ragged(4 rows: [1, 2], [], [3], …)"
     assert rows.values[rows.following].tolist() == [2, 1, 3, 5, 6, 4]
     assert hem.Ragged.from_lists([]).to_list() == []
@@ -136,6 +142,11 @@ def test_nothing_is_asked_of_a_mesh_without_faces(name: str) -> None:
         assert (len(s.triangles()), len(s.edge_array()), len(s.split_all_faces())) == (0, 0, 0)
         assert s.valence([]).tolist() == []
         assert s.is_border().tolist() == [False] * len(points)
+        for query in QUERIES:
+            assert getattr(s, query)([]).to_list() == []
+            assert (s.sweep(query, []), s.work(query, []).tolist()) == (0, [])
+            with pytest.raises(MeshError, match="no such"):
+                getattr(s, query)(len(points))
         s.reserve(3)
         s.split_all_faces()
         s.compact()
