@@ -44,14 +44,14 @@ class Ragged:
     @overload
     def __getitem__(self, i: int) -> Array: ...
     @overload
-    def __getitem__(self, i: slice | Array) -> Ragged: ...
-    def __getitem__(self, i: int | slice | Array) -> Array | Ragged:
+    def __getitem__(self, i: slice | list[int] | Array) -> Ragged: ...
+    def __getitem__(self, i: int | slice | list[int] | Array) -> Array | Ragged:
         """The i-th row, a view, in O(1); of a slice or an array of places a ``Ragged`` of theirs.
 
         Raises IndexError outside ``-len … len - 1``.
         """
         n = len(self)
-        if isinstance(i, slice | np.ndarray):
+        if isinstance(i, slice | list | np.ndarray):
             rows = np.arange(n)[i]
             counts = self.counts[rows]
             offsets = np.concatenate([[0], np.cumsum(counts)])

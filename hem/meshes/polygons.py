@@ -8,7 +8,14 @@ from numpy.typing import ArrayLike, DTypeLike
 from hem.arrays import Bools
 from hem.errors import MeshError
 from hem.meshes.convertible import Convertible
-from hem.meshes.triangles import TriangleMesh, own, read_only, refuse, validated_points
+from hem.meshes.triangles import (
+    TriangleMesh,
+    out_of_range,
+    own,
+    read_only,
+    refuse,
+    validated_points,
+)
 from hem.ragged import Ragged
 
 Faces = Ragged | Sequence[Sequence[int]]
@@ -91,20 +98,22 @@ def repeats_a_corner(faces: Ragged) -> Bools:
 def _validated(faces: Faces, n: int) -> Ragged:
     if not isinstance(faces, Ragged):
         faces = _ragged(faces)
-    offsets = np.asarray(faces.offsets)
-    if offsets.ndim != 1 or not len(offsets) or offsets[0] or offsets[-1] != len(faces.values):
+    offsets, corners = np.asarray(faces.offsets), np.asarray(faces.values)
+    legal = offsets.ndim == corners.ndim == 1 and len(offsets) > 0 and offsets.dtype.kind in "iu"
+    if not legal or offsets[0] or offsets[-1] != len(corners):
         raise MeshError(
-            f"{len(offsets)} offsets of faces run from 0 to the number of their corners, "
-            f"{len(faces.values)}"
+            f"offsets of faces, {offsets.shape}, run from 0 to the number of their corners, "
+            f"{corners.shape}"
         )
-    counts, corners = faces.counts, faces.values
+    faces, counts = Ragged(offsets, corners), np.diff(offsets.astype(np.int64))
     if not np.issubdtype(corners.dtype, np.integer):
         raise MeshError(f"corners are vertex indices, integers, not {corners.dtype}")
     refuse(counts < 3, "faces have three corners or more", "faces")
     face = np.repeat(np.arange(len(counts)), counts)
     outside = (corners < 0) | (corners >= n)
-    strays = np.bincount(face[outside], minlength=len(counts)) > 0
-    refuse(strays, f"corners are 0 … {n - 1:,}", "faces")
+    if outside.any():
+        strays = np.bincount(face[outside], minlength=len(counts)) > 0
+        refuse(strays, out_of_range(corners, n), "faces")
     refuse(repeats_a_corner(faces), "faces come past a vertex twice; split or drop them", "faces")
     return Ragged(read_only(own(offsets, np.int64)), read_only(own(corners, np.int32)))
 

@@ -175,7 +175,7 @@ def _validated_triangles(triangles: ArrayLike, n: int) -> Triangles:
     if given.dtype.kind == "f":
         refuse(given != np.floor(given), "vertex indices are not whole numbers")
     if given.size and (given.min() < 0 or given.max() >= n):
-        refuse((given < 0) | (given >= n), _out_of_range(given, n))
+        refuse((given < 0) | (given >= n), out_of_range(given, n))
     kept = own(given, np.int32)
     refuse(repeated_corners(kept), "triangles use a vertex twice; drop them, or see welded()")
     return kept
@@ -208,9 +208,10 @@ def _rows_of_three(values: ArrayLike, name: str, kinds: str) -> Array:
     return rows
 
 
-def _out_of_range(given: Array, n: int) -> str:
+def out_of_range(given: Array, n: int) -> str:
+    """What to say of vertex indices of which some name no vertex of n."""
     if n == 0:
-        return "there are triangles, but no points"
+        return "there are faces, but no points"
     beyond = ", some beyond int32" if given.max() > _MOST_ELEMENTS else ""
     hint = "; do the indices count from 1?" if given.min() == 1 and given.max() == n else ""
     first = int(given[(given < 0) | (given >= n)][0])

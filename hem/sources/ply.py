@@ -96,8 +96,6 @@ def _header(data: bytes) -> tuple[str, list[_Element], int]:
                     order = _ORDERS[name]
                 case ["element", name, count]:
                     elements.append(_Element(name, int(count), []))
-                    if not 0 <= int(count) <= len(data):
-                        raise cut_short(f"{len(data):,} bytes, and promises {count} of {name}")
                 case ["property", "list", count, kind, name]:
                     elements[-1].properties.append(_Property(name, _TYPES[kind], _TYPES[count]))
                 case ["property", kind, name]:
@@ -107,6 +105,9 @@ def _header(data: bytes) -> tuple[str, list[_Element], int]:
     begin = data.find(b"\n", len(text)) + 1
     if order is None or not (end and begin) or not data.startswith(b"ply"):
         raise MeshError("its head is not that of a ply file, or it is cut short; get it anew")
+    for it in elements:
+        if not 0 <= it.rows <= len(data):
+            raise cut_short(f"{len(data):,} bytes, and promises {it.rows:,} of {it.name}")
     return order, elements, begin
 
 

@@ -90,11 +90,13 @@ def read_off(data: bytes) -> Parts:
     try:
         n, m = int(counts[0]), int(counts[1])
         if not (0 <= n <= len(data) and 0 <= m <= len(data)):
-            raise cut_short(f"{len(data):,} bytes, and promises {n} vertices and {m} faces")
+            raise cut_short(f"{len(data):,} bytes, and promises {n:,} vertices and {m:,} faces")
         points = [[float(word) for word in line[:3]] for line in elements[:n]]
         rows = [[int(word) for word in line[: int(line[0]) + 1]] for line in elements[n : n + m]]
         if any(len(line) > len(row) for line, row in zip(elements[n:], rows, strict=False)):
             dropped.append("colors")
+    except MeshError:
+        raise
     except (ValueError, IndexError) as error:
         raise MeshError(f"it has something else where a number belongs: {error}") from error
     if len(rows) < m:

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import sys
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 import hem
 from hem.errors import MeshError
+from tests.pictures import require_pictures
 from tests.structures.test_polygons import CUBE, mixed
 
 trimesh = pytest.importorskip("trimesh")
@@ -53,17 +57,29 @@ def test_a_mesh_without_area_has_no_direction() -> None:
     assert hem.TriangleMesh([], []).face_normals().shape == (0, 3)
 
 
+@pytest.fixture
+def meshio(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where it is not installed, what stands in for it: its mesh, as its documentation says."""
+
+    def mesh(points: np.ndarray, cells: list[tuple[str, np.ndarray]]) -> SimpleNamespace:
+        blocks = [SimpleNamespace(type=kind, data=np.asarray(rows)) for kind, rows in cells]
+        return SimpleNamespace(points=points, cells=blocks)
+
+    if not importable("meshio"):
+        monkeypatch.setitem(sys.modules, "meshio", SimpleNamespace(Mesh=mesh))
+
+
+@pytest.mark.usefixtures("meshio")
 def test_there_and_back_is_the_same_mesh(mesh: hem.TriangleMesh) -> None:
-    back = [hem.from_trimesh(mesh.to_trimesh())]
+    back = [hem.from_trimesh(mesh.to_trimesh()), hem.from_meshio(mesh.to_meshio())]
     if importable("pyvista"):
         back.append(hem.from_pyvista(mesh.to_pyvista()))
-    if importable("meshio"):
-        back.append(hem.from_meshio(mesh.to_meshio()))
     for other in back:
         np.testing.assert_array_equal(other.points, mesh.points)
         np.testing.assert_array_equal(other.triangles, mesh.triangles)
 
 
+@pytest.mark.usefixtures("meshio")
 def test_polygons_there_and_back() -> None:
     for mesh in (CUBE, mixed()):
         for library in ("pyvista", "meshio"):
@@ -72,6 +88,16 @@ def test_polygons_there_and_back() -> None:
             other = getattr(hem, f"from_{library}")(getattr(mesh, f"to_{library}")())
             np.testing.assert_array_equal(other.points, mesh.points)
             assert other.faces.to_list() == mesh.faces.to_list()
+
+
+def test_a_mesh_is_shown_as_a_picture() -> None:
+    require_pictures()
+    for mesh in (hem.generate("sphere", 42), CUBE):
+        image = mesh.plot(
+            off_screen=True, screenshot=True, notebook=False, window_size=(80, 60), color="red"
+        )
+        assert image.shape == (60, 80, 3)
+        assert (image[..., 0] > image[..., 1] + 100).any()
 
 
 def importable(name: str) -> bool:

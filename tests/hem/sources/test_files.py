@@ -4,6 +4,7 @@ import os
 import struct
 import subprocess
 import sys
+import tracemalloc
 import warnings
 from itertools import product
 from pathlib import Path
@@ -95,6 +96,45 @@ def test_a_file_cut_anywhere_before_its_last_lines_is_refused(
         for repair in (False, True):
             with pytest.raises(hem.MeshError, match=f"cut.{extension}"):
                 hem.load(cut, repair=repair)
+
+
+PROMISES = {
+    "text.ply": (PLY.format(2).replace("vertex 3", "vertex 2000000000"), "2,000,000,000 of vertex"),
+    "binary.ply": (
+        PLY.format(2).replace("ascii", "binary_little_endian").replace("face 1", "face -1"),
+        "-1 of face",
+    ),
+    "long list.ply": (
+        PLY.format(2).replace("ascii", "binary_little_endian").replace("uchar int", "uint int")
+        .replace("vertex 3", "vertex 0"),
+        "fewer or other numbers",
+    ),
+    "large.off": (OFF.replace("4 2 0", "4 3000000000 0"), "4 vertices and 3,000,000,000 faces"),
+    "negative.off": (OFF.replace("4 2 0", "-4 -2 0"), "-4 vertices and -2 faces"),
+    "long face.off": (
+        OFF.format(0, 3).replace("3 0 1 2", "2000000000 0 1 2"), "without all its corners",
+    ),
+    "vertices.obj": ("# Vertices: 4000000000\n" + OBJ.format(4), "4 of 4,000,000,000 vertices"),
+    "facets.stl": (80 * "-" + 4 * "\x7f" + 50 * "-", "134 bytes of 106,953,107,234"),
+    "chunk.3ds": ("MM" + 4 * "\x7f" + 80 * "-", "86 of 2,139,062,143 bytes"),
+    "raw.ctm": ("OCTM\5\0\0\0RAW\0" + 8 * "\x7f" + 100 * "\0", r"120 of 51,337,491,\d+ bytes"),
+}  # fmt: skip
+"""Files whose heads say that there is more than there can be, and what is to be said of it."""
+
+
+@pytest.mark.parametrize("name", PROMISES)
+def test_what_a_head_promises_and_a_file_cannot_hold_is_told_before_room_is_made(
+    tmp_path: Path, name: str
+) -> None:
+    content, words = PROMISES[name]
+    file = written(tmp_path / name, content.encode("latin-1"))
+    tracemalloc.start()
+    try:
+        with pytest.raises(hem.MeshError, match=f"cannot load .*{name}: the file is cut .*{words}"):
+            hem.load(file)
+        assert tracemalloc.get_traced_memory()[1] < 1_000_000
+    finally:
+        tracemalloc.stop()
 
 
 def test_a_cut_text_stl_is_refused(tmp_path: Path) -> None:
@@ -412,7 +452,8 @@ def test_a_triangle_structure_says_how_to_cut_polygons(tmp_path: Path) -> None:
     ("faces", "words"),
     [
         ([(0, 1)], "three corners"),
-        ([(0, 1, 2, 9)], "corners are"),
+        ([(0, 1, 2, 9)], "out of the range 0 … 3, such as 9"),
+        ([(0, 1, 2), (0, -7, 2)], r"such as -7 \(faces: 1\)"),
         ([(0, 1, 2, 1)], "twice"),
         ([[0.5, 1, 2, 3]], "integers"),
         ([7], "rows"),
