@@ -115,6 +115,20 @@ def test_a_vertex_tells_when_it_has_moved():
     assert s.points[2].tolist() == [0, 0, 4]
 
 
+def test_what_follows_the_mesh_follows_a_point_that_is_set():
+    s, edits = objects(octahedron()), []
+    s.vertices[1].subscribe(lambda vertex: None)
+    render, told = hem.RenderMesh(s), []
+    render.subscribe(told.append)
+    s.subscribe(edits.append)
+    new = s.split_face(0, (0, 0, 0)).vertex
+    for v in (1, 2, new):
+        s.vertices[v].point = (0.0, 5.0, float(v))
+        assert render.points[3 * v : 3 * v + 3].tolist() == [0, 5, v]
+        assert told[-1].vertices.tolist() == [[v, v + 1]]
+        assert edits[-1].changed_vertices.tolist() == [v]
+
+
 def test_behaviors_split_and_remember_what_they_made():
     s = objects(octahedron())
     edges, faces = EdgeSplittingBehaviour(s), FaceSplittingBehaviour(s)

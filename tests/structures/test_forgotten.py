@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import ast
+import inspect
 from pathlib import Path
 
 import numpy as np
@@ -9,6 +11,8 @@ import pytest
 
 import hem
 import structures
+from hem.contract import QUERIES
+from tests.structures.conftest import OF_ARRAYS
 
 SOURCE = (Path(structures.__file__).parent / "half_edge.py").read_text("utf-8")
 
@@ -53,6 +57,23 @@ def test_two_structures_of_one_name_are_refused(tmp_path, monkeypatch):
     monkeypatch.syspath_prepend(tmp_path)
     with pytest.raises(TypeError, match="are both called 'half_edge'"):
         structures.find_described([str(tmp_path / package)], package)
+
+
+@pytest.mark.parametrize("name", OF_ARRAYS)
+def test_a_page_tells_of_records_then_queries_then_operations_then_building(name):
+    kind = structures.REGISTRY[name]
+    page = Path(inspect.getfile(kind.records_type)).read_text("utf-8")
+    lines: dict[str, int] = {}
+    for it in ast.parse(page).body:
+        found = [it] if not isinstance(it, ast.Assign) else list(ast.walk(it.targets[0]))
+        lines |= {str(getattr(one, "name", getattr(one, "id", ""))): it.lineno for one in found}
+    queries = [line for it, line in lines.items() if it in QUERIES]
+    operations = [line for it, line in lines.items() if it.endswith("_records")]
+    operations.append(lines.get(kind.__name__, page.count("\n")))
+    assert lines[kind.records_type.__name__] < min(queries) <= max(queries) < min(operations)
+    assert max(operations) == operations[-1]
+    if name in ("half_edge", "winged_edge"):
+        assert page.count("\n") <= 450
 
 
 def test_records_with_other_columns_than_their_fields_are_refused():

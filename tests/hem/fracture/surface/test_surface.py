@@ -184,6 +184,21 @@ def test_islands_are_parts_of_the_rest_the_largest_first():
 
 
 @pytest.mark.parametrize("name", OF_EACH_KIND)
+def test_what_broke_stays_as_it_was_whatever_is_done_to_the_mesh_later(name):
+    meshes = [structures.build(name, sheet()) for _ in "12"]
+    broken, expected = (shatter(s, (3.3, 4.2, 0), "stone", 2) for s in meshes)
+    wanted = [it.points for it in expected.pieces], expected.neighbors, expected.mass.masses
+    s = meshes[0]
+    shatter(s, (6.3, 6.2, 0), "stone", 3)
+    s.split_all_faces()
+    s.move_vertices(s.vertices(), np.zeros((s.n_vertices, 3)))
+    s.compact()
+    found = [it.points for it in broken.pieces], broken.neighbors, broken.mass.masses
+    assert all(np.array_equal(*it) for it in zip(found[0], wanted[0], strict=True))
+    assert all(np.array_equal(*it) for it in zip(found[1:], wanted[1:], strict=True))
+
+
+@pytest.mark.parametrize("name", OF_EACH_KIND)
 def test_a_render_mesh_follows(name):
     s = structures.build(name, sheet())
     render = hem.RenderMesh(s)
@@ -267,6 +282,9 @@ def test_polygons_and_empty_meshes_are_refused():
     quads = hem.PolygonMesh(np.eye(3)[[0, 1, 2, 0]] + [[0], [0], [0], [1]], [[0, 1, 2, 3]])
     with pytest.raises(hem.MeshError, match="only triangles"):
         shatter(structures.build("plankton", quads), (0, 0, 1))
+    for find in (scanned, nearest_face):
+        with pytest.raises(hem.MeshError, match="only triangles"):
+            find(structures.build("plankton", quads), (0, 0, 1))
     empty = hem.TriangleMesh(np.zeros((0, 3)), np.zeros((0, 3), int))
     for name in OF_EACH_KIND:
         with pytest.raises(hem.MeshError, match="no faces"):
