@@ -75,10 +75,12 @@ class Operations:
         def do(a: Any, point: Any = None, b: Any = ..., c: Any = ...) -> Edit:
             # What programs do a million times takes no detours here.
             try:
-                if type(a) is bool or type(b) is bool or type(c) is bool:
-                    raise TypeError  # they would count as 1 and 0
+                if type(a) is bool:  # it would count as 1 or 0
+                    raise TypeError
                 args[0] = a
                 if b is not ...:
+                    if type(b) is bool or type(c) is bool:
+                        raise TypeError
                     args[1] = b
                     if c is not ...:
                         args[2] = c

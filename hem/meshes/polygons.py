@@ -105,7 +105,8 @@ def _validated(faces: Faces, n: int) -> Ragged:
             f"offsets of faces, {offsets.shape}, run from 0 to the number of their corners, "
             f"{corners.shape}"
         )
-    faces, counts = Ragged(offsets, corners), np.diff(offsets.astype(np.int64))
+    faces = Ragged(offsets.astype(np.int64, copy=False), corners)
+    counts = faces.counts
     if not np.issubdtype(corners.dtype, np.integer):
         raise MeshError(f"corners are vertex indices, integers, not {corners.dtype}")
     refuse(counts < 3, "faces have three corners or more", "faces")
