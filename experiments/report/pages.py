@@ -110,7 +110,7 @@ def sentences(claims: Iterable[JudgedClaim], kind: str) -> Html:
 def tally(claims: Iterable[JudgedClaim]) -> Html:
     """How many claims of each kind came out how."""
     heads, *rows = written.tally_rows(claims)
-    return table("words", heads, rows)
+    return table("words", heads, rows, "glance")
 
 
 def legend() -> Html:

@@ -37,6 +37,13 @@ LINEAR: dict[str, Any] = {
 }
 
 
+CACHE: dict[str, Any] = {
+    "xycoords": ("data", "axes fraction"), "textcoords": "offset points", "fontsize": 7,
+    "color": GRAY,
+}  # fmt: skip
+"""Where the name of a cache stands: at the foot of its mark."""
+
+
 def draw_lines(
     axes: Axes, cases: pd.DataFrame, x: str, by: str, styles: Mapping[str, Any], **look: Any
 ) -> None:
@@ -112,7 +119,8 @@ def scaling(run: Run, axis: Axis, subjects: Iterable[str] = QUERIES) -> Plot:
     """Cost along an axis: a panel per query or operation, a line per structure.
 
     Time of queries against size has random handles in bold, consecutive ones thin, and in gray
-    below them the latency of the memory at the working set that a half-edge mesh of that size has.
+    below them the latency of the memory at the working set that a half-edge mesh of that size has,
+    with a mark where that outgrows a cache.
     """
     titles = {name: style.TITLES[name] for name in subjects}
     in_both_orders = axis is Axis.TIME_FACES and titles.keys() <= QUERIES.keys()
@@ -148,6 +156,13 @@ def _draw_order_and_latency(run: Run, axes: Axes, subject: str) -> None:
         x, y = cases["faces"].to_numpy(float), 1e9 * latency
         axes.fill_between(x, y, 1e-3, color=style.FADED, linewidth=0, zorder=0)
         axes.plot(x, y, color=GRAY, linewidth=1, label="latency")
+        for level, size in run.meta["machine"].get("caches", {}).items():
+            kilobytes = float(size.removesuffix("K"))
+            place = np.interp(1024 * kilobytes, cases["working_set"], x, left=0, right=0)
+            if place:
+                foot = axes.get_xaxis_transform()
+                axes.vlines(place, 0, 0.05, GRAY, linewidth=1, transform=foot)
+                axes.annotate(level, (place, 0), (3, 3), **CACHE)
 
 
 def listings(run: Run, axis: Axis = Axis.WORK_FACES) -> Plot:

@@ -36,7 +36,7 @@ def by_field(run: Run) -> Plot:
             traced, peak = (case["detail"][key] / case["vertices"] for key in ("traced", "peak"))
             note = f"{sum(fields.values()):.4g} B with {case['reference_bytes']}-byte references"
             note += f" · {traced:.1f} traced · {peak:.0f} at the peak"
-            _bar(axes, height, 0.36, fields, STYLES[name]["color"], note)
+            _bar(axes, height, 0.36, fields, STYLES[name]["color"], note, 2.9)
         for it in open_run().claims:
             name, claimed = it.claim.structure, it.claim.expects
             if name in rows and isinstance(claimed, Exactly) and claimed.value:
@@ -44,7 +44,7 @@ def by_field(run: Run) -> Plot:
                 axes.plot([value, value], [top, top + 0.44], color="black", linewidth=2.5)
                 words = "published in the thesis" if name == rows[0] else ""
                 axes.text(value, top - 0.04, words, ha="center", fontsize=8, fontweight="bold")
-        axes.set_xlim(0, 350)
+        axes.set_xlim(0, 395)
     return plot
 
 
@@ -65,7 +65,7 @@ def references(run: Run) -> Plot:
         plot, axes = _rows(list(bars), 0.6, 0.5)
         for row, (name, parts) in enumerate(bars.values()):
             total = f"{sum(parts.values()):,.0f}"
-            _bar(axes, row, 0.62, parts, STYLES[name]["color"], total, fontweight="bold")
+            _bar(axes, row, 0.62, parts, STYLES[name]["color"], total, 9, fontweight="bold")
         axes.margins(x=0.08)
     return plot
 
@@ -84,18 +84,18 @@ def _rows(names: list[str], height: float, more: float) -> tuple[Plot, Axes]:
 
 def _bar(
     axes: Axes, height: float, thickness: float, parts: Mapping[str, float], color: str, note: str,
-    **look: Any,
+    letter: float, **look: Any,
 ) -> None:  # fmt: skip
-    """A stacked bar whose parts are named where there is room, and a note beside it."""
+    """A stacked bar whose parts are named where letters of this width fit, and a note beside it."""
     start = 0.0
     for k, (part, size) in enumerate(parts.items()):
         name = part.rpartition(".")[2].replace("_", " ")
         shade = 0.28 if k % 2 else 0.48
         axes.barh(height, size, thickness, start, color=color, alpha=shade, edgecolor="white")
-        if size > 2.2 * len(name):
-            axes.text(start + size / 2, height, name, ha="center", va="center", fontsize=6.5)
+        if size > letter * len(name):
+            axes.text(start + size / 2, height, name, ha="center", va="center", fontsize=8)
         start += size
-    axes.text(start + 4, height, note, va="center", **{"fontsize": 8, **look})
+    axes.text(start + 4, height, note, va="center", **{"fontsize": 9, **look})
 
 
 def _parts(cases: pd.DataFrame, kind: str) -> dict[str, float]:
