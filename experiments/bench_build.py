@@ -38,5 +38,8 @@ def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
     return case.result("time", s, **timed.fields)
 
 
-EXPERIMENT = Experiment(title="Time to build", cases=cases, measure=measure, copies=3, turn=50)
+EXPERIMENT = Experiment(
+    title="Time to build", cases=cases, measure=measure, copies=3, turn=50,
+    baseline_orders=("consecutive", ANSWERING),
+)  # fmt: skip
 test_build = EXPERIMENT.test

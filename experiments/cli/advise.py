@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
-from rich.table import Table
+from rich.table import Column, Table
 from typer import Argument, Option
 
 import hem
@@ -79,20 +79,21 @@ def advise(
             "refused": found.refused, "flips": found.flips,
         })  # fmt: skip
     else:
-        _show(found, source, mesh)
+        _show(found, source, str(run or "the baseline"), mesh)
     if not found.options:
         errors.print("hem: no structure suits; ask for less, or allow more")
         raise typer.Exit(NOTHING)
 
 
-def _show(found: Advice, run: Run, mesh: str) -> None:
+def _show(found: Advice, run: Run, called: str, mesh: str) -> None:
     from experiments.report import duration
     from structures import REGISTRY
 
     cpu = run.meta.get("machine", {}).get("cpu", "an unknown machine")
     console.print(f"[bold]{found.workload.title}[/], on {mesh} ({found.faces:,} faces).")
-    console.print(f"Predicted from {run.folder}, measured on {cpu}.\n", highlight=False)
-    table = Table("structure", "time", "nine of ten within", "bytes", "what costs it more")
+    console.print(f"Predicted from {called}, measured on {cpu}.\n", highlight=False)
+    whole = (Column(it, no_wrap=True) for it in ("structure", "time", "nine of ten within"))
+    table = Table(*whole, "bytes", "what costs it more")
     for option in found.options:
         it, behind = option.forecast, option.behind
         within = f"{duration(it.low)} … {duration(it.high)}"

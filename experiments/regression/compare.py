@@ -125,10 +125,12 @@ def _pair_cases(before: Run, after: Run) -> tuple[list[Pair], list[str]]:
 
 
 def claim_of(case: CaseKey) -> str:
-    """The claim that a case bears on, in words: of its table, or on its structure's memory."""
+    """The claim that a case bears on, in words: of its table, or on memory; empty if none."""
     declared, name = experiments().get(case.experiment), f"queries/{case.structure}/memory"
     if declared and declared.table:
         name = f"{declared.table.name}/{case.structure}/{case.subject}"
+    elif declared and declared.kind != Kind.BYTES:
+        return ""
     return describe_claim(name)[0]
 
 

@@ -34,17 +34,24 @@ def page_titles() -> dict[str, str]:
     return {name: title for (_, name), title in sorted(found.items())}
 
 
+def read(name: str) -> Any:
+    """A notebook that is a page, by its name."""
+    return nbformat.read(carried("notebooks") / f"{name}.ipynb", as_version=4)
+
+
 def body(name: str) -> str:
     """Execute a notebook -> its page's body, without code. ResultsError names it if one fails."""
-    notebook = nbformat.read(carried("notebooks") / f"{name}.ipynb", as_version=4)
-    execute(notebook, name)
+    execute(notebook := read(name), name)
     places = [str(Path(__file__).parent / "templates")]
     look: dict[str, Any] = {"template_name": "chapter", "extra_template_basedirs": places}
     return str(HTMLExporter(**look, exclude_anchor_links=True).from_notebook_node(notebook)[0])
 
 
-def execute(notebook: Any, name: str) -> None:
-    """Run every cell into the notebook; one that lacks a measurement or package says so instead."""
+def execute(notebook: Any, name: str) -> dict[str, Any]:
+    """Run every cell into the notebook -> what they named.
+
+    A cell that lacks a measurement or a package says so instead.
+    """
     InteractiveShell.clear_instance()
     shell: Any = InteractiveShell.instance(config=Config({"HistoryManager": {"enabled": False}}))
     heading = name
@@ -54,6 +61,7 @@ def execute(notebook: Any, name: str) -> None:
             heading = lines[-1].strip("# ") if lines else heading
         elif cell.cell_type == "code":
             cell.outputs = _outputs(shell, cell.source, heading, name)
+    return dict(shell.user_ns)
 
 
 def _outputs(shell: Any, source: str, heading: str, name: str) -> list[Any]:

@@ -1,4 +1,4 @@
-"""The page that is committed of a run: tables, sentences and the main plots, in Markdown."""
+"""The page that is committed of a run: answers, tables and the main plots, in Markdown."""
 
 import re
 from collections.abc import Callable
@@ -11,6 +11,7 @@ from experiments.claims import CLAIMED
 from experiments.harness import OPERATIONS, QUERIES_TABLE, Axis
 from experiments.report import tables, uses
 from experiments.report.figures import fracture, growth, memory, meshes
+from experiments.report.notebooks import FRONT, execute, read
 from experiments.report.pages import each_table, or_missing
 from experiments.report.session import read_session, share
 from experiments.runs import Run, in_words
@@ -40,23 +41,33 @@ DRAWN: dict[str, tuple[str, Callable[[Run], Figure]]] = {
 }
 """The pictures of the page: by file the title and how it is drawn."""
 
-MARKED = "(?s)(<!-- table -->).*?(<!-- end of table -->)"  # where the README has table 1
+QUESTION = (
+    "How does the runtime of an indexed mesh differ from that of a half-edge mesh for what dynamic "
+    "applications do, and which should be used where? A thesis answered by counting on paper; here "
+    "its claims are run."
+)
+MADE = "Made by `hem report --page` from a run; README.md has its answers and its table 1."
 MISSING = "*{}*"  # how the page says what was not measured
 
 
 def write_readme(run_folder: Path, folder: Path) -> Path:
-    """Write what is committed of a run for reading: a page with the tables and the main plots.
+    """Write what is committed of a run for reading: a page that begins with the answers.
 
-    Table 1 and its legend go into the README beside ``folder``, too, if it has marks for them.
+    They, and table 1 with its legend, go into the README beside ``folder``, too, if it has marks
+    for them.
     """
     share(session := read_session(run_folder))
     run, claims = session.run, session.claims
     folder.mkdir(parents=True, exist_ok=True)
     recommended = partial(uses.recommended_markdown, run)
-    parts = {"Which structure for which use": or_missing(recommended, MISSING)}
-    parts |= {
+    told = execute(read(FRONT), FRONT).get("answers", ())
+    answers = "\n".join(f"{number}. {it.text}" for number, it in enumerate(told, start=1))
+    parts = {
+        "The answers": answers or MISSING.format("This run has measured none."),
+        "How to read the tables": "\n\n".join(tables.legend()),
+        "The run": f"{MADE} {in_words(run)}",
+        "Which structure for which use": or_missing(recommended, MISSING),
         "Who claims what": tables.markdown_rows(tables.tally_rows(claims)),
-        "How to read it": "\n\n".join(tables.legend()),
     }
     parts |= each_table(claims, tables.markdown, MISSING)
     for kind in CLAIMED:
@@ -66,14 +77,19 @@ def write_readme(run_folder: Path, folder: Path) -> Path:
         parts[title] = or_missing(picture, MISSING)
     text = "\n\n".join(f"## {title}\n\n{part}" for title, part in parts.items())
     page = folder / "README.md"
-    made = "Made by `hem report --page` from a run; README.md has its table 1 from there, too."
-    page.write_text(f"# The thesis, measured\n\n{made} {in_words(run)}\n\n{text}\n", "utf-8")
+    page.write_text(f"# Does the thesis hold?\n\n{QUESTION}\n\n{text}\n", "utf-8")
     readme = folder.parent / "README.md"
     if readme.exists():
         table = f"{parts[QUERIES_TABLE.title]}\n\n{' '.join(tables.legend())}"
-        text = re.sub(MARKED, lambda it: f"{it[1]}\n{table}\n{it[2]}", readme.read_text("utf-8"))
-        readme.write_text(text, "utf-8")
+        text = _filled(readme.read_text("utf-8"), "answer", answers)
+        readme.write_text(_filled(text, "table", table), "utf-8")
     return page
+
+
+def _filled(text: str, name: str, part: str) -> str:
+    """A text with a part between its marks of this name, if it has them."""
+    marked = f"(?s)(<!-- {name} -->).*?(<!-- end of {name} -->)"
+    return re.sub(marked, lambda it: f"{it[1]}\n{part}\n{it[2]}", text)
 
 
 def _draw(run: Run, draw: Callable[[Run], Figure], file: Path, title: str) -> str:

@@ -30,7 +30,7 @@ STEEPER = 2.1  # slope of the larger half of the sizes beyond which steep classe
 APART = 0.2  # of exponents: a power law closer to a class is that class, bent by memory
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Verdict:
     """What measurements say about a claimed growth class.
 
@@ -60,6 +60,10 @@ class Verdict:
     errors: Mapping[str, float]
     reason: str
     answer: str = ""
+
+    def __repr__(self) -> str:
+        slope = f"slope {self.slope:.2f} ({self.slope_low:.2f} … {self.slope_high:.2f})"
+        return f"<Verdict on {self.expected}: {self.outcome}, {slope}. {self.reason}>"
 
 
 def judge(

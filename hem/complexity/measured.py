@@ -27,7 +27,7 @@ COSTLY = 1_000  # … and is judged where it takes that part of the largest at l
 QUICKER = 0.6  # share of the samples of a size that is looked at, the quicker ones: delays only add
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Measured:
     """What a function cost by size, and what memory takes at each working set."""
 
@@ -35,6 +35,11 @@ class Measured:
     samples: list[Array]  # k times seconds per call
     working_sets: Array  # (k,) bytes of a call
     memory: Array  # (3, k) seconds, as `memory_times` tells them of each
+
+    def __repr__(self) -> str:
+        sizes = f"{len(self.sizes)} sizes from {self.sizes[0]:g} to {self.sizes[-1]:g}"
+        least, most = (float(np.median(self.samples[k])) for k in (0, -1))
+        return f"<Measured at {sizes}: {least:.2g} to {most:.2g} s a call>"
 
     def judge(self, expected: str = "O(1)", **options: Any) -> Verdict:
         """Judge a claim by these costs; options as of `hem.complexity.judge`.

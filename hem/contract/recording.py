@@ -51,6 +51,10 @@ class Recording:
         self._last: dict[str, int] = {}
         self._edited = False
 
+    def __repr__(self) -> str:
+        counted = (f"{it.times:,} × {it.what}" for it in self.rows if it.times)
+        return f"<Recording of {', '.join(counted) or 'nothing'}>"
+
     def add(self, what: str, handles: Any, caller: str = PYTHON) -> None:
         """Count what was asked or done for one handle, or for an array of them."""
         if np.ndim(handles):

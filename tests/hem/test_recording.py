@@ -66,6 +66,15 @@ def test_calls_from_python_are_told_from_batches() -> None:
     assert found["vertex_edges", PYTHON] == 1
 
 
+def test_a_recording_is_shown_in_a_line() -> None:
+    s = structures.build("half_edge", hem.generate("torus", 100))
+    with hem.record(s) as recording:
+        assert repr(recording) == "<Recording of nothing>"
+        s.vertex_faces(s.vertices())
+        s.flip_edge(int(s.edges()[0]))
+    assert repr(recording) == "<Recording of 100 × vertex_faces, 1 × flip_edge>"
+
+
 def test_what_lies_side_by_side_is_in_order_and_what_lies_apart_is_not() -> None:
     s = structures.build(COMPILED_ONE, hem.generate("torus", 2_000))
     with hem.record(s) as workload:

@@ -132,9 +132,15 @@ def test_the_answers_are_numbers_of_the_run(base_folder):
 def test_the_committed_page_has_the_tables_and_its_pictures(base_folder, tmp_path, monkeypatch):
     drawn = {name: readme.DRAWN[name] for name in ("overview", "memory", "overtaking")}
     monkeypatch.setattr(readme, "DRAWN", drawn)
+    (tmp_path / "README.md").write_text("<!-- answer -->\nold\n<!-- end of answer -->\nkept")
     page = readme.write_readme(base_folder, tmp_path / "report")
     share(None)
     text = page.read_text()
+    answers = re.findall(r"(?m)^\d\. .*", text[: text.index("## How to read")])
+    assert [it[:2] for it in answers] == ["1.", "2.", "3.", "4.", "5."]
+    assert "takes 228 bytes per vertex and an indexed mesh 36: 6.33 times" in answers[1]
+    above = (tmp_path / "README.md").read_text()
+    assert above.splitlines() == ["<!-- answer -->", *answers, "<!-- end of answer -->", "kept"]
     assert "| Bytes per vertex | 36 ✓ | 116 ✓ | 228 ✓ | 228 ✓ |" in text
     assert "| Split face | O(1) ○○ | O(1) (✓✓) | O(1) (✓✓) | O(1) ✓✓ |" in text
     assert "| Named by its three corners | O(n_t) ✓✓ |" in text

@@ -294,6 +294,18 @@ def test_verdicts_repeat_and_know_neither_unit_nor_order() -> None:
     assert again.margin == pytest.approx(first.margin)
 
 
+def test_a_verdict_is_shown_in_a_line() -> None:
+    verdict = judge(
+        [10, 100, 1000, 10_000],
+        [[n * k for k in (2.9, 3, 3.1)] for n in (10, 100, 1000, 10_000)],
+        "O(n)",
+    )
+    assert repr(verdict) == (
+        f"<Verdict on O(n): consistent, slope 1.00 ({verdict.slope_low:.2f} … "
+        f"{verdict.slope_high:.2f}). O(n) explains the costs, and no other class does.>"
+    )
+
+
 def test_a_verdict_survives_json() -> None:
     verdict = judge([4, 8, 16, 32, 64], [[3, 3.1], [3], [3], [3.1], [3]])
     assert Verdict(**json.loads(json.dumps(asdict(verdict)))) == verdict

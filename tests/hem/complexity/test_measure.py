@@ -6,7 +6,7 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 
-from hem.complexity import measure
+from hem.complexity import Measured, measure
 from hem.complexity import measure as measure_function
 from hem.complexity.memory import memory_times
 
@@ -138,3 +138,9 @@ def test_what_no_machine_has_room_for_is_measured_as_the_largest(
 def test_sizes_that_are_none_are_refused(sizes: list[float]) -> None:
     with pytest.raises(ValueError, match="sizes must be whole numbers"):
         measure(len, list, sizes)
+
+
+def test_measurements_are_shown_in_a_line() -> None:
+    sizes, samples = np.array([4.0, 4_096.0]), [np.array([2e-7, 3e-7, 9e-7]), np.array([0.25])]
+    found = Measured(sizes, samples, sizes, np.ones((3, 2)))
+    assert repr(found) == "<Measured at 2 sizes from 4 to 4096: 3e-07 to 0.25 s a call>"
