@@ -61,9 +61,10 @@ def write_readme(run_folder: Path, folder: Path) -> Path:
     folder.mkdir(parents=True, exist_ok=True)
     recommended = partial(uses.recommended_markdown, run)
     told = execute(read(FRONT), FRONT).get("answers", ())
-    answers = "\n".join(f"{number}. {it.text}" for number, it in enumerate(told, start=1))
+    listed = "\n".join(f"{number}. {it.text}" for number, it in enumerate(told, start=1))
+    answers = listed or MISSING.format("This run has measured none.")
     parts = {
-        "The answers": answers or MISSING.format("This run has measured none."),
+        "The answers": answers,
         "How to read the tables": "\n\n".join(tables.legend()),
         "The run": f"{MADE} {in_words(run)}",
         "Which structure for which use": or_missing(recommended, MISSING),

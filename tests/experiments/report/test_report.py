@@ -126,7 +126,7 @@ def test_the_answers_are_numbers_of_the_run(base_folder):
     assert "over all faces takes a half-edge mesh 1.0 times as long" in body
     assert f"{uses.best(uses.ranking(run, 'asked'))} finds neighbors fastest" in body
     assert "Of the 30 cells that table 1 of the thesis prints" in body
-    assert "find 30 consistent. By time in random order 26 of 26 cells are consistent" in body
+    assert "find 30 consistent. By time in order 26 of 26 cells are consistent" in body
 
 
 def test_the_committed_page_has_the_tables_and_its_pictures(base_folder, tmp_path, monkeypatch):
