@@ -1,7 +1,7 @@
 """How steady the machine is while a case is measured, and which core is the calmest.
 
-The calibration loop is timed before and after each case. A case beside a slow loop, or without its
-core, was disturbed: it is measured again, and the calmest measurement is kept.
+A loop that fills its core is timed before and after each case. A case beside a slow loop, or
+without its core, was disturbed: it is measured again, and the calmest measurement is kept.
 """
 
 import os
@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 import psutil
 
-from experiments.harness.calibration import calibration_loop
+from experiments.harness.calibration import filling_loop
 
 READINGS = 5
 FIRST_READINGS = 50  # readings at the start of a process, to know how fast the loop can be
@@ -25,39 +25,34 @@ BUSY = 0.10  # share of disturbed cases above which times should not be judged b
 WATCHED_SECONDS = 0.1
 
 
-def calibration() -> float:
+def reading() -> float:
     """Seconds per step of the loop just now, the median of some; a fraction of a millisecond."""
-    return float(np.median([calibration_loop() for _ in range(READINGS)]))
-
-
-@lru_cache(maxsize=1)
-def fastest() -> float:
-    """The fastest of some readings in this process, taken when first asked."""
-    calibration_loop()  # compiles
-    return min(calibration_loop() for _ in range(FIRST_READINGS))
+    return float(np.median([filling_loop() for _ in range(READINGS)]))
 
 
 class Watch:
     """Watches the machine from now until ``seen``."""
 
+    fastest = np.inf  # seconds per step of the loop, the least that this process read
+
     def __init__(self) -> None:
-        self.fastest = fastest()
-        self.before = calibration()
+        if Watch.fastest == np.inf:
+            filling_loop()  # compiles
+            Watch.fastest = min(filling_loop() for _ in range(FIRST_READINGS))
+        self.before = reading()
         self._begin = perf_counter(), process_time()
 
     def seen(self) -> dict[str, float]:
-        """What happened: ``fastest``, ``before``, ``after``, ``slowdown``, ``off_cpu``.
+        """What happened: ``fastest``, ``before``, ``after``, ``off_cpu``.
 
-        The first three are seconds per step of the loop; ``slowdown``: by what part the slower
-        reading was slower than the fastest; ``off_cpu``: the part of the time for which the process
-        was not running.
+        The first three are seconds per step of the loop, the first being the least so far;
+        ``off_cpu``: the part of the time for which the process was not running.
         """
         wall, ran = perf_counter() - self._begin[0], process_time() - self._begin[1]
-        after = calibration()
-        least = min(self.fastest, self.before, after)
-        readings = {"fastest": least, "before": self.before, "after": after}
-        slowdown = max(self.before, after) / least - 1
-        return {**readings, "slowdown": slowdown, "off_cpu": max(0.0, 1 - ran / wall)}
+        after = reading()
+        Watch.fastest = min(Watch.fastest, self.before, after)
+        readings = {"fastest": Watch.fastest, "before": self.before, "after": after}
+        return {**readings, "off_cpu": max(0.0, 1 - ran / wall)}
 
 
 def disturbed(noise: dict[str, Any]) -> bool:
@@ -69,8 +64,9 @@ def badness(noise: dict[str, Any]) -> float:
     """By how much a case was disturbed, to choose the calmest of several measurements of it."""
     if not noise:
         return np.inf
+    slowdown = max(noise["before"], noise["after"]) / noise["fastest"] - 1
     impossible = noise.get("impossible", 0.0) / IMPOSSIBLE
-    return max(noise["slowdown"] / SLOWDOWN, noise["off_cpu"] / OFF_CPU, impossible)
+    return max(slowdown / SLOWDOWN, noise["off_cpu"] / OFF_CPU, impossible)
 
 
 @lru_cache(maxsize=1)

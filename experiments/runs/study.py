@@ -34,6 +34,7 @@ from structures import NAMED, REGISTRY
 ROOT = Path(__file__).parents[2]
 COMPILED = "hem", "structures", "experiments/harness"  # where the sources are that Numba compiles
 ON = " on "  # between a preset and one's own mesh, in the name of what was measured
+MOSTLY = 0.5  # part of disturbed cases above which measuring them again will not be calmer
 REPEATING_SHARE = 0.5  # of the time that all cases took, at most, to measure disturbed ones again
 
 
@@ -232,10 +233,15 @@ def _measure(folder: Path, jobs: list[Job], observer: Observer, stop: Event) -> 
 
 
 def _measure_again(folder: Path, jobs: list[Job], until: float) -> None:
-    """Measure disturbed cases once more, each time in a new process, while there is time."""
+    """Measure disturbed cases once more, each time in a new process, while there is time.
+
+    Not where most cases are: as busy as that, the machine is busy again.
+    """
     for _ in range(REPEATS):
-        again = [job for job in jobs if job.file(folder).disturbed]
-        if not again:
+        files = {job: job.file(folder) for job in jobs}
+        again = [job for job, file in files.items() if file.disturbed]
+        cases = sum(len(file.cases) for file in files.values())
+        if not again or sum(len(file.disturbed) for file in files.values()) > MOSTLY * cases:
             return
         with closing(perform(folder, again, AGAIN)) as finished:
             for _ in finished:

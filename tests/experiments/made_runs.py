@@ -22,7 +22,7 @@ SIZES = [200, 630, 2000, 6324, 20000, 63246, 200000]
 VALENCES = [2**k for k in range(2, 13)]
 FACES = 131_072
 
-STEADY = {"fastest": 1e-4, "before": 1e-4, "after": 1e-4, "slowdown": 0.0, "off_cpu": 0.0}
+STEADY = {"fastest": 1e-4, "before": 1e-4, "after": 1e-4, "off_cpu": 0.0}
 """What a machine that does nothing else shows."""
 
 Law = Callable[[int, int], float]

@@ -158,6 +158,6 @@ def test_operations_that_take_no_longer_than_idle_calls_are_skipped_and_measured
     nothing = time_operations(it, PRESETS["smoke"], time_rounds)
     assert "samples" not in nothing
     assert "no longer than a call that does none" in nothing["skipped"]
-    calm = {"slowdown": 0.0, "off_cpu": 0.0}
+    calm = {"fastest": 1e-9, "before": 1e-9, "after": 1e-9, "off_cpu": 0.0}
     assert not disturbed(calm)
     assert disturbed({**calm, **nothing["noise"]})

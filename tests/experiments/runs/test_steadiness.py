@@ -8,7 +8,7 @@ from experiments.harness import Measurement
 from experiments.harness.steadiness import BUSY
 from experiments.runs import CaseFile, load, noise, write_meta
 
-CALM = {"fastest": 1e-9, "before": 1e-9, "after": 1.01e-9, "slowdown": 0.01, "off_cpu": 0.0}
+CALM = {"fastest": 1e-9, "before": 1e-9, "after": 1.01e-9, "off_cpu": 0.0}
 
 
 def run_of(tmp_path, noises, kind="time"):

@@ -17,7 +17,7 @@ DAMAGES = (
     "truncated", "emptied", "overwritten", "another number", "without its checksum", "a line less",
     "a list",
 )  # fmt: skip
-CALM = {"fastest": 1e-4, "before": 1e-4, "after": 1e-4, "slowdown": 0.0, "off_cpu": 0.0}
+CALM = {"fastest": 1e-4, "before": 1e-4, "after": 1e-4, "off_cpu": 0.0}
 BUSY = {**CALM, "off_cpu": 0.9}
 
 
@@ -60,6 +60,15 @@ def test_of_several_measurements_of_a_case_the_calmest_counts(tmp_path):
     assert again.disturbed == {"b"}
     again.add(*[measurement("b", 3.0, noise=BUSY)] * (REPEATS - 1))
     assert again.disturbed == set()
+
+
+def test_a_process_that_never_saw_its_core_alone_is_found_out_by_one_that_did(tmp_path):
+    slow = {**CALM, "fastest": 1.8e-4, "before": 1.8e-4, "after": 1.8e-4}
+    file = CaseFile(tmp_path, "bench_x", "indexed")
+    file.add(measurement("a", 2.0, noise=slow))
+    assert file.disturbed == set()
+    file.add(measurement("b", 1.0, noise=CALM))
+    assert file.disturbed == {"a"}
 
 
 def test_a_kill_at_any_moment_leaves_whole_lines(tmp_path):

@@ -113,6 +113,10 @@ def test_disturbed_cases_are_measured_again_no_more_often_than_they_may(run, mon
     assert actions == [(AGAIN,)] * REPEATS
     study._measure_again(run, study.plan(run), until=0)
     assert len(actions) == REPEATS + 1
+    most = [key for job in study.plan(run) for key in job.ids]
+    monkeypatch.setattr(CaseFile, "disturbed", set(most))  # it would be as busy once more
+    study._measure_again(run, study.plan(run), until=float("inf"))
+    assert len(actions) == REPEATS + 1
 
 
 def test_a_full_disk_stops_the_study_and_loses_nothing(small_disk):
