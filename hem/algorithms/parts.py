@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from functools import cache
 from typing import Any, NamedTuple
 
@@ -166,35 +165,20 @@ def unit(x: float, y: float, z: float) -> tuple[float, float, float]:
     return (x / size, y / size, z / size) if size > 0 else (0.0, 0.0, 0.0)
 
 
-def grid(largest: float, terms: int) -> float:
-    """What puts numbers up to ``largest`` on a grid of which sums of so many ``terms`` are exact.
-
-    So a sum does not depend on the order in which a structure tells the neighbors. A number x comes
-    there as ``(x + grid) - grid``, in float64, and loses what lies 52 bits below the largest sum.
-    Source: Demmel & Nguyen, Fast Reproducible Floating-Point Summation (2013).
-    """
-    return 1.5 * 2.0 ** math.frexp(largest * max(terms, 2))[1]
-
-
-def extent(points: Array) -> float:
-    """The largest number of an array without regard to its sign, and to what is dead (NaN)."""
-    return float(
-        max(np.fmax.reduce(points, None, initial=0), -np.fmin.reduce(points, None, initial=0))
-    )
-
-
 @cache
 def adding(read: Kernel) -> Kernel:
     """Make ``add(m, it, sums, plan) -> sums`` to visit with: ``read(m, it, plan) -> x, y, z``.
 
-    The sums are how many there are, and theirs of x, y and z on ``plan.grid``, exactly.
+    The sums are how many there are, and theirs of x, y and z in float64. A structure tells the
+    neighbors in an order of its own, and sums of float32 are exact in any, where the largest is
+    below 2²⁶ times the smallest. Else one of some 10⁸ may differ by the last bit as float32.
     """
 
     @kernel
     def add(m: Any, it: int, sums: Any, plan: Any) -> Any:
         x, y, z = read(m, it, plan)
-        grid, (n, a, b, c) = plan.grid, sums
-        return n + 1, a + (x + grid - grid), b + (y + grid - grid), c + (z + grid - grid)
+        n, a, b, c = sums
+        return n + 1, a + x, b + y, c + z
 
     return add
 

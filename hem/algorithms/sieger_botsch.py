@@ -19,8 +19,6 @@ from hem.algorithms.parts import (
     change,
     cornering,
     doing,
-    extent,
-    grid,
     locating,
     most_faces_at_a_vertex,
     move,
@@ -81,7 +79,6 @@ class Sum(NamedTuple):
 
     faces: Array
     sums: Floats  # (3,)
-    grid: float  # for the corners of a face
     out: Any
 
 
@@ -132,7 +129,7 @@ def center(s: Structure) -> Floats:
     """
     require_mesh(s, "center")
     middle = np.zeros(3)
-    s.run(summing_corners, Sum(s.faces(), middle, grid(extent(s.points), 3), s.scratch(0)[0]))
+    s.run(summing_corners, Sum(s.faces(), middle, s.scratch(0)[0]))
     middle /= max(3 * s.n_faces, 1)
     vertices, places = s.vertices(), np.zeros((len(s.points), 3), np.float32)
     s.run(shifting, Shift(vertices, middle, places))
@@ -168,7 +165,6 @@ class Fans(NamedTuple):
 
     vertices: Array
     of_faces: Array
-    grid: float
     found: Array  # (n, 3) float32
     out: Any
 
@@ -206,8 +202,7 @@ def normals_around(s: Structure) -> Points:
     of_faces = np.zeros((s.face_end, 3), np.float32)
     out = s.scratch(0)[0]
     s.run(finding_normals, Faces(s.faces(), of_faces, out))
-    step = grid(extent(of_faces), len(out) // 2)  # more than the faces at any vertex
-    s.run(adding_around, Fans(s.vertices(), of_faces, step, found, out))
+    s.run(adding_around, Fans(s.vertices(), of_faces, found, out))
     return found
 
 

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from hem.algorithms.arguments import require_count, require_mesh
-from hem.algorithms.parts import NOTHING, adding, count_faces_at, extent, grid, locating, move
+from hem.algorithms.parts import NOTHING, adding, count_faces_at, locating, move
 from hem.arrays import Array, Floats, Points
 from hem.authoring import Kernel, Kernels, kernel, visiting
 from hem.contract import Structure
@@ -31,7 +31,6 @@ class Plan(NamedTuple):
     border: float  # that to the mean of the two neighbors along the border
     faces_at: Array  # (n,) int32: how many faces a vertex has; none if there is no border
     places: Points  # (n, 3) float32: where vertices come to lie
-    grid: float  # see ``parts.grid``
     out: Any
 
 
@@ -78,8 +77,7 @@ def averages(s: Structure, inside: Callable[[Array], Array], border: float = 0.0
     closed = 2 * s.n_edges == 3 * s.n_faces
     faces_at = np.zeros(0, np.int32) if closed else count_faces_at(s)
     places = np.zeros((n, 3), np.float32)
-    step = grid(extent(s.points), len(parts))
-    s.run(averaging, Plan(s.vertices(), parts, border, faces_at, places, step, out))
+    s.run(averaging, Plan(s.vertices(), parts, border, faces_at, places, out))
     return places
 
 

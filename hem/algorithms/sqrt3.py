@@ -25,8 +25,6 @@ from hem.algorithms.parts import (
     adding,
     change,
     doing,
-    extent,
-    grid,
     locating,
     most_faces_at_a_vertex,
     move,
@@ -42,7 +40,6 @@ class Plan(NamedTuple):
     """What is split or turned, and how far that is."""
 
     faces: Array
-    grid: float  # for the corners of a face
     out: Any
     old: Array  # (1,) int64: how many vertices there were
     next: Array  # (1,) int64: the place of the next face
@@ -81,7 +78,7 @@ def split_all_faces(s: Structure, kind: str) -> Plan:
     No vertex has more than twice as many faces as it had.
     """
     old, faces, out = np.array([len(s.points)]), s.faces(), s.scratch(0)[0]
-    plan = Plan(faces, grid(extent(s.points), 3), out, old, np.zeros(1, np.int64), NO_WORK)
+    plan = Plan(faces, out, old, np.zeros(1, np.int64), NO_WORK)
     change(s, kind, splitting, plan, len(faces), 2 * most_faces_at_a_vertex(s))
     plan.next[0] = 0
     return plan
