@@ -106,7 +106,7 @@ class MarkedStorage(Storage):
         records, number = super().compacted(records)
         records.counts[FACE_ROOM] = ENDLESS
         of = number["half_edge"]
-        place = np.where(twin >= 0, np.minimum(of[h], of[twin]), of[h])
+        place = np.where(twin >= 0, np.minimum(of[h], of[twin]), of[h]).astype(np.int64)
         marks = (scatter(number["vertex"][it].astype(np.int64)) for it in ends)
         new[h] = place << BITS | np.bitwise_xor(*marks)
         return records, number | {"face": of[::3] // 3, "mark": was, "edge": new}

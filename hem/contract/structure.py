@@ -398,8 +398,8 @@ class Structure(Described, Surveying, abstract=True):
         faces = next(number[it] for it in ("face", "triangle") if it in number)
         edit = Edit("compact", -1, np.zeros(0, np.int64))
         edit.remapping = Remapping(
-            number["vertex"].astype(np.int32),
-            faces.astype(np.int32),
+            np.asarray(number["vertex"], np.int32),
+            np.asarray(faces, np.int32),
             lambda edges: renumbered(arguments.handles("Remapping.edges", edges), number),
         )
         self._followers.publish(edit)
