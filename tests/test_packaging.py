@@ -186,6 +186,7 @@ def test_without_the_study_the_command_says_what_to_install():
 def imported(folder: str, *, at_import: bool = False) -> Iterator[tuple[str, str]]:
     """Every distribution that a package imports, lazily or only ``at_import``, with the file."""
     known = {it.module.partition(".")[0]: [it.distribution] for it in PEERS.values()}
+    known["warp"] = ["warp-lang"]
     owners = known | packages_distributions()  # libraries need not be installed
     for path in (ROOT / folder).rglob("*.py"):
         tree = ast.parse(path.read_text())

@@ -125,7 +125,7 @@ def end_of_log(folder: Path, job: Job, action: str = MEASURE) -> str:
     return "".join(lines[-LINES_SHOWN:])
 
 
-@dataclass
+@dataclass(eq=False)  # pytest keeps plugins by their hash
 class _Progress:
     """A plugin of pytest that says which experiment and structure a finished case belongs to."""
 

@@ -1,6 +1,7 @@
 """Laws of the plugin: a verdict becomes a pass, a failure or a warning, and is kept."""
 
 import json
+import sys
 
 import pytest
 
@@ -43,7 +44,10 @@ def test_fixture(clock, complexity):
 
 
 @pytest.fixture
-def run(pytester: pytest.Pytester):
+def run(pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch):
+    # What was compiled of a file as long, written in the same second, would be taken for it.
+    monkeypatch.setattr(sys, "dont_write_bytecode", True)
+
     def run_tests(*options: str, power: int = 1, sizes: tuple[int, ...] = (10, 30, 100, 300, 1000)):
         text = TESTS.replace("POWER", str(power)).replace("SIZES", str(sizes))
         pytester.makepyfile(text)
