@@ -364,7 +364,7 @@ class HalfEdge(Navigable):
         pairing = pair_half_edges(mesh, room=half_edge)
         in_slices(_fill, n, mesh.triangles, pairing.twin, face, half_edge)
         vertex = pairing.vertex_half_edge.astype(reference, copy=False)
-        count = counted(len(mesh.points), pairing.n_edges, n, 3 * n)
+        count = counted(len(mesh.points), pairing.n_edges, n, 3 * n, valence=pairing.valence)
         return cls(HalfEdgeRecords(roomy(mesh.points), vertex, face, half_edge, count))
 
     def _require_invariants(self) -> None:

@@ -105,7 +105,7 @@ class Plankton(Navigable):
             in_slices(pairs.fill_polygons, n, corners, offsets, half, face, room)
         if n_half_edges > len(corners):
             pairs.go_round_holes(half[pairing.twin < 0], vertex, room)
-        own = n_half_edges, 6, most
+        own = n_half_edges, 6, most, pairing.valence
         count = counted(len(mesh.points), pairing.n_edges, n, *own)
         return cls(PlanktonRecords(roomy(mesh.points), vertex, face, room, count))
 

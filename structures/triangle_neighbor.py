@@ -401,7 +401,7 @@ class TriangleNeighbor(PackedEdges):
         pairing = pair_half_edges(mesh, room=triangle)
         in_slices(_fill, len(triangle), mesh.triangles, pairing.twin, triangle)
         vertex_triangle = roomy(pairing.vertex_half_edge // 3, reference)  # -1 stays -1
-        count = counted(len(mesh.points), pairing.n_edges, len(triangle))
+        count = counted(len(mesh.points), pairing.n_edges, len(triangle), valence=pairing.valence)
         return cls(TriangleNeighborRecords(roomy(mesh.points), vertex_triangle, triangle, count))
 
     def _require_invariants(self) -> None:

@@ -397,16 +397,17 @@ class WingedEdge(Structure):
     def build(cls, mesh: TriangleMesh, reference_bytes: int = 4) -> Self:
         """See ``Structure.build``."""
         reference, pairing = REFERENCE_TYPES[reference_bytes], pair_half_edges(mesh)
+        n_edges, n_faces = pairing.n_edges, len(mesh.triangles)
         directed = np.empty_like(pairing.twin)
         number_edges(pairing.twin, directed)
-        edge = rows(pairing.n_edges, 8, dtype=reference)
+        edge = rows(n_edges, 8, dtype=reference)
         in_slices(_fill, len(directed), mesh.triangles, pairing.twin, directed, edge)
         used = pairing.vertex_half_edge >= 0
         vertex_edge = rows(len(used), dtype=reference)
         vertex_edge[~used] = -1
         vertex_edge[used] = directed[pairing.vertex_half_edge[used]] >> 1
         face_edge = roomy(directed[::3] >> 1, reference)
-        count = counted(len(mesh.points), pairing.n_edges, len(face_edge), pairing.n_edges)
+        count = counted(len(mesh.points), n_edges, n_faces, n_edges, valence=pairing.valence)
         return cls(WingedEdgeRecords(roomy(mesh.points), vertex_edge, face_edge, edge, count))
 
     def _require_invariants(self) -> None:

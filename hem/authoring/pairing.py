@@ -39,6 +39,9 @@ class Pairing(NamedTuple):
     n_edges: int
     """Number of undirected edges."""
 
+    valence: int = 0
+    """The most edges that a vertex may have, where the fans were walked; 0 where they were not."""
+
 
 def pair_half_edges(mesh: TriangleMesh, room: Array | None = None) -> Pairing:
     """Pair the half-edges of a manifold mesh, with or without borders.
@@ -69,12 +72,13 @@ def pair_half_edges(mesh: TriangleMesh, room: Array | None = None) -> Pairing:
     in_slices(_fill_buckets, len(triangles), triangles, counts, buckets, twin)
 
     pairs = in_slices(_match, n_vertices, starts, buckets, twin)
-    if min(pairs) < 0 or n_half_edges != sum(
-        in_slices(_count_reached, n_vertices, vertex_half_edge, twin)
-    ):
+    sound = min(pairs) >= 0
+    fans = in_slices(_walk_fans, n_vertices, vertex_half_edge, twin) if sound else [(-1, 0)]
+    if n_half_edges != sum(reached for reached, _ in fans):
         require_manifold(mesh)
         raise AssertionError("pairing refuses a mesh that the diagnosis finds manifold")
-    return Pairing(twin, vertex_half_edge, n_half_edges - sum(pairs))
+    valence = 1 + max(most for _, most in fans)
+    return Pairing(twin, vertex_half_edge, n_half_edges - sum(pairs), valence)
 
 
 def pair_polygons(mesh: PolygonMesh) -> Pairing:
@@ -197,14 +201,16 @@ def _make_twins(g: int, h: int, twin: Array) -> bool:
 
 
 @njit(cache=True, nogil=True)
-def _count_reached(begin: int, end: int, part: int, vertex_half_edge: Array, twin: Array) -> int:
-    """How many half-edges leave the vertices by way of the fan of each one's first.
+def _walk_fans(
+    begin: int, end: int, part: int, vertex_half_edge: Array, twin: Array
+) -> tuple[int, int]:
+    """How many half-edges the fans of each vertex' first have, and how many the largest.
 
-    All of them, unless a vertex has a second fan.
+    All that there are, unless a vertex has a second fan.
     """
-    reached = 0
+    reached, most = 0, 0
     for v in range(begin, end):
-        start = vertex_half_edge[v]
+        before, start = reached, vertex_half_edge[v]
         h = start
         while h >= 0:  # clockwise
             reached += 1
@@ -218,4 +224,5 @@ def _count_reached(begin: int, end: int, part: int, vertex_half_edge: Array, twi
             while h >= 0:
                 reached += 1
                 h = twin[h - 1 if h % 3 else h + 2]
-    return reached
+        most = max(most, reached - before)
+    return reached, most

@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
 from hem.arrays import Array
@@ -28,6 +29,7 @@ from hem.authoring.kernels import (
     VERTEX_ROOM,
     VERTICES,
 )
+from hem.authoring.slices import in_slices
 from hem.errors import MeshError
 from hem.room import longer, roomy, rows
 
@@ -78,14 +80,17 @@ def counted(
     edge_records: int = ENDLESS,
     edge_growth: int = 3,
     sides: int = 3,
+    valence: int = 0,
 ) -> Array:
     """The array ``counts`` of a structure just built, with no room for more and nothing dead.
 
     ``edge_records``: how many edges or half-edges are recorded, if they are; ``edge_growth``: how
-    many of them a new face may need; ``sides``: the most that a face has.
+    many of them a new face may need; ``sides``: the most that a face has; ``valence``: the most
+    edges that a vertex has, or 0 where nobody has counted them yet.
     """
     count = np.zeros(12, np.int64)
     count[EDGE_GROWTH], count[SIDES] = edge_growth, sides
+    count[VALENCE] = max(valence, sides) if valence else 0
     count[[VERTICES, VERTEX_END, VERTEX_ROOM]] = n_vertices
     count[[FACES, FACE_END, FACE_ROOM]] = n_faces
     count[EDGES], count[EDGE_ROOM] = n_edges, edge_records
@@ -152,14 +157,21 @@ def compacted(records: Any, fields: Sequence[Field]) -> tuple[Any, dict[str, Arr
             old.take(kept, axis=0, out=arrays[field.array], mode="clip")
         if field.target:
             array = arrays[field.array]
-            part = array if array.ndim == 1 else array[:, columns[field.name]]
-            part[...] = number[field.target].take(part)
+            part = array[:, None] if array.ndim == 1 else array[:, columns[field.name]]
+            in_slices(_renumber, len(part), part, number[field.target])
     was, recorded = records.counts, [kind for kind in alive if ENDS[kind] == EDGE_END]
     edge_records = len(alive[recorded[0]]) if recorded else ENDLESS
-    own = edge_records, was[EDGE_GROWTH], was[SIDES]
+    own = edge_records, was[EDGE_GROWTH], was[SIDES], was[VALENCE]
     count = counted(was[VERTICES], was[EDGES], was[FACES], *own)
-    count[VALENCE] = was[VALENCE]
     return type(records)(**arrays, counts=count), {kind: it[:-1] for kind, it in number.items()}
+
+
+@njit(cache=True, nogil=True)
+def _renumber(begin: int, end: int, part: int, references: Array, number: Array) -> None:
+    """Put the new numbers into columns of references."""
+    for i in range(begin, end):
+        for j in range(references.shape[1]):
+            references[i, j] = number[references[i, j]]
 
 
 def _numbers(rows: Array, end: int) -> Array:

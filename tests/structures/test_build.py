@@ -7,6 +7,8 @@ import pytest
 
 import hem
 import structures
+from hem.authoring import VALENCE
+from hem.meshes import undirected_edges
 from tests.structures.conftest import HOLDS_ANYTHING, NEEDS_MANIFOLD, OF_ARRAYS, shuffled
 
 NON_MANIFOLD = {
@@ -26,6 +28,13 @@ def test_a_mesh_comes_back_as_it_was_face_by_face(name, mesh):
     back = structures.build(name, mesh).to_triangles()
     assert np.array_equal(back.points, mesh.points)
     assert turned(back.triangles) == turned(mesh.triangles)
+
+
+def test_the_valence_that_building_tells_is_that_of_the_mesh(name, mesh):
+    told = structures.build(name, mesh).records.counts[VALENCE]
+    edges, _ = undirected_edges(mesh.triangles)
+    most = np.bincount(np.ravel(edges)).max(initial=0)
+    assert told == 0 or most <= told <= max(most + 1, 3)  # 0 where nobody has counted
 
 
 def test_a_structure_does_not_share_its_arrays_with_the_mesh(name):
