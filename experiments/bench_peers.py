@@ -39,7 +39,7 @@ def cases(preset: Preset, structure: str) -> list[Case]:
     asked += [(it, LOOPED) for it in QUERIES if it in peer.loops]
     everywhere = [*asked, *((it, BULK) for it in peer.bulk), (BUILD, None)]
     done = [*((it, SINGLE) for it in peer.operations), *((it, BULK) for it in peer.batches)]
-    looped = [it for it in peers.SIX if it in peer.loops]
+    looped = [it for it in (*peers.BATCHED, *peers.SIX) if it in peer.loops]
     return [
         *(case(size, *it) for size in by_size for it in everywhere),
         *(hubs(*it, valence) for valence in preset.valences for it in asked),

@@ -31,6 +31,9 @@ ALGORITHMS = {
 SIX = {name: name.capitalize() for name in algorithms.SIX}
 """The algorithms of Sieger & Botsch, which are timed in compiled loops."""
 
+BATCHED = "split_face", "split_edge", "collapse_edge"
+"""What our structures operate on many elements with at once."""
+
 
 class Lazy:
     """A module of a library, imported when something of it is first asked for."""
@@ -101,7 +104,7 @@ class Peer:
             ({*self.single, *self.bulk}, QUERIES),
             ({*self.operations, *self.batches}, OPERATIONS),
             (set(self.algorithms), ALGORITHMS),
-            (set(self.loops), (*QUERIES, *SIX, BUILD)),
+            (set(self.loops), (*QUERIES, *BATCHED, *SIX, BUILD)),
         ):
             if strange := given - set(known):
                 raise ValueError(f"{self.title}: {min(strange)!r} is none of {', '.join(known)}")

@@ -1,9 +1,9 @@
-// CGAL's Surface_mesh and OpenMesh in C++, used as their manuals have it, in float32: queries in a loop, and the six
-// algorithms of Sieger & Botsch (2011, section 4) as in hem/algorithms/sieger_botsch.py, written once over what the two
-// libraries have in common.
+// CGAL's Surface_mesh and OpenMesh in C++, used as their manuals have it, in float32: queries and operations in a loop,
+// and the six algorithms of Sieger & Botsch (2011, section 4) as in hem/algorithms/sieger_botsch.py, written once over
+// what the two libraries have in common.
 // Arguments: the library, a file of points (float32, 3 each), one of triangles (int32, 3 each), a number of vertices to
-// ask at (0 for all), the rounds of queries, and those of building and of the algorithms.
-// Prints a JSON object: "times": subject -> seconds each round, per query or as a whole; "answers": query -> what was
+// ask at (0 for all), the rounds of queries, and those of building, operations and algorithms.
+// Prints a JSON object: "times": subject -> seconds each round, per element or as a whole; "answers": query -> what was
 // asked and answered of a few elements; "faces", "bytes", and "collapsed", whether the first edge may be, with the faces "left".
 #include <CGAL/Simple_cartesian.h>
 #include <CGAL/Surface_mesh.h>
@@ -16,6 +16,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
+#include <numeric>
 #include <random>
 #include <string>
 #include <unistd.h>
@@ -50,10 +51,16 @@ struct Cgal {
   template <class Visit> void beside(F f, Visit visit) { for (auto h : m.halfedges_around_face(m.halfedge(f))) if (auto g = m.face(m.opposite(h)); g != M::null_face()) visit(g); }
   template <class Visit> void ends(E e, Visit visit) { visit(m.vertex(e, 0)); visit(m.vertex(e, 1)); }
   template <class Visit> void sides(E e, Visit visit) { for (int i : {0, 1}) if (auto f = m.face(m.halfedge(e, i)); f != M::null_face()) visit(f); }
-  bool collapse_first() { E e(0); bool may = CGAL::Euler::does_satisfy_link_condition(e, m); if (may) CGAL::Euler::collapse_edge(e, m); return may; }
   void split(F f, P p) { move(m.target(CGAL::Euler::add_center_vertex(m.halfedge(f), m)), p); }
-  void flip(int i) { E e(i); if (!m.is_border(e)) CGAL::Euler::flip_edge(m.halfedge(e), m); }
-  void collapse(V v) { auto e = m.edge(m.halfedge(v)); if (CGAL::Euler::does_satisfy_link_condition(e, m)) CGAL::Euler::collapse_edge(e, m); }
+  void split(E e, P p) {
+    auto h = m.halfedge(e), before = CGAL::Euler::split_edge(h, m), g = m.opposite(h);
+    move(m.target(before), p);
+    if (!m.is_border(h)) CGAL::Euler::split_face(before, m.next(h), m);
+    if (!m.is_border(g)) CGAL::Euler::split_face(g, m.next(m.opposite(before)), m);
+  }
+  void flip(E e) { if (!m.is_border(e)) CGAL::Euler::flip_edge(m.halfedge(e), m); }
+  bool collapse(E e) { bool may = !m.is_removed(e) && CGAL::Euler::does_satisfy_link_condition(e, m); if (may) CGAL::Euler::collapse_edge(e, m); return may; }
+  E edge_at(V v) { return m.edge(m.halfedge(v)); }
   void compact() { m.collect_garbage(); }
 };
 
@@ -81,10 +88,12 @@ struct Open {
   template <class Visit> void beside(F f, Visit visit) { for (auto g : m.ff_range(f)) visit(g); }
   template <class Visit> void ends(E e, Visit visit) { for (int i : {0, 1}) visit(m.to_vertex_handle(m.halfedge_handle(e, i))); }
   template <class Visit> void sides(E e, Visit visit) { for (int i : {0, 1}) if (auto f = m.face_handle(m.halfedge_handle(e, i)); f.is_valid()) visit(f); }
-  bool collapse_first() { auto h = m.halfedge_handle(E(0), 0); bool may = m.is_collapse_ok(h); if (may) m.collapse(h); return may; }
   void split(F f, P p) { m.split(f, m.add_vertex(p)); }
-  void flip(int i) { E e(i); if (!m.is_boundary(e)) m.flip(e); }
-  void collapse(V v) { auto h = m.halfedge_handle(v); if (m.is_collapse_ok(h)) m.collapse(h); }
+  void split(E e, P p) { m.split(e, m.add_vertex(p)); }
+  void flip(E e) { if (!m.is_boundary(e)) m.flip(e); }
+  bool collapse(E e) { return collapse(m.halfedge_handle(e, 0)); }
+  bool collapse(M::HalfedgeHandle h) { bool may = !m.status(h).deleted() && m.is_collapse_ok(h); if (may) m.collapse(h); return may; }
+  M::HalfedgeHandle edge_at(V v) { return m.halfedge_handle(v); }
   void compact() { m.garbage_collection(); }
 };
 
@@ -193,14 +202,14 @@ template <class L> struct Measured {
     size_t edges = s.edges();
     auto places = averages(s, [](int n) { return (4 - 2 * std::cos(2 * float(M_PI) / n)) / 9; });
     split_all(s);
-    for (size_t i = 0; i < edges; i++) s.flip(i);
+    for (size_t i = 0; i < edges; i++) s.flip(E(i));
     move(s, places);
     return s.faces();
   }
   static long collapse(L &s) {
     size_t old = s.vertices();
     split_all(s);
-    for (size_t i = old, end = s.vertices(); i < end; i++) s.collapse(V(i));
+    for (size_t i = old, end = s.vertices(); i < end; i++) s.collapse(s.edge_at(V(i)));
     s.compact();
     return s.faces();
   }
@@ -266,6 +275,25 @@ template <class L> struct Measured {
     query<F>(s, "face_faces", faces, rounds, check, [&](F f, auto visit) { s.beside(f, visit); });
   }
 
+  // Operate on some elements in random order, of a new mesh every round; those that are refused do not count.
+  template <class Operate> static void operation(const char *title, size_t elements, int rounds, Operate operate) {
+    std::vector<int> chosen(elements);
+    std::iota(chosen.begin(), chosen.end(), 0);
+    std::shuffle(chosen.begin(), chosen.end(), std::mt19937(7));
+    if (elements > asked) chosen.resize(asked);
+    std::vector<double> seconds;
+    for (int round = -1; round < rounds; round++) {
+      L fresh = build();
+      fresh.reserve(fresh.vertices() + asked, fresh.edges() + 3 * asked, fresh.faces() + 2 * asked);
+      long done = 0;
+      double begin = cpu();
+      for (int i : chosen) done += operate(fresh, i);
+      if (round >= 0) seconds.push_back((cpu() - begin) / done);
+    }
+    name(title);
+    list("%.9g", seconds);
+  }
+
   static void run(int few, int rounds, int whole) {
     size_t before = own_bytes();
     L s = build();
@@ -290,7 +318,13 @@ template <class L> struct Measured {
       name(it.title);
       list("%.9g", seconds);
     }
-    bool collapsed = !rounds && s.edges() && s.collapse_first();
+    if (whole) {
+      P p = points[0];
+      operation("split_face", s.faces(), whole, [&](L &m, int i) { m.split(F(i), p); return true; });
+      operation("split_edge", s.edges(), whole, [&](L &m, int i) { m.split(E(i), p); return true; });
+      operation("collapse_edge", s.edges(), whole, [](L &m, int i) { return m.collapse(E(i)); });
+    }
+    bool collapsed = !rounds && s.edges() && s.collapse(E(0));
     s.compact();
     std::printf("}, \"collapsed\": %s, \"left\": %zu}\n", collapsed ? "true" : "false", s.faces());
   }

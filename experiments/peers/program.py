@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from experiments.peers.peer import BUILD, SIX, Mesh, Peer
+from experiments.peers.peer import BATCHED, BUILD, SIX, Mesh, Peer
 from hem.arrays import Array
 from hem.contract import QUERIES
 from hem.sources.cache import cache_folder
@@ -26,7 +26,7 @@ SOURCE = Path(__file__).with_name("program.cpp")
 COMPILER = "g++"
 OPTIONS = ("-std=c++17", "-O3", "-DNDEBUG", "-march=native")
 HEADERS = Path("/usr/include")
-LOOPS = (*(it for it in QUERIES if it != "edge_edges"), *SIX, BUILD)
+LOOPS = (*(it for it in QUERIES if it != "edge_edges"), *BATCHED, *SIX, BUILD)
 """Neither library walks from an edge to those at its ends."""
 
 

@@ -14,7 +14,7 @@ from rich.console import Console
 from experiments.claims import Curve, Growth, Outcome, curves, load_claims
 from experiments.harness import HUBS, OPERATIONS
 from experiments.peers import BAD_INPUT, BUILD, BULK, BYTES, LOOPED, OURS, PEERS, SINGLE
-from experiments.peers.peer import ALGORITHMS, SIX
+from experiments.peers.peer import ALGORITHMS, BATCHED, SIX
 from experiments.report.pages import Html, text_table
 from experiments.report.session import MissingError
 from experiments.report.tables import digits, duration, show_rows
@@ -183,6 +183,7 @@ GROUPS: dict[str, dict[str, tuple[str, str]]] = {
     "Queries, in a compiled loop": {it: (q.title, LOOPED) for it, q in QUERIES.items()},
     "Operations, one after the other": {it: (title, SINGLE) for it, title in OPERATIONS.items()},
     "Operations, all at once": {it: (title, BULK) for it, title in OPERATIONS.items()},
+    "Operations, in a compiled loop": {it: (OPERATIONS[it], LOOPED) for it in BATCHED},
     "Algorithms": {it: (title, "") for it, title in ALGORITHMS.items()},
     "Algorithms of Sieger & Botsch, compiled": {it: (title, LOOPED) for it, title in SIX.items()},
 }

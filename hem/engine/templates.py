@@ -17,8 +17,8 @@ from hem.arrays import Array
 from hem.authoring import FACE_END, NEEDS_ROOM, SIDES, VALENCE, VERTEX_END, WIDTH, Kernel
 from hem.edit import FACE, PARENT
 
-MODE, BEGIN, END = range(3)
-"""The parts of a task."""
+MODE, BEGIN, END, FORGETS = range(4)
+"""The parts of a task. One that forgets logs each operation over the last, as nobody follows."""
 
 DO, CHECK, PERSIST = range(3)
 """What to do with operations: do them, only check them, or pass over those that are refused."""
@@ -79,9 +79,11 @@ def perform(address: int) -> int:
     arrays = _LOAD(address)
     m = _RECORDS(*arrays[:-7])
     task, args, points, results, at, out, log = arrays[-7:]
-    mode, end = task[MODE], task[END]
+    mode, end, forgets = task[MODE], task[END], task[FORGETS]
     log[0] = 0
     for i in range(task[BEGIN], end):
+        if forgets:
+            log[0] = 0
         results[i] = _KERNEL(m, args[i], points[i % len(points)], at, out, log, mode == CHECK)
         if results[i] == NEEDS_ROOM or (results[i] < 0 and mode == DO):
             return i

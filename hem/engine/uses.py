@@ -54,8 +54,8 @@ class Uses:
     def perform(self, pinned: Any) -> Callable[[int], int]:
         """``perform(pinned.address) -> end``, for an operation.
 
-        Pinned are the records and ``task`` (``MODE``, ``BEGIN``, ``END``), ``args`` (n, 3),
-        ``points`` (n or 1, 3), ``results`` (n,), ``at``, ``out`` and ``log`` (see
+        Pinned are the records and ``task`` (``MODE``, ``BEGIN``, ``END``, ``FORGETS``), ``args``
+        (n, 3), ``points`` (n or 1, 3), ``results`` (n,), ``at``, ``out`` and ``log`` (see
         ``hem.authoring.operations``). Ends before the element that needs more room; if the mode is
         ``DO``, also before one that is refused. Codes of refusals are among the results. ``CHECK``
         changes nothing. The log begins anew.

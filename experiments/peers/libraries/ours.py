@@ -12,7 +12,7 @@ import numpy as np
 import hem
 import structures
 from experiments.harness import time_rounds
-from experiments.peers.peer import SIX, Mesh, Peer, Rows
+from experiments.peers.peer import BATCHED, SIX, Mesh, Peer, Rows
 from hem import algorithms
 from hem.arrays import Array
 from hem.contract import QUERIES
@@ -53,8 +53,11 @@ def _make_room(m: Mesh, many: int) -> None:
     m.split_face(0, m.points[0])  # compiles, and has the operations ready
 
 
-def _all_at_once(operation: str, m: Mesh, numbers: list[int], places: Array) -> int:
-    handles = _handles(m, operation.split("_")[1], numbers)
+def _batch(operation: str, m: Mesh, numbers: list[int], places: Array) -> int:
+    return _all_at_once(operation, m, _handles(m, operation.split("_")[1], numbers), places)
+
+
+def _all_at_once(operation: str, m: Mesh, handles: Any, places: Array) -> int:
     operate = getattr(m, f"{operation}s")
     return len(operate(handles, places)) if operation in SPLIT else int(operate(handles).sum())
 
@@ -86,6 +89,8 @@ def _times(s: Mesh, few: int, rounds: int, whole: int) -> dict[str, list[float]]
         times[query] = (timed.samples / len(handles)).tolist()
     for name, algorithm in algorithms.SIX.items() if whole else ():
         times[name] = [_processor_seconds(algorithm, s.copy()) for _ in range(1 + whole)][1:]
+    for name in BATCHED if whole else ():
+        times[name] = [_seconds_each(name, s.copy()) for _ in range(1 + whole)][1:]
     return times
 
 
@@ -94,6 +99,17 @@ def _processor_seconds(algorithm: Callable[[Any], Any], s: Mesh) -> float:
     begin = thread_time()
     algorithm(s)
     return thread_time() - begin
+
+
+def _seconds_each(operation: str, s: Mesh) -> float:
+    """Of a batch in random order, where there is room; those that are refused do not count."""
+    every = s.handles(operation.split("_")[1])
+    handles = np.random.default_rng(7).permutation(every)[:ASKED]
+    places = np.broadcast_to(s.points[:1], (len(handles), 3)).copy()
+    s.reserve(len(handles))
+    begin = thread_time()
+    done = _all_at_once(operation, s, handles, places)
+    return (thread_time() - begin) / done
 
 
 def _at(s: Mesh, source: str, few: int) -> Array:
@@ -122,7 +138,7 @@ PEER = Peer(
     single={query: attrgetter(query) for query in QUERIES},
     bulk={query: partial(_ask_all, query) for query in QUERIES},
     operations={it: partial(_one_by_one, it) for it in (*SPLIT, "collapse_edge", "flip_edge")},
-    batches={it: partial(_all_at_once, it) for it in (*SPLIT, "collapse_edge")},
+    batches={it: partial(_batch, it) for it in BATCHED},
     make_room=_make_room,
     algorithms={
         "vertex_normals": algorithms.vertex_normals,
@@ -130,5 +146,5 @@ PEER = Peer(
         "simplify": _simplify,
     },
     looped=_looped,
-    loops=(*QUERIES, *SIX),
+    loops=(*QUERIES, *BATCHED, *SIX),
 )
