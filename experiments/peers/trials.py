@@ -12,6 +12,7 @@ import subprocess
 import sys
 from contextlib import suppress
 from functools import lru_cache
+from textwrap import shorten
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -72,7 +73,8 @@ def give(peer: Peer, bad: Bad) -> tuple[str, str]:
         left = f"faces left: {peer.faces(m)}"
         return ("accepted", left) if done else ("refused", "by its own test")
     except Exception as error:
-        return "refused", f"{type(error).__name__}: {_plain(str(error))}"[:WORDS]
+        words = f"{type(error).__name__}: {_plain(str(error))}"
+        return "refused", shorten(words, WORDS, placeholder=" …")
 
 
 def _held(peer: Peer, m: Mesh, triangles: Array) -> tuple[str, str]:

@@ -219,7 +219,7 @@ def show_peers(folder: Path | None, console: Console) -> None:
     show_rows(console, peers.trials(), "Bad input")
     console.print(READING, style="dim")
     if peers.absent:
-        console.print(f"Not installed: {', '.join(peers.absent)}.", style="dim")
+        console.print(f"Not measured: {', '.join(peers.absent)}.", style="dim")
 
 
 def peers_as_json(folder: Path | None) -> dict[str, Any]:
@@ -252,9 +252,9 @@ def _records(peers: Peers, name: str) -> Iterator[dict[str, Any]]:
                    "vertices": cell.size, "of_ours": cell.ratio, "outcomes": outcomes}  # fmt: skip
 
 
-def page_table(rows: Sequence[Sequence[Any]]) -> Html:
-    """Rows on a page, their heads first. Raises MissingError where there is no other."""
-    heads, *body = rows
+def page_table(rows: Sequence[Sequence[Any]], title: str = "") -> Html:
+    """Rows on a page, their heads first, with a ``title`` in the corner. Raises MissingError."""
+    heads, *body = [title or rows[0][0], *rows[0][1:]], *rows[1:]
     if not body:
         raise MissingError("This was not measured of any library.")
     return text_table(heads, [[it.replace(" ×", "\u00a0×") for it in row] for row in body])
@@ -264,7 +264,7 @@ def about(peers: Peers) -> Html:
     """Where they were measured, and what was not installed there. Raises MissingError."""
     if not peers.names:
         raise MissingError(MISSING)
-    lost = f" Not installed there: {', '.join(peers.absent)}." if peers.absent else ""
+    lost = f" Not measured there: {', '.join(peers.absent)}." if peers.absent else ""
     return Html("<p>{}</p>").format(f"{in_words(peers.run)}{lost}")
 
 
