@@ -4,12 +4,12 @@
 measurements of a run; ``advise`` ranks the structures, with intervals, reasons and limits.
 """
 
-from experiments.advice.advise import NEEDS, Advice, Limits, Option, advise, flips
+from experiments.advice.advise import ALIKE, NEEDS, Advice, Limits, Option, advise, best, flips
 from experiments.advice.predict import Forecast, predict
 from experiments.advice.prices import Prices
 from experiments.advice.workload import PRESETS, Measured, Row, Workload, find_workload, recorded
 
 __all__ = [
-    "NEEDS", "PRESETS", "Advice", "Forecast", "Limits", "Measured", "Option", "Prices", "Row",
-    "Workload", "advise", "find_workload", "flips", "predict", "recorded",
+    "ALIKE", "NEEDS", "PRESETS", "Advice", "Forecast", "Limits", "Measured", "Option", "Prices",
+    "Row", "Workload", "advise", "best", "find_workload", "flips", "predict", "recorded",
 ]  # fmt: skip

@@ -1,6 +1,6 @@
 """The structures for a mesh and a workload, the best first, and where that changes."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -74,7 +74,7 @@ class Option:
 
 @dataclass(frozen=True)
 class Advice:
-    """Options, the best first; ``refused``: why not the others; ``flips``: where it changes."""
+    """Options, the best first and then the quickest; why not the others; where it changes."""
 
     workload: Workload
     faces: int
@@ -89,6 +89,7 @@ def advise(
 ) -> Advice:  # fmt: skip
     """Rank the structures that can hold a mesh, are what is needed and stay within the limits.
 
+    What the workload was measured on stays first as long as nothing is quicker by ``ALIKE``.
     Raises ValueError for a need that there is not.
     """
     require_known("need", needs, NEEDS)
@@ -114,7 +115,9 @@ def advise(
             refused[name] = "; ".join(wrong)
         else:
             options.append(Option(predict(prices, workload, name, faces), taken, edit))
-    options.sort(key=lambda it: it.forecast.seconds)
+    costs = {it.forecast.structure: it.forecast.seconds for it in options}
+    first = best(costs, workload.measured.structure if workload.measured else "")
+    options.sort(key=lambda it: (it.forecast.structure != first, it.forecast.seconds))
     named = [replace(it, behind=_behind(options[0].forecast, it.forecast)) for it in options]
     names = [it.forecast.structure for it in options]
     return Advice(workload, faces, named, refused, flips(prices, workload, names, faces))
@@ -143,6 +146,15 @@ def _behind(best: Forecast, other: Forecast) -> str:
     return max(more, key=lambda it: more[it], default="")
 
 
+def best(costs: Mapping[str, float], held: str = "") -> str:
+    """The quickest structure, or the one that is ``held`` where none is quicker by ``ALIKE``.
+
+    Changing costs work, and what was measured is surer than what is predicted.
+    """
+    least = min(costs, key=lambda it: costs[it], default="")
+    return held if held in costs and costs[held] <= ALIKE * costs[least] else least
+
+
 def flips(
     prices: Prices, workload: Workload, names: Sequence[str], faces: float
 ) -> list[dict[str, Any]]:
@@ -153,12 +165,10 @@ def flips(
     if len(names) < 2:
         return []
 
-    def best(given: Workload, many: float, now: str) -> str:
-        costs = {name: predict(prices, given, name, many).seconds for name in names}
-        least = min(costs, key=lambda it: costs[it])
-        return least if costs[now] > ALIKE * costs[least] else now
+    def best_of(given: Workload, many: float, now: str) -> str:
+        return best({it: predict(prices, given, it, many).seconds for it in names}, now)
 
-    first = best(workload, faces, names[0])
+    first = best_of(workload, faces, names[0])
     low, high = prices.measured
     sizes = [n for n in SIZES if low <= 2 * n <= high]
     ways = [
@@ -171,7 +181,7 @@ def flips(
     found = []
     for kind, points in ways:
         for x, given, many in points:
-            other = best(given, many, first)
+            other = best_of(given, many, first)
             if other != first:
                 found.append({"of": kind, "at": float(x), "best": other})
                 break

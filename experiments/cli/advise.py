@@ -101,6 +101,10 @@ def _show(found: Advice, run: Run, called: str, mesh: str) -> None:
         title = REGISTRY[it.structure].title
         table.add_row(title, duration(it.seconds), within, f"{option.bytes:,}", extra)
     console.print(table)
+    held = found.workload.measured
+    if held and [it.forecast.structure for it in found.options[:1]] == [held.structure]:
+        title = REGISTRY[held.structure].title
+        console.print(f"It was measured on {title}, and nothing is a tenth quicker: stay.")
     for name, why in found.refused.items():
         console.print(f"{REGISTRY[name].title} does not suit: {why}.", markup=False)
     for flip in found.flips:

@@ -122,6 +122,23 @@ def test_a_program_s_own_part_is_what_its_measurement_leaves(prices: Prices) -> 
         assert more == pytest.approx(0.25)
 
 
+@pytest.mark.parametrize("name", COMPILED)
+def test_what_was_measured_stays_first_until_something_is_a_tenth_quicker(
+    prices: Prices, name: str
+) -> None:
+    alone = predict(prices, ASKED, name, 2_000).seconds
+    for own in (0.0, 1.0):  # beside a second of its own, all are alike
+        known = replace(ASKED, measured=Measured(name, 1_000, alone + own))
+        found = advise(prices, known, MESH)
+        seconds = {it.forecast.structure: it.forecast.seconds for it in found.options}
+        stays = seconds[name] <= 1.1 * min(seconds.values())
+        assert stays or own == 0.0
+        first = name if stays else min(seconds, key=seconds.__getitem__)
+        assert found.options[0].forecast.structure == first
+        after = [it.forecast.seconds for it in found.options[1:]]
+        assert after == sorted(after)
+
+
 def test_more_of_each_element_is_asked_of_a_larger_mesh(prices: Prices) -> None:
     each = Workload("each", (Row("face_vertices", 2, each="face", in_order=1),), builds=0)
     flat = prices.price("half_edge", "face_vertices", 20_000, 1.0).seconds
@@ -190,6 +207,15 @@ def test_the_command_says_what_it_rests_on_and_tells_programs_the_same(run: Run)
     assert [it["structure"] for it in data["options"]] == [
         it.forecast.structure for it in advise(Prices(run), PRESETS["edited"], MESH).options
     ]
+
+
+def test_the_command_says_to_stay_where_nothing_is_a_tenth_quicker(run: Run, tmp_path) -> None:
+    path = tmp_path / "mine.toml"
+    rows = '[[rows]]\nwhat = "vertex_faces"\ntimes = 1\n'
+    path.write_text(f'{rows}[measured]\nstructure = "winged_edge"\nvertices = 1000\nseconds = 9\n')
+    code, text = told("torus:1000", "--workload", str(path), "--run", str(run.folder))
+    assert code == 0
+    assert "measured on Winged-Edge, and nothing is a tenth quicker: stay" in text
 
 
 @pytest.mark.parametrize(

@@ -48,6 +48,14 @@ def test_the_best_is_among_those_alike_up_to_a_tenth(predicted: float, among: bo
     assert found["best_among_alike"] == among
 
 
+@pytest.mark.parametrize(("predicted", "right"), [(1.05, True), (1.2, False)])
+def test_what_was_timed_is_told_as_long_as_nothing_is_a_tenth_quicker(
+    predicted: float, right: bool
+) -> None:
+    found = advice.figures([row((advice.BASE, predicted, 1), (OTHERS[0], 1, 2))])
+    assert found["winner_right"] == right
+
+
 def test_a_program_on_two_meshes_is_one_row_of_the_table() -> None:
     a, b = OTHERS[:2]
     rows = [row((a, 1, 1), (b, 2, 2)), row((a, 1, 1), (b, 2, 2))]
