@@ -1,7 +1,7 @@
 """A run judged once: what follows from it is kept beside it for tables, report and check.
 
-``derived/judged.json`` holds what follows from the measurements and from the code that judges; it
-is read only as long as both are what they were, and written anew otherwise.
+``derived/judged.json`` holds what follows from the measurements, the claims and the code that
+judges; it is read only as long as all are what they were, and written anew otherwise.
 """
 
 import hashlib
@@ -29,11 +29,11 @@ PLAIN = ("outcome", "outcomes", "found", "reason", "work", "seconds")
 @lru_cache(maxsize=4)
 def judge_run(run: Run) -> list[JudgedClaim]:
     """Every cell of every table, then every sentence: judged once, which takes some seconds."""
-    path, state = run.folder / "derived" / "judged.json", _state(run.folder)
+    claims = [*load_claims(), *sentence_claims()]
+    path, state = run.folder / "derived" / "judged.json", _state(run.folder, claims)
     with suppress(OSError, ValueError, KeyError, TypeError):
         content = json.loads(path.read_text("utf-8"))
         if content["of"] == state:
-            claims = [*load_claims(), *sentence_claims()]
             return [_judged(claim, content["claims"][claim.key]) for claim in claims]
     judged = [*judge_cells(run), *judge_sentences(run)]
     if "finished" in run.meta and run.folder.exists():
@@ -43,9 +43,9 @@ def judge_run(run: Run) -> list[JudgedClaim]:
     return judged
 
 
-def _state(folder: Path) -> str:
-    """A digest of the run's files and of the code that judges them."""
-    digest = hashlib.sha256()
+def _state(folder: Path, claims: list[Claim]) -> str:
+    """A digest of the run, of the claims wherever they stand, and of the code that judges."""
+    digest = hashlib.sha256(repr(claims).encode())
     code = [Path(__file__).parent, Path(str(hem.complexity.__file__)).parent]
     for room, pattern in ((code[0], "*.*"), (code[1], "*.*"), (folder, "*.json*")):
         for path in sorted(filter(Path.is_file, room.glob(pattern))):

@@ -11,6 +11,7 @@ from pathlib import Path
 from threading import Thread
 from typing import Any
 
+from experiments.harness.steadiness import allowed_cores
 from experiments.report import pdf
 from experiments.report.figures.claims import write_claims
 from experiments.report.notebooks import FRONT, body, page_titles
@@ -75,7 +76,7 @@ def _workers(session: Session) -> Iterator[ProcessPoolExecutor]:
     methods = multiprocessing.get_all_start_methods()
     context: Any = multiprocessing.get_context("forkserver" if "forkserver" in methods else "spawn")
     others = set(multiprocessing.active_children())
-    pool = ProcessPoolExecutor(len(os.sched_getaffinity(0)), context, _begin, (session,))
+    pool = ProcessPoolExecutor(len(allowed_cores()) or None, context, _begin, (session,))
     try:
         yield pool
     except BaseException:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -19,7 +20,7 @@ from experiments.claims import (
     load_claims,
 )
 from experiments.runs import Run, load
-from structures import NAMES, THESIS
+from structures import NAMES, REGISTRY, THESIS
 from tests.experiments.made_runs import LAWS, LIKE_THE_THESIS, SIZES, rewrite, write_run
 from tests.extent import OF_EACH_KIND, waiting_for
 
@@ -147,6 +148,18 @@ def test_what_was_kept_of_other_measurements_is_not_read(tmp_path):
         "half_edge/memory",
         "sentence/bytes_winged_half",
     }
+
+
+def test_what_was_kept_of_other_claims_is_not_read(tmp_path, monkeypatch):
+    """Claims stand in the files of structures, too."""
+    folder, kind = of_two(tmp_path), REGISTRY["directed_edge"]
+    before = {it.claim.key: it.outcome for it in judge_run(load(folder))}
+    claims = replace(kind.claims, costs={"vertex_faces": "O(1)"})
+    monkeypatch.setattr(kind, "claims", claims)
+    after = {it.claim.key: it.outcome for it in judge_run(load(folder))}
+    changed = {key for key in after if before[key] != after[key]}
+    assert "directed_edge/vertex_faces" in changed
+    assert {before[key] for key in changed} == {Outcome.NO_CLAIM}
 
 
 def test_one_entry_adds_a_claim(sound):
