@@ -125,13 +125,13 @@ def _drawn(code: str) -> bytes | None:
 
     import hem
     import structures
-    from hem.fracture.show import PicturesMissingError
+    from hem.errors import NotInstalledError
 
     names: dict[str, Any] = {"hem": hem, "structures": structures}
     exec(compile(code, "gallery.md", "exec"), names)
     try:
         pixels = _picture(names["shown"])
-    except PicturesMissingError:
+    except NotInstalledError:
         return None
     file = BytesIO()
     Image.fromarray(pixels).save(file, "png", optimize=True)

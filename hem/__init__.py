@@ -9,16 +9,23 @@ from typing import TYPE_CHECKING, Any
 
 __all__ = [
     "FAMILIES", "SAMPLES", "Edit", "MeshError", "MeshSummary", "MeshWarning", "NonManifoldError",
-    "PolygonMesh", "Ragged", "Recording", "Remapping", "RenderMesh", "TopologyError",
-    "TriangleMesh", "Upload", "as_mesh", "find_mesh", "from_meshio", "from_pyvista", "from_trimesh",
-    "generate", "load", "load_polygons", "mesh_from_render", "record", "require_manifold",
-    "require_sound", "sample", "save", "split_at_seams", "valence_hubs", "valence_mesh",
+    "NotInstalledError", "PolygonMesh", "Ragged", "Recording", "Remapping", "RenderMesh",
+    "TopologyError", "TriangleMesh", "Upload", "as_mesh", "find_mesh", "from_meshio",
+    "from_pyvista", "from_trimesh", "generate", "load", "load_polygons", "mesh_from_render",
+    "record", "require_manifold", "require_sound", "sample", "save", "split_at_seams",
+    "valence_hubs", "valence_mesh",
 ]  # fmt: skip
 
 if TYPE_CHECKING:  # what type checkers and editors see; the table below says it to Python
     from hem.contract.recording import Recording, record
     from hem.edit import Edit, Remapping
-    from hem.errors import MeshError, MeshWarning, NonManifoldError, TopologyError
+    from hem.errors import (
+        MeshError,
+        MeshWarning,
+        NonManifoldError,
+        NotInstalledError,
+        TopologyError,
+    )
     from hem.meshes import MeshSummary, PolygonMesh, TriangleMesh, require_manifold, require_sound
     from hem.meshes.conversions import from_meshio, from_pyvista, from_trimesh
     from hem.ragged import Ragged
@@ -32,7 +39,8 @@ if TYPE_CHECKING:  # what type checkers and editors see; the table below says it
 _NAMES = {
     "hem.contract.recording": ("Recording", "record"),
     "hem.edit": ("Edit", "Remapping"),
-    "hem.errors": ("MeshError", "MeshWarning", "NonManifoldError", "TopologyError"),
+    "hem.errors": ("MeshError", "MeshWarning", "NonManifoldError", "NotInstalledError",
+        "TopologyError"),
     "hem.meshes": ("MeshSummary", "PolygonMesh", "TriangleMesh", "require_manifold",
         "require_sound"),
     "hem.meshes.conversions": ("from_meshio", "from_pyvista", "from_trimesh"),

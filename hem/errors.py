@@ -1,4 +1,10 @@
-"""What can be wrong with a mesh, or with an operation on it. Every error names the elements."""
+"""What can be wrong with a mesh, with an operation on it, or with what is installed.
+
+Every error about a mesh names the elements.
+"""
+
+from importlib import import_module
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -50,3 +56,17 @@ class MeshWarning(UserWarning):
 
 class TopologyError(_ElementsError):
     """The operation would break the surface; the mesh is untouched."""
+
+
+class NotInstalledError(ImportError):
+    """A package or driver that only some need is not installed; the message says what brings it."""
+
+
+def load_optional(package: str, extra: str) -> Any:
+    """A package that an extra of ours brings. NotInstalledError names the extra."""
+    try:
+        return import_module(package)
+    except ImportError as error:
+        raise NotInstalledError(
+            f"{package} cannot be imported ({error}): pip install 'hem-mesh[{extra}]' brings it"
+        ) from error

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import pytest
 
-from hem.fracture.show import PicturesMissingError, load_pyvista
+from hem.errors import NotInstalledError
+from hem.fracture.show import load_pyvista
 
 
 def require_pictures() -> None:
     """Skip the test, or the whole module, where PyVista is missing or cannot draw."""
     try:
         load_pyvista()
-    except PicturesMissingError as missing:
+    except NotInstalledError as missing:
         pytest.skip(str(missing), allow_module_level=True)

@@ -213,6 +213,13 @@ def test_whatever_is_imported_is_declared(package):
     assert {(name, path) for name, path in imported(package) if name not in declared} == set()
 
 
+def test_an_optional_package_is_brought_by_the_extra_that_the_error_names():
+    sources = [path.read_text("utf-8") for path in (ROOT / "hem").rglob("*.py")]
+    loaded = re.findall(r'load_optional\("(\w+)", "(\w+)"\)', "".join(sources))
+    assert {extra for _, extra in loaded} == {"fracture", "viz"}
+    assert [(name, extra) for name, extra in loaded if name not in EXTRAS[extra]] == []
+
+
 def test_whatever_is_declared_is_held_by_the_constraints():
     lines = (ROOT / "constraints.txt").read_text().splitlines()
     held = names([line for line in lines if line and not line.startswith("#")])

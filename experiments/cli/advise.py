@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
+from rich.filesize import decimal
 from rich.table import Column, Table
 from typer import Argument, Option
 
@@ -92,14 +93,14 @@ def _show(found: Advice, run: Run, called: str, mesh: str) -> None:
     cpu = run.meta.get("machine", {}).get("cpu", "an unknown machine")
     console.print(f"[bold]{found.workload.title}[/], on {mesh} ({found.faces:,} faces).")
     console.print(f"Predicted from {called}, measured on {cpu}.\n", highlight=False)
-    whole = (Column(it, no_wrap=True) for it in ("structure", "time", "nine of ten within"))
-    table = Table(*whole, "bytes", "what costs it more")
+    whole = (Column(it, no_wrap=True) for it in ("structure", "time", "nine of ten", "bytes"))
+    table = Table(*whole, "what costs it more")
     for option in found.options:
         it, behind = option.forecast, option.behind
-        within = f"{duration(it.low)} … {duration(it.high)}"
-        extra = f"{behind}: {duration(it.parts.get(behind, 0.0))}" if behind else ""
+        within = _interval(duration(it.low), duration(it.high))
+        extra = f"{behind} {duration(it.parts.get(behind, 0.0))}" if behind else ""
         title = REGISTRY[it.structure].title
-        table.add_row(title, duration(it.seconds), within, f"{option.bytes:,}", extra)
+        table.add_row(title, duration(it.seconds), within, decimal(option.bytes), extra)
     console.print(table)
     held = found.workload.measured
     if held and [it.forecast.structure for it in found.options[:1]] == [held.structure]:
@@ -113,3 +114,9 @@ def _show(found: Advice, run: Run, called: str, mesh: str) -> None:
     untold = sorted({what for it in found.options for what in it.forecast.untold})
     if untold:
         console.print(f"Left out, as the run does not tell what it takes: {', '.join(untold)}.")
+
+
+def _interval(low: str, high: str) -> str:
+    """Two durations, the unit once where it is the same."""
+    unit = high[high.index(" ") :]
+    return f"{low.removesuffix(unit)} … {high}"

@@ -49,6 +49,11 @@ class StudyProgress(study.Observer):
             left = seconds * (self.total - finished) / max(finished - self.before, 1)
             self._print(f"{job}: {finished} of {self.total} cases, some {left:.0f} s left")
 
+    def repeating(self, cases: int, seconds: float) -> None:
+        """Say so: the bar of the cases is full by then."""
+        self.bars.update(self.measuring, description=f"{cases} disturbed, once more")
+        self._print(f"{cases} cases were disturbed: once more, {seconds:.0f} s at most")
+
     def say(self, text: str) -> None:
         """On standard error."""
         errors.print(escape(text))

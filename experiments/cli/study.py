@@ -56,6 +56,8 @@ def run_study(
     from experiments.runs import PEER_RUNS, RUNS, cluster, latest, study
 
     memory.available()  # whether HEM_MEMORY can be read
+    if peers and mesh:
+        raise ValueError("other libraries are measured on meshes of their own: leave out --mesh")
     if workers:
         if mesh:
             raise ValueError("--mesh is measured on this machine: leave out --workers")

@@ -84,8 +84,9 @@ class Trends:
         if not chosen and self.runs:
             parts = [dict.fromkeys(name.split("/")[k] for name in every) for k in (1, 2)]
             raise ValueError(
-                f"the history has no claim {text!r}; say a structure ({', '.join(parts[0])}), what "
-                f"it is asked ({', '.join(parts[1])}), or both, as in half_edge/vertex_faces"
+                f"the history has no claim {text!r}; say one of\n"
+                f"  a structure: {', '.join(parts[0])}\n  what it is asked: {', '.join(parts[1])}\n"
+                "  or both, as in half_edge/vertex_faces"
             )
         return chosen
 

@@ -7,6 +7,7 @@ from functools import partial
 import numpy as np
 import pandas as pd
 
+from experiments.advice import ALIKE
 from experiments.bench_workloads import COMPILED
 from experiments.claims import Curves, curves
 from experiments.harness import QUERIES_TABLE, Axis
@@ -16,9 +17,6 @@ from experiments.report.tables import digits, duration, markdown_rows
 from experiments.runs import Run
 from hem.contract import QUERIES
 from structures import REGISTRY, Structure
-
-ALIKE = 1.1
-"""Structures within this factor of the best one are alike: nobody would notice the difference."""
 
 Costs = Callable[[Curves, str], pd.Series]
 """What a structure costs, by the number of vertices."""

@@ -47,6 +47,9 @@ class Observer:
     def measured(self, job: Job, done: int) -> None:
         """So many cases of a job are finished."""
 
+    def repeating(self, cases: int, seconds: float) -> None:
+        """So many disturbed cases are measured once more, for so long at most."""
+
     def say(self, text: str) -> None:
         """Something a user should know."""
 
@@ -228,11 +231,11 @@ def _measure(folder: Path, jobs: list[Job], observer: Observer, stop: Event) -> 
     if stop.is_set():
         return []
     with suppress(WorkerDiedError):
-        _measure_again(folder, jobs, now + REPEATING_SHARE * (now - begin))
+        _measure_again(folder, jobs, now + REPEATING_SHARE * (now - begin), observer)
     return failures
 
 
-def _measure_again(folder: Path, jobs: list[Job], until: float) -> None:
+def _measure_again(folder: Path, jobs: list[Job], until: float, observer: Observer) -> None:
     """Measure disturbed cases once more, each time in a new process, while there is time.
 
     Not where most cases are: as busy as that, the machine is busy again.
@@ -241,8 +244,10 @@ def _measure_again(folder: Path, jobs: list[Job], until: float) -> None:
         files = {job: job.file(folder) for job in jobs}
         again = [job for job, file in files.items() if file.disturbed]
         cases = sum(len(file.cases) for file in files.values())
-        if not again or sum(len(file.disturbed) for file in files.values()) > MOSTLY * cases:
+        disturbed = sum(len(file.disturbed) for file in files.values())
+        if not again or disturbed > MOSTLY * cases:
             return
+        observer.repeating(disturbed, until - monotonic())
         with closing(perform(folder, again, AGAIN)) as finished:
             for _ in finished:
                 if monotonic() > until:

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from hem.errors import MeshError
+from hem.errors import MeshError, load_optional
 from hem.fracture.blow import Blow, Motion, kinetic_energies, kinetic_energy
 from hem.fracture.pieces import Fracture
 from hem.sources import encoded
@@ -101,8 +101,9 @@ def _move(beside: Path, target: Path, aside: Path) -> None:
 
 
 def _save_glb(fracture: Fracture, folder: Path, up: ArrayLike) -> list[Path]:
-    import trimesh
     from scipy.spatial.transform import Rotation
+
+    trimesh = load_optional("trimesh", "fracture")
 
     upright = np.eye(4)  # glTF has y up
     upright[:3, :3] = Rotation.align_vectors([(0, 1, 0)], [np.asarray(up, float)])[0].as_matrix()

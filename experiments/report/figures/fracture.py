@@ -1,6 +1,7 @@
 """The figures of the chapter on destruction: the thesis' figure 11, bodies, what it costs."""
 
 from collections.abc import Sequence
+from functools import cache
 from html import escape
 
 import numpy as np
@@ -12,9 +13,9 @@ import hem
 import structures
 from experiments.report.figures.meshes import INK, PAPER, STRONG, show_picture, turnable
 from experiments.report.fracture_scenes import Broken, break_up, model
+from experiments.report.session import MissingError
 from experiments.report.style import grid, styled
 from hem.fracture import MATERIALS, Fracture, material, shatter
-from hem.fracture.show import PicturesMissingError
 
 APART = 0.4  # how far shards are drawn from their places, as part of the way to the impact
 FORCES = (1.0, 10.0, 50.0)
@@ -69,12 +70,19 @@ def _draw_plate(axes: Axes, broken: Fracture) -> None:
     axes.axis("off")
 
 
+@cache
 def broken_by_force(
     name: str, of: str, *forces: float, method: str = "voronoi", wrap: bool = False
-) -> list[Broken]:
-    """A model of a material, struck in the same place with several forces, J/kg."""
-    mesh, up = model(name, wrap)
-    return [break_up(mesh, method, material(of), it, up=up) for it in forces or FORCES]
+) -> tuple[Broken, ...]:
+    """A model of a material, struck in the same place with several forces, J/kg.
+
+    Raises MissingError without what breaks it.
+    """
+    try:
+        mesh, up = model(name, wrap)
+        return tuple(break_up(mesh, method, material(of), it, up=up) for it in forces or FORCES)
+    except hem.NotInstalledError as error:
+        raise MissingError(str(error)) from error
 
 
 def gallery(every: Sequence[Broken]) -> Figure:
@@ -90,7 +98,7 @@ def turnable_pieces(broken: Broken) -> str:
     """The pieces to be turned with the mouse, as HTML; without PyVista what is missing."""
     try:
         return turnable(broken.scene(), _title(broken), broken.up)
-    except PicturesMissingError as missing:
+    except hem.NotInstalledError as missing:
         return f"<p>{escape(str(missing))}</p>"
 
 

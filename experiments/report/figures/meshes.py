@@ -19,7 +19,7 @@ from experiments.report.pages import Html, page
 from experiments.report.style import grid, styled
 from hem.arrays import Array
 from hem.contract import Structure
-from hem.fracture.show import AXES, FractureScene, Image, Picture, PicturesMissingError
+from hem.fracture.show import AXES, FractureScene, Image, Picture
 from structures.plankton import Plankton
 
 PAPER = "#f4f1ea"
@@ -226,7 +226,7 @@ def show_picture(axes: Axes, draw: Callable[[Any], Image], shown: Any) -> None:
     axes.axis("off")
     try:
         axes.imshow(draw(shown))
-    except PicturesMissingError as missing:
+    except hem.NotInstalledError as missing:
         axes.text(0.5, 0.5, str(missing), ha="center", va="center", wrap=True)
 
 

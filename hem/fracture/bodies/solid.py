@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from hem import meshes
 from hem.arrays import Array, Bools, Floats, Indices
-from hem.errors import MeshError
+from hem.errors import MeshError, load_optional
 from hem.meshes import TriangleMesh, components, used_only
 from hem.meshes.measures import corners, diagonal, dot, normals, volume
 from hem.sources.meshlab import apply, intersecting_faces
@@ -106,7 +106,7 @@ def to_manifold(points: Floats, triangles: Array, labels: Array) -> Any:
 
     Raises MeshError where manifold3d does not take it for closed.
     """
-    import manifold3d
+    manifold3d = load_optional("manifold3d", "fracture")
 
     faces, ids = (np.ascontiguousarray(it, np.uint64) for it in (triangles, labels))
     mesh = manifold3d.Mesh64(np.ascontiguousarray(points), faces, face_id=ids)

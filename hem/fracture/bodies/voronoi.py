@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from hem.arrays import Floats, Indices
-from hem.errors import MeshError
+from hem.errors import MeshError, load_optional
 from hem.fracture.blow import Blow
 from hem.fracture.blow import sites as sites_of
 from hem.fracture.bodies.cells import Cells, cells
@@ -155,7 +155,7 @@ def _cut(body: Body, plan: _Plan) -> _Made:
 
 def _remainder(body: Body, cut: Cells, breaking: int, label: int) -> Any:
     """The body without the cells that break off."""
-    import manifold3d
+    manifold3d = load_optional("manifold3d", "fracture")
 
     broken = np.arange(len(cut.sites)) < breaking
     try:

@@ -10,7 +10,6 @@ from hem.fracture.show.picture import (
     AXES,
     Image,
     Picture,
-    PicturesMissingError,
     Size,
     default_impact,
     load_pyvista,
@@ -20,6 +19,5 @@ from hem.fracture.show.scene import FRAMES_PER_SECOND, FractureScene, save_anima
 
 __all__ = [
     "AXES", "FRAMES_PER_SECOND", "GRAVITY", "Flight", "FractureScene", "Image", "Picture",
-    "PicturesMissingError", "Size", "default_impact", "flight", "load_pyvista", "save_animation",
-    "view_direction",
+    "Size", "default_impact", "flight", "load_pyvista", "save_animation", "view_direction",
 ]  # fmt: skip

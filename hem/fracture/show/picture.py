@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from hem.arrays import Array, Floats
+from hem.errors import NotInstalledError, load_optional
 from hem.meshes import TriangleMesh
 from hem.meshes.measures import unit
 
@@ -36,26 +37,16 @@ window.Render()
 """
 
 
-class PicturesMissingError(ImportError):
-    """PyVista, which draws the pictures, is not installed, or finds nothing to draw with."""
-
-
 @cache
 def load_pyvista() -> Any:
-    """The module pyvista. Raises PicturesMissingError, with the way out, where it cannot draw.
+    """The module pyvista. Raises NotInstalledError, with the way out, where it cannot draw.
 
     Without drivers VTK ends the process, so that the first time another one tries it: a second.
     """
-    try:
-        import pyvista
-    except ImportError as missing:
-        raise PicturesMissingError(
-            f"PyVista draws the pictures, and cannot be imported ({missing}): "
-            "pip install 'hem-mesh[viz]'"
-        ) from missing
+    pyvista = load_optional("pyvista", "viz")
     trial = subprocess.run([sys.executable, "-c", _TRIAL], capture_output=True, check=False)
     if trial.returncode:
-        raise PicturesMissingError(
+        raise NotInstalledError(
             "PyVista draws the pictures, and the system has no OpenGL for it; on Debian or Ubuntu: "
             "apt-get install libegl1 libgl1 libgl1-mesa-dri"
         )

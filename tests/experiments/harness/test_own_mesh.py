@@ -79,6 +79,7 @@ def test_what_not_every_structure_can_hold_is_refused_and_leaves_no_run(tmp_path
     (["--repair"], "say --mesh as well"),
     (["--mesh", "cow", "--workers", "tcp://a:1"], "leave out --workers"),
     (["--mesh", "cow", "--resume"], "leave out --mesh"),
+    (["--mesh", "cow", "--peers"], "leave out --mesh"),
 ])  # fmt: skip
 def test_options_that_do_not_go_together_are_told(options, said):
     code, printed = command("study", *options)

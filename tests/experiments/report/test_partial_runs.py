@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from contextlib import suppress
 
 import pytest
@@ -10,6 +11,7 @@ from rich.console import Console
 from experiments.claims import break_even, curves, judge_families, judge_run
 from experiments.harness import OPERATIONS, Axis
 from experiments.report import comparisons, notebooks, pages, uses
+from experiments.report.figures import fracture as pictures
 from experiments.report.figures import growth, memory, picking, real_time
 from experiments.report.session import MissingError, Session, share
 from experiments.report.tables import show_claims
@@ -103,6 +105,15 @@ def test_the_front_page_says_what_was_not_measured(tmp_path, part):
     body = notebooks.body("index")
     assert body.count('class="answer missing"') == 5
     assert body.count("<details") > 100
+
+
+def test_without_what_breaks_bodies_the_chapter_names_what_brings_it(tmp_path, monkeypatch):
+    open_part(tmp_path, "half_edge")
+    pictures.broken_by_force.cache_clear()
+    monkeypatch.setitem(sys.modules, "manifold3d", None)
+    body = notebooks.body("fracture")
+    assert body.count("pip install 'hem-mesh[fracture]'") == 3
+    assert body.count("<img") >= 2  # what is broken on its surface is shown
 
 
 @pytest.mark.parametrize("part", waiting_for(["plankton"], ["plankton", "bench_work"]))

@@ -106,16 +106,19 @@ def test_disturbed_cases_are_measured_again_by_a_new_process(run):
 
 
 def test_disturbed_cases_are_measured_again_no_more_often_than_they_may(run, monkeypatch):
-    actions = []
+    actions, told = [], []
+    observer = study.Observer()
+    observer.repeating = lambda cases, seconds: told.append(cases)
     monkeypatch.setattr(CaseFile, "disturbed", {"a case"})
     monkeypatch.setattr(study, "perform", lambda *given: (actions.append(given[2:]) for _ in "a"))
-    study._measure_again(run, study.plan(run), until=float("inf"))
+    study._measure_again(run, study.plan(run), float("inf"), observer)
     assert actions == [(AGAIN,)] * REPEATS
-    study._measure_again(run, study.plan(run), until=0)
-    assert len(actions) == REPEATS + 1
+    study._measure_again(run, study.plan(run), 0, observer)
+    assert told == [1] * (REPEATS + 1)
+    assert len(actions) == len(told)
     most = [key for job in study.plan(run) for key in job.ids]
     monkeypatch.setattr(CaseFile, "disturbed", set(most))  # it would be as busy once more
-    study._measure_again(run, study.plan(run), until=float("inf"))
+    study._measure_again(run, study.plan(run), float("inf"), observer)
     assert len(actions) == REPEATS + 1
 
 

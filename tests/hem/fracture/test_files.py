@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import sys
 
 import numpy as np
 import pytest
@@ -29,6 +30,18 @@ def sheet():
 
 def corners(mesh) -> np.ndarray:
     return mesh.points[mesh.triangles]
+
+
+@pytest.mark.parametrize("package", ["manifold3d", "trimesh"])
+def test_without_a_package_the_error_names_what_brings_it(sheet, tmp_path, monkeypatch, package):
+    make = {
+        "manifold3d": lambda: voronoi(hem.generate("sphere", 162), (0, 0, 1), "glass"),
+        "trimesh": lambda: save_pieces(sheet, tmp_path, "glb"),
+    }
+    monkeypatch.setitem(sys.modules, package, None)
+    with pytest.raises(hem.NotInstalledError, match=rf"{package}.*'hem-mesh\[fracture\]'"):
+        make[package]()
+    assert not list(tmp_path.iterdir())
 
 
 def test_glb_holds_a_node_for_every_piece_turned_so_that_up_is_y(broken, tmp_path):

@@ -106,9 +106,10 @@ def test_degenerate_faces_and_vertices_without_faces_are_drawn_over():
 def test_without_pyvista_the_error_names_the_way_out():
     code = (
         "import sys; sys.modules['pyvista'] = None\n"
-        "from hem.fracture.show import Picture, PicturesMissingError\n"
+        "from hem.errors import NotInstalledError\n"
+        "from hem.fracture.show import Picture\n"
         "try: Picture([[0, 0, 0]], [[0, 0, 0]], (1, 1, 1), (9, 9))\n"
-        "except PicturesMissingError as missing: print(missing)"
+        "except NotInstalledError as missing: print(missing)"
     )
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert "pip install 'hem-mesh[viz]'" in run.stdout
