@@ -56,7 +56,7 @@ def mixed(base, tmp_path_factory):
     ("arguments", "said"),
     [
         (["show", "--file", "none.jsonl"], "there is no run in none.jsonl; begin with: hem study"),
-        (["show", "half_edgy", "--file", "KEPT"], "no claim 'half_edgy'; say a structure (indexed"),
+        (["show", "half_edgy", "--file", "KEPT"], "no claim 'half_edgy'; say one of"),
         (["show", "--machine", "ffff", "--file", "KEPT"], "no run is of machine 'ffff'; there are"),
         (["show", "--profile", "slow", "--file", "KEPT"], "no run is of preset 'slow'"),
         (["show", "--file", "."], "Is a directory"),
