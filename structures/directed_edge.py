@@ -133,16 +133,20 @@ def across(m: DirectedEdgeRecords, h: int) -> int:
 
 half_edge_exists = steps.recorded(EDGE_END, origin)
 mark = marked.mark_of(origin, tip)
-edge_of, edge_exists = marked.smaller_of_twins(twin, mark), marked.marked(half_edge_exists, mark)
+names, edge_exists = (
+    marked.smaller_of_twins(origin, twin, mark),
+    marked.marked(half_edge_exists, mark),
+)
+edge_of = names.here
 
 
 # The nine queries: O(1), those of a vertex and edge_edges O(n_ev) ---------------------------------
 
-outgoing = walks.from_vertex(leaving, walks.circulator(clockwise, counterclockwise))
+outgoing = walks.by_twins(leaving, twin, following, previous)
 
-vertex_vertices = walks.each_and_last(outgoing, tip, apex)
-vertex_edges = walks.each_and_last(outgoing, edge_of, steps.then(previous, edge_of))
-vertex_faces = walks.each(outgoing, face)
+vertex_vertices = walks.each_and_last(outgoing, steps.ending(origin, tip), apex)
+vertex_edges = walks.each_and_last(outgoing, names, steps.then(previous, edge_of))
+vertex_faces = walks.each(outgoing, steps.of_its_own(face))
 edge_vertices = steps.ends(marked.of_edge(origin), marked.of_edge(tip))
 edge_edges = walks.edges_at_both_ends(edge_vertices, vertex_edges, marked.of_edge(edge_of))
 edge_faces = steps.faces_beside(marked.of_edge(face), marked.of_edge(across))
@@ -165,7 +169,7 @@ are_joined = walks.joined_by_steps(leaving, clockwise, ends_at, with_edge)
 face_left_of = steps.left_face(find_half_edge, face)
 leaves_smallest = steps.from_smallest(following, origin)
 clear_vertex = steps.clear_vertex
-edge_between = marked.between(find_half_edge, edge_of)
+edge_between = steps.between(find_half_edge, edge_of)
 
 
 @kernel

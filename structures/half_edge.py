@@ -75,7 +75,8 @@ class HalfEdgeRecords(NamedTuple):
 origin, face, following, twin = steps.columns(HalfEdgeRecords, "half_edge", 4)
 previous = steps.then(following, following)
 tip, apex = steps.then(following, origin), steps.then(previous, origin)
-edge_of, others = steps.smaller_of_twins(twin), steps.others_of_triangle(following)
+names, others = steps.smaller_of_twins(twin), steps.others_of_triangle(following)
+edge_of = names.here
 leaving, within = steps.entries(HalfEdgeRecords, "vertex_half_edge", "face_half_edge")
 
 
@@ -101,11 +102,11 @@ def across(m: HalfEdgeRecords, h: int) -> int:
 
 # The nine queries: O(1), those of a vertex and edge_edges O(n_ev) ---------------------------------
 
-outgoing = walks.from_vertex(leaving, walks.circulator(clockwise, counterclockwise))
+outgoing = walks.by_twins(leaving, twin, following, previous)
 
-vertex_vertices = walks.each_and_last(outgoing, tip, apex)
-vertex_edges = walks.each_and_last(outgoing, edge_of, previous)  # at the border it is the name
-vertex_faces = walks.each(outgoing, face)
+vertex_vertices = walks.each_and_last(outgoing, steps.ending(origin, tip), apex)
+vertex_edges = walks.each_and_last(outgoing, names, previous)  # at the border it is the name
+vertex_faces = walks.each(outgoing, steps.of_its_own(face))
 edge_vertices = steps.ends(origin, tip)
 edge_edges = walks.edges_at_both_ends(edge_vertices, vertex_edges, edge_of)
 edge_faces = steps.faces_beside(face, across)
@@ -127,6 +128,7 @@ find_half_edge = walks.found_by_steps(leaving, clockwise, ends_at, counterclockw
 with_edge = walks.found_by_steps(leaving, clockwise, in_triangle, counterclockwise)
 are_joined = walks.joined_by_steps(leaving, clockwise, ends_at, with_edge)
 face_left_of = steps.left_face(find_half_edge, face)
+edge_between = steps.between(find_half_edge, edge_of)
 leaves_smallest = steps.from_smallest(following, origin)
 clear_vertex = steps.clear_vertex
 
@@ -141,18 +143,20 @@ def set_face(m: HalfEdgeRecords, f: int, g: int, h: int, i: int) -> None:
 
 
 @kernel
-def set_twins(m: HalfEdgeRecords, g: int, h: int) -> None:
-    """Make an edge of two half-edges."""
-    m.half_edge[g, TWIN], m.half_edge[h, TWIN] = h, g
+def new_half_edges(m: HalfEdgeRecords, count: int) -> int:
+    """Append so many half-edges, of which nothing is recorded yet -> the first."""
+    first = m.counts[EDGE_END]
+    m.counts[EDGE_END] = first + count
+    return int(first)
 
 
 @kernel
-def new_half_edge(m: HalfEdgeRecords, origin: int) -> int:
-    """Append a half-edge that has no twin yet."""
-    h = m.counts[EDGE_END]
-    m.half_edge[h, ORIGIN], m.half_edge[h, TWIN] = origin, -1
-    m.counts[EDGE_END] += 1
-    return int(h)
+def set_half_edge(
+    m: HalfEdgeRecords, h: int, origin: int, face: int, following: int, twin: int
+) -> None:
+    """Record all of a half-edge."""
+    m.half_edge[h, ORIGIN], m.half_edge[h, FACE] = origin, face
+    m.half_edge[h, NEXT], m.half_edge[h, TWIN] = following, twin
 
 
 @kernel
@@ -166,25 +170,32 @@ def set_vertices(m: HalfEdgeRecords, h: int) -> None:
 def split_edge_records(m: HalfEdgeRecords, e: int, at: Array, v: int, f: int) -> None:
     """Cost O(1): two half-edges of each face stay, one moves on, and three are new."""
     left, right = left_and_right(m, e)  # they stay with a and v
-    on_left, on_right = -1, -1  # the halves of the edge from v to b
+    on_left = -1  # the half of the edge from v to b
     if left >= 0:
         bc, ca = others(m, left)
-        on_left, cv, vc = new_half_edge(m, v), new_half_edge(m, at[C]), new_half_edge(m, v)
-        set_twins(m, cv, vc)
-        set_face(m, at[LEFT], left, vc, ca)
-        set_face(m, f, on_left, bc, cv)
-        set_vertices(m, on_left)
+        on_left = new_half_edges(m, 3)
+        cv, vc = on_left + 1, on_left + 2
+        set_half_edge(m, on_left, v, f, bc, -1)
+        set_half_edge(m, cv, at[C], f, on_left, vc)
+        set_half_edge(m, vc, v, at[LEFT], ca, cv)
+        m.half_edge[left, NEXT] = vc
+        m.half_edge[bc, FACE], m.half_edge[bc, NEXT] = f, cv
+        m.face_half_edge[at[LEFT]], m.face_half_edge[f] = left, on_left
+        m.vertex_half_edge[v], m.vertex_half_edge[at[B]] = on_left, bc
         f += 1
     if right >= 0:
         ad, db = others(m, right)
-        on_right, vd, dv = new_half_edge(m, at[B]), new_half_edge(m, v), new_half_edge(m, at[D])
-        set_twins(m, vd, dv)
-        m.half_edge[right, ORIGIN] = v
-        set_face(m, at[RIGHT], right, ad, dv)
-        set_face(m, f, on_right, vd, db)
-        set_vertices(m, on_right)
-    if left >= 0 and right >= 0:
-        set_twins(m, on_left, on_right)
+        on_right = new_half_edges(m, 3)
+        vd, dv = on_right + 1, on_right + 2
+        set_half_edge(m, on_right, at[B], f, vd, on_left)
+        set_half_edge(m, vd, v, f, db, dv)
+        set_half_edge(m, dv, at[D], at[RIGHT], right, vd)
+        m.half_edge[right, ORIGIN], m.half_edge[ad, NEXT] = v, dv
+        m.half_edge[db, FACE], m.half_edge[db, NEXT] = f, on_right
+        m.face_half_edge[at[RIGHT]], m.face_half_edge[f] = right, on_right
+        m.vertex_half_edge[at[B]], m.vertex_half_edge[v] = on_right, vd
+        if on_left >= 0:
+            m.half_edge[on_left, TWIN] = on_right
 
 
 @kernel
@@ -194,15 +205,18 @@ def split_face_records(m: HalfEdgeRecords, face: int, v: int, f: int, corners: A
     bc, ca = others(m, ab)
     a, b, c = m.half_edge[ab, ORIGIN], m.half_edge[bc, ORIGIN], m.half_edge[ca, ORIGIN]
     corners[0], corners[1], corners[2] = a, b, c
-    av, va = new_half_edge(m, a), new_half_edge(m, v)
-    bv, vb = new_half_edge(m, b), new_half_edge(m, v)
-    cv, vc = new_half_edge(m, c), new_half_edge(m, v)
-    set_twins(m, av, va)
-    set_twins(m, bv, vb)
-    set_twins(m, cv, vc)
-    set_face(m, face, ab, bv, va)
-    set_face(m, f, bc, cv, vb)
-    set_face(m, f + 1, ca, av, vc)
+    av = new_half_edges(m, 6)
+    va, bv, vb, cv, vc = av + 1, av + 2, av + 3, av + 4, av + 5
+    set_half_edge(m, av, a, f + 1, vc, va)
+    set_half_edge(m, va, v, face, ab, av)
+    set_half_edge(m, bv, b, face, va, vb)
+    set_half_edge(m, vb, v, f, bc, bv)
+    set_half_edge(m, cv, c, f, vb, vc)
+    set_half_edge(m, vc, v, f + 1, ca, cv)
+    m.half_edge[ab, NEXT] = bv
+    m.half_edge[bc, FACE], m.half_edge[bc, NEXT] = f, cv
+    m.half_edge[ca, FACE], m.half_edge[ca, NEXT] = f + 1, av
+    m.face_half_edge[face], m.face_half_edge[f], m.face_half_edge[f + 1] = ab, bc, ca
     m.vertex_half_edge[v] = va
 
 
@@ -289,16 +303,19 @@ def add_records(m: HalfEdgeRecords, corners: Array, f: int) -> None:
     """Cost O(n_ev)."""
     a, b, c = corners[0], corners[1], corners[2]
     ab, bc, ca = find_half_edge(m, b, a), find_half_edge(m, c, b), find_half_edge(m, a, c)
-    g, h, i = new_half_edge(m, a), new_half_edge(m, b), new_half_edge(m, c)
+    g = new_half_edges(m, 3)
+    h, i = g + 1, g + 2
+    set_half_edge(m, g, a, f, h, ab)
+    set_half_edge(m, h, b, f, i, bc)
+    set_half_edge(m, i, c, f, g, ca)
     if ab >= 0:
-        set_twins(m, g, ab)
+        m.half_edge[ab, TWIN] = g
     if bc >= 0:
-        set_twins(m, h, bc)
+        m.half_edge[bc, TWIN] = h
     if ca >= 0:
-        set_twins(m, i, ca)
-    set_face(m, f, g, h, i)
-    set_vertices(m, g)
-    m.vertex_half_edge[c] = i
+        m.half_edge[ca, TWIN] = i
+    m.face_half_edge[f] = g
+    m.vertex_half_edge[a], m.vertex_half_edge[b], m.vertex_half_edge[c] = g, h, i
 
 
 @kernel

@@ -162,6 +162,12 @@ def coordinate(m: ObjectRecords, v: int, i: int) -> float:
     return float("nan") if vertex is None else vertex.point[i]
 
 
+def position(m: ObjectRecords, v: int) -> tuple[float, float, float, float]:
+    """Where vertex v is, to be added up: see ``hem.authoring.sums``."""
+    x, y, z = m.vertices.items[v].point
+    return x, y, z, 1.0
+
+
 def set_point(m: ObjectRecords, v: int, point: Any) -> None:
     """Give a vertex its position, be it new or not."""
     position = float(point[0]), float(point[1]), float(point[2])
@@ -206,6 +212,12 @@ def find_half_edge(m: ObjectRecords, a: int, b: int) -> HalfEdge | None:
 def are_joined(m: ObjectRecords, a: int, b: int) -> bool:
     """Cost O(n_ev)."""
     return find_half_edge(m, a, b) is not None or find_half_edge(m, b, a) is not None
+
+
+def edge_between(m: ObjectRecords, a: int, b: int) -> int:
+    """The edge between two vertices, or -1. Cost O(n_ev)."""
+    h = find_half_edge(m, a, b) or find_half_edge(m, b, a)
+    return -1 if h is None else h.edge
 
 
 def face_left_of(m: ObjectRecords, a: int, b: int) -> int:

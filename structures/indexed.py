@@ -178,6 +178,9 @@ def are_joined(m: IndexedRecords, a: int, b: int) -> bool:
     return False
 
 
+edge_between = packed.between(are_joined)
+
+
 @kernel
 def set_triangle(m: IndexedRecords, t: int, a: int, b: int, c: int) -> None:
     """Write the corners of triangle t."""

@@ -32,6 +32,7 @@ with indices of 4 bytes in any case. ``memory()`` counts the arrays, which are t
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Any, ClassVar, NamedTuple, Self
 
 import numpy as np
@@ -40,6 +41,7 @@ from hem.arrays import Array
 from hem.authoring import (
     FACE_END,
     LEFT,
+    OF_ARRAYS,
     RIGHT,
     VERTEX_END,
     A,
@@ -242,6 +244,13 @@ def are_joined(m: IndexedAdjacencyRecords, a: int, b: int) -> bool:
     return find(m, a, b) >= 0 or find(m, b, a) >= 0
 
 
+edge_between = packed.between(are_joined)
+
+
+RECORDED = frozenset(OF_ARRAYS) | {"edge_vertices", "face_vertices", "face_edges", "face_exists"}
+"""Kernels that ask for no neighbors."""
+
+
 def forgetting(change: Kernel) -> Kernel:
     """Make the same change of triangles, after which no neighbors are known."""
 
@@ -287,10 +296,9 @@ class AdjacencyStorage(PackedStorage):
     def __init__(self, fields: Any, step: Any) -> None:
         super().__init__(Indexed.fields, step)
 
-    def prepare(self, records: Any, query: str = "") -> None:
+    def prepare(self, records: Any, kernels: Iterable[str]) -> None:
         """See ``Storage.prepare``."""
-        recorded = query in ("edge_vertices", "face_vertices", "face_edges")
-        if not recorded and not records.standing[0]:
+        if not records.standing[0] and not RECORDED.issuperset(kernels):
             find_neighbors(records)
 
     def with_room(self, records: Any, vertices: int, faces: int) -> Any:

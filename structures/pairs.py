@@ -106,6 +106,12 @@ leaving, within = steps.entries(PlanktonRecords, "vertex_half_edge", "face_half_
 # The nine queries: O(1), around a vertex O(n_ev), around a face O(n) for n corners ----------------
 
 
+@kernel
+def is_open(m: PlanktonRecords, v: int) -> bool:
+    """Whether a vertex that has faces lies on the border: it leaves along the border then."""
+    return bool(face(m, m.vertex_half_edge[v]) < 0)
+
+
 def around_vertex(give: Kernel) -> Kernel:
     """Make a query: ``give(m, h)`` of every half-edge that leaves a vertex, counterclockwise.
 
@@ -114,7 +120,7 @@ def around_vertex(give: Kernel) -> Kernel:
 
     def visiting(visit: Kernel, turned: Kernel) -> Kernel:
         @kernel
-        def visit_all(m: PlanktonRecords, v: int, state: Any, given: Any) -> Any:
+        def visit_all(m: PlanktonRecords, v: int, state: Any, given: Any) -> tuple[Any, bool]:
             first = m.vertex_half_edge[v]
             h = first
             while h >= 0:
@@ -124,11 +130,11 @@ def around_vertex(give: Kernel) -> Kernel:
                     state = visit(m, found, state, given)
                 if h == first:
                     break
-            return state
+            return state, False
 
         return visit_all
 
-    return walks.query_of(visiting)
+    return walks.query_of(visiting, is_open)
 
 
 def round_face(give: Kernel) -> Kernel:
@@ -136,14 +142,14 @@ def round_face(give: Kernel) -> Kernel:
 
     def visiting(visit: Kernel, turned: Kernel) -> Kernel:
         @kernel
-        def visit_all(m: PlanktonRecords, f: int, state: Any, given: Any) -> Any:
+        def visit_all(m: PlanktonRecords, f: int, state: Any, given: Any) -> tuple[Any, bool]:
             first = m.face_half_edge[f]
             h = first
             while True:
                 state = visit(m, give(m, h), state, given)
                 h = m.half_edge[h, NEXT]
                 if h == first:
-                    return state
+                    return state, False
 
         return visit_all
 
@@ -249,6 +255,7 @@ def find_half_edge(m: PlanktonRecords, a: int, b: int) -> int:
 ends_at = steps.ending_at(tip)
 are_joined = walks.joined_by_steps(leaving, clockwise, ends_at, find_half_edge)
 face_left_of = steps.left_face(find_half_edge, face)
+edge_between = steps.between(find_half_edge, edge_of)
 clear_vertex = steps.clear_vertex
 
 

@@ -108,12 +108,12 @@ def neighbors(visit: Kernel, turned: Kernel) -> Kernel:
     circulate = around(corner_after, visit, turned)
 
     @kernel
-    def visit_all(m: TriangleNeighborRecords, v: int, state: Any, given: Any) -> Any:
+    def visit_all(m: TriangleNeighborRecords, v: int, state: Any, given: Any) -> tuple[Any, bool]:
         state, last = circulate(m, m.vertex_triangle[v], v, state, given)
-        if last < 0:
-            return state
-        before = m.triangle[last, CORNER + (corner_of(m, last, v) + 2) % 3]
-        return visit(m, before, state, given)
+        if last >= 0:
+            before = m.triangle[last, CORNER + (corner_of(m, last, v) + 2) % 3]
+            state = visit(m, before, state, given)
+        return state, last >= 0
 
     return visit_all
 
@@ -178,6 +178,7 @@ def leaves_for(m: TriangleNeighborRecords, t: int, v: int, w: int) -> bool:
 # A triangle that has edge a – b, or -1.
 with_edge = walks.found_by_steps(first, clockwise, in_triangle, counterclockwise)
 are_joined = walks.joined_by_steps(first, clockwise, leaves_for, with_edge)
+edge_between = packed.between(are_joined)
 
 
 @kernel

@@ -180,6 +180,7 @@ ends_at = steps.ending_at(tip)
 find_directed_edge = walks.found_by_steps(first, clockwise, ends_at, counterclockwise)
 are_joined = walks.joined_by_steps(first, clockwise, ends_at, find_directed_edge)
 face_left_of = steps.left_face(find_directed_edge, left_of)
+edge_between = steps.between(find_directed_edge, edge_of)
 leaves_smallest = steps.from_smallest(following, origin)
 
 

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from contextlib import suppress
 from numbers import Real
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from hem.algorithms.parts import side_keys
+from hem.algorithms.parts import living_vertex, side_keys
+from hem.authoring import VERTEX_END, Kernel, Kernels, kernel, walks
 from hem.contract import Structure
 from hem.errors import MeshError, TopologyError
 
@@ -46,21 +47,47 @@ def require_length(called: str, name: str, value: Any) -> float:
     raise MeshError(f"{called} takes {name} as a length from 0 on, not {value!r:.60}")
 
 
+class Counting(NamedTuple):
+    """The scratch to count with."""
+
+    out: Any
+
+
+def finding_pillows(k: Kernels, operations: Kernels) -> Kernel:
+    """Make ``find(m, plan) -> vertex``: one that two faces share both of their edges at, or -1.
+
+    Such faces have the same three corners. There is one fan of faces at every vertex.
+    """
+    lives, count_faces = living_vertex(k), walks.counting(k["vertex_faces"])
+    count_neighbors = walks.counting(k["vertex_vertices"])
+
+    @kernel
+    def find(m: Any, plan: Counting) -> int:
+        for v in range(m.counts[VERTEX_END]):
+            faces = count_faces(m, v, plan.out) if lives(m, v) else 0
+            if faces == 2 and count_neighbors(m, v, plan.out) == 2:
+                return v
+        return -1
+
+    return find
+
+
 def require_surface(s: Structure, called: str) -> None:
     """Raise TopologyError where some splits, flips or collapses would be refused.
 
-    Cost: ``face_faces`` of all; O(n_t log n_t) where nothing is recorded of neighbors.
+    Cost: ``vertex_faces`` of all; O(n_t log n_t) where nothing is recorded of neighbors.
     """
-    inner = 3 * s.n_faces - s.n_edges  # where an edge of the border has one face, they have two
     if s.searches or s.rebuilds:
         keys, faces = side_keys(s)
-        inner, crowded = (faces == 2).sum(), keys[faces > 2]
+        crowded = keys[faces > 2]
         if len(crowded):
             edges = np.stack([crowded >> 32, crowded & 0xFFFFFFFF], axis=1)
             raise TopologyError(f"cannot {called}: edges lie in more than two faces", edges=edges)
-    if len(s.face_faces().values) < 2 * inner:  # each neighbor is told once
-        corners = np.sort(s.triangles(), axis=1)
-        _, first, count = np.unique(corners, axis=0, return_index=True, return_counts=True)
+    elif s.run(finding_pillows, Counting(s.scratch(0)[0])) < 0:
+        return
+    corners = np.sort(s.triangles(), axis=1)
+    _, first, count = np.unique(corners, axis=0, return_index=True, return_counts=True)
+    if (count > 1).any():
         raise TopologyError(
             f"cannot {called}: faces have the same three corners; remove one of each pair",
             faces=s.faces()[first[count > 1]],

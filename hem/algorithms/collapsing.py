@@ -1,4 +1,9 @@
-"""The cheapest edge is collapsed, again and again: the compiled part of simplification."""
+"""The cheapest edge is collapsed, again and again: the compiled part of simplification.
+
+Planes are only added up, so an edge only ever costs more than it did. What it cost says when to
+look at it again: then it is put where it belongs by now, or collapsed. No edge is looked at because
+another was collapsed beside it.
+"""
 
 from __future__ import annotations
 
@@ -6,10 +11,21 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from hem.algorithms.heap import Heap, pop, purge, push
-from hem.algorithms.parts import Work, doing, finding_edge
+from hem.algorithms.buckets import (
+    COUNT,
+    HIGHEST,
+    PER_DOUBLING,
+    PLACE,
+    Queue,
+    bucket_of,
+    drop,
+    peek,
+    put,
+    put_off,
+)
+from hem.algorithms.parts import Work, doing
 from hem.algorithms.quadrics import WIDTH, best_point, value
-from hem.arrays import Bools, Floats, Indices
+from hem.arrays import Array, Floats, Handles, Indices
 from hem.authoring import (
     FACES,
     NEEDS_ROOM,
@@ -19,7 +35,6 @@ from hem.authoring import (
     Refusal,
     kernel,
     log_element,
-    part,
 )
 from hem.edit import CHANGED, VERTEX
 
@@ -35,8 +50,23 @@ LENGTH_WEIGHT = 1e-5
 PASSED_OVER = int(Refusal.NO_EDGE)
 """The result where a collapse is not even tried."""
 
-DEAD = -(1 << 40)
-"""The version of what was collapsed: no stamp is like it."""
+REFUSED = 1 << 30
+"""Added to the stamp of an edge that could not be collapsed: it is tried again once it changed."""
+
+FAR = 2
+"""How many times as many as are wanted must be left for the order not to matter yet."""
+
+AHEAD = 16
+"""Edges whose ends are fetched from memory together."""
+
+INTO, VERSION = range(2)
+"""Columns of what became of a vertex."""
+
+QUADRIC, BORDER, ROW = 3, 3 + WIDTH, 16
+"""Columns of what is known of a vertex: its quadric, whether it lies on the border, and how many.
+
+Position and quadric stand side by side, so that who asks for both waits for memory once.
+"""
 
 
 class Plan(NamedTuple):
@@ -47,37 +77,43 @@ class Plan(NamedTuple):
     longest: Floats  # (1,): squared: no collapse may leave a longer edge
     cosine: Floats  # (1,): how far the normal of a face may turn
     measure: Indices  # (1,): QUADRICS, SHORTEST_EDGE or SHORTEST_TO_PLANES
-    edges: Indices  # (k,): smaller end << 32 | larger end
-    next: Indices  # (1,): which of them is not on the heap yet
+    edges: Array  # (k, 2) int32: the ends of every edge, the smaller first
+    stamp: Handles  # (k,): their versions when it was looked at
+    next: Indices  # (1,): which of them is not in the queue yet
     middle: Floats  # (3,): of the bounding box
-    xyz: Floats  # (n, 3): positions, seen from the middle
-    quadric: Floats  # (n, 11)
-    on_border: Bools  # (n,)
-    version: Indices  # (n,): how often a vertex was moved
+    rows: Floats  # (n, ROW): positions, seen from the middle, and more
+    become: (
+        Array  # (n, 2) int32: what a vertex was collapsed into or itself, and how often it moved
+    )
     target: Floats  # (3,): where the vertex of a collapse comes to lie
     sum: Floats  # (11,): the quadric of an edge
-    heap: Heap
+    queue: Queue
     work: Work
 
 
-@part
-def cost_of(plan: Plan, edge: int) -> float:
+@kernel
+def which_stays(plan: Plan, a: int, b: int) -> int:
+    """The end of an edge that stays: the smaller, but one on the border before one that is not."""
+    return b if plan.rows[b, BORDER] > plan.rows[a, BORDER] else a
+
+
+@kernel
+def cost_of(plan: Plan, a: int, b: int) -> float:
     """What it costs to collapse an edge; infinite if it must not be. Finds the target as well."""
-    a, b = edge >> 32, edge & 0xFFFFFFFF
-    xyz, target, total = plan.xyz, plan.target, plan.sum
-    stays = b if plan.on_border[b] and not plan.on_border[a] else a
+    rows, target, total = plan.rows, plan.target, plan.sum
+    stays = which_stays(plan, a, b)
     long = 0.0
     for j in range(3):
-        long += (xyz[a, j] - xyz[b, j]) ** 2
-        target[j] = xyz[stays, j]
+        long += (rows[a, j] - rows[b, j]) ** 2
+        target[j] = rows[stays, j]
     if plan.measure[0] != QUADRICS:
-        if long > plan.error[0] or (plan.on_border[a] and plan.on_border[b]):
+        if long > plan.error[0] or rows[a, BORDER] + rows[b, BORDER] == 2:
             return np.inf
-        if plan.measure[0] == SHORTEST_EDGE or plan.on_border[stays]:
+        if plan.measure[0] == SHORTEST_EDGE or rows[stays, BORDER] > 0:
             return long
     for j in range(WIDTH):
-        total[j] = plan.quadric[a, j] + plan.quadric[b, j]
-    x, y, z = xyz[a, 0] + xyz[b, 0], xyz[a, 1] + xyz[b, 1], xyz[a, 2] + xyz[b, 2]
+        total[j] = rows[a, QUADRIC + j] + rows[b, QUADRIC + j]
+    x, y, z = rows[a, 0] + rows[b, 0], rows[a, 1] + rows[b, 1], rows[a, 2] + rows[b, 2]
     target[0], target[1], target[2] = best_point(total, x / 2, y / 2, z / 2)
     error = value(total, target[0], target[1], target[2])
     if plan.measure[0] == SHORTEST_TO_PLANES:
@@ -87,15 +123,35 @@ def cost_of(plan: Plan, edge: int) -> float:
     return error + LENGTH_WEIGHT * long * total[10]
 
 
-@part
-def offer(plan: Plan, edge: int) -> None:
-    """Put an edge on the heap, unless it must not be collapsed."""
-    cost = cost_of(plan, edge)
-    if cost < np.inf:
-        if plan.heap.size[0] == len(plan.heap.cost):
-            purge(plan.heap, plan.version)
-        stamp = plan.version[edge >> 32] + plan.version[edge & 0xFFFFFFFF]
-        push(plan.heap, cost, edge, stamp)
+@kernel
+def left_of(plan: Plan, v: int) -> int:
+    """The vertex that v has become part of; the way there is halved."""
+    become = plan.become
+    while become[v, INTO] != v:
+        become[v, INTO] = become[become[v, INTO], INTO]
+        v = become[v, INTO]
+    return v
+
+
+@kernel
+def width_of(m: Any, plan: Plan) -> int:
+    """How many buckets do not differ yet, as what is cheap in them is all collapsed in the end."""
+    vertices, faces = FAR * plan.most[0], FAR * plan.most[1]
+    told = plan.most[0] + plan.most[1] > 0
+    far = m.counts[VERTICES] > vertices and m.counts[FACES] > faces
+    return 4 * PER_DOUBLING if told and far else 1
+
+
+@kernel
+def fetch(plan: Plan) -> None:
+    """Have what comes next brought from memory, all at once: none waits for another."""
+    queue, rows, fetched = plan.queue, plan.rows, 0.0
+    begin = queue.state[PLACE]
+    for i in range(begin, min(begin + AHEAD, queue.state[COUNT])):
+        for j in range(2):
+            v = plan.become[plan.edges[queue.lowest[i], j], INTO]
+            fetched += rows[v, 0] + rows[v, ROW // 2]
+    plan.target[0] = fetched  # or the compiler would see that nobody needs it
 
 
 def keeping_sides(k: Kernels) -> Kernel:
@@ -105,9 +161,9 @@ def keeping_sides(k: Kernels) -> Kernel:
     """
     vertex_faces, face_vertices = k["vertex_faces"], k["face_vertices"]
 
-    @part
+    @kernel
     def keeps_sides(m: Any, v: int, other: int, plan: Plan) -> bool:
-        out, xyz, target = plan.work.out, plan.xyz, plan.target
+        out, xyz, target = plan.work.out, plan.rows, plan.target
         count = vertex_faces(m, v, out)
         for i in range(count):
             corners = out[count : count + 3]
@@ -135,66 +191,86 @@ def keeping_sides(k: Kernels) -> Kernel:
 
 def simplifying(k: Kernels, operations: Kernels) -> Kernel:
     """Make ``simplify_mesh(m, plan) -> 0``."""
-    edge_between = finding_edge(k["vertex_edges"], k["edge_vertices"])
+    edge_between = k["edge_between"]
     keeps_sides, collapse_edge = keeping_sides(k), doing(operations["collapse_edge"])
     vertex_vertices, set_point, coordinate = k["vertex_vertices"], k["set_point"], k["coordinate"]
 
-    @part
+    @kernel
     def keeps_short(m: Any, v: int, plan: Plan) -> bool:
         """Whether all neighbors of v lie near enough to the target."""
+        if plan.longest[0] == np.inf:
+            return True
         for i in range(vertex_vertices(m, v, plan.work.out)):
             long = 0.0
             for j in range(3):
-                long += (plan.xyz[plan.work.out[i], j] - plan.target[j]) ** 2
+                long += (plan.rows[plan.work.out[i], j] - plan.target[j]) ** 2
             if long > plan.longest[0]:
                 return False
         return True
 
-    @part
+    @kernel
     def collapse(m: Any, a: int, b: int, plan: Plan) -> int:
         """Collapse an edge into its target -> the vertex, or why not."""
-        if not (keeps_sides(m, a, b, plan) and keeps_sides(m, b, a, plan)):
-            return PASSED_OVER
-        if not (keeps_short(m, a, plan) and keeps_short(m, b, plan)):
-            return PASSED_OVER
-        stays = b if plan.on_border[b] and not plan.on_border[a] else a
-        done = collapse_edge(m, edge_between(m, a, b, plan.work), stays, plan.work)
+        for v in (a, b):
+            if not (keeps_sides(m, v, a + b - v, plan) and keeps_short(m, v, plan)):
+                return PASSED_OVER
+        stays = which_stays(plan, a, b)
+        done = collapse_edge(m, edge_between(m, a, b), stays, plan.work)
         if done < 0:
             return done
+        rows = plan.rows
         for j in range(3):
             plan.work.point[j] = plan.target[j] + plan.middle[j]
         set_point(m, stays, plan.work.point)
         plan.work.log[0] = log_element(plan.work.log, plan.work.log[0], VERTEX + CHANGED, stays)
         for j in range(3):
-            plan.xyz[stays, j] = np.float64(coordinate(m, stays, j)) - plan.middle[j]
+            rows[stays, j] = np.float64(coordinate(m, stays, j)) - plan.middle[j]
         for j in range(WIDTH):
-            plan.quadric[stays, j] = plan.sum[j]
-        plan.on_border[stays] = plan.on_border[a] or plan.on_border[b]
-        plan.version[stays] += 1
-        plan.version[a + b - stays] = DEAD
+            rows[stays, QUADRIC + j] = plan.sum[j]
+        rows[stays, BORDER] = max(rows[a, BORDER], rows[b, BORDER])
+        plan.become[stays, VERSION] += 1
+        plan.become[a + b - stays, INTO] = stays
         return stays
 
     @kernel
     def simplify_mesh(m: Any, plan: Plan) -> int:
-        heap, version, out = plan.heap, plan.version, plan.work.out
-        while plan.next[0] < len(plan.edges):
-            offer(plan, plan.edges[plan.next[0]])
+        queue, edges, stamp, become = plan.queue, plan.edges, plan.stamp, plan.become
+        while plan.next[0] < len(edges):
+            cost = cost_of(plan, edges[plan.next[0], 0], edges[plan.next[0], 1])
+            if cost < np.inf:
+                put(queue, bucket_of(queue, cost), plan.next[0])
             plan.next[0] += 1
         while m.counts[VERTICES] > plan.most[0] and m.counts[FACES] > plan.most[1]:
-            if heap.size[0] == 0:
+            edge = peek(queue, width_of(m, plan))
+            if edge < 0:
                 break
-            edge, stamp = heap.edge[0], heap.stamp[0]
-            a, b = edge >> 32, edge & 0xFFFFFFFF
-            if version[a] + version[b] == stamp:
-                cost_of(plan, edge)
-                stays = collapse(m, a, b, plan)
-                if stays == NEEDS_ROOM:
-                    return NEEDS_ROOM
-                pop(heap)
-                for i in range(vertex_vertices(m, stays, out) if stays >= 0 else 0):
-                    offer(plan, min(stays, out[i]) << 32 | max(stays, out[i]))
-            else:
-                pop(heap)
+            if queue.state[PLACE] % AHEAD == 0:
+                fetch(plan)
+            one, other = left_of(plan, edges[edge, 0]), left_of(plan, edges[edge, 1])
+            a, b = min(one, other), max(one, other)
+            now = become[a, VERSION] + become[b, VERSION]
+            if a == b:
+                drop(queue)
+                continue
+            if stamp[edge] == REFUSED + now:
+                drop(queue)
+                put_off(queue, queue.state[HIGHEST], edge)
+                continue
+            cost, known_as = cost_of(plan, a, b), (edges[edge, 0], edges[edge, 1], stamp[edge])
+            edges[edge, 0], edges[edge, 1], stamp[edge] = a, b, now
+            bucket = bucket_of(queue, cost)
+            if known_as != (a, b, now) and (cost == np.inf or bucket > queue.state[HIGHEST]):
+                drop(queue)
+                if cost < np.inf:
+                    put(queue, bucket, edge)
+                continue
+            stays = collapse(m, a, b, plan)
+            if stays == NEEDS_ROOM:
+                return NEEDS_ROOM
+            drop(queue)
+            if stays < 0:
+                stamp[edge] = REFUSED + now
+                put_off(queue, bucket, edge)
         return 0
 
     return simplify_mesh

@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from hem.algorithms.arguments import require_mesh
-from hem.algorithms.parts import NO_WORK, Work, change, doing, finding_edge
+from hem.algorithms.parts import NO_WORK, Work, change, doing
 from hem.arrays import Array
 from hem.authoring import NEEDS_ROOM, Kernel, Kernels, kernel
 from hem.contract import Structure, arguments
@@ -39,7 +39,7 @@ def hitting(k: Kernels, operations: Kernels) -> Kernel:
     face_vertices, face_faces, coordinate = k["face_vertices"], k["face_faces"], k["coordinate"]
     vertex_faces = k["vertex_faces"]
     split_face, split_edge = doing(operations["split_face"]), doing(operations["split_edge"])
-    edge_between = finding_edge(k["vertex_edges"], k["edge_vertices"])
+    edge_between = k["edge_between"]
 
     @kernel
     def hit(m: Any, plan: Plan) -> int:
@@ -64,7 +64,7 @@ def hitting(k: Kernels, operations: Kernels) -> Kernel:
             v, a = plan.middle[0], min(corners[0], corners[1], corners[2])
             for j in range(3):
                 point[j] = 0.5 * coordinate(m, v, j) + 0.5 * coordinate(m, a, j)
-            if split_edge(m, edge_between(m, v, a, plan.work), -1, plan.work) == NEEDS_ROOM:
+            if split_edge(m, edge_between(m, v, a), -1, plan.work) == NEEDS_ROOM:
                 return NEEDS_ROOM
             plan.found[0] += face_faces(m, f, out)
             plan.middle[0] = -1

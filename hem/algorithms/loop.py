@@ -25,14 +25,13 @@ from hem.algorithms.parts import (
     Work,
     change,
     doing,
-    finding_edge,
     move,
     side_keys,
     turning,
 )
 from hem.algorithms.smoothing import averages
 from hem.arrays import Array, Points
-from hem.authoring import LEFT, NEEDS_ROOM, RIGHT, C, D, Kernel, Kernels, kernel, part
+from hem.authoring import LEFT, NEEDS_ROOM, RIGHT, C, D, Kernel, Kernels, kernel
 from hem.contract import Structure
 
 BORDER = 0.25
@@ -51,14 +50,14 @@ class Plan(NamedTuple):
 def placing_on_edges(k: Kernels, operations: Kernels) -> Kernel:
     """Make ``find(m, plan) -> 0``: 3/8 of both ends, 1/8 of both corners beside; on borders 1/2."""
     coordinate, diamond = k["coordinate"], k["diamond"]
-    edge_between = finding_edge(k["vertex_edges"], k["edge_vertices"])
+    edge_between = k["edge_between"]
 
     @kernel
     def find(m: Any, plan: Plan) -> int:
         at = plan.work.at
         for i in range(len(plan.edges)):
             a, b = plan.edges[i, 0], plan.edges[i, 1]
-            diamond(m, edge_between(m, a, b, plan.work), at)
+            diamond(m, edge_between(m, a, b), at)
             for j in range(3):
                 middle = 0.5 * coordinate(m, a, j) + 0.5 * coordinate(m, b, j)
                 if at[LEFT] >= 0 and at[RIGHT] >= 0:
@@ -73,7 +72,7 @@ def placing_on_edges(k: Kernels, operations: Kernels) -> Kernel:
 def splitting(k: Kernels, operations: Kernels) -> Kernel:
     """Make ``split_all(m, plan) -> 0``: every edge of the plan at its point."""
     split_edge = doing(operations["split_edge"])
-    edge_between = finding_edge(k["vertex_edges"], k["edge_vertices"])
+    edge_between = k["edge_between"]
 
     @kernel
     def split_all(m: Any, plan: Plan) -> int:
@@ -81,7 +80,7 @@ def splitting(k: Kernels, operations: Kernels) -> Kernel:
             i = plan.next[0]
             for j in range(3):
                 plan.work.point[j] = plan.points[i, j]
-            e = edge_between(m, plan.edges[i, 0], plan.edges[i, 1], plan.work)
+            e = edge_between(m, plan.edges[i, 0], plan.edges[i, 1])
             if split_edge(m, e, -1, plan.work) == NEEDS_ROOM:
                 return NEEDS_ROOM
             plan.next[0] += 1
@@ -90,7 +89,7 @@ def splitting(k: Kernels, operations: Kernels) -> Kernel:
     return split_all
 
 
-@part
+@kernel
 def is_turned(plan: Plan, a: int, b: int) -> bool:
     """Whether an edge runs from a new vertex to an old one across a face.
 
@@ -111,8 +110,9 @@ def loop(s: Structure) -> None:
     keys, _ = side_keys(s)
     edges = np.stack([keys >> 32, keys & 0xFFFFFFFF], axis=1)
     points, old = np.zeros((len(keys), 3), np.float32), np.array([len(s.points)])
-    places = averages(s, lambda n: 5 / 8 - (3 / 8 + np.cos(2 * np.pi / n) / 4) ** 2, BORDER)
-    vertices = s.vertices()
+    places = averages(
+        s, "subdivide", lambda n: 5 / 8 - (3 / 8 + np.cos(2 * np.pi / n) / 4) ** 2, BORDER
+    )
 
     def plan() -> Plan:
         return Plan(edges, points, old, np.zeros(1, np.int64), NO_WORK)
@@ -120,4 +120,4 @@ def loop(s: Structure) -> None:
     change(s, "subdivide", placing_on_edges, plan())
     change(s, "subdivide", splitting, plan(), len(keys))
     change(s, "subdivide", turning(is_turned), plan())
-    move(s, "subdivide", vertices, places)
+    move(s, "subdivide", places)

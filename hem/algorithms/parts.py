@@ -7,24 +7,36 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from hem.arrays import Array
+from hem.arrays import Array, Points
 from hem.authoring import (
     FACE_END,
+    FACES,
     NEEDS_ROOM,
+    OPERATIONS,
     VALENCE,
+    VERTEX_END,
+    VERTICES,
     Kernel,
     Kernels,
     Refusal,
+    is_point,
     kernel,
+    live_vertex,
     part,
+    sums,
     visiting,
 )
+from hem.authoring.sums import Sum
 from hem.contract import Algorithm, Structure
 from hem.edit import CHANGED, VERTEX
+from hem.engine import kept
 from hem.errors import MeshError
 
 STEP = 16_384
 """The most operations per call of compiled code; between two calls an interrupt gets through."""
+
+GAPS = 701, 301, 132, 57, 23, 10, 4, 1
+"""Of the sort of a few values (Ciura, Best Increments for the Average Case of Shellsort, 2001)."""
 
 AT_ONCE = 8
 """Calls that the same scratch serves: no operation adds more than 2 to a valence, of WIDTH."""
@@ -37,11 +49,12 @@ class Work(NamedTuple):
     point: Any  # (3,) float32
     at: Any  # (6,) int64: the diamond of an edge
     out: Any  # scratch for queries
-    log: Any  # what was touched
+    log: Any  # what was touched, by the last operation alone where nobody follows
     left: Any  # (1,) int64: how many more operations may be done before others are told
+    forgets: Any  # (1,) int64: whether nobody follows
 
 
-NO_WORK = Work(*(np.zeros(n, np.int64) for n in (3, 3, 6, 0, 0, 0)))
+NO_WORK = Work(*(np.zeros(n, np.int64) for n in (3, 3, 6, 0, 0, 0, 0)))
 """Stands in a plan until ``change`` puts something there."""
 
 
@@ -56,6 +69,8 @@ def doing(operation: Kernel) -> Kernel:
     def do(m: Any, first: int, second: int, work: Work) -> int:
         if work.left[0] == 0:
             return NEEDS_ROOM
+        if work.forgets[0]:
+            work.log[0] = 0
         work.args[0], work.args[1], work.args[2] = first, second, -1
         result = operation(m, work.args, work.point, work.at, work.out, work.log, False)
         if result >= 0:
@@ -112,11 +127,12 @@ def most_faces_at_a_vertex(s: Structure) -> int:
     return int(s.records.counts[VALENCE])
 
 
-def step(s: Structure, make: Algorithm, plan: Any, out: Any, log: Array, left: int) -> int:
+def step(s: Structure, make: Algorithm, plan: Any, out: Any, log: Any, left: int) -> int:
     """Run an algorithm for so many operations -> its result. What is interrupted is not done."""
     before = None if s.compiled else s.snapshot()
     args, point, at = np.full(3, -1), np.zeros(3, np.float32), np.zeros(6, np.int64)
-    own: tuple[Any, ...] = args, point, at, out, log, np.array([left])
+    count, forgets = np.array([left]), np.array([int(not s.followed)])
+    own: tuple[Any, ...] = args, point, at, out, log, count, forgets
     # True and True are 2 to Python's own numbers, as they are to compiled code.
     work = Work(*(it if s.compiled else memoryview(it) for it in own))
     log[0] = 0
@@ -139,17 +155,35 @@ def tell(s: Structure, kind: str, logs: list[Array]) -> None:
 
 @cache
 def locating(coordinate: Kernel) -> Kernel:
-    """Make ``where(m, v) -> x, y, z``, in float64 on every structure.
-
-    What is asked of one plan may be handed in besides, see ``adding``.
-    """
+    """Make ``where(m, v) -> x, y, z``, in float64 on every structure."""
 
     @kernel
-    def where(m: Any, v: int, plan: Any = None) -> tuple[float, float, float]:
+    def where(m: Any, v: int) -> tuple[float, float, float]:
         x, y, z = coordinate(m, v, 0), coordinate(m, v, 1), coordinate(m, v, 2)
         return np.float64(x), np.float64(y), np.float64(z)
 
     return where
+
+
+def living_vertex(k: Kernels) -> Kernel:
+    """Make ``lives(m, v) -> bool``, for the vertices before the end."""
+    return _living(live_vertex(k["coordinate"]), VERTICES, VERTEX_END)
+
+
+def living_face(k: Kernels) -> Kernel:
+    """Make ``lives(m, f) -> bool``, for the faces before the end."""
+    return _living(k["face_exists"], FACES, FACE_END)
+
+
+@cache
+def _living(exists: Kernel, alive: int, end: int) -> Kernel:
+    """None is looked at where none is dead."""
+
+    @kernel
+    def lives(m: Any, it: int) -> bool:
+        return bool(m.counts[alive] == m.counts[end] or exists(m, it))
+
+    return lives
 
 
 @kernel
@@ -166,37 +200,45 @@ def unit(x: float, y: float, z: float) -> tuple[float, float, float]:
 
 
 @cache
-def adding(read: Kernel) -> Kernel:
-    """Make ``add(m, it, sums, plan) -> sums`` to visit with: ``read(m, it, plan) -> x, y, z``.
+def adding(position: Kernel) -> Kernel:
+    """Make ``add(m, it, total, plan) -> total`` to visit with, of ``position(m, it, plan)``.
 
-    The sums are how many there are, and theirs of x, y and z in float64. A structure tells the
-    neighbors in an order of its own, and sums of float32 are exact in any, where the largest is
-    below 2²⁶ times the smallest. Else one of some 10⁸ may differ by the last bit as float32.
+    A structure tells the neighbors in an order of its own, and float64 sums of float32 are exact in
+    any, where the largest is below 2²⁶ times the smallest. Else one of some 10⁸ may differ by the
+    last bit as float32. See ``hem.authoring.sums``.
     """
 
     @kernel
-    def add(m: Any, it: int, sums: Any, plan: Any) -> Any:
-        x, y, z = read(m, it, plan)
-        n, a, b, c = sums
-        return n + 1, a + x, b + y, c + z
+    def add(m: Any, it: int, total: Sum, plan: Any) -> Sum:
+        return sums.plus(total, position(m, it, plan))
 
     return add
 
 
-NOTHING = 0, 0.0, 0.0, 0.0
-"""Sums to begin with."""
+@cache
+def of_vertices(position: Kernel) -> Kernel:
+    """Make ``place(m, v, plan) -> position``, whatever the plan."""
+
+    @kernel
+    def place(m: Any, v: int, plan: Any) -> Sum:
+        return position(m, v)
+
+    return place
 
 
 @kernel
-def next_corner(m: Any, v: int, corners: Any, plan: Any) -> tuple[Any, Any, Any]:
-    """Visit the corners of a triangle for all three of them."""
-    return corners[1], corners[2], np.int64(v)
+def next_of_three(m: Any, it: int, known: Any, plan: Any) -> tuple[Any, Any, Any]:
+    """Visit the corners or the edges of a triangle for all three of them."""
+    return known[1], known[2], np.int64(it)
 
 
 @cache
 def cornering(face_vertices: Kernel) -> Kernel:
-    """Make ``corners(m, f, plan) -> a, b, c``. The plan has scratch, ``out``."""
-    visit_all = visiting(face_vertices, next_corner)
+    """Make ``corners(m, f, plan) -> a, b, c``, or of ``face_edges`` ab, bc, ca.
+
+    The plan has scratch, ``out``.
+    """
+    visit_all = visiting(face_vertices, next_of_three)
 
     @kernel
     def corners(m: Any, f: int, plan: Any) -> tuple[int, int, int]:
@@ -206,52 +248,10 @@ def cornering(face_vertices: Kernel) -> Kernel:
     return corners
 
 
-class Counted(NamedTuple):
-    """Whose corners are counted, and where."""
-
-    faces: Array
-    faces_at: Array
-    out: Any
-
-
-def counting_corners(k: Kernels, operations: Kernels) -> Kernel:
-    """Make ``count_corners(m, plan) -> 0``."""
-    corners = cornering(k["face_vertices"])
-
-    @kernel
-    def count_corners(m: Any, plan: Counted) -> int:
-        for i in range(len(plan.faces)):
-            for v in corners(m, plan.faces[i], plan):
-                plan.faces_at[v] += 1
-        return 0
-
-    return count_corners
-
-
-def count_faces_at(s: Structure) -> Array:
-    """(n,) int32: how many faces each vertex is a corner of. Cost: ``face_vertices`` of all."""
-    faces_at = np.zeros(len(s.points), np.int32)
-    s.run(counting_corners, Counted(s.faces(), faces_at, s.scratch(0)[0]))
-    return faces_at
-
-
-@cache
-def finding_edge(vertex_edges: Kernel, edge_vertices: Kernel) -> Kernel:
-    """Make ``edge_between(m, a, b, work) -> edge``, or -1. Cost: ``vertex_edges`` of a.
-
-    Edges are named by their ends and looked up when they are needed: an operation beside them may
-    give them another handle.
-    """
-
-    @part
-    def edge_between(m: Any, a: int, b: int, work: Work) -> int:
-        for i in range(vertex_edges(m, a, work.out)):
-            edge_vertices(m, work.out[i], work.at)
-            if work.at[0] == b or work.at[1] == b:
-                return int(work.out[i])
-        return -1
-
-    return edge_between
+@kernel
+def known_to_be_apart(m: Any, a: int, b: int) -> bool:
+    """Stands for ``are_joined`` where an algorithm knows that vertices are not."""
+    return False
 
 
 @cache
@@ -259,24 +259,30 @@ def turning(is_turned: Kernel) -> Algorithm:
     """Make an algorithm that flips in every face the first edge that ``is_turned(plan, a, b)``.
 
     The plan has ``next``: (1,) int64, the next face. One that was reached from the other side of
-    its edge has none to turn any more.
+    its edge has none to turn any more. What comes to be joined must not be joined already: nobody
+    looks, which would take longer than all the rest.
     """
 
     def turning_in_faces(k: Kernels, operations: Kernels) -> Kernel:
-        face_exists, face_edges = k["face_exists"], k["face_edges"]
-        edge_vertices, flip_edge = k["edge_vertices"], doing(operations["flip_edge"])
+        corners, sides = cornering(k["face_vertices"]), cornering(k["face_edges"])
+        lives = living_face(k)
+        flip_edge = doing(OPERATIONS["flip_edge"].make({**k, "are_joined": known_to_be_apart}))
 
         @kernel
         def turn(m: Any, plan: Any) -> int:
-            out, at = plan.work.out, plan.work.at
             while plan.next[0] < m.counts[FACE_END]:
                 f = plan.next[0]
-                for i in range(face_edges(m, f, out) if face_exists(m, f) else 0):
-                    edge_vertices(m, out[i], at)
-                    if is_turned(plan, at[0], at[1]):
-                        if flip_edge(m, out[i], -1, plan.work) == NEEDS_ROOM:
+                if lives(m, f):
+                    a, b, c = corners(m, f, plan.work)
+                    if is_turned(plan, a, b) or is_turned(plan, b, c) or is_turned(plan, c, a):
+                        ab, bc, ca = sides(m, f, plan.work)
+                        edge = ca
+                        if is_turned(plan, a, b):
+                            edge = ab
+                        elif is_turned(plan, b, c):
+                            edge = bc
+                        if flip_edge(m, edge, -1, plan.work) == NEEDS_ROOM:
                             return NEEDS_ROOM
-                        break
                 plan.next[0] += 1
             return 0
 
@@ -288,49 +294,133 @@ def turning(is_turned: Kernel) -> Algorithm:
 def side_keys(s: Structure) -> tuple[Array, Array]:
     """The edges as ``smaller end << 32 | larger end``, ascending, and how many faces each has.
 
-    The same on every structure. Cost O(n_t log n_t).
+    The same on every structure. Cost O(n_v + n_t) for bounded valence.
     """
-    a = s.triangles().astype(np.int64)
-    b = np.roll(a, -1, axis=1)
-    keys = np.sort(np.minimum(a, b) << 32 | np.maximum(a, b), axis=None)
-    first = np.flatnonzero(np.append(True, keys[1:] != keys[:-1])[: len(keys)])
-    return keys[first], np.diff(np.append(first, len(keys)))
+    edges, faces, _ = sides_of(s.triangles(), len(s.points))
+    return edges[:, 0].astype(np.int64) << 32 | edges[:, 1], faces
 
 
+@kept
+def sides_of(triangles: Array, n: int) -> tuple[Array, Array, Array]:
+    """The edges (k, 2) int32, the smaller end first, ascending, and how many faces each has.
+
+    And (n_t, 3) whether side i of a triangle, from its corner i, is alone.
+    """
+    end = np.zeros(n + 1, np.int64)  # of the sides of which a vertex is the smaller end
+    for f in range(len(triangles)):
+        for i in range(3):
+            end[min(triangles[f, i], triangles[f, (i + 1) % 3]) + 1] += 1
+    for v in range(n):
+        end[v + 1] += end[v]
+    larger, side = np.empty(end[n], np.int32), np.empty(end[n], np.int32)
+    for f in range(len(triangles)):
+        for i in range(3):
+            a, b = triangles[f, i], triangles[f, (i + 1) % 3]
+            place = end[min(a, b)]
+            larger[place], side[place] = max(a, b), 3 * f + i
+            end[min(a, b)] += 1
+    edges, faces = np.empty((len(larger), 2), np.int32), np.empty(len(larger), np.int32)
+    alone, count, begin = np.zeros(len(larger), np.bool_), 0, 0
+    for v in range(n):
+        put_in_order(larger[begin : end[v]], side[begin : end[v]])
+        while begin < end[v]:
+            first = begin
+            while begin < end[v] and larger[begin] == larger[first]:
+                begin += 1
+            edges[count, 0], edges[count, 1], faces[count] = v, larger[first], begin - first
+            alone[side[first]] = begin - first == 1
+            count += 1
+    return edges[:count], faces[:count], alone.reshape(-1, 3)
+
+
+@part
+def put_in_order(values: Array, beside: Array) -> None:
+    """Sort some values in place, ascending, and what stands beside them with them.
+
+    Most often they are a few; of n it takes some n^1.3 steps (Shell, with Ciura's gaps).
+    """
+    for gap in GAPS:
+        for i in range(gap, len(values)):
+            value, other, place = values[i], beside[i], i
+            while place >= gap and values[place - gap] > value:
+                values[place], beside[place] = values[place - gap], beside[place - gap]
+                place -= gap
+            values[place], beside[place] = value, other
+
+
+@kept
 def from_smallest(triangles: Array) -> Array:
-    """(n, 3) int64: the corners of each from the smallest on, as on every structure."""
-    turned = (triangles.argmin(axis=1)[:, None] + np.arange(3)) % 3
-    return np.take_along_axis(triangles, turned, axis=1).astype(np.int64)
+    """(n, 3): the corners of each from the smallest on, as on every structure."""
+    turned = np.empty_like(triangles)
+    for f in range(len(triangles)):
+        first = 0
+        for i in range(1, 3):
+            if triangles[f, i] < triangles[f, first]:
+                first = i
+        for i in range(3):
+            turned[f, i] = triangles[f, (first + i) % 3]
+    return turned
 
 
 class Placing(NamedTuple):
-    """Which vertices are moved, and where to."""
+    """Where vertices are moved to."""
 
-    vertices: Array
-    places: Array  # (n, 3) float32: a row for every handle
+    places: Points  # (k, 3) float32: a row for every vertex before some
+
+
+def checking(k: Kernels, operations: Kernels) -> Kernel:
+    """Make ``check(m, plan) -> vertex``: the first whose place is not finite, or -1."""
+    lives = living_vertex(k)
+
+    @kernel
+    def check(m: Any, plan: Placing) -> int:
+        for v in range(len(plan.places)):
+            if not is_point(plan.places[v]) and lives(m, v):
+                return v
+        return -1
+
+    return check
 
 
 def placing(k: Kernels, operations: Kernels) -> Kernel:
     """Make ``place(m, plan) -> 0``."""
-    set_point = k["set_point"]
+    lives, set_point = living_vertex(k), k["set_point"]
 
     @kernel
     def place(m: Any, plan: Placing) -> int:
-        for i in range(len(plan.vertices)):
-            set_point(m, plan.vertices[i], plan.places[plan.vertices[i]])
+        for v in range(len(plan.places)):
+            if lives(m, v):
+                set_point(m, v, plan.places[v])
         return 0
 
     return place
 
 
-def move(s: Structure, kind: str, vertices: Array, places: Array) -> None:
-    """Move vertices to their rows of ``places``: all, or none if one is not finite. One edit."""
-    if not np.isfinite(places).all():
-        wrong = ~np.isfinite(places[vertices]).all(axis=1)
-        if wrong.any():
-            raise MeshError(f"{kind}: {Refusal.NOT_FINITE.words}", vertices=vertices[wrong])
+def require_finite(s: Structure, kind: str, places: Points) -> None:
+    """Raise MeshError for vertices whose row of ``places`` is no position."""
+    if s.run(checking, Placing(places)) >= 0:
+        raise not_finite(s, kind, places)
+
+
+def move(s: Structure, kind: str, places: Points, told: Array | None = None) -> None:
+    """Move vertices to their rows of ``places``, which are finite. One edit.
+
+    Those beyond the last row stay. ``told``: which are said to be moved, all of them for None.
+    """
     try:
-        s.run(placing, Placing(vertices, places))
+        s.run(placing, Placing(places))
     finally:
         if s.followed:
-            s.tell(kind, vertices.astype(np.int64) << 3 | VERTEX + CHANGED)
+            tell_moved(s, kind, s.vertices()[: len(places)] if told is None else told)
+
+
+def not_finite(s: Structure, kind: str, places: Points) -> MeshError:
+    """The error for vertices whose row of ``places`` is no position."""
+    wrong = s.vertices()[: len(places)]
+    wrong = wrong[~np.isfinite(places[wrong]).all(axis=1)]
+    return MeshError(f"{kind}: {Refusal.NOT_FINITE.words}", vertices=wrong)
+
+
+def tell_moved(s: Structure, kind: str, vertices: Array) -> None:
+    """Tell followers of one edit that moved vertices."""
+    s.tell(kind, vertices.astype(np.int64) << 3 | VERTEX + CHANGED)

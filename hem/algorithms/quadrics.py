@@ -35,24 +35,25 @@ def add_plane(row: Array, normal: tuple[float, ...], point: Array, weight: float
 
 
 @kept
-def quadrics(points: Floats, triangles: Array, borders: Array) -> Floats:
-    """(n, 11): by vertex, the planes of its faces and borders, weighted by area.
+def add_quadrics(rows: Floats, triangles: Array, borders: Array) -> None:
+    """Add to each vertex the planes of its faces and borders, weighted by area.
 
-    ``borders`` (k, 3): the two ends of each edge on the border, and the third corner of its face.
+    ``rows`` (n, 3 + WIDTH or more): position and quadric of each. ``borders`` (k, 3): the two ends
+    of each edge on the border, and the third corner of its face.
     """
-    found = np.zeros((len(points), WIDTH))
-    for a, b, c in triangles:
-        x, y, z = cross(points[b] - points[a], points[c] - points[a])
+    for f in range(len(triangles)):
+        a, b, c = triangles[f]
+        x, y, z = cross(rows[b, :3] - rows[a, :3], rows[c, :3] - rows[a, :3])
         area = np.sqrt(x * x + y * y + z * z) / 2
         for v in (a, b, c):
-            add_plane(found[v], unit(x, y, z), points[a], area)
-    for a, b, c in borders:
-        side = points[b] - points[a]
-        x, y, z = cross(side, np.array(cross(side, points[c] - points[a])))
+            add_plane(rows[v, 3:], unit(x, y, z), rows[a], area)
+    for f in range(len(borders)):
+        a, b, c = borders[f]
+        side = rows[b, :3] - rows[a, :3]
+        x, y, z = cross(side, np.array(cross(side, rows[c, :3] - rows[a, :3])))
         area = BORDER_WEIGHT * (side * side).sum()
         for v in (a, b):
-            add_plane(found[v], unit(x, y, z), points[a], area)
-    return found
+            add_plane(rows[v, 3:], unit(x, y, z), rows[a], area)
 
 
 @kernel

@@ -26,9 +26,9 @@ from hem.algorithms.parts import (
     change,
     cross,
     doing,
-    finding_edge,
     from_smallest,
     move,
+    require_finite,
     side_keys,
 )
 from hem.algorithms.simplification import collapsible
@@ -74,7 +74,7 @@ def agree(n: tuple[float, ...], m: tuple[float, ...]) -> bool:
 
 def evening_out(k: Kernels, operations: Kernels) -> Kernel:
     """Make ``even_out(m, plan) -> 0``: flip what brings valences nearer to six."""
-    edge_between = finding_edge(k["vertex_edges"], k["edge_vertices"])
+    edge_between = k["edge_between"]
     diamond, flip_edge = k["diamond"], doing(operations["flip_edge"])
 
     @kernel
@@ -83,7 +83,7 @@ def evening_out(k: Kernels, operations: Kernels) -> Kernel:
         while plan.next[0] < len(plan.edges):
             edge = plan.edges[plan.next[0]]
             a, b = edge >> 32, edge & 0xFFFFFFFF
-            e = edge_between(m, a, b, plan.work)
+            e = edge_between(m, a, b)
             if e >= 0 and diamond(m, e, at) == 2 and at[LEFT] >= 0 and at[RIGHT] >= 0:
                 c, d = at[C], at[D]
                 # The sum of squares falls by twice this much, less 4.
@@ -168,10 +168,12 @@ def flip_to_even(s: Structure) -> None:
 def relax(s: Structure, surface: Surface) -> None:
     """Move vertices within their tangent planes to the means of their neighbors, and back down."""
     normals: Array = vertex_normals(s).astype(np.float64)
-    toward = averages(s, np.ones_like) - s.points.astype(np.float64)
+    toward = averages(s, "remesh", np.ones_like) - s.points.astype(np.float64)
     away = (toward * normals).sum(axis=1, keepdims=True) * normals
     vertices = s.vertices()
     vertices = vertices[toward[vertices].any(axis=1)]
     places = s.points + toward - away
     places[vertices] = surface.nearest(places[vertices])
-    move(s, "remesh", vertices, places.astype(np.float32))
+    kept = places.astype(np.float32)
+    require_finite(s, "remesh", kept)
+    move(s, "remesh", kept, vertices)

@@ -6,7 +6,7 @@ Source: Design, Implementation, and Evaluation of the Surface_mesh Data Structur
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import partial
+from functools import cache, partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -14,29 +14,39 @@ import numpy as np
 from hem.algorithms.arguments import require_mesh, require_surface
 from hem.algorithms.normals import face_normal
 from hem.algorithms.parts import (
-    NOTHING,
     adding,
     change,
     cornering,
     doing,
-    locating,
+    living_face,
+    living_vertex,
     most_faces_at_a_vertex,
-    move,
+    not_finite,
+    of_vertices,
+    tell_moved,
     unit,
 )
 from hem.algorithms.smoothing import smooth
 from hem.algorithms.sqrt3 import Plan, split_all_faces
 from hem.algorithms.subdivision import subdivide
 from hem.arrays import Array, Floats, Points
-from hem.authoring import NEEDS_ROOM, VERTEX_END, Kernel, Kernels, kernel, visiting
+from hem.authoring import (
+    FACE_END,
+    NEEDS_ROOM,
+    VERTEX_END,
+    Kernel,
+    Kernels,
+    is_point,
+    kernel,
+    sums,
+    visiting,
+)
 from hem.contract import Structure
 
 
 class Visit(NamedTuple):
-    """What to visit, and the scratch for it."""
+    """The scratch to visit with."""
 
-    vertices: Array
-    faces: Array
     out: Any
 
 
@@ -49,16 +59,19 @@ def count_others(m: Any, it: int, state: tuple[int, int], plan: Visit) -> tuple[
 
 def circulating(k: Kernels, operations: Kernels) -> Kernel:
     """Make ``circulate(m, plan) -> count``."""
+    vertex_lives, face_lives = living_vertex(k), living_face(k)
     neighbors = visiting(k["vertex_vertices"], count_others)
     corners = visiting(k["face_vertices"], count_others)
 
     @kernel
     def circulate(m: Any, plan: Visit) -> int:
         count = 0
-        for i in range(len(plan.vertices)):
-            count, _ = neighbors(m, plan.vertices[i], (count, int(plan.vertices[i])), plan)
-        for i in range(len(plan.faces)):
-            count, _ = corners(m, plan.faces[i], (count, -1), plan)
+        for v in range(m.counts[VERTEX_END]):
+            if vertex_lives(m, v):
+                count, _ = neighbors(m, v, (count, v), plan)
+        for f in range(m.counts[FACE_END]):
+            if face_lives(m, f):
+                count, _ = corners(m, f, (count, -1), plan)
         return count
 
     return circulate
@@ -71,122 +84,135 @@ def circulate(s: Structure) -> int:
     all. MeshError for polygons.
     """
     require_mesh(s, "circulate")
-    return s.run(circulating, Visit(s.vertices(), s.faces(), s.scratch(0)[0]))
+    return s.run(circulating, Visit(s.scratch(0)[0]))
 
 
-class Sum(NamedTuple):
-    """What is summed up."""
+class Middle(NamedTuple):
+    """What is summed up, and where the middle is then."""
 
-    faces: Array
-    sums: Floats  # (3,)
+    middle: Floats  # (3,)
     out: Any
 
 
 def summing_corners(k: Kernels, operations: Kernels) -> Kernel:
     """Make ``add_corners(m, plan) -> 0``. Every structure has the faces in the same order."""
-    add_all = visiting(k["face_vertices"], adding(locating(k["coordinate"])))
+    lives = living_face(k)
+    add_all = visiting(k["face_vertices"], adding(of_vertices(k["position"])))
 
     @kernel
-    def add_corners(m: Any, plan: Sum) -> int:
-        x = y = z = 0.0
-        for i in range(len(plan.faces)):
-            _, a, b, c = add_all(m, plan.faces[i], NOTHING, plan)
-            x, y, z = x + a, y + b, z + c
-        plan.sums[0], plan.sums[1], plan.sums[2] = x, y, z
+    def add_corners(m: Any, plan: Middle) -> int:
+        total = sums.nothing()
+        for f in range(m.counts[FACE_END]):
+            if lives(m, f):
+                total = sums.plus(total, add_all(m, f, sums.nothing(), plan))
+        x, y, z, n = sums.parts(total)
+        if n > 0:
+            plan.middle[0], plan.middle[1], plan.middle[2] = x / n, y / n, z / n
         return 0
 
     return add_corners
 
 
-class Shift(NamedTuple):
-    """Who is moved against what, and where to."""
+@cache
+def shifted(coordinate: Kernel) -> Kernel:
+    """Make ``shift(m, v, plan) -> x, y, z``, in float32: where a vertex comes to lie."""
 
-    vertices: Array
-    by: Floats  # (3,)
-    places: Points
+    @kernel
+    def shift(m: Any, v: int, plan: Middle) -> tuple[Any, Any, Any]:
+        x = np.float32(coordinate(m, v, 0) - plan.middle[0])
+        y = np.float32(coordinate(m, v, 1) - plan.middle[1])
+        return x, y, np.float32(coordinate(m, v, 2) - plan.middle[2])
+
+    return shift
+
+
+def checking_shift(k: Kernels, operations: Kernels) -> Kernel:
+    """Make ``check(m, plan) -> vertex``: the first that would not be finite any more, or -1."""
+    lives, shift = living_vertex(k), shifted(k["coordinate"])
+
+    @kernel
+    def check(m: Any, plan: Middle) -> int:
+        for v in range(m.counts[VERTEX_END]):
+            if lives(m, v) and not is_point(shift(m, v, plan)):
+                return v
+        return -1
+
+    return check
 
 
 def shifting(k: Kernels, operations: Kernels) -> Kernel:
-    """Make ``shift(m, plan) -> 0``."""
-    where = locating(k["coordinate"])
+    """Make ``shift_all(m, plan) -> 0``."""
+    lives, shift, set_point = living_vertex(k), shifted(k["coordinate"]), k["set_point"]
 
     @kernel
-    def shift(m: Any, plan: Shift) -> int:
-        places, a, b, c = plan.places, plan.by[0], plan.by[1], plan.by[2]
-        for i in range(len(plan.vertices)):
-            v = plan.vertices[i]
-            x, y, z = where(m, v)
-            places[v, 0], places[v, 1], places[v, 2] = x - a, y - b, z - c
+    def shift_all(m: Any, plan: Middle) -> int:
+        for v in range(m.counts[VERTEX_END]):
+            if lives(m, v):
+                set_point(m, v, shift(m, v, plan))
         return 0
 
-    return shift
+    return shift_all
 
 
 def center(s: Structure) -> Floats:
     """Move a mesh so that the mean of all corners of all faces lies at the origin -> (3,) the mean.
 
-    One edit. Cost O(n_v + n_t). MeshError for polygons.
+    One edit. Cost: ``face_vertices`` of all, and O(n_v). MeshError for polygons.
     """
     require_mesh(s, "center")
-    middle = np.zeros(3)
-    s.run(summing_corners, Sum(s.faces(), middle, s.scratch(0)[0]))
-    middle /= max(3 * s.n_faces, 1)
-    vertices, places = s.vertices(), np.zeros((len(s.points), 3), np.float32)
-    s.run(shifting, Shift(vertices, middle, places))
-    move(s, "center", vertices, places)
-    return middle
+    plan = Middle(np.zeros(3), np.zeros(3, np.int64))
+    s.run(summing_corners, plan)
+    with np.errstate(over="ignore"):
+        if s.run(checking_shift, plan) >= 0:
+            raise not_finite(s, "center", (s.points - plan.middle).astype(np.float32))
+    try:
+        s.run(shifting, plan)
+    finally:
+        if s.followed:
+            tell_moved(s, "center", s.vertices())
+    return plan.middle
 
 
-class Faces(NamedTuple):
-    """Whose normals, and where they go."""
+class Fans(NamedTuple):
+    """Where the normals of faces go, and the directions of vertices."""
 
-    faces: Array
     of_faces: Array  # (face_end, 3) float32: as long as twice the area
+    found: Array  # (n, 3) float32
     out: Any
 
 
 def finding_normals(k: Kernels, operations: Kernels) -> Kernel:
     """Make ``find(m, plan) -> 0``."""
-    corners, normal = cornering(k["face_vertices"]), face_normal(k)
+    lives, corners, normal = living_face(k), cornering(k["face_vertices"]), face_normal(k)
 
     @kernel
-    def find(m: Any, plan: Faces) -> int:
+    def find(m: Any, plan: Fans) -> int:
         of_faces = plan.of_faces
-        for i in range(len(plan.faces)):
-            f = plan.faces[i]
-            of_faces[f, 0], of_faces[f, 1], of_faces[f, 2] = normal(m, corners(m, f, plan))
+        for f in range(m.counts[FACE_END]):
+            if lives(m, f):
+                of_faces[f, 0], of_faces[f, 1], of_faces[f, 2] = normal(m, corners(m, f, plan))
         return 0
 
     return find
 
 
-class Fans(NamedTuple):
-    """Around which vertices what is summed up, and where the directions go."""
-
-    vertices: Array
-    of_faces: Array
-    found: Array  # (n, 3) float32
-    out: Any
-
-
 @kernel
-def normal_of(m: Any, f: int, plan: Fans) -> tuple[float, float, float]:
-    """The normal of a face, in float64."""
-    row = plan.of_faces
-    return np.float64(row[f, 0]), np.float64(row[f, 1]), np.float64(row[f, 2])
+def normal_of(m: Any, f: int, plan: Fans) -> Any:
+    """The normal of a face, to be added up."""
+    return sums.position(plan.of_faces, f)
 
 
 def adding_around(k: Kernels, operations: Kernels) -> Kernel:
     """Make ``add_around(m, plan) -> 0``."""
-    add_all = visiting(k["vertex_faces"], adding(normal_of))
+    lives, add_all = living_vertex(k), visiting(k["vertex_faces"], adding(normal_of))
 
     @kernel
     def add_around(m: Any, plan: Fans) -> int:
         found = plan.found
-        for i in range(len(plan.vertices)):
-            v = plan.vertices[i]
-            _, x, y, z = add_all(m, v, NOTHING, plan)
-            found[v, 0], found[v, 1], found[v, 2] = unit(x, y, z)
+        for v in range(m.counts[VERTEX_END]):
+            if lives(m, v):
+                x, y, z, _ = sums.parts(add_all(m, v, sums.nothing(), plan))
+                found[v, 0], found[v, 1], found[v, 2] = unit(x, y, z)
         return 0
 
     return add_around
@@ -198,12 +224,11 @@ def normals_around(s: Structure) -> Points:
     Cost: ``vertex_faces`` of all. MeshError for polygons.
     """
     require_mesh(s, "normals_around")
-    found = np.zeros((len(s.points), 3), np.float32)
     of_faces = np.zeros((s.face_end, 3), np.float32)
-    out = s.scratch(0)[0]
-    s.run(finding_normals, Faces(s.faces(), of_faces, out))
-    s.run(adding_around, Fans(s.vertices(), of_faces, found, out))
-    return found
+    plan = Fans(of_faces, np.zeros((len(s.points), 3), np.float32), s.scratch(0)[0])
+    s.run(finding_normals, plan)
+    s.run(adding_around, plan)
+    return plan.found
 
 
 def collapsing(k: Kernels, operations: Kernels) -> Kernel:

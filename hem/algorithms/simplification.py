@@ -14,10 +14,18 @@ from collections.abc import Sequence
 import numpy as np
 
 from hem.algorithms.arguments import require_count, require_length, require_mesh
-from hem.algorithms.collapsing import QUADRICS, SHORTEST_EDGE, Plan, simplifying
-from hem.algorithms.heap import heap_for
-from hem.algorithms.parts import NO_WORK, change, from_smallest, side_keys
-from hem.algorithms.quadrics import WIDTH, quadrics
+from hem.algorithms.buckets import queue_for
+from hem.algorithms.collapsing import (
+    BORDER,
+    INTO,
+    QUADRICS,
+    ROW,
+    SHORTEST_EDGE,
+    Plan,
+    simplifying,
+)
+from hem.algorithms.parts import NO_WORK, change, from_smallest, sides_of
+from hem.algorithms.quadrics import WIDTH, add_quadrics
 from hem.contract import Structure
 from hem.errors import MeshError
 from hem.naming import look_up
@@ -74,17 +82,19 @@ def collapsible(
     longest: float = np.inf,
 ) -> Plan:
     """A plan to begin with, all of it from the triangles, each from its smallest corner."""
-    rows, n = from_smallest(s.triangles()), len(s.points)
-    ends = np.roll(rows, -1, axis=1)
-    keys, count = side_keys(s)
-    lonely = np.isin(np.minimum(rows, ends) << 32 | np.maximum(rows, ends), keys[count == 1])
-    borders = np.stack([rows, ends, np.roll(rows, -2, axis=1)], axis=2)[lonely]
-    on_border = np.zeros(n, np.bool_)
-    on_border[borders[:, :2]] = True
+    triangles, n = from_smallest(s.triangles()), len(s.points)
+    edges, _, alone = sides_of(triangles, n)
+    faces, sides = np.nonzero(alone)
+    borders = triangles[faces[:, None], (sides[:, None] + np.arange(3)) % 3]
+    rows = np.zeros((n, ROW))
+    rows[borders[:, :2], BORDER] = 1
     alive = s.points[s.vertices()].astype(np.float64)
     middle = (alive.min(axis=0) + alive.max(axis=0)) / 2 if len(alive) else np.zeros(3)
-    xyz = s.points - middle
-    needs_planes = measure != SHORTEST_EDGE
+    np.subtract(s.points, middle, out=rows[:, :3])
+    if measure != SHORTEST_EDGE:
+        add_quadrics(rows, triangles, borders)
+    become = np.zeros((n, 2), np.int32)
+    become[:, INTO] = np.arange(n)
     with np.errstate(over="ignore"):  # what is infinite squared bounds nothing
         bounds = np.square([[error], [longest]])
     return Plan(
@@ -93,15 +103,14 @@ def collapsible(
         longest=bounds[1],
         cosine=np.array([cosine]),
         measure=np.array([measure]),
-        edges=keys,
+        edges=edges,
+        stamp=np.zeros(len(edges), np.int32),
         next=np.zeros(1, np.int64),
         middle=middle,
-        xyz=xyz,
-        quadric=quadrics(xyz, rows, borders) if needs_planes else np.zeros((n, WIDTH)),
-        on_border=on_border,
-        version=np.zeros(n, np.int64),
+        rows=rows,
+        become=become,
         target=np.zeros(3),
         sum=np.zeros(WIDTH),
-        heap=heap_for(len(keys)),
+        queue=queue_for(len(edges)),
         work=NO_WORK,
     )

@@ -20,19 +20,18 @@ import numpy as np
 from hem.algorithms.arguments import require_mesh
 from hem.algorithms.parts import (
     NO_WORK,
-    NOTHING,
     Work,
     adding,
     change,
     doing,
-    locating,
     most_faces_at_a_vertex,
     move,
+    of_vertices,
     turning,
 )
 from hem.algorithms.smoothing import averages
 from hem.arrays import Array
-from hem.authoring import NEEDS_ROOM, Kernel, Kernels, kernel, part, visiting
+from hem.authoring import NEEDS_ROOM, Kernel, Kernels, kernel, sums, visiting
 from hem.contract import Structure
 
 
@@ -48,7 +47,7 @@ class Plan(NamedTuple):
 
 def splitting(k: Kernels, operations: Kernels) -> Kernel:
     """Make ``split_all(m, plan) -> 0``: every face at the mean of its corners."""
-    add_all = visiting(k["face_vertices"], adding(locating(k["coordinate"])))
+    add_all = visiting(k["face_vertices"], adding(of_vertices(k["position"])))
     split_face = doing(operations["split_face"])
 
     @kernel
@@ -56,7 +55,7 @@ def splitting(k: Kernels, operations: Kernels) -> Kernel:
         point = plan.work.point
         while plan.next[0] < len(plan.faces):
             f = plan.faces[plan.next[0]]
-            _, x, y, z = add_all(m, f, NOTHING, plan)
+            x, y, z, _ = sums.parts(add_all(m, f, sums.nothing(), plan))
             point[0], point[1], point[2] = x / 3, y / 3, z / 3
             if split_face(m, f, -1, plan.work) == NEEDS_ROOM:
                 return NEEDS_ROOM
@@ -66,7 +65,7 @@ def splitting(k: Kernels, operations: Kernels) -> Kernel:
     return split_all
 
 
-@part
+@kernel
 def is_turned(plan: Plan, a: int, b: int) -> bool:
     """Whether an edge joins two old vertices. Each new face has one; the border is not flipped."""
     return bool(a < plan.old[0] and b < plan.old[0])
@@ -87,8 +86,7 @@ def split_all_faces(s: Structure, kind: str) -> Plan:
 def sqrt3(s: Structure) -> None:
     """One step, in three edits. Cost: ``vertex_vertices`` of all, a split and a flip per face."""
     require_mesh(s, "subdivide")
-    places = averages(s, lambda n: (4 - 2 * np.cos(2 * np.pi / n)) / 9)
-    vertices = s.vertices()
+    places = averages(s, "subdivide", lambda n: (4 - 2 * np.cos(2 * np.pi / n)) / 9)
     split = split_all_faces(s, "subdivide")
     change(s, "subdivide", turning(is_turned), split, 0, most_faces_at_a_vertex(s))
-    move(s, "subdivide", vertices, places)
+    move(s, "subdivide", places)

@@ -11,7 +11,7 @@
 What a structure must offer is said by ``hem.contract.Structure``, of which it is a subclass.
 """
 
-from hem.authoring import marked, packed, steps, walks
+from hem.authoring import marked, packed, steps, sums, walks
 from hem.authoring.defaults import OF_ARRAYS, kill_vertex, set_point, sides, vertex_exists
 from hem.authoring.invariants import (
     require,
@@ -60,6 +60,7 @@ from hem.authoring.operations import (
     has_room,
     has_scratch,
     is_point,
+    live_vertex,
     log_element,
     log_faces,
     log_parts,
@@ -141,6 +142,7 @@ __all__ = [
     "kernels_of",
     "kill_vertex",
     "live",
+    "live_vertex",
     "log_element",
     "log_faces",
     "log_parts",
@@ -162,6 +164,7 @@ __all__ = [
     "sides",
     "slice_count",
     "steps",
+    "sums",
     "vertex_exists",
     "vertex_maker",
     "visiting",

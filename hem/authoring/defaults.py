@@ -7,13 +7,21 @@ from typing import Any
 import numpy as np
 
 from hem.arrays import Array
+from hem.authoring import sums
 from hem.authoring.kernels import VERTEX_END, kernel, kernels_of
+from hem.authoring.sums import Sum
 
 
 @kernel
 def coordinate(m: Any, v: int, i: int) -> float:
     """x, y or z of vertex v; NaN if it is dead."""
     return float(m.vertex_point[np.uint64(v), np.uint64(i)])
+
+
+@kernel
+def position(m: Any, v: int) -> Sum:
+    """Where vertex v is, to be added up: see ``hem.authoring.sums``."""
+    return sums.position(m.vertex_point, v)
 
 
 @kernel

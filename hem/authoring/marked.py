@@ -14,6 +14,7 @@ import numpy as np
 from hem.arrays import Array
 from hem.authoring.kernels import Kernel, kernel
 from hem.authoring.steps import then
+from hem.authoring.walks import Given
 
 BITS = 31
 MARK = (1 << BITS) - 1
@@ -50,7 +51,7 @@ def mark_of(origin: Kernel, tip: Kernel) -> Kernel:
     return mark
 
 
-def smaller_of_twins(twin: Kernel, mark: Kernel) -> Kernel:
+def smaller_of_twins(origin: Kernel, twin: Kernel, mark: Kernel) -> Given:
     """Make ``edge_of(m, h)``: the handle of an edge, by the smaller of its half-edges."""
 
     @kernel
@@ -60,7 +61,12 @@ def smaller_of_twins(twin: Kernel, mark: Kernel) -> Kernel:
         smaller = other + (h - other) * ((other < 0) | (h < other))
         return (np.int64(smaller) << BITS) | mark(m, h)
 
-    return edge_of
+    @kernel
+    def smaller(m: Any, h: int, other: int) -> int:
+        ends = scattered(origin(m, h)) ^ scattered(origin(m, other))
+        return (np.int64(other + (h - other) * (h < other)) << BITS) | ends
+
+    return Given(edge_of, smaller)
 
 
 def marked(half_edge_exists: Kernel, mark: Kernel) -> Kernel:
@@ -82,19 +88,6 @@ def left_first(left_and_right: Kernel) -> Kernel:
         return left_and_right(m, e >> BITS)
 
     return of_an_edge
-
-
-def between(find_half_edge: Kernel, edge_of: Kernel) -> Kernel:
-    """Make ``edge_between(m, a, b)``: the handle of the edge between two vertices, or -1."""
-
-    @kernel
-    def edge_between(m: Any, a: int, b: int) -> int:
-        h = find_half_edge(m, a, b)
-        if h < 0:
-            h = find_half_edge(m, b, a)
-        return edge_of(m, h) if h >= 0 else -1
-
-    return edge_between
 
 
 def named_by_ends(operation: Kernel, edge_between: Kernel) -> Kernel:

@@ -31,6 +31,16 @@ def edge_exists(m: Any, e: int) -> bool:
     return bool(0 <= e >> 32 < e & 0xFFFFFFFF < m.counts[VERTEX_END])
 
 
+def between(are_joined: Kernel) -> Kernel:
+    """Make ``edge_between(m, a, b)``: the edge between two vertices, or -1."""
+
+    @kernel
+    def edge_between(m: Any, a: int, b: int) -> int:
+        return pack(a, b) if are_joined(m, a, b) else -1
+
+    return edge_between
+
+
 def vertex_edges(vertex_vertices: Kernel) -> Kernel:
     """Make the kernel of the query: an edge to every neighbor."""
 
@@ -62,10 +72,10 @@ def face_edges(corner: Kernel) -> Kernel:
 def _each_corner(give: Kernel) -> Kernel:
     def visiting(visit: Kernel, turned: Kernel) -> Kernel:
         @kernel
-        def visit_all(m: Any, f: int, state: Any, given: Any) -> Any:
+        def visit_all(m: Any, f: int, state: Any, given: Any) -> tuple[Any, bool]:
             for i in range(3):
                 state = visit(m, give(m, f, i), state, given)
-            return state
+            return state, False
 
         return visit_all
 

@@ -15,6 +15,7 @@ import numpy as np
 from hem.arrays import Array
 from hem.authoring.kernels import Kernel, kernel
 from hem.authoring.operations import LEFT, RIGHT, C, D
+from hem.authoring.walks import Given
 
 
 def column(records: type[Any], array: str, which: int) -> Kernel:
@@ -87,7 +88,7 @@ def others_of_triangle(following: Kernel) -> Kernel:
     return others
 
 
-def smaller_of_twins(twin: Kernel) -> Kernel:
+def smaller_of_twins(twin: Kernel) -> Given:
     """Make ``edge_of(m, h)``: the name of an edge is the smaller of its two half-edges."""
 
     @kernel
@@ -95,7 +96,31 @@ def smaller_of_twins(twin: Kernel) -> Kernel:
         other = twin(m, h)
         return h if other < 0 else min(h, other)
 
-    return edge_of
+    @kernel
+    def smaller(m: Any, h: int, other: int) -> int:
+        return min(h, other)
+
+    return Given(edge_of, smaller)
+
+
+def ending(origin: Kernel, tip: Kernel) -> Given:
+    """The end of a half-edge, where its twin begins."""
+
+    @kernel
+    def beginning(m: Any, h: int, other: int) -> int:
+        return int(origin(m, other))
+
+    return Given(tip, beginning)
+
+
+def of_its_own(give: Kernel) -> Given:
+    """What a half-edge gives that its twin does not tell."""
+
+    @kernel
+    def beside(m: Any, h: int, other: int) -> int:
+        return int(give(m, h))
+
+    return Given(give, beside)
 
 
 def recorded(end: int, mark: Kernel) -> Kernel:
@@ -186,6 +211,22 @@ def within_triangle(tip: Kernel, apex: Kernel) -> Kernel:
         return bool(tip(m, h) == w or apex(m, h) == w)
 
     return in_triangle
+
+
+def between(find_half_edge: Kernel, edge_of: Kernel) -> Kernel:
+    """Make ``edge_between(m, a, b)``: the edge between two vertices, or -1. Cost: that of finding.
+
+    ``find_half_edge(m, a, b)`` finds the half-edge that runs a → b; one there may be the other way.
+    """
+
+    @kernel
+    def edge_between(m: Any, a: int, b: int) -> int:
+        h = find_half_edge(m, a, b)
+        if h < 0:
+            h = find_half_edge(m, b, a)
+        return edge_of(m, h) if h >= 0 else -1
+
+    return edge_between
 
 
 def left_face(find: Kernel, face: Kernel) -> Kernel:

@@ -8,19 +8,25 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cache
-from typing import Any
+from typing import Any, NamedTuple
 
 from hem.arrays import Array
 from hem.authoring.kernels import Kernel, append_face, kernel, without
 
-Giving = Callable[[Kernel, Kernel, Kernel], Kernel]
+Giving = Callable[[Any, Kernel, Kernel], Kernel]
 """Makes a circulator of what is given, of how that is visited, and of what turns one way round."""
 
 Visiting = Callable[[Kernel, Kernel], Kernel]
-"""Makes ``visit_all(m, element, state, given) -> state`` of the last two."""
+"""Makes ``visit_all(m, element, state, given) -> (state, open)`` of the last two.
+
+``open``: whether the faces around a vertex do not close around it, as it lies on the border.
+"""
 
 _VISITING: dict[Kernel, Visiting] = {}
 """Of the queries that are made here."""
+
+_IS_OPEN: dict[Kernel, Kernel] = {}
+"""Of those whose walk does not tell it, ``is_open(m, v)``."""
 
 
 @kernel
@@ -53,15 +59,21 @@ def in_any_order(given: Any, state: Any) -> Any:
     return state
 
 
-def query_of(visiting: Visiting) -> Kernel:
-    """Make a query, which writes down what is visited. Others may visit it otherwise."""
+def query_of(visiting: Visiting, is_open: Kernel | None = None) -> Kernel:
+    """Make a query, which writes down what is visited. Others may visit it otherwise.
+
+    ``is_open(m, v)``, where the walk itself does not tell and says no: see ``Visiting``.
+    """
     write_all = visiting(write, reverse)
 
     @kernel
     def query(m: Any, element: int, out: Array) -> int:
-        return int(write_all(m, element, 0, out))
+        count, _ = write_all(m, element, 0, out)
+        return int(count)
 
     _VISITING[query] = visiting
+    if is_open:
+        _IS_OPEN[query] = is_open
     return query
 
 
@@ -74,16 +86,23 @@ def visiting(query: Kernel, visit: Kernel) -> Kernel:
     Else the answers are written to ``given.out``. ``state`` is a number, or a tuple of some.
     """
     if query in _VISITING:
-        return _VISITING[query](visit, in_any_order)
+        walk = _VISITING[query](visit, in_any_order)
+
+        @kernel
+        def visit_all(m: Any, element: int, state: Any, given: Any) -> Any:
+            state, _ = walk(m, element, state, given)
+            return state
+
+        return visit_all
 
     @kernel
-    def visit_all(m: Any, element: int, state: Any, given: Any) -> Any:
+    def visit_written(m: Any, element: int, state: Any, given: Any) -> Any:
         out = given.out
         for i in range(query(m, element, out)):
             state = visit(m, out[i], state, given)
         return state
 
-    return visit_all
+    return visit_written
 
 
 @kernel
@@ -104,6 +123,38 @@ def counting(query: Kernel) -> Kernel:
         return int(count_all(m, element, 0, out))
 
     return count
+
+
+@kernel
+def never(m: Any, v: int) -> bool:
+    """Stands for ``is_open`` where the walk tells it."""
+    return False
+
+
+@cache
+def ring(vertex_vertices: Kernel, vertex_faces: Kernel) -> Kernel:
+    """Make ``ring(m, v, out) -> (count, open)``: the neighbors of v, and whether it is a border.
+
+    Cost: that of ``vertex_vertices``, and of ``vertex_faces`` where that does not tell.
+    """
+    if vertex_vertices in _VISITING:
+        write_all = _VISITING[vertex_vertices](write, in_any_order)
+        is_open = _IS_OPEN.get(vertex_vertices, never)
+
+        @kernel
+        def write_ring(m: Any, v: int, out: Array) -> tuple[int, bool]:
+            count, told = write_all(m, v, 0, out)
+            return count, told or is_open(m, v)
+
+        return write_ring
+    count_faces = counting(vertex_faces)
+
+    @kernel
+    def count_both(m: Any, v: int, out: Array) -> tuple[int, bool]:
+        count = vertex_vertices(m, v, out)
+        return count, count_faces(m, v, out[count:]) < count
+
+    return count_both
 
 
 def circulator(clockwise: Kernel, counterclockwise: Kernel) -> Giving:
@@ -161,7 +212,52 @@ def from_vertex(first: Kernel, around: Giving, enter: Kernel = as_met) -> Giving
     return giving
 
 
-def each(giving: Giving, give: Kernel) -> Kernel:
+class Given(NamedTuple):
+    """What a half-edge gives: by itself, ``here(m, h)``, or where its twin is known.
+
+    ``beyond(m, h, twin)`` is the same, read where a walk that crosses to the twin comes by anyway.
+    """
+
+    here: Kernel
+    beyond: Kernel
+
+
+def by_twins(leaving: Kernel, twin: Kernel, following: Kernel, previous: Kernel) -> Giving:
+    """Make, for what is ``Given``, the circulator of a vertex where twins are recorded.
+
+    It begins at ``leaving(m, v)``, crosses to the twin and goes on with what follows that, so that
+    each step waits for two records. Else as ``from_vertex`` and ``circulator``. O(valence).
+    """
+
+    def giving(give: Given, visit: Kernel, turned: Kernel) -> Kernel:
+        here, beyond = give
+
+        @kernel
+        def circulate(m: Any, v: int, state: Any, given: Any) -> tuple[Any, int]:
+            first = leaving(m, v)
+            if first < 0:
+                return state, -1
+            h, other = first, twin(m, first)
+            while other >= 0:
+                state = visit(m, beyond(m, h, other), state, given)
+                h = following(m, other)
+                if h == first:
+                    return turned(given, state), -1
+                other = twin(m, h)
+            state = turned(given, visit(m, here(m, h), state, given))
+            last, h = first, twin(m, previous(m, first))
+            while h >= 0:
+                state = visit(m, here(m, h), state, given)
+                last = h
+                h = twin(m, previous(m, h))
+            return state, last
+
+        return circulate
+
+    return giving
+
+
+def each(giving: Giving, give: Any) -> Kernel:
     """Make a query: what is given by every half-edge that a circulator comes past."""
     return query_of(_visiting_each(giving, give))
 
@@ -189,21 +285,21 @@ def each_but_last(giving: Giving, give: Kernel) -> Kernel:
     return query
 
 
-def _visiting_each(giving: Giving, give: Kernel) -> Visiting:
+def _visiting_each(giving: Giving, give: Any) -> Visiting:
     def visiting(visit: Kernel, turned: Kernel) -> Kernel:
         circulate = giving(give, visit, turned)
 
         @kernel
-        def visit_all(m: Any, element: int, state: Any, given: Any) -> Any:
-            state, _ = circulate(m, element, state, given)
-            return state
+        def visit_all(m: Any, element: int, state: Any, given: Any) -> tuple[Any, bool]:
+            state, last = circulate(m, element, state, given)
+            return state, last >= 0
 
         return visit_all
 
     return visiting
 
 
-def each_and_last(giving: Giving, give: Kernel, last_of: Kernel) -> Kernel:
+def each_and_last(giving: Giving, give: Any, last_of: Kernel) -> Kernel:
     """Make a query as ``each``, with ``last_of(m, h)`` of the last half-edge if a fan is open.
 
     No half-edge leaves the vertex beyond it, but the edge and the neighbor are there.
@@ -213,9 +309,11 @@ def each_and_last(giving: Giving, give: Kernel, last_of: Kernel) -> Kernel:
         circulate = giving(give, visit, turned)
 
         @kernel
-        def visit_all(m: Any, element: int, state: Any, given: Any) -> Any:
+        def visit_all(m: Any, element: int, state: Any, given: Any) -> tuple[Any, bool]:
             state, last = circulate(m, element, state, given)
-            return state if last < 0 else visit(m, last_of(m, last), state, given)
+            if last >= 0:
+                state = visit(m, last_of(m, last), state, given)
+            return state, last >= 0
 
         return visit_all
 
@@ -230,13 +328,13 @@ def each_side(first: Kernel, following: Kernel, give: Kernel, enter: Kernel = as
 
     def visiting(visit: Kernel, turned: Kernel) -> Kernel:
         @kernel
-        def visit_all(m: Any, f: int, state: Any, given: Any) -> Any:
+        def visit_all(m: Any, f: int, state: Any, given: Any) -> tuple[Any, bool]:
             it = first(m, f)
             for _ in range(3):
                 h = enter(m, it, f)
                 state = visit(m, give(m, h), state, given)
                 it = following(m, h)
-            return state
+            return state, False
 
         return visit_all
 

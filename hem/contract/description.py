@@ -1,7 +1,7 @@
 """What a structure's class declares: its names, look and claims, its records and kernels."""
 
 import inspect
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, ClassVar
@@ -80,6 +80,23 @@ def place_of(cls: type) -> str:
         return cls.__name__
 
 
+class _Asked(Mapping[str, Kernel]):
+    """Kernels by name that know which were asked for."""
+
+    def __init__(self, kernels: Kernels) -> None:
+        self._kernels, self.names = kernels, set[str]()
+
+    def __getitem__(self, name: str) -> Kernel:
+        self.names.add(name)
+        return self._kernels[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._kernels)
+
+    def __len__(self) -> int:
+        return len(self._kernels)
+
+
 class Declared:
     """What follows from a structure's class, once for all its meshes.
 
@@ -93,7 +110,7 @@ class Declared:
         self.operations, self.steps = cls.operations, cls.steps
         self.storage = cls.storage(cls.fields, self.step if self.steps else None)
         self._uses, self._records = self.storage.uses, cls.records_type
-        self._algorithms: dict[Algorithm, Uses] = {}
+        self._algorithms: dict[Algorithm, tuple[Uses, frozenset[str]]] = {}
         self.queries = {
             name: self._derived(self._kernel(name, f"(m, {name[0]}, out) -> count"))
             for name in QUERIES
@@ -122,11 +139,13 @@ class Declared:
         self.walks[name](handles, found, *records)
         return found
 
-    def algorithm(self, make: Algorithm) -> Uses:
-        """What ``make`` makes for this structure; asked once."""
+    def algorithm(self, make: Algorithm) -> tuple[Uses, frozenset[str]]:
+        """What ``make`` makes for this structure, and of which kernels; asked once."""
         if make not in self._algorithms:
             operations = {name: uses.kernel for name, uses in self.operating.items()}
-            self._algorithms[make] = self._derived(make(self.kernels, operations))
+            asked = [_Asked(self.kernels), _Asked(operations)]
+            uses = self._derived(make(*asked))
+            self._algorithms[make] = uses, frozenset[str]().union(*(it.names for it in asked))
         return self._algorithms[make]
 
     @cached_property

@@ -177,8 +177,7 @@ class Operations:
         except MeshError as error:
             raise TopologyError(f"{called}: {error.reason} (any more)", **error.elements) from None
         names = self._state.edge_names(handles) if element == "edge" else handles
-        ordered = np.sort(names)  # to tell which they are takes five times as long
-        if (ordered[1:] == ordered[:-1]).any():
+        if arguments.any_twice(names):
             again = np.delete(handles, np.unique(names, return_index=True)[1])
             many = ELEMENTS[element]
             raise TopologyError(f"{called} takes different {many}, each once", **{many: again})

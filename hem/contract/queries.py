@@ -218,7 +218,7 @@ class Queries:
         """See ``Structure.prepare_sweep``."""
         wanted, out = self._ready(name, handles)
         self.count_edges()
-        self._state.prepare(name)
+        self._state.prepare([name])
         loop, counts = self._declared.queries[name].sweep, self._state.records.counts
         return Sweep(loop, wanted, out, self._state, counts.tobytes())
 
@@ -230,7 +230,7 @@ class Queries:
         """See ``Structure.reads``."""
         (wanted,), out = self._ready(name, np.array([handle]))
         state = self._state
-        state.prepare(name)
+        state.prepare([name])
         return self._declared.queries[name].reads(int(wanted), out, state.records, fields)
 
     def _ready(self, name: str, handles: Array) -> tuple[Array, Any]:

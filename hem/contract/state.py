@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from functools import cached_property
 from typing import Any
 
@@ -88,13 +88,13 @@ class State:
         """(n,): the one name of each live edge, where an edge has two handles."""
         return self.storage.edge_names(self.records, edges)
 
-    def prepare(self, query: str = "") -> None:
+    def prepare(self, kernels: Iterable[str]) -> None:
         """See ``Storage.prepare``."""
-        self.storage.prepare(self.records, query)
+        self.storage.prepare(self.records, kernels)
 
     def answers(self, query: str, handles: Array, width: int) -> Ragged:
         """The answers for live ``handles``, each of which has at most ``width`` neighbors."""
-        self.prepare(query)
+        self.prepare([query])
         source, target = QUERIES[query]
         n, typical = len(handles), TYPICAL_NEIGHBORS[source]
         offsets = np.empty(n + 1, np.int64)

@@ -1,7 +1,7 @@
 """How the records of a structure are held: what follows from its fields, whatever the mesh."""
 
 from collections import Counter
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, ClassVar
 
 import numpy as np
@@ -87,10 +87,10 @@ class Storage:
             if dead.any():
                 refuse_handles(element, handles[dead])
 
-    def prepare(self, records: Any, query: str = "") -> None:
+    def prepare(self, records: Any, kernels: Iterable[str]) -> None:
         """Find what is found when it is first asked for, before several threads may ask at once.
 
-        What ``query`` takes, or any. Compiled code that asks no other thread to wait comes after.
+        What these ``kernels`` take. Compiled code that asks no other thread to wait comes after.
         """
 
     def row(self, n: int, dtype: Any) -> Any:

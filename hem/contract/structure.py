@@ -416,8 +416,9 @@ class Structure(Described, Surveying, abstract=True):
         are kernels such as ``vertex_exists``. Operations need room and scratch, see ``scratch``,
         and are told to subscribers by ``tell``.
         """
-        self._state.prepare()
-        return int(self.declared.algorithm(make).run(plan, *self.records))
+        uses, kernels = self.declared.algorithm(make)
+        self._state.prepare(kernels)
+        return int(uses.run(plan, *self.records))
 
     def scratch(
         self, splits: int, operations: int | None = None, valence: int | None = None

@@ -40,7 +40,7 @@ from hem.engine.counting import CountingArray, Read, interpreted
 from hem.engine.objects import Held, InterpretedUses, counting
 from hem.engine.pinned import Pinned
 from hem.engine.templates import BEGIN, CHECK, DO, END, MODE, PERSIST, move
-from hem.engine.uses import Uses, kept
+from hem.engine.uses import Uses, kept, parts_of
 
 __all__ = [
     "BEGIN",
@@ -59,4 +59,5 @@ __all__ = [
     "interpreted",
     "kept",
     "move",
+    "parts_of",
 ]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dis import get_instructions
 from functools import cache
 from types import CellType, FunctionType
 from typing import Any, NamedTuple
@@ -13,18 +14,23 @@ from hem.authoring import Kernel
 
 
 class CountingArray:
-    """An array that counts how many of its elements are read or written, as Python numbers."""
+    """An array that counts how many of its elements are read or written, as Python numbers.
+
+    IndexError for a negative index, which compiled code takes for memory before the array.
+    """
 
     def __init__(self, array: Array) -> None:
         self._array = array
         self.accesses = 0
 
     def __getitem__(self, key: Any) -> Any:
+        _require_no_negative(key)
         value = self._array[key]
         self.accesses += int(np.size(value))
         return value.item() if np.ndim(value) == 0 else value
 
     def __setitem__(self, key: Any, value: Any) -> None:
+        _require_no_negative(key)
         self._array[key] = value
         self.accesses += int(np.size(value))
 
@@ -35,6 +41,11 @@ class CountingArray:
     def shape(self) -> tuple[int, ...]:
         """As the array's own; looking at it reads no element."""
         return self._array.shape
+
+
+def _require_no_negative(key: Any) -> None:
+    if (key[0] if isinstance(key, tuple) else key) < 0:
+        raise IndexError(f"a kernel asks for {key}, which lies before the array")
 
 
 class Read(NamedTuple):
@@ -65,7 +76,9 @@ def interpreted(function: Kernel) -> Kernel:
     """The Python source of a compiled function, its compiled callees replaced by theirs as well."""
     source = source_of(function)
     scope = source.__globals__
-    called = {name: scope[name] for name in source.__code__.co_names if name in scope}
+    # Not co_names: what is an attribute there may be a global of the same name.
+    named = {it.argval for it in get_instructions(source) if it.opname == "LOAD_GLOBAL"}
+    called = {name: scope[name] for name in named if name in scope}
     closure = tuple(CellType(_uncompiled(cell.cell_contents)) for cell in source.__closure__ or ())
     return FunctionType(
         source.__code__,

@@ -101,15 +101,13 @@ def borrower(columns: Columns = ()) -> Callable[[Any], Any]:
 def _without_owner(context: Any, builder: Any, kind: Any, value: Any, columns: Columns = ()) -> Any:
     """A value whose arrays have neither an owner nor a parent, as the compiler can see.
 
-    Of a tuple it can see how many ``columns`` the first have: to find a row by a number that it
-    knows takes one instruction, and else a product, on which every step of a walk would wait.
+    Of a tuple of records, with so many ``columns``, it can see more, see ``_as_records``.
     """
     if isinstance(kind, types.BaseTuple):
-        counts = (*columns, *(0 for _ in range(len(columns), len(kind))))
-        for i, (part, count) in enumerate(zip(kind, counts, strict=True)):
+        for i, part in enumerate(kind):
             own = _without_owner(context, builder, part, builder.extract_value(value, i))
-            if count and part.ndim == 2:
-                own = _with_columns(context, builder, part, own, count)
+            if i < len(columns):
+                own = _as_records(context, builder, part, own, columns[i])
             value = builder.insert_value(value, own, i)
     if isinstance(kind, types.Array):
         array = context.make_array(kind)(context, builder, value)
@@ -119,8 +117,17 @@ def _without_owner(context: Any, builder: Any, kind: Any, value: Any, columns: C
     return value
 
 
-def _with_columns(context: Any, builder: Any, kind: Any, value: Any, count: int) -> Any:
+def _as_records(context: Any, builder: Any, kind: Any, value: Any, columns: int) -> Any:
+    """An array of records whose shape the compiler can see: no rows, and so many columns.
+
+    A negative index counts from the end, and to look for one at every access takes longer than the
+    access. Kernels use none, nor the number of rows: where that is zero, there is nothing to do. To
+    find a row by a known number of columns takes one instruction, and else a product, on which
+    every step of a walk would wait.
+    """
     array = context.make_array(kind)(context, builder, value)
-    known = context.get_constant(types.intp, count)
-    array.shape = builder.insert_value(array.shape, known, 1)
+    known = [0, columns] if columns and kind.ndim == 2 else [0]
+    for dimension, size in enumerate(known):
+        constant = context.get_constant(types.intp, size)
+        array.shape = builder.insert_value(array.shape, constant, dimension)
     return array._getvalue()

@@ -79,12 +79,13 @@ def perform(address: int) -> int:
     arrays = _LOAD(address)
     m = _RECORDS(*arrays[:-7])
     task, args, points, results, at, out, log = arrays[-7:]
-    mode, end, forgets = task[MODE], task[END], task[FORGETS]
+    mode, end, forgets, many = task[MODE], task[END], task[FORGETS], len(points) > 1
     log[0] = 0
     for i in range(task[BEGIN], end):
         if forgets:
             log[0] = 0
-        results[i] = _KERNEL(m, args[i], points[i % len(points)], at, out, log, mode == CHECK)
+        point = points[i if many else 0]
+        results[i] = _KERNEL(m, args[i], point, at, out, log, mode == CHECK)
         if results[i] == NEEDS_ROOM or (results[i] < 0 and mode == DO):
             return i
     return end

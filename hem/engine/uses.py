@@ -189,7 +189,7 @@ def kept(function: Kernel) -> Kernel:
 
 def _digest(bound: Iterable[Any], variant: str) -> str:
     """Of records, kernels and all that they call: the files they stand in, and which they are."""
-    parts = {part for it in bound for part in _parts(it, set())}
+    parts = {part for it in bound for part in parts_of(it, set())}
     files = sorted({inspect.getfile(part) for part in parts})
     told_apart = "".join(sorted(map(_told_apart, parts))) + variant
     content = b"".join(map(_contents, files)) + _shared_contents() + told_apart.encode()
@@ -209,7 +209,7 @@ def _told_apart(part: Any) -> str:
     return f"{part.__qualname__} {code.co_firstlineno} {code.co_code.hex()} {spelled}"
 
 
-def _parts(bound: Any, seen: set[Any]) -> set[Any]:
+def parts_of(bound: Any, seen: set[Any]) -> set[Any]:
     """The class of records, or the source of a kernel and of all kernels that it calls."""
     source = source_of(bound)
     if source in seen or not isinstance(source, type | FunctionType):
@@ -220,7 +220,7 @@ def _parts(bound: Any, seen: set[Any]) -> set[Any]:
         cells = (cell.cell_contents for cell in source.__closure__ or ())
         for value in (*names, *cells):
             if hasattr(value, "py_func"):
-                _parts(value, seen)
+                parts_of(value, seen)
     return seen
 
 

@@ -11,7 +11,7 @@ from numba import njit
 from numba.core.base import BaseContext
 
 import structures
-from hem.algorithms.quadrics import quadrics
+from hem.algorithms.quadrics import add_quadrics
 from hem.authoring.kernels import without
 from hem.engine import Pinned, templates, uses
 from hem.engine.pinned import loader
@@ -77,7 +77,11 @@ def by_numba(decorator: ast.expr) -> bool:
 
 @pytest.mark.parametrize(
     ("function", "file"),
-    [(closest, "surface/breaking.py"), (quadrics, "algorithms/parts.py"), (_runs, "hem/edit.py")],
+    [
+        (closest, "surface/breaking.py"),
+        (add_quadrics, "algorithms/parts.py"),
+        (_runs, "hem/edit.py"),
+    ],
 )
 def test_a_function_that_is_kept_is_named_by_the_files_of_what_it_uses(digest, function, file):
     assert digest(file, function) != digest("nothing of it", function)

@@ -15,8 +15,8 @@ What a structure gives for it, beside its queries:
 - ``edge_exists(m, e)`` and ``face_exists(m, f)``, whether they are live;
 - ``diamond(m, e, at) -> faces``, which fills the diamond of a live edge (see ``rules``) and tells
   the number of its faces: 0 for no edge, 3 for more than a surface has;
-- ``are_joined(m, a, b)``, whether an edge joins two vertices; ``face_left_of(m, a, b)``, the face
-  that runs a → b, or -1;
+- ``are_joined(m, a, b)``, whether an edge joins two vertices; ``edge_between(m, a, b)``, which one
+  does, or -1; ``face_left_of(m, a, b)``, the face that runs a → b, or -1;
 - the changes of its records that the modules name: ``split_edge_records``, ``split_face_records``,
   ``collapse_records``, ``flip_records``, ``add_records``, ``remove_records``;
 - and what ``hem.authoring.defaults`` has, where that does not fit.
@@ -40,7 +40,7 @@ from hem.authoring.operations.parts import (
     log_parts,
     vertex_maker,
 )
-from hem.authoring.operations.rules import LEFT, RIGHT, A, B, C, D
+from hem.authoring.operations.rules import LEFT, RIGHT, A, B, C, D, live_vertex
 
 OPERATIONS: dict[str, Operation] = {
     name: operation
@@ -64,6 +64,7 @@ __all__ = [
     "has_room",
     "has_scratch",
     "is_point",
+    "live_vertex",
     "log_element",
     "log_faces",
     "log_parts",

@@ -31,51 +31,52 @@ from hem.authoring.kernels import (
     kernel,
 )
 from hem.authoring.operations.parts import Operation, has_scratch, log_element
-from hem.authoring.operations.rules import LEFT, RIGHT, A, B, C, D, border, surface_edge
+from hem.authoring.operations.rules import LEFT, RIGHT, A, B, C, D, surface_edge
 from hem.authoring.refusals import ALLOWED, NEEDS_ROOM, Refusal
-from hem.authoring.walks import counting
+from hem.authoring.walks import ring
 from hem.edit import CHANGED, FACE, REMOVED, VERTEX
 
 
 def rule(k: Kernels) -> Kernel:
-    """Make ``may_collapse_edge(m, e, at, out) -> refusal``, which overwrites ``out``.
+    """Make ``may_collapse_edge(m, e, at, out) -> refusal, neighbors``; it overwrites ``out``.
 
-    Cost: that of ``vertex_vertices`` at both ends.
+    The neighbors are those of both ends together. Cost: that of ``vertex_vertices`` at both ends.
     """
     is_surface_edge = surface_edge(k["edge_exists"], k["diamond"])
-    vertex_vertices, vertex_faces = k["vertex_vertices"], k["vertex_faces"]
-    on_border, is_alone, are_triangles = border(vertex_faces), *_parts(k)
+    vertex_faces, is_alone, are_triangles = k["vertex_faces"], *_parts(k)
+    neighbors = ring(k["vertex_vertices"], vertex_faces)
 
     @kernel
-    def may_collapse_edge(m: Any, e: int, at: Array, out: Array) -> int:
+    def may_collapse_edge(m: Any, e: int, at: Array, out: Array) -> tuple[int, int]:
         refusal = is_surface_edge(m, e, at)
         if refusal != ALLOWED:
-            return refusal
+            return refusal, 0
         others = 1 if at[LEFT] >= 0 and at[RIGHT] >= 0 else 0  # faces at the edge, but one
         triangles = (at[C] >= 0) + (at[D] >= 0)
         if triangles == 2 and at[C] == at[D]:
-            return Refusal.SAME_CORNER
+            return Refusal.SAME_CORNER, 0
         if is_alone(m, at[LEFT], at[A], at[B], at[C], others, out):
-            return Refusal.LONE_FACE
+            return Refusal.LONE_FACE, 0
         if is_alone(m, at[RIGHT], at[B], at[A], at[D], others, out):
-            return Refusal.LONE_FACE
-        around_a = vertex_vertices(m, at[A], out)
-        border_a = on_border(m, at[A], around_a, out[around_a:])
-        around_b = vertex_vertices(m, at[B], out[around_a:])
-        border_b = on_border(m, at[B], around_b, out[around_a + around_b :])
+            return Refusal.LONE_FACE, 0
+        around_a, border_a = neighbors(m, at[A], out)
+        around_b, border_b = neighbors(m, at[B], out[around_a:])
+        both = around_a + around_b
         if others == 1 and border_a and border_b:
-            return Refusal.TWO_BORDERS
+            return Refusal.TWO_BORDERS, 0
         closed = around_a == 3 and around_b == 3 and not border_a and not border_b
         if closed and triangles == 2 and are_triangles(m, at[A], at[C], at[C], at[B]):
-            return Refusal.TETRAHEDRON
-        if count_shared(out, around_a, around_b) != triangles:
-            return Refusal.COMMON_NEIGHBOR
+            return Refusal.TETRAHEDRON, 0
+        # Where one end has no neighbors but the other and the corners beside, there are no more.
+        alike = min(around_a, around_b) <= triangles + 1
+        if not alike and count_shared(out, around_a, around_b) != triangles:
+            return Refusal.COMMON_NEIGHBOR, 0
         if m.counts[SIDES] > 3:
             around_a = vertex_faces(m, at[A], out)
             around_b = vertex_faces(m, at[B], out[around_a:])
             if count_shared(out, around_a, around_b) != others + 1:
-                return Refusal.SHARED_FACE
-        return ALLOWED
+                return Refusal.SHARED_FACE, 0
+        return ALLOWED, both
 
     return may_collapse_edge
 
@@ -106,7 +107,6 @@ def _parts(k: Kernels) -> tuple[Kernel, Kernel]:
 def make(k: Kernels) -> Kernel:
     """The operation for one structure."""
     may_collapse_edge, vertex_faces = rule(k), k["vertex_faces"]
-    count_faces = counting(vertex_faces)
     collapse_records, kill_vertex = k["collapse_records"], k["kill_vertex"]
 
     @kernel
@@ -115,7 +115,7 @@ def make(k: Kernels) -> Kernel:
     ) -> int:
         if not has_scratch(m, out, log):
             return NEEDS_ROOM
-        refusal = may_collapse_edge(m, args[0], at, out)
+        refusal, both = may_collapse_edge(m, args[0], at, out)
         if refusal != ALLOWED:
             return refusal
         keep = args[1] if args[1] != -1 else at[B]
@@ -125,7 +125,6 @@ def make(k: Kernels) -> Kernel:
             return ALLOWED
         drop = at[A] + at[B] - keep
         triangles = (at[C] >= 0) + (at[D] >= 0)  # which vanish; larger faces lose a corner
-        stay = count_faces(m, keep, out)
         around, end = vertex_faces(m, drop, out), log[0]
         for i in range(around):
             gone = (out[i] == at[LEFT] and at[C] >= 0) or (out[i] == at[RIGHT] and at[D] >= 0)
@@ -135,7 +134,7 @@ def make(k: Kernels) -> Kernel:
         m.counts[VERTICES] -= 1
         m.counts[EDGES] -= 1 + triangles
         m.counts[FACES] -= triangles
-        m.counts[VALENCE] = max(m.counts[VALENCE], stay + around)
+        m.counts[VALENCE] = max(m.counts[VALENCE], both)
         log[0] = log_element(log, end, VERTEX + REMOVED, drop)
         return int(keep)
 

@@ -65,7 +65,7 @@ def log_element(log: Array, end: int, what: int, index: int) -> int:
 
     Who logs writes the end to ``log[0]`` once: to read it back each time takes longer.
     """
-    log[end + 1] = (index << 3) | what
+    log[np.uint64(end + 1)] = (index << 3) | what
     return end + 1
 
 

@@ -10,8 +10,9 @@ from typing import Any
 from hem.arrays import Array
 from hem.authoring.kernels import EDGES, FACES, Kernel, Kernels, kernel
 from hem.authoring.operations.parts import Operation, has_scratch, log_faces
-from hem.authoring.operations.rules import border, free_edges
+from hem.authoring.operations.rules import free_edges
 from hem.authoring.refusals import ALLOWED, NEEDS_ROOM, Refusal
+from hem.authoring.walks import ring
 from hem.edit import REMOVED
 
 
@@ -21,15 +22,15 @@ def rule(k: Kernels) -> Kernel:
     Cost: that of ``vertex_vertices`` at the corners.
     """
     face_exists, face_vertices = k["face_exists"], k["face_vertices"]
-    face_left_of, vertex_vertices = k["face_left_of"], k["vertex_vertices"]
-    on_border = border(k["vertex_faces"])
+    face_left_of, neighbors = k["face_left_of"], ring(k["vertex_vertices"], k["vertex_faces"])
 
     @kernel
     def lies_between(m: Any, v: int, before: int, after: int, out: Array) -> bool:
         """Whether the face lies inside the open fan of v: with faces on both sides there."""
         if before < 0 or after < 0:
             return False
-        return on_border(m, v, vertex_vertices(m, v, out), out)
+        _, on_border = neighbors(m, v, out)
+        return bool(on_border)
 
     @kernel
     def may_remove_face(m: Any, f: int, out: Array) -> int:

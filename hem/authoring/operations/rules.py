@@ -26,7 +26,6 @@ import numpy as np
 from hem.arrays import Array
 from hem.authoring.kernels import VERTEX_END, Kernel, kernel
 from hem.authoring.refusals import ALLOWED, Refusal
-from hem.authoring.walks import counting
 
 A, B, LEFT, RIGHT, C, D = range(6)
 """Where the parts of a diamond stand in the array that ``diamond(m, e, at)`` fills."""
@@ -72,18 +71,6 @@ def live_vertex(coordinate: Kernel) -> Kernel:
         return 0 <= v < m.counts[VERTEX_END] and not np.isnan(coordinate(m, v, 0))
 
     return is_live_vertex
-
-
-@cache
-def border(vertex_faces: Kernel) -> Kernel:
-    """Make ``on_border(m, v, neighbors, out) -> bool`` for a vertex of so many neighbors."""
-    count_faces = counting(vertex_faces)
-
-    @kernel
-    def on_border(m: Any, v: int, neighbors: int, out: Array) -> bool:
-        return count_faces(m, v, out) < neighbors
-
-    return on_border
 
 
 @cache
