@@ -14,8 +14,7 @@ STEPS = 50_000
 
 def cases(preset: Preset, structure: str) -> list[Case]:
     """Working sets of 16 KiB and up, two per doubling; ``size`` is in bytes."""
-    most = preset.latency_mib * 1024 * 1024
-    steps = int(2 * np.log2(most / SMALLEST)) + 1
+    steps = int(2 * np.log2(preset.latency_mib * 1024 * 1024 / SMALLEST)) + 1
     sizes = (round(SMALLEST * 2 ** (k / 2) / LINE) * LINE for k in range(steps))
     return [Case(structure, "chase", size) for size in sizes]
 

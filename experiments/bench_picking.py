@@ -18,9 +18,10 @@ from numpy.typing import ArrayLike
 
 import hem
 from experiments.harness import BASE, Case, Experiment, Measurement, Preset, Timer
+from experiments.harness.oracle import check_query
 from experiments.harness.timer import seconds_of
 from hem.arrays import Array, Floats
-from hem.contract import Structure
+from hem.contract import QUERIES, Structure
 
 RAY, FOLLOWING, NEIGHBORS = "ray", "follow_edit", "neighbors"
 REBUILT, REFITTED = "rebuilt", "refitted"
@@ -146,12 +147,10 @@ def _time_neighbors(case: Case, s: Structure, preset: Preset, timer: Timer) -> M
     reason = preset.why_too_slow(SCANS * picks, s.n_faces, preset.fewest_rounds)
     if s.searches and reason:
         return case.result("time", s, skipped=reason)
-    hits = np.random.default_rng(PICK_SEED).choice(s.faces(), picks).tolist()
-    corners = s.face_vertices(hits[0])
-    common = np.isin(s.triangles(), corners).sum(axis=1)  # by which around is told, too
-    around = np.unique(s.vertex_faces(corners).values), np.sort(s.face_faces(hits[0]))
-    if not all(map(np.array_equal, around, (np.flatnonzero(common), np.flatnonzero(common == 2)))):
-        raise AssertionError(f"around face {hits[0]} of {s.title} there are others")
+    faces = np.random.default_rng(PICK_SEED).choice(s.faces(), picks)
+    hits = faces.tolist()
+    check_query(s, case.mesh(), QUERIES["face_faces"], faces[:1])
+    check_query(s, case.mesh(), QUERIES["vertex_faces"], s.face_vertices(hits[0]))
 
     def ask() -> None:
         for face in hits:

@@ -4,7 +4,7 @@ A median hides the edit that stalls. So every edit is a sample: four operations 
 another place, from Python, until the arrays of the render mesh may be uploaded.
 """
 
-from itertools import cycle
+from itertools import takewhile, zip_longest
 from typing import Any
 
 import numpy as np
@@ -68,16 +68,11 @@ def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
 def _planned(case: Case, s: Structure) -> list[tuple[str, int, Any]]:
     """Operations in turn, each at a place of its own, where it may be done."""
     faces = operation_faces(case, MOST_SEARCHING if case.searches else MOST_EDITS)
-    rows = {it: operation_arguments(s, it, faces[k :: len(EDITED)]) for k, it in enumerate(EDITED)}
-    turns = (iter(rows[it][:, 0].tolist()) for it in EDITED)
-    named: list[tuple[str, int, Any]] = []
-    for name, handles in cycle(list(zip(EDITED, turns, strict=True))):
-        handle = next(handles, None)
-        if handle is None:
-            return named
-        point = np.zeros(3) if name.startswith("split") else None
-        named.append((name, handle, point))
-    return named
+    rows = [operation_arguments(s, it, faces[k :: len(EDITED)]) for k, it in enumerate(EDITED)]
+    points = [np.zeros(3) if it.startswith("split") else None for it in EDITED]
+    turns = zip_longest(*(it[:, 0].tolist() for it in rows))
+    edits = (edit for turn in turns for edit in zip(EDITED, turn, points, strict=True))
+    return list(takewhile(lambda edit: edit[1] is not None, edits))
 
 
 def _edited(s: Structure, edits: list[tuple[str, int, Any]]) -> Structure:

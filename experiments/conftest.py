@@ -35,11 +35,9 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     group.addoption("--structure", action="append", help="measure just this one; may be repeated")
     group.addoption("--run", type=Path, help="the folder that keeps the results, case by case")
     group.addoption("--pin", action="store_true", help="stay on one core, where that is allowed")
-    words = "seed of the order of the cases"
-    group.addoption("--case-seed", type=int, default=DEFAULT_SEED, help=words)
+    group.addoption("--case-seed", type=int, default=DEFAULT_SEED, help="seed of the cases' order")
     words = "measure what the run lacks, what was disturbed, or compile for one case of each kind"
-    actions = [MEASURE, AGAIN, COMPILE]
-    group.addoption("--action", default=MEASURE, choices=actions, help=words)
+    group.addoption("--action", default=MEASURE, choices=[MEASURE, AGAIN, COMPILE], help=words)
 
 
 def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:

@@ -76,8 +76,8 @@ class Option:
 class Advice:
     """Options, the best first and then the quickest; why not the others; where it changes."""
 
-    workload: Workload
     faces: int
+    workload: Workload
     options: list[Option]
     refused: dict[str, str]
     flips: list[dict[str, Any]]
@@ -120,7 +120,7 @@ def advise(
     options.sort(key=lambda it: (it.forecast.structure != first, it.forecast.seconds))
     named = [replace(it, behind=_behind(options[0].forecast, it.forecast)) for it in options]
     names = [it.forecast.structure for it in options]
-    return Advice(workload, faces, named, refused, flips(prices, workload, names, faces))
+    return Advice(faces, workload, named, refused, flips(prices, workload, names, faces))
 
 
 def _bytes(name: str, mesh: Any, faces: int) -> int:

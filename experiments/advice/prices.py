@@ -1,6 +1,6 @@
 """What a query or an operation costs on a structure, by size, from the measurements of a run."""
 
-from functools import cached_property
+from functools import cache, cached_property
 from itertools import product
 from typing import NamedTuple
 
@@ -39,7 +39,7 @@ class Prices:
 
     def __init__(self, run: Run) -> None:
         self.run = run
-        self._found: dict[tuple[str, str, str, str], tuple[Array, Array, Array]] = {}
+        self._points = cache(lambda *case: _points(curves(run).named(*case)))
 
     def price(
         self, structure: str, what: str, faces: float, in_order: float = 0.0, caller: str = ""
@@ -102,13 +102,11 @@ class Prices:
     def _operations(self) -> set[str]:
         return set(self.run.cases.query("experiment == 'bench_operations'")["subject"])
 
-    def _at(self, faces: float, experiment: str, structure: str, subject: str, order: str) -> Price:
-        key = experiment, structure, subject, order
-        if key not in self._found:
-            self._found[key] = _points(curves(self.run).named(*key))
-        sizes, costs, spreads = self._found[key]
+    def _at(self, faces: float, *case: str) -> Price:
+        """``case``: experiment, structure, subject and order."""
+        sizes, costs, spreads = self._points(*case)
         if not len(sizes):
-            raise KeyError(f"the run has not measured {' '.join(filter(None, key))}")
+            raise KeyError(f"the run has not measured {' '.join(filter(None, case))}")
         x = np.log(max(faces, 1.0))
         within = float(np.clip(x, sizes[0], sizes[-1]))
         cost, spread = np.interp(within, sizes, costs), np.interp(within, sizes, spreads)

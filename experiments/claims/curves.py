@@ -84,10 +84,10 @@ class Curves:
 
     def curve(self, axis: Axis, structure: str, subject: str, table: str = "") -> Curve:
         """The cases along one axis: of the judged family, or of the hubs."""
-        source = _sources().get((table or table_of(subject), axis))
+        experiment, order = _sources().get((table or table_of(subject), axis), ("", ""))
         family = HUBS if axis.variable == "valence" else self.judged_family
-        rows = self._rows.get((*source, structure, subject, family), _NONE) if source else _NONE
-        return self._along(axis.variable, rows)
+        known = {"subject": subject, "order": order, "family": family}
+        return self._select(axis.variable, experiment, structure, **known)
 
     def of(self, claim: Claim, axis: Axis) -> Curve:
         """What a claim is judged by along an axis."""
@@ -111,15 +111,15 @@ class Curves:
         self, experiment: str, structure: str, subject: str = "", order: str = "", width: int = 4
     ) -> Curve:
         """The judged family's cases of an experiment by size; ``width``: bytes of a reference."""
-        rows = self._jobs.get((experiment, structure), _NONE)
-        rows = rows[np.isnan(self._columns["valence"][rows].astype(float))]
-        known = {"family": self.judged_family, "subject": subject, "order": order}
-        for name, value in {**known, "reference_bytes": width}.items():
-            rows = rows if value == "" else rows[self._columns[name][rows] == value]
-        return self._along("faces", rows)
+        known: dict[str, Any] = {"family": self.judged_family, "reference_bytes": width}
+        known |= {name: it for name, it in (("subject", subject), ("order", order)) if it}
+        return self._select("faces", experiment, structure, **known)
 
-    def _along(self, variable: str, rows: NDArray[np.intp]) -> Curve:
-        """The cases in some rows; the same curve each time, so that it is summed up once."""
+    def _select(self, variable: str, experiment: str, structure: str, **known: Any) -> Curve:
+        """The cases with what is known; the same curve each time, so that it is summed up once."""
+        rows = self._jobs.get((experiment, structure), _NONE)
+        for name, value in known.items():
+            rows = rows[self._columns[name][rows] == value]
         key = variable, rows.tobytes()
         if key not in self._made:
             self._made[key] = Curve(variable, self.cases.iloc[rows].sort_values(variable))
@@ -173,11 +173,6 @@ class Curves:
     @cached_property
     def _columns(self) -> dict[str, NDArray[Any]]:
         return {str(name): column.to_numpy() for name, column in self.cases.items()}
-
-    @cached_property
-    def _rows(self) -> dict[Any, Any]:
-        by = ["experiment", "order", "structure", "subject", "family"]
-        return self.cases.groupby(by).indices
 
     @cached_property
     def _jobs(self) -> dict[Any, Any]:

@@ -23,8 +23,6 @@ from experiments.runs import Run
 from hem.complexity import Verdict
 from hem.whole_files import write_whole
 
-PLAIN = ("outcome", "outcomes", "found", "reason", "work", "seconds")
-
 
 @lru_cache(maxsize=4)
 def judge_run(run: Run) -> list[JudgedClaim]:
@@ -34,12 +32,11 @@ def judge_run(run: Run) -> list[JudgedClaim]:
     with suppress(OSError, ValueError, KeyError, TypeError):
         content = json.loads(path.read_text("utf-8"))
         if content["of"] == state:
-            return [_judged(claim, content["claims"][claim.key]) for claim in claims]
+            return list(map(_judged, claims, content["claims"]))
     judged = [*judge_cells(run), *judge_sentences(run)]
     if "finished" in run.meta and run.folder.exists():
-        rows = {it.claim.key: _plain(it) for it in judged}
         with suppress(OSError):
-            write_whole(path, json.dumps({"of": state, "claims": rows}))
+            write_whole(path, json.dumps({"of": state, "claims": list(map(_plain, judged))}))
     return judged
 
 
@@ -55,16 +52,17 @@ def _state(folder: Path, claims: list[Claim]) -> str:
 
 def _plain(judged: JudgedClaim) -> dict[str, Any]:
     verdicts = {axis.key: vars(verdict) for axis, verdict in judged.verdicts.items()}
-    plain = {name: getattr(judged, name) for name in PLAIN}
-    return {**plain, "verdicts": verdicts, "values": judged.values.tolist()}
+    made = {"claim": judged.claim.key, "verdicts": verdicts, "values": judged.values.tolist()}
+    return {**vars(judged), **made}
 
 
 def _judged(claim: Claim, row: dict[str, Any]) -> JudgedClaim:
     kept = row["verdicts"]
     read = {
+        "claim": claim,
         "outcome": Outcome(row["outcome"]),
         "outcomes": {measure: Outcome(it) for measure, it in row["outcomes"].items()},
         "verdicts": {axis: Verdict(**kept[axis.key]) for axis in Axis if axis.key in kept},
         "values": np.array(row["values"], float),
     }
-    return JudgedClaim(claim, **{**row, **read})
+    return JudgedClaim(**{**row, **read})

@@ -119,17 +119,16 @@ def _costs(of_run: Curves, structure: str, subject: str) -> pd.DataFrame:
     return pd.DataFrame({"build": build, "each": pd.concat([asked, edited])})
 
 
-def _work(of_run: Curves, structure: str, subject: str) -> Array:
+def _work(of_run: Curves, structure: str, subject: str) -> pd.Series:
     """Mean accesses of a query or operation, by size; a call that reads nothing counts as one."""
-    return np.maximum(of_run.curve(Axis.WORK_FACES, structure, subject).centers, 1)
+    return of_run.curve(Axis.WORK_FACES, structure, subject).by_size.clip(lower=1)
 
 
 def _work_ratios(of_run: Curves, mine: str, other: str, subjects: Iterable[str]) -> Iterable[float]:
-    """The work at the largest size, one structure's by another's."""
+    """The work at the largest size of both, one structure's by another's."""
     for subject in subjects:
-        costs, others = (_work(of_run, name, subject) for name in (mine, other))
-        if len(costs) and len(others):
-            yield float(costs[-1] / others[-1])
+        one, two = (_work(of_run, name, subject) for name in (mine, other))
+        yield from (one / two).dropna().tail(1)
 
 
 def _bytes_ratio(of_run: Curves, mine: str, other: str) -> Iterable[float]:
@@ -150,7 +149,7 @@ def _answers(of_run: Curves) -> Iterable[float]:
     """How many more queries a triangle-neighbor structure answers without searching the mesh."""
     local = []
     for name in (NEIGHBOR, BASE):
-        work = [_work(of_run, name, query) for query in QUERIES]
+        work = [_work(of_run, name, query).to_numpy() for query in QUERIES]
         local.append(sum(len(it) > 1 and bool(it[-1] < 2 * it[0] + 2) for it in work))
     if all(local):
         yield local[0] - local[1]

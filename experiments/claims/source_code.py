@@ -7,10 +7,11 @@ and the docstrings.
 import ast
 import inspect
 import textwrap
-from collections.abc import Callable, Iterable, Iterator
-from typing import Any, NamedTuple, TypeGuard
+from collections.abc import Iterable, Iterator
+from typing import NamedTuple, TypeGuard
 
 from hem.authoring import Kernel
+from hem.engine import parts_of
 
 RECORDS = "m"  # what kernels call the records
 
@@ -46,31 +47,9 @@ def come_round_tests(kernels: Iterable[Kernel]) -> int:
 
 
 def _nodes(kernels: Iterable[Kernel]) -> Iterator[ast.AST]:
-    return (node for part in _parts(kernels) for node in ast.walk(_tree(part)))
-
-
-def _parts(kernels: Iterable[Kernel]) -> Iterator[Callable[..., Any]]:
-    """The functions of kernels and of all that they call, as they are written: each once."""
-    waiting, met, written = list(kernels), set(), set()
-    while waiting:
-        kernel = waiting.pop()
-        if kernel in met:
-            continue
-        met.add(kernel)
-        function: Callable[..., Any] = getattr(kernel, "py_func", kernel)
-        code = function.__code__
-        if code not in written:
-            written.add(code)
-            yield function
-        known = {**function.__globals__, **inspect.getclosurevars(function).nonlocals}
-        called: list[Any] = [known.get(name) for name in (*code.co_names, *code.co_freevars)]
-        waiting += [it for it in called if hasattr(it, "py_func")]
-
-
-def _tree(function: Callable[..., Any]) -> ast.FunctionDef:
-    (tree,) = ast.parse(textwrap.dedent(inspect.getsource(function))).body
-    assert isinstance(tree, ast.FunctionDef)
-    return tree
+    parts = {it.__code__: it for kernel in kernels for it in parts_of(kernel, set())}
+    sources = (textwrap.dedent(inspect.getsource(it)) for it in parts.values())
+    return (node for source in sources for node in ast.walk(ast.parse(source)))
 
 
 def _tests_direction(it: ast.AST) -> bool:

@@ -14,7 +14,7 @@ from typer import Argument, Option
 
 import hem
 from experiments.cli.check import BASELINE
-from experiments.cli.console import AsJson, OfMesh, Repair, console, errors, print_json
+from experiments.cli.console import AsJson, OfMesh, Repair, console, errors, print_json, run_folder
 
 if TYPE_CHECKING:  # takes a second to import
     from experiments.advice import Advice
@@ -63,22 +63,16 @@ def advise(
     edit = inf if worst_edit is None else worst_edit / 1e3
     limits = advice.Limits(inf if most_bytes is None else most_bytes, edit)
     wanted = advice.find_workload(workload)
-    if run is not None and not run.is_dir():
-        none = "there is no such folder; make one with: hem study"
-        raise ValueError(f"{run} holds no run: {none}")
-    source = load(run or BASELINE / RUN)
+    source = load(run_folder(run) if run else BASELINE / RUN)
     if source.machines:
         raise ValueError(f"{source.folder} was measured by several machines: give one's folder")
     of_mesh = hem.find_mesh(mesh, repair)
     found = advice.advise(advice.Prices(source), wanted, of_mesh, limits, need or [])
     if as_json:
-        options = [asdict(it) for it in found.options]
-        print_json({
-            "run": str(source.folder), "machine": source.meta.get("machine", {}),
-            "faces": found.faces, "workload": asdict(found.workload),
-            "options": [it.pop("forecast") | it for it in options],
-            "refused": found.refused, "flips": found.flips,
-        })  # fmt: skip
+        told = {"run": str(source.folder), "machine": source.meta.get("machine", {})}
+        told |= asdict(found)
+        told["options"] = [it.pop("forecast") | it for it in told["options"]]
+        print_json(told)
     else:
         _show(found, source, str(run or "the baseline"), mesh)
     if not found.options:

@@ -70,7 +70,7 @@ def run_folder(run: Path | None) -> Path:
 
         return latest()
     if not run.is_dir():  # told before anything heavy is imported
-        raise ValueError(f"{run} holds no run: there is no such folder")
+        raise ValueError(f"{run} holds no run: there is no such folder; make one with: hem study")
     return run
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import asdict
 from typing import Annotated, Any
 
-from rich.table import Table
+from rich.table import Column, Table
 from typer import Argument, Option
 
 import hem
@@ -92,7 +92,5 @@ def _held(mesh: hem.TriangleMesh | hem.PolygonMesh) -> list[dict[str, Any]]:
 
 def _numbers(*heads: str, title: str | None = None) -> Table:
     """A table of names with numbers beside them."""
-    table = Table(*heads, title=title)
-    for column in table.columns[1:]:
-        column.justify = "right"
-    return table
+    first, *numbers = heads
+    return Table(first, *(Column(it, justify="right") for it in numbers), title=title)

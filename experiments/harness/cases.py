@@ -1,7 +1,7 @@
 """What the experiments measure: cases, the meshes and structures they name, and the outcome."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from itertools import groupby
 from random import Random
@@ -112,8 +112,7 @@ class Case:
 
     def build(self) -> Structure:
         """The structure on the mesh; the last one built is kept."""
-        mesh = self.family, self.size, self.valence
-        return _structure(self.structure, *mesh, self.reference_bytes)
+        return _structure(replace(self, subject=None, order=None))
 
     def result(
         self, kind: str, s: Structure | None, samples: ArrayLike = (), **more: Any
@@ -188,10 +187,8 @@ def _mesh(family: str, size: int, valence: int | None, renumbered: bool) -> Tria
 
 
 @lru_cache(maxsize=1)
-def _structure(
-    name: str, family: str, size: int, valence: int | None, reference_bytes: int
-) -> Structure:
-    return structures.build(name, _mesh(family, size, valence, False), reference_bytes)
+def _structure(case: Case) -> Structure:
+    return structures.build(case.structure, case.mesh(), case.reference_bytes)
 
 
 @lru_cache(maxsize=4)

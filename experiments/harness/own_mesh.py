@@ -12,7 +12,7 @@ import structures
 from hem.algorithms import simplify, subdivide
 from hem.contract import Navigable
 from hem.errors import MeshError
-from hem.meshes import TriangleMesh
+from hem.meshes import TriangleMesh, used_only
 from hem.sources import find_mesh
 
 FOLDER = "mesh"
@@ -85,19 +85,15 @@ def _coarser(mesh: TriangleMesh) -> Iterator[TriangleMesh]:
         simplify(s, faces=before // 4)
         if s.n_faces > before // 2:  # small parts cannot be simplified any more
             return
-        mesh = _without_faceless(s.to_triangles())
+        found = s.to_triangles()
+        mesh = TriangleMesh(*used_only(found.points, found.triangles))
         yield mesh
 
 
 def _finer(mesh: TriangleMesh) -> Iterator[TriangleMesh]:
-    s = structures.build(_HOLDER, _without_faceless(mesh))
+    s = structures.build(_HOLDER, TriangleMesh(*used_only(mesh.points, mesh.triangles)))
     while 4 * s.n_vertices <= LARGEST:
         subdivide(s, "loop")
         yield s.to_triangles()
         if 4 * s.n_vertices > FINE_ENOUGH:
             return
-
-
-def _without_faceless(mesh: TriangleMesh) -> TriangleMesh:
-    used, corners = np.unique(mesh.triangles, return_inverse=True)
-    return TriangleMesh(mesh.points[used], corners.reshape(-1, 3))

@@ -7,7 +7,7 @@ without its core, was disturbed: it is measured again, and the calmest measureme
 import os
 from contextlib import suppress
 from functools import lru_cache
-from time import perf_counter, process_time, sleep
+from time import perf_counter, process_time
 from typing import Any
 
 import numpy as np
@@ -88,12 +88,5 @@ def pin() -> int | None:
 
 def calmest(cores: list[int], seconds: float = WATCHED_SECONDS) -> int:
     """The core that was idle for longest just now; of equals the last one."""
-    before = idle_seconds()
-    sleep(seconds)
-    after = idle_seconds()
-    return max(cores, key=lambda core: (after.get(core, 0) - before.get(core, 0), core))
-
-
-def idle_seconds() -> dict[int, float]:
-    """By core, for how long it was idle since the machine started."""
-    return {core: times.idle for core, times in enumerate(psutil.cpu_times(percpu=True))}
+    busy = dict(enumerate(psutil.cpu_percent(seconds, percpu=True)))
+    return max(cores, key=lambda core: (-busy.get(core, 0), core))

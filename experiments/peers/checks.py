@@ -23,19 +23,19 @@ def check_rows(
     CheckFailedError naming library, query, element and both answers.
     """
     for place, asked in enumerate(keys.tolist()):
-        answer = _sorted(row(rows, place), named if query.target == "edge" else None)
-        _require_same(title, query, triangles, asked, answer)
-
-
-def _require_same(title: str, query: Query, triangles: Array, asked: Any, answer: Array) -> None:
-    """``asked``: a vertex or face, or the two vertices of an edge; ``answer``: ascending."""
-    key = int(pack(np.array([asked]))[0]) if query.source == "edge" else asked
-    expected = neighbors(triangles, query, key)
-    if not np.array_equal(answer, expected):
-        raise CheckFailedError(
-            f"{title}: {query.name}({asked}) gives {answer.tolist()}, "
-            f"the triangle list {expected.tolist()}"
-        )
+        answer = row(rows, place)
+        if answer.ndim == 1:  # else edges, each by its two vertices
+            answer = answer[answer >= 0].astype(np.int64)
+            if named and query.target == "edge" and len(answer):
+                answer = named(answer)
+        found = np.unique(pack(answer) if answer.ndim == 2 else answer)
+        key = int(pack(np.array([asked]))[0]) if query.source == "edge" else asked
+        expected = neighbors(triangles, query, key)
+        if not np.array_equal(found, expected):
+            raise CheckFailedError(
+                f"{title}: {query.name}({asked}) gives {found.tolist()}, "
+                f"the triangle list {expected.tolist()}"
+            )
 
 
 def row(rows: Rows, place: int) -> Array:
@@ -46,20 +46,10 @@ def row(rows: Rows, place: int) -> Array:
     return np.array([*rows[place]])
 
 
-def _sorted(answer: Array, named: Named | None) -> Array:
-    """Each once: vertices and faces as they are, edges by their two vertices."""
-    if named and answer.ndim == 2:  # by vertices already
-        return np.unique(pack(answer))
-    numbers = answer[answer >= 0].astype(np.int64)
-    return np.unique(pack(named(numbers)) if named and len(numbers) else numbers)
-
-
 def check_told(title: str, triangles: Array, told: Mapping[str, Any]) -> None:
     """The same for what a program tells: by query what was asked, and answered; edges as pairs."""
     for name, every in told.items():
         query = QUERIES[name]
-        for asked, answer in every:
-            given = np.array(answer).reshape(-1, 2 if query.target == "edge" else 1)
-            found = pack(given) if query.target == "edge" else given[:, 0]
-            key = asked if query.source == "edge" else int(asked[0])
-            _require_same(title, query, triangles, key, np.unique(found))
+        keys = [asked if query.source == "edge" else asked[0] for asked, _ in every]
+        rows = [np.reshape(it, (-1, 2)) if query.target == "edge" else it for _, it in every]
+        check_rows(title, query, triangles, np.array(keys), rows)

@@ -3,7 +3,7 @@
 import signal
 from collections.abc import Callable
 from dataclasses import replace
-from functools import lru_cache
+from functools import lru_cache, partial
 from itertools import count
 from time import perf_counter
 from typing import Any, NamedTuple
@@ -36,11 +36,11 @@ Fields = dict[str, Any]
 
 
 class Built(NamedTuple):
-    """A library's mesh, with the bytes that its process grew by, and the vertices of its edges."""
+    """A library's mesh, the bytes that its process grew by, and by element (k, ·) its vertices."""
 
     mesh: Any
     working_set: int
-    ends: Array
+    corners: dict[str, Array]
 
 
 def _given(case: Case) -> tuple[Array, Array]:
@@ -62,8 +62,10 @@ def _built(case: Case) -> Built:
     before = process.memory_info().rss
     m = peer.build(*given)
     grown = max(process.memory_info().rss - before, sum(it.nbytes for it in given))
+    points, triangles = given
     ends = np.asarray(peer.ends(m)) if peer.ends else np.zeros((0, 2), np.int64)
-    return Built(m, grown, ends)
+    vertices = np.arange(len(points))[:, None]
+    return Built(m, grown, {"vertex": vertices, "edge": ends, "face": triangles})
 
 
 def _mesh_of(case: Case) -> Built:
@@ -71,11 +73,9 @@ def _mesh_of(case: Case) -> Built:
     return _built(replace(case, subject=None, order=None))
 
 
-def _numbers(case: Case, source: str, ends: Array) -> Array:
+def _numbers(case: Case, built: Built) -> Array:
     """The elements that a case asks, at random; where the valence varies those at hubs."""
-    mesh = case.mesh()
-    vertices = np.arange(len(mesh.points))[:, None]
-    rows = {"vertex": vertices, "edge": ends, "face": mesh.triangles}[source]
+    rows = built.corners[case.query.source]
     numbers = np.random.default_rng(SEED).permutation(len(rows))
     if case.valence is not None:
         hubs = len(hem.valence_hubs(case.valence, case.size))
@@ -85,13 +85,10 @@ def _numbers(case: Case, source: str, ends: Array) -> Array:
 
 def _check(case: Case, built: Built, numbers: Array, answers: list[Any]) -> None:
     """Compare what was answered at some elements with the triangle list."""
-    peer = PEERS[case.structure]
-    keys = built.ends[numbers] if case.query.source == "edge" else numbers
-
-    def named(edges: Array) -> Array:
-        return peer.named(built.mesh, edges) if peer.named else built.ends[edges]
-
-    check_rows(peer.title, case.query, case.mesh().triangles, keys, answers, named)
+    peer, ends = PEERS[case.structure], built.corners["edge"]
+    keys = ends[numbers] if case.query.source == "edge" else numbers
+    named = partial(peer.named, built.mesh) if peer.named else ends.__getitem__
+    check_rows(peer.title, case.query, built.corners["face"], keys, answers, named)
 
 
 def _ends_within(seconds: float, ask: Callable[[Any], Any], handle: Any) -> bool:
@@ -120,7 +117,7 @@ def _ends_within(seconds: float, ask: Callable[[Any], Any], handle: Any) -> bool
 def time_single(case: Case, preset: Preset, timer: Timer) -> Fields:
     """Ask one element after the other, other ones every round, until all were asked."""
     peer, query, built = PEERS[case.structure], case.query, _mesh_of(case)
-    numbers = _numbers(case, query.source, built.ends)
+    numbers = _numbers(case, built)
     handles = list(peer.handles(built.mesh, query.source, numbers.tolist()))
     ask = peer.single[query.name](built.mesh)
     if peer.objects and not _ends_within(preset.case_seconds, ask, handles[0]):
@@ -146,20 +143,18 @@ def time_single(case: Case, preset: Preset, timer: Timer) -> Fields:
 
 def time_bulk(case: Case, preset: Preset, timer: Timer) -> Fields:
     """Ask of all elements at once -> seconds per element."""
-    peer, query, built = PEERS[case.structure], case.query, _mesh_of(case)
-    ask = peer.bulk[query.name]
+    peer, built = PEERS[case.structure], _mesh_of(case)
+    ask, per = peer.bulk[case.query.name], len(built.corners[case.query.source])
     rows, seconds = _took(ask, peer.fresh(built.mesh))
-    few = _numbers(case, query.source, built.ends)[:CHECKED]
+    few = _numbers(case, built)[:CHECKED]
     _check(case, built, few, [row(rows, it) for it in few.tolist()])
-    mesh = case.mesh()
-    many = {"vertex": len(mesh.points), "edge": len(built.ends), "face": len(mesh.triangles)}
     kept: list[Any] = []  # so that freeing is not timed
 
     def ready() -> tuple[Any]:
         kept.clear()
         return (peer.fresh(built.mesh),)
 
-    rounds, per = preset.affordable_rounds(seconds), many[query.source]
+    rounds = preset.affordable_rounds(seconds)
     return timer(lambda m: kept.append(ask(m)), setup=ready, rounds=rounds, per=per).fields
 
 
@@ -177,7 +172,7 @@ def _apart(case: Case) -> Array:
     faces = operation_faces(case)
     if str(case.subject).endswith("face"):
         return faces
-    ends = pack(_mesh_of(case).ends)
+    ends = pack(_mesh_of(case).corners["edge"])
     order = np.argsort(ends)
     wanted = pack(case.mesh().triangles[faces][:, :2])
     return order[np.searchsorted(ends, wanted, sorter=order)]

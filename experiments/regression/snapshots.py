@@ -101,12 +101,9 @@ def _time(of_run: Curves, claim: Claim) -> Figures:
     faces, sizes = int(curve.sizes[-1]), len(curve)
     figures = {"seconds": _short(curve.largest), "time_faces": faces, "time_sizes": sizes}
     latency = curve.cases["latency"].to_numpy(float)
-    if np.isnan(latency).any():
-        between = of_run.latency(curve.cases["working_set"].to_numpy(float))
-        if between is None:
-            return figures
-        latency = np.where(np.isnan(latency), between, latency)
-    return {**figures, "relative": _short(np.exp(np.median(np.log(curve.centers / latency))))}
+    if not np.isnan(latency).any():
+        figures["relative"] = _short(np.exp(np.median(np.log(curve.centers / latency))))
+    return figures
 
 
 def _short(value: float) -> float:

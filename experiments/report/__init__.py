@@ -11,22 +11,19 @@ from importlib import import_module
 from typing import Any
 
 _PLACES = {
-    "figures.sliders": ("advice_sliders",),
     "pages": (
-        "Html", "about_run", "abstract", "answer", "browser", "chapter_list", "claim_tables",
-        "closing", "errata", "frame_table", "legend", "reasons", "sentences", "slopes", "tally",
-        "text_table", "verdicts",
+        "Html", "about_history", "about_run", "abstract", "answer", "browser", "chapter_list",
+        "claim_tables", "closing", "errata", "frame_table", "legend", "reasons", "sentences",
+        "slopes", "tally", "text_table", "verdicts",
     ),
-    "peers": (
-        "about", "measured_peers", "page_table", "peers_as_json", "portraits", "refusals",
-        "show_peers",
-    ),
+    "peers": ("about", "measured_peers", "page_table", "peers_as_json", "portraits", "show_peers"),
     "readme": ("write_readme",),
     "sections": ("traced",),
     "session": ("MissingError", "claim_link", "link", "open_run", "project_file"),
     "site": ("write_pdf", "write_report"),
     "style": ("show_figures",),
     "tables": ("claims_as_json", "digits", "duration", "show_claims", "table_1_in_words"),
+    "uses": ("advice_sliders",),
 }  # fmt: skip
 """The public names by their file."""
 

@@ -11,8 +11,8 @@ import pandas as pd
 from experiments.bench_fracture import FIND, SHATTER, VISITED, WAYS
 from experiments.claims import BY_TIME, MIXES, Family, curves
 from experiments.harness import BASE, Axis
-from experiments.report.pages import Heads, Html, numbers, text_table
-from experiments.report.session import MissingError, claim_link
+from experiments.report.pages import Heads, Html, numbers, part, text_table
+from experiments.report.session import MissingError, require
 from experiments.report.style import TITLES
 from experiments.report.tables import SHOWN, count, digits, duration, two_digits
 from experiments.runs import Run
@@ -62,13 +62,12 @@ def bytes_by_mesh(run: Run) -> Html:
     every: Any = table.T.items()
     rows = [(family, n, faces / n, *(sizes / n)) for (family, n, faces), sizes in every]
     heads: dict[str, Any] = {"": str, "vertices": count, "faces per vertex": two_digits}
-    return numbers(rows, heads | {REGISTRY[str(it)].title: _one_digit for it in table})
+    return numbers(rows, heads | {REGISTRY[str(it)].title: "{:,.1f}".format for it in table})
 
 
 def by_family(families: Sequence[Family]) -> Html:
     """What became of the claims on queries on each family, by time, and what the first denies."""
-    if not families:
-        raise MissingError("This run has not timed any query.")
+    require(families, "timed any query")
     heads = (
         "Family", "vertices", "edges at a vertex", "most at one", *(it.label for it in BY_TIME),
         f"not as on the {families[0].name}",
@@ -77,37 +76,21 @@ def by_family(families: Sequence[Family]) -> Html:
 
 
 def _family_row(it: Family, first: Family) -> tuple[Any, ...]:
-    marks, against = [], []
-    for axis in BY_TIME:
-        outcomes = it.outcomes(axis)
-        counts = Counter(outcomes.values())
-        marks.append(" ".join(f"{counts[kind]} {kind.mark}" for kind in SHOWN))
-        for judged in it.against(first, axis):
-            claim = judged.claim
-            link, title = claim_link(claim.key), f"{REGISTRY[claim.structure].title}, {claim.title}"
-            said = f": {outcomes[claim.key]} by {axis.label}"
-            against.append(Html('<a href="{}">{}</a>{}').format(link, title, said))
+    counts = (Counter(it.outcomes(axis).values()) for axis in BY_TIME)
+    marks = (" ".join(f"{found[kind]} {kind.mark}" for kind in SHOWN) for found in counts)
     mesh = it.largest
     mean = two_digits(2 * mesh["edges"] / mesh["vertices"])
     size, most = (f"{mesh[name]:,}" for name in ("vertices", "valence_max"))
-    return it.name, size, mean, most, *marks, Html("<br>").join(against) or "–"
+    return it.name, size, mean, most, *marks, part("denied", it, first, BY_TIME) or "–"
 
 
 def families_in_words(families: Sequence[Family]) -> Html:
     """Which families say something else than the judged one, and how their valences differ."""
     first, *others = families
-    if not others:
-        return Html(f"<p>Queries were timed on one family alone, the {first.name}.</p>")
     denied = {it.name: sum(len(list(it.against(first, axis))) for axis in BY_TIME) for it in others}
     means = [2 * it.largest["edges"] / it.largest["vertices"] for it in families]
-    named = ", ".join(f"{name} ({many})" for name, many in denied.items() if many)
-    found = f"on: {named}" if named else "on none of them"
-    return Html(
-        f"<p>{len(others)} families were timed beside the {first.name}. Cells that time decides on "
-        f"both come out the other way round {found}. A vertex has {two_digits(min(means))} to "
-        f"{two_digits(max(means))} edges on average in all of them, as it must on a large mesh, "
-        f"and {max(it.largest['valence_max'] for it in families)} at most.</p>"
-    )
+    most = max(it.largest["valence_max"] for it in families)
+    return part("families", first.name, denied, means, most)
 
 
 def shattering(run: Run) -> Html:
@@ -159,10 +142,6 @@ def overtaking(table: pd.DataFrame) -> Html:
     return numbers(rows, heads)
 
 
-def _one_digit(value: float) -> str:
-    return f"{value:,.1f}" if value == value else "–"
-
-
 def _slope(verdict: Verdict) -> str:
     """With the memory's part taken out, and as measured."""
     slope, low, high = map(two_digits, (verdict.slope, verdict.slope_low, verdict.slope_high))
@@ -174,17 +153,8 @@ def bytes_in_words(run: Run) -> Html:
     """How many times as much half-edges take as triangles by index; MissingError if not weighed."""
     names, weigh = (ARRAYS, BASE), curves(run).bytes_per_vertex
     found = {width: [weigh(name, width) for name in names] for width in (8, 4)}
-    if np.isnan(list(found.values())).any():
-        raise MissingError("This run has not weighed a half-edge and an indexed mesh.")
-    said = [
-        f"With references of {width} bytes a half-edge mesh takes {one:.4g} bytes per vertex and "
-        f"an indexed mesh {other:.4g}: {one / other:.2f} times as many."
-        for width, (one, other) in found.items()
-    ]
-    return Html(
-        f"<p>{' '.join(said)} An index of 4 bytes names 2³¹ records, more than fit into memory "
-        "here: nothing speaks for references of 8 bytes but a language that has no others.</p>"
-    )
+    require(not np.isnan(list(found.values())).any(), "weighed a half-edge and an indexed mesh")
+    return part("bytes_in_words", found)
 
 
 def waiting_in_words(run: Run) -> Html:
@@ -204,12 +174,5 @@ def waiting_in_words(run: Run) -> Html:
     if not grown or sets.empty or latency is None:
         raise MissingError("This run has not counted and timed the same queries.")
     in_order, at_random = np.median(grown, axis=0)
-    waited = latency[-1] / latency[0]
-    small, large = (int(sets["faces"].iloc[place]) for place in (0, -1))
-    so = ": <b>an O(1) query does not do more, it waits longer</b>" if at_random < waited else ""
-    return Html(
-        f"<p>{len(grown)} queries on compiled structures do no more work on a larger mesh. From "
-        f"{small:,} to {large:,} faces their time grows {digits(in_order)}-fold in order and "
-        f"{digits(at_random)}-fold at random (medians), and that of a memory access "
-        f"{digits(waited)}-fold{so}.</p>"
-    )
+    sizes = sets["faces"].iloc[[0, -1]].tolist()
+    return part("waiting", len(grown), sizes, in_order, at_random, latency[-1] / latency[0])

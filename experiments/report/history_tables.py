@@ -172,17 +172,3 @@ def as_json(trends: Trends, claim: str | None, last: int | None) -> dict[str, An
         rows = rows[rows["claim"].isin(names) & (rows["run"] >= first)].astype(object)
         content[name] = rows.where(rows.notna(), None).to_dict("records")
     return content
-
-
-def describe_history(trends: Trends) -> str:
-    """What the chapter says first: how many runs there are, and what to do if they are few."""
-    count, machines = len(trends.runs), len({run["machine"]["id"] for run in trends.runs})
-    measure = "run `hem study`, then `hem history add`"
-    if not count:
-        return f"There is no history yet. At each commit that is to be compared, {measure}."
-    few = (
-        " A course needs three at least, and a step in the times three on either side of it: "
-        f"check out another commit, or come back after the next one, and {measure}."
-    )
-    told = f"The history has {count} run{'s'[: count != 1]}, of {machines} machine"
-    return f"{told}{'s'[: machines != 1]}.{few if count < 3 else ''}"

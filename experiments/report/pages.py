@@ -10,7 +10,7 @@ from importlib.resources import files
 from typing import Any
 
 import pandas as pd
-from jinja2 import Environment, PackageLoader, StrictUndefined
+from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescape
 from markupsafe import Markup
 
 from experiments.claims import SENTENCES, JudgedClaim, Kind, Outcome, curves
@@ -19,7 +19,7 @@ from experiments.harness import Axis, Table
 from experiments.report import session
 from experiments.report import tables as written
 from experiments.report.notebooks import page_titles
-from experiments.runs import Run, in_words, tables
+from experiments.runs import in_words, tables
 from structures import NAMED
 
 Heads = Mapping[str, Callable[[Any], str]]
@@ -36,12 +36,17 @@ class Html(Markup):
 @cache
 def _templates() -> Environment:
     environment = Environment(
-        loader=PackageLoader("experiments.report"), autoescape=True, undefined=StrictUndefined,
-        trim_blocks=True, lstrip_blocks=True,
+        loader=PackageLoader("experiments.report"), undefined=StrictUndefined,
+        autoescape=select_autoescape(["html.j2"]), trim_blocks=True, lstrip_blocks=True,
     )  # fmt: skip
     environment.globals |= {
+        "Axis": Axis,
         "NAMED": NAMED,
         "Outcome": Outcome,
+        "in_words": in_words,
+        "measured": lambda: curves(session.open_run().run),
+        "page_titles": page_titles,
+        "written": written,
         "outcome_of": {mark: it.css for it in Outcome for mark in (it.mark, it.own)}.get,
         "heads": lambda columns: ["", *(NAMED[it].title for it in columns)],
         "link": session.link,
@@ -50,9 +55,10 @@ def _templates() -> Environment:
         "static": lambda name: Html((files("experiments.report") / "static" / name).read_text()),
     }
     environment.filters |= {
-        "time": written.duration, "two_digits": written.two_digits, "spelled": written.spelled,
+        "digits": written.digits, "spelled": written.spelled, "time": written.duration,
+        "two_digits": written.two_digits, "whole": written.count,
+        "where": lambda source: re.split("[:;]|, (?!abstract|table)", source)[0],
     }  # fmt: skip
-    environment.filters["where"] = lambda source: re.split("[:;]|, (?!abstract|table)", source)[0]
     return environment
 
 
@@ -61,10 +67,15 @@ def page(template: str, **content: Any) -> Html:
     return Html(_templates().get_template(template).render(**content))
 
 
-def table(macro: str, *content: Any) -> Html:
-    """A table by the name of its macro in ``tables.html.j2``."""
-    module: Any = _templates().get_template("tables.html.j2").module
-    return Html(getattr(module, macro)(*content))
+def part(macro: str, *content: Any) -> Html:
+    """A table or a paragraph, by the name of its macro in ``parts.html.j2``."""
+    return Html(markdown(macro, *content, kind="html"))
+
+
+def markdown(macro: str, *content: Any, kind: str = "md") -> str:
+    """The same for a page in Markdown, of ``parts.md.j2``; without the end of its last line."""
+    module: Any = _templates().get_template(f"parts.{kind}.j2").module
+    return str(getattr(module, macro)(*content)).rstrip("\n")
 
 
 def browser(shown: session.Session) -> Html:
@@ -90,32 +101,30 @@ def filters(claims: Sequence[JudgedClaim]) -> dict[str, dict[str, tuple[str, int
     }
 
 
-def verdicts(claims: Iterable[JudgedClaim], name: str) -> Html:
-    """A table of claims at a glance: what is printed, and whether it holds."""
-    return table("verdicts", *written.by_subject(claims, name))
-
-
-def slopes(claims: Iterable[JudgedClaim], name: str) -> Html:
-    """The same with the slopes along every axis, their intervals, and what a query costs."""
-    measured = curves(session.open_run().run)
-    return table("slopes", *written.by_subject(claims, name), list(Axis), measured)
-
-
-def sentences(claims: Iterable[JudgedClaim], kind: str) -> Html:
-    """The sentences of a kind, what was measured of them, and the verdicts."""
-    mine = [it for it in claims if it.claim.table == SENTENCES and it.claim.kind == kind]
-    return table("sentences", mine)
-
-
-def tally(claims: Iterable[JudgedClaim]) -> Html:
-    """How many claims of each kind came out how."""
-    heads, *rows = written.tally_rows(claims)
-    return table("words", heads, rows, "glance")
-
-
-def legend() -> Html:
-    """How the cells of tables are to be read."""
-    return table("legend", written.legend())
+verdicts = partial(part, "verdicts")
+"""Of claims and a table's name: what is printed at a glance, and whether it holds."""
+slopes = partial(part, "slopes")
+"""The same with the slopes along every axis, their intervals, and what a query costs."""
+sentences = partial(part, "sentences")
+"""Of claims and a kind: the sentences, what was measured of them, and the verdicts."""
+tally = partial(part, "tally")
+"""Of claims: how many of each kind came out how."""
+legend = partial(part, "legend")
+"""How the cells of tables are to be read."""
+chapter_list = partial(part, "chapter_list")
+"""The chapters, to choose from."""
+about_run = partial(part, "about_run")
+"""What was run where, and which cases were skipped, by reason."""
+abstract = partial(part, "abstract")
+"""The answers of the front page once more, in German."""
+claims_markdown = partial(markdown, "claims")
+"""Of claims and a table's name, in Markdown: what is claimed, its marks, and what was found."""
+sentences_markdown = partial(markdown, "sentences")
+"""Of claims and a kind, in Markdown: the sentences."""
+about_history = partial(markdown, "history")
+"""Of trends, in Markdown: how many runs there are, and what to do if they are few."""
+text_table = partial(part, "words")
+"""A table of words below their heads: ``text_table(heads, rows)``."""
 
 
 def claim_tables(claims: Collection[JudgedClaim]) -> Html:
@@ -147,37 +156,25 @@ def reasons(claims: Iterable[JudgedClaim], name: str) -> Html:
 
 def errata(every: Iterable[Erratum]) -> Html:
     """What is published, what it does, and what a run of it gave beside the corrected version."""
-    return table("errata", [(it, it.show(), number) for number, it in enumerate(every, start=1)])
+    return part("errata", [(it, it.show(), number) for number, it in enumerate(every, start=1)])
 
 
-def about_run(run: Run) -> Html:
-    """What was run where, and which cases were skipped, by reason."""
-    return table("about_run", in_words(run), Counter(run.skipped["skipped"]))
-
-
-def chapter_list() -> Html:
-    """The chapters, to choose from."""
-    return table("chapter_list", page_titles())
-
-
-def or_missing(part: Callable[[], str], otherwise: str) -> str:
+def or_missing(make: Callable[[], str], otherwise: str) -> str:
     """A part of a page, or a word on why it is not there."""
     try:
-        return part()
+        return make()
     except session.MissingError as missing:
         return otherwise.format(escape(str(missing), quote=False))
 
 
 def numbers(rows: Iterable[Sequence[Any]], heads: Heads) -> Html:
-    """A table of numbers below their heads. Raises MissingError where there is no row."""
-    written = [[how(it) for it, how in zip(row, heads.values(), strict=True)] for row in rows]
-    if not written:
-        raise session.MissingError("This run has not measured what would stand here.")
-    return table("numbers", list(heads), written)
-
-
-text_table = partial(table, "words")
-"""A table of words below their heads: ``text_table(heads, rows)``."""
+    """A table of numbers below their heads, a dash for NaN. MissingError where there is no row."""
+    texts = [
+        [how(it) if it == it else "–" for it, how in zip(row, heads.values(), strict=True)]
+        for row in rows
+    ]
+    session.require(texts, "measured what would stand here")
+    return part("numbers", list(heads), texts)
 
 
 def frame_table(frame: pd.DataFrame) -> Html:
@@ -195,7 +192,7 @@ class Answer:
     measured: bool
 
     def _repr_html_(self) -> str:
-        return str(table("answer", self.text, self.measured, self.rests))
+        return str(part("answer", self.text, self.measured, self.rests))
 
 
 def answer(
@@ -205,11 +202,6 @@ def answer(
     measured = all(value == value for value in needs)  # nan where nothing was measured
     german = written.german_numbers(german) if measured else "Dieser Lauf hat das nicht gemessen."
     return Answer(text if measured else missing, german, rests, measured)
-
-
-def abstract(answers: Iterable[Answer]) -> Html:
-    """The same answers in German."""
-    return table("abstract", [it.german for it in answers])
 
 
 def closing(claims: Iterable[JudgedClaim], points: Mapping[str, Sequence[str]]) -> Html:
@@ -227,4 +219,4 @@ def closing(claims: Iterable[JudgedClaim], points: Mapping[str, Sequence[str]]) 
         expected = [Outcome.VIOLATED if it else Outcome.CONSISTENT for it in denied]
         follows = [it.outcome for it in rests] == expected
         rows.append((text.format(*(it.found for it in rests)), follows, rests))
-    return table("closing", rows)
+    return part("closing", rows)

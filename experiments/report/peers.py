@@ -8,11 +8,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import pandas as pd
 from rich.console import Console
 
-from experiments.claims import Curve, Growth, Outcome, curves, load_claims
-from experiments.harness import HUBS, OPERATIONS
+from experiments.claims import Curve, Outcome, curves, load_claims
+from experiments.harness import OPERATIONS, QUERIES_TABLE
 from experiments.peers import BAD_INPUT, BUILD, BULK, BYTES, LOOPED, OURS, PEERS, SINGLE
 from experiments.peers.peer import ALGORITHMS, BATCHED, SIX
 from experiments.report.pages import Html, text_table
@@ -29,6 +28,7 @@ MISSING = "Other libraries were not measured here: hem study --peers does that."
 CASE_ERROR = 0.15
 """How far cases of one curve stray beyond what their rounds tell, as for our structures."""
 NONE = "N/A"
+NUMBERS = "bytes per vertex", "build a vertex", "of ours"
 PER_ELEMENT = {"faces": "O(1)"}
 """What is claimed of a call that asks all elements, for each of them."""
 
@@ -83,23 +83,15 @@ class Peers:
 
     def __init__(self, run: Run) -> None:
         self.run = run
-        self.cases = run.cases[run.cases["experiment"] == EXPERIMENT]
-        measured = set(self.cases["structure"])
-        self.names = [it for it in PEERS if it in measured]
-        self.absent = [it.title for name, it in PEERS.items() if name not in measured]
-
-    def _cases(self, name: str, **wanted: Any) -> pd.DataFrame:
-        """Those of a library that have these values."""
-        found = self.cases[self.cases["structure"] == name]
-        for column, value in wanted.items():
-            found = found[found[column] == value]
-        return found
+        here = run.cases[run.cases["experiment"] == EXPERIMENT]
+        self.cases = {str(name): cases for name, cases in here.groupby("structure")}
+        self.names = [it for it in PEERS if it in self.cases]
+        self.absent = [it.title for name, it in PEERS.items() if name not in self.cases]
 
     @cached_property
     def _claims(self) -> dict[str, Mapping[str, str]]:
         """By query what our structure is claimed to cost, by variable."""
-        mine = (it for it in load_claims() if it.structure == LIKE)
-        return {it.subject: it.classes for it in mine if isinstance(it.expects, Growth)}
+        return {it.subject: it.classes for it in load_claims() if it.structure == LIKE}
 
     def cell(self, name: str, subject: str, order: str = "") -> Cell | None:
         """One subject on one library, judged where it is a query; None where it has no call."""
@@ -107,40 +99,39 @@ class Peers:
         curve, ours = (of_run.named(EXPERIMENT, it, subject, order) for it in (name, OURS))
         if not len(curve):
             return None
-        both = curve.by_size.index.intersection(ours.by_size.index)
-        size = max(both if len(both) else curve.by_size.index)
-        seconds = float(curve.by_size[size])
-        ratio = seconds / float(ours.by_size[size]) if len(both) else np.nan
+        ratios = (curve.by_size / ours.by_size).dropna()
+        size = int(max(ratios.index if len(ratios) else curve.by_size.index))
         claimed = PER_ELEMENT if order == BULK else self._claims.get(subject, {})
         verdicts = {}
         if subject in QUERIES:
-            at_hubs = self._cases(name, family=HUBS, subject=subject, order=order)
-            by_valence = Curve("valence", at_hubs.sort_values("valence"))
+            asked = self.cases[name].query("subject == @subject and order == @order")
+            by_valence = Curve("valence", asked.dropna(subset="valence").sort_values("valence"))
             for sign, it in (("n_t", curve), ("n_ev", by_valence)):
                 if len(it):
                     expected, latencies = claimed.get(it.variable, "O(1)"), of_run.latencies(it)
                     verdicts[sign] = judge(
                         it.sizes, it.samples, expected, latencies, latency_error=CASE_ERROR
                     )
-        return Cell(seconds, ratio, int(size), verdicts, bool(claimed))
+        seconds, ratio = curve.by_size[size], ratios.get(size, np.nan)
+        return Cell(float(seconds), float(ratio), size, verdicts, bool(claimed))
 
     def bytes_per_vertex(self, name: str) -> float:
         """As the process sees them."""
-        found = self._cases(name, kind=BYTES)
+        found = self.cases[name][self.cases[name]["kind"] == BYTES]
         return float((found["samples"].str[0].astype(float) / found["vertices"]).max())
 
     def version(self, name: str) -> str:
         """The version that was measured."""
-        return str(self._cases(name)["detail"].iloc[0]["version"])
+        return str(self.cases[name]["detail"].iloc[0]["version"])
 
     def trial(self, name: str, bad: str) -> tuple[str, str]:
         """What became of bad input, in a word and in more."""
-        found = self._cases(name, subject=bad)
-        return tuple(found["detail"].iloc[0]["found"]) if len(found) else ("", "")
+        found = self.cases[name].query("subject == @bad")["detail"]
+        return tuple(found.iloc[0]["found"]) if len(found) else ("", "")
 
     def overview(self) -> list[list[str]]:
         """Version, bytes and building, a row for each; the heads first."""
-        rows = [["", "version", "bytes per vertex", "build a vertex", "of ours"]]
+        rows = [["", "version", *NUMBERS]]
         for name in self.names:
             cell, size = self.cell(name, BUILD), self.bytes_per_vertex(name)
             built = duration(cell.seconds / cell.size) if cell else "?"
@@ -151,15 +142,14 @@ class Peers:
 
     def compared(self, title: str) -> list[list[str]]:
         """A group of ``GROUPS``: a row per subject, ours first, and those that have any of it."""
-        shown, texts = [], []
+        subjects, order = GROUPS[title]
+        columns = {"": list(subjects.values())}
         for name in self.names:
-            cells = [self.cell(name, it, order) for it, (_, order) in GROUPS[title].items()]
-            if any(cells):
-                shown.append(PEERS[name].title)
-                texts.append([_text(it, name == OURS) for it in cells])
-        heads = [head for head, _ in GROUPS[title].values()]
-        rows = [list(row) for row in zip(heads, *texts, strict=True)]
-        return [["", *shown], *(row for row in rows if {*row[1:]} - {NONE})]
+            texts = [_text(self.cell(name, it, order), name == OURS) for it in subjects]
+            if {*texts} - {NONE}:
+                columns[PEERS[name].title] = texts
+        rows = map(list, zip(*columns.values(), strict=True))
+        return [list(columns), *(row for row in rows if {*row[1:]} - {NONE})]
 
     def trials(self, in_full: bool = False) -> list[list[str]]:
         """What each library makes of bad input, in a word or with its own; the heads first."""
@@ -177,15 +167,16 @@ def _text(cell: Cell | None, ours: bool) -> str:
     return f"{duration(cell.seconds)} {cell.found}".strip() if ours else cell.text
 
 
-GROUPS: dict[str, dict[str, tuple[str, str]]] = {
-    "Queries, one after the other": {it: (q.title, SINGLE) for it, q in QUERIES.items()},
-    "Queries, all at once": {it: (q.title, BULK) for it, q in QUERIES.items()},
-    "Queries, in a compiled loop": {it: (q.title, LOOPED) for it, q in QUERIES.items()},
-    "Operations, one after the other": {it: (title, SINGLE) for it, title in OPERATIONS.items()},
-    "Operations, all at once": {it: (title, BULK) for it, title in OPERATIONS.items()},
-    "Operations, in a compiled loop": {it: (OPERATIONS[it], LOOPED) for it in BATCHED},
-    "Algorithms": {it: (title, "") for it, title in ALGORITHMS.items()},
-    "Algorithms of Sieger & Botsch, compiled": {it: (title, LOOPED) for it, title in SIX.items()},
+QUESTIONS = QUERIES_TABLE.subjects
+GROUPS: dict[str, tuple[Mapping[str, str], str]] = {
+    "Queries, one after the other": (QUESTIONS, SINGLE),
+    "Queries, all at once": (QUESTIONS, BULK),
+    "Queries, in a compiled loop": (QUESTIONS, LOOPED),
+    "Operations, one after the other": (OPERATIONS, SINGLE),
+    "Operations, all at once": (OPERATIONS, BULK),
+    "Operations, in a compiled loop": ({it: OPERATIONS[it] for it in BATCHED}, LOOPED),
+    "Algorithms": (ALGORITHMS, ""),
+    "Algorithms of Sieger & Botsch, compiled": (SIX, LOOPED),
 }
 """By title what is compared: by subject the head of its row, and the order of its cases."""
 READING = (
@@ -211,12 +202,10 @@ def show_peers(folder: Path | None, console: Console) -> None:
     """Print all that was measured of other libraries."""
     peers = _of_folder(folder)
     console.print(f"[bold]{peers.run.folder.name}[/], preset {peers.run.meta.get('preset')}")
-    numbers = "bytes per vertex", "build a vertex", "of ours"
-    show_rows(console, peers.overview(), "Other libraries", numbers)
-    for title in GROUPS:
-        if len(rows := peers.compared(title)) > 1:
-            show_rows(console, rows, title)
-    show_rows(console, peers.trials(), "Bad input")
+    shown = {"Other libraries": peers.overview(), **{it: peers.compared(it) for it in GROUPS}}
+    for title, rows in {**shown, "Bad input": peers.trials()}.items():
+        if len(rows) > 1:
+            show_rows(console, rows, title, NUMBERS)
     console.print(READING, style="dim")
     if peers.absent:
         console.print(f"Not measured: {', '.join(peers.absent)}.", style="dim")
@@ -244,12 +233,13 @@ def peers_as_json(folder: Path | None) -> dict[str, Any]:
 
 
 def _records(peers: Peers, name: str) -> Iterator[dict[str, Any]]:
-    subjects = [(it, order) for group in GROUPS.values() for it, (_, order) in group.items()]
-    for subject, order in [(BUILD, ""), *subjects]:
-        if cell := peers.cell(name, subject, order):
-            outcomes = {sign: it.outcome for sign, it in cell.verdicts.items() if cell.claimed}
-            yield {"subject": subject, "way": order, "seconds": cell.seconds, "found": cell.found,
-                   "vertices": cell.size, "of_ours": cell.ratio, "outcomes": outcomes}  # fmt: skip
+    for subjects, order in (({BUILD: ""}, ""), *GROUPS.values()):
+        for subject in subjects:
+            if cell := peers.cell(name, subject, order):
+                outcomes = {sign: it.outcome for sign, it in cell.verdicts.items() if cell.claimed}
+                yield {"subject": subject, "way": order, "seconds": cell.seconds,
+                       "found": cell.found, "vertices": cell.size, "of_ours": cell.ratio,
+                       "outcomes": outcomes}  # fmt: skip
 
 
 def page_table(rows: Sequence[Sequence[Any]], title: str = "") -> Html:
@@ -273,8 +263,3 @@ def portraits(peers: Peers) -> Html:
     heads = "Library", "As its manual has it used", "What it does beyond ours"
     others = [PEERS[name] for name in peers.names if name != OURS]
     return page_table([heads, *((it.title, it.manual, it.more) for it in others)])
-
-
-def refusals(peers: Peers) -> Html:
-    """What each library makes of bad input, with its own words."""
-    return page_table(peers.trials(in_full=True))

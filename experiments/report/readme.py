@@ -9,10 +9,9 @@ from matplotlib.figure import Figure
 
 from experiments.claims import CLAIMED
 from experiments.harness import OPERATIONS, QUERIES_TABLE, Axis
-from experiments.report import tables, uses
+from experiments.report import pages, tables, uses
 from experiments.report.figures import fracture, growth, memory, meshes
 from experiments.report.notebooks import FRONT, execute, read
-from experiments.report.pages import each_table, or_missing
 from experiments.report.session import read_session, share
 from experiments.runs import Run, in_words
 
@@ -41,12 +40,6 @@ DRAWN: dict[str, tuple[str, Callable[[Run], Figure]]] = {
 }
 """The pictures of the page: by file the title and how it is drawn."""
 
-QUESTION = (
-    "How does the runtime of an indexed mesh differ from that of a half-edge mesh for what dynamic "
-    "applications do, and which should be used where? A thesis answered by counting on paper; here "
-    "its claims are run."
-)
-MADE = "Made by `hem report --page` from a run; README.md has its answers and its table 1."
 MISSING = "*{}*"  # how the page says what was not measured
 
 
@@ -58,33 +51,27 @@ def write_readme(run_folder: Path, folder: Path) -> Path:
     """
     share(session := read_session(run_folder))
     run, claims = session.run, session.claims
-    folder.mkdir(parents=True, exist_ok=True)
-    recommended = partial(uses.recommended_markdown, run)
     told = execute(read(FRONT), FRONT).get("answers", ())
     listed = "\n".join(f"{number}. {it.text}" for number, it in enumerate(told, start=1))
     answers = listed or MISSING.format("This run has measured none.")
-    parts = {
-        "The answers": answers,
-        "How to read the tables": "\n\n".join(tables.legend()),
-        "The run": f"{MADE} {in_words(run)}",
-        "Which structure for which use": or_missing(recommended, MISSING),
-        "Who claims what": tables.markdown_rows(tables.tally_rows(claims)),
-    }
-    parts |= each_table(claims, tables.markdown, MISSING)
+    recommended = pages.or_missing(partial(uses.recommended_markdown, run), MISSING)
+    parts = {"Which structure for which use": recommended}
+    parts["Who claims what"] = tables.markdown_rows(tables.tally_rows(claims))
+    parts |= pages.each_table(claims, pages.claims_markdown, MISSING)
     for kind in CLAIMED:
-        parts[f"In sentences: {kind.about}"] = tables.sentences_markdown(claims, kind)
+        parts[f"In sentences: {kind.about}"] = pages.sentences_markdown(claims, kind)
+    folder.mkdir(parents=True, exist_ok=True)
     for name, (title, draw) in DRAWN.items():
         picture = partial(_draw, run, draw, folder / f"{name}.png", title)
-        parts[title] = or_missing(picture, MISSING)
-    text = "\n\n".join(f"## {title}\n\n{part}" for title, part in parts.items())
-    page = folder / "README.md"
-    page.write_text(f"# Does the thesis hold?\n\n{QUESTION}\n\n{text}\n", "utf-8")
+        parts[title] = pages.or_missing(picture, MISSING)
+    facts = {"answers": answers, "legend": tables.legend(), "about": in_words(run)}
+    (folder / "README.md").write_text(pages.page("readme.md.j2", parts=parts, **facts), "utf-8")
     readme = folder.parent / "README.md"
     if readme.exists():
         table = f"{parts[QUERIES_TABLE.title]}\n\n{' '.join(tables.legend())}"
         text = _filled(readme.read_text("utf-8"), "answer", answers)
         readme.write_text(_filled(text, "table", table), "utf-8")
-    return page
+    return folder / "README.md"
 
 
 def _filled(text: str, name: str, part: str) -> str:

@@ -11,8 +11,8 @@ from importlib.resources import files
 from experiments.claims import SENTENCES, JudgedClaim, Kind
 from experiments.claims.errata import ERRATA
 from experiments.report.notebooks import page_titles
-from experiments.report.pages import Html, text_table
-from experiments.report.session import claim_link, link
+from experiments.report.pages import Html, part, text_table
+from experiments.report.session import link
 
 NOT_OF_SECTIONS = r"table \d+|errat(?:um|a) \d+"
 """Numbers in a source that are not those of sections."""
@@ -63,20 +63,9 @@ def _row(section: Section, printed: Sequence[JudgedClaim]) -> tuple[str, str, Ht
     mine = [it for it in printed if section.of in cited(it.claim.source)]
     said = [it for it in mine if it.claim.table == SENTENCES]
     cells = Counter(it.mark for it in mine if it.claim.table != SENTENCES)
-    chapter = Html('<a href="{}">{}</a>').format(
-        link(section.chapter), page_titles()[section.chapter]
-    )
-    where = Html("<br>").join([chapter, *map(Html("<code>{}</code>").format, section.done)])
-    line = Html('{} <a href="{}">{}</a>').format
-    became = [line(it.mark, claim_link(it.claim.key), it.claim.text) for it in said]
-    if cells:
-        counted = ", ".join(f"{count} {mark}" for mark, count in cells.items())
-        became.append(Html("cells of its tables: {}").format(counted))
-    numbered = [f"{number}. {it.title}" for number, it in enumerate(ERRATA, start=1)]
     sources = [re.sub("^quoted in ", "", it.source) for it in ERRATA]
-    wrong = [it for it, by in zip(numbered, sources, strict=True) if section.of in cited(by)]
-    if wrong:
-        listed = Html("<br>").join(wrong)
-        became.append(Html('<a href="{}">errata</a>:<br>{}').format(link("errata"), listed))
+    wrong = [k for k, source in enumerate(sources) if section.of in cited(source)]
+    became = part("became", said, cells, {k + 1: ERRATA[k].title for k in wrong})
+    where = part("done", page_titles()[section.chapter], link(section.chapter), section.done)
     number = section.of if section.of[0].isdigit() else ""
-    return f"{number} {section.title}", section.says, where, Html("<br>").join(became or ["–"])
+    return f"{number} {section.title}", section.says, where, became

@@ -3,6 +3,7 @@
 import os
 from contextlib import suppress
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +22,12 @@ class MissingError(ValueError):
     def _render_traceback_(self) -> list[str]:
         """What a notebook shows of it."""
         return [str(self)]
+
+
+def require(there: Any, what: str) -> None:
+    """Raise MissingError where a run has not done ``what``: there are no rows, or it is false."""
+    if not there:
+        raise MissingError(f"This run has not {what}.")
 
 
 @dataclass
@@ -96,9 +103,8 @@ def link(page: str, anchor: str = "") -> str:
     return f"{page}.html#{anchor}" if anchor else f"{page}.html"
 
 
-def claim_link(key: str) -> str:
-    """Where a link to a claim leads."""
-    return link("index", key)
+claim_link = partial(link, "index")
+"""Where a link to a claim leads, by its key."""
 
 
 def claim_file(judged: JudgedClaim) -> str:

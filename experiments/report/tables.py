@@ -2,7 +2,7 @@
 
 import re
 from collections import Counter
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +16,6 @@ from experiments.claims import (
     NO_CLAIM,
     NOT_POSSIBLE,
     SENTENCES,
-    Between,
     JudgedClaim,
     Kind,
     Outcome,
@@ -155,16 +154,6 @@ def by_subject(
     return columns, rows
 
 
-def _texts(
-    claims: Iterable[JudgedClaim], name: str, head: str, cell: Callable[[JudgedClaim], str]
-) -> list[list[str]]:
-    """The same as texts, the heads first; ``head``: the attribute that names a structure."""
-    columns, rows = by_subject(claims, name)
-    heads = ["", *(getattr(NAMED[it], head) for it in columns)]
-    cells = ([cell(row[it]) if it in row else "" for it in columns] for row in rows.values())
-    return [heads, *([title, *row] for title, row in zip(rows, cells, strict=True))]
-
-
 def show_claims(
     run_folder: Path, console: Console, every: bool = False, slopes: bool = False
 ) -> None:
@@ -178,7 +167,10 @@ def show_claims(
             if slopes:
                 _show_slopes(console, mine)
             else:
-                show_rows(console, _texts(mine, name, "abbreviation", _cell))
+                columns, rows = by_subject(mine, name)
+                heads = ["", *(NAMED[it].abbreviation for it in columns)]
+                shown = [[it, *(_cell(row.get(at)) for at in columns)] for it, row in rows.items()]
+                show_rows(console, [heads, *shown])
             console.print(_summary(mine), highlight=False)
     if (seen := noise(run)).too_busy:
         console.print(f"[yellow]{seen.words}[/]", highlight=False)
@@ -219,10 +211,10 @@ def _record(judged: JudgedClaim) -> dict[str, Any]:
     return said | {"found": judged.found, "reason": judged.reason, "axes": axes} | costs
 
 
-def _cell(judged: JudgedClaim) -> str:
+def _cell(judged: JudgedClaim | None) -> str:
     """What is claimed, its marks, and what was found where it differs."""
-    if judged.outcome is Outcome.NO_CLAIM:
-        return f"{judged.claim.printed} {judged.found}" if judged.was_measured else ""
+    if judged is None or judged.outcome is Outcome.NO_CLAIM:
+        return f"{judged.claim.printed} {judged.found}" if judged and judged.was_measured else ""
     found = "" if judged.outcome is Outcome.CONSISTENT else f" {judged.found}"
     return f"{judged.claim.printed} {judged.marks}{found}"
 
@@ -251,31 +243,6 @@ def _summary(claims: Sequence[JudgedClaim]) -> str:
     for (kind, measure), counts in tally(claims).items():
         lines.setdefault(kind, []).append(f"{measure} {_counted(kind, counts)}")
     return "\n".join(f"{kind.value}: {', '.join(lines[kind])}" for kind in CLAIMED if kind in lines)
-
-
-def markdown(claims: Iterable[JudgedClaim], name: str) -> str:
-    """A table for a page: what is claimed, its marks, and what was found."""
-
-    def cell(judged: JudgedClaim) -> str:
-        if judged.outcome is Outcome.NO_CLAIM:
-            silent = judged.claim.printed == NO_CLAIM
-            found = f"found {judged.found}" if judged.was_measured else NO_CLAIM
-            return found if silent else f"{judged.claim.printed}, {found}"
-        found = "" if judged.outcome is Outcome.CONSISTENT else f", found {judged.found}"
-        return f"{judged.claim.printed} {judged.marks}{found}"
-
-    return markdown_rows(_texts(claims, name, "title", cell))
-
-
-def sentences_markdown(claims: Iterable[JudgedClaim], kind: Kind) -> str:
-    """The claims of a kind that are sentences, as a table for a page."""
-    rows = []
-    for it in (judged for judged in claims if judged.claim.kind is kind):
-        if isinstance(bounds := it.claim.expects, Between):
-            said = it.claim.text, it.claim.source, bounds.measured, bounds.words
-            rows.append((*said, it.found, f"{it.mark} {it.words}"))
-    heads = "what is said", "where, or why", "measured by", "claimed", "found", ""
-    return markdown_rows([heads, *rows])
 
 
 def duration(seconds: float) -> str:

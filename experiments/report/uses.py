@@ -1,18 +1,23 @@
-"""Which structure for which use: every structure beside the best one, by what decides the use."""
+"""Which structure for which use: every structure beside the best one, by what decides the use.
+
+And advice to play with: sliders for a mesh and a workload, and the structures in order.
+"""
 
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
+from operator import attrgetter
+from typing import Any
 
 import numpy as np
 import pandas as pd
 
-from experiments.advice import ALIKE
+from experiments.advice import ALIKE, PRESETS, Prices
 from experiments.bench_workloads import COMPILED
 from experiments.claims import Curves, curves
-from experiments.harness import QUERIES_TABLE, Axis
-from experiments.report.pages import Html, text_table
-from experiments.report.session import MissingError
+from experiments.harness import Axis
+from experiments.report.pages import Html, page, part, text_table
+from experiments.report.session import MissingError, require
 from experiments.report.tables import digits, duration, markdown_rows
 from experiments.runs import Run
 from hem.contract import QUERIES
@@ -30,20 +35,13 @@ def bytes_per_vertex(measured: Curves, structure: str) -> pd.Series:
 
 def queries(measured: Curves, structure: str) -> pd.Series:
     """The geometric mean of the queries of table 1, in random order."""
-    asked = [it for it in QUERIES_TABLE.subjects if it in QUERIES]
-    costs = [measured.curve(Axis.RANDOM_FACES, structure, it).by_size for it in asked]
-    table = pd.concat(costs, axis=1).dropna()
-    return pd.Series(np.exp(np.log(table.to_numpy(float)).mean(axis=1)), table.index)
+    costs = [measured.curve(Axis.RANDOM_FACES, structure, it).by_size for it in QUERIES]
+    return np.exp(np.log(pd.concat(costs, axis=1).dropna()).mean(axis=1))
 
 
 def workload(name: str) -> Costs:
     """A compiled workload."""
     return lambda measured, it: measured.named("bench_workloads", it, name, COMPILED).by_size
-
-
-def per_vertex(value: float) -> str:
-    """Bytes."""
-    return f"{digits(value)} bytes"
 
 
 @dataclass(frozen=True)
@@ -62,7 +60,12 @@ class Use:
     largest: bool = True
 
 
-weighed = partial(Use, compared="bytes per vertex", costs=bytes_per_vertex, written=per_vertex)
+weighed = partial(
+    Use,
+    compared="bytes per vertex",
+    costs=bytes_per_vertex,
+    written=lambda it: f"{digits(it)} bytes",
+)
 EIGHT = "the eight queries of table 1, asked at random"
 
 USES = {
@@ -102,18 +105,13 @@ def beside(run: Run, one: str, other: str) -> Html:
         for query in QUERIES
     }
     ratios = pd.DataFrame({query: a / b for query, (a, b) in costs.items()}).dropna()
-    if ratios.empty or run.machines:
-        raise MissingError("This run has not measured the queries of both on the same mesh.")
+    there = len(ratios) and not run.machines
+    require(there, "measured the queries of both on the same mesh")
     vertices, found = ratios.index[-1], ratios.iloc[-1]
     faster, slower = (found < 1 / ALIKE).sum(), (found > ALIKE).sum()
     titles = [REGISTRY[it].title for it in (one, other)]
-    per_one, per_other = (f"{measured.bytes_per_vertex(it):.4g}" for it in (one, other))
-    return Html(
-        f"<p>On {vertices:,} vertices, asked at random, {titles[0]} answers {faster} of "
-        f"{len(found)} queries faster than {titles[1]}, {slower} slower, and the others within a "
-        f"tenth. It takes {per_one} bytes per vertex, {titles[1]} {per_other} (references of 8 "
-        f"bytes).</p>"
-    )
+    sizes = [measured.bytes_per_vertex(it) for it in (one, other)]
+    return part("beside", vertices, titles, faster, slower, len(found), sizes)
 
 
 def by_valence(run: Run) -> pd.DataFrame:
@@ -129,8 +127,7 @@ def by_valence(run: Run) -> pd.DataFrame:
         table = pd.DataFrame(costs).dropna()
         for place in (0, len(table) // 2, -1) if len(table) > 2 else ():
             rows[query, int(table.index[place])] = table.iloc[place]
-    if not rows:
-        raise MissingError("This run has not measured queries by valence.")
+    require(rows, "measured queries by valence")
     return pd.DataFrame(rows).T
 
 
@@ -177,6 +174,39 @@ def _rows(run: Run, bold: str, pair: str) -> list[tuple[str, str, str, str]]:
             words.append(pair.format(bold.format(title) if ratio <= ALIKE else title, beside))
         if words:
             rows.append((use.title, use.compared, f"{found.name:,}", Html(" · ".join(words))))
-    if not rows:
-        raise MissingError("This run has not measured what decides between structures.")
+    require(rows, "measured what decides between structures")
     return rows
+
+
+SLID = attrgetter("what", "times", "share_of_faces", "per_frame", "in_order", "edits")
+"""What ``advice.js`` needs of a row of a workload."""
+POINTS = 9
+"""Sizes that prices are given at; between them their logarithms follow straight lines."""
+
+
+def advice_sliders(run: Run) -> Html:
+    """The prices of a run, for what the presets count, on a page; MissingError without them."""
+    prices = Prices(run)
+    low, high = prices.measured
+    require(low < high and not run.machines, "measured what advice rests on")
+    sizes = np.geomspace(low, high, POINTS)
+    whats = sorted({row.what for it in PRESETS.values() for row in it.rows})
+    try:
+        structures = [_prices(prices, name, whats, sizes) for name in REGISTRY]
+    except KeyError as error:
+        raise MissingError(f"This run cannot advise: {error.args[0]}.") from error
+    presets = [
+        {"title": it.title, "frames": it.frames, "rows": list(map(SLID, it.rows))}
+        for it in PRESETS.values()
+    ]
+    data = {"sizes": sizes.tolist(), "structures": structures, "workloads": presets}
+    return page("sliders.html.j2", data=data)
+
+
+def _prices(prices: Prices, name: str, whats: list[str], sizes: Any) -> dict[str, Any]:
+    """Seconds by what is asked: at random and in order, at each size."""
+    costs = {}
+    for what in whats:
+        priced = [[prices.price(name, what, n, it).seconds for n in sizes] for it in (0.0, 1.0)]
+        costs[what] = [[float(f"{it:.3g}") for it in seconds] for seconds in priced]
+    return {"title": REGISTRY[name].title, "costs": costs}

@@ -8,18 +8,10 @@ cluster (``runs.cluster``) is asked for by name.
 from experiments.runs.catalog import experiments, tables
 from experiments.runs.provenance import describe, git, machine, machine_id
 from experiments.runs.run import PEER_RUNS, RUNS, Run, in_words, latest, load, noise
-from experiments.runs.store import (
-    CannotWriteError,
-    CaseFile,
-    DamagedError,
-    InUseError,
-    ResultsError,
-    read_meta,
-    write_meta,
-)
+from experiments.runs.store import CannotWriteError, CaseFile, ResultsError, read_meta, write_meta
 
 __all__ = [
-    "PEER_RUNS", "RUNS", "CannotWriteError", "CaseFile", "DamagedError", "InUseError",
-    "ResultsError", "Run", "describe", "experiments", "git", "in_words", "latest", "load",
-    "machine", "machine_id", "noise", "read_meta", "tables", "write_meta",
+    "PEER_RUNS", "RUNS", "CannotWriteError", "CaseFile", "ResultsError", "Run", "describe",
+    "experiments", "git", "in_words", "latest", "load", "machine", "machine_id", "noise",
+    "read_meta", "tables", "write_meta",
 ]  # fmt: skip

@@ -8,14 +8,16 @@ takes seconds to begin.
 import hashlib
 import os
 import shutil
-from collections import Counter, defaultdict
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections import Counter
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from contextlib import closing, contextmanager, suppress
 from dataclasses import asdict
 from datetime import UTC, datetime
 from functools import cache
 from importlib.metadata import version
+from itertools import groupby
+from operator import attrgetter
 from pathlib import Path
 from threading import Event
 from time import monotonic
@@ -155,13 +157,16 @@ def compile_and_count(
     """
     compiled_ones = {name for name, it in REGISTRY.items() if it.compiled}
     timed = [job for job in jobs if job.timed and job.structure in compiled_ones]
-    groups = [it for it in _grouped(timed, "structure") if not _stamp(it).exists()]
-    groups.sort(key=lambda it: it[0].structure != BASE)  # what the others are compared with
+    timed.sort(
+        key=lambda job: (job.structure != BASE, job.structure)
+    )  # the others are compared with it
+    by_structure = (list(it) for _, it in groupby(timed, attrgetter("structure")))
+    groups = [it for it in by_structure if not _stamp(it).exists()]
+    by_experiment = groupby((job for job in jobs if not job.timed), attrgetter("experiment"))
     stop = Event()
     with ThreadPoolExecutor(len(allowed_cores()) or os.cpu_count()) as pool:
         running = {pool.submit(_compile, folder, it, stop): it[0].structure for it in groups}
-        counted = _grouped([job for job in jobs if not job.timed], "experiment")
-        counting = [pool.submit(count, it, stop) for it in counted]
+        counting = [pool.submit(count, list(it), stop) for _, it in by_experiment]
         try:
             for done, future in enumerate(as_completed(running), 1):
                 future.result()
@@ -172,14 +177,6 @@ def compile_and_count(
             stop.set()
             pool.shutdown(cancel_futures=True)
             raise
-
-
-def _grouped(jobs: Iterable[Job], by: str) -> list[list[Job]]:
-    """The jobs of each structure, or of each experiment, in the order of a study."""
-    groups: dict[str, list[Job]] = defaultdict(list)
-    for job in jobs:
-        groups[getattr(job, by)].append(job)
-    return list(groups.values())
 
 
 def _compile(folder: Path, jobs: list[Job], stop: Event) -> None:

@@ -70,8 +70,7 @@ def _mix(seed: int) -> Callable[[Structure], None]:
             asked = s.face_edges(some).values[::3] if query.source == "edge" else some
             getattr(s, query.name)(asked)
             if seed % 2 and step % 5 == 0:
-                faces = rng.choice(n, SPLITS, replace=False)
-                s.split_faces(faces, np.zeros((SPLITS, 3)))
+                s.split_faces(rng.choice(n, SPLITS, replace=False), np.zeros((SPLITS, 3)))
 
     return run
 

@@ -10,10 +10,8 @@ import gc
 import pickle
 import tracemalloc
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from functools import partial
 from time import perf_counter
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -63,106 +61,132 @@ def measure(
     if sizes is not None and (not given.size or np.any(given < 1) or np.any(given % 1)):
         raise ValueError("sizes must be whole numbers, each at least 1")
     changed = _changes(f, make_input(int(given[0]) if given.size else TRIED))  # warms up, too
-    fresh = changed if fresh is None else fresh
+    calls = _Calls(f, make_input, changed if fresh is None else fresh, clock)
     turn = budget / (rounds + 1)
-    own = [int(n) for n in given]
-    chosen = own or _choose_sizes(f, make_input, turn, most, fresh, clock)
-    working_sets = _working_sets(f, make_input, chosen, turn)
-    both = zip(chosen, working_sets, strict=True)
-    plans = [_plan(f, partial(make_input, n), size, fresh, clock) for n, size in both]
+    chosen = [int(n) for n in given] or calls.choose_sizes(turn, most)
+    working_sets = calls.working_sets(chosen, turn)
+    plans = [calls.plan(n, size) for n, size in zip(chosen, working_sets, strict=True)]
     memory = memory_times(working_sets)
-    samples = _interleaved(f, plans, rounds, clock)
-    ns = np.array(chosen, float)
-    counted = list(np.array(samples) / (ns[:, None] if amortized else 1))
-    return Measured(ns, counted, working_sets, memory)
+    samples, ns = np.array(calls.interleaved(plans, rounds)), np.array(chosen, float)
+    return Measured(ns, list(samples / (ns[:, None] if amortized else 1)), working_sets, memory)
 
 
-@dataclass(frozen=True)
-class _Plan:
+class _Plan(NamedTuple):
     """How one size is sampled."""
 
-    make: Callable[[], Any]
+    n: int
     calls: int
     again: int  # times that each input is used in a pass
     passes: int
     pool: list[Any]  # inputs for all rounds; where there are none, each makes its own
 
-    def sample(self, f: Function, clock: Clock) -> float:
+
+class _Calls(NamedTuple):
+    """Calls of a function; ``fresh``: each gets an input of its own."""
+
+    f: Function
+    make: MakeInput
+    fresh: bool
+    clock: Clock
+
+    def interleaved(self, plans: Sequence[_Plan], rounds: int) -> list[list[float]]:
+        """Samples of each size, all up and down in turn, after a round that does not count."""
+        samples: list[list[float]] = [[] for _ in plans]
+        collecting = gc.isenabled()
+        gc.disable()
+        try:
+            for turn in range(rounds + 1):
+                for row, plan in list(zip(samples, plans, strict=True))[:: 1 - 2 * (turn % 2)]:
+                    row.append(self.sample(plan))
+        finally:
+            if collecting:
+                gc.enable()
+        return [row[1:] for row in samples]
+
+    def sample(self, plan: _Plan) -> float:
         """Seconds per call, of the quickest pass."""
-        passes, inputs = [], (self.pool or [self.make() for _ in range(self.calls)]) * self.again
-        for _ in range(self.passes):
-            own = min(_seconds(None, inputs, clock) for _ in range(2))
-            passes.append(max(_seconds(f, inputs, clock) - own, 1e-9))
+        pool = plan.pool or [self.make(plan.n) for _ in range(plan.calls)]
+        passes, inputs = [], pool * plan.again
+        for _ in range(plan.passes):
+            own = min(self.seconds(inputs, idle=True) for _ in range(2))
+            passes.append(max(self.seconds(inputs) - own, 1e-9))
         return min(passes) / len(inputs)
 
-
-def _interleaved(
-    f: Function, plans: Sequence[_Plan], rounds: int, clock: Clock
-) -> list[list[float]]:
-    """Samples of each size, rounds of all up and down in turn, after one that does not count."""
-    samples: list[list[float]] = [[] for _ in plans]
-    collecting = gc.isenabled()
-    gc.disable()
-    try:
-        for turn in range(rounds + 1):
-            for row, plan in list(zip(samples, plans, strict=True))[:: 1 - 2 * (turn % 2)]:
-                row.append(plan.sample(f, clock))
-    finally:
-        if collecting:
-            gc.enable()
-    return [row[1:] for row in samples]
-
-
-def _seconds(f: Function | None, inputs: Sequence[Any], clock: Clock) -> float:
-    """What calls take together, the freeing of answers included; or no calls: timer and loop."""
-    if f is None:
+    def seconds(self, inputs: Sequence[Any], idle: bool = False) -> float:
+        """What calls take together, the freeing of answers included; or idle: timer and loop."""
+        f, clock = self.f, self.clock
         begin = clock()
-        for _ in inputs:
-            pass
+        if idle:
+            for _ in inputs:
+                pass
+        else:
+            for it in inputs:
+                f(it)
         return clock() - begin
-    begin = clock()
-    for it in inputs:
-        f(it)
-    return clock() - begin
 
+    def seconds_of_one(self, n: int) -> Array:
+        """(2,) what an input takes, and a call: of two, as one that was disturbed says little."""
+        taken = []
+        for _ in range(2):
+            begin = self.clock()
+            it = self.make(n)
+            made = self.clock()
+            self.f(it)
+            taken.append((made - begin, self.clock() - made))
+            del it
+        return np.min(taken, axis=0)
 
-def _plan(f: Function, make: Callable[[], Any], size: float, fresh: bool, clock: Clock) -> _Plan:
-    """As many calls as a clock needs, on inputs that caches hold; few are learned by heart."""
-    made, call = np.min([_seconds_of_one(f, make, clock) for _ in range(2)], axis=0)
-    call = max(call, 1e-9)
-    each_round = fresh or made < call
-    most = PASS * LONGER / (made + call if each_round else max(made / LONGER, call))
-    calls = int(np.clip(min(BATCH / size, most), 1, MOST_CALLS))
-    again = 1 if fresh else int(np.clip(PASS / (calls * call), 1, MOST_CALLS))
-    passes = PASSES if not fresh and calls * call <= PASS * LONGER else 1
-    return _Plan(make, calls, again, passes, [] if each_round else [make() for _ in range(calls)])
+    def plan(self, n: int, size: float) -> _Plan:
+        """As many calls as a clock needs, on inputs that caches hold; few are learned by heart."""
+        made, call = np.maximum(self.seconds_of_one(n), (0, 1e-9))
+        each_round = self.fresh or made < call
+        most = PASS * LONGER / (made + call if each_round else max(made / LONGER, call))
+        calls = int(np.clip(min(BATCH / size, most), 1, MOST_CALLS))
+        again = 1 if self.fresh else int(np.clip(PASS / (calls * call), 1, MOST_CALLS))
+        passes = PASSES if not self.fresh and calls * call <= PASS * LONGER else 1
+        return _Plan(
+            n, calls, again, passes, [] if each_round else list(map(self.make, [n] * calls))
+        )
 
+    def choose_sizes(self, turn: float, most: int) -> list[int]:
+        """Sizes of equal ratio, up to where a turn of all of them takes as long as it may."""
+        n, tried = FIRST, list[tuple[int, float]]()
+        while not tried or tried[-1][0] < most:
+            made, call = self.seconds_of_one(n)
+            tried.append((n, float(call + made * (1 if self.fresh else 0.1))))
+            if len(tried) > 1 and _seconds_of_turn(tried) > turn:
+                tried.pop()
+                break
+            n = min(max(n + 1, round(n * (STEP if n < FAR else WIDER))), most)
+        low, high = _ends(tried)
+        return [int(size) for size in np.unique(np.geomspace(low, high, COUNT).round())]
 
-def _seconds_of_one(f: Function, make: Callable[[], Any], clock: Clock) -> tuple[float, float]:
-    """What an input takes, and what a call."""
-    begin = clock()
-    it = make()
-    made = clock()
-    f(it)
-    end = clock()
-    return made - begin, end - made
+    def working_sets(self, sizes: Sequence[int], longest: float) -> Array:
+        """Bytes of a call by size; beyond what takes longer to be told, they go on as they grew."""
+        told: list[float] = []
+        for n in sizes:
+            begin = perf_counter()
+            told.append(self.working_set(n))
+            if perf_counter() - begin > longest:
+                break
+        known, few = np.array(sizes[: len(told)], float), slice(-4, None)
+        grown = slope(known[few], np.array(told[few])) if told[1:] else 1
+        rest = np.array(sizes[len(told) :], float) / known[-1]
+        return np.concatenate([told, told[-1] * rest**grown])
 
-
-def _choose_sizes(
-    f: Function, make_input: MakeInput, turn: float, most: int, fresh: bool, clock: Clock
-) -> list[int]:
-    """Sizes of equal ratio, up to where a turn of all of them takes as long as it may."""
-    n, tried = FIRST, list[tuple[int, float]]()
-    while not tried or tried[-1][0] < most:
-        taken = [_seconds_of_one(f, partial(make_input, n), clock) for _ in range(2)]
-        made, call = np.min(taken, axis=0)  # of two, as one that was disturbed says little
-        tried.append((n, float(call + made * (1 if fresh else 0.1))))
-        if len(tried) > 1 and _seconds_of_turn(tried) > turn:
-            tried.pop()
-            break
-        n = min(max(n + 1, round(n * (STEP if n < FAR else WIDER))), most)
-    low, high = _ends(tried)
-    return [int(size) for size in np.unique(np.geomspace(low, high, COUNT).round())]
+    def working_set(self, n: int) -> int:
+        """Bytes of an input, and of what a call makes beside it; as Python and NumPy tell them."""
+        traced = tracemalloc.is_tracing()
+        if not traced:
+            tracemalloc.start()
+        before, _ = tracemalloc.get_traced_memory()
+        it = self.make(n)
+        tracemalloc.reset_peak()
+        self.f(it)
+        _, peak = tracemalloc.get_traced_memory()
+        if not traced:
+            tracemalloc.stop()
+        return max(peak - before, 1)
 
 
 def _ends(tried: list[tuple[int, float]]) -> tuple[int, int]:
@@ -189,34 +213,3 @@ def _changes(f: Function, it: Any) -> bool:
         return True
     f(it)
     return pickle.dumps(it) != before
-
-
-def _working_sets(
-    f: Function, make_input: MakeInput, sizes: Sequence[int], longest: float
-) -> Array:
-    """Bytes of a call by size; beyond what takes longer to be told, they go on as they grew."""
-    told: list[float] = []
-    for n in sizes:
-        begin = perf_counter()
-        told.append(_working_set(f, make_input, n))
-        if perf_counter() - begin > longest:
-            break
-    few = slice(-4, len(told))
-    grown = slope(np.array(sizes, float)[: len(told)][few], np.array(told[few])) if told[1:] else 1
-    rest = np.array(sizes[len(told) :], float) / sizes[len(told) - 1]
-    return np.concatenate([told, told[-1] * rest**grown])
-
-
-def _working_set(f: Function, make_input: MakeInput, n: int) -> int:
-    """Bytes of an input, and of what a call makes beside it; as Python and NumPy tell them."""
-    traced = tracemalloc.is_tracing()
-    if not traced:
-        tracemalloc.start()
-    before, _ = tracemalloc.get_traced_memory()
-    it = make_input(n)
-    tracemalloc.reset_peak()
-    f(it)
-    _, peak = tracemalloc.get_traced_memory()
-    if not traced:
-        tracemalloc.stop()
-    return max(peak - before, 1)

@@ -9,7 +9,7 @@ from experiments import bench_picking
 from experiments.bench_picking import NEIGHBORS, Picker, aimed
 from experiments.harness import BASE, time_rounds
 from experiments.presets import PRESETS
-from experiments.report.figures import picking
+from experiments.report.figures import real_time
 from experiments.report.session import MissingError
 from experiments.runs import CaseFile, describe, load, write_meta
 
@@ -78,4 +78,4 @@ def test_without_the_package_no_ray_is_cast_and_the_chapter_says_why(monkeypatch
     write_meta(tmp_path, describe("smoke"))
     CaseFile(tmp_path, "bench_picking", BASE).add(*measured)
     with pytest.raises(MissingError, match="warp-lang, which is not installed"):
-        picking.in_words(load(tmp_path))
+        real_time.picks_in_words(load(tmp_path))

@@ -3,5 +3,4 @@
 ``growth`` draws costs by size and ``claims`` a figure per claim; ``memory``, ``history`` and
 ``accuracy`` are plots as well; ``meshes`` and ``fracture`` are pictures. ``drawings`` shows what
 structures record, as ``records`` reads it from them, and ``class_diagram`` the thesis' classes.
-``sliders`` is advice to play with.
 """

@@ -128,19 +128,17 @@ def _draw_values(axes: Axes, values: Array, bounds: Between) -> None:
 
 def data(session: Session, judged: JudgedClaim) -> str:
     """What a claim was judged by, and who claims it, as comma-separated values; in seconds."""
-    bounds = judged.claim.expects
+    of_run, bounds = curves(session.run), judged.claim.expects
     if judged.verdicts:
-        of_run = curves(session.run)
         table = pd.concat([_cases(of_run.of(judged.claim, it), it) for it in judged.verdicts])
     elif isinstance(bounds, Between):
         table = pd.DataFrame({"value": judged.values, "low": bounds.low, "high": bounds.high})
     else:
-        cases = curves(session.run).memory(judged.claim.structure).cases
-        rows = []
-        for case in cases.to_dict("records"):
-            sizes = {**case["detail"].get("fields", {}), "all": case["samples"][0]}
-            about = case["vertices"], case["reference_bytes"]
-            rows += [(*about, field, int(size)) for field, size in sizes.items()]
+        rows = [
+            (it["vertices"], it["reference_bytes"], field, int(size))
+            for it in of_run.memory(judged.claim.structure).cases.to_dict("records")
+            for field, size in {**it["detail"].get("fields", {}), "all": it["samples"][0]}.items()
+        ]
         table = pd.DataFrame(rows, columns=["vertices", "reference_bytes", "field", "bytes"])
     table["claimed"] = judged.claim.kind.value
     return table.to_csv(index=False, lineterminator="\n", float_format="%.6g")

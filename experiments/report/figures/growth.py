@@ -15,7 +15,7 @@ from experiments.bench_workloads import COMPILED, WORKLOADS
 from experiments.claims import MIXES, break_even, curves
 from experiments.harness import ANSWERING, Axis
 from experiments.report import style
-from experiments.report.session import MissingError
+from experiments.report.session import require
 from experiments.report.style import BLUE, GRAY, RED, STYLES, Plot
 from experiments.runs import Run
 from hem.contract import QUERIES
@@ -83,8 +83,7 @@ def _draw(
                 # Numbers also between the decades, where there is no whole one to be seen.
                 marks = (1.0,) if high / low * margin**2 > 30 else (1.0, 2.0, 5.0)
                 axes.yaxis.set_major_locator(LogLocator(subs=marks))
-        if not any(map(style.labeled, every)):
-            raise MissingError(f"This run has not measured {what}.")
+        require(any(map(style.labeled, every)), f"measured {what}")
         if layout.get("sharey"):  # what lies below the lines does not count
             low, high = _heights(*every)
             every[0].set_ylim(low / 2.2, high * 2.2)

@@ -7,7 +7,7 @@ import pandas as pd
 from matplotlib.axes import Axes
 
 from experiments.claims import Exactly, curves
-from experiments.report.session import MissingError, open_run
+from experiments.report.session import open_run, require
 from experiments.report.style import STYLES, Plot, styled
 from experiments.runs import Run
 from structures import NAMED, REGISTRY
@@ -72,8 +72,7 @@ def references(run: Run) -> Plot:
 
 def _rows(names: list[str], height: float, more: float) -> tuple[Plot, Axes]:
     """A row for each name. Raises MissingError if there is none."""
-    if not names:
-        raise MissingError("This run has not measured memory.")
+    require(names, "measured memory")
     plot = Plot(figsize=(11, height * len(names) + more), layout="constrained")
     axes = plot.subplots()
     axes.set_yticks(range(len(names)), names)

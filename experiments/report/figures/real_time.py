@@ -1,16 +1,18 @@
-"""Single edits as they come: a run in, distributions out."""
+"""What counts in real time: single edits as they come, picking, and what a mesh weighs."""
 
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
+from experiments.bench_picking import FOLLOWING, NEIGHBORS, RAY, REBUILT, REFITTED
 from experiments.bench_real_time import COMPACT, EDITS, GROWING, RESERVED
 from experiments.report import style
 from experiments.report.comparisons import bytes_held
-from experiments.report.pages import Heads, Html, numbers
-from experiments.report.session import MissingError
-from experiments.report.style import STYLES, Plot
+from experiments.report.figures.growth import draw_lines, timed
+from experiments.report.pages import Heads, Html, numbers, part
+from experiments.report.session import MissingError, require
+from experiments.report.style import BLUE, GRAY, RED, STYLES, Plot
 from experiments.report.tables import count, duration
 from experiments.runs import Run
 from structures import NAMES, REGISTRY
@@ -18,9 +20,17 @@ from structures import NAMES, REGISTRY
 LABEL = "share of edits that take longer"
 PER_VERTEX = 12 + 12 + 8
 """Bytes of a position, a normal and a texture coordinate."""
+MEGABYTES = "{:.3g} MB".format
 MOST_OF_16_BITS = 1 << 16
 FRAME = 1 / 60
 """Seconds between two frames, which a monitor shows in 16.7 ms."""
+WAYS = {
+    f"{RAY}, {REBUILT}": {"label": "a ray, tree rebuilt", "color": GRAY, "linestyle": "-"},
+    f"{RAY}, {REFITTED}": {"label": "a ray, tree refitted", "color": GRAY, "linestyle": ":"},
+    f"{FOLLOWING}, {REBUILT}": {"label": "rebuilt after an edit", "color": RED},
+    f"{FOLLOWING}, {REFITTED}": {"label": "refitted after an edit", "color": BLUE},
+}
+"""What of a pick does not depend on the structure, and its lines."""
 
 
 def waits(run: Run) -> Plot:
@@ -30,13 +40,13 @@ def waits(run: Run) -> Plot:
     with style.styled():
         figure, every = style.panels(list(titles.values()), (4.6, 3.2), 2, sharex=True, sharey=True)
         for axes, order in zip(every, titles, strict=True):
-            axes.axvline(1e6 * FRAME, color=style.GRAY, linewidth=1)
+            axes.axvline(1e6 * FRAME, color=GRAY, linewidth=1)
             axes.set(xlabel="time of an edit, µs", ylabel="" if axes is every[1] else LABEL)
             for case in cases[cases["order"] == order].to_dict("records"):
                 slower = np.arange(len(case["samples"]), 0, -1) / len(case["samples"])
                 look = {**STYLES[case["structure"]], "marker": ""}
                 axes.step(1e6 * np.sort(case["samples"]), slower, where="pre", **look)
-        every[0].text(1e6 * FRAME, 1, " a frame", color=style.GRAY, va="top", fontsize=7)
+        every[0].text(1e6 * FRAME, 1, " a frame", color=GRAY, va="top", fontsize=7)
         every[0].legend(loc="upper right", bbox_to_anchor=(0.95, 1), fontsize=7)
     return figure
 
@@ -46,10 +56,9 @@ def frames(run: Run) -> Html:
     rows = []
     for case in _edits(run).to_dict("records"):
         seconds, uploads = np.array(case["samples"]), case["detail"]["uploads"]
-        title, reserved = REGISTRY[case["structure"]].title, case["order"] == RESERVED
-        half, most = np.percentile(seconds, [50, 99])
-        times = half, most, seconds.max(), _in_a_frame(seconds)
-        rows.append((title, case["vertices"], reserved, *times, np.median(uploads), max(uploads)))
+        about = REGISTRY[case["structure"]].title, case["vertices"], case["order"] == RESERVED
+        times = *np.percentile(seconds, [50, 99, 100]), _in_a_frame(seconds)
+        rows.append((*about, *times, np.median(uploads), max(uploads)))
     heads: Heads = {
         "": str, "vertices": count, "room": lambda there: "made" if there else "grows",
         "median": duration, "99 of 100": duration, "longest": duration,
@@ -60,11 +69,43 @@ def frames(run: Run) -> Html:
 
 def compactions(run: Run) -> Html:
     """How long it takes to drop what is dead, at every size."""
-    cases = _cases(run, COMPACT)
-    seconds = cases.assign(seconds=cases["samples"].map(np.median))
-    table = seconds.pivot_table("seconds", "structure", "vertices", sort=False)
+    table = _cases(run, COMPACT).pivot_table("cost", "structure", "vertices", sort=False)
     rows = [(REGISTRY[str(name)].title, *sizes) for name, sizes in table.iterrows()]
     return numbers(rows, {"": str, **{f"{size:,} vertices": duration for size in table.columns}})
+
+
+def picks(run: Run) -> Plot:
+    """The time of each part of a pick by size: what rays take, and the neighbors by structure."""
+    cases = timed(run, "bench_picking", 1e6)
+    require(len(cases), "measured picking")
+    asked = cases["subject"] == NEIGHBORS
+    cases["part"] = cases["subject"] + ", " + cases["order"].fillna("")
+    titles = ["the ray, and following an edit", "the neighbors of what was hit"]
+    with style.styled():
+        figure, every = style.panels(titles, (4.6, 3.2), 2, sharex=True, sharey=True)
+        draw_lines(every[0], cases[~asked], "vertices", "part", WAYS, marker=".")
+        draw_lines(every[1], cases[asked], "vertices", "structure", STYLES)
+        for axes, label in zip(every, ("time, µs", ""), strict=True):
+            axes.set(xlabel=style.VARIABLES["vertices"], ylabel=label)
+        style.finish_panels(figure, every, 0.6)
+    return figure
+
+
+def picks_in_words(run: Run) -> Html:
+    """What a pick and what follows an edit take, at the largest size at which all is known."""
+    cases = timed(run, "bench_picking", 1e6)
+    require(len(cases), "measured picking")
+    table = cases.pivot_table(index="vertices", columns=["subject", "order"], values="cost")
+    rays = [(what, how) for what in (RAY, FOLLOWING) for how in (REBUILT, REFITTED)]
+    known = table.reindex(columns=rays).dropna()
+    if known.empty:
+        left_out = run.skipped[run.skipped["experiment"] == "bench_picking"]
+        reasons = dict.fromkeys(left_out.loc[left_out["subject"] == RAY, "skipped"])
+        raise MissingError(" ".join(["This run has cast no rays.", *reasons]))
+    size = known.index.max()
+    asked = cases[(cases["subject"] == NEIGHBORS) & (cases["vertices"] == size)]
+    neighbors = asked.set_index("structure")["cost"].sort_values()
+    return part("picks", size, *(1e-6 * known.loc[size]), 1e-6 * neighbors)
 
 
 def weights(run: Run) -> Html:
@@ -74,20 +115,15 @@ def weights(run: Run) -> Html:
     per face, of 16 bits where these are enough.
     """
     table = bytes_held(run, 4)
-    if table.empty:
-        raise MissingError("This run has not measured bytes.")
+    require(len(table), "measured bytes")
     rows: list[Any] = []
     every: Any = table.T.items()
     for (family, vertices, faces), sizes in every:
         shown = vertices * PER_VERTEX + faces * 3 * (2 if vertices <= MOST_OF_16_BITS else 4)
-        rows.append((family, vertices, faces, shown, *(shown + sizes)))
-    heads: dict[str, Any] = {"": str, "vertices": count, "faces": count, "renderer": _megabytes}
-    heads |= {f"+ {REGISTRY[str(it)].abbreviation}": _megabytes for it in table}
+        rows.append((family, vertices, faces, shown / 1e6, *((shown + sizes) / 1e6)))
+    heads: dict[str, Any] = {"": str, "vertices": count, "faces": count, "renderer": MEGABYTES}
+    heads |= {f"+ {REGISTRY[str(it)].abbreviation}": MEGABYTES for it in table}
     return numbers(rows, heads)
-
-
-def _megabytes(value: float) -> str:
-    return f"{value / 1e6:.3g} MB" if value == value else "–"
 
 
 def _in_a_frame(seconds: Any) -> str:
@@ -106,9 +142,8 @@ def _edits(run: Run) -> pd.DataFrame:
 
 
 def _cases(run: Run, subject: str) -> pd.DataFrame:
-    mine = run.cases.query("experiment == 'bench_real_time' and subject == @subject")
-    if mine.empty:
-        raise MissingError("This run has not measured single edits.")
+    mine = timed(run, "bench_real_time", 1.0).query("subject == @subject")
+    require(len(mine), "measured single edits")
     place = mine["structure"].map(NAMES.index)
     by = ["place", "vertices", "order"]
     return mine.assign(place=place).sort_values(by, ascending=[True, True, False])

@@ -21,7 +21,7 @@ from experiments.claims.beside import OCTAHEDRON, sound
 from experiments.claims.quantities import QUANTITIES
 from experiments.claims.source_code import code_facts, come_round_tests
 from experiments.harness import Measurement
-from experiments.report.tables import sentences_markdown
+from experiments.report.pages import sentences_markdown
 from experiments.runs import CaseFile, load
 from hem.authoring import kernel
 from tests.experiments.made_runs import BUILD, SIZES, rewrite, write_run

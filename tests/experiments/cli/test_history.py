@@ -11,7 +11,7 @@ from typer.testing import CliRunner
 
 from experiments import cli
 from experiments.regression import Trends, append_run, read_history
-from experiments.report import frame_table, history_tables
+from experiments.report import about_history, frame_table, history_tables
 from experiments.report.figures import history as history_figures
 from experiments.runs import load
 from tests.experiments.histories import CLAIM, MACHINES, line, stepped
@@ -191,7 +191,7 @@ def test_figures_and_page_are_there_for_any_number_of_runs(base, tmp_path, count
     crosses = [it for axes in figure.axes for it in axes.lines if it.get_gid() == "verdict"]
     assert bool(rings) == bool(crosses) == (count == 30)
     history_figures.departures(trends).draw_without_rendering()
-    assert ("three at least" in history_tables.describe_history(trends)) == (count < 3)
+    assert ("three at least" in about_history(trends)) == (count < 3)
     assert ("✓ → ✗" in set(history_tables.changes_frame(trends)["before → after"])) == (count == 30)
     page = frame_table(history_tables.runs_frame(trends))
     assert page.count("<tr") == count + 1
@@ -209,7 +209,7 @@ def _require_labels(figure: Figure) -> None:
 
 def test_without_a_history_there_is_no_figure_but_what_to_do(tmp_path):
     trends = Trends(read_history(tmp_path / "none.jsonl"))
-    assert "hem history add" in history_tables.describe_history(trends)
+    assert "hem history add" in about_history(trends)
     with pytest.raises(ValueError, match="begin with: hem history add"):
         history_figures.by_commit(trends, "vertex_faces")
 

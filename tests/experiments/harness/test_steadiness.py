@@ -73,9 +73,8 @@ def test_a_process_stays_on_one_core_where_it_may():
 
 
 def test_the_calmest_core_is_the_one_that_was_idle(monkeypatch):
-    ticks = iter([{0: 5, 1: 5, 2: 5}, {0: 6, 1: 14, 2: 7}])
-    monkeypatch.setattr(steadiness, "idle_seconds", lambda: next(ticks))
+    monkeypatch.setattr("psutil.cpu_percent", lambda seconds, percpu: [90.0, 10.0, 80.0])
     assert steadiness.calmest([0, 1, 2], seconds=0) == 1
-    monkeypatch.setattr(steadiness, "idle_seconds", dict)
+    monkeypatch.setattr("psutil.cpu_percent", lambda seconds, percpu: [])
     assert steadiness.calmest([0, 1, 2], seconds=0) == 2
     assert set(steadiness.allowed_cores()) <= set(range(os.cpu_count() or 1))

@@ -12,7 +12,7 @@ from experiments.claims import break_even, curves, judge_families, judge_run
 from experiments.harness import OPERATIONS, Axis
 from experiments.report import comparisons, notebooks, pages, uses
 from experiments.report.figures import fracture as pictures
-from experiments.report.figures import growth, memory, picking, real_time
+from experiments.report.figures import growth, memory, real_time
 from experiments.report.session import MissingError, Session, share
 from experiments.report.tables import show_claims
 from experiments.runs import experiments, load, tables
@@ -45,8 +45,8 @@ SHOWN = {
     "frames": lambda run, claims: real_time.frames(run),
     "compactions": lambda run, claims: real_time.compactions(run),
     "weights": lambda run, claims: real_time.weights(run),
-    "picks": lambda run, claims: picking.picks(run),
-    "picks in words": lambda run, claims: picking.in_words(run),
+    "picks": lambda run, claims: real_time.picks(run),
+    "picks in words": lambda run, claims: real_time.picks_in_words(run),
     "shattering": lambda run, claims: comparisons.shattering(run),
     "finding": lambda run, claims: comparisons.face_finding(run),
     "break even": lambda run, claims: comparisons.overtaking(break_even(curves(run))),
@@ -55,8 +55,10 @@ SHOWN = {
     "tally": lambda run, claims: pages.tally(claims),
     "reasons": lambda run, claims: pages.reasons(claims, "queries"),
     **{
-        f"{kind.__name__} of {name}": lambda run, claims, kind=kind, name=name: kind(claims, name)
-        for kind in (pages.verdicts, pages.slopes)
+        f"{kind} of {name}": lambda run, claims, kind=kind, name=name: pages.part(
+            kind, claims, name
+        )
+        for kind in ("verdicts", "slopes")
         for name in tables()
     },
 }

@@ -9,13 +9,12 @@ from rich.console import Console
 
 from experiments.claims import CLAIMED, Kind, Outcome, judge_run
 from experiments.report import comparisons
-from experiments.report.pages import verdicts
+from experiments.report.pages import claims_markdown, verdicts
 from experiments.report.session import share
 from experiments.report.tables import (
     digits,
     duration,
     legend,
-    markdown,
     show_claims,
     tally_rows,
 )
@@ -58,9 +57,9 @@ def test_the_table_fits_80_columns_and_cuts_nothing(run, capsys, every, slopes):
 
 def test_the_tables_as_markdown_have_every_mark(run):
     claims = judge_run(run)
-    text = markdown(claims, "queries")
+    text = claims_markdown(claims, "queries")
     assert "| Bytes per vertex | 36 ✓ | 116 ✓ | 228 ✓ | 228 ✓ |" in text
-    listings = markdown(claims, "listings")
+    listings = claims_markdown(claims, "listings")
     assert "| Split edge | O(1) (✓✓) | O(1) ✓✓ |" in listings
     assert "| Build from a render mesh | O(n_t) ○○ | O(n_t²) ○○ |" in listings
     assert "| Vertex → Faces | O(n_t) ✓✓✓ | O(n_ev) ✓✓✓ |" in text
@@ -76,7 +75,9 @@ def test_what_is_published_and_breaks_what_is_said_of_it_is_violated(tmp_path):
         lambda experiment, _: experiment == "bench_printed",
     )
     claims = judge_run(load(run))
-    assert "| Split edge | O(1) (✓✓) | O(1) ✗✗, found O(n_t) |" in markdown(claims, "listings")
+    assert "| Split edge | O(1) (✓✓) | O(1) ✗✗, found O(n_t) |" in claims_markdown(
+        claims, "listings"
+    )
 
 
 def test_claims_are_counted_by_who_claims_them(run):

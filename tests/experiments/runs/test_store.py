@@ -10,7 +10,8 @@ import pytest
 
 from experiments.harness import Measurement
 from experiments.harness.steadiness import REPEATS
-from experiments.runs import CaseFile, DamagedError, ResultsError, latest, load, write_meta
+from experiments.runs import CaseFile, ResultsError, latest, load, write_meta
+from experiments.runs.store import DamagedError
 from tests.experiments.small_study import damage
 
 DAMAGES = (

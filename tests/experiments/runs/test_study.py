@@ -15,15 +15,13 @@ from experiments.harness.steadiness import REPEATS
 from experiments.runs import (
     CannotWriteError,
     CaseFile,
-    DamagedError,
-    InUseError,
     ResultsError,
     load,
     read_meta,
     study,
     write_meta,
 )
-from experiments.runs.store import case_files, lock_run
+from experiments.runs.store import DamagedError, InUseError, case_files, lock_run
 from experiments.runs.worker import AGAIN, perform
 from tests.experiments.cli.test_cli import hem
 from tests.experiments.made_runs import STEADY
