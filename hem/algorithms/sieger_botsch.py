@@ -127,15 +127,18 @@ def shifted(coordinate: Kernel) -> Kernel:
 
 
 def checking_shift(k: Kernels, operations: Kernels) -> Kernel:
-    """Make ``check(m, plan) -> vertex``: the first that would not be finite any more, or -1."""
+    """Make ``check(m, plan) -> count`` of the vertices that would not be finite any more.
+
+    It goes on after the first, so that the compiler can look at several at once.
+    """
     lives, shift = living_vertex(k), shifted(k["coordinate"])
 
     @kernel
     def check(m: Any, plan: Middle) -> int:
+        count = 0
         for v in range(m.counts[VERTEX_END]):
-            if lives(m, v) and not is_point(shift(m, v, plan)):
-                return v
-        return -1
+            count += int(lives(m, v) and not is_point(shift(m, v, plan)))
+        return count
 
     return check
 
@@ -163,7 +166,7 @@ def center(s: Structure) -> Floats:
     plan = Middle(np.zeros(3), np.zeros(3, np.int64))
     s.run(summing_corners, plan)
     with np.errstate(over="ignore"):
-        if s.run(checking_shift, plan) >= 0:
+        if s.run(checking_shift, plan):
             raise not_finite(s, "center", (s.points - plan.middle).astype(np.float32))
     try:
         s.run(shifting, plan)

@@ -66,3 +66,13 @@ def test_every_element_read_is_counted_once():
     assert counted.accesses == 4
     assert len(counted) == counted.shape[0] == 4
     assert counted.accesses == 4
+
+
+@pytest.mark.parametrize("key", [-1, (-1, 0)])
+def test_what_compiled_code_would_read_elsewhere_is_an_error_where_work_is_counted(key):
+    counted = CountingArray(np.arange(12).reshape(4, 3))
+    with pytest.raises(IndexError, match="lies before the array"):
+        counted[key]
+    with pytest.raises(IndexError, match="lies before the array"):
+        counted[key] = 0
+    assert counted.accesses == 0

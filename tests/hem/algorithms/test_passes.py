@@ -56,6 +56,15 @@ def test_the_center_is_the_mean_of_all_corners() -> None:
     assert np.allclose(algorithms.center(s), 0, atol=1e-6)
 
 
+@pytest.mark.parametrize("name", structures.NAMES)
+def test_nothing_is_centered_where_a_place_would_not_be_finite(name: str) -> None:
+    points = np.array([(3e38, 0, 0), (3e38, 1, 0), (-3e38, 0, 1)], np.float32)
+    s = structures.build(name, hem.TriangleMesh(points, [(0, 1, 2)]))
+    with pytest.raises(hem.MeshError, match="vertices: 2"):
+        algorithms.center(s)
+    assert np.array_equal(s.points, points)
+
+
 @pytest.mark.parametrize("mesh", [CLOSED, OPEN], ids=["closed", "open"])
 def test_normals_are_those_of_trimesh_weighted_by_area(mesh: hem.TriangleMesh) -> None:
     trimesh = pytest.importorskip("trimesh")
