@@ -26,6 +26,7 @@ from hem.algorithms.collapsing import (
 )
 from hem.algorithms.parts import NO_WORK, change, from_smallest, sides_of
 from hem.algorithms.quadrics import WIDTH, add_quadrics
+from hem.arrays import Array, Floats
 from hem.contract import Structure
 from hem.errors import MeshError
 from hem.naming import look_up
@@ -82,19 +83,9 @@ def collapsible(
     longest: float = np.inf,
 ) -> Plan:
     """A plan to begin with, all of it from the triangles, each from its smallest corner."""
-    triangles, n = from_smallest(s.triangles()), len(s.points)
-    edges, _, alone = sides_of(triangles, n)
-    faces, sides = np.nonzero(alone)
-    borders = triangles[faces[:, None], (sides[:, None] + np.arange(3)) % 3]
-    rows = np.zeros((n, ROW))
-    rows[borders[:, :2], BORDER] = 1
-    alive = s.points[s.vertices()].astype(np.float64)
-    middle = (alive.min(axis=0) + alive.max(axis=0)) / 2 if len(alive) else np.zeros(3)
-    np.subtract(s.points, middle, out=rows[:, :3])
-    if measure != SHORTEST_EDGE:
-        add_quadrics(rows, triangles, borders)
-    become = np.zeros((n, 2), np.int32)
-    become[:, INTO] = np.arange(n)
+    edges, middle, rows = _known(s, measure != SHORTEST_EDGE)
+    become = np.zeros((len(rows), 2), np.int32)
+    become[:, INTO] = np.arange(len(rows))
     with np.errstate(over="ignore"):  # what is infinite squared bounds nothing
         bounds = np.square([[error], [longest]])
     return Plan(
@@ -114,3 +105,19 @@ def collapsible(
         queue=queue_for(len(edges)),
         work=NO_WORK,
     )
+
+
+def _known(s: Structure, planes: bool) -> tuple[Array, Floats, Floats]:
+    """(k, 2) ends of edges, (3,) the middle, (n, ROW) what is known of vertices; see ``Plan``."""
+    triangles, n = from_smallest(s.triangles()), len(s.points)
+    edges, _, alone = sides_of(triangles, n)
+    faces, sides = np.nonzero(alone)
+    borders = triangles[faces[:, None], (sides[:, None] + np.arange(3)) % 3]
+    rows = np.zeros((n, ROW))
+    rows[borders[:, :2], BORDER] = 1
+    alive = s.points[s.vertices()].astype(np.float64)
+    middle = (alive.min(axis=0) + alive.max(axis=0)) / 2 if len(alive) else np.zeros(3)
+    np.subtract(s.points, middle, out=rows[:, :3])
+    if planes:
+        add_quadrics(rows, triangles, borders)
+    return edges, middle, rows
