@@ -133,10 +133,8 @@ def across(m: DirectedEdgeRecords, h: int) -> int:
 
 half_edge_exists = steps.recorded(EDGE_END, origin)
 mark = marked.mark_of(origin, tip)
-names, edge_exists = (
-    marked.smaller_of_twins(origin, twin, mark),
-    marked.marked(half_edge_exists, mark),
-)
+edge_exists = marked.marked(half_edge_exists, mark)
+names = marked.smaller_of_twins(origin, twin, mark)
 edge_of = names.here
 
 

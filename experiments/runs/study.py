@@ -157,9 +157,8 @@ def compile_and_count(
     """
     compiled_ones = {name for name, it in REGISTRY.items() if it.compiled}
     timed = [job for job in jobs if job.timed and job.structure in compiled_ones]
-    timed.sort(
-        key=lambda job: (job.structure != BASE, job.structure)
-    )  # the others are compared with it
+    # What the others are compared with comes first.
+    timed.sort(key=lambda job: (job.structure != BASE, job.structure))
     by_structure = (list(it) for _, it in groupby(timed, attrgetter("structure")))
     groups = [it for it in by_structure if not _stamp(it).exists()]
     by_experiment = groupby((job for job in jobs if not job.timed), attrgetter("experiment"))

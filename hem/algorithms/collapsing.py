@@ -82,9 +82,7 @@ class Plan(NamedTuple):
     next: Indices  # (1,): which of them is not in the queue yet
     middle: Floats  # (3,): of the bounding box
     rows: Floats  # (n, ROW): positions, seen from the middle, and more
-    become: (
-        Array  # (n, 2) int32: what a vertex was collapsed into or itself, and how often it moved
-    )
+    become: Array  # (n, 2) int32: what a vertex is part of by now, and how often it moved
     target: Floats  # (3,): where the vertex of a collapse comes to lie
     sum: Floats  # (11,): the quadric of an edge
     queue: Queue
@@ -189,15 +187,12 @@ def keeping_sides(k: Kernels) -> Kernel:
     return keeps_sides
 
 
-def simplifying(k: Kernels, operations: Kernels) -> Kernel:
-    """Make ``simplify_mesh(m, plan) -> 0``."""
-    edge_between = k["edge_between"]
-    keeps_sides, collapse_edge = keeping_sides(k), doing(operations["collapse_edge"])
-    vertex_vertices, set_point, coordinate = k["vertex_vertices"], k["set_point"], k["coordinate"]
+def keeping_short(k: Kernels) -> Kernel:
+    """Make ``keeps_short(m, v, plan)``: whether all neighbors of v lie near the target."""
+    vertex_vertices = k["vertex_vertices"]
 
     @kernel
     def keeps_short(m: Any, v: int, plan: Plan) -> bool:
-        """Whether all neighbors of v lie near enough to the target."""
         if plan.longest[0] == np.inf:
             return True
         for i in range(vertex_vertices(m, v, plan.work.out)):
@@ -208,9 +203,17 @@ def simplifying(k: Kernels, operations: Kernels) -> Kernel:
                 return False
         return True
 
+    return keeps_short
+
+
+def collapsing(k: Kernels, operations: Kernels) -> Kernel:
+    """Make ``collapse(m, a, b, plan) -> vertex``: an edge into its target, or why not."""
+    edge_between, set_point, coordinate = k["edge_between"], k["set_point"], k["coordinate"]
+    keeps_sides, keeps_short = keeping_sides(k), keeping_short(k)
+    collapse_edge = doing(operations["collapse_edge"])
+
     @kernel
     def collapse(m: Any, a: int, b: int, plan: Plan) -> int:
-        """Collapse an edge into its target -> the vertex, or why not."""
         for v in (a, b):
             if not (keeps_sides(m, v, a + b - v, plan) and keeps_short(m, v, plan)):
                 return PASSED_OVER
@@ -231,6 +234,13 @@ def simplifying(k: Kernels, operations: Kernels) -> Kernel:
         plan.become[stays, VERSION] += 1
         plan.become[a + b - stays, INTO] = stays
         return stays
+
+    return collapse
+
+
+def simplifying(k: Kernels, operations: Kernels) -> Kernel:
+    """Make ``simplify_mesh(m, plan) -> 0``."""
+    collapse = collapsing(k, operations)
 
     @kernel
     def simplify_mesh(m: Any, plan: Plan) -> int:

@@ -144,9 +144,8 @@ class _Calls(NamedTuple):
         calls = int(np.clip(min(BATCH / size, most), 1, MOST_CALLS))
         again = 1 if self.fresh else int(np.clip(PASS / (calls * call), 1, MOST_CALLS))
         passes = PASSES if not self.fresh and calls * call <= PASS * LONGER else 1
-        return _Plan(
-            n, calls, again, passes, [] if each_round else list(map(self.make, [n] * calls))
-        )
+        pool = [] if each_round else [self.make(n) for _ in range(calls)]
+        return _Plan(n, calls, again, passes, pool)
 
     def choose_sizes(self, turn: float, most: int) -> list[int]:
         """Sizes of equal ratio, up to where a turn of all of them takes as long as it may."""
