@@ -7,18 +7,17 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from hem.algorithms.arguments import require_mesh
-from hem.algorithms.parts import cornering, cross, locating, unit
+from hem.algorithms.parts import GROUP, cross, gathering, locating, new_group, unit
 from hem.arrays import Array, Floats, Points
-from hem.authoring import Kernel, Kernels, kernel
+from hem.authoring import FACE_END, VERTEX_END, Kernel, Kernels, kernel
 from hem.contract import Structure
 
 
 class Plan(NamedTuple):
-    """The faces to pass over, and where the answers go."""
+    """Where the answers go."""
 
-    faces: Array
-    vertices: Array
     found: Floats  # (n, 3): sums at first, then unit normals
+    group: Array  # see `gathering`
     out: Any
 
 
@@ -44,20 +43,20 @@ def face_normal(k: Kernels) -> Kernel:
 
 def normals(k: Kernels, operations: Kernels) -> Kernel:
     """Make ``find_normals(m, plan) -> 0``. Every structure has the faces in the same order."""
-    corners, normal = cornering(k["face_vertices"]), face_normal(k)
+    gather, normal = gathering(k), face_normal(k)
 
     @kernel
     def find_normals(m: Any, plan: Plan) -> int:
-        found = plan.found
-        for i in range(len(plan.faces)):
-            at = corners(m, plan.faces[i], plan)
-            x, y, z = normal(m, at)
-            for v in at:
-                found[v, 0] += x
-                found[v, 1] += y
-                found[v, 2] += z
-        for i in range(len(plan.vertices)):
-            v = plan.vertices[i]
+        found, group = plan.found, plan.group
+        for begin in range(0, m.counts[FACE_END], GROUP):
+            for i in range(gather(m, begin, plan)):
+                at = group[i, 1], group[i, 2], group[i, 3]
+                x, y, z = normal(m, at)
+                for v in at:
+                    found[v, 0] += x
+                    found[v, 1] += y
+                    found[v, 2] += z
+        for v in range(m.counts[VERTEX_END]):
             found[v, 0], found[v, 1], found[v, 2] = unit(found[v, 0], found[v, 1], found[v, 2])
         return 0
 
@@ -72,5 +71,5 @@ def vertex_normals(s: Structure) -> Points:
     """
     require_mesh(s, "vertex_normals")
     found = np.zeros((len(s.points), 3))
-    s.run(normals, Plan(s.faces(), s.vertices(), found, s.scratch(0)[0]))
+    s.run(normals, Plan(found, new_group(), s.scratch(0)[0]))
     return found.astype(np.float32)

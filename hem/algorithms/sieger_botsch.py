@@ -14,13 +14,16 @@ import numpy as np
 from hem.algorithms.arguments import require_mesh, require_surface
 from hem.algorithms.normals import face_normal
 from hem.algorithms.parts import (
+    GROUP,
     adding,
     change,
-    cornering,
     doing,
+    gathering,
     living_face,
     living_vertex,
     most_faces_at_a_vertex,
+    new_group,
+    none_is_dead,
     not_finite,
     of_vertices,
     tell_moved,
@@ -38,6 +41,7 @@ from hem.authoring import (
     Kernels,
     is_point,
     kernel,
+    live_vertex,
     sums,
     visiting,
 )
@@ -115,13 +119,13 @@ def summing_corners(k: Kernels, operations: Kernels) -> Kernel:
 
 @cache
 def shifted(coordinate: Kernel) -> Kernel:
-    """Make ``shift(m, v, plan) -> x, y, z``, in float32: where a vertex comes to lie."""
+    """Make ``shift(m, v, middle) -> x, y, z``, in float32: where a vertex comes to lie."""
 
     @kernel
-    def shift(m: Any, v: int, plan: Middle) -> tuple[Any, Any, Any]:
-        x = np.float32(coordinate(m, v, 0) - plan.middle[0])
-        y = np.float32(coordinate(m, v, 1) - plan.middle[1])
-        return x, y, np.float32(coordinate(m, v, 2) - plan.middle[2])
+    def shift(m: Any, v: int, middle: tuple[float, float, float]) -> tuple[Any, Any, Any]:
+        x = np.float32(coordinate(m, v, 0) - middle[0])
+        y = np.float32(coordinate(m, v, 1) - middle[1])
+        return x, y, np.float32(coordinate(m, v, 2) - middle[2])
 
     return shift
 
@@ -135,9 +139,9 @@ def checking_shift(k: Kernels, operations: Kernels) -> Kernel:
 
     @kernel
     def check(m: Any, plan: Middle) -> int:
-        count = 0
+        count, middle = 0, (plan.middle[0], plan.middle[1], plan.middle[2])
         for v in range(m.counts[VERTEX_END]):
-            count += int(lives(m, v) and not is_point(shift(m, v, plan)))
+            count += int(lives(m, v) and not is_point(shift(m, v, middle)))
         return count
 
     return check
@@ -145,13 +149,15 @@ def checking_shift(k: Kernels, operations: Kernels) -> Kernel:
 
 def shifting(k: Kernels, operations: Kernels) -> Kernel:
     """Make ``shift_all(m, plan) -> 0``."""
-    lives, shift, set_point = living_vertex(k), shifted(k["coordinate"]), k["set_point"]
+    lives, set_point = live_vertex(k["coordinate"]), k["set_point"]
+    shift = shifted(k["coordinate"])
 
     @kernel
     def shift_all(m: Any, plan: Middle) -> int:
+        all_live, middle = none_is_dead(m), (plan.middle[0], plan.middle[1], plan.middle[2])
         for v in range(m.counts[VERTEX_END]):
-            if lives(m, v):
-                set_point(m, v, shift(m, v, plan))
+            if all_live or lives(m, v):
+                set_point(m, v, shift(m, v, middle))
         return 0
 
     return shift_all
@@ -181,19 +187,22 @@ class Fans(NamedTuple):
 
     of_faces: Array  # (face_end, 3) float32: as long as twice the area
     found: Array  # (n, 3) float32
+    group: Array  # see `gathering`
+    sums: Floats  # (GROUP, 3): of the normals around some vertices
     out: Any
 
 
 def finding_normals(k: Kernels, operations: Kernels) -> Kernel:
     """Make ``find(m, plan) -> 0``."""
-    lives, corners, normal = living_face(k), cornering(k["face_vertices"]), face_normal(k)
+    gather, normal = gathering(k), face_normal(k)
 
     @kernel
     def find(m: Any, plan: Fans) -> int:
-        of_faces = plan.of_faces
-        for f in range(m.counts[FACE_END]):
-            if lives(m, f):
-                of_faces[f, 0], of_faces[f, 1], of_faces[f, 2] = normal(m, corners(m, f, plan))
+        of_faces, group = plan.of_faces, plan.group
+        for begin in range(0, m.counts[FACE_END], GROUP):
+            for i in range(gather(m, begin, plan)):
+                f, corners = group[i, 0], (group[i, 1], group[i, 2], group[i, 3])
+                of_faces[f, 0], of_faces[f, 1], of_faces[f, 2] = normal(m, corners)
         return 0
 
     return find
@@ -211,11 +220,17 @@ def adding_around(k: Kernels, operations: Kernels) -> Kernel:
 
     @kernel
     def add_around(m: Any, plan: Fans) -> int:
-        found = plan.found
-        for v in range(m.counts[VERTEX_END]):
-            if lives(m, v):
-                x, y, z, _ = sums.parts(add_all(m, v, sums.nothing(), plan))
-                found[v, 0], found[v, 1], found[v, 2] = unit(x, y, z)
+        found, total, end = plan.found, plan.sums, m.counts[VERTEX_END]
+        for begin in range(0, end, GROUP):
+            many = min(GROUP, end - begin)
+            for i in range(many):
+                x = y = z = 0.0
+                if lives(m, begin + i):
+                    x, y, z, _ = sums.parts(add_all(m, begin + i, sums.nothing(), plan))
+                total[i, 0], total[i, 1], total[i, 2] = x, y, z
+            for i in range(many):
+                x, y, z = unit(total[i, 0], total[i, 1], total[i, 2])
+                found[begin + i, 0], found[begin + i, 1], found[begin + i, 2] = x, y, z
         return 0
 
     return add_around
@@ -227,8 +242,8 @@ def normals_around(s: Structure) -> Points:
     Cost: ``vertex_faces`` of all. MeshError for polygons.
     """
     require_mesh(s, "normals_around")
-    of_faces = np.zeros((s.face_end, 3), np.float32)
-    plan = Fans(of_faces, np.zeros((len(s.points), 3), np.float32), s.scratch(0)[0])
+    of_faces, found = (np.zeros((n, 3), np.float32) for n in (s.face_end, len(s.points)))
+    plan = Fans(of_faces, found, new_group(), np.zeros((GROUP, 3)), s.scratch(0)[0])
     s.run(finding_normals, plan)
     s.run(adding_around, plan)
     return plan.found

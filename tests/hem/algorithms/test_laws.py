@@ -220,7 +220,7 @@ def test_an_algorithm_that_needs_more_room_than_it_says_is_ended() -> None:
     lambda s: algorithms.remesh(s, float("inf")),
     lambda s: algorithms.remesh(s, "short"),
     lambda s: algorithms.remesh(s, iterations=-1),
-    lambda s: algorithms.impacts(s, [0, 1, 200]),
+    lambda s: algorithms.impacts(s, [0, 1, s.n_faces]),
     lambda s: algorithms.impacts(s, [0.5]),
     lambda s: algorithms.impacts(s, [-1]),
     lambda s: algorithms.impacts(s, 3),
