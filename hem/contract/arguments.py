@@ -8,11 +8,12 @@ from numpy.typing import ArrayLike
 
 from hem.arrays import Array
 from hem.authoring import Refusal
+from hem.engine import kept
 from hem.errors import MeshError
 
 MOST = 1 << 63  # more than any handle
-SPARSE = 64
-"""Names this many times as large as they are many are sorted: by place, each would touch a page."""
+SPARSE = 512
+"""Names this many times as large as they are many are sorted, as bits for all would take longer."""
 NO_POINT = np.zeros((1, 3), np.float32)  # the positions of operations that take none
 
 
@@ -54,18 +55,23 @@ def handles(called: str, values: ArrayLike) -> Array:
 
 
 def any_twice(names: Array) -> bool:
-    """Whether a name of ``names`` (n,) >= 0 comes again. O(n), or O(n log n) if some are large.
-
-    Each writes its place where its name is: one that comes again finds another's. Nothing is read
-    that was not written, so the memory need not be cleared.
-    """
-    places, end = np.arange(len(names)), int(names.max(initial=-1)) + 1
+    """Whether a name of ``names`` (n,) >= 0 comes again. O(n), or O(n log n) if some are large."""
+    end = int(names.max(initial=-1)) + 1
     if end > SPARSE * len(names):
         ordered = np.sort(names)
         return bool((ordered[1:] == ordered[:-1]).any())
-    at = np.empty(end, np.int64)
-    at[names] = places
-    return bool((at[names] != places).any())
+    return bool(_comes_again(names, np.zeros(end // 8 + 1, np.uint8)))
+
+
+@kept
+def _comes_again(names: Array, met: Array) -> bool:
+    """Whether a name comes again; ``met`` has a bit for each."""
+    for name in names:
+        bit = np.uint8(1 << (name & 7))
+        if met[name >> 3] & bit:
+            return True
+        met[name >> 3] |= bit
+    return False
 
 
 def positions(called: str, points: ArrayLike, n: int) -> Array:
@@ -79,11 +85,11 @@ def positions(called: str, points: ArrayLike, n: int) -> Array:
     if given.shape != (n, 3):
         raise MeshError(f"{called} takes one point per handle, ({n}, 3), not {given.shape}")
     with np.errstate(over="ignore"):
-        kept = np.ascontiguousarray(given, np.float32)
-    if not np.isfinite(kept).all():
-        bad = ~np.isfinite(kept).all(axis=1)  # to tell which they are takes five times as long
+        rounded = np.ascontiguousarray(given, np.float32)
+    if not np.isfinite(rounded).all():
+        bad = ~np.isfinite(rounded).all(axis=1)  # to tell which they are takes five times as long
         raise MeshError(Refusal.NOT_FINITE.words, rows=np.flatnonzero(bad))
-    return kept
+    return rounded
 
 
 def refusal(operation: str, args: tuple[Any, ...], point: Any) -> MeshError:

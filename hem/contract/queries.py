@@ -89,11 +89,11 @@ class Queries:
 
         def ask(handles: Any = ALL) -> Any:
             # One integer is the way that programs take a million times: no detours here.
-            handle = int(handles) if type(handles) in NUMPY_INTEGERS else handles
-            if type(handle) is int and -MOST <= handle < MOST:
-                answer = single(handle, address)
-                if len(answer):
+            if type(handles) is int:
+                if 0 <= handles < MOST and len(answer := single(handles, address)):
                     return answer
+            elif type(handles) in NUMPY_INTEGERS:
+                return ask(int(handles))
             return self.ask(name, handles)
 
         return ask
@@ -133,11 +133,11 @@ class Queries:
         take, address = declared.stepping[name].step(pinned, exists), pinned.address
 
         def walk(handles: Any) -> Any:
-            handle = int(handles) if type(handles) in NUMPY_INTEGERS else handles
-            if type(handle) is int and -MOST <= handle < MOST:
-                found = take(handle, address)
-                if found >= 0:
+            if type(handles) is int:
+                if 0 <= handles < MOST and (found := take(handles, address)) >= 0:
                     return found
+            elif type(handles) in NUMPY_INTEGERS:
+                return walk(int(handles))
             return self._walk(name, handles)
 
         return walk
