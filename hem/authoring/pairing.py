@@ -23,9 +23,6 @@ from hem.room import rows
 
 MOST_HALF_EDGES = np.iinfo(np.int32).max
 
-LARGE_BUCKET = 24
-"""Entries from which on a bucket is sorted instead of compared pair by pair."""
-
 
 class Pairing(NamedTuple):
     """How the half-edges of a mesh hang together."""
@@ -47,10 +44,9 @@ def pair_half_edges(mesh: TriangleMesh, room: Array | None = None) -> Pairing:
     """Pair the half-edges of a manifold mesh, with or without borders.
 
     ``room``: at least 24 bytes per triangle that may be overwritten, such as the records that are
-    to be filled next; without one as much is taken for a while, beside 12 to 68 bytes per vertex.
-    Cost O(n_v + n_t), and O(k log k) at a vertex of valence k. Raises NonManifoldError with the
-    elements for an edge in more than two faces, faces that run the same way along an edge and fans
-    that meet in a vertex.
+    to be filled next; without one as much is taken for a while, beside 16 to 100 bytes per vertex.
+    Cost O(n_v + n_t). Raises NonManifoldError with the elements for an edge in more than two faces,
+    faces that run the same way along an edge and fans that meet in a vertex.
     """
     triangles, n_vertices = mesh.triangles, len(mesh.points)
     n_half_edges = 3 * len(triangles)
@@ -110,6 +106,12 @@ def pair_polygons(mesh: PolygonMesh) -> Pairing:
     return Pairing(twin, vertex, (len(here) + int((twin < 0).sum())) // 2)
 
 
+@njit
+def _corners(triangles: Array, f: int) -> tuple[np.uint64, np.uint64, np.uint64]:
+    """Those of a triangle, as indices that need not be looked at for a sign."""
+    return np.uint64(triangles[f, 0]), np.uint64(triangles[f, 1]), np.uint64(triangles[f, 2])
+
+
 @njit(cache=True, nogil=True)
 def number_edges(twin: Array, side: Array) -> None:
     """Number the two sides of every edge: 2k and 2k + 1 for the k-th edge that is met.
@@ -129,12 +131,12 @@ def number_edges(twin: Array, side: Array) -> None:
 def _count(begin: int, end: int, part: int, triangles: Array, counts: Array, firsts: Array) -> None:
     """Per slice: how many half-edges go into each bucket, and the first to leave each vertex."""
     count, first = counts[part], firsts[part]
-    for f in range(begin, end):
-        for i in range(3):
-            a, b = triangles[f, i], triangles[f, (i + 1) % 3]
-            count[min(a, b)] += 1
-            if first[a] < 0:
-                first[a] = 3 * f + i
+    for f in range(end - 1, begin - 1, -1):  # backward: what is written last is the first
+        a, b, c = _corners(triangles, f)
+        count[min(a, b)] += 1
+        count[min(b, c)] += 1
+        count[min(c, a)] += 1
+        first[a], first[b], first[c] = 3 * f, 3 * f + 1, 3 * f + 2
 
 
 @njit(cache=True, nogil=True)
@@ -158,46 +160,37 @@ def _fill_buckets(
     """Enter each half-edge as (larger vertex, half-edge); ~half-edge if it starts at the larger."""
     place = places[part]
     for f in range(begin, end):
-        for i in range(3):
-            a, b = triangles[f, i], triangles[f, (i + 1) % 3]
-            smaller, larger = min(a, b), max(a, b)
-            k = place[smaller]
+        a, b, c = _corners(triangles, f)
+        for start, tip, h in ((a, b, 3 * f), (b, c, 3 * f + 1), (c, a, 3 * f + 2)):
+            smaller, larger = min(start, tip), max(start, tip)
+            k = np.uint64(place[smaller])
             place[smaller] = k + 1
-            twin[3 * f + i] = -1
+            twin[h] = -1
             buckets[k, 0] = larger
-            buckets[k, 1] = 3 * f + i if a < b else ~(3 * f + i)
+            buckets[k, 1] = h if start < tip else ~h
 
 
 @njit(cache=True, nogil=True)
 def _match(begin: int, end: int, part: int, starts: Array, buckets: Array, twin: Array) -> int:
-    """Make twins of the entries with the same larger vertex -> how many pairs; -1 for a fault."""
-    pairs = 0
+    """Make twins of the entries with the same larger vertex -> how many pairs; -1 for a fault.
+
+    ``latest``: by larger vertex the last entry so far, which is of this bucket or of one before.
+    """
+    pairs, latest = 0, np.full(len(starts) - 1, -1, np.int32)
     for v in range(begin, end):
-        bucket = buckets[starts[v] : starts[v + 1]]
-        last = len(bucket)
-        if last >= LARGE_BUCKET:
-            bucket = bucket[np.argsort(bucket[:, 0])]
-        for i in range(last):
-            for j in range(i + 1, last):
-                if bucket[i, 0] == bucket[j, 0]:
-                    if not _make_twins(bucket[i, 1], bucket[j, 1], twin):
-                        return -1
-                    pairs += 1
-                elif last >= LARGE_BUCKET:
-                    break
+        first = starts[v]
+        for k in range(first, starts[v + 1]):
+            larger, h = buckets[k, 0], buckets[k, 1]
+            before, latest[larger] = latest[larger], k
+            if before >= first:
+                g = buckets[before, 1]
+                opposite = (g < 0) != (h < 0)
+                g, h = max(g, ~g), max(h, ~h)
+                if not opposite or twin[g] >= 0:  # in one face more, or another the same way
+                    return -1
+                twin[g], twin[h] = h, g
+                pairs += 1
     return pairs
-
-
-@njit(cache=True, nogil=True)
-def _make_twins(g: int, h: int, twin: Array) -> bool:
-    """Twins must run opposite ways, and neither may have a twin yet."""
-    if (g < 0) == (h < 0):
-        return False
-    g, h = max(g, ~g), max(h, ~h)
-    if twin[g] >= 0 or twin[h] >= 0:
-        return False
-    twin[g], twin[h] = h, g
-    return True
 
 
 @njit(cache=True, nogil=True)
@@ -214,9 +207,9 @@ def _walk_fans(
         h = start
         while h >= 0:  # clockwise
             reached += 1
-            h = twin[h]
+            h = twin[np.uint64(h)]
             if h >= 0:
-                h += 1 if h % 3 < 2 else -2
+                h += 1 - 3 * (h % 3 == 2)
             if h == start:
                 break
         if h < 0 <= start:  # the border was met, so the rest lies counterclockwise
