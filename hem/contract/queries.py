@@ -89,11 +89,11 @@ class Queries:
 
         def ask(handles: Any = ALL) -> Any:
             # One integer is the way that programs take a million times: no detours here.
-            if type(handles) is int:
-                if 0 <= handles < MOST and len(answer := single(handles, address)):
+            kind = type(handles)
+            if kind is int or kind in NUMPY_INTEGERS:
+                handle = handles if kind is int else int(handles)
+                if 0 <= handle < MOST and len(answer := single(handle, address)):
                     return answer
-            elif type(handles) in NUMPY_INTEGERS:
-                return ask(int(handles))
             return self.ask(name, handles)
 
         return ask
@@ -133,11 +133,11 @@ class Queries:
         take, address = declared.stepping[name].step(pinned, exists), pinned.address
 
         def walk(handles: Any) -> Any:
-            if type(handles) is int:
-                if 0 <= handles < MOST and (found := take(handles, address)) >= 0:
+            kind = type(handles)
+            if kind is int or kind in NUMPY_INTEGERS:
+                handle = handles if kind is int else int(handles)
+                if 0 <= handle < MOST and (found := take(handle, address)) >= 0:
                     return found
-            elif type(handles) in NUMPY_INTEGERS:
-                return walk(int(handles))
             return self._walk(name, handles)
 
         return walk
