@@ -15,3 +15,9 @@ Points = NDArray[np.floating[Any]]
 Triangles = NDArray[np.int32]  # (n, 3): the corners of triangles, counterclockwise from outside
 Indices = NDArray[np.int64]  # indices of elements, computed from a mesh
 Handles = NDArray[np.int32]  # handles of vertices or faces, as queries answer them
+
+
+def each_once(values: Array) -> Array:
+    """(k,): the values, ascending, each once. `np.unique` hashes them, which takes far longer."""
+    ordered = np.sort(values, axis=None)
+    return ordered[np.flatnonzero(np.append(True, ordered[1:] != ordered[:-1])[: len(ordered)])]

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple, Protocol, overload
 import numpy as np
 from numpy.typing import ArrayLike
 
-from hem.arrays import Array, Handles, Indices, Points
+from hem.arrays import Array, Handles, Indices, Points, each_once
 from hem.authoring import (
     EDGES,
     ELEMENTS,
@@ -172,7 +172,7 @@ class Queries:
     def edges(self) -> Indices:
         """(n_edges,): each undirected edge once, ascending; searched for if none is recorded."""
         recorded = self._state.storage.edges(self._state.records)
-        return np.unique(self.ask("face_edges").values) if recorded is None else recorded
+        return each_once(self.ask("face_edges").values) if recorded is None else recorded
 
     def count_edges(self) -> int:
         """Search for the edges where their number is not known yet; operations keep it up."""

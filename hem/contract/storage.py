@@ -63,7 +63,7 @@ class Storage:
         """(n_edges,): the handles of all live edges, ascending; None if none is recorded."""
         if self._step is not None:
             h = self.live(records, "half_edge")
-            return h[self._step("edge", records, h) == h]
+            return h[np.flatnonzero(self._step("edge", records, h) == h)]
         recorded = any(it.element == "edge" for it in self.fields)
         return self.live(records, "edge") if recorded else None
 

@@ -93,15 +93,18 @@ def perform(address: int) -> int:
 
 def batch(handles: Array, offsets: Array, values: Array, width: int, *arrays: Array) -> Array:
     """Many handles into offsets and values."""
-    m, room = _RECORDS(*_OWN(arrays)), _BORROWED(values)
-    end = 0
-    for i in range(len(handles)):
-        offsets[i] = end
-        if end + width > len(values):
+    m = _RECORDS(*_OWN(arrays))
+    i, end = 0, 0
+    while i < len(handles):
+        room = _BORROWED(values)  # nothing but this in the loop, or references to it are counted
+        while i < len(handles) and end + width <= len(values):
+            offsets[i] = end
+            end += _KERNEL(m, handles[i], room[end:])
+            i += 1
+        if i < len(handles):
             grown = np.empty(2 * len(values) + width, values.dtype)
             move(values[:end], grown, 0)  # to compile an assignment of slices takes a second
-            values, room = grown, _BORROWED(grown)
-        end += _KERNEL(m, handles[i], room[end:])
+            values = grown
     return values[:end]
 
 

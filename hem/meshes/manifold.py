@@ -6,7 +6,7 @@ in opposite directions, and the faces around a vertex form one fan. Everything h
 
 import numpy as np
 
-from hem.arrays import Indices, Triangles
+from hem.arrays import Indices, Triangles, each_once
 from hem.errors import MeshError, NonManifoldError
 from hem.meshes.components import components
 from hem.meshes.edges import edge_keys, half_edges, key_vertices, undirected_edges
@@ -44,7 +44,7 @@ def split_vertices(triangles: Triangles) -> Indices:
 
 def euler_number(mesh: TriangleMesh) -> int:
     """V - E + F over the vertices that have faces."""
-    vertices = np.unique(mesh.triangles)
+    vertices = each_once(mesh.triangles)
     return len(vertices) - len(undirected_edges(mesh.triangles)[0]) + len(mesh.triangles)
 
 
