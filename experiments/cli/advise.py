@@ -81,7 +81,7 @@ def advise(
 
 
 def _show(found: Advice, run: Run, called: str, mesh: str) -> None:
-    from experiments.report import duration
+    from experiments.report import digits, duration
     from structures import REGISTRY
 
     cpu = run.meta.get("machine", {}).get("cpu", "an unknown machine")
@@ -103,8 +103,9 @@ def _show(found: Advice, run: Run, called: str, mesh: str) -> None:
     for name, why in found.refused.items():
         console.print(f"{REGISTRY[name].title} does not suit: {why}.", markup=False)
     for flip in found.flips:
-        form = "{at:,.0f} vertices" if flip["of"] == "vertices" else "{at:g} × the edits"
-        console.print(f"At {form.format(**flip)} {REGISTRY[flip['best']].title} is the best.")
+        vertices, at = flip["of"] == "vertices", flip["at"]
+        where = f"{at:,.0f} vertices" if vertices else f"{digits(at)} × the edits"
+        console.print(f"At {where} {REGISTRY[flip['best']].title} is the best.")
     untold = sorted({what for it in found.options for what in it.forecast.untold})
     if untold:
         console.print(f"Left out, as the run does not tell what it takes: {', '.join(untold)}.")
