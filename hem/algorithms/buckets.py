@@ -134,7 +134,8 @@ def put_in_order(queue: Queue) -> None:
     count, digits, values, other = queue.state[COUNT], queue.digits, queue.lowest, queue.spare
     shift = 0
     while len(values) >> shift > 0:
-        digits[:] = 0
+        for digit in range(1 << DIGIT):
+            digits[digit] = 0
         for i in range(count):
             digits[values[i] >> shift & (1 << DIGIT) - 1] += 1
         end = 0

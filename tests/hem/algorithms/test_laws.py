@@ -16,7 +16,7 @@ from hem.algorithms.loop import Plan, splitting
 from hem.algorithms.parts import NO_WORK, change
 from hem.contract import Navigable, Structure
 from tests.extent import OF_EACH_KIND
-from tests.hem.algorithms.meshes import MESHES, used
+from tests.hem.algorithms.meshes import MESHES, dented, used
 
 ALGORITHMS: dict[str, Callable[[Structure], Any]] = {
     **algorithms.SIX,
@@ -81,6 +81,16 @@ def test_a_copy_is_changed_and_the_original_is_not(algorithm: str, name: str) ->
     before, copy = s.copy(), s.copy()
     ALGORITHMS[algorithm](copy)
     assert s.same_as(before)
+
+
+@pytest.mark.parametrize("algorithm", CHANGING)
+def test_an_algorithm_that_is_counted_does_what_it_does_otherwise(algorithm: str) -> None:
+    plain, counted = (structures.build("half_edge", dented("grid", 64)) for _ in "12")
+    ALGORITHMS[algorithm](plain)
+    with hem.record(counted) as recording:
+        ALGORITHMS[algorithm](counted)
+    assert counted.same_as(plain)
+    assert any(it.times for it in recording.rows)
 
 
 def follow(edit: hem.Edit, s: Structure, one: Structure) -> None:
