@@ -9,7 +9,7 @@ from experiments.advice.workload import Row, Workload, is_edit
 from hem.contract import OPERATIONS
 from hem.contract.recording import ANEW, COMPILED
 
-UNMODELED = 0.3
+UNMODELED = 0.45
 """How far a logarithm is off beside what rounds and sizes tell: what is asked in a program finds
 other things in the caches than what is asked alone."""
 

@@ -17,8 +17,11 @@ import difflib
 import functools
 import hashlib
 import heapq
+import html
+import io
 import itertools
 import json
+import marshal
 import math
 import operator
 import pickle
@@ -28,6 +31,8 @@ import statistics
 import string
 import struct
 import textwrap
+import tokenize
+import unicodedata
 import xml.etree.ElementTree as ElementTree
 import zlib
 from collections.abc import Callable
@@ -35,7 +40,18 @@ from itertools import starmap
 from typing import Any, NamedTuple
 
 import numpy as np
-from scipy import fft, interpolate, linalg, ndimage, signal, sparse, spatial, special, stats
+from scipy import (
+    fft,
+    integrate,
+    interpolate,
+    linalg,
+    ndimage,
+    signal,
+    sparse,
+    spatial,
+    special,
+    stats,
+)
 from scipy.cluster import hierarchy
 from scipy.sparse import csgraph
 
@@ -51,6 +67,7 @@ PYDOC = "docs.python.org"
 QUICKHULL = "Barber et al., Quickhull"
 SCIPY = "docs.scipy.org"
 GRAPH = "docs.scipy.org, csgraph"
+FENWICK = "Fenwick, A New Data Structure for Cumulative Frequency Tables"
 CLRS = "Cormen et al., Introduction to Algorithms"
 
 KEYS = 1_000  # asked per call of what takes less than the clock shows
@@ -86,6 +103,11 @@ def _words(n: int) -> list[str]:
 def _on_sphere(n: int) -> Any:  # all on the hull: of points in a cube most are seen just once
     points = _uniform(n, 3) - 0.5
     return points / np.linalg.norm(points, axis=1, keepdims=True)
+
+
+def _on_circle(n: int) -> Any:
+    angles = 2 * np.pi * _uniform(n)
+    return np.column_stack([np.cos(angles), np.sin(angles)])
 
 
 INPUTS: dict[str, Callable[[int], Any]] = {
@@ -286,6 +308,158 @@ def _multiply(a: list[list[float]]) -> list[list[float]]:
 
 def _sums(it: list[int], total: int = 0) -> int:
     return _sums(it[1:], total) + _sums(it[1:], total + it[0]) if it else total
+
+
+def _halvings(n: int) -> int:
+    steps = 0
+    while n:
+        n, steps = n // 2, steps + 1
+    return steps
+
+
+def _prefix_sum(tree: list[int], place: int) -> int:
+    total = 0
+    while place:
+        total += tree[place]
+        place &= place - 1
+    return total
+
+
+def _change_leaf(tree: list[float], leaf: int) -> None:
+    node = leaf + len(tree) // 2
+    while node > 1:
+        node //= 2
+        tree[node] = tree[2 * node] + tree[2 * node + 1]
+
+
+def _counted_root(n: int) -> int:
+    root = 0
+    while root * root < n:
+        root += 1
+    return root
+
+
+def _triangular(n: int) -> int:
+    total = step = 0
+    while total < n:
+        step += 1
+        total += step
+    return step
+
+
+def _jump_search(it: Any) -> int:
+    step, last = math.isqrt(len(it)), len(it) - 1
+    place = 0
+    while place + step < len(it) and it[place + step] <= last:
+        place += step
+    while it[place] < last:
+        place += 1
+    return place
+
+
+def _largest_sum(it: list[float]) -> float:
+    best = here = 0.0
+    for value in it:
+        here = max(0.0, here + value - 0.5)
+        best = max(best, here)
+    return best
+
+
+def _random_cycle(n: int) -> list[int]:
+    order, follow = random.sample(range(n), n), [0] * n
+    for a, b in zip(order, [*order[1:], order[0]], strict=True):
+        follow[a] = b
+    return follow
+
+
+def _walk(follow: list[int]) -> int:
+    place = 0
+    for _ in follow:
+        place = follow[place]
+    return place
+
+
+def _random_graph(n: int) -> list[tuple[int, int]]:
+    return [((i + 1) % n, random.randrange(n)) for i in range(n)]
+
+
+def _breadth_first(neighbors: list[tuple[int, int]]) -> list[int]:
+    found, seen = [0], {0}
+    for place in found:
+        for other in neighbors[place]:
+            if other not in seen:
+                seen.add(other)
+                found.append(other)
+    return found
+
+
+def _quicksort(it: list[float]) -> list[float]:
+    if len(it) < 2:
+        return it
+    pivot, rest = it[0], it[1:]
+    low, high = [x for x in rest if x < pivot], [x for x in rest if x >= pivot]
+    return [*_quicksort(low), pivot, *_quicksort(high)]
+
+
+def _push_downward(n: int) -> list[int]:
+    heap: list[int] = []
+    for value in range(n, 0, -1):
+        heapq.heappush(heap, value)
+    return heap
+
+
+def _divisors(n: int) -> list[int]:
+    count = [0] * (n + 1)
+    for divisor in range(1, n + 1):
+        for multiple in range(divisor, n + 1, divisor):
+            count[multiple] += 1
+    return count
+
+
+def _common(texts: tuple[str, str]) -> int:
+    a, b = texts
+    row = [0] * (len(b) + 1)
+    for x in a:
+        before = row[:]
+        for j, y in enumerate(b, 1):
+            row[j] = before[j - 1] + 1 if x == y else max(before[j], row[j - 1])
+    return row[-1]
+
+
+def _product(factors: tuple[list[float], list[float]]) -> list[float]:
+    a, b = factors
+    made = [0.0] * (len(a) + len(b))
+    for i, x in enumerate(a):
+        for j, y in enumerate(b, i):
+            made[j] += x * y
+    return made
+
+
+def _insert_all(n: int) -> list[int]:
+    made: list[int] = []
+    for i in range(n):
+        made.insert(0, i)
+    return made
+
+
+def _chain_order(sizes: list[int]) -> int:
+    n = len(sizes) - 1
+    cost = [[0] * n for _ in range(n)]
+    for length in range(1, n):
+        for i in range(n - length):
+            j = i + length
+            cost[i][j] = min(
+                cost[i][k] + cost[k + 1][j] + sizes[i] * sizes[k + 1] * sizes[j + 1]
+                for k in range(i, j)
+            )
+    return cost[0][-1]
+
+
+def _gray_code(n: int) -> list[int]:
+    codes = [0]
+    for bit in range(n):
+        codes += [code | 1 << bit for code in reversed(codes)]
+    return codes
 
 
 # fmt: off
@@ -506,9 +680,6 @@ SEEN: tuple[Function, ...] = tuple(starmap(_function, [
         lambda a: signal.savgol_filter(a, 11, 3), SCIPY),
     ("scipy.stats.kendalltau", "O(n log n)", lambda n: (_uniform(n), _uniform(n + 1)[:n]),
         lambda s: stats.kendalltau(*s), SCIPY + ": Knight's algorithm"),
-]))
-
-HELD_OUT: tuple[Function, ...] = tuple(starmap(_function, [
     ("set.add and discard, 1,000 times", "O(1)", "set asked", _each(_add_and_discard), WIKI),
     ("bytes[i], 1,000 random", "O(1)", "bytes asked", _each(operator.getitem), CPYTHON,
         CACHE_BOUND),
@@ -563,5 +734,126 @@ HELD_OUT: tuple[Function, ...] = tuple(starmap(_function, [
     ("three loops over a list", "O(n³)", "numbers",
         lambda s: sum(a + b == c for a in s for b in s for c in s), LOOP),
     ("sums of all subsets", "O(2^n)", "numbers", _sums, CLRS),
+]))
+
+HELD_OUT: tuple[Function, ...] = tuple(starmap(_function, [
+    ("deque[0], 1,000 times", "O(1)", "deque", _times(lambda s: s[0]), WIKI),
+    ("str[i], 1,000 random", "O(1)", "text asked", _each(operator.getitem), CPYTHON, CACHE_BOUND),
+    ("list.pop and append, 1,000 times", "O(1)", "numbers", _times(lambda s: s.append(s.pop())),
+        WIKI),
+    ("dict.setdefault, 1,000 random", "O(1)", "dict asked", _each(dict.setdefault), WIKI),
+    ("memoryview[1:-1], 1,000 views", "O(1)", lambda n: memoryview(bytes(n)),
+        _times(lambda s: s[1:-1]), PYDOC),
+    ("array[:, None], 1,000 views", "O(1)", "uniform", _times(lambda a: a[:, None]),
+        "numpy.org/doc: views"),
+    ("key in frozenset, 1,000 random", "O(1)", lambda n: _looked_up(frozenset(range(n))),
+        _each(frozenset.__contains__), WIKI),
+    ("number in range, 1,000 random", "O(1)", lambda n: (range(n), INPUTS["asked"](n)),
+        _each(operator.contains), PYDOC),
+    ("array.item(i), 1,000 random", "O(1)", "uniform asked", _each(np.ndarray.item), NUMPY,
+        CACHE_BOUND),
+    ("bytearray[i] = 0, 1,000 random", "O(1)", lambda n: (bytearray(n), INPUTS["asked"](n)),
+        _each(lambda s, i: s.__setitem__(i, 0)), CPYTHON, CACHE_BOUND),
+    ("np.searchsorted in float32, 1,000 random", "O(log n)",
+        lambda n: (np.sort(_uniform(n).astype(np.float32)), _uniform(KEYS).astype(np.float32)),
+        lambda s: np.searchsorted(*s), "numpy.org/doc: binary search", CACHE_BOUND),
+    ("bisect in strings, 1,000 random", "O(log n)", lambda n: _looked_up(sorted(_words(n))),
+        _each(bisect.bisect), PYDOC),
+    ("an integer halved to nothing", "O(log n)", int, _halvings, LOOP),
+    ("Fenwick tree, 1,000 random sums", "O(log n)", "numbers asked", _each(_prefix_sum), FENWICK),
+    ("segment tree, 1,000 random changes", "O(log n)",
+        lambda n: ([0.0] * 2 ** (n - 1).bit_length() * 2, INPUTS["asked"](n)), _each(_change_leaf),
+        CLRS + ": a balanced tree"),
+    ("whole root by counting", "O(√n)", int, _counted_root, LOOP),
+    ("jump search, the last", "O(√n)", "ascending", _jump_search, LOOP),
+    ("n by triangular numbers", "O(√n)", int, _triangular, LOOP),
+    ("list.remove, the last", "O(n)", "numbers", lambda s: s.remove(s[-1]), WIKI),
+    ("list.index, the last", "O(n)", "floats", lambda s: s.index(s[-1]), WIKI),
+    ("list * 2", "O(n)", "floats", lambda s: s * 2, WIKI),
+    ("list of a zip", "O(n)", "floats floats", lambda s: list(zip(*s, strict=True)), PYDOC),
+    ("dict of a comprehension", "O(n)", "floats", lambda s: {x: i for i, x in enumerate(s)}, LOOP),
+    ("dict == dict", "O(n)", "dict dict", lambda s: s[0] == s[1], CPYTHON),
+    ("set - set", "O(n)", lambda n: (set(_floats(n)), set(_floats(n))), lambda s: s[0] - s[1],
+        WIKI),
+    ("any of a generator", "O(n)", "floats", lambda s: any(x > 2 for x in s), PYDOC),
+    ("list of a filter", "O(n)", "floats", lambda s: list(filter(None, s)), PYDOC),
+    ("str.encode, utf-8", "O(n)", lambda n: "é" * n, str.encode, CPYTHON),
+    ("bytes.decode, utf-8", "O(n)", lambda n: ("é" * n).encode(), bytes.decode, CPYTHON),
+    ("str.strip", "O(n)", lambda n: " " * n, str.strip, CPYTHON),
+    ("str.title", "O(n)", "letters", str.title, CPYTHON),
+    ("hash(str + str)", "O(n)", "letters letters", lambda s: hash(s[0] + s[1]), CPYTHON),
+    ("unicodedata.normalize", "O(n)", lambda n: "é" * n,
+        lambda s: unicodedata.normalize("NFD", s), PYDOC),
+    ("int(str, 16)", "O(n)", lambda n: "f" * n, lambda s: int(s, 16), LONG),
+    ("int.bit_count, n bits", "O(n)", "bits", int.bit_count, LONG, 10_000_000),
+    ("int << 1, n bits", "O(n)", "bits", lambda a: a << 1, LONG, 10_000_000),
+    ("bytes.count", "O(n)", "bytes", lambda s: s.count(7), CPYTHON, CACHE_BOUND),
+    ("bytes.translate", "O(n)", "bytes", lambda s: s.translate(bytes(range(255, -1, -1))),
+        CPYTHON),
+    ("hashlib.sha3_256", "O(n)", "bytes", lambda s: hashlib.sha3_256(s).digest(), "FIPS 202"),
+    ("base64.b64decode", "O(n)", lambda n: base64.b64encode(random.randbytes(n)), base64.b64decode,
+        "RFC 4648"),
+    ("zlib.compress of noise", "O(n)", "bytes", lambda s: zlib.compress(s, 1), "RFC 1951"),
+    ("json.dumps of floats", "O(n)", "floats", json.dumps, CPYTHON),
+    ("marshal.dumps", "O(n)", "floats", marshal.dumps, PYDOC),
+    ("struct.pack", "O(n)", "floats", lambda s: struct.pack(f"{len(s)}d", *s), PYDOC),
+    ("html.escape", "O(n)", lambda n: "<p>text</p>" * (n // 11 + 1), html.escape, PYDOC),
+    ("tokenize", "O(n)", lambda n: "x = y + 1\n" * n,
+        lambda s: list(tokenize.generate_tokens(io.StringIO(s).readline)), PYDOC),
+    ("re.split", "O(n)", "letters", re.compile("[aeiou]+").split, CPYTHON),
+    ("math.dist", "O(n)", "tuple tuple", lambda s: math.dist(*s), CPYTHON),
+    ("random.choices, n of n", "O(n)", "floats", lambda s: random.choices(s, k=len(s)), PYDOC),
+    ("Kadane's largest sum", "O(n)", "floats", _largest_sum, CLRS),
+    ("a walk round a random cycle", "O(n)", _random_cycle, _walk, LOOP),
+    ("breadth first, two neighbors each", "O(n)", _random_graph, _breadth_first, CLRS),
+    ("np.mean", "O(n)", "uniform", np.mean, NUMPY, CACHE_BOUND),
+    ("np.abs", "O(n)", "uniform", np.abs, NUMPY, CACHE_BOUND),
+    ("array * 2 + 1", "O(n)", "uniform", lambda a: a * 2 + 1, NUMPY, CACHE_BOUND),
+    ("np.sqrt", "O(n)", "uniform", np.sqrt, NUMPY, CACHE_BOUND),
+    ("np.isnan(array).any()", "O(n)", "uniform", lambda a: np.isnan(a).any(), NUMPY, CACHE_BOUND),
+    ("array.astype(float32)", "O(n)", "uniform", lambda a: a.astype(np.float32), NUMPY,
+        CACHE_BOUND),
+    ("array[::-1].copy()", "O(n)", "uniform", lambda a: a[::-1].copy(), NUMPY, CACHE_BOUND),
+    ("np.repeat", "O(n)", "uniform", lambda a: np.repeat(a, 2), NUMPY),
+    ("np.nonzero", "O(n)", "uniform", lambda a: np.nonzero(a > 0.5), NUMPY),
+    ("np.interp, in 10 points", "O(n)", "uniform",
+        lambda a: np.interp(a, np.linspace(0, 1, 10), np.arange(10.0)), NUMPY),
+    ("np.packbits", "O(n)", lambda n: _uniform(n) > 0.5, np.packbits, NUMPY, CACHE_BOUND),
+    ("normal random numbers", "O(n)", int, np.random.default_rng(0).standard_normal, NUMPY),
+    ("np.add.at", "O(n)", lambda n: (np.zeros(n), np.random.default_rng().integers(0, n, n)),
+        lambda s: np.add.at(*s, 1), NUMPY),
+    ("median_filter, 5 wide", "O(n)", "uniform", lambda a: ndimage.median_filter(a, 5), SCIPY),
+    ("scipy.special.gamma", "O(n)", "uniform", special.gamma, SCIPY),
+    ("scipy.stats.skew", "O(n)", "uniform", stats.skew, SCIPY),
+    ("cumulative_trapezoid", "O(n)", "uniform", integrate.cumulative_trapezoid, SCIPY),
+    ("csgraph.breadth_first_order", "O(n)", "sparse",
+        lambda s: csgraph.breadth_first_order(s, 0), GRAPH),
+    ("sorted, pairs at random", "O(n log n)", lambda n: list(zip(_floats(n), _floats(n),
+        strict=True)), sorted, WIKI),
+    ("quicksort by hand", "O(n log n)", "floats", _quicksort, CLRS),
+    ("n × heappush, each to the top", "O(n log n)", int, _push_downward, CLRS),
+    ("every divisor of all up to n", "O(n log n)", int, _divisors, LOOP + ": harmonic sum"),
+    ("np.sort, heapsort", "O(n log n)", "uniform", lambda a: np.sort(a, kind="heapsort"), SORT),
+    ("np.union1d", "O(n log n)", "uniform uniform", lambda s: np.union1d(*s), SORT + ": it sorts"),
+    ("scipy.stats.spearmanr", "O(n log n)", "uniform uniform", lambda s: stats.spearmanr(*s),
+        SCIPY + ": it sorts"),
+    ("scipy.fft.dct, powers of two", "O(n log n)", "uniform", fft.dct, SCIPY, *TWOS),
+    ("cKDTree, the nearest of each", "O(n log n)", "points",
+        lambda p: spatial.cKDTree(p).query(p, k=2), SCIPY),
+    ("ConvexHull of a circle", "O(n log n)", _on_circle, spatial.ConvexHull, QUICKHULL),
+    ("n times the root of n", "O(n^1.5)", int,
+        lambda n: sum(1 for _ in range(n) for _ in range(math.isqrt(n))), LOOP),
+    ("longest common subsequence", "O(n²)", "letters letters", _common, CLRS),
+    ("product of polynomials by hand", "O(n²)", "floats floats", _product, CLRS),
+    ("n × list.insert(0)", "O(n²)", int, _insert_all, WIKI),
+    ("np.subtract.outer", "O(n²)", "uniform", lambda a: np.subtract.outer(a, a), NUMPY),
+    ("matrix.sum(axis=0)", "O(n²)", "matrix", lambda a: a.sum(axis=0), NUMPY, SQUARE_BOUND),
+    ("np.correlate, full", "O(n²)", "uniform", lambda a: np.correlate(a, a, "full"),
+        "numpy.org/doc: direct sum"),
+    ("np.linalg.svd", "O(n³)", "matrix", np.linalg.svd, LAPACK),
+    ("np.linalg.cholesky", "O(n³)", lambda n: INPUTS["matrix"](n) + INPUTS["matrix"](n).T,
+        np.linalg.cholesky, LAPACK),
+    ("matrix chain order", "O(n³)", "numbers", _chain_order, CLRS),
+    ("Gray code", "O(2^n)", int, _gray_code, "Knuth 7.2.1.1"),
 ]))
 # fmt: on

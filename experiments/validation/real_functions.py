@@ -24,6 +24,7 @@ from experiments.validation.accuracy import UNDETERMINED, Judge, installed_judge
 from experiments.validation.accuracy import load_accuracy as load_answers
 from experiments.validation.functions import FUNCTIONS, HELD_OUT, SEEN
 from hem.complexity import Measured, canonical, measure, parse
+from hem.complexity.measure import BUDGET
 
 RESULT = Path("results/reference/real_functions.json")
 COLUMNS = ["function", "growth", "source", "half", "neighbor", "judge", "answer"]
@@ -128,7 +129,7 @@ def _rows(budget: float, busy: bool, measured: Path | None) -> Iterator[list[str
 
 def main(
     output: Path = RESULT,
-    budget: Annotated[float, Option(help="Seconds per function.")] = 4.0,
+    budget: Annotated[float, Option(help="Seconds per function.")] = BUDGET,
     busy: Annotated[bool, Option("--busy", help="Beside a program that uses memory.")] = False,
     measured: Annotated[
         Path | None, Option(help="Costs are kept in it; what it has is not measured again.")

@@ -27,6 +27,7 @@ MAX_SCATTER = 0.4  # relative scatter of samples beyond which nothing is conclud
 MAX_ERROR = 0.12  # relative error of a size's cost beyond which the size is left out …
 MOST_LEFT_OUT = 0.25  # … if so few of the sizes are like that; otherwise nothing is concluded
 STEEPER = 2.1  # slope of the larger half of the sizes beyond which steep classes are asked about
+STEADY = 0.2  # of exponents: by so much the halves of a power law may differ
 APART = 0.2  # of exponents: a power law closer to a class is that class, bent by memory
 
 
@@ -206,7 +207,9 @@ def _answer(costs: Costs, models: Comparison) -> str:
     law = compare_models(cost, models.memory, sorted({NAMES[0], power}, key=parse))
     close = np.sqrt(np.mean((predict(law.design, law.fit)[0][-1] / cost.cost - 1) ** 2))
     told = law.explained and law.names[law.best] == power and close <= MOST_WOBBLE
-    return power if told else ""
+    halves = np.array_split(np.arange(len(cost.sizes)), 2)
+    first, last = (slope(cost.sizes[it], cost.cost[it]) for it in halves)
+    return power if told and abs(last - first) <= STEADY else ""
 
 
 def _doubt(costs: Costs) -> str:

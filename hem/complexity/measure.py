@@ -25,6 +25,7 @@ Function = Callable[[Any], object]
 MakeInput = Callable[[int], Any]
 Clock = Callable[[], float]
 
+BUDGET = 4.0  # seconds per function
 COUNT = 20  # sizes, where none are given
 TRIED = 8  # the size to see at whether a function changes its input
 FIRST = 4  # the first that is tried
@@ -40,7 +41,7 @@ PASSES = 2  # of which the quickest counts, as the first finds its inputs out of
 
 
 def measure(
-    f: Function, make_input: MakeInput, sizes: ArrayLike | None = None, *, budget: float = 5.0,
+    f: Function, make_input: MakeInput, sizes: ArrayLike | None = None, *, budget: float = BUDGET,
     rounds: int = 15, fresh: bool | None = None, amortized: bool = False, most: int = 1_000_000,
     clock: Clock = CLOCK,
 ) -> Measured:  # fmt: skip
@@ -49,7 +50,8 @@ def measure(
     make_input: what makes the input of one call; it is not timed. What it draws at random it draws
     anew each time. Where a cost has several variables, it holds all but one fixed.
     sizes: ascending, at least four over a range of four to be judged. Where none are given, 20 up
-    to `most`, as far as the budget allows: about so many seconds in all.
+    to `most`, as far as the budget allows: about so many seconds in all. Where they leave the class
+    open, those between them are measured, too, in the same time again.
     rounds: samples per size. fresh: whether every call gets an input of its own. By default inputs
     that f leaves as they were, as pickle sees it, are used again: quick functions need that.
     clock: with `time.perf_counter` waiting counts, too, for files, the network and other threads.
@@ -64,11 +66,11 @@ def measure(
     calls = _Calls(f, make_input, changed if fresh is None else fresh, clock)
     turn = budget / (rounds + 1)
     chosen = [int(n) for n in given] or calls.choose_sizes(turn, most)
-    working_sets = calls.working_sets(chosen, turn)
-    plans = [calls.plan(n, size) for n, size in zip(chosen, working_sets, strict=True)]
-    memory = memory_times(working_sets)
-    samples, ns = np.array(calls.interleaved(plans, rounds)), np.array(chosen, float)
-    return Measured(ns, list(samples / (ns[:, None] if amortized else 1)), working_sets, memory)
+    found = calls.measured(chosen, turn, rounds, amortized)
+    if sizes is not None or found.names_one_class:
+        return found
+    between = set(np.sqrt(found.sizes[1:] * found.sizes[:-1]).round().astype(int).tolist())
+    return found.joined(calls.measured(sorted(between - {*chosen}), turn, rounds, amortized))
 
 
 class _Plan(NamedTuple):
@@ -88,6 +90,14 @@ class _Calls(NamedTuple):
     make: MakeInput
     fresh: bool
     clock: Clock
+
+    def measured(self, sizes: Sequence[int], turn: float, rounds: int, amortized: bool) -> Measured:
+        """What a call takes by size, or one of n operations; turn: seconds of a round."""
+        working_sets, n = self.working_sets(sizes, turn), np.array(sizes, float)
+        plans = [self.plan(*of) for of in zip(sizes, working_sets, strict=True)]
+        memory = memory_times(working_sets)
+        samples = np.array(self.interleaved(plans, rounds)) / (n[:, None] if amortized else 1)
+        return Measured(n, list(samples), working_sets, memory)
 
     def interleaved(self, plans: Sequence[_Plan], rounds: int) -> list[list[float]]:
         """Samples of each size, all up and down in turn, after a round that does not count."""

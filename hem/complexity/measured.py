@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from hem.complexity.estimates import slope
 from hem.complexity.judge import Verdict, judge
 from hem.complexity.notation import Array, parse
 
@@ -41,6 +42,21 @@ class Measured:
         least, most = (float(np.median(self.samples[k])) for k in (0, -1))
         return f"<Measured at {sizes}: {least:.2g} to {most:.2g} s a call>"
 
+    def joined(self, other: "Measured") -> "Measured":
+        """These sizes and others."""
+        sizes = np.concatenate([self.sizes, other.sizes])
+        order, samples = np.argsort(sizes), [*self.samples, *other.samples]
+        working_sets = np.concatenate([self.working_sets, other.working_sets])
+        memory = np.hstack([self.memory, other.memory])
+        rows = [samples[k] for k in order]
+        return Measured(sizes[order], rows, working_sets[order], memory[:, order])
+
+    @property
+    def names_one_class(self) -> bool:
+        """Whether the costs by themselves tell a class, and no other."""
+        answer = self.judge(resamples=2).answer
+        return bool(answer) and " or " not in answer
+
     def judge(self, expected: str = "O(1)", **options: Any) -> Verdict:
         """Judge a claim by these costs; options as of `hem.complexity.judge`.
 
@@ -52,7 +68,8 @@ class Measured:
         whole = self._judge(every, UNSEEN, expected, options)
         if options.get("latency", 0) is None:
             return whole
-        steep = whole.raw_slope > STEEP
+        costly = self._cost * COSTLY > self._cost.max()
+        steep = slope(self.sizes[costly], self._cost[costly]) > STEEP
         parts = self._parts(steep, expected, options)
         if not parts and not steep:
             whole = self._judge(every, BENT, expected, options)

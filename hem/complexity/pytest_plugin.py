@@ -24,11 +24,12 @@ from typing import Any
 import pytest
 
 from hem.complexity.judge import Verdict
-from hem.complexity.measure import Function, MakeInput, measure
+from hem.complexity.measure import BUDGET, Function, MakeInput, measure
 
 MEASURING = ("sizes", "budget", "rounds", "fresh", "amortized", "most", "clock")
 DOINGS = "pass", "warn", "fail"
 PARALLEL = "complexity is not timed beside other tests: run this one without pytest-xdist (-n 0)"
+SECONDS = f"Seconds per function, and once more where they leave it open. Default: {BUDGET:g}."
 TOLD = ("expected", "outcome", "answer", "slope", "slope_low", "slope_high")
 
 
@@ -43,7 +44,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
         words = f"What an {outcome} claim does: {', '.join(DOINGS)}. Default: {default}."
         group.addoption(f"--complexity-{outcome}", choices=DOINGS, help=words)
         parser.addini(f"complexity_{outcome}", words, default=default)
-    group.addoption("--complexity-budget", type=float, help="Seconds per function. Default: 5.")
+    group.addoption("--complexity-budget", type=float, help=SECONDS)
     group.addoption(
         "--complexity-history", type=Path, metavar="FILE",
         help="Keep a line per verdict in it, and tell what changed since which commit.",

@@ -36,6 +36,7 @@ HIGHEST_SLOWDOWN = 12.0  # slowdown over the sizes that unmeasured caches are re
 MISFIT = 2.5  # χ² per degree of freedom with which a model explains times without a latency …
 MISFIT_EXPLAINED = 12.0  # … and with it, or exact counts: what is left is small print
 MOST_WOBBLE = 0.1  # relative error up to which times may stray from a model that explains them else
+UNLIKE = 0.3  # by how much its slope there may be off theirs, of a slope of one or of theirs
 NEAR = 0.25  # share of a class's slope that it must have, as fitted, at the largest sizes
 
 
@@ -222,14 +223,16 @@ class Comparison:
         return bool(rising) and not self.memory.exact and all(without)
 
     def _near(self, model: int) -> bool:
-        """Whether a model, as fitted, comes near its own slope at the largest sizes.
+        """Whether a model, as fitted, comes near its own slope at the largest sizes, and theirs.
 
         Beside a large intercept a steep class explains a last size that rose for another reason.
         """
         last = slice(-max(3, len(self.costs.sizes) // 3), None)
-        sizes, steady = self.costs.sizes[last], predict(self.design, self.fit)[1][model, last]
-        own = slope(sizes, np.maximum(self.design.growth[model, last], 1e-300))
-        return bool(slope(sizes, steady) >= NEAR * own - 1e-9)
+        slowed, steady = (it[model, last] for it in predict(self.design, self.fit))
+        sizes, growth = self.costs.sizes[last], self.design.growth[model, last]
+        own, told = slope(sizes, np.maximum(growth, 1e-300)), slope(sizes, self.costs.cost[last])
+        like = abs(slope(sizes, slowed) - told) <= UNLIKE * max(1, told)
+        return bool(like and slope(sizes, steady) >= NEAR * own - 1e-9)
 
 
 def compare_models(costs: Costs, memory: Memory, names: Sequence[str] = NAMES) -> Comparison:
