@@ -821,7 +821,7 @@ HELD_OUT: tuple[Function, ...] = tuple(starmap(_function, [
     ("np.packbits", "O(n)", lambda n: _uniform(n) > 0.5, np.packbits, NUMPY, CACHE_BOUND),
     ("normal random numbers", "O(n)", int, np.random.default_rng(0).standard_normal, NUMPY),
     ("np.add.at", "O(n)", lambda n: (np.zeros(n), np.random.default_rng().integers(0, n, n)),
-        lambda s: np.add.at(*s, 1), NUMPY),
+        lambda s: np.add.at(s[0], s[1], 1), NUMPY),
     ("median_filter, 5 wide", "O(n)", "uniform", lambda a: ndimage.median_filter(a, 5), SCIPY),
     ("scipy.special.gamma", "O(n)", "uniform", special.gamma, SCIPY),
     ("scipy.stats.skew", "O(n)", "uniform", stats.skew, SCIPY),

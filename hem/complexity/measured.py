@@ -69,7 +69,7 @@ class Measured:
         if options.get("latency", 0) is None:
             return whole
         costly = self._cost * COSTLY > self._cost.max()
-        steep = slope(self.sizes[costly], self._cost[costly]) > STEEP
+        steep = bool(slope(self.sizes[costly], self._cost[costly]) > STEEP)
         parts = self._parts(steep, expected, options)
         if not parts and not steep:
             whole = self._judge(every, BENT, expected, options)

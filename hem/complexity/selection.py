@@ -231,7 +231,7 @@ class Comparison:
         slowed, steady = (it[model, last] for it in predict(self.design, self.fit))
         sizes, growth = self.costs.sizes[last], self.design.growth[model, last]
         own, told = slope(sizes, np.maximum(growth, 1e-300)), slope(sizes, self.costs.cost[last])
-        like = abs(slope(sizes, slowed) - told) <= UNLIKE * max(1, told)
+        like = abs(slope(sizes, slowed) - told) <= UNLIKE * np.maximum(1, told)
         return bool(like and slope(sizes, steady) >= NEAR * own - 1e-9)
 
 
