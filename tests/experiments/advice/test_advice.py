@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -27,7 +28,6 @@ from experiments.advice import (
 from experiments.runs import Run, load
 from hem.contract import QUERIES
 from structures import REGISTRY
-from tests.experiments.made_runs import write_run
 
 COMPILED = [name for name, it in REGISTRY.items() if it.compiled]
 MESH = hem.generate("torus", 1_000)
@@ -35,8 +35,8 @@ ASKED = Workload("asked", (Row("vertex_faces", 1_000.0),), builds=0)
 
 
 @pytest.fixture(scope="module")
-def run(tmp_path_factory: pytest.TempPathFactory) -> Run:
-    return load(write_run(tmp_path_factory.mktemp("advice") / "run"))
+def run(base_folder: Path) -> Run:
+    return load(base_folder)
 
 
 @pytest.fixture(scope="module")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -33,8 +35,8 @@ FIRST_WORDS = {
 
 
 @pytest.fixture(scope="module")
-def run(tmp_path_factory: pytest.TempPathFactory):
-    return load(write_run(tmp_path_factory.mktemp("run")))
+def run(base_folder: Path):
+    return load(base_folder)
 
 
 def outcome(run, quantity: str) -> str:

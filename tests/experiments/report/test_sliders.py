@@ -13,15 +13,14 @@ from experiments.report import MissingError, advice_sliders
 from experiments.runs import Run, load
 from structures import REGISTRY
 from tests.experiments.chromium import Browser
-from tests.experiments.made_runs import write_run
 
 SHOWN = "[...document.querySelectorAll('tbody tr')].map(row => row.cells[0].textContent)"
 CHOOSE = "s => { s.value = {place}; s.dispatchEvent(new Event('input')); }"
 
 
 @pytest.fixture(scope="module")
-def run(tmp_path_factory: pytest.TempPathFactory) -> Run:
-    return load(write_run(tmp_path_factory.mktemp("sliders") / "run"))
+def run(base_folder: Path) -> Run:
+    return load(base_folder)
 
 
 def test_the_page_tells_the_predicted_order(chromium: Browser, run: Run, tmp_path: Path) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from pathlib import Path
 
 import pytest
 
@@ -10,14 +11,13 @@ from experiments.report import MissingError, uses
 from experiments.runs import Run, load
 from hem.contract import QUERIES
 from structures import REGISTRY
-from tests.experiments.made_runs import write_run
 
 COMPILED = {name for name, it in REGISTRY.items() if it.compiled}
 
 
 @pytest.fixture(scope="module")
-def run(tmp_path_factory: pytest.TempPathFactory) -> Run:
-    return load(write_run(tmp_path_factory.mktemp("uses") / "run"))
+def run(base_folder: Path) -> Run:
+    return load(base_folder)
 
 
 def bytes_of(run: Run, name: str) -> float:
