@@ -90,10 +90,19 @@ peers-cpp: $(STUDY)  ## the same of the libraries in C++ alone, where their pack
 	@$(BIN)/hem study --peers --structure ours --structure cgal --structure openmesh_cpp
 	@$(BIN)/hem table --peers
 
+# A requirement `name>=version` as `name==version`, of the project and of what its tests need.
+define oldest
+import re, sys, tomllib
+project = tomllib.load(open("pyproject.toml", "rb"))["project"]
+extras = [project["optional-dependencies"][name] for name in sys.argv[1].split(",")]
+print(*(re.sub(">=", "==", it) for it in sum(extras, project["dependencies"])), sep="\n")
+endef
+export oldest
+
 test-floor:  ## run all tests with the oldest versions that are supported
 	@test -x $(VENV)-floor/bin/python || $(PYTHON) -m venv $(VENV)-floor
-	@$(VENV)-floor/bin/python -m pip --disable-pip-version-check --quiet install uv --constraint constraints.txt
-	@$(VENV)-floor/bin/uv pip install --quiet --python $(VENV)-floor/bin/python --resolution lowest-direct --editable '.[$(STUDY_EXTRAS),test]'
+	@$(VENV)-floor/bin/python -c "$$oldest" $(STUDY_EXTRAS),test > $(VENV)-floor/oldest.txt
+	@$(VENV)-floor/bin/python -m pip --disable-pip-version-check --quiet install --editable '.[$(STUDY_EXTRAS),test]' --constraint $(VENV)-floor/oldest.txt
 	@$(VENV)-floor/bin/python $(PYTEST)
 
 clean:  ## remove everything that was made here, runs excepted
