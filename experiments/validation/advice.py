@@ -201,7 +201,8 @@ def in_words(kept: dict[str, Any]) -> str:
     """Say what was kept in a sentence."""
     return (
         "Of {workloads} workloads, {predictions} predictions: off by {median_error:.0%} in the "
-        "median, {within_30_percent:.0%} within 30 %, {within_interval:.0%} within the interval; "
+        "median, {within_30_percent:.0%} within 30 %, {within_interval:.0%} within the interval, "
+        "whose width an earlier run of them chose; "
         "the best structure was told in {winner_right:.0%} (the one that programs were timed on, "
         "where none is predicted to be a tenth quicker), and in {best_among_alike:.0%} it was "
         "among those that are predicted to be within a tenth of the best. Meanwhile {load:.0f} "

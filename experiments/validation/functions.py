@@ -55,6 +55,8 @@ from scipy import (
 from scipy.cluster import hierarchy
 from scipy.sparse import csgraph
 
+from experiments.validation import by_hand
+
 WIKI = "wiki.python.org/moin/TimeComplexity"
 TIMSORT = "CPython, Objects/listsort.txt"
 CPYTHON = "CPython's source: one pass"
@@ -194,274 +196,6 @@ def _by_adding(item: Any) -> Callable[[int], object]:
     return build
 
 
-def _append(n: int) -> list[int]:
-    made: list[int] = []
-    for i in range(n):
-        made.append(i)
-    return made
-
-
-def _drain(heap: list[float]) -> None:
-    while heap:
-        heapq.heappop(heap)
-
-
-def _add_and_discard(held: set[int], key: int) -> None:
-    held.add(-key)
-    held.discard(-key)
-
-
-def _halve(held: list[int], key: int) -> None:
-    low, high = 0, len(held)
-    while low < high:
-        middle = (low + high) // 2
-        if held[middle] < key:
-            low = middle + 1
-        else:
-            high = middle
-
-
-def _divide(p: int) -> bool:
-    divisor = 2
-    while divisor * divisor <= p:
-        if p % divisor == 0:
-            return False
-        divisor += 1
-    return True
-
-
-def _bubble(it: list[float]) -> None:
-    for end in range(len(it) - 1, 0, -1):
-        for i in range(end):
-            if it[i] > it[i + 1]:
-                it[i], it[i + 1] = it[i + 1], it[i]
-
-
-def _hanoi(n: int) -> int:
-    return _hanoi(n - 1) + 1 + _hanoi(n - 1) if n else 0
-
-
-def _edits(texts: tuple[str, str]) -> int:
-    a, b = texts
-    row = list(range(len(b) + 1))
-    for i, x in enumerate(a, 1):
-        before, row = row, [i]
-        for j, y in enumerate(b, 1):
-            row.append(min(before[j] + 1, row[-1] + 1, before[j - 1] + (x != y)))
-    return row[-1]
-
-
-def _squarings(n: int) -> float:
-    power, base = 1.0, 1.0000001
-    while n:
-        power, base, n = power * base if n & 1 else power, base * base, n >> 1
-    return power
-
-
-def _euclid(n: int) -> int:
-    a, b = n, round(n * 0.6180339887)
-    while b:
-        a, b = b, a % b
-    return a
-
-
-def _heapsort(it: list[float]) -> list[float]:
-    heap: list[float] = []
-    for value in it:
-        heapq.heappush(heap, value)
-    return [heapq.heappop(heap) for _ in it]
-
-
-def _merge_sort(it: list[float]) -> list[float]:
-    if len(it) < 2:
-        return it
-    half = len(it) // 2
-    return list(heapq.merge(_merge_sort(it[:half]), _merge_sort(it[half:])))
-
-
-def _insertion_sort(it: list[int]) -> None:
-    for i in range(1, len(it)):
-        value, place = it[i], i
-        while place and it[place - 1] > value:
-            it[place] = it[place - 1]
-            place -= 1
-        it[place] = value
-
-
-def _selection_sort(it: list[float]) -> None:
-    for i in range(len(it)):
-        least = min(range(i, len(it)), key=it.__getitem__)
-        it[i], it[least] = it[least], it[i]
-
-
-def _pascal(n: int) -> list[float]:
-    row = [1.0]
-    for _ in range(n):
-        row = [a + b for a, b in zip([0.0, *row], [*row, 0.0], strict=True)]
-    return row
-
-
-def _multiply(a: list[list[float]]) -> list[list[float]]:
-    columns = list(zip(*a, strict=True))
-    return [[sum(map(operator.mul, row, column)) for column in columns] for row in a]
-
-
-def _sums(it: list[int], total: int = 0) -> int:
-    return _sums(it[1:], total) + _sums(it[1:], total + it[0]) if it else total
-
-
-def _halvings(n: int) -> int:
-    steps = 0
-    while n:
-        n, steps = n // 2, steps + 1
-    return steps
-
-
-def _prefix_sum(tree: list[int], place: int) -> int:
-    total = 0
-    while place:
-        total += tree[place]
-        place &= place - 1
-    return total
-
-
-def _change_leaf(tree: list[float], leaf: int) -> None:
-    node = leaf + len(tree) // 2
-    while node > 1:
-        node //= 2
-        tree[node] = tree[2 * node] + tree[2 * node + 1]
-
-
-def _counted_root(n: int) -> int:
-    root = 0
-    while root * root < n:
-        root += 1
-    return root
-
-
-def _triangular(n: int) -> int:
-    total = step = 0
-    while total < n:
-        step += 1
-        total += step
-    return step
-
-
-def _jump_search(it: Any) -> int:
-    step, last = math.isqrt(len(it)), len(it) - 1
-    place = 0
-    while place + step < len(it) and it[place + step] <= last:
-        place += step
-    while it[place] < last:
-        place += 1
-    return place
-
-
-def _largest_sum(it: list[float]) -> float:
-    best = here = 0.0
-    for value in it:
-        here = max(0.0, here + value - 0.5)
-        best = max(best, here)
-    return best
-
-
-def _random_cycle(n: int) -> list[int]:
-    order, follow = random.sample(range(n), n), [0] * n
-    for a, b in zip(order, [*order[1:], order[0]], strict=True):
-        follow[a] = b
-    return follow
-
-
-def _walk(follow: list[int]) -> int:
-    place = 0
-    for _ in follow:
-        place = follow[place]
-    return place
-
-
-def _random_graph(n: int) -> list[tuple[int, int]]:
-    return [((i + 1) % n, random.randrange(n)) for i in range(n)]
-
-
-def _breadth_first(neighbors: list[tuple[int, int]]) -> list[int]:
-    found, seen = [0], {0}
-    for place in found:
-        for other in neighbors[place]:
-            if other not in seen:
-                seen.add(other)
-                found.append(other)
-    return found
-
-
-def _quicksort(it: list[float]) -> list[float]:
-    if len(it) < 2:
-        return it
-    pivot, rest = it[0], it[1:]
-    low, high = [x for x in rest if x < pivot], [x for x in rest if x >= pivot]
-    return [*_quicksort(low), pivot, *_quicksort(high)]
-
-
-def _push_downward(n: int) -> list[int]:
-    heap: list[int] = []
-    for value in range(n, 0, -1):
-        heapq.heappush(heap, value)
-    return heap
-
-
-def _divisors(n: int) -> list[int]:
-    count = [0] * (n + 1)
-    for divisor in range(1, n + 1):
-        for multiple in range(divisor, n + 1, divisor):
-            count[multiple] += 1
-    return count
-
-
-def _common(texts: tuple[str, str]) -> int:
-    a, b = texts
-    row = [0] * (len(b) + 1)
-    for x in a:
-        before = row[:]
-        for j, y in enumerate(b, 1):
-            row[j] = before[j - 1] + 1 if x == y else max(before[j], row[j - 1])
-    return row[-1]
-
-
-def _product(factors: tuple[list[float], list[float]]) -> list[float]:
-    a, b = factors
-    made = [0.0] * (len(a) + len(b))
-    for i, x in enumerate(a):
-        for j, y in enumerate(b, i):
-            made[j] += x * y
-    return made
-
-
-def _insert_all(n: int) -> list[int]:
-    made: list[int] = []
-    for i in range(n):
-        made.insert(0, i)
-    return made
-
-
-def _chain_order(sizes: list[int]) -> int:
-    n = len(sizes) - 1
-    cost = [[0] * n for _ in range(n)]
-    for length in range(1, n):
-        for i in range(n - length):
-            j = i + length
-            cost[i][j] = min(
-                cost[i][k] + cost[k + 1][j] + sizes[i] * sizes[k + 1] * sizes[j + 1]
-                for k in range(i, j)
-            )
-    return cost[0][-1]
-
-
-def _gray_code(n: int) -> list[int]:
-    codes = [0]
-    for bit in range(n):
-        codes += [code | 1 << bit for code in reversed(codes)]
-    return codes
-
-
 # fmt: off
 FUNCTIONS: tuple[Function, ...] = tuple(starmap(_function, [
     ("len(list)", "O(1)", "numbers", _times(len), WIKI),
@@ -471,7 +205,7 @@ FUNCTIONS: tuple[Function, ...] = tuple(starmap(_function, [
     ("list.sort, random", "O(n log n)", "floats", list.sort, WIKI),
     ("sorted, of sorted", "O(n)", "numbers", sorted, TIMSORT),
     ("list.insert(0)", "O(n)", "numbers", lambda s: s.insert(0, 0), WIKI),
-    ("n × list.append", "O(n)", int, _append, WIKI),
+    ("n × list.append", "O(n)", int, by_hand.append, WIKI),
     ("list.reverse", "O(n)", "numbers", list.reverse, CPYTHON),
     ("sum(list)", "O(n)", "floats", sum, WIKI),
     ("min(list)", "O(n)", "floats", min, WIKI),
@@ -487,7 +221,7 @@ FUNCTIONS: tuple[Function, ...] = tuple(starmap(_function, [
     ("deque[n // 2]", "O(n)", "deque", lambda s: s[len(s) // 2], WIKI),
     ("heapq.heapify", "O(n)", "floats", heapq.heapify, CLRS),
     ("heapq.heapreplace, 1,000 to the bottom", "O(log n)", "heap", _sift(heapq.heapreplace), CLRS),
-    ("heapq.heappop, all", "O(n log n)", "heap", _drain, CLRS),
+    ("heapq.heappop, all", "O(n log n)", "heap", by_hand.drain, CLRS),
     ("heapq.nsmallest(10)", "O(n)", "floats", lambda s: heapq.nsmallest(10, s), PYDOC),
     ("bisect, 1,000 random", "O(log n)", "numbers asked", _each(bisect.bisect), PYDOC),
     ("bisect.insort at the front", "O(n)", "numbers", lambda s: bisect.insort(s, -1), PYDOC),
@@ -580,11 +314,12 @@ SEEN: tuple[Function, ...] = tuple(starmap(_function, [
         CACHE_BOUND),
     ("bisect in array.array, 1,000 random", "O(log n)", "ascending asked", _each(bisect.bisect),
         PYDOC),
-    ("binary search by hand, 1,000 random", "O(log n)", "numbers asked", _each(_halve), CLRS),
+    ("binary search by hand, 1,000 random", "O(log n)", "numbers asked", _each(by_hand.halve),
+        CLRS),
     ("heapq.heappushpop, 1,000 to the bottom", "O(log n)", "heap", _sift(heapq.heappushpop), CLRS),
     ("trial division of a prime", "O(√n)",
-        lambda n: next(p for p in itertools.count(n | 1, 2) if _divide(p)), _divide, CLRS,
-        100_000_000),
+        lambda n: next(p for p in itertools.count(n | 1, 2) if by_hand.divide(p)), by_hand.divide,
+        CLRS, 100_000_000),
     ("tuple(list)", "O(n)", "numbers", tuple, WIKI),
     ("list[n // 2:]", "O(n)", "numbers", lambda s: s[len(s) // 2:], WIKI),
     ("list.pop(0)", "O(n)", "numbers", lambda s: s.pop(0), WIKI),
@@ -631,9 +366,9 @@ SEEN: tuple[Function, ...] = tuple(starmap(_function, [
         "owasp.org, ReDoS"),
     ("re, a repeat of repeats", "O(2^n)", lambda n: "a" * n + "c", re.compile("(a+)+b").match,
         "owasp.org, ReDoS"),
-    ("bubble sort", "O(n²)", "floats", _bubble, CLRS),
-    ("edit distance", "O(n²)", "letters letters", _edits, CLRS),
-    ("towers of Hanoi", "O(2^n)", int, _hanoi, CLRS),
+    ("bubble sort", "O(n²)", "floats", by_hand.bubble, CLRS),
+    ("edit distance", "O(n²)", "letters letters", by_hand.edits, CLRS),
+    ("towers of Hanoi", "O(2^n)", int, by_hand.hanoi, CLRS),
     ("a tuple built by adding", "O(n²)", int, _by_adding((0,)), PYDOC + ", sequence types"),
     ("bytes built by adding", "O(n²)", int, _by_adding(b"x"), PYDOC + ", sequence types"),
     ("np.dot of vectors", "O(n)", "uniform", lambda a: a @ a, LAPACK, CACHE_BOUND),
@@ -680,7 +415,7 @@ SEEN: tuple[Function, ...] = tuple(starmap(_function, [
         lambda a: signal.savgol_filter(a, 11, 3), SCIPY),
     ("scipy.stats.kendalltau", "O(n log n)", lambda n: (_uniform(n), _uniform(n + 1)[:n]),
         lambda s: stats.kendalltau(*s), SCIPY + ": Knight's algorithm"),
-    ("set.add and discard, 1,000 times", "O(1)", "set asked", _each(_add_and_discard), WIKI),
+    ("set.add and discard, 1,000 times", "O(1)", "set asked", _each(by_hand.add_and_discard), WIKI),
     ("bytes[i], 1,000 random", "O(1)", "bytes asked", _each(operator.getitem), CPYTHON,
         CACHE_BOUND),
     ("tuple[i], 1,000 random", "O(1)", "tuple asked", _each(operator.getitem), WIKI),
@@ -690,8 +425,8 @@ SEEN: tuple[Function, ...] = tuple(starmap(_function, [
         lambda s: np.take(*s), NUMPY, CACHE_BOUND),
     ("bisect in floats, 1,000 random", "O(log n)", lambda n: (sorted(_floats(n)), _floats(KEYS)),
         _each(bisect.bisect), PYDOC),
-    ("power by squarings", "O(log n)", int, _squarings, CLRS),
-    ("Euclid's algorithm", "O(log n)", int, _euclid, CLRS),
+    ("power by squarings", "O(log n)", int, by_hand.squarings, CLRS),
+    ("Euclid's algorithm", "O(log n)", int, by_hand.euclid, CLRS),
     ("divisors up to the root", "O(√n)", int,
         lambda n: sum(n % d == 0 for d in range(1, math.isqrt(n) + 1)), LOOP),
     ("list.extend", "O(n)", "floats", lambda s: [].extend(s), WIKI),
@@ -722,18 +457,19 @@ SEEN: tuple[Function, ...] = tuple(starmap(_function, [
         WIKI),
     ("sorted, strings at random", "O(n log n)", lambda n: random.sample(_words(2 * n), n), sorted,
         WIKI),
-    ("heap sort", "O(n log n)", "floats", _heapsort, CLRS),
-    ("merge sort", "O(n log n)", "floats", _merge_sort, CLRS),
+    ("heap sort", "O(n log n)", "floats", by_hand.heapsort, CLRS),
+    ("merge sort", "O(n log n)", "floats", by_hand.merge_sort, CLRS),
     ("np.lexsort", "O(n log n)", "uniform uniform", np.lexsort, SORT),
-    ("insertion sort, reversed", "O(n²)", lambda n: list(range(n, 0, -1)), _insertion_sort, CLRS),
-    ("selection sort", "O(n²)", "floats", _selection_sort, CLRS),
-    ("Pascal's triangle", "O(n²)", int, _pascal, LOOP),
+    ("insertion sort, reversed", "O(n²)", lambda n: list(range(n, 0, -1)),
+        by_hand.insertion_sort, CLRS),
+    ("selection sort", "O(n²)", "floats", by_hand.selection_sort, CLRS),
+    ("Pascal's triangle", "O(n²)", int, by_hand.pascal, LOOP),
     ("matrix + matrix.T", "O(n²)", "matrix", lambda a: a + a.T, NUMPY),
-    ("matrix times matrix, by hand", "O(n³)", lambda n: [_floats(n) for _ in range(n)], _multiply,
-        CLRS),
+    ("matrix times matrix, by hand", "O(n³)", lambda n: [_floats(n) for _ in range(n)],
+        by_hand.multiply, CLRS),
     ("three loops over a list", "O(n³)", "numbers",
         lambda s: sum(a + b == c for a in s for b in s for c in s), LOOP),
-    ("sums of all subsets", "O(2^n)", "numbers", _sums, CLRS),
+    ("sums of all subsets", "O(2^n)", "numbers", by_hand.sums, CLRS),
 ]))
 
 HELD_OUT: tuple[Function, ...] = tuple(starmap(_function, [
@@ -759,14 +495,15 @@ HELD_OUT: tuple[Function, ...] = tuple(starmap(_function, [
         lambda s: np.searchsorted(*s), "numpy.org/doc: binary search", CACHE_BOUND),
     ("bisect in strings, 1,000 random", "O(log n)", lambda n: _looked_up(sorted(_words(n))),
         _each(bisect.bisect), PYDOC),
-    ("an integer halved to nothing", "O(log n)", int, _halvings, LOOP),
-    ("Fenwick tree, 1,000 random sums", "O(log n)", "numbers asked", _each(_prefix_sum), FENWICK),
+    ("an integer halved to nothing", "O(log n)", int, by_hand.halvings, LOOP),
+    ("Fenwick tree, 1,000 random sums", "O(log n)", "numbers asked", _each(by_hand.prefix_sum),
+        FENWICK),
     ("segment tree, 1,000 random changes", "O(log n)",
-        lambda n: ([0.0] * 2 ** (n - 1).bit_length() * 2, INPUTS["asked"](n)), _each(_change_leaf),
-        CLRS + ": a balanced tree"),
-    ("whole root by counting", "O(√n)", int, _counted_root, LOOP),
-    ("jump search, the last", "O(√n)", "ascending", _jump_search, LOOP),
-    ("n by triangular numbers", "O(√n)", int, _triangular, LOOP),
+        lambda n: ([0.0] * 2 ** (n - 1).bit_length() * 2, INPUTS["asked"](n)),
+        _each(by_hand.change_leaf), CLRS + ": a balanced tree"),
+    ("whole root by counting", "O(√n)", int, by_hand.counted_root, LOOP),
+    ("jump search, the last", "O(√n)", "ascending", by_hand.jump_search, LOOP),
+    ("n by triangular numbers", "O(√n)", int, by_hand.triangular, LOOP),
     ("list.remove, the last", "O(n)", "numbers", lambda s: s.remove(s[-1]), WIKI),
     ("list.index, the last", "O(n)", "floats", lambda s: s.index(s[-1]), WIKI),
     ("list * 2", "O(n)", "floats", lambda s: s * 2, WIKI),
@@ -803,9 +540,10 @@ HELD_OUT: tuple[Function, ...] = tuple(starmap(_function, [
     ("re.split", "O(n)", "letters", re.compile("[aeiou]+").split, CPYTHON),
     ("math.dist", "O(n)", "tuple tuple", lambda s: math.dist(*s), CPYTHON),
     ("random.choices, n of n", "O(n)", "floats", lambda s: random.choices(s, k=len(s)), PYDOC),
-    ("Kadane's largest sum", "O(n)", "floats", _largest_sum, CLRS),
-    ("a walk round a random cycle", "O(n)", _random_cycle, _walk, LOOP),
-    ("breadth first, two neighbors each", "O(n)", _random_graph, _breadth_first, CLRS),
+    ("Kadane's largest sum", "O(n)", "floats", by_hand.largest_sum, CLRS),
+    ("a walk round a random cycle", "O(n)", by_hand.random_cycle, by_hand.walk, LOOP),
+    ("breadth first, two neighbors each", "O(n)", by_hand.random_graph, by_hand.breadth_first,
+        CLRS),
     ("np.mean", "O(n)", "uniform", np.mean, NUMPY, CACHE_BOUND),
     ("np.abs", "O(n)", "uniform", np.abs, NUMPY, CACHE_BOUND),
     ("array * 2 + 1", "O(n)", "uniform", lambda a: a * 2 + 1, NUMPY, CACHE_BOUND),
@@ -830,9 +568,9 @@ HELD_OUT: tuple[Function, ...] = tuple(starmap(_function, [
         lambda s: csgraph.breadth_first_order(s, 0), GRAPH),
     ("sorted, pairs at random", "O(n log n)", lambda n: list(zip(_floats(n), _floats(n),
         strict=True)), sorted, WIKI),
-    ("quicksort by hand", "O(n log n)", "floats", _quicksort, CLRS),
-    ("n × heappush, each to the top", "O(n log n)", int, _push_downward, CLRS),
-    ("every divisor of all up to n", "O(n log n)", int, _divisors, LOOP + ": harmonic sum"),
+    ("quicksort by hand", "O(n log n)", "floats", by_hand.quicksort, CLRS),
+    ("n × heappush, each to the top", "O(n log n)", int, by_hand.push_downward, CLRS),
+    ("every divisor of all up to n", "O(n log n)", int, by_hand.divisors, LOOP + ": harmonic sum"),
     ("np.sort, heapsort", "O(n log n)", "uniform", lambda a: np.sort(a, kind="heapsort"), SORT),
     ("np.union1d", "O(n log n)", "uniform uniform", lambda s: np.union1d(*s), SORT + ": it sorts"),
     ("scipy.stats.spearmanr", "O(n log n)", "uniform uniform", lambda s: stats.spearmanr(*s),
@@ -843,9 +581,9 @@ HELD_OUT: tuple[Function, ...] = tuple(starmap(_function, [
     ("ConvexHull of a circle", "O(n log n)", _on_circle, spatial.ConvexHull, QUICKHULL),
     ("n times the root of n", "O(n^1.5)", int,
         lambda n: sum(1 for _ in range(n) for _ in range(math.isqrt(n))), LOOP),
-    ("longest common subsequence", "O(n²)", "letters letters", _common, CLRS),
-    ("product of polynomials by hand", "O(n²)", "floats floats", _product, CLRS),
-    ("n × list.insert(0)", "O(n²)", int, _insert_all, WIKI),
+    ("longest common subsequence", "O(n²)", "letters letters", by_hand.common, CLRS),
+    ("product of polynomials by hand", "O(n²)", "floats floats", by_hand.product, CLRS),
+    ("n × list.insert(0)", "O(n²)", int, by_hand.insert_all, WIKI),
     ("np.subtract.outer", "O(n²)", "uniform", lambda a: np.subtract.outer(a, a), NUMPY),
     ("matrix.sum(axis=0)", "O(n²)", "matrix", lambda a: a.sum(axis=0), NUMPY, SQUARE_BOUND),
     ("np.correlate, full", "O(n²)", "uniform", lambda a: np.correlate(a, a, "full"),
@@ -853,7 +591,7 @@ HELD_OUT: tuple[Function, ...] = tuple(starmap(_function, [
     ("np.linalg.svd", "O(n³)", "matrix", np.linalg.svd, LAPACK),
     ("np.linalg.cholesky", "O(n³)", lambda n: INPUTS["matrix"](n) + INPUTS["matrix"](n).T,
         np.linalg.cholesky, LAPACK),
-    ("matrix chain order", "O(n³)", "numbers", _chain_order, CLRS),
-    ("Gray code", "O(2^n)", int, _gray_code, "Knuth 7.2.1.1"),
+    ("matrix chain order", "O(n³)", "numbers", by_hand.chain_order, CLRS),
+    ("Gray code", "O(2^n)", int, by_hand.gray_code, "Knuth 7.2.1.1"),
 ]))
 # fmt: on

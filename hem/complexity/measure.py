@@ -94,7 +94,7 @@ class _Calls(NamedTuple):
     def measured(self, sizes: Sequence[int], turn: float, rounds: int, amortized: bool) -> Measured:
         """What a call takes by size, or one of n operations; turn: seconds of a round."""
         working_sets, n = self.working_sets(sizes, turn), np.array(sizes, float)
-        plans = [self.plan(*of) for of in zip(sizes, working_sets, strict=True)]
+        plans = [self.plan(*row) for row in zip(sizes, working_sets, strict=True)]
         memory = memory_times(working_sets)
         samples = np.array(self.interleaved(plans, rounds)) / (n[:, None] if amortized else 1)
         return Measured(n, list(samples), working_sets, memory)

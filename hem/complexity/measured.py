@@ -70,7 +70,7 @@ class Measured:
             return whole
         costly = self._cost * COSTLY > self._cost.max()
         steep = bool(slope(self.sizes[costly], self._cost[costly]) > STEEP)
-        parts = self._parts(steep, expected, options)
+        parts = self._parts(costly if steep else None, expected, options)
         if not parts and not steep:
             whole = self._judge(every, BENT, expected, options)
         told = [it.answer.split(" or ") for it in parts]
@@ -78,14 +78,17 @@ class Measured:
             return min(parts, key=lambda it: it.answer.count(" or "))
         return whole if _names_a_class(whole) else replace(whole, answer="")
 
-    def _parts(self, steep: bool, expected: str, options: dict[str, Any]) -> list[Verdict]:
-        """What some of the sizes tell, the most telling ones first, where the others go on so."""
-        cost, fits = self._cost, self.memory[0] < CACHED * self.memory[0].min()
+    def _parts(
+        self, costly: NDArray[np.bool_] | None, expected: str, options: dict[str, Any]
+    ) -> list[Verdict]:
+        """What some of the sizes tell, the most telling ones first, where the others go on so.
+
+        costly: sizes where a call works more than it waits, of a function that has such.
+        """
+        fits = self.memory[0] < CACHED * self.memory[0].min()
         room = 1 if fits.all() else 2  # what fills the caches is driven out by the rest
         alone = self.working_sets <= self.working_sets[fits].max() / room
-        parts = (
-            [self._judge(cost * COSTLY > cost.max(), UNSEEN, expected, options)] if steep else []
-        )
+        parts = [] if costly is None else [self._judge(costly, UNSEEN, expected, options)]
         some = (alone, UNSEEN_CACHED), (alone & (self.sizes > KEPT), UNSEEN_LARGE)
         parts += [
             self._judge(few, unseen, expected, options, cached=True)

@@ -36,8 +36,9 @@ HIGHEST_SLOWDOWN = 12.0  # slowdown over the sizes that unmeasured caches are re
 MISFIT = 2.5  # χ² per degree of freedom with which a model explains times without a latency …
 MISFIT_EXPLAINED = 12.0  # … and with it, or exact counts: what is left is small print
 MOST_WOBBLE = 0.1  # relative error up to which times may stray from a model that explains them else
-UNLIKE = 0.3  # by how much its slope there may be off theirs, of a slope of one or of theirs
-NEAR = 0.25  # share of a class's slope that it must have, as fitted, at the largest sizes
+NEAR = 0.25  # share of a class's slope that it must have, as fitted, at the largest sizes …
+UNLIKE = 0.3  # … where it may differ by so much from the slope of the costs; where that is more
+# than one, by that share of it
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,7 @@
 """Laws of measuring, by a clock that runs as the measured function says."""
 
 import random
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 import numpy as np
 import pytest
@@ -9,6 +9,7 @@ import pytest
 from hem.complexity import Measured, measure
 from hem.complexity import measure as measure_function
 from hem.complexity.memory import memory_times
+from hem.complexity.notation import Array
 
 OVERHEAD = 1e-7
 
@@ -97,6 +98,60 @@ def test_what_leaves_its_input_is_asked_again_often_enough_for_the_clock(clock: 
     found = measure(work, lambda n: list(range(n)), [4, 8, 16, 64], rounds=2)
     assert calls > 4 * 2 * 100
     assert found.judge("O(1)").outcome == "consistent"
+
+
+def test_where_the_class_is_left_open_the_sizes_between_are_measured(clock: Clock) -> None:
+    def cost(n: int) -> float:  # that no class explains
+        return 1e-6 * n * (1 + n % 2)
+
+    def work(n: int) -> None:
+        clock.now += cost(n)
+
+    found = measure(work, lambda n: n, budget=1.0)
+    first = found.sizes[::2]
+    assert len(first) == 20
+    assert np.all(found.sizes[1::2] == np.sqrt(first[1:] * first[:-1]).round())
+    for n, row in zip(found.sizes, found.samples, strict=True):
+        assert row == pytest.approx(np.full(15, cost(int(n))), rel=0.01)
+    assert len(measure(work, lambda n: n, [10, 20, 40, 80, 160]).sizes) == 5
+
+
+def test_a_class_that_is_told_needs_no_further_sizes(clock: Clock) -> None:
+    def work(n: int) -> None:
+        clock.now += 1e-8 * n
+
+    assert len(measure(work, lambda n: n, budget=1.0).sizes) == 20
+
+
+def answer(cost: Callable[[Array], Array], sizes: Array) -> str:
+    """What costs say that no memory slows, with samples that are off by a hundredth."""
+    rng = np.random.default_rng(0)
+    samples = [value * rng.normal(1, 0.01, 15) for value in cost(sizes)]
+    return Measured(sizes, samples, 8 * sizes, np.ones((3, len(sizes)))).judge().answer
+
+
+def test_a_long_beginning_hides_no_steep_end() -> None:
+    """As of a convolution: each of n calls has a cost of its own."""
+    sizes = np.geomspace(4, 100_000, 20).round()
+    assert answer(lambda n: 1e-7 + 1e-7 * n + 1e-10 * n**2, sizes) == "O(n²)"
+
+
+def test_a_jump_near_the_end_is_no_steep_class() -> None:
+    """A sparse matrix times a vector, as measured: its rows become too many to be remembered."""
+    sizes = np.geomspace(4, 4_462, 39)
+    seconds = 1e-6 * np.array([
+        2.28, 2.14, 2.31, 2.17, 2.33, 2.18, 2.33, 2.21, 2.40, 2.32, 2.51, 2.40, 2.63,
+        2.51, 2.76, 2.67, 2.93, 2.87, 3.22, 3.26, 3.50, 3.45, 3.77, 3.25, 3.40, 3.35,
+        3.72, 3.68, 4.27, 4.34, 5.23, 5.70, 6.66, 10.0, 16.8, 19.0, 21.6, 26.5, 36.7,
+    ])  # fmt: skip
+    assert answer(lambda _: seconds, sizes) != "O(n²)"
+
+
+def test_what_grows_ever_steeper_is_no_power_law() -> None:
+    """As of inverting a matrix: what is of n² fades as what is of n³ grows."""
+    between = np.geomspace(20, 900, 20).round()
+    assert "^" not in answer(lambda n: 1e-8 * n**2 + 4e-11 * n**3, between)
+    assert answer(lambda n: 1e-8 * n**1.585, between).startswith("O(n^1.5")
 
 
 def test_rounds_are_interleaved_over_the_sizes(clock: Clock) -> None:
