@@ -90,13 +90,16 @@ def shares(answers: pd.DataFrame) -> pd.DataFrame:
     return counted.reindex(columns=KINDS, fill_value=0)
 
 
+def held_out(answers: pd.DataFrame) -> pd.DataFrame:
+    """The shares of what no judge was tuned on, as a page shows them."""
+    table = shares(answers).loc[HELD].reset_index()
+    judge = [f"{it.judge}, {it.neighbor} machine" for it in table.itertuples()]
+    return table[KINDS].assign(judge=judge)[["judge", *KINDS]]
+
+
 def markdown(answers: pd.DataFrame) -> str:
-    """The shares of what was held out, as a table of a page."""
-    table = shares(answers).loc[HELD]
-    rows = [
-        [f"{judge}, {neighbor} machine", *map(str, row)]
-        for (neighbor, judge), row in zip(table.index, table.to_numpy().tolist(), strict=True)
-    ]
+    """The same as a table of a page."""
+    rows = held_out(answers).astype(str).to_numpy().tolist()
     lines = [["judge", *KINDS], ["---"] * 5, *rows]
     return "\n".join(f"| {' | '.join(line)} |" for line in lines)
 
