@@ -92,7 +92,7 @@ def shares(answers: pd.DataFrame) -> pd.DataFrame:
 
 def held_out(answers: pd.DataFrame) -> pd.DataFrame:
     """The shares of what no judge was tuned on, as a page shows them."""
-    table = shares(answers).loc[HELD].reset_index()
+    table = shares(answers).loc[HELD].reset_index().rename_axis(columns=None)
     judge = [f"{it.judge}, {it.neighbor} machine" for it in table.itertuples()]
     return table[KINDS].assign(judge=judge)[["judge", *KINDS]]
 
