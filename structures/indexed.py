@@ -33,10 +33,10 @@ from hem.authoring import (
     D,
     Field,
     counted,
-    distinct,
     kernel,
     packed,
     require,
+    scans,
     steps,
     walks,
 )
@@ -58,51 +58,18 @@ edge_exists, edge_vertices, pack = packed.edge_exists, packed.edge_vertices, pac
 
 
 @kernel
-def has_corner(m: IndexedRecords, t: int, v: int) -> bool:
-    """Whether v is a corner of triangle t."""
-    return m.triangle[t, 0] == v or m.triangle[t, 1] == v or m.triangle[t, 2] == v
+def is_corner(m: IndexedRecords, t: int, i: int, v: int) -> bool:
+    """Whether corner i of triangle t is vertex v."""
+    return bool(m.triangle[t, i] == v)
 
 
-@kernel
-def vertex_vertices(m: IndexedRecords, v: int, out: Array) -> int:
-    """Cost O(n_t)."""
-    count = 0
-    for t in range(m.counts[FACE_END]):
-        if has_corner(m, t, v):
-            for i in range(3):
-                if m.triangle[t, i] != v:
-                    out[count] = m.triangle[t, i]
-                    count += 1
-    return distinct(out, count)
-
-
+# Every one of these looks at all triangles: O(n_t).
+has_corner, follows = scans.has_corner(is_corner), scans.follows(is_corner)
+vertex_vertices = scans.vertex_vertices(has_corner)
 vertex_edges = packed.vertex_edges(vertex_vertices)
-
-
-@kernel
-def vertex_faces(m: IndexedRecords, v: int, out: Array) -> int:
-    """Cost O(n_t)."""
-    count = 0
-    for t in range(m.counts[FACE_END]):
-        if has_corner(m, t, v):
-            out[count] = t
-            count += 1
-    return count
-
-
+vertex_faces = scans.vertex_faces(has_corner)
 edge_edges = walks.edges_at_both_ends(edge_vertices, vertex_edges)
-
-
-@kernel
-def edge_faces(m: IndexedRecords, e: int, out: Array) -> int:
-    """Cost O(n_t): the search of thesis chapter 5."""
-    a, b = e >> 32, e & 0xFFFFFFFF
-    count = 0
-    for t in range(m.counts[FACE_END]):
-        if has_corner(m, t, a) and has_corner(m, t, b):
-            out[count] = t
-            count += 1
-    return count
+edge_faces = scans.edge_faces(has_corner)
 
 
 @kernel
@@ -134,50 +101,8 @@ def face_faces(m: IndexedRecords, f: int, out: Array) -> int:
 
 
 face_exists = steps.recorded(FACE_END, steps.column(IndexedRecords, "triangle", 0))
-
-
-@kernel
-def diamond(m: IndexedRecords, e: int, at: Array) -> int:
-    """Cost O(n_t)."""
-    edge_vertices(m, e, at)
-    a, b, count = at[A], at[B], 0
-    at[LEFT], at[RIGHT], at[C], at[D] = -1, -1, -1, -1
-    for t in range(m.counts[FACE_END]):
-        if has_corner(m, t, a) and has_corner(m, t, b):
-            opposite = m.triangle[t, 0] + m.triangle[t, 1] + m.triangle[t, 2] - a - b
-            side = LEFT if follows(m, t, a, b) else RIGHT
-            count += 1 if at[side] < 0 else 3
-            at[side], at[C if side == LEFT else D] = t, opposite
-    return min(count, 3)
-
-
-@kernel
-def follows(m: IndexedRecords, t: int, a: int, b: int) -> bool:
-    """Whether corner b comes right after corner a in triangle t."""
-    for i in range(3):
-        if m.triangle[t, i] == a and m.triangle[t, (i + 1) % 3] == b:
-            return True
-    return False
-
-
-@kernel
-def face_left_of(m: IndexedRecords, a: int, b: int) -> int:
-    """The triangle that runs a → b, or -1. Cost O(n_t)."""
-    for t in range(m.counts[FACE_END]):
-        if follows(m, t, a, b):
-            return t
-    return -1
-
-
-@kernel
-def are_joined(m: IndexedRecords, a: int, b: int) -> bool:
-    """Cost O(n_t)."""
-    for t in range(m.counts[FACE_END]):
-        if has_corner(m, t, a) and has_corner(m, t, b):
-            return True
-    return False
-
-
+diamond = scans.diamond(has_corner, follows)
+face_left_of, are_joined = scans.face_left_of(follows), scans.are_joined(has_corner)
 edge_between = packed.between(are_joined)
 
 

@@ -11,7 +11,7 @@
 What a structure must offer is said by ``hem.contract.Structure``, of which it is a subclass.
 """
 
-from hem.authoring import marked, packed, steps, sums, walks
+from hem.authoring import marked, packed, scans, steps, sums, walks
 from hem.authoring.defaults import OF_ARRAYS, kill_vertex, set_point, sides, vertex_exists
 from hem.authoring.invariants import (
     require,
@@ -160,6 +160,7 @@ __all__ = [
     "require_one_loop",
     "require_records",
     "require_triangles",
+    "scans",
     "set_point",
     "sides",
     "slice_count",

@@ -57,7 +57,8 @@ class Field(NamedTuple):
 
     ``target`` is the kind of record it refers to, empty for a position; where the reference is
     ``optional``, -1 is none. Of each kind of record one field ``marks`` the dead: it is negative
-    there, and a vertex has no position (NaN).
+    there, and a vertex has no position (NaN). What only ``names`` elements, so that there are
+    handles, is no part of what the structure is said to take.
     """
 
     name: str
@@ -66,6 +67,7 @@ class Field(NamedTuple):
     target: str = ""
     marks: bool = False
     optional: bool = False
+    names: bool = False
 
     @property
     def element(self) -> str:

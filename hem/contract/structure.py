@@ -538,18 +538,22 @@ class Structure(Described, Surveying, abstract=True):
     def memory(self, room: bool = False) -> dict[str, int]:
         """Bytes per field of live elements, such as ``{"vertex.point": 12 * n_vertices, …}``.
 
-        With ``room`` also what is taken beside them: ``dead and room to grow`` is what the arrays
+        With ``room`` also what is taken beside them: ``names`` are kept of elements that the
+        structure itself does not record; ``dead and room to grow`` is what the arrays
         hold besides, up to as much again after they grew, and is given memory when it is first
         written, see ``hem.room``; ``scratch`` is where queries and operations work, nothing before
         the first of them.
         """
         taken = self._live_bytes()
+        names = [taken.pop(it.name) for it in self.fields if it.names]
         if not room:
             return taken
-        spare = self._state.storage.spare(self.records, sum(taken.values()))
-        return taken | {"dead and room to grow": spare, "scratch": self._state.scratch_bytes}
+        spare = self._state.storage.spare(self.records, sum(names) + sum(taken.values()))
+        beside = {"dead and room to grow": spare, "scratch": self._state.scratch_bytes}
+        return taken | ({"names": sum(names)} if names else {}) | beside
 
     def _live_bytes(self) -> dict[str, int]:
+        """By field, those that only name elements included."""
         counts = {"vertex": self.n_vertices, "edge": self.n_edges, "half_edge": self.n_half_edges}
         counts |= dict.fromkeys(("face", "triangle"), self.n_faces)
         taken = {}

@@ -137,6 +137,7 @@ def test_a_model_survives_the_round_trip(name, sample):
             {
                 "indexed": 36,
                 "indexed_adjacency": 112,
+                "triangle_soup": 72,
                 "triangle_neighbor": 116,
                 "winged_edge": 228,
                 "half_edge": 228,
@@ -149,6 +150,7 @@ def test_a_model_survives_the_round_trip(name, sample):
             {
                 "indexed": 36,
                 "indexed_adjacency": 112,
+                "triangle_soup": 72,
                 "triangle_neighbor": 64,
                 "winged_edge": 120,
                 "half_edge": 120,
