@@ -64,7 +64,7 @@ class SoupRecords(NamedTuple):
     counts: Array  # how many of them there are, see hem.authoring.kernels
 
 
-# Every search compares positions -------------------------------------------------------------------
+# Every search compares positions ------------------------------------------------------------------
 
 
 @kernel
@@ -103,7 +103,7 @@ def face_faces(m: SoupRecords, f: int, out: Array) -> int:
     return count
 
 
-# What is changed of an indexed mesh, and the points with it ----------------------------------------
+# What is changed of an indexed mesh, and the points with it ---------------------------------------
 
 
 @kernel

@@ -111,7 +111,7 @@ def are_joined(has_corner: Kernel) -> Kernel:
 
 
 def diamond(has_corner: Kernel, follows: Kernel) -> Kernel:
-    """Make what operations ask of an edge: the triangles at it, and the corners opposite. O(n_t)."""
+    """Make what operations ask of an edge: its triangles, and the corners opposite. Cost O(n_t)."""
 
     @kernel
     def diamond(m: Any, e: int, at: Array) -> int:

@@ -58,7 +58,8 @@ def test_after_any_operations_the_soup_is_that_of_an_indexed_mesh(family: str):
     kinds = 5 if family == "torus" else 4  # not every face of a border can be taken away
     both = [structures.build(name, mesh) for name in ("triangle_soup", "indexed")]
     for _ in range(60):
-        at, kind, point = int(rng.integers(both[0].n_edges)), int(rng.integers(kinds)), rng.random(3)
+        at, kind = int(rng.integers(both[0].n_edges)), int(rng.integers(kinds))
+        point = rng.random(3)
         for s in both:
             edge, face = int(s.edges()[at]), int(s.faces()[at % s.n_faces])
             if kind == 0:
