@@ -1,6 +1,6 @@
 """Triangle soup (thesis 2.2): every triangle has three points of its own, and that is all.
 
-This is what an STL file holds, and what a scanner or a slicer hands over::
+This is what an STL file holds::
 
     triangle_point   0: (x, y, z) (x, y, z) (x, y, z)   1: …        counterclockwise from outside
 
@@ -8,13 +8,14 @@ A point is stored once in each triangle around it. So nothing says that two tria
 their points are the same, and whoever asks for neighbors compares positions, of all triangles.
 
 A soup knows no vertices, and queries and operations are asked of vertices. So there are names
-beside it, which answer nothing by themselves::
+beside it::
 
     vertex_point     0: (x, y, z)   1: …    the position that a vertex stands for
     triangle         0: (0, 2, 4)   1: …    what the points of a triangle are called
 
 To ask for the faces around vertex 4 is to look up its position, and to search the soup for that.
-Names tell what was found, and keep two vertices apart that lie at the same position.
+Names tell what points are called, and keep two vertices apart that lie at the same position. No
+search is the shorter for them.
 
 Invariants
 
