@@ -22,9 +22,9 @@ from hem.engine import CountingArray
 from hem.fracture import MATERIALS, shatter
 from hem.meshes import TriangleMesh
 from structures.as_printed import AsPrinted, render_arrays
-from structures.class_model import Point
 from structures.half_edge_objects import HalfEdgeMesh, fields_accessed
 from structures.object_tools import HalfEdgeMeshBuilder
+from structures.objects.class_model import Point
 from structures.printed_breaking import find_edges, simulate_breaking
 
 MENDED = HalfEdgeMesh.name

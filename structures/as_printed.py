@@ -1,8 +1,9 @@
 """What the thesis' listings do, for measuring and for its errata; not a structure to be used.
 
-The algorithms of thesis 3.2.3 to 4.3, told anew over the classes of ``structures.class_model``: the
-vertex circulator that scans, the search for duplicates, the builder that scans for every triangle
-and stops one short, the surgery that forgets references, the commits of the whole render mesh.
+The algorithms of thesis 3.2.3 to 4.3, told anew over the classes of
+``structures.objects.class_model``: the vertex circulator that scans, the search for duplicates, the
+builder that scans for every triangle and stops one short, the surgery that forgets references, the
+commits of the whole render mesh.
 ``experiments.claims.errata`` shows each of them beside the sound version,
 ``structures.half_edge_objects``. Nothing here checks anything, and errors are left as they are.
 The listings of breaking, and those of chapter 5, stand in ``structures.printed_breaking``.
@@ -18,7 +19,7 @@ from numpy.typing import ArrayLike
 
 from hem.arrays import Array
 from hem.contract import Claims, Described, Look
-from structures.class_model import Face, FaceList, HalfEdge, Point, Vertex
+from structures.objects.class_model import Face, FaceList, HalfEdge, Point, Vertex
 
 
 class RenderCache:

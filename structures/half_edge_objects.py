@@ -1,8 +1,8 @@
 """The thesis' half-edge mesh as it was designed: objects and references (thesis 3.2 to 4.3).
 
-The classes stand in ``structures.class_model``; here they fulfill the contract, so that every
-experiment runs on them. Kernels and surgery are those of ``structures.half_edge``, told in objects,
-and both number their elements alike::
+The classes stand in ``structures.objects.class_model``; here they fulfill the contract, so that
+every experiment runs on them. Kernels and surgery are those of ``structures.half_edge``, told in
+objects, and both number their elements alike::
 
     mesh = structures.build("half_edge_objects", hem.sample("bunny"))
     mesh.half_edges[3].next.opposite.face         # objects
@@ -34,10 +34,17 @@ from hem.edit import CHANGED, VERTEX, Edit
 from hem.engine import counting
 from hem.errors import MeshError
 from hem.meshes import TriangleMesh
-from structures import class_model, object_records
-from structures.class_model import FaceList, HalfEdge, HalfEdgeList, Vertex, VertexList, around
 from structures.half_edge import HalfEdge as HalfEdgeArrays
-from structures.object_records import COUNTED, ObjectRecords, ObjectStorage, index_of
+from structures.objects import class_model, records
+from structures.objects.class_model import (
+    FaceList,
+    HalfEdge,
+    HalfEdgeList,
+    Vertex,
+    VertexList,
+    around,
+)
+from structures.objects.records import COUNTED, ObjectRecords, ObjectStorage, index_of
 
 SHARED = 257  # integers below this one are shared by all who use them
 Give = Callable[[HalfEdge], int]  # what a query or a step gives of a half-edge
@@ -400,7 +407,7 @@ class HalfEdgeMesh(Navigable):
     @classmethod
     def build(cls, mesh: TriangleMesh, reference_bytes: int = 4) -> Self:
         """See ``Structure.build``; a reference takes what Python gives it."""
-        return cls(object_records.build_records(mesh))
+        return cls(records.build_records(mesh))
 
     @classmethod
     def create(cls, a: ArrayLike, b: ArrayLike, c: ArrayLike) -> Self:
@@ -430,7 +437,7 @@ class HalfEdgeMesh(Navigable):
     @property
     def points(self) -> NDArray[np.float32]:
         """(n, 3) float32: positions by vertex, NaN for dead ones; gathered anew. Cost O(n_v)."""
-        return object_records.positions(self.records)
+        return records.positions(self.records)
 
     def subscribe(self, callback: Callable[[Edit], Any]) -> Callable[[], None]:
         """See ``Structure.subscribe``; also told when the ``point`` of a vertex is set."""
@@ -477,7 +484,7 @@ class HalfEdgeMesh(Navigable):
     def validate(self) -> None:
         """Check the objects themselves, then as arrays what ``structures.half_edge`` requires."""
         self._require_invariants()
-        HalfEdgeArrays(object_records.to_arrays(self.records)).validate()
+        HalfEdgeArrays(records.to_arrays(self.records)).validate()
 
     def _require_invariants(self) -> None:
         """Every element stands in its list, and every reference leads to one that does."""

@@ -9,9 +9,9 @@ from numpy.typing import ArrayLike, NDArray
 from hem.arrays import Handles
 from hem.edit import Edit
 from hem.rendering import mesh_from_render
-from structures.class_model import Face, HalfEdge, Vertex
 from structures.half_edge_objects import HalfEdgeMesh
-from structures.object_records import build_records
+from structures.objects.class_model import Face, HalfEdge, Vertex
+from structures.objects.records import build_records
 
 
 class HalfEdgeMeshBuilder:

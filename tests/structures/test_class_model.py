@@ -9,13 +9,13 @@ import pytest
 
 import hem
 import structures
-from structures.class_model import HalfEdge
 from structures.half_edge_objects import HalfEdgeMesh
 from structures.object_tools import (
     EdgeSplittingBehaviour,
     FaceSplittingBehaviour,
     HalfEdgeMeshBuilder,
 )
+from structures.objects.class_model import HalfEdge
 from tests.structures.conftest import MESHES, octahedron, shuffled
 from tests.structures.histories.actions import KINDS, NUMBERS, Action, aim, perform, surface_of
 

@@ -17,7 +17,8 @@ from experiments.report.figures import class_diagram, drawings, records
 from experiments.report.figures.meshes import hexagon
 from experiments.report.notebooks import page_titles
 from experiments.report.pages import page
-from structures import NAMES, REGISTRY, class_model
+from structures import NAMES, REGISTRY
+from structures.objects import class_model
 from tests.experiments.chromium import Browser
 from tests.extent import OF_EACH_KIND
 

@@ -14,9 +14,16 @@ from hem.authoring import EDGES, ENDLESS, FACES, VALENCE, VERTEX_END, VERTICES, 
 from hem.contract import Storage
 from hem.engine import Held, InterpretedUses
 from hem.meshes import TriangleMesh, require_manifold
-from structures import class_model
-from structures.class_model import Face, FaceList, HalfEdge, HalfEdgeList, Vertex, VertexList
 from structures.half_edge import HalfEdgeRecords
+from structures.objects import class_model
+from structures.objects.class_model import (
+    Face,
+    FaceList,
+    HalfEdge,
+    HalfEdgeList,
+    Vertex,
+    VertexList,
+)
 
 ROOM = [authoring.VERTEX_ROOM, authoring.EDGE_ROOM, authoring.FACE_ROOM]
 
