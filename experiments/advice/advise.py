@@ -98,6 +98,9 @@ def advise(
     faces = len(triangles.triangles)
     options, refused = [], {}
     for name, kind in REGISTRY.items():
+        if name not in prices.structures:
+            refused[name] = "the run has not measured it"
+            continue
         wrong = [NEEDS[it][0] for it in needs if not NEEDS[it][1](kind)]
         taken = 0
         try:

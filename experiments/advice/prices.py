@@ -79,6 +79,11 @@ class Prices:
         return (sizes.min(), sizes.max()) if len(sizes) else (float("nan"), float("nan"))
 
     @cached_property
+    def structures(self) -> frozenset[str]:
+        """Those that the run has timed queries of."""
+        return frozenset(self.run.cases.query("experiment == 'bench_queries'")["structure"])
+
+    @cached_property
     def step(self) -> float:
         """Seconds per step of the calibration loop, the median beside all rounds."""
         return float(self.run.cases["calibration"].map(np.median).median())

@@ -192,7 +192,8 @@ def advice_sliders(run: Run) -> Html:
     sizes = np.geomspace(low, high, POINTS)
     whats = sorted({row.what for it in PRESETS.values() for row in it.rows})
     try:
-        structures = [_prices(prices, name, whats, sizes) for name in REGISTRY]
+        measured = [name for name in REGISTRY if name in prices.structures]
+        structures = [_prices(prices, name, whats, sizes) for name in measured]
     except KeyError as error:
         raise MissingError(f"This run cannot advise: {error.args[0]}.") from error
     presets = [

@@ -93,6 +93,14 @@ def test_needs_follow_from_what_structures_declare(prices: Prices) -> None:
     }
 
 
+def test_what_the_run_has_not_measured_is_no_option(run: Run) -> None:
+    without = Prices(replace(run, cases=run.cases.query("structure != 'half_edge'")))
+    for workload in (ASKED, PRESETS["edited"]):
+        told = advise(without, workload, MESH)
+        assert told.refused["half_edge"] == "the run has not measured it"
+        assert "half_edge" not in {it.forecast.structure for it in told.options}
+
+
 def test_limits_refuse_what_takes_more(prices: Prices) -> None:
     free = advise(prices, PRESETS["edited"], MESH)
     bytes_of = {it.forecast.structure: it.bytes for it in free.options}
