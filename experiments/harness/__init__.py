@@ -7,7 +7,6 @@ from experiments.harness.cases import BASE, Case, Measurement
 from experiments.harness.experiment import (
     ANYONE,
     OPERATIONS,
-    OPERATIONS_TABLE,
     QUERIES_TABLE,
     Axis,
     Experiment,
@@ -20,7 +19,7 @@ from experiments.harness.timer import Timer, time_rounds
 from experiments.presets import ANSWERING, HUBS, ORDERS, PRESETS, Preset
 
 __all__ = [
-    "ANSWERING", "ANYONE", "BASE", "HUBS", "OPERATIONS", "OPERATIONS_TABLE", "ORDERS", "PRESETS",
-    "QUERIES_TABLE", "Axis", "Case", "Experiment", "Measurement", "Preset", "Table", "Timer",
-    "badness", "disturbed", "operation_faces", "time_query", "time_rounds",
+    "ANSWERING", "ANYONE", "BASE", "HUBS", "OPERATIONS", "ORDERS", "PRESETS", "QUERIES_TABLE",
+    "Axis", "Case", "Experiment", "Measurement", "Preset", "Table", "Timer", "badness", "disturbed",
+    "operation_faces", "time_query", "time_rounds",
 ]  # fmt: skip
