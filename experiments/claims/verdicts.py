@@ -134,7 +134,7 @@ def judge_run(run: Run) -> list[JudgedClaim]:
     judged = [*judge_cells(run), *judge_sentences(run)]
     if "finished" in run.meta and run.folder.exists():
         with suppress(OSError):
-            write_whole(path, json.dumps({"of": state, "claims": [*map(_plain, judged)]}))
+            write_whole(path, json.dumps({"of": state, "claims": list(map(_plain, judged))}))
     return judged
 
 

@@ -294,8 +294,12 @@ def _compare_curve(key: CaseKey, axis: str, pairs: list[Pair], factor: float) ->
     if not both:
         was, now = (None if it is None else () for it in pairs[0][2:4])
         return _finding(Kind.TIME, key, was, now, RUN, pairs[0].why, axis=axis, claim=claim)
-    told = [[row[it] for it in ("samples", "calibration") for row in pair] for pair in both]
-    cases = [compare_rounds(*it, factor=factor) for it in told]
+    cases = [
+        compare_rounds(
+            old["samples"], new["samples"], old["calibration"], new["calibration"], factor
+        )
+        for old, new in both
+    ]
     change, why = vote(case.change for case in cases)
     if lost := sum(it.after is None for it in pairs):  # perhaps just the largest are slower
         change = Change.UNDETERMINED if change == Change.SAME else change
