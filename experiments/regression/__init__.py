@@ -11,6 +11,7 @@ from experiments.regression.baseline import (
     RUN,
     Measured,
     load_baseline,
+    measure_counters,
     reduce_run,
     save_baseline,
 )
@@ -21,7 +22,6 @@ from experiments.regression.compare import (
     compare_runs,
     describe_difference,
 )
-from experiments.regression.counters import measure_counters
 from experiments.regression.findings import CaseKey, Change, Finding, Kind, exit_code
 from experiments.regression.history import (
     MEASURES,
