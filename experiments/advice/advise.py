@@ -54,13 +54,14 @@ class Limits:
 
 @dataclass(frozen=True)
 class Option:
-    """A structure that could be taken: what it would take, and what keeps it behind the best."""
+    """A structure that could be taken: what it would take, and what keeps it behind the best.
+
+    ``edit``: seconds of the slowest kind of edit, called from Python.
+    """
 
     forecast: Forecast
     bytes: int
     edit: float
-    """Seconds of the slowest kind of edit, called from Python."""
-
     behind: str = ""
 
 

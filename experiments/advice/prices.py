@@ -30,6 +30,17 @@ CALL = 6e-7
 
 BEYOND = 0.25
 """How much less sure a price is for every factor e beyond the sizes that were measured."""
+UNMODELED = 0.45
+"""How far a logarithm is off beside what rounds and sizes tell: what is asked in a program finds
+other things in the caches than what is asked alone. Chosen so that nine of ten of the workloads in
+`experiments.validation.advice` lie within."""
+
+SIGMAS = 1.645
+"""Nine of ten should lie within."""
+
+BUILDING, OWN = "build", "own"
+LOST = {"collapse_edge": -2, "remove_face": -1}
+"""Faces that an operation takes away."""
 
 
 class Price(NamedTuple):
@@ -129,20 +140,12 @@ def _points(curve: Curve) -> tuple[Array, Array, Array]:
     return np.log(curve.sizes), costs, np.hypot(spread, bends)
 
 
-UNMODELED = 0.45
-"""How far a logarithm is off beside what rounds and sizes tell: what is asked in a program finds
-other things in the caches than what is asked alone. Chosen so that nine of ten of the workloads in
-`experiments.validation.advice` lie within."""
-
-SIGMAS = 1.645
-"""Nine of ten should lie within."""
-
-BUILDING, OWN = "build", "own"
-
-
 @dataclass(frozen=True)
 class Forecast:
-    """Seconds of a workload on a structure: the interval, and what each part takes."""
+    """Seconds of a workload on a structure: the interval, and what each part takes.
+
+    ``untold``: what the run does not tell the price of, which is left out.
+    """
 
     structure: str
     seconds: float
@@ -150,7 +153,6 @@ class Forecast:
     high: float
     parts: dict[str, float] = field(default_factory=dict)
     untold: tuple[str, ...] = ()
-    """What the run does not tell the price of, which is left out."""
 
 
 def predict(prices: Prices, workload: Workload, structure: str, faces: float) -> Forecast:
@@ -201,10 +203,6 @@ def _grown(workload: Workload, faces: float) -> float:
         gain = OPERATIONS[row.what].growth[1] or LOST.get(row.what, 0)
         more += gain * row.count(faces, workload.frames)
     return max(8.0, faces / 8, faces + more / 2)
-
-
-LOST = {"collapse_edge": -2, "remove_face": -1}
-"""Faces that an operation takes away."""
 
 
 def _with_anew(rows: tuple[Row, ...]) -> tuple[Row, ...]:

@@ -11,7 +11,6 @@ from experiments.regression.baseline import (
     RUN,
     Measured,
     load_baseline,
-    measure_counters,
     reduce_run,
     save_baseline,
 )
@@ -22,19 +21,12 @@ from experiments.regression.compare import (
     compare_runs,
     describe_difference,
 )
+from experiments.regression.counters import measure_counters
 from experiments.regression.findings import CaseKey, Change, Finding, Kind, exit_code
-from experiments.regression.history import (
-    MEASURES,
-    OUTCOMES,
-    History,
-    Line,
-    Trends,
-    append_run,
-    read_history,
-    record_run,
-)
+from experiments.regression.history import History, Line, append_run, read_history, record_run
 from experiments.regression.interleaved import HERE, compare_trees, require_tree
 from experiments.regression.significance import FACTOR as INTERLEAVED_FACTOR
+from experiments.regression.trends import MEASURES, OUTCOMES, Trends
 
 __all__ = [
     "COUNTERS", "HERE", "INTERLEAVED_FACTOR", "MEASURES", "OUTCOMES", "RUN", "RUN_FACTOR",

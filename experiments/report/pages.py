@@ -26,6 +26,8 @@ from structures import NAMED
 
 Heads = Mapping[str, Callable[[Any], str]]
 """What stands above the columns of a table of numbers, and how their values are written."""
+NOT_OF_SECTIONS = r"table \d+|errat(?:um|a) \d+"
+"""Numbers in a source that are not those of sections."""
 
 
 class Html(Markup):
@@ -224,10 +226,6 @@ def closing(claims: Iterable[JudgedClaim], points: Mapping[str, Sequence[str]]) 
     return part("closing", rows)
 
 
-NOT_OF_SECTIONS = r"table \d+|errat(?:um|a) \d+"
-"""Numbers in a source that are not those of sections."""
-
-
 @dataclass(frozen=True)
 class Section:
     """A section of the thesis, or the article: what it says, and where it is done.
@@ -266,10 +264,10 @@ def traced(claims: Iterable[JudgedClaim]) -> Html:
     """A row per section: what it says, where it is done, and what became of what it claims."""
     printed = [it for it in claims if it.claim.kind is Kind.PRINTED and it.claim.claims_something]
     heads = "Section", "What it says", "Where it is done", "What became of it"
-    return text_table(heads, [_row(it, printed) for it in sections()])
+    return text_table(heads, [_section_row(it, printed) for it in sections()])
 
 
-def _row(section: Section, printed: Sequence[JudgedClaim]) -> tuple[str, str, Html, Html]:
+def _section_row(section: Section, printed: Sequence[JudgedClaim]) -> tuple[str, str, Html, Html]:
     mine = [it for it in printed if section.of in cited(it.claim.source)]
     said = [it for it in mine if it.claim.table == SENTENCES]
     cells = Counter(it.mark for it in mine if it.claim.table != SENTENCES)
