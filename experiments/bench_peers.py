@@ -11,6 +11,7 @@ from functools import partial
 from experiments import peers
 from experiments.harness import HUBS, OPERATIONS, Case, Experiment, Measurement, Preset, Timer
 from experiments.peers import BUILD, BULK, BYTES, LOOPED, PEERS, SINGLE, Peer, measuring
+from experiments.peers.peer import SIX
 from hem.contract import QUERIES
 
 ALGORITHM_VERTICES = 20_000  # vertices at most of what algorithms are given
@@ -39,7 +40,7 @@ def cases(preset: Preset, structure: str) -> list[Case]:
     asked += [(it, LOOPED) for it in QUERIES if it in peer.loops]
     everywhere = [*asked, *((it, BULK) for it in peer.bulk), (BUILD, None)]
     done = [*((it, SINGLE) for it in peer.operations), *((it, BULK) for it in peer.batches)]
-    looped = [it for it in (*peers.BATCHED, *peers.SIX) if it in peer.loops]
+    looped = [it for it in (*peers.BATCHED, *SIX) if it in peer.loops]
     return [
         *(case(size, *it) for size in by_size for it in everywhere),
         *(hubs(*it, valence) for valence in preset.valences for it in asked),

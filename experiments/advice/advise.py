@@ -8,8 +8,7 @@ import numpy as np
 
 import hem
 from experiments import require_known
-from experiments.advice.predict import Forecast, predict
-from experiments.advice.prices import Prices
+from experiments.advice.prices import Forecast, Prices, predict
 from experiments.advice.workload import Workload, is_edit
 from hem.contract.recording import ANEW, PYTHON
 from structures import REGISTRY, Structure, build
@@ -25,27 +24,20 @@ BUILT_OF_OBJECTS = 20_000
 """Faces up to which a structure of objects is built to be weighed."""
 
 
-def _records_edges(kind: type[Structure]) -> bool:
+def _holds(kind: type[Structure], family: str, edges: bool = False) -> bool:
+    """Whether a structure holds a family of meshes, and beside it values of edges."""
     try:
-        build(kind.name, hem.generate("torus", 100)).edge_attribute("needed")  # refused without
+        s = build(kind.name, hem.generate(family, 100))
+        return not edges or s.edge_attribute("needed") is not None  # refused without records
     except hem.MeshError:
         return False
-    return True
-
-
-def _has_borders(kind: type[Structure]) -> bool:
-    try:
-        build(kind.name, hem.generate("grid", 100))
-    except hem.MeshError:
-        return False
-    return True
 
 
 NEEDS: dict[str, tuple[str, Callable[[type[Structure]], bool]]] = {
-    "edges": ("records no edges", _records_edges),
-    "borders": ("holds closed meshes only", _has_borders),
+    "edges": ("records no edges", lambda it: _holds(it, "torus", edges=True)),
+    "borders": ("holds closed meshes only", lambda it: _holds(it, "grid")),
     "polygons": ("holds triangles only", lambda it: it.holds_polygons),
-    "attributes": ("keeps no values of edges", _records_edges),
+    "attributes": ("keeps no values of edges", lambda it: _holds(it, "torus", edges=True)),
     "edits": ("looks at the whole mesh for an edit", lambda it: not (it.searches or it.rebuilds)),
 }
 """By name: what is wrong with a structure that cannot, and whether it can. ``edits`` is for what
@@ -62,13 +54,14 @@ class Limits:
 
 @dataclass(frozen=True)
 class Option:
-    """A structure that could be taken: what it would take, and what keeps it behind the best."""
+    """A structure that could be taken: what it would take, and what keeps it behind the best.
+
+    ``edit``: seconds of the slowest kind of edit, called from Python.
+    """
 
     forecast: Forecast
     bytes: int
     edit: float
-    """Seconds of the slowest kind of edit, called from Python."""
-
     behind: str = ""
 
 

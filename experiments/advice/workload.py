@@ -22,17 +22,18 @@ BUILD, FRAME = "build", "frame"
 
 @dataclass(frozen=True)
 class Row:
-    """How often something is asked or done: ``times``, or so often for ``each`` element."""
+    """How often something is asked or done: ``times``, or so often for ``each`` element.
+
+    ``in_order``: the share of it that is near to what was asked before; the rest is at random.
+    ``caller``: ``compiled``, as in an algorithm or a batch, or ``python``: one call each.
+    """
 
     what: str
     times: float
     each: str = ""
     per: str = BUILD
     in_order: float = 0.0
-    """The share of it that is near to what was asked before; the rest is at random."""
-
     caller: str = COMPILED
-    """``compiled``, as in an algorithm or a batch, or ``python``: one call each."""
 
     def __post_init__(self) -> None:
         allowed: dict[str, Any] = {

@@ -21,10 +21,8 @@ from experiments.claims.claim import (
     tally,
 )
 from experiments.claims.curves import Curve, Curves, curves
-from experiments.claims.families import BY_TIME, Family, judge_families
-from experiments.claims.kept import judge_run
 from experiments.claims.quantities import MIXES, break_even, judge_sentences, sentence_claims
-from experiments.claims.verdicts import judge_cells
+from experiments.claims.verdicts import BY_TIME, Family, judge_cells, judge_families, judge_run
 
 __all__ = [
     "BY_TIME", "CLAIMED", "MEMORY", "MIXES", "NOT_POSSIBLE", "NO_CLAIM", "SENTENCES", "Between",

@@ -22,7 +22,7 @@ from experiments.claims.claim import (
     Kind,
 )
 from experiments.claims.curves import axes_of, table_of
-from experiments.harness import ANYONE, Axis, Table
+from experiments.harness import Axis, Table
 from experiments.runs import experiments, tables
 from hem.contract import Claims
 from structures import NAMED
@@ -108,11 +108,10 @@ def _own_claim(name: str, what: str, said: Mapping[str, Claimed]) -> Claimed:
 
 def _of_experiments() -> Iterator[Cell]:
     for it in experiments().values():
-        for what, claimed in it.claims.items():
+        for what in it.claims:
             assert it.table is not None  # it declares none without
-            default = claimed.get(ANYONE, NO_CLAIM)
             for name in it.structures:
-                printed = claimed.get(name, default)
+                printed = it.expected(what, name) or NO_CLAIM
                 kind = Kind.NOBODY if printed == NO_CLAIM else Kind.EXPECTED
                 yield it.table, what, name, (printed, kind, it.source)
 

@@ -6,7 +6,6 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
 from experiments.claims.claim import Claim
 from experiments.harness import HUBS, QUERIES_TABLE, Axis
@@ -68,6 +67,10 @@ class Curves:
     def __init__(self, run: Run) -> None:
         self.cases = run.cases
         self._made: dict[tuple[str, bytes], Curve] = {}
+        self._jobs: dict[Any, Any] = self.cases.groupby(["experiment", "structure"]).indices
+        self._columns = {str(name): column.to_numpy() for name, column in self.cases.items()}
+        latency = self.cases[self.cases["experiment"] == "bench_latency"]
+        self._latency = Curve("working_set", latency.sort_values("working_set"))
 
     @cached_property
     def judged_family(self) -> str | None:
@@ -164,19 +167,6 @@ class Curves:
         if not len(curve := self._latency):
             return None
         return np.exp(np.interp(np.log(working_sets), np.log(curve.sizes), np.log(curve.centers)))
-
-    @cached_property
-    def _latency(self) -> Curve:
-        cases = self.cases[self.cases["experiment"] == "bench_latency"]
-        return Curve("working_set", cases.sort_values("working_set"))
-
-    @cached_property
-    def _columns(self) -> dict[str, NDArray[Any]]:
-        return {str(name): column.to_numpy() for name, column in self.cases.items()}
-
-    @cached_property
-    def _jobs(self) -> dict[Any, Any]:
-        return self.cases.groupby(["experiment", "structure"]).indices
 
 
 @lru_cache(maxsize=4)

@@ -1,18 +1,26 @@
-"""Quantities that no run has to measure: something is built and looked at, or counted in code."""
+"""Quantities that no run has to measure: something is built and looked at, or counted in code.
 
+A kernel's code is its own and that of all parts that it calls, each once, without the annotations
+and the docstrings.
+"""
+
+import ast
+import inspect
+import textwrap
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from contextlib import suppress
 from functools import cache
-from typing import Any, cast
+from typing import Any, NamedTuple, TypeGuard, cast
 
 import numpy as np
 
 import hem
 import structures
 from experiments.claims.beside import BOOK, MIDDLE, printed
-from experiments.claims.source_code import code_facts, come_round_tests
+from hem.authoring import Kernel
 from hem.contract import QUERIES
+from hem.engine import parts_of
 from structures.object_tools import HalfEdgeMeshBuilder
 from structures.plankton import Plankton
 
@@ -120,3 +128,65 @@ def handling(*facts: str, mine: str = HALF) -> Iterable[float]:
     names = [*QUERIES, *(it for it in kernels if it.endswith("_records"))]
     one, two = (code_facts(it[name] for name in names) for it in (kernels, others))
     return [getattr(one, fact) / getattr(two, fact) for fact in facts]
+
+
+RECORDS = "m"  # what kernels call the records
+
+
+class CodeFacts(NamedTuple):
+    """Counts of what stands in the code.
+
+    ``direction_tests``: kernels that compare what a record names with the vertex, edge or face that
+    one comes from, to learn which way round the record lies. ``branches``: of ``if``, of
+    conditional expressions and of loops that end by a condition. ``lines``: statements.
+    """
+
+    direction_tests: int
+    branches: int
+    lines: int
+
+
+def code_facts(kernels: Iterable[Kernel]) -> CodeFacts:
+    """The counts of some kernels together, each part once."""
+    kernels = list(kernels)
+    nodes, branches = list(_nodes(kernels)), (ast.If, ast.IfExp, ast.While)
+    return CodeFacts(
+        sum(any(map(_tests_direction, _nodes([it]))) for it in kernels),
+        sum(isinstance(it, branches) for it in nodes),
+        sum(isinstance(it, ast.stmt) and not _says_nothing(it) for it in nodes),
+    )
+
+
+def come_round_tests(kernels: Iterable[Kernel]) -> int:
+    """How often a loop in some kernels asks whether it is back at where it began."""
+    loops = (it for it in _nodes(kernels) if isinstance(it, ast.While))
+    return sum(_compares(it, ast.Name, ast.Name) for loop in loops for it in ast.walk(loop))
+
+
+def _nodes(kernels: Iterable[Kernel]) -> Iterator[ast.AST]:
+    parts = {it.__code__: it for kernel in kernels for it in parts_of(kernel, set())}
+    sources = (textwrap.dedent(inspect.getsource(it)) for it in parts.values())
+    return (node for source in sources for node in ast.walk(ast.parse(source)))
+
+
+def _tests_direction(it: ast.AST) -> bool:
+    if not _compares(it, ast.Subscript, ast.Name):
+        return False
+    return any(isinstance(n, ast.Name) and n.id == RECORDS for n in ast.walk(it.left))
+
+
+def _compares(it: ast.AST, one: type[ast.expr], other: type[ast.expr]) -> TypeGuard[ast.Compare]:
+    """Whether it says that something of these two sorts is equal, or that it is not."""
+    return (
+        isinstance(it, ast.Compare)
+        and len(it.ops) == 1
+        and isinstance(it.ops[0], ast.Eq | ast.NotEq)
+        and isinstance(it.left, one)
+        and isinstance(it.comparators[0], other)
+    )
+
+
+def _says_nothing(it: ast.stmt) -> bool:
+    """Whether it is a docstring, or the head of a function."""
+    quoted = isinstance(it, ast.Expr) and isinstance(it.value, ast.Constant)
+    return quoted or isinstance(it, ast.FunctionDef)

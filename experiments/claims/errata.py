@@ -63,10 +63,6 @@ def _last_triangle() -> Shown:
     return Shown(words, corrected, (faces, unpaired) == (7, 3))
 
 
-def _quadratic_builder() -> Shown:
-    return _grows(lambda mesh, m: printed(mesh), lambda mesh, s: sound(mesh), 12, 5)
-
-
 def _foreign_face() -> Shown:
     m, s = printed(), sound()
     m.split_half_edge(m.half_edges[0], beside.MIDDLE)
@@ -128,27 +124,25 @@ def _inverted_commit() -> Shown:
     return Shown(words, f"{single} outside, {within} inside", confirmed)
 
 
-def _search_for_duplicates() -> Shown:
-    there = (9.0, 9.0, 9.0)
-    return _grows(
-        lambda mesh, m: m.split_face(m.faces[0], there),
-        lambda mesh, s: s.split_face(0, there), 2, 1.1,
-    )  # fmt: skip
+def _collapse_stepping(mesh: hem.TriangleMesh, m: AsPrinted) -> None:
+    m.stepping = True
+    m.collapse_edge(m.half_edges[0])
 
 
-def _scanning_circulator() -> Shown:
-    return _grows(
+# fmt: off
+GROWS = {
+    "quadratic_builder": (lambda mesh, m: printed(mesh), lambda mesh, s: sound(mesh), 12, 5),
+    "search_for_duplicates": (
+        lambda mesh, m: m.split_face(m.faces[0], (9.0, 9.0, 9.0)),
+        lambda mesh, s: s.split_face(0, (9.0, 9.0, 9.0)), 2, 1.1),
+    "scanning_circulator": (
         lambda mesh, m: m.vertex_circulator(m.vertices[0]),
-        lambda mesh, s: s.vertices.circulator(s.vertices[0]), 3.9, 1.1,
-    )  # fmt: skip
-
-
-def _stepping_collapse() -> Shown:
-    def collapse(mesh: hem.TriangleMesh, m: AsPrinted) -> None:
-        m.stepping = True
-        m.collapse_edge(m.half_edges[0])
-
-    return _grows(collapse, lambda mesh, s: s.collapse_edge(s.half_edges[0].edge), 3.5, 1.1)
+        lambda mesh, s: s.vertices.circulator(s.vertices[0]), 3.9, 1.1),
+    "stepping_collapse": (
+        _collapse_stepping, lambda mesh, s: s.collapse_edge(s.half_edges[0].edge), 3.5, 1.1),
+}
+# fmt: on
+"""What is shown by how work grows: see `_grows`."""
 
 
 def _there_and_back() -> Shown:
@@ -245,5 +239,6 @@ def _stolen_partner() -> Shown:
 
 _TEXTS = tomllib.loads((files("experiments.claims") / "errata.toml").read_text("utf-8"))
 _SHOWS = vars(later_errata) | {name[1:]: it for name, it in globals().items() if name[0] == "_"}
+_SHOWS |= {name: partial(_grows, *it) for name, it in GROWS.items()}
 ERRATA = tuple(Erratum(**{**it, "show": _SHOWS[it["show"]]}) for it in _TEXTS["erratum"])
 """All of them, in the order in which they are numbered from 1."""

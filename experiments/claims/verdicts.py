@@ -1,22 +1,38 @@
-"""From a run to a judged claim: by work and by time, in each variable apart.
+"""From a run to judged claims: by work and by time, in each variable apart; once per run.
 
 Work counts are exact, so they decide; time is judged beside them. Asked in consecutive order, a
 query finds what it needs in the caches, and time shows its steps. Asked at random it waits for
 memory, which is slower the larger the mesh. Constant costs are judged in proportion to the
 reference beside them, the same code where its work cannot grow. What is claimed to grow goes
 through more memory than that; it, and what has no reference, is judged by the memory's latency.
+
+``derived/judged.json`` in the folder of a run holds what follows from the measurements, the claims
+and the code that judges; it is read only as long as all are what they were.
+
+Claims are judged on one family, whose vertices all have the same valence, and whose work is
+counted. Others are timed alone, so that what holds there is told by time.
 """
 
-from collections.abc import Mapping, Sequence
+import hashlib
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
+from functools import lru_cache
+from pathlib import Path
+from typing import Any, NamedTuple
 
 import numpy as np
+import pandas as pd
 
+import hem.complexity
 from experiments.claims.cells import load_claims
-from experiments.claims.claim import BOUND, Claim, Exactly, Growth, JudgedClaim, Outcome
+from experiments.claims.claim import BOUND, MEMORY, Claim, Exactly, Growth, JudgedClaim, Outcome
 from experiments.claims.curves import Curve, Curves, axes_of, curves
-from experiments.harness import Axis
+from experiments.claims.quantities import judge_sentences, sentence_claims
+from experiments.harness import QUERIES_TABLE, Axis
 from experiments.runs import Run, experiments
 from hem.complexity import Verdict, judge
+from hem.whole_files import write_whole
 
 CASE_ERROR = 0.15
 """How far cases of one curve stray, beyond what their own rounds tell: each is measured within some
@@ -104,3 +120,88 @@ def _class_found(axes: Sequence[Axis], verdicts: Mapping[Axis, Verdict]) -> str:
     factors = [it[2:-1].replace("n", axis.symbol) for axis, it in best.items() if it != "O(1)"]
     flat = any(axis.variable == "valence" and verdicts[axis].slope < FLAT for axis in axes)
     return f"O({(' + ' if flat else ' · ').join(factors) or '1'})"
+
+
+@lru_cache(maxsize=4)
+def judge_run(run: Run) -> list[JudgedClaim]:
+    """Every cell of every table, then every sentence: judged once, which takes some seconds."""
+    claims = [*load_claims(), *sentence_claims()]
+    path, state = run.folder / "derived" / "judged.json", _state(run.folder, claims)
+    with suppress(OSError, ValueError, KeyError, TypeError):
+        content = json.loads(path.read_text("utf-8"))
+        if content["of"] == state:
+            return list(map(_judged, claims, content["claims"]))
+    judged = [*judge_cells(run), *judge_sentences(run)]
+    if "finished" in run.meta and run.folder.exists():
+        with suppress(OSError):
+            write_whole(path, json.dumps({"of": state, "claims": list(map(_plain, judged))}))
+    return judged
+
+
+def _state(folder: Path, claims: list[Claim]) -> str:
+    """A digest of the run, of the claims wherever they stand, and of the code that judges."""
+    digest = hashlib.sha256(repr(claims).encode())
+    code = [Path(__file__).parent, Path(str(hem.complexity.__file__)).parent]
+    for room, pattern in ((code[0], "*.*"), (code[1], "*.*"), (folder, "*.json*")):
+        for path in sorted(filter(Path.is_file, room.glob(pattern))):
+            digest.update(path.name.encode() + path.read_bytes())
+    return digest.hexdigest()
+
+
+def _plain(judged: JudgedClaim) -> dict[str, Any]:
+    verdicts = {axis.key: vars(verdict) for axis, verdict in judged.verdicts.items()}
+    made = {"claim": judged.claim.key, "verdicts": verdicts, "values": judged.values.tolist()}
+    return {**vars(judged), **made}
+
+
+def _judged(claim: Claim, row: dict[str, Any]) -> JudgedClaim:
+    kept = row["verdicts"]
+    read = {
+        "claim": claim,
+        "outcome": Outcome(row["outcome"]),
+        "outcomes": {measure: Outcome(it) for measure, it in row["outcomes"].items()},
+        "verdicts": {axis: Verdict(**kept[axis.key]) for axis in Axis if axis.key in kept},
+        "values": np.array(row["values"], float),
+    }
+    return JudgedClaim(**{**row, **read})
+
+
+BY_TIME = Axis.TIME_FACES, Axis.RANDOM_FACES
+DETERMINED = {Outcome.CONSISTENT, Outcome.VIOLATED}
+
+
+class Family(NamedTuple):
+    """A family: its largest mesh as a case of the run, and the judged claims on its queries."""
+
+    name: str
+    largest: pd.Series
+    claims: list[JudgedClaim]
+
+    def outcomes(self, axis: Axis) -> dict[str, Outcome]:
+        """What became of every claim along an axis, by its key."""
+        found = {it.claim.key: it.verdicts.get(axis) for it in self.claims}
+        return {key: Outcome(it.outcome) for key, it in found.items() if it is not None}
+
+    def against(self, other: "Family", axis: Axis) -> Iterator[JudgedClaim]:
+        """The claims that hold on one of the two families, and are violated on the other."""
+        mine, others = self.outcomes(axis), other.outcomes(axis)
+        for it in self.claims:
+            if {mine.get(it.claim.key), others.get(it.claim.key)} == DETERMINED:
+                yield it
+
+
+def judge_families(run: Run, judged: Sequence[JudgedClaim]) -> list[Family]:
+    """All families whose queries were timed, the judged one first: its claims are ``judged``."""
+    first = curves(run).judged_family
+    timed = run.cases[run.cases["experiment"].isin(("bench_queries", "bench_latency"))]
+    queries = [it for it in judged if it.claim.table == QUERIES_TABLE.name]
+    asked = [it for it in queries if it.claim.claims_something and it.claim.subject != MEMORY]
+    largest = timed[timed["experiment"] == "bench_queries"].sort_values("vertices")
+    meshes = {name: of_family.iloc[-1] for name, of_family in largest.groupby("family")}
+    families = []
+    for name in sorted(meshes, key=lambda it: (it != first, it)):
+        others = timed["family"].isin([it for it in meshes if it != name])
+        alone = Run(run.folder, run.meta, timed[~others].reset_index(drop=True), run.skipped)
+        found = asked if name == first else judge_cells(alone, [it.claim for it in asked])
+        families.append(Family(str(name), meshes[name], found))
+    return families

@@ -91,7 +91,8 @@ def _show(found: Advice, run: Run, called: str, mesh: str) -> None:
     table = Table(*whole, "what costs it more")
     for option in found.options:
         it, behind = option.forecast, option.behind
-        within = _interval(duration(it.low), duration(it.high))
+        low, high = duration(it.low), duration(it.high)
+        within = f"{low.removesuffix(high[high.index(' ') :])} … {high}"  # the unit once
         extra = f"{behind} {duration(it.parts.get(behind, 0.0))}" if behind else ""
         title = REGISTRY[it.structure].title
         table.add_row(title, duration(it.seconds), within, decimal(option.bytes), extra)
@@ -109,9 +110,3 @@ def _show(found: Advice, run: Run, called: str, mesh: str) -> None:
     untold = sorted({what for it in found.options for what in it.forecast.untold})
     if untold:
         console.print(f"Left out, as the run does not tell what it takes: {', '.join(untold)}.")
-
-
-def _interval(low: str, high: str) -> str:
-    """Two durations, the unit once where it is the same."""
-    unit = high[high.index(" ") :]
-    return f"{low.removesuffix(unit)} … {high}"

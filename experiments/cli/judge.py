@@ -43,7 +43,7 @@ def judge_file(
         curves = read_curves(file, parameter)
         verdicts = [judge(it.sizes, it.samples, expected or "O(1)", **options) for it in curves]
         if plot is not None:
-            from experiments.report.figures.costs import save_costs
+            from experiments.report.figures.accuracy import save_costs
 
             save_costs(plot, curves, verdicts, expected is not None)
         (_print_data if as_json else _print)(curves, verdicts, expected)

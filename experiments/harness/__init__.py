@@ -4,15 +4,7 @@ What each experiment measures stands in its ``bench_*.py``.
 """
 
 from experiments.harness.cases import BASE, Case, Measurement
-from experiments.harness.experiment import (
-    ANYONE,
-    OPERATIONS,
-    OPERATIONS_TABLE,
-    QUERIES_TABLE,
-    Axis,
-    Experiment,
-    Table,
-)
+from experiments.harness.experiment import OPERATIONS, QUERIES_TABLE, Axis, Experiment, Table
 from experiments.harness.operations import operation_faces
 from experiments.harness.queries import time_query
 from experiments.harness.steadiness import badness, disturbed
@@ -20,7 +12,7 @@ from experiments.harness.timer import Timer, time_rounds
 from experiments.presets import ANSWERING, HUBS, ORDERS, PRESETS, Preset
 
 __all__ = [
-    "ANSWERING", "ANYONE", "BASE", "HUBS", "OPERATIONS", "OPERATIONS_TABLE", "ORDERS", "PRESETS",
-    "QUERIES_TABLE", "Axis", "Case", "Experiment", "Measurement", "Preset", "Table", "Timer",
-    "badness", "disturbed", "operation_faces", "time_query", "time_rounds",
+    "ANSWERING", "BASE", "HUBS", "OPERATIONS", "ORDERS", "PRESETS", "QUERIES_TABLE", "Axis", "Case",
+    "Experiment", "Measurement", "Preset", "Table", "Timer", "badness", "disturbed",
+    "operation_faces", "time_query", "time_rounds",
 ]  # fmt: skip

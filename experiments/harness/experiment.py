@@ -130,6 +130,10 @@ class Experiment:
 
         return time if self.kind == "time" else count
 
+    def expected(self, subject: str, structure: str) -> str | None:
+        """The growth class that it expects of a subject on a structure; None for nothing."""
+        return self.claims[subject].get(structure, self.claims[subject].get(ANYONE))
+
     def kind_of(self, case: Case) -> str:
         """What a case measures."""
         return "work" if case.order in self.counted else self.kind

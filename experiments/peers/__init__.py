@@ -5,21 +5,11 @@ measured here; nothing of a library is imported before it is. ``experiments/benc
 what is measured of them.
 """
 
-from experiments.peers.peer import (
-    ALGORITHMS,
-    BATCHED,
-    BUILD,
-    BULK,
-    BYTES,
-    LOOPED,
-    SINGLE,
-    SIX,
-    Peer,
-)
+from experiments.peers.peer import ALGORITHMS, BATCHED, BUILD, BULK, BYTES, LOOPED, SINGLE, Peer
 from experiments.peers.registry import OURS, PEERS, installed, missing
 from experiments.peers.trials import BAD_INPUT, told_by_child
 
 __all__ = [
     "ALGORITHMS", "BAD_INPUT", "BATCHED", "BUILD", "BULK", "BYTES", "LOOPED", "OURS", "PEERS",
-    "SINGLE", "SIX", "Peer", "installed", "missing", "told_by_child",
+    "SINGLE", "Peer", "installed", "missing", "told_by_child",
 ]  # fmt: skip

@@ -15,8 +15,7 @@ import hem
 import structures
 from experiments.harness import BASE, Case, Preset, Timer, operation_faces
 from experiments.harness.calibration import latency_now
-from experiments.harness.oracle import CheckFailedError, pack
-from experiments.peers.checks import check_rows, check_told, row
+from experiments.harness.oracle import CheckFailedError, check_rows, check_told, pack, row
 from experiments.peers.peer import Peer
 from experiments.peers.registry import PEERS
 from hem.algorithms import vertex_normals

@@ -8,8 +8,6 @@ from experiments.peers.peer import Peer
 
 OURS = "ours"
 """The file of our own half-edge mesh, which stands beside the libraries."""
-
-
 _FILES = (path.stem for path in (Path(__file__).parent / "libraries").glob("[!_]*.py"))
 PEERS: dict[str, Peer] = {
     name: import_module(f"experiments.peers.libraries.{name}").PEER

@@ -19,8 +19,7 @@ import numpy as np
 import psutil
 
 import hem
-from experiments.harness.oracle import CheckFailedError
-from experiments.peers.checks import check_rows
+from experiments.harness.oracle import CheckFailedError, check_rows
 from experiments.peers.peer import BYTES, Mesh, Peer
 from experiments.peers.registry import PEERS
 from hem.arrays import Array

@@ -14,11 +14,11 @@ _PLACES = {
     "pages": (
         "Html", "about_history", "about_run", "abstract", "answer", "browser", "chapter_list",
         "claim_tables", "closing", "errata", "frame_table", "legend", "reasons", "sentences",
-        "slopes", "tally", "text_table", "verdicts",
+        "slopes", "tally", "text_table", "traced", "verdicts",
     ),
     "peers": ("about", "measured_peers", "page_table", "peers_as_json", "portraits", "show_peers"),
     "readme": ("write_readme",),
-    "sections": ("traced",),
+
     "session": ("MissingError", "claim_link", "link", "open_run", "project_file"),
     "site": ("write_pdf", "write_report"),
     "style": ("show_figures",),

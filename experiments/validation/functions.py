@@ -23,7 +23,6 @@ import itertools
 import json
 import marshal
 import math
-import operator
 import pickle
 import random
 import re
@@ -37,22 +36,13 @@ import xml.etree.ElementTree as ElementTree
 import zlib
 from collections.abc import Callable
 from itertools import starmap
+from operator import contains, getitem
 from typing import Any, NamedTuple
 
 import numpy as np
-from scipy import (
-    fft,
-    integrate,
-    interpolate,
-    linalg,
-    ndimage,
-    signal,
-    sparse,
-    spatial,
-    special,
-    stats,
-)
+from scipy import fft, interpolate, linalg, ndimage, signal, sparse, spatial, special, stats
 from scipy.cluster import hierarchy
+from scipy.integrate import cumulative_trapezoid
 from scipy.sparse import csgraph
 
 from experiments.validation import by_hand
@@ -63,7 +53,12 @@ CPYTHON = "CPython's source: one pass"
 LONG = "CPython, Objects/longobject.c"
 LOOP = "counted by hand"
 NUMPY = "numpy.org/doc: one pass"
+VIEWS = "numpy.org/doc: views"
+BISECT = "numpy.org/doc: binary search"
+DIRECT = "numpy.org/doc: direct sum"
+PARTITION = "numpy.org/doc, numpy.partition"
 SORT = "numpy.org/doc, numpy.sort"
+BY_SORT = f"{SORT}: it sorts"
 LAPACK = "Golub and Van Loan, Matrix Computations"
 PYDOC = "docs.python.org"
 QUICKHULL = "Barber et al., Quickhull"
@@ -71,6 +66,7 @@ SCIPY = "docs.scipy.org"
 GRAPH = "docs.scipy.org, csgraph"
 FENWICK = "Fenwick, A New Data Structure for Cumulative Frequency Tables"
 CLRS = "Cormen et al., Introduction to Algorithms"
+REDOS = "owasp.org, ReDoS"
 
 KEYS = 1_000  # asked per call of what takes less than the clock shows
 CACHE_BOUND = 12_500_000  # float64 of 10^8 bytes
@@ -90,8 +86,11 @@ class Function(NamedTuple):
     powers: bool = False  # sizes are powers of two
 
 
+_draw = np.random.default_rng
+
+
 def _uniform(*shape: int) -> Any:
-    return np.random.default_rng().random(shape)
+    return _draw().random(shape)
 
 
 def _floats(n: int) -> list[float]:
@@ -120,6 +119,7 @@ INPUTS: dict[str, Callable[[int], Any]] = {
     "deque": lambda n: collections.deque(range(n)),
     "dict": lambda n: dict.fromkeys(range(n)),
     "set": lambda n: set(range(n)),
+    "floats_set": lambda n: set(_floats(n)),
     "few": lambda n: random.choices(range(100), k=n),
     "asked": lambda n: random.choices(range(n), k=KEYS),  # indices below n
     "text": lambda n: "abcdefghij" * (n // 10) + "x" * (n % 10),
@@ -135,6 +135,7 @@ INPUTS: dict[str, Callable[[int], Any]] = {
     "points": lambda n: _uniform(n, 3),
     "sphere": _on_sphere,
     "matrix": lambda n: _uniform(n, n) + n * np.eye(n),  # far from singular
+    "symmetric": lambda n: INPUTS["matrix"](n) + INPUTS["matrix"](n).T,
     "sparse": lambda n: sparse.random_array((n, n), density=min(5 / n, 1), format="csr"),
     "banded": lambda n: (np.vstack([np.ones(n), np.full(n, 4.0), np.ones(n)]), _uniform(n)),
 }
@@ -234,7 +235,7 @@ FUNCTIONS: tuple[Function, ...] = tuple(starmap(_function, [
     ("a string built by prepending", "O(n²)", int, _by_adding("x"), PYDOC + ", sequence types"),
     ("re.findall", "O(n)", "text", re.compile("[ae]").findall, CPYTHON),
     ("re with nested repeats", "O(2^n)", lambda n: "a" * n + "b", re.compile("(a|a)*c").match,
-        "owasp.org, ReDoS"),
+        REDOS),
     ("json.dumps", "O(n)", "records", json.dumps, CPYTHON),
     ("json.loads", "O(n)", lambda n: json.dumps(INPUTS["records"](n)), json.loads, CPYTHON),
     ("pickle.dumps", "O(n)", "records", pickle.dumps, CPYTHON),
@@ -256,7 +257,7 @@ FUNCTIONS: tuple[Function, ...] = tuple(starmap(_function, [
     ("two loops over a list", "O(n²)", "numbers", lambda s: sum(a == b for a in s for b in s),
         LOOP),
     ("array[i], 1,000 times", "O(1)", "uniform", _times(lambda a: a[0]), NUMPY),
-    ("array[::2], a view", "O(1)", "uniform", _times(lambda a: a[::2]), "numpy.org/doc: views"),
+    ("array[::2], a view", "O(1)", "uniform", _times(lambda a: a[::2]), VIEWS),
     ("np.sum", "O(n)", "uniform", np.sum, NUMPY, CACHE_BOUND),
     ("np.copy", "O(n)", "uniform", np.copy, NUMPY, CACHE_BOUND),
     ("array + array", "O(n)", "uniform", lambda a: a + a, NUMPY, CACHE_BOUND),
@@ -265,21 +266,17 @@ FUNCTIONS: tuple[Function, ...] = tuple(starmap(_function, [
     ("np.concatenate", "O(n)", "uniform", lambda a: np.concatenate([a, a]), NUMPY, CACHE_BOUND),
     ("np.sort, random", "O(n log n)", "uniform", np.sort, SORT, CACHE_BOUND),
     ("np.argsort", "O(n log n)", "uniform", np.argsort, SORT),
-    ("np.unique", "O(n log n)", "uniform", np.unique, SORT + ": it sorts"),
-    ("np.partition", "O(n)", "uniform", lambda a: np.partition(a, len(a) // 2),
-        "numpy.org/doc, numpy.partition"),
-    ("np.median", "O(n)", "uniform", np.median, "numpy.org/doc, numpy.partition"),
+    ("np.unique", "O(n log n)", "uniform", np.unique, BY_SORT),
+    ("np.partition", "O(n)", "uniform", lambda a: np.partition(a, len(a) // 2), PARTITION),
+    ("np.median", "O(n)", "uniform", np.median, PARTITION),
     ("np.searchsorted, 1,000 keys", "O(log n)", "places picked", lambda s: np.searchsorted(*s),
-        "numpy.org/doc: binary search"),
-    ("array[random indices]", "O(n)",
-        lambda n: (_uniform(n), np.random.default_rng().permutation(n)), lambda s: s[0][s[1]],
-        NUMPY, CACHE_BOUND),
-    ("np.bincount", "O(n)", lambda n: np.random.default_rng().integers(0, 100, n), np.bincount,
-        NUMPY),
+        BISECT),
+    ("array[random indices]", "O(n)", lambda n: (_uniform(n), _draw().permutation(n)),
+        lambda s: s[0][s[1]], NUMPY, CACHE_BOUND),
+    ("np.bincount", "O(n)", lambda n: _draw().integers(0, 100, n), np.bincount, NUMPY),
     ("np.histogram, 10 bins", "O(n)", "uniform", np.histogram, NUMPY),
     ("np.outer", "O(n²)", "uniform", lambda a: np.outer(a, a), NUMPY),
-    ("np.convolve, full", "O(n²)", "uniform", lambda a: np.convolve(a, a),
-        "numpy.org/doc: direct sum"),
+    ("np.convolve, full", "O(n²)", "uniform", lambda a: np.convolve(a, a), DIRECT),
     ("matrix @ vector", "O(n²)", "matrix uniform", lambda s: s[0] @ s[1], LAPACK),
     ("matrix @ matrix", "O(n³)", "matrix", lambda a: a @ a, LAPACK),
     ("np.linalg.inv", "O(n³)", "matrix", np.linalg.inv, LAPACK),
@@ -304,12 +301,11 @@ FUNCTIONS: tuple[Function, ...] = tuple(starmap(_function, [
 
 SEEN: tuple[Function, ...] = tuple(starmap(_function, [
     ("dict[str], 1,000 random", "O(1)", lambda n: _looked_up(dict.fromkeys(_words(n))),
-        _each(operator.getitem), WIKI),
+        _each(getitem), WIKI),
     ("OrderedDict.move_to_end, 1,000 random", "O(1)",
         lambda n: _looked_up(collections.OrderedDict.fromkeys(range(n))),
         _each(collections.OrderedDict.move_to_end), PYDOC),
-    ("array.array[i], 1,000 random", "O(1)", "doubles asked", _each(operator.getitem), CPYTHON,
-        CACHE_BOUND),
+    ("array.array[i], 1,000 random", "O(1)", "doubles asked", _each(getitem), CPYTHON, CACHE_BOUND),
     ("array[1,000 random indices]", "O(1)", "uniform picked", lambda s: s[0][s[1]], NUMPY,
         CACHE_BOUND),
     ("bisect in array.array, 1,000 random", "O(log n)", "ascending asked", _each(bisect.bisect),
@@ -362,10 +358,9 @@ SEEN: tuple[Function, ...] = tuple(starmap(_function, [
     ("difflib, all alike", "O(n²)",
         lambda n: difflib.SequenceMatcher(None, "a" * n, "a" * n, autojunk=False),
         lambda s: s.find_longest_match(), PYDOC),
-    ("re.search, from every place", "O(n²)", lambda n: "a" * n, re.compile("a*b").search,
-        "owasp.org, ReDoS"),
+    ("re.search, from every place", "O(n²)", lambda n: "a" * n, re.compile("a*b").search, REDOS),
     ("re, a repeat of repeats", "O(2^n)", lambda n: "a" * n + "c", re.compile("(a+)+b").match,
-        "owasp.org, ReDoS"),
+        REDOS),
     ("bubble sort", "O(n²)", "floats", by_hand.bubble, CLRS),
     ("edit distance", "O(n²)", "letters letters", by_hand.edits, CLRS),
     ("towers of Hanoi", "O(2^n)", int, by_hand.hanoi, CLRS),
@@ -382,22 +377,20 @@ SEEN: tuple[Function, ...] = tuple(starmap(_function, [
         NUMPY),
     ("np.polyfit, degree 3", "O(n)", lambda n: (np.linspace(0, 1, n), _uniform(n)),
         lambda s: np.polyfit(s[0], s[1], 3), LAPACK),
-    ("np.sort of uint16, stable", "O(n)",
-        lambda n: np.random.default_rng().integers(0, 2**16, n, np.uint16),
+    ("np.sort of uint16, stable", "O(n)", lambda n: _draw().integers(0, 2**16, n, np.uint16),
         lambda a: np.sort(a, kind="stable"), SORT + ": radix sort", CACHE_BOUND),
     ("np.sort of float64, stable", "O(n log n)", "uniform", lambda a: np.sort(a, kind="stable"),
         SORT, CACHE_BOUND),
     ("np.intersect1d", "O(n log n)", lambda n: (_uniform(n), _uniform(n + 1)),
-        lambda s: np.intersect1d(*s), SORT + ": it sorts"),
+        lambda s: np.intersect1d(*s), BY_SORT),
     ("np.searchsorted, n random keys", "O(n log n)",
         lambda n: (np.sort(_uniform(n)), _uniform(n + 1)[:n]), lambda s: np.searchsorted(*s),
-        "numpy.org/doc: binary search"),
+        BISECT),
     ("np.fft.fft, powers of two", "O(n log n)", "uniform", np.fft.fft, "numpy.org/doc, numpy.fft",
         *TWOS),
     ("array.T.copy", "O(n²)", "matrix", lambda a: a.T.copy(), NUMPY, SQUARE_BOUND),
     ("np.linalg.solve", "O(n³)", "matrix", lambda a: np.linalg.solve(a, a[0]), LAPACK),
-    ("np.linalg.eigvalsh", "O(n³)", lambda n: INPUTS["matrix"](n) + INPUTS["matrix"](n).T,
-        np.linalg.eigvalsh, LAPACK),
+    ("np.linalg.eigvalsh", "O(n³)", "symmetric", np.linalg.eigvalsh, LAPACK),
     ("solve_triangular", "O(n²)", "matrix", lambda a: linalg.solve_triangular(a, a[0]), LAPACK),
     ("solve_toeplitz", "O(n²)", lambda n: _uniform(n) + n * (np.arange(n) == 0),
         lambda a: linalg.solve_toeplitz(a, a), SCIPY + ": Levinson"),
@@ -413,14 +406,13 @@ SEEN: tuple[Function, ...] = tuple(starmap(_function, [
     ("scipy.signal.find_peaks", "O(n)", "uniform", signal.find_peaks, SCIPY),
     ("savgol_filter", "O(n)", lambda n: _uniform(max(n, 11)),
         lambda a: signal.savgol_filter(a, 11, 3), SCIPY),
-    ("scipy.stats.kendalltau", "O(n log n)", lambda n: (_uniform(n), _uniform(n + 1)[:n]),
-        lambda s: stats.kendalltau(*s), SCIPY + ": Knight's algorithm"),
+    ("scipy.stats.kendalltau", "O(n log n)", "uniform uniform", lambda s: stats.kendalltau(*s),
+        SCIPY + ": Knight's algorithm"),
     ("set.add and discard, 1,000 times", "O(1)", "set asked", _each(by_hand.add_and_discard), WIKI),
-    ("bytes[i], 1,000 random", "O(1)", "bytes asked", _each(operator.getitem), CPYTHON,
-        CACHE_BOUND),
-    ("tuple[i], 1,000 random", "O(1)", "tuple asked", _each(operator.getitem), WIKI),
+    ("bytes[i], 1,000 random", "O(1)", "bytes asked", _each(getitem), CPYTHON, CACHE_BOUND),
+    ("tuple[i], 1,000 random", "O(1)", "tuple asked", _each(getitem), WIKI),
     ("dict[float], 1,000 random", "O(1)", lambda n: _looked_up(dict.fromkeys(_floats(n))),
-        _each(operator.getitem), WIKI),
+        _each(getitem), WIKI),
     ("np.take, 1,000 random", "O(1)", lambda n: (np.zeros(n), INPUTS["picked"](n)),
         lambda s: np.take(*s), NUMPY, CACHE_BOUND),
     ("bisect in floats, 1,000 random", "O(log n)", lambda n: (sorted(_floats(n)), _floats(KEYS)),
@@ -431,8 +423,7 @@ SEEN: tuple[Function, ...] = tuple(starmap(_function, [
         lambda n: sum(n % d == 0 for d in range(1, math.isqrt(n) + 1)), LOOP),
     ("list.extend", "O(n)", "floats", lambda s: [].extend(s), WIKI),
     ("list.count", "O(n)", "numbers", lambda s: s.count(-1), CPYTHON),
-    ("set | set", "O(n)", lambda n: (set(_floats(n)), set(_floats(n))), lambda s: s[0] | s[1],
-        WIKI),
+    ("set | set", "O(n)", "floats_set floats_set", lambda s: s[0] | s[1], WIKI),
     ("dict of pairs", "O(n)", lambda n: list(enumerate(_floats(n))), dict, WIKI),
     ("sum(dict.values)", "O(n)", lambda n: dict(enumerate(_floats(n))), lambda s: sum(s.values()),
         WIKI),
@@ -474,25 +465,24 @@ SEEN: tuple[Function, ...] = tuple(starmap(_function, [
 
 HELD_OUT: tuple[Function, ...] = tuple(starmap(_function, [
     ("deque[0], 1,000 times", "O(1)", "deque", _times(lambda s: s[0]), WIKI),
-    ("str[i], 1,000 random", "O(1)", "text asked", _each(operator.getitem), CPYTHON, CACHE_BOUND),
+    ("str[i], 1,000 random", "O(1)", "text asked", _each(getitem), CPYTHON, CACHE_BOUND),
     ("list.pop and append, 1,000 times", "O(1)", "numbers", _times(lambda s: s.append(s.pop())),
         WIKI),
     ("dict.setdefault, 1,000 random", "O(1)", "dict asked", _each(dict.setdefault), WIKI),
     ("memoryview[1:-1], 1,000 views", "O(1)", lambda n: memoryview(bytes(n)),
         _times(lambda s: s[1:-1]), PYDOC),
-    ("array[:, None], 1,000 views", "O(1)", "uniform", _times(lambda a: a[:, None]),
-        "numpy.org/doc: views"),
+    ("array[:, None], 1,000 views", "O(1)", "uniform", _times(lambda a: a[:, None]), VIEWS),
     ("key in frozenset, 1,000 random", "O(1)", lambda n: _looked_up(frozenset(range(n))),
         _each(frozenset.__contains__), WIKI),
     ("number in range, 1,000 random", "O(1)", lambda n: (range(n), INPUTS["asked"](n)),
-        _each(operator.contains), PYDOC),
+        _each(contains), PYDOC),
     ("array.item(i), 1,000 random", "O(1)", "uniform asked", _each(np.ndarray.item), NUMPY,
         CACHE_BOUND),
     ("bytearray[i] = 0, 1,000 random", "O(1)", lambda n: (bytearray(n), INPUTS["asked"](n)),
         _each(lambda s, i: s.__setitem__(i, 0)), CPYTHON, CACHE_BOUND),
     ("np.searchsorted in float32, 1,000 random", "O(log n)",
         lambda n: (np.sort(_uniform(n).astype(np.float32)), _uniform(KEYS).astype(np.float32)),
-        lambda s: np.searchsorted(*s), "numpy.org/doc: binary search", CACHE_BOUND),
+        lambda s: np.searchsorted(*s), BISECT, CACHE_BOUND),
     ("bisect in strings, 1,000 random", "O(log n)", lambda n: _looked_up(sorted(_words(n))),
         _each(bisect.bisect), PYDOC),
     ("an integer halved to nothing", "O(log n)", int, by_hand.halvings, LOOP),
@@ -510,8 +500,7 @@ HELD_OUT: tuple[Function, ...] = tuple(starmap(_function, [
     ("list of a zip", "O(n)", "floats floats", lambda s: list(zip(*s, strict=True)), PYDOC),
     ("dict of a comprehension", "O(n)", "floats", lambda s: {x: i for i, x in enumerate(s)}, LOOP),
     ("dict == dict", "O(n)", "dict dict", lambda s: s[0] == s[1], CPYTHON),
-    ("set - set", "O(n)", lambda n: (set(_floats(n)), set(_floats(n))), lambda s: s[0] - s[1],
-        WIKI),
+    ("set - set", "O(n)", "floats_set floats_set", lambda s: s[0] - s[1], WIKI),
     ("any of a generator", "O(n)", "floats", lambda s: any(x > 2 for x in s), PYDOC),
     ("list of a filter", "O(n)", "floats", lambda s: list(filter(None, s)), PYDOC),
     ("str.encode, utf-8", "O(n)", lambda n: "é" * n, str.encode, CPYTHON),
@@ -525,8 +514,7 @@ HELD_OUT: tuple[Function, ...] = tuple(starmap(_function, [
     ("int.bit_count, n bits", "O(n)", "bits", int.bit_count, LONG, 10_000_000),
     ("int << 1, n bits", "O(n)", "bits", lambda a: a << 1, LONG, 10_000_000),
     ("bytes.count", "O(n)", "bytes", lambda s: s.count(7), CPYTHON, CACHE_BOUND),
-    ("bytes.translate", "O(n)", "bytes", lambda s: s.translate(bytes(range(255, -1, -1))),
-        CPYTHON),
+    ("bytes.translate", "O(n)", "bytes", lambda s: s.translate(bytes(range(255, -1, -1))), CPYTHON),
     ("hashlib.sha3_256", "O(n)", "bytes", lambda s: hashlib.sha3_256(s).digest(), "FIPS 202"),
     ("base64.b64decode", "O(n)", lambda n: base64.b64encode(random.randbytes(n)), base64.b64decode,
         "RFC 4648"),
@@ -558,12 +546,12 @@ HELD_OUT: tuple[Function, ...] = tuple(starmap(_function, [
         lambda a: np.interp(a, np.linspace(0, 1, 10), np.arange(10.0)), NUMPY),
     ("np.packbits", "O(n)", lambda n: _uniform(n) > 0.5, np.packbits, NUMPY, CACHE_BOUND),
     ("normal random numbers", "O(n)", int, np.random.default_rng(0).standard_normal, NUMPY),
-    ("np.add.at", "O(n)", lambda n: (np.zeros(n), np.random.default_rng().integers(0, n, n)),
+    ("np.add.at", "O(n)", lambda n: (np.zeros(n), _draw().integers(0, n, n)),
         lambda s: np.add.at(s[0], s[1], 1), NUMPY),
     ("median_filter, 5 wide", "O(n)", "uniform", lambda a: ndimage.median_filter(a, 5), SCIPY),
     ("scipy.special.gamma", "O(n)", "uniform", special.gamma, SCIPY),
     ("scipy.stats.skew", "O(n)", "uniform", stats.skew, SCIPY),
-    ("cumulative_trapezoid", "O(n)", "uniform", integrate.cumulative_trapezoid, SCIPY),
+    ("cumulative_trapezoid", "O(n)", "uniform", cumulative_trapezoid, SCIPY),
     ("csgraph.breadth_first_order", "O(n)", "sparse",
         lambda s: csgraph.breadth_first_order(s, 0), GRAPH),
     ("sorted, pairs at random", "O(n log n)", lambda n: list(zip(_floats(n), _floats(n),
@@ -572,7 +560,7 @@ HELD_OUT: tuple[Function, ...] = tuple(starmap(_function, [
     ("n × heappush, each to the top", "O(n log n)", int, by_hand.push_downward, CLRS),
     ("every divisor of all up to n", "O(n log n)", int, by_hand.divisors, LOOP + ": harmonic sum"),
     ("np.sort, heapsort", "O(n log n)", "uniform", lambda a: np.sort(a, kind="heapsort"), SORT),
-    ("np.union1d", "O(n log n)", "uniform uniform", lambda s: np.union1d(*s), SORT + ": it sorts"),
+    ("np.union1d", "O(n log n)", "uniform uniform", lambda s: np.union1d(*s), BY_SORT),
     ("scipy.stats.spearmanr", "O(n log n)", "uniform uniform", lambda s: stats.spearmanr(*s),
         SCIPY + ": it sorts"),
     ("scipy.fft.dct, powers of two", "O(n log n)", "uniform", fft.dct, SCIPY, *TWOS),
@@ -586,11 +574,9 @@ HELD_OUT: tuple[Function, ...] = tuple(starmap(_function, [
     ("n × list.insert(0)", "O(n²)", int, by_hand.insert_all, WIKI),
     ("np.subtract.outer", "O(n²)", "uniform", lambda a: np.subtract.outer(a, a), NUMPY),
     ("matrix.sum(axis=0)", "O(n²)", "matrix", lambda a: a.sum(axis=0), NUMPY, SQUARE_BOUND),
-    ("np.correlate, full", "O(n²)", "uniform", lambda a: np.correlate(a, a, "full"),
-        "numpy.org/doc: direct sum"),
+    ("np.correlate, full", "O(n²)", "uniform", lambda a: np.correlate(a, a, "full"), DIRECT),
     ("np.linalg.svd", "O(n³)", "matrix", np.linalg.svd, LAPACK),
-    ("np.linalg.cholesky", "O(n³)", lambda n: INPUTS["matrix"](n) + INPUTS["matrix"](n).T,
-        np.linalg.cholesky, LAPACK),
+    ("np.linalg.cholesky", "O(n³)", "symmetric", np.linalg.cholesky, LAPACK),
     ("matrix chain order", "O(n³)", "numbers", by_hand.chain_order, CLRS),
     ("Gray code", "O(2^n)", int, by_hand.gray_code, "Knuth 7.2.1.1"),
 ]))

@@ -38,10 +38,6 @@ def _neighbors(m: Mesh) -> Rows:
     return flat.adjacency_list
 
 
-def _normals(m: Mesh) -> Array:
-    return np.asarray(_flat(m).compute_vertex_normals().vertex_normals)
-
-
 PEER = Peer(
     title="Open3D",
     distribution="open3d",
@@ -58,7 +54,7 @@ PEER = Peer(
     },
     bulk={"vertex_vertices": _neighbors},
     algorithms={
-        "vertex_normals": _normals,
+        "vertex_normals": lambda m: np.asarray(_flat(m).compute_vertex_normals().vertex_normals),
         "smooth": lambda m: _flat(m).filter_smooth_laplacian(1, 1.0),
         "simplify": lambda m, faces: len(_flat(m).simplify_quadric_decimation(faces).triangles),
     },

@@ -1,6 +1,7 @@
-"""The figures on accuracy: how many synthetic curves each judge names right, and what for what."""
+"""The figures on judges: what they name right, and what for what; and costs of other tools."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -9,6 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 from experiments.report.style import BLUE, FADED, GRAY, RED, grid, styled
+from hem.complexity import Curve, Verdict, parse
 
 KINDS = {"right": BLUE, "undetermined": "#d5d5d5", "wrong": RED}
 """What can be said of an answer, and its color in every figure here."""
@@ -76,3 +78,26 @@ def _hide_frame(axes: Axes) -> None:
     axes.grid(visible=False)
     axes.tick_params(length=0)
     axes.spines[["left", "bottom"]].set_visible(False)
+
+
+def save_costs(
+    path: Path, curves: Sequence[Curve], verdicts: Sequence[Verdict], claimed: bool
+) -> None:
+    """Draw samples on logarithmic axes, and the class that explains them best; in gray the claimed.
+
+    ``path``: its ending says what kind of file it becomes.
+    """
+    with styled():
+        figure, panels = grid([it.name for it in curves], (4.2, 2.8), min(len(curves), 3))
+        for axes, curve, verdict in zip(panels, curves, verdicts, strict=True):
+            smooth = np.geomspace(curve.sizes[0], curve.sizes[-1], 100)
+            drawn = {verdict.expected: GRAY} if claimed else {}
+            for name, color in ({verdict.best: RED} | drawn).items():
+                it = verdict.coefficients[name]
+                costs = it["fixed"] + it["factor"] * parse(name)(smooth)
+                axes.plot(smooth, costs, "--", color=color, label=name)
+            for size, samples in zip(curve.sizes, curve.samples, strict=True):
+                axes.plot(np.full(len(samples), size), samples, ".", color=BLUE, markersize=3)
+            axes.set(xscale="log", yscale="log", xlabel=curve.parameter, ylabel="cost")
+            axes.legend()
+        figure.savefig(path)

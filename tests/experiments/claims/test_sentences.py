@@ -20,8 +20,8 @@ from experiments.claims import (
 )
 from experiments.claims import demonstrations as shown
 from experiments.claims.beside import OCTAHEDRON, sound
+from experiments.claims.demonstrations import code_facts, come_round_tests
 from experiments.claims.quantities import QUANTITIES
-from experiments.claims.source_code import code_facts, come_round_tests
 from experiments.harness import Measurement
 from experiments.report.pages import sentences_markdown
 from experiments.runs import CaseFile, load

@@ -129,7 +129,7 @@ def test_a_run_is_judged_once_and_what_was_kept_is_the_same(tmp_path, monkeypatc
     judged = judge_run(run)
     assert judge_run(run) is judged
     monkeypatch.setattr(
-        "experiments.claims.kept.judge_cells", lambda run: pytest.fail("judged again")
+        "experiments.claims.verdicts.judge_cells", lambda run: pytest.fail("judged again")
     )
     again = judge_run(load(run.folder))
     assert [it.claim for it in again] == [it.claim for it in judged]

@@ -10,7 +10,7 @@ import pytest
 from experiments.claims import Kind, load_claims, sentence_claims
 from experiments.claims.errata import ERRATA
 from experiments.report.notebooks import page_titles
-from experiments.report.sections import cited, sections
+from experiments.report.pages import cited, sections
 
 ROOT = Path(__file__).parents[3]
 ERRATA_SOURCES = {re.sub("^quoted in ", "", it.source) for it in ERRATA}
