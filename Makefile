@@ -6,8 +6,8 @@ BIN := $(VENV)/bin
 STUDY := $(VENV)/installed-study
 DEV := $(VENV)/installed-dev
 STUDY_EXTRAS := study,fracture,viz
-# One worker more than there are cores, as many tests wait for a process of their own. In the order
-# of the files the slowest tests come first, and the workers end at the same time.
+# One worker more than there are cores, as many tests wait for a process of their own. All that is
+# about one structure is for one of them, else a file is (tests/conftest.py); the longest come first.
 WORKERS := $(shell echo $$(($$(getconf _NPROCESSORS_ONLN) + 1)))
 PYTEST := -m pytest tests -n $(WORKERS) --dist loadfile --no-loadscope-reorder --durations=20
 
