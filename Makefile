@@ -6,8 +6,8 @@ BIN := $(VENV)/bin
 STUDY := $(VENV)/installed-study
 DEV := $(VENV)/installed-dev
 STUDY_EXTRAS := study,fracture,viz
-# One worker more than there are cores, as many tests wait for a process of their own. In the order
-# of the files the slowest tests come first, and the workers end at the same time.
+# One worker more than there are cores, as many tests wait for a process of their own. All that is
+# about one structure is for one of them, else a file is (tests/conftest.py); the longest come first.
 WORKERS := $(shell echo $$(($$(getconf _NPROCESSORS_ONLN) + 1)))
 PYTEST := -m pytest tests -n $(WORKERS) --dist loadfile --no-loadscope-reorder --durations=20
 
@@ -80,9 +80,11 @@ format: $(DEV)  ## format the code
 # and named; CGAL and OpenMesh in C++ are measured where Debian's libcgal-dev and libopenmesh-dev are.
 peers: export CMAKE_BUILD_PARALLEL_LEVEL := $(shell getconf _NPROCESSORS_ONLN)
 peers: $(STUDY)  ## measure other libraries beside ours, and print what came out
-	@$(BIN)/python -m pip --disable-pip-version-check --quiet install --editable '.[peers]' --constraint constraints.txt >/dev/null 2>&1 \
+	@install="$(BIN)/python -m pip --disable-pip-version-check install"; \
+	test -x $(BIN)/uv && install="$(BIN)/uv pip install --python $(BIN)/python"; \
+	$$install --quiet --editable '.[peers]' --constraint constraints.txt >/dev/null 2>&1 \
 	|| for peer in openmesh libigl meshlib compas open3d bpy; do \
-		$(BIN)/python -m pip --disable-pip-version-check --quiet install $$peer --constraint constraints.txt >/dev/null 2>&1; done || true
+		$$install --quiet $$peer --constraint constraints.txt >/dev/null 2>&1; done || true
 	@$(BIN)/hem study --peers
 	@$(BIN)/hem table --peers
 

@@ -1,11 +1,15 @@
 """What all tests share."""
 
+import atexit
 import gc
+import os
 import signal
 from pathlib import Path
+from typing import Any
 
 import pytest
 
+from structures import NAMES
 from tests.extent import EVERYTHING
 
 STRUCTURES = Path(__file__).parent / "structures"
@@ -13,13 +17,39 @@ STRUCTURES = Path(__file__).parent / "structures"
 # In the background of a shell Ctrl-C is ignored, and would be by all that the tests start.
 signal.signal(signal.SIGINT, signal.default_int_handler)
 
+if "PYTEST_XDIST_WORKER" in os.environ:
+    # To take apart all that was imported and compiled takes seconds in each process. What is
+    # registered later is done before.
+    atexit.register(os._exit, 0)
+
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Leave out what is exhaustive; the many short files come last, so the cores end together."""
-    more = [] if EVERYTHING else [it for it in items if it.get_closest_marker("exhaustive")]
-    config.hook.pytest_deselected(items=more)
-    items[:] = [it for it in items if it not in more] if more else items
-    items.sort(key=lambda item: item.path.is_relative_to(STRUCTURES))
+    """Leave out what is exhaustive. What is about one structure is long and comes first.
+
+    The many short files come last, so the cores end together.
+    """
+    more = {it for it in items if it.get_closest_marker("exhaustive") and not EVERYTHING}
+    config.hook.pytest_deselected(items=[it for it in items if it in more])
+    items[:] = [it for it in items if it not in more]
+    items.sort(key=lambda item: (not about(item.nodeid), item.path.is_relative_to(STRUCTURES)))
+
+
+def about(test: str) -> str:
+    """The structure that a test is about, by its parameters; empty where it is not about one."""
+    parameters = test.partition("[")[2].rstrip("]").split("-")
+    return next((it for it in parameters if it in NAMES), "")
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
+    """One process does what is about a structure, so its kernels are compiled or loaded once."""
+    from xdist.scheduler import LoadFileScheduling
+
+    class ByStructureOrFile(LoadFileScheduling):
+        def _split_scope(self, nodeid: str) -> str:
+            return about(nodeid) or super()._split_scope(nodeid)
+
+    return ByStructureOrFile(config, log) if config.getvalue("dist") == "loadfile" else None
 
 
 def pytest_collection_finish() -> None:

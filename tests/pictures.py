@@ -9,8 +9,8 @@ from hem.fracture.show import load_pyvista
 
 
 def require_pictures() -> None:
-    """Skip the test, or the whole module, where PyVista is missing or cannot draw."""
+    """Skip the test, or all of a module, where PyVista is missing or cannot draw."""
     try:
         load_pyvista()
     except NotInstalledError as missing:
-        pytest.skip(str(missing), allow_module_level=True)
+        pytest.skip(str(missing))

@@ -47,9 +47,16 @@ def docstrings() -> Iterator[tuple[str, str]]:
         file for room in ("hem", "structures") for file in ROOT.glob(f"{room}/**/*.py")
     ):
         module = file.relative_to(ROOT).as_posix()
-        for node in ast.walk(ast.parse(file.read_text())):
-            if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef):
-                yield f"{module}:{getattr(node, 'name', '')}", ast.get_docstring(node) or ""
+        for node in documented(ast.parse(file.read_text())):
+            yield f"{module}:{getattr(node, 'name', '')}", ast.get_docstring(node) or ""
+
+
+def documented(node: ast.Module | ast.ClassDef | ast.FunctionDef) -> Iterator[Any]:
+    """A module, class or function, and those in it; to look for them deeper takes long."""
+    yield node
+    for inner in node.body:
+        if isinstance(inner, ast.ClassDef | ast.FunctionDef):
+            yield from documented(inner)
 
 
 def code_in(text: str) -> str:
@@ -63,8 +70,9 @@ def code_in(text: str) -> str:
     return code
 
 
-SESSIONS = {name: text for name, text in docstrings() if ">>>" in text}
-LITERAL = {name: code for name, text in docstrings() if (code := code_in(text))}
+DOCSTRINGS = list(docstrings())
+SESSIONS = {name: text for name, text in DOCSTRINGS if ">>>" in text}
+LITERAL = {name: code for name, text in DOCSTRINGS if "::\n" in text and (code := code_in(text))}
 
 
 @pytest.fixture(autouse=True)

@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 import os
+from pathlib import Path
 
 import pytest
 from filelock import FileLock
 
 from experiments.claims import judge_run
 from experiments.regression import record_run
-from experiments.runs import load
+from experiments.runs import Run, load
 from tests.experiments.made_runs import write_run
 
 
 @pytest.fixture(scope="session")
-def base_folder(tmp_path_factory):
+def base_folder(tmp_path_factory) -> Path:
     """A run in which every claim holds, judged: written once for all processes that test."""
     own = tmp_path_factory.getbasetemp()
     folder = (own.parent if "PYTEST_XDIST_WORKER" in os.environ else own) / "base" / "run"
@@ -23,6 +24,12 @@ def base_folder(tmp_path_factory):
         if not folder.exists():
             judge_run(load(write_run(folder)))
     return folder
+
+
+@pytest.fixture(scope="session")
+def base_run(base_folder) -> Run:
+    """That run, read once by each process; nobody changes it."""
+    return load(base_folder)
 
 
 @pytest.fixture(scope="session")

@@ -13,7 +13,10 @@ from experiments.report.figures import real_time
 from experiments.report.session import MissingError
 from experiments.runs import CaseFile, describe, load, write_meta
 
-pytest.importorskip("warp")
+
+@pytest.fixture(scope="module", autouse=True)
+def _warp():
+    pytest.importorskip("warp")
 
 
 def nearest(s, origin, direction):

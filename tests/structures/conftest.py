@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 import pytest
 
@@ -50,9 +52,15 @@ MESHES = {
 }
 
 
+@cache
+def mesh_called(name: str) -> hem.TriangleMesh:
+    """One of ``MESHES``; a mesh does not change, so one will do for all tests."""
+    return MESHES[name]()
+
+
 @pytest.fixture(params=MESHES)
 def mesh(request: pytest.FixtureRequest) -> hem.TriangleMesh:
-    return MESHES[request.param]()
+    return mesh_called(request.param)
 
 
 @pytest.fixture(params=structures.NAMES)
@@ -68,6 +76,12 @@ SURFACES = {
 """Large enough to operate on at many places."""
 
 
+@cache
+def surface_called(name: str) -> hem.TriangleMesh:
+    """One of ``SURFACES``."""
+    return SURFACES[name]()
+
+
 @pytest.fixture(params=SURFACES)
 def s(request: pytest.FixtureRequest, name: str) -> structures.Structure:
-    return structures.build(name, SURFACES[request.param]())
+    return structures.build(name, surface_called(request.param))

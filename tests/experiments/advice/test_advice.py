@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -25,7 +24,7 @@ from experiments.advice import (
     predict,
     recorded,
 )
-from experiments.runs import Run, load
+from experiments.runs import Run
 from hem.contract import QUERIES
 from structures import REGISTRY
 
@@ -35,8 +34,8 @@ ASKED = Workload("asked", (Row("vertex_faces", 1_000.0),), builds=0)
 
 
 @pytest.fixture(scope="module")
-def run(base_folder: Path) -> Run:
-    return load(base_folder)
+def run(base_run: Run) -> Run:
+    return base_run
 
 
 @pytest.fixture(scope="module")

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 
@@ -24,7 +22,7 @@ from experiments.claims.demonstrations import code_facts, come_round_tests
 from experiments.claims.quantities import QUANTITIES
 from experiments.harness import Measurement
 from experiments.report.pages import sentences_markdown
-from experiments.runs import CaseFile, load
+from experiments.runs import CaseFile, Run, load
 from hem.authoring import kernel
 from tests.experiments.made_runs import BUILD, SIZES, rewrite, write_run
 
@@ -35,8 +33,8 @@ FIRST_WORDS = {
 
 
 @pytest.fixture(scope="module")
-def run(base_folder: Path):
-    return load(base_folder)
+def run(base_run: Run) -> Run:
+    return base_run
 
 
 def outcome(run, quantity: str) -> str:

@@ -28,8 +28,8 @@ TABLES = "queries", "operations"
 
 
 @pytest.fixture(scope="module")
-def sound(base_folder: Path) -> Run:
-    return load(base_folder)
+def sound(base_run: Run) -> Run:
+    return base_run
 
 
 @pytest.fixture(scope="module")

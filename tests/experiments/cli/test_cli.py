@@ -6,7 +6,6 @@ import os
 import shutil
 import subprocess
 import sys
-from pathlib import Path
 
 import pytest
 from typer.testing import CliRunner
@@ -17,6 +16,7 @@ from experiments.presets import PRESETS
 from experiments.runs import experiments, load
 from experiments.runs.study import plan
 from structures import NAMES
+from tests.experiments.made_runs import write_run
 from tests.experiments.small_study import samples
 from tests.extent import exhaustive
 from tests.structures.conftest import NEEDS_MANIFOLD
@@ -88,10 +88,9 @@ def test_help_and_wrong_arguments_are_told_before_anything_heavy_is_imported():
 
 
 @pytest.fixture
-def read_only(base_folder, tmp_path):
+def read_only(tmp_path):
     """A run that nobody may write beside: by its mode, which root need not mind, or by a mount."""
-    unjudged = shutil.ignore_patterns("derived")
-    place = Path(shutil.copytree(base_folder, tmp_path / "run", ignore=unjudged))
+    place = write_run(tmp_path / "run", only=lambda _, structure: structure == "half_edge")
     if os.geteuid():
         place.chmod(0o555)
         yield place

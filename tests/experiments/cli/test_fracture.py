@@ -23,7 +23,11 @@ from hem.fracture.show.scene import on_surface
 from tests.extent import exhaustive
 from tests.pictures import require_pictures
 
-require_pictures()
+
+@pytest.fixture(scope="module", autouse=True)
+def _pictures() -> None:
+    require_pictures()
+
 
 runner = CliRunner()
 

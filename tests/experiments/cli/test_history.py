@@ -13,7 +13,6 @@ from experiments import cli
 from experiments.regression import Trends, append_run, read_history
 from experiments.report import about_history, frame_table, history_tables
 from experiments.report.figures import history as history_figures
-from experiments.runs import load
 from tests.experiments.histories import CLAIM, MACHINES, line, stepped
 from tests.extent import waiting_for
 
@@ -81,7 +80,7 @@ def test_of_a_history_at_least_one_run_is_shown(kept):
     assert "Invalid value for '--last'" in output
 
 
-def test_a_run_is_added_once_and_is_there_then(base_folder, tmp_path):
+def test_a_run_is_added_once_and_is_there_then(base_folder, base_run, tmp_path):
     path = str(tmp_path / "history.jsonl")
     assert "Added" in hem("add", str(base_folder), "--file", path)[1]
     code, output = hem("add", str(base_folder), "--file", path)
@@ -91,7 +90,7 @@ def test_a_run_is_added_once_and_is_there_then(base_folder, tmp_path):
     assert len(read_history(tmp_path / "history.jsonl").runs) == 1
     code, output = hem("show", "--file", path)
     assert code == 0
-    assert load(base_folder).meta["commit"][:7] in output
+    assert base_run.meta["commit"][:7] in output
 
 
 def test_damage_is_told_of_beside_what_is_whole(base, tmp_path):

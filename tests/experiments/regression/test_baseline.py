@@ -11,7 +11,7 @@ from typer.testing import CliRunner
 
 from experiments import cli, regression
 from experiments.regression import COUNTERS, RUN, load_baseline, reduce_run, save_baseline
-from experiments.runs import load, read_meta, write_meta
+from experiments.runs import read_meta, write_meta
 
 COMMITTED = Path(__file__).parents[3] / "results/reference"
 
@@ -69,11 +69,11 @@ def test_who_does_not_agree_keeps_what_there_is(folder, answer):
     assert (update(folder, said=answer)[0], contents(folder)) == (1, before)
 
 
-def test_with_a_run_all_of_it_becomes_the_baseline_a_line_per_case(folder, base_folder):
+def test_with_a_run_all_of_it_becomes_the_baseline_a_line_per_case(folder, base_folder, base_run):
     code, output = update(folder, str(base_folder), "--yes")
     assert code == 0
     assert "+ run:" in output
-    kept, measured = load_baseline(RUN, folder), reduce_run(load(base_folder))
+    kept, measured = load_baseline(RUN, folder), reduce_run(base_run)
     assert kept.claims == json.loads(json.dumps(measured.claims))
     assert len(kept.run.cases) == len(measured.run.cases)
     lines = [it for path in (folder / RUN).glob("*.*.jsonl") for it in path.open()]

@@ -17,9 +17,8 @@ from tests.experiments.made_runs import SIZES, write_run
 
 
 @pytest.fixture(scope="module")
-def session(base_folder):
-    run = load(base_folder)
-    session = Session(run, judge_run(run))
+def session(base_run):
+    session = Session(base_run, judge_run(base_run))
     share(session)
     yield session
     share(None)

@@ -18,7 +18,7 @@ from experiments.report.tables import show_claims
 from experiments.runs import experiments, load, tables
 from structures import NAMES
 from tests.experiments.made_runs import write_run
-from tests.extent import OF_EACH_KIND, waiting_for
+from tests.extent import waiting_for
 
 SHOWN = {
     **{axis.key: lambda run, claims, axis=axis: growth.scaling(run, axis) for axis in Axis},
@@ -66,7 +66,7 @@ SHOWN = {
 
 EVERYWHERE = {"sentences", "expectations", "tally", "reasons"}
 PARTS = [*NAMES, *(name for name, it in experiments().items() if not it.by_name)]
-FEW = *OF_EACH_KIND, "bench_queries"
+FEW = "half_edge", "bench_queries"
 LAYOUT = "matplotlib.layout_engine.ConstrainedLayoutEngine"
 
 

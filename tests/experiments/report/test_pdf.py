@@ -13,7 +13,6 @@ from experiments.cli import app
 from experiments.report import notebooks, pdf, site
 from experiments.report.pages import page
 from experiments.report.session import Session, share
-from experiments.runs import load
 
 installed = pytest.mark.skipif(
     pdf.find_browser() is None,
@@ -23,9 +22,8 @@ TITLES = {"index": "Front", "comparison_table": "The comparison table"}
 
 
 @pytest.fixture(scope="module")
-def document(base_folder) -> str:
-    run = load(base_folder)
-    share(Session(run, judge_run(run), printed=True))
+def document(base_run) -> str:
+    share(Session(base_run, judge_run(base_run), printed=True))
     bodies = {name: notebooks.body(name) for name in TITLES}
     text = page("print.html.j2", titles=TITLES, front="index", bodies=bodies)
     share(None)

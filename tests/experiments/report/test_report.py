@@ -27,7 +27,7 @@ from experiments.report.figures import growth
 from experiments.report.session import Session, share
 from experiments.report.style import panels, spread_apart, styled, words
 from experiments.report.tables import digits
-from experiments.runs import ResultsError, load
+from experiments.runs import ResultsError
 from tests.experiments.small_study import wait_for
 
 
@@ -116,16 +116,15 @@ def test_a_cell_that_fails_names_its_notebook():
         executed("1 / 0")
 
 
-def test_the_answers_are_numbers_of_the_run(base_folder):
-    run = load(base_folder)
-    share(Session(run, judge_run(run)))
+def test_the_answers_are_numbers_of_the_run(base_run):
+    share(Session(base_run, judge_run(base_run)))
     body = notebooks.body("index")
     share(None)
     assert body.count('class="answer"') == 5
     assert re.search(r"(59|60|61)\d µs at 200,000 triangles", body)  # 600 with 2 % of noise
     assert "takes 228 bytes per vertex and an indexed mesh 36: 6.33 times" in body
     assert "over all faces takes a half-edge mesh 1.0 times as long" in body
-    asked = uses.ranking(run, "asked")
+    asked = uses.ranking(base_run, "asked")
     assert f"{uses.best(asked)} finds neighbors fastest" in body
     behind = f"fastest; a half-edge mesh takes {digits(asked['half_edge'] / asked.min())} times"
     assert (behind in body) == (asked["half_edge"] > uses.ALIKE * asked.min())
@@ -168,8 +167,8 @@ FIGURES = {
 
 
 @pytest.mark.parametrize("name", FIGURES)
-def test_labels_do_not_overlap_and_stay_inside_the_figure(base_folder, name):
-    figure = FIGURES[name](load(base_folder))
+def test_labels_do_not_overlap_and_stay_inside_the_figure(base_run, name):
+    figure = FIGURES[name](base_run)
     figure.draw_without_rendering()
     for axes in (it for it in figure.axes if it.get_visible()):
         boxes = [text.get_window_extent() for text in axes.texts]
@@ -198,9 +197,8 @@ def test_labels_are_moved_as_little_as_need_be():
         assert np.isclose(np.mean(spread), np.mean(heights))
 
 
-def test_the_german_answers_have_the_numbers_of_the_english_ones(base_folder):
-    run = load(base_folder)
-    share(Session(run, judge_run(run)))
+def test_the_german_answers_have_the_numbers_of_the_english_ones(base_run):
+    share(Session(base_run, judge_run(base_run)))
     body = notebooks.body("index")
     share(None)
     english = re.findall(r'(?s)<p class="answer">(.*?)<span class="rests">', body)

@@ -10,7 +10,7 @@ import pytest
 
 from experiments.advice import PRESETS, Prices
 from experiments.report import MissingError, advice_sliders
-from experiments.runs import Run, load
+from experiments.runs import Run
 from structures import REGISTRY
 from tests.experiments.chromium import Browser
 
@@ -19,8 +19,8 @@ CHOOSE = "s => { s.value = {place}; s.dispatchEvent(new Event('input')); }"
 
 
 @pytest.fixture(scope="module")
-def run(base_folder: Path) -> Run:
-    return load(base_folder)
+def run(base_run: Run) -> Run:
+    return base_run
 
 
 def test_the_page_tells_the_predicted_order(chromium: Browser, run: Run, tmp_path: Path) -> None:

@@ -18,14 +18,14 @@ from experiments.report.tables import (
     show_claims,
     tally_rows,
 )
-from experiments.runs import load
+from experiments.runs import Run, load
 from structures import NAMED, NAMES
 from tests.experiments.made_runs import LAWS, write_run
 
 
 @pytest.fixture(scope="module")
-def run(base_folder):
-    return load(base_folder)
+def run(base_run: Run) -> Run:
+    return base_run
 
 
 @pytest.mark.parametrize(

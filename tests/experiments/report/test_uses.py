@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import re
-from pathlib import Path
 
 import pytest
 
 from experiments.report import MissingError, uses
-from experiments.runs import Run, load
+from experiments.runs import Run
 from hem.contract import QUERIES
 from structures import REGISTRY
 
@@ -16,8 +15,8 @@ COMPILED = {name for name, it in REGISTRY.items() if it.compiled}
 
 
 @pytest.fixture(scope="module")
-def run(base_folder: Path) -> Run:
-    return load(base_folder)
+def run(base_run: Run) -> Run:
+    return base_run
 
 
 def bytes_of(run: Run, name: str) -> float:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -9,7 +10,7 @@ import pytest
 from experiments.claims import judge_run
 from experiments.regression import RUN, load_baseline
 from experiments.report.figures import accuracy as accuracy_figures
-from experiments.runs import load
+from experiments.runs import Run, load
 from experiments.validation import accuracy
 from experiments.validation.synthetic import CONDITIONS, GROWTH, make_curves
 from structures import THESIS
@@ -36,12 +37,12 @@ def test_right_wrong_and_undetermined_are_told_apart() -> None:
 
 
 def test_a_sound_run_is_determined_and_one_without_data_is_not(
-    base_folder: Path, tmp_path: Path
+    base_run: Run, tmp_path: Path
 ) -> None:
-    run = load(base_folder)
     claimed = 26 + 8 * len(LIKE_THE_THESIS)
-    assert accuracy.determined_shares(judge_run(run)).loc["Table 1"].tolist() == [claimed, 1, 1]
-    emptied = judge_run(type(run)(tmp_path / "empty", run.meta, run.cases.iloc[:0], run.skipped))
+    judged = judge_run(base_run)
+    emptied = judge_run(replace(base_run, folder=tmp_path / "empty", cases=base_run.cases.iloc[:0]))
+    assert accuracy.determined_shares(judged).loc["Table 1"].tolist() == [claimed, 1, 1]
     assert accuracy.determined_shares(emptied).loc["Table 1"].tolist() == [claimed, 0, 0]
 
 

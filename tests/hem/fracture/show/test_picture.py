@@ -14,7 +14,11 @@ from hem.fracture.show import Picture
 from hem.fracture.show.picture import shadow
 from tests.pictures import require_pictures
 
-require_pictures()
+
+@pytest.fixture(scope="module", autouse=True)
+def _pictures() -> None:
+    require_pictures()
+
 
 SIZE = 96, 72
 RED = (0.8, 0.1, 0.1)
