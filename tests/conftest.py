@@ -34,8 +34,14 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     items.sort(key=lambda item: (not about(item.nodeid), item.path.is_relative_to(STRUCTURES)))
 
 
+COMPILE = "tests/hem/", "tests/structures/", "tests/experiments/harness/"
+"""Where tests take kernels of a structure; others wait for a run that all share."""
+
+
 def about(test: str) -> str:
-    """The structure that a test is about, by its parameters; empty where it is not about one."""
+    """The structure that a test compiles for, by its parameters; empty where it is not one."""
+    if not test.startswith(COMPILE):
+        return ""
     parameters = test.partition("[")[2].rstrip("]").split("-")
     return next((it for it in parameters if it in NAMES), "")
 
