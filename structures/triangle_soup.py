@@ -51,7 +51,7 @@ from hem.authoring import (
 )
 from hem.contract import Claims, Look, PackedEdges
 from hem.meshes import TriangleMesh
-from hem.room import roomy
+from hem.room import rows
 from structures import indexed
 from structures.indexed import Indexed, edge_vertices
 
@@ -200,7 +200,8 @@ class TriangleSoup(PackedEdges):
     def build(cls, mesh: TriangleMesh, reference_bytes: int = 4) -> Self:
         """See ``Structure.build``. Any mesh is accepted; there are no references in it."""
         m = Indexed.build(mesh).records
-        points = roomy(mesh.points[mesh.triangles].reshape(-1, 9))
+        points = rows(len(mesh.triangles), 9, dtype=np.float32)
+        mesh.points.take(mesh.triangles, axis=0, out=points.reshape(-1, 3, 3), mode="clip")
         return cls(SoupRecords(m.vertex_point, m.triangle, points, m.counts))
 
     def _require_invariants(self) -> None:
