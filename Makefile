@@ -6,8 +6,8 @@ BIN := $(VENV)/bin
 STUDY := $(VENV)/installed-study
 DEV := $(VENV)/installed-dev
 STUDY_EXTRAS := study,fracture,viz
-# One worker more than there are cores, as many tests wait for a process of their own. All that is
-# about one structure is for one of them, else a file is (tests/conftest.py); the longest come first.
+# One worker more than there are cores, as many tests wait for a process of their own. One takes all
+# tests that compile for a structure, or else all of a file (tests/conftest.py); the longest first.
 WORKERS := $(shell echo $$(($$(getconf _NPROCESSORS_ONLN) + 1)))
 PYTEST := -m pytest tests -n $(WORKERS) --dist loadfile --no-loadscope-reorder --durations=20
 

@@ -33,8 +33,7 @@ def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
     tracemalloc.stop()
     fields = s.memory()
     if s.compiled:
-        names = s.memory(room=True).get("names", 0)
-        assert sum(fields.values()) + names == sum(array.nbytes for array in s.arrays)
+        assert sum(s.memory(names=True).values()) == sum(array.nbytes for array in s.arrays)
     else:
         assert 0.8 < sum(fields.values()) / traced < 1.25
     detail = {"fields": fields, "traced": traced, "peak": peak}

@@ -25,7 +25,7 @@ Invariants
 
 Nothing keeps the mesh from being non-manifold, and an edge is named by its two vertices. To split a
 face takes O(1), to move a vertex a search for all its points. Bytes per vertex: 2 · 3 · 12 = 72,
-without the names: 36 more, which ``memory(room=True)`` tells. Nothing in it is a reference.
+without the names: 36 more, which ``memory(names=True)`` tells. Nothing in it is a reference.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ from typing import ClassVar, NamedTuple, Self
 
 import numpy as np
 
-from hem.arrays import Array
+from hem.arrays import Array, Points
 from hem.authoring import (
     FACE_END,
     LEFT,
@@ -196,6 +196,13 @@ class TriangleSoup(PackedEdges):
         Field("triangle.point", "triangle_point", 9),
     )
 
+    @property
+    def points(self) -> Points:
+        """See ``Surveying.points``; read-only, as the triangles would not follow."""
+        points = super().points.view()
+        points.flags.writeable = False
+        return points
+
     @classmethod
     def build(cls, mesh: TriangleMesh, reference_bytes: int = 4) -> Self:
         """See ``Structure.build``. Any mesh is accepted; there are no references in it."""
@@ -211,3 +218,6 @@ class TriangleSoup(PackedEdges):
         require(corner != np.roll(corner, 1, axis=1), "corners differ", "faces", of=faces)
         told = m.vertex_point[corner].reshape(-1, 9) == m.triangle_point[faces]
         require(told.all(axis=1), "points are where their vertices lie", "faces", of=faces)
+        end = m.counts[FACE_END]
+        gone = (m.triangle[:end, 0] >= 0) | np.isnan(m.triangle_point[:end]).all(axis=1)
+        require(gone, "a dead triangle has no points", "faces")

@@ -1,8 +1,6 @@
 """What all tests share."""
 
-import atexit
 import gc
-import os
 import signal
 from pathlib import Path
 from typing import Any
@@ -17,25 +15,20 @@ STRUCTURES = Path(__file__).parent / "structures"
 # In the background of a shell Ctrl-C is ignored, and would be by all that the tests start.
 signal.signal(signal.SIGINT, signal.default_int_handler)
 
-if "PYTEST_XDIST_WORKER" in os.environ:
-    # To take apart all that was imported and compiled takes seconds in each process. What is
-    # registered later is done before.
-    atexit.register(os._exit, 0)
-
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     """Leave out what is exhaustive. What is about one structure is long and comes first.
 
     The many short files come last, so the cores end together.
     """
-    more = {it for it in items if it.get_closest_marker("exhaustive") and not EVERYTHING}
+    more = set() if EVERYTHING else {it for it in items if it.get_closest_marker("exhaustive")}
     config.hook.pytest_deselected(items=[it for it in items if it in more])
     items[:] = [it for it in items if it not in more]
     items.sort(key=lambda item: (not about(item.nodeid), item.path.is_relative_to(STRUCTURES)))
 
 
 COMPILE = "tests/hem/", "tests/structures/", "tests/experiments/harness/"
-"""Where tests take kernels of a structure; others wait for a run that all share."""
+"""Where tests compile kernels; elsewhere a structure's name picks from a run that all share."""
 
 
 def about(test: str) -> str:

@@ -28,16 +28,22 @@ def _holds(kind: type[Structure], family: str, edges: bool = False) -> bool:
     """Whether a structure holds a family of meshes, and beside it values of edges."""
     try:
         s = build(kind.name, hem.generate(family, 100))
-        return not edges or s.edge_attribute("needed") is not None  # refused without records
+        if edges:
+            s.edge_attribute("needed")  # refused without records
     except hem.MeshError:
         return False
+    return True
+
+
+def _holds_edges(kind: type[Structure]) -> bool:
+    return _holds(kind, "torus", edges=True)
 
 
 NEEDS: dict[str, tuple[str, Callable[[type[Structure]], bool]]] = {
-    "edges": ("records no edges", lambda it: _holds(it, "torus", edges=True)),
+    "edges": ("records no edges", _holds_edges),
     "borders": ("holds closed meshes only", lambda it: _holds(it, "grid")),
     "polygons": ("holds triangles only", lambda it: it.holds_polygons),
-    "attributes": ("keeps no values of edges", lambda it: _holds(it, "torus", edges=True)),
+    "attributes": ("keeps no values of edges", _holds_edges),
     "edits": ("looks at the whole mesh for an edit", lambda it: not (it.searches or it.rebuilds)),
 }
 """By name: what is wrong with a structure that cannot, and whether it can. ``edits`` is for what
@@ -122,7 +128,7 @@ def advise(
 def _bytes(name: str, mesh: Any, faces: int) -> int:
     """Exactly, by building it; of objects in proportion to a small mesh."""
     if REGISTRY[name].compiled or faces <= BUILT_OF_OBJECTS:
-        return sum(build(name, mesh).memory().values())
+        return sum(build(name, mesh).memory(names=True).values())
     small = hem.generate("torus", 1000)
     return round(sum(build(name, small).memory().values()) * faces / len(small.triangles))
 

@@ -30,6 +30,7 @@ CALL = 6e-7
 
 BEYOND = 0.25
 """How much less sure a price is for every factor e beyond the sizes that were measured."""
+
 UNMODELED = 0.45
 """How far a logarithm is off beside what rounds and sizes tell: what is asked in a program finds
 other things in the caches than what is asked alone. Chosen so that nine of ten of the workloads in
@@ -39,6 +40,7 @@ SIGMAS = 1.645
 """Nine of ten should lie within."""
 
 BUILDING, OWN = "build", "own"
+
 LOST = {"collapse_edge": -2, "remove_face": -1}
 """Faces that an operation takes away."""
 

@@ -32,11 +32,13 @@ Quantity = Callable[[Curves], Iterable[float]]
 LARGER = 990  # vertices from which on a mesh is spoken of: others are built and scanned in no time
 
 NEIGHBOR, ADJACENCY, DIRECTED = "triangle_neighbor", "indexed_adjacency", "directed_edge"
-SOUP = "triangle_soup"
 PAIRS = ("plankton",)
 SPLITS, COLLAPSE = ("split_edge", "split_face"), ("collapse_edge",)
 AT_EDGES = "split_edge", "collapse_edge", "flip_edge"
 STEPPING = "collapse_stepping"
+
+SOUP_BYTES = 3 * 12
+"""Of a triangle that stores its own three points."""
 
 MIXES = {
     "vertex_faces": "faces around a vertex",
@@ -240,7 +242,7 @@ QUANTITIES: dict[str, Quantity] = {
     "winged_half": lambda of_run: _work_ratios(of_run, WINGED, HALF, (*QUERIES, *OPERATIONS)),
     "winged_half_time": lambda of_run: _times(of_run, WINGED, HALF, (*QUERIES, *OPERATIONS)),
     "more_bytes": _more_bytes,
-    "soup": lambda of_run: [of_run.bytes_per_vertex(SOUP) / of_run.bytes_per_vertex(BASE)],
+    "soup": lambda of_run: [SOUP_BYTES * of_run.faces_per_vertex / of_run.bytes_per_vertex(BASE)],
     "answers": _answers,
     "come_round": lambda of_run: shown.walks_without_test(),
     "edges_both_ways": lambda of_run: _slopes(of_run, (WINGED,), BETWEEN_EDGES),

@@ -62,7 +62,7 @@ def _per_vertex(structure: str, reference_bytes: int) -> float:
     if structure not in REGISTRY:
         return OBJECTS_BYTES
     small = structures.build(structure, hem.generate("torus", SMALL), reference_bytes)
-    return sum(small.memory().values()) / small.n_vertices
+    return sum(small.memory(names=True).values()) / small.n_vertices
 
 
 def available() -> int:

@@ -93,7 +93,8 @@ def copies(small: Case, vertices: int) -> tuple[Structure, tuple[Array, ...]]:
     points = np.empty((count * n_points, 3), mesh.points.dtype)
     triangles = np.empty((count * n_faces, 3), mesh.triangles.dtype)
     points[vertex], triangles[face] = mesh.points, vertex[:, mesh.triangles]
-    apart = 2 * np.ptp(mesh.points[:, 0]) * np.arange(count)  # a soup joins what is at one place
+    # A soup looks further where points are alike, so no two copies are in one place.
+    apart = 2 * np.ptp(mesh.points[:, 0]) * np.arange(count)
     points[vertex, 0] += apart[:, None].astype(points.dtype)
     s = structures.build(small.structure, TriangleMesh(points, triangles), small.reference_bytes)
     one = structures.build(small.structure, mesh, small.reference_bytes)

@@ -293,7 +293,7 @@ class Structure(Described, Surveying, abstract=True):
         return self._do["remove_face"](face)
 
     def move_vertex(self, vertex: int, point: ArrayLike) -> Edit:
-        """Give a vertex another position. Cost O(1)."""
+        """Give a vertex another position. Cost O(1); O(n_t) where triangles have own points."""
         return self._do["move_vertex"](vertex, point)
 
     def add_vertex(self, point: ArrayLike) -> Edit:
@@ -356,7 +356,7 @@ class Structure(Described, Surveying, abstract=True):
         return self._operations.persist("collapse_edges", "collapse_edge", rows)
 
     def move_vertices(self, vertices: ArrayLike, points: ArrayLike) -> None:
-        """Give different vertices (k,) the positions (k, 3). One edit. Cost O(k)."""
+        """Give different vertices (k,) the positions (k, 3). One edit. Cost: k moves."""
         self._operations.all("move_vertices", "move_vertex", vertices, points)
 
     def remove_faces(self, faces: ArrayLike) -> None:
@@ -535,22 +535,23 @@ class Structure(Described, Surveying, abstract=True):
         self._state.storage.put_back(self.records, snapshot.records)
         self._followers.put_back(snapshot.attributes)
 
-    def memory(self, room: bool = False) -> dict[str, int]:
+    def memory(self, room: bool = False, names: bool = False) -> dict[str, int]:
         """Bytes per field of live elements, such as ``{"vertex.point": 12 * n_vertices, …}``.
 
-        With ``room`` also what is taken beside them: ``names`` are kept of elements that the
-        structure itself does not record; ``dead and room to grow`` is what the arrays
-        hold besides, up to as much again after they grew, and is given memory when it is first
-        written, see ``hem.room``; ``scratch`` is where queries and operations work, nothing before
-        the first of them.
+        With ``names`` also what only gives elements their handles (``Field.names``), where there is
+        such. With ``room`` that, too, and all that is taken beside: ``dead and room to grow`` is
+        what the arrays hold besides, up to as much again after they grew, and is given memory when
+        it is first written, see ``hem.room``; ``scratch`` is where queries and operations work,
+        nothing before the first of them.
         """
         taken = self._live_bytes()
-        names = [taken.pop(it.name) for it in self.fields if it.names]
+        naming = sum(taken.pop(it.name) for it in self.fields if it.names)
+        if naming and (names or room):
+            taken["names"] = naming
         if not room:
             return taken
-        spare = self._state.storage.spare(self.records, sum(names) + sum(taken.values()))
-        beside = {"dead and room to grow": spare, "scratch": self._state.scratch_bytes}
-        return taken | ({"names": sum(names)} if names else {}) | beside
+        spare = self._state.storage.spare(self.records, sum(taken.values()))
+        return taken | {"dead and room to grow": spare, "scratch": self._state.scratch_bytes}
 
     def _live_bytes(self) -> dict[str, int]:
         """By field, those that only name elements included."""

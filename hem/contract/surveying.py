@@ -53,7 +53,8 @@ class Surveying(ABC):
     def points(self) -> Points:
         """(n, 3) float32: positions by vertex; those of dead ones are NaN.
 
-        A view: ``move_vertex`` tells subscribers of a new position, writing here does not.
+        A view: ``move_vertex`` tells subscribers of a new position, writing here does not. It
+        cannot be written to where triangles have points of their own.
         """
         points: Points = self.records.vertex_point
         return points[: self.records.counts[VERTEX_END]]

@@ -9,6 +9,7 @@ import pytest
 
 import hem
 import structures
+from hem import algorithms
 from hem.contract import Structure
 from tests.structures.conftest import shuffled
 
@@ -55,7 +56,7 @@ def test_a_vertex_moves_in_every_triangle_around_it():
 @pytest.mark.parametrize("family", ["torus", "grid"])
 def test_after_any_operations_the_soup_is_that_of_an_indexed_mesh(family: str):
     rng, mesh = np.random.default_rng(3), shuffled(hem.generate(family, 64))
-    kinds = 5 if family == "torus" else 4  # not every face of a border can be taken away
+    kinds = 6 if family == "torus" else 5  # not every face of a border can be taken away
     both = [structures.build(name, mesh) for name in ("triangle_soup", "indexed")]
     for _ in range(60):
         at, kind = int(rng.integers(both[0].n_edges)), int(rng.integers(kinds))
@@ -71,6 +72,8 @@ def test_after_any_operations_the_soup_is_that_of_an_indexed_mesh(family: str):
             elif kind == 3 and s.can_flip_edge(edge):
                 s.flip_edge(edge)
             elif kind == 4:
+                s.move_vertex(s.face_vertices(face)[0], point)
+            elif kind == 5:
                 corners = s.face_vertices(face).tolist()
                 s.remove_face(face)
                 s.add_face(*corners)
@@ -83,7 +86,34 @@ def test_after_any_operations_the_soup_is_that_of_an_indexed_mesh(family: str):
     assert np.array_equal(soup_of(soup), soup.points[soup.triangles()])
 
 
+@pytest.mark.parametrize("algorithm", [algorithms.smooth, algorithms.center, algorithms.impacts])
+def test_what_an_algorithm_writes_is_in_the_soup(algorithm: Any):
+    s = built()
+    given = [s.faces()[:20]] if algorithm is algorithms.impacts else []
+    algorithm(s, *given)
+    s.validate()
+    assert np.array_equal(soup_of(s), s.points[s.triangles()])
+
+
+def test_positions_cannot_be_written_past_the_triangles():
+    s = built()
+    with pytest.raises(ValueError, match="read-only"):
+        s.points[7] = 0
+    assert len(s.vertex_faces(7))
+
+
+def test_points_that_a_dead_triangle_kept_are_found():
+    s = built()
+    s.remove_face(3)
+    s.validate()
+    s.records.triangle_point[3] = 1
+    with pytest.raises(hem.MeshError, match="a dead triangle has no points") as broken:
+        s.validate()
+    assert broken.value.elements["faces"].tolist() == [3]
+
+
 def test_names_are_told_apart_from_what_a_soup_takes():
     s = built(400)
     assert s.memory() == {"triangle.point": 400 * 72}
+    assert s.memory(names=True) == {"triangle.point": 400 * 72, "names": 400 * 36}
     assert s.memory(room=True)["names"] == 400 * 36

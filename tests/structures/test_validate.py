@@ -68,7 +68,7 @@ def test_a_corner_that_cannot_be_is_found_in_an_indexed_mesh(name, wrong):
 @pytest.mark.parametrize("name", OF_ARRAYS)
 def test_a_position_that_is_not_finite_is_found(name):
     s = structures.build(name, hem.generate("torus", 100))
-    s.points[3, 1] = np.inf
+    s.records.vertex_point[3, 1] = np.inf
     with pytest.raises(hem.MeshError, match="finite") as broken:
         s.validate()
     assert broken.value.elements["vertices"].tolist() == [3]

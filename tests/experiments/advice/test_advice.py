@@ -115,7 +115,7 @@ def test_bytes_are_those_of_the_structure(prices: Prices) -> None:
     from structures import build
 
     for it in advise(prices, ASKED, MESH).options:
-        assert it.bytes == sum(build(it.forecast.structure, MESH).memory().values())
+        assert it.bytes == sum(build(it.forecast.structure, MESH).memory(names=True).values())
 
 
 def test_a_program_s_own_part_is_what_its_measurement_leaves(prices: Prices) -> None:

@@ -36,8 +36,8 @@ def test_no_size_makes_the_reference_work_more(name: str, query: str) -> None:
     assert sum(counts[2]) == pytest.approx(sum(counts[0]), rel=0.2)  # it depends on the numbers
     for count in counts:
         assert sum(count) <= 1.25 * sum(counts[0])
-        # A hash may probe more, and coordinates that happen to be equal have others looked at.
-        assert max(count) <= max(counts[0]) + max(10, max(counts[0]) // 10)
+        more = max(counts[0]) // 10 if name == "triangle_soup" else 10  # coordinates may be alike
+        assert max(count) <= max(counts[0]) + more
 
 
 @pytest.mark.parametrize("name", COMPILED)

@@ -466,7 +466,7 @@ def test_what_is_taken_beside_the_elements_is_told(name: str) -> None:
     assert {it: beside[it] for it in s.memory()} == s.memory()
     assert 0 < beside["scratch"] < bare / 10
     arrays = sum(array.nbytes for array in s.records) if s.compiled else 0
-    live = sum(s.memory().values()) + beside.get("names", 0)
+    live = sum(s.memory(names=True).values())
     assert beside["dead and room to grow"] == (arrays - live if s.compiled else 8 * (1 + 2 + 6))
 
 
@@ -503,5 +503,4 @@ def test_the_first_splits_move_no_record_and_what_was_read_is_read_on(name: str)
 )
 def test_a_pickle_holds_no_room(name: str) -> None:
     s = structures.build(name, hem.generate("torus", 1_600))
-    taken = sum(s.memory().values()) + s.memory(room=True).get("names", 0)
-    assert len(pickle.dumps(s)) < taken + 10_000
+    assert len(pickle.dumps(s)) < sum(s.memory(names=True).values()) + 10_000
