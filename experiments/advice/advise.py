@@ -97,10 +97,9 @@ def advise(
     faces = len(triangles.triangles)
     options, refused = [], {}
     for name, kind in REGISTRY.items():
-        if name not in prices.structures:
-            refused[name] = "the run has not measured it"
-            continue
         wrong = [NEEDS[it][0] for it in needs if not NEEDS[it][1](kind)]
+        if name not in prices.structures:
+            wrong.append("the run has not measured it")
         taken = 0
         try:
             taken = _bytes(name, mesh, faces)
@@ -135,6 +134,8 @@ def _bytes(name: str, mesh: Any, faces: int) -> int:
 
 def _edit(prices: Prices, workload: Workload, name: str, faces: float) -> float:
     edits = {it.what for it in workload.rows if is_edit(it.what)}
+    if name not in prices.structures:
+        return 0.0
     anew = prices.price(name, ANEW, faces).seconds if edits else 0.0
     found = [prices.price(name, it, faces, caller=PYTHON).seconds + anew for it in edits]
     return max(found, default=0.0)
