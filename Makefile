@@ -81,7 +81,8 @@ format: $(DEV)  ## format the code
 peers: export CMAKE_BUILD_PARALLEL_LEVEL := $(shell getconf _NPROCESSORS_ONLN)
 peers: $(STUDY)  ## measure other libraries beside ours, and print what came out
 	@install="$(BIN)/python -m pip --disable-pip-version-check install"; \
-	test -x $(BIN)/uv && install="$(BIN)/uv pip install --python $(BIN)/python"; \
+	uv="$(BIN)/uv pip install --python $(BIN)/python"; \
+	$$uv --dry-run compas >/dev/null 2>&1 && install="$$uv"; \
 	$$install --quiet --editable '.[peers]' --constraint constraints.txt >/dev/null 2>&1 \
 	|| for peer in openmesh libigl meshlib compas open3d bpy; do \
 		$$install --quiet $$peer --constraint constraints.txt >/dev/null 2>&1; done || true

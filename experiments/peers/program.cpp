@@ -3,7 +3,8 @@
 // what the two libraries have in common.
 // Arguments: the library, a file of points (float32, 3 each), one of triangles (int32, 3 each), a number of vertices to
 // ask at (0 for all), the rounds of queries, and those of building, operations and algorithms.
-// Prints a JSON object: "times": subject -> seconds each round, per element or as a whole; "answers": query -> what was
+// Prints a JSON object: "times": subject -> seconds each round, per element or as a whole, "all ..." of all elements in
+// order, their answers written one after the other; "answers": query -> what was
 // asked and answered of a few elements; "faces", "bytes", and "collapsed", whether the first edge may be, with the faces "left".
 #include <CGAL/Simple_cartesian.h>
 #include <CGAL/Surface_mesh.h>
@@ -275,6 +276,24 @@ template <class L> struct Measured {
     query<F>(s, "face_faces", faces, rounds, check, [&](F f, auto visit) { s.beside(f, visit); });
   }
 
+  // Ask all elements in order, and keep what they answer, and where each begins, in memory that was written to before.
+  template <class H, class Ask> static void all(const char *title, size_t elements, int rounds, Ask ask) {
+    std::vector<int> found, begins;
+    std::vector<double> seconds;
+    for (int round = -1; round < rounds; round++) {
+      found.clear();
+      begins.clear();
+      double begin = cpu();
+      for (size_t i = 0; i < elements; i++) {
+        begins.push_back(found.size());
+        ask(H(i), [&](auto h) { found.push_back(number(h)); });
+      }
+      if (round >= 0) seconds.push_back((cpu() - begin) / elements);
+    }
+    name(title);
+    list("%.9g", seconds);
+  }
+
   // Operate on some elements in random order, of a new mesh every round; those that are refused do not count.
   template <class Operate> static void operation(const char *title, size_t elements, int rounds, Operate operate) {
     std::vector<int> chosen(elements);
@@ -323,6 +342,8 @@ template <class L> struct Measured {
       operation("split_face", s.faces(), whole, [&](L &m, int i) { m.split(F(i), p); return true; });
       operation("split_edge", s.edges(), whole, [&](L &m, int i) { m.split(E(i), p); return true; });
       operation("collapse_edge", s.edges(), whole, [](L &m, int i) { return m.collapse(E(i)); });
+      all<V>("all vertex_faces", s.vertices(), whole, [&](V v, auto visit) { s.faces_at(v, visit); });
+      all<F>("all face_faces", s.faces(), whole, [&](F f, auto visit) { s.beside(f, visit); });
     }
     bool collapsed = !rounds && s.edges() && s.collapse(E(0));
     s.compact();

@@ -16,7 +16,10 @@ _PLACES = {
         "claim_tables", "closing", "errata", "frame_table", "legend", "reasons", "sentences",
         "slopes", "tally", "text_table", "traced", "verdicts",
     ),
-    "peers": ("about", "measured_peers", "page_table", "peers_as_json", "portraits", "show_peers"),
+    "peers": (
+        "about", "beside_ours", "measured_peers", "page_table", "peers_as_json", "portraits",
+        "show_peers",
+    ),
     "readme": ("write_readme",),
 
     "session": ("MissingError", "claim_link", "link", "open_run", "project_file"),

@@ -1,6 +1,6 @@
 """Other libraries beside our half-edge mesh: tables for a terminal, for a page and for programs."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pandas as pd
 from rich.console import Console
 
 from experiments.claims import Curve, Outcome, curves, load_claims
@@ -20,6 +21,7 @@ from experiments.report.tables import digits, duration, show_rows
 from experiments.runs import PEER_RUNS, ResultsError, Run, in_words, latest, load
 from hem.complexity import Verdict, judge
 from hem.contract import QUERIES
+from structures import REGISTRY
 
 EXPERIMENT = "bench_peers"
 LIKE = "half_edge"
@@ -240,6 +242,29 @@ def _records(peers: Peers, name: str) -> Iterator[dict[str, Any]]:
                 yield {"subject": subject, "way": order, "seconds": cell.seconds,
                        "found": cell.found, "vertices": cell.size, "of_ours": cell.ratio,
                        "outcomes": outcomes}  # fmt: skip
+
+
+def beside_ours(
+    measured: pd.DataFrame, works: Mapping[str, str], shares: Collection[str]
+) -> list[list[str]]:
+    """Half-edges as measured, and how many times that all others take; the heads first.
+
+    ``measured``: a row per work, size and cores, a column per program; ``shares``: the works that
+    are told in parts of the whole instead of seconds.
+    """
+    titles = {name: it.title for name, it in PEERS.items()}
+    titles |= {name: it.title for name, it in REGISTRY.items()}
+    here = measured[measured.index.get_level_values(0).isin(works)].dropna(axis=1, how="all")
+    names = sorted(here.columns, key=lambda it: (it != LIKE, it not in REGISTRY, it))
+    rows = [["", "vertices", *(titles.get(it, it) for it in names)]]
+    every: list[Any] = sorted(here.iterrows(), key=lambda it: [*works].index(it[0][0]))
+    for (work, size, cores), values in every:
+        first = f"{values[LIKE]:.2%}" if work in shares else duration(values[LIKE])
+        ratios = (values[names[1:]] / values[LIKE]).tolist()
+        told = [f"{digits(it)} ×" if it == it else NONE for it in ratios]
+        head = f"{works[work]}, all cores" if cores == "all" else works[work]
+        rows.append([head, f"{size:,}", first, *told])
+    return rows
 
 
 def page_table(rows: Sequence[Sequence[Any]], title: str = "") -> Html:

@@ -61,6 +61,15 @@ def intersecting_faces(mesh: TriangleMesh) -> Indices:
     return _WORKER.ask("crossing", mesh=_arrays(mesh))
 
 
+def distances(one: TriangleMesh, other: TriangleMesh, samples: int) -> tuple[float, float]:
+    """Hausdorff's and the root mean square, the larger way and both, in parts of the diagonal.
+
+    Between so many points of each mesh, at its vertices first, and the other's surface.
+    """
+    meshes = [_arrays(one), _arrays(other)]
+    return _WORKER.ask("distances", meshes=meshes, samples=samples)
+
+
 def load_file(path: Path) -> tuple[Any, Any]:
     """The points and the triangles of a file, all its meshes as one. Raises MeshlabError."""
     return _WORKER.ask("load", path=str(path))

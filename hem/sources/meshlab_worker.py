@@ -70,6 +70,17 @@ def crossing(pymeshlab: Any, mesh: Any) -> Any:
     return np.flatnonzero(meshes.current_mesh().face_selection_array())
 
 
+def distances(pymeshlab: Any, meshes: list[Any], samples: int) -> tuple[float, float]:
+    """Hausdorff's and the root mean square of two meshes, both ways, in parts of the diagonal."""
+    both = filled(pymeshlab, *meshes)
+    given = {"samplenum": samples, "maxdist": pymeshlab.PercentageValue(50)}
+    found = [
+        both.get_hausdorff_distance(sampledmesh=a, targetmesh=1 - a, **given) for a in range(2)
+    ]
+    parts = np.array([[it["max"], it["RMS"]] for it in found]) / found[0]["diag_mesh_0"]
+    return float(parts[:, 0].max()), float(np.sqrt((parts[:, 1] ** 2).mean()))
+
+
 def load(pymeshlab: Any, path: str) -> tuple[Any, Any]:
     """The points and triangles of a file, all its meshes as one."""
     meshes = pymeshlab.MeshSet(verbose=False)
@@ -85,16 +96,17 @@ def save(pymeshlab: Any, mesh: Any, path: str) -> None:
     filled(pymeshlab, mesh).save_current_mesh(path)
 
 
-def filled(pymeshlab: Any, mesh: Any) -> Any:
-    """A MeshSet that holds (points, triangles), or nothing."""
+def filled(pymeshlab: Any, *given: Any) -> Any:
+    """A MeshSet that holds meshes (points, triangles), or nothing."""
     meshes = pymeshlab.MeshSet(verbose=False)
-    if mesh is not None:
-        points, triangles = mesh
+    for points, triangles in filter(None, given):
         meshes.add_mesh(pymeshlab.Mesh(points.astype(np.float64), triangles.astype(np.int32)))
     return meshes
 
 
-JOBS: dict[str, Callable[..., Any]] = {job.__name__: job for job in (apply, crossing, load, save)}
+JOBS: dict[str, Callable[..., Any]] = {
+    job.__name__: job for job in (apply, crossing, distances, load, save)
+}
 
 if __name__ == "__main__":
     main()

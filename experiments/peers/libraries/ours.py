@@ -21,8 +21,9 @@ STRUCTURE = "half_edge"
 """Most of the libraries hold half-edges, too."""
 
 
-def _build(points: Array, triangles: Array) -> Mesh:
-    return structures.build(STRUCTURE, hem.TriangleMesh(points, triangles))
+def build(points: Array, triangles: Array, structure: str = STRUCTURE) -> Mesh:
+    """One of our structures."""
+    return structures.build(structure, hem.TriangleMesh(points, triangles))
 
 
 def _handles(m: Mesh, element: str, numbers: list[int]) -> list[int]:
@@ -67,14 +68,15 @@ def _simplify(m: Mesh, faces: int) -> int:
     return int(m.n_faces)
 
 
-def _looped(
-    points: Array, triangles: Array, few: int = 0, rounds: int = 0, whole: int = 0
-) -> dict[str, Any]:
+def looped(
+    points: Array, triangles: Array, few: int = 0, rounds: int = 0, whole: int = 0,
+    structure: str = STRUCTURE,
+) -> dict[str, Any]:  # fmt: skip
     """What compiled loops take on one thread, as ``program.cpp`` tells it of others."""
     threads = numba.get_num_threads()
     numba.set_num_threads(1)
     try:
-        s = _build(points, triangles)
+        s = build(points, triangles, structure)
         times = _times(s, few, rounds, whole)
         return {"times": times, "answers": {}, "bytes": sum(s.memory().values())}
     finally:
@@ -83,7 +85,7 @@ def _looped(
 
 def _times(s: Mesh, few: int, rounds: int, whole: int) -> dict[str, list[float]]:
     times = {}
-    for query, it in QUERIES.items():
+    for query, it in QUERIES.items() if rounds else ():
         handles = np.random.default_rng(7).permutation(_at(s, it.source, few))[:ASKED]
         timed = time_rounds(s.prepare_sweep(query, handles).run, rounds=rounds)
         times[query] = (timed.samples / len(handles)).tolist()
@@ -130,7 +132,7 @@ PEER = Peer(
     module="hem",
     manual="A call with one handle, or with all: the same method.",
     more="",
-    build=_build,
+    build=build,
     faces=attrgetter("n_faces"),
     ends=methodcaller("edge_array"),
     handles=_handles,
@@ -145,6 +147,6 @@ PEER = Peer(
         "smooth": algorithms.smooth,
         "simplify": _simplify,
     },
-    looped=_looped,
+    looped=looped,
     loops=(*QUERIES, *BATCHED, *SIX),
 )
