@@ -254,12 +254,13 @@ def beside_ours(
     """
     titles = {name: it.title for name, it in PEERS.items()}
     titles |= {name: it.title for name, it in REGISTRY.items()}
-    here = measured[measured.index.get_level_values(0).isin(works)].dropna(axis=1, how="all")
+    here = measured[measured.index.get_level_values(0).isin(works)].dropna(subset=[LIKE])
+    here = here.dropna(axis=1, how="all")
     names = sorted(here.columns, key=lambda it: (it != LIKE, it not in REGISTRY, it))
     rows = [["", "vertices", *(titles.get(it, it) for it in names)]]
     every: list[Any] = sorted(here.iterrows(), key=lambda it: [*works].index(it[0][0]))
     for (work, size, cores), values in every:
-        first = f"{values[LIKE]:.2%}" if work in shares else duration(values[LIKE])
+        first = f"{digits(100 * values[LIKE])} %" if work in shares else duration(values[LIKE])
         ratios = (values[names[1:]] / values[LIKE]).tolist()
         told = [f"{digits(it)} ×" if it == it else NONE for it in ratios]
         head = f"{works[work]}, all cores" if cores == "all" else works[work]

@@ -34,17 +34,18 @@ def test_a_table_has_half_edges_as_measured_and_how_many_times_that_others_take(
     _, found = speed.load_speed(tmp_path / "kept")
     works = {"build": "Build", "rms": "Error"}
     assert beside_ours(found, works, speed.ERRORS) == [
-        ["", "vertices", "Half-edge", "OpenMesh"],
+        ["", "vertices", "Half-Edge", "OpenMesh"],
         ["Build, all cores", "100", "2.0 ms", "3.0 ×"],
-        ["Error", "100", "1.00%", "N/A"],
+        ["Error", "100", "1.0 %", "N/A"],
     ]
 
 
 def test_the_kept_run_has_every_work_of_each_of_our_structures() -> None:
     kept, found = speed.load_speed(ROOT / speed.RESULT)
     assert not kept["dirty"]
-    assert {work for work, *_ in found.index} == WORKS
-    assert not found[list(speed.STRUCTURES)].isna().any(axis=None)
+    ours = found.dropna(subset=[LIKE])
+    assert {work for work, *_ in ours.index} == WORKS
+    assert not ours[list(speed.STRUCTURES)].isna().any(axis=None)
     assert set(speed.COMPILED) | set(speed.BUILT) | set(speed.ASKED_SINGLY) <= {*found.columns}
     assert {size for _, size, _ in found.index} == {*speed.SIZES}
 
