@@ -258,7 +258,7 @@ def beside_ours(
     here = here.dropna(axis=1, how="all")
     names = sorted(here.columns, key=lambda it: (it != LIKE, it not in REGISTRY, it))
     rows = [["", "vertices", *(titles.get(it, it) for it in names)]]
-    every: list[Any] = sorted(here.iterrows(), key=lambda it: [*works].index(it[0][0]))
+    every: list[Any] = sorted(here.iterrows(), key=lambda it: ([*works].index(it[0][0]), it[0][1]))
     for (work, size, cores), values in every:
         first = f"{digits(100 * values[LIKE])} %" if work in shares else duration(values[LIKE])
         ratios = (values[names[1:]] / values[LIKE]).tolist()
