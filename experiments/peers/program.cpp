@@ -276,19 +276,21 @@ template <class L> struct Measured {
     query<F>(s, "face_faces", faces, rounds, check, [&](F f, auto visit) { s.beside(f, visit); });
   }
 
-  // Ask all elements in order, and keep what they answer, and where each begins, in memory that was written to before.
+  // Ask all elements in order, and give what they answer, and where each begins, in new arrays of the right size.
   template <class H, class Ask> static void all(const char *title, size_t elements, int rounds, Ask ask) {
-    std::vector<int> found, begins;
     std::vector<double> seconds;
+    size_t answers = 0;
     for (int round = -1; round < rounds; round++) {
-      found.clear();
-      begins.clear();
       double begin = cpu();
+      std::vector<int> found, begins;
+      found.reserve(answers);
+      begins.reserve(elements);
       for (size_t i = 0; i < elements; i++) {
         begins.push_back(found.size());
         ask(H(i), [&](auto h) { found.push_back(number(h)); });
       }
       if (round >= 0) seconds.push_back((cpu() - begin) / elements);
+      answers = found.size();
     }
     name(title);
     list("%.9g", seconds);

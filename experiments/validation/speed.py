@@ -19,7 +19,6 @@ from pathlib import Path
 from time import perf_counter, process_time
 from typing import Any, NamedTuple
 
-import numba
 import numpy as np
 import pandas as pd
 import psutil
@@ -48,6 +47,8 @@ SAMPLES = 200_000
 """Points of each mesh whose distance to the other is measured."""
 ONE, ALL = "one", "all"
 CLOCKS = {ONE: process_time, ALL: perf_counter}
+THREADS = "NUMBA_NUM_THREADS"
+"""How many threads a process of ours uses at most, which it reads when it begins."""
 WARM = 2_000
 """Vertices of what is worked on first, so that all is compiled."""
 
@@ -227,11 +228,9 @@ def simplifying(vertices: int, cores: str) -> Rows:
 
 
 def pin(cores: str) -> None:
-    """Keep this process on one core and in one thread, or leave it on all."""
-    if cores == ONE:
-        numba.set_num_threads(1)
-        if hasattr(os, "sched_setaffinity"):
-            os.sched_setaffinity(0, {max(os.sched_getaffinity(0))})
+    """Keep this process on one core, or leave it on all."""
+    if cores == ONE and hasattr(os, "sched_setaffinity"):
+        os.sched_setaffinity(0, {max(os.sched_getaffinity(0))})
 
 
 def measured(cores: str, many: int, few: int) -> list[tuple[Any, ...]]:
@@ -258,6 +257,7 @@ def main(output: Path = RESULT, many: int = SIZES[1], few: int = SIZES[0]) -> No
     """Measure all, keep it, and print the least of each."""
     rows: list[tuple[Any, ...]] = []
     for cores in CLOCKS:
+        os.environ[THREADS] = "1" if cores == ONE else str(os.cpu_count() or 1)
         with ProcessPoolExecutor(1, get_context("spawn"), pin, (cores,)) as process:
             process.submit(measured, cores, WARM, WARM).result()  # compiles all that will be timed
             rows += process.submit(measured, cores, many, few).result()

@@ -3,10 +3,9 @@
 from collections.abc import Callable
 from functools import partial
 from operator import attrgetter, methodcaller
-from time import thread_time
+from time import process_time
 from typing import Any
 
-import numba
 import numpy as np
 
 import hem
@@ -72,15 +71,10 @@ def looped(
     points: Array, triangles: Array, few: int = 0, rounds: int = 0, whole: int = 0,
     structure: str = STRUCTURE,
 ) -> dict[str, Any]:  # fmt: skip
-    """What compiled loops take on one thread, as ``program.cpp`` tells it of others."""
-    threads = numba.get_num_threads()
-    numba.set_num_threads(1)
-    try:
-        s = build(points, triangles, structure)
-        times = _times(s, few, rounds, whole)
-        return {"times": times, "answers": {}, "bytes": sum(s.memory().values())}
-    finally:
-        numba.set_num_threads(threads)
+    """What compiled loops take, as ``program.cpp`` tells it of others."""
+    s = build(points, triangles, structure)
+    times = _times(s, few, rounds, whole)
+    return {"times": times, "answers": {}, "bytes": sum(s.memory().values())}
 
 
 def _times(s: Mesh, few: int, rounds: int, whole: int) -> dict[str, list[float]]:
@@ -97,10 +91,10 @@ def _times(s: Mesh, few: int, rounds: int, whole: int) -> dict[str, list[float]]
 
 
 def _processor_seconds(algorithm: Callable[[Any], Any], s: Mesh) -> float:
-    """As ``program.cpp`` takes them: other programs make the least difference to these."""
-    begin = thread_time()
+    """Of all threads, as ``program.cpp`` takes them: other programs make little difference."""
+    begin = process_time()
     algorithm(s)
-    return thread_time() - begin
+    return process_time() - begin
 
 
 def _seconds_each(operation: str, s: Mesh) -> float:
@@ -109,9 +103,9 @@ def _seconds_each(operation: str, s: Mesh) -> float:
     handles = np.random.default_rng(7).permutation(every)[:ASKED]
     places = np.broadcast_to(s.points[:1], (len(handles), 3)).copy()
     s.reserve(len(handles))
-    begin = thread_time()
+    begin = process_time()
     done = _all_at_once(operation, s, handles, places)
-    return (thread_time() - begin) / done
+    return (process_time() - begin) / done
 
 
 def _at(s: Mesh, source: str, few: int) -> Array:
