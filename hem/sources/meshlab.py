@@ -61,7 +61,7 @@ def intersecting_faces(mesh: TriangleMesh) -> Indices:
     return _WORKER.ask("crossing", mesh=_arrays(mesh))
 
 
-def distances(one: TriangleMesh, other: TriangleMesh, samples: int) -> tuple[float, float]:
+def distances(one: TriangleMesh, other: TriangleMesh, samples: int = 40_000) -> tuple[float, float]:
     """Hausdorff's and the root mean square, the larger way and both, in parts of the diagonal.
 
     Between so many points of each mesh, at its vertices first, and the other's surface.

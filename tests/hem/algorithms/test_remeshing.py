@@ -9,8 +9,8 @@ import hem
 import structures
 from hem import algorithms
 from hem.algorithms.nearest import Surface
+from hem.sources import meshlab
 from tests.hem.algorithms.test_passes import OPEN
-from tests.hem.algorithms.test_simplification import distances
 
 
 def edges_of(mesh: hem.TriangleMesh) -> tuple[np.ndarray, np.ndarray]:
@@ -55,7 +55,7 @@ def test_edges_are_as_long_as_asked_for_and_valences_evener_than_those_of_pymesh
     found = lengths(mine) / length
     assert ((found > 4 / 5) & (found < 4 / 3)).mean() >= 0.95
     assert valence_error(mine) < valence_error(theirs)
-    assert distances(mesh, mine)[1] < 1e-3
+    assert meshlab.distances(mesh, mine)[1] < 1e-3
     hem.require_sound(mine)
 
 
