@@ -223,14 +223,17 @@ def _slopes(
 ) -> Iterable[float]:
     """The log-log slopes of work, of what reads nothing as of one access.
 
-    In the number of faces, or without a ``table`` in the valence at its largest values: there what
-    is constant counts little.
+    In the number of faces, or without a ``table`` in the valence: there of what is added from one
+    to the next of the three largest, so that what is constant does not count.
     """
-    axis, last = (Axis.WORK_FACES, None) if table else (Axis.WORK_VALENCE, -2)
+    axis = Axis.WORK_FACES if table else Axis.WORK_VALENCE
     for name, subject in itertools.product(names, subjects):
         curve = of_run.curve(axis, name, subject, table)
-        if len(curve) > 1:
-            yield float(slope(curve.sizes[last:], np.maximum(curve.centers[last:], 1)))
+        sizes, work = curve.sizes, curve.centers
+        if not table:
+            sizes, work = np.diff(sizes[-3:]), np.diff(work[-3:])
+        if len(sizes) > 1:
+            yield float(slope(sizes, np.maximum(work, 1)))
 
 
 LISTED = ("as_printed",)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
@@ -219,6 +221,14 @@ def test_the_code_of_a_winged_edge_mesh_tests_directions_and_is_no_longer(run):
     assert outcome(run, "handling") == "violated"
     same = shown.handling("direction_tests", "branches", "lines", mine="winged_edge")
     assert list(same) == [1, 1, 1]
+
+
+@pytest.mark.parametrize(("power", "constant"), [(1, 0), (1, 500), (2, 500), (0, 500)])
+def test_a_slope_in_the_valence_is_that_of_the_growth_and_not_of_what_is_constant(power, constant):
+    sizes = np.array([4, 16, 64, 256])
+    curve = SimpleNamespace(sizes=sizes, centers=constant + 9.0 * sizes**power)
+    found = QUANTITIES["collapse_by_valence"](SimpleNamespace(curve=lambda *_: curve))
+    assert list(found) == pytest.approx([power] * 3)
 
 
 def test_what_lies_outside_its_bounds_is_violated(tmp_path):
