@@ -181,18 +181,19 @@ def time_operations(case: Case, preset: Preset, timer: Timer, batched: bool) -> 
     """Operate on elements far apart, of a new mesh every round -> seconds per operation."""
     peer, operation, given = PEERS[case.structure], str(case.subject), _given(case)
     operate = (peer.batches if batched else peer.operations)[operation]
-    numbers = _apart(case).tolist()
+    element, numbers = operation.split("_")[1], _apart(case).tolist()
     places = np.random.default_rng(SEED).random((len(numbers), 3))
 
     def ready() -> tuple[Any, ...]:
         m = peer.build(*given)
+        handles = peer.handles(m, element, numbers)
         if peer.make_room:
             peer.make_room(m, len(numbers))
-        return m, numbers, places
+        return m, handles, places
 
-    m, *_ = ready()
+    m, handles, _ = ready()
     faces = peer.faces(m) + FACES_MORE[operation] * len(numbers)
-    done, seconds = _took(operate, m, numbers, places)
+    done, seconds = _took(operate, m, handles, places)
     left = peer.faces(m)
     _require(peer, (done, left) == (len(numbers), faces), f"{done} × {operation}, {left} faces")
     rounds = preset.affordable_rounds(seconds)

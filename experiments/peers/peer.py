@@ -63,7 +63,7 @@ class Peer:
     where these are neither numbers in ``ends`` nor pairs. ``single``: by query, what asks one
     handle, given the mesh; ``bulk``: what asks all at once. ``fresh``: the mesh without what it
     keeps of earlier answers.
-    ``operations``: by name and way, what operates at these numbers -> how many were done.
+    ``operations``: by name and way, what operates at these handles -> how many were done.
     ``make_room``: for so many operations, before these are timed.
     ``algorithms``: given the mesh, and for ``simplify`` a number of faces -> the outcome.
     ``looped``: what tells how long compiled loops take, see ``program.tell``, and ``loops`` the
@@ -86,8 +86,8 @@ class Peer:
     single: Mapping[str, Callable[[Mesh], Callable[[Any], Any]]] = field(default_factory=dict)
     bulk: Mapping[str, Callable[[Mesh], Rows]] = field(default_factory=dict)
     fresh: Callable[[Mesh], Mesh] = lambda m: m
-    operations: Mapping[str, Callable[[Mesh, list[int], Array], int]] = field(default_factory=dict)
-    batches: Mapping[str, Callable[[Mesh, list[int], Array], int]] = field(default_factory=dict)
+    operations: Mapping[str, Callable[[Mesh, Any, Array], int]] = field(default_factory=dict)
+    batches: Mapping[str, Callable[[Mesh, Any, Array], int]] = field(default_factory=dict)
     make_room: Callable[[Mesh, int], object] | None = None
     algorithms: Mapping[str, Callable[..., Any]] = field(default_factory=dict)
     looped: Callable[..., dict[str, Any]] | None = None

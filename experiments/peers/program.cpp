@@ -4,8 +4,8 @@
 // Arguments: the library, a file of points (float32, 3 each), one of triangles (int32, 3 each), a number of vertices to
 // ask at (0 for all), the rounds of queries, and those of building, operations and algorithms.
 // Prints a JSON object: "times": subject -> seconds each round, per element or as a whole, "all ..." of all elements in
-// order, their answers written one after the other; "answers": query -> what was
-// asked and answered of a few elements; "faces", "bytes", and "collapsed", whether the first edge may be, with the faces "left".
+// order; "answers": query -> what was asked and answered of a few elements; "faces", "bytes", and "collapsed", whether
+// the first edge may be, with the faces "left".
 #include <CGAL/Simple_cartesian.h>
 #include <CGAL/Surface_mesh.h>
 #include <CGAL/boost/graph/Euler_operations.h>

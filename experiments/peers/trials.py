@@ -66,7 +66,7 @@ def give(peer: Peer, bad: Bad) -> tuple[str, str]:
         if peer.collapse:
             done = peer.collapse(m)
         elif operate := peer.operations.get("collapse_edge"):
-            done = operate(m, [0], points[:1])
+            done = operate(m, peer.handles(m, "edge", [0]), points[:1])
         else:
             return "N/A", "collapses no edges"
         left = f"faces left: {peer.faces(m)}"

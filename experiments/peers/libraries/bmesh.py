@@ -42,29 +42,28 @@ def _listed(name: str) -> Callable[[Mesh], Callable[[Any], list[int]]]:
     return lambda m: lambda it: [other.index for other in read(it)]
 
 
-def _poke(m: Mesh, numbers: list[int], places: Array) -> int:
-    for face in _handles(m, "face", numbers):
+def _poke(m: Mesh, faces: list[Any], places: Array) -> int:
+    for face in faces:
         bmesh.ops.poke(m, faces=[face])
-    return len(numbers)
+    return len(faces)
 
 
-def _poke_all(m: Mesh, numbers: list[int], places: Array) -> int:
-    bmesh.ops.poke(m, faces=_handles(m, "face", numbers))
-    return len(numbers)
+def _poke_all(m: Mesh, faces: list[Any], places: Array) -> int:
+    bmesh.ops.poke(m, faces=faces)
+    return len(faces)
 
 
-def _collapse(m: Mesh, numbers: list[int], places: Array) -> int:
+def _collapse(m: Mesh, edges: list[Any], places: Array) -> int:
     done = 0
-    for edge in _handles(m, "edge", numbers):
+    for edge in edges:
         if edge.is_valid:
             bmesh.ops.collapse(m, edges=[edge])
             done += 1
     return done
 
 
-def _rotate(m: Mesh, numbers: list[int], places: Array) -> int:
-    turned = [bmesh.utils.edge_rotate(edge) for edge in _handles(m, "edge", numbers)]
-    return sum(it is not None for it in turned)
+def _rotate(m: Mesh, edges: list[Any], places: Array) -> int:
+    return sum(bmesh.utils.edge_rotate(edge) is not None for edge in edges)
 
 
 def _normals(m: Mesh) -> Array:

@@ -37,15 +37,15 @@ def _known(query: str) -> Callable[[Mesh], Callable[[Any], Any]]:
     return bind
 
 
-def _insert(m: Mesh, numbers: list[int], places: Array) -> int:
-    for face, place in zip(numbers, places.tolist(), strict=True):
+def _insert(m: Mesh, faces: list[int], places: Array) -> int:
+    for face, place in zip(faces, places.tolist(), strict=True):
         m.insert_vertex(face, xyz=place)
-    return len(numbers)
+    return len(faces)
 
 
-def _collapse(m: Mesh, numbers: list[int], places: Array) -> int:
+def _collapse(m: Mesh, edges: list[Any], places: Array) -> int:
     faces = m.number_of_faces()
-    for edge in _handles(m, "edge", numbers):
+    for edge in edges:
         if m.has_edge(edge):
             m.collapse_edge(edge)
     return int(faces - m.number_of_faces()) // 2

@@ -47,25 +47,25 @@ def _both(one: str, other: str) -> Callable[[Mesh], Callable[[Any], list[int]]]:
     return bind
 
 
-def _split(kind: str, m: Mesh, numbers: list[int], places: Array) -> int:
-    split = m.splitFace if kind == "face" else m.splitEdge
-    for handle, place in zip(_handles(m, kind, numbers), places.tolist(), strict=True):
-        split(handle, mr.Vector3f(*place))
-    return len(numbers)
+def _split(split: str, m: Mesh, handles: list[Any], places: Array) -> int:
+    split_one = getattr(m, split)
+    for handle, place in zip(handles, places.tolist(), strict=True):
+        split_one(handle, mr.Vector3f(*place))
+    return len(handles)
 
 
-def _flip(m: Mesh, numbers: list[int], places: Array) -> int:
+def _flip(m: Mesh, edges: list[Any], places: Array) -> int:
     topology = m.topology
-    for edge in _handles(m, "edge", numbers):
+    for edge in edges:
         topology.flipEdge(edge)
-    return len(numbers)
+    return len(edges)
 
 
-def _collapse(m: Mesh, numbers: list[int], places: Array) -> int:
+def _collapse(m: Mesh, edges: list[Any], places: Array) -> int:
     """It says whether it refused by what is left; what is told of lost edges is not needed."""
     topology = m.topology
     faces = topology.numValidFaces()
-    for edge in _handles(m, "edge", numbers):
+    for edge in edges:
         if not topology.isLoneEdge(edge):
             topology.collapseEdge(edge, lambda lost, kept: None)
     return int(faces - topology.numValidFaces()) // 2
@@ -108,8 +108,8 @@ PEER = Peer(
     },
     bulk={"face_vertices": lambda m: arrays.getNumpyFaces(m.topology)},
     operations={
-        "split_edge": partial(_split, "edge"),
-        "split_face": partial(_split, "face"),
+        "split_edge": partial(_split, "splitEdge"),
+        "split_face": partial(_split, "splitFace"),
         "collapse_edge": _collapse,
         "flip_edge": _flip,
     },

@@ -1,7 +1,6 @@
 """OpenMesh: half-edges in arrays; its Python package is compiled from source."""
 
 from collections.abc import Callable
-from functools import partial
 from operator import methodcaller
 from typing import Any
 
@@ -33,15 +32,15 @@ def _of_both_half_edges(read: str) -> Callable[[Mesh], Callable[[Any], list[int]
     return bind
 
 
-def _split(kind: str, m: Mesh, numbers: list[int], places: Array) -> int:
-    for handle, place in zip(_handles(m, kind, numbers), list(places), strict=True):
+def _split(m: Mesh, handles: list[Any], places: Array) -> int:
+    for handle, place in zip(handles, list(places), strict=True):
         m.split(handle, m.add_vertex(place))
-    return len(numbers)
+    return len(handles)
 
 
-def _collapse(m: Mesh, numbers: list[int], places: Array) -> int:
+def _collapse(m: Mesh, edges: list[Any], places: Array) -> int:
     done = 0
-    for edge in _handles(m, "edge", numbers):
+    for edge in edges:
         half_edge = m.halfedge_handle(edge, 0)
         if not m.is_deleted(edge) and m.is_collapse_ok(half_edge):
             m.collapse(half_edge)
@@ -49,9 +48,9 @@ def _collapse(m: Mesh, numbers: list[int], places: Array) -> int:
     return done
 
 
-def _flip(m: Mesh, numbers: list[int], places: Array) -> int:
+def _flip(m: Mesh, edges: list[Any], places: Array) -> int:
     done = 0
-    for edge in _handles(m, "edge", numbers):
+    for edge in edges:
         if m.is_flip_ok(edge):
             m.flip(edge)
             done += 1
@@ -101,8 +100,8 @@ PEER = Peer(
         if (source, target) != ("edge", "edges")
     },
     operations={
-        "split_edge": partial(_split, "edge"),
-        "split_face": partial(_split, "face"),
+        "split_edge": _split,
+        "split_face": _split,
         "collapse_edge": _collapse,
         "flip_edge": _flip,
     },

@@ -35,9 +35,8 @@ def _ask_all(query: str, m: Mesh) -> Rows:
     return answer.values, answer.offsets
 
 
-def _one_by_one(operation: str, m: Mesh, numbers: list[int], places: Array) -> int:
+def _one_by_one(operation: str, m: Mesh, handles: list[int], places: Array) -> int:
     operate, done = getattr(m, operation), 0
-    handles = _handles(m, operation.split("_")[1], numbers)
     rows: Any = zip(handles, *([places] if operation in SPLIT else []), strict=True)
     for row in rows:
         try:
@@ -51,10 +50,6 @@ def _one_by_one(operation: str, m: Mesh, numbers: list[int], places: Array) -> i
 def _make_room(m: Mesh, many: int) -> None:
     m.reserve(many)
     m.split_face(0, m.points[0])  # compiles, and has the operations ready
-
-
-def _batch(operation: str, m: Mesh, numbers: list[int], places: Array) -> int:
-    return _all_at_once(operation, m, _handles(m, operation.split("_")[1], numbers), places)
 
 
 def _all_at_once(operation: str, m: Mesh, handles: Any, places: Array) -> int:
@@ -134,7 +129,7 @@ PEER = Peer(
     single={query: attrgetter(query) for query in QUERIES},
     bulk={query: partial(_ask_all, query) for query in QUERIES},
     operations={it: partial(_one_by_one, it) for it in (*SPLIT, "collapse_edge", "flip_edge")},
-    batches={it: partial(_batch, it) for it in BATCHED},
+    batches={it: partial(_all_at_once, it) for it in BATCHED},
     make_room=_make_room,
     algorithms={
         "vertex_normals": algorithms.vertex_normals,
