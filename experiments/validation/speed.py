@@ -13,6 +13,7 @@ from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import replace
 from functools import partial
+from importlib.util import find_spec
 from itertools import chain, product
 from multiprocessing import get_context
 from pathlib import Path
@@ -170,9 +171,10 @@ def one_after_the_other(vertices: int) -> Rows:
             taken = _least(_ask_each, ask, handles)
             yield f"one {order}", vertices, ONE, name, taken / len(handles)
         if flip := peer.operations.get("flip_edge"):
-            fresh = (peer.build(*given) for _ in range(ROUNDS))
-            taken = min(_took(flip, m, edges, None)[1] for m in fresh)
-            yield "flip_edge", vertices, ONE, name, taken / len(edges)
+            fresh = [peer.build(*given) for _ in range(ROUNDS)]
+            named = [(m, peer.handles(m, "edge", edges)) for m in fresh]
+            flips = [_took(flip, *it, None) for it in named]
+            yield "flip_edge", vertices, ONE, name, min(taken / done for done, taken in flips)
 
 
 def _ask_each(ask: Callable[[Any], Any], handles: Sequence[Any]) -> None:
@@ -190,7 +192,7 @@ def ours(structure: str) -> Simplifier:
 
 
 def simplifiers() -> dict[str, Simplifier]:
-    """Ours, and those that are installed."""
+    """Ours and others, OpenMesh where it is installed."""
     openmesh, quadrics = PEERS["openmesh"], "meshing_decimation_quadric_edge_collapse"
     found = {name: ours(name) for name in STRUCTURES}
     if openmesh.version:
@@ -253,8 +255,19 @@ def load_speed(path: Path = RESULT) -> tuple[dict[str, Any], pd.DataFrame]:
     return kept, rows.pivot_table("value", keys, "program", aggfunc="min", sort=False)
 
 
+def require(output: Path) -> None:
+    """Say now what is missing, and not in a quarter of an hour."""
+    if not output.parent.is_dir():
+        raise typer.BadParameter(f"there is no folder {output.parent}; run it from the checkout")
+    if absent := meshlab.problem():
+        raise typer.BadParameter(absent)
+    if not find_spec("fast_simplification"):
+        raise typer.BadParameter("it takes fast-simplification: pip install 'hem-mesh[peers]'")
+
+
 def main(output: Path = RESULT, many: int = SIZES[1], few: int = SIZES[0]) -> None:
     """Measure all, keep it, and print the least of each."""
+    require(output)
     rows: list[tuple[Any, ...]] = []
     for cores in CLOCKS:
         os.environ[THREADS] = "1" if cores == ONE else str(os.cpu_count() or 1)

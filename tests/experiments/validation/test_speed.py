@@ -6,6 +6,7 @@ import json
 from pathlib import Path
 
 import pytest
+from typer import BadParameter
 
 from experiments.peers import OURS
 from experiments.report.peers import LIKE, beside_ours
@@ -48,6 +49,11 @@ def test_the_kept_run_has_every_work_of_each_of_our_structures() -> None:
     assert not ours[list(speed.STRUCTURES)].isna().any(axis=None)
     assert set(speed.COMPILED) | set(speed.BUILT) | set(speed.ASKED_SINGLY) <= {*found.columns}
     assert {size for _, size, _ in found.index} == {*speed.SIZES}
+
+
+def test_a_folder_that_is_not_there_is_told_before_anything_is_measured(tmp_path) -> None:
+    with pytest.raises(BadParameter, match="there is no folder"):
+        speed.main(tmp_path / "missing" / "speed.json")
 
 
 @exhaustive
