@@ -13,7 +13,7 @@ from hem.contract.following import Followers
 from hem.contract.queries import Queries
 from hem.contract.state import State
 from hem.edit import Edit
-from hem.engine import CHECK, DO, MODE, PERSIST
+from hem.engine import CHECK, DO, ENDED, FORGET, KEEP, MODE, PERSIST, TELL
 from hem.errors import MeshError, TopologyError
 
 
@@ -23,7 +23,7 @@ class Bound(NamedTuple):
     Views, as they are faster to write and read than arrays.
     """
 
-    perform: Callable[[int], int]
+    perform: Callable[[int], Array]
     address: Any
     task: memoryview
     args: memoryview
@@ -34,7 +34,7 @@ class Bound(NamedTuple):
 class Prepared(NamedTuple):
     """Operations that only wait to be run; ``results`` (n,): what became of each, < 0: refused."""
 
-    perform: Callable[[int], int]
+    perform: Callable[[int], Array]
     pinned: Any
     task: Array
     results: Array
@@ -50,7 +50,8 @@ class Prepared(NamedTuple):
 
     def run(self) -> None:
         """Do them all, but those that are refused; RuntimeError if not all could be tried."""
-        if self.perform(self.pinned.address) < len(self.results):
+        self.perform(self.pinned.address)
+        if self.task[ENDED] < len(self.results):
             raise RuntimeError("there is no more room; prepare fewer operations at a time")
 
 
@@ -66,7 +67,7 @@ class Operations:
 
     def method(self, operation: str) -> Callable[..., Edit]:
         """An operation as a function of its first handle, a point and two more handles."""
-        state, publish = self._state, self._followers.publish
+        publish = self._followers.publish
         subscribers, attributes = self._followers.subscribers, self._followers.attributes
         perform, address, _, args, position, result = self._bound(operation)
         names_a_vertex = self._operations[operation].names_a_vertex
@@ -89,14 +90,15 @@ class Operations:
                     position[0], position[1], position[2] = place
             except (TypeError, ValueError, OverflowError) as error:
                 raise arguments.refusal(operation, (a, b, c), point) from error
-            if not perform(address) and result[0] == NEEDS_ROOM:
-                self.make_way(operation)
-                perform(address)
+            touched = perform(address)
             vertex = result[0]
             if vertex < 0:
-                raise self.refusal(operation, vertex, args)
-            log = state.log
-            touched = log[1 : log[0] + 1].tolist()
+                if vertex == NEEDS_ROOM:
+                    self.make_way(operation)
+                    touched = perform(address)
+                    vertex = result[0]
+                if vertex < 0:
+                    raise self.refusal(operation, vertex, args)
             edit = Edit(operation, vertex if names_a_vertex else -1, touched)
             if subscribers or attributes:
                 publish(edit)
@@ -116,7 +118,8 @@ class Operations:
             raise arguments.refusal(operation, (edge,), None) from error
         try:
             task[MODE] = CHECK
-            if not perform(address) and result[0] == NEEDS_ROOM:
+            perform(address)
+            if result[0] == NEEDS_ROOM:
                 self.make_way(operation)
                 perform(address)
         finally:  # interrupted or not: or nothing would ever be done again
@@ -142,7 +145,7 @@ class Operations:
             return self._known[operation]
         self._queries.count_edges()
         state = self._state
-        task, args = np.array([DO, 0, 1, False]), np.full((1, 3), -1, np.int64)
+        task, args = np.array([DO, 0, 1, TELL, 0]), np.full((1, 3), -1, np.int64)
         points, result = np.zeros((1, 3), np.float32), np.zeros(1, np.int64)
         own = task, args, points, result, state.at
         pinned = state.pin(lambda its: (*own, its.out["edge"], np.asarray(its.log)))
@@ -231,12 +234,14 @@ class Operations:
             state.make_room(vertices * n, (faces + args.shape[1] - 3) * n)
         while True:
             entries = ENTRIES * (1 if forgets else n + 1) + 2 * len(state.log)
-            log, task = np.empty(entries, np.int64), np.array([mode, done, n, forgets])
+            log = np.empty(entries, np.int64)
+            task = np.array([mode, done, n, FORGET if forgets else KEEP, done])
             scratch = task, args, points, results, state.at, state.out["edge"], log
             pinned = state.pinned_now(*scratch)
             if lasting is not None:
                 perform = lasting.perform(pinned)
-            done = perform(pinned.address)
+            perform(pinned.address)
+            done = int(task[ENDED])
             logs.append(log[1 : log[0] + 1])
             if done == n or results[done] != NEEDS_ROOM:
                 return results, np.concatenate(logs)
@@ -290,7 +295,7 @@ class Operations:
         valence = int(state.records.counts[VALENCE])
         entries = n * (3 * valence + ENTRIES) + 2 * (valence + 2 * n + ENTRIES)
         results, log = np.zeros(n, np.int64), np.empty(entries, np.int64)
-        task = np.array([PERSIST, 0, n, False])
+        task = np.array([PERSIST, 0, n, KEEP, 0])
         scratch = task, rows, positions, results, state.at, state.out["edge"], log
         return Prepared(perform, state.pinned_now(*scratch), task, results)
 

@@ -39,7 +39,19 @@ Structures made of objects (``InterpretedUses``, ``Held``) run the same template
 from hem.engine.counting import CountingArray, Read, interpreted
 from hem.engine.objects import Held, InterpretedUses, counting
 from hem.engine.pinned import Pinned
-from hem.engine.templates import BEGIN, CHECK, DO, END, MODE, PERSIST, move
+from hem.engine.templates import (
+    BEGIN,
+    CHECK,
+    DO,
+    END,
+    ENDED,
+    FORGET,
+    KEEP,
+    MODE,
+    PERSIST,
+    TELL,
+    move,
+)
 from hem.engine.uses import Uses, kept, parts_of
 
 __all__ = [
@@ -47,8 +59,12 @@ __all__ = [
     "CHECK",
     "DO",
     "END",
+    "ENDED",
+    "FORGET",
+    "KEEP",
     "MODE",
     "PERSIST",
+    "TELL",
     "CountingArray",
     "Held",
     "InterpretedUses",

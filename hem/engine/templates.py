@@ -17,11 +17,14 @@ from hem.arrays import Array
 from hem.authoring import FACE_END, NEEDS_ROOM, SIDES, VALENCE, VERTEX_END, WIDTH, Kernel
 from hem.edit import FACE, PARENT
 
-MODE, BEGIN, END, FORGETS = range(4)
-"""The parts of a task. One that forgets logs each operation over the last, as nobody follows."""
+MODE, BEGIN, END, LOGS, ENDED = range(5)
+"""The parts of a task, the last of which it writes itself."""
 
 DO, CHECK, PERSIST = range(3)
 """What to do with operations: do them, only check them, or pass over those that are refused."""
+
+KEEP, TELL, FORGET = range(3)
+"""What to do with the log: keep it where it is, tell it, or log each operation over the last."""
 
 
 def unbound(*_: Any) -> Any:
@@ -34,6 +37,11 @@ def itself(arrays: Any) -> Any:
     return arrays
 
 
+def first(values: Any, count: int) -> Any:
+    """Stands where ``Uses`` puts ``fresh``: an array (count,) of the first of ``values``."""
+    return np.array(values[:count])
+
+
 _KERNEL: Kernel = unbound
 _RECORDS: Callable[..., Any] = unbound
 _LOAD: Callable[..., Any] = unbound
@@ -42,6 +50,7 @@ _EDGE_VERTICES: Kernel = unbound
 _COORDINATE: Kernel = unbound
 _BORROWED: Callable[[Any], Any] = itself
 _OWN: Callable[[Any], Any] = itself
+_FRESH: Callable[[Any, int], Any] = first
 
 
 def single(handle: int, address: int) -> Array:
@@ -54,7 +63,8 @@ def single(handle: int, address: int) -> Array:
     count = 0
     if WIDTH * (m.counts[VALENCE] + 1) <= len(out) and _EXISTS(m, handle):
         count = _KERNEL(m, handle, out)
-    return out[:count].copy()
+    found: Array = _FRESH(out, count)
+    return found
 
 
 def step(handle: int, address: int) -> int:
@@ -74,21 +84,25 @@ def walk(handles: Array, found: Array, *arrays: Array) -> int:
     return len(handles)
 
 
-def perform(address: int) -> int:
-    """One operation or many -> the end, or the place of the one that could not be done."""
+def perform(address: int) -> Array:
+    """One operation or many, up to the end or to one that could not be done -> the log, if told."""
     arrays = _LOAD(address)
     m = _RECORDS(*arrays[:-7])
     task, args, points, results, at, out, log = arrays[-7:]
-    mode, end, forgets, many = task[MODE], task[END], task[FORGETS], len(points) > 1
+    mode, logs, many = task[MODE], task[LOGS], len(points) > 1
     log[0] = 0
-    for i in range(task[BEGIN], end):
-        if forgets:
+    i = task[BEGIN]
+    while i < task[END]:
+        if logs == FORGET:
             log[0] = 0
         point = points[i if many else 0]
         results[i] = _KERNEL(m, args[i], point, at, out, log, mode == CHECK)
         if results[i] == NEEDS_ROOM or (results[i] < 0 and mode == DO):
-            return i
-    return end
+            break
+        i += 1
+    task[ENDED] = i
+    touched: Array = _FRESH(log[1:], log[0] if logs == TELL else 0)
+    return touched
 
 
 def batch(handles: Array, offsets: Array, values: Array, width: int, *arrays: Array) -> Array:

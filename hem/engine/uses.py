@@ -23,6 +23,7 @@ from hem.arrays import Array
 from hem.authoring import Field, Kernel, field_at
 from hem.engine import templates
 from hem.engine.counting import CountingArray, Read, TracedArray, interpreted, source_of
+from hem.engine.fresh import fresh
 from hem.engine.pinned import Columns, borrower, loader
 
 SHARED = ("edit.py", "authoring/**/*.py", "engine/*.py")
@@ -51,14 +52,14 @@ class Uses:
         """``walk(handles, found, *records) -> end``: a step from each, up to one that is none."""
         return self._compiled(templates.walk, _EXISTS=exists)
 
-    def perform(self, pinned: Any) -> Callable[[int], int]:
-        """``perform(pinned.address) -> end``, for an operation.
+    def perform(self, pinned: Any) -> Callable[[int], Array]:
+        """``perform(pinned.address) -> touched``, for an operation.
 
-        Pinned are the records and ``task`` (``MODE``, ``BEGIN``, ``END``, ``FORGETS``), ``args``
-        (n, 3), ``points`` (n or 1, 3), ``results`` (n,), ``at``, ``out`` and ``log`` (see
+        Pinned are the records and ``task`` (``MODE``, ``BEGIN``, ``END``, ``LOGS``, ``ENDED``),
+        ``args`` (n, 3), ``points`` (n or 1, 3), ``results`` (n,), ``at``, ``out`` and ``log`` (see
         ``hem.authoring.operations``). Ends before the element that needs more room; if the mode is
         ``DO``, also before one that is refused. Codes of refusals are among the results. ``CHECK``
-        changes nothing. The log begins anew.
+        changes nothing. The log begins anew; it is told if ``LOGS`` is ``TELL``.
         """
         return self._bound(templates.perform, pinned.kind)
 
@@ -166,7 +167,8 @@ class Uses:
         self, template: Kernel, variant: str, scope: Mapping[str, Any]
     ) -> Callable[..., Any]:
         borrowed = {"_BORROWED": borrower(), "_OWN": borrower(self._columns)}
-        scope = {"_KERNEL": self._kernel, "_RECORDS": self._records, **borrowed, **scope}
+        bound = {"_KERNEL": self._kernel, "_RECORDS": self._records, "_FRESH": fresh}
+        scope = {**bound, **borrowed, **scope}
         function = FunctionType(template.__code__, {**template.__globals__, **scope})
         names = template.__name__, self._records.__name__, source_of(self._kernel).__name__
         function.__qualname__ = "_".join(
