@@ -5,7 +5,7 @@ O(1), as nothing is moved. The rows that are not viewed yet cost addresses; the 
 memory when they are first written, in pages of 4 kB, or of 2 MB where NumPy asks for huge ones.
 Copies and pickles hold what is viewed.
 
-- When it is made there is room for a sixteenth as many rows again, and for 1 MB where that is more,
+- When it is made there is room for a quarter as many rows again, and for 1 MB where that is more,
   but for no more than as many again: building takes as long as without. Eight times as many made it
   up to a third slower from 100,000 vertices on, as malloc uses memory of that size only once.
 - Where that is too little it is moved once, to where it can become eight times as large as it has
@@ -23,7 +23,7 @@ from numpy.typing import DTypeLike
 
 from hem.arrays import Array
 
-SLACK, SLACK_BYTES = 16, 1 << 20
+SLACK, SLACK_BYTES = 4, 1 << 20
 """What there is room for behind a new array: of so many rows one more, or so many bytes."""
 
 ADDRESSES = 8 if os.name != "nt" else 1

@@ -23,13 +23,13 @@ def test_rows_keep_their_values_and_move_seldom(width, zeros):
     assert (array.reshape(len(array), -1)[:50_000] == np.arange(1, 50_001)[:, None]).all()
 
 
-def test_a_new_array_grows_by_a_sixteenth_in_its_place():
+def test_a_new_array_grows_by_a_quarter_in_its_place():
     for n in (1, 10, 10_000, 3_000_000):
         array = room.roomy(np.arange(n))
-        longer = room.longer(array, n, n + max(n // 16, 1))
+        longer = room.longer(array, n, n + max(n // 4, 1))
         assert longer.ctypes.data == array.ctypes.data
         assert np.array_equal(longer[:n], np.arange(n))
-        assert room.behind(array) >= 8 * (n // 16)
+        assert room.behind(array) >= 8 * (n // 4)
 
 
 def test_once_moved_it_grows_to_eight_times_its_size_in_its_place():
