@@ -15,8 +15,9 @@ that it is made of. That happens the first time each of these is asked for:
 - *single*, ``s.vertex_faces(7)``. Records and scratch are ``Pinned`` in memory as one image that
   compiled code reads by its address, so that a call hands over two integers instead of a dozen
   arrays (70 ns each). ``templates.single`` checks the handle, and that the scratch holds any answer
-  to come, and calls the kernel; the answer is copied out of the scratch. Where it is not so, or the
-  handle is no plain ``int``, the slower way of a batch of one says what is wrong.
+  to come, and calls the kernel; the answer is copied out of the scratch into a ``fresh`` array of
+  NumPy's own. Where it is not so, or the handle is no plain ``int``, the slower way of a batch of
+  one says what is wrong.
 - *batched*, ``s.vertex_faces(array)``. All handles are checked first. ``templates.batch`` then runs
   in slices, one per core, each with its own room for the answers, which grows where it is too
   small; the parts are put together as a ``Ragged``.

@@ -47,8 +47,8 @@ def _hand_over(kind: Any, made: Any, context: Any) -> Any:
 
 def _name_for_the_linker() -> None:
     """By name also machine code that was kept on disk finds what it needs of NumPy."""
-    pointer_of = ctypes.pythonapi.PyCapsule_GetPointer
-    pointer_of.restype, pointer_of.argtypes = ctypes.c_void_p, [ctypes.py_object, ctypes.c_char_p]
+    kind = ctypes.PYFUNCTYPE(ctypes.c_void_p, ctypes.py_object, ctypes.c_char_p)
+    pointer_of = kind(("PyCapsule_GetPointer", ctypes.pythonapi))
     capsule = np._core._multiarray_umath._ARRAY_API  # type: ignore[attr-defined]
     table = ctypes.cast(pointer_of(capsule, None), ctypes.POINTER(ctypes.c_void_p))
     for name, place in TABLE.items():

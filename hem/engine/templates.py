@@ -89,10 +89,10 @@ def perform(address: int) -> Array:
     arrays = _LOAD(address)
     m = _RECORDS(*arrays[:-7])
     task, args, points, results, at, out, log = arrays[-7:]
-    mode, logs, many = task[MODE], task[LOGS], len(points) > 1
+    mode, end, logs, many = task[MODE], task[END], task[LOGS], len(points) > 1
     log[0] = 0
     i = task[BEGIN]
-    while i < task[END]:
+    while i < end:
         if logs == FORGET:
             log[0] = 0
         point = points[i if many else 0]
