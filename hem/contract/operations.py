@@ -258,7 +258,7 @@ class Operations:
         if element != "edge" or code == Refusal.NO_EDGE:
             many = ELEMENTS.get(element, "half_edges")
             return TopologyError(f"cannot {operation}: {words}", **{many: [handle]})
-        ends = ask("edge_vertices", handle)
+        ends = self._queries.method("edge_vertices")(handle)
         elements = {"edges": ends[None, :]}
         if code == Refusal.NOT_AN_END:
             elements["vertices"] = np.array([args[1]])

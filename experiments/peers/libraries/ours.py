@@ -36,15 +36,15 @@ def _ask_all(query: str, m: Mesh) -> Rows:
 
 
 def _one_by_one(operation: str, m: Mesh, handles: list[int], places: Array) -> int:
-    operate, done = getattr(m, operation), 0
-    rows: Any = zip(handles, *([places] if operation in SPLIT else []), strict=True)
-    for row in rows:
+    edits = map(getattr(m, operation), handles, *([places] if operation in SPLIT else []))
+    done = 0
+    while True:
         try:
-            operate(*row)
-        except hem.TopologyError:
+            for _ in edits:
+                done += 1
+            return done
+        except hem.TopologyError:  # the next one is tried all the same
             continue
-        done += 1
-    return done
 
 
 def _make_room(m: Mesh, many: int) -> None:
