@@ -1,6 +1,7 @@
 """How an operation is done: checked, tried, given room where there is none, and logged."""
 
 from collections.abc import Callable
+from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -258,7 +259,7 @@ class Operations:
         if element != "edge" or code == Refusal.NO_EDGE:
             many = ELEMENTS.get(element, "half_edges")
             return TopologyError(f"cannot {operation}: {words}", **{many: [handle]})
-        ends = self._queries.method("edge_vertices")(handle)
+        ends = self._edge_vertices(handle)
         elements = {"edges": ends[None, :]}
         if code == Refusal.NOT_AN_END:
             elements["vertices"] = np.array([args[1]])
@@ -267,6 +268,10 @@ class Operations:
             beside = ask("face_vertices", ask("edge_faces", handle)).values
             elements["vertices"] = np.setdiff1d(np.intersect1d(a, b), beside)
         return TopologyError(f"cannot {operation}: {words}", **elements)
+
+    @cached_property
+    def _edge_vertices(self) -> Any:
+        return self._queries.method("edge_vertices")
 
     # For measuring -----------------------------------------------------------------------------
 

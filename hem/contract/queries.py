@@ -79,15 +79,9 @@ class Queries:
 
     def __init__(self, state: State) -> None:
         self._state, self._declared = state, state.declared
-        self._methods: dict[str, Any] = {}
 
     def method(self, name: str) -> Any:
-        """The ``QueryMethod`` of a query, made once."""
-        if name not in self._methods:
-            self._methods[name] = self._method(name)
-        return self._methods[name]
-
-    def _method(self, name: str) -> Any:
+        """The ``QueryMethod`` of a query, for whoever keeps it; kept here it would be a cycle."""
         state, (source, target) = self._state, QUERIES[name]
         pinned = state.pin(lambda its: (its.out[target],))
         single = self._declared.queries[name].single(pinned, self._declared.exists(source))
