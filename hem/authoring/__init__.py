@@ -64,6 +64,8 @@ from hem.authoring.operations import (
     log_element,
     log_faces,
     log_parts,
+    nothing,
+    prefetching,
     vertex_maker,
 )
 from hem.authoring.pairing import Pairing, number_edges, pair_half_edges, pair_polygons
@@ -147,11 +149,13 @@ __all__ = [
     "log_faces",
     "log_parts",
     "marked",
+    "nothing",
     "number_edges",
     "packed",
     "pair_half_edges",
     "pair_polygons",
     "part",
+    "prefetching",
     "require",
     "require_count",
     "require_edges",

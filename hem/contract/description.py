@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from hem.arrays import Array, Indices
-from hem.authoring import OPERATIONS, QUERIES, Kernel, Kernels
+from hem.authoring import OPERATIONS, QUERIES, Kernel, Kernels, prefetching
 from hem.authoring.marked import named_by_ends
 from hem.engine import Uses
 
@@ -125,6 +125,7 @@ class Declared:
         lacking = {it.kernel for it in self.steps.values()} - self.kernels.keys()
         if lacking:
             raise TypeError(f"{self._place} has no kernels of steps: {sorted(lacking)}")
+        self._prefetched = {"face", *(it.element.removeprefix("half_") for it in cls.fields)}
         stepping = ((name, self.kernels[it.kernel]) for name, it in self.steps.items())
         self.stepping = {name: self._derived(kernel) for name, kernel in stepping}
 
@@ -138,6 +139,12 @@ class Declared:
         found = np.empty(len(handles), np.int64)
         self.walks[name](handles, found, *records)
         return found
+
+    def perform(self, operation: str, pinned: Any) -> Callable[[int], Array]:
+        """See ``Uses.perform``. An edge is prefetched where its record leads to its faces."""
+        element = self.operations[operation].element
+        prefetch = prefetching(self.kernels, element if element in self._prefetched else "")
+        return self.operating[operation].perform(pinned, prefetch)
 
     def algorithm(self, make: Algorithm) -> tuple[Uses, frozenset[str]]:
         """What ``make`` makes for this structure, and of which kernels; asked once."""

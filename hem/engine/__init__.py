@@ -31,7 +31,9 @@ that it is made of. That happens the first time each of these is asked for:
 
 An operation runs likewise. ``templates.perform`` does one, or a whole row of them, until one is
 refused or there is no room; then Python makes room, pins the larger arrays at the same address and
-goes on. ``operation_work`` counts. An algorithm of one's own, made of a structure's queries and
+goes on. In a batch the next elements are read a few at a time before they are operated on, as reads
+alone wait for memory side by side; what is timed for the study does without, as a program does that
+edits here and there. ``operation_work`` counts. An algorithm of one's own, made of a structure's queries and
 operations, is compiled by ``templates.run``.
 
 Structures made of objects (``InterpretedUses``, ``Held``) run the same templates uncompiled.
@@ -41,6 +43,7 @@ from hem.engine.counting import CountingArray, Read, interpreted
 from hem.engine.objects import Held, InterpretedUses, counting
 from hem.engine.pinned import Pinned
 from hem.engine.templates import (
+    AHEAD,
     BEGIN,
     CHECK,
     DO,
@@ -56,6 +59,7 @@ from hem.engine.templates import (
 from hem.engine.uses import Uses, kept, parts_of
 
 __all__ = [
+    "AHEAD",
     "BEGIN",
     "CHECK",
     "DO",

@@ -46,6 +46,7 @@ def _things(address: Held) -> tuple[Any, ...]:
 class InterpretedUses(Uses):
     """The uses of one kernel over objects; the classes to count are those with ``__slots__``."""
 
+    ahead = 0
     counted_classes: Sequence[type[Any]] = ()
 
     def single(self, pinned: Held, exists: Kernel) -> Callable[[int, Any], Array]:

@@ -17,7 +17,7 @@ from hem.arrays import Array
 from hem.authoring import FACE_END, NEEDS_ROOM, SIDES, VALENCE, VERTEX_END, WIDTH, Kernel
 from hem.edit import FACE, PARENT
 
-MODE, BEGIN, END, LOGS, ENDED = range(5)
+MODE, BEGIN, END, LOGS, AHEAD, ENDED = range(6)
 """The parts of a task, the last of which it writes itself."""
 
 DO, CHECK, PERSIST = range(3)
@@ -46,6 +46,7 @@ _KERNEL: Kernel = unbound
 _RECORDS: Callable[..., Any] = unbound
 _LOAD: Callable[..., Any] = unbound
 _EXISTS: Kernel = unbound
+_PREFETCH: Kernel = unbound
 _EDGE_VERTICES: Kernel = unbound
 _COORDINATE: Kernel = unbound
 _BORROWED: Callable[[Any], Any] = itself
@@ -92,7 +93,12 @@ def perform(address: int) -> Array:
     mode, end, logs, many = task[MODE], task[END], task[LOGS], len(points) > 1
     log[0] = 0
     i = task[BEGIN]
+    begin = i if task[AHEAD] else end  # of the next to be prefetched
     while i < end:
+        if i == begin:
+            begin = min(end, i + task[AHEAD])
+            for j in range(i, begin):
+                results[j] = _PREFETCH(m, args[j, 0], at, out)
         if logs == FORGET:
             log[0] = 0
         point = points[i if many else 0]

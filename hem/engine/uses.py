@@ -20,7 +20,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from hem.arrays import Array
-from hem.authoring import Field, Kernel, field_at
+from hem.authoring import Field, Kernel, field_at, nothing
 from hem.engine import templates
 from hem.engine.counting import CountingArray, Read, TracedArray, interpreted, source_of
 from hem.engine.fresh import fresh
@@ -32,6 +32,9 @@ SHARED = ("edit.py", "authoring/**/*.py", "engine/*.py")
 
 class Uses:
     """The uses of one kernel on one kind of records: a ``NamedTuple`` of arrays of ``columns``."""
+
+    ahead = 16
+    """How many elements are worth prefetching at a time."""
 
     def __init__(self, kernel: Kernel, records: type[Any], columns: Columns) -> None:
         self._kernel, self._records, self._columns = kernel, records, columns
@@ -52,16 +55,17 @@ class Uses:
         """``walk(handles, found, *records) -> end``: a step from each, up to one that is none."""
         return self._compiled(templates.walk, _EXISTS=exists)
 
-    def perform(self, pinned: Any) -> Callable[[int], Array]:
+    def perform(self, pinned: Any, prefetch: Kernel = nothing) -> Callable[[int], Array]:
         """``perform(pinned.address) -> touched``, for an operation.
 
-        Pinned are the records and ``task`` (``MODE``, ``BEGIN``, ``END``, ``LOGS``, ``ENDED``),
-        ``args`` (n, 3), ``points`` (n or 1, 3), ``results`` (n,), ``at``, ``out`` and ``log`` (see
-        ``hem.authoring.operations``). Ends before the element that needs more room; if the mode is
-        ``DO``, also before one that is refused. Codes of refusals are among the results. ``CHECK``
-        changes nothing. The log begins anew; it is told if ``LOGS`` is ``TELL``.
+        Pinned are the records and ``task`` (``MODE``, ``BEGIN``, ``END``, ``LOGS``, ``AHEAD``,
+        ``ENDED``), ``args`` (n, 3), ``points`` (n or 1, 3), ``results`` (n,), ``at``, ``out`` and
+        ``log`` (see ``hem.authoring.operations``). Ends before the element that needs more room; if
+        the mode is ``DO``, also before one that is refused. Codes of refusals are among the
+        results. ``CHECK`` changes nothing. The log begins anew; it is told if ``LOGS`` is ``TELL``.
+        ``AHEAD`` is how many elements are prefetched at a time, or 0.
         """
-        return self._bound(templates.perform, pinned.kind)
+        return self._bound(templates.perform, pinned.kind, _PREFETCH=prefetch)
 
     def _bound(self, template: Kernel, kind: Any, **scope: Any) -> Callable[..., Any]:
         """``template`` for arrays pinned as this ``kind``."""

@@ -40,6 +40,7 @@ from hem.authoring.operations.parts import (
     log_parts,
     vertex_maker,
 )
+from hem.authoring.operations.prefetching import nothing, prefetching
 from hem.authoring.operations.rules import LEFT, RIGHT, A, B, C, D, live_vertex
 
 OPERATIONS: dict[str, Operation] = {
@@ -68,5 +69,7 @@ __all__ = [
     "log_element",
     "log_faces",
     "log_parts",
+    "nothing",
+    "prefetching",
     "vertex_maker",
 ]
