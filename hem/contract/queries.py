@@ -56,9 +56,11 @@ class Sweep(NamedTuple):
     def successive(self, begin: int, many: int) -> Sweep:
         """The same for so many handles from a place on; after the last comes the first again."""
         begin %= len(self.handles)
-        rest = self.handles[begin : begin + many]
-        again = np.resize(self.handles, many - len(rest))
-        return self._replace(handles=np.concatenate([rest, again]))
+        end = begin + many
+        around = self.handles[begin:end].copy()  # just written, it is in the cache
+        if len(around) < many:
+            around = np.tile(self.handles, -(-end // len(self.handles)))[begin:end]
+        return self._replace(handles=around)
 
     def run(self) -> int:
         """Ask in one compiled loop, keeping nothing -> a checksum.

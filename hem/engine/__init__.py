@@ -33,8 +33,8 @@ An operation runs likewise. ``templates.perform`` does one, or a whole row of th
 refused or there is no room; then Python makes room, pins the larger arrays at the same address and
 goes on. In a batch the next elements are read a few at a time before they are operated on, as reads
 alone wait for memory side by side; what is timed for the study does without, as a program does that
-edits here and there. ``operation_work`` counts. An algorithm of one's own, made of a structure's queries and
-operations, is compiled by ``templates.run``.
+edits here and there. ``operation_work`` counts. An algorithm of one's own, made of a structure's
+queries and operations, is compiled by ``templates.run``.
 
 Structures made of objects (``InterpretedUses``, ``Held``) run the same templates uncompiled.
 """
