@@ -81,8 +81,15 @@ def _file(config: pytest.Config, experiment: str, structure: str) -> CaseFile:
     return CaseFile(config.getoption("--run") or Path("no run"), experiment, structure)
 
 
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """pytest-benchmark's statistics are per query or edit, see ``UnitClock``."""
+def pytest_collection_modifyitems(items: list[Any]) -> None:
+    """pytest-benchmark's statistics are per query or edit, see ``UnitClock``.
+
+    What is only compiled comes structure by structure, each of which is then ready.
+    """
+    if items and items[0].config.getoption("--action") == COMPILE:
+        place = {name: i for i, name in enumerate(items[0].config.getoption("--structure"))}
+        cases = {item: item.callspec.params["case"] for item in items}
+        items.sort(key=lambda item: place.get(getattr(cases[item], "structure", ""), -1))
     for item in items:
         item.add_marker(pytest.mark.benchmark(timer=CLOCK))
 

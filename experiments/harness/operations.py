@@ -12,7 +12,7 @@ import structures
 from experiments.harness.calibration import latency_now
 from experiments.harness.cases import BASE, Case
 from experiments.harness.reference import copies, copies_of, small_case, typical
-from experiments.harness.timer import Timed, Timer, time_rounds
+from experiments.harness.timer import Timed, Timer, seconds_of, time_rounds
 from experiments.presets import HUBS, Preset
 from hem.arrays import Array
 from hem.contract import Structure
@@ -20,10 +20,9 @@ from hem.engine import END
 from hem.meshes import undirected_edges
 
 ON_EDGES = ("split_edge", "collapse_edge", "flip_edge")
-SECONDS_PER_SCANNED_FACE = 5e-9
-SECONDS_PER_REBUILT_FACE = 20e-9  # where all neighbors are found anew
 MOST_IMPOSSIBLE = 0.5  # part of the rounds that may be so, for the others to tell something
 MOST_ELEMENTS = 2_000
+FEWEST_ELEMENTS, TRIED_ELEMENTS = 4, 8  # where each takes a scan; tried to see how long it takes
 FEWEST_OPERATIONS = 500
 MOST_TURNS = 16
 """A sample is of at least so many operations, in up to so many turns on a mesh made new each time.
@@ -106,6 +105,12 @@ class OperationBatch:
         """Operate, and see that all could be tried; RuntimeError if not."""
         self._prepared.run()
 
+    def seconds_each(self) -> float:
+        """What one operation takes, about; they are compiled before."""
+        self.operate()
+        self.restore()
+        return seconds_of(self.operate) / self.operations
+
     def idle(self) -> float:
         """Call for no operation -> seconds."""
         self._prepared.task[END] = 0
@@ -171,9 +176,12 @@ def _operated(name: str, case: Case, faces: Array) -> list[list[int]]:
 def time_operations(case: Case, preset: Preset, timer: Timer) -> dict[str, Any]:
     """Time operations in compiled loops, and check what they make -> fields of a measurement."""
     s, faces = case.build(), operation_faces(case)
-    each = s.n_faces * (SECONDS_PER_REBUILT_FACE if s.rebuilds else SECONDS_PER_SCANNED_FACE)
-    if case.searches:
-        faces = faces[: max(4, int(preset.round_seconds / each))]
+    most = MOST_TURNS if s.compiled else 1  # interpreted ones last long enough
+    if case.searches:  # so does to scan a large mesh, even for a few
+        few = OperationBatch(s, str(case.subject), faces[:: -(-len(faces) // TRIED_ELEMENTS)])
+        lasting = preset.round_seconds / few.seconds_each()
+        faces = faces[: max(FEWEST_ELEMENTS, int(lasting))]
+        most = int(np.clip(lasting / len(faces), 1, most))
     batch = OperationBatch(s, str(case.subject), faces)
     batch.operate_all()
     validate_operated(batch.mesh)
@@ -181,9 +189,6 @@ def time_operations(case: Case, preset: Preset, timer: Timer) -> dict[str, Any]:
         mine, other = (_operated(name, case, faces[:20]) for name in (case.structure, BASE))
         if mine != other:
             raise AssertionError(f"{case.id} on {case.structure} gives another mesh than {BASE}")
-    most = MOST_TURNS if s.compiled else 1  # interpreted ones last long enough, and long rebuilds
-    if s.rebuilds and case.searches:
-        most = int(np.clip(preset.round_seconds / (each * batch.operations), 1, most))
     turns = int(np.clip(FEWEST_OPERATIONS // batch.operations, 1, most))
     latency = latency_now(sum(s.memory().values()))
     idle = batch.idle_seconds()

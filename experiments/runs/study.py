@@ -16,6 +16,7 @@ from dataclasses import asdict
 from datetime import UTC, datetime
 from functools import cache
 from importlib.metadata import version
+from itertools import count as counting
 from itertools import groupby
 from operator import attrgetter
 from pathlib import Path
@@ -162,30 +163,45 @@ def compile_and_count(
     by_structure = (list(it) for _, it in groupby(timed, attrgetter("structure")))
     groups = [it for it in by_structure if not _stamp(it).exists()]
     by_experiment = groupby((job for job in jobs if not job.timed), attrgetter("experiment"))
-    stop = Event()
-    with ThreadPoolExecutor(len(allowed_cores()) or os.cpu_count()) as pool:
-        running = {pool.submit(_compile, folder, it, stop): it[0].structure for it in groups}
-        counting = [pool.submit(count, list(it), stop) for _, it in by_experiment]
+    stop, numbers = Event(), counting(1)
+
+    def tell(structure: str) -> None:
+        compiled(structure, next(numbers), len(groups))
+
+    cores = len(allowed_cores()) or os.cpu_count() or 1
+    with ThreadPoolExecutor(cores) as pool:
+        shares = [groups[i::cores] for i in range(min(cores, len(groups)))]
+        running = [pool.submit(_compile, folder, it, tell, stop) for it in shares]
+        running += [pool.submit(count, list(it), stop) for _, it in by_experiment]
         try:
-            for done, future in enumerate(as_completed(running), 1):
+            for future in as_completed(running):
                 future.result()
-                compiled(running[future], done, len(groups))
-            for counter in as_completed(counting):
-                counter.result()
         except BaseException:
             stop.set()
             pool.shutdown(cancel_futures=True)
             raise
 
 
-def _compile(folder: Path, jobs: list[Job], stop: Event) -> None:
-    if jobs[0].structure == BASE:
-        jobs = jobs[::-1]  # the others ask for its operations, after queries of their own
-    with suppress(WorkerDiedError, OSError), closing(perform(folder, jobs, COMPILE)) as finished:
-        for _ in finished:
-            if stop.is_set():
-                return
-        _stamp(jobs).touch()
+def _compile(
+    folder: Path, groups: list[list[Job]], compiled: Callable[[str], None], stop: Event
+) -> None:
+    """Compile for one structure after another, in one process: they share what has no records."""
+    if groups[0][0].structure == BASE:
+        groups = [it[::-1] for it in groups]  # the others ask for its operations, after queries
+    waiting = {it[0].structure: it for it in groups}
+    while waiting and not stop.is_set():
+        jobs = [job for it in waiting.values() for job in it]
+        with suppress(WorkerDiedError, OSError), closing(perform(folder, jobs, COMPILE)) as done:
+            for structure, finished in groupby(done, attrgetter("structure")):
+                if any(stop.is_set() for _ in finished):
+                    return
+                stamp = _stamp(waiting.pop(structure))
+                with suppress(OSError):  # where the sources are, nobody may be allowed to write
+                    stamp.parent.mkdir(exist_ok=True)
+                    stamp.touch()
+                compiled(structure)
+        if waiting:  # what killed the process does not keep the others from being compiled
+            del waiting[next(iter(waiting))]
 
 
 def _stamp(jobs: list[Job]) -> Path:

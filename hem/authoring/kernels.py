@@ -42,8 +42,11 @@ def kernel(function: Kernel) -> Kernel:
 
 
 def part(function: Kernel) -> Kernel:
-    """Compile a part of an algorithm that is large and called from several places: not inlined."""
-    return _inside(njit(**WITHOUT_WRAPPERS)(function))
+    """Compile a part of an algorithm that is large and called from several places: not inlined.
+
+    That must be said, as Numba takes what is not said from whoever calls it first.
+    """
+    return _inside(njit(forceinline=False, **WITHOUT_WRAPPERS)(function))
 
 
 def _inside(compiled: Kernel) -> Kernel:

@@ -189,7 +189,7 @@ class Uses:
 def kept(function: Kernel) -> Kernel:
     """Compile a function that uses what stands in other files, and is kept on disk like a use."""
     function.__qualname__ += f"_{_digest([function], '')}"
-    compiled: Kernel = njit(cache=True)(function)
+    compiled: Kernel = njit(cache=True, forceinline=False)(function)
     return compiled
 
 
