@@ -31,7 +31,7 @@ from hem.authoring.kernels import (
     kernel,
 )
 from hem.authoring.operations.parts import Operation, has_scratch, log_element
-from hem.authoring.operations.rules import LEFT, RIGHT, A, B, C, D, surface_edge
+from hem.authoring.operations.rules import LEFT, RIGHT, A, B, C, D, holds_polygons, surface_edge
 from hem.authoring.refusals import ALLOWED, NEEDS_ROOM, Refusal
 from hem.authoring.walks import ring
 from hem.edit import CHANGED, FACE, REMOVED, VERTEX
@@ -44,7 +44,7 @@ def rule(k: Kernels) -> Kernel:
     """
     is_surface_edge = surface_edge(k["edge_exists"], k["diamond"])
     vertex_faces, is_alone, are_triangles = k["vertex_faces"], *_parts(k)
-    neighbors = ring(k["vertex_vertices"], vertex_faces)
+    neighbors, polygons = ring(k["vertex_vertices"], vertex_faces), holds_polygons(k)
 
     @kernel
     def may_collapse_edge(m: Any, e: int, at: Array, out: Array) -> tuple[int, int]:
@@ -71,7 +71,7 @@ def rule(k: Kernels) -> Kernel:
         alike = min(around_a, around_b) <= triangles + 1
         if not alike and count_shared(out, around_a, around_b) != triangles:
             return Refusal.COMMON_NEIGHBOR, 0
-        if m.counts[SIDES] > 3:
+        if polygons and m.counts[SIDES] > 3:
             around_a = vertex_faces(m, at[A], out)
             around_b = vertex_faces(m, at[B], out[around_a:])
             if count_shared(out, around_a, around_b) != others + 1:
@@ -83,21 +83,22 @@ def rule(k: Kernels) -> Kernel:
 
 def _parts(k: Kernels) -> tuple[Kernel, Kernel]:
     face_faces, face_left_of, sides = k["face_faces"], k["face_left_of"], k["sides"]
+    polygons = holds_polygons(k)
 
     @kernel
     def is_alone(m: Any, face: int, a: int, b: int, c: int, others: int, out: Array) -> bool:
         """Whether a triangle that runs a → b → c has no face beyond its edges at c."""
         if c < 0 or face_faces(m, face, out) != others:
             return False
-        # What lies beyond the edge from a to b may be a polygon that lies beyond another, too.
-        if m.counts[SIDES] == 3:
+        if not polygons or m.counts[SIDES] == 3:
             return True
+        # What lies beyond the edge from a to b may be a polygon that lies beyond another, too.
         return face_left_of(m, c, b) < 0 and face_left_of(m, a, c) < 0
 
     @kernel
     def are_triangles(m: Any, a: int, b: int, c: int, d: int) -> bool:
         """Whether the faces that run a → b and c → d are triangles."""
-        if m.counts[SIDES] == 3:
+        if not polygons or m.counts[SIDES] == 3:
             return True
         return sides(m, face_left_of(m, a, b)) == 3 and sides(m, face_left_of(m, c, d)) == 3
 

@@ -24,11 +24,17 @@ from typing import Any
 import numpy as np
 
 from hem.arrays import Array
-from hem.authoring.kernels import VERTEX_END, Kernel, kernel
+from hem.authoring.defaults import OF_ARRAYS
+from hem.authoring.kernels import VERTEX_END, Kernel, Kernels, kernel
 from hem.authoring.refusals import ALLOWED, Refusal
 
 A, B, LEFT, RIGHT, C, D = range(6)
 """Where the parts of a diamond stand in the array that ``diamond(m, e, at)`` fills."""
+
+
+def holds_polygons(k: Kernels) -> bool:
+    """Whether faces may have more than three sides: what is about those is not compiled if not."""
+    return k["sides"] is not OF_ARRAYS["sides"]
 
 
 @cache
