@@ -56,7 +56,7 @@ THESIS = tuple(name for name, it in NAMED.items() if it.thesis)
 __all__ = ["NAMED", "NAMES", "REGISTRY", "THESIS", "Structure", "build"]
 
 
-def build(name: str, mesh: Any, reference_bytes: int = 4) -> Structure:
+def build(name: str, mesh: Any, reference_bytes: int = 4, *, compiled: bool = True) -> Structure:
     """The structure called ``name``, holding ``mesh``.
 
     >>> s = structures.build("half_edge", hem.valence_mesh(6, 12))
@@ -65,7 +65,8 @@ def build(name: str, mesh: Any, reference_bytes: int = 4) -> Structure:
 
     ``mesh`` is a ``TriangleMesh``, a ``PolygonMesh``, or what else ``hem.as_mesh`` takes: a path,
     a pair of arrays, the mesh of another library, another structure. Positions are held as float32,
-    see ``TriangleMesh``. ``reference_bytes``: 4, or 8 as the thesis counts.
+    see ``TriangleMesh``. ``reference_bytes``: 4, or 8 as the thesis counts. ``compiled``: see
+    ``Structure.uncompiled``.
 
     Cost O(n_v + n_t). Raises NonManifoldError, with the elements, for what the structure cannot
     represent, MeshError for polygons where it holds triangles, for what is no mesh, and for a name
@@ -78,5 +79,5 @@ def build(name: str, mesh: Any, reference_bytes: int = 4) -> Structure:
     if not kind.holds_polygons:
         able = " or ".join(it for it in NAMES if REGISTRY[it].holds_polygons)
         given = require_triangles(given, f"build {able}")
-    built: Structure = kind.build(given, reference_bytes)
+    built: Structure = (kind if compiled else kind.uncompiled()).build(given, reference_bytes)
     return built

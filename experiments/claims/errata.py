@@ -148,7 +148,7 @@ GROWS = {
 def _there_and_back() -> Shown:
     reads = []
     for valence in (8, 64):
-        s = structures.build("winged_edge", hem.valence_mesh(valence, 256))
+        s = structures.build("winged_edge", hem.valence_mesh(valence, 256), compiled=False)
         hub = np.asarray(hem.valence_hubs(valence, 256))[:1]
         asked = ("edge_faces", s.vertex_edges(hub).values[:1]), ("vertex_edges", hub)
         reads.append([int(s.work(query, handles)[0]) for query, handles in asked])

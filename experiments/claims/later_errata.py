@@ -36,7 +36,7 @@ def height_kept() -> Shown:
         mesh, impact = _plate(across)
         m, scattered = printed(mesh), listings.breaking_points(impact, GLASS.circles)
         published.append(sum(listings.face_containing(m, it) is not None for it in scattered))
-        s = structures.build("half_edge", mesh)
+        s = structures.build("half_edge", mesh, compiled=False)
         outside = shatter(s, impact, GLASS, scale=1.0).counts["outside"]
         corrected.append(len(scattered) - outside)
     words = f"of {sum(GLASS.circles)} break points on a level plate, {{}} on an upright one"
@@ -59,7 +59,7 @@ def discs() -> Shown:
 
 def left_behind() -> Shown:
     """What stays of the face that is struck."""
-    m, s = printed(), structures.build("half_edge", OCTAHEDRON)
+    m, s = printed(), structures.build("half_edge", OCTAHEDRON, compiled=False)
     shards = listings.simulate_breaking(m, MIDDLE, ())
     points = [[h.origin.point for h in m.face_circulator(face)] for face in m.faces]
     rest = shatter(s, MIDDLE, replace(GLASS, circles=())).rest[0]
@@ -74,7 +74,10 @@ def left_behind() -> Shown:
 def runaway() -> Shown:
     """A vertex of many edges, walked around as quoted."""
     valence = 2_000
-    s = cast(Plankton, structures.build("plankton", hem.valence_mesh(valence, 2 * valence)))
+    s = cast(
+        Plankton,
+        structures.build("plankton", hem.valence_mesh(valence, 2 * valence), compiled=False),
+    )
     hub, steps, gives_up = int(hem.valence_hubs(valence, 2 * valence)[0]), 0, False
     try:
         for _ in listings.quoted_circulator(s, s.outgoing_half_edge(hub)):
@@ -87,7 +90,7 @@ def runaway() -> Shown:
 
 def needs_no_closed_mesh() -> Shown:
     """Vertices at a border, walked around."""
-    s = cast(Plankton, structures.build("plankton", hem.generate("grid", LARGER)))
+    s = cast(Plankton, structures.build("plankton", hem.generate("grid", LARGER), compiled=False))
     border = [v for v in s.vertices().tolist() if s.vertex_naked_edges(v)]
     answered = sum(s.valence(v) == len(s.vertex_vertices(v)) for v in border)
     return Shown(
@@ -99,7 +102,7 @@ def needs_no_closed_mesh() -> Shown:
 
 def guard_one_short() -> Shown:
     """The half-edge behind the last one, as the quoted guard and as ours take it."""
-    s = cast(Plankton, structures.build("plankton", OCTAHEDRON))
+    s = cast(Plankton, structures.build("plankton", OCTAHEDRON, compiled=False))
     count = len(s.half_edges())
     given = next(listings.quoted_circulator(s, count), None)
     refusal = attempt(lambda: s.next_half_edge(count))
@@ -155,7 +158,7 @@ def bytes_left_out() -> Shown:
 
 def closed_only() -> Shown:
     """Bytes of a mesh with a border, beside the sum of thesis 7 for its vertices and faces."""
-    s = structures.build("winged_edge", hem.generate("grid", LARGER), 8)
+    s = structures.build("winged_edge", hem.generate("grid", LARGER), 8, compiled=False)
     held, edges, n = sum(s.memory().values()), 1.5 * s.n_faces, s.n_vertices
     told = 20 * n + 8 * s.n_faces + 64 * edges
     return Shown(

@@ -25,12 +25,12 @@ from hem.contract.operations import Prepared
 from hem.contract.packed import MarkedEdges, PackedEdges, PackedStorage
 from hem.contract.queries import Sweep
 from hem.contract.removal import Remaining, remaining
-from hem.contract.storage import HANDLE_TYPES, Storage
+from hem.contract.storage import HANDLE_TYPES, Storage, UncompiledStorage
 from hem.contract.structure import Structure
 
 __all__ = [
     "ELEMENTS", "HANDLE_TYPES", "OPERATIONS", "QUERIES", "REFERENCE_TYPES", "STEPS", "Algorithm",
     "Attribute", "Claims", "Described", "Look", "MarkedEdges", "Navigable", "PackedEdges",
-    "PackedStorage", "Prepared", "Query", "Remaining", "Storage", "Structure", "Sweep", "arguments",
-    "remaining",
+    "PackedStorage", "Prepared", "Query", "Remaining", "Storage", "Structure", "Sweep",
+    "UncompiledStorage", "arguments", "remaining",
 ]  # fmt: skip

@@ -17,7 +17,7 @@ import numpy as np
 from hem.authoring import ELEMENTS, NEEDS_ROOM, OPERATIONS, QUERIES, Kernel, Kernels
 from hem.contract.description import Algorithm
 from hem.contract.structure import Structure
-from hem.engine import CountingArray, interpreted
+from hem.engine import CountingArray, interpreted, of_pythons_numbers
 from hem.errors import TopologyError
 from hem.whole_files import write_whole
 
@@ -219,14 +219,6 @@ def _run_counting(s: Structure, recording: Recording, make: Algorithm, plan: Any
     seen = (CountingArray(it) if isinstance(it, np.ndarray) else it for it in arrays)
     found[0] = recording
     try:
-        return int(algorithm(type(s.records)(*seen, counts), _of_pythons_numbers(plan)))
+        return int(algorithm(type(s.records)(*seen, counts), of_pythons_numbers(plan)))
     finally:
         found[0] = None
-
-
-def _of_pythons_numbers(plan: Any) -> Any:
-    """Integers of 1-D arrays become Python's own, which do not overflow and whose True is 1."""
-    if isinstance(plan, tuple):
-        return type(plan)(*map(_of_pythons_numbers, plan))
-    plain = isinstance(plan, np.ndarray) and plan.ndim == 1 and plan.dtype.kind in "iub"
-    return memoryview(plan) if plain and plan.flags.c_contiguous else plan

@@ -3,7 +3,7 @@
 import operator
 from abc import abstractmethod
 from collections.abc import Callable, Mapping
-from functools import cached_property
+from functools import cache, cached_property
 from typing import Any, ClassVar, NamedTuple, Self
 
 import numpy as np
@@ -20,7 +20,7 @@ from hem.contract.operations import Operations, Prepared
 from hem.contract.queries import Queries, QueryMethod, Sweep
 from hem.contract.removal import planned, removing
 from hem.contract.state import State
-from hem.contract.storage import Storage
+from hem.contract.storage import Storage, UncompiledStorage
 from hem.contract.surveying import Surveying, centroids
 from hem.edit import Edit, Remapping
 from hem.engine import Read
@@ -29,6 +29,14 @@ from hem.meshes import TriangleMesh
 
 NO_VERTEX = -2
 """Stands for a vertex to keep that is said to be -1, which means that none is said."""
+
+
+@cache
+def _uncompiled(kind: Any) -> Any:
+    if not kind.compiled:
+        return kind
+    storage = type("Uncompiled", (UncompiledStorage, kind.storage), {})
+    return type(kind.__name__, (kind,), {"storage": storage, "compiled": False})
 
 
 class Snapshot(NamedTuple):
@@ -151,6 +159,16 @@ class Structure(Described, Surveying, abstract=True):
         Cost O(n_v + n_t). Raises NonManifoldError, with the elements, for what the structure
         cannot represent.
         """
+
+    @classmethod
+    def uncompiled(cls) -> type[Self]:
+        """The structure with kernels that Python itself runs: at once, and a hundred times slower.
+
+        A debugger stops in them, and a mesh that is asked but a few times need not wait for the
+        compiler. Records, answers and refusals are the same.
+        """
+        kind: type[Self] = _uncompiled(cls)
+        return kind
 
     def validate(self) -> None:
         """Check every invariant on the raw arrays; no query is used. Cost O(n_v + n_t).

@@ -39,8 +39,8 @@ queries and operations, is compiled by ``templates.run``.
 Structures made of objects (``InterpretedUses``, ``Held``) run the same templates uncompiled.
 """
 
-from hem.engine.counting import CountingArray, Read, interpreted
-from hem.engine.objects import Held, InterpretedUses, counting
+from hem.engine.counting import CountingArray, Read, interpreted, of_pythons_numbers
+from hem.engine.objects import Held, InterpretedUses, UncompiledUses, counting
 from hem.engine.pinned import Pinned
 from hem.engine.templates import (
     AHEAD,
@@ -75,10 +75,12 @@ __all__ = [
     "InterpretedUses",
     "Pinned",
     "Read",
+    "UncompiledUses",
     "Uses",
     "counting",
     "interpreted",
     "kept",
     "move",
+    "of_pythons_numbers",
     "parts_of",
 ]

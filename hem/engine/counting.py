@@ -54,6 +54,15 @@ def _refuse(key: Any) -> None:
     raise IndexError(f"a kernel asks for {key}, which lies before the array")
 
 
+def of_pythons_numbers(plan: Any) -> Any:
+    """Integers of arrays become Python's own, which do not overflow and whose True is 1."""
+    if isinstance(plan, tuple):
+        return type(plan)(*map(of_pythons_numbers, plan))
+    if not isinstance(plan, np.ndarray) or plan.dtype.kind not in "iub":
+        return plan
+    return memoryview(plan) if plan.ndim == 1 and plan.flags.c_contiguous else CountingArray(plan)
+
+
 class Read(NamedTuple):
     """What a kernel reads at a time: a field by its name, of which record, and where in a wide one.
 
@@ -96,7 +105,12 @@ def interpreted(function: Kernel) -> Kernel:
 
 
 def _uncompiled(value: Any) -> Any:
-    return interpreted(value) if hasattr(value, "py_func") else value
+    return interpreted(value) if is_compiled(value) else value
+
+
+def is_compiled(value: Any) -> bool:
+    """Whether it is a function that Numba compiles."""
+    return hasattr(value, "py_func")
 
 
 def source_of(function: Any) -> Any:

@@ -1,7 +1,8 @@
-"""The uses of kernels over objects: the same templates, run by Python itself.
+"""The uses of kernels that Python itself runs: the same templates, uncompiled.
 
 A structure made of objects has nothing that could be compiled. Its kernels are plain functions of
-the same signatures, and the operations' drivers and rules run uncompiled around them.
+the same signatures, and the operations' drivers and rules run uncompiled around them. Kernels over
+arrays are run like this to be stepped through, or where they are asked too little to be compiled.
 """
 
 from __future__ import annotations
@@ -17,7 +18,13 @@ from numpy.typing import NDArray
 
 from hem.arrays import Array
 from hem.authoring import VALENCE, WIDTH, Kernel
-from hem.engine.counting import Read, interpreted
+from hem.engine.counting import (
+    CountingArray,
+    Read,
+    interpreted,
+    is_compiled,
+    of_pythons_numbers,
+)
 from hem.engine.uses import Uses
 
 
@@ -39,22 +46,39 @@ class Held:
         self.things = things
 
 
-def _things(address: Held) -> tuple[Any, ...]:
-    return address.things
+class UncompiledUses(Uses):
+    """The uses of one kernel over arrays, whose elements it is given as Python's numbers.
 
-
-class InterpretedUses(Uses):
-    """The uses of one kernel over objects; the classes to count are those with ``__slots__``."""
+    Those of an int32 array would overflow where compiled code takes them for int64.
+    """
 
     ahead = 0
-    counted_classes: Sequence[type[Any]] = ()
+
+    def _elements(self, arrays: tuple[Any, ...]) -> tuple[Any, ...]:
+        """Arrays of which the first are records; the last of these are the counts, all int64."""
+        count = len(self._records._fields) - 1
+        return (*map(CountingArray, arrays[:count]), *arrays[count:])
+
+    def _load(self, address: Held) -> tuple[Any, ...]:
+        return self._elements(address.things)
+
+    def _bound(self, template: Kernel, kind: Any, **scope: Any) -> Callable[..., Any]:
+        return self._compiled(template, _LOAD=self._load, **scope)
+
+    def _compile(
+        self, template: Kernel, variant: str, scope: Mapping[str, Any]
+    ) -> Callable[..., Any]:
+        own = {"_KERNEL": self._kernel, "_RECORDS": self._records, **scope}
+        own |= {"_OWN": self._elements, "_BORROWED": of_pythons_numbers}
+        bound = {name: interpreted(it) if is_compiled(it) else it for name, it in own.items()}
+        return FunctionType(template.__code__, {**template.__globals__, **bound})
 
     def single(self, pinned: Held, exists: Kernel) -> Callable[[int, Any], Array]:
         """As ``Uses.single``; each call has scratch of its own, as Python may switch threads."""
         answer, records = interpreted(self._kernel), self._records
 
         def ask(handle: int, held: Held) -> Array:
-            *things, shared = held.things
+            *things, shared = self._load(held)
             m, out = records(*things), memoryview(np.empty(len(shared), shared.format).data)
             enough = WIDTH * (m.counts[VALENCE] + 1) <= len(out)
             count = answer(m, handle, out) if enough and exists(m, handle) else 0
@@ -74,6 +98,12 @@ class InterpretedUses(Uses):
             return bound(a, b, Held(*things, *own))
 
         return find
+
+
+class InterpretedUses(UncompiledUses):
+    """The uses of one kernel over objects; the classes to count are those with ``__slots__``."""
+
+    counted_classes: Sequence[type[Any]] = ()
 
     def work(self, handles: Array, out: Any, records: tuple[Any, ...]) -> NDArray[np.int64]:
         """(n,) int64: how many fields of objects the kernel reads for each handle, exactly."""
@@ -105,14 +135,8 @@ class InterpretedUses(Uses):
             result = int(perform(m, args, point, [0] * 6, out, log, False))
         return result, counter[0]
 
-    def _bound(self, template: Kernel, kind: Any, **scope: Any) -> Callable[..., Any]:
-        return self._compiled(template, _LOAD=_things, **scope)
-
-    def _compile(
-        self, template: Kernel, variant: str, scope: Mapping[str, Any]
-    ) -> Callable[..., Any]:
-        scope = {"_KERNEL": interpreted(self._kernel), "_RECORDS": self._records, **scope}
-        return FunctionType(template.__code__, {**template.__globals__, **scope})
+    def _elements(self, arrays: tuple[Any, ...]) -> tuple[Any, ...]:
+        return arrays
 
 
 def _words(name: str) -> str:

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from hem import authoring
 from hem.arrays import Array, Bools
 from hem.authoring import EDGES, ENDLESS, FACES, VALENCE, VERTEX_END, VERTICES, counted
-from hem.contract import Storage
-from hem.engine import Held, InterpretedUses
+from hem.contract import UncompiledStorage
+from hem.engine import InterpretedUses
 from hem.meshes import TriangleMesh, require_manifold
 from structures.half_edge import HalfEdgeRecords
 from structures.objects import class_model
@@ -142,10 +142,10 @@ class ObjectUses(InterpretedUses):
     counted_classes = COUNTED
 
 
-class ObjectStorage(Storage):
+class ObjectStorage(UncompiledStorage):
     """Records in lists of objects; kept and copied as arrays."""
 
-    uses, pinned = ObjectUses, Held
+    uses = ObjectUses
 
     def alive(self, records: Any, element: str, rows: Any = slice(None)) -> Bools:
         """See ``Storage.alive``."""
@@ -153,10 +153,6 @@ class ObjectStorage(Storage):
         items = lists.get(element, records.half_edges).items
         chosen = items[rows] if isinstance(rows, slice) else [items[row] for row in rows.tolist()]
         return np.array([it is not None for it in chosen], np.bool_)
-
-    def row(self, n: int, dtype: Any) -> memoryview:
-        """See ``Storage.row``; faster than an array, and its numbers are Python's."""
-        return memoryview(np.zeros(n, dtype).data)
 
     def compacted(self, records: Any) -> tuple[ObjectRecords, dict[str, Array]]:
         """See ``Storage.compacted``; the lists stay the same."""

@@ -98,7 +98,9 @@ def edge_of(s: Structure, a: int = 0, b: int = 1) -> int:
 
 def plankton_walk() -> Figure:
     """The article's figures 6 to 9: faces added around vertex 2, and the half-edge that it has."""
-    s = Plankton.build(hem.PolygonMesh([(0, 0, 0), (1, 0, 0), (0.5, 0.5, 0)], [(0, 1, 2)]))
+    s = Plankton.uncompiled().build(
+        hem.PolygonMesh([(0, 0, 0), (1, 0, 0), (0.5, 0.5, 0)], [(0, 1, 2)])
+    )
     added = {(): None, (2, 1, 3): (1, 1, 0), (2, 3, 4): (0, 1, 0), (0, 2, 4): None}
     shown: list[Step] = []
     for corners, point in added.items():
@@ -131,14 +133,16 @@ def polygon_steps() -> Figure:
     }
     points = [(x, y, 0) for y in range(3) for x in range(3)]
     quads = [(0, 1, 4, 3), (1, 2, 5, 4), (3, 4, 7, 6), (4, 5, 8, 7)]
-    sheets = {title: Plankton.build(hem.PolygonMesh(points, quads)) for title in changes}
+    sheets = {
+        title: Plankton.uncompiled().build(hem.PolygonMesh(points, quads)) for title in changes
+    }
     shown: list[Step] = [(it, s, {"faces": changes[it](s)}) for it, s in sheets.items()]
     return steps(shown, labels=False)
 
 
 def split_edge_steps(structure: str) -> Figure:
     """Figure 5: an edge is split, inside and on the border."""
-    s = structures.build(structure, hexagon())
+    s = structures.build(structure, hexagon(), compiled=False)
     edge = edge_of(s)
     before = _step("An edge, and the faces at it", s, faces=s.edge_faces(edge), edges=[(0, 1)])
     inside = _step("split: 1 vertex, 3 edges,\n2 faces more", s, s.split_edge(edge, (0, 0.0, 0)))
@@ -150,12 +154,12 @@ def split_as_printed() -> Figure:
     """Erratum 3: a half-edge that moves into the new face and still names the old one."""
     from structures.as_printed import AsPrinted, render_arrays
 
-    whole = structures.build("half_edge", quad())
+    whole = structures.build("half_edge", quad(), compiled=False)
     m = AsPrinted.build(*render_arrays(quad().points, quad().triangles), whole=True)
     diagonal = next(h for h in m.half_edges if h.opposite is not None)
     m.split_half_edge(diagonal, (0.5, 0.5, 0.0))
     corners = [[h.origin.index for h in m.face_circulator(face)][::-1] for face in m.faces]
-    s = Plankton.build(hem.PolygonMesh([v.point for v in m.vertices], corners))
+    s = Plankton.uncompiled().build(hem.PolygonMesh([v.point for v in m.vertices], corners))
     wrong = [(h.origin.index, h.end.index) for h in m.half_edges if h.next.face is not h.face]
     before = _step("A quad", whole, edges=[(0, 2)])
     return steps([before, _step("split as published", s, arrows=wrong, vertices=[4])])
@@ -168,16 +172,16 @@ def quad_splits(structure: str) -> Figure:
         "a quarter up\nits left side": ((0, 3), (0.0, 0.25, 0)),
         "a unit left\nof that side": ((0, 3), (-1.0, 0.5, 0)),
     }
-    every = [_step("The quad", structures.build(structure, quad()), edges=[(0, 2)])]
+    every = [_step("The quad", structures.build(structure, quad(), compiled=False), edges=[(0, 2)])]
     for title, (edge, place) in places.items():
-        s = structures.build(structure, quad())
+        s = structures.build(structure, quad(), compiled=False)
         every.append(_step(title, s, s.split_edge(edge_of(s, *edge), place)))
     return steps(every)
 
 
 def collapse_steps(structure: str) -> Figure:
     """Figure 7: an edge collapses into one of its ends."""
-    s = structures.build(structure, hexagon())
+    s = structures.build(structure, hexagon(), compiled=False)
     edge, ends = edge_of(s), [(0, 1)]
     before = _step("Vertex 0 is to merge into 1", s, faces=s.vertex_faces(0), edges=ends)
     gone = _step("These two faces vanish", s, faces=s.edge_faces(edge), edges=ends)
@@ -187,7 +191,7 @@ def collapse_steps(structure: str) -> Figure:
 
 def split_face_steps(structure: str) -> Figure:
     """Figure 9: a face is split; and every face is."""
-    s = structures.build(structure, hexagon())
+    s = structures.build(structure, hexagon(), compiled=False)
     before, whole = _step("A face", s, faces=[0]), s.copy()
     every = _step("all faces split", whole, vertices=whole.split_all_faces())
     edit = s.split_face(0, s.points[s.face_vertices(0)].mean(axis=0))
@@ -197,7 +201,7 @@ def split_face_steps(structure: str) -> Figure:
 
 def flip_steps(structure: str) -> Figure:
     """An edge is turned within its two faces, and turned back."""
-    s = structures.build(structure, hexagon())
+    s = structures.build(structure, hexagon(), compiled=False)
     edge = edge_of(s)
     before = _step("An edge", s, faces=s.edge_faces(edge), edges=[(0, 1)])
     flipped = _step("flipped: no count changes", s, s.flip_edge(edge), edges=[(4, 8)])
