@@ -93,7 +93,8 @@ class Prices:
     @cached_property
     def measured(self) -> tuple[float, float]:
         """The fewest and the most faces that queries were measured at."""
-        sizes = self.run.cases.query("experiment == 'bench_queries'")["faces"].astype(float)
+        asked = self.run.cases.query("experiment == 'bench_queries' and valence.isna()")
+        sizes = asked["faces"].astype(float)
         return (sizes.min(), sizes.max()) if len(sizes) else (float("nan"), float("nan"))
 
     @cached_property

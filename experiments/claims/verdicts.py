@@ -29,7 +29,7 @@ from experiments.claims.cells import load_claims
 from experiments.claims.claim import BOUND, MEMORY, Claim, Exactly, Growth, JudgedClaim, Outcome
 from experiments.claims.curves import Curve, Curves, axes_of, curves
 from experiments.claims.quantities import judge_sentences, sentence_claims
-from experiments.harness import QUERIES_TABLE, Axis
+from experiments.harness import HUBS, QUERIES_TABLE, Axis
 from experiments.runs import Run, experiments
 from hem.complexity import Verdict, judge
 from hem.whole_files import write_whole
@@ -194,6 +194,7 @@ def judge_families(run: Run, judged: Sequence[JudgedClaim]) -> list[Family]:
     """All families whose queries were timed, the judged one first: its claims are ``judged``."""
     first = curves(run).judged_family
     timed = run.cases[run.cases["experiment"].isin(("bench_queries", "bench_latency"))]
+    timed = timed[timed["family"] != HUBS]
     queries = [it for it in judged if it.claim.table == QUERIES_TABLE.name]
     asked = [it for it in queries if it.claim.claims_something and it.claim.subject != MEMORY]
     largest = timed[timed["experiment"] == "bench_queries"].sort_values("vertices")

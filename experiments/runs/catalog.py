@@ -7,6 +7,9 @@ from pkgutil import iter_modules
 import experiments as package
 from experiments.harness import Experiment, Table
 
+PART_OF = {"bench_valence": "bench_queries"}
+"""Experiments that are a part of another by now: older runs have them, and commands may say so."""
+
 
 @cache
 def experiments() -> dict[str, Experiment]:

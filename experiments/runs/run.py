@@ -11,6 +11,7 @@ import numpy as np
 from experiments.harness import Measurement, disturbed
 from experiments.harness.steadiness import BUSY
 from experiments.runs import store
+from experiments.runs.catalog import PART_OF
 
 if TYPE_CHECKING:  # it takes half a second, and a study has no need of it
     import pandas as pd
@@ -55,7 +56,7 @@ def load(folder: Path | str) -> Run:
     rows = []
     for file in files.values():
         machine = "" if file.path.parent == folder else file.path.parent.name
-        who = file.experiment, file.structure, machine
+        who = PART_OF.get(file.experiment, file.experiment), file.structure, machine
         rows += [(*who, *vars(case).values()) for case in file.cases.values()]
     columns = ["experiment", "structure", "machine", *Measurement.__dataclass_fields__]
     cases = pd.DataFrame(rows, columns=columns)

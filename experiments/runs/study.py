@@ -28,6 +28,7 @@ from experiments import require_known
 from experiments.harness import BASE, PRESETS, own_mesh
 from experiments.harness.steadiness import REPEATS, allowed_cores
 from experiments.runs import store
+from experiments.runs.catalog import PART_OF
 from experiments.runs.catalog import experiments as catalog
 from experiments.runs.provenance import describe, now, source
 from experiments.runs.run import RUNS, load, noise
@@ -72,7 +73,9 @@ def begin(
     one's own to measure on, see ``hem.find_mesh``. Raises ValueError for a name that there is not,
     MeshError for a mesh that not every structure holds, CannotWriteError.
     """
-    short = [name.removeprefix("bench_") for name in experiments]
+    said = (f"bench_{name.removeprefix('bench_')}" for name in experiments)
+    asked = dict.fromkeys(PART_OF.get(name, name) for name in said)
+    short = [name.removeprefix("bench_") for name in asked]
     require_known("experiment", short, [name.removeprefix("bench_") for name in catalog()])
     others = [it for name in short for it in catalog()[f"bench_{name}"].structures]
     require_known("structure", structures, list(dict.fromkeys([*NAMED, *others])))

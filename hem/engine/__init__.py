@@ -36,7 +36,8 @@ alone wait for memory side by side; what is timed for the study does without, as
 edits here and there. ``operation_work`` counts. An algorithm of one's own, made of a structure's
 queries and operations, is compiled by ``templates.run``.
 
-Structures made of objects (``InterpretedUses``, ``Held``) run the same templates uncompiled.
+Structures made of objects (``InterpretedUses``, ``Held``) run the same templates uncompiled. So do
+those of arrays that are built to be stepped through (``UncompiledUses``).
 """
 
 from hem.engine.counting import CountingArray, Read, interpreted, of_pythons_numbers

@@ -60,7 +60,7 @@ def of_pythons_numbers(plan: Any) -> Any:
         return type(plan)(*map(of_pythons_numbers, plan))
     if not isinstance(plan, np.ndarray) or plan.dtype.kind not in "iub":
         return plan
-    return memoryview(plan) if plan.ndim == 1 and plan.flags.c_contiguous else CountingArray(plan)
+    return plan.data if plan.ndim == 1 and plan.flags.c_contiguous else CountingArray(plan)
 
 
 class Read(NamedTuple):

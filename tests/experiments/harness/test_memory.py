@@ -40,8 +40,8 @@ def test_what_a_case_takes_grows_with_its_mesh_and_with_its_structure():
 
     assert of("indexed", 10**6) > 9 * of("indexed", 10**5)
     assert of("half_edge_objects", 10**5) > of("half_edge", 10**5) > of("indexed", 10**5)
-    hubs = estimate(Case("indexed", "hubs", 2_000, valence=8), COPIES["bench_valence"])
-    assert hubs == estimate(Case("indexed", "torus", 1_000), COPIES["bench_valence"])
+    hubs = estimate(Case("indexed", "hubs", 2_000, valence=8), COPIES["bench_queries"])
+    assert hubs == estimate(Case("indexed", "torus", 1_000), COPIES["bench_queries"])
     assert estimate(Case("machine", "chase", 1 << 30), COPIES["bench_latency"]) > 1 << 30
 
 

@@ -86,7 +86,7 @@ def test_table_1_is_counted_from_its_cells(claims) -> None:
 
 def test_the_fastest_by_valence_is_the_least_of_the_medians(run) -> None:
     table = uses.by_valence(run)
-    cases = run.cases[run.cases["valence"].notna() & (run.cases["experiment"] == "bench_valence")]
+    cases = run.cases[run.cases["valence"].notna() & (run.cases["experiment"] == "bench_queries")]
     for (query, valence), row in table.iterrows():
         asked = cases[(cases["subject"] == query) & (cases["valence"] == valence)]
         medians = {

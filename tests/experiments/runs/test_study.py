@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 
+from experiments.harness import Measurement
 from experiments.harness.steadiness import REPEATS
 from experiments.runs import (
     CannotWriteError,
@@ -59,6 +60,14 @@ def test_a_study_of_some_experiments_on_some_structures_is_a_run(finished):
     assert run.meta["files"] == {"bench_memory.indexed.jsonl": len(run.cases)}
     assert run.meta["finished"] >= run.meta["started"]
     assert {"commit", "dirty", "machine", "versions", "preset"} <= set(run.meta)
+
+
+def test_an_experiment_that_became_part_of_another_keeps_its_name_and_its_older_results(tmp_path):
+    folder = begin(tmp_path, "valence", structures=["half_edge"])
+    assert {job.experiment for job in study.plan(folder)} == {"bench_queries"}
+    older = CaseFile(folder, "bench_valence", "half_edge")
+    older.add(Measurement("a", "time", samples=[1.0], valence=8))
+    assert load(folder).cases["experiment"].tolist() == ["bench_queries"]
 
 
 def test_names_that_there_are_not_are_told_with_those_there_are(tmp_path):
