@@ -13,7 +13,7 @@ from numba import njit
 from scipy.spatial import cKDTree
 
 from hem.arrays import Array, Floats
-from hem.authoring import part
+from hem.authoring import kernel
 
 CANDIDATES = 12
 """How many triangles are looked at for each point."""
@@ -36,7 +36,7 @@ class Surface:
         return found
 
 
-@part
+@kernel
 def _on_triangle(corners: Floats, p: Floats) -> Floats:
     a, b, c = corners[0], corners[1], corners[2]
     ab, ac = b - a, c - a

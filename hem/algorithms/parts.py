@@ -22,7 +22,6 @@ from hem.authoring import (
     is_point,
     kernel,
     live_vertex,
-    part,
     sums,
     visiting,
 )
@@ -72,7 +71,7 @@ def doing(operation: Kernel) -> Kernel:
     The result is that of the operation: at least 0, ``NEEDS_ROOM`` or a ``Refusal``.
     """
 
-    @part
+    @kernel
     def do(m: Any, first: int, second: int, work: Work) -> int:
         if work.left[0] == 0:
             return NEEDS_ROOM
@@ -375,7 +374,7 @@ def sides_of(triangles: Array, n: int) -> tuple[Array, Array, Array]:
     return edges[:count], faces[:count], alone.reshape(-1, 3)
 
 
-@part
+@kernel
 def put_in_order(values: Array, beside: Array) -> None:
     """Sort some values in place, ascending, and what stands beside them with them.
 

@@ -42,7 +42,6 @@ from hem.authoring.kernels import (
     distinct,
     kernel,
     kernels_of,
-    part,
     without,
 )
 from hem.authoring.operations import (
@@ -154,7 +153,6 @@ __all__ = [
     "packed",
     "pair_half_edges",
     "pair_polygons",
-    "part",
     "prefetching",
     "require",
     "require_count",

@@ -36,20 +36,10 @@ def kernel(function: Kernel) -> Kernel:
     """Compile a kernel or a part of one, inlined wherever it is called.
 
     A call would push some forty fields of the records' arrays, which takes longer than most
-    queries. Called from Python it is run by Python.
+    queries; an operation that is called takes up to four times as long. Called from Python it is
+    run by Python.
     """
-    return _inside(njit(forceinline=True, **WITHOUT_WRAPPERS)(function))
-
-
-def part(function: Kernel) -> Kernel:
-    """Compile a part of an algorithm that is large and called from several places: not inlined.
-
-    That must be said, as Numba takes what is not said from whoever calls it first.
-    """
-    return _inside(njit(forceinline=False, **WITHOUT_WRAPPERS)(function))
-
-
-def _inside(compiled: Kernel) -> Kernel:
+    compiled = njit(forceinline=True, **WITHOUT_WRAPPERS)(function)
     if isinstance(compiled, CPUDispatcher):  # and not Python, where Numba is told to leave it
         compiled.__class__ = _INSIDE
     return compiled

@@ -187,7 +187,10 @@ class Uses:
 
 
 def kept(function: Kernel) -> Kernel:
-    """Compile a function that uses what stands in other files, and is kept on disk like a use."""
+    """Compile a function that uses what stands in other files, and is kept on disk like a use.
+
+    It is not inlined, which must be said: Numba takes it from whoever calls first.
+    """
     function.__qualname__ += f"_{_digest([function], '')}"
     compiled: Kernel = njit(cache=True, forceinline=False)(function)
     return compiled

@@ -19,7 +19,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from hem.arrays import Array
-from hem.authoring import ALLOWED, FACE_END, FACES, NEEDS_ROOM, Kernel, kernel, part
+from hem.authoring import ALLOWED, FACE_END, FACES, NEEDS_ROOM, Kernel, kernel
 
 NOWHERE, ON_VERTEX, ON_EDGE, IN_FACE = -1, 0, 1, 2
 OUTCOMES = {
@@ -110,7 +110,7 @@ def measuring(k: Mapping[str, Kernel]) -> Kernel:
     """Make ``measure(m, f, p, plan)``: a face and a point above it -> whether it has an area."""
     face_vertices, coordinate = k["face_vertices"], k["coordinate"]
 
-    @part
+    @kernel
     def measure(m: Any, f: int, p: Array, plan: Plan) -> bool:
         out, corners = plan.out, plan.corners
         face_vertices(m, f, out)
@@ -145,7 +145,7 @@ def crossing(k: Mapping[str, Kernel]) -> Kernel:
     """Make ``across(m, f, a, b, out)``: the face beyond the side (a, b) of f, -1 at the border."""
     face_vertices, face_faces = k["face_vertices"], k["face_faces"]
 
-    @part
+    @kernel
     def across(m: Any, f: int, a: int, b: int, out: Array) -> int:
         count = face_faces(m, f, out)
         for i in range(count):
@@ -167,7 +167,7 @@ def walking(measure: Kernel, across: Kernel) -> Kernel:
     then nearest to the edge.
     """
 
-    @part
+    @kernel
     def walk(m: Any, f: int, p: Array, plan: Plan) -> int:
         most = CROSSINGS_PER_ROOT * int(np.sqrt(1.0 * m.counts[FACES])) + 64
         last = -1
@@ -201,7 +201,7 @@ def finding(k: Mapping[str, Kernel], operations: Mapping[str, Kernel]) -> Kernel
     walk = walking(measure, crossing(k))
     face_vertices, face_exists, coordinate = k["face_vertices"], k["face_exists"], k["coordinate"]
 
-    @part
+    @kernel
     def jump(m: Any, plan: Plan) -> int:
         """Of about n_t^(1/3) faces, evenly spread over the handles, the one nearest by a corner."""
         best, least = -1, np.inf
@@ -257,7 +257,7 @@ def landing(measure: Kernel, across: Kernel) -> Kernel:
     move along. -1: over the border, or into a face without area.
     """
 
-    @part
+    @kernel
     def land(m: Any, f: int, at: Array, toward: Array, far: float, plan: Plan) -> int:
         a, b = -1, -1
         most = CROSSINGS_PER_ROOT * int(np.sqrt(1.0 * m.counts[FACES])) + 64
@@ -314,7 +314,7 @@ def splitting(k: Mapping[str, Kernel], operations: Mapping[str, Kernel], measure
     split_face, split_edge = operations["split_face"], operations["split_edge"]
     edge_between = edge_finding(k)
 
-    @part
+    @kernel
     def split(m: Any, f: int, p: Array, plan: Plan) -> int:
         tolerance, point, args = plan.tolerance[0], plan.point, plan.args
         if not measure(m, f, p, plan):
