@@ -36,7 +36,12 @@ def _uncompiled(kind: Any) -> Any:
     if not kind.compiled:
         return kind
     storage = type("Uncompiled", (UncompiledStorage, kind.storage), {})
-    return type(kind.__name__, (kind,), {"storage": storage, "compiled": False})
+    own = {"storage": storage, "compiled": False, "_like": kind}
+    return type(kind.__name__, (kind,), own)
+
+
+def _uncompiled_of(kind: Any, saved: "Snapshot") -> Any:
+    return kind.uncompiled()._of(saved)
 
 
 class Snapshot(NamedTuple):
@@ -120,6 +125,8 @@ class Structure(Described, Surveying, abstract=True):
 
     compiled: ClassVar[bool] = True
     """Whether kernels are compiled; what is not is slow, and measured on smaller meshes."""
+
+    _like: ClassVar[Any] = None  # of what is not compiled: the class that is
 
     searches: ClassVar[bool] = False
     """Whether nothing is recorded of neighbors, so that they are searched for in the whole mesh."""
@@ -526,6 +533,8 @@ class Structure(Described, Surveying, abstract=True):
 
     def __reduce__(self) -> tuple[Any, ...]:
         """How ``copy.copy``, ``copy.deepcopy`` and ``pickle`` make a copy: as ``copy`` does."""
+        if self._like is not None:  # whose class has no place where another process finds it
+            return _uncompiled_of, (self._like, self._saved())
         return self._of, (self._saved(),)
 
     @classmethod

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 import sys
 from pathlib import Path
 
@@ -58,7 +59,8 @@ def test_queries_operations_and_refusals_are_those_of_compiled_code(name, mesh):
     require_alike(one, other)
     assert edit(one) == edit(other)
     require_alike(one, other)
-    copies = one.copy(), other.copy()
+    copies = one.copy(), pickle.loads(pickle.dumps(other))
+    assert not copies[1].compiled
     for s in (*copies, one, other):
         s.split_all_faces()
         s.compact()
