@@ -46,7 +46,7 @@ def content(storage: Path) -> tuple[Path, dict]:
 
 def test_what_is_saved_is_per_query_and_says_what_it_is_of(saved):
     _, found = content(saved)
-    assert len(found["benchmarks"]) == 4
+    assert len(found["benchmarks"]) == 6  # of two sizes, each in two orders; of two valences
     assert found["commit_info"]["id"]
     assert found["machine_info"]["cpu"]
     for benchmark in found["benchmarks"]:

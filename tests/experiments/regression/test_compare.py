@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from experiments.harness import Axis
 from experiments.regression import (
     COUNTERS,
     Change,
@@ -221,6 +222,7 @@ def curve(measured: Measured, count: int | None = None):
     cases = measured.run.cases
     rows = cases["experiment"].eq("bench_queries") & cases["structure"].eq("half_edge")
     rows &= cases["subject"].eq("face_edges") & cases["order"].eq("random")
+    rows &= cases["valence"].isna()
     largest = cases[rows].sort_values("faces").index
     return cases.index.isin(largest if count is None else largest[len(largest) - count :])
 
@@ -232,6 +234,7 @@ def of_curve(before: Measured, after: Measured) -> Finding:
         if finding.kind == Kind.TIME
         and finding.case[:3] == ("bench_queries", "half_edge", "face_edges")
         and finding.case.order == "random"
+        and finding.axis == Axis.TIME_FACES.symbol
     ]
     return found
 
