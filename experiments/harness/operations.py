@@ -178,7 +178,7 @@ def time_operations(case: Case, preset: Preset, timer: Timer) -> dict[str, Any]:
     s, faces = case.build(), operation_faces(case)
     most = MOST_TURNS if s.compiled else 1  # interpreted ones last long enough
     if case.searches:  # so does to scan a large mesh, even for a few
-        few = OperationBatch(s, str(case.subject), faces[:: -(-len(faces) // TRIED_ELEMENTS)])
+        few = OperationBatch(s, str(case.subject), faces[:: max(1, len(faces) // TRIED_ELEMENTS)])
         lasting = preset.round_seconds / few.seconds_each()
         faces = faces[: max(FEWEST_ELEMENTS, int(lasting))]
         most = int(np.clip(lasting / len(faces), 1, most))
