@@ -14,15 +14,17 @@ from numpy.typing import ArrayLike
 
 from hem.complexity import selection
 from hem.complexity.estimates import Costs, resample, slope, summarize
-from hem.complexity.models import NAMES, STEEP, predict
-from hem.complexity.notation import Order, canonical, parse
+from hem.complexity.models import NAMES, STEEP, has_lower_terms, predict
+from hem.complexity.notation import Array, Order, canonical, parse
 from hem.complexity.selection import LATENCY_ERROR, MOST_WOBBLE, Comparison, compare_models
 
 Outcome = Literal["consistent", "violated", "undetermined"]
 Bound = Literal["tight", "upper"]
+COEFFICIENTS = "fixed", "factor", "lower", "rise"
 
 MIN_SIZES = 4
 MIN_RANGE = 4.0
+MIN_GROWTH = 64.0  # of costs over sizes of a shorter range: what is exponential has no longer one
 MAX_SCATTER = 0.4  # relative scatter of samples beyond which nothing is concluded
 MAX_ERROR = 0.12  # relative error of a size's cost beyond which the size is left out …
 MOST_LEFT_OUT = 0.25  # … if so few of the sizes are like that; otherwise nothing is concluded
@@ -38,8 +40,9 @@ class Verdict:
     slope, slope_low, slope_high: log-log slope with the memory's part, as `best` sees it, taken
     out, and its bootstrap interval; raw_slope: of the costs as measured. margin: evidence of `best`
     against `runner_up`, negative where `best` is preferred for being simpler. noise: relative
-    scatter of samples. coefficients: per model `fixed`, `factor` and `rise` of
-    fixed·r + factor·f(n)·r, where r rises with the memory's latency from 1 to `rise`. errors: per
+    scatter of samples. coefficients: per model `fixed`, `factor`, `lower` and `rise` of
+    fixed·r + factor·f(n)·(1 + lower/n)·r, where r rises with the memory's latency from 1 to `rise`,
+    and `lower` is 0 unless lower-order terms were allowed; `predicted` are its costs. errors: per
     model, the root mean square of the relative residuals. answer: what the costs say by themselves:
     one class, two that cannot be told apart ("O(n) or O(n log n)"), a power law that fits where no
     class does ("O(n^1.62)"), or nothing.
@@ -66,12 +69,17 @@ class Verdict:
         slope = f"slope {self.slope:.2f} ({self.slope_low:.2f} … {self.slope_high:.2f})"
         return f"<Verdict on {self.expected}: {self.outcome}, {slope}. {self.reason}>"
 
+    def predicted(self, name: str, sizes: Array) -> Array:
+        """(k,) what a model that was fitted costs at the sizes, with memory at its fastest."""
+        it = self.coefficients[name]
+        return it["fixed"] + it["factor"] * parse(name)(sizes) * (1 + it["lower"] / sizes)
+
 
 def judge(
     sizes: ArrayLike, samples: Sequence[ArrayLike], expected: str = "O(1)",
     latency: ArrayLike | None = None, *, exact: bool = False,
     latency_error: float = LATENCY_ERROR, unseen: float = False, bound: Bound = "tight",
-    reference: ArrayLike | None = None,
+    reference: ArrayLike | None = None, lower: ArrayLike = (),
     confidence: float = 0.95, resamples: int = 200, seed: int = 0, variable: str | None = None,
 ) -> Verdict:  # fmt: skip
     """Judge whether costs measured at several sizes grow as claimed.
@@ -91,6 +99,8 @@ def judge(
     unseen: beside a latency, too, what such a slowdown could explain violates nothing; for costs
     of what was found in the caches in another state than what the latency was measured on. A number
     above 1 says how high: then it also confirms nothing that such a slowdown explains better.
+    lower: coefficients l that a class f from O(n) on may come with, as f(n)·(1 + l/n), each above
+    minus the smallest size: the lower-order terms that a cost may have.
     bound: "tight" takes the claim for the class itself, as a table of growth classes means it;
     "upper" for a bound, which slower growth keeps too.
 
@@ -118,9 +128,11 @@ def judge(
         measured = measured.only(np.flatnonzero(~noisy))
     costs, memory = selection.account_for_memory(measured, exact, latency_error, unseen, entire)
     names = tuple(sorted({*NAMES, claimed}, key=parse))
-    models, half = compare_models(costs, memory, names), len(costs.sizes) // 2
-    if slope(costs.sizes[half:], models.steady(costs.cost)[half:]) > STEEPER:
-        models = compare_models(costs, memory, sorted({*names, *STEEP}, key=parse))
+    terms, half = np.ravel(np.asarray(lower, float)), len(costs.sizes) // 2
+    models = compare_models(costs, memory, names, terms)
+    asked = costs.cost if terms.size else models.steady(costs.cost)  # the memory's part may be more
+    if slope(costs.sizes[half:], asked[half:]) > STEEPER:
+        models = compare_models(costs, memory, sorted({*names, *STEEP}, key=parse), terms)
     names, claim = models.names, models.names.index(claimed)
     outcome, reason = _decide(measured, models, claim, bound)
     if not exact and (size := _hinge(outcome, measured, models, claim, bound)):
@@ -131,8 +143,10 @@ def judge(
     tails = [(1 - confidence) / 2, (1 + confidence) / 2]
     low, high = np.quantile(slope(costs.sizes, models.steady(replicates)), tails)
     rise = models.design.slowdowns.scaling[models.fit.slowdown].max(axis=1)
-    terms = np.stack([models.fit.intercept, models.fit.factor, rise], axis=1).tolist()
-    coefficients = [dict(zip(("fixed", "factor", "rise"), row, strict=True)) for row in terms]
+    with_lower = [has_lower_terms(parse(name)) for name in names]
+    beside = np.where(with_lower, models.design.lower[models.fit.lower], 0)
+    terms = np.stack([models.fit.intercept, models.fit.factor, beside, rise], axis=1).tolist()
+    coefficients = [dict(zip(COEFFICIENTS, row, strict=True)) for row in terms]
     return Verdict(
         outcome, claimed, bound, names[models.best], names[models.runner_up], models.margin,
         slope=float(slope(costs.sizes, models.steady(costs.cost))),
@@ -217,7 +231,7 @@ def _doubt(costs: Costs) -> str:
     distinct, reach = len(np.unique(costs.sizes)), costs.sizes[-1] / costs.sizes[0]
     if distinct < MIN_SIZES:
         return f"Too few sizes: {distinct}, where {MIN_SIZES} are needed."
-    if reach < MIN_RANGE:
+    if reach < MIN_RANGE and costs.cost[-1] < MIN_GROWTH * costs.cost[0]:
         return f"Too short a range: the largest size is {reach:.1f} times the smallest."
     if costs.scatter > MAX_SCATTER or costs.error.max() > MAX_ERROR:
         return f"Too noisy: the samples of a size scatter by {costs.scatter:.0%}."

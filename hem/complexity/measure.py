@@ -1,9 +1,10 @@
 """Measure what a function costs by the size of its input, so that it can be judged.
 
 What spoils such measurements is kept out: the first calls do not count, the timer's own cost is
-taken off, and rounds are interleaved over the sizes. Where an input and its answer fit into the
-caches they are there when they are timed: those sizes tell of work alone. Larger ones wait for
-memory, and are held to what those tell.
+taken off, and rounds are interleaved over the sizes. Inputs are made anew for each round where
+there is time for it: of what it saw before, a processor knows by heart how it branches.
+Where an input and its answer fit into the caches they are there when they are timed: those sizes
+tell of work alone. Larger ones wait for memory, and are held to what those tell.
 """
 
 import gc
@@ -34,10 +35,12 @@ STEP, FAR, WIDER = 1.3, 64, 1.7
 COSTLIER = 1_000_000  # a call of the largest size than one of the smallest, at most …
 REACH = 8  # … where the largest size remains so many times the smallest
 BATCH = 1 << 18  # bytes of the inputs of a sample, where one takes less: they fit into caches
-MOST_CALLS = 4_096  # in a pass
-PASS = 2e-4  # seconds of one at least …
-LONGER = 5  # … and so many times that at most, where a call takes less
-PASSES = 2  # of which the quickest counts, as the first finds its inputs out of the caches
+MOST_CALLS = 4_096  # inputs of a sample
+SAMPLE = 1e-4  # seconds of one at least …
+LONGER = 10  # … and so many times that at most, where a call takes less
+FREED, SMALL, ARENA = (1 << 25) - (1 << 16), 480, 1 << 20
+"""Bytes: of the largest block whose freeing raises what the C library keeps to itself; of an object
+that Python itself finds room for, and of what it asks for at once to do so."""
 
 
 def measure(
@@ -63,7 +66,7 @@ def measure(
     if sizes is not None and (not given.size or np.any(given < 1) or np.any(given % 1)):
         raise ValueError("sizes must be whole numbers, each at least 1")
     changed = _changes(f, make_input(int(given[0]) if given.size else TRIED))  # warms up, too
-    calls = _Calls(f, make_input, changed if fresh is None else fresh, clock)
+    calls = _Calls(f, make_input, changed if fresh is None else fresh, clock, _keep_memory())
     turn = budget / (rounds + 1)
     chosen = [int(n) for n in given] or calls.choose_sizes(turn, most)
     found = calls.measured(chosen, turn, rounds, amortized)
@@ -78,23 +81,24 @@ class _Plan(NamedTuple):
 
     n: int
     calls: int
-    again: int  # times that each input is used in a pass
-    passes: int
+    again: int  # times that each input is used in a sample
     pool: list[Any]  # inputs for all rounds; where there are none, each makes its own
 
 
 class _Calls(NamedTuple):
-    """Calls of a function; ``fresh``: each gets an input of its own."""
+    """Calls of a function; ``fresh``: each gets an input of its own; ``held``: keeps memory."""
 
     f: Function
     make: MakeInput
     fresh: bool
     clock: Clock
+    held: list[bytes]
 
     def measured(self, sizes: Sequence[int], turn: float, rounds: int, amortized: bool) -> Measured:
         """What a call takes by size, or one of n operations; turn: seconds of a round."""
         working_sets, n = self.working_sets(sizes, turn), np.array(sizes, float)
-        plans = [self.plan(*row) for row in zip(sizes, working_sets, strict=True)]
+        share = turn / len(sizes) / 2
+        plans = [self.plan(*row, share) for row in zip(sizes, working_sets, strict=True)]
         memory = memory_times(working_sets)
         samples = np.array(self.interleaved(plans, rounds)) / (n[:, None] if amortized else 1)
         return Measured(n, list(samples), working_sets, memory)
@@ -114,13 +118,10 @@ class _Calls(NamedTuple):
         return [row[1:] for row in samples]
 
     def sample(self, plan: _Plan) -> float:
-        """Seconds per call, of the quickest pass."""
-        pool = plan.pool or [self.make(plan.n) for _ in range(plan.calls)]
-        passes, inputs = [], pool * plan.again
-        for _ in range(plan.passes):
-            own = min(self.seconds(inputs, idle=True) for _ in range(2))
-            passes.append(max(self.seconds(inputs) - own, 1e-9))
-        return min(passes) / len(inputs)
+        """Seconds per call."""
+        inputs = (plan.pool or [self.make(plan.n) for _ in range(plan.calls)]) * plan.again
+        own = min(self.seconds(inputs, idle=True) for _ in range(2))
+        return max(self.seconds(inputs) - own, 1e-9) / len(inputs)
 
     def seconds(self, inputs: Sequence[Any], idle: bool = False) -> float:
         """What calls take together, the freeing of answers included; or idle: timer and loop."""
@@ -146,16 +147,17 @@ class _Calls(NamedTuple):
             del it
         return np.min(taken, axis=0)
 
-    def plan(self, n: int, size: float) -> _Plan:
-        """As many calls as a clock needs, on inputs that caches hold; few are learned by heart."""
+    def plan(self, n: int, size: float, share: float) -> _Plan:
+        """As many calls as a clock needs, on inputs that caches hold; few are learned by heart.
+
+        share: seconds that making the inputs of a sample may take.
+        """
         made, call = np.maximum(self.seconds_of_one(n), (0, 1e-9))
-        each_round = self.fresh or made < call
-        most = PASS * LONGER / (made + call if each_round else max(made / LONGER, call))
+        most = SAMPLE * LONGER / (made + call if self.fresh else max(made / LONGER, call))
         calls = int(np.clip(min(BATCH / size, most), 1, MOST_CALLS))
-        again = 1 if self.fresh else int(np.clip(PASS / (calls * call), 1, MOST_CALLS))
-        passes = PASSES if not self.fresh and calls * call <= PASS * LONGER else 1
-        pool = [] if each_round else [self.make(n) for _ in range(calls)]
-        return _Plan(n, calls, again, passes, pool)
+        again = 1 if self.fresh else int(np.clip(SAMPLE / (calls * call), 1, MOST_CALLS))
+        anew = self.fresh or made * calls < share
+        return _Plan(n, calls, again, [] if anew else [self.make(n) for _ in range(calls)])
 
     def choose_sizes(self, turn: float, most: int) -> list[int]:
         """Sizes of equal ratio, up to where a turn of all of them takes as long as it may."""
@@ -210,7 +212,18 @@ def _seconds_of_turn(tried: list[tuple[int, float]]) -> float:
     known, seconds = np.log(np.array(tried)).T
     low, high = np.log(_ends(tried))
     sizes = np.linspace(low, high, COUNT)
-    return float(np.maximum(np.exp(np.interp(sizes, known, seconds)), PASS * LONGER).sum())
+    return float(np.maximum(np.exp(np.interp(sizes, known, seconds)), SAMPLE * LONGER).sum())
+
+
+def _keep_memory() -> list[bytes]:
+    """Let memory that calls free stay with the process, as in a long-running one.
+
+    Else every call of some sizes asks the system for pages anew, and waits for it. The C library
+    keeps blocks that are no larger than one that it saw freed. Python gives back what it carves
+    small objects from once all of these are freed: one of each is returned, to be held.
+    """
+    np.empty(FREED, np.uint8)
+    return [bytes(SMALL) for _ in range(FREED // SMALL)][:: ARENA // (2 * SMALL)]
 
 
 def _changes(f: Function, it: Any) -> bool:

@@ -1,31 +1,38 @@
 """What a function was measured to cost, and which of it decides what is said of it.
 
-Sizes that fit into the caches tell of work alone. Those that do not wait for memory, in ways that
-no loop beside them shows exactly: of them it is asked only that they go on as the others tell.
+Sizes that fit into the caches tell of work alone; so do those where a call works for longer than it
+could wait. The others wait for memory, in ways that no loop beside them shows exactly: of them it
+is asked only that they go on as those tell.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from hem.complexity.estimates import slope
 from hem.complexity.judge import Verdict, judge
-from hem.complexity.notation import Array, parse
+from hem.complexity.memory import LINE
+from hem.complexity.notation import Array
 
 MEMORY_ERROR = 0.05  # relative error of what memory did to a call, beside what was measured …
 UNSEEN = 2.0  # … and the slowdown that allocators and caches cause beside it, over the sizes …
 BENT = 4.0  # … or this, where sizes in the caches do not tell that there is less
 CACHED_ERROR = 0.03  # the same for sizes that are in the caches …
-UNSEEN_CACHED = 1.15  # … as a first cache is quicker than a second …
-UNSEEN_LARGE = 1.3  # … and where no small size tells the fixed cost
+UNSEEN_CACHED = 1.1  # … as a first cache is quicker than a second …
+UNSEEN_COSTLY = 1.3  # … and for sizes where a call works longer than it waits
 CACHED = 2.0  # factor by which an access takes longer than at the smallest size, in the caches
-FEWEST_CACHED = 6  # sizes that may decide for all
-KEPT = 256  # the largest of the integers that Python keeps: larger ones are read from memory
-STEEP = 1.5  # slope from which on a call works more than it waits …
-COSTLY = 1_000  # … and is judged where it takes that part of the largest at least
+FEWEST = 6  # sizes that may decide for all
+KEPT = 256  # the largest of the integers that Python keeps: larger ones are read from memory …
+FREE = (-KEPT / 2, -KEPT)  # … so that a call may cost as if there were so many fewer
+FAR = 1_000  # from here on what is done beside a call's work no longer bends its cost
+CLOSE = 0.015  # relative error that a class may have to be told without reserve
+STEEP = 1.5  # slope from which on a call works more than it waits
+LOWER_TERMS = 9  # tried where a call works more than it waits
 QUICKER = 0.6  # share of the samples of a size that is looked at, the quicker ones: delays only add
+Sizes = NDArray[np.bool_]
 
 
 @dataclass(frozen=True, repr=False)
@@ -43,83 +50,130 @@ class Measured:
         return f"<Measured at {sizes}: {least:.2g} to {most:.2g} s a call>"
 
     def joined(self, other: "Measured") -> "Measured":
-        """These sizes and others."""
+        """These sizes and others, whose costs are brought to one level with these.
+
+        A machine is quicker at one time than at another, by as much at every size.
+        """
+        between = np.interp(np.log(other.sizes), np.log(self.sizes), np.log(self.cost))
+        level = np.exp(np.median(np.log(other.cost) - between))
         sizes = np.concatenate([self.sizes, other.sizes])
-        order, samples = np.argsort(sizes), [*self.samples, *other.samples]
+        order = np.argsort(sizes)
+        samples = [*self.samples, *(row / level for row in other.samples)]
         working_sets = np.concatenate([self.working_sets, other.working_sets])
         memory = np.hstack([self.memory, other.memory])
         rows = [samples[k] for k in order]
         return Measured(sizes[order], rows, working_sets[order], memory[:, order])
 
     @property
+    def cost(self) -> Array:
+        """(k,) seconds of a call: the median of its samples."""
+        return np.array([np.median(row) for row in self.samples])
+
+    @property
     def names_one_class(self) -> bool:
         """Whether the costs by themselves tell a class, and no other."""
-        answer = self.judge(resamples=2).answer
-        return bool(answer) and " or " not in answer
+        return _names_one(self.judge(resamples=2))
 
     def judge(self, expected: str = "O(1)", **options: Any) -> Verdict:
         """Judge a claim by these costs; options as of `hem.complexity.judge`.
 
-        The sizes that fit into the caches decide where they tell one class. Where they leave two,
-        all sizes may rule out the one that grows faster, as waiting for memory only adds to it.
-        With ``latency=None`` all sizes are judged as if nothing were known of the memory.
+        What tells of work alone decides where it tells one class. Where it leaves two, all sizes
+        may rule out the one that grows faster, as waiting for memory only adds to it. With
+        ``latency=None`` all sizes are judged as if nothing were known of the memory.
         """
-        every = np.ones(len(self.sizes), bool)
-        whole = self._judge(every, UNSEEN, expected, options)
+        asked = _Asked(self, expected, options)
         if options.get("latency", 0) is None:
-            return whole
-        costly = self._cost * COSTLY > self._cost.max()
-        steep = bool(slope(self.sizes[costly], self._cost[costly]) > STEEP)
-        parts = self._parts(costly if steep else None, expected, options)
-        if not parts and not steep:
-            whole = self._judge(every, BENT, expected, options)
-        told = [it.answer.split(" or ") for it in parts]
-        if parts and (min(map(len, told)) == 1 or whole.answer != told[0][0]):
-            return min(parts, key=lambda it: it.answer.count(" or "))
-        return whole if _names_a_class(whole) else replace(whole, answer="")
+            return asked.whole(UNSEEN)
+        told = asked.by_work() or asked.without_reserve()
+        if told is None:
+            parts = asked.by_caches()
+            told = _combined(parts, asked.whole(UNSEEN if parts else BENT))
+        return told if _names_a_class(told) else replace(told, answer="")
 
-    def _parts(
-        self, costly: NDArray[np.bool_] | None, expected: str, options: dict[str, Any]
-    ) -> list[Verdict]:
-        """What some of the sizes tell, the most telling ones first, where the others go on so.
 
-        costly: sizes where a call works more than it waits, of a function that has such.
-        """
-        fits = self.memory[0] < CACHED * self.memory[0].min()
+@dataclass(frozen=True)
+class _Asked:
+    """A claim that parts of what was measured are judged by; each the quicker of its samples."""
+
+    of: Measured
+    expected: str
+    options: dict[str, Any]
+
+    def whole(self, unseen: float) -> Verdict:
+        """What all sizes tell."""
+        return self._judge(np.ones(len(self.of.sizes), bool), unseen)
+
+    def by_work(self) -> Verdict | None:
+        """What sizes tell where a call takes longer than waiting for all that it reads would."""
+        of = self.of
+        costly = of.cost > of.working_sets / LINE * of.memory[0]
+        if np.count_nonzero(costly) < FEWEST:
+            return None
+        sizes, half = of.sizes[costly], np.count_nonzero(costly) // 2
+        if slope(sizes[half:], of.cost[costly][half:]) <= STEEP:
+            return None
+        lower = np.geomspace(sizes[0], sizes[-1], LOWER_TERMS)
+        return self._if_so(self._judge(costly, UNSEEN_COSTLY, lower=lower))
+
+    def without_reserve(self) -> Verdict | None:
+        """What sizes in the caches tell that one class explains closely, as if nothing bent it."""
+        for beyond, lower in ((KEPT, FREE), (FAR, ())):
+            told = self._in_caches(beyond, 0, lower)
+            if told and _names_one(told) and told.errors[told.best] < CLOSE:
+                return told
+        return None
+
+    def by_caches(self) -> list[Verdict]:
+        """What they tell where caches and allocators may have bent the costs a little."""
+        found = (self._in_caches(*it) for it in ((KEPT, UNSEEN_CACHED, FREE), (0, UNSEEN_CACHED)))
+        return [it for it in found if it]
+
+    def _in_caches(self, beyond: float, unseen: float, lower: ArrayLike = ()) -> Verdict | None:
+        """What those of the sizes in the caches tell that are larger than one."""
+        fits, sets = self.of.memory[0] < CACHED * self.of.memory[0].min(), self.of.working_sets
         room = 1 if fits.all() else 2  # what fills the caches is driven out by the rest
-        alone = self.working_sets <= self.working_sets[fits].max() / room
-        parts = [] if costly is None else [self._judge(costly, UNSEEN, expected, options)]
-        some = (alone, UNSEEN_CACHED), (alone & (self.sizes > KEPT), UNSEEN_LARGE)
-        parts += [
-            self._judge(few, unseen, expected, options, cached=True)
-            for few, unseen in some
-            if np.count_nonzero(few) >= min(FEWEST_CACHED, len(few))
-        ]
-        return [it for it in parts if _names_a_class(it) and self._goes_on(it, fits)]
+        few = (sets <= sets[fits].max() / room) & (self.of.sizes > beyond)
+        if np.count_nonzero(few) < min(FEWEST, len(few)):
+            return None
+        return self._if_so(self._judge(few, unseen, cached=True, lower=lower), fits)
 
-    @property
-    def _cost(self) -> Array:
-        return np.array([np.median(row) for row in self.samples])
+    def _if_so(self, told: Verdict, excused: Sizes | bool = False) -> Verdict | None:
+        """A verdict that names a class which all sizes go on as."""
+        return told if _names_a_class(told) and self._goes_on(told, excused) else None
 
     def _judge(
-        self, of: NDArray[np.bool_], unseen: float, expected: str, options: dict[str, Any],
-        cached: bool = False,
-    ) -> Verdict:  # fmt: skip
-        """Judge some sizes by their quicker samples."""
-        given: dict[str, Any] = {"latency": self.memory[:, of], "latency_error": MEMORY_ERROR}
-        if cached:
-            given = {"latency": np.ones(of.sum()), "latency_error": CACHED_ERROR}
-        if options.get("latency", 0) is not None:
+        self, sizes: Sizes, unseen: float, cached: bool = False, lower: ArrayLike = ()
+    ) -> Verdict:
+        """Judge some of the sizes, by what the memory was measured to do there."""
+        memory = self.of.memory[0, sizes] if cached else self.of.memory[:, sizes]
+        given: dict[str, Any] = {"latency": memory, "lower": lower}
+        given["latency_error"] = CACHED_ERROR if cached else MEMORY_ERROR
+        if self.options.get("latency", 0) is not None:
             given["unseen"] = unseen
-        rows = [row for row, asked in zip(self.samples, of, strict=True) if asked]
+        rows = [row for row, asked in zip(self.of.samples, sizes, strict=True) if asked]
         quick = [np.sort(row)[: int(np.ceil(QUICKER * len(row)))] for row in rows]
-        return judge(self.sizes[of], quick, expected, **given | options)
+        return judge(self.of.sizes[sizes], quick, self.expected, **given | self.options)
 
-    def _goes_on(self, told: Verdict, cached: NDArray[np.bool_]) -> bool:
-        """Whether larger sizes cost what smaller ones tell, and no more besides than the memory."""
-        terms, rise = told.coefficients[told.best], self.memory[0] / self.memory[0].min()
-        off = self._cost / (terms["fixed"] + terms["factor"] * parse(told.best)(self.sizes))
-        return bool(np.all(cached | ((off > 1 / UNSEEN) & (off < UNSEEN + rise / 2))))
+    def _goes_on(self, told: Verdict, excused: Sizes | bool) -> bool:
+        """Whether larger sizes cost what others tell, and no more besides than the memory."""
+        memory = self.of.memory
+        rise = (memory / memory.min(axis=1, keepdims=True)).max(axis=0)
+        off = self.of.cost / told.predicted(told.best, self.of.sizes)
+        return bool(np.all(excused | ((off > 1 / UNSEEN) & (off < UNSEEN * rise))))
+
+
+def _combined(parts: Sequence[Verdict], whole: Verdict) -> Verdict:
+    """Of what parts of the sizes tell and what all do, the most telling that none contradicts."""
+    told = [set(it.answer.split(" or ")) for it in parts]
+    if not parts or not set.intersection(*told):
+        return whole
+    shortest = min(parts, key=lambda it: it.answer.count(" or "))
+    slower, *others = shortest.answer.split(" or ")
+    return whole if others and whole.answer == slower else shortest
+
+
+def _names_one(it: Verdict) -> bool:
+    return bool(it.answer) and " or " not in it.answer
 
 
 def _names_a_class(it: Verdict) -> bool:

@@ -5,7 +5,11 @@ its bandwidth, and one that makes something new for the system, which gives memo
 """
 
 from collections.abc import Callable
+from functools import reduce
+from itertools import repeat
+from operator import getitem
 from time import get_clock_info, perf_counter, thread_time
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -15,7 +19,9 @@ from hem.complexity.notation import Array
 LINE = 64  # bytes that come from memory together
 STEPS = 1_000  # accesses per sample
 SAMPLES = 5
-LARGEST = 1 << 26  # bytes; what takes more is measured as this
+LARGEST = 1 << 25  # bytes; what takes more is measured as this
+CELL = 80  # bytes of a list of one
+WAITS = 2  # of a step from list to list: for the list, and for what it holds
 SMALLEST = 16 * 1024  # bytes; less than that is in the first cache, and beside what a call takes
 QUICKEST = 2e-11  # seconds that a byte takes at least, as a program reads it that does more
 AT_BEST = 5e-9  # seconds: what a step from record to record takes at least, in the caches
@@ -35,23 +41,27 @@ def memory_times(working_sets: ArrayLike) -> Array:
     taken = np.array([[take(size) for size in distinct] for take in (_chase, _read, _write)])
     # None is more than that of any larger set: disturbances only add.
     rising = np.minimum.accumulate(taken[:, ::-1], axis=1)[:, ::-1]
-    rising[0] += AT_BEST - rising[0, 0]
+    rising[0] = AT_BEST + (rising[0] - rising[0, 0]) / WAITS
     return rising[:, place]
 
 
 def _chase(size: int) -> float:
-    """Seconds per step through a random cycle of lines, with what Python takes for a step."""
-    lines = size // LINE
-    order = np.random.default_rng(0).permutation(lines)
-    cycle = np.zeros(8 * lines, np.int64)
-    cycle[8 * order] = 8 * np.roll(order, -1)
-    follow, place, seconds = cycle.data, 0, []
-    for _ in range(SAMPLES):
+    """Seconds per step through lists that hold one another at random, Python's part included.
+
+    The least counts, as delays only add; each sample goes on where the last one ended.
+    """
+    cells: list[list[Any]] = [[] for _ in range(size // CELL)]
+    order = np.random.default_rng(0).permutation(len(cells)).tolist()
+    for here, there in zip(order, [*order[1:], order[0]], strict=True):
+        cells[here].append(cells[there])
+    place, seconds = cells[0], []
+    for _ in range(SAMPLES + 1):  # the first finds what building them left in the caches
         begin = CLOCK()
-        for _ in range(STEPS):
-            place = follow[place]
+        place = reduce(getitem, repeat(0, STEPS), place)
         seconds.append(CLOCK() - begin)
-    return float(np.median(seconds)) / STEPS
+    for cell in cells:
+        cell.clear()  # a cycle is freed by nobody else while garbage is not collected
+    return min(seconds[1:]) / STEPS
 
 
 def _read(size: int) -> float:

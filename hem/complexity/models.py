@@ -2,10 +2,11 @@
 
 A model says that a cost is
 
-    t(n) = c · r₁(n) + a · f(n) · r₂(n),      c, a ≥ 0
+    t(n) = c · r₁(n) + a · f(n) · (1 + l/n) · r₂(n),      c, a ≥ 0
 
 with `f` from `MODELS` and `r` a *slowdown*: 1 where memory is fast, more where the working set has
-left the caches. Every model but O(1) must really grow: its intercept `c` may only be so large that
+left the caches. The lower-order term `l` is 0 but where a caller names others; O(1) to O(√n) have
+none. Every model but O(1) must really grow: its intercept `c` may only be so large that
 c + a·f(n) still gains a given factor over the measured range. Without that bound every model would
 contain O(1), and no measurement could ever tell them apart.
 """
@@ -83,34 +84,49 @@ class DesignMatrix:
 
     names: tuple[str, ...]
     slowdowns: Slowdowns
-    growth: Array  # (m, k) f, of largest value 1
-    intercept: Array  # (m,) largest intercept beside it
+    lower: Array  # (t,) lower-order terms, 0 first
+    growth: Array  # (m, t, k) f beside each, in proportion to its largest value
+    intercept: Array  # (m, t) largest intercept beside it
     scale: Array  # (m,) largest value of f itself
 
     def columns(self) -> tuple[Array, Array]:
-        """(m, s, k) f with no intercept, and with the largest: between them lie all others."""
-        pure = self.growth[:, None] * self.slowdowns.scaling
-        return pure, self.intercept[:, None, None] * self.slowdowns.intercept + pure
+        """(m, t·s, k) f with no intercept, and with the largest: between them lie all others."""
+        pure = self.growth[:, :, None] * self.slowdowns.scaling
+        mixed = self.intercept[:, :, None, None] * self.slowdowns.intercept + pure
+        flat = len(self.names), -1, pure.shape[-1]
+        return pure.reshape(flat), mixed.reshape(flat)
 
     def only(self, model: int) -> "DesignMatrix":
         """The columns of one model."""
         one = slice(model, model + 1)
         return DesignMatrix(
-            self.names[one], self.slowdowns,
+            self.names[one], self.slowdowns, self.lower,
             self.growth[one], self.intercept[one], self.scale[one],
         )  # fmt: skip
 
 
 def design(
-    sizes: Array, slowdowns: Slowdowns, growth: float, names: Sequence[str] = NAMES
-) -> DesignMatrix:
-    """Columns of models, O(1) first; each gains at least `growth` over the sizes, if it can."""
-    f = np.array([parse(name)(sizes) for name in names])
+    sizes: Array, slowdowns: Slowdowns, growth: float, names: Sequence[str] = NAMES,
+    lower: Array | None = None,
+) -> DesignMatrix:  # fmt: skip
+    """Columns of models, O(1) first; each gains at least `growth` over the sizes, if it can.
+
+    lower: lower-order terms that a cost may have, each above minus the smallest size.
+    """
+    terms = np.concatenate([[0.0], [] if lower is None else lower])
+    orders = [parse(name) for name in names]
+    f = np.array([order(sizes) for order in orders])
     scale = np.maximum(f.max(1), 1e-9)
-    f /= scale[:, None]
-    intercept = np.maximum((1 - growth * f.min(1)) / (growth - 1), 0)
+    beside = 1 + np.array([terms * has_lower_terms(order) for order in orders])[..., None] / sizes
+    f = f[:, None] / scale[:, None, None] * beside
+    intercept = np.maximum((f.max(2) - growth * f.min(2)) / (growth - 1), 0)
     intercept[0] = 0.0
-    return DesignMatrix(tuple(names), slowdowns, f, intercept, scale)
+    return DesignMatrix(tuple(names), slowdowns, terms, f, intercept, scale)
+
+
+def has_lower_terms(order: Order) -> bool:
+    """Whether a class may have a lower-order term: what grows less than n has nothing below."""
+    return order >= parse("O(n)")
 
 
 @dataclass(frozen=True)
@@ -120,14 +136,15 @@ class Fit:
     chi2: Array  # squared relative residuals over their variances
     intercept: Array  # the intercept c, in the unit of the costs
     factor: Array  # factor a of f(n)
-    slowdown: NDArray[np.intp]  # row of the slowdowns that served best
+    slowdown: NDArray[np.intp]  # row of the slowdowns that served best …
+    lower: NDArray[np.intp]  # … and place of the lower-order term
 
 
 def fit(models: DesignMatrix, costs: Array, weight: Array) -> Fit:
     """Nonnegative least squares of weighted costs, in closed form, under the best slowdown each.
 
     costs: (..., k). weight: (k,), 1/(cost·relative error): a size counts for its precision, not
-    for its magnitude. O(m·s·k) per row of costs.
+    for its magnitude. O(m·t·s·k) per row of costs.
     """
     pure, mixed = models.columns()
     u, v, t = pure * weight, mixed * weight, costs * weight
@@ -147,12 +164,15 @@ def fit(models: DesignMatrix, costs: Array, weight: Array) -> Fit:
     best = [np.take_along_axis(x, row[..., None], -1)[..., 0] for x in (saved, a, b)]
     chi2 = np.maximum((t * t).sum(-1)[..., None] - best[0], 0)
     factor = (best[1] + best[2]) / models.scale
-    return Fit(chi2, best[2] * models.intercept, factor, row)
+    term, slowdown = np.divmod(row, len(models.slowdowns.scaling))
+    intercept = best[2] * models.intercept[np.arange(len(models.names)), term]
+    return Fit(chi2, intercept, factor, slowdown, term)
 
 
 def predict(models: DesignMatrix, fitted: Fit) -> tuple[Array, Array]:
     """(..., m, k) costs that the fitted models predict, and the same with memory at its fastest."""
-    scaling = (fitted.factor * models.scale)[..., None] * models.growth
+    growth = models.growth[np.arange(len(models.names)), fitted.lower]
+    scaling = (fitted.factor * models.scale)[..., None] * growth
     intercept = np.broadcast_to(fitted.intercept[..., None], scaling.shape)
     slow, row = models.slowdowns, fitted.slowdown
     slowed = intercept * slow.intercept[row] + scaling * slow.scaling[row]

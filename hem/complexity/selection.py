@@ -136,7 +136,7 @@ class Comparison:
     def _misfit(self, slowdowns: Slowdowns | None, growth: float) -> Array:
         if slowdowns is None:
             return np.full(len(self.names), np.inf)
-        models = design(self.costs.sizes, slowdowns, growth, self.names)
+        models = design(self.costs.sizes, slowdowns, growth, self.names, self.design.lower[1:])
         return fit(models, self.costs.cost, self.weight).chi2
 
     @property
@@ -215,7 +215,7 @@ class Comparison:
         slow = self.memory.slowdowns.scaling
         if self.memory.unmeasured is not None:
             slow = np.vstack([slow, self.memory.unmeasured.scaling])
-        f, cost = np.maximum(self.design.growth[claimed], 1e-300), self.costs.cost
+        f, cost = np.maximum(self.design.growth[claimed, 0], 1e-300), self.costs.cost
         excused = (slow[:, :, None] / slow[:, None, :]).max(0) * (f[:, None] / f)
         beyond = np.tril(cost[:, None] / cost > ACCUSING_GROWTH * excused)
         pairs = np.argwhere(beyond)
@@ -230,26 +230,31 @@ class Comparison:
         """
         last = slice(-max(3, len(self.costs.sizes) // 3), None)
         slowed, steady = (it[model, last] for it in predict(self.design, self.fit))
-        sizes, growth = self.costs.sizes[last], self.design.growth[model, last]
+        sizes = self.costs.sizes[last]
+        growth = self.design.growth[model, self.fit.lower[model], last]
         own, told = slope(sizes, np.maximum(growth, 1e-300)), slope(sizes, self.costs.cost[last])
         like = abs(slope(sizes, slowed) - told) <= UNLIKE * np.maximum(1, told)
         return bool(like and slope(sizes, steady) >= NEAR * own - 1e-9)
 
 
-def compare_models(costs: Costs, memory: Memory, names: Sequence[str] = NAMES) -> Comparison:
-    """Fit models to the costs, under every slowdown that may have happened.
+def compare_models(
+    costs: Costs, memory: Memory, names: Sequence[str] = NAMES, lower: Array | None = None
+) -> Comparison:
+    """Fit models to the costs, under every slowdown that may have happened, beside lower terms.
 
     Times that stray from all of them, but evenly and little, are fitted again with what they stray
     as their error: sizes differ by more than their samples tell, and a class may still stand out.
     """
-    models = _fit_models(costs, memory, names)
+    models = _fit_models(costs, memory, names, lower)
     stray = np.sqrt(models.chi2[models.best] / models.freedom)
     if memory.exact or models.fits or stray * np.median(costs.error) > MOST_WOBBLE:
         return models
-    return _fit_models(replace(costs, error=stray * costs.error), memory, names)
+    return _fit_models(replace(costs, error=stray * costs.error), memory, names, lower)
 
 
-def _fit_models(costs: Costs, memory: Memory, names: Sequence[str]) -> Comparison:
+def _fit_models(
+    costs: Costs, memory: Memory, names: Sequence[str], lower: Array | None
+) -> Comparison:
     weight = 1 / (costs.cost * costs.error)
-    models = design(costs.sizes, memory.slowdowns, GROWTH, names)
+    models = design(costs.sizes, memory.slowdowns, GROWTH, names, lower)
     return Comparison(costs, memory, weight, models, fit(models, costs.cost, weight))

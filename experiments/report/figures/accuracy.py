@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 from experiments.report.style import BLUE, FADED, GRAY, RED, grid, styled
-from hem.complexity import Curve, Verdict, parse
+from hem.complexity import Curve, Verdict
 
 KINDS = {"right": BLUE, "undetermined": "#d5d5d5", "wrong": RED}
 """What can be said of an answer, and its color in every figure here."""
@@ -93,8 +93,7 @@ def save_costs(
             smooth = np.geomspace(curve.sizes[0], curve.sizes[-1], 100)
             drawn = {verdict.expected: GRAY} if claimed else {}
             for name, color in ({verdict.best: RED} | drawn).items():
-                it = verdict.coefficients[name]
-                costs = it["fixed"] + it["factor"] * parse(name)(smooth)
+                costs = verdict.predicted(name, smooth)
                 axes.plot(smooth, costs, "--", color=color, label=name)
             for size, samples in zip(curve.sizes, curve.samples, strict=True):
                 axes.plot(np.full(len(samples), size), samples, ".", color=BLUE, markersize=3)

@@ -15,7 +15,6 @@ from experiments.report import style
 from experiments.report.session import Session, claim_file, open_run
 from experiments.report.style import GRAY, RED, STYLES, Plot
 from experiments.report.tables import two_digits
-from hem.complexity import parse
 
 Array = NDArray[np.float64]
 
@@ -66,10 +65,12 @@ def _draw_growth(axes: Axes, curve: Curve, judged: JudgedClaim, axis: Axis) -> N
     if verdict.outcome != "consistent":
         classes.setdefault(verdict.best, RED)
     for place, (name, color) in enumerate(classes.items()):
-        it = verdict.coefficients[name]
-        costs = axis.scale * (it["fixed"] + it["factor"] * parse(name)(smooth))
-        if it["rise"] > 1.01 and place == 0:
-            axes.fill_between(smooth, costs, it["rise"] * costs, color=GRAY, alpha=0.16, lw=0)
+        costs, rise = (
+            axis.scale * verdict.predicted(name, smooth),
+            verdict.coefficients[name]["rise"],
+        )
+        if rise > 1.01 and place == 0:
+            axes.fill_between(smooth, costs, rise * costs, color=GRAY, alpha=0.16, lw=0)
         axes.plot(smooth, costs, "--", color=color)
     color = STYLES[judged.claim.structure]["color"] if judged.claim.structure else INK
     found = axis.scale * _summary(curve)

@@ -80,7 +80,9 @@ def test_exact_counts_have_an_exact_slope() -> None:
     sizes = 2.0 ** np.arange(4, 12)
     verdict = judge(sizes, [[5 * n] for n in sizes], "O(n_t)", exact=True)
     assert verdict.slope_low == pytest.approx(1) == verdict.slope_high
-    assert verdict.coefficients["O(n)"] == {"fixed": 0, "factor": pytest.approx(5), "rise": 1}
+    assert verdict.coefficients["O(n)"] == {
+        "fixed": 0, "factor": pytest.approx(5), "lower": 0, "rise": 1,
+    }  # fmt: skip
     assert verdict.errors["O(n)"] == pytest.approx(0, abs=1e-9)
 
 
