@@ -38,7 +38,7 @@ BATCH = 1 << 18  # bytes of the inputs of a sample, where one takes less: they f
 MOST_CALLS = 4_096  # inputs of a sample
 SAMPLE = 1e-4  # seconds of one at least …
 LONGER = 10  # … and so many times that at most, where a call takes less
-FREED, SMALL, ARENA = (1 << 25) - (1 << 16), 480, 1 << 20
+FREED, SMALL, ARENA = (1 << 25) - (1 << 16), 400, 1 << 20
 """Bytes: of the largest block whose freeing raises what the C library keeps to itself; of an object
 that Python itself finds room for, and of what it asks for at once to do so."""
 

@@ -86,6 +86,14 @@ def test_exact_counts_have_an_exact_slope() -> None:
     assert verdict.errors["O(n)"] == pytest.approx(0, abs=1e-9)
 
 
+def test_what_grows_a_hundredfold_needs_no_long_range() -> None:
+    sizes = np.arange(12, 23)
+    assert sizes[-1] < 2 * sizes[0]
+    verdict = judge(sizes, [[1e-7 * 2.0**n] for n in sizes], "2^n")
+    assert verdict.outcome == "consistent"
+    assert judge(sizes, [[1e-7 * n] for n in sizes], "n").outcome == "undetermined"
+
+
 def flat(
     rng: np.random.Generator, sizes: Array, noise: float = 0.03, count: int = 15
 ) -> list[Array]:
