@@ -29,6 +29,7 @@ KEPT = 256  # the largest of the integers that Python keeps: larger ones are rea
 FREE = (-KEPT / 2, -KEPT)  # … so that a call may cost as if there were so many fewer
 FAR = 1_000  # from here on what is done beside a call's work no longer bends its cost
 CLOSE = 0.015  # relative error that a class may have to be told without reserve
+REACH = 16  # of the largest size to the smallest that tells the same: there lower terms fade
 STEEP = 1.5  # slope from which on a call works more than it waits
 LOWER_TERMS = 9  # tried where a call works more than it waits
 QUICKER = 0.6  # share of the samples of a size that is looked at, the quicker ones: delays only add
@@ -107,13 +108,15 @@ class _Asked:
         """What sizes tell where a call takes longer than waiting for all that it reads would."""
         of = self.of
         costly = of.cost > of.working_sets / LINE * of.memory[0]
+        costly &= of.sizes * REACH >= np.max(of.sizes, where=costly, initial=0)
         if np.count_nonzero(costly) < FEWEST:
             return None
         sizes, half = of.sizes[costly], np.count_nonzero(costly) // 2
         if slope(sizes[half:], of.cost[costly][half:]) <= STEEP:
             return None
         lower = np.geomspace(sizes[0], sizes[-1], LOWER_TERMS)
-        return self._if_so(self._judge(costly, UNSEEN_COSTLY, lower=lower))
+        told = self._judge(costly, UNSEEN_COSTLY, lower=lower)
+        return self._if_so(told, of.sizes < sizes[0])
 
     def without_reserve(self) -> Verdict | None:
         """What sizes in the caches tell that one class explains closely, as if nothing bent it."""
@@ -159,7 +162,7 @@ class _Asked:
         memory = self.of.memory
         rise = (memory / memory.min(axis=1, keepdims=True)).max(axis=0)
         off = self.of.cost / told.predicted(told.best, self.of.sizes)
-        return bool(np.all(excused | ((off > 1 / UNSEEN) & (off < UNSEEN * rise))))
+        return bool(np.all(excused | ((off > 1 / UNSEEN) & (off < UNSEEN + rise / 2))))
 
 
 def _combined(parts: Sequence[Verdict], whole: Verdict) -> Verdict:

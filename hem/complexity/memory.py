@@ -79,15 +79,15 @@ def _write(size: int) -> float:
 def _seconds_per_byte(call: Call, empty: Call, size: int) -> float:
     """What a call takes beyond one that does next to nothing."""
     repeats = max(1, (1 << 20) // size)
-    beyond = _median_seconds(call, repeats) - _median_seconds(empty, repeats)
+    beyond = _least_seconds(call, repeats) - _least_seconds(empty, repeats)
     return max(beyond, 0.0) / size + QUICKEST
 
 
-def _median_seconds(call: Call, repeats: int) -> float:
+def _least_seconds(call: Call, repeats: int) -> float:
     seconds = []
     for _ in range(SAMPLES):
         begin = CLOCK()
         for _ in range(repeats):
             call()
         seconds.append(CLOCK() - begin)
-    return float(np.median(seconds)) / repeats
+    return min(seconds) / repeats
