@@ -39,9 +39,10 @@ MOST_CALLS = 4_096  # inputs of a sample
 SAMPLE = 1e-4  # seconds of one at least …
 LONGER = 10  # … and so many times that at most, where a call takes less
 IDLE = range(1_000)  # a loop that tells how fast the machine is …
-QUIET = 1.1  # … which takes so many times its least at most beside a sample that nothing disturbed
-ENOUGH = 3  # one sample in so many must be like that …
+ALIKE = 1.15  # … and takes up to so many times as long beside samples that count together
+ENOUGH = 3  # one sample in so many must count …
 MOST_ROUNDS = 2  # … or there are up to so many times as many rounds
+SPEEDS = 41  # that are looked at
 FREED, SMALL, ARENA = (1 << 25) - (1 << 16), 400, 1 << 20
 """Bytes: of the largest block whose freeing raises what the C library keeps to itself; of an object
 that Python itself finds room for, and of what it asks for at once to do so."""
@@ -112,7 +113,7 @@ class _Calls(NamedTuple):
     def interleaved(self, plans: Sequence[_Plan], rounds: int) -> list[Array]:
         """Samples of each size, all up and down in turn, after a round that does not count.
 
-        There are more rounds while some size has too few samples that nothing disturbed.
+        There are more rounds while at no speed of the machine each size has samples enough.
         """
         samples: list[list[tuple[float, float]]] = [[] for _ in plans]
         collecting, enough = gc.isenabled(), -(-rounds // ENOUGH)
@@ -122,15 +123,14 @@ class _Calls(NamedTuple):
                 for row, plan in list(zip(samples, plans, strict=True))[:: 1 - 2 * (turn % 2)]:
                     row.append(self.sample(plan))
                 told = np.array(samples)[:, 1:]
-                if turn >= rounds and np.all(_is_quiet(told).sum(axis=1) >= enough):
+                if turn >= rounds and _at_one_speed(told[..., 1], enough) is not None:
                     break
         finally:
             if collecting:
                 gc.enable()
-        return [
-            row[_quiet_ones(row, quiet, enough), 0]
-            for row, quiet in zip(told, _is_quiet(told), strict=True)
-        ]
+        alike = _at_one_speed(told[..., 1], enough)
+        kept = np.ones(told.shape[:2], bool) if alike is None else alike
+        return [row[few, 0] for row, few in zip(told, kept, strict=True)]
 
     def sample(self, plan: _Plan) -> tuple[float, float]:
         """Seconds per call, and of a loop that says how slow the machine was then."""
@@ -235,18 +235,17 @@ def _seconds_of_turn(tried: list[tuple[int, float]]) -> float:
     return float(np.maximum(np.exp(np.interp(sizes, known, seconds)), SAMPLE * LONGER).sum())
 
 
-def _is_quiet(samples: Array) -> NDArray[np.bool_]:
-    """(k, r) which of the samples (k, r, 2) nothing disturbed, as the loop beside them tells.
+def _at_one_speed(slowness: Array, enough: int) -> NDArray[np.bool_] | None:
+    """(k, r) samples of the highest speed at which each size has enough of them, if there is one.
 
-    Where another program has the other half of the core, all takes up to 2.3 times as long, what
-    one function does and what another does by different factors: so these do not count.
+    slowness: (k, r) seconds of a loop beside each. Where another program has the other half of a
+    core, it takes twice as long, and what functions do 1.4 to 2.3 times: no class survives a mix.
     """
-    return samples[..., 1] <= QUIET * samples[..., 1].min(initial=np.inf)
-
-
-def _quiet_ones(row: Array, quiet: NDArray[np.bool_], enough: int) -> NDArray[np.bool_]:
-    """Those of a size, or the least disturbed where they are too few."""
-    return quiet | (row[:, 1] <= np.partition(row[:, 1], enough - 1)[enough - 1])
+    for least in np.quantile(slowness, np.linspace(0, 1, SPEEDS)):
+        alike = (slowness >= least) & (slowness <= ALIKE * least)
+        if np.all(alike.sum(axis=1) >= enough):
+            return alike
+    return None
 
 
 def _keep_memory() -> list[bytes]:

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from hem.complexity.estimates import slope
 from hem.complexity.judge import Verdict, judge
-from hem.complexity.memory import LINE
+from hem.complexity.memory import LARGEST, LINE
 from hem.complexity.notation import Array
 
 MEMORY_ERROR = 0.05  # relative error of what memory did to a call, beside what was measured …
@@ -28,6 +28,9 @@ FEWEST = 6  # sizes that may decide for all
 KEPT = 256  # the largest of the integers that Python keeps: larger ones are read from memory …
 FREE = (-KEPT / 2, -KEPT)  # … so that a call may cost as if there were so many fewer
 FAR = 1_000  # from here on what is done beside a call's work no longer bends its cost
+BEYOND = 2.5  # times what the caches hold: from here on all waits alike
+LESS = 0.8  # part of what a class tells that a larger size costs at least …
+AGAIN = 10  # … and how often a call may wait for each line that it works on
 CLOSE = 0.015  # relative error that a class may have to be told without reserve
 REACH = 16  # of the largest size to the smallest that tells the same: there lower terms fade
 STEEP = 1.5  # slope from which on a call works more than it waits
@@ -85,10 +88,9 @@ class Measured:
         asked = _Asked(self, expected, options)
         if options.get("latency", 0) is None:
             return asked.whole(UNSEEN)
-        told = asked.by_work() or asked.without_reserve()
-        if told is None:
-            parts = asked.by_caches()
-            told = _combined(parts, asked.whole(UNSEEN if parts else BENT))
+        told = asked.by_work() or asked.without_reserve() or asked.with_reserve()
+        if " or " in told.answer:
+            told = asked.far_away(told)
         return told if _names_a_class(told) else replace(told, answer="")
 
 
@@ -100,6 +102,16 @@ class _Asked:
     expected: str
     options: dict[str, Any]
 
+    @property
+    def _fits(self) -> Sizes:
+        """(k,) whether what a call works on is in the caches."""
+        return self.of.memory[0] < CACHED * self.of.memory[0].min()
+
+    @property
+    def _waiting(self) -> Array:
+        """(k,) seconds that a call waits which waits for each line that it works on."""
+        return self.of.working_sets / LINE * self.of.memory[0]
+
     def whole(self, unseen: float) -> Verdict:
         """What all sizes tell."""
         return self._judge(np.ones(len(self.of.sizes), bool), unseen)
@@ -107,7 +119,7 @@ class _Asked:
     def by_work(self) -> Verdict | None:
         """What sizes tell where a call takes longer than waiting for all that it reads would."""
         of = self.of
-        costly = of.cost > of.working_sets / LINE * of.memory[0]
+        costly = of.cost > self._waiting
         costly &= of.sizes * REACH >= np.max(of.sizes, where=costly, initial=0)
         if np.count_nonzero(costly) < FEWEST:
             return None
@@ -126,14 +138,32 @@ class _Asked:
                 return told
         return None
 
-    def by_caches(self) -> list[Verdict]:
-        """What they tell where caches and allocators may have bent the costs a little."""
+    def with_reserve(self) -> Verdict:
+        """What they tell where caches and allocators may have bent the costs a little, or all do.
+
+        Where no part tells anything, growth that the memory alone may cause is of no class.
+        """
         found = (self._in_caches(*it) for it in ((KEPT, UNSEEN_CACHED, FREE), (0, UNSEEN_CACHED)))
-        return [it for it in found if it]
+        parts, cost, memory = [it for it in found if it], self.of.cost, self.of.memory[0]
+        whole = self.whole(UNSEEN if parts else BENT)
+        told = _combined(parts, whole)
+        bent = told is whole and not self._goes_on(whole)
+        if not parts and whole.answer != "O(1)":
+            bent |= bool(cost[-1] / cost[0] < memory.max() / memory.min())
+        return replace(told, answer="") if bent else told
+
+    def far_away(self, told: Verdict) -> Verdict:
+        """Of two classes the one that sizes far beyond the caches tell, where all wait alike."""
+        sets = self.of.working_sets
+        few = (sets > BEYOND * sets[self._fits].max()) & (sets <= LARGEST)
+        if np.count_nonzero(few) < FEWEST:
+            return told
+        found = self._judge(few, 0)
+        return found if found.answer in told.answer.split(" or ") else told
 
     def _in_caches(self, beyond: float, unseen: float, lower: ArrayLike = ()) -> Verdict | None:
         """What those of the sizes in the caches tell that are larger than one."""
-        fits, sets = self.of.memory[0] < CACHED * self.of.memory[0].min(), self.of.working_sets
+        fits, sets = self._fits, self.of.working_sets
         room = 1 if fits.all() else 2  # what fills the caches is driven out by the rest
         few = (sets <= sets[fits].max() / room) & (self.of.sizes > beyond)
         if np.count_nonzero(few) < min(FEWEST, len(few)):
@@ -157,12 +187,19 @@ class _Asked:
         quick = [np.sort(row)[: int(np.ceil(QUICKER * len(row)))] for row in rows]
         return judge(self.of.sizes[sizes], quick, self.expected, **given | self.options)
 
-    def _goes_on(self, told: Verdict, excused: Sizes | bool) -> bool:
-        """Whether larger sizes cost what others tell, and no more besides than the memory."""
-        memory = self.of.memory
+    def _goes_on(self, told: Verdict, excused: Sizes | bool = False) -> bool:
+        """Whether the larger sizes cost what a class tells, and no more besides than the memory.
+
+        What they cost more is no larger than the memory's rise, nor longer than waiting for all
+        that a call reads would take some times.
+        """
+        of, memory = self.of, self.of.memory
         rise = (memory / memory.min(axis=1, keepdims=True)).max(axis=0)
-        off = self.of.cost / told.predicted(told.best, self.of.sizes)
-        return bool(np.all(excused | ((off > 1 / UNSEEN) & (off < UNSEEN + rise / 2))))
+        least = told.predicted(told.best, of.sizes)
+        most = np.minimum((UNSEEN + rise / 2) * least, least / LESS + AGAIN * self._waiting)
+        kept = (of.cost > LESS * least) & (of.cost < most)
+        small = np.arange(len(kept)) < len(kept) // 2
+        return bool(np.all(kept | small | excused))
 
 
 def _combined(parts: Sequence[Verdict], whole: Verdict) -> Verdict:
