@@ -75,10 +75,10 @@ def measure(
     turn = budget / (rounds + 1)
     chosen = [int(n) for n in given] or calls.choose_sizes(turn, most)
     found = calls.measured(chosen, turn, rounds, amortized)
-    if sizes is not None or found.names_one_class:
+    between = {round(n) for n in np.sqrt(found.sizes[1:] * found.sizes[:-1])} - {*chosen}
+    if sizes is not None or not between or found.names_one_class:
         return found
-    between = set(np.sqrt(found.sizes[1:] * found.sizes[:-1]).round().astype(int).tolist())
-    return found.joined(calls.measured(sorted(between - {*chosen}), turn, rounds, amortized))
+    return found.joined(calls.measured(sorted(between), turn, rounds, amortized))
 
 
 class _Plan(NamedTuple):

@@ -15,12 +15,12 @@ from numpy.typing import ArrayLike, NDArray
 from hem.complexity.estimates import slope
 from hem.complexity.judge import Verdict, judge
 from hem.complexity.memory import LARGEST, LINE
-from hem.complexity.notation import Array
+from hem.complexity.notation import Array, parse
 
 MEMORY_ERROR = 0.05  # relative error of what memory did to a call, beside what was measured …
 UNSEEN = 2.0  # … and the slowdown that allocators and caches cause beside it, over the sizes …
 BENT = 4.0  # … or this, where sizes in the caches do not tell that there is less
-CACHED_ERROR = 0.03  # the same for sizes that are in the caches …
+CACHED_ERROR = 0.05  # the same for sizes that are in the caches …
 UNSEEN_CACHED = 1.1  # … as a first cache is quicker than a second …
 UNSEEN_COSTLY = 1.3  # … and for sizes where a call works longer than it waits
 CACHED = 2.0  # factor by which an access takes longer than at the smallest size, in the caches
@@ -29,6 +29,7 @@ KEPT = 256  # the largest of the integers that Python keeps: larger ones are rea
 FREE = (-KEPT / 2, -KEPT)  # … so that a call may cost as if there were so many fewer
 FAR = 1_000  # from here on what is done beside a call's work no longer bends its cost
 BEYOND = 2.5  # times what the caches hold: from here on all waits alike
+FLAT = 0.4  # logarithm of the factor by which an access may take longer there
 LESS = 0.8  # part of what a class tells that a larger size costs at least …
 AGAIN = 10  # … and how often a call may wait for each line that it works on
 CLOSE = 0.015  # relative error that a class may have to be told without reserve
@@ -75,8 +76,10 @@ class Measured:
 
     @property
     def names_one_class(self) -> bool:
-        """Whether the costs by themselves tell a class, and no other."""
-        return _names_one(self.judge(resamples=2))
+        """Whether some costs tell a class, and no other, so closely that no more are needed."""
+        asked = _Asked(self, "O(1)", {"resamples": 2})
+        told = asked.by_work() or asked.without_reserve()
+        return told is not None and _names_one(told)
 
     def judge(self, expected: str = "O(1)", **options: Any) -> Verdict:
         """Judge a claim by these costs; options as of `hem.complexity.judge`.
@@ -120,14 +123,19 @@ class _Asked:
         """What sizes tell where a call takes longer than waiting for all that it reads would."""
         of = self.of
         costly = of.cost > self._waiting
-        costly &= of.sizes * REACH >= np.max(of.sizes, where=costly, initial=0)
-        if np.count_nonzero(costly) < FEWEST:
+        large = costly & (of.sizes * REACH >= np.max(of.sizes, where=costly, initial=0))
+        if np.count_nonzero(large) < FEWEST:
             return None
-        sizes, half = of.sizes[costly], np.count_nonzero(costly) // 2
-        if slope(sizes[half:], of.cost[costly][half:]) <= STEEP:
+        sizes, half = of.sizes[large], np.count_nonzero(large) // 2
+        if slope(sizes[half:], of.cost[large][half:]) <= STEEP:
             return None
+        plain = [self._judge(some, UNSEEN_COSTLY) for some in (costly, large)]
+        if law := next((it for it in plain if "^" in it.answer), None):
+            return law
         lower = np.geomspace(sizes[0], sizes[-1], LOWER_TERMS)
-        told = self._judge(costly, UNSEEN_COSTLY, lower=lower)
+        told = self._judge(large, UNSEEN_COSTLY, lower=lower)
+        if _names_one(plain[1]) and _names_one(told):
+            told = replace(told, answer=_either({plain[1].answer, told.answer}))
         return self._if_so(told, of.sizes < sizes[0])
 
     def without_reserve(self) -> Verdict | None:
@@ -141,22 +149,30 @@ class _Asked:
     def with_reserve(self) -> Verdict:
         """What they tell where caches and allocators may have bent the costs a little, or all do.
 
-        Where no part tells anything, growth that the memory alone may cause is of no class.
+        Where no part tells anything, growth that the memory alone may cause is of no class. Where
+        all sizes tell another class than a part, both may be: only of O(1) the memory makes others.
         """
         found = (self._in_caches(*it) for it in ((KEPT, UNSEEN_CACHED, FREE), (0, UNSEEN_CACHED)))
         parts, cost, memory = [it for it in found if it], self.of.cost, self.of.memory[0]
         whole = self.whole(UNSEEN if parts else BENT)
         told = _combined(parts, whole)
-        bent = told is whole and not self._goes_on(whole)
-        if not parts and whole.answer != "O(1)":
-            bent |= bool(cost[-1] / cost[0] < memory.max() / memory.min())
-        return replace(told, answer="") if bent else told
+        goes_on = self._goes_on(whole)
+        if told is whole:
+            bent = not goes_on
+            if not parts and whole.answer != "O(1)":
+                bent |= bool(cost[-1] / cost[0] < memory.max() / memory.min())
+            return replace(told, answer="") if bent else told
+        classes, every = set(told.answer.split(" or ")), set(whole.answer.split(" or "))
+        if told.answer != "O(1)" and whole.answer and goes_on and not classes & every:
+            both = classes | every
+            return replace(told, answer=_either(both) if len(both) == 2 else "")
+        return told
 
     def far_away(self, told: Verdict) -> Verdict:
         """Of two classes the one that sizes far beyond the caches tell, where all wait alike."""
         sets = self.of.working_sets
         few = (sets > BEYOND * sets[self._fits].max()) & (sets <= LARGEST)
-        if np.count_nonzero(few) < FEWEST:
+        if np.count_nonzero(few) < FEWEST or np.ptp(np.log(self.of.memory[0, few])) > FLAT:
             return told
         found = self._judge(few, 0)
         return found if found.answer in told.answer.split(" or ") else told
@@ -196,7 +212,7 @@ class _Asked:
         of, memory = self.of, self.of.memory
         rise = (memory / memory.min(axis=1, keepdims=True)).max(axis=0)
         least = told.predicted(told.best, of.sizes)
-        most = np.minimum((UNSEEN + rise / 2) * least, least / LESS + AGAIN * self._waiting)
+        most = np.minimum((UNSEEN + 2 * rise) * least, least / LESS + AGAIN * self._waiting)
         kept = (of.cost > LESS * least) & (of.cost < most)
         small = np.arange(len(kept)) < len(kept) // 2
         return bool(np.all(kept | small | excused))
@@ -210,6 +226,10 @@ def _combined(parts: Sequence[Verdict], whole: Verdict) -> Verdict:
     shortest = min(parts, key=lambda it: it.answer.count(" or "))
     slower, *others = shortest.answer.split(" or ")
     return whole if others and whole.answer == slower else shortest
+
+
+def _either(classes: set[str]) -> str:
+    return " or ".join(sorted(classes, key=parse))
 
 
 def _names_one(it: Verdict) -> bool:

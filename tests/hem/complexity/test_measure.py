@@ -20,13 +20,20 @@ OVERHEAD = 1e-7
 
 
 class Clock:
-    """Seconds go by where a function works, and a little whenever the clock is read."""
+    """Seconds go by where a function works, and a little whenever the clock is read.
 
-    now = 0.0
+    ``slow``: how many times as long all takes, for some time of every ``period``.
+    """
+
+    now, slow, period = 0.0, 1.0, 0.1
 
     def __call__(self) -> float:
-        self.now += OVERHEAD
+        self.work(OVERHEAD)
         return self.now
+
+    def work(self, seconds: float) -> None:
+        slowed = self.now % self.period > self.period / 2
+        self.now += seconds * (self.slow if slowed else 1)
 
 
 @pytest.fixture
@@ -129,6 +136,15 @@ def test_a_machine_that_became_slower_bends_no_curve() -> None:
     both = found(2.0 ** np.arange(2, 12), 1).joined(found(2.0 ** np.arange(2.5, 11), 1.4))
     assert both.sizes.tolist() == (2.0 ** np.arange(2, 11.5, 0.5)).tolist()
     assert both.cost == pytest.approx(1e-6 * both.sizes**1.5)
+
+
+@pytest.mark.parametrize("slow", [1.5, 2.0, 3.0])
+def test_samples_of_a_machine_that_was_slowed_do_not_count(clock: Clock, slow: float) -> None:
+    clock.slow = slow
+    found = measure(lambda n: clock.work(1e-7 * n), lambda n: n, [2**k for k in range(4, 16)])
+    for n, row in zip(found.sizes, found.samples, strict=True):
+        assert len(row) >= 5
+        assert row == pytest.approx(np.full(len(row), 1e-7 * n), rel=1e-3)
 
 
 def test_inputs_are_made_anew_in_each_round_where_there_is_time() -> None:
