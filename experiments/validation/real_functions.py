@@ -1,8 +1,9 @@
 """Judges on real functions: how often each names the class that a function is known to have.
 
-``python -m experiments.validation.real_functions`` measures every function of known cost, some ten
-minutes, and asks every judge. Ours was tuned on some; those held out tell how good it is.
-``--busy`` measures the latter alone, and keeps the other core busy with memory the while.
+``python -m experiments.validation.real_functions`` measures every function of known cost, some
+fifty minutes, and asks every judge. Ours was tuned on some; those held out tell how good it is.
+``--held-out`` measures these alone, a quarter of an hour. ``--busy`` does, too, and keeps the other
+core busy with memory the while.
 """
 
 import json
@@ -104,13 +105,13 @@ def markdown(answers: pd.DataFrame) -> str:
     return "\n".join(f"| {' | '.join(line)} |" for line in lines)
 
 
-def _rows(budget: float, busy: bool, measured: Path | None) -> Iterator[list[str]]:
+def _rows(budget: float, alone: bool, busy: bool, measured: Path | None) -> Iterator[list[str]]:
     """Measure, or read what was measured, and ask -> rows of the answers."""
     judges, kept = installed_judges(), {}
     if measured and measured.exists():
         lines = map(json.loads, measured.read_text("utf-8").splitlines())
         kept = {line.pop("function"): line for line in lines}
-    halves = {HELD: HELD_OUT} if busy else HALVES
+    halves = {HELD: HELD_OUT} if alone or busy else HALVES
     functions = [(half, it) for half, some in halves.items() for it in some]
     with neighbor(busy and len(kept) < len(functions)):
         for half, it in functions:
@@ -133,6 +134,7 @@ def _rows(budget: float, busy: bool, measured: Path | None) -> Iterator[list[str
 def main(
     output: Path = RESULT,
     budget: Annotated[float, Option(help="Seconds per function.")] = BUDGET,
+    alone: Annotated[bool, Option("--held-out", help="What no judge was tuned on alone.")] = False,
     busy: Annotated[bool, Option("--busy", help="Beside a program that uses memory.")] = False,
     measured: Annotated[
         Path | None, Option(help="Costs are kept in it; what it has is not measured again.")
@@ -141,7 +143,7 @@ def main(
     """Measure all functions, ask all judges, keep the answers and print the shares."""
     if not ONE_THREAD.items() <= os.environ.items():  # read once, when NumPy is imported
         os.execve(sys.executable, sys.orig_argv, os.environ | ONE_THREAD)
-    rows = list(_rows(budget, busy, measured))
+    rows = list(_rows(budget, alone, busy, measured))
     other = [] if not output.exists() else load_answers(output)[1].to_numpy().tolist()
     rows += [row for row in other if row[4] != rows[0][4]]
     kept = {key: value for key, value in describe("").items() if key != "preset"}
