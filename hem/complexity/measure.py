@@ -60,8 +60,10 @@ def measure(
     sizes: ascending, at least four over a range of four to be judged. Where none are given, 20 up
     to `most`, as far as the budget allows: about so many seconds in all. Where they leave the class
     open, those between them are measured, too, in the same time again.
-    rounds: samples per size. fresh: whether every call gets an input of its own. By default inputs
-    that f leaves as they were, as pickle sees it, are used again: quick functions need that.
+    rounds: samples per size; up to twice as many, in twice the time, while other programs keep
+    changing the machine's speed, of which those at one speed count. fresh: whether every call gets
+    an input of its own. By default inputs that f leaves as they were, as pickle sees it, are used
+    again: quick functions need that.
     clock: with `time.perf_counter` waiting counts, too, for files, the network and other threads.
     amortized: f does a sequence of n operations, and the cost of one of them is asked for.
 

@@ -94,7 +94,7 @@ class Measured:
         told = asked.by_work() or asked.without_reserve() or asked.with_reserve()
         if " or " in told.answer:
             told = asked.far_away(told)
-        return told if _names_a_class(told) else replace(told, answer="")
+        return _agreeing(told if _names_a_class(told) else replace(told, answer=""))
 
 
 @dataclass(frozen=True)
@@ -135,7 +135,7 @@ class _Asked:
         lower = np.geomspace(sizes[0], sizes[-1], LOWER_TERMS)
         told = self._judge(large, UNSEEN_COSTLY, lower=lower)
         if _names_one(plain[1]) and _names_one(told):
-            told = replace(told, answer=_either({plain[1].answer, told.answer}))
+            told = replace(told, answer=_either(_classes(plain[1]) | _classes(told)))
         return self._if_so(told, of.sizes < sizes[0])
 
     def without_reserve(self) -> Verdict | None:
@@ -155,18 +155,12 @@ class _Asked:
         found = (self._in_caches(*it) for it in ((KEPT, UNSEEN_CACHED, FREE), (0, UNSEEN_CACHED)))
         parts, cost, memory = [it for it in found if it], self.of.cost, self.of.memory[0]
         whole = self.whole(UNSEEN if parts else BENT)
-        told = _combined(parts, whole)
-        goes_on = self._goes_on(whole)
-        if told is whole:
-            bent = not goes_on
-            if not parts and whole.answer != "O(1)":
-                bent |= bool(cost[-1] / cost[0] < memory.max() / memory.min())
-            return replace(told, answer="") if bent else told
-        classes, every = set(told.answer.split(" or ")), set(whole.answer.split(" or "))
-        if told.answer != "O(1)" and whole.answer and goes_on and not classes & every:
-            both = classes | every
-            return replace(told, answer=_either(both) if len(both) == 2 else "")
-        return told
+        told, goes_on = _combined(parts, whole), self._goes_on(whole)
+        if told is not whole:
+            return _beside(told, whole) if goes_on else told
+        alone = not parts and whole.answer != "O(1)"
+        bent = alone and cost[-1] / cost[0] < memory.max() / memory.min()
+        return whole if goes_on and not bent else replace(whole, answer="")
 
     def far_away(self, told: Verdict) -> Verdict:
         """Of two classes the one that sizes far beyond the caches tell, where all wait alike."""
@@ -175,7 +169,7 @@ class _Asked:
         if np.count_nonzero(few) < FEWEST or np.ptp(np.log(self.of.memory[0, few])) > FLAT:
             return told
         found = self._judge(few, 0)
-        return found if found.answer in told.answer.split(" or ") else told
+        return found if found.answer in _classes(told) else told
 
     def _in_caches(self, beyond: float, unseen: float, lower: ArrayLike = ()) -> Verdict | None:
         """What those of the sizes in the caches tell that are larger than one."""
@@ -220,12 +214,33 @@ class _Asked:
 
 def _combined(parts: Sequence[Verdict], whole: Verdict) -> Verdict:
     """Of what parts of the sizes tell and what all do, the most telling that none contradicts."""
-    told = [set(it.answer.split(" or ")) for it in parts]
-    if not parts or not set.intersection(*told):
+    if not parts or not set.intersection(*map(_classes, parts)):
         return whole
     shortest = min(parts, key=lambda it: it.answer.count(" or "))
     slower, *others = shortest.answer.split(" or ")
     return whole if others and whole.answer == slower else shortest
+
+
+def _beside(told: Verdict, whole: Verdict) -> Verdict:
+    """What a part tells, or both classes where all sizes tell another."""
+    both = _classes(told) | _classes(whole)
+    if told.answer == "O(1)" or not whole.answer or _classes(told) & _classes(whole):
+        return told
+    return replace(told, answer=_either(both) if len(both) == 2 else "")
+
+
+def _agreeing(it: Verdict) -> Verdict:
+    """A verdict whose outcome is undetermined where its answer says otherwise."""
+    named = it.expected in _classes(it)
+    told = it.answer and "^" not in it.answer and it.bound == "tight"
+    if (named and it.outcome == "violated") or (told and not named and it.outcome == "consistent"):
+        reason = f"Some of the sizes tell {it.answer}."
+        return replace(it, outcome="undetermined", reason=reason)
+    return it
+
+
+def _classes(it: Verdict) -> set[str]:
+    return set(it.answer.split(" or "))
 
 
 def _either(classes: set[str]) -> str:
