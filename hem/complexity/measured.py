@@ -14,26 +14,26 @@ from numpy.typing import ArrayLike, NDArray
 
 from hem.complexity.estimates import slope
 from hem.complexity.judge import Verdict, judge
-from hem.complexity.memory import LARGEST, LINE
+from hem.complexity.memory import LINE
 from hem.complexity.notation import Array, parse
 
 MEMORY_ERROR = 0.05  # relative error of what memory did to a call, beside what was measured …
 UNSEEN = 2.0  # … and the slowdown that allocators and caches cause beside it, over the sizes …
 BENT = 4.0  # … or this, where sizes in the caches do not tell that there is less
 CACHED_ERROR = 0.05  # the same for sizes that are in the caches …
-UNSEEN_CACHED = 1.1  # … as a first cache is quicker than a second …
+UNSEEN_CACHED = 1.15  # … as a first cache is quicker than a second …
 UNSEEN_COSTLY = 1.3  # … and for sizes where a call works longer than it waits
 CACHED = 2.0  # factor by which an access takes longer than at the smallest size, in the caches
 FEWEST = 6  # sizes that may decide for all
 KEPT = 256  # the largest of the integers that Python keeps: larger ones are read from memory …
 FREE = (-KEPT / 2, -KEPT)  # … so that a call may cost as if there were so many fewer
 FAR = 1_000  # from here on what is done beside a call's work no longer bends its cost
-BEYOND = 2.5  # times what the caches hold: from here on all waits alike
-FLAT = 0.4  # logarithm of the factor by which an access may take longer there
 LESS = 0.8  # part of what a class tells that a larger size costs at least …
 AGAIN = 10  # … and how often a call may wait for each line that it works on
 CLOSE = 0.015  # relative error that a class may have to be told without reserve
 REACH = 16  # of the largest size to the smallest that tells the same: there lower terms fade
+BEHIND = 0.25  # of a slope: by so much a class may fall behind what works more than it waits
+WORD = 8  # bytes that a call reads at once: it may wait for each
 STEEP = 1.5  # slope from which on a call works more than it waits
 LOWER_TERMS = 9  # tried where a call works more than it waits
 QUICKER = 0.6  # share of the samples of a size that is looked at, the quicker ones: delays only add
@@ -92,8 +92,6 @@ class Measured:
         if options.get("latency", 0) is None:
             return asked.whole(UNSEEN)
         told = asked.by_work() or asked.without_reserve() or asked.with_reserve()
-        if " or " in told.answer:
-            told = asked.far_away(told)
         return _agreeing(told if _names_a_class(told) else replace(told, answer=""))
 
 
@@ -120,9 +118,12 @@ class _Asked:
         return self._judge(np.ones(len(self.of.sizes), bool), unseen)
 
     def by_work(self) -> Verdict | None:
-        """What sizes tell where a call takes longer than waiting for all that it reads would."""
+        """What sizes tell where a call takes longer than waiting for all that it reads would.
+
+        Costs that grow still faster there than the class which explains them best are of none.
+        """
         of = self.of
-        costly = of.cost > self._waiting
+        costly = of.cost > LINE / WORD * self._waiting
         large = costly & (of.sizes * REACH >= np.max(of.sizes, where=costly, initial=0))
         if np.count_nonzero(large) < FEWEST:
             return None
@@ -136,6 +137,10 @@ class _Asked:
         told = self._judge(large, UNSEEN_COSTLY, lower=lower)
         if _names_one(plain[1]) and _names_one(told):
             told = replace(told, answer=_either(_classes(plain[1]) | _classes(told)))
+        last = sizes >= sizes[-max(3, len(sizes) // 3)]
+        least = told.predicted(told.best, sizes)[last]
+        if told.answer and slope(sizes[last], of.cost[large][last] / least) > BEHIND:
+            return replace(told, answer="")
         return self._if_so(told, of.sizes < sizes[0])
 
     def without_reserve(self) -> Verdict | None:
@@ -161,15 +166,6 @@ class _Asked:
         alone = not parts and whole.answer != "O(1)"
         bent = alone and cost[-1] / cost[0] < memory.max() / memory.min()
         return whole if goes_on and not bent else replace(whole, answer="")
-
-    def far_away(self, told: Verdict) -> Verdict:
-        """Of two classes the one that sizes far beyond the caches tell, where all wait alike."""
-        sets = self.of.working_sets
-        few = (sets > BEYOND * sets[self._fits].max()) & (sets <= LARGEST)
-        if np.count_nonzero(few) < FEWEST or np.ptp(np.log(self.of.memory[0, few])) > FLAT:
-            return told
-        found = self._judge(few, 0)
-        return found if found.answer in _classes(told) else told
 
     def _in_caches(self, beyond: float, unseen: float, lower: ArrayLike = ()) -> Verdict | None:
         """What those of the sizes in the caches tell that are larger than one."""
