@@ -67,6 +67,9 @@ def measure(
     clock: with `time.perf_counter` waiting counts, too, for files, the network and other threads.
     amortized: f does a sequence of n operations, and the cost of one of them is asked for.
 
+    From then on the process keeps the memory that it frees, up to blocks of 32 MB, if its C library
+    is GNU's.
+
     Raises ValueError for sizes that are not whole numbers from 1 on; what f raises goes through.
     """
     given = np.unique([] if sizes is None else np.asarray(sizes))
@@ -78,7 +81,7 @@ def measure(
     chosen = [int(n) for n in given] or calls.choose_sizes(turn, most)
     found = calls.measured(chosen, turn, rounds, amortized)
     between = {round(n) for n in np.sqrt(found.sizes[1:] * found.sizes[:-1])} - {*chosen}
-    if sizes is not None or not between or found.names_one_class:
+    if sizes is not None or not between or found.is_settled:
         return found
     return found.joined(calls.measured(sorted(between), turn, rounds, amortized))
 
@@ -125,12 +128,12 @@ class _Calls(NamedTuple):
                 for row, plan in list(zip(samples, plans, strict=True))[:: 1 - 2 * (turn % 2)]:
                     row.append(self.sample(plan))
                 told = np.array(samples)[:, 1:]
-                if turn >= rounds and _at_one_speed(told[..., 1], enough) is not None:
+                alike = None if turn < rounds else _at_one_speed(told[..., 1], enough)
+                if alike is not None:
                     break
         finally:
             if collecting:
                 gc.enable()
-        alike = _at_one_speed(told[..., 1], enough)
         kept = np.ones(told.shape[:2], bool) if alike is None else alike
         return [row[few, 0] for row, few in zip(told, kept, strict=True)]
 

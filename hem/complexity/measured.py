@@ -14,7 +14,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from hem.complexity.estimates import slope
 from hem.complexity.judge import Verdict, judge
-from hem.complexity.memory import LINE
 from hem.complexity.notation import Array, parse
 
 MEMORY_ERROR = 0.05  # relative error of what memory did to a call, beside what was measured …
@@ -28,12 +27,11 @@ FEWEST = 6  # sizes that may decide for all
 KEPT = 256  # the largest of the integers that Python keeps: larger ones are read from memory …
 FREE = (-KEPT / 2, -KEPT)  # … so that a call may cost as if there were so many fewer
 FAR = 1_000  # from here on what is done beside a call's work no longer bends its cost
-LESS = 0.8  # part of what a class tells that a larger size costs at least …
-AGAIN = 10  # … and how often a call may wait for each line that it works on
+LESS = 0.8  # part of what a class tells that a larger size costs at least
 CLOSE = 0.015  # relative error that a class may have to be told without reserve
 REACH = 16  # of the largest size to the smallest that tells the same: there lower terms fade
 BEHIND = 0.25  # of a slope: by so much a class may fall behind what works more than it waits
-WORD = 8  # bytes that a call reads at once: it may wait for each
+WORD = 8  # bytes that a call reads at once: it may wait for each, but no longer
 STEEP = 1.5  # slope from which on a call works more than it waits
 LOWER_TERMS = 9  # tried where a call works more than it waits
 QUICKER = 0.6  # share of the samples of a size that is looked at, the quicker ones: delays only add
@@ -75,8 +73,8 @@ class Measured:
         return np.array([np.median(row) for row in self.samples])
 
     @property
-    def names_one_class(self) -> bool:
-        """Whether some costs tell a class, and no other, so closely that no more are needed."""
+    def is_settled(self) -> bool:
+        """Whether some costs tell one class so closely that no further sizes are needed."""
         asked = _Asked(self, "O(1)", {"resamples": 2})
         told = asked.by_work() or asked.without_reserve()
         return told is not None and _names_one(told)
@@ -110,8 +108,8 @@ class _Asked:
 
     @property
     def _waiting(self) -> Array:
-        """(k,) seconds that a call waits which waits for each line that it works on."""
-        return self.of.working_sets / LINE * self.of.memory[0]
+        """(k,) seconds that a call waits which waits for each word that it works on."""
+        return self.of.working_sets / WORD * self.of.memory[0]
 
     def whole(self, unseen: float) -> Verdict:
         """What all sizes tell."""
@@ -123,7 +121,7 @@ class _Asked:
         Costs that grow still faster there than the class which explains them best are of none.
         """
         of = self.of
-        costly = of.cost > LINE / WORD * self._waiting
+        costly = of.cost > self._waiting
         large = costly & (of.sizes * REACH >= np.max(of.sizes, where=costly, initial=0))
         if np.count_nonzero(large) < FEWEST:
             return None
@@ -197,12 +195,12 @@ class _Asked:
         """Whether the larger sizes cost what a class tells, and no more besides than the memory.
 
         What they cost more is no larger than the memory's rise, nor longer than waiting for all
-        that a call reads would take some times.
+        that a call reads.
         """
         of, memory = self.of, self.of.memory
         rise = (memory / memory.min(axis=1, keepdims=True)).max(axis=0)
         least = told.predicted(told.best, of.sizes)
-        most = np.minimum((UNSEEN + 2 * rise) * least, least / LESS + AGAIN * self._waiting)
+        most = np.minimum((UNSEEN + 2 * rise) * least, least / LESS + self._waiting)
         kept = (of.cost > LESS * least) & (of.cost < most)
         small = np.arange(len(kept)) < len(kept) // 2
         return bool(np.all(kept | small | excused))

@@ -65,10 +65,8 @@ def _draw_growth(axes: Axes, curve: Curve, judged: JudgedClaim, axis: Axis) -> N
     if verdict.outcome != "consistent":
         classes.setdefault(verdict.best, RED)
     for place, (name, color) in enumerate(classes.items()):
-        costs, rise = (
-            axis.scale * verdict.predicted(name, smooth),
-            verdict.coefficients[name]["rise"],
-        )
+        costs = axis.scale * verdict.predicted(name, smooth)
+        rise = verdict.coefficients[name]["rise"]
         if rise > 1.01 and place == 0:
             axes.fill_between(smooth, costs, rise * costs, color=GRAY, alpha=0.16, lw=0)
         axes.plot(smooth, costs, "--", color=color)

@@ -163,8 +163,7 @@ def test_inputs_are_made_anew_in_each_round_where_there_is_time() -> None:
 
 def test_memory_that_calls_free_stays_with_the_process() -> None:
     """As the system counts pages that were asked for, in a process that has kept none yet."""
-    resource = pytest.importorskip("resource")
-    if not hasattr(resource, "getrusage") or platform.libc_ver()[0] != "glibc":
+    if platform.libc_ver()[0] != "glibc":
         pytest.skip("what is kept is told for the C library of GNU")
     told = subprocess.run(
         [sys.executable, "-c", FAULTS], capture_output=True, text=True, check=True
