@@ -7,6 +7,7 @@ import subprocess
 import sys
 import tracemalloc
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -14,7 +15,6 @@ import pytest
 from hem.complexity import Measured, measure
 from hem.complexity import measure as measure_function
 from hem.complexity.memory import memory_times
-from hem.complexity.models import MODELS
 from hem.complexity.notation import Array
 
 OVERHEAD = 1e-7
@@ -198,36 +198,31 @@ def test_a_class_that_is_told_needs_no_further_sizes(clock: Clock) -> None:
     assert len(measure(work, lambda n: n, budget=1.0).sizes) == 20
 
 
-def costs(cost: Callable[[Array], Array], sizes: Array, rise: float = 1) -> Measured:
-    """Costs with samples that are off by a hundredth, where memory slows by so much at the end."""
+def costs(seconds: Array, sizes: Array) -> Measured:
+    """Costs that no memory slows, with samples that are off by a hundredth."""
     rng = np.random.default_rng(0)
-    memory = 5e-9 * np.tile(np.geomspace(1, rise, len(sizes)) ** 2 / rise, (3, 1)).clip(1)
-    samples = [value * rng.normal(1, 0.01, 15) for value in cost(sizes)]
-    return Measured(sizes, samples, 8 * sizes, memory)
+    samples = [value * rng.normal(1, 0.01, 15) for value in seconds]
+    return Measured(sizes, samples, 8 * sizes, np.full((3, len(sizes)), 5e-9))
 
 
 def answer(cost: Callable[[Array], Array], sizes: Array) -> str:
-    """What they say where no memory slows."""
-    return costs(cost, sizes).judge().answer
+    """What they say by themselves."""
+    return costs(cost(sizes), sizes).judge().answer
 
 
-@pytest.mark.parametrize("rise", [1, 8])
-@pytest.mark.parametrize("bend", [0, 0.1, 0.2])
-def test_no_outcome_contradicts_the_answer(rise: float, bend: float) -> None:
-    sizes, rng = np.geomspace(8, 1e5, 30).round(), np.random.default_rng(int(10 * bend + rise))
-    seen = set()
-    for name, model in MODELS.items():
-        waits = np.geomspace(1, rise, 30) * rng.normal(1, bend, 30).clip(0.5)
-        found = costs(lambda n, f=model, w=waits: (1e-6 + 1e-8 * f(n)) * w, sizes, rise)
-        for claim in MODELS:
-            told = found.judge(claim, resamples=2)
-            classes = told.answer.split(" or ")
-            seen.add(told.outcome)
-            if told.outcome == "violated":
-                assert claim not in classes, (name, told)
-            if told.outcome == "consistent" and told.answer and "^" not in told.answer:
-                assert claim in classes, (name, told)
-    assert len(seen) > 1
+def test_a_class_that_is_told_as_possible_is_not_violated() -> None:
+    """By shortest paths of scipy, as measured: the largest sizes tell one class, all another."""
+    sizes, seconds = np.geomspace(4, 314, 20).round(), 1e-6 * np.array([
+        171, 166, 168, 168, 174, 179, 187, 205, 233, 288,
+        386, 555, 832, 1320, 2240, 3780, 6870, 12500, 23400, 44700,
+    ])  # fmt: skip
+    found = replace(costs(seconds, sizes), working_sets=25 * sizes**2)
+    found.memory[:, -3:] = 7e-9, 15e-9, 32e-9
+    told = found.judge("O(n²)")
+    assert told.answer == "O(n²) or O(n³)"
+    assert told.outcome == "undetermined"
+    assert told.answer in told.reason
+    assert found.judge("O(n)").outcome == "violated"
 
 
 def test_a_long_beginning_hides_no_steep_end() -> None:
