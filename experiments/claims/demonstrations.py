@@ -167,8 +167,12 @@ def come_round_tests(kernels: Iterable[Kernel]) -> int:
 
 def _nodes(kernels: Iterable[Kernel]) -> Iterator[ast.AST]:
     parts = {it.__code__: it for kernel in kernels for it in parts_of(kernel, set())}
-    sources = (textwrap.dedent(inspect.getsource(it)) for it in parts.values())
-    return (node for source in sources for node in ast.walk(ast.parse(source)))
+    return (node for part in parts.values() for node in _nodes_of(part))
+
+
+@cache
+def _nodes_of(part: Kernel) -> list[ast.AST]:
+    return [*ast.walk(ast.parse(textwrap.dedent(inspect.getsource(part))))]
 
 
 def _tests_direction(it: ast.AST) -> bool:

@@ -196,8 +196,7 @@ def _hinge(
     """The size that decides alone: without it the outcome is another, or the claim fits best."""
     if outcome == "undetermined" or models.outgrows(claim):
         return None
-    for place, size in enumerate(costs.sizes):
-        fewer = models.without(place)
+    for size, fewer in zip(costs.sizes, models.without_each(), strict=True):
         keeps = fewer.best in _kept(claim, bound)
         accused = not keeps and _decide(costs, fewer, claim, bound)[0] == "violated"
         if accused if outcome == "consistent" else keeps:

@@ -12,7 +12,7 @@ contain O(1), and no measurement could ever tell them apart.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 from numpy.typing import NDArray
@@ -139,18 +139,22 @@ class Fit:
     slowdown: NDArray[np.intp]  # row of the slowdowns that served best …
     lower: NDArray[np.intp]  # … and place of the lower-order term
 
+    def row(self, place: int) -> "Fit":
+        """The fit of one row of several."""
+        return Fit(*(getattr(self, it.name)[place] for it in fields(self)))
+
 
 def fit(models: DesignMatrix, costs: Array, weight: Array) -> Fit:
     """Nonnegative least squares of weighted costs, in closed form, under the best slowdown each.
 
-    costs: (..., k). weight: (k,), 1/(cost·relative error): a size counts for its precision, not
-    for its magnitude. O(m·t·s·k) per row of costs.
+    costs: (..., k). weight: (k,) or (..., k), 1/(cost·relative error): a size counts for its
+    precision, not for its magnitude. O(m·t·s·k) per row of costs.
     """
-    pure, mixed = models.columns()
-    u, v, t = pure * weight, mixed * weight, costs * weight
+    u, v = (column * weight[..., None, None, :] for column in models.columns())
+    t = costs * weight
     uu, vv, uv = (np.maximum((p * q).sum(-1), 1e-30) for p, q in ((u, u), (v, v), (u, v)))
     # Not by BLAS, whose threads wait for each other, up to 60 times as long, beside other work.
-    ut, vt = (np.einsum("...k,msk->...ms", t, column) for column in (u, v))
+    ut, vt = (np.einsum("...k,...msk->...ms", t, column) for column in (u, v))
     det = uu * vv - uv * uv
     regular = det > 1e-12 * uu * vv
     safe = np.where(regular, det, 1.0)

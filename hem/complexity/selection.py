@@ -9,7 +9,7 @@ residuals to d; where the fits are good it is about χ²(g) less χ²(f). The si
 best that explains the costs about as well as the closest one does.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -172,10 +172,12 @@ class Comparison:
         """Evidence of the best model against the runner-up."""
         return self.evidence(self.chi2[self.best], self.chi2[self.runner_up])
 
-    def without(self, size: int) -> "Comparison":
+    def without_each(self) -> Iterator["Comparison"]:
         """The models fitted to all sizes but one, by its place."""
-        weight = np.where(np.arange(len(self.weight)) == size, 0, self.weight)
-        return replace(self, weight=weight, fit=fit(self.design, self.costs.cost, weight))
+        weights = np.where(np.eye(len(self.weight), dtype=bool), 0, self.weight)
+        fits = fit(self.design, self.costs.cost, weights)
+        for place, weight in enumerate(weights):
+            yield replace(self, weight=weight, fit=fits.row(place))
 
     def steady(self, costs: Array) -> Array:
         """Costs (..., k) with the memory's part, as the best model sees it in each row, removed."""

@@ -11,6 +11,7 @@ import hem
 import structures
 from hem import algorithms
 from hem.contract import Structure
+from tests.extent import waiting_for
 from tests.structures.conftest import shuffled
 
 
@@ -86,7 +87,10 @@ def test_after_any_operations_the_soup_is_that_of_an_indexed_mesh(family: str):
     assert np.array_equal(soup_of(soup), soup.points[soup.triangles()])
 
 
-@pytest.mark.parametrize("algorithm", [algorithms.smooth, algorithms.center, algorithms.impacts])
+MOVING = algorithms.smooth, algorithms.center
+
+
+@pytest.mark.parametrize("algorithm", waiting_for(MOVING, [*MOVING, algorithms.impacts]))
 def test_what_an_algorithm_writes_is_in_the_soup(algorithm: Any):
     s = built()
     given = [s.faces()[:20]] if algorithm is algorithms.impacts else []

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import pickle
 import sys
 from pathlib import Path
@@ -13,11 +14,18 @@ import hem
 import structures
 from hem import algorithms
 from hem.contract import QUERIES
+from tests.extent import exhaustive
 from tests.structures.conftest import mesh_called
 
 COMPILED = [name for name, it in structures.REGISTRY.items() if it.compiled]
 OF_POLYGONS = [name for name in COMPILED if structures.REGISTRY[name].holds_polygons]
 MESHES = "empty", "pillow", "octahedron", "strip", "shuffled torus"
+SLOW = [(it, MESHES[-1]) for it in COMPILED if structures.REGISTRY[it].searches]
+"""Where Python itself searches the whole mesh for every answer."""
+TRIED = [
+    pytest.param(*it, marks=exhaustive if it in SLOW else ())
+    for it in itertools.product(COMPILED, MESHES)
+]
 
 Structure = structures.Structure
 
@@ -52,8 +60,7 @@ def edit(s: Structure) -> list[str]:
     return told
 
 
-@pytest.mark.parametrize("mesh", MESHES)
-@pytest.mark.parametrize("name", COMPILED)
+@pytest.mark.parametrize(("name", "mesh"), TRIED)
 def test_queries_operations_and_refusals_are_those_of_compiled_code(name, mesh):
     one, other = both_ways(name, mesh_called(mesh))
     require_alike(one, other)
