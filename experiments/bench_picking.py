@@ -19,7 +19,7 @@ from numpy.typing import ArrayLike
 import hem
 from experiments.harness import BASE, Case, Experiment, Measurement, Preset, Timer
 from experiments.harness.oracle import check_query
-from experiments.harness.timer import seconds_of
+from experiments.harness.timer import took
 from hem.arrays import Array, Floats
 from hem.contract import QUERIES, Structure
 
@@ -127,7 +127,7 @@ def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
         s.split_face(face, s.points[s.face_vertices(face)].mean(axis=0))
         return ()
 
-    rounds = preset.affordable_rounds(seconds_of(follow))
+    rounds = preset.affordable_rounds(took(follow)[1])
     if case.subject == FOLLOWING:
         timed = timer(follow, setup=edit, rounds=rounds, warmup=1)
     else:
@@ -158,7 +158,7 @@ def _time_neighbors(case: Case, s: Structure, preset: Preset, timer: Timer) -> M
             for v in s.face_vertices(face).tolist():
                 s.vertex_faces(v)
 
-    rounds = preset.affordable_rounds(seconds_of(ask))
+    rounds = preset.affordable_rounds(took(ask)[1])
     return case.result("time", s, **timer(ask, rounds=rounds, per=picks).fields)
 
 

@@ -13,7 +13,7 @@ import numpy as np
 
 import structures
 from experiments.harness import BASE, Case, Experiment, Measurement, Preset, Timer
-from experiments.harness.timer import seconds_of
+from experiments.harness.timer import took
 from hem import algorithms
 from hem.contract import QUERIES, Structure
 
@@ -158,7 +158,7 @@ def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
         return case.result("time", s, skipped=reason)
     _check(case, run)
     done = _ready(s)
-    rounds = preset.affordable_rounds(seconds_of(partial(run, done)))
+    rounds = preset.affordable_rounds(took(partial(run, done))[1])
     units = UNITS[workload.unit](s, done)
     timed = timer(run, setup=lambda: (_ready(s),), rounds=rounds, warmup=0, per=units)
     return case.result("time", s, **timed.fields)

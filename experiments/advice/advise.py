@@ -24,26 +24,20 @@ BUILT_OF_OBJECTS = 20_000
 """Faces up to which a structure of objects is built to be weighed."""
 
 
-def _holds(kind: type[Structure], family: str, edges: bool = False) -> bool:
-    """Whether a structure holds a family of meshes, and beside it values of edges."""
+def _holds_borders(kind: type[Structure]) -> bool:
+    """Whether a structure holds meshes that have borders."""
     try:
-        s = build(kind.name, hem.generate(family, 100))
-        if edges:
-            s.edge_attribute("needed")  # refused without records
+        build(kind.name, hem.generate("grid", 100))
     except hem.MeshError:
         return False
     return True
 
 
-def _holds_edges(kind: type[Structure]) -> bool:
-    return _holds(kind, "torus", edges=True)
-
-
 NEEDS: dict[str, tuple[str, Callable[[type[Structure]], bool]]] = {
-    "edges": ("records no edges", _holds_edges),
-    "borders": ("holds closed meshes only", lambda it: _holds(it, "grid")),
+    "edges": ("records no edges", lambda it: not it.emulated),
+    "borders": ("holds closed meshes only", _holds_borders),
     "polygons": ("holds triangles only", lambda it: it.holds_polygons),
-    "attributes": ("keeps no values of edges", _holds_edges),
+    "attributes": ("keeps no values of edges", lambda it: not it.emulated),
     "edits": ("looks at the whole mesh for an edit", lambda it: not (it.searches or it.rebuilds)),
 }
 """By name: what is wrong with a structure that cannot, and whether it can. ``edits`` is for what

@@ -15,6 +15,7 @@ from experiments.claims import Curve, curves
 from experiments.harness import ANSWERING
 from experiments.runs import Run
 from hem.arrays import Array
+from hem.authoring import set_point
 from hem.contract import OPERATIONS
 from hem.contract.recording import ANEW, CHECKED, COMPILED, PYTHON
 from structures import REGISTRY
@@ -24,6 +25,9 @@ BY_QUERY = {"face_left_of": "edge_faces", "diamond": "edge_faces", "are_joined":
 
 REBUILDING, ALONE = "flip_edge", "split_face"
 """Where an edit has all neighbors found anew, the one takes that, and the other does without."""
+
+MOVING = "vertex_faces"
+"""What moving a vertex takes where every triangle around it has its position."""
 
 CALL = 6e-7
 """Seconds of a call from Python, for a run that did not measure it."""
@@ -64,7 +68,10 @@ class Prices:
     ) -> Price:
         """What one costs on a mesh of so many faces, ``in_order`` the share that is asked so."""
         name = BY_QUERY.get(what, what).removeprefix(CHECKED)
-        rebuilds = REGISTRY[structure].rebuilds
+        kind = REGISTRY[structure]
+        rebuilds = kind.rebuilds
+        if name == "move_vertex" and kind.compiled and kind.kernels["set_point"] is not set_point:
+            name = MOVING
         if what == ANEW:
             found = self._at(faces, "bench_operations", structure, REBUILDING, "batched")
             return found if rebuilds else Price(0.0, 0.0)
@@ -79,7 +86,7 @@ class Prices:
                     one = self._at(faces, "bench_queries", structure, name, order)
                     seconds, spread = seconds + share * one.seconds, max(spread, one.spread)
             found = Price(seconds, spread)
-        call = self.call if caller == PYTHON and REGISTRY[structure].compiled else 0.0
+        call = self.call if caller == PYTHON and kind.compiled else 0.0
         return Price(found.seconds + call, found.spread)
 
     def build(self, structure: str, faces: float) -> Price | None:

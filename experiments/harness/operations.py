@@ -1,7 +1,6 @@
 """Operations as they are measured: on which elements, on a copy that is made new each time."""
 
 from functools import lru_cache, partial
-from time import perf_counter
 from typing import Any
 
 import numpy as np
@@ -12,7 +11,7 @@ import structures
 from experiments.harness.calibration import latency_now
 from experiments.harness.cases import BASE, Case
 from experiments.harness.reference import copies, copies_of, small_case, typical
-from experiments.harness.timer import Timed, Timer, seconds_of, time_rounds
+from experiments.harness.timer import Timed, Timer, time_rounds, took
 from experiments.presets import HUBS, Preset
 from hem.arrays import Array
 from hem.contract import Structure
@@ -109,14 +108,12 @@ class OperationBatch:
         """What one operation takes, about; they are compiled before."""
         self.operate()
         self.restore()
-        return seconds_of(self.operate) / self.operations
+        return took(self.operate)[1] / self.operations
 
     def idle(self) -> float:
         """Call for no operation -> seconds."""
         self._prepared.task[END] = 0
-        begin = perf_counter()
-        self.operate()
-        seconds = perf_counter() - begin
+        seconds = took(self.operate)[1]
         self._prepared.task[END] = self.operations
         return seconds
 

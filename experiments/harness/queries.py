@@ -8,7 +8,7 @@ from experiments.harness.calibration import latency_now
 from experiments.harness.cases import Case, Measurement, queried_handles
 from experiments.harness.oracle import check_query
 from experiments.harness.reference import Reference, typical
-from experiments.harness.timer import Timer, seconds_of
+from experiments.harness.timer import Timer, took
 from experiments.presets import Preset
 from hem.arrays import Array
 from hem.contract import Structure, Sweep
@@ -69,10 +69,10 @@ def _seconds_per_query(sweep: Sweep, enough: float) -> float:
     many = 1
     while True:
         asked = sweep.successive(0, many)
-        seconds = seconds_of(asked.run)
+        seconds = took(asked.run)[1]
         for _ in range(TRIES - 1):
             if seconds >= enough:
-                seconds = min(seconds, seconds_of(asked.run))
+                seconds = min(seconds, took(asked.run)[1])
         if seconds >= enough or many >= MOST_HANDLES:
             return max(seconds / many, 1e-10)
         many *= 4

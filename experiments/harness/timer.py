@@ -16,6 +16,7 @@ from hem.arrays import Array
 
 Call = Callable[..., Any]
 Setup = Callable[[], tuple[Any, ...]]
+Clock = Callable[[], float]
 
 
 @dataclass(frozen=True)
@@ -62,11 +63,11 @@ def time_rounds(
     return Timed(np.array(samples[warmup:]), np.array(calibration[warmup:]), per)
 
 
-def seconds_of(call: Callable[[], Any]) -> float:
-    """Seconds of one call."""
-    begin = perf_counter()
-    call()
-    return perf_counter() - begin
+def took(call: Call, *given: Any, clock: Clock = perf_counter) -> tuple[Any, float]:
+    """What a call gives, and its seconds."""
+    begin = clock()
+    found = call(*given)
+    return found, clock() - begin
 
 
 class UnitClock:

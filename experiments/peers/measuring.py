@@ -1,11 +1,10 @@
 """How a library is measured: asked, operated on, built, and given whole meshes."""
 
 import signal
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import lru_cache, partial
 from itertools import count
-from time import perf_counter
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -16,6 +15,7 @@ import structures
 from experiments.harness import BASE, Case, Preset, Timer, operation_faces
 from experiments.harness.calibration import latency_now
 from experiments.harness.oracle import CheckFailedError, check_rows, check_told, pack, row
+from experiments.harness.timer import took
 from experiments.peers.peer import Peer
 from experiments.peers.registry import PEERS
 from hem.algorithms import vertex_normals
@@ -42,22 +42,14 @@ class Built(NamedTuple):
     corners: dict[str, Array]
 
 
-def _given(case: Case) -> tuple[Array, Array]:
+def as_given(mesh: hem.TriangleMesh) -> tuple[Array, Array]:
     """Positions and triangles, as libraries take them."""
-    mesh = case.mesh()
     return mesh.points.astype(np.float64), mesh.triangles.astype(np.int32)
-
-
-def _took(call: Callable[..., Any], *given: Any) -> tuple[Any, float]:
-    """What a call gives, and the seconds it takes."""
-    begin = perf_counter()
-    found = call(*given)
-    return found, perf_counter() - begin
 
 
 @lru_cache(maxsize=1)
 def _built(case: Case) -> Built:
-    peer, process, given = PEERS[case.structure], psutil.Process(), _given(case)
+    peer, process, given = PEERS[case.structure], psutil.Process(), as_given(case.mesh())
     before = process.memory_info().rss
     m = peer.build(*given)
     grown = max(process.memory_info().rss - before, sum(it.nbytes for it in given))
@@ -113,6 +105,12 @@ def _ends_within(seconds: float, ask: Callable[[Any], Any], handle: Any) -> bool
     return True
 
 
+def ask_each(ask: Callable[[Any], Any], handles: Sequence[Any]) -> None:
+    """Ask one element after the other."""
+    for handle in handles:
+        ask(handle)
+
+
 def time_single(case: Case, preset: Preset, timer: Timer) -> Fields:
     """Ask one element after the other, other ones every round, until all were asked."""
     peer, query, built = PEERS[case.structure], case.query, _mesh_of(case)
@@ -122,20 +120,15 @@ def time_single(case: Case, preset: Preset, timer: Timer) -> Fields:
     if peer.objects and not _ends_within(preset.case_seconds, ask, handles[0]):
         return {"skipped": f"one query takes longer than the {preset.case_seconds} s of a case"}
     _check(case, built, numbers[:CHECKED], [ask(it) for it in handles[:CHECKED]])
-
-    def ask_each(chosen: list[Any]) -> None:
-        for handle in chosen:
-            ask(handle)
-
-    seconds = _took(ask_each, handles[:CHECKED])[1] / CHECKED
+    seconds = took(ask_each, ask, handles[:CHECKED])[1] / CHECKED
     many = int(np.clip(preset.round_seconds / seconds, 1, len(handles)))
     windows = (np.arange(many) + many * k for k in count())
 
-    def some() -> tuple[list[Any]]:
-        return ([handles[it] for it in (next(windows) % len(handles)).tolist()],)
+    def some() -> tuple[Any, ...]:
+        return ask, [handles[it] for it in (next(windows) % len(handles)).tolist()]
 
     if seconds * len(handles) < preset.case_seconds:
-        ask_each(handles)
+        ask_each(ask, handles)
     rounds = preset.affordable_rounds(seconds * many)
     return timer(ask_each, setup=some, rounds=rounds, per=many).fields
 
@@ -144,7 +137,7 @@ def time_bulk(case: Case, preset: Preset, timer: Timer) -> Fields:
     """Ask of all elements at once -> seconds per element."""
     peer, built = PEERS[case.structure], _mesh_of(case)
     ask, per = peer.bulk[case.query.name], len(built.corners[case.query.source])
-    rows, seconds = _took(ask, peer.fresh(built.mesh))
+    rows, seconds = took(ask, peer.fresh(built.mesh))
     few = _numbers(case, built)[:CHECKED]
     _check(case, built, few, [row(rows, it) for it in few.tolist()])
     kept: list[Any] = []  # so that freeing is not timed
@@ -159,8 +152,8 @@ def time_bulk(case: Case, preset: Preset, timer: Timer) -> Fields:
 
 def time_building(case: Case, preset: Preset, timer: Timer) -> Fields:
     """Build from arrays."""
-    peer, given = PEERS[case.structure], _given(case)
-    m, seconds = _took(peer.build, *given)
+    peer, given = PEERS[case.structure], as_given(case.mesh())
+    m, seconds = took(peer.build, *given)
     _require(peer, peer.faces(m) == len(given[1]), f"{peer.faces(m)} faces of {len(given[1])}")
     rounds = preset.affordable_rounds(seconds)
     return timer(peer.build, setup=lambda: given, rounds=rounds).fields
@@ -179,7 +172,7 @@ def _apart(case: Case) -> Array:
 
 def time_operations(case: Case, preset: Preset, timer: Timer, batched: bool) -> Fields:
     """Operate on elements far apart, of a new mesh every round -> seconds per operation."""
-    peer, operation, given = PEERS[case.structure], str(case.subject), _given(case)
+    peer, operation, given = PEERS[case.structure], str(case.subject), as_given(case.mesh())
     operate = (peer.batches if batched else peer.operations)[operation]
     element, numbers = operation.split("_")[1], _apart(case).tolist()
     places = np.random.default_rng(SEED).random((len(numbers), 3))
@@ -193,7 +186,7 @@ def time_operations(case: Case, preset: Preset, timer: Timer, batched: bool) -> 
 
     m, handles, _ = ready()
     faces = peer.faces(m) + FACES_MORE[operation] * len(numbers)
-    done, seconds = _took(operate, m, handles, places)
+    done, seconds = took(operate, m, handles, places)
     left = peer.faces(m)
     _require(peer, (done, left) == (len(numbers), faces), f"{done} × {operation}, {left} faces")
     rounds = preset.affordable_rounds(seconds)
@@ -202,13 +195,13 @@ def time_operations(case: Case, preset: Preset, timer: Timer, batched: bool) -> 
 
 def time_algorithm(case: Case, preset: Preset, timer: Timer) -> Fields:
     """Give an algorithm a whole mesh, a new one every round -> seconds."""
-    peer, name, given = PEERS[case.structure], str(case.subject), _given(case)
+    peer, name, given = PEERS[case.structure], str(case.subject), as_given(case.mesh())
     more = [len(given[1]) // PART] if name == "simplify" else []
 
     def ready() -> tuple[Any, ...]:
         return peer.build(*given), *more
 
-    found, seconds = _took(peer.algorithms[name], *ready())
+    found, seconds = took(peer.algorithms[name], *ready())
     if name == "simplify":
         _require(peer, abs(found - more[0]) <= more[0] / PART, f"{found} faces for {more[0]}")
     elif name == "vertex_normals":
@@ -222,7 +215,7 @@ def time_algorithm(case: Case, preset: Preset, timer: Timer) -> Fields:
 @lru_cache(maxsize=2)
 def _looped(case: Case, rounds: int, whole: int) -> tuple[dict[str, list[float]], Fields]:
     """What compiled loops took on a mesh, by subject, and the memory beside it; checked."""
-    peer, given = PEERS[case.structure], _given(case)
+    peer, given = PEERS[case.structure], as_given(case.mesh())
     assert peer.looped is not None  # or there is no such case
     few = 0 if case.valence is None else len(hem.valence_hubs(case.valence, case.size))
     told = peer.looped(*given, few, rounds, whole)

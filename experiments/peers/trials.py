@@ -20,6 +20,7 @@ import psutil
 
 import hem
 from experiments.harness.oracle import CheckFailedError, check_rows
+from experiments.peers.measuring import as_given
 from experiments.peers.peer import BYTES, Mesh, Peer
 from experiments.peers.registry import PEERS
 from hem.arrays import Array
@@ -103,7 +104,7 @@ def weigh(peer: Peer, points: Array, triangles: Array) -> int:
     """Bytes by which the process grows that builds a mesh: of its own, not shared (USS)."""
     process = psutil.Process()
     small = hem.generate("torus", 400)
-    peer.build(small.points.astype(np.float64), small.triangles.astype(np.int32))  # loads it all
+    peer.build(*as_given(small))  # loads it all
     before = _own_bytes(process)
     kept = peer.build(points.copy(), triangles.copy())  # who keeps these has them weighed
     grown = _own_bytes(process) - before
@@ -147,7 +148,7 @@ def main(name: str, *tasks: str) -> None:
     for task, *about in map(str.split, tasks):
         if task == BYTES:
             mesh = hem.generate(about[0], int(about[1]))
-            found: Any = weigh(peer, mesh.points.astype(float), mesh.triangles.astype(np.int32))
+            found: Any = weigh(peer, *as_given(mesh))
         else:
             found = give(peer, BAD_INPUT[task])
         print(MARK + json.dumps([task, found]), flush=True)

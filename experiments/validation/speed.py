@@ -9,7 +9,7 @@ quarter of an hour.
 
 import json
 import os
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import replace
 from functools import partial
@@ -27,8 +27,11 @@ import typer
 
 import hem
 import structures
+from experiments.harness.steadiness import pin
+from experiments.harness.timer import Clock, took
 from experiments.peers import BATCHED, BUILD, OURS, PEERS
 from experiments.peers.libraries.ours import build, looped
+from experiments.peers.measuring import PART, as_given, ask_each
 from experiments.peers.peer import SIX, Lazy
 from experiments.runs import describe
 from hem import TriangleMesh, algorithms
@@ -42,8 +45,6 @@ SIZES = 100_000, 1_000_000
 TURNS, ROUNDS = 2, 3
 ASKED = 20_000
 """Elements that are asked and operated on one by one."""
-PART = 10
-"""Simplified to one face of so many."""
 SAMPLES = 200_000
 """Points of each mesh whose distance to the other is measured."""
 ONE, ALL = "one", "all"
@@ -106,22 +107,8 @@ def _with_children() -> float:
     return process_time() + sum(it.user + it.system for it in children)
 
 
-def _took(
-    call: Callable[..., Any], *given: Any, clock: Callable[[], float] = process_time
-) -> tuple[Any, float]:
-    """What a call gives, and its seconds."""
-    begin = clock()
-    found = call(*given)
-    return found, clock() - begin
-
-
-def _least(call: Callable[..., Any], *given: Any, **clock: Any) -> float:
-    return min(_took(call, *given, **clock)[1] for _ in range(ROUNDS))
-
-
-def _given(mesh: TriangleMesh) -> tuple[Array, Array]:
-    """As libraries take it."""
-    return mesh.points.astype(np.float64), mesh.triangles.astype(np.int32)
+def _least(call: Callable[..., Any], *given: Any, clock: Clock = process_time) -> float:
+    return min(took(call, *given, clock=clock)[1] for _ in range(ROUNDS))
 
 
 def in_loops(vertices: int) -> Rows:
@@ -151,14 +138,14 @@ def building(vertices: int, cores: str) -> Rows:
     builds = {name: partial(structures.build, name, mesh) for name in STRUCTURES}
     for name in BUILT:
         if PEERS[name].version:
-            builds[name] = partial(PEERS[name].build, *_given(mesh))
+            builds[name] = partial(PEERS[name].build, *as_given(mesh))
     for _, (name, call) in product(range(TURNS), builds.items()):
         yield BUILD, vertices, cores, name, _least(call, clock=clock)
 
 
 def one_after_the_other(vertices: int) -> Rows:
     """Single calls of Python: queries, in order and at random, and flips."""
-    given, draw = _given(hem.generate("torus", vertices)), np.random.default_rng(1).permutation
+    given, draw = as_given(hem.generate("torus", vertices)), np.random.default_rng(1).permutation
     orders = {"in order": [*range(min(ASKED, vertices))], "random": draw(vertices)[:ASKED].tolist()}
     edges = draw(3 * vertices)[:ASKED].tolist()
     peers = {it: PEERS[it] for it in ASKED_SINGLY if PEERS[it].version}
@@ -168,18 +155,13 @@ def one_after_the_other(vertices: int) -> Rows:
         ask = peer.single["vertex_faces"](meshes[name])
         for order, numbers in orders.items():
             handles = peer.handles(meshes[name], "vertex", numbers)
-            taken = _least(_ask_each, ask, handles)
+            taken = _least(ask_each, ask, handles)
             yield f"one {order}", vertices, ONE, name, taken / len(handles)
         if flip := peer.operations.get("flip_edge"):
             fresh = [peer.build(*given) for _ in range(ROUNDS)]
             named = [(m, peer.handles(m, "edge", edges)) for m in fresh]
-            flips = [_took(flip, *it, None) for it in named]
+            flips = [took(flip, *it, None, clock=process_time) for it in named]
             yield "flip_edge", vertices, ONE, name, min(taken / done for done, taken in flips)
-
-
-def _ask_each(ask: Callable[[Any], Any], handles: Sequence[Any]) -> None:
-    for handle in handles:
-        ask(handle)
 
 
 def ours(structure: str) -> Simplifier:
@@ -220,19 +202,13 @@ def simplifying(vertices: int, cores: str) -> Rows:
     faces, clock = len(mesh.triangles) // PART, _with_children if cores == ONE else perf_counter
     for name, it in simplifiers().items():
         for _ in range(TURNS):
-            m = it.build(*_given(mesh))
-            made, taken = _took(it.simplify, m, faces, clock=clock)
+            m = it.build(*as_given(mesh))
+            made, taken = took(it.simplify, m, faces, clock=clock)
             yield "simplify", vertices, cores, name, taken
         if cores == ONE:
             errors = meshlab.distances(mesh, it.outcome(m, made), SAMPLES)
             for work, value in zip(ERRORS, errors, strict=True):
                 yield work, vertices, cores, name, value
-
-
-def pin(cores: str) -> None:
-    """Keep this process on one core, or leave it on all."""
-    if cores == ONE and hasattr(os, "sched_setaffinity"):
-        os.sched_setaffinity(0, {max(os.sched_getaffinity(0))})
 
 
 def measured(cores: str, many: int, few: int) -> list[tuple[Any, ...]]:
@@ -271,7 +247,8 @@ def main(output: Path = RESULT, many: int = SIZES[1], few: int = SIZES[0]) -> No
     rows: list[tuple[Any, ...]] = []
     for cores in CLOCKS:
         os.environ[THREADS] = "1" if cores == ONE else str(os.cpu_count() or 1)
-        with ProcessPoolExecutor(1, get_context("spawn"), pin, (cores,)) as process:
+        first = pin if cores == ONE else None
+        with ProcessPoolExecutor(1, get_context("spawn"), first) as process:
             process.submit(measured, cores, WARM, WARM).result()  # compiles all that will be timed
             rows += process.submit(measured, cores, many, few).result()
     kept = {key: value for key, value in describe("").items() if key != "preset"}

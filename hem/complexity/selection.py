@@ -48,10 +48,7 @@ class Memory:
     slowdowns: Slowdowns  # what the measured latency, or its absence, allows
     unmeasured: Slowdowns | None  # what is possible besides, unmeasured: it violates nothing
     latency_known: bool  # whether nothing unmeasured casts doubt on what is confirmed
-    growth_to_reject: float  # growth over the sizes from which on a model violates a simpler claim
-    misfit: float  # χ² per degree of freedom up to which a model explains the costs
     exact: bool  # the costs are counts of work
-    parameters: int  # free ones of a model: intercept, factor, and the slowdown if there is one
 
 
 def account_for_memory(
@@ -64,20 +61,19 @@ def account_for_memory(
     where it is more than 1, and then nothing is confirmed in spite of it either. ``entire``: the
     latency is of a loop that waits as the costs do, so that they rise as much as it does.
     """
-    nothing, growth = growth_models.no_slowdown(len(costs.sizes)), ACCUSING_GROWTH
+    if exact and costs.latency is not None:
+        raise ValueError("exact counts wait for no memory: give either latency or exact")
+    nothing = growth_models.no_slowdown(len(costs.sizes))
+    if exact:
+        return costs, Memory(nothing, None, True, exact)
     limited = allow_unmeasured > 1
     highest = allow_unmeasured if limited else HIGHEST_SLOWDOWN
     unseen = growth_models.unknown_slowdowns(costs.sizes, highest)
     if costs.latency is None:
-        if exact:
-            return costs, Memory(nothing, None, True, 1.0, MISFIT_EXPLAINED, True, 2)
-        return costs, Memory(nothing, unseen, False, growth, MISFIT, False, 2)
-    if exact:
-        raise ValueError("exact counts wait for no memory: give either latency or exact")
+        return costs, Memory(nothing, unseen, False, exact)
     slow = growth_models.entire_slowdown if entire else growth_models.measured_slowdowns
-    slowdowns, beside = slow(costs.latency), unseen if allow_unmeasured else None
-    free = 2 if entire else 3
-    memory = Memory(slowdowns, beside, not limited, growth, MISFIT_EXPLAINED, False, free)
+    beside = unseen if allow_unmeasured else None
+    memory = Memory(slow(costs.latency), beside, not limited, exact)
     return replace(costs, error=np.sqrt(costs.error**2 + latency_error**2)), memory
 
 
@@ -131,7 +127,8 @@ class Comparison:
     def grows_enough_to_reject(self) -> NDArray[np.bool_]:
         """(m,) whether a model grew enough to violate a simpler claim."""
         _, steady = predict(self.design, self.fit)
-        return steady.max(axis=1) >= self.memory.growth_to_reject * steady.min(axis=1)
+        enough = 1.0 if self.memory.exact else ACCUSING_GROWTH
+        return steady.max(axis=1) >= enough * steady.min(axis=1)
 
     def _misfit(self, slowdowns: Slowdowns | None, growth: float) -> Array:
         if slowdowns is None:
@@ -141,8 +138,11 @@ class Comparison:
 
     @property
     def freedom(self) -> int:
-        """Degrees of freedom of the residuals."""
-        return max(int(np.count_nonzero(self.weight)) - self.memory.parameters, 1)
+        """Degrees of freedom of the residuals: a model has an intercept, a factor, and a slowdown
+        where there are several.
+        """
+        parameters = 2 + (len(self.memory.slowdowns.scaling) > 1)
+        return max(int(np.count_nonzero(self.weight)) - parameters, 1)
 
     @property
     def explained(self) -> bool:
@@ -152,7 +152,9 @@ class Comparison:
     @property
     def fits(self) -> bool:
         """Whether the costs stray from the best model no more than they may."""
-        return bool(self.chi2[self.best] <= self.memory.misfit * self.freedom)
+        told = self.memory.exact or self.costs.latency is not None
+        most = MISFIT_EXPLAINED if told else MISFIT
+        return bool(self.chi2[self.best] <= most * self.freedom)
 
     @cached_property
     def best(self) -> int:
@@ -247,16 +249,11 @@ def compare_models(
     Times that stray from all of them, but evenly and little, are fitted again with what they stray
     as their error: sizes differ by more than their samples tell, and a class may still stand out.
     """
-    models = _fit_models(costs, memory, names, lower)
-    stray = np.sqrt(models.chi2[models.best] / models.freedom)
-    if memory.exact or models.fits or stray * np.median(costs.error) > MOST_WOBBLE:
-        return models
-    return _fit_models(replace(costs, error=stray * costs.error), memory, names, lower)
-
-
-def _fit_models(
-    costs: Costs, memory: Memory, names: Sequence[str], lower: Array | None
-) -> Comparison:
-    weight = 1 / (costs.cost * costs.error)
     models = design(costs.sizes, memory.slowdowns, GROWTH, names, lower)
-    return Comparison(costs, memory, weight, models, fit(models, costs.cost, weight))
+    weight = 1 / (costs.cost * costs.error)
+    found = Comparison(costs, memory, weight, models, fit(models, costs.cost, weight))
+    stray = np.sqrt(found.chi2[found.best] / found.freedom)
+    if memory.exact or found.fits or stray * np.median(costs.error) > MOST_WOBBLE:
+        return found
+    strayed, weight = replace(costs, error=stray * costs.error), weight / stray
+    return Comparison(strayed, memory, weight, models, fit(models, costs.cost, weight))

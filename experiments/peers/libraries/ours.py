@@ -1,6 +1,5 @@
 """Our own half-edge mesh, asked as the libraries are: through calls of Python."""
 
-from collections.abc import Callable
 from functools import partial
 from operator import attrgetter, methodcaller
 from time import process_time
@@ -11,6 +10,7 @@ import numpy as np
 import hem
 import structures
 from experiments.harness import time_rounds
+from experiments.harness.timer import took
 from experiments.peers.peer import BATCHED, SIX, Mesh, Peer, Rows
 from hem import algorithms
 from hem.arrays import Array
@@ -73,23 +73,20 @@ def looped(
 
 
 def _times(s: Mesh, few: int, rounds: int, whole: int) -> dict[str, list[float]]:
+    """Algorithms and batches by all threads' time of the processor, as ``program.cpp`` takes it:
+    other programs make little difference.
+    """
     times = {}
     for query, it in QUERIES.items() if rounds else ():
         handles = np.random.default_rng(7).permutation(_at(s, it.source, few))[:ASKED]
         timed = time_rounds(s.prepare_sweep(query, handles).run, rounds=rounds)
         times[query] = (timed.samples / len(handles)).tolist()
     for name, algorithm in algorithms.SIX.items() if whole else ():
-        times[name] = [_processor_seconds(algorithm, s.copy()) for _ in range(1 + whole)][1:]
+        copies = (s.copy() for _ in range(1 + whole))
+        times[name] = [took(algorithm, it, clock=process_time)[1] for it in copies][1:]
     for name in BATCHED if whole else ():
         times[name] = [_seconds_each(name, s.copy()) for _ in range(1 + whole)][1:]
     return times
-
-
-def _processor_seconds(algorithm: Callable[[Any], Any], s: Mesh) -> float:
-    """Of all threads, as ``program.cpp`` takes them: other programs make little difference."""
-    begin = process_time()
-    algorithm(s)
-    return process_time() - begin
 
 
 def _seconds_each(operation: str, s: Mesh) -> float:

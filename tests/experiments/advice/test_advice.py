@@ -24,9 +24,11 @@ from experiments.advice import (
     predict,
     recorded,
 )
-from experiments.runs import Run
+from experiments.cli.check import BASELINE
+from experiments.regression import RUN
+from experiments.runs import Run, load
 from hem.contract import QUERIES
-from structures import REGISTRY
+from structures import REGISTRY, build
 
 COMPILED = [name for name, it in REGISTRY.items() if it.compiled]
 MESH = hem.generate("torus", 1_000)
@@ -67,6 +69,15 @@ def test_what_was_measured_is_predicted_times_how_often(run, prices, structure) 
 def test_prices_grow_between_sizes_as_at_them(prices: Prices) -> None:
     costs = [prices.price("indexed", "vertex_faces", n).seconds for n in (1e3, 3e3, 1e4, 1e6)]
     assert costs == sorted(costs)
+
+
+def test_a_move_that_takes_more_work_on_a_larger_mesh_costs_more_there() -> None:
+    measured, sizes = Prices(load(BASELINE / RUN)), (1_000, 16_000)
+    for name in COMPILED:
+        meshes = (build(name, hem.generate("torus", n), compiled=False) for n in sizes)
+        few, many = (s.operation_work("move_vertex", 7) for s in meshes)
+        low, high = (measured.price(name, "move_vertex", 2 * n).seconds for n in sizes)
+        assert (high > 4 * low) == (many > 4 * few), name
 
 
 def test_the_least_time_comes_first_and_all_that_suit_are_told(prices: Prices) -> None:
@@ -112,8 +123,6 @@ def test_limits_refuse_what_takes_more(prices: Prices) -> None:
 
 
 def test_bytes_are_those_of_the_structure(prices: Prices) -> None:
-    from structures import build
-
     for it in advise(prices, ASKED, MESH).options:
         assert it.bytes == sum(build(it.forecast.structure, MESH).memory(names=True).values())
 

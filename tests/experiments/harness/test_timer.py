@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from time import perf_counter
 from types import SimpleNamespace
 from typing import NamedTuple
@@ -11,7 +12,7 @@ import pytest
 
 from experiments.harness import PRESETS, time_rounds
 from experiments.harness.queries import _seconds_per_query
-from experiments.harness.timer import BenchmarkTimer, UnitClock
+from experiments.harness.timer import BenchmarkTimer, UnitClock, took
 from hem.contract import Sweep
 
 
@@ -50,7 +51,7 @@ def test_one_delayed_try_leaves_no_round_with_too_few_handles(
     handles = np.arange(64)
     for delayed in range(5):
         s = Delayed(delayed)
-        monkeypatch.setattr("experiments.harness.timer.perf_counter", s.clock)
+        monkeypatch.setattr("experiments.harness.queries.took", partial(took, clock=s.clock))
         seconds = _seconds_per_query(
             Sweep(s.loop, handles, None, SimpleNamespace(records=Empty(np.zeros(0))), b""), 2e-4
         )
