@@ -240,5 +240,5 @@ def _stolen_partner() -> Shown:
 _TEXTS = tomllib.loads((files("experiments.claims") / "errata.toml").read_text("utf-8"))
 _SHOWS = vars(later_errata) | {name[1:]: it for name, it in globals().items() if name[0] == "_"}
 _SHOWS |= {name: partial(_grows, *it) for name, it in GROWS.items()}
-ERRATA = tuple(Erratum(**{**it, "show": _SHOWS[it["show"]]}) for it in _TEXTS["erratum"])
+ERRATA = tuple(Erratum(**it, show=_SHOWS[name]) for name, it in _TEXTS.items())
 """All of them, in the order in which they are numbered from 1."""

@@ -53,8 +53,8 @@ def sentence_claims() -> list[Claim]:
     """Every sentence. Raises ValueError naming one whose quantity nobody measures."""
     content = tomllib.loads((files("experiments.claims") / "sentences.toml").read_text("utf-8"))
     claims = []
-    for row in content["sentence"]:
-        name, says, kind = row["quantity"], row["says"], Kind(row["kind"])
+    for name, row in content.items():
+        says, kind = row["says"], Kind(row["kind"])
         if name not in QUANTITIES:
             known = ", ".join(QUANTITIES)
             raise ValueError(f"sentences.toml: {says!r} rests on {name!r}; there are {known}")

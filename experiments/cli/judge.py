@@ -58,6 +58,7 @@ def _print_data(curves: Any, verdicts: Any, expected: str | None) -> None:
     rows = []
     for it, verdict in zip(curves, verdicts, strict=True):
         known = {key: value for key, value in asdict(verdict).items() if key not in of_claim}
+        known["answer"] = verdict.answer
         rows.append({"function": it.name, "parameter": it.parameter, **known})
     print_json(rows)
 

@@ -244,7 +244,7 @@ class Section:
 def sections() -> tuple[Section, ...]:
     """All of them, in the order of the documents."""
     text = (files("experiments.claims") / "sections.toml").read_text("utf-8")
-    return tuple(Section(**it) for it in tomllib.loads(text)["section"])
+    return tuple(Section(of, **it) for of, it in tomllib.loads(text).items())
 
 
 def cited(source: str) -> set[str]:

@@ -62,7 +62,7 @@ class Mutant:
 def load_mutants(text: str | None = None) -> list[Mutant]:
     """Read ``mutants.toml``, or a text like it. Raises MutantError for a gate that there is not."""
     content = tomllib.loads(text or (Path(__file__).parent / "mutants.toml").read_text("utf-8"))
-    return [Mutant(**entry) for entry in content["mutant"]]
+    return [Mutant(name, **entry) for name, entry in content.items()]
 
 
 @contextmanager

@@ -6,7 +6,7 @@ no model explains the costs, the verdict is "undetermined".
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Literal
 
 import numpy as np
@@ -43,9 +43,9 @@ class Verdict:
     scatter of samples. coefficients: per model `fixed`, `factor`, `lower` and `rise` of
     fixed·r + factor·f(n)·(1 + lower/n)·r, where r rises with the memory's latency from 1 to `rise`,
     and `lower` is 0 unless lower-order terms were allowed; `predicted` are its costs. errors: per
-    model, the root mean square of the relative residuals. answer: what the costs say by themselves:
-    one class, two that cannot be told apart ("O(n) or O(n log n)"), a power law that fits where no
-    class does ("O(n^1.62)"), or nothing.
+    model, the root mean square of the relative residuals. classes: what the costs say by
+    themselves: one class, two that cannot be told apart, a power law that fits where no class does
+    ("O(n^1.62)"), or none.
     """
 
     outcome: Outcome
@@ -63,7 +63,12 @@ class Verdict:
     coefficients: Mapping[str, Mapping[str, float]]
     errors: Mapping[str, float]
     reason: str
-    answer: str = ""
+    classes: list[str] = field(default_factory=list)
+
+    @property
+    def answer(self) -> str:
+        """The classes in words: "O(n) or O(n log n)"; empty where the costs tell none."""
+        return " or ".join(self.classes)
 
     def __repr__(self) -> str:
         slope = f"slope {self.slope:.2f} ({self.slope_low:.2f} … {self.slope_high:.2f})"
@@ -154,7 +159,7 @@ def judge(
         raw_slope=float(slope(costs.sizes, costs.cost)), confidence=confidence,
         noise=costs.scatter, coefficients=dict(zip(names, coefficients, strict=True)),
         errors=dict(zip(names, errors.tolist(), strict=True)), reason=reason,
-        answer=_answer(measured, models),
+        classes=_classes(measured, models),
     )  # fmt: skip
 
 
@@ -204,25 +209,25 @@ def _hinge(
     return None
 
 
-def _answer(costs: Costs, models: Comparison) -> str:
+def _classes(costs: Costs, models: Comparison) -> list[str]:
     if _doubt(costs):
-        return ""
+        return []
     if models.explained:
         best, every = models.best, range(len(models.names))
         ruled_out = [m for m in every if models.confirms(best, m) and models.refutes(best, m)]
         open_ = [models.names[m] for m in every if m == best or m not in ruled_out]
-        return " or ".join(open_) if len(open_) <= 2 else ""
+        return open_ if len(open_) <= 2 else []
     cost = models.costs
     exponent = round(max(float(slope(cost.sizes, cost.cost)), 0.0), 2)
     if any(abs(exponent - known) < APART for known in (0, 0.5, 1, 2, 3)):
-        return ""
+        return []
     power = Order(power=exponent).name
     law = compare_models(cost, models.memory, sorted({NAMES[0], power}, key=parse))
     close = np.sqrt(np.mean((predict(law.design, law.fit)[0][-1] / cost.cost - 1) ** 2))
     told = law.explained and law.names[law.best] == power and close <= MOST_WOBBLE
     halves = np.array_split(np.arange(len(cost.sizes)), 2)
     first, last = (slope(cost.sizes[it], cost.cost[it]) for it in halves)
-    return power if told and abs(last - first) <= STEADY else ""
+    return [power] if told and abs(last - first) <= STEADY else []
 
 
 def _doubt(costs: Costs) -> str:

@@ -35,6 +35,7 @@ WORD = 8  # bytes that a call reads at once: it may wait for each, but no longer
 STEEP = 1.5  # slope from which on a call works more than it waits
 LOWER_TERMS = 9  # tried where a call works more than it waits
 QUICKER = 0.6  # share of the samples of a size that is looked at, the quicker ones: delays only add
+CONSTANT = ["O(1)"]
 Sizes = NDArray[np.bool_]
 
 
@@ -90,7 +91,7 @@ class Measured:
         if options.get("latency", 0) is None:
             return asked.whole(UNSEEN)
         told = asked.by_work() or asked.without_reserve() or asked.with_reserve()
-        return _agreeing(told if _names_a_class(told) else replace(told, answer=""))
+        return _agreeing(told if _names_a_class(told) else replace(told, classes=[]))
 
 
 @dataclass(frozen=True)
@@ -129,16 +130,16 @@ class _Asked:
         if slope(sizes[half:], of.cost[large][half:]) <= STEEP:
             return None
         plain = [self._judge(some, UNSEEN_COSTLY) for some in (costly, large)]
-        if law := next((it for it in plain if "^" in it.answer), None):
+        if law := next(filter(_is_a_law, plain), None):
             return law
         lower = np.geomspace(sizes[0], sizes[-1], LOWER_TERMS)
         told = self._judge(large, UNSEEN_COSTLY, lower=lower)
         if _names_one(plain[1]) and _names_one(told):
-            told = replace(told, answer=_either(_classes(plain[1]) | _classes(told)))
+            told = replace(told, classes=_either(plain[1], told))
         last = sizes >= sizes[-max(3, len(sizes) // 3)]
         least = told.predicted(told.best, sizes)[last]
-        if told.answer and slope(sizes[last], of.cost[large][last] / least) > BEHIND:
-            return replace(told, answer="")
+        if told.classes and slope(sizes[last], of.cost[large][last] / least) > BEHIND:
+            return replace(told, classes=[])
         return self._if_so(told, of.sizes < sizes[0])
 
     def without_reserve(self) -> Verdict | None:
@@ -161,9 +162,9 @@ class _Asked:
         told, goes_on = _combined(parts, whole), self._goes_on(whole)
         if told is not whole:
             return _beside(told, whole) if goes_on else told
-        alone = not parts and whole.answer != "O(1)"
+        alone = not parts and whole.classes != CONSTANT
         bent = alone and cost[-1] / cost[0] < memory.max() / memory.min()
-        return whole if goes_on and not bent else replace(whole, answer="")
+        return whole if goes_on and not bent else replace(whole, classes=[])
 
     def _in_caches(self, beyond: float, unseen: float, lower: ArrayLike = ()) -> Verdict | None:
         """What those of the sizes in the caches tell that are larger than one."""
@@ -208,43 +209,44 @@ class _Asked:
 
 def _combined(parts: Sequence[Verdict], whole: Verdict) -> Verdict:
     """Of what parts of the sizes tell and what all do, the most telling that none contradicts."""
-    if not parts or not set.intersection(*map(_classes, parts)):
+    if not parts or not set.intersection(*(set(it.classes) for it in parts)):
         return whole
-    shortest = min(parts, key=lambda it: it.answer.count(" or "))
-    slower, *others = shortest.answer.split(" or ")
-    return whole if others and whole.answer == slower else shortest
+    shortest = min(parts, key=lambda it: len(it.classes))
+    slower, *others = shortest.classes
+    return whole if others and whole.classes == [slower] else shortest
 
 
 def _beside(told: Verdict, whole: Verdict) -> Verdict:
     """What a part tells, or both classes where all sizes tell another."""
-    both = _classes(told) | _classes(whole)
-    if told.answer == "O(1)" or not whole.answer or _classes(told) & _classes(whole):
+    both = _either(told, whole)
+    if told.classes == CONSTANT or not whole.classes or {*told.classes} & {*whole.classes}:
         return told
-    return replace(told, answer=_either(both) if len(both) == 2 else "")
+    return replace(told, classes=both if len(both) == 2 else [])
 
 
 def _agreeing(it: Verdict) -> Verdict:
     """A verdict whose outcome is undetermined where its answer says otherwise."""
-    named = it.expected in _classes(it)
-    told = it.answer and "^" not in it.answer and it.bound == "tight"
+    named = it.expected in it.classes
+    told = it.classes and not _is_a_law(it) and it.bound == "tight"
     if (named and it.outcome == "violated") or (told and not named and it.outcome == "consistent"):
         reason = f"Some of the sizes tell {it.answer}."
         return replace(it, outcome="undetermined", reason=reason)
     return it
 
 
-def _classes(it: Verdict) -> set[str]:
-    return set(it.answer.split(" or "))
-
-
-def _either(classes: set[str]) -> str:
-    return " or ".join(sorted(classes, key=parse))
+def _either(one: Verdict, other: Verdict) -> list[str]:
+    return sorted({*one.classes, *other.classes}, key=parse)
 
 
 def _names_one(it: Verdict) -> bool:
-    return bool(it.answer) and " or " not in it.answer
+    return len(it.classes) == 1
+
+
+def _is_a_law(it: Verdict) -> bool:
+    """Whether it tells a power law, or that costs are exponential."""
+    return any("^" in name for name in it.classes)
 
 
 def _names_a_class(it: Verdict) -> bool:
     """Whether an answer is more than a power law that memory may have bent."""
-    return bool(it.answer) and ("^" not in it.answer or it.raw_slope > STEEP)
+    return bool(it.classes) and (not _is_a_law(it) or it.raw_slope > STEEP)

@@ -15,8 +15,7 @@ from tests.extent import exhaustive
 
 HERE = Path(__file__).parents[3]
 ENTRY = """
-[[mutant]]
-name = "none"
+[none]
 structure = "half_edge"
 gate = "{gate}"
 file = "hem/authoring/records.py"
