@@ -28,6 +28,8 @@ from experiments.cli.check import BASELINE
 from experiments.regression import RUN
 from experiments.runs import Run, load
 from hem.contract import QUERIES
+from hem.contract.recording import COMPILED as COMPILED_CODE
+from hem.contract.recording import PYTHON
 from structures import REGISTRY, build
 
 COMPILED = [name for name, it in REGISTRY.items() if it.compiled]
@@ -78,6 +80,16 @@ def test_a_move_that_takes_more_work_on_a_larger_mesh_costs_more_there() -> None
         few, many = (s.operation_work("move_vertex", 7) for s in meshes)
         low, high = (measured.price(name, "move_vertex", 2 * n).seconds for n in sizes)
         assert (high > 4 * low) == (many > 4 * few), name
+
+
+def test_a_call_from_python_costs_an_operation_more_than_a_query(prices: Prices) -> None:
+    def longer(name: str, what: str) -> float:
+        one, many = (prices.price(name, what, 2_000, caller=it) for it in (PYTHON, COMPILED_CODE))
+        return one.seconds - many.seconds
+
+    for name in COMPILED:
+        assert 0 < longer(name, "vertex_faces") < longer(name, "split_face")
+    assert longer("half_edge_objects", "vertex_faces") == 0  # which Python asks in any case
 
 
 def test_the_least_time_comes_first_and_all_that_suit_are_told(prices: Prices) -> None:
