@@ -89,7 +89,8 @@ def test_a_call_from_python_costs_an_operation_more_than_a_query(prices: Prices)
 
     for name in COMPILED:
         assert 0 < longer(name, "vertex_faces") < longer(name, "split_face")
-    assert longer("half_edge_objects", "vertex_faces") == 0  # which Python asks in any case
+    for name in REGISTRY.keys() - COMPILED:
+        assert longer(name, "vertex_faces") == 0  # Python asks them in any case
 
 
 def test_the_least_time_comes_first_and_all_that_suit_are_told(prices: Prices) -> None:
