@@ -29,7 +29,7 @@ from experiments.cli.fracture import fracture
 from experiments.cli.history import history
 from experiments.cli.judge import judge_file
 from experiments.cli.meshes import info, meshes
-from experiments.cli.study import run_study
+from experiments.cli.study import PRESETS_TOLD, run_study
 
 app = typer.Typer(
     cls=Commands,
@@ -57,7 +57,7 @@ def _options(
     pass
 
 
-app.command("study")(run_study)
+app.command("study", epilog=PRESETS_TOLD)(run_study)
 
 
 @app.command("table")

@@ -13,12 +13,13 @@ from experiments.cli.console import OfMesh, Repair, Structures, completed, conso
 from experiments.presets import PRESETS
 
 DEFAULT = "quick"  # the preset of a study that names none
+PRESETS_TOLD = "\n".join(["Presets:\n", *(f"- {name}: {it.what}" for name, it in PRESETS.items())])
 
 
 # fmt: off
 def run_study(
     preset: Annotated[str | None, Option(
-        "--preset", "--profile", help="How much. Default: quick; a wrong one lists all.",
+        "--preset", "--profile", help=f"How much, see below. Default: {DEFAULT}.",
         autocompletion=completed("experiments.presets", "PRESETS"))] = None,
     resume: Annotated[bool, Option("--resume", help="Resume the newest unfinished run.")] = False,
     run: Annotated[Path | None, Option(help="With --resume: which, finished or not.")] = None,

@@ -51,6 +51,12 @@ def test_help_says_what_a_command_does_and_shows_an_example_that_is_one(path):
         assert command.make_context("hem", words[len(path) :]).params
 
 
+def test_the_help_of_a_study_tells_how_much_each_preset_measures():
+    told = " ".join(runner.invoke(app, ["study", "--help"]).stdout.split())
+    for name, preset in PRESETS.items():
+        assert f"{name}: {preset.what}" in told
+
+
 def complete(*words: str) -> list[str]:
     """What bash is offered for the last of the words."""
     asked = {"_HEM_COMPLETE": "complete_bash", "COMP_WORDS": " ".join(("hem", *words))}
