@@ -5,17 +5,19 @@ O(1), as nothing is moved. The rows that are not viewed yet cost addresses; the 
 memory when they are first written, in pages of 4 kB, or of 2 MB where NumPy asks for huge ones.
 Copies and pickles hold what is viewed.
 
-- When it is made there is room for a quarter as many rows again, and for 1 MB where that is more,
-  but for no more than as many again: building takes as long as without. Eight times as many made it
-  up to a third slower from 100,000 vertices on, as malloc uses memory of that size only once.
-- Where that is too little it is moved once, to where it can become eight times as large as it has
-  to be, and 32 MB in any case. Windows, where addresses are counted as memory, gives as much again.
-- Who asks for more than twice as many rows says how many there will be, as who builds. They get
-  what a new array gets: memory that was used before, which takes half the time of fresh one.
+- From 1 MB on there are addresses for eight times as many rows, and for 32 MB in any case. So an
+  edit moves an array only once the mesh has grown eightfold. Smaller ones have room for as many
+  rows again; moving them takes less than a millisecond.
+- Memory with so many addresses is fresh from the system, which takes twice as long to write as
+  memory that was used before. So what nobody views any more is kept for the next array, up to
+  256 MB of what was in use; ``give_back`` lets go of it.
+- Windows counts addresses as memory. There a new array has room for a quarter as many rows again,
+  and one that was moved for as many.
 """
 
 import math
 import os
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -27,17 +29,57 @@ SLACK, SLACK_BYTES = 4, 1 << 20
 """What there is room for behind a new array: of so many rows one more, or so many bytes."""
 
 ADDRESSES = 8 if os.name != "nt" else 1
-"""How many times the rows that it needs an array has addresses for once it was moved."""
+"""How many times the rows that it needs an array has addresses for, if it takes ``LARGE`` bytes."""
 
-FRESH = 32 << 20  # bytes from which on malloc takes fresh memory (glibc: M_MMAP_THRESHOLD)
+LARGE = 1 << 20
 SMALL = 1 << 16  # bytes up to which to move an array is nothing
+FRESH = 32 << 20  # bytes from which on malloc takes fresh memory (glibc: M_MMAP_THRESHOLD)
+KEPT = 256 << 20  # bytes of memory that was in use and is kept for the next arrays
+
+_kept: dict[int, tuple[int, Array]] = {}
+"""By its id a block that nobody views any more, and the bytes of it that were in use."""
+
+# The C library keeps blocks that are no larger than one that it saw freed: so what building takes
+# for a while, too, is memory that was used before. Nothing is written here.
+np.empty(FRESH - SMALL, np.uint8)
+
+
+def give_back() -> None:
+    """Let go of all memory that is kept for the next arrays. Cost O(1) per array."""
+    _kept.clear()
+
+
+def _keep(block: Array, used: int, kept: dict[int, tuple[int, Array]] = _kept) -> None:
+    """Keep a block, and of the others the last ones that were in use. At exit, too: ``kept``."""
+    kept[id(block)] = used, block
+    total = 0
+    for key, (held, _) in reversed(kept.copy().items()):
+        total += held
+        if total > KEPT:
+            kept.pop(key, None)
+
+
+def _block(size: int, used: int) -> Array:
+    """(size or more,) bytes: kept ones, about so many of which were in use, or fresh ones."""
+    fits = [(held, key) for key, (held, it) in _kept.copy().items() if it.nbytes >= size]
+    for held, key in sorted(fits):
+        if used <= 2 * held <= 4 * used and (found := _kept.pop(key, None)):
+            return found[1]
+    return np.empty(size, np.uint8)
 
 
 class _Room:
-    """Who owns the longer array; so no view of any other array is taken for one with room."""
+    """Who owns the longer array; so no view of any other array is taken for one with room.
 
-    def __init__(self, array: Array) -> None:
-        self._array = array
+    ``block``: the memory that is kept once nobody views it, of which ``used`` bytes were in use.
+    """
+
+    def __init__(self, array: Array, block: Array | None = None, used: int = 0) -> None:
+        self._array, self._block, self.used = array, block, used
+
+    def __del__(self, keep: Callable[[Array, int], None] = _keep) -> None:
+        if self._block is not None:
+            keep(self._block, self.used)
 
     @property
     def __array_interface__(self) -> dict[str, Any]:
@@ -47,7 +89,8 @@ class _Room:
 
 def rows(n: int, *width: int, dtype: DTypeLike, zeros: bool = False) -> Array:
     """(n, …): an array with room, empty, or ``zeros`` in the room as well."""
-    return _longest(n + _slack(n, _row_bytes(width, dtype)), width, dtype, zeros)[:n]
+    row = _row_bytes(width, dtype)
+    return _longest(n, _addresses(n, row, LARGE), width, dtype, zeros)[:n]
 
 
 def roomy(array: Array, dtype: DTypeLike | None = None) -> Array:
@@ -66,19 +109,13 @@ def longer(array: Array, used: int, wanted: int, zeros: bool = False) -> Array:
     if wanted <= len(array):
         return array
     longest, more = _whole(array), max(wanted, 2 * used)
-    if longest is not None and wanted <= len(longest):
-        return longest[:more]
     kind = array.shape[1:], array.dtype, zeros
-    row, addresses = _row_bytes(*kind[:2]), more
-    if wanted > 2 * used and used * row > SMALL:
-        addresses += _slack(more, row)
-    elif ADDRESSES > 1 and more * row > SMALL:
-        addresses = max(ADDRESSES * more, FRESH // row)
-    try:
-        longest = _longest(addresses, *kind)
-    except MemoryError:  # where no more may be promised than there is
-        longest = _longest(more, *kind)
-    longest[:used] = array[:used]
+    if longest is None or wanted > len(longest):
+        addresses = _addresses(more, _row_bytes(*kind[:2]), SMALL)
+        longest = _longest(more, addresses, *kind)
+        longest[:used] = array[:used]
+    owner: Any = longest.base
+    owner.used = max(owner.used, longest[:more].nbytes)
     return longest[:more]
 
 
@@ -88,9 +125,11 @@ def behind(*arrays: Array) -> int:
     return sum(whole.nbytes - it.nbytes for it, whole in longest if whole is not None)
 
 
-def _slack(n: int, row: int) -> int:
-    """How many rows there is room for behind n new ones of so many bytes."""
-    return max(n // SLACK, min(n, SLACK_BYTES // row))
+def _addresses(n: int, row: int, large: int) -> int:
+    """How many rows of so many bytes there are addresses for where n are needed."""
+    if ADDRESSES > 1 and n * row >= large:
+        return max(ADDRESSES * n, FRESH // row)
+    return n + max(n // SLACK, min(n, SLACK_BYTES // row))
 
 
 def _whole(array: Array) -> Array | None:
@@ -103,7 +142,22 @@ def _row_bytes(width: tuple[int, ...], dtype: DTypeLike) -> int:
     return np.dtype(dtype).itemsize * math.prod(width)
 
 
-def _longest(n: int, width: tuple[int, ...], dtype: DTypeLike, zeros: bool) -> Array:
-    """All rows there are addresses for, as an array whose views have it as their base."""
-    make = np.zeros if zeros else np.empty
-    return np.asarray(_Room(make((n, *width), dtype)))
+def _longest(
+    n: int, addresses: int, width: tuple[int, ...], dtype: DTypeLike, zeros: bool
+) -> Array:
+    """All rows there are addresses for, as an array whose views have it as their base.
+
+    Just n where no more may be promised than there is memory.
+    """
+    row = _row_bytes(width, dtype)
+    try:
+        if zeros or addresses * row <= FRESH - row:
+            make = np.zeros if zeros else np.empty
+            return np.asarray(_Room(make((addresses, *width), dtype)))
+        block = _block(addresses * row, n * row)
+    except MemoryError:
+        if addresses == n:
+            raise
+        return _longest(n, n, width, dtype, zeros)
+    array = block[: addresses * row].view(dtype).reshape(addresses, *width)
+    return np.asarray(_Room(array, block, n * row))

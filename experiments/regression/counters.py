@@ -22,7 +22,7 @@ from experiments.regression.baseline import COUNTERS, Measured
 from experiments.regression.snapshots import class_figures
 from experiments.runs import Run, describe, experiments
 from hem.contract import QUERIES, REFERENCE_TYPES, Structure
-from hem.room import behind
+from hem.room import behind, give_back
 
 EXTENT = replace(
     PRESETS["quick"],
@@ -126,9 +126,11 @@ def _weigh(make: Callable[[], Structure]) -> tuple[Structure, int]:
     """Make something -> it, and the bytes of arrays still there, without unwritten addresses."""
     # NumPy tells of every array, wherever it hides; other objects differ between versions.
     of_arrays = tracemalloc.DomainFilter(inclusive=True, domain=tracemalloc_domain)
+    give_back()  # memory that is used again would not be traced
     tracemalloc.start()
     try:
         made = make()
+        give_back()  # what is kept for later is nobody's
         traces = tracemalloc.take_snapshot().filter_traces([of_arrays]).traces
         return made, sum(trace.size for trace in traces) - behind(*made.arrays)
     finally:

@@ -20,7 +20,7 @@ from hem.edit import Edit, Remapping, generations, whole_faces
 from hem.errors import MeshError
 from hem.listeners import Listeners
 from hem.ragged import Ragged
-from hem.room import longer
+from hem.room import longer, roomy
 
 Rule = Literal["interpolate", "copy", "default"]
 """What a new element gets: a value between its parents' by where it lies, that of its first parent,
@@ -99,7 +99,7 @@ class Attribute:
 
     def restore(self, state: tuple[Array, ...]) -> None:
         """Have the values of a ``state`` again."""
-        self._rows = state[0].copy()
+        self._rows = roomy(state[0])
         self._look_at_all()
 
     def clear(self) -> None:
@@ -297,7 +297,7 @@ class CornerAttribute(Attribute):
 
     def restore(self, state: tuple[Array, ...]) -> None:
         """See ``Attribute.restore``."""
-        self._rows, self._keys = (it.copy() for it in state)
+        self._rows, self._keys = map(roomy, state)
 
     # Behind it ---------------------------------------------------------------------------------
 

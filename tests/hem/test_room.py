@@ -9,6 +9,8 @@ import pytest
 
 from hem import room
 
+ADDRESSES = pytest.mark.skipif(room.ADDRESSES == 1, reason="here addresses count as memory")
+
 
 @pytest.mark.parametrize("width", [(), (3,), (3, 2)])
 @pytest.mark.parametrize("zeros", [False, True])
@@ -23,19 +25,70 @@ def test_rows_keep_their_values_and_move_seldom(width, zeros):
     assert (array.reshape(len(array), -1)[:50_000] == np.arange(1, 50_001)[:, None]).all()
 
 
-def test_a_new_array_grows_by_a_quarter_in_its_place():
-    for n in (1, 10, 10_000, 3_000_000):
+def test_a_small_array_has_room_for_as_many_rows_again():
+    for n in (1, 10, 10_000):
         array = room.roomy(np.arange(n))
-        longer = room.longer(array, n, n + max(n // 4, 1))
+        longer = room.longer(array, n, 2 * n)
         assert longer.ctypes.data == array.ctypes.data
         assert np.array_equal(longer[:n], np.arange(n))
-        assert room.behind(array) >= 8 * (n // 4)
 
 
-def test_once_moved_it_grows_to_eight_times_its_size_in_its_place():
+@ADDRESSES
+@pytest.mark.parametrize("n", [200_000, 3_000_000])
+def test_a_large_array_grows_to_eight_times_its_size_in_its_place(n):
+    array = room.roomy(np.arange(n))
+    longer = room.longer(array, n, 8 * n)
+    assert longer.ctypes.data == array.ctypes.data
+    assert np.array_equal(longer[:n], np.arange(n))
+    assert room.behind(array) >= 7 * array.nbytes
+
+
+@ADDRESSES
+def test_a_smaller_one_does_so_once_it_was_moved():
     array = room.longer(np.arange(100_000), 100_000, 100_001)
     assert len(array) == 200_000
     assert room.longer(array, 200_000, 1_600_000).ctypes.data == array.ctypes.data
+
+
+@ADDRESSES
+def test_memory_is_used_again_once_nobody_views_it_and_not_before():
+    room.give_back()
+    array = room.roomy(np.arange(1 << 20))
+    view, place = array[5:7], array.ctypes.data
+    del array
+    other = room.roomy(np.zeros(1 << 20, np.int64))
+    assert other.ctypes.data != place
+    assert view.tolist() == [5, 6]
+    del view
+    assert room.rows(1 << 20, 2, dtype=np.int32).ctypes.data == place
+
+
+@ADDRESSES
+def test_zeros_are_zeros_whatever_was_there_before():
+    room.roomy(np.full(1 << 20, 7))
+    array = room.rows(1 << 20, dtype=np.int64, zeros=True)
+    assert not room.longer(array, 1 << 20, 1 << 22, zeros=True).any()
+
+
+@ADDRESSES
+def test_so_much_is_kept_at_most_and_all_of_it_is_given_back(monkeypatch):
+    monkeypatch.setattr(room, "KEPT", 32 << 20)
+    room.give_back()
+    for n in (1, 2, 3, 4):
+        room.roomy(np.ones(n << 20))
+    assert [used for used, _ in room._kept.values()] == [32 << 20]
+    process = psutil.Process()
+    before = process.memory_info().rss
+    room.give_back()
+    assert before - process.memory_info().rss > 30 << 20
+
+
+@ADDRESSES
+def test_memory_of_which_much_more_was_in_use_is_left_to_others():
+    room.give_back()
+    place = room.roomy(np.ones(8 << 20)).ctypes.data
+    assert room.roomy(np.ones(1 << 20)).ctypes.data != place
+    assert room.roomy(np.ones(7 << 20)).ctypes.data == place
 
 
 def test_what_lies_behind_the_view_of_another_array_is_not_taken():
@@ -51,6 +104,7 @@ def test_what_lies_behind_the_view_of_another_array_is_not_taken():
 
 
 def test_rows_behind_take_no_memory_until_they_are_written():
+    room.give_back()
     before = psutil.Process().memory_info().rss
     array = room.longer(np.ones(1 << 20), 1 << 20, (1 << 20) + 1)
     assert os.name == "nt" or room.behind(array) >= 7 * array.nbytes
@@ -58,14 +112,12 @@ def test_rows_behind_take_no_memory_until_they_are_written():
 
 
 def test_without_addresses_an_array_grows_by_moving(monkeypatch):
-    enough = room._longest
+    def refused(size, used):
+        raise MemoryError
 
-    def refused(n, *kind):
-        if n > 200_000:
-            raise MemoryError
-        return enough(n, *kind)
-
-    monkeypatch.setattr(room, "_longest", refused)
-    array = room.longer(np.arange(100_000), 100_000, 100_001)
-    assert len(array) == 200_000
-    assert np.array_equal(array[:100_000], np.arange(100_000))
+    monkeypatch.setattr(room, "_block", refused)
+    array = room.longer(np.arange(200_000), 200_000, 200_001)
+    assert len(array) == 400_000
+    assert np.array_equal(array[:200_000], np.arange(200_000))
+    moved = room.longer(array, 400_000, 400_001)
+    assert np.array_equal(moved[:200_000], np.arange(200_000))

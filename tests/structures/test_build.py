@@ -9,6 +9,7 @@ import hem
 import structures
 from hem.authoring import VALENCE
 from hem.meshes import undirected_edges
+from hem.room import ADDRESSES, LARGE
 from tests.structures.conftest import HOLDS_ANYTHING, NEEDS_MANIFOLD, OF_ARRAYS, shuffled
 
 NON_MANIFOLD = {
@@ -137,3 +138,14 @@ def test_every_byte_of_the_arrays_is_a_field_or_a_name(name):
 def test_a_name_or_size_that_does_not_exist_is_refused(structure, size):
     with pytest.raises(hem.MeshError, match=r"half_edge|4 or 8"):
         structures.build(structure, hem.generate("torus", 100), reference_bytes=size)
+
+
+@pytest.mark.skipif(ADDRESSES == 1, reason="here addresses count as memory")
+@pytest.mark.parametrize("name", OF_ARRAYS)
+def test_no_large_array_is_moved_while_a_mesh_grows_threefold(name):
+    s = structures.build(name, hem.generate("torus", 100_000))
+    large = [it.ctypes.data for it in s.arrays if it.nbytes >= LARGE]
+    assert large
+    s.split_all_faces()
+    assert len(s.points) == 300_000
+    assert set(large) <= {it.ctypes.data for it in s.arrays}

@@ -1,5 +1,6 @@
 """What counts in real time: single edits as they come, picking, and what a mesh weighs."""
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -67,11 +68,23 @@ def frames(run: Run) -> Html:
     return numbers(rows, heads)
 
 
+def edits_by_size(run: Run) -> Html:
+    """The median and the longest time of an edit at every size, where arrays grow."""
+    cases = _cases(run, EDITS).query("order == @GROWING")
+    told = [f"{duration(np.median(it))} … {duration(max(it))}" for it in cases["samples"]]
+    return _by_size(cases.assign(told=told), "told", lambda it: it if it == it else "–")
+
+
 def compactions(run: Run) -> Html:
     """How long it takes to drop what is dead, at every size."""
-    table = _cases(run, COMPACT).pivot_table("cost", "structure", "vertices", sort=False)
+    return _by_size(_cases(run, COMPACT), "cost", duration)
+
+
+def _by_size(cases: pd.DataFrame, column: str, shown: Callable[[Any], str]) -> Html:
+    """A table of one column of the cases: a row per structure, by size."""
+    table = cases.pivot_table(column, "structure", "vertices", aggfunc="first", sort=False)
     rows = [(REGISTRY[str(name)].title, *sizes) for name, sizes in table.iterrows()]
-    return numbers(rows, {"": str, **{f"{size:,} vertices": duration for size in table.columns}})
+    return numbers(rows, {"": str, **{f"{size:,} vertices": shown for size in table.columns}})
 
 
 def picks(run: Run) -> Plot:

@@ -43,6 +43,7 @@ SHOWN = {
     "pairs": lambda run, claims: uses.beside(run, "plankton", "half_edge"),
     "waits": lambda run, claims: real_time.waits(run),
     "frames": lambda run, claims: real_time.frames(run),
+    "edits by size": lambda run, claims: real_time.edits_by_size(run),
     "compactions": lambda run, claims: real_time.compactions(run),
     "weights": lambda run, claims: real_time.weights(run),
     "picks": lambda run, claims: real_time.picks(run),

@@ -1,0 +1,48 @@
+"""What the chapter on real time says of single edits."""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from experiments.bench_real_time import GROWING, RESERVED
+from experiments.report.figures import real_time
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_so_many_edits_fit_into_every_frame_and_no_more_into_one(seed):
+    seconds = np.random.default_rng(seed).gamma(0.3, 2e-3, 400)
+    fits = []
+    for first in range(len(seconds)):
+        left, many = real_time.FRAME, 0
+        while first + many < len(seconds) and seconds[first + many] <= left:
+            left -= seconds[first + many]
+            many += 1
+        if first + many < len(seconds):
+            fits.append(many)
+    assert real_time._in_a_frame(seconds) == str(min(fits))
+
+
+def test_edits_that_end_before_a_frame_does_all_fit():
+    assert real_time._in_a_frame(np.full(100, 1e-6)) == "all 100"
+
+
+def test_every_size_is_told_with_its_median_and_its_longest(monkeypatch):
+    cases = [
+        ("half_edge", 1_000, GROWING, [1.1e-6, 2.2e-6, 9.1e-3]),
+        ("half_edge", 1_000, RESERVED, [7e-6]),
+        ("half_edge", 10_000, GROWING, [3.3e-6, 4.4e-6, 5.5e-6]),
+        ("indexed", 1_000, GROWING, [6.6e-6]),
+    ]
+    table = pd.DataFrame(cases, columns=["structure", "vertices", "order", "samples"])
+    monkeypatch.setattr(real_time, "_cases", lambda run, subject: table)
+    rows = re.findall(r"(?s)<tr>.*?</tr>", real_time.edits_by_size(None)._repr_html_())
+    told = [re.findall(r"<t[dh][^>]*>(.*?)</t[dh]>", row) for row in rows]
+    assert told[0] == ["", "1,000 vertices", "10,000 vertices"]
+    assert sorted(told[1:]) == [
+        ["Half-Edge", "2.2 µs … 9.1 ms", "4.4 µs … 5.5 µs"],
+        ["Indexed", "6.6 µs … 6.6 µs", "–"],
+    ]
