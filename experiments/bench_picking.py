@@ -11,16 +11,19 @@ import logging
 from functools import cache
 from importlib.util import find_spec
 from itertools import product
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 import hem
+import structures
+from experiments.bench_workloads import COMPILED, FROM_PYTHON
 from experiments.harness import BASE, Case, Experiment, Measurement, Preset, Timer
 from experiments.harness.oracle import check_query
 from experiments.harness.timer import took
 from hem.arrays import Array, Floats
+from hem.authoring import Kernel, Kernels, kernel
 from hem.contract import QUERIES, Structure
 
 RAY, FOLLOWING, NEIGHBORS = "ray", "follow_edit", "neighbors"
@@ -102,7 +105,8 @@ def _casting() -> Any:
 
 def cases(preset: Preset, structure: str) -> list[Case]:
     """What is around a face on every structure; rays on one, as the render mesh is the same."""
-    kinds: list[tuple[str, str | None]] = [(NEIGHBORS, None)]
+    compiled = (COMPILED,) if structures.REGISTRY[structure].compiled else ()
+    kinds = [(NEIGHBORS, it) for it in (*compiled, FROM_PYTHON)]
     if structure == BASE:
         kinds += product((RAY, FOLLOWING), (REBUILT, REFITTED))
     family, sizes = preset.families[0], preset.real_time_sizes
@@ -142,24 +146,66 @@ def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
 
 
 def _time_neighbors(case: Case, s: Structure, preset: Preset, timer: Timer) -> Measurement:
-    """Time what is asked about a face that is hit: its neighbors, and those of its corners."""
+    """Time what is asked about a face that is hit: its neighbors, and the faces at its corners."""
     picks = FEW_PICKS if s.searches else PICKS
     reason = preset.why_too_slow(SCANS * picks, s.n_faces, preset.fewest_rounds)
     if s.searches and reason:
         return case.result("time", s, skipped=reason)
     faces = np.random.default_rng(PICK_SEED).choice(s.faces(), picks)
-    hits = faces.tolist()
-    check_query(s, case.mesh(), QUERIES["face_faces"], faces[:1])
-    check_query(s, case.mesh(), QUERIES["vertex_faces"], s.face_vertices(hits[0]))
+    for kind, asked in ("face_faces", faces[:1]), ("vertex_faces", s.face_vertices(faces[0])):
+        check_query(s, case.mesh(), QUERIES[kind], asked)
+    ask = ask_compiled if case.order == COMPILED else ask_from_python
+    answers, seconds = took(ask, s, faces)
+    if answers != ask_from_python(s, faces):
+        raise AssertionError(f"{case.id}: {answers} neighbors, and otherwise from Python")
+    rounds = preset.affordable_rounds(seconds)
+    timed = timer(ask, setup=lambda: (s, faces), rounds=rounds, per=picks)
+    return case.result("time", s, **timed.fields)
 
-    def ask() -> None:
-        for face in hits:
-            s.face_faces(face)
-            for v in s.face_vertices(face).tolist():
-                s.vertex_faces(v)
 
-    rounds = preset.affordable_rounds(took(ask)[1])
-    return case.result("time", s, **timer(ask, rounds=rounds, per=picks).fields)
+def ask_from_python(s: Structure, faces: Array) -> int:
+    """Ask for the neighbors of faces and the faces at their corners -> how many there are."""
+    found = 0
+    for face in faces.tolist():
+        found += len(s.face_faces(face))
+        for v in s.face_vertices(face).tolist():
+            found += len(s.vertex_faces(v))
+    return found
+
+
+class Picks(NamedTuple):
+    """The faces that were hit, room for the corners of one, how much was found, and scratch."""
+
+    faces: Array
+    corners: Array
+    found: Array
+    out: Array
+
+
+def asking(queries: Kernels, operations: Kernels) -> Kernel:
+    """Make ``ask(m, picks) -> 0``, which does the same compiled."""
+    face_vertices, face_faces = queries["face_vertices"], queries["face_faces"]
+    vertex_faces = queries["vertex_faces"]
+
+    @kernel
+    def ask(m: Any, picks: Picks) -> int:
+        for f in picks.faces:
+            picks.found[0] += face_faces(m, f, picks.out)
+            face_vertices(m, f, picks.out)
+            for i in range(3):
+                picks.corners[i] = picks.out[i]
+            for i in range(3):
+                picks.found[0] += vertex_faces(m, picks.corners[i], picks.out)
+        return 0
+
+    return ask
+
+
+def ask_compiled(s: Structure, faces: Array) -> int:
+    """The same in one compiled loop."""
+    picks = Picks(faces, np.zeros(3, np.int64), np.zeros(1, np.int64), s.scratch(0)[0])
+    s.run(asking, picks)
+    return int(picks.found[0])
 
 
 def aimed(s: Structure, count: int) -> list[tuple[Floats, Floats]]:

@@ -131,7 +131,10 @@ def _add_times(files: dict, folder: Path, structure: str) -> None:
         ]
         every += [("bench_fracture", "shatter", None, 1e-6 * (n_t if slow else 1))]
         every += [("bench_fracture", "find_face", it, 1e-8 * n_t**k) for it, k in FINDING.items()]
-        every += [("bench_picking", NEIGHBORS, None, 1e-6 * (n_t if slow else 3))]
+        every += [
+            ("bench_picking", NEIGHBORS, it, 1e-6 * (n_t if slow else 3))
+            for it in (COMPILED, FROM_PYTHON)
+        ]
         for how in (REBUILT, REFITTED) if slow else ():
             every += [
                 ("bench_picking", it, how, 1e-6 * k) for it, k in ((RAY, 4), (FOLLOWING, n_t))

@@ -6,7 +6,7 @@ import pytest
 import hem
 import structures
 from experiments import bench_picking
-from experiments.bench_picking import NEIGHBORS, Picker, aimed
+from experiments.bench_picking import NEIGHBORS, Picker, aimed, ask_compiled, ask_from_python
 from experiments.harness import BASE, time_rounds
 from experiments.presets import PRESETS
 from experiments.report.figures import real_time
@@ -77,8 +77,20 @@ def test_without_the_package_no_ray_is_cast_and_the_chapter_says_why(monkeypatch
     preset = PRESETS["smoke"]
     every = bench_picking.cases(preset, BASE)
     measured = [bench_picking.measure(it, preset, time_rounds) for it in every]
-    assert [it.subject for it in measured if not it.skipped] == [NEIGHBORS]
+    assert {it.subject for it in measured if not it.skipped} == {NEIGHBORS}
     write_meta(tmp_path, describe("smoke"))
     CaseFile(tmp_path, "bench_picking", BASE).add(*measured)
     with pytest.raises(MissingError, match="warp-lang, which is not installed"):
         real_time.picks_in_words(load(tmp_path))
+
+
+@pytest.mark.parametrize("name", structures.NAMES)
+def test_as_many_are_found_around_picked_faces_as_the_triangles_say(name):
+    mesh = hem.generate("grid", 100)
+    s = structures.build(name, mesh)
+    faces = s.faces()[:: len(s.faces()) // 7]
+    shared = (mesh.triangles[:, :, None] == mesh.triangles[faces].reshape(-1)).any(axis=1)
+    shared = shared.reshape(len(mesh.triangles), len(faces), 3)  # faces, picks, corners
+    expected = int(shared.sum() + (shared.sum(axis=2) == 2).sum())
+    for ask in (ask_from_python, *([ask_compiled] if s.compiled else [])):
+        assert ask(s, faces) == expected

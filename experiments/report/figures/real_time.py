@@ -8,6 +8,7 @@ import pandas as pd
 
 from experiments.bench_picking import FOLLOWING, NEIGHBORS, RAY, REBUILT, REFITTED
 from experiments.bench_real_time import COMPACT, EDITS, GROWING, RESERVED
+from experiments.bench_workloads import COMPILED, FROM_PYTHON
 from experiments.report import style
 from experiments.report.comparisons import bytes_held
 from experiments.report.figures.growth import draw_lines, timed
@@ -92,13 +93,17 @@ def picks(run: Run) -> Plot:
     cases = timed(run, "bench_picking", 1e6)
     require(len(cases), "measured picking")
     asked = cases["subject"] == NEIGHBORS
-    cases["part"] = cases["subject"] + ", " + cases["order"].fillna("")
-    titles = ["the ray, and following an edit", "the neighbors of what was hit"]
+    cases["part"] = cases["subject"] + ", " + cases["order"]
+    ways = COMPILED, FROM_PYTHON
+    titles = ["the ray, and following an edit", *(f"the neighbors, {it}" for it in ways)]
     with style.styled():
-        figure, every = style.panels(titles, (4.6, 3.2), 2, sharex=True, sharey=True)
+        figure, every = style.panels(titles, (4.6, 3.2), 3, sharex=True, sharey=True)
         draw_lines(every[0], cases[~asked], "vertices", "part", WAYS, marker=".")
-        draw_lines(every[1], cases[asked], "vertices", "structure", STYLES)
-        for axes, label in zip(every, ("time, µs", ""), strict=True):
+        for axes, way in zip(every[1:], ways, strict=True):
+            mine = cases[asked & (cases["order"] == way)]
+            draw_lines(axes, mine, "vertices", "structure", STYLES)
+        for axes in every:
+            label = "time, µs" if axes is every[0] else ""
             axes.set(xlabel=style.VARIABLES["vertices"], ylabel=label)
         style.finish_panels(figure, every, 0.6)
     return figure
@@ -116,7 +121,7 @@ def picks_in_words(run: Run) -> Html:
         reasons = dict.fromkeys(left_out.loc[left_out["subject"] == RAY, "skipped"])
         raise MissingError(" ".join(["This run has cast no rays.", *reasons]))
     size = known.index.max()
-    asked = cases[(cases["subject"] == NEIGHBORS) & (cases["vertices"] == size)]
+    asked = cases.query("subject == @NEIGHBORS and order == @COMPILED and vertices == @size")
     neighbors = asked.set_index("structure")["cost"].sort_values()
     return part("picks", size, *(1e-6 * known.loc[size]), 1e-6 * neighbors)
 
