@@ -1,6 +1,6 @@
 """A structure is one file, an experiment is one file: both are found by table, report and check.
 
-The files are those that the tutorial shows.
+The files are those that the tutorial shows. The map of the rooms is what the imports are.
 """
 
 from __future__ import annotations
@@ -10,6 +10,7 @@ import re
 import shutil
 import subprocess
 import sys
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
@@ -17,6 +18,7 @@ import pytest
 ROOT = Path(__file__).parents[1]
 COPIED = ("hem", "structures", "experiments", "notebooks", "results/reference", "tests")
 
+MAP = (ROOT / "ARCHITECTURE.md").read_text()
 PAGE = (ROOT / "docs/structure.md").read_text()
 (STRUCTURE_FILE, STRUCTURE), (EXPERIMENT_FILE, EXPERIMENT) = re.findall(
     r'(?ms)^```python title="(.*?)"\n(.*?)^```', PAGE
@@ -87,16 +89,76 @@ def test_the_check_measures_them_and_says_what_is_next(extended):
     assert "hem baseline update" in said
 
 
-def test_a_structure_or_an_experiment_that_forgets_something_is_an_error_that_names_it(extended):
+def test_a_structure_or_an_experiment_that_forgets_something_is_an_error_that_names_it(shown):
     for path, text, named in [
         ("structures/half_done.py", STRUCTURE.replace("claims =", "claimed ="), "claims"),
         ("experiments/bench_half_done.py", '"""Nothing."""\n', "EXPERIMENT"),
+        (
+            "experiments/bench_half_done.py",
+            EXPERIMENT.replace("test_walk", "walk"),
+            "test_half_done = EXPERIMENT.test",
+        ),
     ]:
-        file = extended / path
+        file = shown / path
         file.write_text(text.replace("quarter_edge", "half_done"))
         try:
-            said = python(extended, "-m", "experiments.cli", "table", "run", code=1)
+            said = python(shown, "-m", "experiments.cli", "table", "run", code=1)
         finally:
             file.unlink()
         assert "half_done" in said
         assert named in said
+
+
+TURNS = """
+import hem, structures
+from experiments.harness import OPERATIONS, PRESETS
+from experiments.harness.operations import operation_arguments
+from experiments.runs import experiments
+s = structures.build("half_edge", hem.generate("torus", 100), compiled=False)
+(turned, *_), *_ = operation_arguments(s, "turn_edge", s.faces()[7:8])
+assert turned == s.face_edges(7)[0] != 7
+before = set(s.edge_vertices(turned))
+s.operate("turn_edge", turned)
+s.validate()
+assert not before & set(s.edge_vertices(turned))
+assert OPERATIONS["turn_edge"] == "Turn edge"
+for name in ("operations", "operation_work"):
+    cases = experiments()[f"bench_{name}"].cases(PRESETS["standard"], "half_edge")
+    assert "turn_edge" in {it.subject for it in cases}, name
+"""
+
+
+def test_an_operation_is_one_module_and_its_name_where_it_is_measured(extended):
+    module = extended / "hem/authoring/operations/turn_edge.py"
+    named = extended / "experiments/harness/experiment.py"
+    was = named.read_text()
+    module.write_text(
+        "from hem.authoring.operations.flip_edge import Operation, make\n"
+        'OPERATIONS = {"turn_edge": Operation(make, "edge")}\n'
+    )
+    named.write_text(was.replace('MEASURED = "', 'MEASURED = "turn_edge", "'))
+    try:
+        python(extended, "-c", TURNS)
+    finally:
+        module.unlink()
+        named.write_text(was)
+
+
+def test_the_map_of_the_rooms_draws_every_import_between_them_and_no_other():
+    drawn = re.search(r"subgraph experiments\n.*?\n(.*?)\n    end", MAP, re.S)
+    assert drawn
+    rows = [re.findall(r"(\w+)(?:\[.*?\])?", it) for it in drawn[1].splitlines()]
+    arrows = {pair for row in rows for pair in pairwise(row)}
+    imports = set()
+    for path in (ROOT / "experiments").rglob("*.py"):
+        room = path.relative_to(ROOT / "experiments").parts[0]
+        for other in re.findall(r"(?m)^\s*(?:from|import) experiments\.(\w+)", path.read_text()):
+            imports.add((re.sub("bench_.*", "bench", room), re.sub("bench_.*", "bench", other)))
+    rooms = {room for pair in arrows for room in pair}
+    imports = {(b, a) for a, b in imports if a != b and {a, b} <= rooms}
+    assert arrows - imports == {("bench", "runs")}  # found by name
+    below = {room: {room} for room in rooms}
+    for _ in rooms:
+        for a, b in arrows:
+            below[b] |= below[a]
+    assert all(a in below[b] for a, b in imports)

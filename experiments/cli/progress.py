@@ -18,7 +18,9 @@ def show_progress(jobs: list[Job], folder: Path) -> Iterator[study.Observer]:
     """Bars on a terminal; else a line for every finished job."""
     columns = TextColumn("{task.description:<32}"), BarColumn(), MofNCompleteColumn()
     left = TextColumn("left"), TimeRemainingColumn()
-    with Progress(*columns, *left, console=console, disable=not console.is_terminal) as bars:
+    off = not console.is_terminal
+    # No thread refreshes the bars: it would work while a case is measured.
+    with Progress(*columns, *left, console=console, auto_refresh=False, disable=off) as bars:
         yield StudyProgress(bars, {job: len(job.ids) - len(job.left(folder)) for job in jobs})
 
 
@@ -36,6 +38,7 @@ class StudyProgress(study.Observer):
     def compiled(self, structure: str, done: int, total: int) -> None:
         """Move the bar of compiling."""
         self.bars.update(self.compiling, total=total, completed=done, visible=done < total)
+        self.bars.refresh()
         self._print(f"compiled {structure} ({done} of {total})")
 
     def measured(self, job: Job, done: int) -> None:
@@ -44,14 +47,14 @@ class StudyProgress(study.Observer):
         self.first = self.first or perf_counter()
         finished, seconds = sum(self.done.values()), perf_counter() - self.first
         self.bars.start_task(self.measuring)
-        self.bars.update(self.measuring, completed=finished, description=str(job))
+        self.bars.update(self.measuring, completed=finished, description=str(job), refresh=True)
         if done == len(job.ids):
             left = seconds * (self.total - finished) / max(finished - self.before, 1)
             self._print(f"{job}: {finished} of {self.total} cases, some {left:.0f} s left")
 
     def repeating(self, cases: int, seconds: float) -> None:
         """Say so: the bar of the cases is full by then."""
-        self.bars.update(self.measuring, description=f"{cases} disturbed, once more")
+        self.bars.update(self.measuring, description=f"{cases} disturbed, once more", refresh=True)
         self._print(f"{cases} cases were disturbed: once more, {seconds:.0f} s at most")
 
     def say(self, text: str) -> None:

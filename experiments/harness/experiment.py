@@ -6,6 +6,7 @@ Every ``bench_*.py`` has an ``EXPERIMENT``, which study, tables, judge, baseline
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import Enum
+from functools import cached_property
 
 from experiments.harness.cases import Case, Measurement
 from experiments.harness.timer import Timer, time_rounds
@@ -118,7 +119,7 @@ class Experiment:
         """The name of its file, such as ``bench_queries``."""
         return self.cases.__module__.rpartition(".")[2]
 
-    @property
+    @cached_property
     def test(self) -> Callable[..., None]:
         """The test that measures a case: what pytest finds in its file, see ``conftest``."""
 

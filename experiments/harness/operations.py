@@ -18,7 +18,6 @@ from hem.contract import Structure
 from hem.engine import END
 from hem.meshes import undirected_edges
 
-ON_EDGES = ("split_edge", "collapse_edge", "flip_edge")
 MOST_IMPOSSIBLE = 0.5  # part of the rounds that may be so, for the others to tell something
 MOST_ELEMENTS = 2_000
 FEWEST_ELEMENTS, TRIED_ELEMENTS = 4, 8  # where each takes a scan; tried to see how long it takes
@@ -74,7 +73,7 @@ def operation_arguments(s: Structure, operation: str, faces: Array) -> Array:
     not there yet: ``s`` loses them. Raises MeshError if nothing may be done.
     """
     rows = np.full((len(faces), 3), -1, np.int64)
-    if operation in ON_EDGES:
+    if s.operations[operation].element == "edge":
         rows[:, 0] = s.face_edges(faces).values.reshape(-1, 3)[:, 0]
     elif operation == "add_face":
         rows[:] = s.face_vertices(faces).values.reshape(-1, 3)

@@ -12,6 +12,7 @@ import pandas as pd
 from rich.console import Console
 
 from experiments.claims import Curve, Outcome, curves, load_claims
+from experiments.claims.verdicts import CASE_ERROR
 from experiments.harness import OPERATIONS, QUERIES_TABLE
 from experiments.peers import BAD_INPUT, BUILD, BULK, BYTES, LOOPED, OURS, PEERS, SINGLE
 from experiments.peers.peer import ALGORITHMS, BATCHED, SIX
@@ -27,8 +28,6 @@ EXPERIMENT = "bench_peers"
 LIKE = "half_edge"
 """The structure of ours that stands beside the libraries, and whose claims theirs are held to."""
 MISSING = "Other libraries were not measured here: hem study --peers does that."
-CASE_ERROR = 0.15
-"""How far cases of one curve stray beyond what their rounds tell, as for our structures."""
 NONE = "N/A"
 NUMBERS = "bytes per vertex", "build a vertex", "of ours"
 PER_ELEMENT = {"faces": "O(1)"}

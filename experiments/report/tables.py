@@ -222,7 +222,7 @@ def _cell(judged: JudgedClaim | None) -> str:
 def _show_slopes(console: Console, claims: Sequence[JudgedClaim]) -> None:
     """By structure a line per claim and axis: both slopes, the class found, the verdict."""
     for structure in dict.fromkeys(judged.claim.structure for judged in claims):
-        rows = [("", "axis", "raw slope", "memory out", "interval", "claimed", "found", "")]
+        rows = [("", "raw slope", "memory out", "interval", "claimed", "found", "")]
         for judged in (it for it in claims if it.claim.structure == structure):
             for axis, it in judged.verdicts.items():
                 low, high = two_digits(it.slope_low), two_digits(it.slope_high)
@@ -231,8 +231,8 @@ def _show_slopes(console: Console, claims: Sequence[JudgedClaim]) -> None:
                 outcome = Outcome(it.outcome) if claimed else Outcome.NO_CLAIM
                 mark = judged.claim.kind.marks([outcome])
                 found = (it.expected if claimed else "", it.best, mark)
-                measured = (f"{axis.measure} {axis.symbol}", *slopes, f"{low}…{high}")
-                rows.append((judged.claim.title, *measured, *found))
+                title = f"{judged.claim.title}, {axis.measure} {axis.symbol}"
+                rows.append((title, *slopes, f"{low}…{high}", *found))
         if len(rows) > 1:
             show_rows(console, rows, NAMED[structure].title, numbers=["raw slope", "memory out"])
 

@@ -13,7 +13,7 @@ PART_OF = {"bench_valence": "bench_queries"}
 
 @cache
 def experiments() -> dict[str, Experiment]:
-    """Every experiment by file, in a study's order; ValueError names a file that has none."""
+    """Every experiment by file, in a study's order; ValueError names one that lacks something."""
     declared: dict[str, Experiment] = {}
     for name in (it.name for it in iter_modules(package.__path__) if it.name.startswith("bench_")):
         module = import_module(f"experiments.{name}")
@@ -25,6 +25,12 @@ def experiments() -> dict[str, Experiment]:
             )
         if experiment.name != name:
             raise ValueError(f"{module.__file__}: EXPERIMENT has the cases of {experiment.name}")
+        tests = [it for called, it in vars(module).items() if called.startswith("test_")]
+        if experiment.test not in tests:
+            raise ValueError(
+                f"{module.__file__} has nothing for pytest to run: it needs "
+                f"{name.replace('bench', 'test', 1)} = EXPERIMENT.test"
+            )
         declared[name] = experiment
     return dict(sorted(declared.items(), key=lambda it: (it[1].turn, it[0])))
 

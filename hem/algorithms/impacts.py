@@ -79,7 +79,7 @@ def impacts(s: Structure, faces: Array | list[int]) -> int:
 
     Each makes two vertices and four faces more; a face may be hit again. Cost per impact: a split
     of a face, a split of an edge, and six queries. MeshError for what is no face, before anything
-    changes, and for polygons.
+    changes, and for polygons. Source: thesis 4.4.
     """
     require_mesh(s, "impacts")
     hit = arguments.handles("impacts", faces)

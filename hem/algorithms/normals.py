@@ -68,6 +68,7 @@ def vertex_normals(s: Structure) -> Points:
 
     Zeros for what is dead, and where there is no face or they cancel out. A pass over the faces,
     which asks for no neighbors. Cost O(n_v + n_t). MeshError for polygons.
+    Source: Botsch et al., Polygon Mesh Processing (2010), chapter 3.
     """
     require_mesh(s, "vertex_normals")
     found = np.zeros((len(s.points), 3))

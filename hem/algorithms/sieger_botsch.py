@@ -85,7 +85,7 @@ def circulate(s: Structure) -> int:
     """Visit the neighbors of every vertex and the corners of every face -> how many those are.
 
     Two for every edge and three for every face. Cost: ``vertex_vertices`` and ``face_vertices`` of
-    all. MeshError for polygons.
+    all. MeshError for polygons. Source: Sieger & Botsch (2011).
     """
     require_mesh(s, "circulate")
     return s.run(circulating, Visit(s.scratch(0)[0]))
@@ -167,6 +167,7 @@ def center(s: Structure) -> Floats:
     """Move a mesh so that the mean of all corners of all faces lies at the origin -> (3,) the mean.
 
     One edit. Cost: ``face_vertices`` of all, and O(n_v). MeshError for polygons.
+    Source: Sieger & Botsch (2011).
     """
     require_mesh(s, "center")
     plan = Middle(np.zeros(3), np.zeros(3, np.int64))
@@ -277,6 +278,7 @@ def split_and_collapse(s: Structure) -> None:
 
     The mesh is what it was, but handles may have changed. Three edits. Cost: a split and a collapse
     per face. MeshError for polygons; TopologyError as ``subdivide``.
+    Source: Sieger & Botsch (2011).
     """
     require_mesh(s, "split_and_collapse")
     require_surface(s, "split_and_collapse")

@@ -22,6 +22,7 @@ def subdivide(s: Structure, scheme: str = "loop", times: int = 1) -> None:
     recorded. MeshError for another scheme or number, and for polygons; TopologyError for edges in
     more than two faces and for faces with the same three corners. What a subscriber raises ends it
     after the edit that was told: the mesh is whole, but some edges may not be flipped yet.
+    Source: Loop (1987); Kobbelt (2000).
     """
     require_mesh(s, "subdivide")
     step = look_up(scheme, SCHEMES, "scheme")

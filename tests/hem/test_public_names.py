@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import re
 import subprocess
 import sys
 
 import pytest
 
 import hem
+from hem import algorithms
 
 ALONE = """
 import sys
@@ -48,3 +50,11 @@ def test_importing_hem_needs_no_other_package():
 def test_the_judge_needs_numpy_alone():
     code = "from hem.complexity import judge; print(judge.__name__)"
     assert run_alone(code, "numpy") == "judge"
+
+
+@pytest.mark.parametrize("name", algorithms.__all__)
+def test_every_algorithm_says_what_it_costs_and_where_it_is_from(name):
+    it = getattr(algorithms, name)
+    if callable(it):
+        assert re.search(r"\bCost\b", it.__doc__)
+        assert re.search(r"Source: (thesis \d|.* \(\d{4}\))", it.__doc__)

@@ -6,15 +6,19 @@ import os
 import shutil
 import subprocess
 import sys
+import threading
+from io import StringIO
 
 import pytest
+from rich.console import Console
 from typer.testing import CliRunner
 
 from experiments import cli
-from experiments.cli import app
+from experiments.cli import app, progress
 from experiments.presets import PRESETS
 from experiments.runs import experiments, load
 from experiments.runs.study import plan
+from experiments.runs.worker import Job
 from structures import NAMES
 from tests.experiments.made_runs import write_run
 from tests.experiments.small_study import samples
@@ -185,3 +189,15 @@ def test_a_study_that_is_killed_is_resumed_where_it_was_and_ends_complete(
 def test_profiles_reach_a_million_vertices_and_valence_4096():
     assert max(PRESETS["standard"].sizes) == max(PRESETS["full"].sizes) == 1_000_000
     assert all(set(p.valences) >= {4, 4096} for name, p in PRESETS.items() if name != "smoke")
+
+
+def test_the_bars_move_when_a_case_ends_and_no_thread_moves_them(tmp_path, monkeypatch):
+    terminal = Console(file=StringIO(), force_terminal=True, width=100)
+    monkeypatch.setattr(progress, "console", terminal)
+    job, before = Job("bench_memory", "indexed", "smoke"), threading.enumerate()
+    with progress.show_progress([job], tmp_path) as observer:
+        assert threading.enumerate() == before
+        for done in range(1, len(job.ids) + 1):
+            observer.measured(job, done)
+            *_, shown = terminal.file.getvalue().rpartition("memory on indexed")
+            assert f"{done}/{len(job.ids)}" in shown

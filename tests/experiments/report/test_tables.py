@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from itertools import pairwise
 
 import pytest
 from rich.console import Console
@@ -134,3 +135,13 @@ def test_bytes_per_vertex_are_shown_of_every_mesh_and_structure(run):
         (row,) = (line for line in text.split("<tr>") if f"<td>{it.family}</td>" in line)
         assert f"<td>{it.samples[0] / it.vertices:,.1f}</td>" in row
     assert text.count("<tr>") == 1 + cases["family"].nunique()
+
+
+def test_every_row_of_slopes_says_its_axis_in_every_block(run, capsys):
+    show_claims(run.folder, Console(width=80), slopes=True)
+    blocks = re.split(r"(?m)^ ─+ *$", capsys.readouterr().out)[1:]
+    rows = [re.findall(r"(?m)^ (\w+ → .*?)  ", it) for it in blocks]
+    (above, below), *_ = pairwise(rows)
+    assert above == below
+    assert all(len(set(it)) == len(it) for it in rows)
+    assert {re.sub(".*, ", "", it) for it in above} >= {"work n_t", "work n_ev", "time n_t"}
