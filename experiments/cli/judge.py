@@ -1,5 +1,6 @@
 """The command ``hem judge``: name the class of costs that other tools measured."""
 
+import re
 from dataclasses import asdict
 from pathlib import Path
 from typing import Annotated, Any
@@ -41,7 +42,10 @@ def judge_file(
 
         options: Any = {"exact": exact, "bound": "upper" if upper else "tight"}
         curves = read_curves(file, parameter)
-        verdicts = [judge(it.sizes, it.samples, expected or "O(1)", **options) for it in curves]
+        claim, varied = expected or "O(1)", curves[0].parameter
+        if re.search(rf"(?<![a-z_]){re.escape(varied)}(?![a-z_])", claim, re.IGNORECASE):
+            options["variable"] = varied
+        verdicts = [judge(it.sizes, it.samples, claim, **options) for it in curves]
         if plot is not None:
             from experiments.report.figures.accuracy import save_costs
 

@@ -6,6 +6,7 @@ Read are CSV and the JSON of pytest-benchmark, Google Benchmark and hyperfine.
 import csv
 import json
 import re
+import warnings
 from collections import defaultdict
 from collections.abc import Iterator
 from pathlib import Path
@@ -33,9 +34,13 @@ def read_curves(path: Path, parameter: str | None = None) -> list[Curve]:
     parameter: the one that sizes are of; it may be left out where only one varies. The others are
     held fixed: there is a curve for each of their values.
     A CSV has the sizes in its first column and a function in each further one; rows of one size are
-    its samples. Raises ValueError that says what is wrong with the file, OSError if there is none.
+    its samples. Warns of runs that failed, which are left out. Raises ValueError that says what is
+    wrong with the file, OSError if there is none.
     """
-    text = path.read_text("utf-8-sig")
+    try:
+        text = path.read_text("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise ValueError(f"{path} is no text in UTF-8: {error}") from error
     is_json = text.lstrip()[:1] in ("{", "[")
     rows = list(_read_json(text, path) if is_json else _read_csv(text, path))
     values: dict[str, set[float]] = defaultdict(set)
@@ -69,12 +74,14 @@ def _read_csv(text: str, path: Path) -> Iterator[Row]:
     headed = _number(lines[0][0]) is None
     names = lines[0] if headed else ["n", *(f"column {i + 1}" for i in range(1, len(lines[0])))]
     for number, line in enumerate(lines[headed:], 1 + headed):
-        size, *costs = map(_number, line)
+        size = _number(line[0])
         if size is None or len(line) > len(names):
             raise ValueError(f"{path}, row {number}: a size and a number per function are needed")
-        for name, cost in zip(names[1:], costs, strict=False):
-            if cost is not None:  # not every function was measured at every size
+        for name, cell in zip(names[1:], line[1:], strict=False):
+            if (cost := _number(cell)) is not None:
                 yield name, {names[0]: size}, [cost]
+            elif cell.strip():  # none is right: not every function was measured at every size
+                raise ValueError(f"{path}, row {number}, {name}: {cell!r} is no number")
 
 
 def _read_json(text: str, path: Path) -> list[Row]:
@@ -112,6 +119,9 @@ def _pytest_benchmark(benchmark: dict[str, Any]) -> Row:
 def _google_benchmark(benchmarks: list[dict[str, Any]]) -> Iterator[Row]:
     runs = [it for it in benchmarks if it.get("run_type", "iteration") == "iteration"]
     for it in runs or [it for it in benchmarks if it.get("aggregate_name") == "median"]:
+        if it.get("error_occurred") or it.get("skipped"):
+            warnings.warn(f"{it['name']} failed and is left out", stacklevel=2)
+            continue
         name, *arguments = it.get("run_name", it["name"]).split("/")
         parameters = {}
         for place, argument in enumerate(arguments, 1):
@@ -122,7 +132,8 @@ def _google_benchmark(benchmarks: list[dict[str, Any]]) -> Iterator[Row]:
             elif key not in ("iterations", "repeats", "threads", "min_time"):
                 unnamed = "n" if len(arguments) == 1 else f"argument {place}"
                 parameters[key or unnamed] = number
-        yield name, parameters, [it["cpu_time"]]
+        is_real = {"real_time", "manual_time"} & {*arguments}
+        yield name, parameters, [it["real_time" if is_real else "cpu_time"]]
 
 
 def _number(value: Any) -> float | None:

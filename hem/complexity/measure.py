@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from hem.complexity.estimates import slope
-from hem.complexity.measured import Measured
+from hem.complexity.measured import FEWEST, Measured
 from hem.complexity.memory import CLOCK, memory_times
 from hem.complexity.notation import Array
 
@@ -27,7 +27,7 @@ MakeInput = Callable[[int], Any]
 Clock = Callable[[], float]
 
 BUDGET = 4.0  # seconds per function
-COUNT = 20  # sizes, where none are given
+COUNT = 20  # sizes, where none are given; fewer where a round has no time for twice as many
 TRIED = 8  # the size to see at whether a function changes its input
 FIRST = 4  # the first that is tried
 STEP, FAR, WIDER = 1.3, 64, 1.7
@@ -57,9 +57,9 @@ def measure(
 
     make_input: what makes the input of one call; it is not timed. What it draws at random it draws
     anew each time. Where a cost has several variables, it holds all but one fixed.
-    sizes: ascending, at least four over a range of four to be judged. Where none are given, 20 up
-    to `most`, as far as the budget allows: about so many seconds in all. Where they leave the class
-    open, those between them are measured, too, in the same time again.
+    sizes: ascending, at least four over a range of four to be judged. Where none are given, 6 to 20
+    up to `most`, as far as the budget allows: about so many seconds in all. Where they leave the
+    class open, those between them are measured, too, in the same time again.
     rounds: samples per size; up to twice as many, in twice the time, while other programs keep
     changing the machine's speed, of which those at one speed count. fresh: whether every call gets
     an input of its own. By default inputs that f leaves as they were, as pickle sees it, are used
@@ -190,12 +190,11 @@ class _Calls(NamedTuple):
         while not tried or tried[-1][0] < most:
             made, call = self.seconds_of_one(n)
             tried.append((n, float(call + made * (1 if self.fresh else 0.1))))
-            if len(tried) > 1 and _seconds_of_turn(tried) > turn:
+            if len(tried) > 1 and _seconds_of_turn(tried, turn) > turn:
                 tried.pop()
                 break
             n = min(max(n + 1, round(n * (STEP if n < FAR else WIDER))), most)
-        low, high = _ends(tried)
-        return [int(size) for size in np.unique(np.geomspace(low, high, COUNT).round())]
+        return [int(size) for size in np.unique(_between_ends(tried, turn).round())]
 
     def working_sets(self, sizes: Sequence[int], longest: float) -> Array:
         """Bytes of a call by size; beyond what takes longer to be told, they go on as they grew."""
@@ -232,11 +231,16 @@ def _ends(tried: list[tuple[int, float]]) -> tuple[int, int]:
     return max(FIRST, min(telling, last // REACH)), max(last, REACH * FIRST // 2)
 
 
-def _seconds_of_turn(tried: list[tuple[int, float]]) -> float:
+def _between_ends(tried: list[tuple[int, float]], turn: float) -> Array:
+    """Sizes of equal ratio: the fewer, the less of a turn is left beside the smallest one."""
+    few = turn / 2 / max(tried[0][1], SAMPLE * LONGER)
+    return np.geomspace(*_ends(tried), int(np.clip(few, FEWEST, COUNT)))
+
+
+def _seconds_of_turn(tried: list[tuple[int, float]], turn: float) -> float:
     """What one sample of each size takes, were these the sizes."""
     known, seconds = np.log(np.array(tried)).T
-    low, high = np.log(_ends(tried))
-    sizes = np.linspace(low, high, COUNT)
+    sizes = np.log(_between_ends(tried, turn))
     return float(np.maximum(np.exp(np.interp(sizes, known, seconds)), SAMPLE * LONGER).sum())
 
 

@@ -7,7 +7,7 @@ faster. Constant factors do not matter, and of a sum the term that grows fastest
 import re
 from collections.abc import Iterator
 from functools import lru_cache
-from math import exp, log
+from math import e, exp, log
 from typing import NamedTuple
 
 import numpy as np
@@ -49,12 +49,18 @@ class Order(NamedTuple):
 
 WORDS = {
     "constant": "1", "logarithmic": "log n", "linear": "n", "linearithmic": "n log n",
-    "quasilinear": "n log n", "quadratic": "n^2", "cubic": "n^3", "exponential": "2^n",
+    "loglinear": "n log n", "quasilinear": "n log n", "quadratic": "n^2", "cubic": "n^3",
+    "exponential": "2^n",
 }  # fmt: skip
 SPELLED = (
+    (r"\$|\\left|\\right", ""), (r"\\mathcal\s*{o}", "o"), (r"\\cdot|\\times", " "),  # of LaTeX
+    ("{", "("), ("}", ")"),
     (r"amortized|amortised|expected|average|time|\b[oθ](?=\s*\()|\btheta(?=\s*\()", ""),
-    (r"\*\*", "^"), (r"²", "^2"), (r"³", "^3"), (r"ⁿ", "^n"), (r"√", "sqrt "),
-    (r"log_?(2|10|₂)(?=\D)|lg|ln|ld", "log"), (r"\\|·|×|\*|\|", " "),
+    (r"\*\*", "^"), (r"²", "^(2)"), (r"³", "^(3)"), (r"ⁿ", "^n"), (r"√", "sqrt "),
+    (r"log_?(2|10|₂)(?=\D)|lg|ln|ld", "log"), (r"[\\·⋅×*|]", " "),
+    (r"\^\s*\(\s*([a-z])\s*\)", r"^\1"), (r"\be(?=\s*\^\s*[a-z])", f"{e}"),
+    (r"(?<=[a-z)])\s*/\s*\d+(\.\d+)?", ""),  # a factor
+    (r"(?<=[a-z)])\s*-\s*\d+(\.\d+)?(?!\s*[\w.^(/])", ""),  # a term, not the factor of one
 )  # fmt: skip
 TOKEN = re.compile(r"\s*(sqrt|log|[a-z](?:_\w+)?|\d+(?:\.\d+)?(?:/\d+)?|[()^+])")
 
@@ -71,7 +77,7 @@ def parse(claim: str, variable: str | None = None) -> Order:
         text = re.sub(pattern, plain, text)
     text = WORDS.get(text.strip(" ()"), text).strip()
     tokens = TOKEN.findall(text)
-    words = re.search(r"[a-z]{3}", re.sub("sqrt|log", " ", text))
+    words = re.search(r"[a-z]{3}|[a-zO]\d", re.sub("sqrt|log", "O", re.sub(r"_\w+", "_", text)))
     if not tokens or words or "".join(tokens) != re.sub(r"\s", "", text):
         raise _unknown(claim)
     found = sorted({it for it in tokens if it[0].isalpha() and it not in ("sqrt", "log")})
@@ -153,7 +159,7 @@ class _Reader:
 
     def _log(self) -> Order:
         exponent = self._number() if self._took("^") else 1.0
-        inside = self._power()
+        inside = self._atom() if self.token == "(" else self._power()  # log(n)^2 is (log n)^2
         if inside.base:
             return Order(power=exponent)
         if inside.logs and not inside.power:
@@ -162,9 +168,11 @@ class _Reader:
 
     def _number(self) -> float:
         bracketed = self._took("(")
-        over, _, under = self._take().partition("/")
+        over, slash, under = self._take().partition("/")
         if bracketed:
             self._take(")")
+        elif slash:
+            raise ValueError("n^1/2 may be √n or n/2")
         return float(over) / float(under or 1)
 
 

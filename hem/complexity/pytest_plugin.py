@@ -13,21 +13,26 @@ of the size itself. Or a test measures by the fixture, which takes from the mark
 All else that `hem.complexity.measure` and `judge` are told by name may be given, too.
 """
 
+import inspect
 import json
 import subprocess
 import warnings
-from collections.abc import Iterator
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
 import pytest
+from numpy.typing import ArrayLike
 
-from hem.complexity.judge import Verdict
+from hem.complexity.judge import Verdict, judge
 from hem.complexity.measure import BUDGET, Function, MakeInput, measure
+from hem.complexity.notation import canonical
 
+POSITIONAL = "expected", "make_input", "sizes"  # of the mark
 MEASURING = ("sizes", "budget", "rounds", "fresh", "amortized", "most", "clock")
+KNOWN = {*POSITIONAL, *MEASURING, *inspect.signature(judge).parameters} - {"samples"}
 DOINGS = "pass", "warn", "fail"
+UNMEASURED = "a marked test is a function of complexity_input, or one that asks for complexity"
 PARALLEL = "complexity is not timed beside other tests: run this one without pytest-xdist (-n 0)"
 SECONDS = f"Seconds per function, and once more where they leave it open. Default: {BUDGET:g}."
 TOLD = ("expected", "outcome", "answer", "slope", "slope_low", "slope_high")
@@ -63,38 +68,44 @@ CHANGES = pytest.StashKey[list[str]]()
 
 
 class Complexity:
-    """Measures and judges in a test; `verdict` is the last one."""
+    """Measures and judges in a test; `verdict` is the last one, of so many `calls`."""
 
     verdict: Verdict | None = None
+    calls = 0
 
     def __init__(self, item: pytest.Item) -> None:
         self._item = item
 
-    def __call__(self, f: Function, make_input: MakeInput | None = None, **given: Any) -> Verdict:
+    def __call__(
+        self, f: Function, make_input: MakeInput | None = None, sizes: ArrayLike | None = None,
+        **given: Any,
+    ) -> Verdict:  # fmt: skip
         """Measure f(make_input(n)), fail or warn as the verdict asks for -> the verdict.
 
-        given: `expected`, and options of `measure` and `judge`.
+        given: `expected`, and options of `measure` and `judge`. Fails before it measures where they
+        are unknown or `expected` is no growth class.
         """
         config, mark = self._item.config, self._item.get_closest_marker("complexity")
         options = dict(mark.kwargs) if mark else {}
-        options |= {"expected": mark.args[0]} if mark and mark.args else {}
-        options |= given
+        options |= zip(POSITIONAL, mark.args if mark else (), strict=False)
+        options |= given if sizes is None else given | {"sizes": sizes}
+        if mistake := _mistake(options):
+            pytest.fail(f"{self._item.nodeid}: {mistake}", pytrace=False)
         marked = options.pop("make_input", None)
         make: MakeInput = make_input or marked or int  # int: the size itself
-        if not options.get("expected"):
-            raise pytest.UsageError(f'{self._item.nodeid}: say what is claimed: expected="O(n)"')
         if hasattr(config, "workerinput"):
             pytest.skip(PARALLEL)
         told = {key: options.pop(key) for key in MEASURING if key in options}
         if budget := config.getoption("complexity_budget"):
             told["budget"] = budget
         self.verdict = verdict = measure(f, make, **told).judge(**options)
+        self.calls += 1
         found = f"it is {verdict.answer}, " if verdict.answer else ""
         claimed = f"{verdict.expected} is claimed; {found}slope {verdict.slope:.2f}"
         words = f"{self._item.nodeid}: {verdict.outcome}: {claimed}. {verdict.reason}"
         config.stash[LINES].append(words)
         if path := config.getoption("complexity_history"):
-            _keep(self._item, verdict, path)
+            _keep(self._item, self.calls, verdict, path)
         if verdict.outcome != "consistent":
             _settle(config, words, f"complexity_{verdict.outcome}")
         return verdict
@@ -111,20 +122,35 @@ def complexity_input() -> None:
     """The input of a marked test; each call of its body gets one."""
 
 
-@pytest.hookimpl(wrapper=True)
-def pytest_pyfunc_call(pyfuncitem: pytest.Function) -> Iterator[None]:
+@pytest.hookimpl(tryfirst=True)
+def pytest_runtest_call(item: pytest.Item) -> None:
     """Measure the body of a marked test that does not measure by itself."""
-    marked = pyfuncitem.get_closest_marker("complexity")
-    if marked and "complexity" not in pyfuncitem.fixturenames:
-        body, names = pyfuncitem.obj, pyfuncitem._fixtureinfo.argnames
-        given = {name: pyfuncitem.funcargs[name] for name in names}
-        measured = Complexity(pyfuncitem)
+    if not isinstance(item, pytest.Function) or "complexity" in item.fixturenames:
+        return
+    if item.get_closest_marker("complexity"):
+        body, names = item.obj, item._fixtureinfo.argnames
+        if "complexity_input" not in names or inspect.iscoroutinefunction(body):
+            pytest.fail(f"{item.nodeid} is not measured: {UNMEASURED}", pytrace=False)
+        given = {name: item.funcargs[name] for name in names}
+        measured = Complexity(item)
 
         def measure_body(**_: Any) -> None:
             measured(lambda it: body(**given | {"complexity_input": it}))
 
-        pyfuncitem.obj = measure_body
-    return (yield)
+        item.obj = measure_body
+
+
+def _mistake(options: dict[str, Any]) -> str:
+    """What is wrong with a claim and its options; empty if nothing is."""
+    if unknown := sorted(options.keys() - KNOWN):
+        return f"unknown: {', '.join(unknown)}; known are {', '.join(sorted(KNOWN))}"
+    if not options.get("expected"):
+        return 'say what is claimed: expected="O(n)"'
+    try:
+        canonical(options["expected"], options.get("variable"))
+    except ValueError as error:
+        return str(error)
+    return ""
 
 
 def _settle(config: pytest.Config, words: str, key: str) -> None:
@@ -137,8 +163,8 @@ def _settle(config: pytest.Config, words: str, key: str) -> None:
         raise pytest.UsageError(f"{key} is {', '.join(DOINGS)}, not {doing!r}")
 
 
-def _keep(item: pytest.Item, verdict: Verdict, path: Path) -> None:
-    """Add a verdict to the history, and what changed to what is told at the end."""
+def _keep(item: pytest.Item, call: int, verdict: Verdict, path: Path) -> None:
+    """Add a verdict to the history, and what changed since the same call to the end's list."""
     asked = ["git", "-C", str(item.config.rootpath), "describe"]
     asked += ["--always", "--abbrev=40", "--dirty=*"]
     try:
@@ -146,15 +172,25 @@ def _keep(item: pytest.Item, verdict: Verdict, path: Path) -> None:
     except (OSError, subprocess.CalledProcessError):
         commit = "no commit"
     time = datetime.now(UTC).isoformat(timespec="seconds")
-    now = {"test": item.nodeid, "commit": commit, "time": time}
+    now: dict[str, Any] = {"test": item.nodeid, "call": call, "commit": commit, "time": time}
     now |= {key: getattr(verdict, key) for key in TOLD}
-    lines = path.read_text("utf-8").splitlines() if path.exists() else []
-    earlier = [it for it in map(json.loads, lines) if it["test"] == item.nodeid]
-    if earlier and (change := _change(earlier[-1], now)):
-        item.config.stash[CHANGES].append(f"{item.nodeid}: {change}")
+    text = path.read_text("utf-8", "replace") if path.exists() else ""
+    before, unread = None, list[str]()
+    for number, line in enumerate(text.splitlines(), 1):
+        try:
+            it = {"call": 1} | json.loads(line)
+            before = it if all(it[key] == now[key] for key in ("test", "call")) else before
+        except (ValueError, TypeError, KeyError):
+            unread.append(str(number))
+    changes = item.config.stash[CHANGES]
+    if unread and (words := f"{path}: not read: line {', '.join(unread)}") not in changes:
+        changes.append(words)
+    if before and (change := _change(before, now)):
+        changes.append(f"{item.nodeid}: {change}")
     path.parent.mkdir(parents=True, exist_ok=True)
-    with path.open("a", encoding="utf-8") as file:
-        file.write(json.dumps(now, ensure_ascii=False) + "\n")
+    with path.open("a", encoding="utf-8") as file:  # after a line that was cut off, on a new one
+        cut = "\n" if text and not text.endswith("\n") else ""
+        file.write(cut + json.dumps(now, ensure_ascii=False) + "\n")
 
 
 def _change(before: dict[str, Any], now: dict[str, Any]) -> str:

@@ -35,6 +35,8 @@ def costs(tmp_path: Path) -> Path:
         (("--expected", "O(n)"), 1),
         (("--expected", "O(n^2)", "--upper"), 0),
         (("--expected", "n log n", "--upper"), 1),
+        (("--expected", "O(n²·m)", "--upper", "--parameter", "n"), 0),
+        (("--expected", "O(n·m²)", "--upper"), 1),
     ],
 )
 def test_the_exit_code_is_the_worst_verdict(costs: Path, arguments: tuple[str], code: int) -> None:

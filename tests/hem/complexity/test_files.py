@@ -49,7 +49,9 @@ def test_samples_are_told_by_size(tmp_path: Path, content: Any, name: str) -> No
 
 def test_parameters_that_are_not_asked_for_are_held_fixed(tmp_path: Path) -> None:
     runs = [
-        {"name": f"BM/n:{n}/m:{m}/real_time", "cpu_time": n * m} for n in (1, 2) for m in (5, 6)
+        {"name": f"BM/n:{n}/m:{m}/real_time", "real_time": n * m, "cpu_time": 1}
+        for n in (1, 2)
+        for m in (5, 6)
     ]
     file = tmp_path / "costs.json"
     file.write_text(json.dumps({"benchmarks": runs}))
@@ -61,11 +63,28 @@ def test_parameters_that_are_not_asked_for_are_held_fixed(tmp_path: Path) -> Non
         read_curves(file, "k")
 
 
+def test_runs_that_failed_are_left_out_and_named(tmp_path: Path) -> None:
+    failed = {"name": "BM_Sort/30", "error_occurred": True, "error_message": "no room"}
+    (tmp_path / "file").write_text(json.dumps({"benchmarks": [*GOOGLE["benchmarks"], failed]}))
+    with pytest.warns(UserWarning, match="BM_Sort/30 failed and is left out"):
+        (curve,) = read_curves(tmp_path / "file")
+    assert curve.sizes.tolist() == [10, 20]
+
+
+def test_cells_may_be_empty_and_a_file_that_is_no_text_is_named(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("n,a,b\n1,2,\n2, ,4\n3,5,6\n")
+    assert [it.sizes.tolist() for it in read_curves(tmp_path / "file")] == [[1, 3], [2, 3]]
+    (tmp_path / "binary").write_bytes(b"\x7fELF\xff")
+    with pytest.raises(ValueError, match="binary is no text"):
+        read_curves(tmp_path / "binary")
+
+
 @pytest.mark.parametrize(
     ("text", "message"),
     [
         ("words", "no CSV of costs"),
         ("n,a\n1,2\nx,3\n", "row 3"),
+        ("n,a\n1,2\n2,3 s\n", "row 3, a: '3 s' is no number"),
         ("n,a\n1,2\n1,3\n", "nothing varies"),
         ("{}", "no JSON of"),
         ("{", "no JSON of"),

@@ -60,7 +60,8 @@ def test_samples_are_what_a_call_takes_without_the_timer(clock: Clock) -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "power", "budget"), [("O(n)", 1, 1.0), ("O(n)", 1, 8.0), ("O(n³)", 3, 2.0)]
+    ("name", "power", "budget"),
+    [("O(n)", 1, 0.2), ("O(n)", 1, 1.0), ("O(n)", 1, 8.0), ("O(n³)", 3, 2.0)],
 )
 def test_sizes_are_chosen_within_the_budget(
     clock: Clock, name: str, power: int, budget: float
@@ -72,6 +73,25 @@ def test_sizes_are_chosen_within_the_budget(
     assert clock.now <= 1.5 * budget
     assert found.sizes[-1] >= 16 * found.sizes[0]
     assert found.judge().answer == name
+
+
+@pytest.mark.parametrize(
+    ("constant", "factor", "budget"),
+    [(2e-7, 5e-9, 0.02), (2e-7, 5e-9, 0.1), (2e-7, 5e-9, 0.3), (0.03, 3e-5, 4.0), (1.0, 1e-3, 4.0)],
+)
+def test_what_a_constant_hides_at_the_sizes_of_a_short_budget_violates_no_claim(
+    clock: Clock, constant: float, factor: float, budget: float
+) -> None:
+    def work(n: int) -> None:
+        clock.now += constant + factor * n
+
+    found = measure(work, lambda n: n, budget=budget)
+    for options in ({}, {"latency": None}):
+        told = found.judge("O(n)", **options)
+        assert told.outcome != "violated"
+        if found.sizes[-1] == 16 and not options:
+            assert "only n = 16, where a constant may still hide O(n)" in told.reason
+    assert found.judge("O(n²)").outcome != "consistent"
 
 
 def test_exponential_costs_are_found_before_they_explode(clock: Clock) -> None:

@@ -33,6 +33,18 @@ from hem.complexity import NAMES, canonical, parse
         ("quadratic time", "O(n²)"),
         ("O(n√n)", "O(n^1.5)"),
         ("O((log n)^2)", "O(log^2 n)"),
+        ("O(log(n)^2)", "O(log^2 n)"),
+        ("O(log n^2)", "O(log n)"),
+        ("n ⋅ log n", "O(n log n)"),
+        ("loglinear", "O(n log n)"),
+        ("n^{2}", "O(n²)"),
+        ("$O(n^2)$", "O(n²)"),
+        (r"\mathcal{O}(n \cdot \log n)", "O(n log n)"),
+        ("O(n/2)", "O(n)"),
+        ("O(n²/2)", "O(n²)"),
+        ("O(n(n-1)/2)", "O(n²)"),
+        ("O(e^n)", "O(2.71828^n)"),
+        ("O(E^2)", "O(n²)"),
         ("O(log(2^n))", "O(n)"),
         ("exponential", "O(2^n)"),
         ("O(1.5^n)", "O(1.5^n)"),
@@ -51,7 +63,13 @@ def test_of_several_variables_one_is_varied_and_the_others_are_held_fixed() -> N
         canonical("O(n·m)")
 
 
-@pytest.mark.parametrize("claim", ["", "N/A", "O(n!)", "O(n", "O(n))", "log log n", "n^n", "fast"])
+@pytest.mark.parametrize(
+    "claim",
+    [
+        "", "N/A", "O(n!)", "O(n", "O(n))", "log log n", "n^n", "fast",
+        "O(n2)", "O(3n2)", "log3(n)", "n^1/2", "n^2/2", "n - 2n", "n^-1", "2^{2n}",
+    ],
+)  # fmt: skip
 def test_what_is_no_growth_class_is_refused(claim: str) -> None:
     with pytest.raises(ValueError, match=r"unknown growth class|say which"):
         canonical(claim)

@@ -71,15 +71,17 @@ def test_a_claim_that_is_violated_fails_and_says_why(run) -> None:
 
 
 @pytest.mark.parametrize(
-    ("options", "outcome"),
+    ("options", "outcome", "warned"),
     [
-        ((), {"passed": 3, "warnings": 3}),
-        (("--complexity-undetermined", "fail"), {"failed": 3}),
-        (("-o", "complexity_undetermined=pass"), {"passed": 3}),
+        ((), {"passed": 3}, 3),
+        (("--complexity-undetermined", "fail"), {"failed": 3}, 0),
+        (("-o", "complexity_undetermined=pass"), {"passed": 3}, 0),
     ],
 )
-def test_what_cannot_be_told_warns_or_does_as_it_is_told(run, options, outcome) -> None:
-    run(*options, sizes=(10, 100, 1000)).assert_outcomes(**outcome)
+def test_what_cannot_be_told_warns_or_does_as_it_is_told(run, options, outcome, warned) -> None:
+    result = run(*options, sizes=(10, 100, 1000))
+    result.assert_outcomes(**outcome)
+    assert result.stdout.str().count(" ComplexityWarning: ") == warned
 
 
 def test_nothing_is_timed_in_parallel(run) -> None:
@@ -104,11 +106,93 @@ def test_history_tells_what_changed(run, pytester: pytest.Pytester) -> None:
     assert [json.loads(line)["outcome"] for line in kept] == ["consistent"] * 6 + ["violated"] * 3
 
 
-def test_a_missing_claim_is_a_mistake(pytester: pytest.Pytester) -> None:
-    pytester.makepyfile("def test_it(complexity):\n    complexity(len, list)")
-    pytester.runpytest("-p", PLUGIN).stdout.fnmatch_lines(
-        ['*say what is claimed: expected="O(n)"*']
-    )
+def test_history_tells_calls_of_one_test_apart_and_leaves_out_what_it_cannot_read(
+    pytester: pytest.Pytester,
+) -> None:
+    pytester.makepyfile("""
+        def test_it(complexity):
+            for power in (1, 2):
+                now = [0.0]
+                def work(n):
+                    now[0] += 1e-6 * n ** power
+                complexity(work, int, [10, 30, 100, 300, 1000], expected=f"O(n^{power})",
+                           rounds=2, clock=lambda: now[0])
+    """)
+    history = pytester.path / "history.jsonl"
+    for broken in ("", '3\n{"test"'):
+        history.write_text((history.read_text() if history.exists() else "") + broken)
+        result = pytester.runpytest("-p", PLUGIN, "--complexity-history", "history.jsonl")
+        result.assert_outcomes(passed=1)
+        assert result.stdout.str().count("complexity: changed") == bool(broken)
+        assert result.stdout.str().count("history.jsonl: not read: line 3, 4") == bool(broken)
+        assert "slope 1.00 at" not in result.stdout.str()
+    assert [json.loads(history.read_text().splitlines()[k])["call"] for k in (0, 1, 4, 5)] == [
+        1,
+        2,
+    ] * 2
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ("", 'say what is claimed: expected="O(n)"'),
+        ('expected="O(m n)"', "'O(m n)' names m, n: say which"),
+        ('expected="fast"', "unknown growth class 'fast'"),
+        ('expected="O(n)", bounds="upper"', "unknown: bounds; known are *bound*"),
+    ],
+)
+@pytest.mark.parametrize("marked", [False, True])
+def test_a_mistake_is_told_in_a_line_before_anything_is_measured(
+    pytester: pytest.Pytester, given: str, message: str, marked: bool
+) -> None:
+    mark, call = (given, "") if marked else ("", given)
+    pytester.makepyfile(f"""
+        import pytest
+
+        @pytest.mark.complexity({mark})
+        def test_it(complexity):
+            complexity(lambda it: print("measured"), list, {call})
+    """)
+    result = pytester.runpytest("-p", PLUGIN)
+    result.assert_outcomes(failed=1)
+    result.stdout.fnmatch_lines([f"*::test_it: {message}*"])
+    assert not {"measured", "Traceback", "test_it.py:"} & {*result.stdout.str().split()}
+
+
+def test_marked_tests_that_cannot_be_measured_fail(pytester: pytest.Pytester) -> None:
+    pytester.makepyfile("""
+        import pytest
+        import unittest
+
+        pytestmark = pytest.mark.complexity("O(n)", make_input=list)
+
+        class Case(unittest.TestCase):
+            def test_method(self):
+                pass
+
+        async def test_coroutine(complexity_input):
+            pass
+
+        def test_of_nothing():
+            pass
+    """)
+    result = pytester.runpytest("-p", PLUGIN)
+    result.assert_outcomes(failed=3)
+    names = "Case::test_method", "test_coroutine", "test_of_nothing"
+    result.stdout.fnmatch_lines([f"*::{it} is not measured: a marked test is*" for it in names])
+
+
+def test_a_mark_takes_its_first_options_by_place(pytester: pytest.Pytester) -> None:
+    pytester.makepyfile("""
+        import pytest
+
+        @pytest.mark.complexity("O(n)", lambda n: "x" * n, [10, 20, 30], rounds=1)
+        def test_it(complexity_input):
+            assert isinstance(complexity_input, str)
+    """)
+    result = pytester.runpytest("-p", PLUGIN)
+    result.assert_outcomes(passed=1)
+    result.stdout.fnmatch_lines(["*Too few sizes: 3*"])
 
 
 def test_pytest_benchmark_works_beside(pytester: pytest.Pytester) -> None:
