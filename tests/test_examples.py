@@ -141,6 +141,19 @@ def test_a_quick_command_that_is_shown_runs(words: list[str]) -> None:
     assert done.exit_code == 0, done.output
 
 
+def test_costs_that_a_page_shows_are_of_the_class_that_it_claims() -> None:
+    Path("costs.csv").write_text(dict(blocks_of(PAGES["measure.md"]))["csv"])
+    (claim,) = re.findall(r'hem judge costs\.csv --expected "(.+?)"', PAGES["measure.md"])
+    done = CliRunner().invoke(app, ["judge", "costs.csv", "--expected", claim])
+    assert done.exit_code == 0, done.output
+
+
+@pytest.mark.parametrize("word", ["hem judge", "hem advise", "pytest", "hem study"])
+def test_the_readme_shows_every_way_into_the_project(word: str) -> None:
+    assert re.search(rf"(?m)^(?:python -m )?{word} .*#", README)
+    assert len(README.splitlines()) <= 150
+
+
 @pytest.mark.parametrize(
     "target", sorted(set(re.findall(r"(?:`|^)make (\w+)", TEXT, re.MULTILINE)))
 )

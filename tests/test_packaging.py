@@ -156,6 +156,15 @@ def test_an_installed_study_measures_and_reports_away_from_the_checkout(installe
 
 
 @exhaustive
+def test_an_installed_hem_judges_costs_and_advises_on_a_mesh(installed):
+    costs = "n,steps\n" + "".join(f"{n},{2 * n}\n" for n in (1, 10, 100, 1000))
+    installed("python", "-c", f"open('costs.csv', 'w').write({costs!r})")
+    judged = installed("hem", "judge", "costs.csv", "--expected", "O(n)", "--exact")
+    assert "consistent" in judged
+    assert "Predicted from the baseline" in installed("hem", "advise", "model.ply")
+
+
+@exhaustive
 def test_an_installed_plugin_tells_pytest_what_grows(installed):
     text = dict(shown(GUARD, titled=True))["test_growth.py"]
     write = "import sys; open('test_growth.py', 'w').write(sys.argv[1])"

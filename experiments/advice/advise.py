@@ -51,6 +51,10 @@ class Limits:
     bytes: float = np.inf
     edit: float = np.inf
 
+    def __post_init__(self) -> None:
+        if not (self.bytes >= 0 and self.edit >= 0):
+            raise ValueError("the most bytes, and the most that an edit may take, are from 0 on")
+
 
 @dataclass(frozen=True)
 class Option:

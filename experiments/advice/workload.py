@@ -3,13 +3,17 @@
 import csv
 import tomllib
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import dataclass, fields, replace
+from math import inf
 from pathlib import Path
 from typing import Any, Self
 
+from experiments import require_known
 from hem import Recording
 from hem.contract import OPERATIONS, QUERIES
 from hem.contract.recording import ANEW, BESIDE, CHECKED, COMPILED, PYTHON
+from structures import REGISTRY
 
 KNOWN = (*QUERIES, *OPERATIONS, *(f"{CHECKED}{it}" for it in OPERATIONS), *BESIDE, ANEW)
 """What a row may count."""
@@ -18,6 +22,7 @@ PER_FACE = {"": 0.0, "vertex": 0.5, "edge": 1.5, "face": 1.0}
 """Elements per face of a large closed mesh."""
 
 BUILD, FRAME = "build", "frame"
+NUMBERS = "times", "in_order", "frames", "builds", "vertices", "seconds"
 
 
 @dataclass(frozen=True)
@@ -75,8 +80,11 @@ class Measured:
     """
 
     structure: str
-    vertices: int
+    vertices: float
     seconds: float
+
+    def __post_init__(self) -> None:
+        require_known("structure", [self.structure], REGISTRY)
 
 
 @dataclass(frozen=True)
@@ -125,7 +133,8 @@ def find_workload(name: str) -> Workload:
     try:
         if path.suffix == ".csv":
             with path.open(newline="", encoding="utf-8") as lines:
-                return _workload({**given, "builds": 0, "rows": list(csv.DictReader(lines))})
+                rows = csv.DictReader(lines, restkey="a cell too many")
+                return _workload({**given, "builds": 0, "rows": list(rows)})
         return _workload({**given, **tomllib.loads(path.read_text("utf-8"))})
     except (ValueError, TypeError) as error:
         raise ValueError(f"{path}: {error}") from error
@@ -137,18 +146,31 @@ def _workload(given: Mapping[str, Any]) -> Workload:
         raise ValueError(f"{', '.join(unknown)} is nothing that a workload has: {sorted(known)}")
     if not given.get("rows"):
         raise ValueError("it has no rows, such as [[rows]] with what and times")
-    rows = tuple(_row(place, it) for place, it in enumerate(given["rows"], 1))
-    measured = Measured(**given["measured"]) if "measured" in given else None
-    numbers = {it: float(given[it]) for it in ("frames", "builds") if it in given}
-    return Workload(str(given["title"]), rows, measured=measured, **numbers)
+    rows = tuple(_read(Row, f"row {place}", it) for place, it in enumerate(given["rows"], 1))
+    measured = _read(Measured, "[measured]", given["measured"]) if "measured" in given else None
+    return Workload(**{**_numbers(given), "rows": rows, "measured": measured})
 
 
-def _row(place: int, given: Mapping[str, Any]) -> Row:
+def _read(kind: Any, where: str, given: Mapping[str, Any]) -> Any:
+    """A table of a file; ValueError that says what is wrong with it, and where it stands."""
     try:
-        numbers = {it: float(given[it]) for it in ("times", "in_order") if it in given}
-        return Row(**{**given, **numbers})
-    except (ValueError, TypeError) as error:
-        raise ValueError(f"row {place}: {error}") from error
+        return kind(**_numbers(given))
+    except TypeError as error:  # of what it lacks, or what it should not have
+        known = ", ".join(it.name for it in fields(kind))
+        raise ValueError(f"{where}: {error}; there are {known}") from error
+    except ValueError as error:
+        raise ValueError(f"{where}: {error}") from error
+
+
+def _numbers(given: Mapping[str, Any]) -> dict[str, Any]:
+    """The same with numbers for texts, as in a CSV."""
+    found = dict(given)
+    for name in (it for it in NUMBERS if it in found):
+        with suppress(ValueError, TypeError):
+            found[name] = float(given[name])
+        if not (isinstance(found[name], float) and 0 <= found[name] < inf):
+            raise ValueError(f"{name} is a number from 0 on, not {given[name]!r}")
+    return found
 
 
 _TEXT = Path(__file__).with_name("workloads.toml").read_text("utf-8")

@@ -14,32 +14,44 @@ from typer import Argument, Option
 
 import hem
 from experiments.cli.check import BASELINE
-from experiments.cli.console import AsJson, OfMesh, Repair, console, errors, print_json, run_folder
+from experiments.cli.console import (
+    AsJson,
+    OfMesh,
+    Repair,
+    completed,
+    console,
+    errors,
+    print_json,
+    run_folder,
+)
 
 if TYPE_CHECKING:  # takes a second to import
     from experiments.advice import Advice
     from experiments.runs import Run
 
 NOTHING = 2  # exit code where no structure suits
+WORKLOADS = "drawn", "picked", "edited", "simplified", "remeshed"
+NEEDS = "edges", "borders", "polygons", "attributes", "edits"  # told before anything is imported
 
 
+# fmt: off
 def advise(
     mesh: Annotated[str, Argument(**OfMesh)],
-    workload: Annotated[
-        str, Option(help="drawn, picked, edited, simplified, remeshed; or a TOML or CSV file.")
-    ] = "drawn",
-    need: Annotated[
-        list[str] | None,
-        Option(help="edges, borders, polygons, attributes, edits; may be repeated."),
-    ] = None,
-    most_bytes: Annotated[float | None, Option("--bytes", help="The most it may take.")] = None,
-    worst_edit: Annotated[float | None, Option(help="The most ms that an edit may take.")] = None,
+    workload: Annotated[str, Option(
+        help=f"{', '.join(WORKLOADS)}; or a TOML or CSV file.",
+        autocompletion=completed(__name__, "WORKLOADS"))] = "drawn",
+    need: Annotated[list[str] | None, Option(
+        help=f"{', '.join(NEEDS)}; may be repeated.",
+        autocompletion=completed(__name__, "NEEDS"))] = None,
+    most_bytes: Annotated[float, Option("--bytes", help="The most it may take.")] = inf,
+    worst_edit: Annotated[float, Option(help="The most ms that an edit may take.")] = inf,
     run: Annotated[
         Path | None, Option(help="A run of this machine. Default: the committed baseline.")
     ] = None,
     as_json: AsJson = False,
     repair: Repair = False,
 ) -> None:
+    # fmt: on
     """Say which structure should hold a mesh, for what is asked of it and done to it.
 
     A workload is a table of how often that is, per build or per frame:
@@ -49,6 +61,9 @@ def advise(
         what = "vertex_faces"
         times = 3
         per = "frame"
+
+    What it takes as a whole, measured on one structure, can be told, too: `[measured]` with
+    structure, vertices and seconds.
 
     `with hem.record(s) as workload:` counts what a program does; `workload.save("mine.csv")`.
 
@@ -60,8 +75,7 @@ def advise(
     from experiments.regression import RUN
     from experiments.runs import load
 
-    edit = inf if worst_edit is None else worst_edit / 1e3
-    limits = advice.Limits(inf if most_bytes is None else most_bytes, edit)
+    limits = advice.Limits(most_bytes, worst_edit / 1e3)
     wanted = advice.find_workload(workload)
     source = load(run_folder(run) if run else BASELINE / RUN)
     if source.machines:

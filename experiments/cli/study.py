@@ -13,6 +13,8 @@ from experiments.cli.console import OfMesh, Repair, Structures, completed, conso
 from experiments.presets import PRESETS
 
 DEFAULT = "quick"  # the preset of a study that names none
+FILES = Path(__file__).parents[1].glob("bench_*.py")
+EXPERIMENTS = sorted(it.stem.removeprefix("bench_") for it in FILES)  # without importing them
 PRESETS_TOLD = "\n".join(["Presets:\n", *(f"- {name}: {it.what}" for name, it in PRESETS.items())])
 
 
@@ -27,7 +29,8 @@ def run_study(
         help="Where the runs are kept (results/runs, peers in it).")] = None,
     structure: Structures = None,
     experiment: Annotated[list[str] | None, Option(
-        help="Run just this one; may be repeated.")] = None,
+        help="Run just this one; may be repeated.",
+        autocompletion=completed(__name__, "EXPERIMENTS"))] = None,
     peers: Annotated[bool, Option(
         "--peers", help="Other libraries beside ours, and nothing else.")] = False,
     mesh: Annotated[str | None, Option(
@@ -88,8 +91,8 @@ def _other_libraries(chosen: list[str] | None) -> list[str]:
     from experiments.runs import experiments
 
     require_known("library", chosen or [], PEERS)
-    for title, distribution in missing(chosen or PEERS).items():
-        errors.print(f"{title} is not installed, and left out (pip install {distribution})")
+    for title, command in missing(chosen or PEERS).items():
+        errors.print(f"{title} is not installed, and left out ({command})")
     if not set(installed()) & set(chosen or PEERS) - {OURS}:
         raise ValueError("no other library is installed: pip install 'hem-mesh[peers]'")
     return [name for name, it in experiments().items() if it.by_name]

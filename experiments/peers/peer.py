@@ -61,8 +61,8 @@ class Peer:
     ``ends``: (k, 2) the vertices of its edges. ``handles(m, element, numbers)``: what its calls
     take for vertices, edges or faces; ``named``: (k, 2) the vertices of edges that it answers,
     where these are neither numbers in ``ends`` nor pairs. ``single``: by query, what asks one
-    handle, given the mesh; ``bulk``: what asks all at once. ``fresh``: the mesh without what it
-    keeps of earlier answers.
+    handle, given the mesh; ``bulk``: what asks all at once, but not to hand out the triangles that
+    it was given, which takes as long of any mesh. ``fresh``: without what it keeps of answers.
     ``operations``: by name and way, what operates at these handles -> how many were done.
     ``make_room``: for so many operations, before these are timed.
     ``algorithms``: given the mesh, and for ``simplify`` a number of faces -> the outcome.

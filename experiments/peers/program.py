@@ -1,6 +1,7 @@
 """Libraries in C++: one program, compiled where Debian's packages are, that measures itself.
 
-It is timed inside, in loops of its own; Python gives it a mesh, and reads what it tells.
+It is timed inside, in loops of its own; Python gives it a mesh, and reads what it tells. The
+Polygon Mesh Processing library (pmp) is not among them, as Debian has no package of it.
 """
 
 import hashlib

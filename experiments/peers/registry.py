@@ -22,5 +22,7 @@ def installed() -> list[str]:
 
 
 def missing(wanted: Collection[str] = PEERS) -> dict[str, str]:
-    """Those of the wanted ones that cannot: by title the distribution that has them."""
-    return {PEERS[it].title: PEERS[it].distribution for it in wanted if not PEERS[it].version}
+    """Those of the wanted ones that cannot: by title the command that installs them."""
+    absent = [PEERS[it] for it in wanted if not PEERS[it].version]
+    by = "pip install", "apt-get install g++"  # which compiles what no distribution of Python has
+    return {it.title: f"{by[it.told_version is not None]} {it.distribution}" for it in absent}

@@ -13,6 +13,7 @@ from collections.abc import Callable, Iterator
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import replace
 from functools import partial
+from importlib.metadata import version
 from importlib.util import find_spec
 from itertools import chain, product
 from multiprocessing import get_context
@@ -231,6 +232,12 @@ def load_speed(path: Path = RESULT) -> tuple[dict[str, Any], pd.DataFrame]:
     return kept, rows.pivot_table("value", keys, "program", aggfunc="min", sort=False)
 
 
+def versions() -> dict[str, str]:
+    """By program, of the libraries that are measured; empty where one is not installed."""
+    peers = {it: PEERS[it].version for it in (*COMPILED, *BUILT, *ASKED_SINGLY)}
+    return {**peers, "fast-simplification": version("fast-simplification")}
+
+
 def require(output: Path) -> None:
     """Say now what is missing, and not in a quarter of an hour."""
     if not output.parent.is_dir():
@@ -252,7 +259,7 @@ def main(output: Path = RESULT, many: int = SIZES[1], few: int = SIZES[0]) -> No
             process.submit(measured, cores, WARM, WARM).result()  # compiles all that will be timed
             rows += process.submit(measured, cores, many, few).result()
     kept = {key: value for key, value in describe("").items() if key != "preset"}
-    kept |= {"columns": COLUMNS, "rows": rows}
+    kept |= {"columns": COLUMNS, "rows": rows, "versions": kept["versions"] | versions()}
     output.write_text(json.dumps(kept, indent=1) + "\n", "utf-8")
     print(load_speed(output)[1].to_string(float_format="{:.3g}".format))
 

@@ -11,7 +11,7 @@ PROPERTIES = {
     "edge_vertices": "edges_unique",
     "face_edges": "faces_unique_edges",
 }
-
+"""No neighbors of faces: `face_adjacency` has them as pairs, and a face has no row there."""
 
 PEER = Peer(
     title="trimesh",

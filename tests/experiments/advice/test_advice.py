@@ -201,6 +201,14 @@ def test_a_recording_is_a_workload_also_by_way_of_its_file(tmp_path) -> None:
         assert one.times == pytest.approx(other.times, rel=1e-4)
 
 
+ASKING = '[[rows]]\nwhat = "vertex_faces"\ntimes = 1\n'
+
+
+def measured(structure: str, vertices: object) -> str:
+    table = f'[measured]\nstructure = "{structure}"\nvertices = {vertices}\nseconds = 9\n'
+    return ASKING + table
+
+
 @pytest.mark.parametrize(
     ("text", "said"),
     [
@@ -210,6 +218,13 @@ def test_a_recording_is_a_workload_also_by_way_of_its_file(tmp_path) -> None:
         ('[[rows]]\nwhat = "vertex_faces"\ntimes = -1\n', "row 1: times is a number from 0 on"),
         ('[[rows]]\nwhat = "vertex_faces"\ntime = 1\n', "row 1: .*'time'"),
         ("what\n", "Expected '='"),
+        (f"frames = -5\n{ASKING}", "frames is a number from 0 on, not -5"),
+        (f'builds = "x"\n{ASKING}', "builds is a number from 0 on, not 'x'"),
+        (f"measured = 3\n{ASKING}", r"\[measured\]: .*there are structure, vertices, seconds"),
+        (f"{ASKING}[measured]\nseconds = 1\n", r"\[measured\]: .*'structure' and 'vertices'"),
+        (measured("nothing", 9), r"\[measured\]: no structure is called 'nothing'; there are"),
+        (measured("indexed", '"x"'), r"\[measured\]: vertices is a number from 0 on, not 'x'"),
+        (measured("indexed", "nan"), r"\[measured\]: vertices is a number from 0 on, not nan"),
     ],
 )
 def test_a_file_that_is_wrong_is_told_with_its_place(tmp_path, text: str, said: str) -> None:
@@ -217,6 +232,12 @@ def test_a_file_that_is_wrong_is_told_with_its_place(tmp_path, text: str, said: 
     path.write_text(text)
     with pytest.raises(ValueError, match=rf"mine\.toml: .*{said}"):
         find_workload(str(path))
+
+
+def test_a_line_of_a_csv_that_is_too_long_is_told_with_its_place(tmp_path) -> None:
+    (tmp_path / "mine.csv").write_text("what,times\nvertex_faces,1\nface_faces,1,random\n")
+    with pytest.raises(ValueError, match=r"mine\.csv: row 2: .*'a cell too many'; there are what"):
+        find_workload(str(tmp_path / "mine.csv"))
 
 
 def told(*arguments: str) -> tuple[int, str]:
@@ -240,8 +261,7 @@ def test_the_command_says_what_it_rests_on_and_tells_programs_the_same(run: Run)
 
 def test_the_command_says_to_stay_where_nothing_is_a_tenth_quicker(run: Run, tmp_path) -> None:
     path = tmp_path / "mine.toml"
-    rows = '[[rows]]\nwhat = "vertex_faces"\ntimes = 1\n'
-    path.write_text(f'{rows}[measured]\nstructure = "winged_edge"\nvertices = 1000\nseconds = 9\n')
+    path.write_text(measured("winged_edge", 1000))
     code, text = told("torus:1000", "--workload", str(path), "--run", str(run.folder))
     assert code == 0
     assert "measured on Winged-Edge, and nothing is a tenth quicker: stay" in text
@@ -253,6 +273,8 @@ def test_the_command_says_to_stay_where_nothing_is_a_tenth_quicker(run: Run, tmp
         (["torus:1000", "--bytes", "1"], 2, "no structure suits"),
         (["torus:1000", "--workload", "painted"], 1, "there is no workload 'painted'"),
         (["torus:1000", "--need", "speed"], 1, "no need is called 'speed'; there are edges"),
+        (["torus:1000", "--worst-edit", "-1"], 1, "that an edit may take, are from 0 on"),
+        (["torus:1000", "--bytes", "nan"], 1, "the most bytes, and"),
         (["torus:1000", "--run", "nowhere"], 1, "nowhere holds no run"),
         (["dragon"], 1, "there is no model 'dragon'"),
     ],

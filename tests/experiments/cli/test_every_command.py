@@ -13,8 +13,12 @@ from typer.main import get_command
 from typer.testing import CliRunner
 
 import hem
+from experiments.advice import NEEDS
+from experiments.advice import PRESETS as WORKLOADS
 from experiments.cli import app
+from experiments.cli.study import EXPERIMENTS
 from experiments.presets import PRESETS
+from experiments.runs import experiments
 from structures import NAMED, NAMES, REGISTRY
 
 runner = CliRunner()
@@ -72,6 +76,9 @@ def complete(*words: str) -> list[str]:
         (["study", "--preset", ""], PRESETS),
         (["study", "--structure", ""], NAMED),
         (["study", "--mesh", "bun"], ["bunny"]),
+        (["study", "--experiment", "bu"], ["build"]),
+        (["advise", "--workload", ""], WORKLOADS),
+        (["advise", "--need", ""], NEEDS),
         (["check", "--structure", "winged"], [it for it in NAMED if it.startswith("winged")]),
         (["info", ""], [*hem.SAMPLES, *hem.FAMILIES]),
         (["fracture", "bunny", "--material", "gl"], ["glass"]),
@@ -81,12 +88,16 @@ def test_a_shell_is_offered_the_names_that_there_are(words, offered):
     assert set(complete(*words)) == set(offered)
 
 
+def test_the_experiments_that_a_shell_is_offered_are_those_that_there_are():
+    assert {f"bench_{it}" for it in EXPERIMENTS} == set(experiments())
+
+
 def test_a_shell_is_offered_every_command():
     assert set(complete("")) == {path[0] for path in SHOWN}
 
 
 def test_programs_can_read_what_tells_of_runs_and_meshes():
-    told = {"table", "info", "meshes", "check", "judge"}
+    told = {"table", "info", "meshes", "check", "judge", "advise"}
     assert {path[0] for path in READABLE} >= told
     assert ("history", "show") in READABLE
 

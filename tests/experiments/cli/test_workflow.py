@@ -64,6 +64,16 @@ def test_it_tests_every_python_that_is_promised():
     assert job["strategy"]["matrix"]["python-version"] == classifiers
 
 
+def test_the_workflow_that_a_page_shows_runs_pytest_on_three_systems():
+    page = (ROOT / "docs/guard.md").read_text()
+    (text,) = re.findall(r"(?ms)^```yaml\n(.*?)^```", page)
+    (job,) = yaml.safe_load(text)["jobs"].values()
+    assert job["runs-on"] == "${{ matrix.os }}"
+    systems = [it.partition("-")[0] for it in job["strategy"]["matrix"]["os"]]
+    assert sorted(systems) == ["macos", "ubuntu", "windows"]
+    assert [it["run"].split()[0] for it in job["steps"] if "run" in it] == ["pip", "pytest"]
+
+
 def test_what_is_cached_and_installed_is_there():
     caches = [it["with"] for it in steps() if "setup-python" in it.get("uses", "")]
     assert caches

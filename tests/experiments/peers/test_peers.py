@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -102,8 +103,14 @@ def test_a_library_in_python_whose_answer_takes_too_long_is_stopped_and_skipped(
 
 def test_a_library_that_is_not_installed_is_named_and_has_no_cases(monkeypatch):
     monkeypatch.setitem(PEERS, "absent", ABSENT)
-    assert missing()["Absent"] == "no-such-distribution"
+    assert missing()["Absent"] == "pip install no-such-distribution"
     assert bench_peers.cases(PRESET, "absent") == []
+
+
+def test_a_library_in_cpp_that_is_not_here_is_installed_by_the_system(monkeypatch):
+    monkeypatch.setattr("experiments.peers.program.HEADERS", Path("no such folder"))
+    found = missing(["cgal", "openmesh_cpp"]).values()
+    assert list(found) == [f"apt-get install g++ lib{it}-dev" for it in ("cgal", "openmesh")]
 
 
 def test_what_is_measured_of_nobody_is_an_error_that_names_it():

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from importlib.metadata import distributions, version
 from pathlib import Path
 
 import pytest
@@ -11,6 +12,7 @@ from typer import BadParameter
 from experiments.peers import OURS
 from experiments.report.peers import LIKE, beside_ours
 from experiments.validation import speed
+from structures import REGISTRY
 from tests.extent import exhaustive
 
 ROOT = Path(__file__).parents[3]
@@ -49,6 +51,16 @@ def test_the_kept_run_has_every_work_of_each_of_our_structures() -> None:
     assert not ours[list(speed.STRUCTURES)].isna().any(axis=None)
     assert set(speed.COMPILED) | set(speed.BUILT) | set(speed.ASKED_SINGLY) <= {*found.columns}
     assert {size for _, size, _ in found.index} == {*speed.SIZES}
+
+
+def test_every_library_of_the_kept_run_will_have_its_version_kept() -> None:
+    pytest.importorskip("fast_simplification")
+    _, found = speed.load_speed(ROOT / speed.RESULT)
+    libraries = {*found.columns} - {*REGISTRY}
+    told = speed.describe("")["versions"] | speed.versions()
+    assert libraries - {*told} == set()
+    assert told["fast-simplification"] == version("fast-simplification")
+    assert told["openmesh"] in {"", *(it.version for it in distributions(name="openmesh"))}
 
 
 def test_a_folder_that_is_not_there_is_told_before_anything_is_measured(tmp_path) -> None:
