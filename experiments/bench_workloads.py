@@ -55,9 +55,9 @@ UNITS: dict[str, Callable[[Structure, Structure], int]] = {
 
 def vertex_normals(s: Structure) -> None:
     """Add every face's normal to its corners: a pass over the faces, no neighbors asked."""
-    corners = s.face_vertices(s.faces()).values.reshape(-1, 3)
-    a, b, c = (s.points[corners[:, i]] for i in range(3))
-    normals, of_faces = np.zeros_like(s.points), np.cross(b - a, c - a)
+    corners, points = s.face_vertices(s.faces()).values.reshape(-1, 3), s.points
+    a, b, c = points[corners.T]
+    normals, of_faces = np.zeros_like(points), np.cross(b - a, c - a)
     for i in range(3):
         np.add.at(normals, corners[:, i], of_faces)
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
@@ -87,10 +87,11 @@ def simplification(s: Structure, part: float = KEPT) -> None:
     """Collapse the shortest edge there is until ``part`` of the vertices is left."""
     wanted = max(4, int(part * s.n_vertices))
     ends = np.sort(s.edge_vertices(s.edges()).values.reshape(-1, 2))
-    lengths = np.linalg.norm(s.points[ends[:, 0]] - s.points[ends[:, 1]], axis=1)
+    points = s.points  # where those that stay will be, too
+    lengths = np.linalg.norm(points[ends[:, 0]] - points[ends[:, 1]], axis=1)
     queue = [(x, a, b) for x, (a, b) in zip(lengths.tolist(), ends.tolist(), strict=True)]
     heapq.heapify(queue)
-    alive = np.ones(len(s.points), np.bool_)
+    alive = np.ones(len(points), np.bool_)
     while queue and s.n_vertices > wanted:
         _, a, b = heapq.heappop(queue)
         edge = s.find_edge(a, b) if alive[a] and alive[b] else None
@@ -99,7 +100,7 @@ def simplification(s: Structure, part: float = KEPT) -> None:
         s.collapse_edge(edge, keep=b)
         alive[a] = False
         ring = s.vertex_vertices(b)
-        lengths = np.linalg.norm(s.points[ring] - s.points[b], axis=1)
+        lengths = np.linalg.norm(points[ring] - points[b], axis=1)
         for x, v in zip(lengths.tolist(), ring.tolist(), strict=True):
             heapq.heappush(queue, (x, min(v, b), max(v, b)))
 
@@ -108,18 +109,25 @@ def _hit(s: Structure) -> Any:
     return np.random.default_rng(IMPACT_SEED).integers(0, s.n_faces, IMPACTS).tolist()
 
 
+def _positions(s: Structure, vertices: Any) -> Any:
+    """(k, 3), of some vertices: ``points`` gathers those of all where vertices are objects."""
+    if s.compiled:
+        return s.points[vertices]
+    at = s.kernels["coordinate"]
+    return np.array([[at(s.records, v, i) for i in range(3)] for v in vertices])
+
+
 def impacts(s: Structure) -> None:
     """As in a game: split the face that is hit, ask what is around, split an edge there."""
     for face in _hit(s):
-        corners = s.face_vertices(face)
-        center = s.points[corners].mean(axis=0)
+        center = _positions(s, s.face_vertices(face)).mean(axis=0)
         new = s.split_face(face, center).vertex
         ring = s.vertex_vertices(new).tolist()
         for v in ring:
             s.vertex_faces(v)
         edge = s.find_edge(new, min(ring))
         if edge is not None:
-            s.split_edge(edge, (s.points[new] + s.points[min(ring)]) / 2)
+            s.split_edge(edge, _positions(s, [new, min(ring)]).sum(axis=0) / 2)
         s.face_faces(face)
 
 

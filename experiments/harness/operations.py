@@ -72,6 +72,8 @@ def operation_arguments(s: Structure, operation: str, faces: Array) -> Array:
     Those that may be done; in a mesh of one's own there are others. To be added are faces that are
     not there yet: ``s`` loses them. Raises MeshError if nothing may be done.
     """
+    if operation == "add_face":
+        faces = operation_arguments(s, "remove_face", faces)[:, 0]  # at a border some may not go
     rows = np.full((len(faces), 3), -1, np.int64)
     if s.operations[operation].element == "edge":
         rows[:, 0] = s.face_edges(faces).values.reshape(-1, 3)[:, 0]

@@ -4,8 +4,8 @@
 // Arguments: the library, a file of points (float32, 3 each), one of triangles (int32, 3 each), a number of vertices to
 // ask at (0 for all), the rounds of queries, and those of building, operations and algorithms.
 // Prints a JSON object: "times": subject -> seconds each round, per element or as a whole, "all ..." of all elements in
-// order; "answers": query -> what was asked and answered of a few elements; "faces", "bytes", and "collapsed", whether
-// the first edge may be, with the faces "left".
+// order; "answers": query -> what was asked and answered of a few elements; "results": algorithm -> see `result`;
+// "faces", "bytes", and "collapsed", whether the first edge may be, with the faces "left".
 #include <CGAL/Simple_cartesian.h>
 #include <CGAL/Surface_mesh.h>
 #include <CGAL/boost/graph/Euler_operations.h>
@@ -26,6 +26,7 @@
 using P = OpenMesh::Vec3f;
 std::vector<P> points;
 std::vector<int> corners;
+std::vector<P> vertex_normals;  // the last that were found
 const int asked = 20000, checked = 3;
 
 struct Cgal {
@@ -193,7 +194,8 @@ template <class L> struct Measured {
       s.faces_at(V(i), [&](F f) { sum += of_faces[f.idx()]; });
       found[i] = sum / sum.norm();
     }
-    return found.back() == found.back() ? found.size() : 1;
+    vertex_normals.swap(found);
+    return vertex_normals.size();
   }
   static long smoothing(L &s) {
     move(s, averages(s, [](int) { return 1.f; }));
@@ -213,6 +215,26 @@ template <class L> struct Measured {
     for (size_t i = old, end = s.vertices(); i < end; i++) s.collapse(s.edge_at(V(i)));
     s.compact();
     return s.faces();
+  }
+
+  // What an algorithm returned, and what any order of elements gives of the mesh after it: the numbers of vertices and
+  // faces, sums of coordinates and of squared lengths of edges, and the sums of normals, and of them times positions.
+  static std::vector<double> result(L &s, long returned) {
+    double places[3] = {}, normals[3] = {}, product = 0, lengths = 0;
+    for (size_t i = 0; i < s.vertices(); i++) {
+      for (int j = 0; j < 3; j++) {
+        double at = s.at(V(i))[j], normal = i < vertex_normals.size() ? vertex_normals[i][j] : 0;
+        places[j] += at, normals[j] += normal, product += at * normal;
+      }
+    }
+    for (size_t i = 0; i < s.edges(); i++) {
+      std::vector<P> at;
+      s.ends(E(i), [&](V v) { at.push_back(s.at(v)); });
+      lengths += (at[1] - at[0]).sqrnorm();
+    }
+    vertex_normals.clear();
+    return {double(returned), double(s.vertices()), double(s.faces()), places[0], places[1], places[2], lengths,
+            normals[0], normals[1], normals[2], product};
   }
 
   // Edges as their two vertices.
@@ -324,17 +346,20 @@ template <class L> struct Measured {
     std::printf("}, \"times\": {");
     if (rounds) queries(s, few, rounds, false);
     struct { const char *title; long (*call)(L &); } six[] = {{"build", nullptr}, {"circulator", circulator}, {"barycenter", barycenter}, {"normals", normals}, {"smoothing", smoothing}, {"subdivision", subdivision}, {"collapse", collapse}};
+    std::vector<std::pair<const char *, std::vector<double>>> results;
     for (auto &it : six) {
       if (!whole) break;
       std::vector<double> seconds;
       for (int round = -1; round < whole; round++) {
         double begin = cpu();
         L fresh = build();
+        long returned = 0;
         if (it.call) {
           begin = cpu();
-          if (!it.call(fresh)) std::exit(1);
+          returned = it.call(fresh);
         }
         if (round >= 0) seconds.push_back(cpu() - begin);
+        if (round + 1 == whole) results.emplace_back(it.title, result(fresh, returned));
       }
       name(it.title);
       list("%.9g", seconds);
@@ -349,6 +374,9 @@ template <class L> struct Measured {
     }
     bool collapsed = !rounds && s.edges() && s.collapse(E(0));
     s.compact();
+    std::printf("}, \"results\": {");
+    first = true;
+    for (auto &it : results) name(it.first), list("%.9g", it.second);
     std::printf("}, \"collapsed\": %s, \"left\": %zu}\n", collapsed ? "true" : "false", s.faces());
   }
 };

@@ -107,7 +107,7 @@ def change(
     out, log = s.scratch(splits, operations, valence)
     try:
         while result == NEEDS_ROOM:
-            if idle == 2:  # more scratch was no help
+            if idle > 1 and operations > s.n_faces:  # more scratch was no help
                 raise MeshError(f"{kind}: there is room for {splits} splits, and more are done")
             if steps == AT_ONCE:
                 steps, (out, log) = 0, s.scratch(0, operations, valence)

@@ -103,6 +103,17 @@ def test_a_workload_makes_of_every_structure_the_same_mesh(workload, order):
     assert all(it == made[0] for it in made)
 
 
+@pytest.mark.parametrize("workload", WORKLOADS)
+def test_positions_held_by_objects_are_gathered_once_or_twice_and_not_per_edit(
+    monkeypatch, workload
+):
+    kind, gathered = structures.REGISTRY["half_edge_objects"], []
+    points = kind.points.fget
+    monkeypatch.setattr(kind, "points", property(lambda s: gathered.append(1) or points(s)))
+    WORKLOADS[workload].from_python(kind.build(hem.generate("sphere", 162)))
+    assert len(gathered) <= 2
+
+
 @pytest.mark.parametrize("order", ["compiled", "from Python"])
 def test_a_simplification_leaves_a_tenth_and_a_closed_surface(order):
     s = structures.build("half_edge", hem.generate("sphere", 642))

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 import hem
-from experiments.harness import PRESETS, own_mesh
-from experiments.runs import load, read_meta, study
+from experiments.harness import PRESETS, own_mesh, time_rounds
+from experiments.runs import experiments, load, read_meta, study
 from tests.experiments.cli.test_cli import hem as command
 from tests.experiments.small_study import begin, go_on
 from tests.extent import waiting_for
@@ -65,6 +65,20 @@ def test_a_run_keeps_its_mesh_and_is_called_by_it(tmp_path):
         code, printed = command(*asked, str(folder))
         assert code in (1, 2)
         assert "is on model.ply, and the baseline is not" in printed
+
+
+@pytest.mark.parametrize("experiment", ["bench_queries", "bench_operations", "bench_workloads"])
+def test_everything_is_timed_on_the_versions_of_a_mesh(tmp_path, experiment):
+    own_mesh.keep_versions(tmp_path, "grid:400")
+    name, sizes = own_mesh.of_run(tmp_path)
+    preset = PRESETS["smoke"].on(name, sizes)
+    its = experiments()[experiment]
+    cases = [it for it in its.cases(preset, "half_edge") if it.family == name]
+    assert {it.size for it in cases} == set(sizes)
+    for case in {it.subject: it for it in reversed(cases)}.values():  # at the smallest size
+        measured = its.measure(case, preset, time_rounds)
+        assert measured.vertices == sizes[0]
+        assert measured.samples or measured.skipped
 
 
 def test_what_not_every_structure_can_hold_is_refused_and_leaves_no_run(tmp_path):

@@ -12,6 +12,7 @@ import pytest
 import hem
 import structures
 from hem import algorithms
+from hem.algorithms import parts
 from hem.algorithms.loop import Plan, splitting
 from hem.algorithms.parts import NO_WORK, change
 from hem.contract import Navigable, Structure
@@ -30,6 +31,7 @@ ALGORITHMS: dict[str, Callable[[Structure], Any]] = {
     "sqrt3 twice": lambda s: algorithms.subdivide(s, "sqrt3", times=2),
 }
 CHANGING = [it for it in ALGORITHMS if it not in ("circulator", "normals", "vertex normals")]
+MOVING = "barycenter", "smoothing", "taubin"  # in one step
 EACH_WITH_EACH_KIND = [
     (name, it)
     for name in OF_EACH_KIND
@@ -161,6 +163,30 @@ def test_an_interrupt_leaves_a_whole_mesh_that_works(algorithm: str, name: str) 
     end()
     s.validate()
     assert np.array_equal(render.indices, hem.RenderMesh(s).indices)
+    ALGORITHMS[algorithm](s)
+    s.validate()
+
+
+@pytest.mark.parametrize("algorithm", [it for it in CHANGING if it not in MOVING])
+def test_an_interrupt_between_two_steps_leaves_what_was_told(monkeypatch, algorithm: str) -> None:
+    s = structures.build("half_edge", MESHES["torus"]())
+    render, counts, step = hem.RenderMesh(s), [], parts.step
+
+    def stop(*args: Any) -> int:
+        counts.append(s.n_faces)
+        if len(counts) == 4:
+            raise KeyboardInterrupt
+        return step(*args)
+
+    monkeypatch.setattr(parts, "STEP", 30)
+    monkeypatch.setattr(parts, "step", stop)
+    with pytest.raises(KeyboardInterrupt):
+        ALGORITHMS[algorithm](s)
+    assert len(set(counts)) > 1
+    s.validate()
+    afresh = hem.RenderMesh(s)
+    assert np.array_equal(render.points, afresh.points)
+    assert np.array_equal(render.indices, afresh.indices)
     ALGORITHMS[algorithm](s)
     s.validate()
 

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 
 import hem
 import structures
 from hem import algorithms
+from hem.algorithms import parts
 from hem.algorithms.collapsing import QUADRICS
-from hem.algorithms.simplification import collapsible
+from hem.algorithms.simplification import LEAST_COSINES, collapsible
 from hem.meshes.measures import normals
 from hem.sources import meshlab
 from tests.hem.algorithms.meshes import dented
@@ -67,6 +70,36 @@ def test_a_flat_square_keeps_its_outline_and_its_side() -> None:
     assert np.allclose(mine.bounds, GRID.bounds, atol=1e-5)
     up = normals(GRID.points[GRID.triangles[:1]].astype(float))[0]
     assert (normals(mine.points[mine.triangles].astype(float)) @ up > 0).all()
+
+
+@pytest.mark.parametrize("by", algorithms.MEASURES)
+def test_no_collapse_turns_a_face_of_a_curved_surface_further_than_it_may(by: str) -> None:
+    s = structures.build("half_edge", dented("torus", 900))
+    s.corner_attribute("any")  # so that every collapse is told on its own
+    before, cosines = normals(s.points.astype(float)[s.triangles()]), []
+
+    def follow(edit: hem.Edit) -> None:
+        changed = edit.changed_faces
+        after = normals(s.points.astype(float)[s.face_vertices(changed).values.reshape(-1, 3)])
+        sizes = np.linalg.norm(before[changed], axis=1) * np.linalg.norm(after, axis=1)
+        cosines.append(((before[changed] * after).sum(axis=1) / sizes).min())
+        before[changed] = after
+
+    s.subscribe(follow)
+    algorithms.simplify(s, vertices=0, by=by)
+    assert len(cosines) > 800
+    for least, told in zip(LEAST_COSINES, (cosines[:450], cosines), strict=True):
+        assert min(told) > least - 1e-4  # of float32
+
+
+@pytest.mark.parametrize("valence", [20, 500, 8_000])
+def test_a_hub_is_simplified_whatever_its_valence(valence: int, monkeypatch: Any) -> None:
+    """Where few operations are done at once, and one of them may tell of more than all of those."""
+    monkeypatch.setattr(parts, "STEP", 1)
+    s = structures.build("half_edge", hem.valence_mesh(valence, 2 * valence + 8))
+    algorithms.simplify(s, faces=s.n_faces // 4)
+    s.validate()
+    assert s.n_faces <= (2 * valence + 8) // 2
 
 
 def test_by_length_borders_stay_as_they_are() -> None:

@@ -110,6 +110,30 @@ def test_loop_makes_an_icosahedron_round() -> None:
     assert radius.std() < 0.02 * radius.mean()
 
 
+def limits(mesh: hem.TriangleMesh, scheme: str) -> np.ndarray:
+    """(n, 3): where old vertices of a closed mesh end, by the limit masks (Loop, Kobbelt)."""
+    shared = neighbors(mesh) > 0
+    around = 1 - np.diag(old_to_old(mesh, scheme))[:, None]  # what the mask has of the neighbors
+    means = shared @ mesh.points.astype(float) / shared.sum(axis=1)[:, None]
+    part = around / (around + {"loop": 3 / 8, "sqrt3": 1 / 3}[scheme])
+    return mesh.points + part * (means - mesh.points)
+
+
+@pytest.mark.parametrize("scheme", algorithms.SCHEMES)
+def test_old_vertices_of_any_valence_come_to_the_limit_of_the_scheme(scheme: str) -> None:
+    s = structures.build("half_edge", dented("sphere", 42))
+    s.split_faces([0, 30], s.points[s.triangles()[[0, 30]]].mean(axis=1) * 1.2)
+    mesh = s.to_triangles()
+    assert set((neighbors(mesh) > 0).sum(axis=1)) == {3, 5, 6, 7}
+    algorithms.subdivide(s, scheme, times=6)
+    far, left = (
+        np.linalg.norm(limits(mesh, scheme) - points, axis=1)
+        for points in (mesh.points, s.points[: len(mesh.points)])
+    )
+    assert far.max() > 0.05
+    assert (left < 0.4**6 * far + 1e-6).all()
+
+
 def test_split_and_collapse_gives_the_mesh_back() -> None:
     for mesh in (CLOSED, OPEN):
         s = structures.build("half_edge", mesh)
