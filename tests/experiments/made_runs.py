@@ -87,20 +87,13 @@ def write_run(
                 kind = "work" if experiment.endswith("work") or order == "counted" else "time"
                 noise = 1 if kind == "work" else 1e-9 * rng.normal(1, 0.02, 9)
                 case = Measurement(
-                    id=f"{claim.subject}/{n_t}/{n_ev}/{order}",
-                    kind=kind,
-                    subject=claim.subject,
-                    order=order,
-                    family=HUBS if variable == "valence" else "torus",
-                    faces=n_t,
-                    vertices=n_t // 2,
-                    valence=n_ev if variable == "valence" else None,
-                    working_set=60 * n_t,
-                    latency=2e-9,
-                    noise=STEADY if kind == "time" else {},
+                    id=f"{claim.subject}/{n_t}/{n_ev}/{order}", kind=kind, subject=claim.subject,
+                    order=order, family=HUBS if variable == "valence" else "torus", faces=n_t,
+                    vertices=n_t // 2, valence=n_ev if variable == "valence" else None,
+                    working_set=60 * n_t, latency=2e-9, noise=STEADY if kind == "time" else {},
                     calibration=[1e-9] * 9 if kind == "time" else [],
                     samples=np.atleast_1d(law(n_t, n_ev) * noise).tolist(),
-                )
+                )  # fmt: skip
                 _add(files, folder, experiment, claim.structure, case)
     for structure in NAMES:
         _add_times(files, folder, structure)
@@ -145,17 +138,22 @@ def _add_times(files: dict, folder: Path, structure: str) -> None:
                 latency=2e-9, **about,
             )  # fmt: skip
             _add(files, folder, experiment, structure, case)
-        for subject, order in ((EDITS, RESERVED), (EDITS, GROWING), (COMPACT, None)):
-            edits = Measurement(
-                id=f"{subject}/{n_t}/{order}", subject=subject, order=order,
-                samples=[4e-3, *20 * [2e-5]], detail={"uploads": [12 * n_t, *20 * [84]]}, **about,
-            )  # fmt: skip
-            _add(files, folder, "bench_real_time", structure, edits)
-        for way, power in FINDING.items():
-            order = f"{way}, faces looked at"
-            counted = {**about, "kind": "work", "samples": [float(round(n_t**power))]}
-            case = Measurement(id=f"{order}/{n_t}", subject="find_face", order=order, **counted)
-            _add(files, folder, "bench_fracture", structure, case)
+        _add_edits(files, folder, structure, n_t, about)
+
+
+def _add_edits(files: dict, folder: Path, structure: str, n_t: int, about: dict) -> None:
+    """Single edits, and what of the faces is looked at to find one."""
+    for subject, order in ((EDITS, RESERVED), (EDITS, GROWING), (COMPACT, None)):
+        edits = Measurement(
+            id=f"{subject}/{n_t}/{order}", subject=subject, order=order,
+            samples=[4e-3, *20 * [2e-5]], detail={"uploads": [12 * n_t, *20 * [84]]}, **about,
+        )  # fmt: skip
+        _add(files, folder, "bench_real_time", structure, edits)
+    for way, power in FINDING.items():
+        order = f"{way}, faces looked at"
+        counted = {**about, "kind": "work", "samples": [float(round(n_t**power))]}
+        case = Measurement(id=f"{order}/{n_t}", subject="find_face", order=order, **counted)
+        _add(files, folder, "bench_fracture", structure, case)
 
 
 def _memory(bytes_per_vertex: float | None, reference_bytes: int) -> Measurement:

@@ -256,9 +256,8 @@ def test_random_operations_on_polygons_leave_a_sound_mesh():
         faces, half_edges = s.faces(), s.half_edges()
         h, f = int(rng.choice(half_edges)), int(rng.choice(faces))
         loop = s.face_half_edges(f).tolist()
-        v = s.start_vertex(h)
+        v, point = s.start_vertex(h), rng.random(3)
         leaving = s.vertex_half_edges(v).tolist()
-        point = rng.random(3)
         calls: dict[str, tuple[Any, ...]] = {
             "split_edge": (s.split_edge, h, point, False),
             "split_face": (s.split_face, loop[0], loop[2]),
