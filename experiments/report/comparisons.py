@@ -9,6 +9,7 @@ import numpy as np
 import pandas as pd
 
 from experiments.bench_fracture import FIND, SHATTER, VISITED, WAYS
+from experiments.bench_workloads import COMPILED, WORKLOADS
 from experiments.claims import BY_TIME, MIXES, Family, curves
 from experiments.harness import BASE, Axis
 from experiments.report.pages import Heads, Html, numbers, part, text_table
@@ -44,6 +45,22 @@ def objects_against_arrays(run: Run) -> Html:
         "slower": lambda value: f"{digits(value)} ×", "vertices": count,
     }  # fmt: skip
     return numbers(rows, heads)
+
+
+def workloads(run: Run, order: str = COMPILED) -> Html:
+    """Time per unit of every workload on the largest mesh of each structure, compiled or from
+    Python, never both.
+    """
+    cases = run.cases.query("experiment == 'bench_workloads' and order == @order")
+    largest = cases[cases["vertices"] == cases.groupby("structure")["vertices"].transform("max")]
+    largest = largest.assign(cost=largest["samples"].map(np.median))
+    table = largest.pivot_table("cost", ["structure", "vertices"], "subject")
+    shown = {name: it for name, it in WORKLOADS.items() if name in table}
+    every: Any = table[list(shown)].iterrows()
+    inorder = sorted(every, key=lambda it: NAMES.index(it[0][0]))
+    rows = [(REGISTRY[name].title, size, *costs) for (name, size), costs in inorder]
+    heads = [f"{it.title}, per {it.unit}" for it in shown.values()]
+    return numbers(rows, {"": str, "vertices": count, **dict.fromkeys(heads, duration)})
 
 
 def bytes_held(run: Run, width: int) -> pd.DataFrame:

@@ -251,6 +251,7 @@ def require(output: Path) -> None:
 def main(output: Path = RESULT, many: int = SIZES[1], few: int = SIZES[0]) -> None:
     """Measure all, keep it, and print the least of each."""
     require(output)
+    kept = {key: value for key, value in describe("").items() if key != "preset"}
     rows: list[tuple[Any, ...]] = []
     for cores in CLOCKS:
         os.environ[THREADS] = "1" if cores == ONE else str(os.cpu_count() or 1)
@@ -258,7 +259,6 @@ def main(output: Path = RESULT, many: int = SIZES[1], few: int = SIZES[0]) -> No
         with ProcessPoolExecutor(1, get_context("spawn"), first) as process:
             process.submit(measured, cores, WARM, WARM).result()  # compiles all that will be timed
             rows += process.submit(measured, cores, many, few).result()
-    kept = {key: value for key, value in describe("").items() if key != "preset"}
     kept |= {"columns": COLUMNS, "rows": rows, "versions": kept["versions"] | versions()}
     output.write_text(json.dumps(kept, indent=1) + "\n", "utf-8")
     print(load_speed(output)[1].to_string(float_format="{:.3g}".format))

@@ -73,7 +73,7 @@ def edits_by_size(run: Run) -> Html:
     """The median and the longest time of an edit at every size, where arrays grow."""
     cases = _cases(run, EDITS).query("order == @GROWING")
     told = [f"{duration(np.median(it))} … {duration(max(it))}" for it in cases["samples"]]
-    return _by_size(cases.assign(told=told), "told", lambda it: it if it == it else "–")
+    return _by_size(cases.assign(told=told), "told", str)
 
 
 def compactions(run: Run) -> Html:

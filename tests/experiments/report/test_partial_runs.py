@@ -28,6 +28,7 @@ SHOWN = {
     "building": lambda run, claims: growth.building(run),
     "rendering": lambda run, claims: growth.rendering(run),
     "workloads": lambda run, claims: growth.workloads(run),
+    "times of workloads": lambda run, claims: comparisons.workloads(run),
     "overtaking": lambda run, claims: growth.overtaking(run),
     "shards": lambda run, claims: growth.shards_per_second(run),
     "face finding": lambda run, claims: growth.face_finding(run),

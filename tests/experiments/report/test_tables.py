@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import re
 from itertools import pairwise
+from types import SimpleNamespace
 
+import pandas as pd
 import pytest
 from rich.console import Console
 
+from experiments.bench_workloads import COMPILED, FROM_PYTHON
 from experiments.claims import CLAIMED, Kind, Outcome, judge_run
 from experiments.report import comparisons
 from experiments.report.pages import claims_markdown, verdicts
@@ -135,6 +138,37 @@ def test_bytes_per_vertex_are_shown_of_every_mesh_and_structure(run):
         (row,) = (line for line in text.split("<tr>") if f"<td>{it.family}</td>" in line)
         assert f"<td>{it.samples[0] / it.vertices:,.1f}</td>" in row
     assert text.count("<tr>") == 1 + cases["family"].nunique()
+
+
+def test_workloads_are_told_of_the_largest_mesh_of_each_structure_and_ways_never_mix():
+    cases = [
+        ("half_edge", 1_000, "impacts", COMPILED, 7e-6),
+        ("half_edge", 9_000, "impacts", COMPILED, 1.1e-6),
+        ("half_edge", 9_000, "vertex_normals", COMPILED, 2.2e-8),
+        ("indexed", 9_000, "vertex_normals", COMPILED, 3.3e-8),
+        ("half_edge", 9_000, "impacts", FROM_PYTHON, 4.4e-5),
+        ("half_edge_objects", 400, "impacts", FROM_PYTHON, 5.5e-4),
+    ]
+    table = pd.DataFrame(cases, columns=["structure", "vertices", "subject", "order", "samples"])
+    table = table.assign(experiment="bench_workloads", samples=[[it] for it in table["samples"]])
+    told = {
+        order: [
+            re.findall(r"<t[dh][^>]*>(.*?)</t[dh]>", row)
+            for row in re.findall(
+                r"(?s)<tr>.*?</tr>",
+                comparisons.workloads(SimpleNamespace(cases=table), order)._repr_html_(),
+            )
+        ]
+        for order in (COMPILED, FROM_PYTHON)
+    }
+    assert told[COMPILED][1:] == [
+        ["Indexed", "9,000", "33 ns", "–"],
+        ["Half-Edge", "9,000", "22 ns", "1.1 µs"],
+    ]
+    assert told[FROM_PYTHON][1:] == [
+        ["Half-Edge", "9,000", "44 µs"],
+        ["Half-Edge Objects", "400", "550 µs"],
+    ]
 
 
 def test_every_row_of_slopes_says_its_axis_in_every_block(run, capsys):
