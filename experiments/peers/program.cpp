@@ -356,7 +356,7 @@ template <class L> struct Measured {
         long returned = 0;
         if (it.call) {
           begin = cpu();
-          returned = it.call(fresh);
+          if (!(returned = it.call(fresh))) std::exit(1);
         }
         if (round >= 0) seconds.push_back(cpu() - begin);
         if (round + 1 == whole) results.emplace_back(it.title, result(fresh, returned));

@@ -122,6 +122,7 @@ def picks_in_words(run: Run) -> Html:
         raise MissingError(" ".join(["This run has cast no rays.", *reasons]))
     size = known.index.max()
     asked = cases.query("subject == @NEIGHBORS and order == @COMPILED and vertices == @size")
+    require(len(asked), "asked in compiled code what is around a face")
     neighbors = asked.set_index("structure")["cost"].sort_values()
     return part("picks", size, *(1e-6 * known.loc[size]), 1e-6 * neighbors)
 

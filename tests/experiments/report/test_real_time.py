@@ -8,8 +8,10 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from experiments.bench_picking import FOLLOWING, NEIGHBORS, RAY, REBUILT, REFITTED
 from experiments.bench_real_time import GROWING, RESERVED
 from experiments.report.figures import real_time
+from experiments.report.session import MissingError
 
 
 @pytest.mark.parametrize("seed", range(5))
@@ -46,3 +48,13 @@ def test_every_size_is_told_with_its_median_and_its_longest(monkeypatch):
         ["Half-Edge", "2.2 µs … 9.1 ms", "4.4 µs … 5.5 µs"],
         ["Indexed", "6.6 µs … 6.6 µs", "–"],
     ]
+
+
+def test_a_run_in_which_nothing_around_a_face_was_asked_compiled_says_so(monkeypatch):
+    rays = [(what, how) for what in (RAY, FOLLOWING) for how in (REBUILT, REFITTED)]
+    cases = [("half_edge", 400, *it, 2.0) for it in [*rays, (NEIGHBORS, None)]]
+    columns = ["structure", "vertices", "subject", "order", "cost"]
+    table = pd.DataFrame(cases, columns=columns)
+    monkeypatch.setattr(real_time, "timed", lambda run, experiment, scale: table)
+    with pytest.raises(MissingError, match="compiled"):
+        real_time.picks_in_words(None)

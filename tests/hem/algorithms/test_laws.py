@@ -167,6 +167,16 @@ def test_an_interrupt_leaves_a_whole_mesh_that_works(algorithm: str, name: str) 
     s.validate()
 
 
+def require_whole(s: structures.Structure, render: hem.RenderMesh, algorithm: str) -> None:
+    """After an interrupt a mesh is sound, a render mesh in step, and the algorithm goes on."""
+    s.validate()
+    afresh = hem.RenderMesh(s)
+    assert np.array_equal(render.points, afresh.points)
+    assert np.array_equal(render.indices, afresh.indices)
+    ALGORITHMS[algorithm](s)
+    s.validate()
+
+
 @pytest.mark.parametrize("algorithm", [it for it in CHANGING if it not in MOVING])
 def test_an_interrupt_between_two_steps_leaves_what_was_told(monkeypatch, algorithm: str) -> None:
     s = structures.build("half_edge", MESHES["torus"]())
@@ -183,12 +193,7 @@ def test_an_interrupt_between_two_steps_leaves_what_was_told(monkeypatch, algori
     with pytest.raises(KeyboardInterrupt):
         ALGORITHMS[algorithm](s)
     assert len(set(counts)) > 1
-    s.validate()
-    afresh = hem.RenderMesh(s)
-    assert np.array_equal(render.points, afresh.points)
-    assert np.array_equal(render.indices, afresh.indices)
-    ALGORITHMS[algorithm](s)
-    s.validate()
+    require_whole(s, render, algorithm)
 
 
 @pytest.mark.parametrize("scheme", algorithms.SCHEMES)
@@ -225,12 +230,7 @@ def test_an_interrupt_in_the_midst_of_an_operation_leaves_what_was_told(algorith
             vertex.subscribe(stop)
         with pytest.raises(Stop):
             ALGORITHMS[algorithm](s)
-        s.validate()
-        afresh = hem.RenderMesh(s)
-        assert np.array_equal(render.points, afresh.points)
-        assert np.array_equal(render.indices, afresh.indices)
-        ALGORITHMS[algorithm](s)
-        s.validate()
+        require_whole(s, render, algorithm)
 
 
 def test_an_algorithm_that_needs_more_room_than_it_says_is_ended() -> None:
