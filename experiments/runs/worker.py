@@ -20,6 +20,7 @@ from experiments.runs.store import CaseFile, require_room, writing
 
 ENDING_SECONDS = 5  # how long a worker may take to end before it is killed
 LINES_SHOWN = 15
+NOT_PASSED_ON = "PYTEST_", "MALLOC_"  # variables; by Dask's a worker would free memory at once
 DEFAULT_SEED = 1
 MEASURE, AGAIN, COMPILE = "measure", "again", "compile"
 """What a worker does with a case: measure what is missing, or what was disturbed; or just compile
@@ -88,7 +89,7 @@ def perform(folder: Path, jobs: Sequence[Job], action: str = MEASURE) -> Generat
         command += ["--benchmark-disable"]
     elif first.pin and first.timed:
         command += ["--pin"]
-    mine = {key: value for key, value in os.environ.items() if not key.startswith("PYTEST_")}
+    mine = {key: value for key, value in os.environ.items() if not key.startswith(NOT_PASSED_ON)}
     with writing(log):
         log.parent.mkdir(exist_ok=True)
         with log.open("ab") as output:
