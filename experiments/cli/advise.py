@@ -123,4 +123,4 @@ def _show(found: Advice, run: Run, called: str, mesh: str) -> None:
         console.print(f"At {where} {REGISTRY[flip['best']].title} is the best.")
     untold = sorted({what for it in found.options for what in it.forecast.untold})
     if untold:
-        console.print(f"Left out, as the run does not tell what it takes: {', '.join(untold)}.")
+        console.print(f"Skipped, as the run does not tell what it takes: {', '.join(untold)}.")

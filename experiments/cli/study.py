@@ -92,7 +92,7 @@ def _other_libraries(chosen: list[str] | None) -> list[str]:
 
     require_known("library", chosen or [], PEERS)
     for title, command in missing(chosen or PEERS).items():
-        errors.print(f"{title} is not installed, and left out ({command})")
+        errors.print(f"{title} is not installed, and skipped ({command})")
     if not set(installed()) & set(chosen or PEERS) - {OURS}:
         raise ValueError("no other library is installed: pip install 'hem-mesh[peers]'")
     return [name for name, it in experiments().items() if it.by_name]

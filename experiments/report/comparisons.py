@@ -110,21 +110,25 @@ def families_in_words(families: Sequence[Family]) -> Html:
     return part("families", first.name, denied, means, most)
 
 
-def shattering(run: Run) -> Html:
-    """Breaking a surface, each structure at the largest size that the indexed mesh has, too."""
-    found = [curves(run).named("bench_fracture", name, SHATTER) for name in NAMES]
+def shattering(run: Run, compiled: bool = True) -> Html:
+    """Breaking a surface, each structure at the largest size that the indexed mesh has, too.
+
+    Or, not ``compiled``, the structures that Python runs, each at its largest size.
+    """
+    names = [name for name in NAMES if REGISTRY[name].compiled == compiled]
+    found = [curves(run).named("bench_fracture", name, SHATTER) for name in names]
     cases = pd.concat([it.cases.assign(cost=it.centers) for it in found])
     base = cases[cases["structure"] == BASE].set_index("vertices")["cost"]
     shared: Any = cases[cases["vertices"] <= base.index.max()] if len(base) else cases
     rows = []
     for it in shared.groupby("structure", sort=False).tail(1).itertuples():
         title, times = REGISTRY[it.structure].title, base.get(it.vertices, np.nan) / it.cost
-        rows.append((title, it.vertices, it.handles, it.handles * it.cost, 1 / it.cost, times))
+        row = title, it.vertices, it.handles, it.handles * it.cost, 1 / it.cost
+        rows.append((*row, times) if compiled else row)
     heads: Heads = {
-        "": str, "vertices": count, "shards": count, "in all": duration,
-        "shards per second": count, "times faster than indexed": digits,
+        "": str, "vertices": count, "shards": count, "in all": duration, "shards per second": count,
     }  # fmt: skip
-    return numbers(rows, heads)
+    return numbers(rows, heads | {"times faster than indexed": digits} if compiled else heads)
 
 
 def face_finding(run: Run) -> Html:

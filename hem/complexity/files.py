@@ -34,7 +34,7 @@ def read_curves(path: Path, parameter: str | None = None) -> list[Curve]:
     parameter: the one that sizes are of; it may be left out where only one varies. The others are
     held fixed: there is a curve for each of their values.
     A CSV has the sizes in its first column and a function in each further one; rows of one size are
-    its samples. Warns of runs that failed, which are left out. Raises ValueError that says what is
+    its samples. Warns of runs that failed, which are skipped. Raises ValueError that says what is
     wrong with the file, OSError if there is none.
     """
     try:
@@ -120,7 +120,7 @@ def _google_benchmark(benchmarks: list[dict[str, Any]]) -> Iterator[Row]:
     runs = [it for it in benchmarks if it.get("run_type", "iteration") == "iteration"]
     for it in runs or [it for it in benchmarks if it.get("aggregate_name") == "median"]:
         if it.get("error_occurred") or it.get("skipped"):
-            warnings.warn(f"{it['name']} failed and is left out", stacklevel=2)
+            warnings.warn(f"{it['name']} failed and is skipped", stacklevel=2)
             continue
         name, *arguments = it.get("run_name", it["name"]).split("/")
         parameters = {}

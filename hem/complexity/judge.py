@@ -20,13 +20,13 @@ from hem.complexity.selection import LATENCY_ERROR, MOST_WOBBLE, Comparison, com
 
 Outcome = Literal["consistent", "violated", "undetermined"]
 Bound = Literal["tight", "upper"]
-COEFFICIENTS = "fixed", "factor", "lower", "rise"
+COEFFICIENTS = "fixed", "factor", "lower", "slowdown"
 
 MIN_SIZES = 4
 MIN_RANGE = 4.0
 MIN_GROWTH = 64.0  # of costs over sizes of a shorter range: what is exponential has no longer one
 MAX_SCATTER = 0.4  # relative scatter of samples beyond which nothing is concluded
-MAX_ERROR = 0.12  # relative error of a size's cost beyond which the size is left out …
+MAX_ERROR = 0.12  # relative error of a size's cost beyond which the size is skipped …
 MOST_LEFT_OUT = 0.25  # … if so few of the sizes are like that; otherwise nothing is concluded
 STEEPER = 2.1  # slope of the larger half of the sizes beyond which steep classes are asked about
 STEADY = 0.2  # of exponents: by so much the halves of a power law may differ
@@ -40,12 +40,12 @@ class Verdict:
     slope, slope_low, slope_high: log-log slope with the memory's part, as `best` sees it, taken
     out, and its bootstrap interval; raw_slope: of the costs as measured. margin: evidence of `best`
     against `runner_up`, negative where `best` is preferred for being simpler. noise: relative
-    scatter of samples. coefficients: per model `fixed`, `factor`, `lower` and `rise` of
-    fixed·r + factor·f(n)·(1 + lower/n)·r, where r rises with the memory's latency from 1 to `rise`,
-    and `lower` is 0 unless lower-order terms were allowed; `predicted` are its costs. errors: per
-    model, the root mean square of the relative residuals. classes: what the costs say by
-    themselves: one class, two that cannot be told apart, a power law that fits where no class does
-    ("O(n^1.62)"), or none.
+    scatter of samples. coefficients: per model `fixed`, `factor`, `lower` and `slowdown` of
+    fixed·r + factor·f(n)·(1 + lower/n)·r, where r goes with the memory's latency from 1 to
+    `slowdown`, and `lower` is 0 unless lower-order terms were allowed; `predicted` are its costs.
+    errors: per model, the root mean square of the relative residuals. classes: what the costs say
+    by themselves: one class, two that cannot be told apart, a power law that fits where no class
+    does ("O(n^1.62)"), or none.
     """
 
     outcome: Outcome
@@ -109,8 +109,8 @@ def judge(
     bound: "tight" takes the claim for the class itself, as a table of growth classes means it;
     "upper" for a bound, which slower growth keeps too.
 
-    A size whose own samples tell its cost worse than `MAX_ERROR` is left out, up to a quarter of
-    the sizes: a neighbor who took the machine for some milliseconds spoils a cell, not the curve.
+    A size whose own samples tell its cost worse than `MAX_ERROR` is skipped, up to a quarter of
+    the sizes: another tenant of the machine spoils a size for some milliseconds, not the curve.
     Times that grow more than any slowdown excuses violate a claim even where no class explains
     them. None is violated in favor of a class whose slope the largest sizes do not come near.
     Growth below `selection.GROWTH` over the sizes is taken for O(1): beside so large an intercept
@@ -147,10 +147,10 @@ def judge(
     replicates = resample(costs, fitted[models.best], resamples, seed)
     tails = [(1 - confidence) / 2, (1 + confidence) / 2]
     low, high = np.quantile(slope(costs.sizes, models.steady(replicates)), tails)
-    rise = models.design.slowdowns.scaling[models.fit.slowdown].max(axis=1)
+    slowdown = models.design.slowdowns.scaling[models.fit.slowdown].max(axis=1)
     with_lower = [has_lower_terms(parse(name)) for name in names]
     beside = np.where(with_lower, models.design.lower[models.fit.lower], 0)
-    terms = np.stack([models.fit.intercept, models.fit.factor, beside, rise], axis=1).tolist()
+    terms = np.stack([models.fit.intercept, models.fit.factor, beside, slowdown], axis=1).tolist()
     coefficients = [dict(zip(COEFFICIENTS, row, strict=True)) for row in terms]
     return Verdict(
         outcome, claimed, bound, names[models.best], names[models.runner_up], models.margin,

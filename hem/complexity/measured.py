@@ -207,13 +207,13 @@ class _Asked:
     def _goes_on(self, told: Verdict, excused: Sizes | bool = False) -> bool:
         """Whether the larger sizes cost what a class tells, and no more besides than the memory.
 
-        What they cost more is no larger than the memory's rise, nor longer than waiting for all
+        What they cost more is no larger than the memory's slowdown, nor longer than waiting for all
         that a call reads.
         """
         of, memory = self.of, self.of.memory
-        rise = (memory / memory.min(axis=1, keepdims=True)).max(axis=0)
+        slowdown = (memory / memory.min(axis=1, keepdims=True)).max(axis=0)
         least = told.predicted(told.best, of.sizes)
-        most = np.minimum((UNSEEN + 2 * rise) * least, least / LESS + self._waiting)
+        most = np.minimum((UNSEEN + 2 * slowdown) * least, least / LESS + self._waiting)
         kept = (of.cost > LESS * least) & (of.cost < most)
         small = np.arange(len(kept)) < len(kept) // 2
         return bool(np.all(kept | small | excused))

@@ -62,8 +62,8 @@ def measured_slowdowns(latency: Array, steps: int = 65) -> Slowdowns:
 
 def entire_slowdown(reference: Array) -> Slowdowns:
     """What slows a loop of constant work slows the costs, intercept included, and by as much."""
-    rise = np.atleast_2d(reference / reference.min())
-    return Slowdowns(rise, rise)
+    slowdown = np.atleast_2d(reference / reference.min())
+    return Slowdowns(slowdown, slowdown)
 
 
 def unknown_slowdowns(sizes: Array, highest: float) -> Slowdowns:

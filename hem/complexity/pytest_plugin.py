@@ -33,6 +33,7 @@ MEASURING = ("sizes", "budget", "rounds", "fresh", "amortized", "most", "clock")
 KNOWN = {*POSITIONAL, *MEASURING, *inspect.signature(judge).parameters} - {"samples"}
 DOINGS = "pass", "warn", "fail"
 UNMEASURED = "a marked test is a function of complexity_input, or one that asks for complexity"
+UNCALLED = "it asks for complexity and never calls it"
 PARALLEL = "complexity is not timed beside other tests: run this one without pytest-xdist (-n 0)"
 SECONDS = f"Seconds per function, and once more where they leave it open. Default: {BUDGET:g}."
 TOLD = ("expected", "outcome", "answer", "slope", "slope_low", "slope_high")
@@ -124,12 +125,21 @@ def complexity_input() -> None:
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_runtest_call(item: pytest.Item) -> None:
-    """Measure the body of a marked test that does not measure by itself."""
-    if not isinstance(item, pytest.Function) or "complexity" in item.fixturenames:
+    """Measure the body of a marked test; fail one that asks for ``complexity`` and measures not."""
+    if not isinstance(item, pytest.Function):
         return
-    if item.get_closest_marker("complexity"):
-        body, names = item.obj, item._fixtureinfo.argnames
-        if "complexity_input" not in names or inspect.iscoroutinefunction(body):
+    body, names = item.obj, item._fixtureinfo.argnames
+    awaited = inspect.iscoroutinefunction(body)
+    if "complexity" in names and not awaited:
+
+        def run_body(**given: Any) -> None:
+            body(**given)
+            if not given["complexity"].calls:
+                pytest.fail(f"{item.nodeid} is not measured: {UNCALLED}", pytrace=False)
+
+        item.obj = run_body
+    elif item.get_closest_marker("complexity") and "complexity" not in item.fixturenames:
+        if "complexity_input" not in names or awaited:
             pytest.fail(f"{item.nodeid} is not measured: {UNMEASURED}", pytrace=False)
         given = {name: item.funcargs[name] for name in names}
         measured = Complexity(item)

@@ -66,9 +66,9 @@ def _draw_growth(axes: Axes, curve: Curve, judged: JudgedClaim, axis: Axis) -> N
         classes.setdefault(verdict.best, RED)
     for place, (name, color) in enumerate(classes.items()):
         costs = axis.scale * verdict.predicted(name, smooth)
-        rise = verdict.coefficients[name]["rise"]
-        if rise > 1.01 and place == 0:
-            axes.fill_between(smooth, costs, rise * costs, color=GRAY, alpha=0.16, lw=0)
+        slowdown = verdict.coefficients[name]["slowdown"]
+        if slowdown > 1.01 and place == 0:
+            axes.fill_between(smooth, costs, slowdown * costs, color=GRAY, alpha=0.16, lw=0)
         axes.plot(smooth, costs, "--", color=color)
     color = STYLES[judged.claim.structure]["color"] if judged.claim.structure else INK
     found = axis.scale * _summary(curve)

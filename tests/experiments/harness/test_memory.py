@@ -1,4 +1,4 @@
-"""A case that would not fit into memory is left out beforehand and says so."""
+"""A case that would not fit into memory is skipped beforehand and says so."""
 
 from __future__ import annotations
 

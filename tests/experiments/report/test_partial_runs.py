@@ -50,6 +50,7 @@ SHOWN = {
     "picks": lambda run, claims: real_time.picks(run),
     "picks in words": lambda run, claims: real_time.picks_in_words(run),
     "shattering": lambda run, claims: comparisons.shattering(run),
+    "shattering from Python": lambda run, claims: comparisons.shattering(run, compiled=False),
     "finding": lambda run, claims: comparisons.face_finding(run),
     "break even": lambda run, claims: comparisons.overtaking(break_even(curves(run))),
     "sentences": lambda run, claims: pages.sentences(claims, "printed"),

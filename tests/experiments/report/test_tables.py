@@ -23,7 +23,7 @@ from experiments.report.tables import (
     tally_rows,
 )
 from experiments.runs import Run, load
-from structures import NAMED, NAMES
+from structures import NAMED, NAMES, REGISTRY
 from tests.experiments.made_runs import LAWS, write_run
 
 
@@ -127,6 +127,10 @@ def test_structures_are_compared_with_the_indexed_mesh_at_its_size(run):
     text = comparisons.shattering(run)
     assert re.search(r"<td>Half-Edge</td><td>100,000</td>.*<td>200,000</td></tr>", text)
     assert re.search(r"<td>Indexed</td>.*<td>1\.0</td></tr>", text)
+    from_python = comparisons.shattering(run, compiled=False)
+    for name, it in REGISTRY.items():
+        assert (f"<td>{it.title}</td>" in text) == it.compiled, name
+        assert (f"<td>{it.title}</td>" in from_python) != it.compiled, name
 
 
 def test_bytes_per_vertex_are_shown_of_every_mesh_and_structure(run):

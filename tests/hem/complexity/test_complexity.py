@@ -81,7 +81,7 @@ def test_exact_counts_have_an_exact_slope() -> None:
     verdict = judge(sizes, [[5 * n] for n in sizes], "O(n_t)", exact=True)
     assert verdict.slope_low == pytest.approx(1) == verdict.slope_high
     assert verdict.coefficients["O(n)"] == {
-        "fixed": 0, "factor": pytest.approx(5), "lower": 0, "rise": 1,
+        "fixed": 0, "factor": pytest.approx(5), "lower": 0, "slowdown": 1,
     }  # fmt: skip
     assert verdict.errors["O(n)"] == pytest.approx(0, abs=1e-9)
 
@@ -114,22 +114,22 @@ def test_a_cost_may_have_waited_as_any_one_of_several_latencies_tells() -> None:
     assert judge(sizes, linear, "O(1)", np.vstack([early, late])).outcome == "violated"
 
 
-def test_a_tenfold_rise_violates_constant_time_only_beyond_the_latency() -> None:
+def test_a_tenfold_slowdown_violates_constant_time_only_beyond_the_latency() -> None:
     rng = np.random.default_rng(2)
     sizes = np.geomspace(100, 1e6, 9)
-    rise = 1 + 9 / (1 + (3e4 / sizes) ** 1.2)
-    cache_bound = [r * s for r, s in zip(rise, flat(rng, sizes), strict=True)]
+    slowdown = 1 + 9 / (1 + (3e4 / sizes) ** 1.2)
+    cache_bound = [r * s for r, s in zip(slowdown, flat(rng, sizes), strict=True)]
     blind = judge(sizes, cache_bound)
     assert blind.outcome == "undetermined"
     assert "caches that no latency tells of" in blind.reason
-    given = judge(sizes, cache_bound, latency=1.2 * rise)
+    given = judge(sizes, cache_bound, latency=1.2 * slowdown)
     assert given.outcome == "consistent"
     assert given.raw_slope > 0.25 > 0.05 > abs(given.slope)
     growing = [s * n**0.5 for s, n in zip(cache_bound, sizes, strict=True)]
-    assert judge(sizes, growing, latency=1.2 * rise).outcome == "violated"
+    assert judge(sizes, growing, latency=1.2 * slowdown).outcome == "violated"
 
 
-def test_a_rise_that_the_latency_may_not_tell_accuses_nobody() -> None:
+def test_a_slowdown_that_the_latency_may_not_tell_accuses_nobody() -> None:
     sizes = np.geomspace(100, 1_000_000, 8)
     saturated = np.array([1, 2, 3, 3, 3, 3, 3, 3])
     risen = [[20 * r] * 7 for r in (1, 1, 1, 1.2, 1.5, 2.2, 4, 8)]

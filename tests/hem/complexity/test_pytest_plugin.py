@@ -182,6 +182,28 @@ def test_marked_tests_that_cannot_be_measured_fail(pytester: pytest.Pytester) ->
     result.stdout.fnmatch_lines([f"*::{it} is not measured: a marked test is*" for it in names])
 
 
+def test_a_test_that_never_calls_what_it_asks_for_fails(pytester: pytest.Pytester) -> None:
+    pytester.makepyfile("""
+        import pytest
+
+        @pytest.mark.complexity("O(n)")
+        @pytest.mark.parametrize("given", [1, 2])
+        def test_marked(complexity, given):
+            pass
+
+        def test_plain(complexity):
+            pass
+
+        def test_other_reasons_come_first(complexity):
+            assert False, "of its own"
+    """)
+    result = pytester.runpytest("-p", PLUGIN)
+    result.assert_outcomes(failed=4)
+    names = "test_marked?1?", "test_marked?2?", "test_plain"
+    words = [f"*::{it} is not measured: it asks for complexity and never calls it" for it in names]
+    result.stdout.fnmatch_lines([*words, "*AssertionError: of its own*"])
+
+
 def test_a_mark_takes_its_first_options_by_place(pytester: pytest.Pytester) -> None:
     pytester.makepyfile("""
         import pytest
@@ -197,5 +219,9 @@ def test_a_mark_takes_its_first_options_by_place(pytester: pytest.Pytester) -> N
 
 def test_pytest_benchmark_works_beside(pytester: pytest.Pytester) -> None:
     pytest.importorskip("pytest_benchmark")
-    pytester.makepyfile("def test_it(benchmark, complexity):\n    benchmark.pedantic(len, ([],))")
+    pytester.makepyfile("""
+        def test_it(benchmark, complexity):
+            benchmark.pedantic(len, ([],))
+            complexity(len, lambda n: [0] * n, [10, 20, 40, 80], expected="O(1)", rounds=1)
+    """)
     pytester.runpytest("-p", PLUGIN).assert_outcomes(passed=1)
