@@ -41,7 +41,7 @@ def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
         if not by_index:  # the search of `find_face`, and a look at every face that it finds
             around, looks = s.vertex_faces(named[0][0]), np.array([named[0][0]])
             work += s.work("vertex_faces", looks).sum() + s.work("face_vertices", around).sum()
-        validate_operated(copy)
+        validate_operated(copy, case)
         return case.result("work", s, [work], handles=1, checked=True)
 
     def ready() -> tuple[Structure]:  # a copy with room for the splits, whose methods are bound

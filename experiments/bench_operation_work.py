@@ -26,7 +26,7 @@ def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
     rows = operation_arguments(s, operation, faces).tolist()
     s = s.copy()  # which knows nothing of what was asked meanwhile
     work = [s.operation_work(operation, *row) for row in rows]
-    validate_operated(s)
+    validate_operated(s, case)
     return case.result("work", case.build(), work, handles=1, checked=True)
 
 

@@ -56,7 +56,7 @@ def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
         lambda edit: copy.operate(edit[0], edit[1], point=edit[2]),
         setup=lambda: (next(following),), rounds=len(edits), warmup=0,
     )  # fmt: skip
-    validate_operated(copy)
+    validate_operated(copy, case)
     afresh = hem.RenderMesh(copy)
     pairs = (render.points, afresh.points), (render.indices, afresh.indices)
     if len(timed.samples) and not all(np.array_equal(*it) for it in pairs):  # not just compiled

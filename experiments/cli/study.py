@@ -44,7 +44,8 @@ def run_study(
     """Measure every structure. The results go to a new folder, case by case.
 
     With --mesh on a mesh of your own, coarser and finer versions of it, where a slope is wanted: a
-    file, a model (bunny), or a family and size (sphere:2000).
+    file, a model (bunny), or a family and size (sphere:2000). Structures that cannot hold it are
+    skipped.
 
     With --peers other libraries, as many as are installed; the extra peers has them.
 

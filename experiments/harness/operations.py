@@ -156,11 +156,22 @@ class OperationBatch:
         return ()
 
 
-def validate_operated(operated: Structure) -> None:
-    """Validate what operations made, by its records and where that is quick by its triangles."""
+def validate_operated(operated: Structure, case: Case) -> None:
+    """Validate what operations made, by its records and where that is quick by its triangles.
+
+    A mesh of one's own need not be a surface, before or after.
+    """
     operated.validate()
-    if operated.n_faces <= SMALL:
+    if operated.n_faces <= SMALL and _is_sound(case.mesh()):
         hem.require_sound(operated.to_triangles())
+
+
+def _is_sound(mesh: hem.TriangleMesh) -> bool:
+    try:
+        hem.require_sound(mesh)
+    except hem.MeshError:
+        return False
+    return True
 
 
 def _operated(name: str, case: Case, faces: Array) -> list[list[int]]:
@@ -182,7 +193,7 @@ def time_operations(case: Case, preset: Preset, timer: Timer) -> dict[str, Any]:
         most = int(np.clip(lasting / len(faces), 1, most))
     batch = OperationBatch(s, str(case.subject), faces)
     batch.operate_all()
-    validate_operated(batch.mesh)
+    validate_operated(batch.mesh, case)
     if batch.mesh.n_faces <= SMALL and case.structure != BASE:
         mine, other = (_operated(name, case, faces[:20]) for name in (case.structure, BASE))
         if mine != other:

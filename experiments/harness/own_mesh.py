@@ -1,5 +1,6 @@
 """A mesh of one's own to be measured: at its size, and as coarser and finer versions of it.
 
+Coarser ones are simplified, in finer ones every edge is halved.
 The versions stand in the folder of the run, so that it can be resumed wherever its mesh has gone.
 """
 
@@ -9,9 +10,9 @@ from pathlib import Path
 import numpy as np
 
 import structures
-from hem.algorithms import simplify, subdivide
+from hem.algorithms import simplify
 from hem.contract import Navigable
-from hem.errors import MeshError
+from hem.errors import MeshError, NonManifoldError
 from hem.meshes import TriangleMesh, used_only
 from hem.sources import find_mesh
 
@@ -36,24 +37,21 @@ def called(name: str) -> str:
     return Path(name).name.replace(":", "-")
 
 
-def keep_versions(folder: Path, name: str, repair: bool = False) -> None:
-    """Keep a mesh, and its versions, in the folder of a run.
+def keep_versions(folder: Path, name: str, repair: bool = False) -> dict[str, NonManifoldError]:
+    """Keep a mesh, and its versions, in the folder of a run -> why structures cannot hold it.
 
-    ``name``: see ``hem.find_mesh``. Raises MeshError for what cannot be read, and for what is not
-    manifold, as only a structure that searches could hold it.
+    ``name``: see ``hem.find_mesh``. What is not manifold has no coarser versions, and only
+    structures that search hold it. Raises MeshError for what cannot be read, and without faces.
     """
     mesh = find_mesh(name, repair, triangulate=True)
     if not len(mesh.triangles):
         raise MeshError(f"there is nothing to measure: {name} has no faces")
-    try:
-        versions = [*_coarser(mesh), mesh, *_finer(mesh)]
-    except MeshError as error:
-        advice = "" if repair else "; --repair makes a surface of it"
-        raise MeshError(f"{name} cannot be held by every structure: {error}{advice}") from error
+    refusals = _refusals(mesh)
     kept = folder / FOLDER / called(name)
     kept.mkdir(parents=True)
-    for it in versions:
+    for it in (*(() if refusals else _coarser(mesh)), mesh, *_finer(mesh)):
         np.savez(kept / str(len(it.points)), points=it.points, triangles=it.triangles)
+    return refusals
 
 
 def of_run(folder: Path) -> OwnMesh | None:
@@ -76,6 +74,19 @@ def version(name: str, size: int) -> TriangleMesh:
         return TriangleMesh(arrays["points"], arrays["triangles"])
 
 
+def _refusals(mesh: TriangleMesh) -> dict[str, NonManifoldError]:
+    """Why structures cannot hold a mesh; of a surface every one can."""
+    found = dict[str, NonManifoldError]()
+    for name in (_HOLDER, *structures.NAMES):
+        try:
+            structures.build(name, mesh)
+        except NonManifoldError as error:
+            found[name] = error
+        if not found:
+            break
+    return found
+
+
 def _coarser(mesh: TriangleMesh) -> Iterator[TriangleMesh]:
     s = structures.build(_HOLDER, mesh)
     for _ in range(COARSER):
@@ -91,9 +102,15 @@ def _coarser(mesh: TriangleMesh) -> Iterator[TriangleMesh]:
 
 
 def _finer(mesh: TriangleMesh) -> Iterator[TriangleMesh]:
-    s = structures.build(_HOLDER, TriangleMesh(*used_only(mesh.points, mesh.triangles)))
-    while 4 * s.n_vertices <= LARGEST:
-        subdivide(s, "loop")
-        yield s.to_triangles()
-        if 4 * s.n_vertices > FINE_ENOUGH:
+    points, triangles = used_only(mesh.points, mesh.triangles)
+    while 4 * len(points) <= LARGEST:
+        sides = np.sort(triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2))
+        ends, middles = np.unique(sides, axis=0, return_inverse=True)
+        a, b, c = triangles.T
+        ab, bc, ca = len(points) + middles.reshape(-1, 3).T
+        points = np.concatenate([points, points[ends].mean(axis=1)])
+        corners = a, ab, ca, ab, b, bc, ca, bc, c, ab, bc, ca
+        triangles = np.stack(corners, axis=1).reshape(-1, 3)
+        yield TriangleMesh(points, triangles)
+        if 4 * len(points) > FINE_ENOUGH:
             return

@@ -125,10 +125,12 @@ def shattering(run: Run, compiled: bool = True) -> Html:
         title, times = REGISTRY[it.structure].title, base.get(it.vertices, np.nan) / it.cost
         row = title, it.vertices, it.handles, it.handles * it.cost, 1 / it.cost
         rows.append((*row, times) if compiled else row)
+    beside: Heads = {"times faster than indexed": digits} if compiled else {}
     heads: Heads = {
         "": str, "vertices": count, "shards": count, "in all": duration, "shards per second": count,
+        **beside,
     }  # fmt: skip
-    return numbers(rows, heads | {"times faster than indexed": digits} if compiled else heads)
+    return numbers(rows, heads)
 
 
 def face_finding(run: Run) -> Html:

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from experiments.claims import CLAIMED
 from experiments.harness import OPERATIONS, QUERIES_TABLE, Axis
 from experiments.report import pages, tables, uses
-from experiments.report.figures import fracture, growth, memory, meshes
+from experiments.report.figures import fracture, growth, memory, meshes, real_time
 from experiments.report.notebooks import FRONT, execute, read
 from experiments.report.session import read_session, share
 from experiments.runs import Run, in_words
@@ -24,6 +24,7 @@ DRAWN: dict[str, tuple[str, Callable[[Run], Figure]]] = {
     "building": ("Time to build", growth.building),
     "operations": ("Time of the operations", partial(TIMES, subjects=OPERATIONS)),
     "workloads": ("What people do with meshes, compiled", growth.workloads),
+    "edits": ("Single edits, a render mesh in step: the share that takes longer", real_time.waits),
     "references": ("A half-edge mesh in arrays and in objects", memory.references),
     "listings": ("The thesis' listings, as published and as corrected", growth.listings),
     "plankton": ("The article's walk around a vertex", lambda run: meshes.plankton_walk()),

@@ -146,7 +146,8 @@ def fastest_by_valence(run: Run) -> Html:
 def best(found: pd.Series) -> str:
     """The titles of the structures that are alike the best one, as in a sentence."""
     alike = found[found <= ALIKE * found.min()]
-    return " or ".join(REGISTRY[str(name)].title for name in alike.index)
+    titles = [REGISTRY[str(name)].title for name in alike.index]
+    return " or ".join(filter(None, [", ".join(titles[:-1]), *titles[-1:]]))
 
 
 HEADS = "Use", "What is compared", "Vertices", "The best first"

@@ -8,6 +8,7 @@ takes seconds to begin.
 import hashlib
 import os
 import shutil
+import warnings
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
@@ -33,6 +34,7 @@ from experiments.runs.catalog import experiments as catalog
 from experiments.runs.provenance import describe, now, source
 from experiments.runs.run import RUNS, load, noise
 from experiments.runs.worker import AGAIN, COMPILE, Job, WorkerDiedError, end_of_log, perform
+from hem.errors import MeshError, MeshWarning
 from structures import NAMED, REGISTRY
 
 ROOT = Path(__file__).parents[2]
@@ -71,7 +73,8 @@ def begin(
     ``structures``, ``experiments``: just these, all of them for none; an experiment with or without
     ``bench_``. ``seed``: of the order of the cases; ``pin``: whether to stay on one core. ``mesh``:
     one's own to measure on, see ``hem.find_mesh``. Raises ValueError for a name that there is not,
-    MeshError for a mesh that not every structure holds, CannotWriteError.
+    MeshError for a mesh that none of the structures holds, CannotWriteError. Warns of structures
+    that are skipped, as they do not hold it.
     """
     said = (f"bench_{name.removeprefix('bench_')}" for name in experiments)
     asked = dict.fromkeys(PART_OF.get(name, name) for name in said)
@@ -86,13 +89,30 @@ def begin(
     try:
         known = {**describe(preset), **chosen, "seed": seed, "pin": pin}
         if mesh:
-            own_mesh.keep_versions(folder, mesh, repair)
+            refusals = own_mesh.keep_versions(folder, mesh, repair)
+            known["structures"] = _holding(mesh, refusals, known["structures"])
             known["preset"] += ON + own_mesh.called(mesh)  # what is compared is of one mesh
         store.write_meta(folder, known)
     except BaseException:
         shutil.rmtree(folder, ignore_errors=True)
         raise
     return folder
+
+
+def _holding(mesh: str, refusals: Mapping[str, Exception], chosen: list[str]) -> list[str]:
+    """The chosen structures, all for none, that can hold a mesh; warns of what is skipped."""
+    asked = chosen or list(REGISTRY)
+    holding = [name for name in asked if name not in refusals]
+    skipped = [name for name in asked if name in refusals]
+    if not skipped:
+        return chosen
+    titles = ", ".join(REGISTRY[name].title for name in skipped)
+    words = f"{mesh} cannot be held by {titles}: {refusals[skipped[0]]}"
+    repair = "--repair makes a surface of it"
+    if not holding:
+        raise MeshError(f"{words}; {repair}")
+    warnings.warn(f"{words}; these are skipped, and {repair}", MeshWarning, stacklevel=3)
+    return holding
 
 
 def _new_folder(root: Path, name: str) -> Path:

@@ -49,7 +49,7 @@ def waits(run: Run) -> Plot:
                 look = {**STYLES[case["structure"]], "marker": ""}
                 axes.step(1e6 * np.sort(case["samples"]), slower, where="pre", **look)
         every[0].text(1e6 * FRAME, 1, " a frame", color=GRAY, va="top", fontsize=7)
-        every[0].legend(loc="upper right", bbox_to_anchor=(0.95, 1), fontsize=7)
+        figure.legend(*every[0].get_legend_handles_labels(), loc="outside right upper", fontsize=7)
     return figure
 
 

@@ -9,11 +9,15 @@ import numpy as np
 import pytest
 
 import hem
+import structures
 from experiments.harness import PRESETS, own_mesh, time_rounds
 from experiments.runs import experiments, load, read_meta, study
+from hem.meshes import non_manifold_edges
 from tests.experiments.cli.test_cli import hem as command
 from tests.experiments.small_study import begin, go_on
-from tests.extent import waiting_for
+from tests.extent import EVERYTHING, waiting_for
+
+ON_ONE_MESH = "memory", "queries", "operations", *(("operation_work", "real_time") * EVERYTHING)
 
 
 def versions(folder: Path) -> list[hem.TriangleMesh]:
@@ -81,9 +85,36 @@ def test_everything_is_timed_on_the_versions_of_a_mesh(tmp_path, experiment):
         assert measured.samples or measured.skipped
 
 
-def test_what_not_every_structure_can_hold_is_refused_and_leaves_no_run(tmp_path):
-    with pytest.raises(hem.MeshError, match=r"held by every structure.*--repair"):
-        study.begin("smoke", tmp_path, mesh="face")
+@pytest.fixture
+def finned(tmp_path) -> str:
+    """A file of a torus with a third face at an edge."""
+    torus = hem.generate("torus", 200)
+    fin = [*torus.triangles[0, :2], len(torus.points)]
+    points = np.concatenate([torus.points, torus.points[:1] + 1])
+    file = tmp_path / "finned.off"
+    hem.save(hem.TriangleMesh(points, np.concatenate([torus.triangles, [fin]])), file)
+    return str(file)
+
+
+def test_what_is_not_manifold_is_measured_on_the_structures_that_hold_it(tmp_path, finned):
+    with pytest.warns(hem.MeshWarning, match=r"held by Triangle-Neighbor, .*skipped.*--repair"):
+        folder = begin(tmp_path, *ON_ONE_MESH, structures=(), mesh=finned)
+    go_on(folder)
+    run = load(folder)
+    measured = set(run.cases["structure"]) & set(structures.NAMES)
+    for name in structures.NAMES:
+        try:
+            structures.build(name, finned)
+        except hem.NonManifoldError:
+            assert name not in measured
+        else:
+            assert name in measured
+    assert all(len(non_manifold_edges(it.triangles)) for it in versions(folder))
+
+
+def test_what_the_chosen_structures_cannot_hold_is_refused_and_leaves_no_run(tmp_path):
+    with pytest.raises(hem.MeshError, match=r"held by Half-Edge: .*--repair"):
+        study.begin("smoke", tmp_path, ["half_edge"], mesh="face")
     with pytest.raises(hem.MeshError, match="there is no model"):
         study.begin("smoke", tmp_path, mesh="nothing")
     assert not list(tmp_path.iterdir())
