@@ -63,7 +63,7 @@ def test_parameters_that_are_not_asked_for_are_held_fixed(tmp_path: Path) -> Non
         read_curves(file, "k")
 
 
-def test_runs_that_failed_are_left_out_and_named(tmp_path: Path) -> None:
+def test_runs_that_failed_are_skipped_and_named(tmp_path: Path) -> None:
     failed = {"name": "BM_Sort/30", "error_occurred": True, "error_message": "no room"}
     (tmp_path / "file").write_text(json.dumps({"benchmarks": [*GOOGLE["benchmarks"], failed]}))
     with pytest.warns(UserWarning, match="BM_Sort/30 failed and is skipped"):
