@@ -12,8 +12,7 @@ from typing import Any
 import numpy as np
 
 import structures
-from experiments.harness import Case, Experiment, Measurement, Preset, Timer
-from experiments.harness.calibration import latency_now
+from experiments.harness import Case, Experiment, Measurement, Preset, Timer, latency_now
 from hem.arrays import Array, Floats
 from hem.contract import Structure
 from hem.fracture import JUMP, MATERIALS, Found, nearest_face, scanned, shatter

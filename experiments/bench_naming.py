@@ -7,9 +7,18 @@ split from Python, with the room made before.
 
 import numpy as np
 
-from experiments.harness import Axis, Case, Experiment, Measurement, Preset, Table, Timer
-from experiments.harness.calibration import latency_now
-from experiments.harness.operations import operation_faces, validate_operated
+from experiments.harness import (
+    Axis,
+    Case,
+    Experiment,
+    Measurement,
+    Preset,
+    Table,
+    Timer,
+    latency_now,
+    operation_faces,
+    validate_operated,
+)
 from hem.contract import Structure
 from structures import NAMES, REGISTRY
 

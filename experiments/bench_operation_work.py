@@ -3,9 +3,19 @@
 Each is done uncompiled on a copy of the mesh. The counts are exact and the same on every machine.
 """
 
-from experiments.harness import Axis, Case, Experiment, Measurement, Preset, Timer
-from experiments.harness.experiment import OPERATIONS_TABLE, measured_operations
-from experiments.harness.operations import operation_arguments, operation_faces, validate_operated
+from experiments.harness import (
+    OPERATIONS_TABLE,
+    Axis,
+    Case,
+    Experiment,
+    Measurement,
+    Preset,
+    Timer,
+    measured_operations,
+    operation_arguments,
+    operation_faces,
+    validate_operated,
+)
 
 SEARCHED = 1  # one search of the whole mesh reads as much as another
 

@@ -11,9 +11,20 @@ from typing import Any
 import numpy as np
 
 import hem
-from experiments.harness import HUBS, Axis, Case, Experiment, Measurement, Preset, Timer
-from experiments.harness.experiment import OPERATIONS_TABLE, measured_operations
-from experiments.harness.operations import operation_arguments, operation_faces, time_operations
+from experiments.harness import (
+    HUBS,
+    OPERATIONS_TABLE,
+    Axis,
+    Case,
+    Experiment,
+    Measurement,
+    Preset,
+    Timer,
+    measured_operations,
+    operation_arguments,
+    operation_faces,
+    time_operations,
+)
 from hem.contract import Structure
 
 FEWEST_HUBS = 64  # in a mesh whose valence is varied; fewer are not worth timing

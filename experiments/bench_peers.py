@@ -10,8 +10,7 @@ from functools import partial
 
 from experiments import peers
 from experiments.harness import HUBS, OPERATIONS, Case, Experiment, Measurement, Preset, Timer
-from experiments.peers import BUILD, BULK, BYTES, LOOPED, PEERS, SINGLE, Peer, measuring
-from experiments.peers.peer import SIX
+from experiments.peers import BUILD, BULK, BYTES, LOOPED, PEERS, SINGLE, SIX, Peer, measuring
 from hem.contract import QUERIES
 
 ALGORITHM_VERTICES = 20_000  # vertices at most of what algorithms are given

@@ -19,9 +19,16 @@ from numpy.typing import ArrayLike
 import hem
 import structures
 from experiments.bench_workloads import COMPILED, FROM_PYTHON
-from experiments.harness import BASE, Case, Experiment, Measurement, Preset, Timer
-from experiments.harness.oracle import check_query
-from experiments.harness.timer import took
+from experiments.harness import (
+    BASE,
+    Case,
+    Experiment,
+    Measurement,
+    Preset,
+    Timer,
+    check_query,
+    took,
+)
 from hem.arrays import Array, Floats
 from hem.authoring import Kernel, Kernels, kernel
 from hem.contract import QUERIES, Structure

@@ -13,10 +13,18 @@ from typing import Any
 import numpy as np
 
 import structures
-from experiments.harness import Axis, Case, Experiment, Measurement, Preset, Table, Timer
-from experiments.harness.calibration import latency_now
-from experiments.harness.experiment import OPERATIONS
-from experiments.harness.operations import operation_faces
+from experiments.harness import (
+    OPERATIONS,
+    Axis,
+    Case,
+    Experiment,
+    Measurement,
+    Preset,
+    Table,
+    Timer,
+    latency_now,
+    operation_faces,
+)
 from hem.arrays import Array
 from hem.engine import CountingArray
 from hem.fracture import MATERIALS, shatter
@@ -24,7 +32,7 @@ from hem.meshes import TriangleMesh
 from structures.as_printed import AsPrinted, render_arrays
 from structures.half_edge_objects import HalfEdgeMesh, fields_accessed
 from structures.object_tools import HalfEdgeMeshBuilder
-from structures.objects.class_model import Point
+from structures.objects import Point
 from structures.printed_breaking import find_edges, simulate_breaking
 
 MENDED = HalfEdgeMesh.name

@@ -10,8 +10,16 @@ from typing import Any
 import numpy as np
 
 import hem
-from experiments.harness import Case, Experiment, Measurement, Preset, Timer
-from experiments.harness.operations import operation_arguments, operation_faces, validate_operated
+from experiments.harness import (
+    Case,
+    Experiment,
+    Measurement,
+    Preset,
+    Timer,
+    operation_arguments,
+    operation_faces,
+    validate_operated,
+)
 from hem.contract import Structure
 
 EDITED = "split_edge", "split_face", "collapse_edge", "flip_edge"

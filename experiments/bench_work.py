@@ -4,8 +4,16 @@ The counts are exact and the same on every machine. They come from uncompiled co
 are small; that is enough, as nothing disturbs them.
 """
 
-from experiments.harness import QUERIES_TABLE, Axis, Case, Experiment, Measurement, Preset, Timer
-from experiments.harness.queries import checked_handles
+from experiments.harness import (
+    QUERIES_TABLE,
+    Axis,
+    Case,
+    Experiment,
+    Measurement,
+    Preset,
+    Timer,
+    checked_handles,
+)
 from hem.contract import QUERIES
 
 

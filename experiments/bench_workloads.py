@@ -12,8 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 import structures
-from experiments.harness import BASE, Case, Experiment, Measurement, Preset, Timer
-from experiments.harness.timer import took
+from experiments.harness import BASE, Case, Experiment, Measurement, Preset, Timer, took
 from hem import algorithms
 from hem.contract import QUERIES, Structure
 

@@ -18,13 +18,20 @@ from typing import Any
 
 import pytest
 
-from experiments.harness import Case, Experiment, Measurement, memory, own_mesh, steadiness
-from experiments.harness.cases import in_random_order
-from experiments.harness.experiment import Keep
-from experiments.harness.timer import CLOCK, BenchmarkTimer
+from experiments.harness import (
+    CLOCK,
+    BenchmarkTimer,
+    Case,
+    Experiment,
+    Keep,
+    Measurement,
+    in_random_order,
+    memory,
+    own_mesh,
+    steadiness,
+)
 from experiments.presets import PRESETS, Preset
-from experiments.runs.store import CannotWriteError, CaseFile
-from experiments.runs.worker import AGAIN, COMPILE, DEFAULT_SEED, MEASURE
+from experiments.runs import AGAIN, COMPILE, DEFAULT_SEED, MEASURE, CannotWriteError, CaseFile
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:

@@ -17,7 +17,7 @@ __all__ = [
 ]  # fmt: skip
 
 if TYPE_CHECKING:  # what type checkers and editors see; the table below says it to Python
-    from hem.contract.recording import Recording, record
+    from hem.contract import Recording, record
     from hem.edit import Edit, Remapping
     from hem.errors import (
         MeshError,
@@ -26,31 +26,43 @@ if TYPE_CHECKING:  # what type checkers and editors see; the table below says it
         NotInstalledError,
         TopologyError,
     )
-    from hem.meshes import MeshSummary, PolygonMesh, TriangleMesh, require_manifold, require_sound
-    from hem.meshes.conversions import from_meshio, from_pyvista, from_trimesh
+    from hem.meshes import (
+        MeshSummary,
+        PolygonMesh,
+        TriangleMesh,
+        from_meshio,
+        from_pyvista,
+        from_trimesh,
+        require_manifold,
+        require_sound,
+    )
     from hem.ragged import Ragged
     from hem.rendering import RenderMesh, Upload, mesh_from_render, split_at_seams
-    from hem.sources.families import FAMILIES, generate
-    from hem.sources.files import as_mesh, load, load_polygons, save
-    from hem.sources.named import find_mesh
-    from hem.sources.samples import SAMPLES, sample
-    from hem.sources.valence import valence_hubs, valence_mesh
+    from hem.sources import (
+        FAMILIES,
+        SAMPLES,
+        as_mesh,
+        find_mesh,
+        generate,
+        load,
+        load_polygons,
+        sample,
+        save,
+        valence_hubs,
+        valence_mesh,
+    )
 
 _NAMES = {
-    "hem.contract.recording": ("Recording", "record"),
+    "hem.contract": ("Recording", "record"),
     "hem.edit": ("Edit", "Remapping"),
     "hem.errors": ("MeshError", "MeshWarning", "NonManifoldError", "NotInstalledError",
         "TopologyError"),
-    "hem.meshes": ("MeshSummary", "PolygonMesh", "TriangleMesh", "require_manifold",
-        "require_sound"),
-    "hem.meshes.conversions": ("from_meshio", "from_pyvista", "from_trimesh"),
+    "hem.meshes": ("MeshSummary", "PolygonMesh", "TriangleMesh", "from_meshio", "from_pyvista",
+        "from_trimesh", "require_manifold", "require_sound"),
     "hem.ragged": ("Ragged",),
     "hem.rendering": ("RenderMesh", "Upload", "mesh_from_render", "split_at_seams"),
-    "hem.sources.families": ("FAMILIES", "generate"),
-    "hem.sources.files": ("as_mesh", "load", "load_polygons", "save"),
-    "hem.sources.named": ("find_mesh",),
-    "hem.sources.samples": ("SAMPLES", "sample"),
-    "hem.sources.valence": ("valence_hubs", "valence_mesh"),
+    "hem.sources": ("FAMILIES", "SAMPLES", "as_mesh", "find_mesh", "generate", "load",
+        "load_polygons", "sample", "save", "valence_hubs", "valence_mesh"),
 }  # fmt: skip
 _MODULES = {name: module for module, names in _NAMES.items() for name in names}
 _ROOMS = ("algorithms", "complexity", "contract", "fracture", "meshes", "rendering", "sources")

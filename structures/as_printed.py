@@ -19,7 +19,7 @@ from numpy.typing import ArrayLike
 
 from hem.arrays import Array
 from hem.contract import Claims, Described, Look
-from structures.objects.class_model import Face, FaceList, HalfEdge, Point, Vertex
+from structures.objects import Face, FaceList, HalfEdge, Point, Vertex
 
 
 class RenderCache:

@@ -35,16 +35,20 @@ from hem.engine import counting
 from hem.errors import MeshError
 from hem.meshes import TriangleMesh
 from structures.half_edge import HalfEdge as HalfEdgeArrays
-from structures.objects import class_model, records
-from structures.objects.class_model import (
+from structures.objects import (
+    COUNTED,
     FaceList,
     HalfEdge,
     HalfEdgeList,
+    ObjectRecords,
+    ObjectStorage,
     Vertex,
     VertexList,
     around,
+    class_model,
+    index_of,
+    records,
 )
-from structures.objects.records import COUNTED, ObjectRecords, ObjectStorage, index_of
 
 SHARED = 257  # integers below this one are shared by all who use them
 Give = Callable[[HalfEdge], int]  # what a query or a step gives of a half-edge

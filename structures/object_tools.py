@@ -10,8 +10,7 @@ from hem.arrays import Handles
 from hem.edit import Edit
 from hem.rendering import mesh_from_render
 from structures.half_edge_objects import HalfEdgeMesh
-from structures.objects.class_model import Face, HalfEdge, Vertex
-from structures.objects.records import build_records
+from structures.objects import Face, HalfEdge, Vertex, build_records
 
 
 class HalfEdgeMeshBuilder:

@@ -13,7 +13,7 @@ import numpy as np
 
 from hem.arrays import Array
 from structures.as_printed import AsPrinted
-from structures.objects.class_model import Face, Point
+from structures.objects import Face, Point
 from structures.plankton import Plankton
 
 NEAR = 1e-5  # how far beside a triangle a point may lie that it contains; a part of its size

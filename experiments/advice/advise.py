@@ -10,7 +10,7 @@ import hem
 from experiments import require_known
 from experiments.advice.prices import Forecast, Prices, predict
 from experiments.advice.workload import Workload, is_edit
-from hem.contract.recording import ANEW, PYTHON
+from hem.contract import ANEW, PYTHON
 from structures import REGISTRY, Structure, build
 
 ALIKE = 1.1

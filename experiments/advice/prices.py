@@ -16,8 +16,7 @@ from experiments.harness import ANSWERING
 from experiments.runs import Run
 from hem.arrays import Array
 from hem.authoring import set_point
-from hem.contract import OPERATIONS
-from hem.contract.recording import ANEW, CHECKED, COMPILED, PYTHON
+from hem.contract import ANEW, CHECKED, COMPILED, OPERATIONS, PYTHON
 from structures import REGISTRY
 
 BY_QUERY = {"face_left_of": "edge_faces", "diamond": "edge_faces", "are_joined": "vertex_vertices"}
@@ -26,8 +25,9 @@ BY_QUERY = {"face_left_of": "edge_faces", "diamond": "edge_faces", "are_joined":
 REBUILDING, ALONE = "flip_edge", "split_face"
 """Where an edit has all neighbors found anew, the one takes that, and the other does without."""
 
-MOVING = "vertex_faces"
-"""What moving a vertex takes where every triangle around it has its position."""
+MOVING, MOVING_ALL = "face_vertices", "vertex_faces"
+"""What moving a vertex is priced as: one row is written, or those of all triangles around it, where
+each has its position."""
 
 CALL = 6e-7
 """Seconds that an operation takes longer from Python, for a run that did not measure it."""
@@ -74,8 +74,9 @@ class Prices:
         name = BY_QUERY.get(what, what).removeprefix(CHECKED)
         kind = REGISTRY[structure]
         rebuilds = kind.rebuilds
-        if name == "move_vertex" and kind.compiled and kind.kernels["set_point"] is not set_point:
-            name = MOVING
+        if name == "move_vertex":
+            alone = not kind.compiled or kind.kernels["set_point"] is set_point
+            name = MOVING if alone else MOVING_ALL
         if what == ANEW:
             found = self._at(faces, "bench_operations", structure, REBUILDING, "batched")
             return found if rebuilds else Price(0.0, 0.0)

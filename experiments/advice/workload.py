@@ -11,8 +11,7 @@ from typing import Any, Self
 
 from experiments import require_known
 from hem import Recording
-from hem.contract import OPERATIONS, QUERIES
-from hem.contract.recording import ANEW, BESIDE, CHECKED, COMPILED, PYTHON
+from hem.contract import ANEW, BESIDE, CHECKED, COMPILED, OPERATIONS, PYTHON, QUERIES
 from structures import REGISTRY
 
 KNOWN = (*QUERIES, *OPERATIONS, *(f"{CHECKED}{it}" for it in OPERATIONS), *BESIDE, ANEW)

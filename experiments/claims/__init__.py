@@ -21,12 +21,20 @@ from experiments.claims.claim import (
     tally,
 )
 from experiments.claims.curves import Curve, Curves, curves
+from experiments.claims.errata import ERRATA, Erratum
 from experiments.claims.quantities import MIXES, break_even, judge_sentences, sentence_claims
-from experiments.claims.verdicts import BY_TIME, Family, judge_cells, judge_families, judge_run
+from experiments.claims.verdicts import (
+    BY_TIME,
+    CASE_ERROR,
+    Family,
+    judge_cells,
+    judge_families,
+    judge_run,
+)
 
 __all__ = [
-    "BY_TIME", "CLAIMED", "MEMORY", "MIXES", "NOT_POSSIBLE", "NO_CLAIM", "SENTENCES", "Between",
-    "Claim", "Curve", "Curves", "Exactly", "Family", "Growth", "JudgedClaim", "Kind", "Outcome",
-    "break_even", "curves", "judge_cells", "judge_families", "judge_run", "judge_sentences",
-    "load_claims", "sentence_claims", "tally",
+    "BY_TIME", "CASE_ERROR", "CLAIMED", "ERRATA", "MEMORY", "MIXES", "NOT_POSSIBLE", "NO_CLAIM",
+    "SENTENCES", "Between", "Claim", "Curve", "Curves", "Erratum", "Exactly", "Family", "Growth",
+    "JudgedClaim", "Kind", "Outcome", "break_even", "curves", "judge_cells", "judge_families",
+    "judge_run", "judge_sentences", "load_claims", "sentence_claims", "tally",
 ]  # fmt: skip

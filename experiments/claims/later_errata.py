@@ -12,7 +12,7 @@ from experiments.claims.demonstrations import TOUCHING, coincident_vertices
 from hem.fracture import MATERIALS, shatter
 from hem.fracture.surface import break_points
 from structures import printed_breaking as listings
-from structures.objects.class_model import HalfEdge, Vertex
+from structures.objects import HalfEdge, Vertex
 from structures.plankton import Plankton
 
 GLASS = MATERIALS["glass"]

@@ -92,7 +92,7 @@ def _span(values: Array) -> str:
 
 
 def break_even(of_run: Curves) -> pd.DataFrame:
-    """After how many queries or edits per build a structure overtakes the base structure.
+    """How many queries or edits after building a structure overtakes the base structure.
 
     It takes longer to build and answers faster. After k it has caught up where build + k · cost is
     the base's build + k · its cost. Columns: subject, structure, vertices, times: 0 where the
@@ -211,7 +211,7 @@ def _pays_at_most(of_run: Curves) -> Iterable[float]:
             yield times[-1] / times[0]
 
 
-def _edits_per_build(of_run: Curves) -> Iterable[float]:
+def _edits_after_building(of_run: Curves) -> Iterable[float]:
     """Edge splits per vertex after which the half-edge mesh has overtaken, at the larger sizes."""
     wanted = "structure == @HALF and subject == 'split_edge' and vertices >= @LARGER"
     mine = break_even(of_run).query(wanted)
@@ -266,7 +266,7 @@ QUANTITIES: dict[str, Quantity] = {
     "subdivision": lambda of_run: _detail(of_run, "split_face", "subdivision"),
     "reduction": lambda of_run: _detail(of_run, "collapse_edge", "simplification"),
     "larger_meshes": _pays_at_most,
-    "edits_per_build": _edits_per_build,
+    "edits_after_building": _edits_after_building,
     "draft_faces": lambda of_run: _times(of_run, BASE, HALF, ("face_vertices", "split_face")),
     "books_built": lambda of_run: shown.books_built(),
     "polygon_corners": lambda of_run: shown.polygon_corners(),

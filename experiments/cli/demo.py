@@ -11,7 +11,7 @@ import numpy as np
 
 from experiments.cli import app
 from experiments.cli.console import console
-from experiments.report.pages import page
+from experiments.report import pages
 
 OUT = Path("report/demo")
 SIZE = 480, 360
@@ -33,7 +33,7 @@ CASES = tuple(DemoCase(**it) for it in tomllib.loads(_TEXT)["case"])
 def write(folder: Path, cases: tuple[DemoCase, ...] = CASES, size: tuple[int, int] = SIZE) -> Path:
     """Run the commands, and write a page that shows what they made, without a network -> it."""
     shown = [(case, [_strike(case, it, size, folder) for it in case.forces]) for case in cases]
-    (folder / "index.html").write_text(page("demo.html.j2", shown=shown, size=size), "utf-8")
+    (folder / "index.html").write_text(pages.page("demo.html.j2", shown=shown, size=size), "utf-8")
     return folder / "index.html"
 
 

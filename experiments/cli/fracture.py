@@ -110,7 +110,7 @@ def _write(
     """Make everything beside the folder and move it there at the end -> the files' names."""
     from PIL import Image
 
-    from experiments.report.fracture_scenes import enough_seconds
+    from experiments.report import fracture_scenes
     from hem.fracture import describe, save_pieces, whole
 
     with whole(folder) as beside:
@@ -121,7 +121,7 @@ def _write(
         numbers |= {"up": broken.up, "held": broken.held}
         Image.fromarray(scene.still(size)).save(beside / "fracture.png", optimize=True)
         if animation:
-            lasting = seconds or enough_seconds(scene)
+            lasting = seconds or fracture_scenes.enough_seconds(scene)
             numbers["animation"] = _animate(broken, scene, lasting, size, beside)
         (beside / "fracture.json").write_text(json.dumps(numbers, indent=1, allow_nan=False) + "\n")
         return sorted(path.name for path in beside.iterdir())

@@ -9,8 +9,7 @@ from rich.markup import escape
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
 from experiments.cli.console import console, errors
-from experiments.runs import study
-from experiments.runs.worker import Job
+from experiments.runs import Job, study
 
 
 @contextmanager

@@ -1,18 +1,54 @@
 """How one case is measured: what a case is, how it is timed or counted, and what is kept of it.
 
-What each experiment measures stands in its ``bench_*.py``.
+What each experiment measures stands in its ``bench_*.py``. Of the files ``calibration``,
+``memory``, ``own_mesh`` and ``steadiness`` are asked for by name.
 """
 
-from experiments.harness.cases import BASE, Case, Measurement
-from experiments.harness.experiment import OPERATIONS, QUERIES_TABLE, Axis, Experiment, Table
-from experiments.harness.operations import operation_faces
-from experiments.harness.queries import time_query
-from experiments.harness.steadiness import badness, disturbed
-from experiments.harness.timer import Timer, time_rounds
+from experiments.harness.calibration import (
+    CACHE_LINE,
+    CACHE_LINE_WORDS,
+    calibration_loop,
+    chase,
+    latency_now,
+    random_cycle,
+)
+from experiments.harness.cases import BASE, Case, Measurement, in_random_order
+from experiments.harness.experiment import (
+    OPERATIONS,
+    OPERATIONS_TABLE,
+    QUERIES_TABLE,
+    Axis,
+    Experiment,
+    Keep,
+    Table,
+    measured_operations,
+)
+from experiments.harness.operations import (
+    operation_arguments,
+    operation_faces,
+    time_operations,
+    validate_operated,
+)
+from experiments.harness.oracle import (
+    CheckFailedError,
+    check_query,
+    check_rows,
+    check_told,
+    pack_pairs,
+    row,
+)
+from experiments.harness.queries import checked_handles, time_query
+from experiments.harness.steadiness import BUSY, REPEATS, allowed_cores, badness, disturbed, pin
+from experiments.harness.timer import CLOCK, BenchmarkTimer, Clock, Timer, time_rounds, took
 from experiments.presets import ANSWERING, HUBS, ORDERS, PRESETS, Preset
 
 __all__ = [
-    "ANSWERING", "BASE", "HUBS", "OPERATIONS", "ORDERS", "PRESETS", "QUERIES_TABLE", "Axis", "Case",
-    "Experiment", "Measurement", "Preset", "Table", "Timer", "badness", "disturbed",
-    "operation_faces", "time_query", "time_rounds",
+    "ANSWERING", "BASE", "BUSY", "CACHE_LINE", "CACHE_LINE_WORDS", "CLOCK", "HUBS", "OPERATIONS",
+    "OPERATIONS_TABLE", "ORDERS", "PRESETS", "QUERIES_TABLE", "REPEATS", "Axis", "BenchmarkTimer",
+    "Case", "CheckFailedError", "Clock", "Experiment", "Keep", "Measurement", "Preset", "Table",
+    "Timer", "allowed_cores", "badness", "calibration_loop", "chase", "check_query", "check_rows",
+    "check_told", "checked_handles", "disturbed", "in_random_order", "latency_now",
+    "measured_operations", "operation_arguments", "operation_faces", "pack_pairs", "pin",
+    "random_cycle", "row", "time_operations", "time_query", "time_rounds", "took",
+    "validate_operated",
 ]  # fmt: skip

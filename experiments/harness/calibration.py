@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 WORDS = 2_048  # int64 in the table that the calibration loop walks: 16 KB, found in the first cache
 STEPS = 2_000
 WALKS = 5
-LINE, LINE_WORDS = 64, 8  # a cache line in bytes, and in int64
+CACHE_LINE, CACHE_LINE_WORDS = 64, 8  # a cache line in bytes, and in int64
 CHASE_STEPS = 4_000
 FILLING_STEPS = 4_000
 SAMPLES = 5
@@ -83,8 +83,8 @@ def latency_now(working_set: int) -> float:
     On a shared machine the caches are as large as the other tenants leave them, and that changes
     within seconds: a case is compared with the latency measured right beside it.
     """
-    chain = random_cycle(max(working_set // LINE, 2))
-    place = chase(chain, 0, min(len(chain) // LINE_WORDS, MOST_WARMING))
+    chain = random_cycle(max(working_set // CACHE_LINE, 2))
+    place = chase(chain, 0, min(len(chain) // CACHE_LINE_WORDS, MOST_WARMING))
     seconds = []
     for _ in range(SAMPLES):
         begin = perf_counter()
@@ -101,8 +101,8 @@ def random_cycle(lines: int) -> NDArray[np.int64]:
     goes from record to record.
     """
     order = np.random.default_rng(0).permutation(lines)
-    chain = np.zeros(LINE_WORDS * lines, np.int64)
-    chain[LINE_WORDS * order] = np.roll(order, -1)
+    chain = np.zeros(CACHE_LINE_WORDS * lines, np.int64)
+    chain[CACHE_LINE_WORDS * order] = np.roll(order, -1)
     return chain
 
 
@@ -110,5 +110,5 @@ def random_cycle(lines: int) -> NDArray[np.int64]:
 def chase(chain: NDArray[np.int64], line: int, steps: int) -> int:
     """The line reached from ``line`` after so many steps."""
     for _ in range(steps):
-        line = chain[LINE_WORDS * line]
+        line = chain[CACHE_LINE_WORDS * line]
     return line

@@ -33,10 +33,10 @@ def check_query(s: Structure, mesh: TriangleMesh, query: Query, handles: Array) 
 
 def named(s: Structure, edges: Array) -> Array:
     """(k,) int64: edges of any structure, each as its two vertices packed into one integer."""
-    return pack(s.edge_vertices(edges).values.reshape(-1, 2).astype(np.int64))
+    return pack_pairs(s.edge_vertices(edges).values.reshape(-1, 2).astype(np.int64))
 
 
-def pack(pairs: Array) -> Array:
+def pack_pairs(pairs: Array) -> Array:
     """(k, 2) vertices -> (k,) int64 ``smaller << 32 | larger``."""
     pairs = np.sort(np.asarray(pairs, np.int64), axis=1)
     return (pairs[:, 0] << 32) | pairs[:, 1]
@@ -55,7 +55,7 @@ def _around(triangles: Array, v: int) -> Array:
 def _spokes(triangles: Array, v: int) -> Array:
     """The edges at v."""
     ring = _around(triangles, v)
-    return pack(np.stack([np.full_like(ring, v), ring], axis=1))
+    return pack_pairs(np.stack([np.full_like(ring, v), ring], axis=1))
 
 
 def _ends(edge: int) -> list[int]:
@@ -75,7 +75,7 @@ RULES: dict[str, Callable[[Array, int], Any]] = {
     "edge_edges": lambda t, e: np.setdiff1d(np.concatenate([_spokes(t, v) for v in _ends(e)]), [e]),
     "edge_faces": lambda t, e: np.flatnonzero(_shared(t, _ends(e)) == 2),
     "face_vertices": lambda t, f: t[f],
-    "face_edges": lambda t, f: pack(np.stack([t[f], np.roll(t[f], -1)], axis=1)),
+    "face_edges": lambda t, f: pack_pairs(np.stack([t[f], np.roll(t[f], -1)], axis=1)),
     "face_faces": lambda t, f: np.setdiff1d(np.flatnonzero(_shared(t, t[f]) >= 2), [f]),
 }
 """Each query as its definition."""
@@ -99,8 +99,8 @@ def check_rows(
             answer = answer[answer >= 0].astype(np.int64)
             if named and query.target == "edge" and len(answer):
                 answer = named(answer)
-        found = np.unique(pack(answer) if answer.ndim == 2 else answer)
-        key = int(pack(np.array([asked]))[0]) if query.source == "edge" else asked
+        found = np.unique(pack_pairs(answer) if answer.ndim == 2 else answer)
+        key = int(pack_pairs(np.array([asked]))[0]) if query.source == "edge" else asked
         expected = neighbors(triangles, query, key)
         if not np.array_equal(found, expected):
             raise CheckFailedError(

@@ -12,10 +12,20 @@ import psutil
 
 import hem
 import structures
-from experiments.harness import BASE, Case, Preset, Timer, operation_faces
-from experiments.harness.calibration import latency_now
-from experiments.harness.oracle import CheckFailedError, check_rows, check_told, pack, row
-from experiments.harness.timer import took
+from experiments.harness import (
+    BASE,
+    Case,
+    CheckFailedError,
+    Preset,
+    Timer,
+    check_rows,
+    check_told,
+    latency_now,
+    operation_faces,
+    pack_pairs,
+    row,
+    took,
+)
 from experiments.peers.peer import Peer
 from experiments.peers.registry import PEERS
 from hem.algorithms import vertex_normals
@@ -164,9 +174,9 @@ def _apart(case: Case) -> Array:
     faces = operation_faces(case)
     if str(case.subject).endswith("face"):
         return faces
-    ends = pack(_mesh_of(case).corners["edge"])
+    ends = pack_pairs(_mesh_of(case).corners["edge"])
     order = np.argsort(ends)
-    wanted = pack(case.mesh().triangles[faces][:, :2])
+    wanted = pack_pairs(case.mesh().triangles[faces][:, :2])
     return order[np.searchsorted(ends, wanted, sorter=order)]
 
 

@@ -21,7 +21,7 @@ import numpy as np
 from experiments.peers.peer import BATCHED, BUILD, SIX, Mesh, Peer
 from hem.arrays import Array
 from hem.contract import QUERIES
-from hem.sources.cache import cache_folder
+from hem.sources import cache_folder
 
 SOURCE = Path(__file__).with_name("program.cpp")
 COMPILER = "g++"

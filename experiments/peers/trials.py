@@ -19,7 +19,7 @@ import numpy as np
 import psutil
 
 import hem
-from experiments.harness.oracle import CheckFailedError, check_rows
+from experiments.harness import CheckFailedError, check_rows
 from experiments.peers.measuring import as_given
 from experiments.peers.peer import BYTES, Mesh, Peer
 from experiments.peers.registry import PEERS

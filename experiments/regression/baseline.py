@@ -16,7 +16,7 @@ import numpy as np
 import pandas as pd
 
 from experiments.harness import Measurement
-from experiments.regression.snapshots import Figures, claim_figures
+from experiments.regression.snapshots import ClaimName, Figures, claim_figures
 from experiments.runs import CaseFile, ResultsError, Run, experiments, load, noise, write_meta
 from hem.whole_files import write_whole
 
@@ -49,7 +49,8 @@ class Measured:
         """What is of these structures."""
         run = self.run
         parts = (rows[rows["structure"].isin(structures)] for rows in (run.cases, run.skipped))
-        claims = {name: it for name, it in self.claims.items() if name.split("/")[1] in structures}
+        named = {name: ClaimName.read(name).structure for name in self.claims}
+        claims = {name: it for name, it in self.claims.items() if named[name] in structures}
         return type(self)(Run(run.folder, run.meta, *parts), claims)
 
 

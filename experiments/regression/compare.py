@@ -15,12 +15,12 @@ from typing import Any, NamedTuple
 import numpy as np
 import pandas as pd
 
-from experiments.claims import Outcome
+from experiments.claims import MEMORY, Outcome
 from experiments.harness import Axis
 from experiments.regression.baseline import COUNTERS, RUN, UPDATE, Measured
 from experiments.regression.findings import CaseKey, Change, Finding, Kind, vote
 from experiments.regression.significance import compare_rounds
-from experiments.regression.snapshots import LEAST_SLOPE, Figures, describe_claim
+from experiments.regression.snapshots import LEAST_SLOPE, ClaimName, Figures, describe_claim
 from experiments.runs import Run, experiments
 from hem.complexity import NAMES as CLASSES
 from structures import REGISTRY
@@ -126,12 +126,13 @@ def _pair_cases(before: Run, after: Run) -> tuple[list[Pair], list[str]]:
 
 def claim_of(case: CaseKey) -> str:
     """The claim that a case bears on, in words: of its table, or on memory; empty if none."""
-    declared, name = experiments().get(case.experiment), f"queries/{case.structure}/memory"
+    declared = experiments().get(case.experiment)
+    name = ClaimName("queries", case.structure, MEMORY)
     if declared and declared.table:
-        name = f"{declared.table.name}/{case.structure}/{case.subject}"
+        name = ClaimName(declared.table.name, case.structure, case.subject)
     elif declared and declared.kind != Kind.BYTES:
         return ""
-    return describe_claim(name)[0]
+    return describe_claim(str(name))[0]
 
 
 def _finding(
@@ -179,7 +180,7 @@ def _pair_claims(
 ) -> Iterator[tuple[CaseKey, dict[str, str], Any, Any]]:
     """Every claim of either: what it is about, in words and by kind, and the figures of both."""
     for name in dict.fromkeys((*before.claims, *after.claims)):
-        _, structure, subject = name.split("/")
+        _, structure, subject = ClaimName.read(name)
         key = CaseKey("", structure, subject)
         said = dict(zip(("claim", "claimed"), describe_claim(name), strict=True))
         yield key, said, before.claims.get(name), after.claims.get(name)

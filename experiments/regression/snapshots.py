@@ -1,7 +1,7 @@
 """From a run to the few figures of each claim that the history and the baseline keep."""
 
 from functools import cache
-from typing import Any
+from typing import Any, NamedTuple, Self
 
 import numpy as np
 
@@ -20,6 +20,27 @@ NOTHING = 1e-12  # what rounding leaves of nothing
 Figures = dict[str, Any]  # what is kept of a claim, see `claim_figures`
 
 
+class ClaimName(NamedTuple):
+    """What names a claim of a table: in files as ``table/structure/subject``."""
+
+    table: str
+    structure: str
+    subject: str
+
+    def __str__(self) -> str:
+        return "/".join(self)
+
+    @classmethod
+    def of(cls, claim: Claim) -> Self:
+        """The name of a claim."""
+        return cls(claim.table, claim.structure, claim.subject)
+
+    @classmethod
+    def read(cls, text: str) -> Self:
+        """A name as it stands in a file."""
+        return cls(*text.split("/"))
+
+
 def claim_figures(run: Run) -> dict[str, Figures]:
     """The figures of every claim by ``table/structure/subject``, as far as it was measured.
 
@@ -31,7 +52,7 @@ def claim_figures(run: Run) -> dict[str, Figures]:
     Judges the run, which takes some seconds.
     """
     cells = [judged for judged in claims.judge_run(run) if judged.claim.structure]
-    figures = {_name(judged.claim): _figures(run, judged) for judged in cells}
+    figures = {str(ClaimName.of(judged.claim)): _figures(run, judged) for judged in cells}
     return {name: kept for name, kept in figures.items() if kept}
 
 
@@ -45,7 +66,7 @@ def class_figures(run: Run) -> dict[str, Figures]:
                 outcome = verdict.outcome if axis.variable in claim.classes else Outcome.NO_CLAIM
                 classes[axis.key] = [verdict.best, outcome]
         if classes:
-            figures[_name(claim)] = {"classes": classes}
+            figures[str(ClaimName.of(claim))] = {"classes": classes}
     return figures
 
 
@@ -62,12 +83,7 @@ def describe_claim(name: str) -> tuple[str, str]:
 
 @cache
 def _claims() -> dict[str, Claim]:
-    return {_name(claim): claim for claim in claims.load_claims()}
-
-
-def _name(claim: Claim) -> str:
-    """The name of a claim in files: ``table/structure/subject``."""
-    return f"{claim.table}/{claim.structure}/{claim.subject}"
+    return {str(ClaimName.of(claim)): claim for claim in claims.load_claims()}
 
 
 def _figures(run: Run, judged: JudgedClaim) -> Figures:

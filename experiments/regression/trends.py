@@ -1,7 +1,7 @@
 """What a history says of every claim from commit to commit, and where it changed.
 
 Work, bytes and outcomes by work are comparable between machines, times are not: a series of times
-is of one machine. All series are of one profile, as the profile sets the sizes.
+is of one machine. All series are of one preset, as the preset sets the sizes.
 """
 
 from collections.abc import Callable, Iterator
@@ -14,7 +14,7 @@ import pandas as pd
 
 from experiments.regression.change_points import Step, find_steps
 from experiments.regression.history import History
-from experiments.regression.snapshots import LEAST_SLOPE
+from experiments.regression.snapshots import LEAST_SLOPE, ClaimName
 
 
 @dataclass(frozen=True)
@@ -39,7 +39,7 @@ MEASURES = {
 """What is followed. What is exact is comparable between machines."""
 OUTCOMES = {"outcome": "verdict by work", "outcome_time": "verdict by time"}
 """The verdicts of a claim; that by work is comparable between machines, and of memory by bytes."""
-SERIES = ["claim", "measure", "profile", "machine"]
+SERIES = ["claim", "measure", "preset", "machine"]
 """What the figures of a series have in common; the machine is empty where any will do."""
 Rows = Iterator[tuple[Any, ...]]
 
@@ -82,7 +82,7 @@ class Trends:
         wanted = f"/{(text or '').strip('/')}/"
         chosen = [name for name in every if text is None or wanted in f"/{name}/"]
         if not chosen and self.runs:
-            parts = [dict.fromkeys(name.split("/")[k] for name in every) for k in (1, 2)]
+            _, *parts = (dict.fromkeys(it) for it in zip(*map(ClaimName.read, every), strict=True))
             raise ValueError(
                 f"the history has no claim {text!r}; say one of\n"
                 f"  a structure: {', '.join(parts[0])}\n  what it is asked: {', '.join(parts[1])}\n"

@@ -3,7 +3,9 @@
 The chapters are the notebooks: they open a run with ``open_run`` and show the figures and tables of
 this room. ``write_report`` executes them all and writes the pages, ``write_pdf`` one document,
 ``write_readme`` the page that is committed, and ``show_claims`` prints the claims in a terminal.
-Everything is imported when it is first asked for: to draw takes heavy packages.
+Everything is imported when it is first asked for: to draw takes heavy packages. What commands print
+is asked for by the names of its files: ``findings``, ``history_tables``, ``fracture_scenes``,
+``pages``.
 """
 
 import multiprocessing

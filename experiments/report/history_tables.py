@@ -11,7 +11,7 @@ import pandas as pd
 from rich.console import Console
 
 from experiments.claims import Outcome
-from experiments.regression import MEASURES, OUTCOMES, Trends
+from experiments.regression import MEASURES, OUTCOMES, ClaimName, Trends
 from experiments.report.tables import SHOWN, show_rows, two_digits
 from structures import NAMED
 
@@ -69,7 +69,7 @@ def _heads(trends: Trends) -> pd.DataFrame:
 
 def short_claim(name: str) -> str:
     """A claim with its structure's abbreviation: ``HEM vertex_faces``."""
-    table, structure, subject = name.split("/")
+    table, structure, subject = ClaimName.read(name)
     short = NAMED[structure].abbreviation if structure in NAMED else structure
     return f"{short} {subject}" + (" (listing)" if table == "listings" else "")
 

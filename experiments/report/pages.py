@@ -14,8 +14,7 @@ import pandas as pd
 from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescape
 from markupsafe import Markup
 
-from experiments.claims import SENTENCES, JudgedClaim, Kind, Outcome, curves
-from experiments.claims.errata import ERRATA, Erratum
+from experiments.claims import ERRATA, SENTENCES, Erratum, JudgedClaim, Kind, Outcome, curves
 from experiments.harness import Axis, Table
 from experiments.report import session
 from experiments.report import tables as written

@@ -11,11 +11,21 @@ import numpy as np
 import pandas as pd
 from rich.console import Console
 
-from experiments.claims import Curve, Outcome, curves, load_claims
-from experiments.claims.verdicts import CASE_ERROR
+from experiments.claims import CASE_ERROR, Curve, Outcome, curves, load_claims
 from experiments.harness import OPERATIONS, QUERIES_TABLE
-from experiments.peers import BAD_INPUT, BUILD, BULK, BYTES, LOOPED, OURS, PEERS, SINGLE
-from experiments.peers.peer import ALGORITHMS, BATCHED, SIX
+from experiments.peers import (
+    ALGORITHMS,
+    BAD_INPUT,
+    BATCHED,
+    BUILD,
+    BULK,
+    BYTES,
+    LOOPED,
+    OURS,
+    PEERS,
+    SINGLE,
+    SIX,
+)
 from experiments.report.pages import Html, text_table
 from experiments.report.session import MissingError
 from experiments.report.tables import digits, duration, show_rows

@@ -11,7 +11,7 @@ from pathlib import Path
 from threading import Thread
 from typing import Any
 
-from experiments.harness.steadiness import allowed_cores
+from experiments.harness import allowed_cores
 from experiments.report import pdf
 from experiments.report.figures.claims import write_claims
 from experiments.report.notebooks import FRONT, body, page_titles

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from experiments.harness import Measurement, disturbed
-from experiments.harness.steadiness import BUSY
+from experiments.harness import BUSY, Measurement, disturbed
 from experiments.runs import store
 from experiments.runs.catalog import PART_OF
 

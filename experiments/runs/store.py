@@ -19,8 +19,7 @@ from typing import Any, Self
 
 from filelock import FileLock, Timeout
 
-from experiments.harness import Measurement, badness, disturbed
-from experiments.harness.steadiness import REPEATS
+from experiments.harness import REPEATS, Measurement, badness, disturbed
 from hem.whole_files import append_whole, write_whole
 
 SCHEMA = 3

@@ -26,8 +26,7 @@ from time import monotonic
 from typing import Any
 
 from experiments import require_known
-from experiments.harness import BASE, PRESETS, own_mesh
-from experiments.harness.steadiness import REPEATS, allowed_cores
+from experiments.harness import BASE, PRESETS, REPEATS, allowed_cores, own_mesh
 from experiments.runs import store
 from experiments.runs.catalog import PART_OF
 from experiments.runs.catalog import experiments as catalog

@@ -25,7 +25,7 @@ import hem
 import structures
 from experiments.advice import ALIKE, Measured, Prices, Workload, best, predict, recorded
 from experiments.bench_workloads import WORKLOADS
-from experiments.harness.calibration import calibration_loop
+from experiments.harness import calibration_loop
 from experiments.runs import describe, load, study
 from hem import algorithms
 from hem.contract import QUERIES, Structure

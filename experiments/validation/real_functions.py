@@ -24,8 +24,7 @@ from experiments.runs import describe
 from experiments.validation.accuracy import UNDETERMINED, Judge, installed_judges
 from experiments.validation.accuracy import load_accuracy as load_answers
 from experiments.validation.functions import FUNCTIONS, HELD_OUT, SEEN
-from hem.complexity import Measured, canonical, measure, parse
-from hem.complexity.measure import BUDGET
+from hem.complexity import BUDGET, Measured, canonical, measure, parse
 
 RESULT = Path("results/reference/real_functions.json")
 COLUMNS = ["function", "growth", "source", "half", "neighbor", "judge", "answer"]

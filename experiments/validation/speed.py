@@ -28,12 +28,9 @@ import typer
 
 import hem
 import structures
-from experiments.harness.steadiness import pin
-from experiments.harness.timer import Clock, took
-from experiments.peers import BATCHED, BUILD, OURS, PEERS
+from experiments.harness import Clock, pin, took
+from experiments.peers import BATCHED, BUILD, OURS, PART, PEERS, SIX, Lazy, as_given, ask_each
 from experiments.peers.libraries.ours import build, looped
-from experiments.peers.measuring import PART, as_given, ask_each
-from experiments.peers.peer import SIX, Lazy
 from experiments.runs import describe
 from hem import TriangleMesh, algorithms
 from hem.arrays import Array

@@ -13,17 +13,6 @@ from hem.algorithms.smoothing import METHODS, smooth
 from hem.algorithms.subdivision import SCHEMES, subdivide
 
 __all__ = [
-    "MEASURES",
-    "METHODS",
-    "SCHEMES",
-    "SIX",
-    "center",
-    "circulate",
-    "impacts",
-    "remesh",
-    "simplify",
-    "smooth",
-    "split_and_collapse",
-    "subdivide",
-    "vertex_normals",
-]
+    "MEASURES", "METHODS", "SCHEMES", "SIX", "center", "circulate", "impacts", "remesh", "simplify",
+    "smooth", "split_and_collapse", "subdivide", "vertex_normals",
+]  # fmt: skip

@@ -19,13 +19,13 @@ from hem.authoring import (
     Kernel,
     Kernels,
     Refusal,
+    Sum,
     is_point,
     kernel,
     live_vertex,
     sums,
     visiting,
 )
-from hem.authoring.sums import Sum
 from hem.contract import Algorithm, Structure
 from hem.edit import CHANGED, VERTEX
 from hem.engine import kept

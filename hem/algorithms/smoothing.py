@@ -15,8 +15,7 @@ import numpy as np
 from hem.algorithms.arguments import require_count, require_mesh
 from hem.algorithms.parts import cornering, living_face, living_vertex, locating, move, not_finite
 from hem.arrays import Array, Floats, Indices, Points
-from hem.authoring import FACE_END, VALENCE, Kernel, Kernels, is_point, kernel, sums
-from hem.authoring.sums import Sum
+from hem.authoring import FACE_END, VALENCE, Kernel, Kernels, Sum, is_point, kernel, sums
 from hem.contract import Structure
 from hem.naming import look_up
 

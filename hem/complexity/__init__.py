@@ -7,12 +7,12 @@ the reason. `measure(f, make_input).judge("O(n)")` measures a function first.
 from hem.complexity.estimates import slope
 from hem.complexity.files import Curve, read_curves
 from hem.complexity.judge import Bound, Outcome, Verdict, judge
-from hem.complexity.measure import measure
+from hem.complexity.measure import BUDGET, measure
 from hem.complexity.measured import Measured
 from hem.complexity.models import MODELS, NAMES
 from hem.complexity.notation import canonical, parse
 
 __all__ = [
-    "MODELS", "NAMES", "Bound", "Curve", "Measured", "Outcome", "Verdict", "canonical", "judge",
-    "measure", "parse", "read_curves", "slope",
+    "BUDGET", "MODELS", "NAMES", "Bound", "Curve", "Measured", "Outcome", "Verdict", "canonical",
+    "judge", "measure", "parse", "read_curves", "slope",
 ]  # fmt: skip

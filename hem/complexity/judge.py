@@ -27,7 +27,7 @@ MIN_RANGE = 4.0
 MIN_GROWTH = 64.0  # of costs over sizes of a shorter range: what is exponential has no longer one
 MAX_SCATTER = 0.4  # relative scatter of samples beyond which nothing is concluded
 MAX_ERROR = 0.12  # relative error of a size's cost beyond which the size is skipped …
-MOST_LEFT_OUT = 0.25  # … if so few of the sizes are like that; otherwise nothing is concluded
+MOST_SKIPPED = 0.25  # … if so few of the sizes are like that; otherwise nothing is concluded
 STEEPER = 2.1  # slope of the larger half of the sizes beyond which steep classes are asked about
 STEADY = 0.2  # of exponents: by so much the halves of a power law may differ
 APART = 0.2  # of exponents: a power law closer to a class is that class, bent by memory
@@ -129,7 +129,7 @@ def judge(
     waits = latency if reference is None else np.ravel(reference)
     measured, entire = summarize(sizes, samples, waits), reference is not None
     noisy = measured.error > MAX_ERROR
-    if 0 < noisy.mean() <= MOST_LEFT_OUT:
+    if 0 < noisy.mean() <= MOST_SKIPPED:
         measured = measured.only(np.flatnonzero(~noisy))
     costs, memory = selection.account_for_memory(measured, exact, latency_error, unseen, entire)
     names = tuple(sorted({*NAMES, claimed}, key=parse))

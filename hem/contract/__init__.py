@@ -24,13 +24,15 @@ from hem.contract.navigation import STEPS, Navigable
 from hem.contract.operations import Prepared
 from hem.contract.packed import MarkedEdges, PackedEdges, PackedStorage
 from hem.contract.queries import Sweep
+from hem.contract.recording import ANEW, BESIDE, CHECKED, COMPILED, PYTHON, Recording, record
 from hem.contract.removal import Remaining, remaining
 from hem.contract.storage import HANDLE_TYPES, Storage, UncompiledStorage
 from hem.contract.structure import Structure
 
 __all__ = [
-    "ELEMENTS", "HANDLE_TYPES", "OPERATIONS", "QUERIES", "REFERENCE_TYPES", "STEPS", "Algorithm",
-    "Attribute", "Claims", "Described", "Look", "MarkedEdges", "Navigable", "PackedEdges",
-    "PackedStorage", "Prepared", "Query", "Remaining", "Storage", "Structure", "Sweep",
-    "UncompiledStorage", "arguments", "remaining",
+    "ANEW", "BESIDE", "CHECKED", "COMPILED", "ELEMENTS", "HANDLE_TYPES", "OPERATIONS", "PYTHON",
+    "QUERIES", "REFERENCE_TYPES", "STEPS", "Algorithm", "Attribute", "Claims", "Described", "Look",
+    "MarkedEdges", "Navigable", "PackedEdges", "PackedStorage", "Prepared", "Query", "Recording",
+    "Remaining", "Storage", "Structure", "Sweep", "UncompiledStorage", "arguments", "record",
+    "remaining",
 ]  # fmt: skip

@@ -9,8 +9,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from hem.arrays import Array, Indices
-from hem.authoring import OPERATIONS, QUERIES, Kernel, Kernels, prefetching
-from hem.authoring.marked import named_by_ends
+from hem.authoring import OPERATIONS, QUERIES, Kernel, Kernels, named_by_ends, prefetching
 from hem.engine import Uses
 
 Algorithm = Callable[[Kernels, Kernels], Kernel]

@@ -7,8 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from hem.arrays import Array, Bools, Indices
-from hem.authoring import EDGE_END, ENDLESS, FACE_ROOM, VERTEX_END
-from hem.authoring.marked import BITS, MARK, scatter
+from hem.authoring import BITS, EDGE_END, ENDLESS, FACE_ROOM, MARK, VERTEX_END, scatter
 from hem.contract.navigation import Navigable
 from hem.contract.storage import Storage, refuse_handles
 from hem.contract.structure import Structure

@@ -29,6 +29,9 @@ CHECKED = "can_"  # before an operation: tried and not done, being refused or on
 BESIDE = ("face_left_of", "diamond", "are_joined")
 """Kernels that answer what takes looking at neighbors, beside the queries."""
 
+EDITING = {"set_point": "move_vertex", "flip_records": "flip_edge"}
+"""Kernels by which algorithms edit without an operation, and what they count as."""
+
 NEAR = 16  # handles no farther apart lie in the same or the next lines of a cache
 BITS = 31  # a handle of an edge that takes more bits than these holds a second number in them
 
@@ -201,9 +204,11 @@ def _kernels(kind: type[Structure]) -> tuple[Kernels, Kernels, list[Recording | 
 
         return do
 
-    own = {it: counted(it, kind.declared.kernels[it]) for it in (*QUERIES, *BESIDE)}
+    kernels = kind.declared.kernels
+    named = {it: it for it in (*QUERIES, *BESIDE)} | EDITING
+    own = {it: counted(what, kernels[it]) for it, what in named.items() if it in kernels}
     done = {it: operated(it, uses.kernel) for it, uses in kind.declared.operating.items()}
-    return {**kind.declared.kernels, **own}, done, found
+    return {**kernels, **own}, done, found
 
 
 @cache

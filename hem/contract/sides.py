@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from hem.arrays import Array
-from hem.authoring.marked import BITS
+from hem.authoring import BITS
 from hem.contract.attributes import EdgeAttribute, enlarged
 from hem.edit import Edit, Remapping
 

@@ -60,28 +60,7 @@ from hem.engine.templates import (
 from hem.engine.uses import Uses, kept, parts_of
 
 __all__ = [
-    "AHEAD",
-    "BEGIN",
-    "CHECK",
-    "DO",
-    "END",
-    "ENDED",
-    "FORGET",
-    "KEEP",
-    "MODE",
-    "PERSIST",
-    "TELL",
-    "CountingArray",
-    "Held",
-    "InterpretedUses",
-    "Pinned",
-    "Read",
-    "UncompiledUses",
-    "Uses",
-    "counting",
-    "interpreted",
-    "kept",
-    "move",
-    "of_pythons_numbers",
-    "parts_of",
-]
+    "AHEAD", "BEGIN", "CHECK", "DO", "END", "ENDED", "FORGET", "KEEP", "MODE", "PERSIST", "TELL",
+    "CountingArray", "Held", "InterpretedUses", "Pinned", "Read", "UncompiledUses", "Uses",
+    "counting", "interpreted", "kept", "move", "of_pythons_numbers", "parts_of",
+]  # fmt: skip

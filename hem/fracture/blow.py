@@ -12,7 +12,7 @@ from hem.errors import MeshError
 from hem.fracture.mass import Mass
 from hem.fracture.material import Material
 from hem.fracture.pieces import Fracture
-from hem.meshes.measures import direction, dot, length, position
+from hem.meshes import direction, dot, length, position
 
 MOST_SITES = 1000  # however strong a blow is, it makes no more cells than this
 LEAST_REACH, MOST_REACH = 0.01, 2.0  # in diagonals: less makes dust, and more finds nothing more

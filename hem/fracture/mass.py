@@ -14,8 +14,7 @@ import numpy as np
 
 from hem.arrays import Floats, Indices
 from hem.errors import MeshError
-from hem.meshes import NOTHING, TriangleMesh, joined
-from hem.meshes.measures import areas, dot
+from hem.meshes import NOTHING, TriangleMesh, areas, dot, joined
 
 
 class Mass(NamedTuple):

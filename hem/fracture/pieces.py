@@ -10,8 +10,7 @@ import numpy as np
 from hem.arrays import Floats, Indices
 from hem.fracture.mass import Mass, of_bodies, of_sheets
 from hem.fracture.material import Material
-from hem.meshes import TriangleMesh, components, used_only
-from hem.meshes.measures import areas, corners
+from hem.meshes import TriangleMesh, areas, components, corners, used_only
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,9 +1,7 @@
-"""Meshes as plain arrays: triangles and polygons, whether they are surfaces, and how large.
-
-`hem.meshes.measures` has bounds, lengths, areas, normals and volume.
-"""
+"""Meshes as plain arrays: triangles and polygons, whether they are surfaces, and how large."""
 
 from hem.meshes.components import NOTHING, clusters, components, joined, used_only
+from hem.meshes.conversions import from_any, from_meshio, from_pyvista, from_trimesh
 from hem.meshes.edges import undirected_edges
 from hem.meshes.manifold import (
     euler_number,
@@ -13,13 +11,28 @@ from hem.meshes.manifold import (
     same_way_edges,
     split_vertices,
 )
+from hem.meshes.measures import (
+    areas,
+    bounds,
+    corners,
+    diagonal,
+    direction,
+    dot,
+    length,
+    normals,
+    position,
+    unit,
+    volume,
+)
 from hem.meshes.polygons import PolygonMesh, repeats_a_corner, require_triangles, simplest
 from hem.meshes.summary import MeshSummary
 from hem.meshes.triangles import TriangleMesh, repeated_corners
 
 __all__ = [
-    "NOTHING", "MeshSummary", "PolygonMesh", "TriangleMesh", "clusters", "components",
-    "euler_number", "joined", "non_manifold_edges", "repeated_corners", "repeats_a_corner",
-    "require_manifold", "require_sound", "require_triangles", "same_way_edges", "simplest",
-    "split_vertices", "undirected_edges", "used_only",
+    "NOTHING", "MeshSummary", "PolygonMesh", "TriangleMesh", "areas", "bounds", "clusters",
+    "components", "corners", "diagonal", "direction", "dot", "euler_number", "from_any",
+    "from_meshio", "from_pyvista", "from_trimesh", "joined", "length", "non_manifold_edges",
+    "normals", "position", "repeated_corners", "repeats_a_corner", "require_manifold",
+    "require_sound", "require_triangles", "same_way_edges", "simplest", "split_vertices",
+    "undirected_edges", "unit", "used_only", "volume",
 ]  # fmt: skip

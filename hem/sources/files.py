@@ -15,8 +15,14 @@ from numpy.typing import DTypeLike
 
 from hem.arrays import Array, Points
 from hem.errors import MeshError, MeshWarning
-from hem.meshes import PolygonMesh, TriangleMesh, repeats_a_corner, require_triangles, simplest
-from hem.meshes.conversions import from_any
+from hem.meshes import (
+    PolygonMesh,
+    TriangleMesh,
+    from_any,
+    repeats_a_corner,
+    require_triangles,
+    simplest,
+)
 from hem.ragged import Ragged
 from hem.sources import text
 from hem.sources.ctm import besides, promised_bytes

@@ -9,8 +9,7 @@ import numpy as np
 
 import hem
 import structures
-from experiments.harness import time_rounds
-from experiments.harness.timer import took
+from experiments.harness import time_rounds, took
 from experiments.peers.peer import BATCHED, SIX, Mesh, Peer, Rows
 from hem import algorithms
 from hem.arrays import Array

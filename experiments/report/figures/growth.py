@@ -211,7 +211,7 @@ def workloads(run: Run, order: str = COMPILED) -> Plot:
 
 
 def overtaking(run: Run) -> Plot:
-    """After how many queries or edits per build each structure overtakes the indexed mesh."""
+    """How many queries or edits after building each structure overtakes the indexed mesh."""
     table = break_even(curves(run)).query("times < inf")
     table = table.assign(cost=table["times"].clip(lower=1e-9))
 

@@ -10,7 +10,7 @@ from matplotlib.colors import TwoSlopeNorm
 from matplotlib.figure import Figure
 
 from experiments.claims import MEMORY
-from experiments.regression import OUTCOMES, Trends
+from experiments.regression import OUTCOMES, ClaimName, Trends
 from experiments.report.style import STYLES, TITLES, grid, label_ends, styled
 from structures import NAMES, REGISTRY
 
@@ -30,7 +30,7 @@ STRONGEST = 1.5  # the ratio to its usual time from which on a color is as stron
 def by_commit(trends: Trends, subject: str) -> Figure:
     """Slope, work, bytes and time of a query or operation by commit: a line per structure.
 
-    Runs of the newest one's profile. Times of its machine have full lines, those of others dotted
+    Runs of the newest one's preset. Times of its machine have full lines, those of others dotted
     ones, each machine a line of its own. A ring is a step to a new level, a cross a verdict by work
     that changed.
     """
@@ -57,18 +57,18 @@ def by_commit(trends: Trends, subject: str) -> Figure:
 
 
 def _of_newest(trends: Trends) -> pd.DataFrame:
-    """What is comparable in runs of the newest one's profile, by structure and subject.
+    """What is comparable in runs of the newest one's preset, by structure and subject.
 
     ``here``: it is of the newest one's machine, or of any. Raises ValueError without a run.
     """
     if not trends.runs:
         raise ValueError(f"there is no run in {trends.history.path}; begin with: hem history add")
     rows, newest = trends.figures, trends.runs[-1]
-    names = rows["claim"].str.split("/", expand=True)
+    names = pd.DataFrame(map(ClaimName.read, rows["claim"]), rows.index, ClaimName._fields)
     here = rows["machine"].isin(("", newest["machine"]["id"]))
-    rows = rows.assign(structure=names[1], subject=names[2], here=here)
-    wanted = rows["comparable"] & (rows["profile"] == newest["profile"])
-    return rows[wanted & (names[0] != "listings") & rows["structure"].isin(NAMES)]
+    rows = rows.assign(structure=names["structure"], subject=names["subject"], here=here)
+    wanted = rows["comparable"] & (rows["preset"] == newest["profile"])
+    return rows[wanted & (names["table"] != "listings") & rows["structure"].isin(NAMES)]
 
 
 def _draw_line(axes: Axes, trends: Trends, line: pd.DataFrame) -> None:
@@ -116,7 +116,7 @@ def _name_commits(axes: Axes, trends: Trends, room: float = 0.0) -> None:
 def departures(trends: Trends) -> Figure:
     """How far every claim of every structure is from its usual time, run by run, as colors.
 
-    Of the newest run's profile and machine. A ring is a step to a new level, a
+    Of the newest run's preset and machine. A ring is a step to a new level, a
     cross a verdict by work that changed.
     """
     rows = _of_newest(trends)
@@ -142,7 +142,7 @@ def _departures(axes: Axes, trends: Trends, rows: pd.DataFrame) -> np.ndarray:
     table = rows.assign(off=np.log(rows["value"] / usual)).pivot_table("off", "subject", "run")
     changed = _changed(trends, rows["claim"])
     for part, what in ((rows[rows["before"].notna()], "step"), (changed, "verdict")):
-        heights = part["claim"].str.split("/").str[-1].map(subjects.index)
+        heights = part["claim"].map(lambda it: subjects.index(ClaimName.read(it).subject))
         _mark(axes, part["run"].to_numpy(), heights.to_numpy(), what, "black", 6)
     axes.set_yticks(range(len(subjects)), list(TITLES.values()), fontsize=7)
     axes.grid(visible=False)

@@ -51,25 +51,7 @@ OPERATIONS: dict[str, Operation] = {
 """Every operation of the contract by name: what the modules of this folder declare."""
 
 __all__ = [
-    "ENTRIES",
-    "LEFT",
-    "OPERATIONS",
-    "RIGHT",
-    "WIDTH",
-    "A",
-    "B",
-    "C",
-    "D",
-    "Operation",
-    "count_new",
-    "has_room",
-    "has_scratch",
-    "is_point",
-    "live_vertex",
-    "log_element",
-    "log_faces",
-    "log_parts",
-    "nothing",
-    "prefetching",
-    "vertex_maker",
-]
+    "ENTRIES", "LEFT", "OPERATIONS", "RIGHT", "WIDTH", "A", "B", "C", "D", "Operation", "count_new",
+    "has_room", "has_scratch", "is_point", "live_vertex", "log_element", "log_faces", "log_parts",
+    "nothing", "prefetching", "vertex_maker",
+]  # fmt: skip

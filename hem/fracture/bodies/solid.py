@@ -10,9 +10,8 @@ from numpy.typing import ArrayLike
 from hem import meshes
 from hem.arrays import Array, Bools, Floats, Indices
 from hem.errors import MeshError, load_optional
-from hem.meshes import TriangleMesh, components, used_only
-from hem.meshes.measures import corners, diagonal, dot, normals, volume
-from hem.sources.meshlab import apply, intersecting_faces
+from hem.meshes import TriangleMesh, components, corners, diagonal, dot, normals, used_only, volume
+from hem.sources import meshlab
 
 _INSTEAD = (
     "wrap it in a body with hem.fracture.wrapped(mesh) (--wrap), or break it by the method surface"
@@ -74,7 +73,7 @@ def require_body(mesh: TriangleMesh) -> Body:
             if body.volume < 0
             else f"the mesh is flat and has no inside; {_INSTEAD}"
         )
-    crossing = intersecting_faces(body.mesh)
+    crossing = meshlab.intersecting_faces(body.mesh)
     if len(crossing):
         raise MeshError(f"the mesh intersects itself; {_INSTEAD}", faces=crossing)
     _require_nested(body)
@@ -98,7 +97,7 @@ def wrapped(mesh: TriangleMesh, detail: float = 0.015, offset: float = 0.002) ->
     if not (0 < detail < 1 and 0 < offset < 1):
         raise MeshError(f"detail and offset are parts of the diagonal, not {detail} and {offset}")
     percent = {"alpha": 100 * detail, "offset": 100 * offset}
-    return apply("generate_alpha_wrap", mesh, percent=percent)
+    return meshlab.apply("generate_alpha_wrap", mesh, percent=percent)
 
 
 def to_manifold(points: Floats, triangles: Array, labels: Array) -> Any:

@@ -26,10 +26,8 @@ from hem.fracture.bodies.solid import require_body
 from hem.fracture.material import Material
 from hem.fracture.material import material as named
 from hem.fracture.pieces import Fracture
-from hem.fracture.surface.nearest import face_corners
-from hem.fracture.surface.shatter import break_surface, in_place
-from hem.meshes import TriangleMesh
-from hem.meshes.measures import areas, dot, length, normals, unit
+from hem.fracture.surface import break_surface, face_corners, in_place
+from hem.meshes import TriangleMesh, areas, dot, length, normals, unit
 
 SLENDER = 3.0  # a shard is at most so many times as deep as its face is wide
 LEAN = 0.9  # the part of half the angle between two faces that a side may lean

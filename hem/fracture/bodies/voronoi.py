@@ -15,9 +15,8 @@ from hem.fracture.bodies.walls import touching
 from hem.fracture.material import Material
 from hem.fracture.material import material as named
 from hem.fracture.pieces import Fracture
-from hem.fracture.surface.nearest import closest
-from hem.meshes import TriangleMesh, joined
-from hem.meshes.measures import bounds, corners, length, normals, position
+from hem.fracture.surface import closest
+from hem.meshes import TriangleMesh, bounds, corners, joined, length, normals, position
 
 VANISHING = 1e-9  # a piece of less than this part of the body's volume is dropped
 _THIN = 4  # so is one thinner than so many roundings of the largest coordinate, nearly flat

@@ -7,8 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from hem.arrays import Floats, Indices
-from hem.meshes import NOTHING, TriangleMesh, joined
-from hem.meshes.measures import corners, length, normals
+from hem.meshes import NOTHING, TriangleMesh, corners, joined, length, normals
 
 
 class _Walls(NamedTuple):

@@ -18,6 +18,6 @@ from hem.fracture.show.picture import (
 from hem.fracture.show.scene import FRAMES_PER_SECOND, FractureScene, save_animation
 
 __all__ = [
-    "AXES", "FRAMES_PER_SECOND", "GRAVITY", "Flight", "FractureScene", "Image", "Picture",
-    "Size", "default_impact", "flight", "load_pyvista", "save_animation", "view_direction",
+    "AXES", "FRAMES_PER_SECOND", "GRAVITY", "Flight", "FractureScene", "Image", "Picture", "Size",
+    "default_impact", "flight", "load_pyvista", "save_animation", "view_direction",
 ]  # fmt: skip

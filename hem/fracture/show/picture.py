@@ -13,8 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from hem.arrays import Array, Floats
 from hem.errors import NotInstalledError, load_optional
-from hem.meshes import TriangleMesh
-from hem.meshes.measures import unit
+from hem.meshes import TriangleMesh, unit
 
 Image = NDArray[np.uint8]
 Size = tuple[int, int]

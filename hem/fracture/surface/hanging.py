@@ -11,8 +11,7 @@ import numpy as np
 
 from hem.arrays import Array, Indices
 from hem.contract import Remaining, Structure, remaining
-from hem.meshes import components
-from hem.meshes.measures import areas, corners
+from hem.meshes import areas, components, corners
 
 
 def hanging(structure: Structure, gone: Array) -> Indices:

@@ -10,8 +10,8 @@ from hem.contract import Structure
 from hem.engine import kept
 from hem.errors import MeshError
 from hem.fracture.surface.breaking import JUMP, dot, finding, make_plan
-from hem.meshes.measures import corners, diagonal, length
-from hem.meshes.measures import position as as_position
+from hem.meshes import corners, diagonal, length
+from hem.meshes import position as as_position
 
 NEAR = 0.05  # how far from its face a walk may end and be believed: of the face's longest side
 FAR = 0.5  # how far from the surface a position may be at all: a part of the diagonal

@@ -30,8 +30,7 @@ from hem.fracture.surface.nearest import (
     nearest_face,
     require_triangles,
 )
-from hem.meshes import TriangleMesh
-from hem.meshes.measures import bounds, length, normals, unit
+from hem.meshes import TriangleMesh, bounds, length, normals, unit
 
 TOLERANCE = 1e-5  # what is nearer to a vertex or an edge lies on it: a part of the diagonal
 ROUNDING = 32 * float(np.finfo(np.float32).eps)  # at least: a part of the largest coordinate

@@ -70,7 +70,7 @@ def test_what_lies_within_its_bounds_is_consistent(run):
     assert outcome(run, "winged_half") == "consistent"
     assert outcome(run, "dynamic") == "consistent"
     assert outcome(run, "static") == "consistent"
-    assert outcome(run, "edits_per_build") == "consistent"
+    assert outcome(run, "edits_after_building") == "consistent"
     assert outcome(run, "answers") == "consistent"
 
 

@@ -175,8 +175,8 @@ def test_what_was_measured_on_other_sizes_is_not_compared(base, tmp_path):
         append_run(line(base, k) | {"profile": "smoke"}, path)
     trends = Trends(read_history(path))
     work = trends.figures.query("claim == @CLAIM and measure == 'work' and comparable")
-    assert work[work["profile"] == "quick"]["run"].tolist() == [2, 3]
-    assert work[work["profile"] == "smoke"]["run"].tolist() == [4, 5]
+    assert work[work["preset"] == "quick"]["run"].tolist() == [2, 3]
+    assert work[work["preset"] == "smoke"]["run"].tolist() == [4, 5]
     assert trends.changes.empty
     assert "Different presets are not compared" in hem("show", "--file", str(path))[1]
 

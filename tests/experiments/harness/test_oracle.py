@@ -7,7 +7,7 @@ import pytest
 
 import hem
 import structures
-from experiments.harness.oracle import CheckFailedError, check_query, neighbors, pack
+from experiments.harness.oracle import CheckFailedError, check_query, neighbors, pack_pairs
 from hem.contract import QUERIES
 
 # Two triangles (0, 1, 2) and (0, 2, 3) that share the edge 0-2.
@@ -26,7 +26,7 @@ BY_HAND = {
 
 
 def packed(values: list) -> list[int]:
-    return sorted(pack(np.array(values)).tolist()) if isinstance(values[0], tuple) else values
+    return sorted(pack_pairs(np.array(values)).tolist()) if isinstance(values[0], tuple) else values
 
 
 @pytest.mark.parametrize("query", QUERIES)

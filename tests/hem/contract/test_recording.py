@@ -126,3 +126,16 @@ def test_a_recording_is_told_per_element_as_csv() -> None:
     with hem.record(s) as workload:
         s.face_vertices(np.arange(50))
     assert workload.text("vertex").splitlines()[1] == "face_vertices,0.5,vertex,0.98,compiled"
+
+
+@pytest.mark.parametrize("name", [INTERPRETED, COMPILED_ONE])
+def test_what_an_algorithm_edits_counts_though_it_calls_no_operation(name: str) -> None:
+    s = structures.build(name, hem.generate("torus", 60))
+    n, edges = s.n_vertices, s.n_edges
+    with hem.record(s) as found:
+        hem.algorithms.smooth(s)
+    assert {it.what: it.times for it in found.rows}["move_vertex"] == n
+    with hem.record(s) as found:
+        hem.algorithms.subdivide(s, "sqrt3")
+    counted = {it.what: it.times for it in found.rows}
+    assert (counted["flip_edge"], counted["move_vertex"]) == (edges, n)
