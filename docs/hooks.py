@@ -7,6 +7,7 @@ the pictures of the gallery from the code beside them.
 
 from __future__ import annotations
 
+import json
 import posixpath
 import re
 from pathlib import Path
@@ -19,6 +20,7 @@ ROOT = Path(__file__).parents[1]
 PAGES = {
     "answers.md": "report/README.md",
     "algorithm.md": "hem/algorithms/README.md",
+    "judge.md": "hem/complexity/README.md",
     "architecture.md": "ARCHITECTURE.md",
     "changelog.md": "CHANGELOG.md",
     "contributing.md": "CONTRIBUTING.md",
@@ -27,7 +29,8 @@ PAGES = {
 
 PLACES = {source: page for page, source in PAGES.items()} | {"README.md": "index.md"}
 LINK = re.compile(r"(!?)\[([^\]]*)\]\(([^)#:\s]+)(#[^)\s]*)?\)")
-INCLUDED = re.compile(r"\{\{ (\S+?)#(.+?) \}\}")
+INCLUDED = re.compile(r"\{\{ ([^\s#]+)(?:#(.+?))? \}\}")
+ADVICE = "results/reference/advice.json"  # told in words where a page includes it
 MADE = re.compile(r"(?s)```python\n(.*?)```\n\n!\[([^\]]*)\]\((gallery/\w+\.png)\)")
 
 
@@ -53,6 +56,8 @@ def on_page_markdown(markdown: str, page: Any, files: Files, **_: Any) -> str:
 
     def included(found: re.Match[str]) -> str:
         source, title = found.groups()
+        if source == ADVICE:
+            return _trust_of_advice()
         text = _section((ROOT / source).read_text("utf-8"), title)
         return _relinked(text, source, page.file.src_uri)
 
@@ -62,6 +67,13 @@ def on_page_markdown(markdown: str, page: Any, files: Files, **_: Any) -> str:
         return f"```python\n{found[1]}```\n\n*{found[2]}: to draw it needs OpenGL.*"
 
     return MADE.sub(shown, INCLUDED.sub(included, markdown))
+
+
+def _trust_of_advice() -> str:
+    """How far off predictions were, as it was measured."""
+    from experiments.validation import advice
+
+    return advice.in_words(json.loads((ROOT / ADVICE).read_text("utf-8")))
 
 
 def _section(text: str, title: str) -> str:

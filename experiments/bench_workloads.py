@@ -6,19 +6,30 @@ and is what claims rest on, and as a loop in Python, which measures the interpre
 
 import heapq
 from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
 
 import structures
-from experiments.harness import BASE, Case, Experiment, Measurement, Preset, Timer, took
+from experiments.harness import (
+    BASE,
+    Case,
+    Experiment,
+    Measurement,
+    Preset,
+    Timer,
+    time_rounds,
+    took,
+)
 from hem import algorithms
 from hem.contract import QUERIES, Structure
 
 KEPT = 0.1  # the part of the vertices that a simplification leaves
-IMPACTS, IMPACT_SEED = 100, 23
+IMPACTS, IMPACT_SEED = (100, 1_000), 23
 SMALL = 400  # vertices of the mesh on which all structures must give the same
+LEAST = 1e-9  # seconds that an impact takes in any case
 REBUILT = 20  # about how many scans it takes to find all neighbors anew
 COMPILED, FROM_PYTHON = "compiled", "from Python"
 
@@ -26,17 +37,21 @@ COMPILED, FROM_PYTHON = "compiled", "from Python"
 class Workload(NamedTuple):
     """One workload, on a mesh that is its own, ``compiled`` and ``from_python``; see ``UNITS``.
 
-    ``scans``: about how many scans of the whole mesh it takes per unit where neighbors are searched
-    for, so that what would take hours is skipped beforehand. ``edits``: how many edits per unit are
-    followed by such a question.
+    So that what would take hours is skipped beforehand, about how many scans of the whole mesh it
+    takes per unit. ``scans``: where neighbors are searched for, compiled and from Python;
+    ``moves``: where moving a vertex searches. ``edits``: how many edits per unit are followed by a
+    question for neighbors. ``one``: the compiled way for one unit, where
+    the call itself takes longer than that: it is done beforehand, and taken off.
     """
 
     title: str
     unit: str
-    scans: float
+    scans: tuple[float, float]
+    moves: int
     edits: int
     compiled: Callable[[Structure], Any]
     from_python: Callable[[Structure], None]
+    one: Callable[[Structure], Any] | None = None
 
     def run(self, order: str | None) -> Callable[[Structure], Any]:
         """The way that an order names."""
@@ -47,7 +62,7 @@ UNITS: dict[str, Callable[[Structure, Structure], int]] = {
     "vertex": lambda before, after: before.n_vertices,
     "face": lambda before, after: before.n_faces,
     "collapse": lambda before, after: before.n_vertices - after.n_vertices,
-    "impact": lambda before, after: IMPACTS,
+    "impact": lambda before, after: _hits(before),
 }
 """How many units a workload has done, from the structure before and after it."""
 
@@ -63,11 +78,16 @@ def vertex_normals(s: Structure) -> None:
 
 
 def smoothing(s: Structure) -> None:
-    """Move every vertex to the mean of its neighbors, once."""
+    """Move every vertex to the mean of its neighbors, once; those on a border stay."""
     vertices = s.vertices()
     rings = s.vertex_vertices(vertices)
     sums = np.add.reduceat(s.points[rings.values].astype(np.float64), rings.offsets[:-1])
-    s.move_vertices(vertices, sums / rings.counts[:, None])
+    means = sums / rings.counts[:, None]
+    if len(rings.values) == s.n_half_edges:  # closed
+        s.move_vertices(vertices, means)
+    else:
+        inside = rings.counts == s.vertex_faces(vertices).counts
+        s.move_vertices(vertices[inside], means[inside])
 
 
 def subdivision(s: Structure) -> None:
@@ -104,43 +124,45 @@ def simplification(s: Structure, part: float = KEPT) -> None:
             heapq.heappush(queue, (x, min(v, b), max(v, b)))
 
 
+def _hits(s: Structure) -> int:
+    """How many impacts there are: more where they take so little that a call is much of it."""
+    return int(np.clip(s.n_vertices // 4, *IMPACTS)) if _walks(s) else IMPACTS[0]
+
+
+def _walks(s: Structure) -> bool:
+    return not (s.searches or s.rebuilds)
+
+
 def _hit(s: Structure) -> Any:
-    return np.random.default_rng(IMPACT_SEED).integers(0, s.n_faces, IMPACTS).tolist()
-
-
-def _positions(s: Structure, vertices: Any) -> Any:
-    """(k, 3), of some vertices: ``points`` gathers those of all where vertices are objects."""
-    if s.compiled:
-        return s.points[vertices]
-    at = s.kernels["coordinate"]
-    return np.array([[at(s.records, v, i) for i in range(3)] for v in vertices])
+    return np.random.default_rng(IMPACT_SEED).integers(0, s.n_faces, _hits(s)).tolist()
 
 
 def impacts(s: Structure) -> None:
     """As in a game: split the face that is hit, ask what is around, split an edge there."""
     for face in _hit(s):
-        center = _positions(s, s.face_vertices(face)).mean(axis=0)
+        center = s.positions(s.face_vertices(face)).mean(axis=0)
         new = s.split_face(face, center).vertex
         ring = s.vertex_vertices(new).tolist()
         for v in ring:
             s.vertex_faces(v)
         edge = s.find_edge(new, min(ring))
         if edge is not None:
-            s.split_edge(edge, _positions(s, [new, min(ring)]).sum(axis=0) / 2)
+            s.split_edge(edge, s.positions([new, min(ring)]).sum(axis=0) / 2)
         s.face_faces(face)
 
 
 WORKLOADS = {
     "vertex_normals": Workload(
-        "Vertex normals", "vertex", 0, 0, algorithms.vertex_normals, vertex_normals),
-    "smoothing": Workload("Smoothing", "vertex", 3, 0, algorithms.smooth, smoothing),
+        "Vertex normals", "vertex", (0, 0), 0, 0, algorithms.vertex_normals, vertex_normals),
+    "smoothing": Workload("Smoothing", "vertex", (0, 3), 1, 0, algorithms.smooth, smoothing),
     "subdivision": Workload(
-        "Subdivision of all faces", "face", 0, 0, lambda s: s.split_all_faces(), subdivision),
+        "Splitting of all faces", "face", (0, 0), 0, 0, lambda s: s.split_all_faces(), subdivision),
     "simplification": Workload(
-        "Simplification to a tenth", "collapse", 35, 1, _simplify, simplification),
+        "Simplification to a tenth", "collapse", (35, 35), 0, 1, _simplify, simplification),
     "impacts": Workload(
-        "Impacts, as in a game", "impact", 30, 2,
-        lambda s: algorithms.impacts(s, _hit(s)), impacts),
+        "Impacts, as in a game", "impact", (30, 30), 0, 2,
+        lambda s: algorithms.impacts(s, _hit(s)), impacts,
+        lambda s: algorithms.impacts(s, _hit(s)[:1])),
 }  # fmt: skip
 """Every workload by name. A new one is its two functions and one line here."""
 
@@ -159,28 +181,38 @@ def cases(preset: Preset, structure: str) -> list[Case]:
 def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
     """Time a workload on copies of a mesh, if it can be done in the time there is."""
     s, workload = case.build(), WORKLOADS[str(case.subject)]
-    units, run = IMPACTS if case.subject == "impacts" else s.n_vertices, workload.run(case.order)
-    scans = units * (workload.scans * s.searches + REBUILT * workload.edits * s.rebuilds)
-    if reason := preset.why_too_slow(scans, s.n_faces, preset.fewest_rounds):
+    units, run = _hits(s) if case.subject == "impacts" else s.n_vertices, workload.run(case.order)
+    scans = workload.scans[case.order == FROM_PYTHON] * s.searches
+    scans += workload.moves * s.searches_to_move + REBUILT * workload.edits * s.rebuilds
+    if reason := preset.why_too_slow(units * scans, s.n_faces, preset.fewest_rounds):
         return case.result("time", s, skipped=reason)
     _check(case, run)
-    done = _ready(s)
+    before = workload.one if case.order == COMPILED else None
+    done = _ready(s, None)
     rounds = preset.affordable_rounds(took(partial(run, done))[1])
     units = UNITS[workload.unit](s, done)
-    timed = timer(run, setup=lambda: (_ready(s),), rounds=rounds, warmup=0, per=units)
+    given: Any = {"setup": lambda: (_ready(s, before),), "rounds": rounds, "warmup": 0}
+    timed = timer(run, **given, per=units)
+    if before:
+        one = np.median(time_rounds(before, **given).samples)
+        each = (timed.samples * units - one) / (units - 1)
+        timed = replace(timed, samples=np.maximum(each, LEAST))
     return case.result("time", s, **timed.fields)
 
 
-def _ready(s: Structure) -> Structure:
+def _ready(s: Structure, before: Callable[[Structure], Any] | None) -> Structure:
     """A copy that was asked everything once, so that its methods are bound, with room for impacts.
 
-    To make room copies the whole mesh, which is spread over more edits than so few.
+    To make room copies the whole mesh, which is spread over more edits than so few. ``before``:
+    what is done to it.
     """
     copy = s.copy()
-    copy.scratch(3 * IMPACTS)
+    copy.scratch(3 * IMPACTS[1])
     for query in QUERIES.values():
         getattr(copy, query.name)(int(copy.handles(query.source)[0]))
     copy.can_flip_edge(int(copy.edges()[0]))
+    if before:
+        before(copy)
     return copy
 
 

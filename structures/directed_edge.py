@@ -19,7 +19,7 @@ Invariants
 
 A face that an operation changes has others of its edges at another place. So an edge is named by
 the smaller of its half-edges and a mark of its two ends, see ``hem.authoring.marked``: a handle is
-valid until that half-edge starts or ends elsewhere, and names nothing from then on.
+valid as long as that half-edge joins them, and names nothing while it joins others.
 
 Bytes per vertex with 8-byte references: 12 + 8 + 6 · 16 = 116. Source: Campagna, Kobbelt & Seidel,
 Directed Edges: A Scalable Representation for Triangle Meshes (1998). Rossignac's corner table

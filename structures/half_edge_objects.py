@@ -441,7 +441,12 @@ class HalfEdgeMesh(Navigable):
     @property
     def points(self) -> NDArray[np.float32]:
         """(n, 3) float32: positions by vertex, NaN for dead ones; gathered anew. Cost O(n_v)."""
-        return records.positions(self.records)
+        return records.positions(self.records.vertices.items)
+
+    def positions(self, vertices: ArrayLike) -> NDArray[np.float32]:
+        """See ``Structure.positions``."""
+        items = self.records.vertices.items
+        return records.positions(items[v] for v in np.ravel(vertices))
 
     def subscribe(self, callback: Callable[[Edit], Any]) -> Callable[[], None]:
         """See ``Structure.subscribe``; also told when the ``point`` of a vertex is set."""

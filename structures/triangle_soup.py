@@ -187,7 +187,7 @@ class TriangleSoup(PackedEdges):
     name, title, abbreviation = "triangle_soup", "Triangle Soup", "Soup"
     look, order = Look("#aa4499", "X", ":"), 9
     claims = Claims("no document says what it costs; what is found is shown")
-    searches = True
+    searches = searches_to_move = True
     records_type = SoupRecords
     kernels: ClassVar[Kernels] = {**Indexed.kernels, **kernels_of(__name__)}
     fields = (

@@ -37,7 +37,7 @@ NEEDS: dict[str, tuple[str, Callable[[type[Structure]], bool]]] = {
     "edges": ("records no edges", lambda it: not it.emulated),
     "borders": ("holds closed meshes only", _holds_borders),
     "polygons": ("holds triangles only", lambda it: it.holds_polygons),
-    "attributes": ("keeps no values of edges", lambda it: not it.emulated),
+    "attributes": ("keeps no values on edges", lambda it: not it.emulated),
     "edits": ("looks at the whole mesh for an edit", lambda it: not (it.searches or it.rebuilds)),
 }
 """By name: what is wrong with a structure that cannot, and whether it can. ``edits`` is for what
@@ -46,7 +46,7 @@ is drawn while it is edited."""
 
 @dataclass(frozen=True)
 class Limits:
-    """The most bytes, and the most seconds that an edit may take."""
+    """The most bytes, and the most seconds that the slowest kind of edit may usually take."""
 
     bytes: float = np.inf
     edit: float = np.inf
@@ -60,7 +60,8 @@ class Limits:
 class Option:
     """A structure that could be taken: what it would take, and what keeps it behind the best.
 
-    ``edit``: seconds of the slowest kind of edit, called from Python.
+    ``edit``: what the slowest kind of edit usually takes, in seconds, called from Python; 0 where
+    the run does not tell.
     """
 
     forecast: Forecast
@@ -103,11 +104,13 @@ def advise(
             taken = _bytes(name, mesh, faces)
         except hem.MeshError as error:
             wrong.append(f"cannot hold it: {error}")
-        edit = _edit(prices, workload, name, faces)
+        edit, known = _edit(prices, workload, name, faces)
         if taken > limits.bytes:
             wrong.append(f"takes {taken:,} bytes of {limits.bytes:,.0f}")
         if edit > limits.edit:
             wrong.append(f"an edit takes {1e3 * edit:.3g} ms of {1e3 * limits.edit:.3g}")
+        if limits.edit < np.inf and not known:
+            wrong.append("the run does not tell what an edit takes")
         if workload.measured and not kind.compiled:
             wrong.append("is interpreted, and the measured whole was compiled")
         if wrong:
@@ -130,13 +133,15 @@ def _bytes(name: str, mesh: Any, faces: int) -> int:
     return round(sum(build(name, small).memory().values()) * faces / len(small.triangles))
 
 
-def _edit(prices: Prices, workload: Workload, name: str, faces: float) -> float:
+def _edit(prices: Prices, workload: Workload, name: str, faces: float) -> tuple[float, bool]:
+    """Seconds of the slowest kind of edit in a workload, and whether the run tells them."""
     edits = {it.what for it in workload.rows if is_edit(it.what)}
-    if name not in prices.structures:
-        return 0.0
-    anew = prices.price(name, ANEW, faces).seconds if edits else 0.0
-    found = [prices.price(name, it, faces, caller=PYTHON).seconds + anew for it in edits]
-    return max(found, default=0.0)
+    try:
+        anew = prices.price(name, ANEW, faces).seconds if edits else 0.0
+        found = [prices.price(name, it, faces, caller=PYTHON).seconds + anew for it in edits]
+    except KeyError:
+        return 0.0, False
+    return max(found, default=0.0), True
 
 
 def _behind(best: Forecast, other: Forecast) -> str:

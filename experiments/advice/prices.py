@@ -15,7 +15,6 @@ from experiments.claims import Curve, curves
 from experiments.harness import ANSWERING
 from experiments.runs import Run
 from hem.arrays import Array
-from hem.authoring import set_point
 from hem.contract import ANEW, CHECKED, COMPILED, OPERATIONS, PYTHON
 from structures import REGISTRY
 
@@ -75,8 +74,7 @@ class Prices:
         kind = REGISTRY[structure]
         rebuilds = kind.rebuilds
         if name == "move_vertex":
-            alone = not kind.compiled or kind.kernels["set_point"] is set_point
-            name = MOVING if alone else MOVING_ALL
+            name = MOVING_ALL if kind.searches_to_move else MOVING
         if what == ANEW:
             found = self._at(faces, "bench_operations", structure, REBUILDING, "batched")
             return found if rebuilds else Price(0.0, 0.0)

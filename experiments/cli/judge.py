@@ -33,7 +33,7 @@ def judge_file(
     """Name the growth class of measured costs, and judge a claim.
 
     A CSV has sizes in its first column and costs in the others; equal sizes are samples.
-    Exit code 0; 1: a claim is violated; 2: it cannot be told.
+    Exit code 0; 1: a claim is violated; 2: it cannot be told, or nothing could be read.
 
     Example: `hem judge benchmark.json --expected "O(n log n)" --plot costs.png`
     """

@@ -95,7 +95,7 @@ def _other_libraries(chosen: list[str] | None) -> list[str]:
     for title, command in missing(chosen or PEERS).items():
         errors.print(f"{title} is not installed, and skipped ({command})")
     if not set(installed()) & set(chosen or PEERS) - {OURS}:
-        raise ValueError("no other library is installed: pip install 'hem-mesh[peers]'")
+        raise ValueError("none of these libraries is installed")
     return [name for name, it in experiments().items() if it.by_name]
 
 

@@ -27,6 +27,8 @@ SOURCE = Path(__file__).with_name("program.cpp")
 COMPILER = "g++"
 OPTIONS = ("-std=c++17", "-O3", "-DNDEBUG", "-march=native")
 HEADERS = Path("/usr/include")
+NEEDED = "CGAL/version.h", "OpenMesh/Core/System/config.h"  # of both, as it is one program
+PACKAGES = "g++ libcgal-dev libopenmesh-dev"
 LOOPS = (*(it for it in QUERIES if it != "edge_edges"), *BATCHED, *SIX, BUILD)
 """Neither library walks from an edge to those at its ends."""
 
@@ -63,19 +65,19 @@ def tell(
 
 
 def header_version(header: str, pattern: str) -> str:
-    """The version that a header names; empty where it or a compiler is not installed."""
-    path = HEADERS / header
-    found = re.search(pattern, path.read_text(errors="replace")) if path.exists() else None
-    if found is None or not shutil.which(COMPILER):
+    """The version that a header names; empty where the program cannot be compiled."""
+    if not (all((HEADERS / it).exists() for it in NEEDED) and shutil.which(COMPILER)):
+        return ""
+    if not (found := re.search(pattern, (HEADERS / header).read_text(errors="replace"))):
         return ""
     return found[1] if "." in found[1] else ".".join(f"{int(found[1], 16) >> 8:x}")
 
 
-def peer(library: str, package: str, version: Callable[[], str], manual: str, more: str) -> Peer:
+def peer(library: str, version: Callable[[], str], manual: str, more: str) -> Peer:
     """A library of the program."""
     tells = partial(tell, library)
     return Peer(
-        f"{library} (C++)", package, manual, more, build=tells, faces=itemgetter("faces"),
+        f"{library} (C++)", PACKAGES, manual, more, build=tells, faces=itemgetter("faces"),
         weigh=itemgetter("bytes"), collapse=_collapsed, looped=tells, loops=LOOPS,
         told_version=version,
     )  # fmt: skip

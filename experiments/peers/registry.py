@@ -24,6 +24,6 @@ def installed() -> list[str]:
 def missing(wanted: Collection[str] = PEERS) -> dict[str, str]:
     """Those of the wanted ones that cannot: by title the command that installs them."""
     # A library that no distribution of Python has is compiled.
-    by = {it: "apt-get install g++" if PEERS[it].told_version else "pip install" for it in wanted}
+    by = {it: "apt-get install" if PEERS[it].told_version else "pip install" for it in wanted}
     absent = [it for it in wanted if not PEERS[it].version]
     return {PEERS[it].title: f"{by[it]} {PEERS[it].distribution}" for it in absent}

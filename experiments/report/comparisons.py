@@ -48,11 +48,12 @@ def objects_against_arrays(run: Run) -> Html:
 
 
 def workloads(run: Run, order: str = COMPILED) -> Html:
-    """Time per unit of every workload on the largest mesh of each structure, compiled or from
-    Python, never both.
+    """Time per unit of every workload on the largest mesh that a structure did it on, compiled or
+    from Python, never both.
     """
     cases = run.cases.query("experiment == 'bench_workloads' and order == @order")
-    largest = cases[cases["vertices"] == cases.groupby("structure")["vertices"].transform("max")]
+    sizes = cases.groupby(["structure", "subject"])["vertices"]
+    largest = cases[cases["vertices"] == sizes.transform("max")]
     largest = largest.assign(cost=largest["samples"].map(np.median))
     table = largest.pivot_table("cost", ["structure", "vertices"], "subject")
     shown = {name: it for name, it in WORKLOADS.items() if name in table}

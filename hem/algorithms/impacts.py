@@ -3,7 +3,7 @@
 ::
 
          c                  c           The face gets a vertex in its middle, v. The faces around
-       ╱   ╲              ╱ │ ╲         v and its neighbors are asked for. The edge from v to the
+       ╱   ╲              ╱ │ ╲         each neighbor of v are asked for. The edge from v to the
      ╱       ╲    ──▶   ╱   v   ╲       smallest corner a is split at m, and the faces beside what
     a─────────b        a──m───────b     is left of the face are asked for.
 

@@ -109,7 +109,8 @@ def remesh(s: Structure, length: float | None = None, iterations: int = 10) -> N
 
     After ten iterations 95 of 100 edges are between 4/5 and 4/3 of it, fewer where what is thin or
     sharp would be lost. Handles of what is left are kept, and ``compact`` renumbers. Several edits
-    per iteration. Cost per iteration: O(n_t log n_t) for bounded valence. MeshError for what is no
+    per iteration. Cost per iteration: O(n_t log n_t) for bounded valence; where neighbors are
+    searched for or found anew, that for each split, collapse and flip. MeshError for what is no
     length or number, for a length that takes more faces than there are handles, and for polygons;
     TopologyError as ``subdivide``. Source: Botsch & Kobbelt (2004).
     """

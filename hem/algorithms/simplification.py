@@ -53,8 +53,9 @@ def simplify(
     the length of the edge. Fewer than asked for are collapsed where faces would turn over or the
     surface would break. Handles of what stays are kept; ``compact`` renumbers.
 
-    An edit, or some where edges have to be tried again. Cost O(n_v log n_v) for bounded valence.
-    MeshError for polygons, for another measure or number, and where nothing is said to stop at.
+    An edit, or some where edges have to be tried again. Cost O(n_v log n_v) for bounded
+    valence; where neighbors are searched for or found anew, that for each collapse. MeshError for
+    polygons, for another measure or number, and where nothing is said to stop at.
     Source: Garland & Heckbert (1997).
     """
     require_mesh(s, "simplify")

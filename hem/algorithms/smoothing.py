@@ -164,7 +164,8 @@ def smooth(s: Structure, iterations: int = 1, method: str = "laplace") -> None:
 
     ``laplace`` moves each to the mean of its neighbors, ``taubin`` half the way there and then as
     far back, by which the volume is kept. One edit per pass. Cost per iteration: one or two times
-    ``face_vertices`` of all, and O(n_v). MeshError for another method or number, and for polygons.
+    ``face_vertices`` of all, and O(n_v); O(n_v n_t) where moving a vertex searches. MeshError for
+    another method or number, and for polygons.
     Source: Sieger & Botsch (2011); Taubin (1995).
     """
     require_mesh(s, "smooth")

@@ -19,9 +19,10 @@ def subdivide(s: Structure, scheme: str = "loop", times: int = 1) -> None:
 
     ``loop`` makes four faces of each, ``sqrt3`` three, and leaves borders as they are; see the
     modules of these names. Three edits per time. Cost O(n_t log n_t) or O(n_t) where neighbors are
-    recorded. MeshError for another scheme or number, and for polygons; TopologyError for edges in
-    more than two faces and for faces with the same three corners. What a subscriber raises ends it
-    after the edit that was told: the mesh is whole, but some edges may not be flipped yet.
+    recorded; else a search for each split of an edge and each flip. MeshError for another scheme or
+    number, and for polygons; TopologyError for edges in more than two faces and for faces with the
+    same three corners. What a subscriber raises ends it after the edit that was told: the mesh is
+    whole, but some edges may not be flipped yet.
     Source: Loop (1987); Kobbelt (2000).
     """
     require_mesh(s, "subdivide")

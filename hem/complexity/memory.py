@@ -33,8 +33,9 @@ CLOCK = thread_time if get_clock_info("thread_time").resolution <= 1e-6 else per
 def memory_times(working_sets: ArrayLike) -> Array:
     """(3, k) seconds: a dependent access, reading a byte, and writing a byte of new memory.
 
-    working_sets: (k,) bytes. Each is measured right now, as other tenants of the machine leave the
-    caches; takes some milliseconds per megabyte, and as much memory as the largest.
+    working_sets: (k,) bytes; those above ``LARGEST`` are measured as this. Each is measured right
+    now, as other tenants of the machine leave the caches; takes some milliseconds per megabyte, and
+    as much memory as the largest.
     """
     sets = np.clip(np.asarray(working_sets, float), SMALLEST, LARGEST).astype(int)
     distinct, place = np.unique(sets, return_inverse=True)

@@ -83,7 +83,10 @@ def parse(claim: str, variable: str | None = None) -> Order:
     found = sorted({it for it in tokens if it[0].isalpha() and it not in ("sqrt", "log")})
     if variable is None and len(found) > 1:
         names = ", ".join(found)
-        raise ValueError(f"{claim!r} names {names}: say which of them is varied, as variable=…")
+        raise ValueError(
+            f"{claim!r} names {names}: say which of them is varied, as variable=…; to hem judge, "
+            "which knows it by its parameter, by the parameter's name"
+        )
     chosen = variable.lower() if variable else next(iter(found), "n")
     try:
         reader = _Reader(iter([*tokens, ""]), chosen)

@@ -40,7 +40,7 @@ TOLD = ("expected", "outcome", "answer", "slope", "slope_low", "slope_high")
 
 
 class ComplexityWarning(UserWarning):
-    """It cannot be told whether a test's claim holds."""
+    """It cannot be told whether a test's claim holds, or nobody looked."""
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -95,6 +95,7 @@ class Complexity:
         marked = options.pop("make_input", None)
         make: MakeInput = make_input or marked or int  # int: the size itself
         if hasattr(config, "workerinput"):
+            warnings.warn(ComplexityWarning(f"{self._item.nodeid}: {PARALLEL}"), stacklevel=2)
             pytest.skip(PARALLEL)
         told = {key: options.pop(key) for key in MEASURING if key in options}
         if budget := config.getoption("complexity_budget"):
@@ -175,14 +176,9 @@ def _settle(config: pytest.Config, words: str, key: str) -> None:
 
 def _keep(item: pytest.Item, call: int, verdict: Verdict, path: Path) -> None:
     """Add a verdict to the history, and what changed since the same call to the end's list."""
-    asked = ["git", "-C", str(item.config.rootpath), "describe"]
-    asked += ["--always", "--abbrev=40", "--dirty=*"]
-    try:
-        commit = subprocess.check_output(asked, stderr=subprocess.DEVNULL, text=True).strip()
-    except (OSError, subprocess.CalledProcessError):
-        commit = "no commit"
     time = datetime.now(UTC).isoformat(timespec="seconds")
-    now: dict[str, Any] = {"test": item.nodeid, "call": call, "commit": commit, "time": time}
+    now: dict[str, Any] = {"test": item.nodeid, "call": call, "time": time}
+    now["commit"] = _commit(item.config.rootpath)
     now |= {key: getattr(verdict, key) for key in TOLD}
     text = path.read_text("utf-8", "replace") if path.exists() else ""
     before, unread = None, list[str]()
@@ -203,6 +199,20 @@ def _keep(item: pytest.Item, call: int, verdict: Verdict, path: Path) -> None:
         file.write(cut + json.dumps(now, ensure_ascii=False) + "\n")
 
 
+def _commit(folder: Path) -> str:
+    """Ten digits of the commit that is tested, and a star where files differ from it."""
+    try:
+        commit, differing = (
+            subprocess.check_output(
+                ["git", "-C", str(folder), *asked], stderr=subprocess.DEVNULL, text=True
+            ).strip()
+            for asked in (("rev-parse", "--short=10", "HEAD"), ("status", "--porcelain", "-uno"))
+        )
+    except (OSError, subprocess.CalledProcessError):
+        return "no commit"
+    return commit + "*" * bool(differing)
+
+
 def _change(before: dict[str, Any], now: dict[str, Any]) -> str:
     """What became of a test between two runs; empty if nothing did."""
     apart = now["slope_low"] > before["slope_high"] or before["slope_low"] > now["slope_high"]
@@ -212,7 +222,7 @@ def _change(before: dict[str, Any], now: dict[str, Any]) -> str:
         f"{it['outcome']}, {it['answer'] or 'no class'}, slope {it['slope']:.2f}"
         for it in (before, now)
     )
-    return f"{was} at {before['commit'][:10]}; {became} at {now['commit'][:10]}"
+    return f"{was} at {before['commit']}; {became} at {now['commit']}"
 
 
 def pytest_terminal_summary(terminalreporter: Any, config: pytest.Config) -> None:

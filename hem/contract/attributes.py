@@ -158,7 +158,8 @@ class Attribute:
         first = parents.offsets[:-1]
         if self.on_split == "copy":
             return values[first]
-        share = shares(self.mesh.points, vertices, parents)
+        at = self.mesh.positions
+        share = shares(at(vertices), at(parents.values), parents)
         share = share.reshape(-1, *(1,) * self.default.ndim)
         return np.add.reduceat(values * share, first).astype(values.dtype)
 
@@ -384,8 +385,8 @@ def on_one_side(one: Array, other: Array) -> bool:
     return np.allclose(one, other, rtol=ALIKE, atol=ALIKE, equal_nan=True)
 
 
-def shares(points: Array, vertices: Array, parents: Ragged) -> Array:
-    """For every parent of ``vertices`` (n,) its share, by position; those of a vertex add up to 1.
+def shares(points: Array, of_parents: Array, parents: Ragged) -> Array:
+    """For every parent of a vertex at ``points`` (n, 3) its share; those of a vertex add up to 1.
 
     What is linear over the parents is so at the vertex, too, even beyond them. Where the vertex
     lies off their plane, its foot on it counts; where they all coincide, each counts alike.
@@ -394,9 +395,9 @@ def shares(points: Array, vertices: Array, parents: Ragged) -> Array:
     for n in np.unique(parents.counts):
         rows = np.flatnonzero(parents.counts == n)
         places = parents.offsets[rows][:, None] + np.arange(n)
-        corners = points[parents.values[places]].astype(np.float64)
+        corners = of_parents[places].astype(np.float64)
         middle = corners.mean(axis=1)
         apart = np.nan_to_num(corners - middle[:, None])  # a parent may be gone by now
-        beside = np.nan_to_num(points[vertices[rows]] - middle)[:, None]
+        beside = np.nan_to_num(points[rows] - middle)[:, None]
         found[places] = 1 / n + (beside @ np.linalg.pinv(apart, ROUNDING))[:, 0]
     return found

@@ -77,5 +77,9 @@ class Navigable(Structure, abstract=True):
     )
 
     def half_edges(self) -> Indices:
-        """(n_half_edges,) int64: the handles of all live half-edges, ascending. Cost O(n_e)."""
+        """(n_half_edges,) int64: the handles of all live half-edges, ascending. Cost O(n_e).
+
+        Where handles of edges are not stable, an operation may give those of the faces that it
+        changes to others of their half-edges, and nothing tells: ask for them anew.
+        """
         return self._state.live("half_edge")

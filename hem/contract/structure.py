@@ -131,6 +131,9 @@ class Structure(Described, Surveying, abstract=True):
     searches: ClassVar[bool] = False
     """Whether nothing is recorded of neighbors, so that they are searched for in the whole mesh."""
 
+    searches_to_move: ClassVar[bool] = False
+    """Whether moving a vertex searches the whole mesh, for the triangles that have its position."""
+
     rebuilds: ClassVar[bool] = False
     """Whether an edit has neighbors found anew in the whole mesh, which answer until the next."""
 
@@ -141,7 +144,8 @@ class Structure(Described, Surveying, abstract=True):
     """Whether an edge keeps its handle as long as it joins the same two vertices.
 
     Where it does not, an operation may give other edges of the faces that it changes new handles.
-    The old ones are refused then; ``find_edge`` finds the new ones.
+    The old ones are refused then; ``find_edge`` finds the new ones. Handles of half-edges have no
+    mark that could be refused.
     """
 
     def __init_subclass__(cls, abstract: bool = False) -> None:

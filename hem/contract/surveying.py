@@ -59,9 +59,21 @@ class Surveying(ABC):
         points: Points = self.records.vertex_point
         return points[: self.records.counts[VERTEX_END]]
 
+    def positions(self, vertices: ArrayLike) -> Points:
+        """(k, 3) float32: of some vertices; those of dead ones are NaN. Cost O(k), also where
+        ``points`` are gathered anew.
+        """
+        found: Points = self.points[np.asarray(vertices)]
+        return found
+
+    @property
+    def vertex_end(self) -> int:
+        """One past the largest vertex handle there ever was."""
+        return int(self.records.counts[VERTEX_END])
+
     @property
     def face_end(self) -> int:
-        """One past the largest face handle there ever was; for vertices that is len(points)."""
+        """One past the largest face handle there ever was."""
         return int(self.records.counts[FACE_END])
 
     @property

@@ -159,7 +159,7 @@ class RenderMesh:
             )
 
     def _grow(self) -> None:
-        vertices, triangles = len(self.structure.points), self.structure.face_end
+        vertices, triangles = self.structure.vertex_end, self.structure.face_end
         self._make_room(vertices, triangles)
         self._n_vertices, self._n_triangles = vertices, triangles
 

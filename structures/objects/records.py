@@ -1,7 +1,7 @@
 """The lists of ``structures.half_edge_objects``: made of a mesh, and to and from arrays."""
 
 import gc
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from typing import Any, NamedTuple
 
@@ -75,10 +75,10 @@ def build_records(mesh: TriangleMesh) -> ObjectRecords:
     return ObjectRecords(*lists, count_records(*lists, n_edges))
 
 
-def positions(m: ObjectRecords) -> NDArray[np.float32]:
-    """(n, 3): by vertex, NaN for dead ones. Cost O(n_v)."""
+def positions(vertices: Iterable[Vertex | None]) -> NDArray[np.float32]:
+    """(k, 3): NaN for dead ones."""
     dead = (np.nan,) * 3
-    rows = [dead if it is None else it.point for it in m.vertices.items]
+    rows = [dead if it is None else it.point for it in vertices]
     return np.array(rows, np.float32).reshape(-1, 3)
 
 
@@ -92,7 +92,7 @@ def to_arrays(m: ObjectRecords) -> HalfEdgeRecords:
     counts = m.counts.copy()
     counts[ROOM] = len(leaving), len(half_edge), len(within)
     known = np.array(leaving, np.int32), np.array(within, np.int32)
-    return HalfEdgeRecords(positions(m), *known, half_edge, counts)
+    return HalfEdgeRecords(positions(m.vertices.items), *known, half_edge, counts)
 
 
 def index_of(element: Any) -> int:

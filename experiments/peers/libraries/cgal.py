@@ -6,7 +6,6 @@ from experiments.peers.program import header_version, peer
 
 PEER = peer(
     "CGAL",
-    "libcgal-dev",
     partial(header_version, "CGAL/version.h", r"define CGAL_VERSION (\S+)"),
     "Ranges such as `faces_around_target` around an element, `reserve` before adding, "
     "`CGAL::Euler` for operations after `does_satisfy_link_condition`.",

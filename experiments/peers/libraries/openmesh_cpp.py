@@ -6,7 +6,6 @@ from experiments.peers.program import header_version, peer
 
 PEER = peer(
     "OpenMesh",
-    "libopenmesh-dev",
     partial(header_version, "OpenMesh/Core/System/config.h", r"define OM_VERSION 0x(\w+)"),
     "Ranges such as `vf_range` around an element, `reserve` before adding, `is_collapse_ok` before "
     "`collapse`, and `garbage_collection` after it.",

@@ -128,19 +128,23 @@ def picks_in_words(run: Run) -> Html:
 
 
 def weights(run: Run) -> Html:
-    """Megabytes of a mesh that is shown and edited: what a renderer is given, and the structure.
+    """Megabytes of a mesh that is shown and edited: as drawn, as a render mesh, and in all.
 
     A renderer is given a position, a normal and a texture coordinate per vertex, and three indices
-    per face, of 16 bits where these are enough.
+    per face, of 16 bits where these are enough. A ``RenderMesh`` has a position of float32 per
+    vertex and three int32 per face. To both comes the structure.
     """
     table = bytes_held(run, 4)
     require(len(table), "measured bytes")
     rows: list[Any] = []
     every: Any = table.T.items()
     for (family, vertices, faces), sizes in every:
-        shown = vertices * PER_VERTEX + faces * 3 * (2 if vertices <= MOST_OF_16_BITS else 4)
-        rows.append((family, vertices, faces, shown / 1e6, *((shown + sizes) / 1e6)))
-    heads: dict[str, Any] = {"": str, "vertices": count, "faces": count, "renderer": MEGABYTES}
+        drawn = vertices * PER_VERTEX + faces * 3 * (2 if vertices <= MOST_OF_16_BITS else 4)
+        beside = 12 * (vertices + faces)
+        whole = (drawn + beside + sizes) / 1e6
+        rows.append((family, vertices, faces, drawn / 1e6, beside / 1e6, *whole))
+    heads: dict[str, Any] = {"": str, "vertices": count, "faces": count}
+    heads |= {"renderer": MEGABYTES, "render mesh": MEGABYTES}
     heads |= {f"+ {REGISTRY[str(it)].abbreviation}": MEGABYTES for it in table}
     return numbers(rows, heads)
 

@@ -135,6 +135,25 @@ def test_limits_refuse_what_takes_more(prices: Prices) -> None:
     assert not advise(prices, PRESETS["edited"], MESH, Limits(edit=1e-12)).options
 
 
+def test_a_run_without_operations_tells_so_and_refuses_where_edits_are_limited(run: Run) -> None:
+    queries = replace(run, cases=run.cases.query("experiment == 'bench_queries'"))
+    edited = Workload("edited", (Row("vertex_faces", 10.0), Row("split_face", 1.0)))
+    found = advise(Prices(queries), edited, MESH)
+    assert len(found.options) == len(REGISTRY)
+    assert all("split_face" in it.forecast.untold for it in found.options)
+    limited = advise(Prices(queries), edited, MESH, Limits(edit=1.0))
+    assert limited.options == []
+    assert all("does not tell what an edit takes" in why for why in limited.refused.values())
+
+
+def test_who_is_behind_is_told_what_costs_it_most_beside_the_best(prices: Prices) -> None:
+    rows = Row("face_vertices", 1.0, "face"), Row("vertex_faces", 1_000.0)
+    found = advise(prices, Workload("mixed", rows, builds=0), MESH)
+    first, behind = found.options[0], {it.forecast.structure: it for it in found.options}
+    assert first.behind == ""
+    assert behind["indexed"].behind == "vertex_faces"  # it searches
+
+
 def test_bytes_are_those_of_the_structure(prices: Prices) -> None:
     for it in advise(prices, ASKED, MESH).options:
         assert it.bytes == sum(build(it.forecast.structure, MESH).memory(names=True).values())

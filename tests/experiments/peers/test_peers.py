@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -107,10 +106,15 @@ def test_a_library_that_is_not_installed_is_named_and_has_no_cases(monkeypatch):
     assert bench_peers.cases(PRESET, "absent") == []
 
 
-def test_a_library_in_cpp_that_is_not_here_is_installed_by_the_system(monkeypatch):
-    monkeypatch.setattr("experiments.peers.program.HEADERS", Path("no such folder"))
-    found = missing(["cgal", "openmesh_cpp"]).values()
-    assert list(found) == [f"apt-get install g++ lib{it}-dev" for it in ("cgal", "openmesh")]
+def test_libraries_in_cpp_are_one_program_and_take_what_the_system_has_of_both(
+    monkeypatch, tmp_path
+):
+    monkeypatch.setattr("experiments.peers.program.HEADERS", tmp_path)
+    (tmp_path / "CGAL").mkdir()
+    for text in ("", "#define CGAL_VERSION 5.5.1"):  # without either, and with one of them
+        (tmp_path / "CGAL/version.h").write_text(text)
+        found = missing(["cgal", "openmesh_cpp"]).values()
+        assert list(found) == ["apt-get install g++ libcgal-dev libopenmesh-dev"] * 2
 
 
 def test_what_is_measured_of_nobody_is_an_error_that_names_it():

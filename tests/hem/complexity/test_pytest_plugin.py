@@ -1,6 +1,7 @@
 """Laws of the plugin: a verdict becomes a pass, a failure or a warning, and is kept."""
 
 import json
+import subprocess
 import sys
 
 import pytest
@@ -86,9 +87,10 @@ def test_what_cannot_be_told_warns_or_does_as_it_is_told(run, options, outcome, 
 
 def test_nothing_is_timed_in_parallel(run) -> None:
     pytest.importorskip("xdist")
-    result = run("-n", "2", "-rs")
+    result = run("-n", "2")
     result.assert_outcomes(skipped=3)
-    result.stdout.fnmatch_lines(["*not timed beside other tests*"])
+    assert result.stdout.str().count("ComplexityWarning: ") == 3
+    result.stdout.fnmatch_lines(["*test_body: complexity is not timed beside other tests*"])
 
 
 def test_history_tells_what_changed(run, pytester: pytest.Pytester) -> None:
@@ -104,6 +106,29 @@ def test_history_tells_what_changed(run, pytester: pytest.Pytester) -> None:
     )
     kept = (pytester.path / "kept" / "history.jsonl").read_text().splitlines()
     assert [json.loads(line)["outcome"] for line in kept] == ["consistent"] * 6 + ["violated"] * 3
+
+
+def test_history_names_the_commits_and_whether_files_differ_from_them(
+    run, pytester: pytest.Pytester
+) -> None:
+    def git(*words: str) -> str:
+        author = ["-c", "user.name=a", "-c", "user.email=a@b"]
+        command = ["git", "-C", str(pytester.path), *author, *words]
+        return subprocess.check_output(command, text=True).strip()
+
+    history = ("--complexity-history", "history.jsonl")
+    (pytester.path / "kept.txt").write_text("before")
+    git("init", "--quiet")
+    git("add", "kept.txt")
+    git("commit", "--quiet", "-m", "first")
+    first = git("rev-parse", "HEAD")[:10]
+    git("tag", "-a", "v1.0", "-m", "a release")
+    run(*history)
+    git("commit", "--quiet", "--allow-empty", "-m", "second")
+    (pytester.path / "kept.txt").write_text("after")
+    second = git("rev-parse", "HEAD")[:10]
+    result = run(*history, power=2)
+    result.stdout.fnmatch_lines([f"*slope 1.00 at {first}; violated*slope 2.00 at {second}[*]"])
 
 
 def test_history_tells_calls_of_one_test_apart_and_leaves_out_what_it_cannot_read(

@@ -103,6 +103,28 @@ def test_what_is_told_to_upload_is_all_that_changed(s):
         assert uploaded[1].ravel().tolist() == render.indices.tolist()
 
 
+@pytest.mark.parametrize(
+    "name", [it for it in structures.NAMES if not structures.REGISTRY[it].compiled]
+)
+def test_an_edit_is_followed_without_gathering_the_positions_of_all(name, monkeypatch):
+    s = structures.build(name, hem.generate("torus", 100))
+    render = hem.RenderMesh(s)
+    heat = s.vertex_attribute("heat", on_split="interpolate")
+    corners = s.edge_vertices(int(s.edges()[0])).tolist()
+    heat[corners] = [1.0, 3.0]
+    middle = s.points[corners].mean(axis=0)
+
+    def gathered(_):
+        raise AssertionError("all positions were gathered")
+
+    with monkeypatch.context() as patched:
+        patched.setattr(type(s), "points", property(gathered))
+        made = s.split_edge(int(s.edges()[0]), middle)
+        s.split_face(7, (0.0, 0.0, 0.0))
+    assert heat[made.vertex] == pytest.approx(2.0)
+    assert_in_step(render)
+
+
 def test_an_edit_uploads_a_handful_of_elements_of_a_large_mesh(s):
     s = structures.build(s.name, hem.generate("torus", 10_000))
     s.reserve(100)
