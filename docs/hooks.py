@@ -29,7 +29,7 @@ PAGES = {
 
 PLACES = {source: page for page, source in PAGES.items()} | {"README.md": "index.md"}
 LINK = re.compile(r"(!?)\[([^\]]*)\]\(([^)#:\s]+)(#[^)\s]*)?\)")
-INCLUDED = re.compile(r"\{\{ ([^\s#]+)(?:#(.+?))? \}\}")
+INCLUDED = re.compile(r"(?<!\$)\{\{ ([^\s#]+)(?:#(.+?))? \}\}")
 ADVICE = "results/reference/advice.json"  # told in words where a page includes it
 MADE = re.compile(r"(?s)```python\n(.*?)```\n\n!\[([^\]]*)\]\((gallery/\w+\.png)\)")
 

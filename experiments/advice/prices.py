@@ -32,8 +32,8 @@ CALL = 6e-7
 """Seconds that an operation takes longer from Python, for a run that did not measure it."""
 
 ASKING = 0.27
-"""Part of that which a query takes longer, as it tells of no edit: one by one and in order it takes
-0.36 µs where a flip takes 1.33 (`results/reference/speed.json`)."""
+"""Part of that which a query takes longer, as it tells of no edit: one by one it took 0.36 µs where
+a flip took 1.33, on another machine 0.60 and 2.77 (`results/reference/speed.json`)."""
 
 BEYOND = 0.25
 """How much less sure a price is for every factor e beyond the sizes that were measured."""
