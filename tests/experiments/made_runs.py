@@ -114,7 +114,12 @@ def _add_times(files: dict, folder: Path, structure: str) -> None:
             for order in (*ORDERS, ANSWERING)
         ]
         every += [
-            ("bench_workloads", name, order, 1e-6 * (n_t if slow and it.scans else 1))
+            (
+                "bench_workloads",
+                name,
+                order,
+                1e-6 * (n_t if slow and it.scans[order == FROM_PYTHON] else 1),
+            )
             for name, it in WORKLOADS.items()
             for order in (COMPILED, FROM_PYTHON)
         ]

@@ -22,7 +22,7 @@ from structures import NAMES, REGISTRY
 LABEL = "share of edits that take longer"
 PER_VERTEX = 12 + 12 + 8
 """Bytes of a position, a normal and a texture coordinate."""
-MEGABYTES = "{:.3g} MB".format
+MEGABYTES = "{:.3g}".format
 MOST_OF_16_BITS = 1 << 16
 FRAME = 1 / 60
 """Seconds between two frames, which a monitor shows in 16.7 ms."""

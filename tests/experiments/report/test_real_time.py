@@ -8,6 +8,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
+import hem
+import structures
 from experiments.bench_picking import FOLLOWING, NEIGHBORS, RAY, REBUILT, REFITTED
 from experiments.bench_real_time import GROWING, RESERVED
 from experiments.report.figures import real_time
@@ -58,3 +60,22 @@ def test_a_run_in_which_nothing_around_a_face_was_asked_compiled_says_so(monkeyp
     monkeypatch.setattr(real_time, "timed", lambda run, experiment, scale: table)
     with pytest.raises(MissingError, match="compiled"):
         real_time.picks_in_words(None)
+
+
+@pytest.mark.parametrize("name", ["teapot", "torus:70000"])
+def test_what_a_mesh_weighs_is_what_its_arrays_do(monkeypatch, name):
+    mesh = hem.find_mesh(name)
+    s = structures.build("half_edge", mesh)
+    render = hem.RenderMesh(s)
+    held, n = sum(s.memory().values()), len(mesh.points)
+    where = pd.MultiIndex.from_tuples([(name, n, len(mesh.triangles))])
+    table = pd.DataFrame({"half_edge": [held]}, index=where)
+    monkeypatch.setattr(real_time, "bytes_held", lambda run, width: table)
+    row = re.findall(r"(?s)<tr>.*?</tr>", real_time.weights(None)._repr_html_())[1]
+    drawn, beside, whole = map(float, re.findall(r"<t[dh][^>]*>(.*?)</t[dh]>", row)[3:])
+    uploaded = np.zeros((n, 3 + 3 + 2), np.float32).nbytes
+    indices = render.indices.astype(np.uint16 if n <= 65_536 else np.uint32)
+    uploaded += indices.nbytes
+    follows = render.points.nbytes + render.indices.nbytes
+    expected = np.array([uploaded, follows, uploaded + follows + held]) / 1e6
+    assert [drawn, beside, whole] == pytest.approx(expected, rel=5e-3)
