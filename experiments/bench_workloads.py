@@ -6,7 +6,6 @@ and is what claims rest on, and as a loop in Python, which measures the interpre
 
 import heapq
 from collections.abc import Callable
-from dataclasses import replace
 from functools import partial
 from typing import Any, NamedTuple
 
@@ -19,6 +18,7 @@ from experiments.harness import (
     Experiment,
     Measurement,
     Preset,
+    Timed,
     Timer,
     time_rounds,
     took,
@@ -29,7 +29,6 @@ from hem.contract import QUERIES, Structure
 KEPT = 0.1  # the part of the vertices that a simplification leaves
 IMPACTS, IMPACT_SEED = (100, 1_000), 23
 SMALL = 400  # vertices of the mesh on which all structures must give the same
-LEAST = 1e-9  # seconds that an impact takes in any case
 REBUILT = 20  # about how many scans it takes to find all neighbors anew
 COMPILED, FROM_PYTHON = "compiled", "from Python"
 
@@ -37,11 +36,11 @@ COMPILED, FROM_PYTHON = "compiled", "from Python"
 class Workload(NamedTuple):
     """One workload, on a mesh that is its own, ``compiled`` and ``from_python``; see ``UNITS``.
 
-    So that what would take hours is skipped beforehand, about how many scans of the whole mesh it
-    takes per unit. ``scans``: where neighbors are searched for, compiled and from Python;
-    ``moves``: where moving a vertex searches. ``edits``: how many edits per unit are followed by a
-    question for neighbors. ``one``: the compiled way for one unit, where
-    the call itself takes longer than that: it is done beforehand, and taken off.
+    What would take hours is skipped beforehand. So ``scans`` says about how many scans of the whole
+    mesh a unit takes where neighbors are searched for, compiled and from Python, ``moves`` how many
+    where moving a vertex searches, and ``edits`` how many edits are followed by a question for
+    neighbors. ``one``: the compiled way for one unit, where the call itself takes longer than that:
+    it is done beforehand, and taken off.
     """
 
     title: str
@@ -126,11 +125,9 @@ def simplification(s: Structure, part: float = KEPT) -> None:
 
 def _hits(s: Structure) -> int:
     """How many impacts there are: more where they take so little that a call is much of it."""
-    return int(np.clip(s.n_vertices // 4, *IMPACTS)) if _walks(s) else IMPACTS[0]
-
-
-def _walks(s: Structure) -> bool:
-    return not (s.searches or s.rebuilds)
+    fewest, most = IMPACTS
+    few = s.searches or s.rebuilds
+    return fewest if few else int(np.clip(s.n_vertices // 4, fewest, most))
 
 
 def _hit(s: Structure) -> Any:
@@ -188,16 +185,24 @@ def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
         return case.result("time", s, skipped=reason)
     _check(case, run)
     before = workload.one if case.order == COMPILED else None
-    done = _ready(s, None)
+    begun = _ready(s, before)
+    done = begun.copy()
     rounds = preset.affordable_rounds(took(partial(run, done))[1])
-    units = UNITS[workload.unit](s, done)
+    units = UNITS[workload.unit](begun, done)
     given: Any = {"setup": lambda: (_ready(s, before),), "rounds": rounds, "warmup": 0}
     timed = timer(run, **given, per=units)
     if before:
-        one = np.median(time_rounds(before, **given).samples)
-        each = (timed.samples * units - one) / (units - 1)
-        timed = replace(timed, samples=np.maximum(each, LEAST))
+        timed = without_call(timed, float(np.median(time_rounds(before, **given).samples)))
     return case.result("time", s, **timed.fields)
+
+
+def without_call(timed: Timed, one: float) -> Timed:
+    """Rounds without the call itself, which took ``one`` seconds with one unit.
+
+    The others shared what is left. A round in which nothing is left tells nothing, and goes.
+    """
+    each = (timed.samples * timed.per - one) / (timed.per - 1)
+    return Timed(each[each > 0], timed.calibration[each > 0], timed.per)
 
 
 def _ready(s: Structure, before: Callable[[Structure], Any] | None) -> Structure:

@@ -60,8 +60,8 @@ class Limits:
 class Option:
     """A structure that could be taken: what it would take, and what keeps it behind the best.
 
-    ``edit``: what the slowest kind of edit usually takes, in seconds, called from Python; 0 where
-    the run does not tell.
+    ``edit``: what the slowest kind of edit usually takes, in seconds, called from Python; NaN
+    where the run does not tell.
     """
 
     forecast: Forecast
@@ -104,13 +104,8 @@ def advise(
             taken = _bytes(name, mesh, faces)
         except hem.MeshError as error:
             wrong.append(f"cannot hold it: {error}")
-        edit, known = _edit(prices, workload, name, faces)
-        if taken > limits.bytes:
-            wrong.append(f"takes {taken:,} bytes of {limits.bytes:,.0f}")
-        if edit > limits.edit:
-            wrong.append(f"an edit takes {1e3 * edit:.3g} ms of {1e3 * limits.edit:.3g}")
-        if limits.edit < np.inf and not known:
-            wrong.append("the run does not tell what an edit takes")
+        edit = _edit(prices, workload, name, faces)
+        wrong += _beyond(limits, taken, edit)
         if workload.measured and not kind.compiled:
             wrong.append("is interpreted, and the measured whole was compiled")
         if wrong:
@@ -133,15 +128,27 @@ def _bytes(name: str, mesh: Any, faces: int) -> int:
     return round(sum(build(name, small).memory().values()) * faces / len(small.triangles))
 
 
-def _edit(prices: Prices, workload: Workload, name: str, faces: float) -> tuple[float, bool]:
-    """Seconds of the slowest kind of edit in a workload, and whether the run tells them."""
+def _beyond(limits: Limits, taken: int, edit: float) -> list[str]:
+    """What is more than it may be; what is limited and not known is, too."""
+    wrong = []
+    if taken > limits.bytes:
+        wrong.append(f"takes {taken:,} bytes of {limits.bytes:,.0f}")
+    if edit > limits.edit:
+        wrong.append(f"an edit takes {1e3 * edit:.3g} ms of {1e3 * limits.edit:.3g}")
+    if np.isnan(edit) and limits.edit < np.inf:
+        wrong.append("the run does not tell what an edit takes")
+    return wrong
+
+
+def _edit(prices: Prices, workload: Workload, name: str, faces: float) -> float:
+    """Seconds of the slowest kind of edit in a workload; NaN where the run does not tell."""
     edits = {it.what for it in workload.rows if is_edit(it.what)}
     try:
         anew = prices.price(name, ANEW, faces).seconds if edits else 0.0
         found = [prices.price(name, it, faces, caller=PYTHON).seconds + anew for it in edits]
     except KeyError:
-        return 0.0, False
-    return max(found, default=0.0), True
+        return np.nan
+    return max(found, default=0.0)
 
 
 def _behind(best: Forecast, other: Forecast) -> str:

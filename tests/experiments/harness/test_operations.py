@@ -10,7 +10,7 @@ import pytest
 
 import hem
 import structures
-from experiments.bench_workloads import KEPT, UNITS, WORKLOADS
+from experiments.bench_workloads import KEPT, UNITS, WORKLOADS, without_call
 from experiments.harness import HUBS, OPERATIONS, PRESETS, Case, disturbed, time_rounds
 from experiments.harness.operations import OperationBatch, constant_work, time_operations
 from experiments.harness.operations import operation_arguments as arguments
@@ -178,3 +178,24 @@ def test_operations_that_take_no_longer_than_idle_calls_are_skipped_and_measured
     calm = {"fastest": 1e-9, "before": 1e-9, "after": 1e-9, "off_cpu": 0.0}
     assert not disturbed(calm)
     assert disturbed({**calm, **nothing["noise"]})
+
+
+@pytest.mark.parametrize("units", [100, 1_000])
+def test_what_the_call_itself_takes_is_taken_off_and_a_round_that_tells_nothing_goes(units):
+    call, each = 180e-6, np.array([0.5e-6, 0.7e-6, -0.1e-6])
+    whole = call + units * each  # the first of them is in ``one``, with the call
+    timed = Timed(whole / units, np.array([1.0, 2.0, 3.0]), units)
+    found = without_call(timed, call + 0.5e-6)
+    assert found.samples == pytest.approx([0.5e-6, (0.7e-6 * units - 0.5e-6) / (units - 1)])
+    assert found.calibration.tolist() == [1.0, 2.0]
+
+
+@pytest.mark.parametrize("name", OF_EACH_KIND)
+def test_as_many_impacts_are_counted_as_were_made(name):
+    workload = WORKLOADS["impacts"]
+    s = structures.build(name, hem.generate("torus", 1_000))
+    for _ in range(3):  # also where the mesh has grown by the one before
+        workload.one(s)
+        before = s.copy()
+        workload.compiled(s)
+        assert UNITS[workload.unit](before, s) == (s.n_vertices - before.n_vertices) / 2

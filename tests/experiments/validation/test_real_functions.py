@@ -65,3 +65,14 @@ def test_ours_is_wrong_least_often_of_all_judges() -> None:
     ours = wrong.pop("hem")
     rivals: pd.DataFrame = wrong.drop(columns="hem, memory unknown")
     assert all((rivals.sub(ours, axis=0) > 0).all(axis=1))
+
+
+def test_the_first_page_tells_the_figures_of_the_shared_machine() -> None:
+    _, answers = real_functions.load_answers(ROOT / real_functions.RESULT)
+    found = real_functions.shares(answers).loc[real_functions.HELD, "shared"]
+    ours, others = found.loc["hem"], found.drop(index=["hem", "hem, memory unknown"])
+    span = [f"{others[kind].min()} to {others[kind].max()}" for kind in ("right", "wrong")]
+    told = f"it names {ours['right']} right and {ours['wrong']} wrong, they {' and '.join(span)}."
+    page = " ".join((ROOT / "README.md").read_text("utf-8").split())
+    assert f"Of {len(HELD_OUT)} functions" in page
+    assert told in page
