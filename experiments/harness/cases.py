@@ -20,7 +20,7 @@ from hem.meshes import MeshSummary, TriangleMesh
 
 BASE = "indexed"  # the structure that the others are compared with: what a renderer stores
 
-OF_MADE, OF_OWN = 3, 60  # how often accesses are counted in a family, and in a mesh of one's own
+OF_ALIKE, OF_UNEVEN = 3, 60  # how often accesses are counted where elements are alike, and else
 SHUFFLE_SEED, HANDLE_SEED = 20, 21
 
 
@@ -90,9 +90,13 @@ class Case:
 
     @property
     def repetitions(self) -> int:
-        """How often something is counted: more often where elements differ, and not all is read."""
-        searches = structures.REGISTRY[self.structure].searches
-        return OF_OWN if own_mesh.is_own(self.family) and not searches else OF_MADE
+        """How often something is counted: more often where elements differ, and not all is read.
+
+        Elements differ in a mesh of one's own, and where what is found is hashed.
+        """
+        kind = structures.REGISTRY[self.structure]
+        uneven = own_mesh.is_own(self.family) or kind.rebuilds
+        return OF_UNEVEN if uneven and not kind.searches else OF_ALIKE
 
     @property
     def searches(self) -> bool:
