@@ -1,5 +1,6 @@
 """Functions of known cost that no library has: written as textbooks do, to try judges on."""
 
+import bisect
 import heapq
 import math
 import operator
@@ -273,3 +274,173 @@ def gray_code(n: int) -> list[int]:
     for bit in range(n):
         codes += [code | 1 << bit for code in reversed(codes)]
     return codes
+
+
+def append_and_pop(held: Any) -> None:
+    held.append(0)
+    held.pop()
+
+
+def in_thirds(held: list[int], key: int) -> None:
+    low, high = 0, len(held)
+    while low < high:
+        third = (high - low) // 3
+        left, right = low + third, high - 1 - third
+        if key < held[left]:
+            high = left
+        elif key > held[right]:
+            low = right + 1
+        elif key in (held[left], held[right]):
+            return
+        else:
+            low, high = left + 1, right
+
+
+def search_tree(n: int) -> list[int]:
+    """A node's children are at twice its place, and after it."""
+    held, sorted_so_far = [0] * (n + 1), 0
+    path: list[int] = []
+    place = 1
+    while path or place <= n:
+        while place <= n:
+            path.append(place)
+            place *= 2
+        place = path.pop()
+        held[place] = sorted_so_far
+        sorted_so_far += 1
+        place = 2 * place + 1
+    return held
+
+
+def descend(held: list[int], key: int) -> None:
+    place = 1
+    while place < len(held) and held[place] != key:
+        place = 2 * place + (key > held[place])
+
+
+def two_squares(n: int) -> int:
+    return sum(math.isqrt(n - a * a) ** 2 == n - a * a for a in range(math.isqrt(n) + 1))
+
+
+def odd_numbers(n: int) -> int:
+    odd = 1
+    while n > 0:
+        n -= odd
+        odd += 2
+    return odd
+
+
+def counting_sort(it: list[int]) -> list[int]:
+    counts = [0] * 100
+    for value in it:
+        counts[value] += 1
+    made: list[int] = []
+    for value, count in enumerate(counts):
+        made += [value] * count
+    return made
+
+
+def prefixes(text: str) -> list[int]:
+    made, length = [0] * len(text), 0
+    for i in range(1, len(text)):
+        while length and text[i] != text[length]:
+            length = made[length - 1]
+        length += text[i] == text[length]
+        made[i] = length
+    return made
+
+
+def majority(votes: list[int]) -> int:
+    leader, lead = votes[0], 0
+    for vote in votes:
+        if not lead:
+            leader = vote
+        lead += 1 if vote == leader else -1
+    return leader
+
+
+def increasing(it: list[float]) -> int:
+    ends: list[float] = []
+    for value in it:
+        place = bisect.bisect_left(ends, value)
+        ends[place : place + 1] = [value]
+    return len(ends)
+
+
+def huffman(weights: list[float]) -> float:
+    heap, total = list(weights), 0.0
+    heapq.heapify(heap)
+    while len(heap) > 1:
+        merged = heapq.heappop(heap) + heapq.heappop(heap)
+        total += merged
+        heapq.heappush(heap, merged)
+    return total
+
+
+def inversions(it: list[float]) -> int:
+    if len(it) < 2:
+        return 0
+    left, right = it[: len(it) // 2], it[len(it) // 2 :]
+    count = inversions(left) + inversions(right)
+    merged: list[float] = []
+    i = 0
+    for value in right:
+        while i < len(left) and left[i] <= value:
+            merged.append(left[i])
+            i += 1
+        count += len(left) - i
+        merged.append(value)
+    it[:] = merged + left[i:]
+    return count
+
+
+def hull(points: list[tuple[float, float]]) -> list[tuple[float, float]]:
+    made: list[tuple[float, float]] = []
+    for x, y in sorted(points):
+        while len(made) > 1:
+            (ax, ay), (bx, by) = made[-2:]
+            if (bx - ax) * (y - ay) < (by - ay) * (x - ax):
+                break
+            made.pop()
+        made.append((x, y))
+    return made
+
+
+def palindromes(text: str) -> int:
+    n, count, inner = len(text), 0, [False] * len(text)
+    for i in range(n - 1, -1, -1):
+        ends = [text[i] == text[j] and (j - i < 2 or inner[j - 1]) for j in range(i, n)]
+        inner[i:] = ends
+        count += sum(ends)
+    return count
+
+
+def knapsack(values: list[int]) -> int:
+    best = [0] * (len(values) + 1)
+    for weight, value in enumerate(values, 1):
+        for room in range(len(best) - 1, weight - 1, -1):
+            best[room] = max(best[room], best[room - weight] + value)
+    return best[-1]
+
+
+def pop_all(it: list[int]) -> None:
+    while it:
+        it.pop(0)
+
+
+def closure(costs: list[list[float]]) -> list[list[bool]]:
+    reach = [[cost < 0.1 for cost in row] for row in costs]
+    for middle in range(len(reach)):
+        through = reach[middle]
+        for row in reach:
+            known = row[middle]
+            for j in range(len(row)):
+                row[j] = row[j] or (known and through[j])
+    return reach
+
+
+def subsets(it: list[int]) -> list[list[int]]:
+    made: list[list[int]] = [[]]
+    for value in it:
+        made += [[*some, value] for some in made]
+    return made

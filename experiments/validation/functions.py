@@ -1,9 +1,9 @@
 """Real functions whose cost is known, with the source that tells it: data, to try judges on.
 
 A cost is that of what a call does, the making of its input left out. n is the length of the input
-unless the name says otherwise. The judge was tuned on the first two tables; the last one was
-written down before any judge was asked about it, and tells how good one is. What is decided by its
-answers makes it functions to tune on, as it did of `SEEN`, and asks for others.
+unless the name says otherwise. The judge was tuned on these. How good it is others tell, those of
+`held_out`, which were written down before any judge was asked about them. What is decided by their
+answers makes them functions to tune on, as it did of `SEEN`, and asks for others.
 """
 
 import array
@@ -89,11 +89,13 @@ class Function(NamedTuple):
 _draw = np.random.default_rng
 
 
-def _uniform(*shape: int) -> Any:
+def uniform(*shape: int) -> Any:
+    """Numbers from 0 to 1 in an array."""
     return _draw().random(shape)
 
 
-def _floats(n: int) -> list[float]:
+def floats(n: int) -> list[float]:
+    """Numbers from 0 to 1 in a list."""
     return [random.random() for _ in range(n)]
 
 
@@ -102,24 +104,24 @@ def _words(n: int) -> list[str]:
 
 
 def _on_sphere(n: int) -> Any:  # all on the hull: of points in a cube most are seen just once
-    points = _uniform(n, 3) - 0.5
+    points = uniform(n, 3) - 0.5
     return points / np.linalg.norm(points, axis=1, keepdims=True)
 
 
 def _on_circle(n: int) -> Any:
-    angles = 2 * np.pi * _uniform(n)
+    angles = 2 * np.pi * uniform(n)
     return np.column_stack([np.cos(angles), np.sin(angles)])
 
 
 INPUTS: dict[str, Callable[[int], Any]] = {
     "numbers": lambda n: list(range(n)),
-    "floats": _floats,
-    "heap": lambda n: sorted(_floats(n)),
-    "tuple": lambda n: tuple(_floats(n)),
+    "floats": floats,
+    "heap": lambda n: sorted(floats(n)),
+    "tuple": lambda n: tuple(floats(n)),
     "deque": lambda n: collections.deque(range(n)),
     "dict": lambda n: dict.fromkeys(range(n)),
     "set": lambda n: set(range(n)),
-    "floats_set": lambda n: set(_floats(n)),
+    "floats_set": lambda n: set(floats(n)),
     "few": lambda n: random.choices(range(100), k=n),
     "asked": lambda n: random.choices(range(n), k=KEYS),  # indices below n
     "text": lambda n: "abcdefghij" * (n // 10) + "x" * (n % 10),
@@ -131,30 +133,30 @@ INPUTS: dict[str, Callable[[int], Any]] = {
     "bits": lambda n: random.getrandbits(n) | 1 << (n - 1) | 1,
     "places": np.arange,
     "picked": lambda n: np.array(random.choices(range(n), k=KEYS)),
-    "uniform": _uniform,
-    "points": lambda n: _uniform(n, 3),
+    "uniform": uniform,
+    "points": lambda n: uniform(n, 3),
     "sphere": _on_sphere,
-    "matrix": lambda n: _uniform(n, n) + n * np.eye(n),  # far from singular
+    "matrix": lambda n: uniform(n, n) + n * np.eye(n),  # far from singular
     "symmetric": lambda n: INPUTS["matrix"](n) + INPUTS["matrix"](n).T,
     "sparse": lambda n: sparse.random_array((n, n), density=min(5 / n, 1), format="csr"),
-    "banded": lambda n: (np.vstack([np.ones(n), np.full(n, 4.0), np.ones(n)]), _uniform(n)),
+    "banded": lambda n: (np.vstack([np.ones(n), np.full(n, 4.0), np.ones(n)]), uniform(n)),
 }
 """What makes an input, by name."""
 
 
-def _function(name: str, growth: str, given: Any, *others: Any) -> Function:
+def function(name: str, growth: str, given: Any, *others: Any) -> Function:
     """``given``: what makes the input, or the names of one or of several."""
     makes = [INPUTS[it] for it in given.split()] if isinstance(given, str) else [given]
     make = makes[0] if len(makes) == 1 else lambda n: tuple(it(n) for it in makes)
     return Function(name, growth, make, *others)
 
 
-def _looked_up(container: Any) -> tuple[Any, list[Any]]:
+def looked_up(container: Any) -> tuple[Any, list[Any]]:
     """A container and keys in it to ask for."""
     return container, random.choices(list(container), k=KEYS)
 
 
-def _times(call: Callable[[Any], object]) -> Callable[[Any], object]:
+def times(call: Callable[[Any], object]) -> Callable[[Any], object]:
     """The same call many times."""
 
     def every(it: Any) -> None:
@@ -164,7 +166,7 @@ def _times(call: Callable[[Any], object]) -> Callable[[Any], object]:
     return every
 
 
-def _each(call: Callable[[Any, Any], object]) -> Callable[[Any], object]:
+def each(call: Callable[[Any, Any], object]) -> Callable[[Any], object]:
     """Call with a container and each of the keys beside it."""
 
     def every(given: Any) -> None:
@@ -198,9 +200,9 @@ def _by_adding(item: Any) -> Callable[[int], object]:
 
 
 # fmt: off
-FUNCTIONS: tuple[Function, ...] = tuple(starmap(_function, [
-    ("len(list)", "O(1)", "numbers", _times(len), WIKI),
-    ("list[i], 1,000 random i", "O(1)", "numbers asked", _each(lambda s, i: s[i]), WIKI),
+FUNCTIONS: tuple[Function, ...] = tuple(starmap(function, [
+    ("len(list)", "O(1)", "numbers", times(len), WIKI),
+    ("list[i], 1,000 random i", "O(1)", "numbers asked", each(lambda s, i: s[i]), WIKI),
     ("list.copy", "O(n)", "numbers", list.copy, WIKI),
     ("absent in list", "O(n)", "numbers", lambda s: -1 in s, WIKI),
     ("list.sort, random", "O(n log n)", "floats", list.sort, WIKI),
@@ -211,20 +213,20 @@ FUNCTIONS: tuple[Function, ...] = tuple(starmap(_function, [
     ("sum(list)", "O(n)", "floats", sum, WIKI),
     ("min(list)", "O(n)", "floats", min, WIKI),
     ("list == list", "O(n)", "numbers numbers", lambda s: s[0] == s[1], CPYTHON),
-    ("dict[key], 1,000 random", "O(1)", "dict asked", _each(dict.get), WIKI),
+    ("dict[key], 1,000 random", "O(1)", "dict asked", each(dict.get), WIKI),
     ("dict.fromkeys", "O(n)", "floats", dict.fromkeys, WIKI),
     ("set(list)", "O(n)", "floats", set, WIKI),
-    ("key in set, 1,000 random", "O(1)", "set asked", _each(set.__contains__), WIKI),
+    ("key in set, 1,000 random", "O(1)", "set asked", each(set.__contains__), WIKI),
     ("set & set", "O(n)", "set set", lambda s: s[0] & s[1], WIKI),
     ("dict.copy", "O(n)", "dict", dict.copy, WIKI),
     ("deque.rotate(n // 2)", "O(n)", "deque", lambda s: s.rotate(len(s) // 2), WIKI),
-    ("deque.popleft and append", "O(1)", "deque", _times(lambda s: s.append(s.popleft())), WIKI),
+    ("deque.popleft and append", "O(1)", "deque", times(lambda s: s.append(s.popleft())), WIKI),
     ("deque[n // 2]", "O(n)", "deque", lambda s: s[len(s) // 2], WIKI),
     ("heapq.heapify", "O(n)", "floats", heapq.heapify, CLRS),
     ("heapq.heapreplace, 1,000 to the bottom", "O(log n)", "heap", _sift(heapq.heapreplace), CLRS),
     ("heapq.heappop, all", "O(n log n)", "heap", by_hand.drain, CLRS),
     ("heapq.nsmallest(10)", "O(n)", "floats", lambda s: heapq.nsmallest(10, s), PYDOC),
-    ("bisect, 1,000 random", "O(log n)", "numbers asked", _each(bisect.bisect), PYDOC),
+    ("bisect, 1,000 random", "O(log n)", "numbers asked", each(bisect.bisect), PYDOC),
     ("bisect.insort at the front", "O(n)", "numbers", lambda s: bisect.insort(s, -1), PYDOC),
     ("collections.Counter", "O(n)", "few", collections.Counter, CPYTHON),
     ("str.join", "O(n)", lambda n: ["ab"] * n, "".join, PYDOC),
@@ -256,8 +258,8 @@ FUNCTIONS: tuple[Function, ...] = tuple(starmap(_function, [
         lambda n: sum(1 for _ in itertools.product((0, 1), repeat=n)), PYDOC),
     ("two loops over a list", "O(n²)", "numbers", lambda s: sum(a == b for a in s for b in s),
         LOOP),
-    ("array[i], 1,000 times", "O(1)", "uniform", _times(lambda a: a[0]), NUMPY),
-    ("array[::2], a view", "O(1)", "uniform", _times(lambda a: a[::2]), VIEWS),
+    ("array[i], 1,000 times", "O(1)", "uniform", times(lambda a: a[0]), NUMPY),
+    ("array[::2], a view", "O(1)", "uniform", times(lambda a: a[::2]), VIEWS),
     ("np.sum", "O(n)", "uniform", np.sum, NUMPY, CACHE_BOUND),
     ("np.copy", "O(n)", "uniform", np.copy, NUMPY, CACHE_BOUND),
     ("array + array", "O(n)", "uniform", lambda a: a + a, NUMPY, CACHE_BOUND),
@@ -271,7 +273,7 @@ FUNCTIONS: tuple[Function, ...] = tuple(starmap(_function, [
     ("np.median", "O(n)", "uniform", np.median, PARTITION),
     ("np.searchsorted, 1,000 keys", "O(log n)", "places picked", lambda s: np.searchsorted(*s),
         BISECT),
-    ("array[random indices]", "O(n)", lambda n: (_uniform(n), _draw().permutation(n)),
+    ("array[random indices]", "O(n)", lambda n: (uniform(n), _draw().permutation(n)),
         lambda s: s[0][s[1]], NUMPY, CACHE_BOUND),
     ("np.bincount", "O(n)", lambda n: _draw().integers(0, 100, n), np.bincount, NUMPY),
     ("np.histogram, 10 bins", "O(n)", "uniform", np.histogram, NUMPY),
@@ -285,7 +287,7 @@ FUNCTIONS: tuple[Function, ...] = tuple(starmap(_function, [
         *TWOS),
     ("cKDTree, built", "O(n log n)", "points", spatial.cKDTree, SCIPY),
     ("cKDTree.query, 1,000 points", "O(log n)",
-        lambda n: (spatial.cKDTree(_uniform(n, 3)), _uniform(KEYS, 3)),
+        lambda n: (spatial.cKDTree(uniform(n, 3)), uniform(KEYS, 3)),
         lambda s: s[0].query(s[1]), SCIPY),
     ("cdist", "O(n²)", "points", lambda p: spatial.distance.cdist(p, p), SCIPY),
     ("ConvexHull of a sphere", "O(n log n)", "sphere", spatial.ConvexHull, QUICKHULL),
@@ -299,18 +301,18 @@ FUNCTIONS: tuple[Function, ...] = tuple(starmap(_function, [
     ("CubicSpline", "O(n)", "places uniform", lambda s: interpolate.CubicSpline(*s), SCIPY),
 ]))
 
-SEEN: tuple[Function, ...] = tuple(starmap(_function, [
-    ("dict[str], 1,000 random", "O(1)", lambda n: _looked_up(dict.fromkeys(_words(n))),
-        _each(getitem), WIKI),
+SEEN: tuple[Function, ...] = tuple(starmap(function, [
+    ("dict[str], 1,000 random", "O(1)", lambda n: looked_up(dict.fromkeys(_words(n))),
+        each(getitem), WIKI),
     ("OrderedDict.move_to_end, 1,000 random", "O(1)",
-        lambda n: _looked_up(collections.OrderedDict.fromkeys(range(n))),
-        _each(collections.OrderedDict.move_to_end), PYDOC),
-    ("array.array[i], 1,000 random", "O(1)", "doubles asked", _each(getitem), CPYTHON, CACHE_BOUND),
+        lambda n: looked_up(collections.OrderedDict.fromkeys(range(n))),
+        each(collections.OrderedDict.move_to_end), PYDOC),
+    ("array.array[i], 1,000 random", "O(1)", "doubles asked", each(getitem), CPYTHON, CACHE_BOUND),
     ("array[1,000 random indices]", "O(1)", "uniform picked", lambda s: s[0][s[1]], NUMPY,
         CACHE_BOUND),
-    ("bisect in array.array, 1,000 random", "O(log n)", "ascending asked", _each(bisect.bisect),
+    ("bisect in array.array, 1,000 random", "O(log n)", "ascending asked", each(bisect.bisect),
         PYDOC),
-    ("binary search by hand, 1,000 random", "O(log n)", "numbers asked", _each(by_hand.halve),
+    ("binary search by hand, 1,000 random", "O(log n)", "numbers asked", each(by_hand.halve),
         CLRS),
     ("heapq.heappushpop, 1,000 to the bottom", "O(log n)", "heap", _sift(heapq.heappushpop), CLRS),
     ("trial division of a prime", "O(√n)",
@@ -375,16 +377,16 @@ SEEN: tuple[Function, ...] = tuple(starmap(_function, [
     ("array.tolist", "O(n)", "uniform", lambda a: a.tolist(), NUMPY),
     ("np.digitize, 10 bins", "O(n)", "uniform", lambda a: np.digitize(a, np.linspace(0, 1, 10)),
         NUMPY),
-    ("np.polyfit, degree 3", "O(n)", lambda n: (np.linspace(0, 1, n), _uniform(n)),
+    ("np.polyfit, degree 3", "O(n)", lambda n: (np.linspace(0, 1, n), uniform(n)),
         lambda s: np.polyfit(s[0], s[1], 3), LAPACK),
     ("np.sort of uint16, stable", "O(n)", lambda n: _draw().integers(0, 2**16, n, np.uint16),
         lambda a: np.sort(a, kind="stable"), SORT + ": radix sort", CACHE_BOUND),
     ("np.sort of float64, stable", "O(n log n)", "uniform", lambda a: np.sort(a, kind="stable"),
         SORT, CACHE_BOUND),
-    ("np.intersect1d", "O(n log n)", lambda n: (_uniform(n), _uniform(n + 1)),
+    ("np.intersect1d", "O(n log n)", lambda n: (uniform(n), uniform(n + 1)),
         lambda s: np.intersect1d(*s), BY_SORT),
     ("np.searchsorted, n random keys", "O(n log n)",
-        lambda n: (np.sort(_uniform(n)), _uniform(n + 1)[:n]), lambda s: np.searchsorted(*s),
+        lambda n: (np.sort(uniform(n)), uniform(n + 1)[:n]), lambda s: np.searchsorted(*s),
         BISECT),
     ("np.fft.fft, powers of two", "O(n log n)", "uniform", np.fft.fft, "numpy.org/doc, numpy.fft",
         *TWOS),
@@ -392,7 +394,7 @@ SEEN: tuple[Function, ...] = tuple(starmap(_function, [
     ("np.linalg.solve", "O(n³)", "matrix", lambda a: np.linalg.solve(a, a[0]), LAPACK),
     ("np.linalg.eigvalsh", "O(n³)", "symmetric", np.linalg.eigvalsh, LAPACK),
     ("solve_triangular", "O(n²)", "matrix", lambda a: linalg.solve_triangular(a, a[0]), LAPACK),
-    ("solve_toeplitz", "O(n²)", lambda n: _uniform(n) + n * (np.arange(n) == 0),
+    ("solve_toeplitz", "O(n²)", lambda n: uniform(n) + n * (np.arange(n) == 0),
         lambda a: linalg.solve_toeplitz(a, a), SCIPY + ": Levinson"),
     ("csgraph.connected_components", "O(n)", "sparse", csgraph.connected_components, GRAPH),
     ("csgraph.dijkstra, from one", "O(n log n)", "sparse",
@@ -400,23 +402,23 @@ SEEN: tuple[Function, ...] = tuple(starmap(_function, [
     ("csgraph.minimum_spanning_tree", "O(n log n)", "sparse", csgraph.minimum_spanning_tree,
         GRAPH + ": it sorts"),
     ("csgraph.floyd_warshall", "O(n³)", "matrix", csgraph.floyd_warshall, GRAPH),
-    ("Delaunay, 2D", "O(n log n)", lambda n: _uniform(n, 2), spatial.Delaunay, QUICKHULL),
+    ("Delaunay, 2D", "O(n log n)", lambda n: uniform(n, 2), spatial.Delaunay, QUICKHULL),
     ("pdist", "O(n²)", "points", spatial.distance.pdist, SCIPY),
     ("linkage, single", "O(n²)", "points", hierarchy.linkage, SCIPY),
     ("scipy.signal.find_peaks", "O(n)", "uniform", signal.find_peaks, SCIPY),
-    ("savgol_filter", "O(n)", lambda n: _uniform(max(n, 11)),
+    ("savgol_filter", "O(n)", lambda n: uniform(max(n, 11)),
         lambda a: signal.savgol_filter(a, 11, 3), SCIPY),
     ("scipy.stats.kendalltau", "O(n log n)", "uniform uniform", lambda s: stats.kendalltau(*s),
         SCIPY + ": Knight's algorithm"),
-    ("set.add and discard, 1,000 times", "O(1)", "set asked", _each(by_hand.add_and_discard), WIKI),
-    ("bytes[i], 1,000 random", "O(1)", "bytes asked", _each(getitem), CPYTHON, CACHE_BOUND),
-    ("tuple[i], 1,000 random", "O(1)", "tuple asked", _each(getitem), WIKI),
-    ("dict[float], 1,000 random", "O(1)", lambda n: _looked_up(dict.fromkeys(_floats(n))),
-        _each(getitem), WIKI),
+    ("set.add and discard, 1,000 times", "O(1)", "set asked", each(by_hand.add_and_discard), WIKI),
+    ("bytes[i], 1,000 random", "O(1)", "bytes asked", each(getitem), CPYTHON, CACHE_BOUND),
+    ("tuple[i], 1,000 random", "O(1)", "tuple asked", each(getitem), WIKI),
+    ("dict[float], 1,000 random", "O(1)", lambda n: looked_up(dict.fromkeys(floats(n))),
+        each(getitem), WIKI),
     ("np.take, 1,000 random", "O(1)", lambda n: (np.zeros(n), INPUTS["picked"](n)),
         lambda s: np.take(*s), NUMPY, CACHE_BOUND),
-    ("bisect in floats, 1,000 random", "O(log n)", lambda n: (sorted(_floats(n)), _floats(KEYS)),
-        _each(bisect.bisect), PYDOC),
+    ("bisect in floats, 1,000 random", "O(log n)", lambda n: (sorted(floats(n)), floats(KEYS)),
+        each(bisect.bisect), PYDOC),
     ("power by squarings", "O(log n)", int, by_hand.squarings, CLRS),
     ("Euclid's algorithm", "O(log n)", int, by_hand.euclid, CLRS),
     ("divisors up to the root", "O(√n)", int,
@@ -424,8 +426,8 @@ SEEN: tuple[Function, ...] = tuple(starmap(_function, [
     ("list.extend", "O(n)", "floats", lambda s: [].extend(s), WIKI),
     ("list.count", "O(n)", "numbers", lambda s: s.count(-1), CPYTHON),
     ("set | set", "O(n)", "floats_set floats_set", lambda s: s[0] | s[1], WIKI),
-    ("dict of pairs", "O(n)", lambda n: list(enumerate(_floats(n))), dict, WIKI),
-    ("sum(dict.values)", "O(n)", lambda n: dict(enumerate(_floats(n))), lambda s: sum(s.values()),
+    ("dict of pairs", "O(n)", lambda n: list(enumerate(floats(n))), dict, WIKI),
+    ("sum(dict.values)", "O(n)", lambda n: dict(enumerate(floats(n))), lambda s: sum(s.values()),
         WIKI),
     ("map(str) and join", "O(n)", "floats", lambda s: ",".join(map(str, s)), PYDOC),
     ("list of a comprehension", "O(n)", "floats", lambda s: [x * x for x in s if x < 0.5], LOOP),
@@ -456,41 +458,38 @@ SEEN: tuple[Function, ...] = tuple(starmap(_function, [
     ("selection sort", "O(n²)", "floats", by_hand.selection_sort, CLRS),
     ("Pascal's triangle", "O(n²)", int, by_hand.pascal, LOOP),
     ("matrix + matrix.T", "O(n²)", "matrix", lambda a: a + a.T, NUMPY),
-    ("matrix times matrix, by hand", "O(n³)", lambda n: [_floats(n) for _ in range(n)],
+    ("matrix times matrix, by hand", "O(n³)", lambda n: [floats(n) for _ in range(n)],
         by_hand.multiply, CLRS),
     ("three loops over a list", "O(n³)", "numbers",
         lambda s: sum(a + b == c for a in s for b in s for c in s), LOOP),
     ("sums of all subsets", "O(2^n)", "numbers", by_hand.sums, CLRS),
-]))
-
-HELD_OUT: tuple[Function, ...] = tuple(starmap(_function, [
-    ("deque[0], 1,000 times", "O(1)", "deque", _times(lambda s: s[0]), WIKI),
-    ("str[i], 1,000 random", "O(1)", "text asked", _each(getitem), CPYTHON, CACHE_BOUND),
-    ("list.pop and append, 1,000 times", "O(1)", "numbers", _times(lambda s: s.append(s.pop())),
+    ("deque[0], 1,000 times", "O(1)", "deque", times(lambda s: s[0]), WIKI),
+    ("str[i], 1,000 random", "O(1)", "text asked", each(getitem), CPYTHON, CACHE_BOUND),
+    ("list.pop and append, 1,000 times", "O(1)", "numbers", times(lambda s: s.append(s.pop())),
         WIKI),
-    ("dict.setdefault, 1,000 random", "O(1)", "dict asked", _each(dict.setdefault), WIKI),
+    ("dict.setdefault, 1,000 random", "O(1)", "dict asked", each(dict.setdefault), WIKI),
     ("memoryview[1:-1], 1,000 views", "O(1)", lambda n: memoryview(bytes(n)),
-        _times(lambda s: s[1:-1]), PYDOC),
-    ("array[:, None], 1,000 views", "O(1)", "uniform", _times(lambda a: a[:, None]), VIEWS),
-    ("key in frozenset, 1,000 random", "O(1)", lambda n: _looked_up(frozenset(range(n))),
-        _each(frozenset.__contains__), WIKI),
+        times(lambda s: s[1:-1]), PYDOC),
+    ("array[:, None], 1,000 views", "O(1)", "uniform", times(lambda a: a[:, None]), VIEWS),
+    ("key in frozenset, 1,000 random", "O(1)", lambda n: looked_up(frozenset(range(n))),
+        each(frozenset.__contains__), WIKI),
     ("number in range, 1,000 random", "O(1)", lambda n: (range(n), INPUTS["asked"](n)),
-        _each(contains), PYDOC),
-    ("array.item(i), 1,000 random", "O(1)", "uniform asked", _each(np.ndarray.item), NUMPY,
+        each(contains), PYDOC),
+    ("array.item(i), 1,000 random", "O(1)", "uniform asked", each(np.ndarray.item), NUMPY,
         CACHE_BOUND),
     ("bytearray[i] = 0, 1,000 random", "O(1)", lambda n: (bytearray(n), INPUTS["asked"](n)),
-        _each(lambda s, i: s.__setitem__(i, 0)), CPYTHON, CACHE_BOUND),
+        each(lambda s, i: s.__setitem__(i, 0)), CPYTHON, CACHE_BOUND),
     ("np.searchsorted in float32, 1,000 random", "O(log n)",
-        lambda n: (np.sort(_uniform(n).astype(np.float32)), _uniform(KEYS).astype(np.float32)),
+        lambda n: (np.sort(uniform(n).astype(np.float32)), uniform(KEYS).astype(np.float32)),
         lambda s: np.searchsorted(*s), BISECT, CACHE_BOUND),
-    ("bisect in strings, 1,000 random", "O(log n)", lambda n: _looked_up(sorted(_words(n))),
-        _each(bisect.bisect), PYDOC),
+    ("bisect in strings, 1,000 random", "O(log n)", lambda n: looked_up(sorted(_words(n))),
+        each(bisect.bisect), PYDOC),
     ("an integer halved to nothing", "O(log n)", int, by_hand.halvings, LOOP),
-    ("Fenwick tree, 1,000 random sums", "O(log n)", "numbers asked", _each(by_hand.prefix_sum),
+    ("Fenwick tree, 1,000 random sums", "O(log n)", "numbers asked", each(by_hand.prefix_sum),
         FENWICK),
     ("segment tree, 1,000 random changes", "O(log n)",
         lambda n: ([0.0] * 2 ** (n - 1).bit_length() * 2, INPUTS["asked"](n)),
-        _each(by_hand.change_leaf), CLRS + ": a balanced tree"),
+        each(by_hand.change_leaf), CLRS + ": a balanced tree"),
     ("whole root by counting", "O(√n)", int, by_hand.counted_root, LOOP),
     ("jump search, the last", "O(√n)", "ascending", by_hand.jump_search, LOOP),
     ("n by triangular numbers", "O(√n)", int, by_hand.triangular, LOOP),
@@ -544,7 +543,7 @@ HELD_OUT: tuple[Function, ...] = tuple(starmap(_function, [
     ("np.nonzero", "O(n)", "uniform", lambda a: np.nonzero(a > 0.5), NUMPY),
     ("np.interp, in 10 points", "O(n)", "uniform",
         lambda a: np.interp(a, np.linspace(0, 1, 10), np.arange(10.0)), NUMPY),
-    ("np.packbits", "O(n)", lambda n: _uniform(n) > 0.5, np.packbits, NUMPY, CACHE_BOUND),
+    ("np.packbits", "O(n)", lambda n: uniform(n) > 0.5, np.packbits, NUMPY, CACHE_BOUND),
     ("normal random numbers", "O(n)", int, np.random.default_rng(0).standard_normal, NUMPY),
     ("np.add.at", "O(n)", lambda n: (np.zeros(n), _draw().integers(0, n, n)),
         lambda s: np.add.at(s[0], s[1], 1), NUMPY),
@@ -554,7 +553,7 @@ HELD_OUT: tuple[Function, ...] = tuple(starmap(_function, [
     ("cumulative_trapezoid", "O(n)", "uniform", cumulative_trapezoid, SCIPY),
     ("csgraph.breadth_first_order", "O(n)", "sparse",
         lambda s: csgraph.breadth_first_order(s, 0), GRAPH),
-    ("sorted, pairs at random", "O(n log n)", lambda n: list(zip(_floats(n), _floats(n),
+    ("sorted, pairs at random", "O(n log n)", lambda n: list(zip(floats(n), floats(n),
         strict=True)), sorted, WIKI),
     ("quicksort by hand", "O(n log n)", "floats", by_hand.quicksort, CLRS),
     ("n × heappush, each to the top", "O(n log n)", int, by_hand.push_downward, CLRS),

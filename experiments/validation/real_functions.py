@@ -11,9 +11,10 @@ import os
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import asdict
 from pathlib import Path
 from subprocess import DEVNULL, Popen
-from typing import Annotated
+from typing import Annotated, Any
 
 import numpy as np
 import pandas as pd
@@ -23,8 +24,9 @@ from typer import Option
 from experiments.runs import describe
 from experiments.validation.accuracy import UNDETERMINED, Judge, installed_judges
 from experiments.validation.accuracy import load_accuracy as load_answers
-from experiments.validation.functions import FUNCTIONS, HELD_OUT, SEEN
-from hem.complexity import BUDGET, Measured, canonical, measure, parse
+from experiments.validation.functions import FUNCTIONS, SEEN
+from experiments.validation.held_out import HELD_OUT
+from hem.complexity import BUDGET, InParts, Measured, canonical, measure, parse
 
 RESULT = Path("results/reference/real_functions.json")
 COLUMNS = ["function", "growth", "source", "half", "neighbor", "judge", "answer"]
@@ -104,6 +106,16 @@ def markdown(answers: pd.DataFrame) -> str:
     return "\n".join(f"| {' | '.join(line)} |" for line in lines)
 
 
+def _read(line: dict[str, Any]) -> Measured:
+    """What was measured, as it was written down."""
+    parts = line.pop("in_parts")
+    rows = [np.array(row) for row in line.pop("samples")]
+    known = {key: np.array(values) for key, values in line.items()}
+    ratios = [np.array(row) for row in parts["ratios"]] if parts else []
+    beside = InParts(np.array(parts["sizes"]), ratios) if parts else None
+    return Measured(samples=rows, in_parts=beside, **known)
+
+
 def _rows(budget: float, alone: bool, busy: bool, measured: Path | None) -> Iterator[list[str]]:
     """Measure, or read what was measured, and ask -> rows of the answers."""
     judges, kept = installed_judges(), {}
@@ -115,14 +127,12 @@ def _rows(budget: float, alone: bool, busy: bool, measured: Path | None) -> Iter
     with neighbor(busy and len(kept) < len(functions)):
         for half, it in functions:
             if line := kept.get(it.name):
-                samples = [np.array(row) for row in line.pop("samples")]
-                rest = {key: np.array(values) for key, values in line.items()}
-                found = Measured(samples=samples, **rest)
+                found = _read(line)
             else:
                 sizes = POWERS if it.powers else None
                 found = measure(it.call, it.make, sizes, budget=budget, most=it.most)
                 if measured:
-                    line = {"function": it.name, **vars(found)}
+                    line = {"function": it.name, **asdict(found)}
                     with measured.open("a", encoding="utf-8") as file:
                         file.write(json.dumps(line, default=np.ndarray.tolist) + "\n")
             who = [it.name, canonical(it.growth), it.source, half, NEIGHBORS[busy]]

@@ -4,13 +4,17 @@ What spoils such measurements is kept out: the first calls do not count, the tim
 taken off, and rounds are interleaved over the sizes. Inputs are made anew for each round where
 there is time for it: of what it saw before, a processor knows by heart how it branches.
 Where an input and its answer fit into the caches they are there when they are timed: those sizes
-tell of work alone. Larger ones wait for memory, and are held to what those tell.
+tell of work alone. Larger ones wait for memory, and are held to what those tell. What may be linear
+is asked of many small inputs, too, that are as much together: a linear function takes as long
+for them, whatever the memory does.
 """
 
 import gc
 import pickle
 import tracemalloc
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import replace
 from time import perf_counter
 from typing import Any, NamedTuple
 
@@ -18,7 +22,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from hem.complexity.estimates import slope
-from hem.complexity.measured import FEWEST, Measured
+from hem.complexity.measured import FEWEST, InParts, Measured
 from hem.complexity.memory import CLOCK, memory_times
 from hem.complexity.notation import Array
 
@@ -30,7 +34,7 @@ BUDGET = 4.0  # seconds per function
 COUNT = 20  # sizes, where none are given; fewer where a round has no time for twice as many
 TRIED = 8  # the size to see at whether a function changes its input
 FIRST = 4  # the first that is tried
-STEP, FAR, WIDER = 1.3, 64, 1.7
+STEP, FAR, STRIDE = 1.3, 64, 1.7
 """From one that is tried to the next: small up to `FAR`, as costs may grow exponentially."""
 COSTLIER = 1_000_000  # a call of the largest size than one of the smallest, at most …
 REACH = 8  # … where the largest size remains so many times the smallest
@@ -43,6 +47,11 @@ ALIKE = 1.15  # … and takes up to so many times as long beside samples that co
 ENOUGH = 3  # one sample in so many must count …
 MOST_ROUNDS = 2  # … or there are up to so many times as many rounds
 SPEEDS = 41  # that are looked at
+NEARLY_LINEAR = 0.75, 1.4  # slopes of costs that are compared with those of small inputs …
+PART = 4, 12  # … of which each takes so many times as long as a call does beside its work …
+WIDER, PARTS = 8, 9  # … up to so many of them at least, at so many sizes …
+SHORTER, WIDE = 4, 64  # … of which the largest is so many times smaller than the largest of all,
+# if it is as many parts
 FREED, SMALL, ARENA = (1 << 25) - (1 << 16), 400, 1 << 20
 """Bytes: of the largest block whose freeing raises what the C library keeps to itself; of an object
 that Python itself finds room for, and of what it asks for at once to do so."""
@@ -58,8 +67,9 @@ def measure(
     make_input: what makes the input of one call; it is not timed. What it draws at random it draws
     anew each time. Where a cost has several variables, it holds all but one fixed.
     sizes: ascending, at least four over a range of four to be judged. Where none are given, 6 to 20
-    up to `most`, as far as the budget allows: about so many seconds in all. Where they leave the
-    class open, those between them are measured, too, in the same time again.
+    up to `most`, as far as the budget allows: about so many seconds in all. What may be linear
+    takes as long again for small inputs. Where all this leaves the class open, the sizes between
+    are measured, too, in the same time once more.
     rounds: samples per size; up to twice as many, in twice the time, while other programs keep
     changing the machine's speed, of which those at one speed count. fresh: whether every call gets
     an input of its own. By default inputs that f leaves as they were, as pickle sees it, are used
@@ -80,6 +90,8 @@ def measure(
     turn = budget / (rounds + 1)
     chosen = [int(n) for n in given] or calls.choose_sizes(turn, most)
     found = calls.measured(chosen, turn, rounds, amortized)
+    if not amortized:
+        found = replace(found, in_parts=calls.in_parts(found, given.size > 0, turn, rounds))
     between = {round(n) for n in np.sqrt(found.sizes[1:] * found.sizes[:-1])} - {*chosen}
     if sizes is not None or not between or found.is_settled:
         return found
@@ -89,6 +101,7 @@ def measure(
 class _Plan(NamedTuple):
     """How one size is sampled."""
 
+    of: "_Calls"
     n: int
     calls: int
     again: int  # times that each input is used in a sample
@@ -115,15 +128,48 @@ class _Calls(NamedTuple):
             samples = [row / size for row, size in zip(samples, n, strict=True)]
         return Measured(n, samples, working_sets, memory)
 
+    def in_parts(self, found: Measured, given: bool, turn: float, rounds: int) -> InParts | None:
+        """Calls beside calls on small inputs that are as much together.
+
+        None where that would tell nothing: of costs that are far from linear, of sizes that are
+        hardly larger than the small ones, and where the system has to find memory anew.
+        """
+        n, cost, sets = found.sizes, found.cost, found.working_sets
+        long = np.clip(cost.max() / cost.min() / WIDER, *PART) * cost.min()
+        part = int(n[np.argmax(cost >= long)])
+        room = n[(sets < FREED) & (n <= max(n[-1] / SHORTER, WIDE * part))]
+        if cost.max() < long or not room.size or room[-1] < WIDER * part:
+            return None
+        least, most = NEARLY_LINEAR
+        if not least < slope(n[n >= part], cost[n >= part]) < most:
+            return None
+        between = np.geomspace(2 * part, room[-1], PARTS)
+        asked = n[(n > part) & (n <= room[-1])] if given else np.unique(between // 1)
+
+        def make_parts(size: int) -> list[Any]:
+            return [self.make(part) for _ in range(size // part)]
+
+        def call_each(inputs: list[Any]) -> object:
+            return [self.f(it) for it in inputs]
+
+        apart, share = self._replace(f=call_each, make=make_parts), turn / len(asked) / 4
+        took = np.exp(np.interp(np.log(asked), np.log(n), np.log(sets)))
+        pairs = [
+            (self.plan(int(size), bytes_, share), apart.plan(int(size), bytes_, share))
+            for size, bytes_ in zip(asked, took, strict=True)
+        ]
+        ratios = _compared(pairs, -(-rounds * 3 // 5))  # of two samples each
+        whole = asked // part * part / asked
+        return InParts(asked, [row * part for row, part in zip(ratios, whole, strict=True)])
+
     def interleaved(self, plans: Sequence[_Plan], rounds: int) -> list[Array]:
         """Samples of each size, all up and down in turn, after a round that does not count.
 
         There are more rounds while at no speed of the machine each size has samples enough.
         """
         samples: list[list[tuple[float, float]]] = [[] for _ in plans]
-        collecting, enough = gc.isenabled(), -(-rounds // ENOUGH)
-        gc.disable()
-        try:
+        enough = -(-rounds // ENOUGH)
+        with _uncollected():
             for turn in range(rounds * MOST_ROUNDS + 1):
                 for row, plan in list(zip(samples, plans, strict=True))[:: 1 - 2 * (turn % 2)]:
                     row.append(self.sample(plan))
@@ -131,9 +177,6 @@ class _Calls(NamedTuple):
                 alike = None if turn < rounds else _at_one_speed(told[..., 1], enough)
                 if alike is not None:
                     break
-        finally:
-            if collecting:
-                gc.enable()
         kept = np.ones(told.shape[:2], bool) if alike is None else alike
         return [row[few, 0] for row, few in zip(told, kept, strict=True)]
 
@@ -182,7 +225,7 @@ class _Calls(NamedTuple):
         calls = int(np.clip(min(BATCH / size, most), 1, MOST_CALLS))
         again = 1 if self.fresh else int(np.clip(SAMPLE / (calls * call), 1, MOST_CALLS))
         anew = self.fresh or made * calls < share
-        return _Plan(n, calls, again, [] if anew else [self.make(n) for _ in range(calls)])
+        return _Plan(self, n, calls, again, [] if anew else [self.make(n) for _ in range(calls)])
 
     def choose_sizes(self, turn: float, most: int) -> list[int]:
         """Sizes of equal ratio, up to where a turn of all of them takes as long as it may."""
@@ -193,7 +236,7 @@ class _Calls(NamedTuple):
             if len(tried) > 1 and _seconds_of_turn(tried, turn) > turn:
                 tried.pop()
                 break
-            n = min(max(n + 1, round(n * (STEP if n < FAR else WIDER))), most)
+            n = min(max(n + 1, round(n * (STEP if n < FAR else STRIDE))), most)
         return [int(size) for size in np.unique(_between_ends(tried, turn).round())]
 
     def working_sets(self, sizes: Sequence[int], longest: float) -> Array:
@@ -222,6 +265,36 @@ class _Calls(NamedTuple):
         if not traced:
             tracemalloc.stop()
         return max(peak - before, 1)
+
+
+@contextmanager
+def _uncollected() -> Iterator[None]:
+    """No garbage is collected meanwhile."""
+    collecting = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if collecting:
+            gc.enable()
+
+
+def _compared(pairs: Sequence[tuple[_Plan, _Plan]], rounds: int) -> list[Array]:
+    """Of each pair what one sample takes, times the other that is taken right beside it.
+
+    After a round that does not count. Pairs in which the machine changed its speed do not, either,
+    where there are enough others.
+    """
+    told: list[list[tuple[float, float]]] = [[] for _ in pairs]
+    with _uncollected():
+        for turn in range(rounds + 1):
+            for row, pair in list(zip(told, pairs, strict=True))[:: 1 - 2 * (turn % 2)]:
+                (one, slow), (other, slow_too) = (plan.of.sample(plan) for plan in pair)
+                row.append((one / other, max(slow, slow_too) / min(slow, slow_too)))
+    found = np.array(told)[:, 1:]
+    steady = found[..., 1] <= ALIKE
+    steady |= steady.sum(axis=1, keepdims=True) < rounds / ENOUGH
+    return [row[few, 0] for row, few in zip(found, steady, strict=True)]
 
 
 def _ends(tried: list[tuple[int, float]]) -> tuple[int, int]:

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from hem.complexity.estimates import slope
-from hem.complexity.judge import Verdict, judge
+from hem.complexity.judge import Outcome, Verdict, judge
 from hem.complexity.notation import Array, parse
 
 MEMORY_ERROR = 0.05  # relative error of what memory did to a call, beside what was measured …
@@ -36,8 +36,30 @@ WORD = 8  # bytes that a call reads at once: it may wait for each, but no longer
 STEEP = 1.5  # slope from which on a call works more than it waits
 LOWER_TERMS = 9  # tried where a call works more than it waits
 QUICKER = 0.6  # share of the samples of a size that is looked at, the quicker ones: delays only add
-CONSTANT = ["O(1)"]
+FLAT, QUITE_FLAT = 0.45, 0.15  # powers of log n by which linear costs rise beside small inputs …
+RISING, EVENLY = 0.6, 0.045  # … and others do, straying so little
+CONSTANT, LINEAR, LOGLINEAR = ["O(1)"], ["O(n)"], ["O(n log n)"]
+KEEPS: dict[bool, Outcome] = {True: "consistent", False: "violated"}
 Sizes = NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class InParts:
+    """What calls take, beside calls on small inputs that are as much together."""
+
+    sizes: Array  # (j,)
+    ratios: list[Array]  # j times how often a call takes as long as the others together
+
+    @property
+    def logs(self) -> tuple[float, float]:
+        """The power of log n by which the ratios rise, and how far they stray from that.
+
+        The median of what all pairs of sizes tell: one that was disturbed says little.
+        """
+        x, y = np.log(np.log(self.sizes)), np.log([np.median(row) for row in self.ratios])
+        one, other = np.triu_indices(len(x), 1)
+        power = np.median((y[other] - y[one]) / (x[other] - x[one]))
+        return float(power), float(np.std(y - power * x))
 
 
 @dataclass(frozen=True, repr=False)
@@ -48,6 +70,7 @@ class Measured:
     samples: list[Array]  # k times seconds per call
     working_sets: Array  # (k,) bytes of a call
     memory: Array  # (3, k) seconds, as `memory_times` tells them of each
+    in_parts: InParts | None = None  # where it was asked for
 
     def __repr__(self) -> str:
         sizes = f"{len(self.sizes)} sizes from {self.sizes[0]:g} to {self.sizes[-1]:g}"
@@ -67,7 +90,7 @@ class Measured:
         working_sets = np.concatenate([self.working_sets, other.working_sets])
         memory = np.hstack([self.memory, other.memory])
         rows = [samples[k] for k in order]
-        return Measured(sizes[order], rows, working_sets[order], memory[:, order])
+        return Measured(sizes[order], rows, working_sets[order], memory[:, order], self.in_parts)
 
     @property
     def cost(self) -> Array:
@@ -79,6 +102,8 @@ class Measured:
         """Whether some costs tell one class so closely that no further sizes are needed."""
         asked = _Asked(self, "O(1)", {"resamples": 2})
         told = asked.by_work() or asked.without_reserve()
+        if self.in_parts:
+            return self.in_parts.logs[0] < FLAT
         return told is not None and _names_one(told)
 
     def judge(self, expected: str = "O(1)", **options: Any) -> Verdict:
@@ -94,7 +119,30 @@ class Measured:
             return self._unhidden(asked.whole(UNSEEN))
         told = asked.by_work() or asked.without_reserve() or asked.with_reserve()
         told = _agreeing(told if _names_a_class(told) else replace(told, classes=[]))
-        return self._unhidden(told)
+        return self._unhidden(self._beside_parts(told))
+
+    def _beside_parts(self, told: Verdict) -> Verdict:
+        """What is told, held to what small inputs take that are as much together.
+
+        They take the same memory, so that only the work can differ. What does not grow beside them
+        is linear. What does may be slower at random access, or of O(n log n): where it grows
+        evenly, linear costs are not certain.
+        """
+        if not self.in_parts:
+            return told
+        power, stray = self.in_parts.logs
+        if power < (QUITE_FLAT if told.classes == LOGLINEAR else FLAT):
+            classes = LINEAR
+        elif told.classes == LINEAR and power > RISING and stray < EVENLY:
+            classes = LINEAR + LOGLINEAR
+        else:
+            return told
+        upper, claim = told.bound == "upper", parse(told.expected)
+        kept = {claim == it or (upper and claim > it) for it in map(parse, classes)}
+        outcome: Outcome = "undetermined" if len(kept) > 1 else KEEPS[kept.pop()]
+        grows = "in proportion" if classes == LINEAR else "less"
+        reason = f"Small inputs, as much together, take {grows}: {' or '.join(classes)}."
+        return replace(told, classes=classes, best=LINEAR[0], outcome=outcome, reason=reason)
 
     def _unhidden(self, it: Verdict) -> Verdict:
         """A verdict that accuses no claim of a growth which a constant may hide at these sizes."""
