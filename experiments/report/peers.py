@@ -27,14 +27,15 @@ from experiments.peers import (
     SIX,
 )
 from experiments.report.pages import Html, text_table
-from experiments.report.session import MissingError
+from experiments.report.session import MissingError, project_file
 from experiments.report.tables import digits, duration, show_rows
 from experiments.runs import PEER_RUNS, ResultsError, Run, in_words, latest, load
-from hem.complexity import Verdict, judge
-from hem.contract import QUERIES
+from hem.complexity import MIN_SIZES, Verdict, judge
 from structures import REGISTRY
 
 EXPERIMENT = "bench_peers"
+KEPT = "results/reference/peers"
+"""A run of them that is part of the project, for who has none of these libraries."""
 LIKE = "half_edge"
 """The structure of ours that stands beside the libraries, and whose claims theirs are held to."""
 MISSING = "Other libraries were not measured here: hem study --peers does that."
@@ -47,10 +48,16 @@ PER_ELEMENT = {"faces": "O(1)"}
 def measured_peers(run: Run) -> "Peers":
     """What a run measured of other libraries; where it did not, the newest run of them did."""
     here = Peers(run)
-    if not here.names:
-        with suppress(ResultsError):
-            return Peers(load(latest(PEER_RUNS)))
-    return here
+    return here if here.names else _newest() or here
+
+
+def _newest() -> "Peers | None":
+    """Of the newest run of other libraries; where there is none, of that which is kept."""
+    with suppress(ResultsError):
+        return Peers(load(latest(PEER_RUNS)))
+    with suppress(ResultsError, MissingError):
+        return Peers(load(project_file(KEPT)))
+    return None
 
 
 @dataclass(frozen=True)
@@ -105,7 +112,7 @@ class Peers:
         return {it.subject: it.classes for it in load_claims() if it.structure == LIKE}
 
     def cell(self, name: str, subject: str, order: str = "") -> Cell | None:
-        """One subject on one library, judged where it is a query; None where it has no call."""
+        """One subject on one library, judged where sizes are enough; None where it has no call."""
         of_run = curves(self.run)
         curve, ours = (of_run.named(EXPERIMENT, it, subject, order) for it in (name, OURS))
         if not len(curve):
@@ -114,7 +121,7 @@ class Peers:
         size = int(max(ratios.index if len(ratios) else curve.by_size.index))
         claimed = PER_ELEMENT if order == BULK else self._claims.get(subject, {})
         verdicts = {}
-        if subject in QUERIES:
+        if len(curve.by_size) >= MIN_SIZES:
             asked = self.cases[name].query("subject == @subject and order == @order")
             by_valence = Curve("valence", asked.dropna(subset="valence").sort_values("valence"))
             for sign, it in (("n_t", curve), ("n_ev", by_valence)):
@@ -145,7 +152,7 @@ class Peers:
         rows = [["", "version", *NUMBERS]]
         for name in self.names:
             cell, size = self.cell(name, BUILD), self.bytes_per_vertex(name)
-            built = duration(cell.seconds / cell.size) if cell else "?"
+            built = f"{duration(cell.seconds / cell.size)} {cell.found}".strip() if cell else "?"
             ratio = f"{digits(cell.ratio)} ×" if cell and cell.ratio == cell.ratio else "?"
             weighed = f"{size:,.0f}" if size == size else "?"
             rows.append([PEERS[name].title, self.version(name), weighed, built, ratio])
@@ -191,20 +198,17 @@ GROUPS: dict[str, tuple[Mapping[str, str], str]] = {
 }
 """By title what is compared: by subject the head of its row, and the order of its cases."""
 READING = (
-    "A query's growth by faces and by valence where one class fits, and whether it is what the "
-    "thesis claims of a half-edge mesh (?: cannot be told); then how many times as long as ours it "
-    "takes, on the largest mesh of both. "
+    "The growth by faces, and of queries by valence, where there were sizes enough and one class "
+    "fits, and whether it is what the thesis claims of a half-edge mesh (?: cannot be told); then "
+    "how many times as long as ours it takes, on the largest mesh of both. "
     "But for compiled loops all are called from Python. N/A: the library has no call for it."
 )
 
 
 def _of_folder(folder: Path | None) -> Peers:
-    """Those of a run, or of the newest run of them. Raises MissingError where it has none."""
-    try:
-        peers = Peers(load(folder or latest(PEER_RUNS)))
-    except ResultsError as error:
-        raise error if folder else MissingError(MISSING) from None
-    if not peers.names:
+    """Those of a run, or of the newest there is of them. Raises MissingError where it has none."""
+    peers = Peers(load(folder)) if folder else _newest()
+    if not peers or not peers.names:
         raise MissingError(MISSING)
     return peers
 

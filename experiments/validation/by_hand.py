@@ -444,3 +444,105 @@ def subsets(it: list[int]) -> list[list[int]]:
     for value in it:
         made += [[*some, value] for some in made]
     return made
+
+
+def gallop(held: list[int], key: int) -> None:
+    bound = 1
+    while bound < len(held) and held[bound] < key:
+        bound *= 2
+    bisect.bisect_left(held, key, bound // 2, min(bound + 1, len(held)))
+
+
+def digit_sum(n: int) -> int:
+    total = 0
+    while n:
+        total += n % 2
+        n //= 2
+    return total
+
+
+def steps_to_root(n: int) -> int:
+    step, square = 0, 0
+    while square < n:
+        step += 1
+        square += 2 * step - 1
+    return step
+
+
+def squared(it: list[float]) -> float:
+    total = 0.0
+    for value in it:
+        total += value * value
+    return total
+
+
+def balanced(text: str) -> bool:
+    open_: list[str] = []
+    for letter in text:
+        if letter == "(":
+            open_.append(letter)
+        elif not open_ or open_.pop() != "(":
+            return False
+    return not open_
+
+
+def nearest_smaller(it: list[float]) -> list[float]:
+    waiting: list[float] = []
+    made: list[float] = []
+    for value in it:
+        while waiting and waiting[-1] >= value:
+            waiting.pop()
+        made.append(waiting[-1] if waiting else -1.0)
+        waiting.append(value)
+    return made
+
+
+def pairs_of_sum(ascending: list[float]) -> int:
+    low, high, count = 0, len(ascending) - 1, 0
+    while low < high:
+        if ascending[low] + ascending[high] < 1:
+            low += 1
+        else:
+            high -= 1
+            count += 1
+    return count
+
+
+def running_median(it: list[float]) -> list[float]:
+    low: list[float] = []
+    high: list[float] = []
+    made: list[float] = []
+    for value in it:
+        heapq.heappush(high, -heapq.heappushpop(low, -value))
+        if len(high) > len(low):
+            heapq.heappush(low, -heapq.heappop(high))
+        made.append(-low[0])
+    return made
+
+
+def closest_pair(points: list[tuple[float, float]]) -> float:
+    def within(some: list[tuple[float, float]]) -> tuple[float, list[tuple[float, float]]]:
+        if len(some) < 2:
+            return math.inf, some
+        half = len(some) // 2
+        middle = some[half][0]
+        (one, left), (other, right) = within(some[:half]), within(some[half:])
+        least = min(one, other)
+        upward = list(heapq.merge(left, right, key=operator.itemgetter(1)))
+        strip: list[tuple[float, float]] = []
+        for x, y in upward:
+            if abs(x - middle) < least:
+                for there in strip[-7:]:
+                    least = min(least, math.dist(there, (x, y)))
+                strip.append((x, y))
+        return least, upward
+
+    return within(sorted(points))[0]
+
+
+def triangle(n: int) -> list[list[int]]:
+    return [[row * (row - 1) // 2 + i for i in range(1, row + 1)] for row in range(1, n + 1)]
+
+
+def bit_strings(n: int) -> list[str]:
+    return [""] if not n else [bit + rest for bit in "01" for rest in bit_strings(n - 1)]

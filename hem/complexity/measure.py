@@ -149,8 +149,10 @@ class _Calls(NamedTuple):
         def make_parts(size: int) -> list[Any]:
             return [self.make(part) for _ in range(size // part)]
 
-        def call_each(inputs: list[Any]) -> object:
-            return [self.f(it) for it in inputs]
+        beside = self.beside(part)
+
+        def call_each(inputs: list[Any]) -> object:  # and none works where another one did
+            return [(self.f(it), np.empty(beside, np.uint8)) for it in inputs]
 
         apart, share = self._replace(f=call_each, make=make_parts), turn / len(asked) / 4
         took = np.exp(np.interp(np.log(asked), np.log(n), np.log(sets)))
@@ -251,6 +253,21 @@ class _Calls(NamedTuple):
         grown = slope(known[few], np.array(told[few])) if told[1:] else 1
         rest = np.array(sizes[len(told) :], float) / known[-1]
         return np.concatenate([told, told[-1] * rest**grown])
+
+    def beside(self, n: int) -> int:
+        """Bytes that a call takes beside its input and its answer, and gives back."""
+        traced = tracemalloc.is_tracing()
+        if not traced:
+            tracemalloc.start()
+        it = self.make(n)
+        before, _ = tracemalloc.get_traced_memory()
+        tracemalloc.reset_peak()
+        answer = self.f(it)
+        after, peak = tracemalloc.get_traced_memory()
+        del answer
+        if not traced:
+            tracemalloc.stop()
+        return max(peak - max(after, before), 0)
 
     def working_set(self, n: int) -> int:
         """Bytes of an input, and of what a call makes beside it; as Python and NumPy tell them."""

@@ -35,7 +35,7 @@ DOINGS = "pass", "warn", "fail"
 UNMEASURED = "a marked test is a function of complexity_input, or one that asks for complexity"
 UNCALLED = "it asks for complexity and never calls it"
 PARALLEL = "complexity is not timed beside other tests: run this one without pytest-xdist (-n 0)"
-SECONDS = f"Seconds per function, and once more where they leave it open. Default: {BUDGET:g}."
+SECONDS = f"Seconds per function; up to thrice that, if need be. Default: {BUDGET:g}."
 TOLD = ("expected", "outcome", "answer", "slope", "slope_low", "slope_high")
 
 

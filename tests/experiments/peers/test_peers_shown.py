@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+from pathlib import Path
 
 import pytest
 from typer.testing import CliRunner
@@ -101,6 +102,7 @@ def test_the_chapter_shows_them_and_says_what_to_run_where_there_are_none(
     assert "hem study --peers" not in page
     share(Session(load(write_run(tmp_path / "other", only=lambda *_: False)), []))
     monkeypatch.setattr(report_peers, "PEER_RUNS", tmp_path / "none")
+    monkeypatch.setattr(report_peers, "KEPT", "results/none")
     assert "hem study --peers" in notebooks.body("other_libraries")
 
 
@@ -110,7 +112,17 @@ def test_a_run_without_them_is_shown_the_newest_that_has(run, tmp_path, monkeypa
     assert measured_peers(other).names == [OURS, "slow"]
 
 
+def test_where_none_was_measured_the_kept_run_is_shown(tmp_path, monkeypatch):
+    monkeypatch.setattr(report_peers, "PEER_RUNS", tmp_path)
+    kept = load(Path(__file__).parents[3] / report_peers.KEPT)
+    other = load(write_run(tmp_path / "elsewhere" / "other", only=lambda *_: False))
+    assert measured_peers(other).names == sorted(set(kept.cases["structure"]), key=[*PEERS].index)
+    assert not kept.meta["dirty"]
+    assert "CGAL" in printed("table", "--peers")
+
+
 def test_where_nothing_was_measured_the_table_says_what_to_run(tmp_path, monkeypatch):
     monkeypatch.setattr(report_peers, "PEER_RUNS", tmp_path)
+    monkeypatch.setattr(report_peers, "KEPT", "results/none")
     said = printed("table", "--peers", code=1)
     assert re.search("hem study --peers", " ".join(said.split()))

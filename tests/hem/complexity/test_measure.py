@@ -344,8 +344,8 @@ def beside_parts(found: Measured, power: float, wobble: float = 0.0) -> Measured
     [
         (0.0, 0.0, "O(n)", "O(n)"),
         (-0.3, 0.0, "O(n)", "O(n)"),
-        (0.3, 0.0, "O(n)", "O(n log n)"),
-        (0.3, 0.05, "O(n)", "O(n log n)"),
+        (0.2, 0.0, "O(n)", "O(n log n)"),
+        (0.2, 0.05, "O(n)", "O(n log n)"),
         (1.0, 0.0, "O(n) or O(n log n)", "O(n log n)"),
         (1.0, 0.2, "O(n)", "O(n log n)"),
     ],
