@@ -24,8 +24,9 @@ from typing import Any
 import pytest
 from numpy.typing import ArrayLike
 
+from hem.complexity.calls import Function, MakeInput
 from hem.complexity.judge import Verdict, judge
-from hem.complexity.measure import BUDGET, Function, MakeInput, measure
+from hem.complexity.measure import BUDGET, measure
 from hem.complexity.notation import canonical
 
 POSITIONAL = "expected", "make_input", "sizes"  # of the mark

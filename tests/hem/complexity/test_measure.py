@@ -198,7 +198,7 @@ def test_memory_that_calls_free_stays_with_the_process() -> None:
 FAULTS = """
 import resource
 import numpy as np
-from hem.complexity.measure import _keep_memory
+from hem.complexity.calls import keep_memory
 
 def faults(count=0):
     for turn in range(20 + 5):
@@ -209,7 +209,7 @@ def faults(count=0):
     return resource.getrusage(resource.RUSAGE_SELF).ru_minflt - count
 
 before = faults()
-held = _keep_memory()
+held = keep_memory()
 print(before, faults())
 """
 
