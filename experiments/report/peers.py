@@ -216,7 +216,9 @@ def _of_folder(folder: Path | None) -> Peers:
 def show_peers(folder: Path | None, console: Console) -> None:
     """Print all that was measured of other libraries."""
     peers = _of_folder(folder)
-    console.print(f"[bold]{peers.run.folder.name}[/], preset {peers.run.meta.get('preset')}")
+    meta = peers.run.meta
+    of = f"[bold]{peers.run.folder.name}[/], preset {meta.get('preset')}"
+    console.print(f"{of}, measured on {meta['started'][:10]}")
     shown = {"Other libraries": peers.overview(), **{it: peers.compared(it) for it in GROUPS}}
     for title, rows in {**shown, "Bad input": peers.trials()}.items():
         if len(rows) > 1:
