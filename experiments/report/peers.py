@@ -31,6 +31,7 @@ from experiments.report.session import MissingError, project_file
 from experiments.report.tables import digits, duration, show_rows
 from experiments.runs import PEER_RUNS, ResultsError, Run, in_words, latest, load
 from hem.complexity import MIN_SIZES, Verdict, judge
+from hem.contract import QUERIES
 from structures import REGISTRY
 
 EXPERIMENT = "bench_peers"
@@ -112,7 +113,10 @@ class Peers:
         return {it.subject: it.classes for it in load_claims() if it.structure == LIKE}
 
     def cell(self, name: str, subject: str, order: str = "") -> Cell | None:
-        """One subject on one library, judged where sizes are enough; None where it has no call."""
+        """One subject on one library; None where it has no call.
+
+        Judged are queries, and what was measured at sizes enough.
+        """
         of_run = curves(self.run)
         curve, ours = (of_run.named(EXPERIMENT, it, subject, order) for it in (name, OURS))
         if not len(curve):
@@ -121,7 +125,7 @@ class Peers:
         size = int(max(ratios.index if len(ratios) else curve.by_size.index))
         claimed = PER_ELEMENT if order == BULK else self._claims.get(subject, {})
         verdicts = {}
-        if len(curve.by_size) >= MIN_SIZES:
+        if subject in QUERIES or len(curve.by_size) >= MIN_SIZES:
             asked = self.cases[name].query("subject == @subject and order == @order")
             by_valence = Curve("valence", asked.dropna(subset="valence").sort_values("valence"))
             for sign, it in (("n_t", curve), ("n_ev", by_valence)):

@@ -100,10 +100,10 @@ class Measured:
     @property
     def is_settled(self) -> bool:
         """Whether some costs tell one class so closely that no further sizes are needed."""
-        asked = _Asked(self, "O(1)", {"resamples": 2})
-        told = asked.by_work() or asked.without_reserve()
         if self.in_parts:
             return self.in_parts.logs[0] < FLAT
+        asked = _Asked(self, "O(1)", {"resamples": 2})
+        told = asked.by_work() or asked.without_reserve()
         return told is not None and _names_one(told)
 
     def judge(self, expected: str = "O(1)", **options: Any) -> Verdict:
