@@ -40,7 +40,13 @@ ONE_THREAD = dict.fromkeys(("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_
 """A class is of work, not of how many cores share it."""
 
 POWERS = 2 ** np.arange(6, 21)
-NEIGHBOR = "import numpy as np\na = np.ones(2**24)\nwhile True: a += 1"
+NEIGHBOR = """
+import os
+import numpy as np
+parent, a = os.getppid(), np.ones(2**24)
+while os.getppid() == parent:  # nothing is left behind where that is killed
+    a += 1
+"""
 
 
 @contextmanager
