@@ -131,6 +131,56 @@ def test_history_names_the_commits_and_whether_files_differ_from_them(
     result.stdout.fnmatch_lines([f"*slope 1.00 at {first}; violated*slope 2.00 at {second}[*]"])
 
 
+AMORTIZED_AND_VARIABLES = """
+import pytest
+
+def appending(clock, n):  # a store that doubles: one append of n takes n, all of them 3 n
+    held = 1
+    for count in range(n):
+        grows = count == held
+        clock.now += 1e-6 * (1 + held * grows)
+        held *= 1 + grows
+
+@pytest.mark.complexity("amortized O(1)", sizes=SIZES, amortized=True)
+def test_marked(clock, complexity_input):
+    appending(clock, complexity_input)
+
+def test_fixture(clock, complexity):
+    sizes, found = SIZES, []
+    for amortized, costs in ((True, "O(1)"), (False, "O(n)")):
+        verdict = complexity(
+            lambda n: appending(clock, n), sizes=sizes, expected=costs, amortized=amortized
+        )
+        found.append(verdict.answer)
+    assert found == ["O(1)", "O(n)"]
+
+def product(clock, rows, columns):
+    clock.now += 1e-6 * rows * columns**2
+
+@pytest.mark.parametrize(("variable", "answer"), [("r", "O(n)"), ("c", "O(n²)")])
+def test_variables(clock, complexity, variable, answer):
+    work = lambda n: product(clock, n, 7) if variable == "r" else product(clock, 7, n)
+    found = complexity(work, sizes=SIZES, expected="O(r * c^2)", variable=variable)
+    assert found.answer == answer
+
+@pytest.mark.complexity("O(r * c^2)", sizes=SIZES)
+def test_no_variable_is_said(complexity_input):
+    pass
+"""
+
+
+def test_costs_are_amortized_and_one_of_several_variables_is_varied(
+    pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(sys, "dont_write_bytecode", True)
+    clock = TESTS.partition("@pytest.mark.complexity")[0]
+    sizes = str(tuple(2**k for k in range(6, 13)))
+    pytester.makepyfile(clock + AMORTIZED_AND_VARIABLES.replace("SIZES", sizes))
+    result = pytester.runpytest("-p", PLUGIN)
+    result.assert_outcomes(passed=4, failed=1)
+    result.stdout.fnmatch_lines(["*test_no_variable_is_said: *names c, r: say which*"])
+
+
 def test_history_tells_calls_of_one_test_apart_and_leaves_out_what_it_cannot_read(
     pytester: pytest.Pytester,
 ) -> None:
