@@ -120,6 +120,8 @@ def _commands() -> str:
         cells = ["| | |", "| --- | --- |"]
         cells += [f"| `{words}` | {_cell(about)} |" for words, about in rows]
         text.append("\n".join(cells if rows else []))
+        if command.epilog:
+            text.append(command.epilog)
 
     describe(get_command(app), "hem")
     return "\n\n".join(text)

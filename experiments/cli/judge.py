@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import typer
+from rich.markup import escape
 from rich.table import Table
 from typer import Argument, Option
 
@@ -42,9 +43,11 @@ def judge_file(
 
         options: Any = {"exact": exact, "bound": "upper" if upper else "tight"}
         curves = read_curves(file, parameter)
-        claim, varied = expected or "O(1)", curves[0].parameter
-        if re.search(rf"(?<![a-z_]){re.escape(varied)}(?![a-z_])", claim, re.IGNORECASE):
-            options["variable"] = varied
+        claim, varied = "O(1)" if expected is None else expected, curves[0].parameter
+        letter = varied if re.fullmatch(r"[a-z](_\w+)?", varied, re.IGNORECASE) else "n_varied"
+        named = re.compile(rf"(?<![a-z_]){re.escape(varied or letter)}(?![a-z_])", re.IGNORECASE)
+        if named.search(claim):
+            claim, options["variable"] = named.sub(letter, claim), letter
         verdicts = [judge(it.sizes, it.samples, claim, **options) for it in curves]
         if plot is not None:
             from experiments.report.figures.accuracy import save_costs
@@ -58,7 +61,7 @@ def judge_file(
 
 def _print_data(curves: Any, verdicts: Any, expected: str | None) -> None:
     """What is known of the curves; nothing of a claim where none was made."""
-    of_claim = () if expected else ("outcome", "expected", "bound", "reason")
+    of_claim = () if expected is not None else ("outcome", "expected", "bound", "reason")
     rows = []
     for it, verdict in zip(curves, verdicts, strict=True):
         known = {key: value for key, value in asdict(verdict).items() if key not in of_claim}
@@ -69,14 +72,14 @@ def _print_data(curves: Any, verdicts: Any, expected: str | None) -> None:
 
 def _print(curves: Any, verdicts: Any, expected: str | None) -> None:
     heads = "function", "sizes", "slope", "class", "claim", "verdict"
-    shown = len(heads) if expected else 4
+    shown = len(heads) if expected is not None else 4
     table = Table(*heads[:shown])
     for it, verdict in zip(curves, verdicts, strict=True):
         said = f"[{COLORS[verdict.outcome]}]{verdict.outcome}[/]"
         sizes = f"{len(it.sizes)}: {it.sizes[0]:g} … {it.sizes[-1]:g}"
-        row = it.name, sizes, f"{verdict.raw_slope:.2f}", verdict.answer or "?"
+        row = escape(it.name), sizes, f"{verdict.raw_slope:.2f}", verdict.answer or "?"
         table.add_row(*(*row, verdict.expected, said)[:shown])
     console.print(table)
     for it, verdict in zip(curves, verdicts, strict=True):
-        if expected:
+        if expected is not None:
             console.print(f"{it.name}: {verdict.reason}", markup=False)

@@ -136,7 +136,7 @@ PRESETS = {
         printed_sizes=(50, 100, 200, 400), models=("teapot", "bunny"), skipped=("bench_fracture",),
         rounds=9, round_seconds=0.0015, case_seconds=0.25, latency_mib=32,
     ),
-    "standard": Preset("one family of each kind up to 1,000,000 vertices, about an hour"),
+    "standard": Preset("one family of each kind up to 1,000,000 vertices, one to two hours"),
     "full": Preset(
         what="every family up to 1,000,000 vertices with finer steps, some two hours",
         families=("torus", "sphere", "grid", "cone", "terrain", "isosurface"),

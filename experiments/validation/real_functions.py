@@ -116,7 +116,7 @@ def _read(line: dict[str, Any]) -> Measured:
     """What was measured, as it was written down."""
     parts = line.pop("in_parts")
     rows = [np.array(row) for row in line.pop("samples")]
-    known = {key: np.array(values) for key, values in line.items()}
+    known: dict[str, Any] = {key: np.array(values) for key, values in line.items()}
     ratios = [np.array(row) for row in parts["ratios"]] if parts else []
     beside = InParts(np.array(parts["sizes"]), ratios) if parts else None
     return Measured(samples=rows, in_parts=beside, **known)

@@ -8,7 +8,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from hem.algorithms.parts import living_vertex, side_keys
+from hem.algorithms.parts import living_vertex
+from hem.arrays import each_once
 from hem.authoring import VERTEX_END, Kernel, Kernels, kernel, walks
 from hem.contract import Structure
 from hem.errors import MeshError, TopologyError
@@ -78,11 +79,13 @@ def require_surface(s: Structure, called: str) -> None:
     Cost: ``vertex_faces`` of all; O(n_t log n_t) where nothing is recorded of neighbors.
     """
     if s.searches or s.rebuilds:
-        keys, faces = side_keys(s)
-        crowded = keys[faces > 2]
+        here = s.triangles().astype(np.int64)
+        sides = np.sort((here << 32 | np.roll(here, -1, axis=1)).reshape(-1))
+        crowded = each_once(sides[1:][sides[1:] == sides[:-1]])
         if len(crowded):
-            edges = np.stack([crowded >> 32, crowded & 0xFFFFFFFF], axis=1)
-            raise TopologyError(f"cannot {called}: edges lie in more than two faces", edges=edges)
+            edges = np.sort(np.stack([crowded >> 32, crowded & 0xFFFFFFFF], axis=1), axis=1)
+            words = "edges lie in more than two faces, or in two that pass them the same way"
+            raise TopologyError(f"cannot {called}: {words}", edges=np.unique(edges, axis=0))
     elif s.run(finding_pillows, Counting(s.scratch(0)[0])) < 0:
         return
     corners = np.sort(s.triangles(), axis=1)

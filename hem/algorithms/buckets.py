@@ -80,9 +80,13 @@ def put(queue: Queue, bucket: int, edge: int) -> None:
 
 @kernel
 def put_off(queue: Queue, bucket: int, edge: int) -> None:
-    """Put an edge where it costs four times as much as in a bucket; nowhere if that is too much."""
-    if bucket + 2 * PER_DOUBLING < BUCKETS:
-        put(queue, bucket + 2 * PER_DOUBLING, edge)
+    """Put an edge where it costs four times as much as in a bucket, and behind what is in use.
+
+    Nowhere if that is too much.
+    """
+    to = max(bucket + 2 * PER_DOUBLING, queue.state[HIGHEST] + 1)
+    if to < BUCKETS:
+        put(queue, to, edge)
 
 
 @kernel

@@ -33,6 +33,7 @@ from hem.authoring import (
     Kernel,
     Kernels,
     Refusal,
+    is_point,
     kernel,
     log_element,
 )
@@ -214,6 +215,10 @@ def collapsing(k: Kernels, operations: Kernels) -> Kernel:
 
     @kernel
     def collapse(m: Any, a: int, b: int, plan: Plan) -> int:
+        for j in range(3):
+            plan.work.point[j] = plan.target[j] + plan.middle[j]
+        if not is_point(plan.work.point):
+            return PASSED_OVER
         for v in (a, b):
             if not (keeps_sides(m, v, a + b - v, plan) and keeps_short(m, v, plan)):
                 return PASSED_OVER
@@ -222,8 +227,6 @@ def collapsing(k: Kernels, operations: Kernels) -> Kernel:
         if done < 0:
             return done
         rows = plan.rows
-        for j in range(3):
-            plan.work.point[j] = plan.target[j] + plan.middle[j]
         set_point(m, stays, plan.work.point)
         plan.work.log[0] = log_element(plan.work.log, plan.work.log[0], VERTEX + CHANGED, stays)
         for j in range(3):

@@ -103,9 +103,10 @@ def is_turned(plan: Plan, a: int, b: int) -> bool:
 
 
 def loop(s: Structure) -> None:
-    """Three edits. Cost: ``vertex_vertices`` of all, a split per edge, a flip per face.
+    """Three edits. Cost: ``face_vertices`` of all, a split per edge, a flip per face.
 
-    Besides, O(n_t log n_t) for the order of the edges, which is the same on every structure.
+    Besides, ``vertex_vertices`` along the border, O(n_t log n_t) for the order of the edges, which
+    is the same on every structure, and O(n_v n_t) where moving a vertex searches.
     """
     keys, _ = side_keys(s)
     edges = np.stack([keys >> 32, keys & 0xFFFFFFFF], axis=1)

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from hem.arrays import Array, Points
+from hem.arrays import Array, Handles, Points
 from hem.authoring import (
     FACE_END,
     FACES,
@@ -20,7 +20,6 @@ from hem.authoring import (
     Kernels,
     Refusal,
     Sum,
-    is_point,
     kernel,
     live_vertex,
     sums,
@@ -409,20 +408,6 @@ class Placing(NamedTuple):
     places: Points  # (k, 3) float32: a row for every vertex before some
 
 
-def checking(k: Kernels, operations: Kernels) -> Kernel:
-    """Make ``check(m, plan) -> vertex``: the first whose place is not finite, or -1."""
-    lives = living_vertex(k)
-
-    @kernel
-    def check(m: Any, plan: Placing) -> int:
-        for v in range(len(plan.places)):
-            if not is_point(plan.places[v]) and lives(m, v):
-                return v
-        return -1
-
-    return check
-
-
 def placing(k: Kernels, operations: Kernels) -> Kernel:
     """Make ``place(m, plan) -> 0``."""
     lives, set_point = live_vertex(k["coordinate"]), k["set_point"]
@@ -438,12 +423,6 @@ def placing(k: Kernels, operations: Kernels) -> Kernel:
     return place
 
 
-def require_finite(s: Structure, kind: str, places: Points) -> None:
-    """Raise MeshError for vertices whose row of ``places`` is no position."""
-    if s.run(checking, Placing(places)) >= 0:
-        raise not_finite(s, kind, places)
-
-
 def move(s: Structure, kind: str, places: Points, told: Array | None = None) -> None:
     """Move vertices to their rows of ``places``, which are finite. One edit.
 
@@ -453,12 +432,18 @@ def move(s: Structure, kind: str, places: Points, told: Array | None = None) -> 
         s.run(placing, Placing(places))
     finally:
         if s.followed:
-            tell_moved(s, kind, s.vertices()[: len(places)] if told is None else told)
+            tell_moved(s, kind, _placed(s, places) if told is None else told)
+
+
+def _placed(s: Structure, places: Points) -> Handles:
+    """The vertices that have a row there."""
+    vertices = s.vertices()
+    return vertices[: np.searchsorted(vertices, len(places))]
 
 
 def not_finite(s: Structure, kind: str, places: Points) -> MeshError:
     """The error for vertices whose row of ``places`` is no position."""
-    wrong = s.vertices()[: len(places)]
+    wrong = _placed(s, places)
     wrong = wrong[~np.isfinite(places[wrong]).all(axis=1)]
     return MeshError(f"{kind}: {Refusal.NOT_FINITE.words}", vertices=wrong)
 

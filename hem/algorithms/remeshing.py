@@ -28,7 +28,6 @@ from hem.algorithms.parts import (
     doing,
     from_smallest,
     move,
-    require_finite,
     side_keys,
 )
 from hem.algorithms.simplification import collapsible
@@ -175,6 +174,4 @@ def relax(s: Structure, surface: Surface) -> None:
     vertices = vertices[toward[vertices].any(axis=1)]
     places = s.points + toward - away
     places[vertices] = surface.nearest(places[vertices])
-    kept = places.astype(np.float32)
-    require_finite(s, "remesh", kept)
-    move(s, "remesh", kept, vertices)
+    move(s, "remesh", places.astype(np.float32), vertices)

@@ -120,6 +120,8 @@ def _averaging(k: Kernels, add_along: Kernel) -> Kernel:
                 way = BORDER
                 a, b, c, n = sums.parts(add_along(m, v, plan))
             stay, share = 1 - plan.part[way], plan.share[way]
+            if way == BORDER and n > 0:  # more than two where fans of faces meet
+                share = plan.part[way] / n
             x, y, z = where(m, v)
             x, y, z = stay * x + share * a, stay * y + share * b, stay * z + share * c
             place = np.float32(x), np.float32(y), np.float32(z)
@@ -162,10 +164,11 @@ def most_neighbors(s: Structure, around: Around) -> int:
 def smooth(s: Structure, iterations: int = 1, method: str = "laplace") -> None:
     """Smooth a mesh in place, all vertices at once; those on the border stay.
 
-    ``laplace`` moves each to the mean of its neighbors, ``taubin`` half the way there and then as
-    far back, by which the volume is kept. One edit per pass. Cost per iteration: one or two times
-    ``face_vertices`` of all, and O(n_v); O(n_v n_t) where moving a vertex searches. MeshError for
-    another method or number, and for polygons.
+    ``laplace`` moves each to the mean of its neighbors, ``taubin`` half the way there and then a
+    little further back, by which the volume is kept. One edit per pass. Cost per
+    iteration: one or two times ``face_vertices`` of all, and O(n_v); O(n_v n_t) where moving a
+    vertex searches. MeshError for another method or number, for polygons, and where a position
+    would not be finite any more: the passes before stay.
     Source: Sieger & Botsch (2011); Taubin (1995).
     """
     require_mesh(s, "smooth")

@@ -17,7 +17,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from hem.algorithms.arguments import require_mesh
 from hem.algorithms.parts import (
     NO_WORK,
     Work,
@@ -84,8 +83,10 @@ def split_all_faces(s: Structure, kind: str) -> Plan:
 
 
 def sqrt3(s: Structure) -> None:
-    """One step, in three edits. Cost: ``vertex_vertices`` of all, a split and a flip per face."""
-    require_mesh(s, "subdivide")
+    """One step, in three edits. Cost: ``face_vertices`` of all, a split and a flip per face.
+
+    Besides, O(n_v n_t) where moving a vertex searches.
+    """
     places = averages(s, "subdivide", lambda n: (4 - 2 * np.cos(2 * np.pi / n)) / 9)
     split = split_all_faces(s, "subdivide")
     change(s, "subdivide", turning(is_turned), split, 0, most_faces_at_a_vertex(s))

@@ -130,17 +130,22 @@ def grown(records: Any, fields: Sequence[Field], vertices: int, faces: int) -> A
     for field in fields:
         end = ENDS[field.element]
         if end in short:
-            array = longer(arrays[field.array], count[end], count[end] + wanted[end])
-            if array.dtype.kind == "i" and len(array) > np.iinfo(array.dtype).max:
+            array, needed = arrays[field.array], count[end] + wanted[end]
+            if needed > _most_rows(array):
                 raise MeshError(
-                    f"{len(array):,} records are more than references of {array.dtype.itemsize} "
+                    f"{needed:,} records are more than references of {array.dtype.itemsize} "
                     "bytes can name; build with reference_bytes=8"
                 )
-            arrays[field.array] = array
+            arrays[field.array] = longer(array, count[end], needed)
     for end in short:
-        lengths = [len(arrays[it.array]) for it in fields if ENDS[it.element] == end]
-        count[rooms[end]] = min(lengths)
+        mine = [arrays[it.array] for it in fields if ENDS[it.element] == end]
+        count[rooms[end]] = min(min(len(it), _most_rows(it)) for it in mine)
     return type(records)(**(arrays | {"counts": count}))
+
+
+def _most_rows(array: Array) -> int:
+    """How many records references of an array's width can name; of positions there is no bound."""
+    return int(np.iinfo(array.dtype).max) if array.dtype.kind == "i" else ENDLESS
 
 
 def compacted(records: Any, fields: Sequence[Field]) -> tuple[Any, dict[str, Array]]:

@@ -121,15 +121,17 @@ class Calls(NamedTuple):
         traced = tracemalloc.is_tracing()
         if not traced:
             tracemalloc.start()
-        before, _ = tracemalloc.get_traced_memory()
-        it = self.make(n)
-        made, _ = tracemalloc.get_traced_memory()
-        tracemalloc.reset_peak()
-        answer = self.f(it)
-        after, peak = tracemalloc.get_traced_memory()
-        del answer
-        if not traced:
-            tracemalloc.stop()
+        try:
+            before, _ = tracemalloc.get_traced_memory()
+            it = self.make(n)
+            made, _ = tracemalloc.get_traced_memory()
+            tracemalloc.reset_peak()
+            answer = self.f(it)
+            after, peak = tracemalloc.get_traced_memory()
+            del answer
+        finally:
+            if not traced:
+                tracemalloc.stop()
         return max(peak - before, 1), peak - max(after, made)
 
 

@@ -7,7 +7,7 @@ import csv
 import json
 import re
 import warnings
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -17,6 +17,7 @@ import numpy as np
 from hem.complexity.notation import Array
 
 Row = tuple[str, dict[str, float], list[float]]  # a function's name, its parameters, its samples
+DIGITS = re.compile(r"(\d+(?:\.\d+)?(?:e[+-]?\d+)?)")  # what splits by it has numbers at odd places
 
 
 class Curve(NamedTuple):
@@ -34,8 +35,8 @@ def read_curves(path: Path, parameter: str | None = None) -> list[Curve]:
     parameter: the one that sizes are of; it may be left out where only one varies. The others are
     held fixed: there is a curve for each of their values.
     A CSV has the sizes in its first column and a function in each further one; rows of one size are
-    its samples. Warns of runs that failed, which are skipped. Raises ValueError that says what is
-    wrong with the file, OSError if there is none.
+    its samples. Warns of runs that Google Benchmark says failed, which are skipped. Raises
+    ValueError that says what is wrong with the file, OSError if there is none.
     """
     try:
         text = path.read_text("utf-8-sig")
@@ -68,12 +69,13 @@ def read_curves(path: Path, parameter: str | None = None) -> list[Curve]:
 
 
 def _read_csv(text: str, path: Path) -> Iterator[Row]:
-    lines = [line for line in csv.reader(text.splitlines()) if any(line)]
-    if not lines or len(lines[0]) < 2:
+    lines = [(i, line) for i, line in enumerate(csv.reader(text.splitlines()), 1) if any(line)]
+    if not lines or len(lines[0][1]) < 2:
         raise ValueError(f"{path} is no CSV of costs: sizes first, then a column per function")
-    headed = _number(lines[0][0]) is None
-    names = lines[0] if headed else ["n", *(f"column {i + 1}" for i in range(1, len(lines[0])))]
-    for number, line in enumerate(lines[headed:], 1 + headed):
+    first = lines[0][1]
+    headed = _number(first[0]) is None
+    names = first if headed else ["n", *(f"column {i + 1}" for i in range(1, len(first)))]
+    for number, line in lines[headed:]:
         size = _number(line[0])
         if size is None or len(line) > len(names):
             raise ValueError(f"{path}, row {number}: a size and a number per function are needed")
@@ -88,32 +90,52 @@ def _read_json(text: str, path: Path) -> list[Row]:
     try:
         content = json.loads(text)
         if "results" in content:
-            return [_hyperfine(it) for it in content["results"]]
+            return list(_hyperfine(content["results"]))
         if "machine_info" in content:
-            return [_pytest_benchmark(it) for it in content["benchmarks"]]
+            return list(_pytest_benchmark(content["benchmarks"]))
         return list(_google_benchmark(content["benchmarks"]))
     except (KeyError, TypeError, AttributeError, json.JSONDecodeError) as error:
         known = "pytest-benchmark, Google Benchmark or hyperfine"
         raise ValueError(f"{path} is no JSON of {known}: {error!r}") from error
 
 
-def _hyperfine(result: dict[str, Any]) -> Row:
-    name, parameters = result["command"], {}
-    for key, value in result.get("parameters", {}).items():
-        if (number := _number(value)) is not None:
-            parameters[key] = number
-            name = re.sub(rf"\b{re.escape(str(value))}\b", "{" + key + "}", name)
-    return name, parameters, result.get("times") or [result["mean"]]
+def _hyperfine(results: list[dict[str, Any]]) -> Iterator[Row]:
+    """A command's name has a parameter where its number is that of the parameter in every run."""
+    alike: dict[tuple[str, ...], list[tuple[list[str], dict[str, float], list[float]]]] = {}
+    for it in results:
+        numbers = {key: _number(value) for key, value in it.get("parameters", {}).items()}
+        parameters = {key: value for key, value in numbers.items() if value is not None}
+        parts, times = DIGITS.split(it["command"]), it.get("times") or [it["mean"]]
+        alike.setdefault(tuple(parts[::2]), []).append((parts, parameters, times))
+    for runs in alike.values():
+        named = {}
+        for place in range(1, len(runs[0][0]), 2):
+            for key in runs[0][1]:
+                if all(float(parts[place]) == known.get(key) for parts, known, _ in runs):
+                    named[place] = "{" + key + "}"
+                    break
+        for parts, parameters, times in runs:
+            name = "".join(named.get(place, part) for place, part in enumerate(parts))
+            yield name, parameters, times
 
 
-def _pytest_benchmark(benchmark: dict[str, Any]) -> Row:
-    given = {**(benchmark.get("extra_info") or {}), **(benchmark.get("params") or {})}
-    numbers = {key: _number(value) for key, value in given.items()}
-    parameters = {key: value for key, value in numbers.items() if value is not None}
-    named = [str(value) for key, value in given.items() if key not in parameters]
-    name = ", ".join([benchmark["name"].partition("[")[0], *named])
-    stats = benchmark["stats"]
-    return name, parameters, stats.get("data") or [stats["median"]]
+def _pytest_benchmark(benchmarks: list[dict[str, Any]]) -> Iterator[Row]:
+    """A test is named by its file and class, too, where another has its name."""
+    tests = [
+        tuple((it.get(key) or it["name"]).partition("[")[0] for key in ("name", "fullname"))
+        for it in benchmarks
+    ]
+    names = Counter(name for name, _ in {*tests})
+    for (name, full), it in zip(tests, benchmarks, strict=True):
+        given = it.get("params") or {}
+        if all(_number(value) is None for value in given.values()):
+            given = (it.get("extra_info") or {}) | given
+        numbers = {key: _number(value) for key, value in given.items()}
+        parameters = {key: value for key, value in numbers.items() if value is not None}
+        named = [str(value) for key, value in given.items() if key not in parameters]
+        stats = it["stats"]
+        title = ", ".join([name if names[name] == 1 else full, *named])
+        yield title, parameters, stats.get("data") or [stats["median"]]
 
 
 def _google_benchmark(benchmarks: list[dict[str, Any]]) -> Iterator[Row]:
@@ -123,15 +145,19 @@ def _google_benchmark(benchmarks: list[dict[str, Any]]) -> Iterator[Row]:
             warnings.warn(f"{it['name']} failed and is skipped", stacklevel=2)
             continue
         name, *arguments = it.get("run_name", it["name"]).split("/")
-        parameters = {}
-        for place, argument in enumerate(arguments, 1):
+        parameters, unnamed = {}, []
+        for argument in arguments:
             key, _, value = argument.rpartition(":")
             number = _number(value)
             if number is None:
                 name += f"/{argument}"  # a template's, or a setting such as real_time
-            elif key not in ("iterations", "repeats", "threads", "min_time"):
-                unnamed = "n" if len(arguments) == 1 else f"argument {place}"
-                parameters[key or unnamed] = number
+            elif not key:
+                unnamed.append(number)
+            elif key not in ("iterations", "repeats", "min_time", "min_warmup_time"):
+                parameters[key] = number
+        one = len(unnamed) == 1 and not parameters.keys() - {"threads"}
+        for place, number in enumerate(unnamed, 1):
+            parameters["n" if one else f"argument {place}"] = number
         is_real = {"real_time", "manual_time"} & {*arguments}
         yield name, parameters, [it["real_time" if is_real else "cpu_time"]]
 

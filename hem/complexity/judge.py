@@ -38,9 +38,8 @@ class Verdict:
     """What measurements say about a claimed growth class.
 
     slope, slope_low, slope_high: log-log slope with the memory's part, as `best` sees it, taken
-    out, and its bootstrap interval; raw_slope: of the costs as measured. margin: evidence of `best`
-    against `runner_up`, negative where `best` is preferred for being simpler. noise: relative
-    scatter of samples. coefficients: per model `fixed`, `factor`, `lower` and `slowdown` of
+    out, and its bootstrap interval; raw_slope: of the costs as measured. noise: relative scatter of
+    samples. coefficients: per model `fixed`, `factor`, `lower` and `slowdown` of
     fixed·r + factor·f(n)·(1 + lower/n)·r, where r goes with the memory's latency from 1 to
     `slowdown`, and `lower` is 0 unless lower-order terms were allowed; `predicted` are its costs.
     errors: per model, the root mean square of the relative residuals. classes: what the costs say
@@ -52,13 +51,10 @@ class Verdict:
     expected: str
     bound: Bound
     best: str
-    runner_up: str
-    margin: float
     slope: float
     slope_low: float
     slope_high: float
     raw_slope: float
-    confidence: float
     noise: float
     coefficients: Mapping[str, Mapping[str, float]]
     errors: Mapping[str, float]
@@ -129,7 +125,7 @@ def judge(
     waits = latency if reference is None else np.ravel(reference)
     measured, entire = summarize(sizes, samples, waits), reference is not None
     noisy = measured.error > MAX_ERROR
-    if 0 < noisy.mean() <= MOST_SKIPPED:
+    if 0 < noisy.mean() <= MOST_SKIPPED and np.count_nonzero(~noisy) >= MIN_SIZES:
         measured = measured.only(np.flatnonzero(~noisy))
     costs, memory = selection.account_for_memory(measured, exact, latency_error, unseen, entire)
     names = tuple(sorted({*NAMES, claimed}, key=parse))
@@ -153,10 +149,10 @@ def judge(
     terms = np.stack([models.fit.intercept, models.fit.factor, beside, slowdown], axis=1).tolist()
     coefficients = [dict(zip(COEFFICIENTS, row, strict=True)) for row in terms]
     return Verdict(
-        outcome, claimed, bound, names[models.best], names[models.runner_up], models.margin,
+        outcome, claimed, bound, names[models.best],
         slope=float(slope(costs.sizes, models.steady(costs.cost))),
         slope_low=float(low), slope_high=float(high),
-        raw_slope=float(slope(costs.sizes, costs.cost)), confidence=confidence,
+        raw_slope=float(slope(costs.sizes, costs.cost)),
         noise=costs.scatter, coefficients=dict(zip(names, coefficients, strict=True)),
         errors=dict(zip(names, errors.tolist(), strict=True)), reason=reason,
         classes=_classes(measured, models),
@@ -237,6 +233,8 @@ def _doubt(costs: Costs) -> str:
         return f"Too few sizes: {distinct}, where {MIN_SIZES} are needed."
     if reach < MIN_RANGE and costs.cost[-1] < MIN_GROWTH * costs.cost[0]:
         return f"Too short a range: the largest size is {reach:.1f} times the smallest."
-    if costs.scatter > MAX_SCATTER or costs.error.max() > MAX_ERROR:
+    if costs.scatter > MAX_SCATTER:
         return f"Too noisy: the samples of a size scatter by {costs.scatter:.0%}."
+    if (worst := costs.error.max()) > MAX_ERROR:
+        return f"Too noisy: samples tell the cost of a size to no more than {worst:.0%}."
     return ""

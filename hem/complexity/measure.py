@@ -40,6 +40,7 @@ TRIED = 8  # the size to see at whether a function changes its input
 FIRST = 4  # the first that is tried
 STEP, FAR, STRIDE = 1.3, 64, 1.7
 """From one that is tried to the next: small up to `FAR`, as costs may grow exponentially."""
+EXPLODES = 6  # slope from one size to the next that no power has
 COSTLIER = 1_000_000  # a call of the largest size than one of the smallest, at most …
 REACH = 8  # … where the largest size remains so many times the smallest
 NEARLY_LINEAR = 0.75, 1.4  # slopes of costs that are compared with those of small inputs …
@@ -71,12 +72,16 @@ def measure(
     From then on the process keeps the memory that it frees, up to blocks of 32 MB, if its C library
     is GNU's.
 
-    Raises ValueError for sizes that are not whole numbers from 1 on; what f raises goes through.
+    Raises ValueError for sizes that are not whole numbers from 1 on, and for too small a `most`;
+    what f raises goes through.
     """
     given = np.unique([] if sizes is None else np.asarray(sizes))
     if sizes is not None and (not given.size or np.any(given < 1) or np.any(given % 1)):
         raise ValueError("sizes must be whole numbers, each at least 1")
-    changed = _changes(f, make_input(int(given[0]) if given.size else TRIED))  # warms up, too
+    if most < FIRST:
+        raise ValueError(f"most must be at least {FIRST}, not {most}")
+    tried = int(given[0]) if given.size else min(TRIED, most)
+    changed = _changes(f, make_input(tried))  # warms up, too
     calls = Calls(f, make_input, changed if fresh is None else fresh, clock, keep_memory())
     turn = budget / (rounds + 1)
     chosen = [int(n) for n in given] or _choose_sizes(calls, turn, most)
@@ -100,7 +105,7 @@ def _measured(
     samples = calls.interleaved(plans, rounds)
     if amortized:
         samples = [row / size for row, size in zip(samples, n, strict=True)]
-    return Measured(n, samples, working_sets, memory)
+    return Measured(n, samples, working_sets, memory, amortized=amortized)
 
 
 def _in_parts(
@@ -133,15 +138,17 @@ def _in_parts(
 
 def _choose_sizes(calls: Calls, turn: float, most: int) -> list[int]:
     """Sizes of equal ratio, up to where a turn of all of them takes as long as it may."""
-    n, tried = FIRST, list[tuple[int, float]]()
+    n, tried, least = FIRST, list[tuple[int, float]](), min(REACH * FIRST // 2, most)
     while not tried or tried[-1][0] < most:
         made, call = calls.seconds_of_one(n)
         tried.append((n, float(call + made * (1 if calls.fresh else 0.1))))
-        if len(tried) > 1 and _seconds_of_turn(tried, turn) > turn:
-            tried.pop()
+        if len(tried) > 1 and _seconds_of_turn(tried, turn, least) > turn:
+            (last, took), (before, less) = tried.pop(), tried[-1]
+            if np.log(took / less) > EXPLODES * np.log(last / before):
+                least = before  # any larger one may take forever
             break
         n = min(max(n + 1, round(n * (STEP if n < FAR else STRIDE))), most)
-    return [int(size) for size in np.unique(_between_ends(tried, turn).round())]
+    return [int(size) for size in np.unique(_between_ends(tried, turn, least).round())]
 
 
 def _working_sets(calls: Calls, sizes: Sequence[int], longest: float) -> Array:
@@ -177,32 +184,35 @@ def _parts(found: Measured, given: bool) -> tuple[int, Array]:
     return part, np.unique(np.geomspace(2 * part, room[-1], PARTS) // 1)
 
 
-def _ends(tried: list[tuple[int, float]]) -> tuple[int, int]:
-    """The smallest size and the largest, of those that were tried, with what each takes."""
+def _ends(tried: list[tuple[int, float]], least: int) -> tuple[int, int]:
+    """The smallest size and the largest, at ``least`` that, of those tried with what each takes."""
     last, longest = tried[-1]
     telling = next(n for n, seconds in tried if seconds * COSTLIER >= longest)
-    return max(FIRST, min(telling, last // REACH)), max(last, REACH * FIRST // 2)
+    return max(FIRST, min(telling, last // REACH)), max(last, least)
 
 
-def _between_ends(tried: list[tuple[int, float]], turn: float) -> Array:
+def _between_ends(tried: list[tuple[int, float]], turn: float, least: int) -> Array:
     """Sizes of equal ratio: the fewer, the less of a turn is left beside the smallest one."""
     few = turn / 2 / max(tried[0][1], SAMPLE * LONGER)
-    return np.geomspace(*_ends(tried), int(np.clip(few, FEWEST, COUNT)))
+    return np.geomspace(*_ends(tried, least), int(np.clip(few, FEWEST, COUNT)))
 
 
-def _seconds_of_turn(tried: list[tuple[int, float]], turn: float) -> float:
+def _seconds_of_turn(tried: list[tuple[int, float]], turn: float, least: int) -> float:
     """What one sample of each size takes, were these the sizes."""
     known, seconds = np.log(np.array(tried)).T
-    sizes = np.log(_between_ends(tried, turn))
+    sizes = np.log(_between_ends(tried, turn, least))
     return float(np.maximum(np.exp(np.interp(sizes, known, seconds)), SAMPLE * LONGER).sum())
 
 
 def _changes(f: Function, it: Any) -> bool:
     """Whether a call changes its input, or may do so unseen."""
-    try:
-        before = pickle.dumps(it)
-    except Exception:  # whatever an object may say to being pickled
-        f(it)
-        return True
+    before = _pickled(it)
     f(it)
-    return pickle.dumps(it) != before
+    return before is None or _pickled(it) != before
+
+
+def _pickled(it: Any) -> bytes | None:
+    try:
+        return pickle.dumps(it)
+    except Exception:  # whatever an object may say to that
+        return None

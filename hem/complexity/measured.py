@@ -71,6 +71,7 @@ class Measured:
     working_sets: Array  # (k,) bytes of a call
     memory: Array  # (3, k) seconds, as `memory_times` tells them of each
     in_parts: InParts | None = None  # where it was asked for
+    amortized: bool = False  # whether costs are those of one of the n operations of a call
 
     def __repr__(self) -> str:
         sizes = f"{len(self.sizes)} sizes from {self.sizes[0]:g} to {self.sizes[-1]:g}"
@@ -90,7 +91,10 @@ class Measured:
         working_sets = np.concatenate([self.working_sets, other.working_sets])
         memory = np.hstack([self.memory, other.memory])
         rows = [samples[k] for k in order]
-        return Measured(sizes[order], rows, working_sets[order], memory[:, order], self.in_parts)
+        return replace(
+            self, sizes=sizes[order], samples=rows, working_sets=working_sets[order],
+            memory=memory[:, order],
+        )  # fmt: skip
 
     @property
     def cost(self) -> Array:
@@ -111,11 +115,14 @@ class Measured:
 
         What tells of work alone decides where it tells one class. Where it leaves two, all sizes
         may rule out the one that grows faster, as waiting for memory only adds to it. With
-        ``latency=None`` all sizes are judged as if nothing were known of the memory. Over a short
+        ``latency=None`` all sizes are judged as if nothing were known of the memory, and so they
+        are by a latency or a reference of one's own, and where costs are ``exact``. Over a short
         range nothing violates a claim of faster growth.
         """
+        if options.get("exact") or options.get("reference") is not None:
+            options = {"latency": None} | options
         asked = _Asked(self, expected, options)
-        if options.get("latency", 0) is None:
+        if "latency" in options:
             return self._unhidden(asked.whole(UNSEEN))
         told = asked.by_work() or asked.without_reserve() or asked.with_reserve()
         told = _agreeing(told if _names_a_class(told) else replace(told, classes=[]))
@@ -169,8 +176,9 @@ class _Asked:
 
     @property
     def _waiting(self) -> Array:
-        """(k,) seconds that a call waits which waits for each word that it works on."""
-        return self.of.working_sets / WORD * self.of.memory[0]
+        """(k,) seconds that what costs are of waits if it waits for each word that it works on."""
+        operations = self.of.sizes if self.of.amortized else 1
+        return self.of.working_sets / operations / WORD * self.of.memory[0]
 
     def whole(self, unseen: float) -> Verdict:
         """What all sizes tell."""
@@ -308,5 +316,6 @@ def _is_a_law(it: Verdict) -> bool:
 
 
 def _names_a_class(it: Verdict) -> bool:
-    """Whether an answer is more than a power law that memory may have bent."""
-    return bool(it.classes) and (not _is_a_law(it) or it.raw_slope > STEEP)
+    """Whether an answer is more than a power law that memory may have bent, and nobody claimed."""
+    plain = not _is_a_law(it) or it.expected in it.classes
+    return bool(it.classes) and (plain or it.raw_slope > STEEP)

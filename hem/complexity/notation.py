@@ -62,6 +62,7 @@ SPELLED = (
     (r"(?<=[a-z)])\s*/\s*\d+(\.\d+)?", ""),  # a factor
     (r"(?<=[a-z)])\s*-\s*\d+(\.\d+)?(?!\s*[\w.^(/])", ""),  # a term, not the factor of one
 )  # fmt: skip
+VARIABLE = re.compile(r"[a-z](_\w+)?", re.IGNORECASE)
 TOKEN = re.compile(r"\s*(sqrt|log|[a-z](?:_\w+)?|\d+(?:\.\d+)?(?:/\d+)?|[()^+])")
 
 
@@ -69,13 +70,17 @@ TOKEN = re.compile(r"\s*(sqrt|log|[a-z](?:_\w+)?|\d+(?:\.\d+)?(?:/\d+)?|[()^+])"
 def parse(claim: str, variable: str | None = None) -> Order:
     """The order that a claim names, in one variable: the others are held fixed.
 
-    variable: may be left out where the claim names no more than one. Raises ValueError for what is
-    no growth class, and where the variable is missing.
+    variable: a letter, or one with more behind it such as n_ev; it may be left out where the claim
+    names no more than one. Raises ValueError for what is no growth class, and where the variable is
+    missing or no such name.
     """
+    if variable is not None and not VARIABLE.fullmatch(variable):
+        raise ValueError(f"a variable is a letter, or such as n_ev, not {variable!r}")
     text = claim.strip().lower()
     for pattern, plain in SPELLED:
         text = re.sub(pattern, plain, text)
-    text = WORDS.get(text.strip(" ()"), text).strip()
+    word = WORDS.get(text.strip(" ()"))
+    text = word or text.strip()
     tokens = TOKEN.findall(text)
     words = re.search(r"[a-z]{3}|[a-zO]\d", re.sub("sqrt|log", "O", re.sub(r"_\w+", "_", text)))
     if not tokens or words or "".join(tokens) != re.sub(r"\s", "", text):
@@ -87,7 +92,7 @@ def parse(claim: str, variable: str | None = None) -> Order:
             f"{claim!r} names {names}: say which of them is varied, as variable=…; to hem judge, "
             "which knows it by its parameter, by the parameter's name"
         )
-    chosen = variable.lower() if variable else next(iter(found), "n")
+    chosen = variable.lower() if variable and not word else next(iter(found), "n")
     try:
         reader = _Reader(iter([*tokens, ""]), chosen)
         order = reader.sum()
@@ -142,7 +147,14 @@ class _Reader:
             return atom
         if number and self._took(self._variable):
             return Order(base=log(float(number)))
+        if atom == Order() and self._is_held():
+            self._take()
+            return atom
         return atom.to_the(self._number())
+
+    def _is_held(self) -> bool:
+        """Whether the next token is a variable that is held fixed."""
+        return self.token[:1].isalpha() and self.token not in ("sqrt", "log", self._variable)
 
     def _atom(self) -> Order:
         token = self._take()
@@ -162,11 +174,12 @@ class _Reader:
 
     def _log(self) -> Order:
         exponent = self._number() if self._took("^") else 1.0
+        number = self.token[:1].isdigit()
         inside = self._atom() if self.token == "(" else self._power()  # log(n)^2 is (log n)^2
         if inside.base:
             return Order(power=exponent)
-        if inside.logs and not inside.power:
-            raise ValueError("log log")
+        if number or (inside.logs and not inside.power):
+            raise ValueError("log 2n may be log(2n) or log(2) n; log log n is no class")
         return Order(logs=exponent) if inside.power else Order()
 
     def _number(self) -> float:

@@ -17,6 +17,7 @@ import inspect
 import json
 import subprocess
 import warnings
+from collections.abc import Iterator
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
@@ -35,6 +36,8 @@ KNOWN = {*POSITIONAL, *MEASURING, *inspect.signature(judge).parameters} - {"samp
 DOINGS = "pass", "warn", "fail"
 UNMEASURED = "a marked test is a function of complexity_input, or one that asks for complexity"
 UNCALLED = "it asks for complexity and never calls it"
+UNMARKED = "it asks for complexity_input and has no mark complexity"
+TOO_MANY = f"a mark complexity takes {', '.join(POSITIONAL)} by position, and all else by name"
 PARALLEL = "complexity is not timed beside other tests: run this one without pytest-xdist (-n 0)"
 SECONDS = f"Seconds per function; up to thrice that, if need be. Default: {BUDGET:g}."
 TOLD = ("expected", "outcome", "answer", "slope", "slope_low", "slope_high")
@@ -67,6 +70,7 @@ def pytest_configure(config: pytest.Config) -> None:
 
 LINES = pytest.StashKey[list[str]]()
 CHANGES = pytest.StashKey[list[str]]()
+COMMIT = pytest.StashKey[str]()
 
 
 class Complexity:
@@ -89,7 +93,10 @@ class Complexity:
         """
         config, mark = self._item.config, self._item.get_closest_marker("complexity")
         options = dict(mark.kwargs) if mark else {}
-        options |= zip(POSITIONAL, mark.args if mark else (), strict=False)
+        args = mark.args if mark else ()
+        if len(args) > len(POSITIONAL):
+            pytest.fail(f"{self._item.nodeid}: {TOO_MANY}", pytrace=False)
+        options |= zip(POSITIONAL, args, strict=False)
         options |= given if sizes is None else given | {"sizes": sizes}
         if mistake := _mistake(options):
             pytest.fail(f"{self._item.nodeid}: {mistake}", pytrace=False)
@@ -108,7 +115,7 @@ class Complexity:
         words = f"{self._item.nodeid}: {verdict.outcome}: {claimed}. {verdict.reason}"
         config.stash[LINES].append(words)
         if path := config.getoption("complexity_history"):
-            _keep(self._item, self.calls, verdict, path)
+            _keep(self._item, self.calls, verdict, config.invocation_params.dir / path)
         if verdict.outcome != "consistent":
             _settle(config, words, f"complexity_{verdict.outcome}")
         return verdict
@@ -121,15 +128,29 @@ def complexity(request: pytest.FixtureRequest) -> Complexity:
 
 
 @pytest.fixture
-def complexity_input() -> None:
+def complexity_input(request: pytest.FixtureRequest) -> None:
     """The input of a marked test; each call of its body gets one."""
+    if not request.node.get_closest_marker("complexity"):
+        pytest.fail(f"{request.node.nodeid} is not measured: {UNMARKED}", pytrace=False)
 
 
-@pytest.hookimpl(tryfirst=True)
-def pytest_runtest_call(item: pytest.Item) -> None:
-    """Measure the body of a marked test; fail one that asks for ``complexity`` and measures not."""
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_call(item: pytest.Item) -> Iterator[None]:
+    """Measure the body of a marked test; fail one that asks for ``complexity`` and measures not.
+
+    The test is what it was afterwards, or whoever runs it again would measure the measuring.
+    """
     if not isinstance(item, pytest.Function):
-        return
+        return (yield)
+    body = item.obj
+    try:
+        _measure_body(item)
+        return (yield)
+    finally:
+        item.obj = body
+
+
+def _measure_body(item: pytest.Function) -> None:
     body, names = item.obj, item._fixtureinfo.argnames
     awaited = inspect.iscoroutinefunction(body)
     if "complexity" in names and not awaited:
@@ -179,17 +200,21 @@ def _keep(item: pytest.Item, call: int, verdict: Verdict, path: Path) -> None:
     """Add a verdict to the history, and what changed since the same call to the end's list."""
     time = datetime.now(UTC).isoformat(timespec="seconds")
     now: dict[str, Any] = {"test": item.nodeid, "call": call, "time": time}
-    now["commit"] = _commit(item.config.rootpath)
+    stash = item.config.stash
+    if COMMIT not in stash:  # once, as the history itself may be tracked
+        stash[COMMIT] = _commit(item.config.rootpath)
+    now["commit"] = stash[COMMIT]
     now |= {key: getattr(verdict, key) for key in TOLD}
     text = path.read_text("utf-8", "replace") if path.exists() else ""
     before, unread = None, list[str]()
     for number, line in enumerate(text.splitlines(), 1):
         try:
             it = {"call": 1} | json.loads(line)
-            before = it if all(it[key] == now[key] for key in ("test", "call")) else before
+            mine = all(it[key] == now[key] for key in ("test", "call"))
+            before = {key: it[key] for key in ("commit", *TOLD)} if mine else before
         except (ValueError, TypeError, KeyError):
             unread.append(str(number))
-    changes = item.config.stash[CHANGES]
+    changes = stash[CHANGES]
     if unread and (words := f"{path}: not read: line {', '.join(unread)}") not in changes:
         changes.append(words)
     if before and (change := _change(before, now)):

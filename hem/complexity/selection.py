@@ -163,17 +163,6 @@ class Comparison:
         level = (self.evidence(closest, chi2) < NO_BETTER for chi2 in self.chi2)
         return list(level).index(True)
 
-    @cached_property
-    def runner_up(self) -> int:
-        """Of the other models the closest."""
-        others = set(range(len(self.names))) - {self.best}
-        return min(others, key=lambda model: float(self.chi2[model]))
-
-    @property
-    def margin(self) -> float:
-        """Evidence of the best model against the runner-up."""
-        return self.evidence(self.chi2[self.best], self.chi2[self.runner_up])
-
     def without_each(self) -> Iterator["Comparison"]:
         """The models fitted to all sizes but one, by its place."""
         weights = np.where(np.eye(len(self.weight), dtype=bool), 0, self.weight)

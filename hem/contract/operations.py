@@ -8,7 +8,17 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from hem.arrays import Array, Bools, Handles
-from hem.authoring import ELEMENTS, ENTRIES, NEEDS_ROOM, SIDES, VALENCE, WIDTH, WORDS, Refusal
+from hem.authoring import (
+    ELEMENTS,
+    ENTRIES,
+    NEEDS_ROOM,
+    SIDES,
+    VALENCE,
+    VERTICES,
+    WIDTH,
+    WORDS,
+    Refusal,
+)
 from hem.contract import arguments
 from hem.contract.following import Followers
 from hem.contract.queries import Queries
@@ -198,9 +208,12 @@ class Operations:
         names = self._state.storage.lasting_names(self._state.records, args[:, 0])
         results = np.ones(len(args), np.bool_)
         for i, (name, (_, b, c)) in enumerate(zip(names.tolist(), args.tolist(), strict=True)):
+            before = int(self._state.records.counts[VERTICES])
             try:
                 do(self._lasting_handle(name), None, b, c)
             except TopologyError:
+                if self._state.records.counts[VERTICES] != before:  # it is a follower's
+                    raise
                 results[i] = False
         return results
 

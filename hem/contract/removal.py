@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from hem import authoring
-from hem.arrays import Array, Indices
+from hem.arrays import Array, Indices, each_once
 from hem.authoring import EDGES, FACES, VERTICES, Kernel, Kernels, kernel, log_element
 from hem.contract.surveying import Surveying
 from hem.edit import FACE, REMOVED, VERTEX
@@ -38,15 +38,9 @@ class Remaining(NamedTuple):
         A fan of k faces that is not closed has k + 1 edges there.
         """
         vertices, corners = np.unique(self.vertex, return_counts=True)
-        edges = ascending(self.edges)
+        edges = each_once(self.edges)
         count = np.bincount(np.searchsorted(vertices, edges >> 32), minlength=len(vertices))
         return vertices[count - corners > 1]
-
-
-def ascending(values: Array) -> Array:
-    """Each value once, ascending; by sorting, which is quicker than hashing for so few."""
-    ordered = np.sort(values, axis=None)
-    return ordered[np.append(True, ordered[1:] != ordered[:-1])] if len(ordered) else ordered
 
 
 def remaining(s: Surveying, gone: Array, fresh: Array | None = None) -> Remaining:
@@ -54,8 +48,8 @@ def remaining(s: Surveying, gone: Array, fresh: Array | None = None) -> Remainin
 
     Cost: ``vertex_faces`` of these vertices.
     """
-    touched = ascending(s.face_vertices(gone if fresh is None else fresh).values)
-    faces = ascending(s.vertex_faces(touched).values)
+    touched = each_once(s.face_vertices(gone if fresh is None else fresh).values)
+    faces = each_once(s.vertex_faces(touched).values)
     faces = faces[~np.isin(faces, gone)]
     corners = s.face_vertices(faces)
     vertex, places = corners.values.astype(np.int64), corners.following
@@ -71,7 +65,7 @@ def vanishing_edges(s: Surveying, gone: Array, left: Remaining) -> int:
     corners = s.face_vertices(gone)
     here = corners.values.astype(np.int64)
     there = here[corners.following]
-    mine = ascending(np.minimum(here, there) << 32 | np.maximum(here, there))
+    mine = each_once(np.minimum(here, there) << 32 | np.maximum(here, there))
     edges = left.edges
     ends = edges >> 32, edges & 0xFFFFFFFF
     return int((~np.isin(mine, np.minimum(*ends) << 32 | np.maximum(*ends))).sum())

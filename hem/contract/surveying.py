@@ -135,17 +135,19 @@ class Surveying(ABC):
     def border_loops(self) -> list[Handles]:
         """The vertices along every border, with the surface on the left, each from its smallest.
 
-        Loops come in the order of their smallest vertices. Cost O(n_t log n_t).
+        Loops come in the order of their smallest vertices; one ends as soon as it is back at its
+        first vertex, also where fans of faces meet. Cost O(n_t log n_t).
         """
-        border = self._border()
-        following = dict(border.tolist())
+        following: dict[int, list[int]] = {}
+        for here, there in self._border().tolist():
+            following.setdefault(here, []).append(there)
         loops = []
         for start in sorted(following):
-            loop, v = [], start
-            while v in following:
-                loop.append(v)
-                v = following.pop(v)
-            if loop:
+            while following[start]:
+                loop, v = [start], following[start].pop(0)
+                while v != start and following.get(v):
+                    loop.append(v)
+                    v = following[v].pop(0)
                 loops.append(np.array(loop, np.int32))
         return loops
 
@@ -153,14 +155,16 @@ class Surveying(ABC):
         """The faces of every connected part, ascending; parts in the order of their first faces.
 
         Faces are connected that share a vertex; vertices without faces are in no part. Cost
-        O(n_t).
+        O(n_t log n_t).
         """
         faces, corners = self.faces(), self.face_vertices()
         first = corners.values[corners.offsets[:-1]]
         joined = np.stack([np.repeat(first, corners.counts), corners.values], axis=1)
         part = components(len(self.points), joined)[1][first]
-        names, places = np.unique(part, return_index=True)
-        return [faces[part == name] for name in names[np.argsort(places)]]
+        order = np.argsort(part, kind="stable")
+        begin = np.flatnonzero(np.diff(part[order], prepend=-1))
+        found = [faces[it] for it in np.split(order, begin[1:])] if len(faces) else []
+        return sorted(found, key=lambda it: int(it[0]))
 
     def same_as(self, other: Surveying) -> bool:
         """Whether another structure holds the same mesh: positions and faces by the same handles.

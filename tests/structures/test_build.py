@@ -7,7 +7,8 @@ import pytest
 
 import hem
 import structures
-from hem.authoring import VALENCE
+from hem.authoring import FACE_ROOM, VALENCE
+from hem.authoring.records import grown
 from hem.meshes import undirected_edges
 from hem.room import ADDRESSES, LARGE
 from tests.structures.conftest import HOLDS_ANYTHING, NEEDS_MANIFOLD, OF_ARRAYS, shuffled
@@ -103,6 +104,20 @@ def test_more_elements_than_references_can_name_find_no_room(name, monkeypatch):
     s = structures.build(name, hem.generate("torus", 100))
     with pytest.raises(hem.MeshError, match="more than references of 4 bytes"):
         s.reserve(1_200_000_000)
+
+
+@pytest.mark.parametrize("name", OF_ARRAYS)
+def test_room_that_is_doubled_ends_where_references_can_name_no_more(name, monkeypatch):
+    def doubled(array, used, length):
+        return np.broadcast_to(array[:1], (2 * length, *array.shape[1:]))
+
+    s = structures.build(name, hem.generate("torus", 100))
+    monkeypatch.setattr("hem.authoring.records.longer", doubled)
+    faces = 350_000_000  # six half-edges each
+    grown_records = grown(s.records, type(s).fields, 0, faces)
+    assert np.iinfo(np.int32).max >= grown_records.counts[FACE_ROOM] >= 200 + faces
+    with pytest.raises(hem.MeshError, match="more than references of 4 bytes"):
+        grown(s.records, type(s).fields, 0, 2**31)
 
 
 @pytest.mark.parametrize("reference_bytes", [4, 8])

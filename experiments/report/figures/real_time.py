@@ -81,6 +81,21 @@ def compactions(run: Run) -> Html:
     return _by_size(_cases(run, COMPACT), "cost", duration)
 
 
+def keeping_up(run: Run) -> Html:
+    """Up to how many vertices every edit fits into a frame where arrays grow, and the longest."""
+    cases = _cases(run, EDITS).query("order == @GROWING")
+    cases = cases.assign(longest=cases["samples"].map(max))
+    found: dict[tuple[int, int], dict[str, float]] = {}
+    for name, mine in cases.groupby("structure", sort=False):
+        late = mine[mine["longest"] > FRAME]["vertices"].min()
+        kept = mine[~(mine["vertices"] >= late)]
+        size = 0 if kept.empty else int(kept["vertices"].max())
+        largest = mine.iloc[-1]
+        of_size = found.setdefault((size, int(largest["vertices"])), {})
+        of_size[str(name)] = float(largest["longest"])
+    return part("keeping_up", sorted(found.items(), reverse=True))
+
+
 def _by_size(cases: pd.DataFrame, column: str, shown: Callable[[Any], str]) -> Html:
     """A table of one column of the cases: a row per structure, by size."""
     table = cases.pivot_table(column, "structure", "vertices", aggfunc="first", sort=False)

@@ -53,6 +53,23 @@ def test_too_little_data_cannot_be_told(tmp_path: Path) -> None:
     assert "Too few sizes" in words
 
 
+@pytest.mark.parametrize("head", ["rows", "nv", "n_v", "n"])
+def test_the_variable_of_a_claim_is_named_as_the_sizes_are(
+    costs: Path, tmp_path: Path, head: str
+) -> None:
+    file = tmp_path / "named.csv"
+    file.write_text(costs.read_text().replace("n,pairs,scan", f"{head},pairs,scan [/ms]"))
+    _, words = hem(str(file), "--json", "--expected", f"O({head}·m log m)")
+    assert [it["outcome"] for it in json.loads(words)] == ["violated", "consistent"]
+    assert "scan [/ms]" in hem(str(file), "--expected", f"O({head})")[1]
+
+
+def test_sizes_without_a_name_are_judged(costs: Path) -> None:
+    costs.write_text(costs.read_text().replace("n,pairs", ",pairs"))
+    assert hem(str(costs), "--expected", "O(n)")[0] == 1
+    assert "say which of them is varied" in hem(str(costs), "--expected", "O(n·m)")[1]
+
+
 def test_json_says_what_the_table_says(costs: Path) -> None:
     _, words = hem(str(costs), "--json", "--expected", "linear")
     pairs, scan = json.loads(words)
@@ -72,6 +89,7 @@ def test_costs_are_drawn_into_a_file(costs: Path, tmp_path: Path) -> None:
         (("none.csv",), "none.csv"),
         (("{costs}", "--expected", "fast"), "unknown growth class 'fast'"),
         (("{costs}", "--parameter", "m"), "no parameter 'm'; there are: n"),
+        (("{costs}", "--expected", ""), "unknown growth class ''"),
     ],
 )
 def test_a_mistake_gets_one_clear_line(costs: Path, arguments: list[str], message: str) -> None:

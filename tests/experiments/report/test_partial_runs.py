@@ -46,6 +46,7 @@ SHOWN = {
     "frames": lambda run, claims: real_time.frames(run),
     "edits by size": lambda run, claims: real_time.edits_by_size(run),
     "compactions": lambda run, claims: real_time.compactions(run),
+    "keeping up": lambda run, claims: real_time.keeping_up(run),
     "weights": lambda run, claims: real_time.weights(run),
     "picks": lambda run, claims: real_time.picks(run),
     "picks in words": lambda run, claims: real_time.picks_in_words(run),

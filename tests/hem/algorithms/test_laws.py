@@ -18,6 +18,7 @@ from hem.algorithms.parts import NO_WORK, change
 from hem.contract import Navigable, Structure
 from tests.extent import OF_EACH_KIND
 from tests.hem.algorithms.meshes import MESHES, dented, used
+from tests.structures.conftest import HOLDS_ANYTHING
 
 ALGORITHMS: dict[str, Callable[[Structure], Any]] = {
     **algorithms.SIX,
@@ -316,3 +317,29 @@ def test_an_edge_in_three_faces_is_refused(algorithm: str) -> None:
     with pytest.raises(hem.TopologyError, match="more than two faces"):
         EDITING[algorithm](s)
     assert s.n_vertices == 5
+
+
+@pytest.mark.parametrize("name", HOLDS_ANYTHING)
+@pytest.mark.parametrize("algorithm", EDITING)
+def test_an_edge_that_two_faces_pass_the_same_way_is_refused(algorithm: str, name: str) -> None:
+    points = [(0, 0, 0), (4, 0, 0), (0, 1, 0), (0, -1, 0)]
+    s = structures.build(name, hem.TriangleMesh(points, [(0, 1, 2), (0, 1, 3)]))
+    with pytest.raises(hem.TopologyError, match="pass them the same way") as error:
+        EDITING[algorithm](s)
+    assert error.value.elements["edges"].tolist() == [[0, 1]]
+    assert s.n_vertices == 4
+
+
+@pytest.mark.parametrize("algorithm", ["loop", "subdivision", "smoothing", "taubin"])
+def test_after_deletions_followers_are_told_of_what_moved_and_of_nothing_else(
+    algorithm: str,
+) -> None:
+    s = structures.build("half_edge", MESHES["torus"]())
+    for v in (0, 30, 66):
+        s.remove_vertex(v)
+    old, told = {*s.vertices().tolist()}, list[hem.Edit]()
+    s.subscribe(told.append)
+    ALGORITHMS[algorithm](s)
+    moved = set().union(*(edit.changed_vertices.tolist() for edit in told))
+    assert len(moved) > 100
+    assert moved <= old

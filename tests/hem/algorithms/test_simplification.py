@@ -11,6 +11,7 @@ import hem
 import structures
 from hem import algorithms
 from hem.algorithms import parts
+from hem.algorithms.buckets import bucket_of, drop, peek, put, put_off, queue_for
 from hem.algorithms.collapsing import QUADRICS
 from hem.algorithms.simplification import LEAST_COSINES, collapsible
 from hem.meshes.measures import normals
@@ -142,3 +143,31 @@ def test_positions_are_seen_from_the_middle_of_the_bounding_box() -> None:
     for mesh in (GRID, hem.TriangleMesh(GRID.points + np.float32(4096), GRID.triangles)):
         plan = collapsible(structures.build("half_edge", mesh), QUADRICS, 0.7, np.inf)
         assert np.allclose(plan.middle, np.mean(mesh.bounds, axis=0))
+
+
+@pytest.mark.parametrize("width", [1, 64])
+def test_every_edge_that_is_put_off_comes_again_behind_the_cheaper_ones(width: int) -> None:
+    costs = 2 ** np.linspace(0, 6, 100)
+    queue = queue_for(len(costs))
+    for edge, cost in enumerate(costs):
+        put(queue, bucket_of(queue, cost), edge)
+    came: list[int] = []
+    while (edge := peek(queue, width)) >= 0:
+        drop(queue)
+        if edge not in came:
+            put_off(queue, bucket_of(queue, costs[edge]), edge)
+        came.append(edge)
+    assert sorted(came) == sorted([*range(100)] * 2)
+
+
+def test_no_vertex_comes_to_lie_beyond_all_numbers() -> None:
+    around = np.linspace(0, 2 * np.pi, 12, endpoint=False)
+    ring = np.stack([np.cos(around), np.sin(around), 0 * around], axis=1)
+    points = 3e38 * np.concatenate([ring, 0.5 * ring + (0, 0, 1), [(0, 0, 1)]])
+    here, there = np.arange(12), (np.arange(12) + 1) % 12
+    sides = np.stack([here, there, there + 12], 1), np.stack([here, there + 12, here + 12], 1)
+    top = np.stack([here + 12, there + 12, np.full(12, 24)], 1)
+    s = structures.build("half_edge", hem.TriangleMesh(points, np.concatenate([*sides, top])))
+    algorithms.simplify(s, faces=12)
+    s.validate()
+    assert np.isfinite(s.points[s.vertices()]).all()

@@ -139,3 +139,15 @@ def test_split_and_collapse_gives_the_mesh_back() -> None:
         s = structures.build("half_edge", mesh)
         algorithms.split_and_collapse(s)
         assert s.same_as(structures.build("half_edge", mesh))
+
+
+@pytest.mark.parametrize("scheme", algorithms.SCHEMES)
+def test_where_a_mesh_lies_does_not_matter_also_where_fans_meet(scheme: str) -> None:
+    points = np.array([(0, 0, 0), (4, 0, 0), (4, 2, 0), (-4, 0, 0), (-4, -2, 1)], float)
+    found = []
+    for shift in (0, 16):
+        mesh = hem.TriangleMesh(points + shift, [(0, 1, 2), (0, 3, 4)])
+        s = structures.build("indexed", mesh)
+        algorithms.subdivide(s, scheme)
+        found.append(s.points - shift)
+    assert np.allclose(*found, atol=1e-5)

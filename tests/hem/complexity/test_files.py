@@ -63,6 +63,84 @@ def test_parameters_that_are_not_asked_for_are_held_fixed(tmp_path: Path) -> Non
         read_curves(file, "k")
 
 
+def curves_of(path: Path, content: dict[str, Any], parameter: str | None = None) -> dict[str, Any]:
+    """By the name of a curve its sizes."""
+    path.write_text(json.dumps(content))
+    return {it.name: it.sizes.tolist() for it in read_curves(path, parameter)}
+
+
+def written_of(*rows: tuple[str, dict[str, Any], dict[str, Any]]) -> dict[str, Any]:
+    """What pytest-benchmark writes of tests: by full name, parameters and extra information."""
+    return {
+        "machine_info": {},
+        "benchmarks": [
+            {
+                "name": full.rpartition("::")[2], "fullname": full, "params": parameters,
+                "extra_info": extra, "stats": {"median": 1.0},
+            }
+            for full, parameters, extra in rows
+        ],
+    }  # fmt: skip
+
+
+def test_tests_of_one_name_are_two_curves(tmp_path: Path) -> None:
+    rows = [
+        (f"a.py::{it}::test_append[{n}]", {"n": n}, {}) for it in ("List", "Deque") for n in (1, 2)
+    ]
+    assert curves_of(tmp_path / "file", written_of(*rows)) == {
+        "a.py::List::test_append": [1, 2],
+        "a.py::Deque::test_append": [1, 2],
+    }
+
+
+def test_extra_information_is_a_parameter_where_a_test_has_none(tmp_path: Path) -> None:
+    rows = [(f"a.py::test[{n}]", {"n": n}, {"comparisons": n * n}) for n in (1, 2)]
+    assert curves_of(tmp_path / "file", written_of(*rows)) == {"test": [1, 2]}
+    rows = [("a.py::test[x]", {"kind": "x"}, {"size": n}) for n in (1, 2)]
+    assert curves_of(tmp_path / "file", written_of(*rows)) == {"test, x": [1, 2]}
+
+
+@pytest.mark.parametrize(
+    ("command", "name"),
+    [
+        ("sort data_{n}.txt", "sort data_{n}.txt"),
+        ("head -c{n} f", "head -c{n} f"),
+        ("sha1sum -n {n}", "sha1sum -n {n}"),
+        ("sort -k2 {n}.5", "sort -k2 {n}.5"),
+    ],
+)
+def test_a_command_is_one_curve_wherever_its_parameter_stands(
+    tmp_path: Path, command: str, name: str
+) -> None:
+    runs = [
+        {"command": command.format(n=n), "parameters": {"n": str(n)}, "mean": 1.0}
+        for n in (1, 2, 10)
+    ]
+    found = curves_of(tmp_path / "file", {"results": runs})
+    if ".5" in command:  # another number each time
+        assert len(found) == 3
+    else:
+        assert found == {name: [1, 2, 10]}
+
+
+def test_two_parameters_of_a_command_may_have_one_value(tmp_path: Path) -> None:
+    runs = [
+        {"command": f"x {n} {m}", "parameters": {"n": str(n), "m": str(m)}, "mean": 1.0}
+        for n in (10, 100) for m in (10, 100)
+    ]  # fmt: skip
+    found = curves_of(tmp_path / "file", {"results": runs}, "n")
+    assert found == {"x {n} {m}, m=10": [10, 100], "x {n} {m}, m=100": [10, 100]}
+
+
+def test_each_number_of_threads_is_a_curve(tmp_path: Path) -> None:
+    runs = [
+        {"name": f"BM/{n}/min_warmup_time:1/threads:{t}", "cpu_time": n * t}
+        for n in (1, 2) for t in (1, 8)
+    ]  # fmt: skip
+    found = curves_of(tmp_path / "file", {"benchmarks": runs}, "n")
+    assert found == {"BM, threads=1": [1, 2], "BM, threads=8": [1, 2]}
+
+
 def test_runs_that_failed_are_skipped_and_named(tmp_path: Path) -> None:
     failed = {"name": "BM_Sort/30", "error_occurred": True, "error_message": "no room"}
     (tmp_path / "file").write_text(json.dumps({"benchmarks": [*GOOGLE["benchmarks"], failed]}))
@@ -84,6 +162,7 @@ def test_cells_may_be_empty_and_a_file_that_is_no_text_is_named(tmp_path: Path) 
     [
         ("words", "no CSV of costs"),
         ("n,a\n1,2\nx,3\n", "row 3"),
+        ("n,a\n\n1,2\nx,3\n", "row 4"),
         ("n,a\n1,2\n2,3 s\n", "row 3, a: '3 s' is no number"),
         ("n,a\n1,2\n1,3\n", "nothing varies"),
         ("{}", "no JSON of"),

@@ -1,11 +1,13 @@
 """Laws of measuring, by a clock that runs as the measured function says."""
 
 import gc
+import math
 import os
 import platform
 import random
 import subprocess
 import sys
+import threading
 import tracemalloc
 from collections.abc import Callable, Iterator
 from dataclasses import replace
@@ -16,7 +18,7 @@ import pytest
 from hem.complexity import InParts, Measured, measure
 from hem.complexity import measure as measure_function
 from hem.complexity.memory import memory_times
-from hem.complexity.notation import Array
+from hem.complexity.notation import Array, parse
 
 OVERHEAD = 1e-7
 
@@ -433,3 +435,67 @@ def test_measurements_are_shown_in_a_line() -> None:
     sizes, samples = np.array([4.0, 4_096.0]), [np.array([2e-7, 3e-7, 9e-7]), np.array([0.25])]
     found = Measured(sizes, samples, sizes, np.ones((3, 2)))
     assert repr(found) == "<Measured at 2 sizes from 4 to 4096: 3e-07 to 0.25 s a call>"
+
+
+def test_what_explodes_is_asked_of_nothing_larger_than_there_is_time_for(clock: Clock) -> None:
+    asked = []
+
+    def work(n: int) -> None:
+        asked.append(n)
+        clock.work(1e-7 * math.factorial(n))
+
+    found = measure(work, int)
+    assert max(asked) <= 10
+    assert found.sizes[-1] < 10
+    assert found.judge("O(n²)").outcome != "consistent"
+
+
+@pytest.mark.parametrize("most", [4, 7, 10])
+def test_no_size_is_larger_than_the_largest_that_is_allowed(clock: Clock, most: int) -> None:
+    asked = []
+
+    def work(n: int) -> None:
+        asked.append(n)
+        clock.work(1e-6 * n)
+
+    assert measure(work, int, most=most).sizes[-1] == max(asked) == most
+    with pytest.raises(ValueError, match="most must be at least 4, not 3"):
+        measure(work, int, most=3)
+
+
+def test_an_input_that_a_call_makes_unpicklable_is_one_that_it_changes(clock: Clock) -> None:
+    def work(it: dict[str, object]) -> None:
+        it["lock"] = threading.Lock()
+        clock.work(1e-6)
+
+    assert measure(work, lambda n: {}, [10, 20, 40, 80]).judge("O(1)").outcome == "consistent"
+
+
+def test_what_a_function_raises_leaves_no_memory_traced(clock: Clock) -> None:
+    def work(n: int) -> None:
+        if n > 10:
+            raise RecursionError
+
+    with pytest.raises(RecursionError):
+        measure(work, int, [10, 20, 40, 80])
+    assert not tracemalloc.is_tracing()
+
+
+def test_counts_and_a_latency_of_ones_own_judge_all_sizes(clock: Clock) -> None:
+    found = measure(lambda n: clock.work(1e-6 * n), int, [2**k for k in range(4, 12)])
+    for given in ({"exact": True}, {"latency": np.ones(8)}, {"reference": np.ones(8)}):
+        verdict = found.judge("O(n)", **given)
+        assert (verdict.outcome, verdict.answer) == ("consistent", "O(n)")
+
+
+@pytest.mark.parametrize("claim", ["O(n log^2 n)", "O(n^1.5)"])
+def test_a_claim_with_an_exponent_is_answered_like_any_other(clock: Clock, claim: str) -> None:
+    grows = parse(claim)
+    found = measure(
+        lambda n: clock.work(1e-6 * float(grows(np.array([float(n)]))[0])),
+        int,
+        [2**k for k in range(4, 18)],
+    )
+    verdict = found.judge(claim)
+    assert verdict.outcome == "consistent"
+    assert claim in verdict.answer

@@ -59,6 +59,13 @@ def test_of_several_variables_one_is_varied_and_the_others_are_held_fixed() -> N
     assert canonical("O(n·m·log m)", "n") == "O(n)"
     assert canonical("O(n + k)", "k") == "O(n)"
     assert canonical("O(n)", "m") == "O(1)"
+    assert canonical("O(n_ev·m)", "n_ev") == "O(n)"
+    assert canonical("linear", "m") == "O(n)"
+    assert canonical("O(2^k·n)", "n") == "O(n)"
+    assert canonical("O(2^k·n)", "k") == "O(2^n)"
+    for name in ("", "nv", "rows"):
+        with pytest.raises(ValueError, match="a variable is a letter"):
+            canonical("O(n·m)", name)
     with pytest.raises(ValueError, match=r"names m, n: say which"):
         canonical("O(n·m)")
 
@@ -67,6 +74,7 @@ def test_of_several_variables_one_is_varied_and_the_others_are_held_fixed() -> N
     "claim",
     [
         "", "N/A", "O(n!)", "O(n", "O(n))", "log log n", "n^n", "fast",
+        "O(log 2n)", "O(n log 2 n)",
         "O(n2)", "O(3n2)", "log3(n)", "n^1/2", "n^2/2", "n - 2n", "n^-1", "2^{2n}",
     ],
 )  # fmt: skip

@@ -257,6 +257,61 @@ def test_marked_tests_that_cannot_be_measured_fail(pytester: pytest.Pytester) ->
     result.stdout.fnmatch_lines([f"*::{it} is not measured: a marked test is*" for it in names])
 
 
+def test_an_input_without_a_mark_and_a_mark_of_too_much_fail(pytester: pytest.Pytester) -> None:
+    pytester.makepyfile("""
+        import pytest
+
+        def test_unmarked(complexity_input):
+            pass
+
+        @pytest.mark.complexity("O(n)", list, [1, 2], 3)
+        def test_too_much(complexity_input):
+            pass
+    """)
+    result = pytester.runpytest("-p", PLUGIN)
+    result.assert_outcomes(errors=1, failed=1)
+    result.stdout.fnmatch_lines(
+        [
+            "*::test_unmarked is not measured: it asks for complexity_input and has no mark*",
+            "*::test_too_much: a mark complexity takes expected, make_input, sizes by position*",
+        ]
+    )
+
+
+def test_a_test_that_is_run_again_is_measured_again_and_kept_where_it_began(
+    pytester: pytest.Pytester,
+) -> None:
+    pytester.makeconftest("""
+        import os
+        import pytest
+        from _pytest.runner import runtestprotocol
+
+        @pytest.hookimpl(tryfirst=True)
+        def pytest_runtest_protocol(item, nextitem):
+            for _ in range(2):
+                runtestprotocol(item, nextitem=nextitem, log=False)
+            return True
+    """)
+    pytester.makepyfile("""
+        import pytest
+
+        class Clock:
+            now = 0.0
+            def __call__(self):
+                return self.now
+
+        clock, calls = Clock(), []
+
+        @pytest.mark.complexity("O(n)", sizes=[10, 30, 100, 300, 1000], rounds=2, clock=clock)
+        def test_it(complexity_input, monkeypatch, tmp_path):
+            monkeypatch.chdir(tmp_path)
+            clock.now += 1e-6 * complexity_input
+    """)
+    pytester.runpytest("-p", PLUGIN, "--complexity-history", "history.jsonl")
+    kept = (pytester.path / "history.jsonl").read_text().splitlines()
+    assert [json.loads(line)["outcome"] for line in kept] == ["consistent"] * 2
+
+
 def test_a_test_that_never_calls_what_it_asks_for_fails(pytester: pytest.Pytester) -> None:
     pytester.makepyfile("""
         import pytest

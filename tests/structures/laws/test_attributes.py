@@ -150,6 +150,19 @@ def test_a_seam_is_never_torn_or_mended(s):
     assert {0.0, 1.0} <= set(own.tolist())
 
 
+def test_what_a_follower_refuses_is_no_collapse_that_was_refused(s):
+    s.corner_attribute("seam", np.float64)  # so that edges collapse one by one
+
+    def refuse(edit):
+        s.collapse_edge(-1)
+
+    s.subscribe(refuse)
+    before = s.n_vertices
+    with pytest.raises(hem.TopologyError):
+        s.collapse_edges([int(it) for it in s.edges() if s.can_collapse_edge(int(it))][:3])
+    assert s.n_vertices == before - 1
+
+
 @pytest.mark.parametrize("rule", ["copy", "default"])
 def test_what_is_not_interpolated_is_copied_or_the_default(s, rule: str):
     kind = s.vertex_attribute("kind", np.int32, default=-1, on_split=rule)

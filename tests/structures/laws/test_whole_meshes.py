@@ -10,6 +10,7 @@ import structures
 from hem.contract import QUERIES
 from hem.errors import MeshError
 from hem.meshes import undirected_edges
+from tests.structures.conftest import HOLDS_ANYTHING
 from tests.structures.test_polygons import CUBE, plankton, sheet
 
 
@@ -82,6 +83,13 @@ def test_border_loops_go_along_every_border_edge_once(whole: structures.Structur
     for loop in s.border_loops():
         assert loop[0] == loop.min()
         assert (int(loop[0]), int(loop[1])) in sides  # the surface lies on the left
+
+
+@pytest.mark.parametrize("name", HOLDS_ANYTHING)
+def test_where_fans_meet_each_has_a_border_of_its_own(name: str) -> None:
+    mesh = hem.TriangleMesh(np.zeros((7, 3)), [(0, 1, 2), (0, 3, 4), (5, 6, 3)])
+    loops = structures.build(name, mesh).border_loops()
+    assert sorted(map(sorted, loops)) == [[0, 1, 2], [0, 3, 4], [3, 5, 6]]
 
 
 def test_components_are_found_face_by_face(whole: structures.Structure) -> None:
