@@ -42,7 +42,7 @@ $(DEV): pyproject.toml constraints.txt
 	@touch $(STUDY) $@
 
 study: $(STUDY)  ## measure what decides the claims, print table 1, write the report
-	@$(BIN)/hem study --profile quick
+	@$(BIN)/hem study --preset quick
 	@$(BIN)/hem table
 	@$(BIN)/hem report
 

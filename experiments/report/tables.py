@@ -49,8 +49,9 @@ def legend() -> list[str]:
         "Each cell has what is claimed, and its marks: by work (memory accesses), by time in "
         "order, and for queries by time at random. Work is exact, and it decides.",
         f"{words}. Whose claim it is: {whose}.",
-        f"{NO_CLAIM} {Kind.NOBODY.about}. {NOT_POSSIBLE}: table 1 prints this, as the structure "
-        "keeps no record of an edge; found is what it costs to name the edge by its vertices.",
+        f"{NO_CLAIM} {Kind.NOBODY.about}. {NOT_POSSIBLE}: table 1 prints this where a structure "
+        "records no edges; what was found is the cost with the edge named by its two vertices.",
+        "n_t is the number of triangles, n_ev that of the edges at a vertex.",
     ]
 
 
@@ -85,8 +86,8 @@ def table_1_in_words(claims: Iterable[JudgedClaim]) -> str:
         found = f"{violated} violated and {undetermined} undetermined"
         timed.append(f"{order} {holds} of {seen.total()} cells are consistent, {found}")
     return (
-        f"Of the {len(cells)} cells that table 1 of the thesis prints, memory accesses and bytes "
-        f"find {counts}. By time {'; '.join(timed)}."
+        f"Of the {len(cells)} cells that table 1 of the thesis prints, work and bytes find "
+        f"{counts}. By time {'; '.join(timed)}."
     )
 
 

@@ -79,7 +79,7 @@ def test_how_much_more_half_edges_take_is_what_they_were_weighed(run) -> None:
 
 def test_table_1_is_counted_from_its_cells(claims) -> None:
     assert table_1_in_words(claims).startswith(
-        "Of the 30 cells that table 1 of the thesis prints, memory accesses and bytes find "
+        "Of the 30 cells that table 1 of the thesis prints, work and bytes find "
         "30 consistent. By time in order 26 of 26 cells are consistent, 0 violated"
     )
 
