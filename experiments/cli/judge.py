@@ -44,7 +44,7 @@ def judge_file(
         options: Any = {"exact": exact, "bound": "upper" if upper else "tight"}
         curves = read_curves(file, parameter)
         claim, varied = "O(1)" if expected is None else expected, curves[0].parameter
-        letter = varied if re.fullmatch(r"[a-z](_\w+)?", varied, re.IGNORECASE) else "n_varied"
+        letter = varied if re.fullmatch("[a-zA-Z]", varied) else "n_varied"  # "nlog n" is read, too
         named = re.compile(rf"(?<![a-z_]){re.escape(varied or letter)}(?![a-z_])", re.IGNORECASE)
         if named.search(claim):
             claim, options["variable"] = named.sub(letter, claim), letter
