@@ -9,7 +9,7 @@ import pandas as pd
 
 from experiments.claims.claim import Claim
 from experiments.harness import HUBS, QUERIES_TABLE, Axis
-from experiments.runs import Run, experiments, tables
+from experiments.runs import Run, experiments, noise, tables
 from hem.arrays import Array
 
 PARTS = (4, 16)
@@ -66,6 +66,7 @@ class Curves:
 
     def __init__(self, run: Run) -> None:
         self.cases = run.cases
+        self.too_busy = noise(run).too_busy
         self._made: dict[tuple[str, bytes], Curve] = {}
         self._jobs: dict[Any, Any] = self.cases.groupby(["experiment", "structure"]).indices
         self._columns = {str(name): column.to_numpy() for name, column in self.cases.items()}

@@ -11,12 +11,15 @@ and the code that judges; it is read only as long as all are what they were.
 
 Claims are judged on one family, whose vertices all have the same valence, and whose work is
 counted. Others are timed alone, so that what holds there is told by time.
+
+Times of a machine that was too busy accuse no claim.
 """
 
 import hashlib
 import json
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
+from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -38,6 +41,8 @@ CASE_ERROR = 0.15
 """How far cases of one curve stray, beyond what their own rounds tell: each is measured within some
 milliseconds, and other tenants of the machine slow its caches for longer than that. A reference is
 one more case, and strays as much."""
+
+TOO_BUSY = "By time it looks violated, but the machine was too busy to accuse anything by time."
 
 FLAT = 0.5  # slope in n_ev below which what grows comes on top of a larger part that does not
 
@@ -103,13 +108,16 @@ def _verdict(of_run: Curves, table: str, axis: Axis, curve: Curve, expected: str
     reference = of_run.reference(curve) if constant and not axis.exact else None
     latency = None if axis.exact or reference is not None else of_run.latencies(curve)
     every = [it for it in experiments().values() if it.table and it.table.name == table]
-    return judge(
+    verdict = judge(
         curve.sizes, samples, expected.removeprefix(BOUND), latency,
         reference=reference, exact=axis.exact,
         latency_error=CASE_ERROR * (1 if reference is None else np.sqrt(2)),
         unseen=reference is None and any(axis in it.just_written for it in every),
         bound="upper" if expected.startswith(BOUND) else "tight",
     )  # fmt: skip
+    if of_run.too_busy and not axis.exact and verdict.outcome == "violated":
+        return replace(verdict, outcome="undetermined", reason=TOO_BUSY)
+    return verdict
 
 
 def _class_found(axes: Sequence[Axis], verdicts: Mapping[Axis, Verdict]) -> str:

@@ -21,6 +21,7 @@ from experiments.claims import (
 )
 from experiments.runs import Run, load
 from structures import NAMES, REGISTRY, THESIS
+from tests.experiments import made_runs
 from tests.experiments.made_runs import LAWS, LIKE_THE_THESIS, SIZES, rewrite, write_run
 from tests.extent import OF_EACH_KIND, waiting_for
 
@@ -77,6 +78,18 @@ def test_what_grows_otherwise_is_violated(tmp_path, printed, really):
     )
     expected = Outcome.CONSISTENT if printed == really else Outcome.VIOLATED
     assert {it.outcome for it in rows if it.claim.table in TABLES} == {expected}
+
+
+@pytest.mark.parametrize("fastest", [1e-4, 1e-5])
+def test_times_of_a_machine_that_was_too_busy_accuse_nothing_and_counts_do(
+    tmp_path, monkeypatch, fastest
+):
+    monkeypatch.setitem(made_runs.STEADY, "fastest", fastest)
+    rows = measured_cells(tmp_path, lambda *_: LAWS["O(n_t)"], printed="O(1)", table="queries")
+    busy = fastest < 1e-4
+    by_time = Outcome.UNDETERMINED if busy else Outcome.VIOLATED
+    assert {it.outcome for it in rows} == {Outcome.VIOLATED}
+    assert {it.outcome_time for it in rows} == {by_time}
 
 
 @pytest.mark.parametrize(
