@@ -101,26 +101,14 @@ def test_extra_information_is_a_parameter_where_a_test_has_none(tmp_path: Path) 
 
 
 @pytest.mark.parametrize(
-    ("command", "name"),
-    [
-        ("sort data_{n}.txt", "sort data_{n}.txt"),
-        ("head -c{n} f", "head -c{n} f"),
-        ("sha1sum -n {n}", "sha1sum -n {n}"),
-        ("sort -k2 {n}.5", "sort -k2 {n}.5"),
-    ],
+    "command", ["sort data_{n}.txt", "head -c{n} f", "sha1sum -n {n}", "sort -k2 {n}"]
 )
-def test_a_command_is_one_curve_wherever_its_parameter_stands(
-    tmp_path: Path, command: str, name: str
-) -> None:
+def test_a_command_is_one_curve_wherever_its_parameter_stands(tmp_path: Path, command: str) -> None:
     runs = [
         {"command": command.format(n=n), "parameters": {"n": str(n)}, "mean": 1.0}
         for n in (1, 2, 10)
     ]
-    found = curves_of(tmp_path / "file", {"results": runs})
-    if ".5" in command:  # another number each time
-        assert len(found) == 3
-    else:
-        assert found == {name: [1, 2, 10]}
+    assert curves_of(tmp_path / "file", {"results": runs}) == {command: [1, 2, 10]}
 
 
 def test_two_parameters_of_a_command_may_have_one_value(tmp_path: Path) -> None:
