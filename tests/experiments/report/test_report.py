@@ -123,7 +123,7 @@ def test_the_answers_are_numbers_of_the_run(base_run):
     assert body.count('class="answer"') == 5
     assert re.search(r"(59|60|61)\d µs at 200,000 triangles", body)  # 600 with 2 % of noise
     assert "takes 228 bytes per vertex and an indexed mesh 36: 6.33 times" in body
-    assert "over all faces takes a half-edge mesh 1.0 times as long" in body
+    assert "over all faces takes 1.0 times as long on a half-edge mesh" in body
     asked = uses.ranking(base_run, "asked")
     assert f"{uses.best(asked)} finds neighbors fastest" in body
     behind = f"fastest; a half-edge mesh takes {digits(asked['half_edge'] / asked.min())} times"
