@@ -72,7 +72,7 @@ def test_the_first_page_tells_the_figures_of_the_shared_machine() -> None:
     found = real_functions.shares(answers).loc[real_functions.HELD, "shared"]
     ours, others = found.loc["hem"], found.drop(index=["hem", "hem, memory unknown"])
     span = [f"{others[kind].min()} to {others[kind].max()}" for kind in ("right", "wrong")]
-    told = f"it names {ours['right']} right and {ours['wrong']} wrong, they {' and '.join(span)}."
+    told = f"it names {ours['right']} right, {ours['wrong']} wrong, they {' and '.join(span)}."
     page = " ".join((ROOT / "README.md").read_text("utf-8").split())
     assert f"Of {len(HELD_OUT)} functions" in page
     assert told in page
