@@ -168,8 +168,7 @@ def flip_records(m: IndexedRecords, e: int, at: Array, one: int, other: int) -> 
 @kernel
 def add_records(m: IndexedRecords, corners: Array, f: int) -> None:
     """Cost O(1)."""
-    a, b, c = corners[0], corners[1], corners[2]
-    set_triangle(m, f, a, b, c)
+    set_triangle(m, f, corners[0], corners[1], corners[2])
 
 
 @kernel

@@ -303,9 +303,6 @@ def insert(m: PlanktonRecords, h: int, v: int) -> int:
     back = onward ^ 1
     following, before = m.half_edge[h, NEXT], m.half_edge[other, PREVIOUS]
     m.half_edge[other, START] = v
-    if following == other:  # nothing but this edge at b; never so in a surface
-        before = onward
-        following = back
     m.half_edge[onward, FACE] = m.half_edge[h, FACE]
     m.half_edge[back, FACE] = m.half_edge[other, FACE]
     link(m, onward, following)

@@ -42,7 +42,7 @@ from hem.authoring import (
     require_one_fan,
     require_one_loop,
 )
-from hem.contract import Claims, Look, Navigable, arguments
+from hem.contract import Claims, Look, Navigable, arguments, centroids
 from hem.edit import Edit
 from hem.errors import MeshError, TopologyError
 from hem.meshes import PolygonMesh, TriangleMesh
@@ -203,12 +203,8 @@ class Plankton(Navigable):
             raise TopologyError("a face of the dual would have two corners", vertices=few)
         number = np.zeros(self.face_end, np.int32)
         number[faces] = np.arange(len(faces), dtype=np.int32)
-        corners = self.face_vertices(faces)
-        middles = np.add.reduceat(
-            self.points[corners.values].astype(np.float64), corners.offsets[:-1]
-        )
-        middles /= corners.counts[:, None]
-        return type(self).build(PolygonMesh(middles, Ragged(rings.offsets, number[rings.values])))
+        dual = Ragged(rings.offsets, number[rings.values])
+        return type(self).build(PolygonMesh(centroids(self, faces), dual))
 
     # What can be done with polygons -------------------------------------------------------------
 
@@ -350,9 +346,8 @@ class Plankton(Navigable):
         results, log = self._operations.run(operation, args, points)
         result = int(results[0])
         if result < 0:
-            raise self._operations.refusal(operation, result, args[0].tolist())
-        names_a_vertex = self.operations[operation].names_a_vertex
-        edit = Edit(called, result if names_a_vertex else -1, log)
+            raise self._operations.refusal(operation, result, args[0].tolist(), called)
+        edit = self._operations.edit(called, operation, result, log)
         self._followers.publish(edit)
         return result, edit
 

@@ -70,7 +70,7 @@ def kernels_of(module: str) -> dict[str, Kernel]:
 
 @kernel
 def without(out: Array, count: int, value: int) -> int:
-    """Take ``value`` out of the first ``counts`` elements, in place -> how many are left."""
+    """Take ``value`` out of the first ``count`` elements, in place -> how many are left."""
     left = 0
     for i in range(count):
         if out[i] != value:
@@ -93,9 +93,9 @@ def append_face(out: Array, count: int, face: int) -> int:
 
 @kernel
 def distinct(out: Array, count: int) -> int:
-    """Keep each of the first ``counts`` elements once, in order, in place -> how many are left.
+    """Keep each of the first ``count`` elements once, in order, in place -> how many are left.
 
-    The next up to 4 · ``counts`` elements of ``out`` serve as a hash table. Cost O(count) expected.
+    The next up to 4 · ``count`` elements of ``out`` serve as a hash table. Cost O(count) expected.
     """
     size = 1
     while size < 2 * count:

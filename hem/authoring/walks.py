@@ -133,8 +133,10 @@ def never(m: Any, v: int) -> bool:
 
 @cache
 def ring(vertex_vertices: Kernel, vertex_faces: Kernel) -> Kernel:
-    """Make ``ring(m, v, out) -> (count, open)``: the neighbors of v, and whether it is a border.
+    """Make ``ring(m, v, out) -> (count, open, most)``: the neighbors of v, and if it is a border.
 
+    ``most``: the larger of the numbers of neighbors and of faces, which are more where three meet
+    at an edge.
     Cost: that of ``vertex_vertices``, and of ``vertex_faces`` where that does not tell.
     """
     if vertex_vertices in _VISITING:
@@ -142,17 +144,18 @@ def ring(vertex_vertices: Kernel, vertex_faces: Kernel) -> Kernel:
         is_open = _IS_OPEN.get(vertex_vertices, never)
 
         @kernel
-        def write_ring(m: Any, v: int, out: Array) -> tuple[int, bool]:
+        def write_ring(m: Any, v: int, out: Array) -> tuple[int, bool, int]:
             count, told = write_all(m, v, 0, out)
-            return count, told or is_open(m, v)
+            return count, told or is_open(m, v), count
 
         return write_ring
     count_faces = counting(vertex_faces)
 
     @kernel
-    def count_both(m: Any, v: int, out: Array) -> tuple[int, bool]:
+    def count_both(m: Any, v: int, out: Array) -> tuple[int, bool, int]:
         count = vertex_vertices(m, v, out)
-        return count, count_faces(m, v, out[count:]) < count
+        faces = count_faces(m, v, out[count:])
+        return count, faces < count, max(count, faces)
 
     return count_both
 

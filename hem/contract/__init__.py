@@ -28,11 +28,12 @@ from hem.contract.recording import ANEW, BESIDE, CHECKED, COMPILED, PYTHON, Reco
 from hem.contract.removal import Remaining, remaining
 from hem.contract.storage import HANDLE_TYPES, Storage, UncompiledStorage
 from hem.contract.structure import Structure
+from hem.contract.surveying import centroids
 
 __all__ = [
     "ANEW", "BESIDE", "CHECKED", "COMPILED", "ELEMENTS", "HANDLE_TYPES", "OPERATIONS", "PYTHON",
     "QUERIES", "REFERENCE_TYPES", "STEPS", "Algorithm", "Attribute", "Claims", "Described", "Look",
     "MarkedEdges", "Navigable", "PackedEdges", "PackedStorage", "Prepared", "Query", "Recording",
-    "Remaining", "Storage", "Structure", "Sweep", "UncompiledStorage", "arguments", "record",
-    "remaining",
+    "Remaining", "Storage", "Structure", "Sweep", "UncompiledStorage", "arguments", "centroids",
+    "record", "remaining",
 ]  # fmt: skip

@@ -74,10 +74,11 @@ class AttributeMethod:
         if element == "edge" and mesh.emulated:
             raise MeshError(f"a {mesh.title} mesh records no edges that could have attributes")
         known = self._known.get((element, name))
-        if known is not None and dtype is None:
+        if known is not None and dtype is None and shape == ():
             return known
+        dtype = dtype or (known.default.dtype if known is not None else np.float32)
         try:
-            value = np.broadcast_to(np.asarray(default, dtype or np.float32), shape)
+            value = np.broadcast_to(np.array(default, dtype), shape)  # in an array of its own
         except (TypeError, ValueError) as error:
             raise MeshError(f"{element} attribute {name!r}: {error}") from error
         if known is None:

@@ -262,8 +262,16 @@ class Operations:
                 return results, np.concatenate(logs)
             self.make_way(operation)
 
-    def refusal(self, operation: str, code: int, args: Any) -> MeshError | TopologyError:
+    def edit(self, called: str, operation: str, result: int, log: Any) -> Edit:
+        """What subscribers are told of an operation, by the name of the method that was called."""
+        names_a_vertex = self._operations[operation].names_a_vertex
+        return Edit(called, result if names_a_vertex else -1, log)
+
+    def refusal(
+        self, operation: str, code: int, args: Any, called: str = ""
+    ) -> MeshError | TopologyError:
         """The error for a code, with the elements as the user knows them."""
+        called = called or operation
         words, handle, ask = WORDS[code], int(args[0]), self._queries.ask
         if code == Refusal.NOT_FINITE:
             return MeshError(words)
@@ -272,16 +280,16 @@ class Operations:
         element = self._operations[operation].element
         if element != "edge" or code == Refusal.NO_EDGE:
             many = ELEMENTS.get(element, "half_edges")
-            return TopologyError(f"cannot {operation}: {words}", **{many: [handle]})
+            return TopologyError(f"cannot {called}: {words}", **{many: [handle]})
         ends = self._edge_vertices(handle)
         elements = {"edges": ends[None, :]}
-        if code == Refusal.NOT_AN_END:
+        if code == Refusal.NOT_AN_END and args[1] >= 0:
             elements["vertices"] = np.array([args[1]])
         if code == Refusal.COMMON_NEIGHBOR:
             a, b = ask("vertex_vertices", ends)
             beside = ask("face_vertices", ask("edge_faces", handle)).values
             elements["vertices"] = np.setdiff1d(np.intersect1d(a, b), beside)
-        return TopologyError(f"cannot {operation}: {words}", **elements)
+        return TopologyError(f"cannot {called}: {words}", **elements)
 
     @cached_property
     def _edge_vertices(self) -> Any:
@@ -324,6 +332,7 @@ class Operations:
             raise MeshError(f"{operation} takes one to three handles, not {len(handles)}")
         element = self._operations[operation].element
         row = [arguments.integer(operation, element, it) for it in handles]
+        self._queries.count_edges()
         self.make_way(operation)
         state, row = self._state, [*row, -1, -1][:3]
         log, position = state.log, np.asarray(point, np.float32)
@@ -332,5 +341,7 @@ class Operations:
         result, accesses = work(row, position, state.out["edge"], log, state.records)
         if result < 0:
             raise self.refusal(operation, result, row)
-        self._followers.publish(Edit(operation, result, log[1 : log[0] + 1].tolist()))
+        self._followers.publish(
+            self.edit(operation, operation, result, log[1 : log[0] + 1].tolist())
+        )
         return accesses

@@ -60,6 +60,8 @@ class Recording:
 
     def add(self, what: str, handles: Any, caller: str = PYTHON) -> None:
         """Count what was asked or done for one handle, or for an array of them."""
+        if np.ndim(handles) and not len(handles):
+            return
         if np.ndim(handles):
             wide = np.asarray(handles).astype(np.int64)
             near = np.abs(np.diff(np.where(wide >> BITS, wide >> BITS, wide))) <= NEAR
@@ -165,7 +167,12 @@ def _counting(s: Structure, called: str, what: str, found: Recording) -> Callabl
         handles = next(iter((*given, *more.values())), None)
         if handles is None:  # all there are
             handles = range(len(result))
-        found.add(name, 0 if called in OPERATIONS and np.ndim(handles) else handles)
+        if called == "collapse_edges":  # those that were refused were looked at, and no more
+            handles = np.asarray(handles)
+            found.add(CHECKED + name, handles[~result])
+            handles = handles[result]
+        single = called in OPERATIONS or called == "operate"  # of a point, if of no handle
+        found.add(name, 0 if single and np.ndim(handles) else handles)
         return result
 
     return counted

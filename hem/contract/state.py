@@ -111,10 +111,9 @@ class State:
         if not all(np.may_share_memory(values, room) for _, values in parts if len(values)):
             room = np.empty(sum(len(values) for _, values in parts), room.dtype)
         end = 0
-        for mine, values in parts:
-            if end:
-                offsets[mine] += end
-            if end or room is not first:  # the first part lies where it belongs
+        for part, (mine, values) in enumerate(parts):
+            offsets[mine] += end
+            if part or room is not first:  # the first part lies where it belongs
                 move(values, room, end)
             end += len(values)
         offsets[n] = end

@@ -121,8 +121,13 @@ class Storage:
         return saved
 
     def put_back(self, records: Any, saved: Any) -> None:
-        """Have the records say again what was ``saved``, in their place."""
-        for array, fresh in zip(records, saved, strict=True):
+        """Have the records say again what was ``saved``, in their place. MeshError if they grew."""
+        pairs = list(zip(records, saved, strict=True))
+        if any(array.shape != fresh.shape for array, fresh in pairs):
+            raise MeshError(
+                "the mesh has grown since the snapshot, or was compacted: reserve room before it"
+            )
+        for array, fresh in pairs:
             np.copyto(array, fresh)
 
     def arrays(self, records: Any) -> tuple[Array, ...]:

@@ -313,12 +313,13 @@ class Structure(Described, Surveying, abstract=True):
     def add_face(self, a: int, b: int, c: int) -> Edit:
         """Make a face of three vertices, counterclockwise. 1 face and 0 to 3 edges more.
 
-        Every corner must be without faces or share an edge with the surface. Cost O(n_ev).
+        Every corner must be without faces or share an edge with the surface. Cost O(n_ev); where
+        neighbors are searched for, that of the search.
         """
         return self._do["add_face"](a, None, b, c)
 
     def remove_face(self, face: int) -> Edit:
-        """Take a face away. 1 face and 0 to 3 edges fewer; vertices stay. Cost O(n_ev)."""
+        """Take a face away. 1 face and 0 to 3 edges fewer; vertices stay. Cost as ``add_face``."""
         return self._do["remove_face"](face)
 
     def move_vertex(self, vertex: int, point: ArrayLike) -> Edit:
@@ -621,7 +622,8 @@ class Structure(Described, Surveying, abstract=True):
     def reserve(self, splits: int) -> None:
         """Make all room for so many splits at once, so that none of them has to.
 
-        Room for records, and scratch for as many operations of any kind. O(n_v + n_t).
+        Room for a vertex and two faces each, where a polygon of n corners takes n - 1 faces, and
+        scratch for as many operations of any kind. O(n_v + n_t).
         """
         self._operations.reserve(operator.index(splits))
 

@@ -61,7 +61,7 @@ class Surveying(ABC):
 
     def positions(self, vertices: ArrayLike) -> Points:
         """(k, 3) float32: of some vertices; those of dead ones are NaN. Cost O(k), also where
-        ``points`` are gathered anew.
+        ``points`` are gathered anew. Handles are not checked: they index as NumPy's do.
         """
         found: Points = self.points[np.asarray(vertices)]
         return found
@@ -129,7 +129,7 @@ class Surveying(ABC):
         return None
 
     def is_closed(self) -> bool:
-        """Whether every edge has two faces. Cost O(n_t)."""
+        """Whether every edge has two faces. Cost O(n_t log n_t)."""
         return not len(self._border())
 
     def border_loops(self) -> list[Handles]:

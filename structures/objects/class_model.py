@@ -51,8 +51,10 @@ class Vertex:
     def point(self, point: Point) -> None:
         self._point = point
         if (event := self.position_changed) is not None:
-            event.tell(self)
-            event.tell_mesh(self)
+            try:
+                event.tell(self)
+            finally:  # it has moved, whatever a subscriber made of it
+                event.tell_mesh(self)
 
     def place(self, point: Point) -> None:
         """Set the point within an operation, of which the mesh tells by itself."""

@@ -213,3 +213,16 @@ def test_objects_weigh_what_python_hands_out():
     traced, _ = tracemalloc.get_traced_memory()
     tracemalloc.stop()
     assert sum(s.memory().values()) == pytest.approx(traced, rel=0.15)
+
+
+def test_who_follows_the_mesh_is_told_though_a_subscriber_of_the_vertex_raises():
+    s, edits = objects(octahedron()), []
+    s.subscribe(edits.append)
+
+    def refuse(vertex: Any) -> None:
+        raise ValueError("not this one")
+
+    s.vertices[1].subscribe(refuse)
+    with pytest.raises(ValueError, match="not this one"):
+        s.vertices[1].point = (0.0, 5.0, 0.0)
+    assert edits[-1].changed_vertices.tolist() == [1]

@@ -170,3 +170,17 @@ def test_a_vertex_of_a_very_large_valence_is_answered(name):
     faces = mesh.triangles[(mesh.triangles == apex).any(axis=1)]
     assert sorted(ring.tolist()) == np.setdiff1d(faces, [apex]).tolist()
     assert len(s.vertex_faces(apex)) == len(faces)
+
+
+@pytest.mark.parametrize("query", ["vertex_faces", "vertex_edges", "vertex_vertices"])
+def test_a_batch_may_begin_with_a_slice_without_answers(name, query, monkeypatch):
+    torus = hem.generate("torus", 100)
+    points = np.vstack([np.zeros_like(torus.points), torus.points])
+    s = structures.build(name, hem.TriangleMesh(points, torus.triangles + len(torus.points)))
+    alone = getattr(s, query)()
+    for module in ("hem.authoring.slices", "hem.contract.state"):
+        monkeypatch.setattr(f"{module}.slice_count", lambda n: min(n, 4) or 1)
+    found = getattr(s, query)()
+    assert found.offsets.tolist() == alone.offsets.tolist()
+    assert found.values.tolist() == alone.values.tolist()
+    assert len(alone.values)

@@ -10,7 +10,7 @@ from typing import Any
 from hem.arrays import Array
 from hem.authoring.kernels import FACE_END, SIDES, VALENCE, Kernel, Kernels, kernel
 from hem.authoring.operations.parts import Operation, count_new, has_room, has_scratch, log_faces
-from hem.authoring.operations.rules import free_edges, live_vertex
+from hem.authoring.operations.rules import live_vertex
 from hem.authoring.refusals import ALLOWED, NEEDS_ROOM, Refusal
 from hem.edit import CREATED
 
@@ -49,8 +49,7 @@ def rule(k: Kernels) -> Kernel:
 
 def make(k: Kernels) -> Kernel:
     """The operation for one structure."""
-    may_add_face, add_records = rule(k), k["add_records"]
-    count_free_edges = free_edges(k["face_left_of"])
+    may_add_face, add_records, face_left_of = rule(k), k["add_records"], k["face_left_of"]
 
     @kernel
     def add_face(
@@ -62,7 +61,9 @@ def make(k: Kernels) -> Kernel:
         refusal = may_add_face(m, args, out)
         if refusal != ALLOWED or dry:
             return refusal
-        edges = count_free_edges(m, args, n)
+        edges = 0  # that are new: nothing lies beyond them
+        for i in range(n):
+            edges += face_left_of(m, args[(i + 1) % n], args[i]) < 0
         f = m.counts[FACE_END]
         add_records(m, args, f)
         count_new(m, edges, 1)

@@ -38,9 +38,10 @@ from hem.edit import CHANGED, FACE, REMOVED, VERTEX
 
 
 def rule(k: Kernels) -> Kernel:
-    """Make ``may_collapse_edge(m, e, at, out) -> refusal, neighbors``; it overwrites ``out``.
+    """Make ``may_collapse_edge(m, e, at, out) -> refusal, most``; it overwrites ``out``.
 
-    The neighbors are those of both ends together. Cost: that of ``vertex_vertices`` at both ends.
+    ``most``: what is at both ends together bounds what is at the one that stays, neighbors or
+    faces. Cost: that of ``vertex_vertices`` at both ends.
     """
     is_surface_edge = surface_edge(k["edge_exists"], k["diamond"])
     vertex_faces, is_alone, are_triangles = k["vertex_faces"], *_parts(k)
@@ -59,9 +60,8 @@ def rule(k: Kernels) -> Kernel:
             return Refusal.LONE_FACE, 0
         if is_alone(m, at[RIGHT], at[B], at[A], at[D], others, out):
             return Refusal.LONE_FACE, 0
-        around_a, border_a = neighbors(m, at[A], out)
-        around_b, border_b = neighbors(m, at[B], out[around_a:])
-        both = around_a + around_b
+        around_a, border_a, most_a = neighbors(m, at[A], out)
+        around_b, border_b, most_b = neighbors(m, at[B], out[around_a:])
         if others == 1 and border_a and border_b:
             return Refusal.TWO_BORDERS, 0
         closed = around_a == 3 and around_b == 3 and not border_a and not border_b
@@ -76,7 +76,7 @@ def rule(k: Kernels) -> Kernel:
             around_b = vertex_faces(m, at[B], out[around_a:])
             if count_shared(out, around_a, around_b) != others + 1:
                 return Refusal.SHARED_FACE, 0
-        return ALLOWED, both
+        return ALLOWED, most_a + most_b
 
     return may_collapse_edge
 
@@ -116,7 +116,7 @@ def make(k: Kernels) -> Kernel:
     ) -> int:
         if not has_scratch(m, out, log):
             return NEEDS_ROOM
-        refusal, both = may_collapse_edge(m, args[0], at, out)
+        refusal, most = may_collapse_edge(m, args[0], at, out)
         if refusal != ALLOWED:
             return refusal
         keep = args[1] if args[1] != -1 else at[B]
@@ -135,7 +135,7 @@ def make(k: Kernels) -> Kernel:
         m.counts[VERTICES] -= 1
         m.counts[EDGES] -= 1 + triangles
         m.counts[FACES] -= triangles
-        m.counts[VALENCE] = max(m.counts[VALENCE], both)
+        m.counts[VALENCE] = max(m.counts[VALENCE], most)
         log[0] = log_element(log, end, VERTEX + REMOVED, drop)
         return int(keep)
 

@@ -10,7 +10,6 @@ from typing import Any
 from hem.arrays import Array
 from hem.authoring.kernels import EDGES, FACES, Kernel, Kernels, kernel
 from hem.authoring.operations.parts import Operation, has_scratch, log_faces
-from hem.authoring.operations.rules import free_edges
 from hem.authoring.refusals import ALLOWED, NEEDS_ROOM, Refusal
 from hem.authoring.walks import ring
 from hem.edit import REMOVED
@@ -29,7 +28,7 @@ def rule(k: Kernels) -> Kernel:
         """Whether the face lies inside the open fan of v: with faces on both sides there."""
         if before < 0 or after < 0:
             return False
-        _, on_border = neighbors(m, v, out)
+        _, on_border, _ = neighbors(m, v, out)
         return bool(on_border)
 
     @kernel
@@ -51,8 +50,10 @@ def rule(k: Kernels) -> Kernel:
 
 def make(k: Kernels) -> Kernel:
     """The operation for one structure."""
-    may_remove_face, face_vertices = rule(k), k["face_vertices"]
-    remove_records, count_free_edges = k["remove_records"], free_edges(k["face_left_of"])
+    may_remove_face, remove_records, edge_faces = rule(k), k["remove_records"], k["edge_faces"]
+    face_vertices, face_left_of, edge_between = (
+        k[it] for it in ("face_vertices", "face_left_of", "edge_between")
+    )
 
     @kernel
     def remove_face(
@@ -64,8 +65,12 @@ def make(k: Kernels) -> Kernel:
         refusal = may_remove_face(m, face, out)
         if refusal != ALLOWED or dry:
             return refusal
-        n = face_vertices(m, face, out)
-        m.counts[EDGES] -= count_free_edges(m, out, n)
+        n, lone = face_vertices(m, face, out), 0
+        for i in range(n):
+            a, b = out[i], out[(i + 1) % n]
+            if face_left_of(m, b, a) < 0:  # but another may run the same way
+                lone += edge_faces(m, edge_between(m, a, b), out[n:]) == 1
+        m.counts[EDGES] -= lone
         remove_records(m, face)
         m.counts[FACES] -= 1
         log[0] = log_faces(log, log[0], REMOVED, face, -1)

@@ -77,17 +77,3 @@ def live_vertex(coordinate: Kernel) -> Kernel:
         return 0 <= v < m.counts[VERTEX_END] and not np.isnan(coordinate(m, v, 0))
 
     return is_live_vertex
-
-
-@cache
-def free_edges(face_left_of: Kernel) -> Kernel:
-    """Make ``count_free_edges(m, corners, n)``: edges of such a face with no face beyond them."""
-
-    @kernel
-    def count_free_edges(m: Any, corners: Array, n: int) -> int:
-        free = 0
-        for i in range(n):
-            free += face_left_of(m, corners[(i + 1) % n], corners[i]) < 0
-        return free
-
-    return count_free_edges

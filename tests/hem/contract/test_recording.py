@@ -139,3 +139,25 @@ def test_what_an_algorithm_edits_counts_though_it_calls_no_operation(name: str) 
         hem.algorithms.subdivide(s, "sqrt3")
     counted = {it.what: it.times for it in found.rows}
     assert (counted["flip_edge"], counted["move_vertex"]) == (edges, n)
+
+
+def test_of_a_batch_what_was_refused_is_no_edit() -> None:
+    tetrahedron = hem.TriangleMesh(
+        np.vstack([np.zeros(3), np.eye(3)]), [(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)]
+    )
+    s = structures.build(COMPILED_ONE, tetrahedron)
+    with hem.record(s) as workload:
+        assert not s.collapse_edges(s.edges()).any()
+    assert counts(workload) == {(f"{CHECKED}collapse_edge", COMPILED): 6}
+    s = build()
+    with hem.record(s) as workload:
+        done = s.collapse_edges(s.edges())
+    told = {"collapse_edge": done.sum(), f"{CHECKED}collapse_edge": (~done).sum()}
+    assert counts(workload) == {(what, COMPILED): times for what, times in told.items()}
+
+
+def test_a_point_is_one_vertex() -> None:
+    s = build()
+    with hem.record(s) as workload:
+        s.operate("add_vertex", point=(0, 0, 0))
+    assert counts(workload) == {("add_vertex", PYTHON): 1}

@@ -489,3 +489,18 @@ def test_values_grow_where_they_are(name):
     assert [it.values.ctypes.data for it in of] == places
     assert [len(it.values) for it in of] == [1_900, 3_800, 3_800]
     assert (of[0].values == 7).all()
+
+
+def test_a_default_is_a_value_and_no_view(s):
+    given = np.zeros(3, np.float32)
+    color = s.face_attribute("color", shape=(3,), default=given, on_split="default")
+    given[:] = 7
+    made = s.split_face(int(s.faces()[0]), (0, 0, 0)).created_faces
+    assert not color[made].any()
+
+
+def test_another_shape_is_another_attribute(s):
+    weight = s.vertex_attribute("weight", np.float64, shape=3)
+    assert s.vertex_attribute("weight", shape=3) is weight
+    with pytest.raises(hem.MeshError, match="already"):
+        s.vertex_attribute("weight", shape=2)

@@ -21,6 +21,8 @@ import structures
 from hem.contract import QUERIES, STEPS, Navigable, Structure
 from hem.errors import MeshError, TopologyError
 from hem.ragged import Ragged
+from tests.structures.conftest import octahedron
+from tests.structures.histories.actions import faces_of
 from tests.structures.test_polygons import CUBE, mixed, plankton, sheet
 
 COPIES: dict[str, Callable[[Structure], Structure]] = {
@@ -504,3 +506,31 @@ def test_the_first_splits_move_no_record_and_what_was_read_is_read_on(name: str)
 def test_a_pickle_holds_no_room(name: str) -> None:
     s = structures.build(name, hem.generate("torus", 1_600))
     assert len(pickle.dumps(s)) < sum(s.memory(names=True).values()) + 10_000
+
+
+def test_a_mesh_that_has_grown_is_not_restored_by_half(name: str) -> None:
+    s = structures.build(name, octahedron())
+    before, fresh = s.n_faces, s.snapshot()
+    for _ in range(50):
+        s.split_face(int(s.faces()[0]), (0, 0, 0))
+    after = faces_of(s)
+    if s.compiled:
+        with pytest.raises(MeshError, match="reserve room"):
+            s.restore(fresh)
+        assert faces_of(s) == after
+    else:  # objects have no room
+        s.restore(fresh)
+        assert s.n_faces == before
+    s.validate()
+
+
+@pytest.mark.parametrize("operation", ["split_face", "flip_edge", "remove_face"])
+def test_what_is_counted_uncompiled_counts_edges_and_names_vertices(name: str, operation) -> None:
+    s, heard = structures.build(name, hem.generate("torus", 100)), []
+    s.subscribe(heard.append)
+    handle = 0
+    if operation == "flip_edge":
+        handle = next(int(e) for e in s.edges() if s.can_flip_edge(int(e)))
+    s.operation_work(operation, handle)
+    assert s.n_edges == len(s.edges())
+    assert heard[0].vertex == (100 if operation == "split_face" else -1)

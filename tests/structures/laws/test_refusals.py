@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 from functools import partial
+from itertools import combinations
 
 import numpy as np
 import pytest
 
 import hem
 import structures
+from hem.authoring.kernels import VALENCE
 from hem.contract import QUERIES
 from hem.edit import CHANGED, FACE, VERTEX
+from hem.errors import TopologyError
 from tests.structures.conftest import HOLDS_ANYTHING, NEEDS_MANIFOLD, OF_ARRAYS, octahedron, strip
 from tests.structures.histories.actions import faces_of
 from tests.structures.laws.test_operations import TETRAHEDRON
@@ -338,3 +341,45 @@ def test_nothing_foreign_is_copied_for_a_render_mesh(name, element):
             s.copy_touched([0 << 3 | what], *arrays)
     assert (points == 7).all()
     assert (indices == 7).all()
+
+
+def fans_on_edges(blades: int = 20, ends: int = 4) -> hem.TriangleMesh:
+    """A chain of vertices, each with as many faces at once as every two of its neighbors make."""
+    sets = [range(ends + blades * i, ends + blades * (i + 1)) for i in range(ends)]
+    faces = [(h, a, b) for h in range(ends) for a, b in combinations(sets[h], 2)]
+    for h in range(ends - 1):
+        faces += [(h, h + 1, sets[h][0]), (h + 1, h, sets[h][1])]
+    points = np.random.default_rng(0).random((ends + blades * ends, 3))
+    return hem.TriangleMesh(points, faces)
+
+
+@pytest.mark.parametrize("name", HOLDS_ANYTHING)
+def test_a_vertex_with_more_faces_than_neighbors_is_collapsed_within_its_scratch(name):
+    s = structures.build(name, fans_on_edges(), compiled=False)  # bounds are checked
+    for h in range(3):
+        s.collapse_edge(s.find_edge(h, h + 1), keep=h + 1)
+        assert len(s.vertex_faces(h + 1)) <= s.records.counts[VALENCE]
+    s.validate()
+
+
+@pytest.mark.parametrize("name", HOLDS_ANYTHING)
+def test_an_edge_of_another_face_that_runs_the_same_way_stays(name):
+    mesh = hem.TriangleMesh(np.random.default_rng(0).random((4, 3)), [(0, 1, 2), (0, 1, 3)])
+    for remove in (lambda s: s.remove_face(0), lambda s: s.remove_faces([0])):
+        s = structures.build(name, mesh)
+        remove(s)
+        assert s.n_edges == len(s.edges()) == 3
+
+
+def test_a_vertex_that_names_none_is_not_told_by_another_number(name):
+    s = structures.build(name, octahedron())
+    with pytest.raises(TopologyError, match="end") as refused:
+        s.collapse_edge(int(s.edges()[0]), keep=-1)
+    assert "-2" not in str(refused.value)
+
+
+def test_a_refusal_names_the_method_that_was_called():
+    s = structures.build("plankton", hem.generate("torus", 100))
+    h = s.face_half_edges(0)
+    with pytest.raises(TopologyError, match="cannot split_face"):
+        s.split_face(int(h[0]), int(h[1]))
