@@ -54,7 +54,7 @@ def model(
     ``wrap`` it is the body around that. Raises MeshError for what there is not.
     """
     family, colon, size = name.partition(":")
-    if Path(name).exists():
+    if Path(name).is_file():
         mesh, up = hem.load(name, repair, triangulate=True), "y"
     else:
         kind = f"grid:{size if colon else 144}" if family == PLATE else name

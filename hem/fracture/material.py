@@ -2,6 +2,7 @@
 
 import math
 import os
+import re
 import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
@@ -46,20 +47,22 @@ class Material:
                 wrong.append(it)
         if not all(isinstance(count, int) and count >= 0 for count in self.circles):
             wrong.append("circles")
-        if self.burst > 1:
+        if "burst" not in wrong and self.burst > 1:
             wrong.append("burst")
+        if not re.fullmatch("#[0-9a-fA-F]{6}", str(self.color)):
+            wrong.append("color")
         if wrong:
             raise MeshError(
                 f"material {self.name!r}: {', '.join(wrong)} cannot be "
                 f"{', '.join(repr(getattr(self, it)) for it in wrong)}; numbers are positive, "
-                "circles are counts of break points, and burst is a part of 1"
+                "circles are counts of break points, burst is a part of 1, and a color is #rrggbb"
             )
 
 
 def materials(path: str | os.PathLike[str] = _OWN) -> dict[str, Material]:
     """The materials of a toml file by name. Raises MeshError that names the file and the entry."""
     try:
-        read = tomllib.loads(Path(path).read_text())
+        read = tomllib.loads(Path(path).read_text("utf-8"))
     except (OSError, ValueError) as error:
         raise MeshError(f"cannot read materials from {path}: {error}") from error
     return {name: _material(name, entry, path) for name, entry in read.items()}
@@ -79,7 +82,10 @@ def _material(name: str, entry: Any, path: Any) -> Material:
         what = [f"lacks {', '.join(sorted(missing))}"] if missing else []
         what += [f"has no {', '.join(sorted(unknown))}"] if unknown else []
         raise MeshError(f"{path}: material {name!r} {' and '.join(what)}")
-    return Material(name, **entry)
+    try:
+        return Material(name, **entry)
+    except (MeshError, TypeError) as error:
+        raise MeshError(f"{path}: material {name!r}: {error}") from error
 
 
 MATERIALS = materials()

@@ -2,6 +2,7 @@
 
 from abc import ABC, abstractmethod
 from importlib import import_module
+from itertools import pairwise
 from typing import Any, Self
 
 import numpy as np
@@ -71,9 +72,9 @@ class Convertible(ABC):
         begins = np.flatnonzero(np.diff(faces.counts, prepend=-1)).tolist()
         blocks = [
             (CELLS.get(int(faces.counts[begin]), "polygon"), np.stack(list(faces[begin:end])))
-            for begin, end in zip(begins, [*begins[1:], len(faces)], strict=True)
+            for begin, end in pairwise([*begins, len(faces)])
         ]
-        return library("meshio").Mesh(self.points, blocks)
+        return library("meshio").Mesh(self.points.copy(), blocks)
 
     def plot(self, **options: Any) -> Any:
         """Show the mesh with PyVista, whose options these are: a picture in a notebook."""

@@ -173,7 +173,9 @@ def _tell_of_equal(given: Array, kept: Points) -> None:
 def _validated_triangles(triangles: ArrayLike, n: int) -> Triangles:
     given = _rows_of_three(triangles, "triangles", kinds="iuf")
     if given.dtype.kind == "f":
-        refuse(given != np.floor(given), "vertex indices are not whole numbers")
+        refuse(
+            ~np.isfinite(given) | (given != np.floor(given)), "vertex indices are not whole numbers"
+        )
     if given.size and (given.min() < 0 or given.max() >= n):
         refuse((given < 0) | (given >= n), out_of_range(given, n))
     kept = own(given, np.int32)

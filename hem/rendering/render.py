@@ -8,6 +8,7 @@ the origin that no triangle uses. ``Structure.compact`` closes the gaps here, to
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
 from functools import partial
@@ -73,6 +74,10 @@ class RenderMesh:
         self._following.callback(structure.subscribe(self._follow))
         for it in attributes:
             self._following.callback(it.subscribe(partial(self._rewrite, it.name)))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """A copy follows its own structure from then on; subscribers are not of the copy."""
+        return _following_anew, (self.structure, list(self.attributes))
 
     @property
     def points(self) -> Points:
@@ -189,6 +194,10 @@ class RenderMesh:
         self._listeners.tell(upload)
 
 
+def _following_anew(structure: Structure, names: Sequence[str]) -> RenderMesh:
+    return RenderMesh(structure, [structure.vertex_attribute(name) for name in names])
+
+
 def split_at_seams(corners: Attribute) -> tuple[Points, Handles, Array]:
     """The arrays for a renderer of a mesh whose corners have values, such as texture coordinates.
 
@@ -200,7 +209,7 @@ def split_at_seams(corners: Attribute) -> tuple[Points, Handles, Array]:
         raise MeshError(f"{corners!r} is no attribute of corners")
     s = corners.mesh
     vertex, values = s.triangles().reshape(-1), corners[s.faces()]
-    told_apart = values.reshape(len(vertex), -1)
+    told_apart = values.reshape(len(vertex), math.prod(values.shape[1:]))
     _, value = np.unique(told_apart, axis=0, return_inverse=True)
     pairs = np.stack([vertex, value.reshape(-1)], axis=1)
     _, first, place = np.unique(pairs, axis=0, return_index=True, return_inverse=True)
@@ -226,8 +235,8 @@ def mesh_from_render(
     winding is turned; triangles without area of their own (a repeated corner) and vertices without
     triangles are left out. With ``values`` (n, …) of the repeated positions also theirs by corner
     (m, 3, …), for a ``corner_attribute``, so that seams are kept. Cost without a tolerance
-    O(n + m). Raises MeshError for what is no such mesh. Source: thesis 3.3.2, where the search for
-    repeated positions is quadratic.
+    O(n log n + m). Raises MeshError for what is no such mesh. Source: thesis 3.3.2, where the
+    search for repeated positions is quadratic.
     """
     corners = _rows(indices, "indices")
     raw = TriangleMesh(_rows(points, "points"), corners[~repeated_corners(corners)][:, [0, 2, 1]])

@@ -21,6 +21,8 @@ def promised_bytes(data: bytes) -> int:
     """The bytes of the whole file that begins like this. struct.error where its head is cut."""
     method = data[8:12].rstrip(b"\0")
     vertices, faces, textures, attributes, flags = struct.unpack_from("<5I", data, 12)
+    if textures + attributes > len(data):  # each takes some bytes
+        raise struct.error("more maps than bytes")
     at = _after_text(data, _HEADER) + _GRID * (method == b"MG2")
     order = {b"RAW": "INDX VERT", b"MG1": "INDX VERT", b"MG2": "VERT GIDX INDX"}[method].split()
     sizes = {"INDX": _CORNERS * faces, "VERT": _COORDINATES * vertices}

@@ -1,4 +1,4 @@
-"""Families of meshes that can be had at any size from 100 to 1,000,000 vertices."""
+"""Families of meshes that can be had at any size up to 2,000,000 vertices."""
 
 import hashlib
 import operator

@@ -7,6 +7,7 @@ from hem.errors import MeshError
 from hem.meshes import PolygonMesh, TriangleMesh
 from hem.sources.families import FAMILIES, generate
 from hem.sources.files import as_mesh, load
+from hem.sources.repair import repaired
 from hem.sources.samples import SAMPLES, sample
 
 USUAL_SIZE = 2_000  # vertices of a family that is named without a size
@@ -24,15 +25,17 @@ def find_mesh(
     >>> hem.find_mesh("torus:100")
     TriangleMesh(100 vertices, 200 faces)
 
-    A file comes before a sample of its name. `repair` and `triangulate`: see `load`. Raises
-    MeshError for a name that nothing has, with those that there are, and for what cannot be read.
+    A file comes before a sample of its name, a folder does not. `repair` and `triangulate`: see
+    `load`. Raises MeshError for a name that nothing has, with those that there are, and for what
+    cannot be read.
     """
     family, _, size = name.partition(":")
-    if Path(name).exists() or (Path(name).suffix and family not in FAMILIES):
+    known, path = name in SAMPLES or family in FAMILIES, Path(name)
+    if path.is_file() or (not known and (path.exists() or path.suffix)):
         cut = repair or triangulate
         return load(name, repair, triangulate=True) if cut else as_mesh(name)
     if name in SAMPLES:
-        return sample(name, **({"repair": True} if repair else {}))
+        return repaired(sample(name)) if repair else sample(name)
     if family not in FAMILIES:
         raise MeshError(
             f"there is no model {name!r}: name a file, or one of "

@@ -31,7 +31,11 @@ class Parts(NamedTuple):
 def as_ragged(rows: list[list[int]]) -> Ragged:
     """Rows of corners in two arrays."""
     offsets = np.cumsum([0, *map(len, rows)], dtype=np.int64)
-    return Ragged(offsets, np.fromiter(chain.from_iterable(rows), np.int64, offsets[-1]))
+    try:
+        corners = np.fromiter(chain.from_iterable(rows), np.int64, offsets[-1])
+    except OverflowError as error:
+        raise MeshError("a face names a vertex beyond all numbers; get the file anew") from error
+    return Ragged(offsets, corners)
 
 
 def uniform(triangles: Array) -> Ragged:
@@ -92,7 +96,8 @@ def read_off(data: bytes) -> Parts:
         if not (0 <= n <= len(data) and 0 <= m <= len(data)):
             raise cut_short(f"{len(data):,} bytes, and promises {n:,} vertices and {m:,} faces")
         points = [[float(word) for word in line[:3]] for line in elements[:n]]
-        rows = [[int(word) for word in line[: int(line[0]) + 1]] for line in elements[n : n + m]]
+        faces = [(line, max(int(line[0]), 0)) for line in elements[n : n + m]]
+        rows = [[int(word) for word in line[: corners + 1]] for line, corners in faces]
         if any(len(line) > len(row) for line, row in zip(elements[n:], rows, strict=False)):
             dropped.append("colors")
     except MeshError:
@@ -112,15 +117,17 @@ def read_stl(data: bytes) -> Parts:
     Its normals are those of the triangles, so that nothing is lost with them.
     """
     count = int.from_bytes(data[80:84], "little") if len(data) >= 84 else -1
-    if data.lstrip().startswith(b"solid") and len(data) != 84 + 50 * count:
-        numbers = re.findall(rb"\bvertex\s+(\S+)\s+(\S+)\s+(\S+)", data)
-        if b"endsolid" not in data[-500:] or len(numbers) != 3 * data.count(b"endfacet"):
+    binary = count >= 0 and len(data) >= 84 + 50 * count
+    if data[:80].lstrip()[:5].lower() == b"solid" and not binary:
+        text = data.lower()
+        numbers = re.findall(rb"\bvertex\s+(\S+)\s+(\S+)\s+(\S+)", text)
+        if b"endsolid" not in text[-500:] or len(numbers) != 3 * text.count(b"endfacet"):
             raise cut_short("no 'endsolid' at its end, or a facet without three vertices")
         try:
             corners = np.array(numbers, np.bytes_).reshape(-1, 3).astype(np.float64)
         except ValueError as error:
             raise MeshError(f"a vertex has a coordinate that is no number: {error}") from error
-    elif count >= 0 and len(data) >= 84 + 50 * count:
+    elif binary:
         facets = np.frombuffer(data, _FACET, count, offset=84)
         corners = facets["corners"].reshape(-1, 3)
     else:

@@ -88,7 +88,8 @@ def _fourth_points(
     radius = 2 * areas(corners) / around
     wanted = np.minimum(depth, SLENDER * np.sqrt(areas(corners)))
     wanted = wanted * (0.5 + 0.5 * random(len(faces)))
-    allowed = radius * _steepest(structure, faces, corners)
+    with np.errstate(invalid="ignore"):  # of a face of no area, whose point is NaN
+        allowed = radius * _steepest(structure, faces, corners)
     down = -_units(corners) * np.minimum(wanted, allowed)[:, None]
     return (middle + down).astype(np.float32).astype(np.float64)
 
@@ -112,7 +113,7 @@ def _free(structure: Structure, faces: Array, solids: Array, size: float) -> Boo
     """Raise the fourth points, in place, until nothing is in the way -> (k,) which have a depth."""
     least = 1e-7 * size
     middle = solids[:, :3].mean(axis=1)
-    low, high = solids.min(axis=(0, 1)), solids.max(axis=(0, 1))
+    low, high = np.nanmin(solids, axis=(0, 1)), np.nanmax(solids, axis=(0, 1))  # but of no area
     others = face_corners(structure, np.setdiff1d(structure.faces(), faces))
     near = ((others.max(axis=1) > low) & (others.min(axis=1) < high)).all(axis=1)
     skin = np.concatenate([others[near], solids[:, :3]])
@@ -147,5 +148,6 @@ def _split_inside(solids: Array, impact: Array, force: float, random: Any) -> Fl
 
 
 def _units(corners: Array) -> Floats:
-    """(k, 3): the normals of triangles, of length 1."""
-    return unit(normals(corners))
+    """(k, 3): the normals of triangles, of length 1; NaN for those of no area."""
+    with np.errstate(invalid="ignore"):
+        return unit(normals(corners))

@@ -73,7 +73,8 @@ def shatter(
     for what was split and one for what came out. The same seed gives the same shards on every
     structure and machine.
 
-    Cost: a walk of O(√n_t) to the face and to each point, and the splits. Raises MeshError for an
+    Cost: a walk of O(√n_t) to the face and to each point, and the splits; O(n_v + n_t) for the
+    bounding box and what is left. Raises MeshError for an
     impact that is no position or not near the surface, for polygons, and for a mesh without faces.
     Source: thesis 4.4.
     """

@@ -106,3 +106,12 @@ def importable(name: str) -> bool:
     except ImportError:
         return False
     return True
+
+
+@pytest.mark.usefixtures("meshio")
+def test_the_empty_mesh_has_no_cells_and_what_is_given_is_the_callers() -> None:
+    assert not hem.TriangleMesh([], []).to_meshio().cells
+    mesh = hem.generate("torus", 100)
+    given = mesh.to_meshio()
+    given.points *= 2
+    assert np.array_equal(given.points, 2 * mesh.points)

@@ -63,6 +63,7 @@ def test_other_types_and_orders_become_contiguous_float32_and_int32(
         (SQUARE, [[1, 2, 3], [1, 3, 4]], "count from 1", [1]),
         (SQUARE, [[0, 1, 2], [0, 1, 2.5]], "whole numbers", [1]),
         (SQUARE, [[0, 1, np.nan]], "whole numbers", [0]),
+        (SQUARE, [[0, 1, 2], [0, 1, np.inf]], "whole numbers", [1]),
         (SQUARE, [[0, 1, 2], [3, 1, 3], [2, 2, 1]], "a vertex twice", [1, 2]),
         ([], [[0, 1, 2]], "no points", [0]),
     ],

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import copy
+import pickle
+
 import numpy as np
 import pytest
 
@@ -252,3 +255,26 @@ def test_welding_equals_a_search_through_all_positions():
     mesh = hem.TriangleMesh(points, rng.permutation(300).reshape(-1, 3)).welded()
     first = list(dict.fromkeys(map(tuple, (points + 0.0).astype(np.float32).tolist())))
     assert mesh.points.tolist() == [list(it) for it in first]
+
+
+@pytest.mark.parametrize("made", [
+    copy.copy, copy.deepcopy, lambda render: pickle.loads(pickle.dumps(render)),
+])  # fmt: skip
+def test_a_copy_follows_its_own_structure_and_ends_alone(s, made):
+    heat = s.vertex_attribute("heat")
+    render = hem.RenderMesh(s, [heat])
+    twin = made(render)
+    assert list(twin.attributes) == ["heat"]
+    assert (twin.structure is s) == (made is copy.copy)
+    some_edits(twin.structure, 5)
+    assert_in_step(twin)
+    twin.close()
+    some_edits(s, 5)
+    assert_in_step(render)
+
+
+@pytest.mark.parametrize("name", structures.NAMES)
+def test_a_mesh_without_faces_has_no_seams(name):
+    s = structures.build(name, hem.TriangleMesh(np.eye(3), []))
+    points, indices, values = hem.split_at_seams(s.corner_attribute("uv", shape=(2,)))
+    assert (len(points), len(indices), values.shape) == (0, 0, (0, 2))

@@ -117,6 +117,7 @@ PROMISES = {
     "vertices.obj": ("# Vertices: 4000000000\n" + OBJ.format(4), "4 of 4,000,000,000 vertices"),
     "facets.stl": (80 * "-" + 4 * "\x7f" + 50 * "-", "134 bytes of 106,953,107,234"),
     "chunk.3ds": ("MM" + 4 * "\x7f" + 80 * "-", "86 of 2,139,062,143 bytes"),
+    "maps.ctm": ("OCTM\5\0\0\0RAW\0" + "\1\0\0\0" * 2 + "\0\0\0\4" + 12 * "\0", "no whole part"),
     "raw.ctm": ("OCTM\5\0\0\0RAW\0" + 8 * "\x7f" + 100 * "\0", r"120 of 51,337,491,\d+ bytes"),
 }  # fmt: skip
 """Files whose heads say that there is more than there can be, and what is to be said of it."""
@@ -509,3 +510,31 @@ def test_a_file_that_kills_pymeshlab_kills_nothing_else(
     with pytest.raises(hem.MeshError, match=r"mesh.dae: .*died of this"):
         hem.load(tmp_path / "mesh.dae")
     assert len(hem.load(tmp_path / "mesh.dae").points) == 3
+
+
+@pytest.mark.parametrize(("name", "content", "words"), [
+    ("a.off", OFF.format(0, 3).replace("3 0 1 2", "-1 0 1 2"), "three corners or more.*faces: 0"),
+    ("b.off", OFF.format(0, 3).replace("3 0 1 2", "-3 0 1 2 3"), "three corners or more.*faces: 0"),
+    ("c.off", OFF.format(0, 10**20), "beyond all numbers"),
+    ("d.obj", OBJ.format(10**20), "beyond all numbers"),
+    ("e.ply", PLY.format(10**20), ""),
+])  # fmt: skip
+def test_numbers_that_name_nothing_are_refused_with_the_file(
+    tmp_path: Path, name: str, content: str, words: str
+) -> None:
+    with pytest.raises(hem.MeshError, match=f"{name}.*{words}"):
+        hem.load_polygons(written(tmp_path / name, content))
+
+
+def test_stl_files_are_text_in_any_case_and_binary_whatever_their_first_word(
+    tmp_path: Path,
+) -> None:
+    facet = "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\n"
+    text = f"solid some\n{facet}endfacet\nendsolid some\n"
+    for content in (text, text.upper(), f"\n {text.title()}"):
+        assert len(hem.load(written(tmp_path / "text.stl", content)).triangles) == 1
+    file = tmp_path / "binary.stl"
+    hem.save(hem.generate("sphere", 42), file)
+    data = b"solid" + file.read_bytes()[5:]
+    for more in (b"", b"\0\0"):
+        assert len(hem.load(written(file, data + more)).triangles) == 80

@@ -47,3 +47,18 @@ def test_polygons_are_kept_unless_they_are_to_be_cut(tmp_path):
 def test_a_name_that_nothing_has_is_refused_with_those_that_there_are(name, said):
     with pytest.raises(hem.MeshError, match=said.replace("(", r"\(")):
         hem.find_mesh(name)
+
+
+def test_a_folder_does_not_hide_a_family_or_sample_of_its_name(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    for name in ("teapot", "torus", "neither"):
+        (tmp_path / name).mkdir()
+    assert same(hem.find_mesh("teapot"), hem.sample("teapot"))
+    assert same(hem.find_mesh("torus"), hem.generate("torus", 2_000))
+    with pytest.raises(hem.MeshError, match="it is a folder"):
+        hem.find_mesh("neither")
+
+
+def test_every_sample_may_be_repaired():
+    assert same(hem.find_mesh("teapot", repair=True), hem.sample("teapot"))
+    assert hem.find_mesh("bunny", repair=True).summary().components >= 1

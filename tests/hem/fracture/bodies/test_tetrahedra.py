@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+import trimesh
 
 import hem
 import structures
@@ -125,3 +126,23 @@ def test_what_has_no_inside_is_refused_and_nothing_changes(mesh, force, message)
         tetrahedra(s, s.points[0], "glass", force)
     assert np.array_equal(s.points, before.points)
     assert s.n_faces == before.n_faces
+
+
+def test_a_face_of_no_area_that_is_touched_hides_no_wall():
+    box = trimesh.creation.box((1, 1, 0.02))
+    for _ in range(3):
+        box = box.subdivide()
+    points, faces = np.array(box.vertices), [tuple(map(int, it)) for it in box.faces]
+    top = [it for it in faces if (points[list(it), 2] == points[:, 2].max()).all()]
+    struck = min(top, key=lambda it: float(abs(points[list(it)].mean(axis=0)[:2]).sum()))
+    a, b, _ = struck
+    beyond = next(it for it in faces if {a, b} < set(it) and it != struck)
+    (d,) = set(beyond) - {a, b}
+    middle = len(points)
+    faces.remove(beyond)
+    faces += [(b, middle, d), (middle, a, d), (b, a, middle)]  # the last one has no area
+    points = np.vstack([points, (points[a] + points[b]) / 2])
+    s = structures.build("half_edge", hem.TriangleMesh(points, faces))
+    broken = tetrahedra(s, points[list(struck)].mean(axis=0), "glass", 1.0, 0)
+    assert broken.shards
+    assert min(float(it.points[:, 2].min()) for it in broken.shards) >= -0.01

@@ -170,6 +170,18 @@ def test_what_hangs_in_a_point_comes_off():
     assert broken.counts["broken off"] == len(broken.shards) - len(faces) > 0
 
 
+def test_islands_are_as_many_as_there_are_parts_of_the_type_they_had():
+    triangles = np.arange(600).reshape(-1, 3)
+    points = np.random.default_rng(0).random((601, 3))
+    found = hem.fracture.islands(hem.TriangleMesh(points, triangles, np.float64))
+    areas = [it.area() for it in found]
+    assert len(found) == 200
+    assert areas == sorted(areas, reverse=True)
+    assert {it.points.dtype for it in found} == {np.dtype(np.float64)}
+    corners = {it.points.tobytes() for it in found}
+    assert corners == {points[it].tobytes() for it in triangles}
+
+
 def test_islands_are_parts_of_the_rest_the_largest_first():
     dense = replace(MATERIALS["glass"], circles=(0, 0, 400))
     found = 0
@@ -254,6 +266,28 @@ def test_materials_of_ones_own(tmp_path):
     file = tmp_path / "mine.toml"
     file.write_text("[jelly]\ndensity = 1.0\n")
     with pytest.raises(hem.MeshError, match=r"mine\.toml.*jelly.*lacks burst"):
+        hem.fracture.materials(file)
+
+
+@pytest.mark.parametrize(
+    ("wrong", "words"),
+    [
+        ("circles = 5", "not iterable"),
+        ('burst = "0.3"', "burst"),
+        ("density = -1.0", "density"),
+        ('color = "blue"', "color"),
+        ('color = "#fff"', "color"),
+    ],
+)
+def test_a_wrong_number_of_a_material_is_told_with_its_file(tmp_path, wrong, words):
+    file, name = tmp_path / "mine.toml", wrong.partition(" ")[0]
+    right = {
+        "density": "1", "thickness": "1", "circles": "[1]", "scale": "1", "sites": "1",
+        "reach": "1", "burst": "1",
+    }  # fmt: skip
+    lines = [f"{key} = {value}" for key, value in right.items() if key != name]
+    file.write_text("\n".join(["[jelly]", *lines, wrong]))
+    with pytest.raises(hem.MeshError, match=rf"mine\.toml.*jelly.*{words}"):
         hem.fracture.materials(file)
 
 
