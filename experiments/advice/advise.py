@@ -112,6 +112,12 @@ def advise(
             refused[name] = "; ".join(wrong)
         else:
             options.append(Option(predict(prices, workload, name, faces), taken, edit))
+    shared = set.intersection(*(set(it.forecast.untold) for it in options)) if options else set()
+    for it in options:  # what nobody's price is told of ranks nobody
+        if missing := [what for what in it.forecast.untold if what not in shared]:
+            told = f"the run does not tell what {', '.join(missing)} takes"
+            refused[it.forecast.structure] = told
+    options = [it for it in options if it.forecast.structure not in refused]
     costs = {it.forecast.structure: it.forecast.seconds for it in options}
     first = best(costs, workload.measured.structure if workload.measured else "")
     options.sort(key=lambda it: (it.forecast.structure != first, it.forecast.seconds))

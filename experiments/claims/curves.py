@@ -16,6 +16,8 @@ PARTS = (4, 16)
 """By how much less than its working set a query or an operation may touch: one of several arrays,
 or what was just copied. It then waits for memory as a smaller mesh does."""
 
+TOO_BUSY = "By time it looks violated, but the machine was too busy to accuse anything by time."
+
 _NONE = np.zeros(0, np.intp)
 
 
@@ -67,6 +69,7 @@ class Curves:
     def __init__(self, run: Run) -> None:
         self.cases = run.cases
         self.too_busy = noise(run).too_busy
+        self.of_machines = bool((run.meta.get("machine") or {}).get("machines"))
         self._made: dict[tuple[str, bytes], Curve] = {}
         self._jobs: dict[Any, Any] = self.cases.groupby(["experiment", "structure"]).indices
         self._columns = {str(name): column.to_numpy() for name, column in self.cases.items()}

@@ -30,7 +30,7 @@ import pandas as pd
 import hem.complexity
 from experiments.claims.cells import load_claims
 from experiments.claims.claim import BOUND, MEMORY, Claim, Exactly, Growth, JudgedClaim, Outcome
-from experiments.claims.curves import Curve, Curves, axes_of, curves
+from experiments.claims.curves import TOO_BUSY, Curve, Curves, axes_of, curves
 from experiments.claims.quantities import judge_sentences, sentence_claims
 from experiments.harness import HUBS, QUERIES_TABLE, Axis
 from experiments.runs import Run, experiments
@@ -41,8 +41,6 @@ CASE_ERROR = 0.15
 """How far cases of one curve stray, beyond what their own rounds tell: each is measured within some
 milliseconds, and other tenants of the machine slow its caches for longer than that. A reference is
 one more case, and strays as much."""
-
-TOO_BUSY = "By time it looks violated, but the machine was too busy to accuse anything by time."
 
 FLAT = 0.5  # slope in n_ev below which what grows comes on top of a larger part that does not
 
@@ -149,8 +147,11 @@ def judge_run(run: Run) -> list[JudgedClaim]:
 def _state(folder: Path, claims: list[Claim]) -> str:
     """A digest of the run, of the claims wherever they stand, and of the code that judges."""
     digest = hashlib.sha256(repr(claims).encode())
-    code = [Path(__file__).parent, Path(str(hem.complexity.__file__)).parent]
-    for room, pattern in ((code[0], "*.*"), (code[1], "*.*"), (folder, "*.json*")):
+    claims_here, whole = Path(__file__).parent, Path(str(hem.__file__)).parent.parent
+    # Sentences build today's structures and count in their code; tables stand in experiments.
+    rooms = [(whole / it, "**/*.py") for it in ("hem", "structures", "experiments/harness")]
+    rooms += [(whole / "experiments", "bench_*.py"), (claims_here, "*.*"), (folder, "*.json*")]
+    for room, pattern in rooms:
         for path in sorted(filter(Path.is_file, room.glob(pattern))):
             digest.update(path.name.encode() + path.read_bytes())
     return digest.hexdigest()

@@ -9,7 +9,7 @@ from rich.markup import escape
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
 from experiments.cli.console import console, errors
-from experiments.runs import Job, study
+from experiments.runs import Job, ResultsError, study
 
 
 @contextmanager
@@ -20,7 +20,15 @@ def show_progress(jobs: list[Job], folder: Path) -> Iterator[study.Observer]:
     off = not console.is_terminal
     # No thread refreshes the bars: it would work while a case is measured.
     with Progress(*columns, *left, console=console, auto_refresh=False, disable=off) as bars:
-        yield StudyProgress(bars, {job: len(job.ids) - len(job.left(folder)) for job in jobs})
+        yield StudyProgress(bars, {job: _done(job, folder) for job in jobs})
+
+
+def _done(job: Job, folder: Path) -> int:
+    """How many cases of a job are finished: none of a damaged file, which is set aside."""
+    try:
+        return len(job.ids) - len(job.left(folder))
+    except ResultsError:
+        return 0
 
 
 class StudyProgress(study.Observer):

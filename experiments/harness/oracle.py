@@ -71,7 +71,7 @@ RULES: dict[str, Callable[[Array, int], Any]] = {
     "vertex_vertices": _around,
     "vertex_edges": _spokes,
     "vertex_faces": lambda t, v: np.flatnonzero((t == v).any(axis=1)),
-    "edge_vertices": lambda t, e: _ends(e),
+    "edge_vertices": lambda t, e: _ends(e) if (_shared(t, _ends(e)) == 2).any() else [],
     "edge_edges": lambda t, e: np.setdiff1d(np.concatenate([_spokes(t, v) for v in _ends(e)]), [e]),
     "edge_faces": lambda t, e: np.flatnonzero(_shared(t, _ends(e)) == 2),
     "face_vertices": lambda t, f: t[f],

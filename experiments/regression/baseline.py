@@ -96,8 +96,17 @@ def save_baseline(part: str, measured: Measured, folder: Path = FOLDER) -> None:
     write_meta(beside, measured.run.meta)
     lines = (json.dumps({"claim": name, **it}) + "\n" for name, it in measured.claims.items())
     write_whole(beside / CLAIMS, "".join(lines))
-    shutil.rmtree(folder / part, ignore_errors=True)
-    beside.rename(folder / part)
+    target, old = folder / part, folder / f"{part}.old"
+    shutil.rmtree(old, ignore_errors=True)
+    if target.exists():
+        target.rename(old)
+    try:
+        beside.rename(target)
+    except BaseException:
+        if old.exists():
+            old.rename(target)
+        raise
+    shutil.rmtree(old, ignore_errors=True)
 
 
 def _reduced(case: Mapping[Any, Any]) -> Measurement:

@@ -69,15 +69,17 @@ def compare_runs(before: Measured, after: Measured, factor: float = FACTOR) -> C
     pairs, notes = _pair_cases(before.run, after.run)
     old, new = before.run.meta, after.run.meta
     alike = old.get("preset") == new.get("preset")
-    findings, pairs = _find_gone(pairs)
-    if not alike:
-        count, pairs = len(pairs), [it for it in pairs if it.before and it.after]
+    claims = list(_compare_claims(before, after))
+    if alike:
+        findings, pairs = _find_gone(pairs)
+    else:
+        findings, count, pairs = [], len(pairs), [it for it in pairs if it.before and it.after]
+        claims = [it for it in claims if it.before and it.after and it.kind != Kind.SLOPE]
         notes.append(
             f"of two presets {len(pairs):,} cases are compared that both have, "
             f"{count - len(pairs):,} are not, nor are slopes, which are over other sizes"
         )
     findings += _compare_counts(pairs, RUN)
-    claims = [it for it in _compare_claims(before, after) if alike or it.kind != Kind.SLOPE]
     busy = [name for name, it in (("run", new), ("baseline", old)) if it.get("too_busy")]
     if busy:
         claims = [it for it in claims if not it.random]

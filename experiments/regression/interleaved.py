@@ -131,7 +131,7 @@ def _time_pair(workers: Sequence[Popen[str]], name: str, query: str, factor: flo
 
 
 def _ask(worker: Any, **question: Any) -> Any:
-    """Ask and wait for the answer. Raises OSError with what it said if it has ended."""
+    """Ask and wait for the answer. Raises OSError with what it said if it failed or has ended."""
     with suppress(BrokenPipeError):
         worker.stdin.write(json.dumps(question) + "\n")
         worker.stdin.flush()
@@ -139,7 +139,10 @@ def _ask(worker: Any, **question: Any) -> Any:
     if not answer:
         said = worker.stderr.read().strip().splitlines()
         raise OSError(said[-1] if said else "the process ended")
-    return json.loads(answer)
+    found = json.loads(answer)
+    if isinstance(found, dict):
+        raise OSError(found["error"])
+    return found
 
 
 @contextmanager

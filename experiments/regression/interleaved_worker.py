@@ -29,7 +29,7 @@ def main(calibration: str, vertices: int) -> None:
 
     A ``structure`` and a ``query`` are made ready -> seconds that all its elements take; ``times``
     asks them so often in each round from now on -> how many that are; anything else times a round
-    -> its seconds, and those of the calibration loop.
+    -> its seconds, and those of the calibration loop. What fails is answered by its ``error``.
     """
     loop: dict[str, Any] = {"__name__": "calibration"}
     exec(compile(Path(calibration).read_text("utf-8"), calibration, "exec"), loop)
@@ -37,20 +37,23 @@ def main(calibration: str, vertices: int) -> None:
     mesh = hem.generate("torus", vertices)
     for line in sys.stdin:
         question = json.loads(line)
-        if "structure" in question:
-            s, query = structures.build(question["structure"], mesh), question["query"]
-            handles = s.handles(query.split("_")[0])
-            sweep = _prepared(s, query, handles)
-            sweep()  # compiles
-            answer: Any = min(_seconds(sweep) for _ in range(TRIES))
-        elif "times" in question:
-            many = np.tile(handles, question["times"])
-            sweep = _prepared(s, query, many)
-            sweep()
-            answer = len(many)
-        else:
-            reading = loop["calibration_loop"]()
-            answer = _seconds(sweep), reading
+        try:
+            if "structure" in question:
+                s, query = structures.build(question["structure"], mesh), question["query"]
+                handles = s.handles(query.split("_")[0])
+                sweep = _prepared(s, query, handles)
+                sweep()  # compiles
+                answer: Any = min(_seconds(sweep) for _ in range(TRIES))
+            elif "times" in question:
+                many = np.tile(handles, question["times"])
+                sweep = _prepared(s, query, many)
+                sweep()
+                answer = len(many)
+            else:
+                reading = loop["calibration_loop"]()
+                answer = _seconds(sweep), reading
+        except Exception as error:  # the others can be timed all the same
+            answer = {"error": f"{type(error).__name__}: {error}"}
         print(json.dumps(answer), flush=True)
 
 

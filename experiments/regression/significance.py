@@ -122,8 +122,8 @@ def _rounds_in_one(*pair: Array) -> float:
 def _rank_p(old: Array, new: Array) -> float:
     """Mann-Whitney's p that one run's rounds are larger by more than the drift, two-sided."""
     few = len(old) * len(new) <= LARGEST_EXACT
-    tied = len(np.unique(np.concatenate([old, new]))) < len(old) + len(new)
     drift = np.log(DRIFT) * np.sign(np.median(new) - np.median(old))
+    tied = bool(np.isin(new - drift, old).any())  # only between the two: U is no integer then
     one_sided = mannwhitneyu(
         new - drift, old,
         alternative="greater" if drift >= 0 else "less",

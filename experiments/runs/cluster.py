@@ -53,7 +53,11 @@ def run(folder: Path, address: str, observer: study.Observer | None = None) -> N
     from distributed import wait
 
     observer = observer or study.Observer()
-    with study.prepared(folder, observer.say), _client(address) as client, client.as_current():
+    with (
+        study.prepared(folder, observer.say, True),
+        _client(address) as client,
+        client.as_current(),
+    ):
         places = [folder, *folder.glob("machine-*/")]
         jobs = [job for job in study.plan(folder) if all(map(job.left, places))]
         commit = read_meta(folder)["commit"]

@@ -30,7 +30,7 @@ from experiments.harness import BASE, PRESETS, REPEATS, allowed_cores, own_mesh
 from experiments.runs import store
 from experiments.runs.catalog import PART_OF
 from experiments.runs.catalog import experiments as catalog
-from experiments.runs.provenance import describe, now, source
+from experiments.runs.provenance import describe, machine_id, now
 from experiments.runs.run import RUNS, load, noise
 from experiments.runs.worker import AGAIN, COMPILE, Job, WorkerDiedError, end_of_log, perform
 from hem.errors import MeshError, MeshWarning
@@ -39,6 +39,7 @@ from structures import NAMED, REGISTRY
 ROOT = Path(__file__).parents[2]
 COMPILED = "hem", "structures", "experiments/harness"  # where the sources are that Numba compiles
 ON = " on "  # between a preset and one's own mesh, in the name of what was measured
+SAME = "python", "numpy", "numba"  # the versions that times depend on
 MOSTLY = 0.5  # part of disturbed cases above which measuring them again will not be calmer
 REPEATING_SHARE = 0.5  # of the time that all cases took, at most, to measure disturbed ones again
 
@@ -254,10 +255,11 @@ def _measure(folder: Path, jobs: list[Job], observer: Observer, stop: Event) -> 
                 if stop.is_set():
                     return []
     except WorkerDiedError as error:
-        left = [job for job in jobs if job.left(folder)]
+        left = [] if stop.is_set() else [job for job in jobs if job.left(folder)]
         failures = [f"{job}:\n{error}" for job in left[:1]]
         for job in left[1:]:  # what killed the worker does not keep the others from being measured
-            failures += _measure(folder, [job], observer, stop)
+            if not stop.is_set():
+                failures += _measure(folder, [job], observer, stop)
     else:
         names = ", ".join(str(job) for job in jobs if job.left(folder))
         failures = [f"{names}:\n{end_of_log(folder, jobs[0])}"] if names else []
@@ -289,8 +291,12 @@ def _measure_again(folder: Path, jobs: list[Job], until: float, observer: Observ
 
 
 @contextmanager
-def prepared(folder: Path, say: Callable[[str], None]) -> Iterator[None]:
-    """A folder for oneself, with room and nothing damaged; ResultsError if other code began it."""
+def prepared(folder: Path, say: Callable[[str], None], elsewhere: bool = False) -> Iterator[None]:
+    """A folder for oneself, with room and nothing damaged.
+
+    ResultsError if it was begun with other code or, unless what is timed is timed ``elsewhere``,
+    on another machine.
+    """
     with store.lock_run(folder):
         store.require_room(folder)
         begun = bool(store.case_files(folder))
@@ -298,22 +304,37 @@ def prepared(folder: Path, say: Callable[[str], None]) -> Iterator[None]:
             say(f"{path.name} was damaged and is set aside; its cases are measured again")
         meta = store.read_meta(folder)
         if begun:
-            was, here = meta.get("commit"), source()
-            if was and was != here["commit"]:
-                differ = f"begun at commit {was[:12]}, and this is {here['commit'][:12]}"
+            here = describe(preset_of(meta))
+            if differ := _differences(meta, here, elsewhere):
                 raise store.ResultsError(
-                    f"{folder} was {differ}: what they measure does not belong together; "
-                    "check that commit out, or begin a new run"
+                    f"{folder} was begun {', '.join(differ)}: what they measure does not belong "
+                    "together; go back to that to resume it, or begin a new run"
                 )
-            resumed = [*meta.get("resumed", []), {"at": now(), **here}]
-            store.write_meta(folder, {**meta, "resumed": resumed})
+            state = {it: here[it] for it in ("commit", "dirty")}
+            resumed = [*meta.get("resumed", []), {"at": now(), **state}]
+            dirty = meta.get("dirty") or state["dirty"]
+            store.write_meta(folder, {**meta, "dirty": dirty, "resumed": resumed})
         yield
+
+
+def _differences(meta: Mapping[str, Any], here: Mapping[str, Any], elsewhere: bool) -> list[str]:
+    """What a run was begun with that is different here, in words."""
+    differ, was = [], meta.get("commit")
+    if was and was != here["commit"]:
+        differ.append(f"at commit {was[:12]}, and this is {here['commit'][:12]}")
+    if not elsewhere and machine_id(meta["machine"]) != machine_id(here["machine"]):
+        differ.append(f"on another machine ({meta['machine'].get('cpu')})")
+    for name in SAME:
+        if (it := meta["versions"].get(name)) != here["versions"].get(name):
+            differ.append(f"with {name} {it}, and this is {here['versions'].get(name)}")
+    return differ
 
 
 def finish(folder: Path, machine: dict[str, Any] | None = None) -> None:
     """Mark a run as finished: what it has, how steady the machine was, or another ``machine``."""
     paths = store.case_files(folder)
     files = {str(it.relative_to(folder)): len(store.CaseFile.at(it).measurements) for it in paths}
-    more = {"finished": now(), "files": files, "noise": asdict(noise(load(folder)))}
-    meta = store.read_meta(folder)
+    meta = {**store.read_meta(folder), "files": files}
+    store.write_meta(folder, meta)  # what is loaded is held against it
+    more = {"finished": now(), "noise": asdict(noise(load(folder)))}
     store.write_meta(folder, {**meta, **more, "machine": machine or meta["machine"]})

@@ -101,7 +101,8 @@ def perform(folder: Path, jobs: Sequence[Job], action: str = MEASURE) -> Generat
     with worker:
         try:
             for line in worker.stdout or ():
-                yield by_name[line.strip()]
+                if job := by_name.get(line.strip()):  # it compiles for jobs that are done, too
+                    yield job
             code = worker.wait()
         finally:
             worker.terminate()

@@ -146,6 +146,16 @@ def test_a_run_without_operations_tells_so_and_refuses_where_edits_are_limited(r
     assert all("does not tell what an edit takes" in why for why in limited.refused.values())
 
 
+def test_a_structure_of_which_less_is_told_is_no_option(run: Run) -> None:
+    partly = (run.cases["experiment"] == "bench_operations") & (
+        run.cases["structure"] == "half_edge"
+    )
+    found = advise(Prices(replace(run, cases=run.cases[~partly])), PRESETS["edited"], MESH)
+    assert "half_edge" not in {it.forecast.structure for it in found.options}
+    assert "the run does not tell what" in found.refused["half_edge"]
+    assert found.options
+
+
 def test_who_is_behind_is_told_what_costs_it_most_beside_the_best(prices: Prices) -> None:
     rows = Row("face_vertices", 1.0, "face"), Row("vertex_faces", 1_000.0)
     found = advise(prices, Workload("mixed", rows, builds=0), MESH)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -21,7 +22,7 @@ from experiments.claims import (
 from experiments.claims import demonstrations as shown
 from experiments.claims.beside import OCTAHEDRON, sound
 from experiments.claims.demonstrations import code_facts, come_round_tests
-from experiments.claims.quantities import QUANTITIES
+from experiments.claims.quantities import QUANTITIES, TIMED
 from experiments.harness import Measurement
 from experiments.report.pages import sentences_markdown
 from experiments.runs import CaseFile, Run, load
@@ -282,3 +283,16 @@ def test_who_never_catches_up_does_so_after_infinitely_many(tmp_path):
     table = break_even(curves(run))
     assert np.isinf(table[table["structure"] == "half_edge"]["times"]).all()
     assert np.isfinite(table[table["structure"] == "winged_edge"]["times"]).all()
+
+
+@pytest.mark.parametrize("quantity", QUANTITIES)
+def test_times_that_cannot_be_trusted_accuse_nothing_and_counts_do(contrary, quantity):
+    (claim,) = (it for it in sentence_claims() if it.expects.quantity == quantity)
+    before = judge_sentences(contrary, [claim])[0].outcome
+    busy = [{"fastest": 1.0, "before": 9.0, "after": 9.0, "off_cpu": 0.0}] * len(contrary.cases)
+    too_busy = replace(contrary, cases=contrary.cases.assign(noise=busy))
+    several = {**contrary.meta, "machine": {"cpu": "2 machines", "machines": ["a", "b"]}}
+    for run in (too_busy, replace(contrary, meta=several)):
+        after = judge_sentences(run, [claim])[0].outcome
+        assert after == before or quantity in TIMED
+        assert not (quantity in TIMED and after == "violated")

@@ -48,3 +48,19 @@ def test_a_wrong_answer_is_caught(name, query, monkeypatch):
         return  # the names of edges themselves come from this query
     with pytest.raises(CheckFailedError, match=f"{name}.{query}"):
         check_query(s, hem.generate("torus", 100), QUERIES[query], handles)
+
+
+def test_an_edge_between_two_vertices_that_no_face_joins_is_caught():
+    mesh = hem.generate("torus", 100)
+    s = structures.build("half_edge", mesh)
+    right = s.edge_vertices
+
+    def wrong(edges):
+        answer = right(edges)
+        values = answer.values if np.ndim(edges) else answer
+        values[1::2] = (values[1::2] + 50) % 100
+        return answer
+
+    s.__dict__["edge_vertices"] = wrong
+    with pytest.raises(CheckFailedError, match="edge_vertices"):
+        check_query(s, mesh, QUERIES["edge_vertices"], s.handles("edge")[:3])

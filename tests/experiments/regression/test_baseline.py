@@ -109,3 +109,18 @@ def test_a_run_that_is_not_finished_is_no_baseline(folder, base_folder, tmp_path
     code, output = update(folder, str(unfinished), "--yes")
     assert code == 1
     assert "hem study --resume" in output
+
+
+def test_what_cannot_be_put_in_place_leaves_the_baseline(folder, monkeypatch):
+    before = {it.name: it.read_bytes() for it in (folder / COUNTERS).iterdir()}
+    measured, rename = load_baseline(COUNTERS, folder), Path.rename
+
+    def refuse(path, target):
+        if path.suffix == ".part":
+            raise OSError(28, "No space left on device")
+        return rename(path, target)
+
+    monkeypatch.setattr(Path, "rename", refuse)
+    with pytest.raises(OSError, match="No space"):
+        save_baseline(COUNTERS, measured, folder)
+    assert {it.name: it.read_bytes() for it in (folder / COUNTERS).iterdir()} == before

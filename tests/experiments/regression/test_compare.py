@@ -195,6 +195,16 @@ def test_of_another_preset_no_slopes_are_compared_and_that_is_said(before):
     assert exit_code(findings) == 0
 
 
+def test_a_smaller_preset_is_held_against_what_both_have(before):
+    gone = ("flip_edge", "add_face", "remove_face")
+    cases = before.run.cases
+    less = without(before, cases["experiment"].eq("bench_fracture") | cases["subject"].isin(gone))
+    claims = {name: it for name, it in before.claims.items() if not name.endswith(gone)}
+    assert len(claims) < len(before.claims)
+    findings = compare_runs(before, meta(replace(less, claims=claims), preset="full")).findings
+    assert exit_code(findings) == 0
+
+
 def test_a_busy_machine_cannot_judge_by_time(before):
     findings = compare_runs(before, meta(before, too_busy=True)).findings
     timed = [finding for finding in findings if finding.random or finding.kind == Kind.TIME]

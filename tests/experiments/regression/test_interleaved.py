@@ -69,3 +69,12 @@ def test_a_tree_that_does_not_run_is_no_pass_and_says_why(tmp_path):
     findings = compare_trees(tmp_path, HERE, ["indexed"])
     assert exit_code(findings) == 2
     assert "could not be timed: RuntimeError: this one is broken" in findings[0].why
+
+
+def test_a_query_that_fails_in_a_tree_keeps_no_other_from_being_timed(monkeypatch):
+    monkeypatch.setattr(interleaved, "MOST_ROUNDS", interleaved.ROUNDS)
+    wanted = [("no_such", "vertex_faces"), ("indexed", "face_vertices")]
+    first, second = dict(interleaved.time_in_new_processes(HERE, HERE, wanted, 1.15)).values()
+    assert "no_such" in first.error
+    assert not second.error
+    assert second.before > 0

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from experiments.regression.findings import Change
 from experiments.regression.significance import Comparison, compare_rounds
 from tests.extent import some, waiting_for
 
@@ -154,3 +155,8 @@ def test_a_missing_loop_and_a_factor_of_one_are_refused() -> None:
         compare_rounds([1.0], [1.0], [], [1.0])
     with pytest.raises(ValueError, match="factor"):
         compare_rounds([1.0], [1.0], [1.0], [1.0], factor=1.0)
+
+
+def test_rounds_that_tie_within_a_run_are_told_apart_as_well() -> None:
+    old = np.array([1.230, 1.231, 1.231, 1.232, 1.233, 1.234, 1.235, 1.236, 1.237]) * 1e-8
+    assert compare_rounds(old, 5 * old, [1.0], [1.0]).change == Change.WORSE

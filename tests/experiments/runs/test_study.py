@@ -8,6 +8,7 @@ import signal
 import subprocess
 import sys
 from pathlib import Path
+from threading import Event
 
 import pytest
 
@@ -16,6 +17,7 @@ from experiments.harness.steadiness import REPEATS
 from experiments.runs import (
     CannotWriteError,
     CaseFile,
+    Job,
     ResultsError,
     load,
     read_meta,
@@ -23,7 +25,7 @@ from experiments.runs import (
     write_meta,
 )
 from experiments.runs.store import DamagedError, InUseError, case_files, lock_run
-from experiments.runs.worker import AGAIN, perform
+from experiments.runs.worker import AGAIN, COMPILE, WorkerDiedError, perform
 from tests.experiments.cli.test_cli import hem
 from tests.experiments.made_runs import STEADY
 from tests.experiments.small_study import begin, damage, go_on, samples, wait_for, workers_of
@@ -184,7 +186,7 @@ def test_a_file_in_the_place_of_a_folder_is_named_in_one_line(tmp_path):
 
 def test_a_run_is_not_resumed_by_other_code(run):
     write_meta(run, {**read_meta(run), "commit": "0123456789abcdef"})
-    with pytest.raises(ResultsError, match=r"was begun at commit 0123456789ab.*check that commit"):
+    with pytest.raises(ResultsError, match=r"was begun at commit 0123456789ab.*go back to that"):
         go_on(run)
 
 
@@ -268,3 +270,65 @@ def test_whoever_stops_a_study_leaves_no_process_behind(tmp_path, how):
     assert (b"KeyboardInterrupt" in said) == (how == signal.SIGINT)
     with lock_run(folder):
         pass
+
+
+def test_what_is_left_of_several_experiments_is_compiled_whatever_else_is_done(tmp_path):
+    folder = begin(tmp_path, "operations", "build", structures=("indexed", "half_edge"))
+    jobs = {(it.experiment, it.structure): it for it in study.plan(folder)}
+    left = [
+        jobs["bench_build", "indexed"],
+        *(jobs[it, "half_edge"] for it in ("bench_operations", "bench_build")),
+    ]
+    assert set(perform(folder, left, COMPILE)) == set(left)
+
+
+@pytest.mark.parametrize("what", ["another number", "gone"])
+def test_a_damaged_run_is_mended_by_the_command_that_its_error_names(run, what):
+    (path,) = case_files(run)
+    before = samples(run)
+    if what == "gone":
+        file = CaseFile.at(path)
+        file.add(file.measurements[0])  # measured twice
+        study.finish(run)
+        path.unlink()
+    else:
+        damage(path, what)
+    code, output = hem("study", "--resume", "--run", str(run))
+    assert code == 0, output
+    assert samples(run) == before
+    assert load(run).meta["files"] == {path.name: len(before)}
+
+
+@pytest.mark.parametrize(
+    ("part", "key", "words"),
+    [("machine", "cpu", "another machine"), ("versions", "numba", "numba")],
+)
+def test_a_run_is_not_resumed_where_its_times_do_not_belong(run, part, key, words):
+    meta = read_meta(run)
+    write_meta(run, {**meta, part: {**meta[part], key: "0.1"}})
+    with pytest.raises(ResultsError, match=words):
+        go_on(run)
+    assert "resumed" not in read_meta(run)
+
+
+def test_a_run_resumed_with_changes_is_told_to_be_changed(run, monkeypatch):
+    write_meta(run, {**read_meta(run), "dirty": False})
+    monkeypatch.setattr(study, "describe", lambda preset: {**read_meta(run), "dirty": True})
+    go_on(run)
+    assert read_meta(run)["dirty"] is True
+
+
+def test_once_stopped_no_other_worker_begins(run, monkeypatch):
+    begun, stop = [], Event()
+
+    def perform(*given):
+        begun.append(given)
+        stop.set()
+        raise WorkerDiedError("interrupted")
+        yield
+
+    monkeypatch.setattr(study, "perform", perform)
+    monkeypatch.setattr(Job, "left", lambda job, folder: ["a case"])
+    jobs = study.plan(run) * 3
+    assert study._measure(run, jobs, study.Observer(), stop) == []
+    assert len(begun) == 1
