@@ -29,20 +29,6 @@ RENDERED: dict[str, dict[str, Any]] = {
 }
 """The ways to keep a render mesh up to date, by the order of their cases, and their lines."""
 
-LINEAR: dict[str, Any] = {
-    "color": "#c9c9c9",
-    "linewidth": 0.6,
-    "linestyle": (0, (1, 3)),
-    "zorder": 0,
-}
-
-
-CACHE: dict[str, Any] = {
-    "xycoords": ("data", "axes fraction"), "textcoords": "offset points", "fontsize": 7,
-    "color": GRAY,
-}  # fmt: skip
-"""Where the name of a cache stands: at the foot of its mark."""
-
 
 def draw_lines(
     axes: Axes, cases: pd.DataFrame, x: str, by: str, styles: Mapping[str, Any], **look: Any
@@ -91,7 +77,10 @@ def _draw(
         for axes in every if diagonals else ():
             (left, right), (low, high) = axes.get_xlim(), axes.get_ylim()
             for y in np.geomspace(low * left / right, high, 8)[1:-1]:
-                axes.axline((left, y), (right, y * right / left), **LINEAR)
+                axes.axline(
+                    (left, y), (right, y * right / left), color="#c9c9c9", linewidth=0.6,
+                    linestyle=(0, (1, 3)), zorder=0,
+                )  # fmt: skip
     return figure
 
 
@@ -161,7 +150,9 @@ def _draw_order_and_latency(run: Run, axes: Axes, subject: str) -> None:
             if place:
                 foot = axes.get_xaxis_transform()
                 axes.vlines(place, 0, 0.05, GRAY, linewidth=1, transform=foot)
-                axes.annotate(level, (place, 0), (3, 3), **CACHE)
+                axes.annotate(
+                    level, (place, 0), (3, 3), foot, "offset points", fontsize=7, color=GRAY
+                )
 
 
 def listings(run: Run, axis: Axis = Axis.WORK_FACES) -> Plot:
