@@ -60,22 +60,17 @@ class Use:
     largest: bool = True
 
 
-weighed = partial(
-    Use,
-    compared="bytes per vertex",
-    costs=bytes_per_vertex,
-    written=lambda it: f"{digits(it)} bytes",
-)
+WEIGHED = "bytes per vertex", bytes_per_vertex, lambda it: f"{digits(it)} bytes"
 EIGHT = "the eight queries of table 1, asked at random"
 
 USES = {
-    "drawn": weighed("Only drawn"),
+    "drawn": Use("Only drawn", *WEIGHED),
     "normals": Use("Drawn, normals renewed", "vertex normals", workload("vertex_normals")),
     "asked": Use("Picked and measured", EIGHT, queries),
     "edited": Use("Edited in real time", "an impact, as in a game", workload("impacts")),
     "simplified": Use("Simplified", "a vertex, to a tenth of them", workload("simplification")),
-    "tight": weighed("Asked for neighbors, memory tight", suits=lambda it: not it.searches),
-    "polygons": weighed("Of polygons", suits=lambda it: it.holds_polygons),
+    "tight": Use("Asked for neighbors, memory tight", *WEIGHED, suits=lambda it: not it.searches),
+    "polygons": Use("Of polygons", *WEIGHED, suits=lambda it: it.holds_polygons),
     "small": Use("Small", EIGHT, queries, largest=False),
 }
 """A new use is one line here."""
@@ -100,14 +95,11 @@ def ranking(run: Run, name: str) -> pd.Series:
 def beside(run: Run, one: str, other: str) -> Html:
     """How many queries each of two structures answers faster, and their bytes; or MissingError."""
     measured = curves(run)
-    costs = {
-        query: [measured.curve(Axis.RANDOM_FACES, it, query).by_size for it in (one, other)]
-        for query in QUERIES
-    }
-    ratios = pd.DataFrame({query: a / b for query, (a, b) in costs.items()}).dropna()
-    there = len(ratios) and not run.machines
-    require(there, "measured the queries of both on the same mesh")
-    vertices, found = ratios.index[-1], ratios.iloc[-1]
+    asked = partial(measured.curve, Axis.RANDOM_FACES)
+    ratios = {it: asked(one, it).by_size / asked(other, it).by_size for it in QUERIES}
+    table = pd.DataFrame(ratios).dropna()
+    require(len(table) and not run.machines, "measured the queries of both on the same mesh")
+    vertices, found = table.index[-1], table.iloc[-1]
     faster, slower = (found < 1 / ALIKE).sum(), (found > ALIKE).sum()
     titles = [REGISTRY[it].title for it in (one, other)]
     sizes = [measured.bytes_per_vertex(it) for it in (one, other)]
