@@ -27,6 +27,18 @@ FLAT = 1.1
 """Work that grows by no more than this, from the smallest mesh to the largest, does not grow."""
 
 
+def medians(run: Run, experiment: str, scale: float = 1.0) -> pd.DataFrame:
+    """The cases of an experiment, each with the median of its samples as ``cost``."""
+    cases = run.cases[run.cases["experiment"] == experiment]
+    return cases.assign(cost=scale * cases["samples"].map(np.median).astype(float))
+
+
+def at_largest(cases: pd.DataFrame, *by: str) -> pd.DataFrame:
+    """The cases on the largest mesh of each group."""
+    largest = cases.groupby(list(by))["vertices"].transform("max")
+    return cases[cases["vertices"] == largest]
+
+
 def objects_against_arrays(run: Run) -> Html:
     """Work and time of queries and operations, at the largest size that both were measured at."""
     rows = []
@@ -51,10 +63,8 @@ def workloads(run: Run, order: str = COMPILED) -> Html:
     """Time per unit of every workload on the largest mesh that a structure did it on, compiled or
     from Python, never both.
     """
-    cases = run.cases.query("experiment == 'bench_workloads' and order == @order")
-    sizes = cases.groupby(["structure", "subject"])["vertices"]
-    largest = cases[cases["vertices"] == sizes.transform("max")]
-    largest = largest.assign(cost=largest["samples"].map(np.median))
+    cases = medians(run, "bench_workloads").query("order == @order")
+    largest = at_largest(cases, "structure", "subject")
     table = largest.pivot_table("cost", ["structure", "vertices"], "subject")
     shown = {name: it for name, it in WORKLOADS.items() if name in table}
     every: Any = table[list(shown)].iterrows()
@@ -66,11 +76,9 @@ def workloads(run: Run, order: str = COMPILED) -> Html:
 
 def bytes_held(run: Run, width: int) -> pd.DataFrame:
     """The bytes of structures on the largest mesh of each family; ``width``: of a reference."""
-    cases = run.cases.query("experiment == 'bench_memory' and reference_bytes == @width")
-    cases = cases.assign(bytes=cases["samples"].map(np.median))
-    largest = cases[cases["vertices"] == cases.groupby("family")["vertices"].transform("max")]
+    cases = medians(run, "bench_memory").query("reference_bytes == @width")
     mesh = ["family", "vertices", "faces"]
-    table = largest.pivot_table("bytes", mesh, "structure", sort=False)
+    table = at_largest(cases, "family").pivot_table("cost", mesh, "structure", sort=False)
     return table[[name for name in NAMES if name in table]]
 
 
@@ -155,9 +163,8 @@ def face_finding(run: Run) -> Html:
 
 def overtaking(table: pd.DataFrame) -> Html:
     """After how many queries or edits a structure has repaid its building, on the largest mesh."""
-    largest = table[table["vertices"] == table.groupby("subject")["vertices"].transform("max")]
     rows = []
-    for subject, structure, n, times in largest.to_numpy():
+    for subject, structure, n, times in at_largest(table, "subject").to_numpy():
         rows.append((MIXES[subject], REGISTRY[structure].title, n, times, times / n))
     heads: Heads = {
         "": str, "structure": str, "vertices": count, "until repaid": digits,

@@ -15,6 +15,7 @@ from experiments.bench_workloads import COMPILED, WORKLOADS
 from experiments.claims import MIXES, break_even, curves
 from experiments.harness import ANSWERING, Axis
 from experiments.report import style
+from experiments.report.comparisons import medians
 from experiments.report.session import require
 from experiments.report.style import BLUE, GRAY, RED, STYLES, Plot
 from experiments.runs import Run
@@ -97,12 +98,6 @@ def _costs(run: Run, axis: Axis, subjects: Iterable[str], table: str = "") -> pd
     return pd.concat([it.cases.assign(cost=axis.scale * it.centers) for it in found])
 
 
-def timed(run: Run, experiment: str, scale: float) -> pd.DataFrame:
-    """The cases of an experiment, each with the median of its times as ``cost``."""
-    cases = run.cases[run.cases["experiment"] == experiment]
-    return cases.assign(cost=scale * cases["samples"].map(np.median).astype(float))
-
-
 def scaling(run: Run, axis: Axis, subjects: Iterable[str] = QUERIES) -> Plot:
     """Cost along an axis: a panel per query or operation, a line per structure.
 
@@ -168,7 +163,7 @@ def listings(run: Run, axis: Axis = Axis.WORK_FACES) -> Plot:
 
 def building(run: Run) -> Plot:
     """Time to build, per vertex, against size: meshes as generated, and renumbered at random."""
-    cases = timed(run, "bench_build", 1e9).query("reference_bytes == 4")
+    cases = medians(run, "bench_build", 1e9).query("reference_bytes == 4")
     cases = cases.assign(cost=cases["cost"] / cases["vertices"])
     titles = {"consecutive": "Building, as generated", "random": "Building, renumbered at random"}
     if (cases["order"] == ANSWERING).any():
@@ -179,7 +174,7 @@ def building(run: Run) -> Plot:
 
 def rendering(run: Run) -> Plot:
     """What a render mesh adds to one edit of a half-edge mesh from Python, by size."""
-    cases = timed(run, "bench_operations", 1e6).query("structure == 'half_edge'")
+    cases = medians(run, "bench_operations", 1e6).query("structure == 'half_edge'")
     look = {"color": STYLES["half_edge"]["color"], "marker": "o"}
     styles = {order: look | it for order, it in RENDERED.items()}
     titles = {"split_face": "Splitting a face from Python, half-edge mesh"}
@@ -194,7 +189,7 @@ def workloads(run: Run, order: str = COMPILED) -> Plot:
     def also(axes: Axes, name: str) -> None:
         axes.set_ylabel(f"time per {WORKLOADS[name].unit}, µs")
 
-    cases = timed(run, "bench_workloads", 1e6)
+    cases = medians(run, "bench_workloads", 1e6)
     cases = cases[cases["order"] == order]
     measured = set(cases["subject"]) or WORKLOADS.keys()
     titles = {name: it.title for name, it in WORKLOADS.items() if name in measured}
@@ -219,7 +214,7 @@ def overtaking(run: Run) -> Plot:
 
 def shards_per_second(run: Run) -> Plot:
     """How many shards each compiled structure makes a second, by size."""
-    cases = timed(run, "bench_fracture", 1.0)
+    cases = medians(run, "bench_fracture")
     cases = cases[cases["structure"].isin([it for it in NAMES if REGISTRY[it].compiled])]
     cases = cases.assign(cost=1 / cases["cost"])
     titles, label = {SHATTER: "Breaking a surface around an impact"}, "shards per second"

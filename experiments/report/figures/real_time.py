@@ -10,8 +10,8 @@ from experiments.bench_picking import FOLLOWING, NEIGHBORS, RAY, REBUILT, REFITT
 from experiments.bench_real_time import COMPACT, EDITS, GROWING, RESERVED
 from experiments.bench_workloads import COMPILED, FROM_PYTHON
 from experiments.report import style
-from experiments.report.comparisons import bytes_held
-from experiments.report.figures.growth import draw_lines, timed
+from experiments.report.comparisons import at_largest, bytes_held, medians
+from experiments.report.figures.growth import draw_lines
 from experiments.report.pages import Heads, Html, numbers, part
 from experiments.report.session import MissingError, require
 from experiments.report.style import BLUE, GRAY, RED, STYLES, Plot
@@ -37,7 +37,7 @@ WAYS = {
 
 def waits(run: Run) -> Plot:
     """The share of edits that take longer, at the largest size: with room, and without."""
-    cases = _edits(run)
+    cases = at_largest(_cases(run, EDITS), "structure")
     titles = {RESERVED: "room was made beforehand", GROWING: "arrays grow when they must"}
     with style.styled():
         figure, every = style.panels(list(titles.values()), (4.6, 3.2), 2, sharex=True, sharey=True)
@@ -56,7 +56,7 @@ def waits(run: Run) -> Plot:
 def frames(run: Run) -> Html:
     """What an edit takes, and how many a frame has time for; at the largest size of each."""
     rows = []
-    for case in _edits(run).to_dict("records"):
+    for case in at_largest(_cases(run, EDITS), "structure").to_dict("records"):
         seconds, uploads = np.array(case["samples"]), case["detail"]["uploads"]
         about = REGISTRY[case["structure"]].title, case["vertices"], case["order"] == RESERVED
         times = *np.percentile(seconds, [50, 99, 100]), _in_a_frame(seconds)
@@ -105,7 +105,7 @@ def _by_size(cases: pd.DataFrame, column: str, shown: Callable[[Any], str]) -> H
 
 def picks(run: Run) -> Plot:
     """The time of each part of a pick by size: what rays take, and the neighbors by structure."""
-    cases = timed(run, "bench_picking", 1e6)
+    cases = medians(run, "bench_picking", 1e6)
     require(len(cases), "measured picking")
     asked = cases["subject"] == NEIGHBORS
     cases["part"] = cases["subject"] + ", " + cases["order"]
@@ -126,7 +126,7 @@ def picks(run: Run) -> Plot:
 
 def picks_in_words(run: Run) -> Html:
     """What a pick and what follows an edit take, at the largest size at which all is known."""
-    cases = timed(run, "bench_picking", 1e6)
+    cases = medians(run, "bench_picking", 1e6)
     require(len(cases), "measured picking")
     table = cases.pivot_table(index="vertices", columns=["subject", "order"], values="cost")
     rays = [(what, how) for what in (RAY, FOLLOWING) for how in (REBUILT, REFITTED)]
@@ -172,15 +172,8 @@ def _in_a_frame(seconds: Any) -> str:
     return count(whole.min()) if len(whole) else f"all {count(len(seconds))}"
 
 
-def _edits(run: Run) -> pd.DataFrame:
-    """The cases of each structure at its largest size."""
-    cases = _cases(run, EDITS)
-    largest = cases.groupby("structure")["vertices"].transform("max")
-    return cases[cases["vertices"] == largest]
-
-
 def _cases(run: Run, subject: str) -> pd.DataFrame:
-    mine = timed(run, "bench_real_time", 1.0).query("subject == @subject")
+    mine = medians(run, "bench_real_time").query("subject == @subject")
     require(len(mine), "measured single edits")
     place = mine["structure"].map(NAMES.index)
     by = ["place", "vertices", "order"]

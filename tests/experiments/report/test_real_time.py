@@ -57,7 +57,7 @@ def test_a_run_in_which_nothing_around_a_face_was_asked_compiled_says_so(monkeyp
     cases = [("half_edge", 400, *it, 2.0) for it in [*rays, (NEIGHBORS, None)]]
     columns = ["structure", "vertices", "subject", "order", "cost"]
     table = pd.DataFrame(cases, columns=columns)
-    monkeypatch.setattr(real_time, "timed", lambda run, experiment, scale: table)
+    monkeypatch.setattr(real_time, "medians", lambda run, experiment, scale: table)
     with pytest.raises(MissingError, match="compiled"):
         real_time.picks_in_words(None)
 
