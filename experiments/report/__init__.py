@@ -23,7 +23,6 @@ _PLACES = {
         "show_peers",
     ),
     "readme": ("write_readme",),
-
     "session": ("MissingError", "claim_link", "link", "open_run", "project_file"),
     "site": ("write_pdf", "write_report"),
     "style": ("show_figures",),

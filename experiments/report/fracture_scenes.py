@@ -54,11 +54,10 @@ def model(
     ``wrap`` it is the body around that. Raises MeshError for what there is not.
     """
     family, colon, size = name.partition(":")
-    if Path(name).is_file():
-        mesh, up = hem.load(name, repair, triangulate=True), "y"
-    else:
-        kind = f"grid:{size if colon else 144}" if family == PLATE else name
-        mesh, up = hem.find_mesh(kind, repair, triangulate=True), UP.get(family, "y")
+    is_file = Path(name).is_file()
+    kind = f"grid:{size if colon else 144}" if family == PLATE and not is_file else name
+    mesh = hem.find_mesh(kind, repair, triangulate=True)
+    up = "y" if is_file else UP.get(family, "y")
     if not len(mesh.triangles):
         raise hem.MeshError(f"there is nothing to break: {name} has no faces")
     if scale != 1:

@@ -37,9 +37,9 @@ def plate() -> hem.TriangleMesh:
     return hem.TriangleMesh(np.stack([x, y, 0 * x], axis=1), np.concatenate(faces))
 
 
-def impacts(name: str = "glass") -> Figure:
-    """Figure 11: a plate, struck in several places."""
-    return _plates([(title, name, at) for title, at in IMPACTS.items()])
+def impacts() -> Figure:
+    """Figure 11: a plate of glass, struck in several places."""
+    return _plates([(title, "glass", at) for title, at in IMPACTS.items()])
 
 
 def materials() -> Figure:
