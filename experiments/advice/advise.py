@@ -112,11 +112,7 @@ def advise(
             refused[name] = "; ".join(wrong)
         else:
             options.append(Option(predict(prices, workload, name, faces), taken, edit))
-    shared = set.intersection(*(set(it.forecast.untold) for it in options)) if options else set()
-    for it in options:  # what nobody's price is told of ranks nobody
-        if missing := [what for what in it.forecast.untold if what not in shared]:
-            told = f"the run does not tell what {', '.join(missing)} takes"
-            refused[it.forecast.structure] = told
+    refused |= _told_less_of(options)
     options = [it for it in options if it.forecast.structure not in refused]
     costs = {it.forecast.structure: it.forecast.seconds for it in options}
     first = best(costs, workload.measured.structure if workload.measured else "")
@@ -124,6 +120,19 @@ def advise(
     named = [replace(it, behind=_behind(options[0].forecast, it.forecast)) for it in options]
     names = [it.forecast.structure for it in options]
     return Advice(faces, workload, named, refused, flips(prices, workload, names, faces))
+
+
+def _told_less_of(options: Sequence[Option]) -> dict[str, str]:
+    """The structures of which the run lacks prices that it has of others, and why not them.
+
+    What is told of none of them makes none of them look cheaper.
+    """
+    of_none = set.intersection(*(set(it.forecast.untold) for it in options)) if options else set()
+    found = {}
+    for it in options:
+        if missing := [what for what in it.forecast.untold if what not in of_none]:
+            found[it.forecast.structure] = f"the run does not tell what {', '.join(missing)} takes"
+    return found
 
 
 def _bytes(name: str, mesh: Any, faces: int) -> int:

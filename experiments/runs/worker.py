@@ -100,9 +100,8 @@ def perform(folder: Path, jobs: Sequence[Job], action: str = MEASURE) -> Generat
             )  # fmt: skip
     with worker:
         try:
-            for line in worker.stdout or ():
-                if job := by_name.get(line.strip()):  # it compiles for jobs that are done, too
-                    yield job
+            names = map(str.strip, worker.stdout or ())  # it compiles for jobs that are done, too
+            yield from (by_name[name] for name in names if name in by_name)
             code = worker.wait()
         finally:
             worker.terminate()

@@ -76,13 +76,16 @@ def _draw(
             every[0].set_ylim(low / 2.2, high * 2.2)
         style.finish_panels(figure, every, room)
         for axes in every if diagonals else ():
-            (left, right), (low, high) = axes.get_xlim(), axes.get_ylim()
-            for y in np.geomspace(low * left / right, high, 8)[1:-1]:
-                axes.axline(
-                    (left, y), (right, y * right / left), color="#c9c9c9", linewidth=0.6,
-                    linestyle=(0, (1, 3)), zorder=0,
-                )  # fmt: skip
+            _draw_diagonals(axes)
     return figure
+
+
+def _draw_diagonals(axes: Axes) -> None:
+    """Dotted lines of slope 1."""
+    (left, right), (low, high) = axes.get_xlim(), axes.get_ylim()
+    dotted: dict[str, Any] = {"color": "#c9c9c9", "linewidth": 0.6, "linestyle": (0, (1, 3))}
+    for y in np.geomspace(low * left / right, high, 8)[1:-1]:
+        axes.axline((left, y), (right, y * right / left), zorder=0, **dotted)
 
 
 def _heights(*every: Axes) -> tuple[float, float]:
