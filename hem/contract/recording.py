@@ -60,12 +60,11 @@ class Recording:
 
     def add(self, what: str, handles: Any, caller: str = PYTHON) -> None:
         """Count what was asked or done for one handle, or for an array of them."""
-        if np.ndim(handles) and not len(handles):
-            return
         if np.ndim(handles):
             wide = np.asarray(handles).astype(np.int64)
             near = np.abs(np.diff(np.where(wide >> BITS, wide >> BITS, wide))) <= NEAR
-            self._add(what, COMPILED, len(wide), int(near.sum()))
+            if len(wide):  # nothing was asked, so no neighbors are needed anew
+                self._add(what, COMPILED, len(wide), int(near.sum()))
         else:
             place = int(handles) >> BITS or int(handles)
             near_last = abs(place - self._last.get(what, place - NEAR - 1)) <= NEAR

@@ -125,7 +125,8 @@ class Storage:
         pairs = list(zip(records, saved, strict=True))
         if any(array.shape != fresh.shape for array, fresh in pairs):
             raise MeshError(
-                "the mesh has grown since the snapshot, or was compacted: reserve room before it"
+                "the mesh has grown since the snapshot, for which reserve makes room before it; "
+                "or it was compacted"
             )
         for array, fresh in pairs:
             np.copyto(array, fresh)

@@ -74,9 +74,8 @@ def shatter(
     structure and machine.
 
     Cost: a walk of O(√n_t) to the face and to each point, and the splits; O(n_v + n_t) for the
-    bounding box and what is left. Raises MeshError for an
-    impact that is no position or not near the surface, for polygons, and for a mesh without faces.
-    Source: thesis 4.4.
+    bounding box and what is left. Raises MeshError for an impact that is no position or not near
+    the surface, for polygons, and for a mesh without faces. Source: thesis 4.4.
     """
     chosen = _chosen(structure, impact, material)
     broken, new, size = break_surface(structure, impact, chosen, seed, scale)

@@ -515,7 +515,7 @@ def test_a_mesh_that_has_grown_is_not_restored_by_half(name: str) -> None:
         s.split_face(int(s.faces()[0]), (0, 0, 0))
     after = faces_of(s)
     if s.compiled:
-        with pytest.raises(MeshError, match="reserve room"):
+        with pytest.raises(MeshError, match="grown since the snapshot"):
             s.restore(fresh)
         assert faces_of(s) == after
     else:  # objects have no room
