@@ -296,3 +296,14 @@ def test_times_that_cannot_be_trusted_accuse_nothing_and_counts_do(contrary, qua
         after = judge_sentences(run, [claim])[0].outcome
         assert after == before or quantity in TIMED
         assert not (quantity in TIMED and after == "violated")
+
+
+@pytest.mark.parametrize("quantity", QUANTITIES)
+def test_the_sentences_on_times_are_those_that_other_times_change(run, quantity):
+    (claim,) = (it for it in sentence_claims() if it.expects.quantity == quantity)
+    factors = np.random.default_rng(0).uniform(1, 9, len(run.cases))
+    timed = run.cases["kind"] == "time"
+    scaled = run.cases["samples"].map(np.array) * np.where(timed, factors, 1.0)
+    other = replace(run, cases=run.cases.assign(samples=scaled.map(list)))
+    before, after = (judge_sentences(it, [claim])[0].values for it in (run, other))
+    assert np.array_equal(before, after) == (quantity not in TIMED)
