@@ -81,6 +81,7 @@ class DirectedEdgeRecords(NamedTuple):
 
 origin, twin = steps.columns(DirectedEdgeRecords, "half_edge", 2)
 (leaving,) = steps.entries(DirectedEdgeRecords, "vertex_half_edge")
+ahead = steps.asking(DirectedEdgeRecords, "half_edge")
 
 
 @kernel
@@ -140,7 +141,7 @@ edge_of = names.here
 
 # The nine queries: O(1), those of a vertex and edge_edges O(n_ev) ---------------------------------
 
-outgoing = walks.by_twins(leaving, twin, following, previous)
+outgoing = walks.by_twins(leaving, twin, following, previous, ahead)
 
 vertex_vertices = walks.each_and_last(outgoing, steps.ending(origin, tip), apex)
 vertex_edges = walks.each_and_last(outgoing, names, steps.then(previous, edge_of))
@@ -148,7 +149,7 @@ vertex_faces = walks.each(outgoing, steps.of_its_own(face))
 edge_vertices = steps.ends(marked.of_edge(origin), marked.of_edge(tip))
 edge_edges = walks.edges_at_both_ends(edge_vertices, vertex_edges, marked.of_edge(edge_of))
 edge_faces = steps.faces_beside(marked.of_edge(face), marked.of_edge(across))
-face_vertices = walks.each_side(within, following, origin)
+face_vertices = walks.each_side(within, following, origin, ahead=ahead)
 face_edges = walks.each_side(within, following, edge_of)
 face_faces = walks.faces_across(within, following, across)
 

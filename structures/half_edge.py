@@ -78,6 +78,7 @@ tip, apex = steps.then(following, origin), steps.then(previous, origin)
 names, others = steps.smaller_of_twins(twin), steps.others_of_triangle(following)
 edge_of = names.here
 leaving, within = steps.entries(HalfEdgeRecords, "vertex_half_edge", "face_half_edge")
+ahead = steps.asking(HalfEdgeRecords, "half_edge")
 
 
 @kernel
@@ -102,7 +103,7 @@ def across(m: HalfEdgeRecords, h: int) -> int:
 
 # The nine queries: O(1), those of a vertex and edge_edges O(n_ev) ---------------------------------
 
-outgoing = walks.by_twins(leaving, twin, following, previous)
+outgoing = walks.by_twins(leaving, twin, following, previous, ahead)
 
 vertex_vertices = walks.each_and_last(outgoing, steps.ending(origin, tip), apex)
 vertex_edges = walks.each_and_last(outgoing, names, previous)  # at the border it is the name
@@ -110,7 +111,7 @@ vertex_faces = walks.each(outgoing, steps.of_its_own(face))
 edge_vertices = steps.ends(origin, tip)
 edge_edges = walks.edges_at_both_ends(edge_vertices, vertex_edges, edge_of)
 edge_faces = steps.faces_beside(face, across)
-face_vertices = walks.each_side(within, following, origin)
+face_vertices = walks.each_side(within, following, origin, ahead=ahead)
 face_edges = walks.each_side(within, following, edge_of)
 face_faces = walks.faces_across(within, following, across)
 

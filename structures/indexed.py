@@ -78,7 +78,8 @@ def corner(m: IndexedRecords, f: int, i: int) -> int:
     return m.triangle[f, i]
 
 
-face_vertices, face_edges = packed.face_vertices(corner), packed.face_edges(corner)
+ahead = steps.asking(IndexedRecords, "triangle")
+face_vertices, face_edges = packed.face_vertices(corner, ahead), packed.face_edges(corner)
 
 
 @kernel

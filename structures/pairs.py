@@ -101,6 +101,7 @@ def clockwise(m: PlanktonRecords, h: int, v: int) -> int:
 
 tip, across = steps.then(twin, origin), steps.then(twin, face)
 leaving, within = steps.entries(PlanktonRecords, "vertex_half_edge", "face_half_edge")
+ahead = steps.asking(PlanktonRecords, "half_edge")
 
 
 # The nine queries: O(1), around a vertex O(n_ev), around a face O(n) for n corners ----------------
@@ -118,13 +119,16 @@ def around_vertex(give: Kernel) -> Kernel:
     None is given where it is negative.
     """
 
-    def visiting(visit: Kernel, turned: Kernel) -> Kernel:
+    def visiting(way: walks.Way) -> Kernel:
+        visit, asks = way.visit, way.asking(ahead)
+
         @kernel
         def visit_all(m: PlanktonRecords, v: int, state: Any, given: Any) -> tuple[Any, bool]:
             first = m.vertex_half_edge[v]
             h = first
             while h >= 0:
                 h = counterclockwise(m, h)
+                asks(m, h)
                 found = give(m, h)
                 if found >= 0:
                     state = visit(m, found, state, given)
@@ -140,11 +144,14 @@ def around_vertex(give: Kernel) -> Kernel:
 def round_face(give: Kernel) -> Kernel:
     """Make a query: ``give(m, h)`` of every half-edge of a face, from its first."""
 
-    def visiting(visit: Kernel, turned: Kernel) -> Kernel:
+    def visiting(way: walks.Way) -> Kernel:
+        visit, asks = way.visit, way.asking(ahead)
+
         @kernel
         def visit_all(m: PlanktonRecords, f: int, state: Any, given: Any) -> tuple[Any, bool]:
             first = m.face_half_edge[f]
             h = first
+            asks(m, h)
             while True:
                 state = visit(m, give(m, h), state, given)
                 h = m.half_edge[h, NEXT]

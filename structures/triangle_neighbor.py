@@ -94,7 +94,8 @@ def counterclockwise(m: TriangleNeighborRecords, t: int, v: int) -> int:
 
 
 (first,) = steps.entries(TriangleNeighborRecords, "vertex_triangle")
-around = walks.circulator(clockwise, counterclockwise)
+ahead = steps.asking(TriangleNeighborRecords, "triangle")
+around = walks.circulator(clockwise, counterclockwise, ahead)
 
 
 @kernel
@@ -103,9 +104,9 @@ def corner_after(m: TriangleNeighborRecords, t: int, v: int) -> int:
     return m.triangle[t, CORNER + (corner_of(m, t, v) + 1) % 3]
 
 
-def neighbors(visit: Kernel, turned: Kernel) -> Kernel:
+def neighbors(way: walks.Way) -> Kernel:
     """Make the circulator of the vertices around one; an open fan has one more than triangles."""
-    circulate = around(corner_after, visit, turned)
+    circulate, visit = around(corner_after, way), way.visit
 
     @kernel
     def visit_all(m: TriangleNeighborRecords, v: int, state: Any, given: Any) -> tuple[Any, bool]:
@@ -143,7 +144,7 @@ def corner(m: TriangleNeighborRecords, f: int, i: int) -> int:
     return m.triangle[f, CORNER + i]
 
 
-face_vertices, face_edges = packed.face_vertices(corner), packed.face_edges(corner)
+face_vertices, face_edges = packed.face_vertices(corner, ahead), packed.face_edges(corner)
 
 
 @kernel

@@ -96,6 +96,7 @@ left_of, right_of = by_side(LEFT_FACE, RIGHT_FACE), by_side(RIGHT_FACE, LEFT_FAC
 previous_edge, next_edge = by_side(LEFT_PREVIOUS, RIGHT_PREVIOUS), by_side(LEFT_NEXT, RIGHT_NEXT)
 next_beyond = by_side(RIGHT_NEXT, LEFT_NEXT)  # in the face on the right hand
 edge_ending_at, edge_at = steps.entries(WingedEdgeRecords, "vertex_edge", "face_edge")
+ahead, ahead_of = (steps.asking(WingedEdgeRecords, "edge", each) for each in (1, 2))
 
 
 @kernel
@@ -132,14 +133,14 @@ clockwise = steps.entering(next_beyond, directed_from)
 
 # The nine queries: O(1), those of a vertex and edge_edges O(n_ev) ---------------------------------
 
-around = walks.circulator(clockwise, counterclockwise)
+around = walks.circulator(clockwise, counterclockwise, ahead_of)
 outgoing = walks.from_vertex(edge_ending_at, around, directed_from)
 
 vertex_vertices, vertex_edges = walks.each(outgoing, tip), walks.each(outgoing, edge_of)
 vertex_faces = walks.each_but_last(outgoing, left_of)  # beyond the last edge of an open fan is none
 edge_vertices, edge_faces = steps.ends(tail, head), steps.faces_beside(left_face, right_face)
 edge_edges = walks.edges_at_both_ends(edge_vertices, vertex_edges)
-face_vertices = walks.each_side(edge_at, next_edge, origin, directed_along)
+face_vertices = walks.each_side(edge_at, next_edge, origin, directed_along, ahead)
 face_edges = walks.each_side(edge_at, next_edge, edge_of, directed_along)
 face_faces = walks.faces_across(edge_at, next_edge, right_of, directed_along)
 

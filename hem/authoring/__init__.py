@@ -46,10 +46,12 @@ from hem.authoring.kernels import (
 )
 from hem.authoring.marked import BITS, MARK, named_by_ends, scatter
 from hem.authoring.operations import (
+    BLOCK,
     ENTRIES,
     LEFT,
     OPERATIONS,
     RIGHT,
+    SEEN,
     WIDTH,
     A,
     B,
@@ -90,11 +92,11 @@ from hem.authoring.sums import Sum
 from hem.authoring.walks import visiting
 
 __all__ = [
-    "ALLOWED", "BITS", "EDGES", "EDGE_END", "EDGE_GROWTH", "EDGE_ROOM", "ELEMENTS", "ENDLESS",
-    "ENDS", "ENTRIES", "FACES", "FACE_END", "FACE_ROOM", "LEFT", "MARK", "NEEDS_ROOM", "OF_ARRAYS",
-    "OPERATIONS", "QUERIES", "REFERENCE_TYPES", "RIGHT", "SIDES", "UNKNOWN", "VALENCE",
-    "VERTEX_END", "VERTEX_ROOM", "VERTICES", "WIDTH", "WORDS", "A", "B", "C", "D", "Field",
-    "Kernel", "Kernels", "Operation", "Pairing", "Query", "Refusal", "Sum", "append_face",
+    "ALLOWED", "BITS", "BLOCK", "EDGES", "EDGE_END", "EDGE_GROWTH", "EDGE_ROOM", "ELEMENTS",
+    "ENDLESS", "ENDS", "ENTRIES", "FACES", "FACE_END", "FACE_ROOM", "LEFT", "MARK", "NEEDS_ROOM",
+    "OF_ARRAYS", "OPERATIONS", "QUERIES", "REFERENCE_TYPES", "RIGHT", "SEEN", "SIDES", "UNKNOWN",
+    "VALENCE", "VERTEX_END", "VERTEX_ROOM", "VERTICES", "WIDTH", "WORDS", "A", "B", "C", "D",
+    "Field", "Kernel", "Kernels", "Operation", "Pairing", "Query", "Refusal", "Sum", "append_face",
     "compacted", "copied", "count_new", "counted", "distinct", "field_at", "grown", "has_room",
     "has_scratch", "in_slices", "in_use", "is_point", "kernel", "kernels_of", "kill_vertex", "live",
     "live_vertex", "log_element", "log_faces", "log_parts", "marked", "named_by_ends", "nothing",

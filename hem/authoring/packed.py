@@ -8,7 +8,7 @@ import numpy as np
 
 from hem.arrays import Array
 from hem.authoring.kernels import VERTEX_END, Kernel, kernel
-from hem.authoring.walks import query_of
+from hem.authoring.walks import Way, never, query_of
 
 
 @kernel
@@ -54,9 +54,9 @@ def vertex_edges(vertex_vertices: Kernel) -> Kernel:
     return vertex_edges
 
 
-def face_vertices(corner: Kernel) -> Kernel:
+def face_vertices(corner: Kernel, ahead: Kernel = never) -> Kernel:
     """Make the kernel of the query of ``corner(m, f, i)``. Cost O(1)."""
-    return _each_corner(corner)
+    return _each_corner(corner, ahead)
 
 
 def face_edges(corner: Kernel) -> Kernel:
@@ -69,10 +69,13 @@ def face_edges(corner: Kernel) -> Kernel:
     return _each_corner(side)
 
 
-def _each_corner(give: Kernel) -> Kernel:
-    def visiting(visit: Kernel, turned: Kernel) -> Kernel:
+def _each_corner(give: Kernel, ahead: Kernel = never) -> Kernel:
+    def visiting(way: Way) -> Kernel:
+        visit, asks = way.visit, way.asking(ahead)
+
         @kernel
         def visit_all(m: Any, f: int, state: Any, given: Any) -> tuple[Any, bool]:
+            asks(m, f)
             for i in range(3):
                 state = visit(m, give(m, f, i), state, given)
             return state, False

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from hem.arrays import Array
+from hem.authoring.ahead import ask
 from hem.authoring.kernels import Kernel, kernel
 from hem.authoring.operations import LEFT, RIGHT, C, D
 from hem.authoring.walks import Given
@@ -45,6 +46,21 @@ def entries(records: type[Any], *arrays: str) -> list[Kernel]:
         return read
 
     return [entry(records._fields.index(array)) for array in arrays]
+
+
+def asking(records: type[Any], array: str, items: int = 1) -> Kernel:
+    """Make ``ahead(m, it)``: ask for the record that a pass over all reads some time after its.
+
+    ``items``: how many share a record, as the two directions of an edge do. See
+    ``hem.authoring.ahead``.
+    """
+    place = records._fields.index(array)
+
+    @kernel
+    def ahead(m: Any, it: int) -> None:
+        ask(m[place], it // items)
+
+    return ahead
 
 
 @kernel

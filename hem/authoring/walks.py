@@ -13,11 +13,27 @@ from typing import Any, NamedTuple
 from hem.arrays import Array
 from hem.authoring.kernels import Kernel, append_face, kernel, without
 
-Giving = Callable[[Any, Kernel, Kernel], Kernel]
-"""Makes a circulator of what is given, of how that is visited, and of what turns one way round."""
 
-Visiting = Callable[[Kernel, Kernel], Kernel]
-"""Makes ``visit_all(m, element, state, given) -> (state, open)`` of the last two.
+class Way(NamedTuple):
+    """How what a circulator comes past is visited."""
+
+    visit: Kernel
+    """``visit(m, it, state, given) -> state``"""
+    turned: Kernel
+    """``turned(given, state) -> state``: what becomes of all that came clockwise."""
+    in_order: bool = False
+    """Whether it is done for all elements, one after the other."""
+
+    def asking(self, ahead: Kernel) -> Kernel:
+        """What asks ahead, see ``steps.asking``, where that pays."""
+        return ahead if self.in_order else never
+
+
+Giving = Callable[[Any, Way], Kernel]
+"""Makes a circulator of what is given, and of how that is visited."""
+
+Visiting = Callable[[Way], Kernel]
+"""Makes ``visit_all(m, element, state, given) -> (state, open)``.
 
 ``open``: whether the faces around a vertex do not close around it, as it lies on the border.
 """
@@ -25,8 +41,17 @@ Visiting = Callable[[Kernel, Kernel], Kernel]
 _VISITING: dict[Kernel, Visiting] = {}
 """Of the queries that are made here."""
 
+STEPPING: dict[Kernel, tuple[Kernel, Kernel]] = {}
+"""``first`` and ``clockwise`` of what ``joined_by_steps`` has made."""
+
 _IS_OPEN: dict[Kernel, Kernel] = {}
 """Of those whose walk does not tell it, ``is_open(m, v)``."""
+
+
+@kernel
+def never(m: Any, it: int) -> bool:
+    """Stands for ``is_open`` where the walk tells it, and for what asks ahead."""
+    return False
 
 
 @kernel
@@ -59,12 +84,15 @@ def in_any_order(given: Any, state: Any) -> Any:
     return state
 
 
+AS_QUERY = Way(write, reverse)
+
+
 def query_of(visiting: Visiting, is_open: Kernel | None = None) -> Kernel:
     """Make a query, which writes down what is visited. Others may visit it otherwise.
 
     ``is_open(m, v)``, where the walk itself does not tell and says no: see ``Visiting``.
     """
-    write_all = visiting(write, reverse)
+    write_all = visiting(AS_QUERY)
 
     @kernel
     def query(m: Any, element: int, out: Array) -> int:
@@ -81,12 +109,13 @@ def query_of(visiting: Visiting, is_open: Kernel | None = None) -> Kernel:
 def visiting(query: Kernel, visit: Kernel) -> Kernel:
     """Make ``visit_all(m, element, state, given) -> state``, for a query and what to do with each.
 
+    It is for passes over all elements in order: records are asked for before they are read.
     ``visit(m, it, state, given) -> state`` is called for every answer, in any order: on the way,
     where the query is a walk, which takes half the time of writing to scratch and reading again.
     Else the answers are written to ``given.out``. ``state`` is a number, or a tuple of some.
     """
     if query in _VISITING:
-        walk = _VISITING[query](visit, in_any_order)
+        walk = _VISITING[query](Way(visit, in_any_order, in_order=True))
 
         @kernel
         def visit_all(m: Any, element: int, state: Any, given: Any) -> Any:
@@ -125,12 +154,6 @@ def counting(query: Kernel) -> Kernel:
     return count
 
 
-@kernel
-def never(m: Any, v: int) -> bool:
-    """Stands for ``is_open`` where the walk tells it."""
-    return False
-
-
 @cache
 def ring(vertex_vertices: Kernel, vertex_faces: Kernel) -> Kernel:
     """Make ``ring(m, v, out) -> (count, open, most)``: the neighbors of v, and if it is a border.
@@ -140,7 +163,7 @@ def ring(vertex_vertices: Kernel, vertex_faces: Kernel) -> Kernel:
     Cost: that of ``vertex_vertices``, and of ``vertex_faces`` where that does not tell.
     """
     if vertex_vertices in _VISITING:
-        write_all = _VISITING[vertex_vertices](write, in_any_order)
+        write_all = _VISITING[vertex_vertices](Way(write, in_any_order))
         is_open = _IS_OPEN.get(vertex_vertices, never)
 
         @kernel
@@ -160,20 +183,24 @@ def ring(vertex_vertices: Kernel, vertex_faces: Kernel) -> Kernel:
     return count_both
 
 
-def circulator(clockwise: Kernel, counterclockwise: Kernel) -> Giving:
+def circulator(clockwise: Kernel, counterclockwise: Kernel, ahead: Kernel = never) -> Giving:
     """Make, for ``give(m, item, v)``, ``around(m, start, v, state, given) -> (state, last)``.
 
     A step ``step(m, item, v)`` goes from one item at vertex ``v`` (a half-edge, an edge, a
     triangle) to the next, or to a negative number at the border. What the items give comes
     counterclockwise. A fan open at the border is circulated from both sides of ``start``; ``last``
-    is its last item, and -1 where the fan is closed. Cost O(valence).
+    is its last item, and -1 where the fan is closed. ``ahead(m, item)``: see ``steps.asking``.
+    Cost O(valence).
     """
 
-    def giving(give: Kernel, visit: Kernel, turned: Kernel) -> Kernel:
+    def giving(give: Kernel, way: Way) -> Kernel:
+        visit, turned, asks = way.visit, way.turned, way.asking(ahead)
+
         @kernel
         def around(m: Any, start: int, v: int, state: Any, given: Any) -> tuple[Any, int]:
             item = start
             while item >= 0:  # what is given is visited at once: to come back to it takes longer
+                asks(m, item)
                 state = visit(m, give(m, item, v), state, given)
                 item = clockwise(m, item, v)
                 if item == start:
@@ -198,12 +225,12 @@ def from_vertex(first: Kernel, around: Giving, enter: Kernel = as_met) -> Giving
     ``enter(m, it, v)`` is the half-edge that leaves v for what ``first`` leads to. O(valence).
     """
 
-    def giving(give: Kernel, visit: Kernel, turned: Kernel) -> Kernel:
+    def giving(give: Kernel, way: Way) -> Kernel:
         @kernel
         def give_of(m: Any, h: int, v: int) -> int:
             return give(m, h)
 
-        walk = around(give_of, visit, turned)
+        walk = around(give_of, way)
 
         @kernel
         def circulate(m: Any, v: int, state: Any, given: Any) -> tuple[Any, int]:
@@ -225,15 +252,18 @@ class Given(NamedTuple):
     beyond: Kernel
 
 
-def by_twins(leaving: Kernel, twin: Kernel, following: Kernel, previous: Kernel) -> Giving:
+def by_twins(
+    leaving: Kernel, twin: Kernel, following: Kernel, previous: Kernel, ahead: Kernel = never
+) -> Giving:
     """Make, for what is ``Given``, the circulator of a vertex where twins are recorded.
 
     It begins at ``leaving(m, v)``, crosses to the twin and goes on with what follows that, so that
     each step waits for two records. Else as ``from_vertex`` and ``circulator``. O(valence).
     """
 
-    def giving(give: Given, visit: Kernel, turned: Kernel) -> Kernel:
+    def giving(give: Given, way: Way) -> Kernel:
         here, beyond = give
+        visit, turned, asks = way.visit, way.turned, way.asking(ahead)
 
         @kernel
         def circulate(m: Any, v: int, state: Any, given: Any) -> tuple[Any, int]:
@@ -242,6 +272,7 @@ def by_twins(leaving: Kernel, twin: Kernel, following: Kernel, previous: Kernel)
                 return state, -1
             h, other = first, twin(m, first)
             while other >= 0:
+                asks(m, other)
                 state = visit(m, beyond(m, h, other), state, given)
                 h = following(m, other)
                 if h == first:
@@ -270,27 +301,29 @@ def each_but_last(giving: Giving, give: Kernel) -> Kernel:
 
     It leaves the vertex along the border, and gives none: a negative number.
     """
-    write_all, visiting_each = giving(give, write, reverse), _visiting_each(giving, give)
+    write_all, visiting_each = giving(give, AS_QUERY), _visiting_each(giving, give)
 
     @kernel
     def query(m: Any, v: int, out: Array) -> int:
         count, last = write_all(m, v, 0, out)
         return count if last < 0 else count - 1
 
-    def visiting(visit: Kernel, turned: Kernel) -> Kernel:
+    def visiting(way: Way) -> Kernel:
+        visit = way.visit
+
         @kernel
         def visit_given(m: Any, it: int, state: Any, given: Any) -> Any:
             return visit(m, it, state, given) if it >= 0 else state
 
-        return visiting_each(visit_given, turned)
+        return visiting_each(way._replace(visit=visit_given))
 
     _VISITING[query] = visiting
     return query
 
 
 def _visiting_each(giving: Giving, give: Any) -> Visiting:
-    def visiting(visit: Kernel, turned: Kernel) -> Kernel:
-        circulate = giving(give, visit, turned)
+    def visiting(way: Way) -> Kernel:
+        circulate = giving(give, way)
 
         @kernel
         def visit_all(m: Any, element: int, state: Any, given: Any) -> tuple[Any, bool]:
@@ -308,8 +341,8 @@ def each_and_last(giving: Giving, give: Any, last_of: Kernel) -> Kernel:
     No half-edge leaves the vertex beyond it, but the edge and the neighbor are there.
     """
 
-    def visiting(visit: Kernel, turned: Kernel) -> Kernel:
-        circulate = giving(give, visit, turned)
+    def visiting(way: Way) -> Kernel:
+        circulate, visit = giving(give, way), way.visit
 
         @kernel
         def visit_all(m: Any, element: int, state: Any, given: Any) -> tuple[Any, bool]:
@@ -323,16 +356,25 @@ def each_and_last(giving: Giving, give: Any, last_of: Kernel) -> Kernel:
     return query_of(visiting)
 
 
-def each_side(first: Kernel, following: Kernel, give: Kernel, enter: Kernel = as_met) -> Kernel:
+def each_side(
+    first: Kernel,
+    following: Kernel,
+    give: Kernel,
+    enter: Kernel = as_met,
+    ahead: Kernel = never,
+) -> Kernel:
     """Make a query of a triangle: ``give(m, h)`` of its half-edges from ``first(m, f)``. O(1).
 
     ``enter(m, it, f)`` is the half-edge in f of what ``first`` and ``following(m, h)`` lead to.
     """
 
-    def visiting(visit: Kernel, turned: Kernel) -> Kernel:
+    def visiting(way: Way) -> Kernel:
+        visit, asks = way.visit, way.asking(ahead)
+
         @kernel
         def visit_all(m: Any, f: int, state: Any, given: Any) -> tuple[Any, bool]:
             it = first(m, f)
+            asks(m, it)
             for _ in range(3):
                 h = enter(m, it, f)
                 state = visit(m, give(m, h), state, given)
@@ -446,4 +488,5 @@ def joined_by_steps(first: Kernel, clockwise: Kernel, ends: Kernel, find: Kernel
                 return bool(find(m, b, a) >= 0)
         return True
 
+    STEPPING[joined] = first, clockwise
     return joined

@@ -124,7 +124,6 @@ class Declared:
         lacking = {it.kernel for it in self.steps.values()} - self.kernels.keys()
         if lacking:
             raise TypeError(f"{self._place} has no kernels of steps: {sorted(lacking)}")
-        self._prefetched = {"face", *(it.element.removeprefix("half_") for it in cls.fields)}
         stepping = ((name, self.kernels[it.kernel]) for name, it in self.steps.items())
         self.stepping = {name: self._derived(kernel) for name, kernel in stepping}
 
@@ -140,9 +139,8 @@ class Declared:
         return found
 
     def perform(self, operation: str, pinned: Any) -> Callable[[int], Array]:
-        """See ``Uses.perform``. An edge is prefetched where its record leads to its faces."""
-        element = self.operations[operation].element
-        prefetch = prefetching(self.kernels, element if element in self._prefetched else "")
+        """See ``Uses.perform``."""
+        prefetch = prefetching(self.kernels, self.operations[operation])
         return self.operating[operation].perform(pinned, prefetch)
 
     def algorithm(self, make: Algorithm) -> tuple[Uses, frozenset[str]]:

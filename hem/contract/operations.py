@@ -158,7 +158,7 @@ class Operations:
         state = self._state
         task, args = np.array([DO, 0, 1, TELL, 0, 0]), np.full((1, 3), -1, np.int64)
         points, result = np.zeros((1, 3), np.float32), np.zeros(1, np.int64)
-        own = task, args, points, result, state.at
+        own = task, args, points, result, state.seen, state.at
         pinned = state.pin(lambda its: (*own, its.out["edge"], np.asarray(its.log)))
         perform = state.declared.perform(operation, pinned)
         views = [memoryview(it.reshape(-1).data) for it in own[:4]]
@@ -240,7 +240,7 @@ class Operations:
         results, logs, done = np.zeros(n, np.int64), [], 0
         vertices, faces = self._operations[operation].growth
         lasting = state.declared.lasting.get(operation)
-        ahead = state.declared.operating[operation].ahead if n > 1 and mode != CHECK else 0
+        ahead = state.declared.operating[operation].ahead if n > 1 else 0
         if lasting is not None:
             names = state.storage.lasting_names(state.records, args[:, 0])
             args = np.column_stack([names, args[:, 1:]])
@@ -251,7 +251,7 @@ class Operations:
             entries = ENTRIES * (1 if forgets else n + 1) + 2 * len(state.log)
             log = np.empty(entries, np.int64)
             task = np.array([mode, done, n, FORGET if forgets else KEEP, ahead, done])
-            scratch = task, args, points, results, state.at, state.out["edge"], log
+            scratch = task, args, points, results, state.seen, state.at, state.out["edge"], log
             pinned = state.pinned_now(*scratch)
             if lasting is not None:
                 perform = lasting.perform(pinned)
@@ -323,7 +323,7 @@ class Operations:
         entries = n * (3 * valence + ENTRIES) + 2 * (valence + 2 * n + ENTRIES)
         results, log = np.zeros(n, np.int64), np.empty(entries, np.int64)
         task = np.array([PERSIST, 0, n, KEEP, 0, 0])
-        scratch = task, rows, positions, results, state.at, state.out["edge"], log
+        scratch = task, rows, positions, results, state.seen, state.at, state.out["edge"], log
         return Prepared(perform, state.pinned_now(*scratch), task, results)
 
     def work(self, operation: str, handles: tuple[int, ...], point: ArrayLike) -> int:

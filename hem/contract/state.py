@@ -10,7 +10,17 @@ import numpy as np
 
 from hem import authoring
 from hem.arrays import Array, Bools, Indices
-from hem.authoring import FACES, QUERIES, SIDES, VALENCE, WIDTH, in_slices, slice_count
+from hem.authoring import (
+    BLOCK,
+    FACES,
+    QUERIES,
+    SEEN,
+    SIDES,
+    VALENCE,
+    WIDTH,
+    in_slices,
+    slice_count,
+)
 from hem.contract.description import Declared
 from hem.contract.storage import HANDLE_TYPES
 from hem.engine import move
@@ -64,6 +74,11 @@ class State:
     def at(self) -> Any:
         """Scratch for the parts of a diamond."""
         return self.storage.row(6, np.int64)
+
+    @cached_property
+    def seen(self) -> Array:
+        """Scratch for what is read ahead."""
+        return np.empty((BLOCK, SEEN), np.int64)
 
     @property
     def scratch_bytes(self) -> int:

@@ -88,8 +88,8 @@ def walk(handles: Array, found: Array, *arrays: Array) -> int:
 def perform(address: int) -> Array:
     """One operation or many, up to the end or to one that could not be done -> the log, if told."""
     arrays = _LOAD(address)
-    m = _RECORDS(*arrays[:-7])
-    task, args, points, results, at, out, log = arrays[-7:]
+    m = _RECORDS(*arrays[:-8])
+    task, args, points, results, seen, at, out, log = arrays[-8:]
     mode, end, logs, many = task[MODE], task[END], task[LOGS], len(points) > 1
     log[0] = 0
     i = task[BEGIN]
@@ -97,8 +97,7 @@ def perform(address: int) -> Array:
     while i < end:
         if i == begin:
             begin = min(end, i + task[AHEAD])
-            for j in range(i, begin):
-                results[j] = _PREFETCH(m, args[j, 0], at, out)
+            _PREFETCH(m, args, i, begin, at, out, seen)
         if logs == FORGET:
             log[0] = 0
         point = points[i if many else 0]

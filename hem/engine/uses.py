@@ -20,7 +20,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from hem.arrays import Array
-from hem.authoring import Field, Kernel, field_at, nothing
+from hem.authoring import BLOCK, Field, Kernel, field_at, nothing
 from hem.engine import templates
 from hem.engine.counting import CountingArray, Read, TracedArray, interpreted, source_of
 from hem.engine.fresh import fresh
@@ -33,8 +33,8 @@ SHARED = ("edit.py", "authoring/**/*.py", "engine/*.py")
 class Uses:
     """The uses of one kernel on one kind of records: a ``NamedTuple`` of arrays of ``columns``."""
 
-    ahead = 16
-    """How many elements are worth prefetching at a time."""
+    ahead = BLOCK
+    """How many operations are prefetched at a time."""
 
     def __init__(self, kernel: Kernel, records: type[Any], columns: Columns) -> None:
         self._kernel, self._records, self._columns = kernel, records, columns
@@ -59,11 +59,12 @@ class Uses:
         """``perform(pinned.address) -> touched``, for an operation.
 
         Pinned are the records and ``task`` (``MODE``, ``BEGIN``, ``END``, ``LOGS``, ``AHEAD``,
-        ``ENDED``), ``args`` (n, 3), ``points`` (n or 1, 3), ``results`` (n,), ``at``, ``out`` and
-        ``log`` (see ``hem.authoring.operations``). Ends before the element that needs more room; if
-        the mode is ``DO``, also before one that is refused. Codes of refusals are among the
-        results. ``CHECK`` changes nothing. The log begins anew; it is told if ``LOGS`` is ``TELL``.
-        ``AHEAD`` is how many elements are prefetched at a time, or 0.
+        ``ENDED``), ``args`` (n, 3), ``points`` (n or 1, 3), ``results`` (n,), ``seen``, ``at``,
+        ``out`` and ``log`` (see ``hem.authoring.operations``). Ends before the element that needs
+        more room; if the mode is ``DO``, also before one that is refused. Codes of refusals are
+        among the results. ``CHECK`` changes nothing. The log begins anew; it is told if ``LOGS`` is
+        ``TELL``.
+        ``AHEAD`` is how many operations are prefetched at a time, or 0.
         """
         return self._bound(templates.perform, pinned.kind, _PREFETCH=prefetch)
 

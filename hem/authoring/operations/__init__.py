@@ -40,7 +40,7 @@ from hem.authoring.operations.parts import (
     log_parts,
     vertex_maker,
 )
-from hem.authoring.operations.prefetching import nothing, prefetching
+from hem.authoring.operations.prefetching import BLOCK, SEEN, nothing, prefetching
 from hem.authoring.operations.rules import LEFT, RIGHT, A, B, C, D, live_vertex
 
 OPERATIONS: dict[str, Operation] = {
@@ -51,7 +51,7 @@ OPERATIONS: dict[str, Operation] = {
 """Every operation of the contract by name: what the modules of this folder declare."""
 
 __all__ = [
-    "ENTRIES", "LEFT", "OPERATIONS", "RIGHT", "WIDTH", "A", "B", "C", "D", "Operation", "count_new",
-    "has_room", "has_scratch", "is_point", "live_vertex", "log_element", "log_faces", "log_parts",
-    "nothing", "prefetching", "vertex_maker",
+    "BLOCK", "ENTRIES", "LEFT", "OPERATIONS", "RIGHT", "SEEN", "WIDTH", "A", "B", "C", "D",
+    "Operation", "count_new", "has_room", "has_scratch", "is_point", "live_vertex", "log_element",
+    "log_faces", "log_parts", "nothing", "prefetching", "vertex_maker",
 ]  # fmt: skip

@@ -142,4 +142,6 @@ def make(k: Kernels) -> Kernel:
     return collapse_edge
 
 
-OPERATIONS = {"collapse_edge": Operation(make, "edge", names_a_vertex=True)}
+OPERATIONS = {
+    "collapse_edge": Operation(make, "edge", names_a_vertex=True, asks_neighbors=True),
+}

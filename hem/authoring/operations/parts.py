@@ -47,6 +47,9 @@ class Operation(NamedTuple):
     grows_with_sides: bool = False
     """Whether it creates one face more for every side that a face has beyond three."""
 
+    asks_neighbors: bool = False
+    """Whether it asks for the neighbors of both ends of an edge."""
+
 
 ENTRIES = 12
 """Room in the log per operation at triangles; a collapse takes two per face beside."""

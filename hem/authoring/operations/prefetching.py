@@ -1,6 +1,7 @@
 """Reading what many operations will need, so that memory is waited for once and not for each.
 
-An operation waits for what it reads, and the next one for it. Reads alone wait side by side.
+An operation waits for what it reads, and the next one for it. Reads alone wait side by side. So
+each part of what a block of operations reads is read for all of them before the next part is.
 """
 
 from __future__ import annotations
@@ -10,48 +11,85 @@ from typing import Any
 
 from hem.arrays import Array
 from hem.authoring.kernels import Kernel, Kernels, kernel
-from hem.authoring.operations.rules import LEFT, RIGHT, C, D
+from hem.authoring.operations.parts import Operation
+from hem.authoring.operations.rules import LEFT, RIGHT, A, B
+from hem.authoring.walks import STEPPING
+
+BLOCK = 16
+"""Operations that are worth prefetching at a time."""
+
+STEPS = 6
+"""From neighbor to neighbor around an end of an edge: the valence of most vertices."""
+
+SEEN = 4
+"""Numbers of scratch for each operation."""
 
 
 @kernel
-def nothing(m: Any, handle: int, at: Array, out: Array) -> int:
+def nothing(m: Any, args: Array, begin: int, end: int, at: Array, out: Array, seen: Array) -> None:
     """Read nothing ahead."""
-    return 0
 
 
-def prefetching(k: Kernels, element: str) -> Kernel:
-    """Make ``prefetch(m, handle, at, out) -> checksum``: what an operation on it reads first.
+def prefetching(k: Kernels, operation: Operation) -> Kernel:
+    """Make ``prefetch(m, args, begin, end, at, out, seen)``: what those operations read first.
 
-    The checksum keeps compilers from leaving the reads out. Cost: that of ``diamond``, or
-    ``face_vertices``.
+    ``args`` (n, 3) are handles, of which some may name nothing; up to ``BLOCK`` of them are meant.
+    ``seen`` (BLOCK, SEEN) int64 is scratch, which keeps compilers from leaving reads out.
+    Cost per operation: that of ``face_vertices`` or ``diamond``, and of ``STEPS`` around both ends.
     """
-    if element == "face":
-        return _of_face(k["face_exists"], k["face_vertices"])
-    if element == "edge":
-        return _of_edge(k["edge_exists"], k["diamond"], k["face_exists"])
+    if operation.element == "face":
+        return _of_faces(k["face_exists"], k["face_vertices"])
+    if operation.element == "edge" and k["are_joined"] in STEPPING:
+        first, clockwise = STEPPING[k["are_joined"]]
+        steps = STEPS if operation.asks_neighbors else 0
+        return _of_edges(k["edge_exists"], k["diamond"], k["face_exists"], first, clockwise, steps)
     return nothing
 
 
 @cache
-def _of_face(face_exists: Kernel, face_vertices: Kernel) -> Kernel:
+def _of_faces(face_exists: Kernel, face_vertices: Kernel) -> Kernel:
     @kernel
-    def prefetch(m: Any, f: int, at: Array, out: Array) -> int:
-        checksum = 0
-        if face_exists(m, f):
-            for i in range(face_vertices(m, f, out)):
-                checksum += out[i]
-        return checksum
+    def prefetch(
+        m: Any, args: Array, begin: int, end: int, at: Array, out: Array, seen: Array
+    ) -> None:
+        for i in range(begin, end):
+            checksum = 0
+            if face_exists(m, args[i, 0]):
+                for j in range(face_vertices(m, args[i, 0], out)):
+                    checksum += out[j]
+            seen[i - begin, 0] = checksum
 
     return prefetch
 
 
 @cache
-def _of_edge(edge_exists: Kernel, diamond: Kernel, face_exists: Kernel) -> Kernel:
+def _of_edges(
+    edge_exists: Kernel, diamond: Kernel, face_exists: Kernel, first: Kernel, clockwise: Kernel,
+    steps: int,
+) -> Kernel:  # fmt: skip
     @kernel
-    def prefetch(m: Any, e: int, at: Array, out: Array) -> int:
-        if not edge_exists(m, e):
-            return 0
-        diamond(m, e, at)
-        return at[C] + at[D] + face_exists(m, at[LEFT]) + face_exists(m, at[RIGHT])
+    def prefetch(
+        m: Any, args: Array, begin: int, end: int, at: Array, out: Array, seen: Array
+    ) -> None:
+        for i in range(begin, end):
+            seen[i - begin, 0] = edge_exists(m, args[i, 0])
+        for i in range(begin, end):
+            row = seen[i - begin]
+            if row[0]:
+                diamond(m, args[i, 0], at)
+                row[0], row[1], row[2], row[3] = at[A], at[B], at[LEFT], at[RIGHT]
+            else:
+                row[2] = row[3] = -1
+        for i in range(begin, end):
+            row = seen[i - begin]
+            row[2] = first(m, row[0]) if row[2] >= 0 and face_exists(m, row[2]) else -1
+            row[3] = first(m, row[1]) if row[3] >= 0 and face_exists(m, row[3]) else -1
+        for _ in range(steps):
+            for i in range(begin, end):
+                row = seen[i - begin]
+                if row[2] >= 0:
+                    row[2] = clockwise(m, row[2], row[0])
+                if row[3] >= 0:
+                    row[3] = clockwise(m, row[3], row[1])
 
     return prefetch

@@ -6,10 +6,12 @@ import math
 
 import numpy as np
 import pytest
+from numba import njit
 
 import hem
 import structures
 from hem import algorithms
+from hem.authoring import visiting, walks
 from tests.extent import OF_EACH_KIND
 from tests.hem.algorithms.meshes import dented
 
@@ -107,3 +109,18 @@ def test_taubin_keeps_the_volume_that_laplace_loses() -> None:
     volume = mesh.volume()
     assert abs(kept.to_triangles().volume() - volume) < 0.02 * volume
     assert lost.to_triangles().volume() < 0.9 * volume
+
+
+@pytest.mark.parametrize("query", ["vertex_faces", "face_vertices"])
+def test_passes_ask_for_memory_ahead_and_queries_do_not(query: str) -> None:
+    s, kernel = (
+        structures.build("half_edge", CLOSED),
+        structures.REGISTRY["half_edge"].kernels[query],
+    )
+    visit_all = visiting(kernel, walks.count_one)
+    passing = njit(lambda m, out: visit_all(m, 0, 0, out))
+    asking = njit(lambda m, out: kernel(m, 0, out))
+    for compiled, asks in ((passing, True), (asking, False)):
+        assert compiled(s.records, np.zeros(64, np.int64)) == len(getattr(s, query)(0))
+        (code,) = compiled.inspect_llvm().values()
+        assert ("llvm.prefetch" in code) == asks
