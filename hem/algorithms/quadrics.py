@@ -25,13 +25,28 @@ BORDER_WEIGHT = 1.0
 
 
 @kernel
-def add_plane(row: Array, normal: tuple[float, ...], point: Array, weight: float) -> None:
-    """Add the plane through a point with a unit normal."""
-    x, y, z = normal
-    d = -(x * point[0] + y * point[1] + z * point[2])
+def add_plane(
+    rows: Floats, corners: tuple[int, ...], normal: tuple[float, ...], weight: float, plane: Floats
+) -> None:
+    """Add to the quadrics of some vertices the plane through the first one with a normal.
+
+    ``plane`` (WIDTH,) is scratch: the compiler adds up what lies in a row four numbers at a time.
+    """
+    first = corners[0]
+    x, y, z = unit(*normal)
+    d = -(x * rows[first, 0] + y * rows[first, 1] + z * rows[first, 2])
     parts = x * x, x * y, x * z, y * y, y * z, z * z, x * d, y * d, z * d, d * d, 1.0
     for i in range(WIDTH):
-        row[i] += weight * parts[i]
+        plane[i] = weight * parts[i]
+    for v in corners:
+        for i in range(WIDTH):
+            rows[v, 3 + i] += plane[i]
+
+
+@kernel
+def between(rows: Floats, a: int, b: int) -> tuple[float, float, float]:
+    """From one vertex to another."""
+    return rows[b, 0] - rows[a, 0], rows[b, 1] - rows[a, 1], rows[b, 2] - rows[a, 2]
 
 
 @kept
@@ -41,19 +56,16 @@ def add_quadrics(rows: Floats, triangles: Array, borders: Array) -> None:
     ``rows`` (n, 3 + WIDTH or more): position and quadric of each. ``borders`` (k, 3): the two ends
     of each edge on the border, and the third corner of its face.
     """
+    plane = np.zeros(WIDTH)
     for f in range(len(triangles)):
-        a, b, c = triangles[f]
-        x, y, z = cross(rows[b, :3] - rows[a, :3], rows[c, :3] - rows[a, :3])
-        area = np.sqrt(x * x + y * y + z * z) / 2
-        for v in (a, b, c):
-            add_plane(rows[v, 3:], unit(x, y, z), rows[a], area)
+        a, b, c = triangles[f, 0], triangles[f, 1], triangles[f, 2]
+        x, y, z = cross(between(rows, a, b), between(rows, a, c))
+        add_plane(rows, (a, b, c), (x, y, z), np.sqrt(x * x + y * y + z * z) / 2, plane)
     for f in range(len(borders)):
-        a, b, c = borders[f]
-        side = rows[b, :3] - rows[a, :3]
-        x, y, z = cross(side, np.array(cross(side, rows[c, :3] - rows[a, :3])))
-        area = BORDER_WEIGHT * (side * side).sum()
-        for v in (a, b):
-            add_plane(rows[v, 3:], unit(x, y, z), rows[a], area)
+        a, b, c = borders[f, 0], borders[f, 1], borders[f, 2]
+        side = x, y, z = between(rows, a, b)
+        upright = cross(side, cross(side, between(rows, a, c)))
+        add_plane(rows, (a, b), upright, BORDER_WEIGHT * (x * x + y * y + z * z), plane)
 
 
 @kernel
