@@ -49,14 +49,16 @@ def give_back() -> None:
     _kept.clear()
 
 
-def _keep(block: Array, used: int, kept: dict[int, tuple[int, Array]] = _kept) -> None:
-    """Keep a block, and of the others the last ones that were in use. At exit, too: ``kept``."""
-    kept[id(block)] = used, block
+def _keep(block: Array, used: int) -> None:
+    """Keep a block, and of the others the last ones that were in use; none at exit."""
+    if _kept is None:  # Python takes names away then
+        return
+    _kept[id(block)] = used, block
     total = 0
-    for key, (held, _) in reversed(kept.copy().items()):
+    for key, (held, _) in reversed(_kept.copy().items()):
         total += held
         if total > KEPT:
-            kept.pop(key, None)
+            _kept.pop(key, None)
 
 
 def _block(size: int, used: int) -> Array:

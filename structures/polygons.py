@@ -243,8 +243,7 @@ def split_vertex(
         return ALLOWED
     if not has_room(m, 1, 1, log) or not has_scratch(m, out, log):
         return NEEDS_ROOM
-    before_first = m.half_edge[first ^ 1, NEXT]
-    w = new_vertex(m, point)
+    before_first, w = m.half_edge[first ^ 1, NEXT], new_vertex(m, point)
     log[0] = log_element(log, log[0], VERTEX + CREATED, w)
     log[0] = log_element(log, log[0], PARENT, v)
     last = first

@@ -80,22 +80,14 @@ def perform(folder: Path, jobs: Sequence[Job], action: str = MEASURE) -> Generat
     WorkerDiedError if it dies, CannotWriteError if there is no more room for results.
     """
     first, by_name = jobs[0], {f"{job.experiment} {job.structure}": job for job in jobs}
-    log, files = _log(folder, first, action), dict.fromkeys(it.experiment for it in jobs)
-    command = [str(EXPERIMENTS / f"{name}.py") for name in files]
-    command += [f"--structure={name}" for name in dict.fromkeys(it.structure for it in jobs)]
-    command += ["--preset", first.preset, "--case-seed", str(first.seed), "--action", action]
-    command += ["--run", str(folder.resolve())]
-    if action == COMPILE:
-        command += ["--benchmark-disable"]
-    elif first.pin and first.timed:
-        command += ["--pin"]
+    log = _log(folder, first, action)
     mine = {key: value for key, value in os.environ.items() if not key.startswith(NOT_PASSED_ON)}
     with writing(log):
         log.parent.mkdir(exist_ok=True)
         with log.open("ab") as output:
             worker = subprocess.Popen(
-                [sys.executable, "-m", __name__, *command], cwd=EXPERIMENTS.parent,
-                env={**mine, "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1"},
+                [sys.executable, "-m", __name__, *_asked(folder, jobs, action)],
+                cwd=EXPERIMENTS.parent, env={**mine, "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1"},
                 stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=output, text=True,
             )  # fmt: skip
     with worker:
@@ -113,6 +105,18 @@ def perform(folder: Path, jobs: Sequence[Job], action: str = MEASURE) -> Generat
     if code not in (0, 1):  # pytest's: all passed, and some failed
         said = end_of_log(folder, first, action)
         raise WorkerDiedError(said or f"it ended with exit code {code}")
+
+
+def _asked(folder: Path, jobs: Sequence[Job], action: str) -> list[str]:
+    """What a worker is told to do."""
+    first = jobs[0]
+    asked = [str(EXPERIMENTS / f"{it}.py") for it in dict.fromkeys(it.experiment for it in jobs)]
+    asked += [f"--structure={name}" for name in dict.fromkeys(it.structure for it in jobs)]
+    asked += ["--preset", first.preset, "--case-seed", str(first.seed), "--action", action]
+    asked += ["--run", str(folder.resolve())]
+    if action == COMPILE:
+        return [*asked, "--benchmark-disable"]
+    return [*asked, "--pin"] if first.pin and first.timed else asked
 
 
 def _log(folder: Path, job: Job, action: str) -> Path:

@@ -2,6 +2,7 @@
 
 import os
 import pickle
+import sys
 
 import numpy as np
 import psutil
@@ -121,3 +122,13 @@ def test_without_addresses_an_array_grows_by_moving(monkeypatch):
     assert np.array_equal(array[:200_000], np.arange(200_000))
     moved = room.longer(array, 400_000, 400_001)
     assert np.array_equal(moved[:200_000], np.arange(200_000))
+
+
+def test_arrays_that_outlive_the_names_of_the_module_end_in_silence(monkeypatch):
+    said = []
+    monkeypatch.setattr(sys, "unraisablehook", said.append)
+    array = room.rows(1 << 20, dtype=np.int64)
+    for name in ("_kept", "KEPT"):  # as Python does at exit
+        monkeypatch.setattr(room, name, None)
+    del array
+    assert not said
