@@ -143,6 +143,11 @@ class Declared:
         prefetch = prefetching(self.kernels, self.operations[operation])
         return self.operating[operation].perform(pinned, prefetch)
 
+    def perform_lasting(self, operation: str, pinned: Any) -> Callable[[int], Array]:
+        """The same on edges by their lasting names."""
+        prefetch = prefetching(self.kernels, self.operations[operation], by_ends=True)
+        return self.lasting[operation].perform(pinned, prefetch)
+
     def algorithm(self, make: Algorithm) -> tuple[Uses, frozenset[str]]:
         """What ``make`` makes for this structure, and of which kernels; asked once."""
         if make not in self._algorithms:

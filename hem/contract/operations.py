@@ -239,9 +239,9 @@ class Operations:
         forgets = not self._followers
         results, logs, done = np.zeros(n, np.int64), [], 0
         vertices, faces = self._operations[operation].growth
-        lasting = state.declared.lasting.get(operation)
+        lasting = operation in state.declared.lasting
         ahead = state.declared.operating[operation].ahead if n > 1 else 0
-        if lasting is not None:
+        if lasting:
             names = state.storage.lasting_names(state.records, args[:, 0])
             args = np.column_stack([names, args[:, 1:]])
         if mode == DO:
@@ -253,8 +253,8 @@ class Operations:
             task = np.array([mode, done, n, FORGET if forgets else KEEP, ahead, done])
             scratch = task, args, points, results, state.seen, state.at, state.out["edge"], log
             pinned = state.pinned_now(*scratch)
-            if lasting is not None:
-                perform = lasting.perform(pinned)
+            if lasting:
+                perform = state.declared.perform_lasting(operation, pinned)
             perform(pinned.address)
             done = int(task[ENDED])
             logs.append(log[1 : log[0] + 1])

@@ -10,6 +10,7 @@ from functools import cache
 from typing import Any
 
 from hem.arrays import Array
+from hem.authoring import packed
 from hem.authoring.kernels import Kernel, Kernels, kernel
 from hem.authoring.operations.parts import Operation
 from hem.authoring.operations.rules import LEFT, RIGHT, A, B
@@ -30,17 +31,20 @@ def nothing(m: Any, args: Array, begin: int, end: int, at: Array, out: Array, se
     """Read nothing ahead."""
 
 
-def prefetching(k: Kernels, operation: Operation) -> Kernel:
+def prefetching(k: Kernels, operation: Operation, by_ends: bool = False) -> Kernel:
     """Make ``prefetch(m, args, begin, end, at, out, seen)``: what those operations read first.
 
     ``args`` (n, 3) are handles, of which some may name nothing; up to ``BLOCK`` of them are meant.
     ``seen`` (BLOCK, SEEN) int64 is scratch, which keeps compilers from leaving reads out.
-    Cost per operation: that of ``face_vertices`` or ``diamond``, and of ``STEPS`` around both ends.
+    ``by_ends``: they are names of edges, as where none are recorded. Cost per operation: that of
+    ``face_vertices`` or ``diamond``, and of ``STEPS`` around both ends.
     """
     if operation.element == "face":
         return _of_faces(k["face_exists"], k["face_vertices"])
     if operation.element == "edge" and k["are_joined"] in STEPPING:
         first, clockwise = STEPPING[k["are_joined"]]
+        if by_ends or k["edge_exists"] is packed.edge_exists:
+            return _of_ends(k["vertex_exists"], first, clockwise)
         steps = STEPS if operation.asks_neighbors else 0
         return _of_edges(k["edge_exists"], k["diamond"], k["face_exists"], first, clockwise, steps)
     return nothing
@@ -67,6 +71,8 @@ def _of_edges(
     edge_exists: Kernel, diamond: Kernel, face_exists: Kernel, first: Kernel, clockwise: Kernel,
     steps: int,
 ) -> Kernel:  # fmt: skip
+    around = _stepping(clockwise, steps)
+
     @kernel
     def prefetch(
         m: Any, args: Array, begin: int, end: int, at: Array, out: Array, seen: Array
@@ -84,12 +90,42 @@ def _of_edges(
             row = seen[i - begin]
             row[2] = first(m, row[0]) if row[2] >= 0 and face_exists(m, row[2]) else -1
             row[3] = first(m, row[1]) if row[3] >= 0 and face_exists(m, row[3]) else -1
+        around(m, end - begin, seen)
+
+    return prefetch
+
+
+@cache
+def _of_ends(vertex_exists: Kernel, first: Kernel, clockwise: Kernel) -> Kernel:
+    """An edge is looked for around its ends."""
+    around = _stepping(clockwise, STEPS)
+
+    @kernel
+    def prefetch(
+        m: Any, args: Array, begin: int, end: int, at: Array, out: Array, seen: Array
+    ) -> None:
+        for i in range(begin, end):
+            row, name = seen[i - begin], args[i, 0]
+            row[0], row[1] = name >> 32, name & 0xFFFFFFFF
+            known = name >= 0 and vertex_exists(m, row[0]) and vertex_exists(m, row[1])
+            row[2] = first(m, row[0]) if known else -1
+            row[3] = first(m, row[1]) if known else -1
+        around(m, end - begin, seen)
+
+    return prefetch
+
+
+@cache
+def _stepping(clockwise: Kernel, steps: int) -> Kernel:
+    @kernel
+    def around(m: Any, count: int, seen: Array) -> None:
+        """Go on from what lies at two vertices, for each row of both and of what lies there."""
         for _ in range(steps):
-            for i in range(begin, end):
-                row = seen[i - begin]
+            for i in range(count):
+                row = seen[i]
                 if row[2] >= 0:
                     row[2] = clockwise(m, row[2], row[0])
                 if row[3] >= 0:
                     row[3] = clockwise(m, row[3], row[1])
 
-    return prefetch
+    return around
