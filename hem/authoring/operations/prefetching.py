@@ -57,8 +57,10 @@ def _of_faces(face_exists: Kernel, face_vertices: Kernel) -> Kernel:
         m: Any, args: Array, begin: int, end: int, at: Array, out: Array, seen: Array
     ) -> None:
         for i in range(begin, end):
+            seen[i - begin, 0] = face_exists(m, args[i, 0])
+        for i in range(begin, end):
             checksum = 0
-            if face_exists(m, args[i, 0]):
+            if seen[i - begin, 0]:
                 for j in range(face_vertices(m, args[i, 0], out)):
                     checksum += out[j]
             seen[i - begin, 0] = checksum
