@@ -24,7 +24,7 @@ import typer
 import hem
 import structures
 from experiments.advice import ALIKE, Measured, Prices, Workload, best, predict, recorded
-from experiments.bench_workloads import WORKLOADS
+from experiments.bench_workloads import WORKLOADS, impacts
 from experiments.harness import calibration_loop
 from experiments.runs import describe, load, study
 from hem import algorithms
@@ -43,7 +43,7 @@ LONGEST = 1.0  # seconds that a program may take to be run, and to be run again
 MIXES, STEPS, BATCH, SPLITS = 6, 20, (500, 3_000), 100
 """How many random mixes there are, and their batches: how many, of how many, and of splits."""
 
-ASKED = 1_000
+ASKED, HITS = 1_000, 1_000
 
 COMPILED = {name: it for name, it in structures.REGISTRY.items() if it.compiled}
 BASE = next(name for name, it in COMPILED.items() if not (it.searches or it.rebuilds))
@@ -83,6 +83,12 @@ def _asking(s: Structure) -> None:
         s.vertex_vertices(v)
 
 
+def _hit(s: Structure, count: int) -> list[int]:
+    """Faces at random, as many on every structure."""
+    faces: list[int] = np.random.default_rng(1).integers(0, s.n_faces, count).tolist()
+    return faces
+
+
 PROGRAMS = {
     "vertex normals": Program(algorithms.vertex_normals),
     "smoothing": Program(algorithms.smooth),
@@ -91,17 +97,17 @@ PROGRAMS = {
     "sqrt3 subdivision": Program(lambda s: algorithms.subdivide(s, "sqrt3")),
     "simplify": Program(lambda s: algorithms.simplify(s, vertices=s.n_vertices // 4)),
     "remesh": Program(lambda s: algorithms.remesh(s, iterations=1)),
-    "impacts": Program(
-        lambda s: algorithms.impacts(s, np.random.default_rng(1).integers(0, s.n_faces, 1_000)), ""
-    ),
+    "impacts": Program(lambda s: algorithms.impacts(s, _hit(s, HITS)), ""),
     "circulate": Program(algorithms.circulate),
     "split and collapse": Program(algorithms.split_and_collapse),
     "shatter": Program(lambda s: hem.fracture.shatter(s, s.points[s.vertices()[0]]), ""),
     "asking from Python": Program(_asking, ""),
     **{
-        f"{name} from Python": Program(it.from_python, "" if name == "impacts" else "vertex")
+        f"{name} from Python": Program(it.from_python)
         for name, it in WORKLOADS.items()
+        if name != "impacts"  # of which structures that search are given fewer
     },
+    "impacts from Python": Program(lambda s: impacts(s, _hit(s, HITS // 10)), ""),
     **{f"mix {seed}": Program(_mix(seed), "") for seed in range(MIXES)},
 }
 

@@ -9,6 +9,8 @@ from typing import Any
 
 import pytest
 
+import hem
+import structures
 from experiments.validation import advice
 
 KEPT = Path("results/reference/advice.json")
@@ -54,6 +56,16 @@ def test_what_was_timed_is_told_as_long_as_nothing_is_a_tenth_quicker(
 ) -> None:
     found = advice.figures([row((advice.BASE, predicted, 1), (OTHERS[0], 1, 2))])
     assert found["winner_right"] == right
+
+
+@pytest.mark.parametrize("program", [it for it in advice.PROGRAMS if it.endswith("Python")])
+def test_a_program_does_the_same_where_neighbors_are_searched_for(program: str) -> None:
+    one, other = (
+        structures.build(it, hem.find_mesh("torus:600")) for it in (advice.BASE, "indexed")
+    )
+    for s in (one, other):
+        advice.PROGRAMS[program].run(s)
+    assert (one.n_vertices, one.n_faces) == (other.n_vertices, other.n_faces)
 
 
 def test_a_program_on_two_meshes_is_one_row_of_the_table() -> None:
