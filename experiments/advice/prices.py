@@ -116,7 +116,8 @@ class Prices:
     @cached_property
     def step(self) -> float:
         """Seconds per step of the calibration loop, the median beside all rounds."""
-        return float(self.run.cases["calibration"].map(np.median).median())
+        loops = self.run.cases["calibration"]
+        return float(loops[loops.map(len) > 0].map(np.median).median())
 
     @cached_property
     def call(self) -> float:
