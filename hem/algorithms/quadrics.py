@@ -28,7 +28,7 @@ BORDER_WEIGHT = 1.0
 def add_plane(
     rows: Floats, corners: tuple[int, ...], normal: tuple[float, ...], weight: float, plane: Floats
 ) -> None:
-    """Add to the quadrics of some vertices the plane through the first one with a normal.
+    """Add to the quadrics of some vertices the plane through the first one, normal to a vector.
 
     ``plane`` (WIDTH,) is scratch: the compiler adds up what lies in a row four numbers at a time.
     """

@@ -16,7 +16,7 @@ from numba.extending import intrinsic, overload
 from hem.arrays import Array
 
 AHEAD = 4096
-"""Bytes from a record to what is asked for: what a pass over faces reads some 85 faces later.
+"""Bytes from a record to what is asked for: of half-edges what a pass reads some 85 faces later.
 
 With 1,536 it takes a tenth longer; at 0 it still takes half of what it does without asking.
 """
@@ -27,7 +27,7 @@ _TO_READ, _TO_KEEP, _DATA = (ir.Constant(_INT, it) for it in (0, 3, 1))
 
 
 def ask(rows: Array, i: int) -> None:
-    """Ask for what lies ``AHEAD`` of row i, which nobody waits for. Python has it anyway.
+    """Ask for what lies ``AHEAD`` bytes behind row i; nobody waits for it. Python has it anyway.
 
     It need not be there: memory is asked for, and none is read.
     """

@@ -85,6 +85,7 @@ def in_any_order(given: Any, state: Any) -> Any:
 
 
 AS_QUERY = Way(write, reverse)
+"""Written down, counterclockwise."""
 
 
 def query_of(visiting: Visiting, is_open: Kernel | None = None) -> Kernel:

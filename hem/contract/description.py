@@ -9,7 +9,15 @@ from typing import Any, ClassVar
 import numpy as np
 
 from hem.arrays import Array, Indices
-from hem.authoring import OPERATIONS, QUERIES, Kernel, Kernels, named_by_ends, prefetching
+from hem.authoring import (
+    OPERATIONS,
+    QUERIES,
+    Kernel,
+    Kernels,
+    named_by_ends,
+    nothing,
+    prefetching,
+)
 from hem.engine import Uses
 
 Algorithm = Callable[[Kernels, Kernels], Kernel]
@@ -139,8 +147,9 @@ class Declared:
         return found
 
     def perform(self, operation: str, pinned: Any) -> Callable[[int], Array]:
-        """See ``Uses.perform``."""
-        prefetch = prefetching(self.kernels, self.operations[operation])
+        """See ``Uses.perform``. Where batches take lasting names, handles prefetch nothing."""
+        ahead = operation not in self.lasting
+        prefetch = prefetching(self.kernels, self.operations[operation]) if ahead else nothing
         return self.operating[operation].perform(pinned, prefetch)
 
     def perform_lasting(self, operation: str, pinned: Any) -> Callable[[int], Array]:

@@ -20,7 +20,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from hem.arrays import Array
-from hem.authoring import BLOCK, Field, Kernel, field_at, nothing
+from hem.authoring import BLOCK, Field, Kernel, field_at
 from hem.engine import templates
 from hem.engine.counting import CountingArray, Read, TracedArray, interpreted, source_of
 from hem.engine.fresh import fresh
@@ -55,7 +55,7 @@ class Uses:
         """``walk(handles, found, *records) -> end``: a step from each, up to one that is none."""
         return self._compiled(templates.walk, _EXISTS=exists)
 
-    def perform(self, pinned: Any, prefetch: Kernel = nothing) -> Callable[[int], Array]:
+    def perform(self, pinned: Any, prefetch: Kernel) -> Callable[[int], Array]:
         """``perform(pinned.address) -> touched``, for an operation.
 
         Pinned are the records and ``task`` (``MODE``, ``BEGIN``, ``END``, ``LOGS``, ``AHEAD``,
@@ -63,8 +63,7 @@ class Uses:
         ``out`` and ``log`` (see ``hem.authoring.operations``). Ends before the element that needs
         more room; if the mode is ``DO``, also before one that is refused. Codes of refusals are
         among the results. ``CHECK`` changes nothing. The log begins anew; it is told if ``LOGS`` is
-        ``TELL``.
-        ``AHEAD`` is how many operations are prefetched at a time, or 0.
+        ``TELL``. ``AHEAD``: how many operations are prefetched at a time, at most ``BLOCK``, or 0.
         """
         return self._bound(templates.perform, pinned.kind, _PREFETCH=prefetch)
 

@@ -486,3 +486,17 @@ def test_a_render_mesh_holds_no_polygons_and_says_so():
         s.erase_center_vertex(0)
     s.validate()
     render.close()
+
+
+def test_a_batch_reads_no_more_corners_ahead_than_its_scratch_has_room_for():
+    s = structures.build("plankton", hem.generate("grid", 1_000))
+    face, edge = 500, int(s.face_edges(500)[0])
+    known = len(s._state.out["edge"])
+    for _ in range(known + 50):  # no query is asked, so nothing makes the scratch wider
+        s.split_edge(edge, s.points[0], triangles=False)
+    scratch = np.full(4 * known + 400, 7, s._state.out["edge"].dtype)
+    s._state.out["edge"] = scratch[: len(s._state.out["edge"])]
+    behind = scratch[len(s._state.out["edge"]) :]
+    s.split_faces([face, face + 1], s.points[:2])
+    assert (behind == 7).all()
+    s.validate()

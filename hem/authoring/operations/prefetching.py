@@ -36,13 +36,14 @@ def prefetching(k: Kernels, operation: Operation, by_ends: bool = False) -> Kern
 
     ``args`` (n, 3) are handles, of which some may name nothing; up to ``BLOCK`` of them are meant.
     ``seen`` (BLOCK, SEEN) int64 is scratch, which keeps compilers from leaving reads out.
-    ``by_ends``: they are names of edges, as where none are recorded. Cost per operation: that of
-    ``face_vertices`` or ``diamond``, and of ``STEPS`` around both ends.
+    ``by_ends``: they are names of edges, as where none are recorded. Of edges nothing is read where
+    ``are_joined`` is not of ``joined_by_steps``. Cost per operation: that of ``face_vertices`` or
+    ``diamond``, and of ``STEPS`` around both ends.
     """
     if operation.element == "face":
         return _of_faces(k["face_exists"], k["face_vertices"])
-    if operation.element == "edge" and k["are_joined"] in STEPPING:
-        first, clockwise = STEPPING[k["are_joined"]]
+    if operation.element == "edge" and (around := STEPPING.get(k.get("are_joined", nothing))):
+        first, clockwise = around
         if by_ends or k["edge_exists"] is packed.edge_exists:
             return _of_ends(k["vertex_exists"], first, clockwise)
         steps = STEPS if operation.asks_neighbors else 0
