@@ -20,9 +20,12 @@ OTHERS = [name for name in advice.COMPILED if name != advice.BASE]
 def row(*pairs: tuple[str, float, float | None]) -> dict[str, Any]:
     """Of each structure what was predicted, and what it took."""
     told = [
-        {"structure": it, "predicted": one, "taken": two, "low": one / 2, "high": one * 2}
+        {
+            "structure": it, "predicted": one, "counted": one / 4, "taken": two,
+            "low": one / 2, "high": one * 2,
+        }
         for it, one, two in pairs
-    ]
+    ]  # fmt: skip
     return {"program": "made up", "mesh": "none", "faces": 1, "structures": told}
 
 
@@ -31,6 +34,7 @@ def test_errors_leave_out_what_was_learned_from_and_what_was_not_run() -> None:
     found = advice.figures([row((advice.BASE, 1, 9), (a, 1, 2), (b, 3, None))])
     assert found["predictions"] == 1
     assert found["median_error"] == pytest.approx(0.5)
+    assert found["median_error_counted"] == pytest.approx(0.875)
     assert found["within_30_percent"] == 0
     assert found["within_interval"] == 1
 
