@@ -25,7 +25,7 @@ def judge_file(
         str | None, Option(help="What the sizes are of, where several parameters vary.")
     ] = None,
     upper: Annotated[bool, Option("--upper", help="Slower growth keeps the claim, too.")] = False,
-    exact: Annotated[bool, Option("--exact", help="Counts, which no cache slows.")] = False,
+    exact: Annotated[bool, Option("--exact", help="Costs are counts: no cache slows.")] = False,
     plot: Annotated[Path | None, Option(help="Draw the costs: .png, .svg or .pdf.")] = None,
     as_json: AsJson = False,
 ) -> None:

@@ -155,13 +155,13 @@ def compare(prices: Prices, workload: Workload, name: str, mesh_name: str) -> di
     faces = len(mesh.triangles)
     told = [predict(prices, workload, structure, faces) for structure in COMPILED]
     counted = replace(workload, measured=None)
-    alone = {it: predict(prices, counted, it, faces).seconds for it in COMPILED}
+    untimed = {it: predict(prices, counted, it, faces).seconds for it in COMPILED}
     hopeful = [it.structure for it in told if it.seconds < LONGEST]
     taken = timed(prices, PROGRAMS[name], hopeful, mesh)
     rows = []
     for it in told:
         row = {"structure": it.structure, "low": it.low, "high": it.high, "predicted": it.seconds}
-        rows.append({**row, "counted": alone[it.structure], "taken": taken.get(it.structure)})
+        rows.append({**row, "counted": untimed[it.structure], "taken": taken.get(it.structure)})
     return {"program": name, "mesh": mesh_name, "faces": faces, "structures": rows}
 
 
@@ -170,17 +170,17 @@ def figures(rows: list[dict[str, Any]]) -> dict[str, Any]:
     told = [
         it for row in rows for it in row["structures"] if it["taken"] and it["structure"] != BASE
     ]
-    errors = [abs(it["predicted"] / it["taken"] - 1) for it in told]
+    errors, counted = (
+        np.array([abs(it[by] / it["taken"] - 1) for it in told]) for by in ("predicted", "counted")
+    )
     ran = [[it for it in row["structures"] if it["taken"]] for row in rows]
     ran = [it for it in ran if it]
     return {
         "workloads": len(rows),
         "predictions": len(told),
         "median_error": float(np.median(errors)),
-        "median_error_counted": float(
-            np.median([abs(it["counted"] / it["taken"] - 1) for it in told])
-        ),
-        "within_30_percent": float(np.mean(np.array(errors) <= 0.3)),
+        "median_error_counted": float(np.median(counted)),
+        "within_30_percent": float(np.mean(errors <= 0.3)),
         "within_interval": float(np.mean([it["low"] <= it["taken"] <= it["high"] for it in told])),
         "winner_right": float(np.mean([_is_alike(it, "predicted", "taken", BASE) for it in ran])),
         "best_among_alike": float(np.mean([_is_alike(it, "taken", "predicted") for it in ran])),

@@ -15,7 +15,7 @@ from numba.extending import intrinsic, overload
 
 from hem.arrays import Array
 
-AHEAD = 4096
+DISTANCE = 4096
 """Bytes from a record to what is asked for: of half-edges what a pass reads some 85 faces later.
 
 With 1,536 it takes a tenth longer; at 0 it still takes half of what it does without asking.
@@ -27,7 +27,7 @@ _TO_READ, _TO_KEEP, _DATA = (ir.Constant(_INT, it) for it in (0, 3, 1))
 
 
 def ask(rows: Array, i: int) -> None:
-    """Ask for what lies ``AHEAD`` bytes behind row i; nobody waits for it. Python has it anyway.
+    """Ask for what lies ``DISTANCE`` bytes behind row i; nobody waits for it. Python has it anyway.
 
     It need not be there: memory is asked for, and none is read.
     """
@@ -42,7 +42,7 @@ def _ask(typing: Any, rows: Any, i: Any) -> Any:
         if kind.ndim == 2:
             place = builder.mul(place, builder.extract_value(array.shape, 1))
         row = builder.bitcast(builder.gep(array.data, [place]), _BYTE)
-        there = builder.gep(row, [ir.Constant(_WORD, AHEAD)])
+        there = builder.gep(row, [ir.Constant(_WORD, DISTANCE)])
         prefetch = builder.module.declare_intrinsic("llvm.prefetch", [_BYTE], _PREFETCH)
         builder.call(prefetch, [there, _TO_READ, _TO_KEEP, _DATA])
         return context.get_dummy_value()

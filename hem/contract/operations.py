@@ -247,7 +247,7 @@ class Operations:
         if mode == DO:
             # A face of more corners needs the edges of so many triangles.
             state.make_room(vertices * n, (faces + args.shape[1] - 3) * n)
-        state.widen()  # what is read ahead looks at no sides
+        state.widen()  # corners are read ahead before an operation looks for scratch
         while True:
             entries = ENTRIES * (1 if forgets else n + 1) + 2 * len(state.log)
             log = np.empty(entries, np.int64)

@@ -97,7 +97,7 @@ def perform(address: int) -> Array:
     while i < end:
         if i == begin:
             begin = min(end, i + task[AHEAD])
-            _PREFETCH(m, args, i, begin, at, out, seen)
+            _PREFETCH(m, args[i:begin], at, out, seen)
         if logs == FORGET:
             log[0] = 0
         point = points[i if many else 0]

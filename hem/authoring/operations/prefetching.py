@@ -27,102 +27,96 @@ SEEN = 4
 
 
 @kernel
-def nothing(m: Any, args: Array, begin: int, end: int, at: Array, out: Array, seen: Array) -> None:
+def nothing(m: Any, args: Array, at: Array, out: Array, seen: Array) -> None:
     """Read nothing ahead."""
 
 
 def prefetching(k: Kernels, operation: Operation, by_ends: bool = False) -> Kernel:
-    """Make ``prefetch(m, args, begin, end, at, out, seen)``: what those operations read first.
+    """Make ``prefetch(m, args, at, out, seen)``: what so many operations read first.
 
-    ``args`` (n, 3) are handles, of which some may name nothing; up to ``BLOCK`` of them are meant.
-    ``seen`` (BLOCK, SEEN) int64 is scratch, which keeps compilers from leaving reads out.
-    ``by_ends``: they are names of edges, as where none are recorded. Of edges nothing is read where
-    ``are_joined`` is not of ``joined_by_steps``. Cost per operation: that of ``face_vertices`` or
-    ``diamond``, and of ``STEPS`` around both ends.
+    ``args`` (up to BLOCK, 3) are their handles, of which some may name nothing, or ``by_ends``
+    names of edges, as where none are recorded. ``at`` and ``out`` are scratch as for an operation;
+    so is ``seen`` (BLOCK, SEEN) int64, which keeps compilers from leaving reads out. Of edges
+    nothing is read where ``are_joined`` is not of ``joined_by_steps``. Cost per operation: that of
+    ``face_vertices`` or ``diamond``, and of ``STEPS`` around both ends.
     """
     if operation.element == "face":
         return _of_faces(k["face_exists"], k["face_vertices"])
     if operation.element == "edge" and (around := STEPPING.get(k.get("are_joined", nothing))):
         first, clockwise = around
         if by_ends or k["edge_exists"] is packed.edge_exists:
-            return _of_ends(k["vertex_exists"], first, clockwise)
-        steps = STEPS if operation.asks_neighbors else 0
-        return _of_edges(k["edge_exists"], k["diamond"], k["face_exists"], first, clockwise, steps)
+            return _of_ends(k["vertex_exists"], first, _stepping(clockwise, STEPS))
+        ring = _stepping(clockwise, STEPS if operation.asks_neighbors else 0)
+        return _of_edges(k["edge_exists"], k["diamond"], k["face_exists"], first, ring)
     return nothing
 
 
 @cache
 def _of_faces(face_exists: Kernel, face_vertices: Kernel) -> Kernel:
     @kernel
-    def prefetch(
-        m: Any, args: Array, begin: int, end: int, at: Array, out: Array, seen: Array
-    ) -> None:
-        for i in range(begin, end):
-            seen[i - begin, 0] = face_exists(m, args[i, 0])
-        for i in range(begin, end):
+    def prefetch(m: Any, args: Array, at: Array, out: Array, seen: Array) -> None:
+        for i in range(len(args)):
+            seen[i, 0] = face_exists(m, args[i, 0])
+        for i in range(len(args)):
             checksum = 0
-            if seen[i - begin, 0]:
+            if seen[i, 0]:
                 for j in range(face_vertices(m, args[i, 0], out)):
                     checksum += out[j]
-            seen[i - begin, 0] = checksum
+            seen[i, 0] = checksum
 
     return prefetch
 
 
 @cache
 def _of_edges(
-    edge_exists: Kernel, diamond: Kernel, face_exists: Kernel, first: Kernel, clockwise: Kernel,
-    steps: int,
-) -> Kernel:  # fmt: skip
-    around = _stepping(clockwise, steps)
-
+    edge_exists: Kernel, diamond: Kernel, face_exists: Kernel, first: Kernel, ring: Kernel
+) -> Kernel:
     @kernel
-    def prefetch(
-        m: Any, args: Array, begin: int, end: int, at: Array, out: Array, seen: Array
-    ) -> None:
-        for i in range(begin, end):
-            seen[i - begin, 0] = edge_exists(m, args[i, 0])
-        for i in range(begin, end):
-            row = seen[i - begin]
+    def prefetch(m: Any, args: Array, at: Array, out: Array, seen: Array) -> None:
+        for i in range(len(args)):
+            seen[i, 0] = edge_exists(m, args[i, 0])
+        for i in range(len(args)):
+            row = seen[i]
             if row[0]:
                 diamond(m, args[i, 0], at)
                 row[0], row[1], row[2], row[3] = at[A], at[B], at[LEFT], at[RIGHT]
             else:
-                row[2] = row[3] = -1
-        for i in range(begin, end):
-            row = seen[i - begin]
-            row[2] = first(m, row[0]) if row[2] >= 0 and face_exists(m, row[2]) else -1
-            row[3] = first(m, row[1]) if row[3] >= 0 and face_exists(m, row[3]) else -1
-        around(m, end - begin, seen)
+                row[0] = -1
+        for i in range(len(args)):  # a face that is beside the edge exists
+            row = seen[i]
+            left = row[0] >= 0 and (row[2] < 0 or face_exists(m, row[2]))
+            right = row[0] >= 0 and (row[3] < 0 or face_exists(m, row[3]))
+            row[2] = first(m, row[0]) if left else -1
+            row[3] = first(m, row[1]) if right else -1
+        ring(m, len(args), seen)
 
     return prefetch
 
 
 @cache
-def _of_ends(vertex_exists: Kernel, first: Kernel, clockwise: Kernel) -> Kernel:
-    """An edge is looked for around its ends."""
-    around = _stepping(clockwise, STEPS)
-
+def _of_ends(vertex_exists: Kernel, first: Kernel, ring: Kernel) -> Kernel:
     @kernel
-    def prefetch(
-        m: Any, args: Array, begin: int, end: int, at: Array, out: Array, seen: Array
-    ) -> None:
-        for i in range(begin, end):
-            row, name = seen[i - begin], args[i, 0]
+    def prefetch(m: Any, args: Array, at: Array, out: Array, seen: Array) -> None:
+        for i in range(len(args)):
+            row, name = seen[i], args[i, 0]
             row[0], row[1] = name >> 32, name & 0xFFFFFFFF
             known = name >= 0 and vertex_exists(m, row[0]) and vertex_exists(m, row[1])
             row[2] = first(m, row[0]) if known else -1
             row[3] = first(m, row[1]) if known else -1
-        around(m, end - begin, seen)
+        ring(m, len(args), seen)
 
     return prefetch
 
 
 @cache
 def _stepping(clockwise: Kernel, steps: int) -> Kernel:
+    """Make ``ring(m, count, seen)``: go on around both vertices of each row from what lies there.
+
+    A row is two vertices and an item at each, or -1.
+    """
+
     @kernel
-    def around(m: Any, count: int, seen: Array) -> None:
-        """Go on from what lies at two vertices, for each row of both and of what lies there."""
+    def ring(m: Any, count: int, seen: Array) -> None:
         for _ in range(steps):
             for i in range(count):
                 row = seen[i]
@@ -131,4 +125,4 @@ def _stepping(clockwise: Kernel, steps: int) -> Kernel:
                 if row[3] >= 0:
                     row[3] = clockwise(m, row[3], row[1])
 
-    return around
+    return ring

@@ -113,10 +113,8 @@ def test_taubin_keeps_the_volume_that_laplace_loses() -> None:
 
 @pytest.mark.parametrize("query", ["vertex_faces", "face_vertices"])
 def test_passes_ask_for_memory_ahead_and_queries_do_not(query: str) -> None:
-    s, kernel = (
-        structures.build("half_edge", CLOSED),
-        structures.REGISTRY["half_edge"].kernels[query],
-    )
+    s = structures.build("half_edge", CLOSED)
+    kernel = type(s).kernels[query]
     visit_all = visiting(kernel, walks.count_one)
     passing = njit(lambda m, out: visit_all(m, 0, 0, out))
     asking = njit(lambda m, out: kernel(m, 0, out))
