@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from hem.complexity.estimates import slope
-from hem.complexity.judge import Outcome, Verdict, judge
+from hem.complexity.judge import MIN_SIZES, Outcome, Verdict, judge
 from hem.complexity.notation import Array, parse
 
 MEMORY_ERROR = 0.05  # relative error of what memory did to a call, beside what was measured …
@@ -22,7 +22,8 @@ BENT = 4.0  # … or this, where sizes in the caches do not tell that there is l
 CACHED_ERROR = 0.05  # the same for sizes that are in the caches …
 UNSEEN_CACHED = 1.15  # … as a first cache is quicker than a second …
 UNSEEN_COSTLY = 1.3  # … and for sizes where a call works longer than it waits
-CACHED = 2.0  # factor by which an access takes longer than at the smallest size, in the caches
+CACHED = 2.0  # factor by which an access takes longer than at the smallest size, in the caches …
+NEAR_CACHED = 1.2  # … and in the first ones
 FEWEST = 6  # sizes that may decide for all
 WIDE = 64  # of the largest size to the smallest: over less, a constant may hide what grows
 KEPT = 256  # the largest of the integers that Python keeps: larger ones are read from memory …
@@ -32,12 +33,14 @@ LESS = 0.8  # part of what a class tells that a larger size costs at least
 CLOSE = 0.015  # relative error that a class may have to be told without reserve
 REACH = 16  # of the largest size to the smallest that tells the same: there lower terms fade
 BEHIND = 0.25  # of a slope: by so much a class may fall behind what works more than it waits
+READS = 8  # so many times as long as reading its working set takes what does more than that
 WORD = 8  # bytes that a call reads at once: it may wait for each, but no longer
 STEEP = 1.5  # slope from which on a call works more than it waits
 LOWER_TERMS = 9  # tried where a call works more than it waits
 QUICKER = 0.6  # share of the samples of a size that is looked at, the quicker ones: delays only add
 FLAT, QUITE_FLAT = 0.25, 0.1  # powers of log n by which linear costs rise beside small inputs …
 RISING, EVENLY = 0.6, 0.075  # … and others do, straying so little
+HALF = 4  # sizes, at least, that may tell alone that it stops
 CONSTANT, LINEAR, LOGLINEAR = ["O(1)"], ["O(n)"], ["O(n log n)"]
 KEEPS: dict[bool, Outcome] = {True: "consistent", False: "violated"}
 Sizes = NDArray[np.bool_]
@@ -52,11 +55,23 @@ class InParts:
 
     @property
     def logs(self) -> tuple[float, float]:
-        """The power of log n by which the ratios rise, and how far they stray from that.
+        """The power of log n by which the ratios rise, and how far they stray from that."""
+        return self._logs(0)
 
-        The median of what all pairs of sizes tell: one that was disturbed says little.
+    @property
+    def stop(self) -> bool:
+        """Whether they rise, but those of the larger half no more; of few sizes it is not said.
+
+        What costs more from some size on, as it has left a cache or as no processor can know it by
+        heart, does so; log n goes on.
         """
-        x, y = np.log(np.log(self.sizes)), np.log([np.median(row) for row in self.ratios])
+        half = len(self.sizes) // 2
+        return half >= HALF and self._logs(half)[0] < FLAT <= self.logs[0]
+
+    def _logs(self, first: int) -> tuple[float, float]:
+        """The median of what all pairs of sizes tell: one that was disturbed says little."""
+        rows = self.ratios[first:]
+        x, y = np.log(np.log(self.sizes[first:])), np.log([np.median(row) for row in rows])
         one, other = np.triu_indices(len(x), 1)
         power = np.median((y[other] - y[one]) / (x[other] - x[one]))
         return float(power), float(np.std(y - power * x))
@@ -105,7 +120,7 @@ class Measured:
     def is_settled(self) -> bool:
         """Whether some costs tell one class so closely that no further sizes are needed."""
         if self.in_parts:
-            return self.in_parts.logs[0] < FLAT
+            return self.in_parts.logs[0] < FLAT or self.in_parts.stop
         asked = _Asked(self, "O(1)", {"resamples": 2})
         told = asked.by_work() or asked.without_reserve()
         return told is not None and _names_one(told)
@@ -126,6 +141,7 @@ class Measured:
             return self._unhidden(asked.whole(UNSEEN))
         told = asked.by_work() or asked.without_reserve() or asked.with_reserve()
         told = _agreeing(told if _names_a_class(told) else replace(told, classes=[]))
+        told = _open_upward(told) if asked.bends_up(told) else told
         return self._unhidden(self._beside_parts(told))
 
     def _beside_parts(self, told: Verdict) -> Verdict:
@@ -138,7 +154,8 @@ class Measured:
         if not self.in_parts:
             return told
         power, stray = self.in_parts.logs
-        if power < (QUITE_FLAT if told.classes == LOGLINEAR else FLAT):
+        flat = QUITE_FLAT if told.classes == LOGLINEAR else FLAT
+        if power < flat or self.in_parts.stop:
             classes = LINEAR
         elif told.classes == LINEAR and power > RISING and stray < EVENLY:
             classes = LINEAR + LOGLINEAR
@@ -217,6 +234,23 @@ class _Asked:
             if told and _names_one(told) and told.errors[told.best] < CLOSE:
                 return told
         return None
+
+    def bends_up(self, told: Verdict) -> bool:
+        """Whether the largest sizes in the caches cost more and more beside what a class tells.
+
+        What reads along may, as it leaves the first cache: by no more than its bytes take longer.
+        """
+        of, access = self.of, self.of.memory[0] / self.of.memory[0].min()
+        byte, least = of.cost / of.working_sets, told.predicted(told.best, of.sizes)
+        works = np.median((byte / of.memory[1])[self._fits]) > READS
+        fits = np.flatnonzero(access < (NEAR_CACHED if works else CACHED))
+        last = fits[-max(MIN_SIZES, len(fits) // 4) :]
+        if len(last) < MIN_SIZES or not told.classes or _is_a_law(told):
+            return False
+        sizes, excess = of.sizes[last], (of.cost / least)[last]
+        beyond = float(np.median(np.diff(np.log(excess)) / np.diff(np.log(sizes))))
+        longer = max(float(slope(sizes, byte[last])), 0.0) + float(slope(sizes, access[last]))
+        return beyond - (0 if works else longer) > BEHIND
 
     def with_reserve(self) -> Verdict:
         """What they tell where caches and allocators may have bent the costs a little, or all do.
@@ -300,6 +334,15 @@ def _agreeing(it: Verdict) -> Verdict:
         reason = f"Some of the sizes tell {it.answer}."
         return replace(it, outcome="undetermined", reason=reason)
     return it
+
+
+def _open_upward(it: Verdict) -> Verdict:
+    """A verdict that names no class, and lets every claim of as fast a growth, or faster, stand."""
+    it = replace(it, classes=[])
+    if parse(it.expected) < parse(it.best):
+        return it
+    reason = f"The largest sizes cost more and more beside {it.best}, whatever it is."
+    return replace(it, outcome="undetermined", reason=reason)
 
 
 def _either(one: Verdict, other: Verdict) -> list[str]:

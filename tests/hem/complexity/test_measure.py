@@ -230,6 +230,20 @@ def costs(seconds: Array, sizes: Array) -> Measured:
     return Measured(sizes, samples, 8 * sizes, np.full((3, len(sizes)), 5e-9))
 
 
+@pytest.mark.parametrize("largest", [350, 700, 1_500, 3_000])
+@pytest.mark.parametrize("linear", [2e-8, 4e-8])
+def test_costs_that_still_bend_upward_are_of_no_slower_class(linear: float, largest: int) -> None:
+    """A large table is read beside what each of its rows takes: O(n log n) fits for a while."""
+    sizes = np.unique(np.geomspace(4, largest, 39).round())
+    found = costs(9e-7 + linear * sizes + 2e-10 * sizes**2, sizes)
+    memory = np.outer([5e-9, 3.5e-11, 2.5e-11], np.ones(len(found.sizes)))
+    found = replace(found, working_sets=8 * found.sizes**2, memory=memory)
+    assert found.judge().answer in ("", "O(n²)")
+    assert found.judge("O(n²)").outcome in ("undetermined", "consistent")
+    assert found.judge("O(n log n)").outcome in ("undetermined", "violated")
+    assert found.judge("O(√n)", bound="upper").outcome == "violated"
+
+
 def answer(cost: Callable[[Array], Array], sizes: Array) -> str:
     """What they say by themselves."""
     return costs(cost(sizes), sizes).judge().answer
@@ -373,6 +387,15 @@ def test_costs_are_held_to_those_of_small_inputs(
     assert both.judge("O(n log n)", bound="upper").outcome == "consistent"
     unheard = both.judge("O(n)", latency=None), found.judge("O(n)", latency=None)
     assert unheard[0].outcome == unheard[1].outcome
+
+
+def test_what_rises_from_some_size_on_and_no_further_is_linear() -> None:
+    """A cache that is left bends no curve of small inputs beyond it; log n goes on."""
+    sizes, parts = np.geomspace(4, 100_000, 20).round(), np.geomspace(100, 100_000, 9).round()
+    found = costs(1e-8 * sizes * np.log(sizes), sizes)
+    for grown, told in ((np.clip(np.log(parts), 6, 8), "O(n)"), (np.log(parts), "O(n log n)")):
+        rows = list(np.outer(grown, np.linspace(0.98, 1.02, 9)))
+        assert replace(found, in_parts=InParts(parts, rows)).judge().answer == told
 
 
 def test_rounds_are_interleaved_over_the_sizes(clock: Clock) -> None:
