@@ -172,12 +172,18 @@ def _parts(found: Measured, given: bool) -> tuple[int, Array]:
     than one at which a call works, or where the system has to find memory anew.
     """
     n, cost = found.sizes, found.cost
-    long = np.clip(cost.max() / cost.min() / WIDER, *PART) * cost.min()
-    part = int(n[np.argmax(cost >= long)])
-    room = n[(found.working_sets < FREED) & (n <= max(n[-1] / SHORTER, WIDE * part))]
+    times = PART[0], np.clip(cost.max() / cost.min() / WIDER, *PART)
+    first, wished = (int(np.argmax(cost >= it * cost.min())) for it in times)
+    small = found.working_sets < FREED
+    for k in range(wished, first - 1, -1):
+        room = n[small & (n <= max(n[-1] / SHORTER, WIDE * n[k]))]
+        if room.size and room[-1] >= WIDER * n[k] and cost[k] >= times[0] * cost.min():
+            break
+    else:
+        return int(n[first]), np.empty(0)
+    part = int(n[k])
     least, most = NEARLY_LINEAR
-    reaches = cost.max() >= long and room.size and room[-1] >= WIDER * part
-    if not reaches or not least < slope(n[n >= part], cost[n >= part]) < most:
+    if not least < slope(n[n >= part], cost[n >= part]) < most:
         return part, np.empty(0)
     if given:
         return part, n[(n > part) & (n <= room[-1])]

@@ -39,7 +39,8 @@ STEEP = 1.5  # slope from which on a call works more than it waits
 LOWER_TERMS = 9  # tried where a call works more than it waits
 QUICKER = 0.6  # share of the samples of a size that is looked at, the quicker ones: delays only add
 FLAT, QUITE_FLAT = 0.25, 0.1  # powers of log n by which linear costs rise beside small inputs …
-RISING, EVENLY = 0.6, 0.075  # … and others do, straying so little
+RISING, EVENLY = 0.6, 0.075  # … and others do, straying so little …
+LOG, CLOSELY = 0.45, 0.025  # … or so little that it is no cache's doing
 HALF = 4  # sizes, at least, that may tell alone that it stops
 CONSTANT, LINEAR, LOGLINEAR = ["O(1)"], ["O(n)"], ["O(n log n)"]
 KEEPS: dict[bool, Outcome] = {True: "consistent", False: "violated"}
@@ -149,7 +150,7 @@ class Measured:
 
         They take the same memory, so that only the work can differ. What does not grow beside them
         is linear. What does may be slower at random access, or of O(n log n): where it grows
-        evenly, linear costs are not certain.
+        evenly, linear costs are not certain, and where both are open no cache grows so evenly.
         """
         if not self.in_parts:
             return told
@@ -159,14 +160,16 @@ class Measured:
             classes = LINEAR
         elif told.classes == LINEAR and power > RISING and stray < EVENLY:
             classes = LINEAR + LOGLINEAR
+        elif told.classes == LINEAR + LOGLINEAR and power > LOG and stray < CLOSELY:
+            classes = LOGLINEAR
         else:
             return told
         upper, claim = told.bound == "upper", parse(told.expected)
         kept = {claim == it or (upper and claim > it) for it in map(parse, classes)}
         outcome: Outcome = "undetermined" if len(kept) > 1 else KEEPS[kept.pop()]
-        grows = "in proportion" if classes == LINEAR else "less"
+        grows = "in proportion" if classes == LINEAR else "less, by a logarithm,"
         reason = f"Small inputs, as much together, take {grows}: {' or '.join(classes)}."
-        return replace(told, classes=classes, best=LINEAR[0], outcome=outcome, reason=reason)
+        return replace(told, classes=classes, best=classes[0], outcome=outcome, reason=reason)
 
     def _unhidden(self, it: Verdict) -> Verdict:
         """A verdict that accuses no claim of a growth which a constant may hide at these sizes."""

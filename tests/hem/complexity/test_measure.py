@@ -345,6 +345,27 @@ def test_small_inputs_are_as_much_together_and_tell_nothing_of_steep_costs(clock
     )
 
 
+def test_small_inputs_are_smaller_where_room_is_short(
+    clock: Clock, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of memory that the system has to find anew nothing is asked for them."""
+    module = sys.modules[measure_function.__module__]
+    sizes = [round(2 ** (k / 2)) for k in range(4, 29)]
+
+    def linear(it: bytes) -> None:
+        clock.now += 1e-9 * (sizes[-1] / 100 + len(it))
+
+    first = [measure(linear, bytes, sizes).in_parts]
+    monkeypatch.setattr(module, "FREED", sizes[-1] / 1.5)
+    first.append(measure(linear, bytes, sizes).in_parts)
+    monkeypatch.setattr(module, "FREED", sizes[-1] / 100)
+    assert measure(linear, bytes, sizes).in_parts is None
+    assert first[0] is not None
+    assert first[1] is not None
+    assert first[1].sizes[0] < first[0].sizes[0]
+    assert first[1].sizes[-1] < first[0].sizes[-1]
+
+
 def beside_parts(found: Measured, power: float, wobble: float = 0.0) -> Measured:
     """Costs that rise by a power of log n beside those of small inputs, one size in two by more."""
     sizes = np.geomspace(100, 100_000, 9).round()
@@ -387,6 +408,23 @@ def test_costs_are_held_to_those_of_small_inputs(
     assert both.judge("O(n log n)", bound="upper").outcome == "consistent"
     unheard = both.judge("O(n)", latency=None), found.judge("O(n)", latency=None)
     assert unheard[0].outcome == unheard[1].outcome
+
+
+@pytest.mark.parametrize(
+    ("power", "wobble", "told"),
+    [
+        (1.0, 0.0, "O(n log n)"),
+        (1.0, 0.2, "O(n) or O(n log n)"),
+        (0.3, 0.0, "O(n) or O(n log n)"),
+        (0.0, 0.0, "O(n)"),
+    ],
+)
+def test_small_inputs_decide_what_costs_leave_open(power: float, wobble: float, told: str) -> None:
+    """No cache makes costs rise as evenly as a logarithm does."""
+    sizes = np.geomspace(4, 100_000, 20).round()
+    found = costs(1e-8 * sizes * np.log(sizes) ** 0.45, sizes)
+    assert found.judge().answer == "O(n) or O(n log n)"
+    assert beside_parts(found, power, wobble).judge().answer == told
 
 
 def test_what_rises_from_some_size_on_and_no_further_is_linear() -> None:
