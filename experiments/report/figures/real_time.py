@@ -1,6 +1,5 @@
 """What counts in real time: single edits as they come, picking, and what a mesh weighs."""
 
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -12,7 +11,7 @@ from experiments.bench_workloads import COMPILED, FROM_PYTHON
 from experiments.report import style
 from experiments.report.comparisons import at_largest, bytes_held, medians
 from experiments.report.figures.growth import draw_lines
-from experiments.report.pages import Heads, Html, numbers, part
+from experiments.report.pages import Heads, Html, Numbers, numbers, part
 from experiments.report.session import MissingError, require
 from experiments.report.style import BLUE, GRAY, RED, STYLES, Plot
 from experiments.report.tables import count, duration
@@ -53,32 +52,29 @@ def waits(run: Run) -> Plot:
     return figure
 
 
-def frames(run: Run) -> Html:
-    """What an edit takes, and how many a frame has time for; at the largest size of each."""
+def frames(run: Run, order: str = GROWING) -> Numbers:
+    """What an edit takes, and how many a frame has time for, at every size; ``order``: where arrays
+    grow, or where room was made, never both.
+    """
     rows = []
-    for case in at_largest(_cases(run, EDITS), "structure").to_dict("records"):
+    for case in _cases(run, EDITS).query("order == @order").to_dict("records"):
         seconds, uploads = np.array(case["samples"]), case["detail"]["uploads"]
-        about = REGISTRY[case["structure"]].title, case["vertices"], case["order"] == RESERVED
         times = *np.percentile(seconds, [50, 99, 100]), _in_a_frame(seconds)
+        about = REGISTRY[case["structure"]].title, case["vertices"]
         rows.append((*about, *times, np.median(uploads), max(uploads)))
     heads: Heads = {
-        "": str, "vertices": count, "room": lambda there: "made" if there else "grows",
-        "median": duration, "99 of 100": duration, "longest": duration,
+        "": str, "vertices": count, "median": duration, "99 of 100": duration, "longest": duration,
         "edits in a frame": str, "uploaded, bytes": count, "at most": count,
     }  # fmt: skip
     return numbers(rows, heads)
 
 
-def edits_by_size(run: Run) -> Html:
-    """The median and the longest time of an edit at every size, where arrays grow."""
-    cases = _cases(run, EDITS).query("order == @GROWING")
-    told = [f"{duration(np.median(it))} … {duration(max(it))}" for it in cases["samples"]]
-    return _by_size(cases.assign(told=told), "told", str)
-
-
-def compactions(run: Run) -> Html:
+def compactions(run: Run) -> Numbers:
     """How long it takes to drop what is dead, at every size."""
-    return _by_size(_cases(run, COMPACT), "cost", duration)
+    cases = _cases(run, COMPACT)
+    table = cases.pivot_table("cost", "structure", "vertices", aggfunc="first", sort=False)
+    rows = [(REGISTRY[str(name)].title, *sizes) for name, sizes in table.iterrows()]
+    return numbers(rows, {"": str, **{f"{size:,} vertices": duration for size in table.columns}})
 
 
 def keeping_up(run: Run) -> Html:
@@ -94,13 +90,6 @@ def keeping_up(run: Run) -> Html:
         of_size = found.setdefault((size, int(largest["vertices"])), {})
         of_size[str(name)] = float(largest["longest"])
     return part("keeping_up", sorted(found.items(), reverse=True))
-
-
-def _by_size(cases: pd.DataFrame, column: str, shown: Callable[[Any], str]) -> Html:
-    """A table of one column of the cases: a row per structure, by size."""
-    table = cases.pivot_table(column, "structure", "vertices", aggfunc="first", sort=False)
-    rows = [(REGISTRY[str(name)].title, *sizes) for name, sizes in table.iterrows()]
-    return numbers(rows, {"": str, **{f"{size:,} vertices": shown for size in table.columns}})
 
 
 def picks(run: Run) -> Plot:
@@ -142,7 +131,7 @@ def picks_in_words(run: Run) -> Html:
     return part("picks", size, *(1e-6 * known.loc[size]), 1e-6 * neighbors)
 
 
-def weights(run: Run) -> Html:
+def weights(run: Run) -> Numbers:
     """Megabytes of a mesh that is shown and edited: as drawn, as a render mesh, and in all.
 
     A renderer is given a position, a normal and a texture coordinate per vertex, and three indices
@@ -160,7 +149,7 @@ def weights(run: Run) -> Html:
         rows.append((family, vertices, faces, drawn / 1e6, beside / 1e6, *whole))
     heads: dict[str, Any] = {"": str, "vertices": count, "faces": count}
     heads |= {"renderer": MEGABYTES, "render mesh": MEGABYTES}
-    heads |= {f"+ {REGISTRY[str(it)].abbreviation}": MEGABYTES for it in table}
+    heads |= {f"+ {REGISTRY[str(it)].title}": MEGABYTES for it in table}
     return numbers(rows, heads)
 
 
