@@ -182,6 +182,7 @@ class Numbers(Html):
 
     @property
     def markdown(self) -> str:
+        """Its rows, for a page in Markdown."""
         return written.markdown_rows(self.rows)
 
 

@@ -53,28 +53,27 @@ def waits(run: Run) -> Plot:
 
 
 def frames(run: Run, order: str = GROWING) -> Numbers:
-    """What an edit takes, and how many a frame has time for, at every size; ``order``: where arrays
-    grow, or where room was made, never both.
+    """At every size the median, 99 of 100 and the longest of the edits, and how many fit a frame.
+
+    And the bytes that an edit uploads, at any size. ``order``: where arrays grow, or where room was
+    made, never both.
     """
+    cases = _cases(run, EDITS).query("order == @order")
+    table = _by_size(cases.assign(told=cases["samples"].map(_told)), "told")
     rows = []
-    for case in _cases(run, EDITS).query("order == @order").to_dict("records"):
-        seconds, uploads = np.array(case["samples"]), case["detail"]["uploads"]
-        times = *np.percentile(seconds, [50, 99, 100]), _in_a_frame(seconds)
-        about = REGISTRY[case["structure"]].title, case["vertices"]
-        rows.append((*about, *times, np.median(uploads), max(uploads)))
-    heads: Heads = {
-        "": str, "vertices": count, "median": duration, "99 of 100": duration, "longest": duration,
-        "edits in a frame": str, "uploaded, bytes": count, "at most": count,
-    }  # fmt: skip
-    return numbers(rows, heads)
+    for name, sizes in table.iterrows():
+        details = cases.loc[cases["structure"] == name, "detail"]
+        uploads = np.concatenate([it["uploads"] for it in details])
+        rows.append((REGISTRY[str(name)].title, *sizes, np.median(uploads), uploads.max()))
+    heads: Heads = {"": str, **{f"{size:,} vertices": str for size in table}}
+    return numbers(rows, {**heads, "uploaded, bytes": count, "at most": count})
 
 
 def compactions(run: Run) -> Numbers:
     """How long it takes to drop what is dead, at every size."""
-    cases = _cases(run, COMPACT)
-    table = cases.pivot_table("cost", "structure", "vertices", aggfunc="first", sort=False)
+    table = _by_size(_cases(run, COMPACT), "cost")
     rows = [(REGISTRY[str(name)].title, *sizes) for name, sizes in table.iterrows()]
-    return numbers(rows, {"": str, **{f"{size:,} vertices": duration for size in table.columns}})
+    return numbers(rows, {"": str, **{f"{size:,} vertices": duration for size in table}})
 
 
 def keeping_up(run: Run) -> Html:
@@ -90,6 +89,11 @@ def keeping_up(run: Run) -> Html:
         of_size = found.setdefault((size, int(largest["vertices"])), {})
         of_size[str(name)] = float(largest["longest"])
     return part("keeping_up", sorted(found.items(), reverse=True))
+
+
+def _by_size(cases: pd.DataFrame, column: str) -> pd.DataFrame:
+    """One column of the cases: a row per structure, by size."""
+    return cases.pivot_table(column, "structure", "vertices", aggfunc="first", sort=False)
 
 
 def picks(run: Run) -> Plot:
@@ -149,8 +153,14 @@ def weights(run: Run) -> Numbers:
         rows.append((family, vertices, faces, drawn / 1e6, beside / 1e6, *whole))
     heads: dict[str, Any] = {"": str, "vertices": count, "faces": count}
     heads |= {"renderer": MEGABYTES, "render mesh": MEGABYTES}
-    heads |= {f"+ {REGISTRY[str(it)].title}": MEGABYTES for it in table}
+    heads |= {REGISTRY[str(it)].title: MEGABYTES for it in table}
     return numbers(rows, heads)
+
+
+def _told(seconds: Any) -> str:
+    """What single edits took, and how many a frame has time for."""
+    times = [duration(it) for it in np.percentile(seconds, [50, 99, 100])]
+    return " · ".join([*times, _in_a_frame(np.array(seconds))])
 
 
 def _in_a_frame(seconds: Any) -> str:
