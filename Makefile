@@ -5,6 +5,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 STUDY := $(VENV)/installed-study
 DEV := $(VENV)/installed-dev
+# Without `picking`, as Warp takes 150 MB; where it is missing, the chapter says how to add it.
 STUDY_EXTRAS := study,fracture,viz
 # One worker more than there are cores, as many tests wait for a process of their own. One takes all
 # tests that compile for a structure, or else all of a file (tests/conftest.py); the longest first.

@@ -40,7 +40,7 @@ PICKS, EDITS, PICK_SEED = 100, 60, 24
 FEW_PICKS = 4  # how many picks a sample has where neighbors are searched for
 SCANS = 4  # how often a pick scans the mesh there
 
-WITHOUT = "It needs the package warp-lang, which is not installed: pip install hem-mesh[picking]"
+WITHOUT = "It needs the package warp-lang, which is not installed: pip install warp-lang"
 
 
 class Picker:

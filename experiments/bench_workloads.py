@@ -102,7 +102,11 @@ def _simplify(s: Structure) -> None:
 
 
 def simplification(s: Structure, part: float = KEPT) -> None:
-    """Collapse the shortest edge there is until ``part`` of the vertices is left."""
+    """Collapse the shortest edge there is until ``part`` of the vertices is left.
+
+    A plain one: it looks at no normals and no borders, and keeps the end with the larger number.
+    The compiled one refuses what turns a face over, and keeps borders; it leaves another mesh.
+    """
     wanted = max(4, int(part * s.n_vertices))
     ends = np.sort(s.edge_vertices(s.edges()).values.reshape(-1, 2))
     points = s.points  # where those that stay will be, too

@@ -19,7 +19,8 @@ Invariants
 
 A face that an operation changes has others of its edges at another place. So an edge is named by
 the smaller of its half-edges and a mark of its two ends, see ``hem.authoring.marked``: a handle is
-valid as long as that half-edge joins them, and names nothing while it joins others.
+valid as long as that half-edge joins them, and names nothing while it joins others. Who keeps an
+edge through edits keeps its two vertices, and asks ``find_edge``: ``stable_edge_handles`` is False.
 
 Bytes per vertex with 8-byte references: 12 + 8 + 6 · 16 = 116. Source: Campagna, Kobbelt & Seidel,
 Directed Edges: A Scalable Representation for Triangle Meshes (1998). Rossignac's corner table

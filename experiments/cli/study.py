@@ -10,12 +10,24 @@ from typer import Option
 
 from experiments import require_known
 from experiments.cli.console import OfMesh, Repair, Structures, completed, console, errors
-from experiments.presets import PRESETS
+from experiments.presets import (
+    COARSER,
+    FINE_ENOUGH,
+    LARGEST,
+    LARGEST_COUNTED,
+    PRESETS,
+    SMALLEST,
+)
 
 DEFAULT = "quick"  # the preset of a study that names none
 FILES = Path(__file__).parents[1].glob("bench_*.py")
 EXPERIMENTS = sorted(it.stem.removeprefix("bench_") for it in FILES)  # without importing them
 PRESETS_TOLD = "\n".join(["Presets:\n", *(f"- {name}: {it.what}" for name, it in PRESETS.items())])
+MESH_TOLD = (
+    f"Measure on this mesh, and on versions of it: up to {COARSER} coarser ones, down to {SMALLEST}"
+    f" vertices; finer ones up to {FINE_ENOUGH:,} vertices, or one up to {LARGEST:,}. Accesses are "
+    f"counted up to {LARGEST_COUNTED:,}."
+)
 
 
 # fmt: off
@@ -34,7 +46,7 @@ def run_study(
     peers: Annotated[bool, Option(
         "--peers", help="Other libraries beside ours, and nothing else.")] = False,
     mesh: Annotated[str | None, Option(
-        **OfMesh | {"help": "Measure on this mesh, and on versions of it."})] = None,
+        **OfMesh | {"help": MESH_TOLD})] = None,
     repair: Repair = False,
     seed: Annotated[int | None, Option(help="Of the order of the cases.")] = None,
     pin: Annotated[bool | None, Option(help="Whether to stay on one core (yes).")] = None,

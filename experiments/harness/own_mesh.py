@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 
 import structures
+from experiments.presets import COARSER, FINE_ENOUGH, LARGEST, SMALLEST
 from hem.algorithms import simplify
 from hem.contract import Navigable
 from hem.errors import MeshError, NonManifoldError
@@ -17,9 +18,6 @@ from hem.meshes import TriangleMesh, used_only
 from hem.sources import find_mesh
 
 FOLDER = "mesh"
-SMALLEST, LARGEST = 100, 1_000_000  # vertices of the coarsest and the finest version
-COARSER = 4  # how many coarser versions there are at the most; each has a quarter of the vertices
-FINE_ENOUGH = 20_000  # vertices up to which there are finer versions; there is always one
 
 _HOLDER = next(
     name for name, it in structures.REGISTRY.items() if it.compiled and issubclass(it, Navigable)

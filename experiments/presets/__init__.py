@@ -14,6 +14,9 @@ VALENCES = tuple(2**k for k in range(2, 13))
 SECONDS_PER_FACE = 1e-9  # what a scan of the mesh takes at the least
 LONGEST = 20  # times the seconds of a case that rounds may take where each searches the mesh
 LARGEST_COUNTED = 100_000  # vertices of one's own mesh up to which accesses are counted
+SMALLEST, LARGEST = 100, 1_000_000  # vertices of its coarsest and its finest version, about
+COARSER = 4  # how many coarser versions there are at the most; each has a quarter of the faces
+FINE_ENOUGH = 20_000  # vertices that finer versions have at the most; a first one may have LARGEST
 NOT_OF_ONE_MESH = "bench_fracture", "bench_printed"  # bodies, and the thesis' listings
 
 

@@ -12,7 +12,7 @@ from experiments.bench_fracture import FIND, SHATTER, VISITED, WAYS
 from experiments.bench_workloads import COMPILED, WORKLOADS
 from experiments.claims import BY_TIME, MIXES, Family, curves
 from experiments.harness import BASE, Axis
-from experiments.report.pages import Heads, Html, numbers, part, text_table
+from experiments.report.pages import Heads, Html, Numbers, numbers, part, text_table
 from experiments.report.session import MissingError, require
 from experiments.report.style import TITLES
 from experiments.report.tables import SHOWN, count, digits, duration, two_digits
@@ -59,7 +59,7 @@ def objects_against_arrays(run: Run) -> Html:
     return numbers(rows, heads)
 
 
-def workloads(run: Run, order: str = COMPILED) -> Html:
+def workloads(run: Run, order: str = COMPILED) -> Numbers:
     """Time per unit of every workload on the largest mesh that a structure did it on, compiled or
     from Python, never both.
     """
@@ -71,7 +71,7 @@ def workloads(run: Run, order: str = COMPILED) -> Html:
     inorder = sorted(every, key=lambda it: NAMES.index(it[0][0]))
     rows = [(REGISTRY[name].title, size, *costs) for (name, size), costs in inorder]
     heads = [f"{it.title}, per {it.unit}" for it in shown.values()]
-    return numbers(rows, {"": str, "vertices": count, **dict.fromkeys(heads, duration)})
+    return numbers(rows, {order: str, "vertices": count, **dict.fromkeys(heads, duration)})
 
 
 def bytes_held(run: Run, width: int) -> pd.DataFrame:

@@ -35,6 +35,11 @@ class Html(Markup):
     def _repr_html_(self) -> str:
         return str(self)
 
+    @property
+    def markdown(self) -> str:
+        """The same for a page in Markdown, which may hold HTML."""
+        return str(self)
+
 
 @cache
 def _templates() -> Environment:
@@ -170,14 +175,27 @@ def or_missing(make: Callable[[], str], otherwise: str) -> str:
         return otherwise.format(escape(str(missing), quote=False))
 
 
-def numbers(rows: Iterable[Sequence[Any]], heads: Heads) -> Html:
+class Numbers(Html):
+    """A table of numbers. ``rows``: its texts, the heads first, which Markdown is written from."""
+
+    rows: Sequence[Sequence[str]] = ()
+
+    @property
+    def markdown(self) -> str:
+        """Its rows, for a page in Markdown."""
+        return written.markdown_rows(self.rows)
+
+
+def numbers(rows: Iterable[Sequence[Any]], heads: Heads) -> Numbers:
     """A table of numbers below their heads, a dash for NaN. MissingError where there is no row."""
     texts = [
         [how(it) if it == it else "–" for it, how in zip(row, heads.values(), strict=True)]
         for row in rows
     ]
     session.require(texts, "measured what would stand here")
-    return part("numbers", list(heads), texts)
+    table = Numbers(part("numbers", list(heads), texts))
+    table.rows = [list(heads), *texts]
+    return table
 
 
 def frame_table(frame: pd.DataFrame) -> Html:

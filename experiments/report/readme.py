@@ -7,9 +7,11 @@ from pathlib import Path
 
 from matplotlib.figure import Figure
 
+from experiments.bench_real_time import RESERVED
+from experiments.bench_workloads import FROM_PYTHON
 from experiments.claims import CLAIMED
 from experiments.harness import OPERATIONS, QUERIES_TABLE, Axis
-from experiments.report import pages, tables, uses
+from experiments.report import comparisons, pages, tables, uses
 from experiments.report.figures import fracture, growth, memory, meshes, real_time
 from experiments.report.notebooks import FRONT, execute, read
 from experiments.report.session import read_session, share
@@ -41,6 +43,28 @@ DRAWN: dict[str, tuple[str, Callable[[Run], Figure]]] = {
 }
 """The pictures of the page: by file the title and how it is drawn."""
 
+TABLES: dict[str, dict[str, Callable[[Run], pages.Html]]] = {
+    "workloads": {
+        "What people do with meshes in numbers, compiled": comparisons.workloads,
+        "The same from Python: other programs, and mostly the time of Python": partial(
+            comparisons.workloads, order=FROM_PYTHON
+        ),
+    },
+    "edits": {
+        "Single edits, where arrays grow: median · 99 of 100 · longest · edits in 16.7 ms": (
+            real_time.frames
+        ),
+        "The same, where room was made beforehand": partial(real_time.frames, order=RESERVED),
+        "Up to which size edits keep up": real_time.keeping_up,
+        "Dropping what is dead": real_time.compactions,
+        "Picking": real_time.picks_in_words,
+        "Megabytes where it is drawn, in a render mesh, and in all with each structure": (
+            real_time.weights
+        ),
+    },
+}
+"""What stands below a picture, by its title: tables and words of the chapters."""
+
 MISSING = "*{}*"  # how the page says what was not measured
 
 
@@ -56,7 +80,8 @@ def write_readme(run_folder: Path, folder: Path) -> Path:
     listed = "\n".join(f"{number}. {it.text}" for number, it in enumerate(told, start=1))
     answers = listed or MISSING.format("This run has measured none.")
     recommended = pages.or_missing(partial(uses.recommended_markdown, run), MISSING)
-    parts = {"Which structure for which use": recommended}
+    absent = uses.left_out().striptags()
+    parts = {"Which structure for which use": f"{recommended}\n\n{absent}"}
     parts["Who claims what"] = tables.markdown_rows(tables.tally_rows(claims))
     parts |= pages.each_table(claims, pages.claims_markdown, MISSING)
     for kind in CLAIMED:
@@ -65,6 +90,8 @@ def write_readme(run_folder: Path, folder: Path) -> Path:
     for name, (title, draw) in DRAWN.items():
         picture = partial(_draw, run, draw, folder / f"{name}.png", title)
         parts[title] = pages.or_missing(picture, MISSING)
+        for head, show in TABLES.get(name, {}).items():
+            parts[head] = pages.or_missing(partial(_written, run, show), MISSING)
     facts = {"answers": answers, "legend": tables.legend(), "about": in_words(run)}
     (folder / "README.md").write_text(pages.page("readme.md.j2", parts=parts, **facts), "utf-8")
     readme = folder.parent / "README.md"
@@ -79,6 +106,10 @@ def _filled(text: str, name: str, part: str) -> str:
     """A text with a part between its marks of this name, if it has them."""
     marked = f"(?s)(<!-- {name} -->).*?(<!-- end of {name} -->)"
     return re.sub(marked, lambda it: f"{it[1]}\n{part}\n{it[2]}", text)
+
+
+def _written(run: Run, show: Callable[[Run], pages.Html]) -> str:
+    return show(run).markdown
 
 
 def _draw(run: Run, draw: Callable[[Run], Figure], file: Path, title: str) -> str:

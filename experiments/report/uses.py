@@ -48,8 +48,8 @@ def workload(name: str) -> Costs:
 class Use:
     """What a mesh is used for, and the cost that decides which structure should hold it.
 
-    ``suits``: whether a structure can be used so at all. ``largest``: compared on the largest mesh
-    that all were measured on, or on the smallest.
+    ``suits``: whether a structure can be used so at all; ``unfit``: why others cannot. ``largest``:
+    compared on the largest mesh that all were measured on, or on the smallest.
     """
 
     title: str
@@ -57,6 +57,7 @@ class Use:
     costs: Costs
     written: Callable[[float], str] = duration
     suits: Callable[[type[Structure]], bool] = lambda structure: True
+    unfit: str = ""
     largest: bool = True
 
 
@@ -69,11 +70,29 @@ USES = {
     "asked": Use("Picked and measured", EIGHT, queries),
     "edited": Use("Edited in real time", "an impact, as in a game", workload("impacts")),
     "simplified": Use("Simplified", "a vertex, to a tenth of them", workload("simplification")),
-    "tight": Use("Asked for neighbors, memory tight", *WEIGHED, suits=lambda it: not it.searches),
-    "polygons": Use("Of polygons", *WEIGHED, suits=lambda it: it.holds_polygons),
+    "tight": Use(
+        "Asked for neighbors, memory tight",
+        *WEIGHED,
+        suits=lambda it: not it.searches,
+        unfit="search the whole mesh for neighbors",
+    ),
+    "polygons": Use(
+        "Of polygons", *WEIGHED, suits=lambda it: it.holds_polygons, unfit="hold triangles alone"
+    ),
     "small": Use("Small", EIGHT, queries, largest=False),
 }
 """A new use is one line here."""
+
+
+def left_out() -> Html:
+    """Who is compared for no use, or not for some, and why."""
+    interpreted = [it.title for it in REGISTRY.values() if not it.compiled]
+    unfit = {
+        use: [it.title for it in REGISTRY.values() if it.compiled and not use.suits(it)]
+        for use in USES.values()
+        if use.unfit
+    }
+    return part("left_out", interpreted, unfit)
 
 
 def ranking(run: Run, name: str) -> pd.Series:

@@ -229,6 +229,15 @@ def load_speed(path: Path = RESULT) -> tuple[dict[str, Any], pd.DataFrame]:
     return kept, rows.pivot_table("value", keys, "program", aggfunc="min", sort=False)
 
 
+def left_out() -> str:
+    """Which of our structures are not measured, and why."""
+    absent = [it.title for name, it in structures.REGISTRY.items() if name not in STRUCTURES]
+    return (
+        f"Left out are {', '.join(absent)}: they search the mesh, find all neighbors again after "
+        "an edit, or are objects, whose steps Python runs."
+    )
+
+
 def versions() -> dict[str, str]:
     """By program, of the libraries that are measured; empty where one is not installed."""
     peers = {it: PEERS[it].version for it in (*COMPILED, *BUILT, *ASKED_SINGLY)}

@@ -8,7 +8,8 @@
    ╱           ╲       ╲ │ ╱
   a─────────────b        •
 
-Source: Kobbelt, √3-Subdivision (2000), as timed by Sieger & Botsch (2011).
+Source: Kobbelt, √3-Subdivision (2000), as timed by Sieger & Botsch (2011), whose program leaves
+borders as they are, too. Kobbelt has a rule for them: every second step parts their edges in three.
 """
 
 from __future__ import annotations

@@ -1,6 +1,5 @@
 """What counts in real time: single edits as they come, picking, and what a mesh weighs."""
 
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -12,7 +11,7 @@ from experiments.bench_workloads import COMPILED, FROM_PYTHON
 from experiments.report import style
 from experiments.report.comparisons import at_largest, bytes_held, medians
 from experiments.report.figures.growth import draw_lines
-from experiments.report.pages import Heads, Html, numbers, part
+from experiments.report.pages import Heads, Html, Numbers, numbers, part
 from experiments.report.session import MissingError, require
 from experiments.report.style import BLUE, GRAY, RED, STYLES, Plot
 from experiments.report.tables import count, duration
@@ -53,32 +52,28 @@ def waits(run: Run) -> Plot:
     return figure
 
 
-def frames(run: Run) -> Html:
-    """What an edit takes, and how many a frame has time for; at the largest size of each."""
+def frames(run: Run, order: str = GROWING) -> Numbers:
+    """At every size the median, 99 of 100 and the longest of the edits, and how many fit a frame.
+
+    And the bytes that an edit uploads, at any size. ``order``: where arrays grow, or where room was
+    made, never both.
+    """
+    cases = _cases(run, EDITS).query("order == @order")
+    table = _by_size(cases.assign(told=cases["samples"].map(_told)), "told")
     rows = []
-    for case in at_largest(_cases(run, EDITS), "structure").to_dict("records"):
-        seconds, uploads = np.array(case["samples"]), case["detail"]["uploads"]
-        about = REGISTRY[case["structure"]].title, case["vertices"], case["order"] == RESERVED
-        times = *np.percentile(seconds, [50, 99, 100]), _in_a_frame(seconds)
-        rows.append((*about, *times, np.median(uploads), max(uploads)))
-    heads: Heads = {
-        "": str, "vertices": count, "room": lambda there: "made" if there else "grows",
-        "median": duration, "99 of 100": duration, "longest": duration,
-        "edits in a frame": str, "uploaded, bytes": count, "at most": count,
-    }  # fmt: skip
-    return numbers(rows, heads)
+    for name, sizes in table.iterrows():
+        details = cases.loc[cases["structure"] == name, "detail"]
+        uploads = np.concatenate([it["uploads"] for it in details])
+        rows.append((REGISTRY[str(name)].title, *sizes, np.median(uploads), uploads.max()))
+    heads: Heads = {"": str, **{f"{size:,} vertices": str for size in table}}
+    return numbers(rows, {**heads, "uploaded, bytes": count, "at most": count})
 
 
-def edits_by_size(run: Run) -> Html:
-    """The median and the longest time of an edit at every size, where arrays grow."""
-    cases = _cases(run, EDITS).query("order == @GROWING")
-    told = [f"{duration(np.median(it))} … {duration(max(it))}" for it in cases["samples"]]
-    return _by_size(cases.assign(told=told), "told", str)
-
-
-def compactions(run: Run) -> Html:
+def compactions(run: Run) -> Numbers:
     """How long it takes to drop what is dead, at every size."""
-    return _by_size(_cases(run, COMPACT), "cost", duration)
+    table = _by_size(_cases(run, COMPACT), "cost")
+    rows = [(REGISTRY[str(name)].title, *sizes) for name, sizes in table.iterrows()]
+    return numbers(rows, {"": str, **{f"{size:,} vertices": duration for size in table}})
 
 
 def keeping_up(run: Run) -> Html:
@@ -96,11 +91,9 @@ def keeping_up(run: Run) -> Html:
     return part("keeping_up", sorted(found.items(), reverse=True))
 
 
-def _by_size(cases: pd.DataFrame, column: str, shown: Callable[[Any], str]) -> Html:
-    """A table of one column of the cases: a row per structure, by size."""
-    table = cases.pivot_table(column, "structure", "vertices", aggfunc="first", sort=False)
-    rows = [(REGISTRY[str(name)].title, *sizes) for name, sizes in table.iterrows()]
-    return numbers(rows, {"": str, **{f"{size:,} vertices": shown for size in table.columns}})
+def _by_size(cases: pd.DataFrame, column: str) -> pd.DataFrame:
+    """One column of the cases: a row per structure, by size."""
+    return cases.pivot_table(column, "structure", "vertices", aggfunc="first", sort=False)
 
 
 def picks(run: Run) -> Plot:
@@ -142,7 +135,7 @@ def picks_in_words(run: Run) -> Html:
     return part("picks", size, *(1e-6 * known.loc[size]), 1e-6 * neighbors)
 
 
-def weights(run: Run) -> Html:
+def weights(run: Run) -> Numbers:
     """Megabytes of a mesh that is shown and edited: as drawn, as a render mesh, and in all.
 
     A renderer is given a position, a normal and a texture coordinate per vertex, and three indices
@@ -160,8 +153,14 @@ def weights(run: Run) -> Html:
         rows.append((family, vertices, faces, drawn / 1e6, beside / 1e6, *whole))
     heads: dict[str, Any] = {"": str, "vertices": count, "faces": count}
     heads |= {"renderer": MEGABYTES, "render mesh": MEGABYTES}
-    heads |= {f"+ {REGISTRY[str(it)].abbreviation}": MEGABYTES for it in table}
+    heads |= {REGISTRY[str(it)].title: MEGABYTES for it in table}
     return numbers(rows, heads)
+
+
+def _told(seconds: Any) -> str:
+    """What single edits took, and how many a frame has time for."""
+    times = [duration(it) for it in np.percentile(seconds, [50, 99, 100])]
+    return " · ".join([*times, _in_a_frame(np.array(seconds))])
 
 
 def _in_a_frame(seconds: Any) -> str:

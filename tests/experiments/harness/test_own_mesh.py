@@ -11,6 +11,7 @@ import pytest
 import hem
 import structures
 from experiments.harness import PRESETS, own_mesh, time_rounds
+from experiments.presets import COARSER, FINE_ENOUGH, LARGEST, SMALLEST
 from experiments.runs import experiments, load, read_meta, study
 from hem.meshes import non_manifold_edges
 from tests.experiments.cli.test_cli import hem as command
@@ -25,16 +26,24 @@ def versions(folder: Path) -> list[hem.TriangleMesh]:
     return [own_mesh.version(name, size) for size in sizes]
 
 
-@pytest.mark.parametrize("name", waiting_for(["grid:1600"], ["bone", "torus:1600", "grid:1600"]))
+@pytest.mark.parametrize(
+    "name", waiting_for(["grid:1600"], ["torus:1600", "grid:1600", *hem.SAMPLES])
+)
 def test_versions_are_of_the_same_topology_and_four_times_apart(tmp_path, name):
-    own_mesh.keep_versions(tmp_path, name)
-    given, kept = hem.find_mesh(name), versions(tmp_path)
+    own_mesh.keep_versions(tmp_path, name, repair=True)  # a face is no surface before
+    given, kept = hem.find_mesh(name, repair=True), versions(tmp_path)
     own_one = next(it for it in kept if len(it.points) == len(given.points))
     assert np.array_equal(own_one.points, given.points)
     assert np.array_equal(own_one.triangles, given.triangles)
     own = given.summary()
     for coarser, finer in pairwise(kept):
         assert 3 < len(finer.triangles) / len(coarser.triangles) < 6
+    sizes = [len(it.points) for it in kept]
+    own_size = len(own_one.points)
+    assert len([it for it in sizes if it < own_size]) <= COARSER
+    assert sizes[0] == own_size or sizes[0] > SMALLEST / 2
+    assert max(sizes) <= max(own_size, LARGEST)
+    assert len([it for it in sizes if it > max(own_size, FINE_ENOUGH)]) <= 1
     for mesh in kept:
         hem.require_sound(mesh)
         summary = mesh.summary()
@@ -50,7 +59,7 @@ def test_a_small_mesh_gets_finer_versions_only(tmp_path):
     own_mesh.keep_versions(tmp_path, str(tetrahedron))
     sizes = [len(it.points) for it in versions(tmp_path)]
     assert sizes[0] == 4
-    assert sizes[-1] > own_mesh.FINE_ENOUGH / 4
+    assert sizes[-1] > FINE_ENOUGH / 4
 
 
 def test_a_run_keeps_its_mesh_and_is_called_by_it(tmp_path):

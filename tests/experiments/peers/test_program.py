@@ -38,7 +38,7 @@ def test_the_six_algorithms_give_what_the_libraries_in_c_give(name: str, family:
     for algorithm in algorithms.SIX:
         theirs, ours = told[algorithm], result(mesh, algorithm)
         theirs = theirs[:1] if algorithm == "circulator" else theirs[1:]
-        if algorithm == "collapse":  # into another corner
+        if algorithm == "collapse" and name == "cgal":  # which drops a corner, not the new vertex
             theirs, ours = theirs[:2], ours[:2]
         # Sums of about 1000 float32 that are below 10.
         assert np.allclose(ours, theirs, rtol=1e-5, atol=1e-3), algorithm

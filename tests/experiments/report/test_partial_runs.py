@@ -8,6 +8,7 @@ from contextlib import suppress
 import pytest
 from rich.console import Console
 
+from experiments.bench_real_time import RESERVED
 from experiments.claims import break_even, curves, judge_families, judge_run
 from experiments.harness import OPERATIONS, Axis
 from experiments.report import comparisons, notebooks, pages, uses
@@ -44,7 +45,7 @@ SHOWN = {
     "pairs": lambda run, claims: uses.beside(run, "plankton", "half_edge"),
     "waits": lambda run, claims: real_time.waits(run),
     "frames": lambda run, claims: real_time.frames(run),
-    "edits by size": lambda run, claims: real_time.edits_by_size(run),
+    "frames with room": lambda run, claims: real_time.frames(run, RESERVED),
     "compactions": lambda run, claims: real_time.compactions(run),
     "keeping up": lambda run, claims: real_time.keeping_up(run),
     "weights": lambda run, claims: real_time.weights(run),

@@ -34,21 +34,24 @@ def test_edits_that_end_before_a_frame_does_all_fit():
     assert real_time._in_a_frame(np.full(100, 1e-6)) == "all 100"
 
 
-def test_every_size_is_told_with_its_median_and_its_longest(monkeypatch):
+def test_every_size_is_told_and_with_room_apart_from_without(monkeypatch):
     cases = [
         ("half_edge", 1_000, GROWING, [1.1e-6, 2.2e-6, 9.1e-3]),
         ("half_edge", 1_000, RESERVED, [7e-6]),
         ("half_edge", 10_000, GROWING, [3.3e-6, 4.4e-6, 5.5e-6]),
-        ("indexed", 1_000, GROWING, [6.6e-6]),
+        ("indexed", 1_000, GROWING, [2e-2]),
     ]
     table = pd.DataFrame(cases, columns=["structure", "vertices", "order", "samples"])
+    table["detail"] = [{"uploads": [12, 24, 60]}] * len(cases)
     monkeypatch.setattr(real_time, "_cases", lambda run, subject: table)
-    rows = re.findall(r"(?s)<tr>.*?</tr>", real_time.edits_by_size(None)._repr_html_())
-    told = [re.findall(r"<t[dh][^>]*>(.*?)</t[dh]>", row) for row in rows]
-    assert told[0] == ["", "1,000 vertices", "10,000 vertices"]
-    assert sorted(told[1:]) == [
-        ["Half-Edge", "2.2 µs … 9.1 ms", "4.4 µs … 5.5 µs"],
-        ["Indexed", "6.6 µs … 6.6 µs", "–"],
+    assert real_time.frames(None).rows == [
+        ["", "1,000 vertices", "10,000 vertices", "uploaded, bytes", "at most"],
+        ["Half-Edge", "2.2 µs · 8.9 ms · 9.1 ms · all 3", "4.4 µs · 5.5 µs · 5.5 µs · all 3",
+         "24", "60"],
+        ["Indexed", "20 ms · 20 ms · 20 ms · 0", "–", "24", "60"],
+    ]  # fmt: skip
+    assert [it[:2] for it in real_time.frames(None, RESERVED).rows[1:]] == [
+        ["Half-Edge", "7.0 µs · 7.0 µs · 7.0 µs · all 1"]
     ]
 
 

@@ -133,7 +133,7 @@ def test_the_answers_are_numbers_of_the_run(base_run):
 
 
 def test_the_committed_page_has_the_tables_and_its_pictures(base_folder, tmp_path, monkeypatch):
-    drawn = {name: readme.DRAWN[name] for name in ("overview", "memory", "overtaking")}
+    drawn = {name: readme.DRAWN[name] for name in ("overview", "memory", "workloads", "overtaking")}
     monkeypatch.setattr(readme, "DRAWN", drawn)
     (tmp_path / "README.md").write_text("<!-- answer -->\nold\n<!-- end of answer -->\nkept")
     page = readme.write_readme(base_folder, tmp_path / "report")
@@ -151,7 +151,10 @@ def test_the_committed_page_has_the_tables_and_its_pictures(base_folder, tmp_pat
     assert "| printed, in tables | 41 | 41 ✓ |" in text
     assert "6.33 | ✓ consistent |" in text
     pictures = re.findall(r"\((\w+\.png)\)", text)
-    assert len(pictures) == 3
+    assert len(pictures) == 4
+    compiled, from_python = readme.TABLES["workloads"]
+    assert f"## {compiled}\n\n| compiled | vertices |" in text
+    assert f"## {from_python}\n\n| from Python | vertices |" in text
     for picture in pictures:
         assert (page.parent / picture).stat().st_size > 10_000
 

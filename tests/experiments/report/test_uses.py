@@ -41,6 +41,14 @@ def test_only_structures_that_suit_are_compared(run: Run, name: str) -> None:
     assert set(found.index) <= {it for it in COMPILED if uses.USES[name].suits(REGISTRY[it])}
 
 
+def test_whoever_is_not_compared_is_named(run: Run) -> None:
+    text = uses.left_out()
+    for it in REGISTRY.values():
+        for use in uses.USES.values():
+            told = re.search(f"for (all uses|“{use.title}”)[^;.]* {it.title},", text)
+            assert bool(told) == (not (it.compiled and use.suits(it))), (it.title, use.title)
+
+
 def test_small_meshes_are_compared_on_the_smallest(run: Run) -> None:
     small, large = uses.ranking(run, "small"), uses.ranking(run, "asked")
     assert small.name < large.name

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import contextlib
+import re
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -21,6 +23,12 @@ MESHES = {
     "torus": lambda: shuffled(hem.generate("torus", 100)),
     "grid": lambda: shuffled(hem.generate("grid", 64)),
 }
+
+
+def test_the_guide_names_the_structures_whose_edges_lose_their_handles():
+    guide = (Path(__file__).parents[3] / "docs" / "choose.md").read_text("utf-8")
+    named = re.search(r"Every structure but (.+?) keeps? the handle of an edge", guide)
+    assert re.findall(r"`(\w+)`", named[1]) == MOVING
 
 
 def test_a_batch_splits_the_edges_that_its_handles_named(s):
