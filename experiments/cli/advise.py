@@ -45,7 +45,7 @@ def advise(
         autocompletion=completed(__name__, "NEEDS"))] = None,
     most_bytes: Annotated[float, Option("--bytes", help="The most it may take.")] = inf,
     worst_edit: Annotated[float, Option(
-        help="The most ms that the slowest kind of edit may usually take.")] = inf,
+        help="The most ms that the slowest kind of edit may take in the median.")] = inf,
     run: Annotated[
         Path | None, Option(help="A run of this machine. Default: the committed baseline.")
     ] = None,
