@@ -147,7 +147,7 @@ def test_an_installed_study_finds_its_notebooks_and_its_baseline(site, tmp_path)
 def test_an_installed_study_measures_and_reports_away_from_the_checkout(installed):
     where = installed("python", "-c", "import hem, experiments; print(hem.__file__)")
     assert not Path(where.strip()).is_relative_to(ROOT)
-    said = installed("hem", "study", "--preset", "smoke")
+    said = installed("hem", "study", "--preset", "smoke")  # compiles all of it, for minutes
     assert "Now: hem table, hem report" in said
     told = json.loads(installed("hem", "table", "--json"))
     claimed = {"indexed", "triangle_neighbor", "winged_edge", "half_edge"}  # by the thesis
