@@ -2,9 +2,9 @@
 
 Each as its manual has it used, through Python: a query asked of one element after the other at
 random, and where a library has a call for it of all at once. Answers at a few elements are checked
-against the triangle list before a query is timed, and the number of faces after operations; what is
-compiled in C++ tells its answers as it ends. Measured only where it is asked for: ``hem study
---peers``.
+against the triangle list before a query is timed, and all faces after building and operations; what
+is compiled in C++ tells its answers, and how many elements operations leave, as it ends. Measured
+only where it is asked for: ``hem study --peers``.
 """
 
 from dataclasses import replace

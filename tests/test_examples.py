@@ -20,6 +20,7 @@ from typer.testing import CliRunner
 import hem
 import structures
 from experiments.cli import app
+from tests.extent import exhaustive
 
 ROOT = Path(__file__).parents[1]
 README = (ROOT / "README.md").read_text()
@@ -101,6 +102,14 @@ def test_the_python_of_a_page_runs_from_top_to_bottom_and_imports_what_it_uses(p
     for language, text in blocks_of(PAGES[page]):
         if language == "python":
             exec(compile(text, page, "exec"), given)
+
+
+@exhaustive  # it measures for ten seconds
+def test_the_python_of_the_judge_runs_from_top_to_bottom(names: dict[str, Any]) -> None:
+    names |= {"pytest": pytest, "random_floats": np.random.default_rng(0).random}
+    for language, text in blocks_of((ROOT / "hem/complexity/README.md").read_text()):
+        if language == "python":
+            exec(compile(text, "hem/complexity/README.md", "exec"), names)
 
 
 def test_what_people_reach_for_first_has_an_example() -> None:

@@ -147,10 +147,11 @@ def test_an_installed_study_finds_its_notebooks_and_its_baseline(site, tmp_path)
 def test_an_installed_study_measures_and_reports_away_from_the_checkout(installed):
     where = installed("python", "-c", "import hem, experiments; print(hem.__file__)")
     assert not Path(where.strip()).is_relative_to(ROOT)
-    said = installed("hem", "study", "--preset", "smoke", "--structure", "indexed")
+    said = installed("hem", "study", "--preset", "smoke")  # compiles all of it, for minutes
     assert "Now: hem table, hem report" in said
     told = json.loads(installed("hem", "table", "--json"))
-    assert {it["structure"] for it in told["claims"]} == {"indexed"}
+    claimed = {"indexed", "triangle_neighbor", "winged_edge", "half_edge"}  # by the thesis
+    assert {it["structure"] for it in told["claims"]} == claimed
     page = unquote(urlsplit(installed("hem", "report").split()[-1]).path)
     assert len(list(Path(page).parent.glob("*.html"))) > 5
 
@@ -227,6 +228,14 @@ def test_an_optional_package_is_brought_by_the_extra_that_the_error_names():
     loaded = re.findall(r'load_optional\("(\w+)", "(\w+)"\)', "".join(sources))
     assert {extra for _, extra in loaded} == {"fracture", "viz"}
     assert [(name, extra) for name, extra in loaded if name not in EXTRAS[extra]] == []
+
+
+def test_version_and_date_are_the_same_wherever_they_are_told():
+    citation = (ROOT / "CITATION.cff").read_text()
+    cited = re.findall(r'(?m)^(?:version|date-released): "?([^"\n]+)', citation)
+    newest = re.search(r"(?m)^## (\S+), (\S+)$", (ROOT / "CHANGELOG.md").read_text())
+    assert cited == [*newest.groups()]
+    assert newest[1] == PROJECT["version"]
 
 
 def test_whatever_is_declared_is_held_by_the_constraints():

@@ -5,10 +5,18 @@ measurements of a run; ``advise`` ranks the structures, with intervals, reasons 
 """
 
 from experiments.advice.advise import ALIKE, NEEDS, Advice, Limits, Option, advise, best, flips
-from experiments.advice.prices import Forecast, Prices, predict
+from experiments.advice.prices import (
+    BEYOND,
+    SIGMAS,
+    UNMODELED,
+    Forecast,
+    Prices,
+    predict,
+)
 from experiments.advice.workload import PRESETS, Measured, Row, Workload, find_workload, recorded
 
 __all__ = [
-    "ALIKE", "NEEDS", "PRESETS", "Advice", "Forecast", "Limits", "Measured", "Option", "Prices",
-    "Row", "Workload", "advise", "best", "find_workload", "flips", "predict", "recorded",
+    "ALIKE", "BEYOND", "NEEDS", "PRESETS", "SIGMAS", "UNMODELED", "Advice", "Forecast", "Limits",
+    "Measured", "Option", "Prices", "Row", "Workload", "advise", "best", "find_workload", "flips",
+    "predict", "recorded",
 ]  # fmt: skip

@@ -46,7 +46,7 @@ is drawn while it is edited."""
 
 @dataclass(frozen=True)
 class Limits:
-    """The most bytes, and the most seconds that the slowest kind of edit may usually take."""
+    """The most bytes, and the most seconds that the slowest kind of edit may take: its median."""
 
     bytes: float = np.inf
     edit: float = np.inf
@@ -60,7 +60,7 @@ class Limits:
 class Option:
     """A structure that could be taken: what it would take, and what keeps it behind the best.
 
-    ``edit``: what the slowest kind of edit usually takes, in seconds, called from Python; NaN
+    ``edit``: what the slowest kind of edit takes in the median, in seconds, called from Python; NaN
     where the run does not tell.
     """
 

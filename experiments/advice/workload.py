@@ -4,7 +4,7 @@ import csv
 import tomllib
 from collections.abc import Mapping
 from contextlib import suppress
-from dataclasses import dataclass, fields, replace
+from dataclasses import MISSING, dataclass, fields, replace
 from math import inf
 from pathlib import Path
 from typing import Any, Self
@@ -152,11 +152,15 @@ def _workload(given: Mapping[str, Any]) -> Workload:
 
 def _read(kind: Any, where: str, given: Mapping[str, Any]) -> Any:
     """A table of a file; ValueError that says what is wrong with it, and where it stands."""
+    known = {it.name: it.default is MISSING for it in fields(kind)}
+    if not isinstance(given, Mapping):
+        raise ValueError(f"{where} is a table; there are {', '.join(known)}")
+    wrong = [f"nothing is called {it!r}" for it in given if it not in known]
+    wrong += [f"{it!r} is missing" for it, needed in known.items() if needed and it not in given]
+    if wrong:
+        raise ValueError(f"{where}: {' and '.join(wrong)}; there are {', '.join(known)}")
     try:
         return kind(**_numbers(given))
-    except TypeError as error:  # of what it lacks, or what it should not have
-        known = ", ".join(it.name for it in fields(kind))
-        raise ValueError(f"{where}: {error}; there are {known}") from error
     except ValueError as error:
         raise ValueError(f"{where}: {error}") from error
 

@@ -45,7 +45,7 @@ def advise(
         autocompletion=completed(__name__, "NEEDS"))] = None,
     most_bytes: Annotated[float, Option("--bytes", help="The most it may take.")] = inf,
     worst_edit: Annotated[float, Option(
-        help="The most ms that the slowest kind of edit may usually take.")] = inf,
+        help="The most ms that the slowest kind of edit may take in the median.")] = inf,
     run: Annotated[
         Path | None, Option(help="A run of this machine. Default: the committed baseline.")
     ] = None,
@@ -116,8 +116,9 @@ def _show(found: Advice, run: Run, called: str, mesh: str) -> None:
     if held and [it.forecast.structure for it in found.options[:1]] == [held.structure]:
         title = REGISTRY[held.structure].title
         console.print(f"It was measured on {title}, and nothing is a tenth quicker: stay.")
-    for name, why in found.refused.items():
-        console.print(f"{REGISTRY[name].title} does not suit: {why}.", markup=False)
+    for why in dict.fromkeys(found.refused.values()):
+        alike = ", ".join(REGISTRY[it].title for it, its in found.refused.items() if its == why)
+        console.print(f"Not suited: {alike}: {why}.", markup=False)
     for flip in found.flips:
         vertices, at = flip["of"] == "vertices", flip["at"]
         where = f"{at:,.0f} vertices" if vertices else f"{digits(at)} × the edits"

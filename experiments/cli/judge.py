@@ -79,5 +79,5 @@ def _print(curves: Any, verdicts: Any, expected: str | None) -> None:
         table.add_row(*(*row, verdict.expected, said)[:shown])
     console.print(table)
     for it, verdict in zip(curves, verdicts, strict=True):
-        if expected is not None:
+        if expected is not None or not verdict.answer:
             console.print(f"{it.name}: {verdict.reason}", markup=False)

@@ -26,6 +26,7 @@ from experiments.harness import (
     row,
     took,
 )
+from experiments.peers.outcome import check_counts, check_outcome, counted
 from experiments.peers.peer import Peer
 from experiments.peers.registry import PEERS
 from hem.algorithms import vertex_normals
@@ -34,8 +35,7 @@ from hem.arrays import Array
 CHECKED = 3
 SEED = 23
 MOST_HANDLES = 20_000
-FACES_MORE = {"split_edge": 2, "split_face": 2, "collapse_edge": -2, "flip_edge": 0}
-"""What an operation does to the number of faces of a closed mesh."""
+NOWHERE = np.zeros((0, 2), np.int64)
 COSINE = 0.9
 """Of the angle between normals, at least: libraries weight faces differently."""
 PART = 10
@@ -164,7 +164,7 @@ def time_building(case: Case, preset: Preset, timer: Timer) -> Fields:
     """Build from arrays."""
     peer, given = PEERS[case.structure], as_given(case.mesh())
     m, seconds = took(peer.build, *given)
-    _require(peer, peer.faces(m) == len(given[1]), f"{peer.faces(m)} faces of {len(given[1])}")
+    _check_left(peer, "", given, NOWHERE, m)
     rounds = preset.affordable_rounds(seconds)
     return timer(peer.build, setup=lambda: given, rounds=rounds).fields
 
@@ -194,12 +194,11 @@ def time_operations(case: Case, preset: Preset, timer: Timer, batched: bool) -> 
             peer.make_room(m, len(numbers))
         return m, handles, places
 
-    m, handles, _ = ready()
-    faces = peer.faces(m) + FACES_MORE[operation] * len(numbers)
-    done, seconds = took(operate, m, handles, places)
-    left = peer.faces(m)
-    _require(peer, (done, left) == (len(numbers), faces), f"{done} × {operation}, {left} faces")
-    rounds = preset.affordable_rounds(seconds)
+    m = peer.build(*given)  # without room, the making of which may operate
+    done = operate(m, peer.handles(m, element, numbers), places)
+    _require(peer, done == len(numbers), f"{done} of {len(numbers)} × {operation}")
+    _check_left(peer, operation, given, _mesh_of(case).corners[element][numbers], m)
+    rounds = preset.affordable_rounds(took(operate, *ready())[1])
     return timer(operate, setup=ready, rounds=rounds, per=done).fields
 
 
@@ -230,6 +229,8 @@ def _looped(case: Case, rounds: int, whole: int) -> tuple[dict[str, list[float]]
     few = 0 if case.valence is None else len(hem.valence_hubs(case.valence, case.size))
     told = peer.looped(*given, few, rounds, whole)
     check_told(peer.title, given[1], told["answers"])
+    for operation, (done, *left) in told["operated"].items():
+        check_counts(peer.title, operation, counted(*given), done, left)
     return told["times"], _memory(told["bytes"])
 
 
@@ -238,6 +239,14 @@ def read_looped(case: Case, preset: Preset) -> Fields:
     whole = 0 if case.valence else preset.fewest_rounds
     samples, memory = _looped(replace(case, subject=None, order=None), preset.rounds, whole)
     return {"samples": samples[str(case.subject)], "handles": 1, "checked": True, **memory}
+
+
+def _check_left(
+    peer: Peer, operation: str, given: tuple[Array, Array], elements: Array, m: Any
+) -> None:
+    assert peer.arrays is not None  # or there is no such case
+    points, triangles = map(np.asarray, peer.arrays(m))
+    check_outcome(peer.title, operation, given, elements, (points, triangles))
 
 
 def _require(peer: Peer, holds: bool, otherwise: str) -> None:

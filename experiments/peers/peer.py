@@ -58,6 +58,7 @@ class Peer:
     Vertices and faces are numbered as in the arrays a mesh is built of, edges as in ``ends``.
 
     ``build(points, triangles)``: float64 (n, 3), int32 (k, 3). ``faces``: how many a mesh has;
+    ``arrays``: positions and triangles as they are left, which may end its use otherwise;
     ``ends``: (k, 2) the vertices of its edges. ``handles(m, element, numbers)``: what its calls
     take for vertices, edges or faces; ``named``: (k, 2) the vertices of edges that it answers,
     where these are neither numbers in ``ends`` nor pairs. ``single``: by query, what asks one
@@ -71,15 +72,18 @@ class Peer:
     collapses its first edge, or refuses to. ``told_version``: where no distribution of Python
     tells it. ``objects``: its meshes are Python's objects, and smaller ones are measured.
     ``module``: where its name is not that of the distribution.
-    ``manual``: how its manual has it used, here too; ``more``: what it does that ours does not.
+    ``site``: where its manual is; ``manual``: how that has it used, here too; ``more``: what it
+    does that ours does not.
     """
 
     title: str
     distribution: str
+    site: str
     manual: str
     more: str
     build: Callable[[Array, Array], Mesh]
     faces: Callable[[Mesh], int]
+    arrays: Callable[[Mesh], tuple[Any, Any]] | None = None
     ends: Callable[[Mesh], Any] | None = None
     handles: Callable[[Mesh, str, list[int]], Sequence[Any]] = lambda m, element, numbers: numbers
     named: Callable[[Mesh, Array], Array] | None = None
@@ -100,6 +104,8 @@ class Peer:
 
     def __post_init__(self) -> None:
         """Raises ValueError for what is measured of nobody."""
+        if not (self.arrays or self.looped):
+            raise ValueError(f"{self.title}: arrays is missing, by which what it does is checked")
         for given, known in (
             ({*self.single, *self.bulk}, QUERIES),
             ({*self.operations, *self.batches}, OPERATIONS),

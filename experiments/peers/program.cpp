@@ -5,6 +5,7 @@
 // ask at (0 for all), the rounds of queries, and those of building, operations and algorithms.
 // Prints a JSON object: "times": subject -> seconds each round, per element or as a whole, "all ..." of all elements in
 // order; "answers": query -> what was asked and answered of a few elements; "results": algorithm -> see `result`;
+// "operated": operation, "" for building -> how many were done, and the vertices, edges and faces there then are;
 // "faces", "bytes", and "collapsed", whether the first edge may be, with the faces "left".
 #include <CGAL/Simple_cartesian.h>
 #include <CGAL/Surface_mesh.h>
@@ -318,8 +319,14 @@ template <class L> struct Measured {
     list("%.9g", seconds);
   }
 
+  using Counts = std::vector<std::pair<std::string, std::vector<double>>>;
+  static void count(Counts &into, const char *title, L &s, long done) {
+    s.compact();
+    into.emplace_back(title, std::vector<double>{double(done), double(s.vertices()), double(s.edges()), double(s.faces())});
+  }
+
   // Operate on some elements in random order, of a new mesh every round; those that are refused do not count.
-  template <class Operate> static void operation(const char *title, size_t elements, int rounds, Operate operate) {
+  template <class Operate> static void operation(Counts &counts, const char *title, size_t elements, int rounds, Operate operate) {
     std::vector<int> chosen(elements);
     std::iota(chosen.begin(), chosen.end(), 0);
     std::shuffle(chosen.begin(), chosen.end(), std::mt19937(7));
@@ -332,6 +339,7 @@ template <class L> struct Measured {
       double begin = cpu();
       for (int i : chosen) done += operate(fresh, i);
       if (round >= 0) seconds.push_back((cpu() - begin) / done);
+      if (round + 1 == rounds) count(counts, title, fresh, done);
     }
     name(title);
     list("%.9g", seconds);
@@ -364,11 +372,13 @@ template <class L> struct Measured {
       name(it.title);
       list("%.9g", seconds);
     }
+    Counts counts;
     if (whole) {
       P p = points[0];
-      operation("split_face", s.faces(), whole, [&](L &m, int i) { m.split(F(i), p); return true; });
-      operation("split_edge", s.edges(), whole, [&](L &m, int i) { m.split(E(i), p); return true; });
-      operation("collapse_edge", s.edges(), whole, [](L &m, int i) { return m.collapse(E(i)); });
+      count(counts, "", s, 0);
+      operation(counts, "split_face", s.faces(), whole, [&](L &m, int i) { m.split(F(i), p); return true; });
+      operation(counts, "split_edge", s.edges(), whole, [&](L &m, int i) { m.split(E(i), p); return true; });
+      operation(counts, "collapse_edge", s.edges(), whole, [](L &m, int i) { return m.collapse(E(i)); });
       all<V>("all vertex_faces", s.vertices(), whole, [&](V v, auto visit) { s.faces_at(v, visit); });
       all<F>("all face_faces", s.faces(), whole, [&](F f, auto visit) { s.beside(f, visit); });
     }
@@ -377,6 +387,9 @@ template <class L> struct Measured {
     std::printf("}, \"results\": {");
     first = true;
     for (auto &it : results) name(it.first), list("%.9g", it.second);
+    std::printf("}, \"operated\": {");
+    first = true;
+    for (auto &it : counts) name(it.first), list("%.9g", it.second);
     std::printf("}, \"collapsed\": %s, \"left\": %zu}\n", collapsed ? "true" : "false", s.faces());
   }
 };

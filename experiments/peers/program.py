@@ -73,13 +73,13 @@ def header_version(header: str, pattern: str) -> str:
     return found[1] if "." in found[1] else ".".join(f"{int(found[1], 16) >> 8:x}")
 
 
-def peer(library: str, version: Callable[[], str], manual: str, more: str) -> Peer:
+def peer(library: str, version: Callable[[], str], site: str, manual: str, more: str) -> Peer:
     """A library of the program."""
     tells = partial(tell, library)
     return Peer(
-        f"{library} (C++)", PACKAGES, manual, more, build=tells, faces=itemgetter("faces"),
-        weigh=itemgetter("bytes"), collapse=_collapsed, looped=tells, loops=LOOPS,
-        told_version=version,
+        f"{library} (C++)", PACKAGES, site, manual, more, build=tells,
+        faces=itemgetter("faces"), weigh=itemgetter("bytes"), collapse=_collapsed,
+        looped=tells, loops=LOOPS, told_version=version,
     )  # fmt: skip
 
 

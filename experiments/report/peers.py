@@ -137,9 +137,23 @@ class Peers:
         seconds, ratio = curve.by_size[size], ratios.get(size, np.nan)
         return Cell(float(seconds), float(ratio), size, verdicts, bool(claimed))
 
+    def _weighed(self, name: str) -> pd.DataFrame:
+        return self.cases[name][self.cases[name]["kind"] == BYTES]
+
+    def weighed_at(self, name: str) -> int:
+        """The vertices of the mesh whose bytes were taken; 0 where none were."""
+        return int(self._weighed(name)["vertices"].max()) if len(self._weighed(name)) else 0
+
+    def weighed_smaller(self) -> str:
+        """Whose bytes are of a smaller mesh than those of the others, in a sentence, if any are."""
+        of = {PEERS[name].title: self.weighed_at(name) for name in self.names}
+        most = max(of.values(), default=0)
+        few = [f"of {title} at {size:,}" for title, size in of.items() if 0 < size < most]
+        return f"Bytes are weighed at {most:,} vertices, {', '.join(few)}." if few else ""
+
     def bytes_per_vertex(self, name: str) -> float:
         """As the process sees them."""
-        found = self.cases[name][self.cases[name]["kind"] == BYTES]
+        found = self._weighed(name)
         return float((found["samples"].str[0].astype(float) / found["vertices"]).max())
 
     def version(self, name: str) -> str:
@@ -227,7 +241,7 @@ def show_peers(folder: Path | None, console: Console) -> None:
     for title, rows in {**shown, "Bad input": peers.trials()}.items():
         if len(rows) > 1:
             show_rows(console, rows, title, NUMBERS)
-    console.print(READING, style="dim")
+    console.print(" ".join([READING, peers.weighed_smaller()]), style="dim")
     if peers.absent:
         console.print(f"Not measured: {', '.join(peers.absent)}.", style="dim")
 
@@ -243,8 +257,10 @@ def peers_as_json(folder: Path | None) -> dict[str, Any]:
             {
                 "name": name,
                 "title": PEERS[name].title,
+                "manual": PEERS[name].site,
                 "version": peers.version(name),
                 "bytes_per_vertex": peers.bytes_per_vertex(name),
+                "bytes_at_vertices": peers.weighed_at(name),
                 "bad_input": {bad: list(peers.trial(name, bad)) for bad in BAD_INPUT},
                 "subjects": list(_records(peers, name)),
             }
@@ -300,11 +316,12 @@ def about(peers: Peers) -> Html:
     if not peers.names:
         raise MissingError(MISSING)
     lost = f" Not measured there: {', '.join(peers.absent)}." if peers.absent else ""
-    return Html("<p>{}</p>").format(f"{in_words(peers.run)}{lost}")
+    return Html("<p>{}</p>").format(f"{in_words(peers.run)}{lost} {peers.weighed_smaller()}")
 
 
 def portraits(peers: Peers) -> Html:
     """How each library's manual has it used, and what it does that ours does not."""
     heads = "Library", "As its manual has it used", "What it does beyond ours"
+    linked = Html('<a href="{1}">{0}</a>').format
     others = [PEERS[name] for name in peers.names if name != OURS]
-    return page_table([heads, *((it.title, it.manual, it.more) for it in others)])
+    return page_table([heads, *((linked(it.title, it.site), it.manual, it.more) for it in others)])

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from experiments.advice import ALIKE, PRESETS, Prices
+from experiments.advice import ALIKE, BEYOND, PRESETS, SIGMAS, UNMODELED, Prices
 from experiments.bench_workloads import COMPILED
 from experiments.claims import Curves, curves
 from experiments.harness import Axis
@@ -212,14 +212,17 @@ def advice_sliders(run: Run) -> Html:
         {"title": it.title, "frames": it.frames, "rows": list(map(SLID, it.rows))}
         for it in PRESETS.values()
     ]
-    data = {"sizes": sizes.tolist(), "structures": structures, "workloads": presets}
+    data = {"sizes": sizes.tolist(), "structures": structures, "workloads": presets,
+            "sigmas": SIGMAS, "unmodeled": UNMODELED, "beyond": BEYOND}  # fmt: skip
     return page("sliders.html.j2", data=data)
 
 
 def _prices(prices: Prices, name: str, whats: list[str], sizes: Any) -> dict[str, Any]:
-    """Seconds by what is asked: at random and in order, at each size."""
+    """By what is asked, at each size: seconds at random and in order, and how far both are off."""
     costs = {}
     for what in whats:
-        priced = [[prices.price(name, what, n, it).seconds for n in sizes] for it in (0.0, 1.0)]
-        costs[what] = [[float(f"{it:.3g}") for it in seconds] for seconds in priced]
+        priced = [[prices.price(name, what, n, it) for n in sizes] for it in (0.0, 1.0)]
+        told = [[it.seconds for it in each] for each in priced]
+        told.append([max(it.spread for it in both) for both in zip(*priced, strict=True)])
+        costs[what] = [[float(f"{it:.3g}") for it in each] for each in told]
     return {"title": REGISTRY[name].title, "costs": costs}

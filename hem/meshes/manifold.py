@@ -81,7 +81,8 @@ def require_manifold(mesh: TriangleMesh) -> None:
     edges = np.concatenate([crowded, twisted])
     raise NonManifoldError(
         f"the mesh is no manifold surface: {', '.join(found)}; "
-        "mend it (hem.load and hem.sample take repair=True), or use the indexed mesh",
+        "mend it (hem.load and hem.sample take repair=True, a command --repair), or use the "
+        "indexed mesh",
         edges=edges,
         vertices=split,
         faces=_faces_at(mesh.triangles, edges, split),

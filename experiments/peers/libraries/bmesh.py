@@ -66,6 +66,12 @@ def _rotate(m: Mesh, edges: list[Any], places: Array) -> int:
     return sum(bmesh.utils.edge_rotate(edge) is not None for edge in edges)
 
 
+def _arrays(m: Mesh) -> tuple[Array, Array]:
+    m.verts.index_update()
+    faces = [[v.index for v in it.verts] for it in m.faces]
+    return np.array([it.co for it in m.verts]), np.array(faces)
+
+
 def _normals(m: Mesh) -> Array:
     m.normal_update()
     return np.array([it.normal for it in m.verts])
@@ -79,12 +85,14 @@ def _smooth(m: Mesh) -> None:
 PEER = Peer(
     title="BMesh (Blender)",
     distribution="bpy",
+    site="https://docs.blender.org/api/current/bmesh.html",
     manual="Lists of each element (`link_edges`, `link_faces`, `verts`) and loops from face to "
     "face; operators `bmesh.ops` of many elements at a time.",
     more="Faces of any number of corners and edges of any number of faces, layers of "
     "attributes, and Blender around it: modeling, modifiers, rendering.",
     build=_build,
     faces=lambda m: len(m.faces),
+    arrays=_arrays,
     ends=lambda m: np.array([[v.index for v in it.verts] for it in m.edges]),
     handles=_handles,
     single={

@@ -7,6 +7,7 @@ from experiments.peers.program import header_version, peer
 PEER = peer(
     "CGAL",
     partial(header_version, "CGAL/version.h", r"define CGAL_VERSION (\S+)"),
+    "https://doc.cgal.org/latest/Surface_mesh/",
     "Ranges such as `faces_around_target` around an element, `reserve` before adding, "
     "`CGAL::Euler` for operations after `does_satisfy_link_condition`.",
     "Exact arithmetic, and on it Booleans, remeshing, hulls, Delaunay triangulations and most of "

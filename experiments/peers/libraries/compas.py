@@ -1,7 +1,7 @@
 """COMPAS: half-edges in dictionaries, all in Python."""
 
 from collections.abc import Callable
-from operator import attrgetter
+from operator import attrgetter, methodcaller
 from typing import Any
 
 import numpy as np
@@ -43,6 +43,18 @@ def _insert(m: Mesh, faces: list[int], places: Array) -> int:
     return len(faces)
 
 
+def _split(m: Mesh, edges: list[Any], places: Array) -> int:
+    """Its method leaves two faces of four corners, which are split in turn."""
+    for (u, v), place in zip(edges, places.tolist(), strict=True):
+        faces = m.edge_faces((u, v))
+        new = m.split_edge((u, v), allow_boundary=True)
+        m.vertex_attributes(new, "xyz", place)
+        for face in faces:
+            if face is not None:
+                m.split_face(face, new, m.face_vertex_descendant(face, new, n=2))
+    return len(edges)
+
+
 def _collapse(m: Mesh, edges: list[Any], places: Array) -> int:
     faces = m.number_of_faces()
     for edge in edges:
@@ -54,12 +66,15 @@ def _collapse(m: Mesh, edges: list[Any], places: Array) -> int:
 PEER = Peer(
     title="COMPAS",
     distribution="compas",
+    site="https://compas.dev/compas/latest/",
     manual="Methods of the mesh for one element, by keys; edges are pairs of vertices. For larger "
-    "meshes its manual points to libigl and others behind plug-ins.",
+    "meshes its manual points to libigl and others behind plug-ins. Edges it flips only inside "
+    "its remeshing.",
     more="Polygons, attributes of any kind on every element, serialization, networks and "
     "volumetric meshes beside it, plug-ins into Rhino and Blender.",
     build=_build,
     faces=lambda m: int(m.number_of_faces()),
+    arrays=methodcaller("to_vertices_and_faces"),
     ends=_ends,
     handles=_handles,
     single={
@@ -71,7 +86,7 @@ PEER = Peer(
         "face_edges": attrgetter("face_halfedges"),
         "face_faces": attrgetter("face_neighbors"),
     },
-    operations={"split_face": _insert, "collapse_edge": _collapse},
+    operations={"split_edge": _split, "split_face": _insert, "collapse_edge": _collapse},
     algorithms={
         "vertex_normals": lambda m: [m.vertex_normal(it) for it in m.vertices()],
         "smooth": lambda m: m.smooth_centroid(kmax=1, damping=1.0),

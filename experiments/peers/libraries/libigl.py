@@ -1,6 +1,7 @@
 """libigl: functions of arrays; it has no mesh, and its adjacency is asked for and kept."""
 
 from collections.abc import Callable
+from operator import attrgetter
 from types import SimpleNamespace
 from typing import Any
 
@@ -46,12 +47,14 @@ PEER = Peer(
     title="libigl",
     distribution="libigl",
     module="igl",
+    site="https://libigl.github.io/",
     manual="A function from vertices and faces to all answers at once; one element is then a row "
     "of that. Its page on design says why there is no mesh class.",
     more="Discrete operators (Laplacians, gradients, geodesics), parametrization, deformation, "
     "Booleans, quadric simplification and much else of geometry processing, over sparse matrices.",
     build=_build,
     faces=lambda m: len(m.F),
+    arrays=attrgetter("V", "F"),
     ends=lambda m: _topology(m)[0],
     single={
         **{query: row_of(rows) for query, rows in BULK.items() if query != "vertex_faces"},

@@ -71,6 +71,11 @@ def _collapse(m: Mesh, edges: list[Any], places: Array) -> int:
     return int(faces - topology.numValidFaces()) // 2
 
 
+def _arrays(m: Mesh) -> tuple[Array, Array]:
+    m.pack()
+    return arrays.getNumpyVerts(m), arrays.getNumpyFaces(m.topology)
+
+
 def _smooth(m: Mesh) -> None:
     params = mr.MeshRelaxParams()
     params.iterations = 1
@@ -88,12 +93,14 @@ def _simplify(m: Mesh, faces: int) -> int:
 PEER = Peer(
     title="MeshLib",
     distribution="meshlib",
+    site="https://meshlib.io/documentation/",
     manual="Arrays in and out by `mrmeshnumpy`; `orgRing` and `leftRing` of the topology around "
     "one element. Whole tasks are single calls, and its answer to most questions.",
     more="Offsets, Boolean operations, distances, registration, hole filling, point clouds and "
     "voxels, on many threads and partly on graphics processors. Not free for commercial use.",
     build=lambda points, triangles: arrays.meshFromFacesVerts(triangles, points),
     faces=lambda m: int(m.topology.numValidFaces()),
+    arrays=_arrays,
     ends=_ends,
     handles=_handles,
     single={

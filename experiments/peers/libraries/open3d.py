@@ -41,12 +41,14 @@ def _neighbors(m: Mesh) -> Rows:
 PEER = Peer(
     title="Open3D",
     distribution="open3d",
+    site="https://www.open3d.org/docs/release/",
     manual="`half_edges` and `ordered_half_edge_from_vertex` as lists, `adjacency_list` once it "
     "was computed; what changes a mesh makes another one of triangles.",
     more="Point clouds, registration, reconstruction from depth images, voxels, drawing, learning; "
     "the half-edge mesh is a small part of it.",
     build=_build,
     faces=lambda m: len(m.triangles),
+    arrays=attrgetter("vertices", "triangles"),
     single={
         "vertex_vertices": _around(lambda it: it.vertex_indices[1]),
         "vertex_faces": _around(attrgetter("triangle_index")),

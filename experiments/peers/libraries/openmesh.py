@@ -57,6 +57,11 @@ def _flip(m: Mesh, edges: list[Any], places: Array) -> int:
     return done
 
 
+def _arrays(m: Mesh) -> tuple[Array, Array]:
+    m.garbage_collection()
+    return m.points(), m.face_vertex_indices()
+
+
 def _normals(m: Mesh) -> Array:
     m.request_vertex_normals()
     m.request_face_normals()
@@ -76,12 +81,14 @@ def _simplify(m: Mesh, faces: int) -> int:
 PEER = Peer(
     title="OpenMesh",
     distribution="openmesh",
+    site="https://openmesh-python.readthedocs.io/",
     manual="Iterators and circulators for one element, `ff_indices` and the like for all; "
     "`is_collapse_ok` and `is_flip_ok` before what they allow.",
     more="Polygons as well as triangles, properties of any type, subdivision and decimation by "
     "modules, files with colors and normals; and all of it in C++ with kernels of one's own.",
     build=lambda points, triangles: openmesh.TriMesh(points, triangles),
     faces=lambda m: sum(not m.is_deleted(it) for it in m.faces()),
+    arrays=_arrays,
     ends=lambda m: m.ev_indices(),
     handles=_handles,
     single={

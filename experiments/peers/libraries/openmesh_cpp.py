@@ -7,6 +7,7 @@ from experiments.peers.program import header_version, peer
 PEER = peer(
     "OpenMesh",
     partial(header_version, "OpenMesh/Core/System/config.h", r"define OM_VERSION 0x(\w+)"),
+    "https://www.graphics.rwth-aachen.de/media/openmesh_static/Documentations/OpenMesh-Doc-Latest/",
     "Ranges such as `vf_range` around an element, `reserve` before adding, `is_collapse_ok` before "
     "`collapse`, and `garbage_collection` after it.",
     "Kernels and traits that say at compile time what an element records, so that a mesh takes no "

@@ -68,7 +68,7 @@ def looped(
     """What compiled loops take, as ``program.cpp`` tells it of others."""
     s = build(points, triangles, structure)
     times = _times(s, few, rounds, whole)
-    return {"times": times, "answers": {}, "bytes": sum(s.memory().values())}
+    return {"times": times, "answers": {}, "operated": {}, "bytes": sum(s.memory().values())}
 
 
 def _times(s: Mesh, few: int, rounds: int, whole: int) -> dict[str, list[float]]:
@@ -115,10 +115,12 @@ PEER = Peer(
     title="Half-edge (ours)",
     distribution="hem-mesh",
     module="hem",
+    site="",  # the one at hand
     manual="A call with one handle, or with all: the same method.",
     more="",
     build=build,
     faces=attrgetter("n_faces"),
+    arrays=lambda m: attrgetter("points", "triangles")(m.to_triangles()),
     ends=methodcaller("edge_array"),
     handles=_handles,
     named=lambda m, edges: m.edge_vertices(edges).values.reshape(-1, 2),

@@ -9,12 +9,14 @@ pyvista = Lazy("pyvista")
 PEER = Peer(
     title="PyVista",
     distribution="pyvista",
+    site="https://docs.pyvista.org/",
     manual="Filters of the whole mesh; `point_neighbors`, `point_cell_ids` and `cell_neighbors` "
     "for one element. Edges are no elements of a surface.",
     more="Drawing, volumes and grids, scalars and vectors on them, slices, contours and "
     "streamlines, and files of simulations: VTK in Python.",
     build=lambda points, triangles: pyvista.PolyData.from_regular_faces(points, triangles),
     faces=lambda m: int(m.n_cells),
+    arrays=attrgetter("points", "regular_faces"),
     single={
         "vertex_vertices": attrgetter("point_neighbors"),
         "vertex_faces": attrgetter("point_cell_ids"),

@@ -16,12 +16,14 @@ PROPERTIES = {
 PEER = Peer(
     title="trimesh",
     distribution="trimesh",
+    site="https://trimesh.org/",
     manual="Properties of the whole mesh, computed when they are first asked for and kept until it "
     "changes; one element is then a row. A mesh changes as a whole.",
     more="Loading some thirty formats, scenes, ray casts, Booleans, voxels, mass and collision, "
     "slicing, sampling: a tool box around a mesh that stays as it is.",
     build=lambda points, triangles: trimesh.Trimesh(points, triangles, process=False),
     faces=lambda m: len(m.faces),
+    arrays=attrgetter("vertices", "faces"),
     ends=attrgetter("edges_unique"),
     single={
         **{query: row_of(attrgetter(name)) for query, name in PROPERTIES.items()},

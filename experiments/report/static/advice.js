@@ -1,7 +1,7 @@
 "use strict";
 // Every row of a workload times its price, as experiments/advice predicts it; works from disk.
 for (const part of document.querySelectorAll(".advice")) {
-  const { sizes, structures, workloads } = JSON.parse(part.querySelector("script").textContent);
+  const { sizes, structures, workloads, sigmas, unmodeled, beyond } = JSON.parse(part.querySelector("script").textContent);
   const select = part.querySelector("select"), logs = sizes.map(Math.log);
   const slider = (name) => part.querySelector(`[name=${name}]`);
   const value = (name) => 10 ** Number(slider(name).value);
@@ -18,13 +18,18 @@ for (const part of document.querySelectorAll(".advice")) {
     return Math.exp(a + part * (b - a));
   }
 
-  function seconds(structure, workload, faces) {
-    return workload.rows.reduce((sum, [what, times, each, perFrame, inOrder, edit]) => {
+  // Seconds, and the factor by which nine of ten should be off at most.
+  function forecast(structure, workload, faces) {
+    const parts = workload.rows.map(([what, times, each, perFrame, inOrder, edit]) => {
       const count = times * (each ? each * faces : 1) * (perFrame ? value("frames") : 1);
-      const [random, consecutive] = structure.costs[what].map((costs) => at(costs, faces));
+      const [random, consecutive, spread] = structure.costs[what].map((costs) => at(costs, faces));
       const price = (1 - inOrder) * random + inOrder * consecutive;
-      return sum + count * (edit ? value("edits") : 1) * price;
-    }, 0);
+      return [count * (edit ? value("edits") : 1) * price, spread];
+    });
+    const total = parts.reduce((sum, [seconds]) => sum + seconds, 0), last = logs[logs.length - 1];
+    const outside = beyond * Math.max(0, logs[0] - Math.log(faces), Math.log(faces) - last);
+    const shares = parts.map(([seconds, spread]) => (total ? (seconds / total) * (spread + outside) : 0));
+    return [total, Math.exp(sigmas * Math.hypot(unmodeled, ...shares))];
   }
 
   const digits = (x) => (x < 10 ? x.toPrecision(2) : Math.round(x).toLocaleString("en"));
@@ -39,11 +44,11 @@ for (const part of document.querySelectorAll(".advice")) {
       slider(name).nextElementSibling.textContent = digits(value(name));
     }
     const workload = workloads[select.value], faces = 2 * value("vertices");
-    const found = structures.map((it) => [it.title, seconds(it, workload, faces)]);
+    const found = structures.map((it) => [it.title, ...forecast(it, workload, faces)]);
     found.sort((a, b) => a[1] - b[1]);
-    part.querySelector("tbody").replaceChildren(...found.map(([title, s]) => {
-      const row = document.createElement("tr");
-      for (const text of [title, words(s), `${digits(s / found[0][1])} ×`]) row.insertCell().textContent = text;
+    part.querySelector("tbody").replaceChildren(...found.map(([title, s, off]) => {
+      const row = document.createElement("tr"), within = `${words(s / off)} … ${words(s * off)}`;
+      for (const text of [title, words(s), within, `${digits(s / found[0][1])} ×`]) row.insertCell().textContent = text;
       return row;
     }));
   }

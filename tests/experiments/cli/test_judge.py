@@ -51,6 +51,7 @@ def test_too_little_data_cannot_be_told(tmp_path: Path) -> None:
     code, words = hem(str(file), "--expected", "O(n)")
     assert code == 2
     assert "Too few sizes" in words
+    assert "Too few sizes" in hem(str(file))[1]  # without a claim, too
 
 
 @pytest.mark.parametrize("head", ["rows", "nv", "n_v", "n"])

@@ -74,6 +74,14 @@ def test_the_workflow_that_a_page_shows_runs_pytest_on_three_systems():
     assert [it["run"].split()[0] for it in job["steps"] if "run" in it] == ["pip", "pytest"]
 
 
+def test_it_judges_and_tests_the_core_on_the_other_systems():
+    job = yaml.safe_load(WORKFLOW.read_text())["jobs"]["elsewhere"]
+    assert job["strategy"]["matrix"]["os"] == ["macos-latest", "windows-latest"]
+    (tests,) = commands("python -m pytest")
+    assert all((ROOT / it).exists() for it in tests)
+    assert ["judge", "costs.csv", "--expected", "O(n)", "--exact"] in commands("hem")
+
+
 def test_what_is_cached_and_installed_is_there():
     caches = [it["with"] for it in steps() if "setup-python" in it.get("uses", "")]
     assert caches

@@ -25,10 +25,12 @@ LIBRARY = Peer(
     title="Slow library",
     distribution="numpy",
     module="numpy",
+    site="https://example.org/slow",
     manual="As one likes.",
     more="Nothing.",
     build=_build,
     faces=lambda m: len(m.triangles),
+    arrays=lambda m: (m.points, m.triangles),
     ends=lambda m: m.edges,
     single={
         "vertex_faces": lambda m: lambda vertex: faces_of(m, vertex),

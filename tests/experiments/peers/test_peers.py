@@ -122,6 +122,10 @@ def test_what_is_measured_of_nobody_is_an_error_that_names_it():
         replace(LIBRARY, bulk={"vertex_colors": None})
 
 
+def test_every_other_library_says_where_its_manual_is():
+    assert [name for name, it in PEERS.items() if not it.site.startswith("https://")] == [OURS]
+
+
 def test_ours_refuses_every_bad_input():
     assert {trials.give(PEERS[OURS], bad)[0] for bad in BAD_INPUT.values()} == {"refused"}
 

@@ -100,7 +100,13 @@ def test_the_chapter_shows_them_and_says_what_to_run_where_there_are_none(
 ):
     share(Session(load(run), []))
     page = notebooks.body("other_libraries")
-    for shown in ("Slow library", "O(n_t · n_ev)", "ValueError: no", "As one likes."):
+    for shown in (
+        "Slow library",
+        "O(n_t · n_ev)",
+        "ValueError: no",
+        "As one likes.",
+        'href="https://example.org/slow"',
+    ):
         assert shown in page
     assert "hem study --peers" not in page
     share(Session(load(write_run(tmp_path / "other", only=lambda *_: False)), []))
