@@ -1,6 +1,7 @@
 """Functions of known cost that no library has: written as textbooks do, to try judges on."""
 
 import bisect
+import collections
 import heapq
 import math
 import operator
@@ -20,430 +21,13 @@ def drain(heap: list[float]) -> None:
         heapq.heappop(heap)
 
 
-def add_and_discard(held: set[int], key: int) -> None:
-    held.add(-key)
-    held.discard(-key)
+def push_and_pop(heap: list[float]) -> None:
+    heapq.heappush(heap, -1.0)
+    heapq.heappop(heap)
 
 
-def halve(held: list[int], key: int) -> None:
-    low, high = 0, len(held)
-    while low < high:
-        middle = (low + high) // 2
-        if held[middle] < key:
-            low = middle + 1
-        else:
-            high = middle
-
-
-def divide(p: int) -> bool:
-    divisor = 2
-    while divisor * divisor <= p:
-        if p % divisor == 0:
-            return False
-        divisor += 1
-    return True
-
-
-def bubble(it: list[float]) -> None:
-    for end in range(len(it) - 1, 0, -1):
-        for i in range(end):
-            if it[i] > it[i + 1]:
-                it[i], it[i + 1] = it[i + 1], it[i]
-
-
-def hanoi(n: int) -> int:
-    return hanoi(n - 1) + 1 + hanoi(n - 1) if n else 0
-
-
-def edits(texts: tuple[str, str]) -> int:
-    a, b = texts
-    row = list(range(len(b) + 1))
-    for i, x in enumerate(a, 1):
-        before, row = row, [i]
-        for j, y in enumerate(b, 1):
-            row.append(min(before[j] + 1, row[-1] + 1, before[j - 1] + (x != y)))
-    return row[-1]
-
-
-def squarings(n: int) -> float:
-    power, base = 1.0, 1.0000001
-    while n:
-        power, base, n = power * base if n & 1 else power, base * base, n >> 1
-    return power
-
-
-def euclid(n: int) -> int:
-    a, b = n, round(n * 0.6180339887)
-    while b:
-        a, b = b, a % b
-    return a
-
-
-def heapsort(it: list[float]) -> list[float]:
-    heap: list[float] = []
-    for value in it:
-        heapq.heappush(heap, value)
-    return [heapq.heappop(heap) for _ in it]
-
-
-def merge_sort(it: list[float]) -> list[float]:
-    if len(it) < 2:
-        return it
-    half = len(it) // 2
-    return list(heapq.merge(merge_sort(it[:half]), merge_sort(it[half:])))
-
-
-def insertion_sort(it: list[int]) -> None:
-    for i in range(1, len(it)):
-        value, place = it[i], i
-        while place and it[place - 1] > value:
-            it[place] = it[place - 1]
-            place -= 1
-        it[place] = value
-
-
-def selection_sort(it: list[float]) -> None:
-    for i in range(len(it)):
-        least = min(range(i, len(it)), key=it.__getitem__)
-        it[i], it[least] = it[least], it[i]
-
-
-def pascal(n: int) -> list[float]:
-    row = [1.0]
-    for _ in range(n):
-        row = [a + b for a, b in zip([0.0, *row], [*row, 0.0], strict=True)]
-    return row
-
-
-def multiply(a: list[list[float]]) -> list[list[float]]:
-    columns = list(zip(*a, strict=True))
-    return [[sum(map(operator.mul, row, column)) for column in columns] for row in a]
-
-
-def sums(it: list[int], total: int = 0) -> int:
-    return sums(it[1:], total) + sums(it[1:], total + it[0]) if it else total
-
-
-def halvings(n: int) -> int:
-    steps = 0
-    while n:
-        n, steps = n // 2, steps + 1
-    return steps
-
-
-def prefix_sum(tree: list[int], place: int) -> int:
-    total = 0
-    while place:
-        total += tree[place]
-        place &= place - 1
-    return total
-
-
-def change_leaf(tree: list[float], leaf: int) -> None:
-    node = leaf + len(tree) // 2
-    while node > 1:
-        node //= 2
-        tree[node] = tree[2 * node] + tree[2 * node + 1]
-
-
-def counted_root(n: int) -> int:
-    root = 0
-    while root * root < n:
-        root += 1
-    return root
-
-
-def triangular(n: int) -> int:
-    total = step = 0
-    while total < n:
-        step += 1
-        total += step
-    return step
-
-
-def jump_search(it: Any) -> int:
-    step, last = math.isqrt(len(it)), len(it) - 1
-    place = 0
-    while place + step < len(it) and it[place + step] <= last:
-        place += step
-    while it[place] < last:
-        place += 1
-    return place
-
-
-def largest_sum(it: list[float]) -> float:
-    best = here = 0.0
-    for value in it:
-        here = max(0.0, here + value - 0.5)
-        best = max(best, here)
-    return best
-
-
-def random_cycle(n: int) -> list[int]:
-    order, follow = random.sample(range(n), n), [0] * n
-    for a, b in zip(order, [*order[1:], order[0]], strict=True):
-        follow[a] = b
-    return follow
-
-
-def walk(follow: list[int]) -> int:
-    place = 0
-    for _ in follow:
-        place = follow[place]
-    return place
-
-
-def random_graph(n: int) -> list[tuple[int, int]]:
-    return [((i + 1) % n, random.randrange(n)) for i in range(n)]
-
-
-def breadth_first(neighbors: list[tuple[int, int]]) -> list[int]:
-    found, seen = [0], {0}
-    for place in found:
-        for other in neighbors[place]:
-            if other not in seen:
-                seen.add(other)
-                found.append(other)
-    return found
-
-
-def quicksort(it: list[float]) -> list[float]:
-    if len(it) < 2:
-        return it
-    pivot, rest = it[0], it[1:]
-    low, high = [x for x in rest if x < pivot], [x for x in rest if x >= pivot]
-    return [*quicksort(low), pivot, *quicksort(high)]
-
-
-def push_downward(n: int) -> list[int]:
-    heap: list[int] = []
-    for value in range(n, 0, -1):
-        heapq.heappush(heap, value)
-    return heap
-
-
-def divisors(n: int) -> list[int]:
-    count = [0] * (n + 1)
-    for divisor in range(1, n + 1):
-        for multiple in range(divisor, n + 1, divisor):
-            count[multiple] += 1
-    return count
-
-
-def common(texts: tuple[str, str]) -> int:
-    a, b = texts
-    row = [0] * (len(b) + 1)
-    for x in a:
-        before = row[:]
-        for j, y in enumerate(b, 1):
-            row[j] = before[j - 1] + 1 if x == y else max(before[j], row[j - 1])
-    return row[-1]
-
-
-def product(factors: tuple[list[float], list[float]]) -> list[float]:
-    a, b = factors
-    made = [0.0] * (len(a) + len(b))
-    for i, x in enumerate(a):
-        for j, y in enumerate(b, i):
-            made[j] += x * y
-    return made
-
-
-def insert_all(n: int) -> list[int]:
-    made: list[int] = []
-    for i in range(n):
-        made.insert(0, i)
-    return made
-
-
-def chain_order(sizes: list[int]) -> int:
-    n = len(sizes) - 1
-    cost = [[0] * n for _ in range(n)]
-    for length in range(1, n):
-        for i in range(n - length):
-            j = i + length
-            cost[i][j] = min(
-                cost[i][k] + cost[k + 1][j] + sizes[i] * sizes[k + 1] * sizes[j + 1]
-                for k in range(i, j)
-            )
-    return cost[0][-1]
-
-
-def gray_code(n: int) -> list[int]:
-    codes = [0]
-    for bit in range(n):
-        codes += [code | 1 << bit for code in reversed(codes)]
-    return codes
-
-
-def append_and_pop(held: Any) -> None:
-    held.append(0)
-    held.pop()
-
-
-def in_thirds(held: list[int], key: int) -> None:
-    low, high = 0, len(held)
-    while low < high:
-        third = (high - low) // 3
-        left, right = low + third, high - 1 - third
-        if key < held[left]:
-            high = left
-        elif key > held[right]:
-            low = right + 1
-        elif key in (held[left], held[right]):
-            return
-        else:
-            low, high = left + 1, right
-
-
-def search_tree(n: int) -> list[int]:
-    """A node's children are at twice its place, and after it."""
-    held, sorted_so_far = [0] * (n + 1), 0
-    path: list[int] = []
-    place = 1
-    while path or place <= n:
-        while place <= n:
-            path.append(place)
-            place *= 2
-        place = path.pop()
-        held[place] = sorted_so_far
-        sorted_so_far += 1
-        place = 2 * place + 1
-    return held
-
-
-def descend(held: list[int], key: int) -> None:
-    place = 1
-    while place < len(held) and held[place] != key:
-        place = 2 * place + (key > held[place])
-
-
-def two_squares(n: int) -> int:
-    return sum(math.isqrt(n - a * a) ** 2 == n - a * a for a in range(math.isqrt(n) + 1))
-
-
-def odd_numbers(n: int) -> int:
-    odd = 1
-    while n > 0:
-        n -= odd
-        odd += 2
-    return odd
-
-
-def counting_sort(it: list[int]) -> list[int]:
-    counts = [0] * 100
-    for value in it:
-        counts[value] += 1
-    made: list[int] = []
-    for value, count in enumerate(counts):
-        made += [value] * count
-    return made
-
-
-def prefixes(text: str) -> list[int]:
-    made, length = [0] * len(text), 0
-    for i in range(1, len(text)):
-        while length and text[i] != text[length]:
-            length = made[length - 1]
-        length += text[i] == text[length]
-        made[i] = length
-    return made
-
-
-def majority(votes: list[int]) -> int:
-    leader, lead = votes[0], 0
-    for vote in votes:
-        if not lead:
-            leader = vote
-        lead += 1 if vote == leader else -1
-    return leader
-
-
-def increasing(it: list[float]) -> int:
-    ends: list[float] = []
-    for value in it:
-        place = bisect.bisect_left(ends, value)
-        ends[place : place + 1] = [value]
-    return len(ends)
-
-
-def huffman(weights: list[float]) -> float:
-    heap, total = list(weights), 0.0
-    heapq.heapify(heap)
-    while len(heap) > 1:
-        merged = heapq.heappop(heap) + heapq.heappop(heap)
-        total += merged
-        heapq.heappush(heap, merged)
-    return total
-
-
-def inversions(it: list[float]) -> int:
-    if len(it) < 2:
-        return 0
-    left, right = it[: len(it) // 2], it[len(it) // 2 :]
-    count = inversions(left) + inversions(right)
-    merged: list[float] = []
-    i = 0
-    for value in right:
-        while i < len(left) and left[i] <= value:
-            merged.append(left[i])
-            i += 1
-        count += len(left) - i
-        merged.append(value)
-    it[:] = merged + left[i:]
-    return count
-
-
-def hull(points: list[tuple[float, float]]) -> list[tuple[float, float]]:
-    made: list[tuple[float, float]] = []
-    for x, y in sorted(points):
-        while len(made) > 1:
-            (ax, ay), (bx, by) = made[-2:]
-            if (bx - ax) * (y - ay) < (by - ay) * (x - ax):
-                break
-            made.pop()
-        made.append((x, y))
-    return made
-
-
-def palindromes(text: str) -> int:
-    n, count, inner = len(text), 0, [False] * len(text)
-    for i in range(n - 1, -1, -1):
-        ends = [text[i] == text[j] and (j - i < 2 or inner[j - 1]) for j in range(i, n)]
-        inner[i:] = ends
-        count += sum(ends)
-    return count
-
-
-def knapsack(values: list[int]) -> int:
-    best = [0] * (len(values) + 1)
-    for weight, value in enumerate(values, 1):
-        for room in range(len(best) - 1, weight - 1, -1):
-            best[room] = max(best[room], best[room - weight] + value)
-    return best[-1]
-
-
-def pop_all(it: list[int]) -> None:
-    while it:
-        it.pop(0)
-
-
-def closure(costs: list[list[float]]) -> list[list[bool]]:
-    reach = [[cost < 0.1 for cost in row] for row in costs]
-    for middle in range(len(reach)):
-        through = reach[middle]
-        for row in reach:
-            known = row[middle]
-            for j in range(len(row)):
-                row[j] = row[j] or (known and through[j])
-    return reach
-
-
-def subsets(it: list[int]) -> list[list[int]]:
-    made: list[list[int]] = [[]]
-    for value in it:
-        made += [[*some, value] for some in made]
-    return made
+def compared(one: float, other: float) -> int:
+    return (one > other) - (one < other)
 
 
 def gallop(held: list[int], key: int) -> None:
@@ -544,5 +128,231 @@ def triangle(n: int) -> list[list[int]]:
     return [[row * (row - 1) // 2 + i for i in range(1, row + 1)] for row in range(1, n + 1)]
 
 
-def bit_strings(n: int) -> list[str]:
-    return [""] if not n else [bit + rest for bit in "01" for rest in bit_strings(n - 1)]
+def balanced_tree(low: int, high: int) -> Any:
+    """A node is its lower branch, its key and its higher branch."""
+    middle = (low + high) // 2
+    if low >= high:
+        return None
+    return balanced_tree(low, middle), middle, balanced_tree(middle + 1, high)
+
+
+def find_in_tree(tree: Any, key: int) -> None:
+    while tree and tree[1] != key:
+        tree = tree[2] if key > tree[1] else tree[0]
+
+
+def place_of_rank(tree: list[int], rank: int) -> int:
+    place, step = 0, 1 << (len(tree) - 1).bit_length()
+    while step:
+        if place + step < len(tree) and tree[place + step] <= rank:
+            place += step
+            rank -= tree[place]
+        step //= 2
+    return place
+
+
+def doubled(n: int) -> int:
+    total, addend = 0, 3
+    while n:
+        if n & 1:
+            total += addend
+        addend += addend
+        n >>= 1
+    return total
+
+
+def sum_of_quotients(n: int) -> int:
+    total, first = 0, 1
+    while first <= n:
+        quotient = n // first
+        last = n // quotient
+        total += quotient * (last - first + 1)
+        first = last + 1
+    return total
+
+
+def in_blocks(n: int) -> tuple[list[int], list[int]]:
+    values, size = list(range(n)), max(1, math.isqrt(n))
+    return values, [sum(values[i : i + size]) for i in range(0, n, size)]
+
+
+def sum_by_blocks(held: tuple[list[int], list[int]]) -> int:
+    """From the second of all to the last but one."""
+    values, blocks = held
+    size, place, total = max(1, math.isqrt(len(values))), 1, 0
+    while place < len(values) - 1:
+        if place % size == 0 and place + size < len(values):
+            total += blocks[place // size]
+            place += size
+        else:
+            total += values[place]
+            place += 1
+    return total
+
+
+def horner(coefficients: list[float]) -> float:
+    value = 0.0
+    for coefficient in coefficients:
+        value = value * 0.5 + coefficient
+    return value
+
+
+def run_lengths(it: list[int]) -> list[tuple[int, int]]:
+    made: list[tuple[int, int]] = []
+    begin = 0
+    for i in range(1, len(it) + 1):
+        if i == len(it) or it[i] != it[begin]:
+            made.append((it[begin], i - begin))
+            begin = i
+    return made
+
+
+def window_maxima(it: list[float]) -> list[float]:
+    waiting: collections.deque[int] = collections.deque()
+    made: list[float] = []
+    for i, value in enumerate(it):
+        while waiting and it[waiting[-1]] <= value:
+            waiting.pop()
+        waiting.append(i)
+        if waiting[0] <= i - 50:
+            waiting.popleft()
+        made.append(it[waiting[0]])
+    return made
+
+
+def z_function(text: str) -> list[int]:
+    made, left, right = [0] * len(text), 0, 0
+    for i in range(1, len(text)):
+        length = min(right - i, made[i - left]) if i < right else 0
+        while i + length < len(text) and text[length] == text[i + length]:
+            length += 1
+        if i + length > right:
+            left, right = i, i + length
+        made[i] = length
+    return made
+
+
+def random_dag(n: int) -> list[list[int]]:
+    return [random.choices(range(i + 1, n), k=2) if i + 1 < n else [] for i in range(n)]
+
+
+def topological(after: list[list[int]]) -> list[int]:
+    before = [0] * len(after)
+    for some in after:
+        for node in some:
+            before[node] += 1
+    order = [node for node, count in enumerate(before) if not count]
+    for node in order:
+        for other in after[node]:
+            before[other] -= 1
+            if not before[other]:
+                order.append(other)
+    return order
+
+
+def three_ways(it: list[float]) -> None:
+    low, here, high = 0, 0, len(it) - 1
+    while here <= high:
+        value = it[here]
+        if value < 1 / 3:
+            it[here], it[low] = it[low], value
+            low, here = low + 1, here + 1
+        elif value > 2 / 3:
+            it[here], it[high] = it[high], value
+            high -= 1
+        else:
+            here += 1
+
+
+def merge_from_below(it: list[float]) -> list[float]:
+    width = 1
+    while width < len(it):
+        made: list[float] = []
+        for i in range(0, len(it), 2 * width):
+            a, b, stop = i, min(i + width, len(it)), min(i + 2 * width, len(it))
+            middle = b
+            while a < middle and b < stop:
+                if it[a] <= it[b]:
+                    made.append(it[a])
+                    a += 1
+                else:
+                    made.append(it[b])
+                    b += 1
+            made += it[a:middle] or it[b:stop]
+        it, width = made, 2 * width
+    return it
+
+
+def covered(intervals: list[tuple[float, float]]) -> float:
+    total, end = 0.0, 0.0
+    for begin, length in sorted(intervals):
+        total += max(0.0, begin + length - max(begin, end))
+        end = max(end, begin + length)
+    return total
+
+
+def grown_tree(keys: list[float]) -> list[Any]:
+    """A node is its lower branch, its key and its higher branch."""
+    root: list[Any] = [None, keys[0], None]
+    for key in keys[1:]:
+        node = root
+        while True:
+            side = 2 if key > node[1] else 0
+            if node[side] is None:
+                node[side] = [None, key, None]
+                break
+            node = node[side]
+    return root
+
+
+def walks(n: int) -> int:
+    place = 0
+    for _ in range(n):
+        for step in range(math.isqrt(n)):
+            place += 1 if (place ^ step) & 1 else -1
+    return place
+
+
+def warped(rows: tuple[list[float], list[float]]) -> float:
+    a, b = rows
+    before = [0.0] + [math.inf] * len(b)
+    for x in a:
+        row = [math.inf]
+        for j, y in enumerate(b):
+            row.append(abs(x - y) + min(before[j], before[j + 1], row[j]))
+        before = row
+    return before[-1]
+
+
+def change(n: int) -> int:
+    ways = [1] + [0] * n
+    for coin in range(1, n + 1):
+        for amount in range(coin, n + 1):
+            ways[amount] = (ways[amount] + ways[amount - coin]) % 1_000_003
+    return ways[n]
+
+
+def remove_all(it: list[int]) -> None:
+    while it:
+        it.remove(it[-1])
+
+
+def eliminate(rows: list[list[float]]) -> None:
+    for i, pivot in enumerate(rows):
+        pivot[i] += len(rows)  # so that none vanishes
+        for row in rows[i + 1 :]:
+            factor = row[i] / pivot[i]
+            row[i:] = [x - factor * y for x, y in zip(row[i:], pivot[i:], strict=True)]
+
+
+def triangles(rows: list[list[float]]) -> int:
+    n, count = len(rows), 0
+    for i in range(n):
+        for j in range(i):
+            for k in range(j):
+                count += rows[i][j] < 0.5 and rows[j][k] < 0.5 and rows[i][k] < 0.5
+    return count
+
+
+def full_tree(depth: int) -> int:
+    return 1 + full_tree(depth - 1) + full_tree(depth - 1) if depth else 1
