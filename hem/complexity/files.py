@@ -71,7 +71,8 @@ def read_curves(path: Path, parameter: str | None = None) -> list[Curve]:
 def _read_csv(text: str, path: Path) -> Iterator[Row]:
     lines = [(i, line) for i, line in enumerate(csv.reader(text.splitlines()), 1) if any(line)]
     if not lines or len(lines[0][1]) < 2:
-        raise ValueError(f"{path} is no CSV of costs: sizes first, then a column per function")
+        needed = "sizes first, then a column per function, with commas between"
+        raise ValueError(f"{path} is no CSV of costs: {needed}")
     first = lines[0][1]
     headed = _number(first[0]) is None
     names = first if headed else ["n", *(f"column {i + 1}" for i in range(1, len(first)))]
@@ -87,15 +88,17 @@ def _read_csv(text: str, path: Path) -> Iterator[Row]:
 
 
 def _read_json(text: str, path: Path) -> list[Row]:
+    known = "pytest-benchmark, Google Benchmark or hyperfine"
     try:
         content = json.loads(text)
+        if not {"results", "benchmarks"} & {*content}:
+            raise ValueError(f"{path} is no JSON of {known}: it has no benchmarks and no results")
         if "results" in content:
             return list(_hyperfine(content["results"]))
         if "machine_info" in content:
             return list(_pytest_benchmark(content["benchmarks"]))
         return list(_google_benchmark(content["benchmarks"]))
     except (KeyError, TypeError, AttributeError, json.JSONDecodeError) as error:
-        known = "pytest-benchmark, Google Benchmark or hyperfine"
         raise ValueError(f"{path} is no JSON of {known}: {error!r}") from error
 
 

@@ -68,7 +68,8 @@ class Verdict:
 
     def __repr__(self) -> str:
         slope = f"slope {self.slope:.2f} ({self.slope_low:.2f} … {self.slope_high:.2f})"
-        return f"<Verdict on {self.expected}: {self.outcome}, {slope}. {self.reason}>"
+        told = f"The costs tell {self.answer or 'no class'}."
+        return f"<Verdict on {self.expected}: {self.outcome}, {slope}. {told} {self.reason}>"
 
     def predicted(self, name: str, sizes: Array) -> Array:
         """(k,) what a model that was fitted costs at the sizes, with memory at its fastest."""

@@ -72,14 +72,16 @@ def measure(
     From then on the process keeps the memory that it frees, up to blocks of 32 MB, if its C library
     is GNU's.
 
-    Raises ValueError for sizes that are not whole numbers from 1 on, and for too small a `most`;
-    what f raises goes through.
+    Raises ValueError for sizes that are not whole numbers from 1 on, for too small a `most` and for
+    no budget or rounds; what f raises goes through.
     """
     given = np.unique([] if sizes is None else np.asarray(sizes))
     if sizes is not None and (not given.size or np.any(given < 1) or np.any(given % 1)):
         raise ValueError("sizes must be whole numbers, each at least 1")
     if most < FIRST:
         raise ValueError(f"most must be at least {FIRST}, not {most}")
+    if not budget > 0 or rounds < 1:
+        raise ValueError(f"budget and rounds must be positive, not {budget} s and {rounds}")
     tried = int(given[0]) if given.size else min(TRIED, most)
     changed = _changes(f, make_input(tried))  # warms up, too
     calls = Calls(f, make_input, changed if fresh is None else fresh, clock, keep_memory())

@@ -311,7 +311,8 @@ def test_a_verdict_is_shown_in_a_line() -> None:
     )
     assert repr(verdict) == (
         f"<Verdict on O(n): consistent, slope 1.00 ({verdict.slope_low:.2f} … "
-        f"{verdict.slope_high:.2f}). O(n) explains the costs, and no other class does.>"
+        f"{verdict.slope_high:.2f}). The costs tell O(n). "
+        "O(n) explains the costs, and no other class does.>"
     )
 
 

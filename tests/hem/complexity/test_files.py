@@ -149,11 +149,13 @@ def test_cells_may_be_empty_and_a_file_that_is_no_text_is_named(tmp_path: Path) 
     ("text", "message"),
     [
         ("words", "no CSV of costs"),
+        ("n;a\n1;2\n2;3\n", "commas between"),
         ("n,a\n1,2\nx,3\n", "row 3"),
         ("n,a\n\n1,2\nx,3\n", "row 4"),
         ("n,a\n1,2\n2,3 s\n", "row 3, a: '3 s' is no number"),
         ("n,a\n1,2\n1,3\n", "nothing varies"),
-        ("{}", "no JSON of"),
+        ("{}", "no JSON of .*: it has no benchmarks and no results"),
+        ("[1, 2]", "no JSON of"),
         ("{", "no JSON of"),
     ],
 )

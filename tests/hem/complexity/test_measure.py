@@ -524,6 +524,12 @@ def test_no_size_is_larger_than_the_largest_that_is_allowed(clock: Clock, most: 
         measure(work, int, most=3)
 
 
+@pytest.mark.parametrize("wrong", [{"budget": -1}, {"budget": 0}, {"rounds": 0}])
+def test_no_time_and_no_rounds_are_refused(wrong: dict[str, int]) -> None:
+    with pytest.raises(ValueError, match="budget and rounds must be positive"):
+        measure(len, range, **wrong)  # type: ignore[arg-type]
+
+
 def test_an_input_that_a_call_makes_unpicklable_is_one_that_it_changes(clock: Clock) -> None:
     def work(it: dict[str, object]) -> None:
         it["lock"] = threading.Lock()
