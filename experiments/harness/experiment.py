@@ -12,7 +12,7 @@ from experiments.harness.cases import Case, Measurement
 from experiments.harness.timer import Timer, time_rounds
 from experiments.presets import Preset
 from hem.contract import QUERIES
-from structures import NAMES
+from structures import NAMES, REGISTRY
 
 Keep = Callable[[Measurement], None]  # what a measurement is handed to
 KINDS = ("time", "work", "bytes")
@@ -81,7 +81,8 @@ class Experiment:
     decides, and the order of handles that holds the measurements along each axis.
     ``just_written``: the axes whose cases run on a mesh that was copied just before, so that the
     latency measured beside them may miss what they waited for. ``baseline_orders``: the orders
-    whose times enter the baseline. ``by_name``: it is measured only where it is named. ``claims``:
+    whose times enter the baseline. ``by_name``: it is measured only where it is named.
+    ``compiled``: the names whose kernels have to be compiled before anything is timed. ``claims``:
     for subjects of its own, the growth class that is expected of each structure (or of ``ANYONE``),
     with ``source``: who expects it.
     """
@@ -99,6 +100,7 @@ class Experiment:
     just_written: frozenset[Axis] = frozenset()
     baseline_orders: tuple[str, ...] = ()
     by_name: bool = False
+    compiled: frozenset[str] = frozenset(name for name in NAMES if REGISTRY[name].compiled)
     claims: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
     source: str = ""
 

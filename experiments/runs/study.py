@@ -37,7 +37,8 @@ from hem.errors import MeshError, MeshWarning
 from structures import NAMED, REGISTRY
 
 ROOT = Path(__file__).parents[2]
-COMPILED = "hem", "structures", "experiments/harness"  # where the sources are that Numba compiles
+COMPILED = "hem", "structures", "experiments/harness", "experiments/peers"
+"""Where the sources are that Numba compiles, and the program in C++."""
 ON = " on "  # between a preset and one's own mesh, in the name of what was measured
 SAME = "python", "numpy", "numba"  # the versions that times depend on
 MOSTLY = 0.5  # part of disturbed cases above which measuring them again will not be calmer
@@ -179,8 +180,7 @@ def compile_and_count(
     ``compiled`` is told of each structure whose kernels are ready; ``count`` does the jobs of one
     experiment, until the event is set. What cannot be compiled, its measurement will tell.
     """
-    compiled_ones = {name for name, it in REGISTRY.items() if it.compiled}
-    timed = [job for job in jobs if job.timed and job.structure in compiled_ones]
+    timed = [it for it in jobs if it.timed and it.structure in catalog()[it.experiment].compiled]
     # What the others are compared with comes first.
     timed.sort(key=lambda job: (job.structure != BASE, job.structure))
     by_structure = (list(it) for _, it in groupby(timed, attrgetter("structure")))
