@@ -321,7 +321,7 @@ def about(peers: Peers) -> Html:
 
 def portraits(peers: Peers) -> Html:
     """How each library's manual has it used, and what it does that ours does not."""
-    heads = "Library", "As its manual has it used", "What it does beyond ours"
-    linked = Html('<a href="{1}">{0}</a>').format
+    heads = "Library", "As its manual has it used", "Its manual", "What it does beyond ours"
     others = [PEERS[name] for name in peers.names if name != OURS]
-    return page_table([heads, *((linked(it.title, it.site), it.manual, it.more) for it in others)])
+    rows = ((it.title, it.manual, it.site.removeprefix("https://"), it.more) for it in others)
+    return page_table([heads, *rows])
