@@ -41,7 +41,7 @@ QUICKER = 0.6  # share of the samples of a size that is looked at, the quicker o
 FLAT, QUITE_FLAT = 0.25, 0.1  # powers of log n by which linear costs rise beside small inputs …
 RISING, EVENLY = 0.6, 0.075  # … and others do, straying so little …
 LOG, CLOSELY = 0.45, 0.025  # … or so little that it is no cache's doing
-HALF = 4  # sizes, at least, that may tell alone that it stops
+HALF = 4  # sizes, at least, that may tell alone that a rise has ended
 CONSTANT, LINEAR, LOGLINEAR = ["O(1)"], ["O(n)"], ["O(n log n)"]
 KEEPS: dict[bool, Outcome] = {True: "consistent", False: "violated"}
 Sizes = NDArray[np.bool_]
@@ -60,7 +60,7 @@ class InParts:
         return self._logs(0)
 
     @property
-    def stop(self) -> bool:
+    def levels_off(self) -> bool:
         """Whether they rise, but those of the larger half no more; of few sizes it is not said.
 
         What costs more from some size on, as it has left a cache or as no processor can know it by
@@ -121,7 +121,7 @@ class Measured:
     def is_settled(self) -> bool:
         """Whether some costs tell one class so closely that no further sizes are needed."""
         if self.in_parts:
-            return self.in_parts.logs[0] < FLAT or self.in_parts.stop
+            return self.in_parts.logs[0] < FLAT or self.in_parts.levels_off
         asked = _Asked(self, "O(1)", {"resamples": 2})
         told = asked.by_work() or asked.without_reserve()
         return told is not None and _names_one(told)
@@ -156,7 +156,7 @@ class Measured:
             return told
         power, stray = self.in_parts.logs
         flat = QUITE_FLAT if told.classes == LOGLINEAR else FLAT
-        if power < flat or self.in_parts.stop:
+        if power < flat or self.in_parts.levels_off:
             classes = LINEAR
         elif told.classes == LINEAR and power > RISING and stray < EVENLY:
             classes = LINEAR + LOGLINEAR
@@ -167,7 +167,7 @@ class Measured:
         upper, claim = told.bound == "upper", parse(told.expected)
         kept = {claim == it or (upper and claim > it) for it in map(parse, classes)}
         outcome: Outcome = "undetermined" if len(kept) > 1 else KEEPS[kept.pop()]
-        grows = "in proportion" if classes == LINEAR else "less, by a logarithm,"
+        grows = "in proportion" if classes == LINEAR else "less"
         reason = f"Small inputs, as much together, take {grows}: {' or '.join(classes)}."
         return replace(told, classes=classes, best=classes[0], outcome=outcome, reason=reason)
 
@@ -344,7 +344,7 @@ def _open_upward(it: Verdict) -> Verdict:
     it = replace(it, classes=[])
     if parse(it.expected) < parse(it.best):
         return it
-    reason = f"The largest sizes cost more and more beside {it.best}, whatever it is."
+    reason = f"The largest sizes in the caches grow still faster than {it.best}, which fits best."
     return replace(it, outcome="undetermined", reason=reason)
 
 
