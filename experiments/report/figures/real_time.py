@@ -168,7 +168,7 @@ def _in_a_frame(seconds: Any) -> str:
     ends = np.append(0.0, np.cumsum(seconds))
     fits = np.searchsorted(ends, ends + FRAME, side="right") - 1 - np.arange(len(ends))
     whole = fits[ends + FRAME <= ends[-1]]  # frames that end before the edits do
-    return count(whole.min()) if len(whole) else f"all {count(len(seconds))}"
+    return count(whole.min()) if len(whole) else f"all\N{NO-BREAK SPACE}{count(len(seconds))}"
 
 
 def _cases(run: Run, subject: str) -> pd.DataFrame:

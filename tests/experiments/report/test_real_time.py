@@ -30,8 +30,8 @@ def test_so_many_edits_fit_into_every_frame_and_no_more_into_one(seed):
     assert real_time._in_a_frame(seconds) == str(min(fits))
 
 
-def test_edits_that_end_before_a_frame_does_all_fit():
-    assert real_time._in_a_frame(np.full(100, 1e-6)) == "all 100"
+def test_edits_that_end_before_a_frame_does_fit():
+    assert real_time._in_a_frame(np.full(100, 1e-6)) == "all\N{NO-BREAK SPACE}100"
 
 
 def test_every_size_is_told_and_with_room_apart_from_without(monkeypatch):
@@ -44,14 +44,15 @@ def test_every_size_is_told_and_with_room_apart_from_without(monkeypatch):
     table = pd.DataFrame(cases, columns=["structure", "vertices", "order", "samples"])
     table["detail"] = [{"uploads": [12, 24, 60]}] * len(cases)
     monkeypatch.setattr(real_time, "_cases", lambda run, subject: table)
+    fit = "all\N{NO-BREAK SPACE}3"
     assert real_time.frames(None).rows == [
         ["", "1,000 vertices", "10,000 vertices", "uploaded, bytes", "at most"],
-        ["Half-Edge", "2.2 µs · 8.9 ms · 9.1 ms · all 3", "4.4 µs · 5.5 µs · 5.5 µs · all 3",
+        ["Half-Edge", f"2.2 µs · 8.9 ms · 9.1 ms · {fit}", f"4.4 µs · 5.5 µs · 5.5 µs · {fit}",
          "24", "60"],
         ["Indexed", "20 ms · 20 ms · 20 ms · 0", "–", "24", "60"],
     ]  # fmt: skip
     assert [it[:2] for it in real_time.frames(None, RESERVED).rows[1:]] == [
-        ["Half-Edge", "7.0 µs · 7.0 µs · 7.0 µs · all 1"]
+        ["Half-Edge", "7.0 µs · 7.0 µs · 7.0 µs · all\N{NO-BREAK SPACE}1"]
     ]
 
 
