@@ -1,24 +1,11 @@
 """Functions of known cost that no library has: written as textbooks do, to try judges on."""
 
-import bisect
+import cmath
 import collections
 import heapq
 import math
-import operator
 import random
 from typing import Any
-
-
-def append(n: int) -> list[int]:
-    made: list[int] = []
-    for i in range(n):
-        made.append(i)
-    return made
-
-
-def drain(heap: list[float]) -> None:
-    while heap:
-        heapq.heappop(heap)
 
 
 def push_and_pop(heap: list[float]) -> None:
@@ -28,104 +15,6 @@ def push_and_pop(heap: list[float]) -> None:
 
 def compared(one: float, other: float) -> int:
     return (one > other) - (one < other)
-
-
-def gallop(held: list[int], key: int) -> None:
-    bound = 1
-    while bound < len(held) and held[bound] < key:
-        bound *= 2
-    bisect.bisect_left(held, key, bound // 2, min(bound + 1, len(held)))
-
-
-def digit_sum(n: int) -> int:
-    total = 0
-    while n:
-        total += n % 2
-        n //= 2
-    return total
-
-
-def steps_to_root(n: int) -> int:
-    step, square = 0, 0
-    while square < n:
-        step += 1
-        square += 2 * step - 1
-    return step
-
-
-def squared(it: list[float]) -> float:
-    total = 0.0
-    for value in it:
-        total += value * value
-    return total
-
-
-def balanced(text: str) -> bool:
-    open_: list[str] = []
-    for letter in text:
-        if letter == "(":
-            open_.append(letter)
-        elif not open_ or open_.pop() != "(":
-            return False
-    return not open_
-
-
-def nearest_smaller(it: list[float]) -> list[float]:
-    waiting: list[float] = []
-    made: list[float] = []
-    for value in it:
-        while waiting and waiting[-1] >= value:
-            waiting.pop()
-        made.append(waiting[-1] if waiting else -1.0)
-        waiting.append(value)
-    return made
-
-
-def pairs_of_sum(ascending: list[float]) -> int:
-    low, high, count = 0, len(ascending) - 1, 0
-    while low < high:
-        if ascending[low] + ascending[high] < 1:
-            low += 1
-        else:
-            high -= 1
-            count += 1
-    return count
-
-
-def running_median(it: list[float]) -> list[float]:
-    low: list[float] = []
-    high: list[float] = []
-    made: list[float] = []
-    for value in it:
-        heapq.heappush(high, -heapq.heappushpop(low, -value))
-        if len(high) > len(low):
-            heapq.heappush(low, -heapq.heappop(high))
-        made.append(-low[0])
-    return made
-
-
-def closest_pair(points: list[tuple[float, float]]) -> float:
-    def within(some: list[tuple[float, float]]) -> tuple[float, list[tuple[float, float]]]:
-        if len(some) < 2:
-            return math.inf, some
-        half = len(some) // 2
-        middle = some[half][0]
-        (one, left), (other, right) = within(some[:half]), within(some[half:])
-        least = min(one, other)
-        upward = list(heapq.merge(left, right, key=operator.itemgetter(1)))
-        strip: list[tuple[float, float]] = []
-        for x, y in upward:
-            if abs(x - middle) < least:
-                for there in strip[-7:]:
-                    least = min(least, math.dist(there, (x, y)))
-                strip.append((x, y))
-        return least, upward
-
-    return within(sorted(points))[0]
-
-
-def triangle(n: int) -> list[list[int]]:
-    return [[row * (row - 1) // 2 + i for i in range(1, row + 1)] for row in range(1, n + 1)]
 
 
 def balanced_tree(low: int, high: int) -> Any:
@@ -356,3 +245,179 @@ def triangles(rows: list[list[float]]) -> int:
 
 def full_tree(depth: int) -> int:
     return 1 + full_tree(depth - 1) + full_tree(depth - 1) if depth else 1
+
+
+def with_order(it: Any) -> tuple[Any, Any]:
+    return it, it.argsort()
+
+
+def root_of(parents: list[int], item: int) -> int:
+    while parents[item] != item:
+        item = parents[item]
+    return item
+
+
+def fibonacci(n: int) -> int:
+    one, two = 0, 1
+    for bit in f"{n:b}":
+        one, two = one * (2 * two - one) % 1_000_003, (one * one + two * two) % 1_000_003
+        if bit == "1":
+            one, two = two, (one + two) % 1_000_003
+    return one
+
+
+def whole_root(n: int) -> int:
+    low, high = 0, n + 1
+    while high - low > 1:
+        middle = (low + high) // 2
+        low, high = (middle, high) if middle * middle <= n else (low, middle)
+    return low
+
+
+def discrete_logarithm(n: int) -> int:
+    """Of 7 to the power of n - 1, modulo a prime whose every remainder is a power of 7."""
+    prime, step = (1 << 31) - 1, math.isqrt(n) + 1
+    sought, small, power = pow(7, n - 1, prime), dict[int, int](), 1
+    for k in range(step):
+        small[power] = k
+        power = power * 7 % prime
+    giant = pow(power, -1, prime)
+    for k in range(step):
+        if sought in small:
+            return k * step + small[sought]
+        sought = sought * giant % prime
+    return -1
+
+
+def grouped(it: list[int]) -> dict[int, list[int]]:
+    groups = collections.defaultdict(list)
+    for value in it:
+        groups[value % 10].append(value)
+    return groups
+
+
+def primes(n: int) -> list[int]:
+    least, found = [0] * (n + 1), list[int]()
+    for i in range(2, n + 1):
+        if not least[i]:
+            least[i] = i
+            found.append(i)
+        for p in found:
+            if p > least[i] or p * i > n:
+                break
+            least[p * i] = p
+    return found
+
+
+def longest_palindrome(text: str) -> int:
+    padded = f"^{'|'.join(f' {text} ')}$"
+    reach, center, right = [0] * len(padded), 0, 0
+    for i in range(1, len(padded) - 1):
+        if i < right:
+            reach[i] = min(right - i, reach[2 * center - i])
+        while padded[i + reach[i] + 1] == padded[i - reach[i] - 1]:
+            reach[i] += 1
+        if i + reach[i] > right:
+            center, right = i, i + reach[i]
+    return max(reach)
+
+
+def postfix(tokens: list[Any]) -> int:
+    stack: list[int] = []
+    for token in tokens:
+        stack.append(stack.pop() + stack.pop() if token == "+" else token)
+    return stack[0]
+
+
+def radix_sort(it: list[int]) -> list[int]:
+    for shift in (0, 8):
+        buckets: list[list[int]] = [[] for _ in range(256)]
+        for value in it:
+            buckets[value >> shift & 255].append(value)
+        it = [value for bucket in buckets for value in bucket]
+    return it
+
+
+def smaller_behind(order: list[int]) -> int:
+    tree, total = [0] * (len(order) + 1), 0
+    for value in reversed(order):
+        at = value
+        while at:
+            total += tree[at]
+            at &= at - 1
+        at = value + 1
+        while at < len(tree):
+            tree[at] += 1
+            at += at & -at
+    return total
+
+
+def most_at_a_time(intervals: list[tuple[float, float]]) -> int:
+    ends = [(min(it), 1) for it in intervals] + [(max(it), -1) for it in intervals]
+    most = now = 0
+    for _, change in sorted(ends):
+        now += change
+        most = max(most, now)
+    return most
+
+
+def fourier(values: list[complex]) -> list[complex]:
+    if len(values) < 2:
+        return values
+    even, odd = fourier(values[::2]), fourier(values[1::2])
+    turn = -2j * math.pi / len(values)
+    turned = [cmath.exp(turn * k) * value for k, value in enumerate(odd)]
+    sums = [a + b for a, b in zip(even, turned, strict=True)]
+    return sums + [a - b for a, b in zip(even, turned, strict=True)]
+
+
+def palindromes(text: str) -> int:
+    found, n = 0, len(text)
+    for center in range(n):
+        for low, high in ((center, center), (center, center + 1)):
+            while low >= 0 and high < n and text[low] == text[high]:
+                found, low, high = found + 1, low - 1, high + 1
+    return found
+
+
+def best_cuts(prices: list[float]) -> float:
+    best = [0.0]
+    for n in range(1, len(prices) + 1):
+        best.append(max(prices[k - 1] + best[n - k] for k in range(1, n + 1)))
+    return best[-1]
+
+
+def least_tree(rows: list[list[float]]) -> float:
+    n, total, at = len(rows), 0.0, 0
+    distance, outside = [math.inf] * n, set(range(1, n))
+    while outside:
+        for other in outside:
+            distance[other] = min(distance[other], rows[at][other])
+        at = min(outside, key=distance.__getitem__)
+        outside.remove(at)
+        total += distance[at]
+    return total
+
+
+def all_distances(rows: list[list[float]]) -> None:
+    for k, through in enumerate(rows):
+        for row in rows:
+            first = row[k]
+            for j, second in enumerate(through):
+                row[j] = min(row[j], first + second)
+
+
+def tried(weights: list[float]) -> int:
+    def count(k: int, total: float) -> int:
+        if k == len(weights):
+            return total < 1
+        return count(k + 1, total) + count(k + 1, total + weights[k])
+
+    return count(0, 0.0)
+
+
+def bit_counts(n: int) -> list[int]:
+    counts = [0] * (1 << n)
+    for mask in range(1, 1 << n):
+        counts[mask] = counts[mask >> 1] + (mask & 1)
+    return counts

@@ -24,13 +24,13 @@ from typer import Option
 from experiments.runs import describe
 from experiments.validation.accuracy import UNDETERMINED, Judge, installed_judges
 from experiments.validation.accuracy import load_accuracy as load_answers
-from experiments.validation.functions import FUNCTIONS, SEEN
+from experiments.validation.functions import FUNCTIONS
 from experiments.validation.held_out import HELD_OUT
 from hem.complexity import BUDGET, InParts, Measured, canonical, measure, parse
 
 RESULT = Path("results/reference/real_functions.json")
 COLUMNS = ["function", "growth", "source", "half", "neighbor", "judge", "answer"]
-HALVES = {"tuned on": (*FUNCTIONS, *SEEN), "held out": HELD_OUT}
+HALVES = {"tuned on": FUNCTIONS, "held out": HELD_OUT}
 HELD = "held out"
 SAME_POWER = 0.1  # of exponents: a power law that is told by so much is right
 NEIGHBORS = "shared", "busy"  # the machine as it is left, and with one program more

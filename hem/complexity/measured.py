@@ -36,11 +36,14 @@ BEHIND = 0.25  # of a slope: by so much a class may fall behind what works more 
 READS = 8  # so many times as long as reading its working set takes what does more than that
 WORD = 8  # bytes that a call reads at once: it may wait for each, but no longer
 STEEP = 1.5  # slope from which on a call works more than it waits
+LEVEL = 1.3  # factor by which an access is slower at most where memory gets no slower any more …
+ASTRAY = 0.5  # … and by so much a steep class may be behind there
+OVERLAP = 2  # times quicker what hits a cache is than a step there, as a processor overlaps hits
 LOWER_TERMS = 9  # tried where a call works more than it waits
 QUICKER = 0.6  # share of the samples of a size that is looked at, the quicker ones: delays only add
 FLAT, QUITE_FLAT = 0.25, 0.1  # powers of log n by which linear costs rise beside small inputs …
 RISING, EVENLY = 0.6, 0.075  # … and others do, straying so little …
-LOG, CLOSELY = 0.45, 0.025  # … or so little that it is no cache's doing
+LOG, CLOSELY = 0.33, 0.025  # … or so little that it is no cache's doing
 HALF = 4  # sizes, at least, that may tell alone that a rise has ended
 CONSTANT, LINEAR, LOGLINEAR = ["O(1)"], ["O(n)"], ["O(n log n)"]
 KEEPS: dict[bool, Outcome] = {True: "consistent", False: "violated"}
@@ -156,11 +159,13 @@ class Measured:
             return told
         power, stray = self.in_parts.logs
         flat = QUITE_FLAT if told.classes == LOGLINEAR else FLAT
+        as_log = power > LOG and stray < CLOSELY
+        evenly = as_log or (power > RISING and stray < EVENLY)
         if power < flat or self.in_parts.levels_off:
             classes = LINEAR
-        elif told.classes == LINEAR and power > RISING and stray < EVENLY:
+        elif told.classes == LINEAR and evenly:
             classes = LINEAR + LOGLINEAR
-        elif told.classes == LINEAR + LOGLINEAR and power > LOG and stray < CLOSELY:
+        elif told.classes == LINEAR + LOGLINEAR and as_log:
             classes = LOGLINEAR
         else:
             return told
@@ -192,7 +197,17 @@ class _Asked:
     @property
     def _fits(self) -> Sizes:
         """(k,) whether what a call works on is in the caches."""
-        return self.of.memory[0] < CACHED * self.of.memory[0].min()
+        return self._slower < CACHED
+
+    @property
+    def _slower(self) -> Array:
+        """(k,) times as long as at the smallest size that an access takes."""
+        return self.of.memory[0] / self.of.memory[0].min()
+
+    def _works(self, some: Sizes | NDArray[np.intp]) -> bool:
+        """Whether a call of some of the sizes does much more than to read what it works on."""
+        of = self.of
+        return bool(np.median((of.cost / of.working_sets / of.memory[1])[some]) > READS)
 
     @property
     def _waiting(self) -> Array:
@@ -239,21 +254,34 @@ class _Asked:
         return None
 
     def bends_up(self, told: Verdict) -> bool:
-        """Whether the largest sizes in the caches cost more and more beside what a class tells.
+        """Whether the largest sizes, in the caches or of all, cost more and more beside a class."""
+        if not told.classes or _is_a_law(told):
+            return False
+        least = told.predicted(told.best, self.of.sizes)
+        return self._bends_up_in_caches(least) or self._bends_up_beyond(least)
 
-        What reads along may, as it leaves the first cache: by no more than its bytes take longer.
-        """
-        of, access = self.of, self.of.memory[0] / self.of.memory[0].min()
-        byte, least = of.cost / of.working_sets, told.predicted(told.best, of.sizes)
-        works = np.median((byte / of.memory[1])[self._fits]) > READS
+    def _bends_up_in_caches(self, least: Array) -> bool:
+        """What reads along may, as it leaves the first cache: as much as its bytes take longer."""
+        of, access = self.of, self._slower
+        byte, works = of.cost / of.working_sets, self._works(self._fits)
         fits = np.flatnonzero(access < (NEAR_CACHED if works else CACHED))
         last = fits[-max(MIN_SIZES, len(fits) // 4) :]
-        if len(last) < MIN_SIZES or not told.classes or _is_a_law(told):
+        if len(last) < MIN_SIZES:
             return False
         sizes, excess = of.sizes[last], (of.cost / least)[last]
         beyond = float(np.median(np.diff(np.log(excess)) / np.diff(np.log(sizes))))
         longer = max(float(slope(sizes, byte[last])), 0.0) + float(slope(sizes, access[last]))
         return beyond - (0 if works else longer) > BEHIND
+
+    def _bends_up_beyond(self, least: Array) -> bool:
+        """Once memory gets no slower, what works on much that it reads costs as its class tells."""
+        of, access = self.of, self._slower
+        last = np.flatnonzero(access > access.max() / LEVEL)[-(len(access) // 3) :]
+        if len(last) < MIN_SIZES or self._fits.all() or not self._works(last):
+            return False
+        sizes, steep = of.sizes[last], slope(of.sizes[last], least[last]) > STEEP
+        beyond = float(slope(sizes, (of.cost / least / access)[last]))
+        return bool(steep) and beyond > ASTRAY
 
     def with_reserve(self) -> Verdict:
         """What they tell where caches and allocators may have bent the costs a little, or all do.
@@ -306,7 +334,8 @@ class _Asked:
         of, memory = self.of, self.of.memory
         slowdown = (memory / memory.min(axis=1, keepdims=True)).max(axis=0)
         least = told.predicted(told.best, of.sizes)
-        most = np.minimum((UNSEEN + 2 * slowdown) * least, least / LESS + self._waiting)
+        overlap = OVERLAP if told.classes == CONSTANT else 1
+        most = np.minimum((UNSEEN + 2 * overlap * slowdown) * least, least / LESS + self._waiting)
         kept = (of.cost > LESS * least) & (of.cost < most)
         small = np.arange(len(kept)) < len(kept) // 2
         return bool(np.all(kept | small | excused))
@@ -344,7 +373,7 @@ def _open_upward(it: Verdict) -> Verdict:
     it = replace(it, classes=[])
     if parse(it.expected) < parse(it.best):
         return it
-    reason = f"The largest sizes in the caches grow still faster than {it.best}, which fits best."
+    reason = f"The largest sizes grow still faster than {it.best}, which fits best."
     return replace(it, outcome="undetermined", reason=reason)
 
 
