@@ -244,6 +244,35 @@ def test_costs_that_still_bend_upward_are_of_no_slower_class(linear: float, larg
     assert found.judge("O(√n)", bound="upper").outcome == "violated"
 
 
+def test_no_memory_excuses_what_grows_on_where_it_gets_no_slower() -> None:
+    """A factorization, as measured: O(n²) in the caches, and so steep beyond that O(n³) may be."""
+    sizes, seconds = np.geomspace(4, 1_544, 38).round(), 1e-6 * np.array([
+        6.02, 6.25, 6.76, 6.92, 7.17, 7.78, 8.65, 9.19, 10.1, 11, 12.4, 14.5, 17.2, 19.7, 23.8,
+        27.9, 36.8, 46.4, 63.8, 71, 97.9, 124, 162, 210, 300, 432, 580, 804, 1160, 1780, 2660, 4040,
+        6060, 9660, 14700, 23800, 34600, 53700,
+    ])  # fmt: skip
+    found = replace(costs(seconds, sizes), working_sets=5_000 + 32 * sizes**2)
+    found.memory[1:] = 3.6e-11
+    found.memory[0, 24:] = np.minimum(6e-9 * (sizes[24:] / sizes[24]) ** 2, 7.5e-8)
+    assert found.judge().answer == ""
+    assert found.judge("O(n³)").outcome == "undetermined"
+    assert found.judge("O(n)").outcome == "violated"
+    slowed = replace(costs(6e-6 + 5e-9 * sizes**2 * found.memory[0] / 5e-9, sizes),
+                     working_sets=found.working_sets, memory=found.memory)  # fmt: skip
+    assert slowed.judge().answer == "O(n²)"
+
+
+def test_what_hits_a_cache_quicker_than_a_step_waits_the_longer_beyond() -> None:
+    """An array read at random, as measured: hits overlap, misses take what a step does."""
+    sizes = np.geomspace(4, 12_500_000, 39).round()
+    found = replace(costs(np.full(39, 1.3e-6), sizes), working_sets=13_000 + 4 * sizes)
+    found.memory[0, -8:] = 7e-9, 8e-9, 1.2e-8, 3e-8, 5e-8, 6.5e-8, 7e-8, 7.2e-8
+    found.memory[1:] = 3.6e-11
+    for k, slower in zip(range(-5, 0), (1.1, 1.3, 1.6, 14, 44), strict=True):
+        found.samples[k][:] *= slower
+    assert found.judge().answer == "O(1)"
+
+
 def answer(cost: Callable[[Array], Array], sizes: Array) -> str:
     """What they say by themselves."""
     return costs(cost(sizes), sizes).judge().answer
@@ -383,6 +412,8 @@ def beside_parts(found: Measured, power: float, wobble: float = 0.0) -> Measured
         (-0.3, 0.0, "O(n)", "O(n)"),
         (0.2, 0.0, "O(n)", "O(n log n)"),
         (0.2, 0.05, "O(n)", "O(n log n)"),
+        (0.4, 0.0, "O(n) or O(n log n)", "O(n log n)"),
+        (0.4, 0.2, "O(n)", "O(n log n)"),
         (1.0, 0.0, "O(n) or O(n log n)", "O(n log n)"),
         (1.0, 0.2, "O(n)", "O(n log n)"),
     ],
@@ -413,6 +444,7 @@ def test_costs_are_held_to_those_of_small_inputs(
 @pytest.mark.parametrize(
     ("power", "wobble", "told"),
     [
+        (0.4, 0.0, "O(n log n)"),
         (1.0, 0.0, "O(n log n)"),
         (1.0, 0.2, "O(n) or O(n log n)"),
         (0.3, 0.0, "O(n) or O(n log n)"),
