@@ -37,8 +37,8 @@ PRESET = "quick"
 RECORDED, TIMED = "torus:400", "torus:5000"
 """The meshes that programs are recorded on, and timed on to learn their own part."""
 ON = ("torus:20000", "sphere:5000", "terrain:5000", "cow", "bunny")  # the meshes that are predicted
-ROUNDS = 15
-LONGEST = 1.0  # seconds that a program may take to be run, and to be run again
+ROUNDS, FEWEST = 15, 6
+LONGEST = 1.0  # seconds that a program may take to be run; after so long it is run `FEWEST` times
 
 MIXES, STEPS, BATCH, SPLITS = 6, 20, (500, 3_000), 100
 """How many random mixes there are, and their batches: how many, of how many, and of splits."""
@@ -134,9 +134,9 @@ def timed(prices: Prices, program: Program, names: Iterable[str], mesh: Any) -> 
         held[name] = structures.build(name, mesh)
         held[name].scratch(0)  # counts the edges, once per mesh
     least, spent = dict.fromkeys(held, np.inf), dict.fromkeys(held, 0.0)
-    for _ in range(ROUNDS):
+    for k in range(ROUNDS):
         for name, s in held.items():
-            if spent[name] < LONGEST:
+            if k < FEWEST or spent[name] < LONGEST:
                 copy = s.copy()
                 if s.rebuilds:
                     copy.vertex_faces(0)

@@ -3,18 +3,13 @@
 import cmath
 import collections
 import heapq
+import itertools
 import math
+import operator
 import random
 from typing import Any
 
-
-def push_and_pop(heap: list[float]) -> None:
-    heapq.heappush(heap, -1.0)
-    heapq.heappop(heap)
-
-
-def compared(one: float, other: float) -> int:
-    return (one > other) - (one < other)
+import numpy as np
 
 
 def balanced_tree(low: int, high: int) -> Any:
@@ -23,224 +18,6 @@ def balanced_tree(low: int, high: int) -> Any:
     if low >= high:
         return None
     return balanced_tree(low, middle), middle, balanced_tree(middle + 1, high)
-
-
-def find_in_tree(tree: Any, key: int) -> None:
-    while tree and tree[1] != key:
-        tree = tree[2] if key > tree[1] else tree[0]
-
-
-def place_of_rank(tree: list[int], rank: int) -> int:
-    place, step = 0, 1 << (len(tree) - 1).bit_length()
-    while step:
-        if place + step < len(tree) and tree[place + step] <= rank:
-            place += step
-            rank -= tree[place]
-        step //= 2
-    return place
-
-
-def doubled(n: int) -> int:
-    total, addend = 0, 3
-    while n:
-        if n & 1:
-            total += addend
-        addend += addend
-        n >>= 1
-    return total
-
-
-def sum_of_quotients(n: int) -> int:
-    total, first = 0, 1
-    while first <= n:
-        quotient = n // first
-        last = n // quotient
-        total += quotient * (last - first + 1)
-        first = last + 1
-    return total
-
-
-def in_blocks(n: int) -> tuple[list[int], list[int]]:
-    values, size = list(range(n)), max(1, math.isqrt(n))
-    return values, [sum(values[i : i + size]) for i in range(0, n, size)]
-
-
-def sum_by_blocks(held: tuple[list[int], list[int]]) -> int:
-    """From the second of all to the last but one."""
-    values, blocks = held
-    size, place, total = max(1, math.isqrt(len(values))), 1, 0
-    while place < len(values) - 1:
-        if place % size == 0 and place + size < len(values):
-            total += blocks[place // size]
-            place += size
-        else:
-            total += values[place]
-            place += 1
-    return total
-
-
-def horner(coefficients: list[float]) -> float:
-    value = 0.0
-    for coefficient in coefficients:
-        value = value * 0.5 + coefficient
-    return value
-
-
-def run_lengths(it: list[int]) -> list[tuple[int, int]]:
-    made: list[tuple[int, int]] = []
-    begin = 0
-    for i in range(1, len(it) + 1):
-        if i == len(it) or it[i] != it[begin]:
-            made.append((it[begin], i - begin))
-            begin = i
-    return made
-
-
-def window_maxima(it: list[float]) -> list[float]:
-    waiting: collections.deque[int] = collections.deque()
-    made: list[float] = []
-    for i, value in enumerate(it):
-        while waiting and it[waiting[-1]] <= value:
-            waiting.pop()
-        waiting.append(i)
-        if waiting[0] <= i - 50:
-            waiting.popleft()
-        made.append(it[waiting[0]])
-    return made
-
-
-def z_function(text: str) -> list[int]:
-    made, left, right = [0] * len(text), 0, 0
-    for i in range(1, len(text)):
-        length = min(right - i, made[i - left]) if i < right else 0
-        while i + length < len(text) and text[length] == text[i + length]:
-            length += 1
-        if i + length > right:
-            left, right = i, i + length
-        made[i] = length
-    return made
-
-
-def random_dag(n: int) -> list[list[int]]:
-    return [random.choices(range(i + 1, n), k=2) if i + 1 < n else [] for i in range(n)]
-
-
-def topological(after: list[list[int]]) -> list[int]:
-    before = [0] * len(after)
-    for some in after:
-        for node in some:
-            before[node] += 1
-    order = [node for node, count in enumerate(before) if not count]
-    for node in order:
-        for other in after[node]:
-            before[other] -= 1
-            if not before[other]:
-                order.append(other)
-    return order
-
-
-def three_ways(it: list[float]) -> None:
-    low, here, high = 0, 0, len(it) - 1
-    while here <= high:
-        value = it[here]
-        if value < 1 / 3:
-            it[here], it[low] = it[low], value
-            low, here = low + 1, here + 1
-        elif value > 2 / 3:
-            it[here], it[high] = it[high], value
-            high -= 1
-        else:
-            here += 1
-
-
-def merge_from_below(it: list[float]) -> list[float]:
-    width = 1
-    while width < len(it):
-        made: list[float] = []
-        for i in range(0, len(it), 2 * width):
-            a, b, stop = i, min(i + width, len(it)), min(i + 2 * width, len(it))
-            middle = b
-            while a < middle and b < stop:
-                if it[a] <= it[b]:
-                    made.append(it[a])
-                    a += 1
-                else:
-                    made.append(it[b])
-                    b += 1
-            made += it[a:middle] or it[b:stop]
-        it, width = made, 2 * width
-    return it
-
-
-def covered(intervals: list[tuple[float, float]]) -> float:
-    total, end = 0.0, 0.0
-    for begin, length in sorted(intervals):
-        total += max(0.0, begin + length - max(begin, end))
-        end = max(end, begin + length)
-    return total
-
-
-def grown_tree(keys: list[float]) -> list[Any]:
-    """A node is its lower branch, its key and its higher branch."""
-    root: list[Any] = [None, keys[0], None]
-    for key in keys[1:]:
-        node = root
-        while True:
-            side = 2 if key > node[1] else 0
-            if node[side] is None:
-                node[side] = [None, key, None]
-                break
-            node = node[side]
-    return root
-
-
-def walks(n: int) -> int:
-    place = 0
-    for _ in range(n):
-        for step in range(math.isqrt(n)):
-            place += 1 if (place ^ step) & 1 else -1
-    return place
-
-
-def warped(rows: tuple[list[float], list[float]]) -> float:
-    a, b = rows
-    before = [0.0] + [math.inf] * len(b)
-    for x in a:
-        row = [math.inf]
-        for j, y in enumerate(b):
-            row.append(abs(x - y) + min(before[j], before[j + 1], row[j]))
-        before = row
-    return before[-1]
-
-
-def change(n: int) -> int:
-    ways = [1] + [0] * n
-    for coin in range(1, n + 1):
-        for amount in range(coin, n + 1):
-            ways[amount] = (ways[amount] + ways[amount - coin]) % 1_000_003
-    return ways[n]
-
-
-def remove_all(it: list[int]) -> None:
-    while it:
-        it.remove(it[-1])
-
-
-def eliminate(rows: list[list[float]]) -> None:
-    for i, pivot in enumerate(rows):
-        pivot[i] += len(rows)  # so that none vanishes
-        for row in rows[i + 1 :]:
-            factor = row[i] / pivot[i]
-            row[i:] = [x - factor * y for x, y in zip(row[i:], pivot[i:], strict=True)]
-
-
-def triangles(rows: list[list[float]]) -> int:
-    n, count = len(rows), 0
-    for i in range(n):
-        for j in range(i):
-            for k in range(j):
-                count += rows[i][j] < 0.5 and rows[j][k] < 0.5 and rows[i][k] < 0.5
-    return count
 
 
 def full_tree(depth: int) -> int:
@@ -421,3 +198,175 @@ def bit_counts(n: int) -> list[int]:
     for mask in range(1, 1 << n):
         counts[mask] = counts[mask >> 1] + (mask & 1)
     return counts
+
+
+def seconds(n: int) -> tuple[Any, Any]:
+    all_of = np.arange(n).astype("datetime64[s]")
+    return all_of, np.random.default_rng().choice(all_of, 1_000)
+
+
+def sums_in_a_tree(n: int) -> list[int]:
+    tree = [0] * n + [1] * n
+    for k in range(n - 1, 0, -1):
+        tree[k] = tree[2 * k] + tree[2 * k + 1]
+    return tree
+
+
+def sum_from(tree: list[int], place: int) -> int:
+    low, high, total = place + len(tree) // 2, len(tree), 0
+    while low < high:
+        if low % 2:
+            total, low = total + tree[low], low + 1
+        if high % 2:
+            high -= 1
+            total += tree[high]
+        low, high = low // 2, high // 2
+    return total
+
+
+def turned_at(it: list[int]) -> int:
+    low, high = 0, len(it) - 1
+    while low < high:
+        middle = (low + high) // 2
+        low, high = (middle + 1, high) if it[middle] > it[-1] else (low, middle)
+    return low
+
+
+def next_permutation(it: list[int]) -> None:
+    k = len(it) - 1
+    while k > 0 and it[k - 1] >= it[k]:
+        k -= 1
+    it[k:] = it[k:][::-1]
+
+
+def linked(n: int) -> list[Any]:
+    first: list[Any] = []
+    for value in range(n):
+        first = [value, first]
+    return first
+
+
+def turned(first: list[Any]) -> list[Any]:
+    before: list[Any] = []
+    while first:
+        first[1], before, first = before, first, first[1]
+    return before
+
+
+def two_to_a_sum(it: list[float]) -> bool:
+    met = set[float]()
+    for value in it:
+        if 3.0 - value in met:
+            return True
+        met.add(value)
+    return False
+
+
+def bits_of_all(n: int) -> list[int]:
+    counts = [0]
+    for k in range(1, n + 1):
+        counts.append(counts[k // 2] + k % 2)
+    return counts
+
+
+def merged(lists: tuple[list[float], list[float]]) -> list[float]:
+    (one, other), i, j, found = lists, 0, 0, []
+    while i < len(one) and j < len(other):
+        if one[i] <= other[j]:
+            found.append(one[i])
+            i += 1
+        else:
+            found.append(other[j])
+            j += 1
+    return found + one[i:] + other[j:]
+
+
+def longest_rise(it: list[float]) -> int:
+    longest = now = 1
+    for before, value in itertools.pairwise(it):
+        now = now + 1 if value > before else 1
+        longest = max(longest, now)
+    return longest
+
+
+def pushed(it: list[int]) -> list[int]:
+    heap: list[int] = []
+    for value in it:
+        heapq.heappush(heap, value)
+    return heap
+
+
+def most_that_fit(pairs: list[tuple[float, float]]) -> int:
+    count, end = 0, -math.inf
+    for last, first in sorted((max(it), min(it)) for it in pairs):
+        if first >= end:
+            count, end = count + 1, last
+    return count
+
+
+def halves(it: list[float]) -> float:
+    if len(it) < 2:
+        return sum(it)
+    middle = len(it) // 2
+    return sum(it) + halves(it[:middle]) + halves(it[middle:])
+
+
+def not_met(it: list[int]) -> list[int]:
+    met: list[int] = []
+    for value in it:
+        if value not in met:
+            met.append(value)
+    return met
+
+
+def longest_part(texts: tuple[str, str]) -> int:
+    one, other = texts
+    longest, row = 0, [0] * (len(other) + 1)
+    for a in one:
+        row = [0, *(before + 1 if a == b else 0 for before, b in zip(row, other, strict=False))]
+        longest = max(longest, *row)
+    return longest
+
+
+def on_circle(n: int) -> list[complex]:
+    return [cmath.exp(2j * math.pi * random.random()) for _ in range(n)]
+
+
+def wrapped(points: list[complex]) -> int:
+    first = at = min(points, key=lambda p: p.real)
+    for count in range(1, len(points) + 1):
+        best = points[0] if points[0] != at else points[1]
+        for point in points:
+            if ((best - at).conjugate() * (point - at)).imag < 0:
+                best = point
+        at = best
+        if at == first:
+            return count
+    return len(points)
+
+
+def cholesky(matrix: Any) -> list[list[float]]:
+    rows: list[list[float]] = matrix.tolist()
+    for i, row in enumerate(rows):
+        for j, other in enumerate(rows[: i + 1]):
+            rest = row[j] - sum(map(operator.mul, row[:j], other[:j]))
+            row[j] = math.sqrt(rest) if i == j else rest / other[j]
+    return rows
+
+
+def best_tree(weights: list[float]) -> float:
+    n = len(weights)
+    cost = [[0.0] * (n + 1) for _ in range(n + 1)]
+    for size in range(1, n + 1):
+        for first in range(n - size + 1):
+            end = first + size
+            least = min(cost[first][k] + cost[k + 1][end] for k in range(first, end))
+            cost[first][end] = least + sum(weights[first:end])
+    return cost[0][n]
+
+
+def subset_sums(weights: list[float]) -> list[float]:
+    sums = [0.0]
+    for weight in weights:
+        sums += [it + weight for it in sums]
+    return sums

@@ -29,8 +29,9 @@ MAX_SCATTER = 0.4  # relative scatter of samples beyond which nothing is conclud
 MAX_ERROR = 0.12  # relative error of a size's cost beyond which the size is skipped …
 MOST_SKIPPED = 0.25  # … if so few of the sizes are like that; otherwise nothing is concluded
 STEEPER = 2.1  # slope of the larger half of the sizes beyond which steep classes are asked about
+HALF = 0.06  # of exponents: a power law so close to a half is told as that
 STEADY = 0.2  # of exponents: by so much the halves of a power law may differ
-APART = 0.2  # of exponents: a power law closer to a class is that class, bent by memory
+APART, ABOVE = 0.2, 0.3  # of exponents: what is closer to a class is that, bent, or with log n
 
 
 @dataclass(frozen=True, repr=False)
@@ -216,15 +217,24 @@ def _classes(costs: Costs, models: Comparison) -> list[str]:
         return open_ if len(open_) <= 2 else []
     cost = models.costs
     exponent = round(max(float(slope(cost.sizes, cost.cost)), 0.0), 2)
-    if any(abs(exponent - known) < APART for known in (0, 0.5, 1, 2, 3)):
+    if any(-APART < exponent - known < ABOVE for known in (0, 0.5, 1, 2, 3)):
         return []
-    power = Order(power=exponent).name
-    law = compare_models(cost, models.memory, sorted({NAMES[0], power}, key=parse))
-    close = np.sqrt(np.mean((predict(law.design, law.fit)[0][-1] / cost.cost - 1) ** 2))
-    told = law.explained and law.names[law.best] == power and close <= MOST_WOBBLE
     halves = np.array_split(np.arange(len(cost.sizes)), 2)
     first, last = (slope(cost.sizes[it], cost.cost[it]) for it in halves)
-    return [power] if told and abs(last - first) <= STEADY else []
+    if abs(last - first) > STEADY:
+        return []
+    near = round(2 * exponent) / 2
+    exponents = [near, exponent] if abs(near - exponent) < HALF else [exponent]
+    powers = (Order(power=it).name for it in exponents)
+    return next(([it] for it in powers if _is_told(it, models)), [])
+
+
+def _is_told(power: str, models: Comparison) -> bool:
+    """Whether a power law, and no constant, explains the costs closely."""
+    cost = models.costs
+    law = compare_models(cost, models.memory, sorted({NAMES[0], power}, key=parse))
+    close = np.sqrt(np.mean((predict(law.design, law.fit)[0][-1] / cost.cost - 1) ** 2))
+    return bool(law.explained and law.names[law.best] == power and close <= MOST_WOBBLE)
 
 
 def _doubt(costs: Costs) -> str:

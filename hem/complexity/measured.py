@@ -30,18 +30,20 @@ KEPT = 256  # the largest of the integers that Python keeps: larger ones are rea
 FREE = (-KEPT / 2, -KEPT)  # … so that a call may cost as if there were so many fewer
 FAR = 1_000  # from here on what is done beside a call's work no longer bends its cost
 LESS = 0.8  # part of what a class tells that a larger size costs at least
-CLOSE = 0.015  # relative error that a class may have to be told without reserve
+CLOSE = 0.015  # relative error that a class may have to be told without reserve …
+QUITE_CLOSE = 0.04  # … and by the largest sizes alone
 REACH = 16  # of the largest size to the smallest that tells the same: there lower terms fade
 BEHIND = 0.25  # of a slope: by so much a class may fall behind what works more than it waits
 READS = 8  # so many times as long as reading its working set takes what does more than that
 WORD = 8  # bytes that a call reads at once: it may wait for each, but no longer
-STEEP = 1.5  # slope from which on a call works more than it waits
-LEVEL = 1.3  # factor by which an access is slower at most where memory gets no slower any more …
-ASTRAY = 0.5  # … and by so much a steep class may be behind there
+STEEP = 1.5  # slope from which on a call works more than it waits …
+LESS_STEEP, TIMES = 1.3, 10  # … or this, where it takes so many times as long as it could wait
+UNEVEN = 0.5  # as what costs stray so much beside small inputs tells nothing
+ASTRAY = 0.4  # of a slope: by so much a steep class may fall behind at the largest sizes
 OVERLAP = 2  # times quicker what hits a cache is than a step there, as a processor overlaps hits
 LOWER_TERMS = 9  # tried where a call works more than it waits
 QUICKER = 0.6  # share of the samples of a size that is looked at, the quicker ones: delays only add
-FLAT, QUITE_FLAT = 0.25, 0.1  # powers of log n by which linear costs rise beside small inputs …
+FLAT, QUITE_FLAT = 0.2, 0.1  # powers of log n by which linear costs rise beside small inputs …
 RISING, EVENLY = 0.6, 0.075  # … and others do, straying so little …
 LOG, CLOSELY = 0.33, 0.025  # … or so little that it is no cache's doing
 HALF = 4  # sizes, at least, that may tell alone that a rise has ended
@@ -144,8 +146,11 @@ class Measured:
         if "latency" in options:
             return self._unhidden(asked.whole(UNSEEN))
         told = asked.by_work() or asked.without_reserve() or asked.with_reserve()
-        told = _agreeing(told if _names_a_class(told) else replace(told, classes=[]))
-        told = _open_upward(told) if asked.bends_up(told) else told
+        told = _agreeing(told if _names_a_class(told, asked.steep) else replace(told, classes=[]))
+        if asked.bends_up(told):
+            told = asked.at_the_top() or _open_upward(told)
+        elif not told.classes:
+            told = asked.at_the_top() or told
         return self._unhidden(self._beside_parts(told))
 
     def _beside_parts(self, told: Verdict) -> Verdict:
@@ -155,7 +160,7 @@ class Measured:
         is linear. What does may be slower at random access, or of O(n log n): where it grows
         evenly, linear costs are not certain, and where both are open no cache grows so evenly.
         """
-        if not self.in_parts:
+        if not self.in_parts or self.in_parts.logs[1] > UNEVEN:
             return told
         power, stray = self.in_parts.logs
         flat = QUITE_FLAT if told.classes == LOGLINEAR else FLAT
@@ -204,10 +209,17 @@ class _Asked:
         """(k,) times as long as at the smallest size that an access takes."""
         return self.of.memory[0] / self.of.memory[0].min()
 
-    def _works(self, some: Sizes | NDArray[np.intp]) -> bool:
+    def _works(self, some: Sizes) -> bool:
         """Whether a call of some of the sizes does much more than to read what it works on."""
         of = self.of
         return bool(np.median((of.cost / of.working_sets / of.memory[1])[some]) > READS)
+
+    @property
+    def steep(self) -> float:
+        """The slope from which on the larger half of the sizes tells of work."""
+        larger = slice(len(self.of.sizes) // 2, None)
+        works = np.all(self.of.cost[larger] > TIMES * self._waiting[larger])
+        return LESS_STEEP if works else STEEP
 
     @property
     def _waiting(self) -> Array:
@@ -230,10 +242,10 @@ class _Asked:
         if np.count_nonzero(large) < FEWEST:
             return None
         sizes, half = of.sizes[large], np.count_nonzero(large) // 2
-        if slope(sizes[half:], of.cost[large][half:]) <= STEEP:
+        if slope(sizes[half:], of.cost[large][half:]) <= self.steep:
             return None
         plain = [self._judge(some, UNSEEN_COSTLY) for some in (costly, large)]
-        if law := next(filter(_is_a_law, plain), None):
+        if law := next(filter(_is_a_law, reversed(plain)), None):
             return law
         lower = np.geomspace(sizes[0], sizes[-1], LOWER_TERMS)
         told = self._judge(large, UNSEEN_COSTLY, lower=lower)
@@ -274,14 +286,27 @@ class _Asked:
         return beyond - (0 if works else longer) > BEHIND
 
     def _bends_up_beyond(self, least: Array) -> bool:
-        """Once memory gets no slower, what works on much that it reads costs as its class tells."""
-        of, access = self.of, self._slower
-        last = np.flatnonzero(access > access.max() / LEVEL)[-(len(access) // 3) :]
-        if len(last) < MIN_SIZES or self._fits.all() or not self._works(last):
-            return False
-        sizes, steep = of.sizes[last], slope(of.sizes[last], least[last]) > STEEP
-        beyond = float(slope(sizes, (of.cost / least / access)[last]))
-        return bool(steep) and beyond > ASTRAY
+        """What is steep, and works much on what it reads, costs at any size as its class tells."""
+        last, sizes = self._last(3), self.of.sizes
+        steep = self._works(last) and slope(sizes[last], least[last]) > STEEP
+        return bool(steep and slope(sizes[last], (self.of.cost / least)[last]) > ASTRAY)
+
+    def at_the_top(self) -> Verdict | None:
+        """What the largest sizes tell closely of a steep cost: a third of them as half of them."""
+        of, parts, told = self.of, (self._last(3), self._last(2)), []
+        if slope(of.sizes[parts[0]], of.cost[parts[0]]) <= STEEP or not self._works(parts[0]):
+            return None
+        for part in parts:
+            sizes = of.sizes[part]
+            lower = np.geomspace(sizes[0], sizes[-1], LOWER_TERMS)
+            told.append(self._judge(part, UNSEEN_CACHED, lower=lower))
+        same = _names_one(told[0]) and told[0].classes == told[1].classes
+        return told[0] if same and told[0].errors[told[0].best] < QUITE_CLOSE else None
+
+    def _last(self, share: int) -> Sizes:
+        """The largest of the sizes, a third of them or another share."""
+        n = len(self.of.sizes)
+        return np.arange(n) >= n - max(MIN_SIZES, n // share)
 
     def with_reserve(self) -> Verdict:
         """What they tell where caches and allocators may have bent the costs a little, or all do.
@@ -310,7 +335,7 @@ class _Asked:
 
     def _if_so(self, told: Verdict, excused: Sizes | bool = False) -> Verdict | None:
         """A verdict that names a class which all sizes go on as."""
-        return told if _names_a_class(told) and self._goes_on(told, excused) else None
+        return told if _names_a_class(told, self.steep) and self._goes_on(told, excused) else None
 
     def _judge(
         self, sizes: Sizes, unseen: float, cached: bool = False, lower: ArrayLike = ()
@@ -390,7 +415,7 @@ def _is_a_law(it: Verdict) -> bool:
     return any("^" in name for name in it.classes)
 
 
-def _names_a_class(it: Verdict) -> bool:
+def _names_a_class(it: Verdict, steep: float) -> bool:
     """Whether an answer is more than a power law that memory may have bent, and nobody claimed."""
     plain = not _is_a_law(it) or it.expected in it.classes
-    return bool(it.classes) and (plain or it.raw_slope > STEEP)
+    return bool(it.classes) and (plain or it.raw_slope > steep)
