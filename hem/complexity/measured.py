@@ -7,6 +7,7 @@ is asked only that they go on as those tell.
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -151,7 +152,7 @@ class Measured:
             told = asked.at_the_top() or _open_upward(told)
         elif not told.classes:
             told = asked.at_the_top() or told
-        return self._unhidden(self._beside_parts(told))
+        return self._unhidden(told if asked.is_sublinear else self._beside_parts(told))
 
     def _beside_parts(self, told: Verdict) -> Verdict:
         """What is told, held to what small inputs take that are as much together.
@@ -166,8 +167,9 @@ class Measured:
         flat = QUITE_FLAT if told.classes == LOGLINEAR else FLAT
         as_log = power > LOG and stray < CLOSELY
         evenly = as_log or (power > RISING and stray < EVENLY)
+        few = told.classes == LOGLINEAR and len(self.in_parts.sizes) < 2 * HALF
         if power < flat or self.in_parts.levels_off:
-            classes = LINEAR
+            classes = LINEAR + LOGLINEAR if few else LINEAR
         elif told.classes == LINEAR and evenly:
             classes = LINEAR + LOGLINEAR
         elif told.classes == LINEAR + LOGLINEAR and as_log:
@@ -314,15 +316,28 @@ class _Asked:
         Where no part tells anything, growth that the memory alone may cause is of no class. Where
         all sizes tell another class than a part, both may be: only of O(1) the memory makes others.
         """
-        found = (self._in_caches(*it) for it in ((KEPT, UNSEEN_CACHED, FREE), (0, UNSEEN_CACHED)))
-        parts, cost, memory = [it for it in found if it], self.of.cost, self.of.memory[0]
+        parts, cost, memory = self._told_in_caches, self.of.cost, self.of.memory[0]
         whole = self.whole(UNSEEN if parts else BENT)
         told, goes_on = _combined(parts, whole), self._goes_on(whole)
         if told is not whole:
             return _beside(told, whole) if goes_on else told
         alone = not parts and whole.classes != CONSTANT
-        bent = alone and cost[-1] / cost[0] < memory.max() / memory.min()
+        hits = OVERLAP if parse(whole.best) < parse(*LINEAR) else 1
+        bent = alone and cost[-1] / cost[0] < hits * memory.max() / memory.min()
         return whole if goes_on and not bent else replace(whole, classes=[])
+
+    @property
+    def is_sublinear(self) -> bool:
+        """Whether sizes in the caches tell that costs may grow by less than in proportion."""
+        return any(
+            parse(name) < parse(*LINEAR) for it in self._told_in_caches for name in it.classes
+        )
+
+    @cached_property
+    def _told_in_caches(self) -> list[Verdict]:
+        """What sizes in the caches tell, of those that a small integer may bend and of all."""
+        found = (self._in_caches(*it) for it in ((KEPT, UNSEEN_CACHED, FREE), (0, UNSEEN_CACHED)))
+        return [it for it in found if it]
 
     def _in_caches(self, beyond: float, unseen: float, lower: ArrayLike = ()) -> Verdict | None:
         """What those of the sizes in the caches tell that are larger than one."""
