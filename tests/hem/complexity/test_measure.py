@@ -262,6 +262,52 @@ def test_no_memory_excuses_what_grows_on_where_it_gets_no_slower() -> None:
     assert slowed.judge().answer == "O(n²)"
 
 
+def test_costs_that_flatten_beyond_a_cache_are_of_no_steeper_class() -> None:
+    """Clusters by single linkage, as measured: O(n²), as steep as O(n³) where a cache is left."""
+    sizes, seconds = np.geomspace(64, 4_462, 24).round(), 1e-6 * np.array([
+        48.5, 53.3, 64.2, 80.4, 106, 135, 177, 228, 290, 411, 558, 756, 1010, 1430, 1940, 2780,
+        4070, 5610, 8850, 16600, 32100, 55200, 88400, 136000,
+    ])  # fmt: skip
+    found = replace(costs(seconds, sizes), working_sets=9_000 + 4.5 * sizes**2)
+    found.memory[1:] = 3.6e-11
+    found.memory[0, 14:] = 1e-9 * np.array([14, 50, 50, 62, 68, 69, 73, 77, 77, 77])
+    assert "O(n³)" not in found.judge().classes
+
+
+def test_a_power_close_to_a_class_with_a_logarithm_is_that_class() -> None:
+    """Rows sorted, as measured; a power law of 2.24 fits as well."""
+    sizes, seconds = np.geomspace(4, 908, 20).round(), 1e-6 * np.array([
+        0.531, 0.749, 1.37, 2.21, 4.66, 8.32, 14.6, 29.2, 52.4, 102, 203, 372, 713, 1330, 2500,
+        4510, 8930, 16500, 30600, 56800,
+    ])  # fmt: skip
+    found = replace(costs(seconds, sizes), working_sets=500 + 41 * sizes**2)
+    found.memory[0, -5:] = 1.5e-8, 1.5e-8, 2.9e-8, 7.2e-8, 7.7e-8
+    found.memory[1:] = 3.7e-11
+    assert found.judge().answer == "O(n² log n)"
+    assert answer(lambda n: 1e-7 * n**2.5, np.geomspace(4, 900, 20).round()) == "O(n^2.5)"
+
+
+def test_a_power_of_one_and_a_half_is_told_by_what_uses_no_memory() -> None:
+    sizes = np.geomspace(4, 20_000, 39).round()
+    found = costs(1e-7 * sizes + 2e-8 * sizes**1.5, sizes)
+    assert replace(found, working_sets=np.full(39, 200.0)).judge().answer == "O(n^1.5)"
+
+
+def test_growth_that_memory_alone_may_cause_is_of_no_class() -> None:
+    """Places of an array written at random, as measured beside a program that uses the memory."""
+    sizes, seconds = np.geomspace(4, 12_500_000, 39).round(), 1e-6 * np.array([
+        1.02, 1.01, 1.03, 1.02, 1.01, 1.02, 1, 1.01, 1.01, 1.03, 1.04, 1.05, 1.03, 1.09, 1.2, 1.42,
+        1.84, 1.92, 2.18, 2.23, 1.74, 1.73, 1.78, 2.85, 3.23, 5.33, 5.81, 7.64, 7.19, 7.55, 7.98,
+        9.23, 9.5, 11.3, 14.2, 18.6, 25.3, 29.1, 32.3,
+    ])  # fmt: skip
+    found = replace(costs(seconds, sizes), working_sets=8_600 + 8 * sizes)
+    found.memory[1:] = 3.7e-11
+    found.memory[0, 24:] = 1e-9 * np.array(
+        [5.8, 5.8, 5.8, 6.3, 6.7, 6.7, 57, 83, 85, 90, 91, 91, 95, 95, 95]
+    )
+    assert found.judge().answer in ("", "O(1)")
+
+
 def test_what_hits_a_cache_quicker_than_a_step_waits_the_longer_beyond() -> None:
     """An array read at random, as measured: hits overlap, misses take what a step does."""
     sizes = np.geomspace(4, 12_500_000, 39).round()
@@ -457,6 +503,30 @@ def test_small_inputs_decide_what_costs_leave_open(power: float, wobble: float, 
     found = costs(1e-8 * sizes * np.log(sizes) ** 0.45, sizes)
     assert found.judge().answer == "O(n) or O(n log n)"
     assert beside_parts(found, power, wobble).judge().answer == told
+
+
+@pytest.mark.parametrize("log", [False, True])
+def test_small_inputs_that_stray_or_are_few_accuse_nothing(log: bool) -> None:
+    """What is told without them stays; a logarithm that few sizes do not show may still be."""
+    sizes = np.geomspace(4, 100_000, 20).round()
+    found = costs(1e-8 * sizes * (np.log(sizes) if log else 1), sizes)
+    told, stray = found.judge().answer, beside_parts(found, -1.0, wobble=3.0)
+    assert stray.in_parts and stray.in_parts.logs[1] > 0.5
+    assert stray.judge().answer == told
+    flat = beside_parts(found, 0.0).in_parts
+    assert flat
+    few = replace(found, in_parts=InParts(flat.sizes[:6], flat.ratios[:6]))
+    assert few.judge().answer == ("O(n) or O(n log n)" if log else "O(n)")
+
+
+def test_small_inputs_are_not_asked_of_what_is_no_longer_in_proportion() -> None:
+    """A search that leaves the caches rises as if it were linear there."""
+    sizes = np.geomspace(4, 1_000_000, 20).round()
+    found = costs(6e-6 * np.log2(sizes), sizes)
+    found.memory[0, -4:] = 1e-8, 7e-8, 8e-8, 8e-8
+    for k, slower in zip(range(-4, 0), (1.4, 2.5, 5, 7), strict=True):
+        found.samples[k][:] *= slower
+    assert "O(n)" not in beside_parts(found, -3.0).judge().classes
 
 
 def test_what_rises_from_some_size_on_and_no_further_is_linear() -> None:
