@@ -177,7 +177,7 @@ class Forecast:
 
 def predict(prices: Prices, workload: Workload, structure: str, faces: float) -> Forecast:
     """What a workload takes on a structure and a mesh of so many faces."""
-    middle, (own, share) = _grown(workload, faces), _as_measured(prices, workload, faces)
+    middle = _grown(workload, faces)
     found: dict[str, list[Price]] = {}
     untold = []
     for row in _with_anew(workload.rows):
@@ -186,14 +186,14 @@ def predict(prices: Prices, workload: Workload, structure: str, faces: float) ->
         except KeyError:
             untold.append(row.what)
             continue
-        times = share * row.count(faces, workload.frames)
+        times = row.count(faces, workload.frames)
         found.setdefault(row.what, []).append(Price(times * one.seconds, one.spread))
     if workload.builds:
         if built := prices.build(structure, faces):
-            found[BUILDING] = [Price(share * workload.builds * built.seconds, built.spread)]
+            found[BUILDING] = [Price(workload.builds * built.seconds, built.spread)]
         else:
             untold.append(BUILDING)
-    if own:
+    if own := _own(prices, workload, faces):
         found[OWN] = [Price(own, 0.0)]
     parts = {what: sum(it.seconds for it in costs) for what, costs in found.items()}
     total = sum(parts.values())
@@ -203,19 +203,17 @@ def predict(prices: Prices, workload: Workload, structure: str, faces: float) ->
     return Forecast(structure, total, low, high, parts, tuple(dict.fromkeys(untold)))
 
 
-def _as_measured(prices: Prices, workload: Workload, faces: float) -> tuple[float, float]:
-    """The program's own part, in proportion to how much there is to do; and what it pays of prices.
+def _own(prices: Prices, workload: Workload, faces: float) -> float:
+    """The program's own part: what the whole was measured to take beside what is predicted of it.
 
-    What the whole was measured to take more than is predicted is its own. Where it took less, as
-    what it does next is nearer than in what was priced, it does so on any structure.
+    In proportion to how much there is to do.
     """
     if (known := workload.measured) is None:
-        return 0.0, 1.0
+        return 0.0
     there = 2.0 * known.vertices
     alone = predict(prices, replace(workload, measured=None), known.structure, there)
     then, now = (sum(it.count(n, workload.frames) for it in workload.rows) for n in (there, faces))
-    own = max(0.0, known.seconds - alone.seconds) * (now / then if then else 1.0)
-    return own, min(1.0, known.seconds / alone.seconds) if alone.seconds else 1.0
+    return max(0.0, known.seconds - alone.seconds) * (now / then if then else 1.0)
 
 
 def _grown(workload: Workload, faces: float) -> float:

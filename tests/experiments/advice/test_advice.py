@@ -180,16 +180,6 @@ def test_a_program_s_own_part_is_what_its_measurement_leaves(prices: Prices) -> 
         assert more == pytest.approx(0.25)
 
 
-def test_what_was_measured_to_take_less_than_predicted_takes_so_much_less_everywhere(
-    prices: Prices,
-) -> None:
-    asked = replace(ASKED, builds=1.0)
-    alone = {name: predict(prices, asked, name, 2_000).seconds for name in COMPILED}
-    known = replace(asked, measured=Measured("half_edge", 1_000, 0.6 * alone["half_edge"]))
-    for name, seconds in alone.items():
-        assert predict(prices, known, name, 2_000).seconds == pytest.approx(0.6 * seconds)
-
-
 @pytest.mark.parametrize("name", COMPILED)
 def test_what_was_measured_stays_first_until_something_is_a_tenth_quicker(
     prices: Prices, name: str
