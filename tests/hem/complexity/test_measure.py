@@ -511,7 +511,8 @@ def test_small_inputs_that_stray_or_are_few_accuse_nothing(log: bool) -> None:
     sizes = np.geomspace(4, 100_000, 20).round()
     found = costs(1e-8 * sizes * (np.log(sizes) if log else 1), sizes)
     told, stray = found.judge().answer, beside_parts(found, -1.0, wobble=3.0)
-    assert stray.in_parts and stray.in_parts.logs[1] > 0.5
+    assert stray.in_parts is not None
+    assert stray.in_parts.logs[1] > 0.5
     assert stray.judge().answer == told
     flat = beside_parts(found, 0.0).in_parts
     assert flat
