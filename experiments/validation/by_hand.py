@@ -12,18 +12,6 @@ from typing import Any
 import numpy as np
 
 
-def balanced_tree(low: int, high: int) -> Any:
-    """A node is its lower branch, its key and its higher branch."""
-    middle = (low + high) // 2
-    if low >= high:
-        return None
-    return balanced_tree(low, middle), middle, balanced_tree(middle + 1, high)
-
-
-def full_tree(depth: int) -> int:
-    return 1 + full_tree(depth - 1) + full_tree(depth - 1) if depth else 1
-
-
 def with_order(it: Any) -> tuple[Any, Any]:
     return it, it.argsort()
 

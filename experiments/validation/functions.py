@@ -58,7 +58,6 @@ LOOP = "counted by hand"
 NUMPY = "numpy.org/doc: one pass"
 VIEWS = "numpy.org/doc: views"
 BISECT = "numpy.org/doc: binary search"
-DIRECT = "numpy.org/doc: direct sum"
 PARTITION = "numpy.org/doc, numpy.partition"
 SORT = "numpy.org/doc, numpy.sort"
 BY_SORT = f"{SORT}: it sorts"
@@ -106,7 +105,6 @@ INPUTS: dict[str, Callable[[int], Any]] = {
     "heap": lambda n: sorted(floats(n)),
     "tuple": lambda n: tuple(floats(n)),
     "deque": lambda n: collections.deque(range(n)),
-    "dict": lambda n: dict.fromkeys(range(n)),
     "set": lambda n: set(range(n)),
     "floats_set": lambda n: set(floats(n)),
     "floats_dict": lambda n: dict(enumerate(floats(n))),

@@ -152,7 +152,8 @@ class Measured:
             told = asked.at_the_top() or _open_upward(told)
         elif not told.classes:
             told = asked.at_the_top() or told
-        return self._unhidden(told if asked.is_sublinear else self._beside_parts(told))
+        told = told if asked.is_sublinear else self._beside_parts(told)
+        return self._unhidden(_untold(told))
 
     def _beside_parts(self, told: Verdict) -> Verdict:
         """What is told, held to what small inputs take that are as much together.
@@ -168,7 +169,8 @@ class Measured:
         as_log = power > LOG and stray < CLOSELY
         evenly = as_log or (power > RISING and stray < EVENLY)
         few = told.classes == LOGLINEAR and len(self.in_parts.sizes) < 2 * HALF
-        if power < flat or self.in_parts.levels_off:
+        is_flat = power < flat or self.in_parts.levels_off
+        if is_flat:
             classes = LINEAR + LOGLINEAR if few else LINEAR
         elif told.classes == LINEAR and evenly:
             classes = LINEAR + LOGLINEAR
@@ -179,7 +181,7 @@ class Measured:
         upper, claim = told.bound == "upper", parse(told.expected)
         kept = {claim == it or (upper and claim > it) for it in map(parse, classes)}
         outcome: Outcome = "undetermined" if len(kept) > 1 else KEEPS[kept.pop()]
-        grows = "in proportion" if classes == LINEAR else "less"
+        grows = "in proportion" if is_flat else "less"
         reason = f"Small inputs, as much together, take {grows}: {' or '.join(classes)}."
         return replace(told, classes=classes, best=classes[0], outcome=outcome, reason=reason)
 
@@ -214,7 +216,7 @@ class _Asked:
     def _works(self, some: Sizes) -> bool:
         """Whether a call of some of the sizes does much more than to read what it works on."""
         of = self.of
-        return bool(np.median((of.cost / of.working_sets / of.memory[1])[some]) > READS)
+        return bool(np.median((of.cost / self._bytes / of.memory[1])[some]) > READS)
 
     @property
     def steep(self) -> float:
@@ -224,10 +226,14 @@ class _Asked:
         return LESS_STEEP if works else STEEP
 
     @property
+    def _bytes(self) -> Array:
+        """(k,) what a call works on, or one of its operations."""
+        return self.of.working_sets / (self.of.sizes if self.of.amortized else 1)
+
+    @property
     def _waiting(self) -> Array:
         """(k,) seconds that what costs are of waits if it waits for each word that it works on."""
-        operations = self.of.sizes if self.of.amortized else 1
-        return self.of.working_sets / operations / WORD * self.of.memory[0]
+        return self._bytes / WORD * self.of.memory[0]
 
     def whole(self, unseen: float) -> Verdict:
         """What all sizes tell."""
@@ -277,7 +283,7 @@ class _Asked:
     def _bends_up_in_caches(self, least: Array) -> bool:
         """What reads along may, as it leaves the first cache: as much as its bytes take longer."""
         of, access = self.of, self._slower
-        byte, works = of.cost / of.working_sets, self._works(self._fits)
+        byte, works = of.cost / self._bytes, self._works(self._fits)
         fits = np.flatnonzero(access < (NEAR_CACHED if works else CACHED))
         last = fits[-max(MIN_SIZES, len(fits) // 4) :]
         if len(last) < MIN_SIZES:
@@ -296,7 +302,8 @@ class _Asked:
     def at_the_top(self) -> Verdict | None:
         """What the largest sizes tell closely of a steep cost: a third of them as half of them."""
         of, parts, told = self.of, (self._last(3), self._last(2)), []
-        if slope(of.sizes[parts[0]], of.cost[parts[0]]) <= STEEP or not self._works(parts[0]):
+        steep = slope(of.sizes[parts[0]], of.cost[parts[0]]) > STEEP and self._works(parts[0])
+        if not steep or np.array_equal(*parts):
             return None
         for part in parts:
             sizes = of.sizes[part]
@@ -324,6 +331,9 @@ class _Asked:
         alone = not parts and whole.classes != CONSTANT
         hits = OVERLAP if parse(whole.best) < parse(*LINEAR) else 1
         bent = alone and cost[-1] / cost[0] < hits * memory.max() / memory.min()
+        if bent and whole.outcome != "undetermined":
+            reason = "The costs grow by no more than the memory alone may cause."
+            return replace(whole, classes=[], outcome="undetermined", reason=reason)
         return whole if goes_on and not bent else replace(whole, classes=[])
 
     @property
@@ -362,7 +372,8 @@ class _Asked:
         if self.options.get("latency", 0) is not None:
             given["unseen"] = unseen
         rows = [row for row, asked in zip(self.of.samples, sizes, strict=True) if asked]
-        quick = [np.sort(row)[: int(np.ceil(QUICKER * len(row)))] for row in rows]
+        share = 1 if self.options.get("exact") else QUICKER
+        quick = [np.sort(row)[: int(np.ceil(share * len(row)))] for row in rows]
         return judge(self.of.sizes[sizes], quick, self.expected, **given | self.options)
 
     def _goes_on(self, told: Verdict, excused: Sizes | bool = False) -> bool:
@@ -406,6 +417,14 @@ def _agreeing(it: Verdict) -> Verdict:
         reason = f"Some of the sizes tell {it.answer}."
         return replace(it, outcome="undetermined", reason=reason)
     return it
+
+
+def _untold(it: Verdict) -> Verdict:
+    """A verdict that confirms no claim where no class is told."""
+    if it.classes or it.outcome != "consistent" or it.bound == "upper":
+        return it
+    reason = f"{it.best} comes closest, but larger sizes do not go on as it does."
+    return replace(it, outcome="undetermined", reason=reason)
 
 
 def _open_upward(it: Verdict) -> Verdict:

@@ -15,7 +15,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from hem.complexity import InParts, Measured, measure
+from hem.complexity import InParts, Measured, judge, measure
 from hem.complexity import measure as measure_function
 from hem.complexity.memory import memory_times
 from hem.complexity.notation import Array, parse
@@ -305,7 +305,29 @@ def test_growth_that_memory_alone_may_cause_is_of_no_class() -> None:
     found.memory[0, 24:] = 1e-9 * np.array(
         [5.8, 5.8, 5.8, 6.3, 6.7, 6.7, 57, 83, 85, 90, 91, 91, 95, 95, 95]
     )
-    assert found.judge().answer in ("", "O(1)")
+    assert found.judge().answer == ""
+    for claim in ("O(1)", "O(log n)", "O(√n)", "O(n)"):
+        assert found.judge(claim).outcome == "undetermined"
+
+
+def test_a_steep_amortized_cost_is_told_like_one_of_a_call() -> None:
+    """Its bytes are those of one operation, too."""
+    sizes = np.geomspace(4, 1_500, 38).round()
+    one = costs(6e-6 + 5e-9 * sizes**2 + 1.45e-11 * sizes**3, sizes)
+    one = replace(one, working_sets=5_000 + 32 * sizes**2)
+    one.memory[1:] = 3.6e-11
+    one.memory[0, 24:] = np.minimum(6e-9 * (sizes[24:] / sizes[24]) ** 2, 7.5e-8)
+    whole = replace(one, working_sets=one.working_sets * sizes, amortized=True)
+    assert one.judge().answer == whole.judge().answer == "O(n³)"
+
+
+def test_counts_are_looked_at_all() -> None:
+    """Delays only add to seconds; a count that is larger is work."""
+    sizes = np.geomspace(16, 4_096, 9).round()
+    samples = [n * np.repeat([1.0, 1.0 + np.log2(n) / 40], 10) for n in sizes]
+    found = Measured(sizes, samples, 8 * sizes, np.full((3, 9), 5e-9))
+    told, alone = found.judge("O(n)", exact=True), judge(sizes, samples, "O(n)", exact=True)
+    assert told.slope == alone.slope
 
 
 def test_what_hits_a_cache_quicker_than_a_step_waits_the_longer_beyond() -> None:
