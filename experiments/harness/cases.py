@@ -95,7 +95,7 @@ class Case:
         Elements differ in a mesh of one's own, and where what is found is hashed.
         """
         kind = structures.REGISTRY[self.structure]
-        uneven = own_mesh.is_own(self.family) or kind.rebuilds
+        uneven = own_mesh.is_own(self.family, self.size) or kind.rebuilds
         return OF_UNEVEN if uneven and not kind.searches else OF_ALIKE
 
     @property
@@ -185,7 +185,7 @@ def _mesh(family: str, size: int, valence: int | None, renumbered: bool) -> Tria
         return TriangleMesh(points, rng.permutation(number[mesh.triangles]))
     if family == HUBS:
         return hem.valence_mesh(int(valence or 0), size)
-    if own_mesh.is_own(family):
+    if own_mesh.is_own(family, size):
         return own_mesh.version(family, size)
     return hem.sample(family) if family in hem.SAMPLES else hem.generate(family, size)
 

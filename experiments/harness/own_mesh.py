@@ -60,9 +60,9 @@ def of_run(folder: Path) -> OwnMesh | None:
     return None
 
 
-def is_own(name: str) -> bool:
-    """Whether cases call a mesh of one's own so."""
-    return name in _folders
+def is_own(name: str, size: int) -> bool:
+    """Whether cases call a mesh of one's own so; a sample may have its name, and has no size."""
+    return size > 0 and name in _folders
 
 
 def version(name: str, size: int) -> TriangleMesh:

@@ -10,7 +10,7 @@ import pytest
 
 import hem
 import structures
-from experiments.harness import PRESETS, own_mesh, time_rounds
+from experiments.harness import PRESETS, Case, own_mesh, time_rounds
 from experiments.presets import COARSER, FINE_ENOUGH, LARGEST, SMALLEST
 from experiments.runs import experiments, load, read_meta, study
 from hem.meshes import non_manifold_edges
@@ -49,6 +49,15 @@ def test_versions_are_of_the_same_topology_and_four_times_apart(tmp_path, name):
         summary = mesh.summary()
         assert (summary.euler, summary.components) == (own.euler, own.components)
         assert summary.unreferenced == (own.unreferenced if mesh is own_one else 0)
+
+
+def test_a_sample_stays_the_sample_after_versions_of_it_were_measured(tmp_path):
+    own_mesh.keep_versions(tmp_path, "teapot")
+    name, sizes = own_mesh.of_run(tmp_path) or ("", ())
+    assert name == "teapot"
+    assert len(Case("indexed", name, sizes[0]).mesh().points) == sizes[0]
+    sample = Case("indexed", name, 0).mesh()
+    assert np.array_equal(sample.triangles, hem.sample("teapot").triangles)
 
 
 def test_a_small_mesh_gets_finer_versions_only(tmp_path):
