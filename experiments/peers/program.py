@@ -40,12 +40,13 @@ def compiled() -> Path:
     program = cache_folder() / f"peers-{hashlib.blake2b(known, digest_size=8).hexdigest()}"
     if not program.exists():
         program.parent.mkdir(parents=True, exist_ok=True)
-        fresh = program.with_suffix(".new")
-        command = [COMPILER, *OPTIONS, str(SOURCE), "-o", str(fresh), "-lOpenMeshCore"]
-        done = subprocess.run(command, capture_output=True, text=True)
-        if done.returncode:
-            raise OSError(f"{SOURCE} cannot be compiled here:\n{done.stderr}")
-        fresh.replace(program)
+        with TemporaryDirectory(dir=program.parent) as own:  # as others may compile it, too
+            fresh = Path(own) / program.name
+            command = [COMPILER, *OPTIONS, str(SOURCE), "-o", str(fresh), "-lOpenMeshCore"]
+            done = subprocess.run(command, capture_output=True, text=True)
+            if done.returncode:
+                raise OSError(f"{SOURCE} cannot be compiled here:\n{done.stderr}")
+            fresh.replace(program)
     return program
 
 
