@@ -38,7 +38,7 @@ RECORDED, TIMED = "torus:400", "torus:5000"
 """The meshes that programs are recorded on, and timed on to learn their own part."""
 ON = ("torus:20000", "sphere:5000", "terrain:5000", "cow", "bunny")  # the meshes that are predicted
 ROUNDS, FEWEST = 15, 6
-LONGEST = 1.0  # seconds that a program may take to be run; after so long it is run `FEWEST` times
+LONGEST = 1.0  # seconds that a program may take; after so many in all it has its fewest rounds
 
 MIXES, STEPS, BATCH, SPLITS = 6, 20, (500, 3_000), 100
 """How many random mixes there are, and their batches: how many, of how many, and of splits."""

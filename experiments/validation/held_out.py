@@ -148,7 +148,7 @@ HELD_OUT: tuple[Function, ...] = tuple(starmap(function, [
     ("join of letters", "O(n)", lambda n: random.choices(string.ascii_letters, k=n), "".join,
         CPYTHON),
     ("str.encode, ascii", "O(n)", "letters", lambda s: s.encode("ascii"), CPYTHON),
-    ("str.format of each", "O(n)", "numbers", lambda s: [f"{x:>9}" for x in s], CPYTHON),
+    ("f-string of each", "O(n)", "numbers", lambda s: [f"{x:>9}" for x in s], CPYTHON),
     ("bytes.lower", "O(n)", "bytes", bytes.lower, CPYTHON),
     ("bytes.splitlines", "O(n)", lambda n: b"ab\n" * (n // 3 + 1), bytes.splitlines, CPYTHON),
     ("memoryview.tobytes", "O(n)", lambda n: memoryview(random.randbytes(n)), memoryview.tobytes,
@@ -265,10 +265,10 @@ HELD_OUT: tuple[Function, ...] = tuple(starmap(function, [
     ("np.fft.rfft, powers of two", "O(n log n)", "uniform", np.fft.rfft, NUMPY, *TWOS),
     ("scipy.signal.periodogram, powers of two", "O(n log n)", "uniform", signal.periodogram,
         SCIPY, *TWOS),
-    ("roots of each, by its divisors", "O(n^1.5)", int,
+    ("divisors of each, below the root of n", "O(n^1.5)", int,
         lambda n: sum(1 for i in range(1, n) for d in range(1, math.isqrt(n)) if i % d == 0),
         LOOP),
-    ("sums of all pairs", "O(n²)", "floats", lambda s: sum(itertools.starmap(
+    ("products of all pairs, added", "O(n²)", "floats", lambda s: sum(itertools.starmap(
         operator.mul, itertools.combinations(s, 2))), PYDOC),
     ("those not met before, by a list", "O(n²)", "numbers", by_hand.not_met, WIKI),
     ("the longest part of two texts", "O(n²)", "letters letters", by_hand.longest_part, CLRS),

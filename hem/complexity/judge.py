@@ -29,7 +29,7 @@ MAX_SCATTER = 0.4  # relative scatter of samples beyond which nothing is conclud
 MAX_ERROR = 0.12  # relative error of a size's cost beyond which the size is skipped …
 MOST_SKIPPED = 0.25  # … if so few of the sizes are like that; otherwise nothing is concluded
 STEEPER = 2.1  # slope of the larger half of the sizes beyond which steep classes are asked about
-HALF = 0.06  # of exponents: a power law so close to a half is told as that
+NEAR_HALF = 0.06  # of exponents: a power law so close to a half is told as that
 STEADY = 0.2  # of exponents: by so much the halves of a power law may differ
 APART, ABOVE = 0.2, 0.3  # of exponents: what is closer to a class is that, bent, or with log n
 
@@ -224,7 +224,7 @@ def _classes(costs: Costs, models: Comparison) -> list[str]:
     if abs(last - first) > STEADY:
         return []
     near = round(2 * exponent) / 2
-    exponents = [near, exponent] if abs(near - exponent) < HALF else [exponent]
+    exponents = [near, exponent] if abs(near - exponent) < NEAR_HALF else [exponent]
     powers = (Order(power=it).name for it in exponents)
     return next(([it] for it in powers if _is_told(it, models)), [])
 

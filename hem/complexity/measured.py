@@ -2,7 +2,8 @@
 
 Sizes that fit into the caches tell of work alone; so do those where a call works for longer than it
 could wait. The others wait for memory, in ways that no loop beside them shows exactly: of them it
-is asked only that they go on as those tell.
+is asked only that they go on as those tell. Where a steep cost does not, the largest sizes decide,
+if they tell one class closely.
 """
 
 from collections.abc import Sequence
@@ -39,9 +40,9 @@ READS = 8  # so many times as long as reading its working set takes what does mo
 WORD = 8  # bytes that a call reads at once: it may wait for each, but no longer
 STEEP = 1.5  # slope from which on a call works more than it waits …
 LESS_STEEP, TIMES = 1.3, 10  # … or this, where it takes so many times as long as it could wait
-UNEVEN = 0.5  # as what costs stray so much beside small inputs tells nothing
+UNEVEN = 0.5  # relative scatter of costs beside small inputs from which on they tell nothing
 ASTRAY = 0.4  # of a slope: by so much a steep class may fall behind at the largest sizes
-OVERLAP = 2  # times quicker what hits a cache is than a step there, as a processor overlaps hits
+OVERLAP = 2  # factor by which a lookup in a cache is quicker than a step there: hits overlap
 LOWER_TERMS = 9  # tried where a call works more than it waits
 QUICKER = 0.6  # share of the samples of a size that is looked at, the quicker ones: delays only add
 FLAT, QUITE_FLAT = 0.2, 0.1  # powers of log n by which linear costs rise beside small inputs …
@@ -136,7 +137,8 @@ class Measured:
         """Judge a claim by these costs; options as of `hem.complexity.judge`.
 
         What tells of work alone decides where it tells one class. Where it leaves two, all sizes
-        may rule out the one that grows faster, as waiting for memory only adds to it. With
+        may rule out the one that grows faster, as waiting for memory only adds to it. Where the
+        largest rise beside what is told, they decide, or nothing does. With
         ``latency=None`` all sizes are judged as if nothing were known of the memory, and so they
         are by a latency or a reference of one's own, and where costs are ``exact``. Over a short
         range nothing violates a claim of faster growth.
@@ -300,7 +302,7 @@ class _Asked:
         return bool(steep and slope(sizes[last], (self.of.cost / least)[last]) > ASTRAY)
 
     def at_the_top(self) -> Verdict | None:
-        """What the largest sizes tell closely of a steep cost: a third of them as half of them."""
+        """What the largest third and the largest half of the sizes both tell of a steep cost."""
         of, parts, told = self.of, (self._last(3), self._last(2)), []
         steep = slope(of.sizes[parts[0]], of.cost[parts[0]]) > STEEP and self._works(parts[0])
         if not steep or np.array_equal(*parts):
