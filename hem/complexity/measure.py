@@ -18,6 +18,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from hem.complexity.asked import FEWEST
 from hem.complexity.calls import (
     FREED,
     LONGER,
@@ -30,7 +31,8 @@ from hem.complexity.calls import (
     keep_memory,
 )
 from hem.complexity.estimates import slope
-from hem.complexity.measured import FEWEST, InParts, Measured
+from hem.complexity.in_parts import InParts
+from hem.complexity.measured import Measured
 from hem.complexity.memory import CLOCK, memory_times
 from hem.complexity.notation import Array
 
