@@ -13,6 +13,7 @@ import numpy as np
 import hem
 from experiments.harness import (
     HUBS,
+    IRREGULAR,
     OPERATIONS_TABLE,
     Axis,
     Case,
@@ -37,10 +38,15 @@ RENDERED = EACH, TOGETHER, ANEW = "rendered", "in a transaction", "render mesh b
 
 
 def cases(preset: Preset, structure: str) -> list[Case]:
-    """Batched by size and by valence; one by one, and with a render mesh, at some of the sizes."""
+    """Batched by size and by valence; one by one, and with a render mesh, at some of the sizes.
+
+    Batched at some of them on irregular meshes as well, which advice on models rests on.
+    """
     family, faces = preset.families[0], preset.operation_faces
     meshes: list[tuple[str, int, int | None]]
     meshes = [(family, size, None) for size in preset.operation_sizes]
+    if IRREGULAR in preset.families[1:]:
+        meshes += [(IRREGULAR, size, None) for size in preset.operation_sizes[1::2]]
     meshes += [(HUBS, faces, k) for k in preset.valences if k <= faces // FEWEST_HUBS]
     operations = measured_operations(preset)
     batched = [

@@ -72,9 +72,13 @@ class Option:
 
 @dataclass(frozen=True)
 class Advice:
-    """Options, the best first and then the quickest; why not the others; where it changes."""
+    """Options, the best first and then the quickest; why not the others; where it changes.
+
+    ``regular``: whether prices are those on regular meshes.
+    """
 
     faces: int
+    regular: bool
     workload: Workload
     options: list[Option]
     refused: dict[str, str]
@@ -87,13 +91,15 @@ def advise(
 ) -> Advice:  # fmt: skip
     """Rank the structures that can hold a mesh, are what is needed and stay within the limits.
 
+    By prices on meshes as regular as it is, where there are such.
+
     What the workload was measured on stays first as long as nothing is quicker by ``ALIKE``.
     Raises ValueError for a need that there is not.
     """
     require_known("need", needs, NEEDS)
     limits = limits or Limits()
     triangles = mesh.triangulated() if isinstance(mesh, hem.PolygonMesh) else mesh
-    faces = len(triangles.triangles)
+    faces, prices = len(triangles.triangles), prices.like(triangles.triangles)
     options, refused = [], {}
     for name, kind in REGISTRY.items():
         wrong = [NEEDS[it][0] for it in needs if not NEEDS[it][1](kind)]
@@ -119,7 +125,8 @@ def advise(
     options.sort(key=lambda it: (it.forecast.structure != first, it.forecast.seconds))
     named = [replace(it, behind=_behind(options[0].forecast, it.forecast)) for it in options]
     names = [it.forecast.structure for it in options]
-    return Advice(faces, workload, named, refused, flips(prices, workload, names, faces))
+    found = flips(prices, workload, names, faces)
+    return Advice(faces, not prices.family, workload, named, refused, found)
 
 
 def _told_less_of(options: Sequence[Option]) -> dict[str, str]:

@@ -12,10 +12,11 @@ import numpy as np
 
 from experiments.advice.workload import Row, Workload, is_edit
 from experiments.claims import Curve, curves
-from experiments.harness import ANSWERING
+from experiments.harness import ANSWERING, IRREGULAR
 from experiments.runs import Run
-from hem.arrays import Array
+from hem.arrays import Array, Triangles
 from hem.contract import ANEW, CHECKED, COMPILED, OPERATIONS, PYTHON
+from hem.meshes import foretold
 from structures import REGISTRY
 
 BY_QUERY = {"face_left_of": "edge_faces", "diamond": "edge_faces", "are_joined": "vertex_vertices"}
@@ -34,6 +35,10 @@ CALL = 6e-7
 ASKING = 0.27
 """Part of that which a query takes longer, as it tells of no edit: one by one it took 0.36 µs where
 a flip took 1.33, on another machine 0.60 and 2.77 (`results/reference/speed.json`)."""
+
+FORETOLD = 0.9
+"""How much is ``foretold`` of a regular mesh, at the least. A processor foretells it, too: where it
+cannot, a walk takes up to 2.5 times as long on triangle-neighbor, and 1.2 times on half-edges."""
 
 BEYOND = 0.25
 """How much less sure a price is for every factor e beyond the sizes that were measured."""
@@ -60,11 +65,25 @@ class Price(NamedTuple):
 
 
 class Prices:
-    """The prices of a run. What it has not measured has none: KeyError that says what."""
+    """The prices of a run on a ``family``, or on the regular one that it judges by.
 
-    def __init__(self, run: Run) -> None:
-        self.run = run
-        self._points = cache(lambda *case: _points(curves(run).named(*case)))
+    What it has not measured has none: KeyError that says what. What it has measured on regular
+    meshes alone has the price of those.
+    """
+
+    def __init__(self, run: Run, family: str = "") -> None:
+        self.run, self.family = run, family
+        self._points = cache(lambda *case: _points(self._curve(*case)))
+
+    def like(self, triangles: Triangles) -> "Prices":
+        """The prices on meshes as regular as this one, if the run has measured any."""
+        return self if foretold(triangles) >= FORETOLD else self.irregular
+
+    @cached_property
+    def irregular(self) -> "Prices":
+        """The prices on irregular meshes, as models are; these, if the run has measured none."""
+        measured = (self.run.cases["family"] == IRREGULAR).any()
+        return Prices(self.run, IRREGULAR) if measured and not self.family else self
 
     def price(
         self, structure: str, what: str, faces: float, in_order: float = 0.0, caller: str = ""
@@ -137,6 +156,10 @@ class Prices:
     @cached_property
     def _operations(self) -> set[str]:
         return set(self.run.cases.query("experiment == 'bench_operations'")["subject"])
+
+    def _curve(self, *case: str) -> Curve:
+        found = curves(self.run).named(*case, family=self.family)
+        return found if len(found) or not self.family else curves(self.run).named(*case)
 
     def _at(self, faces: float, *case: str) -> Price:
         """``case``: experiment, structure, subject and order."""

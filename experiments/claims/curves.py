@@ -115,10 +115,14 @@ class Curves:
         return int(both.max()), float(work[both.max()]), float(seconds[both.max()])
 
     def named(
-        self, experiment: str, structure: str, subject: str = "", order: str = "", width: int = 4
-    ) -> Curve:
-        """The judged family's cases of an experiment by size; ``width``: bytes of a reference."""
-        known: dict[str, Any] = {"family": self.judged_family, "reference_bytes": width}
+        self, experiment: str, structure: str, subject: str = "", order: str = "", *,
+        width: int = 4, family: str = "",
+    ) -> Curve:  # fmt: skip
+        """A family's cases of an experiment by size, the judged one's unless told otherwise.
+
+        ``width``: bytes of a reference.
+        """
+        known: dict[str, Any] = {"family": family or self.judged_family, "reference_bytes": width}
         known |= {name: it for name, it in (("subject", subject), ("order", order)) if it}
         return self._select("faces", experiment, structure, **known)
 

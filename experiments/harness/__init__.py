@@ -40,15 +40,15 @@ from experiments.harness.oracle import (
 from experiments.harness.queries import checked_handles, time_query
 from experiments.harness.steadiness import BUSY, REPEATS, allowed_cores, badness, disturbed, pin
 from experiments.harness.timer import CLOCK, BenchmarkTimer, Clock, Timed, Timer, time_rounds, took
-from experiments.presets import ANSWERING, HUBS, ORDERS, PRESETS, Preset
+from experiments.presets import ANSWERING, HUBS, IRREGULAR, ORDERS, PRESETS, Preset
 
 __all__ = [
-    "ANSWERING", "BASE", "BUSY", "CACHE_LINE", "CACHE_LINE_WORDS", "CLOCK", "HUBS", "OPERATIONS",
-    "OPERATIONS_TABLE", "ORDERS", "PRESETS", "QUERIES_TABLE", "REPEATS", "Axis", "BenchmarkTimer",
-    "Case", "CheckFailedError", "Clock", "Experiment", "Keep", "Measurement", "Preset", "Table",
-    "Timed", "Timer", "allowed_cores", "badness", "calibration_loop", "chase", "check_query",
-    "check_rows", "check_told", "checked_handles", "disturbed", "in_random_order", "latency_now",
-    "measured_operations", "operation_arguments", "operation_faces", "pack_pairs", "pin",
-    "random_cycle", "row", "time_operations", "time_query", "time_rounds", "took",
+    "ANSWERING", "BASE", "BUSY", "CACHE_LINE", "CACHE_LINE_WORDS", "CLOCK", "HUBS", "IRREGULAR",
+    "OPERATIONS", "OPERATIONS_TABLE", "ORDERS", "PRESETS", "QUERIES_TABLE", "REPEATS", "Axis",
+    "BenchmarkTimer", "Case", "CheckFailedError", "Clock", "Experiment", "Keep", "Measurement",
+    "Preset", "Table", "Timed", "Timer", "allowed_cores", "badness", "calibration_loop", "chase",
+    "check_query", "check_rows", "check_told", "checked_handles", "disturbed", "in_random_order",
+    "latency_now", "measured_operations", "operation_arguments", "operation_faces", "pack_pairs",
+    "pin", "random_cycle", "row", "time_operations", "time_query", "time_rounds", "took",
     "validate_operated",
 ]  # fmt: skip

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from typing import Any, Self
 
 HUBS = "hubs"  # the family of `hem.valence_mesh`; its size is in faces, its valence the hubs'
+IRREGULAR = "isosurface"  # the family whose faces are numbered as irregularly as a model's
 
 ORDERS = ("random", "consecutive")  # of handles that are asked for, and of faces to build of
 ANSWERING = "until it answers"  # of what finds neighbors when asked: built and asked once

@@ -197,8 +197,11 @@ POINTS = 9
 
 
 def advice_sliders(run: Run) -> Html:
-    """The prices of a run, for what the presets count, on a page; MissingError without them."""
-    prices = Prices(run)
+    """The prices of a run, for what the presets count, on a page; MissingError without them.
+
+    On irregular meshes, as models are, where those were measured.
+    """
+    prices = Prices(run).irregular
     low, high = prices.measured
     require(low < high and not run.machines, "measured what advice rests on")
     sizes = np.geomspace(low, high, POINTS)

@@ -3,8 +3,9 @@
 ``python -m experiments.validation.advice`` measures queries, operations and building on this
 machine, and then programs that no price was made of: the algorithms, breaking a surface, mixes
 drawn at random, on families and real models. What a program does is recorded on a small torus and
-one structure; its own part comes from timing it there. Every other structure is predicted. Takes
-half an hour of a machine's whole attention, most of it to compile.
+one structure; its own part comes from timing it there, on one of two meshes. Every other structure,
+and every other mesh, is predicted. Takes an hour of a machine's whole attention; ten minutes of it
+where a ``run`` has measured the prices.
 """
 
 import json
@@ -12,7 +13,7 @@ import os
 import tempfile
 from collections.abc import Callable, Iterable
 from dataclasses import replace
-from functools import cache, partial
+from functools import cache
 from pathlib import Path
 from time import process_time
 from typing import Any, NamedTuple
@@ -25,17 +26,18 @@ import hem
 import structures
 from experiments.advice import ALIKE, Measured, Prices, Workload, best, predict, recorded
 from experiments.bench_workloads import WORKLOADS, impacts
-from experiments.harness import calibration_loop
+from experiments.harness import IRREGULAR, calibration_loop
 from experiments.runs import describe, load, study
 from hem import algorithms
 from hem.contract import QUERIES, Structure
 
 RESULT = Path("results/reference/advice.json")
 NEEDED = ("bench_queries", "bench_operations", "bench_build")
-PRESET = "quick"
+PRESET = "standard"
 
-RECORDED, TIMED = "torus:400", "torus:5000"
-"""The meshes that programs are recorded on, and timed on to learn their own part."""
+RECORDED, TIMED = "torus:400", {"": "torus:5000", IRREGULAR: f"{IRREGULAR}:5000"}
+"""The mesh that programs are recorded on; and those that they are timed on to learn their own part,
+by the family of the prices: one is as regular as the mesh that is predicted."""
 ON = ("torus:20000", "sphere:5000", "terrain:5000", "cow", "bunny")  # the meshes that are predicted
 ROUNDS, FEWEST = 15, 6
 LONGEST = 1.0  # seconds that a program may take; after so many in all it has its fewest rounds
@@ -113,8 +115,8 @@ PROGRAMS = {
 
 
 def learned(prices: Prices, name: str) -> Workload:
-    """What a program does, and its own part: from one structure on a torus."""
-    program, mesh = PROGRAMS[name], hem.find_mesh(TIMED)
+    """What a program does, and its own part: from one structure on a mesh as that of the prices."""
+    program, mesh = PROGRAMS[name], hem.find_mesh(TIMED[prices.family])
     s = structures.build(BASE, hem.find_mesh(RECORDED))
     with hem.record(s) as recording:
         program.run(s)
@@ -149,10 +151,16 @@ def timed(prices: Prices, program: Program, names: Iterable[str], mesh: Any) -> 
     return least
 
 
-def compare(prices: Prices, workload: Workload, name: str, mesh_name: str) -> dict[str, Any]:
-    """Predict a program on a mesh for every structure, then run it on all that are not hopeless."""
+def compare(
+    prices: Prices, known: Callable[[Prices, str], Workload], name: str, mesh_name: str
+) -> dict[str, Any]:
+    """Predict a program on a mesh for every structure, then run it on all that are not hopeless.
+
+    ``known``: see ``learned``.
+    """
     mesh = hem.find_mesh(mesh_name, triangulate=True)
-    faces = len(mesh.triangles)
+    faces, prices = len(mesh.triangles), prices.like(mesh.triangles)
+    workload = known(prices, name)
     told = [predict(prices, workload, structure, faces) for structure in COMPILED]
     counted = replace(workload, measured=None)
     untimed = {it: predict(prices, counted, it, faces).seconds for it in COMPILED}
@@ -230,11 +238,11 @@ def main(output: Path = RESULT, run: Path | None = None, program: list[str] | No
         if run is None:
             study.run(folder)
         prices = Prices(load(folder))
-        known, rows = cache(partial(learned, prices)), []
+        known, rows = cache(learned), []
         names = list(program or PROGRAMS)  # every one on two of the meshes, in turn
         pairs = [(name, ON[(k + n) % len(ON)]) for k, name in enumerate(names) for n in (0, 2)]
         for name, mesh in pairs:
-            rows.append(compare(prices, known(name), name, mesh))
+            rows.append(compare(prices, known, name, mesh))
             ran = [it for it in rows[-1]["structures"] if it["taken"]]
             ratios = {it["structure"]: round(it["predicted"] / it["taken"], 2) for it in ran}
             print(name, mesh, ratios, flush=True)

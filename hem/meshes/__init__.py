@@ -2,7 +2,7 @@
 
 from hem.meshes.components import NOTHING, clusters, components, joined, used_only
 from hem.meshes.conversions import from_any, from_meshio, from_pyvista, from_trimesh
-from hem.meshes.edges import undirected_edges
+from hem.meshes.edges import foretold, undirected_edges
 from hem.meshes.manifold import (
     euler_number,
     non_manifold_edges,
@@ -30,7 +30,7 @@ from hem.meshes.triangles import TriangleMesh, repeated_corners
 
 __all__ = [
     "NOTHING", "MeshSummary", "PolygonMesh", "TriangleMesh", "areas", "bounds", "clusters",
-    "components", "corners", "diagonal", "direction", "dot", "euler_number", "from_any",
+    "components", "corners", "diagonal", "direction", "dot", "euler_number", "foretold", "from_any",
     "from_meshio", "from_pyvista", "from_trimesh", "joined", "length", "non_manifold_edges",
     "normals", "position", "repeated_corners", "repeats_a_corner", "require_manifold",
     "require_sound", "require_triangles", "same_way_edges", "simplest", "split_vertices",

@@ -30,3 +30,17 @@ def distinct_edges(start: Indices, end: Indices) -> tuple[Indices, Indices]:
     """The same of sides (k,) of faces, from their starts to their ends."""
     keys, count = np.unique(edge_keys(start, end), return_counts=True)
     return key_vertices(keys), count
+
+
+def foretold(triangles: Triangles) -> float:
+    """How much of the edges' places in the one triangle is told by their places in the other.
+
+    1 on a grid, where both repeat; 0.4 to 0.7 on models, whose triangles begin at any corner.
+    """
+    keys = edge_keys(*half_edges(triangles))
+    order = np.argsort(keys, kind="stable")
+    twins = keys[order[1:]] == keys[order[:-1]]
+    one, other = order[:-1][twins] % 3, order[1:][twins] % 3
+    seen = np.bincount(3 * one + other, minlength=9).reshape(3, 3)
+    seen += seen.T
+    return float(seen.max(axis=1).sum() / seen.sum()) if len(one) else 1.0

@@ -6,6 +6,7 @@ import json
 from dataclasses import replace
 
 import numpy as np
+import pandas as pd
 import pytest
 from typer.testing import CliRunner
 
@@ -25,6 +26,7 @@ from experiments.advice import (
     recorded,
 )
 from experiments.cli.check import BASELINE
+from experiments.harness import IRREGULAR
 from experiments.regression import RUN
 from experiments.runs import Run, load
 from hem.contract import QUERIES
@@ -195,6 +197,29 @@ def test_what_was_measured_stays_first_until_something_is_a_tenth_quicker(
         assert found.options[0].forecast.structure == first
         after = [it.forecast.seconds for it in found.options[1:]]
         assert after == sorted(after)
+
+
+def test_a_mesh_has_the_prices_of_meshes_as_regular_as_it_is(run: Run) -> None:
+    turned = hem.TriangleMesh(MESH.points, _begun_anywhere(MESH.triangles))
+    assert advise(Prices(run), ASKED, turned).regular  # as there are no others
+    dearer = run.cases.query("experiment == 'bench_queries' and family == 'torus'").copy()
+    dearer["family"], dearer["samples"] = IRREGULAR, dearer["samples"].map(lambda it: 3 * it)
+    both = Prices(replace(run, cases=pd.concat([run.cases, dearer], ignore_index=True)))
+    regular, other = advise(both, ASKED, MESH), advise(both, ASKED, turned)
+    assert (regular.regular, other.regular) == (True, False)
+    costs = {it.forecast.structure: it.forecast.seconds for it in regular.options}
+    for it in other.options:
+        assert it.forecast.seconds == pytest.approx(3 * costs[it.forecast.structure], rel=0.01)
+    # What was measured on regular meshes alone has the price of those.
+    assert both.irregular.price("half_edge", "split_face", 2_000) == both.price(
+        "half_edge", "split_face", 2_000
+    )
+
+
+def _begun_anywhere(triangles: np.ndarray) -> np.ndarray:
+    """The same triangles, each from one of its corners on at random."""
+    begin = np.random.default_rng(3).integers(3, size=(len(triangles), 1))
+    return np.take_along_axis(triangles, (begin + np.arange(3)) % 3, axis=1)
 
 
 def test_more_of_each_element_is_asked_of_a_larger_mesh(prices: Prices) -> None:

@@ -33,7 +33,7 @@ def test_the_page_tells_the_predicted_order(chromium: Browser, run: Run, tmp_pat
     assert "src=" not in html
     page = tmp_path / "sliders.html"
     page.write_text(f"<meta charset=utf-8>{html}", "utf-8")
-    prices, faces = Prices(run), 20_000  # the sliders begin at 10,000 vertices
+    prices, faces = Prices(run).irregular, 20_000  # the sliders begin at 10,000 vertices
     chromium.open(page.as_uri())
     for place, workload in enumerate(PRESETS.values()):
         chromium.run(f"({CHOOSE.replace('{place}', str(place))})(document.querySelector('select'))")

@@ -3,6 +3,7 @@
 import pickle
 import subprocess
 import sys
+from collections import Counter
 from itertools import combinations
 from typing import Literal
 
@@ -11,6 +12,7 @@ import pytest
 from numpy.typing import ArrayLike
 
 import hem
+from hem.meshes import foretold
 
 SQUARE = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], np.float32)
 HALVES = np.array([[0, 1, 2], [0, 2, 3]], np.int32)
@@ -178,3 +180,15 @@ def test_importing_hem_imports_none_of_the_heavy_libraries() -> None:
     program = f"import hem, sys; print([m for m in {heavy} if m in sys.modules])"
     said = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
     assert said.stdout.strip() == "[]", said.stderr
+
+
+@pytest.mark.parametrize("name", ["torus:400", "grid:400", "isosurface:400", "bunny"])
+def test_how_much_of_places_is_foretold_is_how_often_the_usual_one_is_right(name: str) -> None:
+    triangles, places = hem.find_mesh(name).triangles.tolist(), {}
+    for a, b, c in triangles:
+        places |= {(a, b): 0, (b, c): 1, (c, a): 2}
+    seen = [(place, places[b, a]) for (a, b), place in places.items() if (b, a) in places]
+    usual = {one: Counter(it for mine, it in seen if mine == one).most_common(1)[0][1]
+             for one in range(3)}  # fmt: skip
+    assert foretold(np.array(triangles)) == pytest.approx(sum(usual.values()) / len(seen))
+    assert foretold(np.zeros((0, 3), np.int32)) == 1
