@@ -102,7 +102,7 @@ def _show(found: Advice, run: Run, called: str, mesh: str) -> None:
     cpu = run.meta.get("machine", {}).get("cpu", "an unknown machine")
     console.print(f"[bold]{found.workload.title}[/], on {mesh} ({found.faces:,} faces).")
     kind = "regular" if found.regular else "irregular"
-    where = f"on {kind} meshes, on {cpu}"
+    where = f"on {cpu}, on {kind} meshes"
     console.print(f"Predicted from {called}, measured {where}.\n", highlight=False)
     whole = (Column(it, no_wrap=True) for it in ("structure", "time", "nine of ten", "bytes"))
     table = Table(*whole, "what costs it more")
