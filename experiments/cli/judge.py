@@ -1,6 +1,7 @@
 """The command ``hem judge``: name the class of costs that other tools measured."""
 
 import re
+from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import Annotated, Any
@@ -41,11 +42,8 @@ def judge_file(
 
         options: Any = {"exact": exact, "bound": "upper" if upper else "tight"}
         curves = read_curves(file, parameter)
-        claim, varied = "O(1)" if expected is None else expected, curves[0].parameter
-        letter = varied if re.fullmatch("[a-zA-Z]", varied) else "n_varied"  # "nlog n" is read, too
-        named = re.compile(rf"(?<![a-z_]){re.escape(varied or letter)}(?![a-z_])", re.IGNORECASE)
-        if named.search(claim):
-            claim, options["variable"] = named.sub(letter, claim), letter
+        claim = "O(1)" if expected is None else expected
+        claim, options["variable"] = _by_letters(claim, curves[0].parameter, curves[0].fixed)
         verdicts = [judge(it.sizes, it.samples, claim, **options) for it in curves]
         if plot is not None:
             from experiments.report.figures.accuracy import save_costs
@@ -55,6 +53,21 @@ def judge_file(
     if expected is not None:
         codes = {CODES[it.outcome] for it in verdicts}
         raise typer.Exit(1 if 1 in codes else max(codes))
+
+
+def _by_letters(claim: str, varied: str, fixed: Sequence[str]) -> tuple[str, str | None]:
+    """A claim with letters for names of parameters, and the letter of the one that is varied.
+
+    None where it names neither that nor one that is held fixed.
+    """
+    names = [name for name in (varied, *fixed) if name]
+    letters = {it: it if re.fullmatch("[a-zA-Z]", it) else f"n_{k}" for k, it in enumerate(names)}
+    named = 0
+    for name, letter in letters.items():  # "nlog n" is read, too
+        whole = rf"(?<![a-z_]){re.escape(name)}(?![a-z_])"
+        claim, times = re.subn(whole, letter, claim, flags=re.IGNORECASE)
+        named += times
+    return claim, letters.get(varied, "n_varied") if named else None
 
 
 def _print_data(curves: Any, verdicts: Any, expected: str | None) -> None:

@@ -9,6 +9,7 @@ import re
 import warnings
 from collections import Counter, defaultdict
 from collections.abc import Iterator
+from math import inf
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -17,16 +18,18 @@ import numpy as np
 from hem.complexity.notation import Array
 
 Row = tuple[str, dict[str, float], list[float]]  # a function's name, its parameters, its samples
+UNITS = {"ns": 1e-9, "us": 1e-6, "ms": 1e-3, "s": 1.0}
 DIGITS = re.compile(r"(\d+(?:\.\d+)?(?:e[+-]?\d+)?)")  # what splits by it has numbers at odd places
 
 
 class Curve(NamedTuple):
-    """Costs of one function along one parameter."""
+    """Costs of one function along one parameter; others are held ``fixed``."""
 
     name: str
     parameter: str
     sizes: Array
     samples: list[Array]
+    fixed: tuple[str, ...] = ()
 
 
 def read_curves(path: Path, parameter: str | None = None) -> list[Curve]:
@@ -35,8 +38,8 @@ def read_curves(path: Path, parameter: str | None = None) -> list[Curve]:
     parameter: the one that sizes are of; it may be left out where only one varies. The others are
     held fixed: there is a curve for each of their values.
     A CSV has the sizes in its first column and a function in each further one; rows of one size are
-    its samples. Warns of runs that Google Benchmark says failed, which are skipped. Raises
-    ValueError that says what is wrong with the file, OSError if there is none.
+    its samples. Warns of runs that failed, as Google Benchmark and hyperfine say, and skips them.
+    Raises ValueError that says what is wrong with the file, OSError if there is none.
     """
     try:
         text = path.read_text("utf-8-sig")
@@ -44,6 +47,13 @@ def read_curves(path: Path, parameter: str | None = None) -> list[Curve]:
         raise ValueError(f"{path} is no text in UTF-8: {error}") from error
     is_json = text.lstrip()[:1] in ("{", "[")
     rows = list(_read_json(text, path) if is_json else _read_csv(text, path))
+    for function, parameters, samples in rows:
+        if wrong := [it for it in samples if not 0 < it < inf]:
+            where = ", ".join([function, *(f"{k}={v:.15g}" for k, v in parameters.items())])
+            raise ValueError(
+                f"{path}, {where}: a cost is positive, not {wrong[0]:g}; leave out what was too "
+                "quick for the clock"
+            )
     values: dict[str, set[float]] = defaultdict(set)
     for _, parameters, _ in rows:
         for name, value in parameters.items():
@@ -60,22 +70,28 @@ def read_curves(path: Path, parameter: str | None = None) -> list[Curve]:
     found: dict[str, dict[float, list[float]]] = defaultdict(lambda: defaultdict(list))
     for name, parameters, samples in rows:
         if chosen in parameters:
-            fixed = (f"{k}={v:g}" for k, v in parameters.items() if k != chosen)
+            fixed = (f"{k}={v:.15g}" for k, v in parameters.items() if k != chosen)
             found[", ".join([name, *fixed])][parameters[chosen]] += samples
+    held = tuple(name for name in values if name != chosen)
     return [
-        Curve(name, chosen, np.array(sorted(cells)), [np.array(cells[n]) for n in sorted(cells)])
+        Curve(name, chosen, np.array(ns := sorted(cells)), [np.array(cells[n]) for n in ns], held)
         for name, cells in found.items()
     ]
 
 
 def _read_csv(text: str, path: Path) -> Iterator[Row]:
-    lines = [(i, line) for i, line in enumerate(csv.reader(text.splitlines()), 1) if any(line)]
+    try:
+        lines = [(i, line) for i, line in enumerate(csv.reader(text.splitlines()), 1) if any(line)]
+    except csv.Error as error:
+        raise ValueError(f"{path} is no CSV of costs: {error}") from error
     if not lines or len(lines[0][1]) < 2:
         needed = "sizes first, then a column per function, with commas between"
         raise ValueError(f"{path} is no CSV of costs: {needed}")
     first = lines[0][1]
-    headed = _number(first[0]) is None
+    headed = _number(first[0]) is None and not first[0].strip()[:1].isdigit()  # 1O0 is a mistake
     names = first if headed else ["n", *(f"column {i + 1}" for i in range(1, len(first)))]
+    if again := [name for name, times in Counter(names).items() if times > 1]:
+        raise ValueError(f"{path} has two columns {again[0]!r}: each function needs a name")
     for number, line in lines[headed:]:
         size = _number(line[0])
         if size is None or len(line) > len(names):
@@ -109,6 +125,12 @@ def _hyperfine(results: list[dict[str, Any]]) -> Iterator[Row]:
         numbers = {key: _number(value) for key, value in it.get("parameters", {}).items()}
         parameters = {key: value for key, value in numbers.items() if value is not None}
         parts, times = DIGITS.split(it["command"]), it.get("times") or [it["mean"]]
+        codes = it.get("exit_codes") or [0] * len(times)
+        if failed := sum(code != 0 for code in codes):
+            warnings.warn(f"{it['command']} failed {failed} times, skipped", stacklevel=2)
+        times = [time for time, code in zip(times, codes, strict=True) if code == 0]
+        if not times:
+            continue
         alike.setdefault(tuple(parts[::2]), []).append((parts, parameters, times))
     for runs in alike.values():
         named = {}
@@ -162,7 +184,8 @@ def _google_benchmark(benchmarks: list[dict[str, Any]]) -> Iterator[Row]:
         for place, number in enumerate(unnamed, 1):
             parameters["n" if one else f"argument {place}"] = number
         is_real = {"real_time", "manual_time"} & {*arguments}
-        yield name, parameters, [it["real_time" if is_real else "cpu_time"]]
+        unit = UNITS[it.get("time_unit", "ns")]
+        yield name, parameters, [it["real_time" if is_real else "cpu_time"] * unit]
 
 
 def _number(value: Any) -> float | None:

@@ -119,8 +119,9 @@ def judge(
     milliseconds. Raises ValueError for malformed input; data that are too few or too noisy are
     "undetermined".
     """
-    if bound not in ("tight", "upper"):
-        raise ValueError(f'bound must be "tight" or "upper", not {bound!r}')
+    require_bound(bound)
+    if resamples < 1:
+        raise ValueError(f"resamples must be at least 1, not {resamples}")
     claimed = canonical(expected, variable)
     if reference is not None and latency is not None:
         raise ValueError("give either latency or reference")
@@ -132,6 +133,8 @@ def judge(
     costs, memory = selection.account_for_memory(measured, exact, latency_error, unseen, entire)
     names = tuple(sorted({*NAMES, claimed}, key=parse))
     terms, half = np.ravel(np.asarray(lower, float)), len(costs.sizes) // 2
+    if not np.isfinite(terms).all():
+        raise ValueError(f"lower must be numbers, not {lower!r}")
     models = compare_models(costs, memory, names, terms)
     asked = costs.cost if terms.size else models.steady(costs.cost)  # the memory's part may be more
     if slope(costs.sizes[half:], asked[half:]) > STEEPER:
@@ -159,6 +162,12 @@ def judge(
         errors=dict(zip(names, errors.tolist(), strict=True)), reason=reason,
         classes=_classes(measured, models),
     )  # fmt: skip
+
+
+def require_bound(bound: str) -> None:
+    """Raise ValueError for what is no bound."""
+    if bound not in ("tight", "upper"):
+        raise ValueError(f'bound must be "tight" or "upper", not {bound!r}')
 
 
 def _decide(costs: Costs, models: Comparison, claim: int, bound: Bound) -> tuple[Outcome, str]:

@@ -9,6 +9,7 @@ is asked of many small inputs, too, that are as much together: a linear function
 for them, whatever the memory does.
 """
 
+import inspect
 import pickle
 from collections.abc import Sequence
 from dataclasses import replace
@@ -51,6 +52,9 @@ WIDER, PARTS, FEWEST_PARTS = 8, 9, 4  # … up to so many of them, at so many si
 SHORTER, WIDE = 4, 64  # of the largest size to the largest in parts; or it is so many of them
 
 
+LAZY = inspect.isgenerator, inspect.isawaitable, inspect.isasyncgen
+
+
 def measure(
     f: Function, make_input: MakeInput, sizes: ArrayLike | None = None, *, budget: float = BUDGET,
     rounds: int = 15, fresh: bool | None = None, amortized: bool = False, most: int = 1_000_000,
@@ -60,8 +64,8 @@ def measure(
 
     make_input: what makes the input of one call; it is not timed. What it draws at random it draws
     anew each time. Where a cost has several variables, it holds all but one fixed.
-    sizes: ascending, at least four over a range of four to be judged. Where none are given, 6 to 20
-    up to `most`, as far as the budget allows: about so many seconds in all. What may be linear
+    sizes: ascending, at least four over a range of four to be judged. Where none are given, up to
+    20 up to `most`, as far as the budget allows: about so many seconds in all. What may be linear
     takes as long again for small inputs. Where all this leaves the class open, the sizes between
     are measured, too, in the same time once more.
     rounds: samples per size; up to twice as many, in twice the time, while other programs keep
@@ -80,10 +84,12 @@ def measure(
     given = np.unique([] if sizes is None else np.asarray(sizes))
     if sizes is not None and (not given.size or np.any(given < 1) or np.any(given % 1)):
         raise ValueError("sizes must be whole numbers, each at least 1")
-    if most < FIRST:
-        raise ValueError(f"most must be at least {FIRST}, not {most}")
-    if not budget > 0 or rounds < 1:
-        raise ValueError(f"budget and rounds must be positive, not {budget} s and {rounds}")
+    if most < FIRST or most % 1:
+        raise ValueError(f"most must be a whole number from {FIRST} on, not {most}")
+    if not budget > 0 or rounds < 1 or rounds % 1:
+        told = f"{budget} s and {rounds}"
+        raise ValueError(f"budget must be positive and rounds a whole number, not {told}")
+    most, rounds = int(most), int(rounds)
     tried = int(given[0]) if given.size else min(TRIED, most)
     changed = _changes(f, make_input(tried))  # warms up, too
     calls = Calls(f, make_input, changed if fresh is None else fresh, clock, keep_memory())
@@ -217,7 +223,12 @@ def _seconds_of_turn(tried: list[tuple[int, float]], turn: float, least: int) ->
 def _changes(f: Function, it: Any) -> bool:
     """Whether a call changes its input, or may do so unseen."""
     before = _pickled(it)
-    f(it)
+    answer = f(it)
+    if any(lazy(answer) for lazy in LAZY):
+        raise ValueError(
+            f"what is measured returns a {type(answer).__name__}, which does its work later: "
+            "measure what runs it, such as lambda it: list(f(it))"
+        )
     return before is None or _pickled(it) != before
 
 

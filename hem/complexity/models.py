@@ -150,8 +150,9 @@ def fit(models: DesignMatrix, costs: Array, weight: Array) -> Fit:
     costs: (..., k). weight: (k,) or (..., k), 1/(cost·relative error): a size counts for its
     precision, not for its magnitude. O(m·t·s·k) per row of costs.
     """
-    u, v = (column * weight[..., None, None, :] for column in models.columns())
-    t = costs * weight
+    unit = costs.max(axis=-1)[..., None]  # or squares of large ones were lost
+    t, weighted = costs * weight, weight * unit
+    u, v = (column * weighted[..., None, None, :] for column in models.columns())
     uu, vv, uv = (np.maximum((p * q).sum(-1), 1e-30) for p, q in ((u, u), (v, v), (u, v)))
     # Not by BLAS, whose threads wait for each other, up to 60 times as long, beside other work.
     ut, vt = (np.einsum("...k,...msk->...ms", t, column) for column in (u, v))
@@ -167,6 +168,7 @@ def fit(models: DesignMatrix, costs: Array, weight: Array) -> Fit:
     row = saved.argmax(-1)
     best = [np.take_along_axis(x, row[..., None], -1)[..., 0] for x in (saved, a, b)]
     chi2 = np.maximum((t * t).sum(-1)[..., None] - best[0], 0)
+    best[1:] = (it * unit for it in best[1:])
     factor = (best[1] + best[2]) / models.scale
     term, slowdown = np.divmod(row, len(models.slowdowns.scaling))
     intercept = best[2] * models.intercept[np.arange(len(models.names)), term]

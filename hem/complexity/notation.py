@@ -7,13 +7,16 @@ faster. Constant factors do not matter, and of a sum the term that grows fastest
 import re
 from collections.abc import Iterator
 from functools import lru_cache
-from math import e, exp, log
+from math import e, exp, isfinite, log
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+
+
+LARGE = 500  # logarithm of the largest value of what outgrows all numbers
 
 
 class Order(NamedTuple):
@@ -42,9 +45,13 @@ class Order(NamedTuple):
 
     def __call__(self, n: Array) -> Array:
         """The growth function; one that outgrows all numbers is scaled to end at the largest."""
-        grown = n**self.power * (np.log(n) ** self.logs if self.logs else 1.0)
-        beyond = max(float(np.max(n)) - 500 / self.base, 0) if self.base else 0
-        return grown * np.exp(self.base * (n - beyond))
+        with np.errstate(over="ignore", divide="ignore"):
+            log = np.log(n)
+            grown = n**self.power * (log**self.logs if self.logs else 1.0) * np.exp(self.base * n)
+            if np.isfinite(grown).all():
+                return grown
+            large = self.base * n + self.power * log + (self.logs * np.log(log) if self.logs else 0)
+        return np.exp(large - np.max(large) + LARGE)
 
 
 WORDS = {
@@ -77,6 +84,8 @@ def parse(claim: str, variable: str | None = None) -> Order:
     if variable is not None and not VARIABLE.fullmatch(variable):
         raise ValueError(f"a variable is a letter, or such as n_ev, not {variable!r}")
     text = claim.strip().lower()
+    if re.search(r"log\s*\^?\s*\*(?!\*)", text):  # the iterated logarithm, of union-find
+        raise _unknown(claim)
     for pattern, plain in SPELLED:
         text = re.sub(pattern, plain, text)
     word = WORDS.get(text.strip(" ()"))
@@ -98,7 +107,7 @@ def parse(claim: str, variable: str | None = None) -> Order:
         order = reader.sum()
     except (ValueError, ZeroDivisionError):
         raise _unknown(claim) from None
-    if reader.token:
+    if reader.token or order.base < 0 or not all(map(isfinite, order)):
         raise _unknown(claim)
     return order
 

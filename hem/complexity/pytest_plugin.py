@@ -19,6 +19,7 @@ import subprocess
 import warnings
 from collections.abc import Iterator
 from datetime import UTC, datetime
+from math import inf
 from pathlib import Path
 from typing import Any
 
@@ -26,7 +27,7 @@ import pytest
 from numpy.typing import ArrayLike
 
 from hem.complexity.calls import Function, MakeInput
-from hem.complexity.judge import Verdict, judge
+from hem.complexity.judge import Verdict, judge, require_bound
 from hem.complexity.measure import BUDGET, measure
 from hem.complexity.notation import canonical
 
@@ -34,6 +35,7 @@ POSITIONAL = "expected", "make_input", "sizes"  # of the mark
 MEASURING = ("sizes", "budget", "rounds", "fresh", "amortized", "most", "clock")
 KNOWN = {*POSITIONAL, *MEASURING, *inspect.signature(judge).parameters} - {"samples"}
 DOINGS = "pass", "warn", "fail"
+DEFAULTS = {"violated": "fail", "undetermined": "warn"}
 UNMEASURED = "a marked test is a function of complexity_input, or one that asks for complexity"
 UNCALLED = "it asks for complexity and never calls it"
 UNMARKED = "it asks for complexity_input and has no mark complexity"
@@ -50,7 +52,7 @@ class ComplexityWarning(UserWarning):
 def pytest_addoption(parser: pytest.Parser) -> None:
     """What is done about a verdict, and where runs are kept."""
     group = parser.getgroup("complexity", "growth of costs")
-    for outcome, default in (("violated", "fail"), ("undetermined", "warn")):
+    for outcome, default in DEFAULTS.items():
         words = f"What an {outcome} claim does: {', '.join(DOINGS)}. Default: {default}."
         group.addoption(f"--complexity-{outcome}", choices=DOINGS, help=words)
         parser.addini(f"complexity_{outcome}", words, default=default)
@@ -65,6 +67,13 @@ def pytest_configure(config: pytest.Config) -> None:
     """Declare the mark, and begin a list of what is told at the end."""
     mark = 'complexity(expected, make_input=None, sizes=None, …): what it costs grows as "O(n)"'
     config.addinivalue_line("markers", mark)
+    for outcome in DEFAULTS:
+        _doing(config, f"complexity_{outcome}")
+    if (budget := config.getoption("complexity_budget")) is not None and not 0 < budget < inf:
+        raise pytest.UsageError(f"--complexity-budget is a number of seconds, not {budget:g}")
+    history = config.getoption("complexity_history")
+    if history and (config.invocation_params.dir / history).is_dir():
+        raise pytest.UsageError(f"--complexity-history is a file; {history} is a folder")
     config.stash[LINES], config.stash[CHANGES] = [], []
 
 
@@ -106,7 +115,7 @@ class Complexity:
             warnings.warn(ComplexityWarning(f"{self._item.nodeid}: {PARALLEL}"), stacklevel=2)
             pytest.skip(PARALLEL)
         told = {key: options.pop(key) for key in MEASURING if key in options}
-        if budget := config.getoption("complexity_budget"):
+        if (budget := config.getoption("complexity_budget")) is not None:
             told["budget"] = budget
         self.verdict = verdict = measure(f, make, **told).judge(**options)
         self.calls += 1
@@ -152,16 +161,18 @@ def pytest_runtest_call(item: pytest.Item) -> Iterator[None]:
 
 def _measure_body(item: pytest.Function) -> None:
     body, names = item.obj, item._fixtureinfo.argnames
-    awaited = inspect.iscoroutinefunction(body)
-    if "complexity" in names and not awaited:
+    awaited, marked = inspect.iscoroutinefunction(body), item.get_closest_marker("complexity")
+    by_fixture = marked and "complexity" in item.fixturenames and "complexity_input" not in names
+    if ("complexity" in names or by_fixture) and not awaited:
 
         def run_body(**given: Any) -> None:
             body(**given)
-            if not given["complexity"].calls:
+            measured: Any = item.funcargs["complexity"]
+            if not measured.calls:
                 pytest.fail(f"{item.nodeid} is not measured: {UNCALLED}", pytrace=False)
 
         item.obj = run_body
-    elif item.get_closest_marker("complexity") and "complexity" not in item.fixturenames:
+    elif marked:
         if "complexity_input" not in names or awaited:
             pytest.fail(f"{item.nodeid} is not measured: {UNMEASURED}", pytrace=False)
         given = {name: item.funcargs[name] for name in names}
@@ -181,19 +192,26 @@ def _mistake(options: dict[str, Any]) -> str:
         return 'say what is claimed: expected="O(n)"'
     try:
         canonical(options["expected"], options.get("variable"))
+        require_bound(options.get("bound", "tight"))
     except ValueError as error:
         return str(error)
     return ""
 
 
 def _settle(config: pytest.Config, words: str, key: str) -> None:
-    doing = config.getoption(key) or config.getini(key)
+    doing = _doing(config, key)
     if doing == "fail":
         pytest.fail(words, pytrace=False)
     elif doing == "warn":
         warnings.warn(ComplexityWarning(words), stacklevel=3)
-    elif doing != "pass":
+
+
+def _doing(config: pytest.Config, key: str) -> str:
+    """What is done about an outcome; UsageError where the settings say something else."""
+    doing: str = config.getoption(key) or config.getini(key)
+    if doing not in DOINGS:
         raise pytest.UsageError(f"{key} is {', '.join(DOINGS)}, not {doing!r}")
+    return doing
 
 
 def _keep(item: pytest.Item, call: int, verdict: Verdict, path: Path) -> None:
@@ -205,13 +223,14 @@ def _keep(item: pytest.Item, call: int, verdict: Verdict, path: Path) -> None:
         stash[COMMIT] = _commit(item.config.rootpath)
     now["commit"] = stash[COMMIT]
     now |= {key: getattr(verdict, key) for key in TOLD}
-    text = path.read_text("utf-8", "replace") if path.exists() else ""
+    text = path.read_text("utf-8-sig", "replace") if path.exists() else ""
     before, unread = None, list[str]()
     for number, line in enumerate(text.splitlines(), 1):
         try:
             it = {"call": 1} | json.loads(line)
             mine = all(it[key] == now[key] for key in ("test", "call"))
-            before = {key: it[key] for key in ("commit", *TOLD)} if mine else before
+            told = {key: type(now[key])(it[key]) for key in ("commit", *TOLD)}
+            before = told if mine else before
         except (ValueError, TypeError, KeyError):
             unread.append(str(number))
     changes = stash[CHANGES]
@@ -244,8 +263,10 @@ def _change(before: dict[str, Any], now: dict[str, Any]) -> str:
     apart = now["slope_low"] > before["slope_high"] or before["slope_low"] > now["slope_high"]
     if before["outcome"] == now["outcome"] and (before["answer"] == now["answer"] or not apart):
         return ""
+    claims = before["expected"] != now["expected"]
     was, became = (
-        f"{it['outcome']}, {it['answer'] or 'no class'}, slope {it['slope']:.2f}"
+        f"{claims * (it['expected'] + ' is claimed, ')}{it['outcome']}, "
+        f"{it['answer'] or 'no class'}, slope {it['slope']:.2f}"
         for it in (before, now)
     )
     return f"{was} at {before['commit']}; {became} at {now['commit']}"

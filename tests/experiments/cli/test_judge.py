@@ -65,6 +65,16 @@ def test_the_variable_of_a_claim_is_named_as_the_sizes_are(
     assert "scan [/ms]" in hem(str(file), "--expected", f"O({head})")[1]
 
 
+def test_a_claim_on_what_is_held_fixed_is_no_claim_on_the_sizes(tmp_path: Path) -> None:
+    runs = [
+        {"name": f"BM/n:{n}/m:{m}", "cpu_time": n * m} for n in (8, 64, 512, 4096) for m in (3, 30)
+    ]
+    file = tmp_path / "two.json"
+    file.write_text(json.dumps({"benchmarks": runs}))
+    asked = str(file), "--exact", "--parameter", "n", "--expected"
+    assert [hem(*asked, claim)[0] for claim in ("O(n)", "O(m)", "O(n·m)")] == [0, 1, 0]
+
+
 def test_sizes_without_a_name_are_judged(costs: Path) -> None:
     costs.write_text(costs.read_text().replace("n,pairs", ",pairs"))
     assert hem(str(costs), "--expected", "O(n)")[0] == 1

@@ -296,6 +296,10 @@ def test_verdicts_repeat_and_know_neither_unit_nor_order() -> None:
     assert c.latency is not None
     first = judge(c.sizes, c.samples, "O(√n)", c.latency)
     assert judge(c.sizes, c.samples, "O(√n)", c.latency) == first
+    for unit in (1e-30, 1e30):  # squares of a unit as large end no sum
+        n = [2**k for k in range(4, 21, 2)]
+        counts = judge(n, [[unit * x**3] for x in n], "O(n³)", exact=True)
+        assert (counts.outcome, counts.answer) == ("consistent", "O(n³)")
     back = slice(None, None, -1)
     scaled = [1e9 * s for s in c.samples[back]]
     again = judge(c.sizes[back], scaled, "O(sqrt(n))", 7 * c.latency[back])
@@ -336,6 +340,8 @@ def test_a_verdict_survives_json() -> None:
         ({"expected": "O(n·m)"}, "say which"),
         ({"expected": "N/A"}, "unknown growth class"),
         ({"bound": "loose"}, "bound"),
+        ({"resamples": 0}, "resamples must be at least 1"),
+        ({"lower": [float("nan")]}, "lower must be numbers"),
     ],
 )
 def test_malformed_input_is_named(change: dict[str, Any], message: str) -> None:

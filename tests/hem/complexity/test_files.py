@@ -34,17 +34,34 @@ CSV = "n,sort\n10,3\n20,7\n10,4\n"
 
 
 @pytest.mark.parametrize(
-    ("content", "name"),
-    [(PYTEST_BENCHMARK, "test_sort"), (GOOGLE, "BM_Sort"), (HYPERFINE, "sort {n}"), (CSV, "sort")],
+    ("content", "name", "unit"),
+    [
+        (PYTEST_BENCHMARK, "test_sort", 1),
+        (GOOGLE, "BM_Sort", 1e-9),
+        (HYPERFINE, "sort {n}", 1),
+        (CSV, "sort", 1),
+    ],
     ids=["pytest-benchmark", "Google Benchmark", "hyperfine", "CSV"],
 )
-def test_samples_are_told_by_size(tmp_path: Path, content: Any, name: str) -> None:
+def test_samples_are_told_by_size(tmp_path: Path, content: Any, name: str, unit: float) -> None:
     file = tmp_path / "costs"
     file.write_text(content if isinstance(content, str) else json.dumps(content))
     (curve,) = read_curves(file)
     assert (curve.name, curve.parameter) == (name, "n")
     assert curve.sizes.tolist() == [10, 20]
-    assert [row.tolist() for row in curve.samples] == [[3, 4], [7]]
+    for row, told in zip(curve.samples, ([3, 4], [7]), strict=True):
+        assert row / unit == pytest.approx(told)
+
+
+def test_times_of_several_units_are_one_curve_of_seconds(tmp_path: Path) -> None:
+    units = {10: ("ns", 1e9), 20: ("us", 1e6), 30: ("ms", 1e3), 40: ("s", 1)}
+    runs = [
+        {"name": f"BM/{n}", "cpu_time": n * per, "time_unit": unit}
+        for n, (unit, per) in units.items()
+    ]
+    (tmp_path / "file").write_text(json.dumps({"benchmarks": runs}))
+    (curve,) = read_curves(tmp_path / "file")
+    assert [it[0] for it in curve.samples] == pytest.approx([*units])
 
 
 def test_parameters_that_are_not_asked_for_are_held_fixed(tmp_path: Path) -> None:
@@ -56,7 +73,9 @@ def test_parameters_that_are_not_asked_for_are_held_fixed(tmp_path: Path) -> Non
     file = tmp_path / "costs.json"
     file.write_text(json.dumps({"benchmarks": runs}))
     assert [it.name for it in read_curves(file, "n")] == ["BM/real_time, m=5", "BM/real_time, m=6"]
-    assert [row.tolist() for row in read_curves(file, "n")[1].samples] == [[6], [12]]
+    six = read_curves(file, "n")[1]
+    assert [row[0] / 1e-9 for row in six.samples] == pytest.approx([6, 12])
+    assert six.fixed == ("m",)
     with pytest.raises(ValueError, match="varies n, m: say which"):
         read_curves(file)
     with pytest.raises(ValueError, match="no parameter 'k'"):
@@ -137,6 +156,24 @@ def test_runs_that_failed_are_skipped_and_named(tmp_path: Path) -> None:
     assert curve.sizes.tolist() == [10, 20]
 
 
+def test_commands_that_failed_cost_nothing(tmp_path: Path) -> None:
+    runs = [
+        {"command": f"sort {n}", "parameters": {"n": str(n)}, "times": [n, 1, n], "exit_codes": it}
+        for n, it in ((10, [0, 127, 0]), (20, [0, 0, 0]), (30, [127, 127, 127]))
+    ]
+    (tmp_path / "file").write_text(json.dumps({"results": runs}))
+    with pytest.warns(UserWarning, match="sort 30 failed 3 times, skipped"):
+        (curve,) = read_curves(tmp_path / "file")
+    assert [it.tolist() for it in curve.samples] == [[10, 10], [20, 1, 20]]
+
+
+def test_values_that_differ_in_the_last_digit_are_two_curves(tmp_path: Path) -> None:
+    rows = [(f"a.py::t[{n}-{k}]", {"n": n, "k": k}, {}) for n in (1, 2) for k in (2**20, 2**20 + 1)]
+    (tmp_path / "file").write_text(json.dumps(written_of(*rows)))
+    names = [it.name for it in read_curves(tmp_path / "file", "n")]
+    assert names == ["t, k=1048576", "t, k=1048577"]
+
+
 def test_cells_may_be_empty_and_a_file_that_is_no_text_is_named(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("n,a,b\n1,2,\n2, ,4\n3,5,6\n")
     assert [it.sizes.tolist() for it in read_curves(tmp_path / "file")] == [[1, 3], [2, 3]]
@@ -154,6 +191,11 @@ def test_cells_may_be_empty_and_a_file_that_is_no_text_is_named(tmp_path: Path) 
         ("n,a\n\n1,2\nx,3\n", "row 4"),
         ("n,a\n1,2\n2,3 s\n", "row 3, a: '3 s' is no number"),
         ("n,a\n1,2\n1,3\n", "nothing varies"),
+        ("n,a,a\n1,2,3\n2,3,4\n", "two columns 'a'"),
+        ("n,fast\n1,0\n2,3\n", "fast, n=1: a cost is positive, not 0"),
+        ("n,a\n1,nan\n2,3\n", "a, n=1: a cost is positive, not nan"),
+        ("1O00,1\n2000,2\n", "row 1: a size and a number"),
+        ("n,a\n1," + "9" * 200_000, "no CSV of costs: field larger"),
         ("{}", "no JSON of .*: it has no benchmarks and no results"),
         ("[1, 2]", "no JSON of"),
         ("{", "no JSON of"),

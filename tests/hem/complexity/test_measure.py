@@ -645,13 +645,26 @@ def test_no_size_is_larger_than_the_largest_that_is_allowed(clock: Clock, most: 
         clock.work(1e-6 * n)
 
     assert measure(work, int, most=most).sizes[-1] == max(asked) == most
-    with pytest.raises(ValueError, match="most must be at least 4, not 3"):
-        measure(work, int, most=3)
+    for wrong in (3, 1e3 + 0.5):
+        with pytest.raises(ValueError, match="most must be a whole number from 4 on, not"):
+            measure(work, int, most=wrong)  # type: ignore[arg-type]
 
 
-@pytest.mark.parametrize("wrong", [{"budget": -1}, {"budget": 0}, {"rounds": 0}])
+def test_what_works_later_is_not_measured(clock: Clock) -> None:
+    async def await_it(n: int) -> int:
+        return n
+
+    def some(n: int) -> Iterator[int]:
+        yield from range(n)
+
+    for lazy in (await_it, some):
+        with pytest.raises(ValueError, match="does its work later: measure what runs it"):
+            measure(lazy, int)
+
+
+@pytest.mark.parametrize("wrong", [{"budget": -1}, {"budget": 0}, {"rounds": 0}, {"rounds": 2.5}])
 def test_no_time_and_no_rounds_are_refused(wrong: dict[str, int]) -> None:
-    with pytest.raises(ValueError, match="budget and rounds must be positive"):
+    with pytest.raises(ValueError, match="budget must be positive and rounds a whole number"):
         measure(len, range, **wrong)  # type: ignore[arg-type]
 
 

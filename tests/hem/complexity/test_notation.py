@@ -76,6 +76,7 @@ def test_of_several_variables_one_is_varied_and_the_others_are_held_fixed() -> N
         "", "N/A", "O(n!)", "O(n", "O(n))", "log log n", "n^n", "fast",
         "O(log 2n)", "O(n log 2 n)",
         "O(n2)", "O(3n2)", "log3(n)", "n^1/2", "n^2/2", "n - 2n", "n^-1", "2^{2n}",
+        "O(log* n)", "O(n log*n)", "O(n log^* n)", "O(0.5^n)", f"n^{10**400}",
     ],
 )  # fmt: skip
 def test_what_is_no_growth_class_is_refused(claim: str) -> None:
@@ -96,3 +97,6 @@ def test_exponentials_keep_their_shape_where_numbers_end() -> None:
     large = parse("O(2^n)")(np.array([10.0, 9_999.0, 10_000.0]))
     assert np.isfinite(large).all()
     assert large[2] / large[1] == pytest.approx(2)
+    one, other = parse("O(n^200 log^9 n)")(np.array([2e5, 3e5]))
+    assert np.isfinite(other)
+    assert other / one == pytest.approx(1.5**200 * (np.log(3e5) / np.log(2e5)) ** 9)

@@ -214,6 +214,7 @@ def test_history_tells_calls_of_one_test_apart_and_leaves_out_what_it_cannot_rea
         ('expected="O(m n)"', "'O(m n)' names m, n: say which"),
         ('expected="fast"', "unknown growth class 'fast'"),
         ('expected="O(n)", bounds="upper"', "unknown: bounds; known are *bound*"),
+        ('expected="O(n)", bound="lower"', 'bound must be "tight" or "upper"'),
     ],
 )
 @pytest.mark.parametrize("marked", [False, True])
@@ -324,14 +325,71 @@ def test_a_test_that_never_calls_what_it_asks_for_fails(pytester: pytest.Pyteste
         def test_plain(complexity):
             pass
 
+        @pytest.fixture
+        def helper(complexity):
+            return complexity
+
+        @pytest.mark.complexity("O(n)")
+        def test_helped(helper):
+            pass
+
         def test_other_reasons_come_first(complexity):
             assert False, "of its own"
     """)
     result = pytester.runpytest("-p", PLUGIN)
-    result.assert_outcomes(failed=4)
-    names = "test_marked?1?", "test_marked?2?", "test_plain"
+    result.assert_outcomes(failed=5)
+    names = "test_marked?1?", "test_marked?2?", "test_plain", "test_helped"
     words = [f"*::{it} is not measured: it asks for complexity and never calls it" for it in names]
     result.stdout.fnmatch_lines([*words, "*AssertionError: of its own*"])
+
+
+def test_a_fixture_that_asks_for_complexity_keeps_no_body_from_being_measured(
+    run, pytester: pytest.Pytester
+) -> None:
+    pytester.makeconftest("""
+        import pytest
+
+        @pytest.fixture(autouse=True)
+        def keep(complexity):
+            yield
+    """)
+    run("-k", "test_body", power=2).assert_outcomes(failed=1, deselected=2)
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (("-o", "complexity_violated=nope"), "complexity_violated is pass, warn, fail, not 'nope'"),
+        (("--complexity-budget", "0"), "--complexity-budget is a number of seconds, not 0"),
+        (("--complexity-history", "."), "--complexity-history is a file; * is a folder"),
+    ],
+)
+def test_settings_that_are_none_are_told_before_any_test(run, options, message: str) -> None:
+    result = run(*options)
+    result.stderr.fnmatch_lines([f"*{message}*"])
+    assert "test_body" not in result.stdout.str()
+
+
+def test_history_tells_that_the_claim_is_another_and_passes_over_what_is_no_verdict(
+    run, pytester: pytest.Pytester
+) -> None:
+    history, kept = (
+        ("-k", "test_body", "--complexity-history", "it.jsonl"),
+        pytester.path / "it.jsonl",
+    )
+    run(*history)
+    before = kept.read_text()
+    kept.write_text("\ufeff" + before.replace('"O(n)", "outcome"', '"O(1)", "outcome"').replace(
+        "consistent", "violated"), "utf-8")  # fmt: skip
+    result = run(*history)
+    result.stdout.fnmatch_lines(
+        ["*: O(1) is claimed, violated, O(n), *; O(n) is claimed, consistent, O(n), *"]
+    )
+    line = json.loads(before)
+    kept.write_text(json.dumps(line | {"slope_low": None}) + "\n")
+    result = run(*history)
+    result.assert_outcomes(passed=1, deselected=2)
+    result.stdout.fnmatch_lines(["*it.jsonl: not read: line 1"])
 
 
 def test_a_mark_takes_its_first_options_by_place(pytester: pytest.Pytester) -> None:
