@@ -29,8 +29,9 @@ def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
     give_back()  # memory that is used again would not be traced
     tracemalloc.start()
     s = structures.build(case.structure, mesh, case.reference_bytes)
-    unwritten = behind(*s.arrays)
-    traced, peak = (it - unwritten for it in tracemalloc.get_traced_memory())
+    _, peak = tracemalloc.get_traced_memory()
+    unwritten, kept = behind(*s.arrays), give_back()  # what is kept for later is nobody's
+    traced, peak = tracemalloc.get_traced_memory()[0] - unwritten, peak - unwritten - kept
     tracemalloc.stop()
     fields = s.memory()
     if s.compiled:

@@ -147,6 +147,7 @@ def judge(
     errors = np.sqrt(np.mean((fitted / costs.cost - 1) ** 2, axis=1))
     replicates = resample(costs, fitted[models.best], resamples, seed)
     tails = [(1 - confidence) / 2, (1 + confidence) / 2]
+    told = float(slope(costs.sizes, models.steady(costs.cost)))  # a model may miss it by a little
     low, high = np.quantile(slope(costs.sizes, models.steady(replicates)), tails)
     slowdown = models.design.slowdowns.scaling[models.fit.slowdown].max(axis=1)
     with_lower = [has_lower_terms(parse(name)) for name in names]
@@ -155,8 +156,7 @@ def judge(
     coefficients = [dict(zip(COEFFICIENTS, row, strict=True)) for row in terms]
     return Verdict(
         outcome, claimed, bound, names[models.best],
-        slope=float(slope(costs.sizes, models.steady(costs.cost))),
-        slope_low=float(low), slope_high=float(high),
+        slope=told, slope_low=min(float(low), told), slope_high=max(float(high), told),
         raw_slope=float(slope(costs.sizes, costs.cost)),
         noise=costs.scatter, coefficients=dict(zip(names, coefficients, strict=True)),
         errors=dict(zip(names, errors.tolist(), strict=True)), reason=reason,

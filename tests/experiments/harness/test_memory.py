@@ -8,7 +8,8 @@ import pytest
 
 import hem
 import structures
-from experiments.harness import memory
+from experiments import bench_memory
+from experiments.harness import PRESETS, memory, time_rounds
 from experiments.harness.cases import Case
 from experiments.harness.memory import VARIABLE, available, estimate, size_of
 from experiments.runs.catalog import experiments
@@ -66,3 +67,12 @@ def test_what_is_available_is_the_least_that_anybody_allows(monkeypatch, tmp_pat
 )
 def test_sizes_are_read_as_people_write_them(text, size):
     assert size_of(text) == size
+
+
+@pytest.mark.parametrize("structure", ["triangle_neighbor", "half_edge"])
+def test_addresses_that_were_never_written_are_not_weighed(structure: str) -> None:
+    case = Case(structure, "torus", 270_000, reference_bytes=8)  # so that arrays have addresses
+    found = bench_memory.measure(case, PRESETS["smoke"], time_rounds)
+    (model,) = found.samples
+    assert model <= found.detail["traced"] < 1.01 * model
+    assert model < found.detail["peak"] < 2 * model

@@ -290,6 +290,14 @@ def test_the_slope_interval_holds_the_exponent_as_often_as_it_says(exponent: flo
     assert np.mean([v.slope_high - v.slope_low for v in verdicts]) < 0.05
 
 
+def test_an_interval_holds_its_own_slope() -> None:
+    sizes = [100, 316, 1_000, 3_160, 10_000]
+    falling = [[57.0], [54.0], [51.0], [48.0], [45.0]]  # O(1) comes closest
+    found = judge(sizes, falling, exact=True)
+    assert found.slope < -0.04
+    assert found.slope_low <= found.slope <= found.slope_high
+
+
 def test_verdicts_repeat_and_know_neither_unit_nor_order() -> None:
     rng = np.random.default_rng(7)
     c = make_curve(rng, "O(√n)", "latency known", 1.0, 0.05)
