@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 
+import numpy as np
 import pytest
 
 from experiments.report import MissingError, uses
@@ -47,6 +48,16 @@ def test_whoever_is_not_compared_is_named(run: Run) -> None:
         for use in uses.USES.values():
             told = re.search(f"for (all uses|“{use.title}”)[^;.]* {it.title},", text)
             assert bool(told) == (not (it.compiled and use.suits(it))), (it.title, use.title)
+
+
+def test_what_is_asked_is_compared_by_what_the_eight_queries_of_table_1_take(run: Run) -> None:
+    cases = run.cases.query("experiment == 'bench_queries' and order == 'random'")
+    cases = cases[cases["valence"].isna() & (cases["subject"] != "vertex_vertices")]
+    found = uses.ranking(run, "asked")
+    for name in ("indexed", "half_edge"):
+        mine = cases[(cases["structure"] == name) & (cases["vertices"] == found.name)]
+        assert len(mine) == 8
+        assert found[name] == pytest.approx(mine["samples"].map(np.median).sum())
 
 
 def test_small_meshes_are_compared_on_the_smallest(run: Run) -> None:
