@@ -26,6 +26,7 @@ from experiments.claims.quantities import MIXES, break_even, judge_sentences, se
 from experiments.claims.verdicts import (
     BY_TIME,
     CASE_ERROR,
+    DETERMINED,
     Family,
     judge_cells,
     judge_families,
@@ -33,8 +34,8 @@ from experiments.claims.verdicts import (
 )
 
 __all__ = [
-    "BY_TIME", "CASE_ERROR", "CLAIMED", "ERRATA", "MEMORY", "MIXES", "NOT_POSSIBLE", "NO_CLAIM",
-    "SENTENCES", "Between", "Claim", "Curve", "Curves", "Erratum", "Exactly", "Family", "Growth",
-    "JudgedClaim", "Kind", "Outcome", "break_even", "curves", "judge_cells", "judge_families",
-    "judge_run", "judge_sentences", "load_claims", "sentence_claims", "tally",
+    "BY_TIME", "CASE_ERROR", "CLAIMED", "DETERMINED", "ERRATA", "MEMORY", "MIXES", "NOT_POSSIBLE",
+    "NO_CLAIM", "SENTENCES", "Between", "Claim", "Curve", "Curves", "Erratum", "Exactly", "Family",
+    "Growth", "JudgedClaim", "Kind", "Outcome", "break_even", "curves", "judge_cells",
+    "judge_families", "judge_run", "judge_sentences", "load_claims", "sentence_claims", "tally",
 ]  # fmt: skip

@@ -140,9 +140,9 @@ PRESETS = {
         printed_sizes=(50, 100, 200, 400), models=("teapot", "bunny"), skipped=("bench_fracture",),
         rounds=9, round_seconds=0.0015, case_seconds=0.25, latency_mib=32,
     ),
-    "standard": Preset("one family of each kind up to 1,000,000 vertices, one to two hours"),
+    "standard": Preset("one family of each kind up to 1,000,000 vertices, half an hour to two"),
     "full": Preset(
-        what="every family up to 1,000,000 vertices with finer steps, some two hours",
+        what="every family up to 1,000,000 vertices with finer steps, some hours",
         families=("torus", "sphere", "grid", "cone", "terrain", "isosurface"),
         sizes=_geometric(100, 1_000_000, 4), work_sizes=_geometric(100, 32_000, 4),
         build_sizes=_geometric(100, 1_000_000, 4),

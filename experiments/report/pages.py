@@ -14,7 +14,16 @@ import pandas as pd
 from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescape
 from markupsafe import Markup
 
-from experiments.claims import ERRATA, SENTENCES, Erratum, JudgedClaim, Kind, Outcome, curves
+from experiments.claims import (
+    DETERMINED,
+    ERRATA,
+    SENTENCES,
+    Erratum,
+    JudgedClaim,
+    Kind,
+    Outcome,
+    curves,
+)
 from experiments.harness import Axis, Table
 from experiments.report import session
 from experiments.report import tables as written
@@ -229,17 +238,20 @@ def closing(claims: Iterable[JudgedClaim], points: Mapping[str, Sequence[str]]) 
     """What a chapter comes to, sentence by sentence, each with the claims that it rests on.
 
     ``points``: by sentence the keys of claims that must be consistent, or with "not " before them
-    violated. Where the run says something else, so does the page. Braces in a sentence are what was
-    found of these claims. Raises KeyError for a claim that there is none of.
+    violated. Where the run says something else or cannot tell, so does the page. Braces in a
+    sentence are what was found of these claims. Raises KeyError for a claim that there is none of.
     """
     judged = {it.claim.key: it for it in claims}
     rows = []
     for text, keys in points.items():
         rests = [judged[key.removeprefix("not ")] for key in keys]
-        denied = [key.startswith("not ") for key in keys]
-        expected = [Outcome.VIOLATED if it else Outcome.CONSISTENT for it in denied]
-        follows = [it.outcome for it in rests] == expected
-        rows.append((text.format(*(it.found for it in rests)), follows, rests))
+        nots = [key.startswith("not ") for key in keys]
+        expected = [Outcome.VIOLATED if it else Outcome.CONSISTENT for it in nots]
+        pairs = list(zip((it.outcome for it in rests), expected, strict=True))
+        denied = any({found, wanted} == DETERMINED for found, wanted in pairs)
+        doubt = "This run does not bear it out: " if denied else "This run cannot tell: "
+        doubt *= any(found != wanted for found, wanted in pairs)
+        rows.append((text.format(*(it.found for it in rests)), doubt, rests))
     return part("closing", rows)
 
 

@@ -121,7 +121,7 @@ def scaling(run: Run, axis: Axis, subjects: Iterable[str] = QUERIES) -> Plot:
 def overview(run: Run) -> Plot:
     """The study in one picture: the faces around a vertex, by work and by time."""
     subject, shown = "vertex_faces", (Axis.WORK_FACES, Axis.RANDOM_FACES)
-    titles = {axis.key: f"Vertex → Faces, {axis.label}" for axis in shown}
+    titles = {axis.key: f"Vertex → Faces: {style.axis_label(axis)}" for axis in shown}
     costs = pd.concat(_costs(run, axis, [subject]).assign(axis=axis.key) for axis in shown)
 
     def also(axes: Axes, key: str) -> None:

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 
 import pytest
 
-from experiments.claims import JudgedClaim, judge_run
+from experiments.claims import JudgedClaim, Outcome, judge_run
 from experiments.harness import Measurement
 from experiments.report import MissingError, comparisons, pages, uses
 from experiments.report.tables import table_1_in_words
@@ -54,6 +55,16 @@ def test_a_sentence_is_borne_out_where_all_that_it_rests_on_is_so(claims, keys, 
     text = pages.closing(claims, {"It is so.": keys})
     assert ("does not bear it out: It is so." in text) != follows
     assert all(f"#{key.removeprefix('not ')}" in text for key in keys)
+
+
+def test_a_sentence_on_what_cannot_be_told_is_neither_borne_out_nor_denied(claims) -> None:
+    unsure = [
+        replace(it, outcome=Outcome.UNDETERMINED) if it.claim.key == HOLDS else it for it in claims
+    ]
+    assert "This run cannot tell: It is so." in pages.closing(unsure, {"It is so.": [HOLDS]})
+    assert "does not bear it out: It is so." in pages.closing(
+        unsure, {"It is so.": [HOLDS, DENIED]}
+    )
 
 
 def test_a_sentence_tells_what_was_found(claims) -> None:
