@@ -1,8 +1,9 @@
 """What the site takes from elsewhere in the project, so that every fact stands once.
 
 Whole pages come from files that stand where readers of the code look for them, a section of
-another file where a page says ``{{ README.md#The library }}``, the commands from the program, and
-the pictures of the gallery from the code beside them.
+another file where a line is nothing but a link to it with a title, the commands from the program,
+and the pictures of the gallery from the code beside them. Pages link to the files, so that they can
+be read in the repository, too.
 """
 
 from __future__ import annotations
@@ -29,7 +30,9 @@ PAGES = {
 
 PLACES = {source: page for page, source in PAGES.items()} | {"README.md": "index.md"}
 LINK = re.compile(r"(!?)\[([^\]]*)\]\(([^)#:\s]+)(#[^)\s]*)?\)")
-INCLUDED = re.compile(r"(?<!\$)\{\{ ([^\s#]+)(?:#(.+?))? \}\}")
+INCLUDED = re.compile(r'(?m)^\[[^\]]+\]\(\.\./([^\s#)]+)(?:#(\S+))? "[^"]+"\)$')
+SECTION = re.compile(r"(?ms)^## ([^\n]+)\n(.*?)(?=^## |\Z)")
+MARKED = re.compile(r"(?ms)^<!-- (\w+) -->\n(.*?)^<!-- end of \1 -->")
 ADVICE = "results/reference/advice.json"  # told in words where a page includes it
 MADE = re.compile(r"(?s)```python\n(.*?)```\n\n!\[([^\]]*)\]\((gallery/\w+\.png)\)")
 
@@ -54,19 +57,21 @@ def on_files(files: Files, config: Any) -> Files:
 def on_page_markdown(markdown: str, page: Any, files: Files, **_: Any) -> str:
     """Put sections of other files where they are asked for; say which pictures are missing."""
 
+    uri = page.file.src_uri
+
     def included(found: re.Match[str]) -> str:
-        source, title = found.groups()
+        source, anchor = found.groups()
         if source == ADVICE:
             return _trust_of_advice()
-        text = _section((ROOT / source).read_text("utf-8"), title)
-        return _relinked(text, source, page.file.src_uri)
+        text = _section((ROOT / source).read_text("utf-8"), anchor)
+        return _relinked(text, source, uri)
 
     def shown(found: re.Match[str]) -> str:
         if files.get_file_from_path(found[3]):
             return found[0]
         return f"```python\n{found[1]}```\n\n*{found[2]}: to draw it needs OpenGL.*"
 
-    return MADE.sub(shown, INCLUDED.sub(included, markdown))
+    return _relinked(MADE.sub(shown, INCLUDED.sub(included, markdown)), f"docs/{uri}", uri)
 
 
 def _trust_of_advice() -> str:
@@ -76,13 +81,13 @@ def _trust_of_advice() -> str:
     return advice.in_words(json.loads((ROOT / ADVICE).read_text("utf-8")))
 
 
-def _section(text: str, title: str) -> str:
-    """What stands below a heading, or from the comment with this word to its end."""
-    patterns = f"(?ms)^<!-- {title} -->\n(.*?)^<!-- end of", f"(?ms)^## {title}\n(.*?)(?=^## |\\Z)"
-    for pattern in patterns:
-        if found := re.search(pattern, text):
-            return found[1].strip()
-    raise ValueError(f"nothing is headed {title!r}")
+def _section(text: str, anchor: str) -> str:
+    """What stands below a heading, by its anchor: all, or what is between marks there."""
+    for title, body in SECTION.findall(text):
+        if re.sub(r"[^\w -]", "", title.lower()).replace(" ", "-") == anchor:
+            marked = MARKED.search(body)
+            return (marked[2] if marked else body).strip()
+    raise ValueError(f"nothing is headed {anchor!r}")
 
 
 def _relinked(text: str, source: str, page: str) -> str:
@@ -91,8 +96,8 @@ def _relinked(text: str, source: str, page: str) -> str:
     def moved(found: re.Match[str]) -> str:
         image, words, target, anchor = found.groups(default="")
         path = posixpath.normpath(posixpath.join(posixpath.dirname(source), target))
-        path = PLACES.get(path, path)
-        if not image and path not in PLACES.values():
+        path = PLACES.get(path, path.removeprefix("docs/"))
+        if not (image or path in PLACES.values() or (ROOT / "docs" / path).is_file()):
             return words
         return f"{image}[{words}]({posixpath.relpath(path, posixpath.dirname(page))}{anchor})"
 

@@ -83,7 +83,10 @@ class Measured:
     seconds: float
 
     def __post_init__(self) -> None:
-        require_known("structure", [self.structure], REGISTRY)
+        compiled = [name for name, it in REGISTRY.items() if it.compiled]  # as its program was
+        require_known("structure", [self.structure], compiled)
+        if not self.vertices > 0:
+            raise ValueError(f"it was measured on a mesh of some vertices, not {self.vertices:g}")
 
 
 @dataclass(frozen=True)

@@ -160,6 +160,11 @@ class Claim:
         """Whether there is anything to be violated."""
         return self.expects not in (Growth(), Exactly(None))
 
+    @property
+    def claimant(self) -> Kind:
+        """Who claims it; nobody where a document prints that there is nothing to claim."""
+        return self.kind if self.claims_something else Kind.NOBODY
+
 
 @dataclass(frozen=True, eq=False)
 class JudgedClaim:

@@ -39,7 +39,8 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-PAGES, DOCUMENT = Path("report/html"), Path("report/report.pdf")  # where the report goes
+PAGE, PAGES, DOCUMENT = Path("report"), Path("report/html"), Path("report/report.pdf")
+"""Where the report goes."""
 
 
 def _show_version(wanted: bool) -> None:
@@ -91,9 +92,13 @@ def show_table(
 def write_report(
     run: RunArgument = None,
     output: Annotated[
-        Path | None, Option(help=f"Where it goes. Default: {PAGES}, with --pdf {DOCUMENT}.")
+        Path | None,
+        Option(help=f"Where it goes. Default: {PAGES}, with --pdf {DOCUMENT}, with --page {PAGE}."),
     ] = None,
-    page: Annotated[bool, Option("--page", help="Just the page that is committed.")] = False,
+    page: Annotated[
+        bool,
+        Option("--page", help="Just the page that is committed, and README.md beside its folder."),
+    ] = False,
     pdf: Annotated[bool, Option("--pdf", help="One document to print; needs Chromium.")] = False,
 ) -> None:
     """Run the notebooks on a run and write the report: pages that open from disk.
@@ -104,13 +109,13 @@ def write_report(
     from experiments import report
 
     if page:
-        done = f"Page written: {report.write_readme(folder, Path('report'))}"
+        done = f"Page written: {report.write_readme(folder, output or PAGE)}"
     elif pdf:
         done = f"Document written: {report.write_pdf(folder, output or DOCUMENT)}"
     else:
         front = report.write_report(folder, output or PAGES)
         done = f"Report written. Open {front.resolve().as_uri()}"
-    console.print(done, soft_wrap=True)
+    console.print(done, markup=False, soft_wrap=True)
 
 
 for command in (meshes, info, advise, fracture):

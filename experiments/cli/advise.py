@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 from rich.filesize import decimal
-from rich.table import Column, Table
+from rich.markup import escape
 from typer import Argument, Option
 
 import hem
@@ -29,7 +29,7 @@ if TYPE_CHECKING:  # takes a second to import
     from experiments.advice import Advice
     from experiments.runs import Run
 
-NOTHING = 2  # exit code where no structure suits
+NOTHING = 3  # exit code where no structure suits
 WORKLOADS = "drawn", "picked", "edited", "simplified", "remeshed"
 NEEDS = "edges", "borders", "polygons", "attributes", "edits"  # told before anything is imported
 
@@ -68,9 +68,9 @@ def advise(
 
     `with hem.record(s) as workload:` counts what a program does; `workload.save("mine.csv")`.
 
-    Example: `hem advise bunny --workload simplified --need borders --worst-edit 1`
+    Example: `hem advise bunny --workload simplified --need edges --worst-edit 1`
 
-    Exit code 0; 1: a mistake in what was asked; 2: no structure suits.
+    Exit code 0; 1 or 2: a mistake in what was asked; 3: no structure suits.
     """
     from experiments import advice
     from experiments.regression import RUN
@@ -97,23 +97,25 @@ def advise(
 
 def _show(found: Advice, run: Run, called: str, mesh: str) -> None:
     from experiments.report import digits, duration
+    from experiments.report.rows import show_rows
     from structures import REGISTRY
 
     cpu = run.meta.get("machine", {}).get("cpu", "an unknown machine")
-    console.print(f"[bold]{found.workload.title}[/], on {mesh} ({found.faces:,} faces).")
+    on = f"{escape(mesh)} ({found.faces:,} faces)"
+    console.print(f"[bold]{escape(found.workload.title)}[/], on {on}.", highlight=False)
     kind = "regular" if found.regular else "irregular"
     where = f"on {cpu}, on {kind} meshes"
-    console.print(f"Predicted from {called}, measured {where}.\n", highlight=False)
-    whole = (Column(it, no_wrap=True) for it in ("structure", "time", "nine of ten", "bytes"))
-    table = Table(*whole, "what costs it more")
+    console.print(f"Predicted from {called}, measured {where}.", markup=False)
+    rows = [("structure", "time", "nine of ten", "bytes", "what costs it more")]
     for option in found.options:
         it, behind = option.forecast, option.behind
         low, high = duration(it.low), duration(it.high)
         within = f"{low.removesuffix(high[high.index(' ') :])} … {high}"  # the unit once
         extra = f"{behind} {duration(it.parts.get(behind, 0.0))}" if behind else ""
         title = REGISTRY[it.structure].title
-        table.add_row(title, duration(it.seconds), within, decimal(option.bytes), extra)
-    console.print(table)
+        rows.append((title, duration(it.seconds), within, decimal(option.bytes), extra))
+    if len(rows) > 1:
+        show_rows(console, rows)
     held = found.workload.measured
     if held and [it.forecast.structure for it in found.options[:1]] == [held.structure]:
         title = REGISTRY[held.structure].title

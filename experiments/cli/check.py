@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -48,6 +49,8 @@ def check(
     with user_errors(2):  # 1 says that something got worse
         if factor is not None and not factor > 1:
             raise ValueError(f"--factor is more than 1, such as 1.5, not {factor:g}")
+        if markdown is not None:  # rather now than after all was measured
+            markdown.touch()
         compared = _compare(run, beside, structure or [], factor, baseline)
         from experiments.regression import exit_code
         from experiments.report import findings as shown
@@ -93,15 +96,17 @@ def _compare(
 
 def _load(folder: Path) -> Run:
     from experiments.harness import own_mesh
-    from experiments.runs import load
+    from experiments.regression import Kind
+    from experiments.runs import load, resume_command
 
     if mesh := own_mesh.of_run(folder):
         why = "the baseline is not: there is no comparing"
         raise ValueError(f"{folder} is on {mesh[0]}, and {why}")
     run = load(folder)
+    if not set(run.cases["kind"]) <= {*Kind}:
+        raise ValueError(f"{folder} is of other libraries, of which there is no baseline")
     if run.cases.empty:
-        resuming = f"hem study --resume --run {folder}"
-        raise ValueError(f"{folder} holds no case; resume it with: {resuming}")
+        raise ValueError(f"{folder} holds no case; resume it with: {resume_command(folder)}")
     return run
 
 
@@ -151,7 +156,8 @@ def update(
         raise typer.Exit(1)
     for part, measured in changed.items():
         regression.save_baseline(part, measured, baseline)
-    console.print(f"Written to {baseline}; look at it with: git diff --stat {baseline}")
+    told = f"Written to {baseline}; look at it with: git diff --stat {shlex.quote(str(baseline))}"
+    console.print(told, markup=False, soft_wrap=True)
 
 
 def _finished(folder: Path) -> Measured:
@@ -160,6 +166,8 @@ def _finished(folder: Path) -> Measured:
     run = _load(folder)
     if "finished" not in run.meta:
         raise ValueError(f"{folder} is not finished; resume it with: hem study --resume")
+    if part := [key for key in ("structures", "experiments") if run.meta.get(key)]:
+        raise ValueError(f"{folder} is of some {part[0]} alone, and a baseline is of all")
     measured = reduce_run(run)
     if not (measured.run.cases["kind"] == "time").any():
         raise ValueError(f"{folder} has no times to compare with: measure a larger preset")

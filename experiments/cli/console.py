@@ -1,10 +1,11 @@
 """What the commands share: where they print, which run they mean, how they tell mistakes."""
 
 import json
+import os
 import sys
 import warnings
 from collections.abc import Callable, Iterable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from importlib import import_module
 from math import isfinite
 from pathlib import Path
@@ -17,6 +18,7 @@ from typer import Argument, Option
 from typer.core import TyperGroup
 
 console = Console(highlight=False)
+CLOSED = 141  # exit code where nobody reads on, as a shell has it
 errors = Console(stderr=True, highlight=False, soft_wrap=True)
 
 
@@ -79,8 +81,10 @@ def user_errors(code: int = 1) -> Iterator[None]:
     """Turn what a user can mend into a line and an exit code; all errors, where it is not 1."""
     try:
         yield
-    except BrokenPipeError:  # whoever read, `| head`, has what he wants; Click ends quietly
-        raise
+    except BrokenPipeError:  # whoever read, `| head`, has what he wants
+        with suppress(OSError):  # for what is left to print, if it is a file at all
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        raise typer.Exit(CLOSED) from None
     except (ValueError, OSError, ImportError) as error:
         told: object = error
         if isinstance(error, OSError) and error.filename is not None:

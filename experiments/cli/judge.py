@@ -7,14 +7,13 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import typer
-from rich.markup import escape
-from rich.table import Table
 from typer import Argument, Option
 
 from experiments.cli.console import AsJson, console, print_json, user_errors
+from experiments.report.rows import show_rows
 
 CODES = {"consistent": 0, "violated": 1, "undetermined": 2}
-COLORS = {"consistent": "green", "violated": "red", "undetermined": "yellow"}
+COLORS = {"^consistent$": "green", "^violated$": "red", "^undetermined$": "yellow"}
 
 
 def judge_file(
@@ -84,13 +83,12 @@ def _print_data(curves: Any, verdicts: Any, expected: str | None) -> None:
 def _print(curves: Any, verdicts: Any, expected: str | None) -> None:
     heads = "function", "sizes", "slope", "class", "claim", "verdict"
     shown = len(heads) if expected is not None else 4
-    table = Table(*heads[:shown])
+    rows = [heads[:shown]]
     for it, verdict in zip(curves, verdicts, strict=True):
-        said = f"[{COLORS[verdict.outcome]}]{verdict.outcome}[/]"
         sizes = f"{len(it.sizes)}: {it.sizes[0]:g} … {it.sizes[-1]:g}"
-        row = escape(it.name), sizes, f"{verdict.raw_slope:.2f}", verdict.answer or "?"
-        table.add_row(*(*row, verdict.expected, said)[:shown])
-    console.print(table)
+        row = it.name, sizes, f"{round(verdict.raw_slope, 2) + 0:.2f}", verdict.answer or "?"
+        rows.append((*row, verdict.expected, verdict.outcome)[:shown])
+    show_rows(console, rows, numbers=("slope",), colors=COLORS)
     for it, verdict in zip(curves, verdicts, strict=True):
         if expected is not None or not verdict.answer:
             console.print(f"{it.name}: {verdict.reason}", markup=False)

@@ -5,11 +5,15 @@ from __future__ import annotations
 from dataclasses import asdict
 from typing import Annotated, Any
 
-from rich.table import Column, Table
+from rich.markup import escape
+from rich.table import Table
 from typer import Argument, Option
 
 import hem
 from experiments.cli.console import AsJson, OfMesh, Repair, console, print_json
+from experiments.report.rows import show_rows
+
+REFUSED = "cannot hold it"
 
 
 def meshes(
@@ -29,16 +33,18 @@ def meshes(
         return
     titles = "Families, made by hem.generate(name, n_vertices)", "Models, read by hem.sample(name)"
     for title, made in zip(titles, (families, models), strict=True):
-        table = _numbers("name", "vertices", "edges", "faces", "border", "valence", title=title)
+        rows: list[tuple[str, ...]] = [("name", "vertices", "edges", "faces", "border", "valence")]
         notes = Table.grid(padding=(0, 2, 0, 0))
         for name, (mesh, what, sizes) in made.items():
             s = mesh.summary()
             counts = (s.vertices, s.edges, s.faces, s.border_edges)
-            table.add_row(name, *map("{:,}".format, counts), f"{s.valence_min}…{s.valence_max}")
+            valence = f"{s.valence_min}…{s.valence_max}"
+            rows.append((name, *map("{:,}".format, counts), valence))
             notes.add_row(name, what)
             if sizes:
                 notes.add_row("  sizes", sizes)
-        console.print(table, notes, "")
+        show_rows(console, rows, title, numbers=rows[0][1:])
+        console.print(notes, "")
 
 
 def _listed(made: dict[str, tuple[hem.TriangleMesh, str, str]]) -> list[dict[str, Any]]:
@@ -60,16 +66,17 @@ def info(
     if as_json:
         print_json({"mesh": mesh, **asdict(found.summary()), "structures": rows})
         return
-    console.print(f"[bold]{mesh}[/]\n{found.summary()}\n")
-    table = _numbers("structure", "bytes", "per vertex", "with 8-byte references", "per vertex")
+    console.print(f"[bold]{escape(mesh)}[/]\n{found.summary()}\n")
+    heads = "structure", "bytes", "per vertex", "with 8-byte references", "per vertex of these"
+    table: list[tuple[str, ...]] = [heads]
     for row in rows:
         if row["refusal"]:
-            table.add_row(row["title"], "[red]cannot hold it[/]")
+            table.append((row["title"], REFUSED, "", "", ""))
         else:
             sizes = row["bytes"], row["bytes_with_8_byte_references"]
             each = [(f"{it:,}", f"{it / max(len(found.points), 1):.1f}") for it in sizes]
-            table.add_row(row["title"], *each[0], *each[1])
-    console.print(table)
+            table.append((row["title"], *each[0], *each[1]))
+    show_rows(console, table, numbers=heads[1:], colors={REFUSED: "red"})
     for reason in dict.fromkeys(row["refusal"] for row in rows if row["refusal"]):
         console.print(f"Why: {reason}", markup=False)
 
@@ -88,9 +95,3 @@ def _held(mesh: hem.TriangleMesh | hem.PolygonMesh) -> list[dict[str, Any]]:
         sizes = {"bytes": small, "bytes_with_8_byte_references": large}
         rows.append({"name": name, "title": structure.title, **sizes, "refusal": refusal})
     return rows
-
-
-def _numbers(*heads: str, title: str | None = None) -> Table:
-    """A table of names with numbers beside them."""
-    first, *numbers = heads
-    return Table(first, *(Column(it, justify="right") for it in numbers), title=title)

@@ -1,5 +1,6 @@
 """``hem study``: measure every structure, resume after anything, say whether time can be judged."""
 
+import shlex
 from pathlib import Path
 from time import perf_counter
 from typing import Annotated, Any
@@ -95,7 +96,9 @@ def run_study(
     else:
         given |= {"mesh": mesh, "repair": repair}
         folder = study.begin(given.pop("preset", DEFAULT), output, **given)
-    _measure(folder, workers, "hem table --peers" if peers else "hem table, hem report")
+    named = "" if output in (RUNS, PEER_RUNS) and not run else f" {shlex.quote(str(folder))}"
+    commands = ["hem table --peers"] if peers else ["hem table", "hem report"]
+    _measure(folder, workers, ", ".join(f"{it}{named}" for it in commands))
 
 
 def _other_libraries(chosen: list[str] | None) -> list[str]:
@@ -113,10 +116,12 @@ def _other_libraries(chosen: list[str] | None) -> list[str]:
 
 def _require_as_begun(folder: Path, given: dict[str, Any], workers: str | None) -> None:
     """Raise ValueError for options that would change how a run was begun."""
-    from experiments.runs import read_meta, study
+    from experiments.runs import study
 
-    meta = read_meta(folder)
+    meta = study.begun(folder)
     meta["preset"] = study.preset_of(meta)
+    if "experiments" in given:
+        given["experiments"] = study.called(given["experiments"])
     for key, value in given.items():
         if value != meta[key]:
             option = "no-pin" if key == "pin" and not value else key.removesuffix("s")
@@ -128,11 +133,11 @@ def _require_as_begun(folder: Path, given: dict[str, Any], workers: str | None) 
 def _measure(folder: Path, workers: str | None, now: str) -> None:
     """Measure what a run lacks, and say how it went and what to do ``now``."""
     from experiments.cli.progress import show_progress
-    from experiments.runs import CannotWriteError, cluster, load, noise, study
+    from experiments.runs import CannotWriteError, cluster, load, noise, resume_command, study
 
     begin = perf_counter()
-    resuming = f"hem study --resume --run {folder}" + (f" --workers {workers}" if workers else "")
-    console.print(f"Measuring into {folder}", soft_wrap=True)
+    resuming = resume_command(folder) + (f" --workers {workers}" if workers else "")
+    console.print(f"Measuring into {folder}", markup=False, soft_wrap=True)
     try:
         with show_progress(study.plan(folder), folder) as observer:
             if workers:
@@ -140,11 +145,12 @@ def _measure(folder: Path, workers: str | None, now: str) -> None:
             else:
                 study.run(folder, observer)
     except KeyboardInterrupt:
-        errors.print(f"Stopped. What is finished is in {folder}; resume with: {resuming}")
+        told = f"Stopped. What is finished is in {folder}; resume with: {resuming}"
+        errors.print(told, markup=False)
         raise typer.Exit(130) from None
     except study.StudyFailedError as failure:
-        errors.print(f"[bold red]Some cases failed.[/] Try them again with: {resuming}\n")
-        errors.print(escape(str(failure)))
+        errors.print(f"[bold red]Some cases failed.[/] Try them again with: {escape(resuming)}\n")
+        errors.print(str(failure), markup=False)
         raise typer.Exit(1) from None
     except CannotWriteError as error:
         raise ValueError(f"{error}. What is finished is kept; resume with: {resuming}") from error
@@ -153,4 +159,5 @@ def _measure(folder: Path, workers: str | None, now: str) -> None:
         console.print(f"{len(run.skipped)} cases were skipped; hem report says which and why.")
     seen = noise(run)
     console.print(seen.words, style="yellow" if seen.too_busy else None)
-    console.print(f"Done in {perf_counter() - begin:.0f} s. Now: {now}")
+    done = f"Done in {perf_counter() - begin:.0f} s. Now: {now}"
+    console.print(done, markup=False, soft_wrap=True)

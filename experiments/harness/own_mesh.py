@@ -4,6 +4,7 @@ Coarser ones are simplified, in finer ones every edge is halved.
 The versions stand in the folder of the run, so that it can be resumed wherever its mesh has gone.
 """
 
+import warnings
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -13,7 +14,7 @@ import structures
 from experiments.presets import COARSER, FINE_ENOUGH, LARGEST, SMALLEST
 from hem.algorithms import simplify
 from hem.contract import Navigable
-from hem.errors import MeshError, NonManifoldError
+from hem.errors import MeshError, MeshWarning, NonManifoldError
 from hem.meshes import TriangleMesh, used_only
 from hem.sources import find_mesh
 
@@ -41,7 +42,11 @@ def keep_versions(folder: Path, name: str, repair: bool = False) -> dict[str, No
     ``name``: see ``hem.find_mesh``. What is not manifold has no coarser versions, and only
     structures that search hold it. Raises MeshError for what cannot be read, and without faces.
     """
-    mesh = find_mesh(name, repair, triangulate=True)
+    found = find_mesh(name, repair)
+    mesh = found if isinstance(found, TriangleMesh) else found.triangulated()
+    if mesh is not found:
+        why = "what is measured is the same on every structure"
+        warnings.warn(f"faces of {name} are cut into triangles: {why}", MeshWarning, stacklevel=3)
     if not len(mesh.triangles):
         raise MeshError(f"there is nothing to measure: {name} has no faces")
     refusals = _refusals(mesh)

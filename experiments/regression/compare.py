@@ -98,9 +98,11 @@ def describe_difference(before: Measured, after: Measured) -> list[str]:
     changed = (it for it in findings if it.change != Change.SAME)
     lines = [f"{it.kind} {it.where}: {it.difference}" for it in changed]
     times = [it for it in _pair_cases(before.run, after.run)[0] if it.kind == Kind.TIME]
-    rounds = ([list(row["samples"]) if row else [] for row in it[2:4]] for it in times)
-    anew = sum(old != new for old, new in rounds)
-    return [*lines, f"times: {anew:,} of {len(times):,} cases anew"] if anew else lines
+    rounds = [[list(row["samples"]) if row else [] for row in it[2:4]] for it in times]
+    lost = sum(not new for _, new in rounds)
+    anew = sum(old != new for old, new in rounds) - lost
+    told = [f"{anew:,} of {len(times):,} cases anew"] + [f"{lost:,} lost"] * bool(lost)
+    return [*lines, f"times: {', '.join(told)}"] if anew or lost else lines
 
 
 def _pair_cases(before: Run, after: Run) -> tuple[list[Pair], list[str]]:
@@ -241,7 +243,7 @@ def _compare_slopes(key: CaseKey, old: Figures, new: Figures, claim: str) -> Ite
     """Slopes are apart where their intervals, a drift wider, have nothing in common."""
     for axis in Axis:
         was, now = (it.get("slopes", {}).get(axis.key) for it in (old, new))
-        if was and now and (axis.exact or old["outcome"] != Outcome.NO_CLAIM):
+        if was and now and (axis.exact or old.get("outcome") != Outcome.NO_CLAIM):
             drift = LEAST_SLOPE if axis.exact else SLOPE_DRIFT
             change = Change.WORSE if now[1] > was[2] + drift else Change.SAME
             change = Change.BETTER if now[2] < was[1] - drift else change

@@ -32,13 +32,16 @@ def record_run(run: Run) -> Line:
     meta = run.meta
     if "finished" not in meta:
         raise ResultsError(f"{run.folder} is not finished; go on with: hem study --resume")
+    figures = claim_figures(run)
+    if not figures:
+        raise ResultsError(f"{run.folder} measured nothing of which anything is claimed")
     return {
         "schema": SCHEMA, "run": run.folder.resolve().name,
         "commit": meta["commit"], "committed": commit_date(meta["commit"]), "dirty": meta["dirty"],
         "started": meta["started"], "profile": meta["preset"],
         "structures": list(meta.get("structures", ())),
         "machine": {"id": machine_id(meta["machine"]), **meta["machine"]},
-        "versions": meta["versions"], "claims": claim_figures(run),
+        "versions": meta["versions"], "claims": figures,
     }  # fmt: skip
 
 

@@ -96,8 +96,13 @@ def _figures(run: Run, judged: JudgedClaim) -> Figures:
         axis.key: [_short(it) for it in (verdict.slope, verdict.slope_low, verdict.slope_high)]
         for axis, verdict in judged.verdicts.items()
     }
-    outcomes = {"outcome": judged.outcome, "outcome_time": judged.outcome_time}
-    claim, figures = judged.claim, Figures(**known, **outcomes, slopes=slopes)
+    claim, figures = judged.claim, Figures(**known, slopes=slopes)
+    seen = {axis.exact for axis in judged.verdicts}  # what was not measured has not changed
+    for name, it, exact in (
+        ("outcome", judged.outcome, True), ("outcome_time", judged.outcome_time, False)
+    ):  # fmt: skip
+        if exact in seen or it is Outcome.NO_CLAIM:
+            figures[name] = it
     work = curves(run).of(claim, Axis.WORK_FACES)
     if len(work):
         figures |= {"work": _short(judged.work), "work_faces": int(work.sizes[-1])}

@@ -73,6 +73,11 @@ class Trends:
                 about = about[about[what] == named[0]]
         return type(self)(replace(self.history, runs=[self.runs[k] for k in about.index]))
 
+    def of_newest_preset(self) -> Self:
+        """The runs of the newest one's preset."""
+        alike = [it for it in self.runs if it["profile"] == self.runs[-1]["profile"]]
+        return type(self)(replace(self.history, runs=alike))
+
     def claims(self, text: str | None = None) -> list[str]:
         """The claims, in the newest run's order, that ``text`` names; None: all.
 
@@ -81,7 +86,7 @@ class Trends:
         every = list(dict.fromkeys(name for run in reversed(self.runs) for name in run["claims"]))
         wanted = f"/{(text or '').strip('/')}/"
         chosen = [name for name in every if text is None or wanted in f"/{name}/"]
-        if not chosen and self.runs:
+        if not chosen and every:
             _, *parts = (dict.fromkeys(it) for it in zip(*map(ClaimName.read, every), strict=True))
             raise ValueError(
                 f"the history has no claim {text!r}; say one of\n"

@@ -87,7 +87,8 @@ def _output(data: Any, metadata: Any, heading: str) -> Any:
     for kind, value in data.items():
         if kind.startswith("image/"):
             shown = metadata.get(kind, {})
-            metadata[kind] = shown | {"alt": f"Plot: {heading}. {shown.get('alt', '')}".strip()}
+            more = str(shown.get("alt", "")).strip(" :")
+            metadata[kind] = shown | {"alt": f"Plot: {heading}. {more}".strip()}
         if isinstance(value, bytes):
             texts[kind] = b64encode(value).decode()
     return nbformat.v4.new_output("display_data", data=texts, metadata=metadata)

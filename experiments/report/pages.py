@@ -29,7 +29,7 @@ from experiments.report import session
 from experiments.report import tables as written
 from experiments.report.notebooks import page_titles
 from experiments.report.session import link
-from experiments.runs import in_words, tables
+from experiments.runs import experiments, in_words, tables
 from structures import NAMED
 
 Heads = Mapping[str, Callable[[Any], str]]
@@ -60,6 +60,7 @@ def _templates() -> Environment:
         "Axis": Axis,
         "NAMED": NAMED,
         "Outcome": Outcome,
+        "experiments": experiments,
         "in_words": in_words,
         "measured": lambda: curves(session.open_run().run),
         "page_titles": page_titles,
@@ -108,7 +109,9 @@ def groups_of_claims() -> dict[str, Table]:
 
 def filters(claims: Sequence[JudgedClaim]) -> dict[str, dict[str, tuple[str, int]]]:
     """By group the choices: value -> its title, and how many claims it has."""
-    facts = [(it.outcome.value, it.claim.kind, it.claim.structure, it.claim.table) for it in claims]
+    facts = (
+        (it.outcome.value, it.claim.claimant, it.claim.structure, it.claim.table) for it in claims
+    )
     outcomes, claimants, structures, kinds = map(Counter, zip(*facts, strict=True))
     return {
         "claimed": {it.value: (it.value, claimants[it]) for it in Kind},

@@ -28,8 +28,8 @@ def write_report(run_folder: Path, output: Path) -> Path:
     The pages replace what was there all at once. Raises ResultsError where the run cannot be read
     or a notebook fails, naming it; then what was there stays.
     """
-    session = read_session(run_folder)
     _require_replaceable(output)
+    session = read_session(run_folder)
     with _beside(output) as fresh:
         for name, text in _write_parts(session, fresh).items():
             content = page("page.html.j2", titles=page_titles(), here=name, front=FRONT, body=text)
@@ -97,6 +97,8 @@ def _begin(session: Session) -> None:
 
 def _require_replaceable(output: Path) -> None:
     """Raise ResultsError unless there is nothing at ``output``, or a report, to be replaced."""
+    if output.resolve() == Path.cwd():
+        raise ResultsError(f"{output} is the folder that you are in: choose one in it")
     known = {f"{name}.html" for name in page_titles()} | {CLAIMS}
     if output.is_dir() and all(path.name in known for path in output.iterdir()):
         return

@@ -3,13 +3,12 @@
 import re
 from collections import Counter
 from collections.abc import Iterable, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
-from rich import box
 from rich.console import Console
-from rich.table import Table
-from rich.text import Text
+from rich.markup import escape
 
 from experiments.claims import (
     CLAIMED,
@@ -23,6 +22,7 @@ from experiments.claims import (
     tally,
 )
 from experiments.harness import QUERIES_TABLE
+from experiments.report import rows as plain
 from experiments.report.session import MissingError
 from experiments.runs import Run, load, noise, tables
 from structures import NAMED, THESIS
@@ -46,8 +46,9 @@ def legend() -> list[str]:
     marks = {kind: " ".join(kind.marks([it]) for it in SHOWN) for kind in CLAIMED}
     whose = "; ".join(f"{marks[kind]} {kind.about}" for kind in CLAIMED)
     return [
-        "Each cell has what is claimed, and its marks: by work (memory accesses), by time in "
-        "order, and for queries by time at random. Work is exact, and it decides.",
+        "Each cell has what is claimed, and its marks: by work (memory accesses), by time in order "
+        "(of operations: far apart), and for queries by time at random. Work is exact, and it "
+        "decides.",
         f"{words}. Whose claim it is: {whose}.",
         f"{NO_CLAIM} {Kind.NOBODY.about}. {NOT_POSSIBLE}: table 1 prints this where a structure "
         "records no edges; what was found is the cost with the edge named by its two vertices.",
@@ -96,39 +97,7 @@ def _counted(kind: Kind, counts: Counter[Outcome]) -> str:
     return " ".join(f"{counts[it]} {kind.marks([it])}" for it in SHOWN if counts[it])
 
 
-def show_rows(
-    console: Console, rows: Iterable[Sequence[str]], title: str = "", numbers: Sequence[str] = ()
-) -> None:
-    """Print a table that cuts nothing: a figure that is cut is a wrong one.
-
-    As many columns beside each other as there is room for; the first one is repeated, without the
-    rows that have nothing else. rows: the heads first. numbers: the heads that are flush right.
-    """
-    every = list(rows)
-    widths = [max(map(len, column)) + 2 for column in zip(*every, strict=True)]
-    start = 1
-    while start < len(widths):
-        stop = start + 1
-        while stop < len(widths) and widths[0] + sum(widths[start : stop + 1]) <= console.width:
-            stop += 1
-        table = Table(title=title or None, title_justify="left", box=box.SIMPLE_HEAD)
-        table.pad_edge, table.padding = False, (0, 1, 0, 0)
-        heads, *body = ([row[0], *row[start:stop]] for row in every)
-        for head in heads:
-            justify: Any = "right" if head in numbers else "left"
-            table.add_column(head, style="" if head else "bold", no_wrap=True, justify=justify)
-        for row in body:
-            if any(row[1:]):
-                table.add_row(*map(_colored, row))
-        console.print(table)
-        start = stop
-
-
-def _colored(cell: str) -> Text:
-    text = Text(cell)
-    for pattern, color in COLORS.items():
-        text.highlight_regex(pattern, color)
-    return text
+show_rows = partial(plain.show_rows, colors=COLORS)
 
 
 def markdown_rows(rows: Iterable[Sequence[str]]) -> str:
@@ -161,7 +130,9 @@ def show_claims(
     """Print the claims of a run and their verdicts: of the thesis' four structures, or of all."""
     run = load(run_folder)
     claims = _shown_claims(run, every)
-    console.print(f"[bold]{run.folder.name}[/], preset {run.meta.get('preset')}", highlight=False)
+    unfinished = "" if "finished" in run.meta else ", not finished"
+    about = f"preset {run.meta.get('preset')}{unfinished}"
+    console.print(f"[bold]{escape(run.folder.name)}[/], {about}", highlight=False)
     for name, table in tables().items():
         if mine := [it for it in claims if it.claim.table == name]:
             console.print(f"\n[bold]{table.title}[/]", highlight=False)
@@ -185,7 +156,8 @@ def _shown_claims(run: Run, every: bool) -> list[JudgedClaim]:
     shown = NAMED if every else THESIS
     claims = [it for it in judge_run(run) if it.claim.structure in shown and it.was_measured]
     if not claims:
-        raise MissingError(f"{run.folder} holds no measurements of these structures: try --all")
+        more = "" if every else ": try --all"
+        raise MissingError(f"{run.folder} holds no measurements of these structures{more}")
     return claims
 
 
@@ -193,6 +165,7 @@ def claims_as_json(run_folder: Path, every: bool = False) -> dict[str, Any]:
     """What ``show_claims`` prints, slopes included, as records; NaN where there is no number."""
     run = load(run_folder)
     about = {"run": run.folder.name, "preset": run.meta.get("preset")}
+    about["finished"] = run.meta.get("finished")
     claims = [_record(it) for it in _shown_claims(run, every)]
     return {**about, "too_busy": bool(noise(run).too_busy), "claims": claims}
 
@@ -207,6 +180,7 @@ def _record(judged: JudgedClaim) -> dict[str, Any]:
         slopes = {key: float(getattr(it, key)) for key in ("slope", "slope_low", "slope_high")}
         outcome = it.outcome if claim.claims_something else Outcome.NO_CLAIM.value
         about = {"measure": axis.measure, "variable": axis.symbol, "outcome": outcome}
+        about |= {"expected": it.expected, "bound": it.bound} if claim.claims_something else {}
         axes.append({**about, "found": it.best, **slopes})
     costs = {"accesses": float(judged.work), "seconds": float(judged.seconds)}
     return said | {"found": judged.found, "reason": judged.reason, "axes": axes} | costs
@@ -231,7 +205,8 @@ def _show_slopes(console: Console, claims: Sequence[JudgedClaim]) -> None:
                 claimed = judged.claim.claims_something
                 outcome = Outcome(it.outcome) if claimed else Outcome.NO_CLAIM
                 mark = judged.claim.kind.marks([outcome])
-                found = (it.expected if claimed else "", it.best, mark)
+                most = "≤ " if it.bound == "upper" else ""
+                found = (f"{most}{it.expected}" if claimed else "", it.best, mark)
                 title = f"{judged.claim.title}, {axis.measure} {axis.symbol}"
                 rows.append((title, *slopes, f"{low}…{high}", *found))
         if len(rows) > 1:

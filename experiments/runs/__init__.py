@@ -8,11 +8,19 @@ the files ``study`` and ``cluster`` are asked for by name.
 from experiments.runs.catalog import experiments, tables
 from experiments.runs.provenance import describe, git, machine, machine_id
 from experiments.runs.run import PEER_RUNS, RUNS, Run, in_words, latest, load, noise
-from experiments.runs.store import CannotWriteError, CaseFile, ResultsError, read_meta, write_meta
+from experiments.runs.store import (
+    CannotWriteError,
+    CaseFile,
+    ResultsError,
+    read_meta,
+    resume_command,
+    write_meta,
+)
 from experiments.runs.worker import AGAIN, COMPILE, DEFAULT_SEED, MEASURE, Job
 
 __all__ = [
     "AGAIN", "COMPILE", "DEFAULT_SEED", "MEASURE", "PEER_RUNS", "RUNS", "CannotWriteError",
     "CaseFile", "Job", "ResultsError", "Run", "describe", "experiments", "git", "in_words",
-    "latest", "load", "machine", "machine_id", "noise", "read_meta", "tables", "write_meta",
+    "latest", "load", "machine", "machine_id", "noise", "read_meta", "resume_command", "tables",
+    "write_meta",
 ]  # fmt: skip

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -66,10 +67,17 @@ def load(folder: Path | str) -> Run:
 
 def latest(root: Path | str = RUNS, *, unfinished: bool = False) -> Path:
     """The newest run, or the newest that was not finished. Raises ResultsError if there is none."""
-    runs = [path.parent for path in Path(root).glob(f"*/{store.META}")]
-    for folder in sorted(runs, key=lambda folder: folder.name, reverse=True):
-        if not (unfinished and "finished" in store.read_meta(folder)):
-            return folder
+    found: list[tuple[str, Path]] = []
+    for path in Path(root).glob(f"*/{store.META}"):
+        try:
+            meta = store.read_meta(path.parent)
+        except store.ResultsError as error:
+            warnings.warn(f"{error}; it is passed over", stacklevel=2)
+            continue
+        if not (unfinished and "finished" in meta):
+            found.append((str(meta.get("started")), path.parent))
+    if found:
+        return max(found)[1]
     what = "unfinished run" if unfinished else "run"
     raise store.ResultsError(f"there is no {what} in {root}; start one with: hem study")
 

@@ -9,6 +9,7 @@ import errno
 import hashlib
 import json
 import os
+import shlex
 import socket
 from collections import Counter
 from collections.abc import Iterator
@@ -195,7 +196,12 @@ def writing(path: Path) -> Iterator[None]:
 def resuming(path: Path) -> str:
     """The command that measures again what a file of a run should hold."""
     folder = path.parent.parent if path.parent.name.startswith("machine-") else path.parent
-    return f"hem study --resume --run {folder}"
+    return resume_command(folder)
+
+
+def resume_command(folder: Path) -> str:
+    """The command that goes on with a run."""
+    return f"hem study --resume --run {shlex.quote(str(folder))}"
 
 
 def _compact(content: dict[str, Any]) -> str:

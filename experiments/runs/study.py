@@ -77,9 +77,7 @@ def begin(
     MeshError for a mesh that none of the structures holds, CannotWriteError. Warns of structures
     that are skipped, as they do not hold it.
     """
-    said = (f"bench_{name.removeprefix('bench_')}" for name in experiments)
-    asked = dict.fromkeys(PART_OF.get(name, name) for name in said)
-    short = [name.removeprefix("bench_") for name in asked]
+    short = [name.removeprefix("bench_") for name in called(experiments)]
     require_known("experiment", short, [name.removeprefix("bench_") for name in catalog()])
     others = [it for name in short for it in catalog()[f"bench_{name}"].structures]
     require_known("structure", structures, list(dict.fromkeys([*NAMED, *others])))
@@ -127,6 +125,20 @@ def _new_folder(root: Path, name: str) -> Path:
     raise store.CannotWriteError(f"{root} has a thousand runs called {name}: clear it up")
 
 
+def called(experiments: Sequence[str]) -> list[str]:
+    """The files of experiments, each once, with or without ``bench_`` or of one that has parts."""
+    said = (f"bench_{name.removeprefix('bench_')}" for name in experiments)
+    return list(dict.fromkeys(PART_OF.get(name, name) for name in said))
+
+
+def begun(folder: Path) -> dict[str, Any]:
+    """How a run was begun. Raises ResultsError for what is reduced to a baseline."""
+    meta = store.read_meta(folder)
+    if not {"experiments", "structures", "seed", "pin"} <= meta.keys():
+        raise store.ResultsError(f"{folder} holds what is kept of a run, which cannot be resumed")
+    return meta
+
+
 def preset_of(meta: Mapping[str, Any]) -> str:
     """The name of a run's preset, whatever mesh it is on."""
     return str(meta["preset"]).partition(ON)[0]
@@ -134,7 +146,7 @@ def preset_of(meta: Mapping[str, Any]) -> str:
 
 def plan(folder: Path) -> list[Job]:
     """All jobs of a run, in the order of the experiments."""
-    meta, mesh = store.read_meta(folder), own_mesh.of_run(folder)
+    meta, mesh = begun(folder), own_mesh.of_run(folder)
     preset, wanted, chosen = preset_of(meta), meta["experiments"], meta["structures"]
     named = set(chosen) <= set(NAMED)  # and no library: then these are measured alone
     extent = PRESETS[preset].on(*mesh) if mesh else PRESETS[preset]

@@ -143,6 +143,10 @@ def judge(
     outcome, reason = _decide(measured, models, claim, bound)
     if not exact and (size := _hinge(outcome, measured, models, claim, bound)):
         outcome, reason = "undetermined", f"One size decides: without {size:,g}, it is otherwise."
+    classes = _classes(measured, models)
+    if outcome == "consistent" and len(classes) > 1:
+        worse = " and ".join(it for it in classes if it != names[models.best])
+        reason = f"{names[models.best]} explains the costs best, and {worse} is not ruled out."
     fitted, _ = predict(models.design, models.fit)
     errors = np.sqrt(np.mean((fitted / costs.cost - 1) ** 2, axis=1))
     replicates = resample(costs, fitted[models.best], resamples, seed)
@@ -160,7 +164,7 @@ def judge(
         raw_slope=float(slope(costs.sizes, costs.cost)),
         noise=costs.scatter, coefficients=dict(zip(names, coefficients, strict=True)),
         errors=dict(zip(names, errors.tolist(), strict=True)), reason=reason,
-        classes=_classes(measured, models),
+        classes=classes,
     )  # fmt: skip
 
 

@@ -34,6 +34,7 @@ def by_commit(trends: Trends, subject: str) -> Figure:
     ones, each machine a line of its own. A ring is a step to a new level, a cross a verdict by work
     that changed.
     """
+    trends = trends.of_newest_preset()
     rows = _of_newest(trends)
     with styled():
         ends = {key: "" if key == "bytes" else f": {TITLES[subject]}" for key in PANELS}
@@ -57,7 +58,7 @@ def by_commit(trends: Trends, subject: str) -> Figure:
 
 
 def _of_newest(trends: Trends) -> pd.DataFrame:
-    """What is comparable in runs of the newest one's preset, by structure and subject.
+    """What is comparable with the newest run, by structure and subject.
 
     ``here``: it is of the newest one's machine, or of any. Raises ValueError without a run.
     """
@@ -67,8 +68,8 @@ def _of_newest(trends: Trends) -> pd.DataFrame:
     names = pd.DataFrame(map(ClaimName.read, rows["claim"]), rows.index, ClaimName._fields)
     here = rows["machine"].isin(("", newest["machine"]["id"]))
     rows = rows.assign(structure=names["structure"], subject=names["subject"], here=here)
-    wanted = rows["comparable"] & (rows["preset"] == newest["profile"])
-    return rows[wanted & (names["table"] != "listings") & rows["structure"].isin(NAMES)]
+    wanted = rows["comparable"] & (names["table"] != "listings")
+    return rows[wanted & rows["structure"].isin(NAMES)]
 
 
 def _draw_line(axes: Axes, trends: Trends, line: pd.DataFrame) -> None:
@@ -119,6 +120,7 @@ def departures(trends: Trends) -> Figure:
     Of the newest run's preset and machine. A ring is a step to a new level, a
     cross a verdict by work that changed.
     """
+    trends = trends.of_newest_preset()
     rows = _of_newest(trends)
     rows = rows[rows["here"] & (rows["measure"] == "time") & (rows["value"] > 0)]
     ends = (1 / STRONGEST, 1.0, STRONGEST)

@@ -278,6 +278,8 @@ def measured(structure: str, vertices: object) -> str:
         (f"{ASKING}[measured]\nseconds = 1\n", r"\[measured\]: 'structure' is missing and 've"),
         (measured("nothing", 9), r"\[measured\]: no structure is called 'nothing'; there are"),
         (measured("indexed", '"x"'), r"\[measured\]: vertices is a number from 0 on, not 'x'"),
+        (measured("half_edge_objects", 9), r"no structure is called 'half_edge_objects'; there"),
+        (measured("indexed", "0"), r"\[measured\]: it was measured on a mesh of some vertices"),
         (measured("indexed", "nan"), r"\[measured\]: vertices is a number from 0 on, not nan"),
     ],
 )
@@ -336,7 +338,7 @@ def test_structures_with_the_same_reason_are_told_together(tmp_path) -> None:
 @pytest.mark.parametrize(
     ("arguments", "code", "said"),
     [
-        (["torus:1000", "--bytes", "1"], 2, "no structure suits"),
+        (["torus:1000", "--bytes", "1"], 3, "no structure suits"),
         (["torus:1000", "--workload", "painted"], 1, "there is no workload 'painted'"),
         (["torus:1000", "--need", "speed"], 1, "no need is called 'speed'; there are edges"),
         (["torus:1000", "--worst-edit", "-1"], 1, "that an edit may take, are from 0 on"),

@@ -44,10 +44,13 @@ def baseline(tmp_path: Path) -> Path:
         (["--structure", "halfedge"], "no structure is called 'halfedge'"),
         (["--baseline", "nowhere"], "nowhere/counters holds no run"),
         (["--beside", "nowhere", "--structure", "indexed"], "nowhere is no checkout"),
+        (["--markdown", "nowhere/check.md"], "nowhere/check.md: No such file"),
+        (["PEERS"], "is of other libraries, of which there is no baseline"),
     ],
 )
 def test_a_mistake_is_one_line_and_never_a_pass(arguments, said, baseline):
     options = [] if "--baseline" in arguments else ["--baseline", str(baseline)]
+    arguments = [str(REFERENCE / "peers") if it == "PEERS" else it for it in arguments]
     exit_code, output = hem("check", *arguments, *options)
     assert exit_code == 2
     assert output.startswith("hem:")

@@ -13,8 +13,9 @@ import pytest
 from rich.console import Console
 from typer.testing import CliRunner
 
-from experiments import cli
+from experiments import cli, report
 from experiments.cli import app, progress
+from experiments.cli.check import BASELINE
 from experiments.presets import PRESETS
 from experiments.runs import experiments, load
 from experiments.runs.study import plan
@@ -62,9 +63,39 @@ def test_a_reader_who_has_enough_is_no_mistake(monkeypatch, capsys):
         raise BrokenPipeError(32, "Broken pipe")
 
     monkeypatch.setattr(cli.console, "print", closed)
-    with pytest.raises(SystemExit):
+    with pytest.raises(SystemExit) as ended:
         app(["meshes"])
+    assert ended.value.code == 141  # neither a mistake nor a verdict
     assert "pipe" not in capsys.readouterr().err
+
+
+def test_names_are_told_as_they_are_whatever_brackets_they_have(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    mesh, workload = tmp_path / "a[/b].obj", tmp_path / "w.toml"
+    mesh.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+    workload.write_text('title = "reads [/ops] only"\n[[rows]]\nwhat = "vertex_faces"\ntimes = 1\n')
+    assert "a[/b].obj\n" in hem("info", mesh.name)[1]
+    code, output = hem("advise", mesh.name, "--workload", str(workload))
+    assert code == 0
+    assert "reads [/ops] only, on a[/b].obj (1 faces)." in output
+
+
+def test_what_is_kept_of_a_run_is_not_resumed():
+    code, output = hem("study", "--resume", "--run", str(BASELINE / "run"))
+    assert code == 1
+    assert "holds what is kept of a run, which cannot be resumed" in output
+
+
+def test_a_page_goes_where_it_is_told_to(base_folder, tmp_path, monkeypatch):
+    monkeypatch.setattr(report, "write_readme", lambda _, folder: folder / "README.md")
+    assert (
+        "elsewhere/README.md"
+        in hem("report", str(base_folder), "--page", "--output", "elsewhere")[1]
+    )
+    monkeypatch.chdir(tmp_path)
+    code, output = hem("report", str(base_folder), "--output", ".")
+    assert code == 1
+    assert ". is the folder that you are in: choose one in it" in output
 
 
 QUICK = [

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
 
 import pytest
 from matplotlib.figure import Figure
@@ -17,6 +18,7 @@ from tests.experiments.histories import CLAIM, MACHINES, line, stepped
 from tests.extent import waiting_for
 
 runner = CliRunner()
+PEERS = Path(__file__).parents[3] / "results/reference/peers"
 NAME = "half_edge/vertex_faces"
 
 
@@ -61,6 +63,7 @@ def mixed(base, tmp_path_factory):
         (["show", "--file", "."], "Is a directory"),
         (["add"], "there is no run in results/runs; start one with: hem study"),
         (["add", "nowhere"], "nowhere holds no run"),
+        (["add", str(PEERS)], "measured nothing of which anything is claimed"),
     ],
 )
 def test_a_mistake_gets_one_clear_line_and_an_exit_code(

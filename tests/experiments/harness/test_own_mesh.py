@@ -71,6 +71,14 @@ def test_a_small_mesh_gets_finer_versions_only(tmp_path):
     assert sizes[-1] > FINE_ENOUGH / 4
 
 
+def test_that_faces_of_more_corners_are_cut_is_told(tmp_path):
+    square = tmp_path / "square.obj"
+    square.write_text("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n")
+    with pytest.warns(hem.MeshWarning, match=r"faces of .*square\.obj are cut into triangles"):
+        own_mesh.keep_versions(tmp_path, str(square))
+    assert len(versions(tmp_path)[0].triangles) == 2
+
+
 def test_a_run_keeps_its_mesh_and_is_called_by_it(tmp_path):
     file = tmp_path / "model.ply"
     hem.save(hem.generate("torus", 500), file)

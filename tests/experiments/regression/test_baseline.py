@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import shutil
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -109,6 +110,24 @@ def test_a_run_that_is_not_finished_is_no_baseline(folder, base_folder, tmp_path
     code, output = update(folder, str(unfinished), "--yes")
     assert code == 1
     assert "hem study --resume" in output
+
+
+def test_a_run_of_some_is_no_baseline(folder, base_folder, tmp_path):
+    part = Path(shutil.copytree(base_folder, tmp_path / "run"))
+    write_meta(part, read_meta(part) | {"structures": ["half_edge"]})
+    code, output = update(folder, str(part), "--yes")
+    assert code == 1
+    assert "is of some structures alone, and a baseline is of all" in output
+
+
+def test_times_that_would_be_lost_are_counted(base_run):
+    whole = reduce_run(base_run)
+    timed = whole.run.cases["kind"] == "time"
+    gone = timed & (whole.run.cases["structure"] == "half_edge")
+    assert 0 < gone.sum() < timed.sum()
+    without = replace(whole, run=replace(whole.run, cases=whole.run.cases[~gone]))
+    told = regression.describe_difference(whole, without)
+    assert f"times: 0 of {timed.sum():,} cases anew, {gone.sum():,} lost" in told
 
 
 def test_what_cannot_be_put_in_place_leaves_the_baseline(folder, monkeypatch):

@@ -6,6 +6,7 @@ import errno
 import json
 import multiprocessing
 import os
+from dataclasses import replace
 
 import pytest
 
@@ -19,6 +20,7 @@ from tests.experiments.made_runs import write_run
 def test_a_line_has_the_verdicts_and_figures_of_its_run(base):
     claim = base["claims"][CLAIM]  # 2 + 3 n_ev accesses and nanoseconds, latency 2 ns
     assert (claim["outcome"], claim["outcome_time"]) == ("consistent", "consistent")
+
     assert (claim["work"], claim["work_faces"]) == (20, 200_000)
     assert claim["seconds"] == pytest.approx(20e-9, rel=0.03)
     assert claim["relative"] == pytest.approx(10, rel=0.03)
@@ -32,6 +34,14 @@ def test_a_line_has_the_verdicts_and_figures_of_its_run(base):
         "bytes": 36,
     }
     assert len(json.dumps(base)) < 500 * len(base["claims"])
+
+
+@pytest.mark.parametrize(("kind", "missing"), [("work", "outcome_time"), ("time", "outcome")])
+def test_a_run_says_nothing_of_what_it_has_not_measured(base_run, kind, missing):
+    kept = base_run.cases[base_run.cases["kind"] == kind]
+    claims = record_run(replace(base_run, cases=kept))["claims"]
+    judged = {name: it for name, it in claims.items() if it["slopes"] and it.get("outcome") != "–"}
+    assert not any(missing in it for it in judged.values())
 
 
 def test_a_run_that_is_not_finished_is_refused(tmp_path):

@@ -120,13 +120,20 @@ def test_no_flipped_bit_changes_what_is_read(made_up):
 
 
 def test_the_newest_run_is_found_and_the_newest_unfinished(tmp_path):
-    for name, more in (("1", {}), ("2", {"finished": "now"}), ("3", {"finished": "now"})):
-        write_meta(tmp_path / name, {"schema": 3, **more})
-    assert latest(tmp_path).name == "3"
-    assert latest(tmp_path, unfinished=True).name == "1"
-    text = (tmp_path / "1" / "run.json").read_text()
-    (tmp_path / "1" / "run.json").write_text(text.replace("3", "4"))
-    with pytest.raises(DamagedError, match=r"1/run\.json.*checksum.*move"):
+    for name, begun, more in (
+        ("c", 1, {}),
+        ("b", 2, {"finished": "now"}),
+        ("a", 3, {"finished": 1}),
+    ):
+        write_meta(tmp_path / name, {"schema": 3, "started": f"2020-01-0{begun}", **more})
+    assert latest(tmp_path).name == "a"  # whatever its folder is called
+    assert latest(tmp_path, unfinished=True).name == "c"
+    for name in ("a", "c"):  # what cannot be read is told, and keeps nobody from the others
+        text = (tmp_path / name / "run.json").read_text()
+        (tmp_path / name / "run.json").write_text(text.replace("2020", "2021"))
+    with pytest.warns(UserWarning, match=r"run\.json.*checksum.*move.*passed over"):
+        assert latest(tmp_path).name == "b"
+    with pytest.warns(match="passed over"), pytest.raises(ResultsError, match="no unfinished run"):
         latest(tmp_path, unfinished=True)
 
 

@@ -290,6 +290,13 @@ def test_the_slope_interval_holds_the_exponent_as_often_as_it_says(exponent: flo
     assert np.mean([v.slope_high - v.slope_low for v in verdicts]) < 0.05
 
 
+def test_a_reason_does_not_deny_a_class_that_is_named() -> None:
+    sizes = [10, 20, 40, 80, 160, 320]
+    verdict = judge(sizes, [[float(n)] for n in sizes], "O(n)")
+    assert (verdict.outcome, verdict.answer) == ("consistent", "O(n) or O(n log n)")
+    assert verdict.reason == "O(n) explains the costs best, and O(n log n) is not ruled out."
+
+
 def test_an_interval_holds_its_own_slope() -> None:
     sizes = [100, 316, 1_000, 3_160, 10_000]
     falling = [[57.0], [54.0], [51.0], [48.0], [45.0]]  # O(1) comes closest
