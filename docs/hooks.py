@@ -33,6 +33,7 @@ LINK = re.compile(r"(!?)\[([^\]]*)\]\(([^)#:\s]+)(#[^)\s]*)?\)")
 INCLUDED = re.compile(r'(?m)^\[[^\]]+\]\(\.\./([^\s#)]+)(?:#(\S+))? "[^"]+"\)$')
 SECTION = re.compile(r"(?ms)^## ([^\n]+)\n(.*?)(?=^## |\Z)")
 MARKED = re.compile(r"(?ms)^<!-- (\w+) -->\n(.*?)^<!-- end of \1 -->")
+DIAGRAM = re.compile(r"(?ms)^```mermaid\n(.*?)^```")
 ADVICE = "results/reference/advice.json"  # told in words where a page includes it
 MADE = re.compile(r"(?s)```python\n(.*?)```\n\n!\[([^\]]*)\]\((gallery/\w+\.png)\)")
 
@@ -44,7 +45,8 @@ def on_files(files: Files, config: Any) -> Files:
         files.append(File.generated(config, uri, content=content))
 
     for page, source in PAGES.items():
-        add(page, _relinked((ROOT / source).read_text("utf-8"), source, page))
+        text = DIAGRAM.sub(_arrows, (ROOT / source).read_text("utf-8"))
+        add(page, _relinked(text, source, page))
     for picture in (ROOT / "report").glob("*.png"):
         add(f"report/{picture.name}", picture.read_bytes())
     add("commands.md", _commands())
@@ -56,7 +58,6 @@ def on_files(files: Files, config: Any) -> Files:
 
 def on_page_markdown(markdown: str, page: Any, files: Files, **_: Any) -> str:
     """Put sections of other files where they are asked for; say which pictures are missing."""
-
     uri = page.file.src_uri
 
     def included(found: re.Match[str]) -> str:
@@ -72,6 +73,13 @@ def on_page_markdown(markdown: str, page: Any, files: Files, **_: Any) -> str:
         return f"```python\n{found[1]}```\n\n*{found[2]}: to draw it needs OpenGL.*"
 
     return _relinked(MADE.sub(shown, INCLUDED.sub(included, markdown)), f"docs/{uri}", uri)
+
+
+def _arrows(diagram: re.Match[str]) -> str:
+    """The arrows of a diagram in lines: to draw it a page would load a program from elsewhere."""
+    lines = [line.strip() for line in diagram[1].splitlines() if "-->" in line]
+    rows = [re.sub(r'\w+\["([^"]+)"\]', r"\1", line).replace("-->", "→") for line in lines]
+    return "\n".join(("```text", *rows, "```"))
 
 
 def _trust_of_advice() -> str:

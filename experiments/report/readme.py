@@ -81,7 +81,7 @@ def write_readme(run_folder: Path, folder: Path) -> Path:
     answers = listed or MISSING.format("This run has measured none.")
     recommended = pages.or_missing(partial(uses.recommended_markdown, run), MISSING)
     absent = uses.left_out().striptags()
-    parts = {"Which structure for which use": f"{recommended}\n\n{absent}"}
+    parts = {"Which structure for which use": f"{uses.HOW_TO_READ}\n\n{recommended}\n\n{absent}"}
     parts["Who claims what"] = tables.markdown_rows(tables.tally_rows(claims))
     parts |= pages.each_table(claims, pages.claims_markdown, MISSING)
     for kind in CLAIMED:

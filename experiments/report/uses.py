@@ -168,6 +168,11 @@ def best(found: pd.Series) -> str:
     return " or ".join(filter(None, [", ".join(titles[:-1]), *titles[-1:]]))
 
 
+HOW_TO_READ = (
+    "The best comes first, with its cost, the others with how many times as much they cost; within "
+    "a tenth of the best they are bold. Normals cost what they do per vertex, an impact what one "
+    "does, and queries what all eight of them do together."
+)
 HEADS = "Use", "What is compared", "Vertices", "The best first"
 
 
@@ -189,7 +194,7 @@ def _rows(run: Run, bold: str, pair: str) -> list[tuple[str, str, str, str]]:
         words: list[str] = []
         for structure, cost in found.items():
             title, ratio = REGISTRY[str(structure)].title, cost / found.iloc[0]
-            beside = f"{digits(ratio)} ×" if words else use.written(cost)
+            beside = f"{digits(ratio, 3 if ratio < 2 else 2)} ×" if words else use.written(cost)
             words.append(pair.format(bold.format(title) if ratio <= ALIKE else title, beside))
         if words:
             rows.append((use.title, use.compared, f"{found.name:,}", Html(" · ".join(words))))
