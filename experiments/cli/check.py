@@ -76,8 +76,9 @@ def _compare(
 
     if beside:  # all mistakes are told before anything is measured
         gate.require_tree(beside)
+    loaded = chosen and _load(chosen)
     before = gate.load_baseline(gate.COUNTERS, folder)
-    runs = chosen and (gate.load_baseline(gate.RUN, folder), gate.reduce_run(_load(chosen)))
+    runs = loaded and (gate.load_baseline(gate.RUN, folder), gate.reduce_run(loaded))
     factors: dict[str, Any] = {} if factor is None else {"factor": factor}
     after = gate.measure_counters(structures)
     before = before.only(structures) if structures else before

@@ -26,12 +26,15 @@ def show_rows(
         stop = start + 1
         while stop < len(widths) and widths[0] + sum(widths[start : stop + 1]) <= console.width:
             stop += 1
+        whole = widths[0] + widths[start] <= console.width  # else lines are broken, and not cut
         table = Table(title=title or None, title_justify="left", box=box.SIMPLE_HEAD)
         table.pad_edge, table.padding = False, (0, 1, 0, 0)
         heads, *body = ([row[0], *row[start:stop]] for row in every)
         for head in heads:
             justify: Any = "right" if head in numbers else "left"
-            table.add_column(head, style="" if head else "bold", no_wrap=True, justify=justify)
+            table.add_column(
+                head, style="" if head else "bold", no_wrap=whole, overflow="fold", justify=justify
+            )
         for row in body:
             if any(row[1:]):
                 table.add_row(*(_colored(cell, colors or {}) for cell in row))

@@ -204,7 +204,7 @@ def diamond_of(edge_vertices: Kernel, left_and_right: Kernel, face: Kernel, apex
             at[LEFT], at[C] = face(m, left), apex(m, left)
         if right >= 0:
             at[RIGHT], at[D] = face(m, right), apex(m, right)
-        return (left >= 0) + (right >= 0)
+        return int(left >= 0) + int(right >= 0)  # where Python runs it, too: True and True is True
 
     return diamond
 

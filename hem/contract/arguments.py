@@ -40,7 +40,10 @@ def integer(called: str, element: str, handle: Any) -> int:
 
 def integers(called: str, values: ArrayLike, dimensions: tuple[int, ...] = (0, 1)) -> Array:
     """One handle or a row of them; MeshError for anything but such integers."""
-    given = np.asarray(values)
+    try:
+        given = np.asarray(values)
+    except ValueError as error:  # rows of several lengths
+        raise MeshError(f"{called} takes a 1-D array of integers: {error}") from error
     if given.ndim not in dimensions or (given.size and given.dtype.kind not in "iu"):
         one = "one handle or " if 0 in dimensions else "handles: "
         raise MeshError(
@@ -78,7 +81,7 @@ def positions(called: str, points: ArrayLike, n: int) -> Array:
     """(n, 3) float32; MeshError for what is no position per handle, naming the rows."""
     try:
         given = np.asarray(points, np.float64)
-    except (TypeError, ValueError) as error:
+    except (TypeError, ValueError, OverflowError) as error:
         raise MeshError(f"{called} takes points as {n} rows of three numbers: {error}") from error
     if n == 0 and given.size == 0:
         return NO_POINT

@@ -44,9 +44,10 @@ class Followers:
     def put_back(self, kept: Kept) -> None:
         """Have the values that were kept again, and the default where nothing was."""
         for key, attribute in self.attributes.items():
-            if key in kept:
+            as_kept = key in kept and _is_alike(attribute, *kept[key][:2])
+            if as_kept:
                 attribute.restore(kept[key][-1])
-            else:
+            else:  # made since, if only anew under its name
                 attribute.clear()
 
     def adopt(self, kept: Kept, mesh: Any, state: State) -> None:
@@ -54,6 +55,12 @@ class Followers:
         for key, (kind, default, on_split, values) in kept.items():
             self.attributes[key] = kind(mesh, state, *key, default, on_split)
             self.attributes[key].restore(values)
+
+
+def _is_alike(attribute: Attribute, kind: type[Attribute], default: Any) -> bool:
+    """Whether an attribute is of a kind, and its values are as the default that was kept."""
+    made = attribute.default
+    return type(attribute) is kind and (made.dtype, made.shape) == (default.dtype, default.shape)
 
 
 class AttributeMethod:
@@ -79,8 +86,11 @@ class AttributeMethod:
         dtype = dtype or (known.default.dtype if known is not None else np.float32)
         try:
             value = np.broadcast_to(np.array(default, dtype), shape)  # in an array of its own
-        except (TypeError, ValueError) as error:
+        except (TypeError, ValueError, OverflowError) as error:
             raise MeshError(f"{element} attribute {name!r}: {error}") from error
+        if value.dtype.hasobject or not value.size:
+            what = "objects" if value.dtype.hasobject else "no numbers"
+            raise MeshError(f"{element} attribute {name!r}: values are numbers, not {what}")
         if known is None:
             moved = "edge" in element and not mesh.stable_edge_handles
             kind = SideAttribute if moved else self._kind

@@ -105,7 +105,7 @@ class Queries:
         source = QUERIES[name].source
         if handles is ALL:
             handles = self.handles(source)
-        if np.ndim(handles):
+        if isinstance(handles, list | tuple) or np.ndim(handles):
             return self._ask_many(name, handles)
         return self._ask_many(name, [integer(name, source, handles)])[0].copy()
 

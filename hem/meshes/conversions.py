@@ -24,9 +24,19 @@ def from_trimesh(given: Any, dtype: DTypeLike = np.float32) -> TriangleMesh:
 
 
 def from_pyvista(given: Any, dtype: DTypeLike = np.float32) -> TriangleMesh | PolygonMesh:
-    """The mesh of a ``pyvista.PolyData``: of triangles if it has no other faces. O(n + m)."""
+    """The mesh of a ``pyvista.PolyData``: of triangles if it has no other faces. O(n + m).
+
+    Raises MeshError for strips, and for numbers that are no faces, each behind its count.
+    """
+    if getattr(given, "n_strips", 0):
+        raise MeshError("triangle strips are no faces; take given.triangulate()")
     values, rows, at = np.asarray(given.faces), [], 0
     while at < len(values):
+        if not 0 <= values[at] < len(values) - at:
+            raise MeshError(
+                f"faces in one row are corners behind their count, as PyVista has: number {at} "
+                f"is {values[at]}; or give a row per face"
+            )
         rows.append(values[at + 1 : at + 1 + values[at]])
         at += 1 + int(values[at])
     return _of_rows(given.points, rows, dtype)

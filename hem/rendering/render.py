@@ -210,6 +210,7 @@ def split_at_seams(corners: Attribute) -> tuple[Points, Handles, Array]:
     s = corners.mesh
     vertex, values = s.triangles().reshape(-1), corners[s.faces()]
     told_apart = values.reshape(len(vertex), math.prod(values.shape[1:]))
+    told_apart = np.unique(told_apart, return_inverse=True)[1].reshape(told_apart.shape)  # nan too
     _, value = np.unique(told_apart, axis=0, return_inverse=True)
     pairs = np.stack([vertex, value.reshape(-1)], axis=1)
     _, first, place = np.unique(pairs, axis=0, return_index=True, return_inverse=True)

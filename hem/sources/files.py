@@ -1,5 +1,6 @@
 """Meshes from files and into files: ply, obj, off and stl read here, all else by pymeshlab."""
 
+import codecs
 import os
 import re
 import struct
@@ -137,6 +138,8 @@ def encoded(mesh: TriangleMesh | PolygonMesh, extension: str) -> bytes:
             save_file(mesh, beside)
         except MeshlabError as error:
             raise MeshError(_words(error)) from error
+        if not beside.exists():
+            raise MeshError(f"pymeshlab writes no {extension} file")
         return beside.read_bytes()
 
 
@@ -192,6 +195,7 @@ def _bytes(file: Path) -> bytes:
         data = file.read_bytes()
     except OSError as error:
         raise MeshError(f"it cannot be read: {error.strerror}") from error
+    data = data.removeprefix(codecs.BOM_UTF8)
     if not data.strip():
         raise MeshError("the file is empty; get it anew")
     return data

@@ -58,7 +58,7 @@ def read_obj(data: bytes) -> Parts:
     points: list[list[float]] = []
     faces: list[list[int]] = []
     dropped: dict[str, None] = {}
-    for line in re.sub(rb"\\\r?\n", b" ", data).splitlines():
+    for line in re.sub(rb"(?m)^([^#\n]*)\\\r?\n", rb"\1 ", data).splitlines():
         kind, *words = line.partition(b"#")[0].split() or [b""]
         try:
             if kind == b"v":

@@ -24,6 +24,7 @@ from hem.arrays import Array, Bools
 from hem.contract import ELEMENTS, HANDLE_TYPES
 from hem.errors import MeshError
 from hem.listeners import Listeners
+from hem.meshes import position
 
 Point = tuple[float, float, float]
 
@@ -44,12 +45,16 @@ class Vertex:
 
     @property
     def point(self) -> Point:
-        """x, y and z. Setting it raises the event, and tells who follows the mesh."""
+        """x, y and z. Setting it raises the event, and tells who follows the mesh.
+
+        MeshError for what is no position, which changes nothing.
+        """
         return self._point
 
     @point.setter
     def point(self, point: Point) -> None:
-        self._point = point
+        x, y, z = position(point).tolist()
+        self._point = x, y, z
         if (event := self.position_changed) is not None:
             try:
                 event.tell(self)

@@ -176,7 +176,7 @@ def _dead_half_edge(s: HalfEdgeMesh) -> None:
 
 
 def _not_finite(s: HalfEdgeMesh) -> None:
-    s.vertices[2].point = (0.0, float("inf"), 0.0)
+    s.vertices[2].place((0.0, float("inf"), 0.0))
 
 
 @pytest.mark.parametrize(
@@ -226,3 +226,12 @@ def test_who_follows_the_mesh_is_told_though_a_subscriber_of_the_vertex_raises()
     with pytest.raises(ValueError, match="not this one"):
         s.vertices[1].point = (0.0, 5.0, 0.0)
     assert edits[-1].changed_vertices.tolist() == [1]
+
+
+@pytest.mark.parametrize("wrong", [(1, 2), (np.nan, 0, 0), "abc", None])
+def test_a_point_that_is_no_position_moves_nothing(wrong: Any) -> None:
+    s = cast("HalfEdgeMesh", structures.build("half_edge_objects", octahedron()))
+    before = s.points.copy()
+    with pytest.raises(hem.MeshError, match="a position is three finite numbers"):
+        s.vertices[1].point = wrong
+    assert np.array_equal(s.points, before)

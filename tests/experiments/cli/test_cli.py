@@ -8,6 +8,7 @@ import subprocess
 import sys
 import threading
 from io import StringIO
+from pathlib import Path
 
 import pytest
 from rich.console import Console
@@ -71,11 +72,13 @@ def test_a_reader_who_has_enough_is_no_mistake(monkeypatch, capsys):
 
 def test_names_are_told_as_they_are_whatever_brackets_they_have(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    mesh, workload = tmp_path / "a[/b].obj", tmp_path / "w.toml"
+    mesh, workload = Path("a[/b].obj"), tmp_path / "w.toml"
+    mesh.parent.mkdir()
     mesh.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
     workload.write_text('title = "reads [/ops] only"\n[[rows]]\nwhat = "vertex_faces"\ntimes = 1\n')
-    assert "a[/b].obj\n" in hem("info", mesh.name)[1]
-    code, output = hem("advise", mesh.name, "--workload", str(workload))
+    assert hem("info", str(mesh))[1].startswith("a[/b].obj vertices 3")
+    run = str(Path(__file__).parents[3] / "results/reference/run")
+    code, output = hem("advise", str(mesh), "--workload", str(workload), "--run", run)
     assert code == 0
     assert "reads [/ops] only, on a[/b].obj (1 faces)." in output
 

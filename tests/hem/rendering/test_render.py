@@ -278,3 +278,10 @@ def test_a_mesh_without_faces_has_no_seams(name):
     s = structures.build(name, hem.TriangleMesh(np.eye(3), []))
     points, indices, values = hem.split_at_seams(s.corner_attribute("uv", shape=(2,)))
     assert (len(points), len(indices), values.shape) == (0, 0, (0, 2))
+
+
+def test_corners_of_no_number_are_of_one_value() -> None:
+    s = structures.build("half_edge", hem.generate("grid", 16))
+    points, _, values = hem.split_at_seams(s.corner_attribute("uv", shape=2, default=np.nan))
+    assert len(points) == 3 * s.n_vertices
+    assert np.isnan(values).all()

@@ -101,5 +101,11 @@ def test_what_looks_like_a_mesh_and_is_none_is_a_mesh_error(tmp_path: Path) -> N
     for given in ([1, 2], (POINTS, [[0, 1, 9]]), ("points", "faces"), blocks(("tetra", [[0]]))):
         with pytest.raises(hem.MeshError):
             hem.as_mesh(given)
+    flat = SimpleNamespace(points=POINTS, faces=np.array([0, 1, 2, -1, 0, 2, 3, -1]))
+    with pytest.raises(hem.MeshError, match=r"corners behind their count.*number 3 is -1"):
+        hem.as_mesh(flat)
+    strips = SimpleNamespace(points=POINTS, faces=np.zeros(0, np.int64), n_strips=1)
+    with pytest.raises(hem.MeshError, match="triangle strips are no faces"):
+        hem.as_mesh(strips)
     with pytest.raises(hem.MeshError, match=r"cannot load .*nowhere\.ply"):
         structures.build("indexed", tmp_path / "nowhere.ply")

@@ -538,3 +538,13 @@ def test_stl_files_are_text_in_any_case_and_binary_whatever_their_first_word(
     data = b"solid" + file.read_bytes()[5:]
     for more in (b"", b"\0\0"):
         assert len(hem.load(written(file, data + more)).triangles) == 80
+
+
+@pytest.mark.parametrize("head", [b"\xef\xbb\xbf", b"# from C:\\models\\\n", b"v 0 \\\n0 -1\n"])
+def test_no_head_of_an_obj_file_takes_a_vertex_with_it(tmp_path: Path, head: bytes) -> None:
+    points = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (2, 2, 2)]
+    lines = [*(f"v {x} {y} {z}" for x, y, z in points), "f -4 -3 -2", ""]
+    (tmp_path / "it.obj").write_bytes(head + "\n".join(lines).encode())
+    mesh = hem.load(tmp_path / "it.obj")
+    assert mesh.points[-4:].tolist() == [list(map(float, it)) for it in points]
+    assert mesh.points[mesh.triangles[0]].tolist() == [[0, 0, 0], [1, 0, 0], [0, 1, 0]]

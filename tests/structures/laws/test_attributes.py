@@ -394,6 +394,22 @@ def test_what_is_restored_has_its_values_again(s):
     assert_plain(s)
 
 
+def test_what_was_made_anew_under_a_name_is_not_what_was_kept_of_it(s):
+    weight = s.vertex_attribute("weight")
+    weight[s.vertices()] = 7
+    s.reserve(50)
+    before = s.snapshot()
+    s.remove_attribute(weight)
+    other = s.vertex_attribute("weight", np.int32, 3, default=2)
+    s.restore(before)
+    assert set(other[s.vertices()].ravel().tolist()) == {2}
+    s.split_face(int(s.faces()[0]), between(s, s.face_vertices(int(s.faces()[0])), 0))
+    assert other.values.shape == (s.n_vertices, 3)
+    for wrong in ({"shape": 0}, {"dtype": object}, {"dtype": np.uint8, "default": 300}):
+        with pytest.raises(hem.MeshError, match="vertex attribute 'wrong'"):
+            s.vertex_attribute("wrong", **wrong)
+
+
 def test_values_are_uploaded_where_it_is_asked(s):
     color = s.vertex_attribute("color", shape=3)
     uploads: list[hem.Upload] = []

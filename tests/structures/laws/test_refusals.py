@@ -383,3 +383,12 @@ def test_a_refusal_names_the_method_that_was_called():
     h = s.face_half_edges(0)
     with pytest.raises(TopologyError, match="cannot split_face"):
         s.split_face(int(h[0]), int(h[1]))
+
+
+def test_rows_of_several_lengths_and_numbers_beyond_all_are_mesh_errors() -> None:
+    s = structures.build("half_edge", hem.generate("grid", 9))
+    for ask in (s.vertex_faces, s.is_border, s.collapse_edges, s.remove_faces):
+        with pytest.raises(hem.MeshError):
+            ask([[1], [2, 3]])
+    with pytest.raises(hem.MeshError, match="points as 1 rows of three numbers"):
+        s.split_faces([0], [(10**400, 0, 0)])

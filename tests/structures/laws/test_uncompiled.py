@@ -93,6 +93,7 @@ def test_an_algorithm_makes_what_it_makes_compiled():
         s = structures.build(name, mesh_called("shuffled torus"), compiled=compiled)
         algorithms.simplify(s, vertices=40, by="shortest_edge")
         algorithms.smooth(s)
+        algorithms.remesh(s, iterations=1)
         s.validate()
         return s
 
