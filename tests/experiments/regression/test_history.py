@@ -38,9 +38,9 @@ def test_a_line_has_the_verdicts_and_figures_of_its_run(base):
 
 
 @pytest.mark.parametrize(("kind", "missing"), [("work", "outcome_time"), ("time", "outcome")])
-def test_a_run_says_nothing_of_what_it_has_not_measured(base_run, kind, missing):
+def test_a_run_says_nothing_of_what_it_has_not_measured(base_run, kind, missing, tmp_path):
     kept = base_run.cases[base_run.cases["kind"] == kind]
-    claims = record_run(replace(base_run, cases=kept))["claims"]
+    claims = record_run(replace(base_run, folder=tmp_path, cases=kept))["claims"]
     known = [it for it in claims.values() if "slopes" in it]
     judged = [it for it in known if Outcome.NO_CLAIM not in it.values()]
     assert judged
