@@ -96,8 +96,7 @@ def advise(
 
 
 def _show(found: Advice, run: Run, called: str, mesh: str) -> None:
-    from experiments.report import digits, duration
-    from experiments.report.rows import show_rows
+    from experiments.report import digits, duration, show_rows
     from structures import REGISTRY
 
     cpu = run.meta.get("machine", {}).get("cpu", "an unknown machine")

@@ -10,7 +10,7 @@ import typer
 from typer import Argument, Option
 
 from experiments.cli.console import AsJson, console, print_json, user_errors
-from experiments.report.rows import show_rows
+from experiments.report import show_rows
 
 CODES = {"consistent": 0, "violated": 1, "undetermined": 2}
 COLORS = {"^consistent$": "green", "^violated$": "red", "^undetermined$": "yellow"}

@@ -11,7 +11,7 @@ from typer import Argument, Option
 
 import hem
 from experiments.cli.console import AsJson, OfMesh, Repair, console, print_json
-from experiments.report.rows import show_rows
+from experiments.report import show_rows
 
 REFUSED = "cannot hold it"
 

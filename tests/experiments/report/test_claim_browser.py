@@ -41,7 +41,7 @@ def test_every_claim_stands_in_the_browser_once_with_its_data(session):
 def test_every_filter_counts_the_claims_that_it_leaves(session):
     values = {
         "outcome": [str(judged.outcome) for judged in session.claims],
-        "claimed": [str(judged.claim.kind) for judged in session.claims],
+        "claimed": [str(judged.claim.claimant) for judged in session.claims],
         "structure": [judged.claim.structure for judged in session.claims],
         "kind": [judged.claim.table for judged in session.claims],
     }
