@@ -10,7 +10,7 @@ import typer
 from typer import Argument, Option
 
 from experiments.cli.console import AsJson, console, print_json, user_errors
-from experiments.report import show_rows
+from experiments.report import show_rows, two_digits
 
 CODES = {"consistent": 0, "violated": 1, "undetermined": 2}
 COLORS = {"^consistent$": "green", "^violated$": "red", "^undetermined$": "yellow"}
@@ -86,7 +86,7 @@ def _print(curves: Any, verdicts: Any, expected: str | None) -> None:
     rows = [heads[:shown]]
     for it, verdict in zip(curves, verdicts, strict=True):
         sizes = f"{len(it.sizes)}: {it.sizes[0]:g} … {it.sizes[-1]:g}"
-        row = it.name, sizes, f"{round(verdict.raw_slope, 2) + 0:.2f}", verdict.answer or "?"
+        row = it.name, sizes, two_digits(verdict.raw_slope), verdict.answer or "?"
         rows.append((*row, verdict.expected, verdict.outcome)[:shown])
     show_rows(console, rows, numbers=("slope",), colors=COLORS)
     for it, verdict in zip(curves, verdicts, strict=True):

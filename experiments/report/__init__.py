@@ -23,7 +23,7 @@ _PLACES = {
         "show_peers",
     ),
     "readme": ("write_readme",),
-    "rows": ("show_rows",),
+    "rows": ("show_rows", "two_digits"),
     "session": ("MissingError", "claim_link", "link", "open_run", "project_file"),
     "site": ("write_pdf", "write_report"),
     "style": ("show_figures",),

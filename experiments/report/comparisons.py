@@ -13,9 +13,10 @@ from experiments.bench_workloads import COMPILED, WORKLOADS
 from experiments.claims import BY_TIME, MIXES, Family, curves
 from experiments.harness import BASE, Axis
 from experiments.report.pages import Heads, Html, Numbers, numbers, part, text_table
+from experiments.report.rows import two_digits
 from experiments.report.session import MissingError, require
 from experiments.report.style import TITLES
-from experiments.report.tables import SHOWN, count, digits, duration, two_digits
+from experiments.report.tables import SHOWN, count, digits, duration
 from experiments.runs import Run
 from hem.complexity import Verdict, judge
 from hem.contract import QUERIES

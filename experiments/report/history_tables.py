@@ -12,7 +12,8 @@ from rich.console import Console
 
 from experiments.claims import Outcome
 from experiments.regression import MEASURES, OUTCOMES, ClaimName, Trends
-from experiments.report.tables import SHOWN, show_rows, two_digits
+from experiments.report.rows import two_digits
+from experiments.report.tables import SHOWN, show_rows
 from structures import NAMED
 
 FEW = 6  # claims that get a table each; more of them share one

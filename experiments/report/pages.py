@@ -28,6 +28,7 @@ from experiments.harness import Axis, Table
 from experiments.report import session
 from experiments.report import tables as written
 from experiments.report.notebooks import page_titles
+from experiments.report.rows import two_digits
 from experiments.report.session import link
 from experiments.runs import experiments, in_words, tables
 from structures import NAMED
@@ -74,7 +75,7 @@ def _templates() -> Environment:
     }
     environment.filters |= {
         "digits": written.digits, "spelled": written.spelled, "time": written.duration,
-        "two_digits": written.two_digits, "whole": written.count,
+        "two_digits": two_digits, "whole": written.count,
         "where": lambda source: re.split("[:;]|, (?!abstract|table)", source)[0],
     }  # fmt: skip
     return environment

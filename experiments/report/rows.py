@@ -47,3 +47,8 @@ def _colored(cell: str, colors: Mapping[str, str]) -> Text:
     for pattern, color in colors.items():
         text.highlight_regex(pattern, color)
     return text
+
+
+def two_digits(value: float) -> str:
+    """A slope: 1.00, never -0.00."""
+    return f"{round(value, 2) + 0:.2f}"

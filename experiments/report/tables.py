@@ -23,6 +23,7 @@ from experiments.claims import (
 )
 from experiments.harness import QUERIES_TABLE
 from experiments.report import rows as plain
+from experiments.report.rows import two_digits
 from experiments.report.session import MissingError
 from experiments.runs import Run, load, noise, tables
 from structures import NAMED, THESIS
@@ -242,11 +243,6 @@ def digits(value: float, count: int = 2) -> str:
 def count(value: float) -> str:
     """A whole number: 12,000; a dash where there is none."""
     return f"{value:,.0f}" if value == value else NO_CLAIM
-
-
-def two_digits(value: float) -> str:
-    """A slope: 1.00, never -0.00."""
-    return f"{round(value, 2) + 0:.2f}"
 
 
 def spelled(name: str) -> str:

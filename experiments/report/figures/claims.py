@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 from experiments.claims import Between, Curve, Exactly, JudgedClaim, curves
 from experiments.harness import Axis
 from experiments.report import style
+from experiments.report.rows import two_digits
 from experiments.report.session import Session, claim_file, open_run
 from experiments.report.style import GRAY, RED, STYLES, Plot
-from experiments.report.tables import two_digits
 
 Array = NDArray[np.float64]
 
