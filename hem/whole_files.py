@@ -2,6 +2,7 @@
 
 import os
 import secrets
+import shutil
 from contextlib import suppress
 from io import RawIOBase
 from pathlib import Path
@@ -10,10 +11,11 @@ from pathlib import Path
 def write_whole(path: str | os.PathLike[str], content: str | bytes) -> None:
     """Put a file in place, or replace the one there, so that no reader ever meets half of it.
 
-    Text is written as UTF-8, with its line ends as they are; the folder is made if need be. When
-    this returns, the content is on the disk. Raises OSError, and leaves what was there as it was.
+    Text is written as UTF-8, with its line ends as they are; the folder is made if need be. A file
+    that is replaced keeps its permissions, and a link goes on leading to it. When this returns, the
+    content is on the disk. Raises OSError, and leaves what was there as it was.
     """
-    target = Path(path).absolute()
+    target = Path(os.path.realpath(path))
     target.parent.mkdir(parents=True, exist_ok=True)
     beside = target.with_name(f".{target.name[:80]}-{secrets.token_hex(4)}.part")
     try:
@@ -21,6 +23,8 @@ def write_whole(path: str | os.PathLike[str], content: str | bytes) -> None:
             file.write(content.encode() if isinstance(content, str) else content)
             file.flush()
             os.fsync(file.fileno())
+        if target.exists():
+            shutil.copymode(target, beside)
         beside.replace(target)
     except BaseException:
         with suppress(OSError):

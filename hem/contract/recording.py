@@ -18,7 +18,7 @@ from hem.authoring import ELEMENTS, NEEDS_ROOM, OPERATIONS, QUERIES, Kernel, Ker
 from hem.contract.description import Algorithm
 from hem.contract.structure import Structure
 from hem.engine import CountingArray, interpreted, of_pythons_numbers
-from hem.errors import TopologyError
+from hem.errors import MeshError, TopologyError
 from hem.whole_files import write_whole
 
 COMPILED, PYTHON = "compiled", "python"
@@ -129,15 +129,19 @@ def record(s: Structure) -> Iterator[Recording]:
     Algorithms run uncompiled meanwhile, some hundred times slower, with the same outcome: take a
     mesh of some hundred vertices. ``find_edge`` counts as the query that it searches by. What is
     read of the whole mesh at once (``edges()``, ``points``) and steps along half-edges are not
-    counted. From one thread, and of one structure's meshes one at a time.
+    counted. From one thread, and of one structure's meshes one at a time. Raises MeshError where
+    the mesh is recorded already.
     """
+    if "run" in vars(s):
+        raise MeshError("this mesh is recorded already: end that recording first")
     found, before = Recording(s), dict(vars(s))
     own = {called: _counting(s, called, what, found) for called, what in _called(s)}
-    vars(s).update(own, run=partial(_run_counting, s, found))
+    own["run"] = partial(_run_counting, s, found)
+    vars(s).update(own)
     try:
         yield found
     finally:
-        for called in (*own, "run"):
+        for called in own:
             del vars(s)[called]
         vars(s).update({called: it for called, it in before.items() if called in own})
 

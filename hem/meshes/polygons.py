@@ -107,9 +107,9 @@ def _validated(faces: Faces, n: int) -> Ragged:
         )
     faces = Ragged(offsets.astype(np.int64, copy=False), corners)
     counts = faces.counts
+    refuse(counts < 3, "faces have three corners or more", "faces")
     if not np.issubdtype(corners.dtype, np.integer):
         raise MeshError(f"corners are vertex indices, integers, not {corners.dtype}")
-    refuse(counts < 3, "faces have three corners or more", "faces")
     face = np.repeat(np.arange(len(counts)), counts)
     outside = (corners < 0) | (corners >= n)
     if outside.any():

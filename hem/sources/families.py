@@ -17,6 +17,7 @@ from hem.sources.cache import cached
 from hem.sources.meshlab import apply, installed_version
 
 LARGEST = 2_000_000
+SEEDS = 2**32  # from far larger ones, pymeshlab makes points that are none
 
 
 @dataclass(frozen=True)
@@ -50,7 +51,9 @@ def generate(family: str, n_vertices: int, seed: int = 0) -> TriangleMesh:
             f"no {family} of {n_vertices:,} vertices: reachable are {chosen.smallest} … "
             f"{LARGEST:,}, {chosen.sizes}"
         )
-    variant = seed if chosen.random else 0
+    variant = operator.index(seed) if chosen.random else 0
+    if not 0 <= variant < SEEDS:
+        raise MeshError(f"a seed is an integer from 0 to {SEEDS - 1:,}, not {seed:,}")
 
     def make() -> TriangleMesh:
         mesh = chosen.make(n_vertices, variant)

@@ -132,6 +132,8 @@ def encoded(mesh: TriangleMesh | PolygonMesh, extension: str) -> bytes:
         return _WRITERS[extension](mesh.points, mesh.face_rows())
     if isinstance(mesh, PolygonMesh):
         raise MeshError("polygons are kept by ply, obj and off; or take mesh.triangulated()")
+    if not len(mesh.points):
+        raise MeshError("there are no vertices in it; ply, obj and off keep a mesh without any")
     with tempfile.TemporaryDirectory(prefix="hem-") as folder:
         beside = Path(folder) / f"mesh.{extension}"
         try:

@@ -121,6 +121,15 @@ def test_afterward_a_mesh_is_as_before() -> None:
     assert counts(workload) == {("face_faces", PYTHON): 1}
 
 
+def test_a_mesh_that_is_recorded_already_is_refused_and_goes_on_being_recorded() -> None:
+    s = build()
+    with hem.record(s) as workload:
+        with pytest.raises(hem.MeshError, match="recorded already"), hem.record(s):
+            pass
+        s.face_faces(0)
+    assert counts(workload) == {("face_faces", PYTHON): 1}
+
+
 def test_a_recording_is_told_per_element_as_csv() -> None:
     s = build()
     with hem.record(s) as workload:

@@ -81,6 +81,12 @@ def test_a_cone_has_two_vertices_of_valence_n_less_two() -> None:
     assert sorted(valences(hem.generate("cone", 60)))[-3:] == [4, 58, 58]
 
 
+@pytest.mark.parametrize("seed", [-1, 2**32])
+def test_a_seed_out_of_range_is_refused(seed: int) -> None:
+    with pytest.raises(hem.MeshError, match="from 0 to 4,294,967,295"):
+        hem.generate("terrain", 300, seed)
+
+
 @pytest.mark.parametrize("family", hem.FAMILIES)
 def test_a_seed_matters_where_the_family_is_random_and_only_there(family: str) -> None:
     one, again, other = (hem.generate(family, 500, seed).points for seed in (1, 1, 2))

@@ -177,6 +177,8 @@ def test_what_cannot_be_saved_is_refused_with_the_reason(tmp_path: Path) -> None
         hem.save(mesh, tmp_path / "mesh.foo")
     with pytest.raises(hem.MeshError, match="there is no folder"):
         hem.save(mesh, tmp_path / "nowhere" / "mesh.ply")
+    with pytest.raises(hem.MeshError, match="no vertices in it; ply, obj and off keep"):
+        hem.save(hem.TriangleMesh(np.zeros((0, 3)), []), tmp_path / "mesh.glb")
     assert not list(tmp_path.iterdir())
 
 
@@ -453,6 +455,7 @@ def test_a_triangle_structure_says_how_to_cut_polygons(tmp_path: Path) -> None:
     ("faces", "words"),
     [
         ([(0, 1)], "three corners"),
+        ([(0, 1, 2), ()], r"three corners or more \(faces: 1\)"),
         ([(0, 1, 2, 9)], "out of the range 0 … 3, such as 9"),
         ([(0, 1, 2), (0, -7, 2)], r"such as -7 \(faces: 1\)"),
         ([(0, 1, 2, 1)], "twice"),
