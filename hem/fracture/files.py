@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike
 from hem.errors import MeshError, load_optional
 from hem.fracture.blow import Blow, Motion, kinetic_energies, kinetic_energy
 from hem.fracture.pieces import Fracture
+from hem.meshes import direction
 from hem.sources import encoded
 
 SCHEMA = 1
@@ -41,7 +42,7 @@ def save_pieces(
 
     Coordinates are the model's own, to the last bit of float32. All is written beside and moved
     into place when it is complete; other files stay. Cost O(vertices + faces). Raises MeshError for
-    another format, and where the folder cannot be written.
+    another format, an ``up`` of no direction, and where the folder cannot be written.
     """
     if format not in FORMATS:
         raise MeshError(f"pieces cannot be saved as {format!r}; formats are {', '.join(FORMATS)}")
@@ -106,7 +107,7 @@ def _save_glb(fracture: Fracture, folder: Path, up: ArrayLike) -> list[Path]:
     trimesh = load_optional("trimesh", "fracture")
 
     upright = np.eye(4)  # glTF has y up
-    upright[:3, :3] = Rotation.align_vectors([(0, 1, 0)], [np.asarray(up, float)])[0].as_matrix()
+    upright[:3, :3] = Rotation.align_vectors([(0, 1, 0)], [direction(up)])[0].as_matrix()
     look = trimesh.visual.material.PBRMaterial(
         name=fracture.material.name, baseColorFactor=[*fracture.material.rgb, 255],
         roughnessFactor=0.5, metallicFactor=0.0, doubleSided=True,

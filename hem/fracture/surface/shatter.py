@@ -93,10 +93,10 @@ def shatter(
 def _chosen(
     structure: Structure, impact: ArrayLike, material: Material | str | Attribute
 ) -> Material:
-    if isinstance(material, str):
-        return named(material)
     if isinstance(material, Material):
         return material
+    if not isinstance(material, Attribute):
+        return named(material)
     if material.element != "face" or material.mesh is not structure:
         raise MeshError(f"{material!r} is no attribute of the faces of this mesh")
     require_triangles(structure)
@@ -153,8 +153,8 @@ def break_points(material: Material, seed: int, step: float) -> Floats:
     arithmetic decides, the same on every machine. Raises MeshError for a step that is no length,
     and a seed that is none.
     """
-    if not (np.isfinite(step) and step > 0):
-        raise MeshError(f"the scale of the circles is a positive length, not {step}")
+    if not (isinstance(step, int | float | np.number) and 0 < step < np.inf):
+        raise MeshError(f"the scale of the circles is a positive length, not {step!r}")
     random = generator(seed).random
     circles = [np.zeros((0, 2))]
     for i, count in enumerate(material.circles):

@@ -111,6 +111,8 @@ def test_the_numbers_are_those_of_the_fracture_and_json_can_hold_them(kind, requ
 def test_another_format_is_refused_and_nothing_is_made(broken, tmp_path):
     with pytest.raises(hem.MeshError, match=r"'stl'.*glb, obj, ply"):
         save_pieces(broken, tmp_path / "new", "stl")
+    with pytest.raises(hem.MeshError, match="a direction"):
+        save_pieces(broken, tmp_path / "new", up=(0, 0, 0))
     assert not (tmp_path / "new").exists()
 
 

@@ -325,6 +325,23 @@ def test_polygons_and_empty_meshes_are_refused():
             shatter(structures.build(name, empty), (0, 0, 1))
 
 
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        ({"material": None}, "no material None"),
+        ({"material": "gold"}, "no material 'gold'"),
+        ({"scale": "wide"}, "positive length, not 'wide'"),
+        ({"scale": 0}, "positive length, not 0"),
+    ],
+)
+def test_bad_arguments_are_refused_and_the_mesh_stays(given, words):
+    s = structures.build("half_edge", sheet())
+    before = s.to_triangles()
+    with pytest.raises(hem.MeshError, match=words):
+        shatter(s, (3.2, 4.1, 0), **given)
+    assert np.array_equal(s.to_triangles().triangles, before.triangles)
+
+
 def test_faces_without_area_are_no_trouble_to_find_others():
     flat = hem.TriangleMesh(
         [(0, 0, 0), (0, 0, 0), (0, 0, 0), (1, 0, 0), (2, 0, 0), (5, 0, 0), (6, 0, 0), (5, 1, 0)],
