@@ -2,8 +2,9 @@
 
 Again and again edges that are too long are split, those that are too short are collapsed, edges are
 flipped where that evens out valences, and vertices move within their tangent planes to the middle
-of their neighbors, and from there back onto the surface that there was. Vertices on the border
-stay; long edges along it are split.
+of their neighbors, and from there back onto the surface that there was. Where that is sharp, they
+move along the crease, and no edge of it is flipped. Vertices on the border stay; long edges along
+it are split.
 
 Source: Botsch & Kobbelt, A Remeshing Approach to Multiresolution Modeling (2004), section 4.
 """
@@ -36,6 +37,8 @@ from hem.arrays import Array, Floats, Indices
 from hem.authoring import LEFT, NEEDS_ROOM, RIGHT, C, D, Kernel, Kernels, kernel
 from hem.contract import Structure
 from hem.errors import MeshError
+from hem.meshes import length as length_of
+from hem.meshes import normals as face_normals
 
 LONGEST, SHORTEST = 4 / 3, 4 / 5
 """Of the length asked for: what is longer is split, what is shorter is collapsed."""
@@ -44,7 +47,13 @@ LEAST_STEPS = 8
 """Of float32, that an edge is long which is split: shorter ones have no middle to speak of."""
 
 LEAST_COSINE = 0.7
-"""How far the normal of a face may turn."""
+"""How far the normal of a face may turn, and how far those at an edge that is flipped differ."""
+
+SHARP = 0.8
+"""How far a face may lean away from the normal of a vertex that is on no crease."""
+
+STRAIGHT = 0.04
+"""How much of the normals around a vertex may point along a crease: a part of their squares."""
 
 
 class Flips(NamedTuple):
@@ -90,7 +99,8 @@ def evening_out(k: Kernels, operations: Kernels) -> Kernel:
                 one, other = facing(xyz, a, d, c), facing(xyz, b, c, d)
                 left, right = facing(xyz, a, b, c), facing(xyz, b, a, d)
                 both = left[0] + right[0], left[1] + right[1], left[2] + right[2]
-                if gain > 2 and agree(one, both) and agree(other, both):
+                flat = agree(left, right) and agree(one, both) and agree(other, both)
+                if gain > 2 and flat:
                     done = flip_edge(m, e, -1, plan.work)
                     if done == NEEDS_ROOM:
                         return NEEDS_ROOM
@@ -106,12 +116,14 @@ def evening_out(k: Kernels, operations: Kernels) -> Kernel:
 def remesh(s: Structure, length: float | None = None, iterations: int = 10) -> None:
     """Make all edges about as long as ``length``, the mean of all unless it is said, in place.
 
-    After ten iterations 95 of 100 edges are between 4/5 and 4/3 of it, fewer where what is thin or
-    sharp would be lost. Handles of what is left are kept, and ``compact`` renumbers. Several edits
-    per iteration. Cost per iteration: O(n_t log n_t) for bounded valence; where neighbors are
-    searched for or found anew, that for each split, collapse and flip. MeshError for what is no
-    length or number, for a length that takes more faces than there are handles, and for polygons;
-    TopologyError as ``subdivide``. Source: Botsch & Kobbelt (2004).
+    After ten iterations of a scanned model 95 of 100 edges are between 4/5 and 4/3 of it; some 85
+    where much is sharp, and on a grid, whose valences ask for no flips. Creases and corners stay
+    where they are but for what is finer than the length. Handles of what is left are kept, and
+    ``compact`` renumbers. Several edits per iteration. Cost per iteration: O(n_t log n_t) for
+    bounded valence; where neighbors are searched for or found anew, that for each split, collapse
+    and flip. MeshError for what is no length or number, for a length that takes more faces than
+    there are handles, and for polygons; TopologyError as ``subdivide``. Source: Botsch & Kobbelt
+    (2004).
     """
     require_mesh(s, "remesh")
     require_surface(s, "remesh")
@@ -166,12 +178,53 @@ def flip_to_even(s: Structure) -> None:
 
 
 def relax(s: Structure, surface: Surface) -> None:
-    """Move vertices within their tangent planes to the means of their neighbors, and back down."""
+    """Move vertices within their tangent planes to the means of their neighbors, and back down.
+
+    Where the surface is sharp, along the crease; where creases meet, not at all.
+    """
     normals: Array = vertex_normals(s).astype(np.float64)
     toward = averages(s, "remesh", np.ones_like) - s.points.astype(np.float64)
-    away = (toward * normals).sum(axis=1, keepdims=True) * normals
+    sharp, creases = find_creases(s, normals)
+    along = (toward[sharp] * creases).sum(axis=1, keepdims=True) * creases
+    toward -= (toward * normals).sum(axis=1, keepdims=True) * normals
+    toward[sharp] = along
     vertices = s.vertices()
     vertices = vertices[toward[vertices].any(axis=1)]
-    places = s.points + toward - away
+    places = s.points + toward
     places[vertices] = surface.nearest(places[vertices])
+    stay_where_faces_turn(s, places)
     move(s, "remesh", places.astype(np.float32), vertices)
+
+
+def stay_where_faces_turn(s: Structure, places: Floats) -> None:
+    """Put back, in ``places`` (n, 3), the corners of faces that turn, until none does."""
+    corners = from_smallest(s.triangles())
+    before = face_normals(s.points[corners].astype(np.float64))
+    while True:
+        after = face_normals(places[corners])
+        least = LEAST_COSINE * np.sqrt((before**2).sum(axis=1) * (after**2).sum(axis=1))
+        turned = corners[(before * after).sum(axis=1) < least]
+        if not len(turned):
+            return
+        places[turned] = s.points[turned]
+
+
+def find_creases(s: Structure, normals: Array) -> tuple[Indices, Floats]:
+    """The vertices (k,) whose faces lean away from their normals, and which way (k, 3) creases run.
+
+    That is where the unit normals of the faces around a vertex point least. Zeros where they point
+    everywhere, as at the corner of a cube.
+    """
+    corners = from_smallest(s.triangles())
+    facing = face_normals(s.points[corners].astype(np.float64))
+    sizes = length_of(facing)[:, None]
+    leaning = (facing[:, None] * normals[corners]).sum(axis=2) < SHARP * sizes
+    sharp = np.unique(corners[leaning])
+    face, at = np.nonzero(np.isin(corners, sharp))
+    around = facing[face] / np.where(sizes > 0, sizes, 1.0)[face]  # zeros for faces without area
+    spread = np.zeros((len(sharp), 3, 3))
+    squares = around[:, :, None] * around[:, None]
+    np.add.at(spread, np.searchsorted(sharp, corners[face, at]), squares)
+    strengths, ways = np.linalg.eigh(spread)
+    runs = strengths[:, :1] <= STRAIGHT * strengths.sum(axis=1, keepdims=True)
+    return sharp, np.where(runs, ways[:, :, 0], 0.0)

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
+
 import numpy as np
 import pytest
 
@@ -65,6 +68,38 @@ def test_a_surface_stays_where_it_is_finer_or_coarser(factor: float) -> None:
     mine = remeshed(mesh, length=factor * float(lengths(mesh).mean()))
     assert np.isclose(mine.volume(), mesh.volume(), rtol=0.05)
     assert (len(mine.points) > len(mesh.points)) == (factor < 1)
+
+
+def a_box(*extents: float) -> hem.TriangleMesh:
+    box = pytest.importorskip("trimesh").creation.box(extents)
+    return hem.TriangleMesh(box.vertices, box.faces)
+
+
+def a_cone() -> hem.TriangleMesh:
+    cone = pytest.importorskip("trimesh").creation.cone(1, 2, sections=64)
+    return hem.TriangleMesh(cone.vertices, cone.faces)
+
+
+@pytest.mark.parametrize(
+    ("make", "length", "share"),
+    [
+        (partial(a_box, 1, 1, 1), 0.07, 0.9),
+        (partial(a_box, 10, 10, 0.5), 1.0, 0.8),
+        (partial(a_box, 0.1, 0.1, 10), 0.05, 0.85),
+        (a_cone, 0.15, 0.9),
+    ],
+)
+def test_what_is_sharp_stays_sharp(
+    make: Callable[[], hem.TriangleMesh], length: float, share: float
+) -> None:
+    mesh = make()
+    mine = remeshed(mesh, length=length)
+    found = lengths(mine) / length
+    assert ((found > 4 / 5) & (found < 4 / 3)).mean() >= share
+    assert np.isclose(mine.area(), mesh.area(), rtol=0.01)
+    assert np.isclose(mine.volume(), mesh.volume(), rtol=0.01)
+    assert np.allclose(mine.points.max(axis=0), mesh.points.max(axis=0), rtol=0.001)
+    assert meshlab.distances(mesh, mine)[1] < 0.01
 
 
 def test_the_length_is_the_mean_unless_it_is_said() -> None:
