@@ -14,9 +14,9 @@ from numpy.typing import ArrayLike
 
 from hem.complexity import selection
 from hem.complexity.estimates import Costs, resample, slope, summarize
-from hem.complexity.models import NAMES, STEEP, has_lower_terms, predict
+from hem.complexity.models import NAMES, STEEP, has_lower_terms
 from hem.complexity.notation import Array, Order, canonical, parse
-from hem.complexity.selection import LATENCY_ERROR, MOST_WOBBLE, Comparison, compare_models
+from hem.complexity.selection import LATENCY_ERROR, MOST_WOBBLE, Comparison, Memory, compare_models
 
 Outcome = Literal["consistent", "violated", "undetermined"]
 Bound = Literal["tight", "upper"]
@@ -125,20 +125,16 @@ def judge(
     claimed = canonical(expected, variable)
     if reference is not None and latency is not None:
         raise ValueError("give either latency or reference")
-    waits = latency if reference is None else np.ravel(reference)
-    measured, entire = summarize(sizes, samples, waits), reference is not None
+    terms = np.ravel(np.asarray(lower, float))
+    if not np.isfinite(terms).all():
+        raise ValueError(f"lower must be numbers, not {lower!r}")
+    waits, entire = (latency, False) if reference is None else (np.ravel(reference), True)
+    measured = summarize(sizes, samples, waits)
     noisy = measured.error > MAX_ERROR
     if 0 < noisy.mean() <= MOST_SKIPPED and np.count_nonzero(~noisy) >= MIN_SIZES:
         measured = measured.only(np.flatnonzero(~noisy))
-    costs, memory = selection.account_for_memory(measured, exact, latency_error, unseen, entire)
-    names = tuple(sorted({*NAMES, claimed}, key=parse))
-    terms, half = np.ravel(np.asarray(lower, float)), len(costs.sizes) // 2
-    if not np.isfinite(terms).all():
-        raise ValueError(f"lower must be numbers, not {lower!r}")
-    models = compare_models(costs, memory, names, terms)
-    asked = costs.cost if terms.size else models.steady(costs.cost)  # the memory's part may be more
-    if slope(costs.sizes[half:], asked[half:]) > STEEPER:
-        models = compare_models(costs, memory, sorted({*names, *STEEP}, key=parse), terms)
+    given = selection.account_for_memory(measured, exact, latency_error, unseen, entire)
+    models = _fitted(*given, claimed, terms)
     names, claim = models.names, models.names.index(claimed)
     outcome, reason = _decide(measured, models, claim, bound)
     if not exact and (size := _hinge(outcome, measured, models, claim, bound)):
@@ -147,25 +143,40 @@ def judge(
     if outcome == "consistent" and len(classes) > 1:
         worse = " and ".join(it for it in classes if it != names[models.best])
         reason = f"{names[models.best]} explains the costs best, and {worse} is not ruled out."
-    fitted, _ = predict(models.design, models.fit)
-    errors = np.sqrt(np.mean((fitted / costs.cost - 1) ** 2, axis=1))
-    replicates = resample(costs, fitted[models.best], resamples, seed)
+    costs, steady = models.costs, models.steady(models.costs.cost)
+    replicates = resample(costs, models.predicted[models.best], resamples, seed)
     tails = [(1 - confidence) / 2, (1 + confidence) / 2]
-    told = float(slope(costs.sizes, models.steady(costs.cost)))  # a model may miss it by a little
+    told = float(slope(costs.sizes, steady))  # a model may miss it by a little
     low, high = np.quantile(slope(costs.sizes, models.steady(replicates)), tails)
-    slowdown = models.design.slowdowns.scaling[models.fit.slowdown].max(axis=1)
-    with_lower = [has_lower_terms(parse(name)) for name in names]
-    beside = np.where(with_lower, models.design.lower[models.fit.lower], 0)
-    terms = np.stack([models.fit.intercept, models.fit.factor, beside, slowdown], axis=1).tolist()
-    coefficients = [dict(zip(COEFFICIENTS, row, strict=True)) for row in terms]
     return Verdict(
         outcome, claimed, bound, names[models.best],
         slope=told, slope_low=min(float(low), told), slope_high=max(float(high), told),
         raw_slope=float(slope(costs.sizes, costs.cost)),
-        noise=costs.scatter, coefficients=dict(zip(names, coefficients, strict=True)),
-        errors=dict(zip(names, errors.tolist(), strict=True)), reason=reason,
+        noise=costs.scatter, coefficients=_coefficients(models),
+        errors=dict(zip(names, models.errors.tolist(), strict=True)), reason=reason,
         classes=classes,
     )  # fmt: skip
+
+
+def _fitted(costs: Costs, memory: Memory, claimed: str, lower: Array) -> Comparison:
+    """The models that a claim is held against: the usual ones, and steep ones for steep costs."""
+    names, half = sorted({*NAMES, claimed}, key=parse), len(costs.sizes) // 2
+    models = compare_models(costs, memory, names, lower)
+    asked = costs.cost if lower.size else models.steady(costs.cost)  # the memory's part may be more
+    if slope(costs.sizes[half:], asked[half:]) <= STEEPER:
+        return models
+    return compare_models(costs, memory, sorted({*names, *STEEP}, key=parse), lower)
+
+
+def _coefficients(models: Comparison) -> dict[str, dict[str, float]]:
+    """By model what its fit consists of, see `Verdict`."""
+    design, fit = models.design, models.fit
+    with_lower = [has_lower_terms(parse(name)) for name in models.names]
+    lower = np.where(with_lower, design.lower[fit.lower], 0)
+    slowdown = design.slowdowns.scaling[fit.slowdown].max(axis=1)
+    rows = np.stack([fit.intercept, fit.factor, lower, slowdown], axis=1).tolist()
+    told = (dict(zip(COEFFICIENTS, row, strict=True)) for row in rows)
+    return dict(zip(models.names, told, strict=True))
 
 
 def require_bound(bound: str) -> None:
@@ -244,10 +255,9 @@ def _classes(costs: Costs, models: Comparison) -> list[str]:
 
 def _is_told(power: str, models: Comparison) -> bool:
     """Whether a power law, and no constant, explains the costs closely."""
-    cost = models.costs
-    law = compare_models(cost, models.memory, sorted({NAMES[0], power}, key=parse))
-    close = np.sqrt(np.mean((predict(law.design, law.fit)[0][-1] / cost.cost - 1) ** 2))
-    return bool(law.explained and law.names[law.best] == power and close <= MOST_WOBBLE)
+    law = compare_models(models.costs, models.memory, sorted({NAMES[0], power}, key=parse))
+    closely = law.explained and law.errors[-1] <= MOST_WOBBLE
+    return bool(closely and law.names[law.best] == power)
 
 
 def _doubt(costs: Costs) -> str:

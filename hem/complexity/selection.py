@@ -102,6 +102,16 @@ class Comparison:
         """The models, slowest growth first."""
         return self.design.names
 
+    @cached_property
+    def predicted(self) -> Array:
+        """(m, k) the costs that each model predicts."""
+        return predict(self.design, self.fit)[0]
+
+    @property
+    def errors(self) -> Array:
+        """(m,) root mean square of the relative residuals of each model."""
+        return np.sqrt(np.mean((self.predicted / self.costs.cost - 1) ** 2, axis=1))
+
     @property
     def chi2(self) -> Array:
         """(m,) misfit of each model with the slowdowns that are known of."""
