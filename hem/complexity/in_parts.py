@@ -24,10 +24,16 @@ class InParts:
     sizes: Array  # (j,)
     ratios: list[Array]  # j times how often a call takes as long as the others together
 
-    @property
-    def logs(self) -> tuple[float, float]:
-        """The power of log n by which the ratios rise, and how far they stray from that."""
-        return self._logs(0)
+    def logs(self, first: int = 0) -> tuple[float, float]:
+        """The power of log n by which the ratios rise, and how far they stray from that.
+
+        The power is the median of what all pairs of sizes tell: one that was disturbed says little.
+        """
+        rows = self.ratios[first:]
+        x, y = np.log(np.log(self.sizes[first:])), np.log([np.median(row) for row in rows])
+        one, other = np.triu_indices(len(x), 1)
+        power = np.median((y[other] - y[one]) / (x[other] - x[one]))
+        return float(power), float(np.std(y - power * x))
 
     @property
     def levels_off(self) -> bool:
@@ -37,12 +43,12 @@ class InParts:
         heart, does so; log n goes on.
         """
         half = len(self.sizes) // 2
-        return half >= HALF and self._logs(half)[0] < FLAT <= self.logs[0]
+        return half >= HALF and self.logs(half)[0] < FLAT <= self.logs()[0]
 
     @property
     def is_settled(self) -> bool:
         """Whether they tell that costs are linear."""
-        return self.logs[0] < FLAT or self.levels_off
+        return self.logs()[0] < FLAT or self.levels_off
 
     def hold(self, told: Verdict) -> Verdict:
         """What is told, held to what small inputs take that are as much together.
@@ -51,7 +57,7 @@ class InParts:
         is linear. What does may be slower at random access, or of O(n log n): where it grows
         evenly, linear costs are not certain, and where both are open no cache grows so evenly.
         """
-        power, stray = self.logs
+        power, stray = self.logs()
         if stray > UNEVEN:
             return told
         flat = QUITE_FLAT if told.classes == LOGLINEAR else FLAT
@@ -73,11 +79,3 @@ class InParts:
         grows = "in proportion" if is_flat else "less"
         reason = f"Small inputs, as much together, take {grows}: {' or '.join(classes)}."
         return replace(told, classes=classes, best=classes[0], outcome=outcome, reason=reason)
-
-    def _logs(self, first: int) -> tuple[float, float]:
-        """The median of what all pairs of sizes tell: one that was disturbed says little."""
-        rows = self.ratios[first:]
-        x, y = np.log(np.log(self.sizes[first:])), np.log([np.median(row) for row in rows])
-        one, other = np.triu_indices(len(x), 1)
-        power = np.median((y[other] - y[one]) / (x[other] - x[one]))
-        return float(power), float(np.std(y - power * x))

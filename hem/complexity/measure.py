@@ -158,7 +158,7 @@ def _choose_sizes(calls: Calls, turn: float, most: int) -> list[int]:
                 least = before  # any larger one may take forever
             break
         n = min(max(n + 1, round(n * (STEP if n < FAR else STRIDE))), most)
-    return [int(size) for size in np.unique(_between_ends(tried, turn, least).round())]
+    return [int(size) for size in np.unique(_of_equal_ratio(tried, turn, least).round())]
 
 
 def _working_sets(calls: Calls, sizes: Sequence[int], longest: float) -> Array:
@@ -200,23 +200,22 @@ def _parts(found: Measured, given: bool) -> tuple[int, Array]:
     return part, np.unique(np.geomspace(2 * part, room[-1], PARTS) // 1)
 
 
-def _ends(tried: list[tuple[int, float]], least: int) -> tuple[int, int]:
-    """The smallest size and the largest, at ``least`` that, of those tried with what each takes."""
+def _of_equal_ratio(tried: list[tuple[int, float]], turn: float, least: int) -> Array:
+    """Sizes up to the largest that was tried, or ``least``; tried: with what each takes.
+
+    The fewer, the less of a turn is left beside the smallest one.
+    """
     last, longest = tried[-1]
     telling = next(n for n, seconds in tried if seconds * COSTLIER >= longest)
-    return max(FIRST, min(telling, last // REACH)), max(last, least)
-
-
-def _between_ends(tried: list[tuple[int, float]], turn: float, least: int) -> Array:
-    """Sizes of equal ratio: the fewer, the less of a turn is left beside the smallest one."""
+    first = max(FIRST, min(telling, last // REACH))
     few = turn / 2 / max(tried[0][1], SAMPLE * LONGER)
-    return np.geomspace(*_ends(tried, least), int(np.clip(few, FEWEST, COUNT)))
+    return np.geomspace(first, max(last, least), int(np.clip(few, FEWEST, COUNT)))
 
 
 def _seconds_of_turn(tried: list[tuple[int, float]], turn: float, least: int) -> float:
     """What one sample of each size takes, were these the sizes."""
     known, seconds = np.log(np.array(tried)).T
-    sizes = np.log(_between_ends(tried, turn, least))
+    sizes = np.log(_of_equal_ratio(tried, turn, least))
     return float(np.maximum(np.exp(np.interp(sizes, known, seconds)), SAMPLE * LONGER).sum())
 
 

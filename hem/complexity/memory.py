@@ -16,7 +16,6 @@ from numpy.typing import ArrayLike
 
 from hem.complexity.notation import Array
 
-LINE = 64  # bytes that come from memory together
 STEPS = 1_000  # accesses per sample
 SAMPLES = 5
 LARGEST = 1 << 25  # bytes; what takes more is measured as this
