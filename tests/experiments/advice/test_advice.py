@@ -1,7 +1,5 @@
 """Laws of advice: times are what a run says times how often, and what does not suit is not told."""
 
-from __future__ import annotations
-
 import json
 from dataclasses import replace
 
@@ -15,6 +13,7 @@ from experiments import cli
 from experiments.advice import (
     NEEDS,
     PRESETS,
+    Advice,
     Limits,
     Measured,
     Prices,
@@ -47,6 +46,11 @@ def run(base_run: Run) -> Run:
 @pytest.fixture(scope="module")
 def prices(run: Run) -> Prices:
     return Prices(run)
+
+
+def names(found: Advice) -> list[str]:
+    """The structures that could be taken, in their order."""
+    return [it.forecast.structure for it in found.options]
 
 
 def seconds(run: Run, structure: str, query: str, order: str, faces: int) -> float:
@@ -99,23 +103,20 @@ def test_the_least_time_comes_first_and_all_that_suit_are_told(prices: Prices) -
     found = advise(prices, ASKED, MESH)
     times = [it.forecast.seconds for it in found.options]
     assert times == sorted(times)
-    assert {it.forecast.structure for it in found.options} == set(REGISTRY)
+    assert set(names(found)) == set(REGISTRY)
     assert not found.refused
 
 
 @pytest.mark.parametrize("need", NEEDS)
 def test_every_structure_is_an_option_or_refused_with_a_reason(prices: Prices, need: str) -> None:
     found = advise(prices, ASKED, MESH, needs=[need])
-    names = [it.forecast.structure for it in found.options]
-    assert sorted([*names, *found.refused]) == sorted(REGISTRY)
+    assert sorted([*names(found), *found.refused]) == sorted(REGISTRY)
     assert all(found.refused.values())
 
 
 def test_needs_follow_from_what_structures_declare(prices: Prices) -> None:
     found = advise(prices, ASKED, MESH, needs=["polygons"])
-    assert {it.forecast.structure for it in found.options} == {
-        name for name, it in REGISTRY.items() if it.holds_polygons
-    }
+    assert set(names(found)) == {name for name, it in REGISTRY.items() if it.holds_polygons}
 
 
 def test_what_the_run_has_not_measured_is_no_option(run: Run) -> None:
@@ -123,7 +124,7 @@ def test_what_the_run_has_not_measured_is_no_option(run: Run) -> None:
     for workload in (ASKED, PRESETS["edited"]):
         told = advise(without, workload, MESH)
         assert told.refused["half_edge"] == "the run has not measured it"
-        assert "half_edge" not in {it.forecast.structure for it in told.options}
+        assert "half_edge" not in names(told)
 
 
 def test_limits_refuse_what_takes_more(prices: Prices) -> None:
@@ -131,9 +132,7 @@ def test_limits_refuse_what_takes_more(prices: Prices) -> None:
     bytes_of = {it.forecast.structure: it.bytes for it in free.options}
     middle = sorted(bytes_of.values())[3]
     found = advise(prices, PRESETS["edited"], MESH, Limits(bytes=middle))
-    assert {it.forecast.structure for it in found.options} == {
-        name for name, it in bytes_of.items() if it <= middle
-    }
+    assert set(names(found)) == {name for name, it in bytes_of.items() if it <= middle}
     assert not advise(prices, PRESETS["edited"], MESH, Limits(edit=1e-12)).options
 
 
@@ -149,11 +148,9 @@ def test_a_run_without_operations_tells_so_and_refuses_where_edits_are_limited(r
 
 
 def test_a_structure_of_which_less_is_told_is_no_option(run: Run) -> None:
-    partly = (run.cases["experiment"] == "bench_operations") & (
-        run.cases["structure"] == "half_edge"
-    )
-    found = advise(Prices(replace(run, cases=run.cases[~partly])), PRESETS["edited"], MESH)
-    assert "half_edge" not in {it.forecast.structure for it in found.options}
+    partly = run.cases.query("experiment != 'bench_operations' or structure != 'half_edge'")
+    found = advise(Prices(replace(run, cases=partly)), PRESETS["edited"], MESH)
+    assert "half_edge" not in names(found)
     assert "the run does not tell what" in found.refused["half_edge"]
     assert found.options
 
@@ -175,11 +172,8 @@ def test_a_program_s_own_part_is_what_its_measurement_leaves(prices: Prices) -> 
     alone = predict(prices, ASKED, "half_edge", 2_000).seconds
     known = replace(ASKED, measured=Measured("half_edge", 1_000, alone + 0.25))
     for name in COMPILED:
-        more = (
-            predict(prices, known, name, 2_000).seconds
-            - predict(prices, ASKED, name, 2_000).seconds
-        )
-        assert more == pytest.approx(0.25)
+        whole, counted = (predict(prices, it, name, 2_000).seconds for it in (known, ASKED))
+        assert whole - counted == pytest.approx(0.25)
 
 
 @pytest.mark.parametrize("name", COMPILED)
@@ -193,8 +187,7 @@ def test_what_was_measured_stays_first_until_something_is_a_tenth_quicker(
         seconds = {it.forecast.structure: it.forecast.seconds for it in found.options}
         stays = seconds[name] <= 1.1 * min(seconds.values())
         assert stays or own == 0.0
-        first = name if stays else min(seconds, key=seconds.__getitem__)
-        assert found.options[0].forecast.structure == first
+        assert names(found)[0] == (name if stays else min(seconds, key=seconds.__getitem__))
         after = [it.forecast.seconds for it in found.options[1:]]
         assert after == sorted(after)
 
@@ -211,9 +204,8 @@ def test_a_mesh_has_the_prices_of_meshes_as_regular_as_it_is(run: Run) -> None:
     for it in other.options:
         assert it.forecast.seconds == pytest.approx(3 * costs[it.forecast.structure], rel=0.01)
     # What was measured on regular meshes alone has the price of those.
-    assert both.irregular.price("half_edge", "split_face", 2_000) == both.price(
-        "half_edge", "split_face", 2_000
-    )
+    case = "half_edge", "split_face", 2_000
+    assert both.irregular.price(*case) == both.price(*case)
 
 
 def _begun_anywhere(triangles: np.ndarray) -> np.ndarray:
@@ -231,13 +223,12 @@ def test_more_of_each_element_is_asked_of_a_larger_mesh(prices: Prices) -> None:
 def test_a_flip_is_where_the_best_changes(prices: Prices) -> None:
     for workload in PRESETS.values():
         found = advise(prices, workload, MESH)
-        names = [it.forecast.structure for it in found.options]
         for flip in found.flips:
             if flip["of"] == "vertices":
-                costs = {n: predict(prices, workload, n, 2 * flip["at"]).seconds for n in names}
+                then, faces = workload, 2 * flip["at"]
             else:
-                more = workload.more_edits(flip["at"])
-                costs = {n: predict(prices, more, n, found.faces).seconds for n in names}
+                then, faces = workload.more_edits(flip["at"]), found.faces
+            costs = {it: predict(prices, then, it, faces).seconds for it in names(found)}
             assert min(costs, key=costs.__getitem__) == flip["best"]
 
 
@@ -310,9 +301,8 @@ def test_the_command_says_what_it_rests_on_and_tells_programs_the_same(run: Run)
     code, text = told("torus:1000", "--workload", "edited", "--run", folder, "--json")
     data = json.loads(text)
     assert code == 0
-    assert [it["structure"] for it in data["options"]] == [
-        it.forecast.structure for it in advise(Prices(run), PRESETS["edited"], MESH).options
-    ]
+    told_here = names(advise(Prices(run), PRESETS["edited"], MESH))
+    assert [it["structure"] for it in data["options"]] == told_here
 
 
 def test_the_command_says_to_stay_where_nothing_is_a_tenth_quicker(run: Run, tmp_path) -> None:

@@ -1,7 +1,5 @@
 """A library made up for tests: it looks through all triangles for every answer."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from types import SimpleNamespace
 

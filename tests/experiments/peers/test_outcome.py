@@ -1,7 +1,5 @@
 """Laws of checking what a library left: what our structures do passes, whatever else does not."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Laws of measuring other libraries: each answer is checked first, and nobody stops the others."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np
@@ -42,12 +40,11 @@ def library(monkeypatch):
 
 def measured(name: str, **wanted) -> list[Measurement]:
     """What is measured of a library on the smallest meshes."""
-    cases = [
-        it
+    return [
+        bench_peers.measure(it, PRESET, time_rounds)
         for it in bench_peers.cases(PRESET, name)
         if all(getattr(it, key) == value for key, value in wanted.items())
     ]
-    return [bench_peers.measure(it, PRESET, time_rounds) for it in cases]
 
 
 @pytest.mark.parametrize("name", HERE)

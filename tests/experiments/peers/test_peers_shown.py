@@ -1,7 +1,5 @@
 """What was measured of other libraries is shown in 80 columns, on a page and as JSON."""
 
-from __future__ import annotations
-
 import json
 import re
 from pathlib import Path
@@ -100,13 +98,8 @@ def test_the_chapter_shows_them_and_says_what_to_run_where_there_are_none(
 ):
     share(Session(load(run), []))
     page = notebooks.body("other_libraries")
-    for shown in (
-        "Slow library",
-        "O(n_t · n_ev)",
-        "ValueError: no",
-        "As one likes.",
-        ">example.org/slow</td>",
-    ):
+    said = "Slow library", "O(n_t · n_ev)", "ValueError: no", "As one likes."
+    for shown in (*said, ">example.org/slow</td>"):
         assert shown in page
     assert "hem study --peers" not in page
     share(Session(load(write_run(tmp_path / "other", only=lambda *_: False)), []))

@@ -1,7 +1,5 @@
 """The six algorithms give what the libraries in C++ give, which are told to do the same."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

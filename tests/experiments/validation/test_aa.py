@@ -1,7 +1,5 @@
 """Laws of the A/A test: an alarm is counted as one, and the kept counts are as few as asked."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 

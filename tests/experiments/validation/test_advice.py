@@ -1,7 +1,5 @@
 """Laws of the figures on advice: errors are those of the rows, and so are the committed ones."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 from statistics import median
@@ -64,12 +62,12 @@ def test_what_was_timed_is_told_as_long_as_nothing_is_a_tenth_quicker(
 
 @pytest.mark.parametrize("program", [it for it in advice.PROGRAMS if it.endswith("Python")])
 def test_a_program_does_the_same_where_neighbors_are_searched_for(program: str) -> None:
-    one, other = (
-        structures.build(it, hem.find_mesh("torus:600")) for it in (advice.BASE, "indexed")
-    )
-    for s in (one, other):
+    left = []
+    for name in (advice.BASE, "indexed"):
+        s = structures.build(name, hem.find_mesh("torus:600"))
         advice.PROGRAMS[program].run(s)
-    assert (one.n_vertices, one.n_faces) == (other.n_vertices, other.n_faces)
+        left.append((s.n_vertices, s.n_faces))
+    assert left[0] == left[1]
 
 
 def test_a_program_on_two_meshes_is_one_row_of_the_table() -> None:

@@ -1,7 +1,5 @@
 """Laws of timing against budgets: rounds are interleaved, and few where they take long."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

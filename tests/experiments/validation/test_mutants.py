@@ -1,7 +1,5 @@
 """Faults to inject: each still fits the sources, and a wrong one is an error."""
 
-from __future__ import annotations
-
 import os
 import shutil
 import subprocess

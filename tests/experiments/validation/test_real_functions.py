@@ -1,7 +1,5 @@
 """Laws of trying judges on real functions: each can be called, and answers are counted once."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pandas as pd

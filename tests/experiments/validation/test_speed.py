@@ -1,7 +1,5 @@
 """Laws of the figures on speed: every program's work is there, and the least of it stands."""
 
-from __future__ import annotations
-
 import json
 from importlib.metadata import distributions, version
 from pathlib import Path

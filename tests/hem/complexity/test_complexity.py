@@ -33,10 +33,7 @@ def test_curves_of_known_class_are_judged_right_and_hardly_ever_wrong(name: str)
     wrong = judged = 0
     for condition in CONDITIONS:
         true, false = outcomes(name, condition)
-        print(
-            f"\n{name:11} {condition:15} true claim {dict(true)}, false claims {dict(false)}",
-            end="",
-        )
+        print(f"\n{name:11} {condition:15} true claim {dict(true)}, false claims {dict(false)}")
         wrong += true["violated"] + false["consistent"]
         judged += true.total() + false.total()
         if condition != "latency unknown":
@@ -94,10 +91,8 @@ def test_what_grows_a_hundredfold_needs_no_long_range() -> None:
     assert judge(sizes, [[1e-7 * n] for n in sizes], "n").outcome == "undetermined"
 
 
-def flat(
-    rng: np.random.Generator, sizes: Array, noise: float = 0.03, count: int = 15
-) -> list[Array]:
-    return [rng.lognormal(0, noise, count) for _ in sizes]
+def flat(rng: np.random.Generator, sizes: Array, noise: float = 0.03) -> list[Array]:
+    return [rng.lognormal(0, noise, 15) for _ in sizes]
 
 
 def test_a_cost_may_have_waited_as_any_one_of_several_latencies_tells() -> None:
@@ -323,11 +318,8 @@ def test_verdicts_repeat_and_know_neither_unit_nor_order() -> None:
 
 
 def test_a_verdict_is_shown_in_a_line() -> None:
-    verdict = judge(
-        [10, 100, 1000, 10_000],
-        [[n * k for k in (2.9, 3, 3.1)] for n in (10, 100, 1000, 10_000)],
-        "O(n)",
-    )
+    sizes = [10, 100, 1000, 10_000]
+    verdict = judge(sizes, [[n * k for k in (2.9, 3, 3.1)] for n in sizes], "O(n)")
     assert repr(verdict) == (
         f"<Verdict on O(n): consistent, slope 1.00 ({verdict.slope_low:.2f} … "
         f"{verdict.slope_high:.2f}). The costs tell O(n). "

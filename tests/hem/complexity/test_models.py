@@ -4,14 +4,7 @@ import numpy as np
 import pytest
 
 from hem.complexity import judge
-from hem.complexity.models import (
-    NAMES,
-    design,
-    fit,
-    measured_slowdowns,
-    no_slowdown,
-    predict,
-)
+from hem.complexity.models import NAMES, design, fit, measured_slowdowns, no_slowdown, predict
 from hem.complexity.notation import Array
 
 

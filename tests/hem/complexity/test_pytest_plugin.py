@@ -3,6 +3,7 @@
 import json
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
@@ -60,9 +61,8 @@ def run(pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch):
 def test_a_claim_that_holds_passes(run) -> None:
     result = run()
     result.assert_outcomes(passed=3)
-    result.stdout.fnmatch_lines(
-        ["*test_body: consistent: O(n) is claimed; it is O(n), slope 1.00*"]
-    )
+    said = "*test_body: consistent: O(n) is claimed; it is O(n), slope 1.00*"
+    result.stdout.fnmatch_lines([said])
 
 
 def test_a_claim_that_is_violated_fails_and_says_why(run) -> None:
@@ -94,13 +94,10 @@ def test_nothing_is_timed_in_parallel(run) -> None:
 
 
 def test_history_tells_what_changed(run, pytester: pytest.Pytester) -> None:
-    assert (
-        "complexity: changed" not in run("--complexity-history", "kept/history.jsonl").stdout.str()
-    )
-    assert (
-        "complexity: changed" not in run("--complexity-history", "kept/history.jsonl").stdout.str()
-    )
-    result = run("--complexity-history", "kept/history.jsonl", power=2)
+    history = "--complexity-history", "kept/history.jsonl"
+    for _ in range(2):
+        assert "complexity: changed" not in run(*history).stdout.str()
+    result = run(*history, power=2)
     result.stdout.fnmatch_lines(
         ["*test_body: consistent, O(n), slope 1.00 at *; violated, O(n²), slope 2.00 at *"]
     )
@@ -146,13 +143,9 @@ def test_marked(clock, complexity_input):
     appending(clock, complexity_input)
 
 def test_fixture(clock, complexity):
-    sizes, found = SIZES, []
     for amortized, costs in ((True, "O(1)"), (False, "O(n)")):
-        verdict = complexity(
-            lambda n: appending(clock, n), sizes=sizes, expected=costs, amortized=amortized
-        )
-        found.append(verdict.answer)
-    assert found == ["O(1)", "O(n)"]
+        told = {"sizes": SIZES, "expected": costs, "amortized": amortized}
+        assert complexity(lambda n: appending(clock, n), **told).answer == costs
 
 def product(clock, rows, columns):
     clock.now += 1e-6 * rows * columns**2
@@ -201,10 +194,8 @@ def test_history_tells_calls_of_one_test_apart_and_leaves_out_what_it_cannot_rea
         assert result.stdout.str().count("complexity: changed") == bool(broken)
         assert result.stdout.str().count("history.jsonl: not read: line 3, 4") == bool(broken)
         assert "slope 1.00 at" not in result.stdout.str()
-    assert [json.loads(history.read_text().splitlines()[k])["call"] for k in (0, 1, 4, 5)] == [
-        1,
-        2,
-    ] * 2
+    kept = history.read_text().splitlines()
+    assert [json.loads(kept[k])["call"] for k in (0, 1, 4, 5)] == [1, 2, 1, 2]
 
 
 @pytest.mark.parametrize(
@@ -271,12 +262,10 @@ def test_an_input_without_a_mark_and_a_mark_of_too_much_fail(pytester: pytest.Py
     """)
     result = pytester.runpytest("-p", PLUGIN)
     result.assert_outcomes(errors=1, failed=1)
-    result.stdout.fnmatch_lines(
-        [
-            "*::test_unmarked is not measured: it asks for complexity_input and has no mark*",
-            "*::test_too_much: a mark complexity takes expected, make_input, sizes by position*",
-        ]
-    )
+    result.stdout.fnmatch_lines([
+        "*::test_unmarked is not measured: it asks for complexity_input and has no mark*",
+        "*::test_too_much: a mark complexity takes expected, make_input, sizes by position*",
+    ])  # fmt: skip
 
 
 def test_a_test_that_is_run_again_is_measured_again_and_kept_where_it_began(
@@ -373,10 +362,7 @@ def test_settings_that_are_none_are_told_before_any_test(run, options, message: 
 def test_history_tells_that_the_claim_is_another_and_passes_over_what_is_no_verdict(
     run, pytester: pytest.Pytester
 ) -> None:
-    history, kept = (
-        ("-k", "test_body", "--complexity-history", "it.jsonl"),
-        pytester.path / "it.jsonl",
-    )
+    history, kept = ("-k", "test_body", "--complexity-history", "it.jsonl"), Path("it.jsonl")
     run(*history)
     before = kept.read_text()
     kept.write_text("\ufeff" + before.replace('"O(n)", "outcome"', '"O(1)", "outcome"').replace(
