@@ -204,11 +204,17 @@ def test_a_class_that_is_told_needs_no_further_sizes(clock: Clock) -> None:
     assert len(measure(lambda n: clock.work(1e-8 * n), int, budget=1.0).sizes) == 20
 
 
-def costs(seconds: Array, sizes: Array) -> Measured:
-    """Costs that no memory slows, with samples that are off by a hundredth."""
+def costs(
+    seconds: Array, sizes: Array, working_sets: Array | None = None, byte: float = 5e-9
+) -> Measured:
+    """Costs that no memory slows, with samples that are off by a hundredth.
+
+    byte: seconds that one takes to be read and to be written.
+    """
     rng = np.random.default_rng(0)
     samples = [value * rng.normal(1, 0.01, 15) for value in seconds]
-    return Measured(sizes, samples, 8 * sizes, np.full((3, len(sizes)), 5e-9))
+    memory = np.outer([5e-9, byte, byte], np.ones(len(sizes)))
+    return Measured(sizes, samples, 8 * sizes if working_sets is None else working_sets, memory)
 
 
 @pytest.mark.parametrize("largest", [350, 700, 1_500, 3_000])
@@ -232,8 +238,7 @@ def test_no_memory_excuses_what_grows_on_where_it_gets_no_slower() -> None:
         27.9, 36.8, 46.4, 63.8, 71, 97.9, 124, 162, 210, 300, 432, 580, 804, 1160, 1780, 2660, 4040,
         6060, 9660, 14700, 23800, 34600, 53700,
     ])  # fmt: skip
-    found = replace(costs(seconds, sizes), working_sets=5_000 + 32 * sizes**2)
-    found.memory[1:] = 3.6e-11
+    found = costs(seconds, sizes, 5_000 + 32 * sizes**2, 3.6e-11)
     found.memory[0, 24:] = np.minimum(6e-9 * (sizes[24:] / sizes[24]) ** 2, 7.5e-8)
     assert found.judge().answer == "O(n³)"
     assert found.judge("O(n³)").outcome == "consistent"
@@ -249,8 +254,7 @@ def test_costs_that_flatten_beyond_a_cache_are_of_no_steeper_class() -> None:
         48.5, 53.3, 64.2, 80.4, 106, 135, 177, 228, 290, 411, 558, 756, 1010, 1430, 1940, 2780,
         4070, 5610, 8850, 16600, 32100, 55200, 88400, 136000,
     ])  # fmt: skip
-    found = replace(costs(seconds, sizes), working_sets=9_000 + 4.5 * sizes**2)
-    found.memory[1:] = 3.6e-11
+    found = costs(seconds, sizes, 9_000 + 4.5 * sizes**2, 3.6e-11)
     found.memory[0, 14:] = 1e-9 * np.array([14, 50, 50, 62, 68, 69, 73, 77, 77, 77])
     assert "O(n³)" not in found.judge().classes
 
@@ -261,17 +265,16 @@ def test_a_power_close_to_a_class_with_a_logarithm_is_that_class() -> None:
         0.531, 0.749, 1.37, 2.21, 4.66, 8.32, 14.6, 29.2, 52.4, 102, 203, 372, 713, 1330, 2500,
         4510, 8930, 16500, 30600, 56800,
     ])  # fmt: skip
-    found = replace(costs(seconds, sizes), working_sets=500 + 41 * sizes**2)
+    found = costs(seconds, sizes, 500 + 41 * sizes**2, 3.7e-11)
     found.memory[0, -5:] = 1.5e-8, 1.5e-8, 2.9e-8, 7.2e-8, 7.7e-8
-    found.memory[1:] = 3.7e-11
     assert found.judge().answer == "O(n² log n)"
     assert answer(lambda n: 1e-7 * n**2.5, np.geomspace(4, 900, 20).round()) == "O(n^2.5)"
 
 
 def test_a_power_of_one_and_a_half_is_told_by_what_uses_no_memory() -> None:
     sizes = np.geomspace(4, 20_000, 39).round()
-    found = costs(1e-7 * sizes + 2e-8 * sizes**1.5, sizes)
-    assert replace(found, working_sets=np.full(39, 200.0)).judge().answer == "O(n^1.5)"
+    found = costs(1e-7 * sizes + 2e-8 * sizes**1.5, sizes, np.full(39, 200.0))
+    assert found.judge().answer == "O(n^1.5)"
 
 
 def test_growth_that_memory_alone_may_cause_is_of_no_class() -> None:
@@ -281,8 +284,7 @@ def test_growth_that_memory_alone_may_cause_is_of_no_class() -> None:
         1.84, 1.92, 2.18, 2.23, 1.74, 1.73, 1.78, 2.85, 3.23, 5.33, 5.81, 7.64, 7.19, 7.55, 7.98,
         9.23, 9.5, 11.3, 14.2, 18.6, 25.3, 29.1, 32.3,
     ])  # fmt: skip
-    found = replace(costs(seconds, sizes), working_sets=8_600 + 8 * sizes)
-    found.memory[1:] = 3.7e-11
+    found = costs(seconds, sizes, 8_600 + 8 * sizes, 3.7e-11)
     found.memory[0, 24:] = 1e-9 * np.array(
         [5.8, 5.8, 5.8, 6.3, 6.7, 6.7, 57, 83, 85, 90, 91, 91, 95, 95, 95]
     )
@@ -294,9 +296,8 @@ def test_growth_that_memory_alone_may_cause_is_of_no_class() -> None:
 def test_a_steep_amortized_cost_is_told_like_one_of_a_call() -> None:
     """Its bytes are those of one operation, too."""
     sizes = np.geomspace(4, 1_500, 38).round()
-    one = costs(6e-6 + 5e-9 * sizes**2 + 1.45e-11 * sizes**3, sizes)
-    one = replace(one, working_sets=5_000 + 32 * sizes**2)
-    one.memory[1:] = 3.6e-11
+    seconds = 6e-6 + 5e-9 * sizes**2 + 1.45e-11 * sizes**3
+    one = costs(seconds, sizes, 5_000 + 32 * sizes**2, 3.6e-11)
     one.memory[0, 24:] = np.minimum(6e-9 * (sizes[24:] / sizes[24]) ** 2, 7.5e-8)
     whole = replace(one, working_sets=one.working_sets * sizes, amortized=True)
     assert one.judge().answer == whole.judge().answer == "O(n³)"
@@ -314,9 +315,8 @@ def test_counts_are_looked_at_all() -> None:
 def test_what_hits_a_cache_quicker_than_a_step_waits_the_longer_beyond() -> None:
     """An array read at random, as measured: hits overlap, misses take what a step does."""
     sizes = np.geomspace(4, 12_500_000, 39).round()
-    found = replace(costs(np.full(39, 1.3e-6), sizes), working_sets=13_000 + 4 * sizes)
+    found = costs(np.full(39, 1.3e-6), sizes, 13_000 + 4 * sizes, 3.6e-11)
     found.memory[0, -8:] = 7e-9, 8e-9, 1.2e-8, 3e-8, 5e-8, 6.5e-8, 7e-8, 7.2e-8
-    found.memory[1:] = 3.6e-11
     for k, slower in zip(range(-5, 0), (1.1, 1.3, 1.6, 14, 44), strict=True):
         found.samples[k][:] *= slower
     assert found.judge().answer == "O(1)"
@@ -333,7 +333,7 @@ def test_a_class_that_is_told_as_possible_is_not_violated() -> None:
         171, 166, 168, 168, 174, 179, 187, 205, 233, 288,
         386, 555, 832, 1320, 2240, 3780, 6870, 12500, 23400, 44700,
     ])  # fmt: skip
-    found = replace(costs(seconds, sizes), working_sets=25 * sizes**2)
+    found = costs(seconds, sizes, 25 * sizes**2)
     found.memory[:, -3:] = 7e-9, 15e-9, 32e-9
     told = found.judge("O(n²)")
     assert told.answer == "O(n²) or O(n³)"
