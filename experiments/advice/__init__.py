@@ -5,14 +5,7 @@ measurements of a run; ``advise`` ranks the structures, with intervals, reasons 
 """
 
 from experiments.advice.advise import ALIKE, NEEDS, Advice, Limits, Option, advise, best, flips
-from experiments.advice.prices import (
-    BEYOND,
-    SIGMAS,
-    UNMODELED,
-    Forecast,
-    Prices,
-    predict,
-)
+from experiments.advice.prices import BEYOND, SIGMAS, UNMODELED, Forecast, Prices, predict
 from experiments.advice.workload import PRESETS, Measured, Row, Workload, find_workload, recorded
 
 __all__ = [

@@ -26,7 +26,7 @@ from experiments.harness import (
     row,
     took,
 )
-from experiments.peers.outcome import check_counts, check_outcome, counted
+from experiments.peers.outcome import Arrays, check_counts, check_outcome, counted
 from experiments.peers.peer import Peer
 from experiments.peers.registry import PEERS
 from hem.algorithms import vertex_normals
@@ -52,7 +52,7 @@ class Built(NamedTuple):
     corners: dict[str, Array]
 
 
-def as_given(mesh: hem.TriangleMesh) -> tuple[Array, Array]:
+def as_given(mesh: hem.TriangleMesh) -> Arrays:
     """Positions and triangles, as libraries take them."""
     return mesh.points.astype(np.float64), mesh.triangles.astype(np.int32)
 
@@ -64,7 +64,7 @@ def _built(case: Case) -> Built:
     m = peer.build(*given)
     grown = max(process.memory_info().rss - before, sum(it.nbytes for it in given))
     points, triangles = given
-    ends = np.asarray(peer.ends(m)) if peer.ends else np.zeros((0, 2), np.int64)
+    ends = np.asarray(peer.ends(m)) if peer.ends else NOWHERE
     vertices = np.arange(len(points))[:, None]
     return Built(m, grown, {"vertex": vertices, "edge": ends, "face": triangles})
 
@@ -241,9 +241,7 @@ def read_looped(case: Case, preset: Preset) -> Fields:
     return {"samples": samples[str(case.subject)], "handles": 1, "checked": True, **memory}
 
 
-def _check_left(
-    peer: Peer, operation: str, given: tuple[Array, Array], elements: Array, m: Any
-) -> None:
+def _check_left(peer: Peer, operation: str, given: Arrays, elements: Array, m: Any) -> None:
     assert peer.arrays is not None  # or there is no such case
     points, triangles = map(np.asarray, peer.arrays(m))
     check_outcome(peer.title, operation, given, elements, (points, triangles))

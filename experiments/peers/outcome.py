@@ -11,6 +11,8 @@ import numpy as np
 from experiments.harness import CheckFailedError, pack_pairs
 from hem.arrays import Array
 
+Arrays = tuple[Array, Array]
+"""Points and triangles."""
 PLACED = -1
 """The name of a vertex that an operation placed; no two of them share a face."""
 SPLIT = 1, 3, 2
@@ -41,13 +43,7 @@ def counted(points: Array, triangles: Array) -> list[int]:
     return [len(points), len(np.unique(pack_pairs(sides))), len(triangles)]
 
 
-def check_outcome(
-    title: str,
-    operation: str,
-    given: tuple[Array, Array],
-    elements: Array,
-    left: tuple[Array, Array],
-) -> None:
+def check_outcome(title: str, operation: str, given: Arrays, elements: Array, left: Arrays) -> None:
     """Compare points and triangles with what is left of those given, in counts and face by face.
 
     ``elements``: (k, ·) the corners of the edges or faces, no two of which share a neighbor; none

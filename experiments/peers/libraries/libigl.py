@@ -24,19 +24,14 @@ def _topology(m: Mesh) -> Any:
     return igl.edge_topology(m.V, m.F)
 
 
-def _faces_of_vertices(m: Mesh) -> Rows:
-    values, begin = igl.vertex_triangle_adjacency(m.F, len(m.V))
-    return values, begin
-
-
 def _faces_of_vertex(m: Mesh) -> Callable[[int], Any]:
-    values, begin = _faces_of_vertices(m)
+    values, begin = BULK["vertex_faces"](m)
     return lambda vertex: values[begin[vertex] : begin[vertex + 1]]
 
 
 BULK: dict[str, Callable[[Mesh], Rows]] = {
     "vertex_vertices": lambda m: igl.adjacency_list(m.F),
-    "vertex_faces": _faces_of_vertices,
+    "vertex_faces": lambda m: igl.vertex_triangle_adjacency(m.F, len(m.V)),
     "edge_vertices": lambda m: _topology(m)[0],
     "edge_faces": lambda m: _topology(m)[2],
     "face_edges": lambda m: _topology(m)[1],
@@ -55,7 +50,7 @@ PEER = Peer(
     build=_build,
     faces=lambda m: len(m.F),
     arrays=attrgetter("V", "F"),
-    ends=lambda m: _topology(m)[0],
+    ends=BULK["edge_vertices"],
     single={
         **{query: row_of(rows) for query, rows in BULK.items() if query != "vertex_faces"},
         "vertex_faces": _faces_of_vertex,
