@@ -65,8 +65,7 @@ def _chase(size: int) -> float:
 
 
 def _read(size: int) -> float:
-    few = np.ones(8)
-    return _seconds_per_byte(np.ones(size // 8).sum, few.sum, size)
+    return _seconds_per_byte(np.ones(size // 8).sum, np.ones(8).sum, size)
 
 
 def _write(size: int) -> float:

@@ -174,10 +174,8 @@ def test_memory_that_calls_free_stays_with_the_process() -> None:
         pytest.skip("what is kept is told for the C library of GNU")
     # Distributed leaves such variables behind, by which the C library keeps less.
     usual = {name: it for name, it in os.environ.items() if not name.startswith("MALLOC_")}
-    told = subprocess.run(
-        [sys.executable, "-c", FAULTS], capture_output=True, text=True, check=True, env=usual
-    )
-    before, after = map(int, told.stdout.split())
+    told = subprocess.check_output([sys.executable, "-c", FAULTS], text=True, env=usual)
+    before, after = map(int, told.split())
     assert after < before / 10
 
 
@@ -471,11 +469,9 @@ def test_costs_are_held_to_those_of_small_inputs(
     told = loglinear if log else linear
     assert both.judge().answer == told
     for claim in ("O(1)", "O(√n)", "O(n)", "O(n log n)", "O(n²)"):
-        outcome = both.judge(claim).outcome
         open_ = "or" in told and claim in told
-        assert outcome == (
-            "undetermined" if open_ else "consistent" if claim == told else "violated"
-        )
+        said = "undetermined" if open_ else "consistent" if claim == told else "violated"
+        assert both.judge(claim).outcome == said
     assert both.judge("O(n²)", bound="upper").outcome == "consistent"
     assert both.judge("O(√n)", bound="upper").outcome == "violated"
     assert both.judge("O(n log n)", bound="upper").outcome == "consistent"
