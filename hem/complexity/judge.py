@@ -133,8 +133,8 @@ def judge(
     noisy = measured.error > MAX_ERROR
     if 0 < noisy.mean() <= MOST_SKIPPED and np.count_nonzero(~noisy) >= MIN_SIZES:
         measured = measured.only(np.flatnonzero(~noisy))
-    given = selection.account_for_memory(measured, exact, latency_error, unseen, entire)
-    models = _fitted(*given, claimed, terms)
+    costs, memory = selection.account_for_memory(measured, exact, latency_error, unseen, entire)
+    models = _fitted(costs, memory, claimed, terms)
     names, claim = models.names, models.names.index(claimed)
     outcome, reason = _decide(measured, models, claim, bound)
     if not exact and (size := _hinge(outcome, measured, models, claim, bound)):
@@ -143,16 +143,15 @@ def judge(
     if outcome == "consistent" and len(classes) > 1:
         worse = " and ".join(it for it in classes if it != names[models.best])
         reason = f"{names[models.best]} explains the costs best, and {worse} is not ruled out."
-    costs, steady = models.costs, models.steady(models.costs.cost)
     replicates = resample(costs, models.predicted[models.best], resamples, seed)
     tails = [(1 - confidence) / 2, (1 + confidence) / 2]
-    told = float(slope(costs.sizes, steady))  # a model may miss it by a little
+    told = float(slope(costs.sizes, models.steady(costs.cost)))  # a model may miss it by a little
     low, high = np.quantile(slope(costs.sizes, models.steady(replicates)), tails)
     return Verdict(
         outcome, claimed, bound, names[models.best],
         slope=told, slope_low=min(float(low), told), slope_high=max(float(high), told),
-        raw_slope=float(slope(costs.sizes, costs.cost)),
-        noise=costs.scatter, coefficients=_coefficients(models),
+        raw_slope=float(slope(costs.sizes, costs.cost)), noise=costs.scatter,
+        coefficients=_coefficients(models),
         errors=dict(zip(names, models.errors.tolist(), strict=True)), reason=reason,
         classes=classes,
     )  # fmt: skip
