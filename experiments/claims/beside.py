@@ -2,12 +2,11 @@
 
 from collections import Counter
 from collections.abc import Callable
-from typing import NamedTuple, cast
+from typing import NamedTuple
 
 import numpy as np
 
 import hem
-import structures
 from structures.as_printed import AsPrinted, render_arrays
 from structures.half_edge_objects import HalfEdgeMesh
 
@@ -41,7 +40,7 @@ def printed(mesh: hem.TriangleMesh = OCTAHEDRON, whole: bool = True) -> AsPrinte
 
 def sound(mesh: hem.TriangleMesh = OCTAHEDRON) -> HalfEdgeMesh:
     """The same mesh as the sound version builds it."""
-    return cast(HalfEdgeMesh, structures.build("half_edge_objects", mesh))
+    return HalfEdgeMesh.build(mesh)
 
 
 def faults_of(m: AsPrinted, about: str = "") -> tuple[Counter[str], str]:

@@ -11,7 +11,7 @@ from collections import Counter
 from collections.abc import Iterable, Iterator
 from contextlib import suppress
 from functools import cache
-from typing import Any, NamedTuple, TypeGuard, cast
+from typing import Any, NamedTuple, TypeGuard
 
 import numpy as np
 
@@ -46,7 +46,7 @@ def polygon_corners() -> Iterable[float]:
     """The corners of a face of a hundred that is built, asked for and taken away again."""
     angle = np.linspace(0, 2 * np.pi, 100, endpoint=False)
     points = np.stack([np.cos(angle), np.sin(angle), 0 * angle], axis=1)
-    s = structures.build("plankton", hem.PolygonMesh(points, [list(range(100))]), compiled=False)
+    s = Plankton.uncompiled().build(hem.PolygonMesh(points, [list(range(100))]))
     s.validate()
     yield len(s.face_vertices(0))
     s.remove_face(0)
@@ -55,7 +55,7 @@ def polygon_corners() -> Iterable[float]:
 
 def article_invariants() -> Iterable[float]:
     """The share of half-edges for which what the article says of them holds."""
-    s = cast(Plankton, structures.build("plankton", hem.generate("grid", 400), compiled=False))
+    s = Plankton.uncompiled().build(hem.generate("grid", 400))
     for _ in range(2):
         holds = [
             s.start_vertex(h ^ 1) == s.start_vertex(s.next_half_edge(h))
@@ -78,7 +78,7 @@ def cube_vertices() -> Iterable[float]:
 
 def coincident_vertices(mesh: hem.TriangleMesh = TOUCHING) -> Iterable[float]:
     """The vertices at the position of another in a half-edge mesh that is built, and valid."""
-    s = structures.build("plankton", mesh, compiled=False)
+    s = Plankton.uncompiled().build(mesh)
     s.validate()
     yield len(s.points) - len(np.unique(s.points, axis=0))
 
@@ -109,9 +109,7 @@ def half_edges_per_face(m: Any = None) -> Iterable[float]:
 
 def two_steps_back(mesh: Any = None) -> Iterable[float]:
     """The share of half-edges whose previous one, where it is recorded, is next of next."""
-    s = cast(
-        Plankton, structures.build("plankton", mesh or hem.generate("torus", 400), compiled=False)
-    )
+    s = Plankton.uncompiled().build(mesh or hem.generate("torus", 400))
     h = s.half_edges()
     yield float(np.mean(s.previous_half_edge(h) == s.next_half_edge(s.next_half_edge(h))))
 

@@ -55,12 +55,10 @@ def _grows(
 
 def _last_triangle() -> Shown:
     m, s = printed(whole=False), sound()
-    faces, unpaired = len(m.faces), sum(h.opposite is None for h in m.half_edges)
-    corrected = (
-        f"{s.n_faces} faces, {sum(h.opposite is None for h in s.half_edges)} without a partner"
-    )
-    words = f"{faces} faces, {unpaired} half-edges without a partner"
-    return Shown(words, corrected, (faces, unpaired) == (7, 3))
+    unpaired, also = (sum(h.opposite is None for h in it.half_edges) for it in (m, s))
+    words = f"{len(m.faces)} faces, {unpaired} half-edges without a partner"
+    corrected = f"{s.n_faces} faces, {also} without a partner"
+    return Shown(words, corrected, (len(m.faces), unpaired) == (7, 3))
 
 
 def _foreign_face() -> Shown:

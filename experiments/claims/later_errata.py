@@ -1,7 +1,7 @@
 """The errata of thesis 4.4 to 7, and of listings that no compiler takes, as in ``errata.py``."""
 
 from dataclasses import replace
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
 
@@ -74,10 +74,7 @@ def left_behind() -> Shown:
 def runaway() -> Shown:
     """A vertex of many edges, walked around as quoted."""
     valence = 2_000
-    s = cast(
-        Plankton,
-        structures.build("plankton", hem.valence_mesh(valence, 2 * valence), compiled=False),
-    )
+    s = Plankton.uncompiled().build(hem.valence_mesh(valence, 2 * valence))
     hub, steps, gives_up = int(hem.valence_hubs(valence, 2 * valence)[0]), 0, False
     try:
         for _ in listings.quoted_circulator(s, s.outgoing_half_edge(hub)):
@@ -90,7 +87,7 @@ def runaway() -> Shown:
 
 def needs_no_closed_mesh() -> Shown:
     """Vertices at a border, walked around."""
-    s = cast(Plankton, structures.build("plankton", hem.generate("grid", LARGER), compiled=False))
+    s = Plankton.uncompiled().build(hem.generate("grid", LARGER))
     border = [v for v in s.vertices().tolist() if s.vertex_naked_edges(v)]
     answered = sum(s.valence(v) == len(s.vertex_vertices(v)) for v in border)
     return Shown(
@@ -102,7 +99,7 @@ def needs_no_closed_mesh() -> Shown:
 
 def guard_one_short() -> Shown:
     """The half-edge behind the last one, as the quoted guard and as ours take it."""
-    s = cast(Plankton, structures.build("plankton", OCTAHEDRON, compiled=False))
+    s = Plankton.uncompiled().build(OCTAHEDRON)
     count = len(s.half_edges())
     given = next(listings.quoted_circulator(s, count), None)
     refusal = attempt(lambda: s.next_half_edge(count))
