@@ -4,14 +4,7 @@ What each experiment measures stands in its ``bench_*.py``. Of the files ``calib
 ``memory``, ``own_mesh`` and ``steadiness`` are asked for by name.
 """
 
-from experiments.harness.calibration import (
-    CACHE_LINE,
-    CACHE_LINE_WORDS,
-    calibration_loop,
-    chase,
-    latency_now,
-    random_cycle,
-)
+from experiments.harness.calibration import calibration_loop, latency_now
 from experiments.harness.cases import BASE, Case, Measurement, in_random_order
 from experiments.harness.experiment import (
     OPERATIONS,
@@ -43,12 +36,11 @@ from experiments.harness.timer import CLOCK, BenchmarkTimer, Clock, Timed, Timer
 from experiments.presets import ANSWERING, HUBS, IRREGULAR, ORDERS, PRESETS, Preset
 
 __all__ = [
-    "ANSWERING", "BASE", "BUSY", "CACHE_LINE", "CACHE_LINE_WORDS", "CLOCK", "HUBS", "IRREGULAR",
-    "OPERATIONS", "OPERATIONS_TABLE", "ORDERS", "PRESETS", "QUERIES_TABLE", "REPEATS", "Axis",
-    "BenchmarkTimer", "Case", "CheckFailedError", "Clock", "Experiment", "Keep", "Measurement",
-    "Preset", "Table", "Timed", "Timer", "allowed_cores", "badness", "calibration_loop", "chase",
-    "check_query", "check_rows", "check_told", "checked_handles", "disturbed", "in_random_order",
-    "latency_now", "measured_operations", "operation_arguments", "operation_faces", "pack_pairs",
-    "pin", "random_cycle", "row", "time_operations", "time_query", "time_rounds", "took",
-    "validate_operated",
+    "ANSWERING", "BASE", "BUSY", "CLOCK", "HUBS", "IRREGULAR", "OPERATIONS", "OPERATIONS_TABLE",
+    "ORDERS", "PRESETS", "QUERIES_TABLE", "REPEATS", "Axis", "BenchmarkTimer", "Case",
+    "CheckFailedError", "Clock", "Experiment", "Keep", "Measurement", "Preset", "Table", "Timed",
+    "Timer", "allowed_cores", "badness", "calibration_loop", "check_query", "check_rows",
+    "check_told", "checked_handles", "disturbed", "in_random_order", "latency_now",
+    "measured_operations", "operation_arguments", "operation_faces", "pack_pairs", "pin", "row",
+    "time_operations", "time_query", "time_rounds", "took", "validate_operated",
 ]  # fmt: skip
