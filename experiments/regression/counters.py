@@ -7,13 +7,11 @@ show. No time is taken.
 
 import tracemalloc
 from collections.abc import Callable, Collection, Iterable, Iterator
-from dataclasses import astuple, replace
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-import pandas as pd
 from numpy.lib import tracemalloc_domain
 
 import structures
@@ -43,18 +41,15 @@ Task = tuple[str, str, Measurement, Callable[[], Iterable[Measurement]]]
 
 def measure_counters(chosen: Collection[str] = ()) -> Measured:
     """Measure all counters, some ten seconds; what raises is skipped with the reason, not lost."""
-    rows = []
+    found = []
     for experiment, structure, failed, measure in _tasks(chosen):
         try:
             measured = list(measure())
         except Exception as error:  # whatever a broken structure does is a finding, not an end
             reason = f"{type(error).__name__}: {error}".splitlines()[0]
             measured = [replace(failed, skipped=reason)]
-        rows += [(experiment, structure, *astuple(it)) for it in measured]
-    cases = pd.DataFrame(rows, columns=["experiment", "structure", *Measurement.__annotations__])
-    cases["samples"] = cases["samples"].map(lambda samples: np.asarray(samples, float))
-    skipped = cases["skipped"] != ""
-    run = Run(Path(COUNTERS), describe(COUNTERS), cases[~skipped], cases[skipped])
+        found += [(experiment, structure, "", it) for it in measured]
+    run = Run.of(Path(COUNTERS), describe(COUNTERS), found)
     return Measured(run, class_figures(run))
 
 

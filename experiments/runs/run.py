@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import warnings
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
@@ -18,6 +19,7 @@ if TYPE_CHECKING:  # it takes half a second, and a study has no need of it
 
 RUNS = Path("results/runs")
 PEER_RUNS = RUNS / "peers"  # of other libraries: the newest run of nothing else
+Found = tuple[str, str, str, Measurement]  # experiment, structure, machine, and what was measured
 
 
 @dataclass(frozen=True, eq=False)  # judged once per run object
@@ -34,6 +36,18 @@ class Run:
     cases: pd.DataFrame
     skipped: pd.DataFrame
 
+    @classmethod
+    def of(cls, folder: Path, meta: dict[str, Any], found: Iterable[Found]) -> Self:
+        """A run of what was found of each case."""
+        import pandas as pd
+
+        columns = ["experiment", "structure", "machine", *Measurement.__dataclass_fields__]
+        rows = [(*who, *vars(measurement).values()) for *who, measurement in found]
+        cases = pd.DataFrame(rows, columns=columns)
+        cases["samples"] = cases["samples"].map(lambda samples: np.asarray(samples, float))
+        measured = cases["skipped"] == ""
+        return cls(folder, meta, cases[measured].reset_index(drop=True), cases[~measured])
+
     @property
     def machines(self) -> list[str]:
         """The machines that measured it, where they were several: their times do not mix."""
@@ -42,8 +56,6 @@ class Run:
 
 def load(folder: Path | str) -> Run:
     """Read a run; ResultsError if there is none, it has another schema, or something was lost."""
-    import pandas as pd
-
     folder = Path(folder)
     meta = store.read_meta(folder)
     paths = store.case_files(folder)
@@ -51,18 +63,14 @@ def load(folder: Path | str) -> Run:
     for name, count in meta.get("files", {}).items():
         if name not in files or len(files[name].measurements) < count:
             missing = f"{folder / name} is {'not whole' if name in files else 'missing'}"
-            again = f"measure its cases again with: {store.resuming(folder / name)}"
+            again = f"measure its cases again with: {store.resume_command(folder)}"
             raise store.DamagedError(f"{missing}; {again}")
-    rows = []
+    found: list[Found] = []
     for file in files.values():
         machine = "" if file.path.parent == folder else file.path.parent.name
         who = PART_OF.get(file.experiment, file.experiment), file.structure, machine
-        rows += [(*who, *vars(case).values()) for case in file.cases.values()]
-    columns = ["experiment", "structure", "machine", *Measurement.__dataclass_fields__]
-    cases = pd.DataFrame(rows, columns=columns)
-    cases["samples"] = cases["samples"].map(lambda samples: np.asarray(samples, float))
-    measured = cases["skipped"] == ""
-    return Run(folder, meta, cases[measured].reset_index(drop=True), cases[~measured])
+        found += [(*who, case) for case in file.cases.values()]
+    return Run.of(folder, meta, found)
 
 
 def latest(root: Path | str = RUNS, *, unfinished: bool = False) -> Path:

@@ -106,9 +106,12 @@ class CaseFile:
 
     def _read(self) -> None:
         *lines, _torn = self.path.read_bytes().split(b"\n")
+        folder = self.path.parent
+        run = folder.parent if folder.name.startswith("machine-") else folder
+        again = f"measure its cases again with: {resume_command(run)}"
         for number, line in enumerate(lines):
             where = f"{self.path}, line {number + 1},"
-            content = _unsealed(line, where, f"measure its cases again with: {resuming(self.path)}")
+            content = _unsealed(line, where, again)
             if number:
                 self.measurements.append(Measurement(**content))
             elif content != self._head:
@@ -191,12 +194,6 @@ def writing(path: Path) -> Iterator[None]:
         hints = (hint for numbers, hint in HINTS.items() if error.errno in numbers)
         told = f"{path} cannot be written ({error.strerror or error})"
         raise CannotWriteError(f"{told}: {next(hints, 'see to the disk')}") from error
-
-
-def resuming(path: Path) -> str:
-    """The command that measures again what a file of a run should hold."""
-    folder = path.parent.parent if path.parent.name.startswith("machine-") else path.parent
-    return resume_command(folder)
 
 
 def resume_command(folder: Path) -> str:
