@@ -103,10 +103,8 @@ def check_rows(
         key = int(pack_pairs(np.array([asked]))[0]) if query.source == "edge" else asked
         expected = neighbors(triangles, query, key)
         if not np.array_equal(found, expected):
-            raise CheckFailedError(
-                f"{title}: {query.name}({asked}) gives {found.tolist()}, "
-                f"the triangle list {expected.tolist()}"
-            )
+            told = f"{title}: {query.name}({asked}) gives {found.tolist()}"
+            raise CheckFailedError(f"{told}, the triangle list {expected.tolist()}")
 
 
 def row(rows: Any, place: int) -> Array:

@@ -4,6 +4,7 @@ They stand outside of their room so that a wrong name is told before anything he
 """
 
 from dataclasses import dataclass, replace
+from itertools import count, takewhile
 from typing import Any, Self
 
 HUBS = "hubs"  # the family of `hem.valence_mesh`; its size is in faces, its valence the hubs'
@@ -22,10 +23,8 @@ NOT_OF_ONE_MESH = "bench_fracture", "bench_printed"  # bodies, and the thesis' l
 
 
 def _geometric(first: int, last: int, per_decade: float) -> tuple[int, ...]:
-    sizes: list[int] = []
-    while (size := round(first * 10 ** (len(sizes) / per_decade))) <= last:
-        sizes.append(size)
-    return tuple(sizes)
+    sizes = (round(first * 10 ** (k / per_decade)) for k in count())
+    return tuple(takewhile(lambda size: size <= last, sizes))
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,6 @@ the calibration loop that ran beside its rounds.
 
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import replace
 from itertools import groupby
 from typing import Any, NamedTuple
 
@@ -248,9 +247,8 @@ def _compare_slopes(key: CaseKey, old: Figures, new: Figures, claim: str) -> Ite
             change = Change.WORSE if now[1] > was[2] + drift else Change.SAME
             change = Change.BETTER if now[2] < was[1] - drift else change
             before, after = ("{:.3f} [{:.3f}, {:.3f}]".format(*it) for it in (was, now))
-            where = f"{axis.symbol}, {axis.label}"
-            told = Finding(change, Kind.SLOPE, key, before, after, axis=where, claim=claim)
-            yield replace(told, random=not axis.exact)
+            about = {"axis": f"{axis.symbol}, {axis.label}", "claim": claim}
+            yield Finding(change, Kind.SLOPE, key, before, after, **about, random=not axis.exact)
 
 
 def _find_gone(pairs: Iterable[Pair]) -> tuple[list[Finding], list[Pair]]:

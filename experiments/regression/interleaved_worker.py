@@ -5,8 +5,6 @@ by line, and writes the answers likewise. Of the tree it knows the contract alon
 answer, too; the calibration loop is that of the file ``CALIBRATION``, the same beside every tree.
 """
 
-from __future__ import annotations
-
 import json
 import sys
 from collections.abc import Callable

@@ -65,13 +65,9 @@ def machine() -> dict[str, Any]:
 def machine_id(machine: dict[str, Any]) -> str:
     """Eight hexadecimal digits of what no update or restart of the machine changes."""
     system = str(machine.get("platform", "")).split()
-    facts = {
-        "cpu": machine.get("cpu"),
-        "cores": machine.get("cores"),
-        "memory_gib": round((machine.get("memory_bytes") or 0) / 2**30),
-        "caches": machine.get("caches"),
-        "platform": [*system[:1], *system[-1:]],
-    }
+    facts = {it: machine.get(it) for it in ("cpu", "cores", "caches")}
+    facts["memory_gib"] = round((machine.get("memory_bytes") or 0) / 2**30)
+    facts["platform"] = [*system[:1], *system[-1:]]
     if machine.get("machines"):
         facts["machines"] = machine["machines"]
     return sha256(json.dumps(facts, sort_keys=True).encode()).hexdigest()[:8]
