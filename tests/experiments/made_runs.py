@@ -1,8 +1,7 @@
 """Runs made up for tests: costs that follow a law everybody knows."""
 
-from __future__ import annotations
-
-from collections.abc import Callable
+from collections import defaultdict
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
 
@@ -70,95 +69,88 @@ def write_run(
     """
     rng = np.random.default_rng(3)
     write_meta(folder, {**describe("quick"), "finished": "2026-01-01T00:00:00Z"})
-    files = {}
+    files: dict[tuple[str, str], list[Measurement]] = defaultdict(list)
     for claim in load_claims():
         if isinstance(claim.expects, Exactly):
-            for size in (4, 8):
-                case = _memory(claim.expects.value, size)
-                _add(files, folder, "bench_memory", claim.structure, case)
+            weighed = [_memory(claim.expects.value, size) for size in (4, 8)]
+            files["bench_memory", claim.structure] += weighed
             continue
         chosen = law_of and law_of(claim.structure, claim.subject, claim.printed)
         law = chosen or LAWS[claim.printed]
         for experiment, order, variable in experiments_of(claim.table):
-            points = (
-                [(n, 6) for n in SIZES] if variable == "faces" else [(FACES, k) for k in VALENCES]
+            by_size, counted = (
+                variable == "faces",
+                experiment.endswith("work") or order == "counted",
             )
+            points = [(n, 6) for n in SIZES] if by_size else [(FACES, k) for k in VALENCES]
             for n_t, n_ev in points:
-                kind = "work" if experiment.endswith("work") or order == "counted" else "time"
-                noise = 1 if kind == "work" else 1e-9 * rng.normal(1, 0.02, 9)
+                noise = 1 if counted else 1e-9 * rng.normal(1, 0.02, 9)
                 case = Measurement(
-                    id=f"{claim.subject}/{n_t}/{n_ev}/{order}", kind=kind, subject=claim.subject,
-                    order=order, family=HUBS if variable == "valence" else "torus", faces=n_t,
-                    vertices=n_t // 2, valence=n_ev if variable == "valence" else None,
-                    working_set=60 * n_t, latency=2e-9, noise=STEADY if kind == "time" else {},
-                    calibration=[1e-9] * 9 if kind == "time" else [],
+                    id=f"{claim.subject}/{n_t}/{n_ev}/{order}", kind="work" if counted else "time",
+                    subject=claim.subject, order=order, family="torus" if by_size else HUBS,
+                    faces=n_t, vertices=n_t // 2, valence=None if by_size else n_ev,
+                    working_set=60 * n_t, latency=2e-9, noise={} if counted else STEADY,
+                    calibration=[] if counted else [1e-9] * 9,
                     samples=np.atleast_1d(law(n_t, n_ev) * noise).tolist(),
                 )  # fmt: skip
-                _add(files, folder, experiment, claim.structure, case)
+                files[experiment, claim.structure].append(case)
     for structure in NAMES:
-        _add_times(files, folder, structure)
+        for experiment, case in _times(structure):
+            files[experiment, structure].append(case)
     for (experiment, structure), cases in files.items():
         if only(experiment, structure):
-            CaseFile(folder, experiment, structure).add(*(Measurement(**case) for case in cases))
+            CaseFile(folder, experiment, structure).add(*cases)
     return folder
 
 
-def _add_times(files: dict, folder: Path, structure: str) -> None:
+def _times(structure: str) -> Iterator[tuple[str, Measurement]]:
     """Building, the workloads, and the ways to keep a render mesh in step."""
-    slow = structure == "indexed"
-    orders = ("in a transaction", "rendered", "one by one", "render mesh built anew")
+    slow, per_face = structure == "indexed", BUILD.get(structure, BUILD["half_edge"])
+    rendered = "in a transaction", "rendered", "one by one", "render mesh built anew"
+    ways = COMPILED, FROM_PYTHON
     for n_t in SIZES:
         about = {"kind": "time", "family": "torus", "faces": n_t, "vertices": n_t // 2}
-        every = [
-            ("bench_build", None, order, BUILD.get(structure, BUILD["half_edge"]) * n_t)
-            for order in (*ORDERS, ANSWERING)
-        ]
+        scan = n_t if slow else 1
+        every = [("bench_build", None, it, per_face * n_t) for it in (*ORDERS, ANSWERING)]
         every += [
-            (
-                "bench_workloads",
-                name,
-                order,
-                1e-6 * (n_t if slow and it.scans[order == FROM_PYTHON] else 1),
-            )
+            ("bench_workloads", name, way, 1e-6 * (scan if it.scans[way == FROM_PYTHON] else 1))
             for name, it in WORKLOADS.items()
-            for order in (COMPILED, FROM_PYTHON)
+            for way in ways
         ]
         every += [
             ("bench_operations", "split_face", order, 1e-6 * (k + 1) * (n_t if k == 3 else 1))
-            for k, order in enumerate(orders)
+            for k, order in enumerate(rendered)
         ]
-        every += [("bench_fracture", "shatter", None, 1e-6 * (n_t if slow else 1))]
+        every += [("bench_fracture", "shatter", None, 1e-6 * scan)]
         every += [("bench_fracture", "find_face", it, 1e-8 * n_t**k) for it, k in FINDING.items()]
-        every += [
-            ("bench_picking", NEIGHBORS, it, 1e-6 * (n_t if slow else 3))
-            for it in (COMPILED, FROM_PYTHON)
-        ]
+        every += [("bench_picking", NEIGHBORS, it, 1e-6 * (n_t if slow else 3)) for it in ways]
         for how in (REBUILT, REFITTED) if slow else ():
             every += [
-                ("bench_picking", it, how, 1e-6 * k) for it, k in ((RAY, 4), (FOLLOWING, n_t))
+                ("bench_picking", RAY, how, 4e-6),
+                ("bench_picking", FOLLOWING, how, 1e-6 * n_t),
             ]
         for experiment, what, order, seconds in every:
-            case = Measurement(
+            yield experiment, Measurement(
                 id=f"{what}/{n_t}/{order}", subject=what, order=order, samples=[seconds], handles=1,
                 latency=2e-9, **about,
             )  # fmt: skip
-            _add(files, folder, experiment, structure, case)
-        _add_edits(files, folder, structure, n_t, about)
+        yield from _edits(n_t, about)
 
 
-def _add_edits(files: dict, folder: Path, structure: str, n_t: int, about: dict) -> None:
+def _edits(n_t: int, about: dict) -> Iterator[tuple[str, Measurement]]:
     """Single edits, and what of the faces is looked at to find one."""
     for subject, order in ((EDITS, RESERVED), (EDITS, GROWING), (COMPACT, None)):
-        edits = Measurement(
+        yield "bench_real_time", Measurement(
             id=f"{subject}/{n_t}/{order}", subject=subject, order=order,
             samples=[4e-3, *20 * [2e-5]], detail={"uploads": [12 * n_t, *20 * [84]]}, **about,
         )  # fmt: skip
-        _add(files, folder, "bench_real_time", structure, edits)
     for way, power in FINDING.items():
         order = f"{way}, faces looked at"
         counted = {**about, "kind": "work", "samples": [float(round(n_t**power))]}
-        case = Measurement(id=f"{order}/{n_t}", subject="find_face", order=order, **counted)
-        _add(files, folder, "bench_fracture", structure, case)
+        yield (
+            "bench_fracture",
+            Measurement(id=f"{order}/{n_t}", subject="find_face", order=order, **counted),
+        )
 
 
 def _memory(bytes_per_vertex: float | None, reference_bytes: int) -> Measurement:
@@ -171,14 +163,9 @@ def _memory(bytes_per_vertex: float | None, reference_bytes: int) -> Measurement
     )  # fmt: skip
 
 
-def _add(files: dict, folder: Path, experiment: str, structure: str, case: Measurement) -> None:
-    files.setdefault((experiment, structure), []).append(case.__dict__)
-
-
 def rewrite(folder: Path, experiment: str, structure: str, changed: Callable) -> None:
     """Replace fields of measurements in a run: what ``changed(measurement)`` says."""
     file = CaseFile(folder, experiment, structure)
     file.path.unlink()
-    CaseFile(folder, experiment, structure).add(
-        *(replace(it, **changed(it)) for it in file.measurements)
-    )
+    new = [replace(it, **changed(it)) for it in file.measurements]
+    CaseFile(folder, experiment, structure).add(*new)
