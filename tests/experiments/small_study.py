@@ -1,11 +1,11 @@
 """Studies of a few seconds for tests, and what to do to them."""
 
-from __future__ import annotations
-
 import os
+import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
+from subprocess import PIPE, Popen
 
 import psutil
 
@@ -35,6 +35,19 @@ def go_on(folder: Path, measured: Callable | None = None) -> list[str]:
     observer = Recorder(measured)
     study.run(folder, observer)
     return observer.said
+
+
+def in_new_process(script: str, folder: Path, *more: str, **how) -> Popen:
+    """Run a script that knows a ``folder``, and may tell of a ``study`` by ``Prints()``."""
+    begin = (
+        "import sys, time; from pathlib import Path; folder = Path(sys.argv[1])\n"
+        "from experiments.harness import Measurement\n"
+        "from experiments.runs import CaseFile, cluster, store, study\n"
+        "class Prints(study.Observer):\n"
+        "    def measured(self, job, done): print(job, flush=True)\n"
+    )
+    command = [sys.executable, "-c", begin + script, str(folder), *more]
+    return Popen(command, stdout=PIPE, stderr=PIPE, text=True, **how)
 
 
 def samples(folder: Path) -> dict[str, list[float]]:

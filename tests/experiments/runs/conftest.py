@@ -1,7 +1,5 @@
 """What the tests of runs share: one small study."""
 
-from __future__ import annotations
-
 import shutil
 from pathlib import Path
 

@@ -1,10 +1,7 @@
 """A study spreads over the machines of a cluster, each kept apart, and outlives one of them."""
 
-from __future__ import annotations
-
 import os
 import signal
-import subprocess
 import sys
 
 import pytest
@@ -12,7 +9,7 @@ import pytest
 from experiments.runs import cluster, load, read_meta, study
 from experiments.runs.worker import Job
 from tests.experiments.cli.test_cli import hem
-from tests.experiments.small_study import PATIENCE_SECONDS, Recorder, begin, samples
+from tests.experiments.small_study import PATIENCE_SECONDS, Recorder, begin, in_new_process, samples
 from tests.extent import exhaustive, waiting_for
 
 
@@ -43,18 +40,9 @@ def test_an_interrupted_study_is_resumed_with_what_its_machines_have_measured(
 ):
     address, _ = two_machines
     folder = begin(tmp_path, "latency", "work")
-    script = (
-        "import sys; from pathlib import Path; from experiments.runs import cluster, study\n"
-        "class Prints(study.Observer):\n"
-        "    def measured(self, job, done): print(job, flush=True)\n"
-        f"cluster.CONNECT_SECONDS = {PATIENCE_SECONDS}\n"
-        "cluster.run(Path(sys.argv[1]), sys.argv[2], Prints())"
-    )
-    with subprocess.Popen(
-        [sys.executable, "-c", script, str(folder), address],
-        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-    ) as caller:  # fmt: skip
-        assert caller.stdout is not None
+    script = f"cluster.CONNECT_SECONDS = {PATIENCE_SECONDS}\n"
+    script += "cluster.run(folder, sys.argv[2], Prints())"
+    with in_new_process(script, folder, address) as caller:
         caller.stdout.readline()
         caller.send_signal(signal.SIGINT)
         _, said = caller.communicate()

@@ -1,14 +1,12 @@
 """A run on little memory skips what does not fit, says so, and ends."""
 
-from __future__ import annotations
-
-from experiments.harness import Case, memory
+from experiments.harness import PRESETS, memory
 from experiments.harness.memory import VARIABLE, estimate, why_too_large
 from experiments.runs import experiments, load
 from tests.experiments.cli.test_cli import hem as hem_command
 from tests.experiments.small_study import begin, go_on
 
-COPIES = experiments()["bench_memory"].copies
+MEMORY = experiments()["bench_memory"]
 
 
 def test_a_size_that_is_none_is_refused_in_one_line(monkeypatch, tmp_path):
@@ -20,19 +18,10 @@ def test_a_size_that_is_none_is_refused_in_one_line(monkeypatch, tmp_path):
 
 def test_a_run_on_little_memory_skips_what_does_not_fit_and_ends(monkeypatch, tmp_path):
     """Of the smoke profile's meshes one fits and another one does not."""
-    small, large = (
-        estimate(Case("indexed", family, size), COPIES)
-        for family, size in (("torus", 1000), ("teapot", 0))
-    )
-    monkeypatch.setenv(VARIABLE, str(int((small + large) / 2 / memory.SHARE)))
-    fits = {
-        case.id: not why_too_large(case, COPIES)
-        for case in (
-            Case("indexed", family, size, reference_bytes=k)
-            for family, size in (("torus", 1000), ("teapot", 0))
-            for k in (4, 8)
-        )
-    }
+    cases = MEMORY.cases(PRESETS["smoke"], "indexed")
+    needed = [estimate(it, MEMORY.copies) for it in cases]
+    monkeypatch.setenv(VARIABLE, str(int((min(needed) + max(needed)) / 2 / memory.SHARE)))
+    fits = {case.id: not why_too_large(case, MEMORY.copies) for case in cases}
     assert set(fits.values()) == {True, False}
     folder = begin(tmp_path)
     assert go_on(folder) == []

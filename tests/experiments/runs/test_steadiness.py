@@ -1,7 +1,5 @@
 """A run knows how steady its machine was."""
 
-from __future__ import annotations
-
 import pytest
 
 from experiments.harness import Measurement

@@ -1,10 +1,6 @@
 """What a run leaves on disk survives whoever is killed, and nothing broken is read as good."""
 
-from __future__ import annotations
-
 import shutil
-import subprocess
-import sys
 
 import pytest
 
@@ -12,7 +8,7 @@ from experiments.harness import Measurement
 from experiments.harness.steadiness import REPEATS
 from experiments.runs import CaseFile, ResultsError, latest, load, write_meta
 from experiments.runs.store import DamagedError
-from tests.experiments.small_study import damage
+from tests.experiments.small_study import damage, in_new_process
 
 DAMAGES = (
     "truncated", "emptied", "overwritten", "another number", "without its checksum", "a line less",
@@ -75,17 +71,12 @@ def test_a_process_that_never_saw_its_core_alone_is_found_out_by_one_that_did(tm
 def test_a_kill_at_any_moment_leaves_whole_lines(tmp_path):
     """A writer is killed many times over; what is on disk is always a prefix of its cases."""
     script = (
-        "import sys; from pathlib import Path; from experiments.harness import Measurement\n"
-        "from experiments.runs import CaseFile\n"
-        "f = CaseFile(Path(sys.argv[1]), 'bench_x', 'indexed')\n"
+        "f = CaseFile(folder, 'bench_x', 'indexed')\n"
         "for i in range(len(f.measurements), 10**6):\n"
         "    f.add(Measurement(str(i), 'time', samples=[0.0] * 2000)); print(i, flush=True)"
     )
     for repetition in range(2):
-        with subprocess.Popen(
-            [sys.executable, "-c", script, str(tmp_path)], stdout=subprocess.PIPE, text=True
-        ) as writer:
-            assert writer.stdout is not None
+        with in_new_process(script, tmp_path) as writer:
             told = [writer.stdout.readline() for _ in range(3 + repetition)]
             writer.kill()
         ids = [it.id for it in CaseFile(tmp_path, "bench_x", "indexed").measurements]
@@ -120,12 +111,9 @@ def test_no_flipped_bit_changes_what_is_read(made_up):
 
 
 def test_the_newest_run_is_found_and_the_newest_unfinished(tmp_path):
-    for name, begun, more in (
-        ("c", 1, {}),
-        ("b", 2, {"finished": "now"}),
-        ("a", 3, {"finished": 1}),
-    ):
-        write_meta(tmp_path / name, {"schema": 3, "started": f"2020-01-0{begun}", **more})
+    runs = ("c", {}), ("b", {"finished": "now"}), ("a", {"finished": 1})
+    for day, (name, more) in enumerate(runs, 1):
+        write_meta(tmp_path / name, {"schema": 3, "started": f"2020-01-0{day}", **more})
     assert latest(tmp_path).name == "a"  # whatever its folder is called
     assert latest(tmp_path, unfinished=True).name == "c"
     for name in ("a", "c"):  # what cannot be read is told, and keeps nobody from the others
@@ -161,17 +149,14 @@ def test_a_copy_of_a_file_is_not_read_and_a_renamed_one_is_refused(made_up):
 def test_a_file_that_cannot_be_written_stays_as_it_was(tmp_path):
     """As a full disk, where none can be mounted: files may not grow past a limit."""
     script = (
-        "import resource, signal, sys; from pathlib import Path\n"
-        "from experiments.harness import Measurement; from experiments.runs import CaseFile\n"
+        "import resource, signal\n"
         "signal.signal(signal.SIGXFSZ, signal.SIG_IGN)\n"
-        "f = CaseFile(Path(sys.argv[1]), 'bench_x', 'indexed'); f.add(Measurement('a', 'time'))\n"
+        "f = CaseFile(folder, 'bench_x', 'indexed'); f.add(Measurement('a', 'time'))\n"
         "resource.setrlimit(resource.RLIMIT_FSIZE, (4000, 4000))\n"
         "f.add(Measurement('b', 'time', samples=[0.5] * 9000))"
     )
-    ran = subprocess.run(
-        [sys.executable, "-c", script, str(tmp_path)], capture_output=True, text=True, check=False
-    )
-    assert "bench_x.indexed.jsonl cannot be written" in ran.stderr
+    _, said = in_new_process(script, tmp_path).communicate()
+    assert "bench_x.indexed.jsonl cannot be written" in said
     (path,) = tmp_path.iterdir()
     assert path.stat().st_size < 4000
     assert CaseFile.at(path).cases.keys() == {"a"}

@@ -1,12 +1,9 @@
 """Whatever happens to a study, nothing finished is lost."""
 
-from __future__ import annotations
-
 import os
 import shutil
 import signal
 import subprocess
-import sys
 from pathlib import Path
 from threading import Event
 
@@ -28,7 +25,15 @@ from experiments.runs.store import DamagedError, InUseError, case_files, lock_ru
 from experiments.runs.worker import AGAIN, COMPILE, WorkerDiedError, perform
 from tests.experiments.cli.test_cli import hem
 from tests.experiments.made_runs import STEADY
-from tests.experiments.small_study import begin, damage, go_on, samples, wait_for, workers_of
+from tests.experiments.small_study import (
+    begin,
+    damage,
+    go_on,
+    in_new_process,
+    samples,
+    wait_for,
+    workers_of,
+)
 
 
 @pytest.fixture
@@ -205,14 +210,8 @@ def test_a_run_is_resumed_as_it_was_begun(run):
 
 
 def test_of_two_studies_in_one_folder_the_second_is_told_who_has_it(run):
-    script = (
-        "import sys, time; from pathlib import Path\n"
-        "from experiments.runs.store import lock_run\n"
-        "with lock_run(Path(sys.argv[1])): print('held', flush=True); time.sleep(600)"
-    )
-    command = [sys.executable, "-c", script, str(run)]
-    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as holder:
-        assert holder.stdout is not None
+    script = "with store.lock_run(folder): print('held', flush=True); time.sleep(600)"
+    with in_new_process(script, run) as holder:
         assert holder.stdout.readline() == "held\n"
         with pytest.raises(InUseError, match=rf"process {holder.pid} on .*wait"):
             go_on(run)
@@ -248,18 +247,8 @@ def test_a_worker_that_is_killed_costs_no_finished_case_and_stops_no_other_job(t
 @pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGKILL])
 def test_whoever_stops_a_study_leaves_no_process_behind(tmp_path, how):
     """As an interrupt in a notebook: the signal reaches the one who called, and nobody else."""
-    script = (
-        "import sys; from pathlib import Path; from experiments.runs import study\n"
-        "class Prints(study.Observer):\n"
-        "    def measured(self, job, done): print(done, flush=True)\n"
-        "study.run(Path(sys.argv[1]), Prints())"
-    )
-    folder = begin(tmp_path, "work")
-    command = [sys.executable, "-c", script, str(folder)]
-    with subprocess.Popen(
-        command, start_new_session=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE
-    ) as caller:
-        assert caller.stdout is not None
+    folder, script = begin(tmp_path, "work"), "study.run(folder, Prints())"
+    with in_new_process(script, folder, start_new_session=True) as caller:
         caller.stdout.readline()
         before = samples(folder)
         caller.send_signal(how)
@@ -267,7 +256,7 @@ def test_whoever_stops_a_study_leaves_no_process_behind(tmp_path, how):
     wait_for(lambda: not workers_of(folder))
     assert before
     assert before.items() <= samples(folder).items()
-    assert (b"KeyboardInterrupt" in said) == (how == signal.SIGINT)
+    assert ("KeyboardInterrupt" in said) == (how == signal.SIGINT)
     with lock_run(folder):
         pass
 
@@ -275,10 +264,8 @@ def test_whoever_stops_a_study_leaves_no_process_behind(tmp_path, how):
 def test_what_is_left_of_several_experiments_is_compiled_whatever_else_is_done(tmp_path):
     folder = begin(tmp_path, "operations", "build", structures=("indexed", "half_edge"))
     jobs = {(it.experiment, it.structure): it for it in study.plan(folder)}
-    left = [
-        jobs["bench_build", "indexed"],
-        *(jobs[it, "half_edge"] for it in ("bench_operations", "bench_build")),
-    ]
+    some = ("build", "indexed"), ("operations", "half_edge"), ("build", "half_edge")
+    left = [jobs[f"bench_{experiment}", structure] for experiment, structure in some]
     assert set(perform(folder, left, COMPILE)) == set(left)
 
 
