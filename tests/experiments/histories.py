@@ -1,7 +1,5 @@
 """Histories made up for tests, of runs that are made up as well."""
 
-from __future__ import annotations
-
 import copy
 import json
 from pathlib import Path

@@ -41,14 +41,11 @@ def rays(s, seed):
 def edit(s, rng, count):
     for _ in range(count):
         face = int(rng.choice(s.faces()))
-        s.split_face(
-            face, s.points[s.face_vertices(face)].mean(axis=0) * rng.uniform(0.95, 1.05, 3)
-        )
+        center = s.points[s.face_vertices(face)].mean(axis=0)
+        s.split_face(face, center * rng.uniform(0.95, 1.05, 3))
         edges = s.edges()
-        for operation, may in (
-            ("flip_edge", s.can_flip_edge),
-            ("collapse_edge", s.can_collapse_edge),
-        ):
+        allowed = {"flip_edge": s.can_flip_edge, "collapse_edge": s.can_collapse_edge}
+        for operation, may in allowed.items():
             edge = int(rng.choice(edges))
             if edge in s.edges() and may(edge):
                 s.operate(operation, edge)

@@ -1,7 +1,5 @@
 """The cells of the tables are what the documents, the structures and the experiments claim."""
 
-from __future__ import annotations
-
 import pytest
 
 from experiments.claims import MEMORY, NO_CLAIM, Kind, load_claims
@@ -89,18 +87,15 @@ def test_every_claim_has_a_key_of_its_own_a_source_and_a_sentence():
     assert all(it.source and it.text.endswith(".") and it.title for it in claims)
 
 
-@pytest.mark.parametrize(
-    ("entry", "named"),
-    [
-        ('what = "vertex_corners"\nsource = "x"', "vertex_corners"),
-        ('what = "face_faces"\nsource = "x"\nhalf_edges = "O(1)"', "half_edges"),
-        ('what = "face_faces"\nkind = "printed"\nsource = "x"\nhalf_edge = "O(n_v)"', r"O\(n_v\)"),
-        ('what = "face_faces"\nkind = "printed"\nhalf_edge = "O(1)"', "no source"),
-        ('what = "face_faces"\nsource = "x"\nhalf_edge = "O(1)"', "kind is None"),
-        ('what = "face_faces"\nkind = "said"\nsource = "x"\nhalf_edge = "O(1)"', "'said'"),
-        ('what = "face_faces"\nsource = "x"\ntable = "tables"', "tables"),
-    ],
-)
+@pytest.mark.parametrize(("entry", "named"), [
+    ('what = "vertex_corners"\nsource = "x"', "vertex_corners"),
+    ('what = "face_faces"\nsource = "x"\nhalf_edges = "O(1)"', "half_edges"),
+    ('what = "face_faces"\nkind = "printed"\nsource = "x"\nhalf_edge = "O(n_v)"', r"O\(n_v\)"),
+    ('what = "face_faces"\nkind = "printed"\nhalf_edge = "O(1)"', "no source"),
+    ('what = "face_faces"\nsource = "x"\nhalf_edge = "O(1)"', "kind is None"),
+    ('what = "face_faces"\nkind = "said"\nsource = "x"\nhalf_edge = "O(1)"', "'said'"),
+    ('what = "face_faces"\nsource = "x"\ntable = "tables"', "tables"),
+])  # fmt: skip
 def test_a_claim_that_makes_no_sense_is_refused_by_name(entry, named):
     classes = '[classes]\n"O(1)" = { faces = "O(1)", valence = "O(1)" }\n[[row]]\n'
     with pytest.raises(ValueError, match=named):

@@ -1,7 +1,5 @@
 """Every erratum is shown by a run of what is printed, beside one of what is sound."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

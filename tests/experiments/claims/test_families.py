@@ -1,7 +1,5 @@
 """Laws of the families: each is judged by its own times, and what denies another is named."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest

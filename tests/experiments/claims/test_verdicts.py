@@ -1,7 +1,5 @@
 """Verdicts on runs that follow a known law: what holds is consistent, what does not is violated."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -29,14 +27,9 @@ TABLES = "queries", "operations"
 
 
 @pytest.fixture(scope="module")
-def sound(base_run: Run) -> Run:
-    return base_run
-
-
-@pytest.fixture(scope="module")
-def every(sound: Run) -> list[JudgedClaim]:
+def every(base_run: Run) -> list[JudgedClaim]:
     """All its cells, judged."""
-    return [it for it in judge_run(sound) if it.claim.table != SENTENCES]
+    return [it for it in judge_run(base_run) if it.claim.table != SENTENCES]
 
 
 def cells(run: Run, **fields: str) -> list[JudgedClaim]:
@@ -73,9 +66,8 @@ def test_what_grows_as_claimed_is_consistent_by_work_and_by_time(every):
 @pytest.mark.parametrize("really", ["O(1)", "O(n_ev)", "O(n_t)", "O(n_t n_ev)"])
 def test_what_grows_otherwise_is_violated(tmp_path, printed, really):
     laws = {**LAWS, "O(n_t n_ev)": lambda n_t, n_ev: 1.0 * n_t * n_ev**2}
-    rows = measured_cells(
-        tmp_path, lambda s, q, p: laws[really] if p == printed else None, printed=printed
-    )
+    laws_of = {printed: laws[really]}
+    rows = measured_cells(tmp_path, lambda s, q, p: laws_of.get(p), printed=printed)
     expected = Outcome.CONSISTENT if printed == really else Outcome.VIOLATED
     assert {it.outcome for it in rows if it.claim.table in TABLES} == {expected}
 
@@ -157,10 +149,8 @@ def test_what_was_kept_of_other_measurements_is_not_read(tmp_path):
     before = {it.claim.key: it.outcome for it in judge_run(load(folder))}
     rewrite(folder, "bench_memory", "half_edge", lambda it: {"samples": [228_001.0]})
     after = {it.claim.key: it.outcome for it in judge_run(load(folder))}
-    assert {key for key in before if before[key] != after[key]} == {
-        "half_edge/memory",
-        "sentence/bytes_winged_half",
-    }
+    changed = {key for key in before if before[key] != after[key]}
+    assert changed == {"half_edge/memory", "sentence/bytes_winged_half"}
 
 
 def test_what_was_kept_of_other_claims_is_not_read(tmp_path, monkeypatch):
@@ -175,7 +165,7 @@ def test_what_was_kept_of_other_claims_is_not_read(tmp_path, monkeypatch):
     assert {before[key] for key in changed} == {Outcome.NO_CLAIM}
 
 
-def test_one_entry_adds_a_claim(sound):
+def test_one_entry_adds_a_claim(base_run):
     text = """
         [classes]
         "O(1)" = { faces = "O(1)", valence = "O(1)" }
@@ -186,7 +176,7 @@ def test_one_entry_adds_a_claim(sound):
         half_edge = "O(1)"
     """
     claim = next(it for it in load_claims(text) if it.printed == "O(1)")
-    (judged,) = judge_cells(sound, [claim])
+    (judged,) = judge_cells(base_run, [claim])
     assert judged.outcome == Outcome.CONSISTENT
     assert np.isfinite(judged.work)
     assert len(load_claims(text)) == len(NAMES)

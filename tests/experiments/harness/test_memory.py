@@ -1,7 +1,5 @@
 """A case that would not fit into memory is skipped beforehand and says so."""
 
-from __future__ import annotations
-
 import tracemalloc
 
 import pytest
@@ -22,9 +20,8 @@ COPIES = {name: experiment.copies for name, experiment in experiments().items()}
 @pytest.mark.parametrize("reference_bytes", [4, 8])
 def test_what_building_takes_is_foreseen_and_not_by_far_too_much(name, reference_bytes):
     n = 4_000
-    foreseen = estimate(
-        Case(name, "torus", n, reference_bytes=reference_bytes), COPIES["bench_build"]
-    )
+    case = Case(name, "torus", n, reference_bytes=reference_bytes)
+    foreseen = estimate(case, COPIES["bench_build"])
     structures.build(name, hem.generate("torus", n), reference_bytes)  # compiles
     tracemalloc.start()
     mesh = hem.generate("torus", n)

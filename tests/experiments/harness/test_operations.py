@@ -1,7 +1,5 @@
 """How operations are measured: on what, on how many copies, and that all did the same."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from itertools import product
 

@@ -1,7 +1,5 @@
 """The check before every timing: it agrees with answers found by hand, and catches a change."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

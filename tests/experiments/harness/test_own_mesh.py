@@ -1,7 +1,5 @@
 """A study of one's own mesh: versions are surfaces of its kind, and cases are about them."""
 
-from __future__ import annotations
-
 from itertools import pairwise
 from pathlib import Path
 
@@ -10,6 +8,7 @@ import pytest
 
 import hem
 import structures
+from experiments.claims import beside
 from experiments.harness import PRESETS, Case, own_mesh, time_rounds
 from experiments.presets import COARSER, FINE_ENOUGH, LARGEST, SMALLEST
 from experiments.runs import experiments, load, read_meta, study
@@ -62,9 +61,7 @@ def test_a_sample_stays_the_sample_after_versions_of_it_were_measured(tmp_path):
 
 def test_a_small_mesh_gets_finer_versions_only(tmp_path):
     tetrahedron = tmp_path / "tetrahedron.off"
-    hem.save(
-        hem.TriangleMesh(np.eye(4, 3), [(0, 2, 1), (0, 1, 3), (1, 2, 3), (2, 0, 3)]), tetrahedron
-    )
+    hem.save(beside.TETRAHEDRON, tetrahedron)
     own_mesh.keep_versions(tmp_path, str(tetrahedron))
     sizes = [len(it.points) for it in versions(tmp_path)]
     assert sizes[0] == 4

@@ -1,7 +1,5 @@
 """Laws of the reference loop: the work of a small mesh at every size, in the memory of the case."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np

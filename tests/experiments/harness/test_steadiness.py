@@ -1,7 +1,5 @@
 """The machine is watched while a case is measured; cases come in a random order."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys

@@ -1,7 +1,5 @@
 """Laws of timing: rounds are separate samples, and a delay while calibrating decides nothing."""
 
-from __future__ import annotations
-
 from functools import partial
 from time import perf_counter
 from types import SimpleNamespace
@@ -50,12 +48,10 @@ def test_one_delayed_try_leaves_no_round_with_too_few_handles(
 ) -> None:
     handles = np.arange(64)
     for delayed in range(5):
-        s = Delayed(delayed)
+        s, no_state = Delayed(delayed), SimpleNamespace(records=Empty(np.zeros(0)))
         monkeypatch.setattr("experiments.harness.queries.took", partial(took, clock=s.clock))
-        seconds = _seconds_per_query(
-            Sweep(s.loop, handles, None, SimpleNamespace(records=Empty(np.zeros(0))), b""), 2e-4
-        )
-        assert seconds == pytest.approx(1e-6)
+        sweep = Sweep(s.loop, handles, None, no_state, b"")
+        assert _seconds_per_query(sweep, 2e-4) == pytest.approx(1e-6)
 
 
 @pytest.mark.parametrize("kind", ["alone", "pytest-benchmark"])

@@ -1,7 +1,5 @@
 """The baseline: it changes only when somebody says so, who has seen what would change."""
 
-from __future__ import annotations
-
 import json
 import shutil
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """pytest-benchmark's own storage and comparison, as the README tells to use them."""
 
-from __future__ import annotations
-
 import json
 import os
 import re

@@ -1,7 +1,5 @@
 """Steps are found where they were put, and none in noise."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

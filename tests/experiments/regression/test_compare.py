@@ -1,7 +1,5 @@
 """The comparisons: what is as before passes, worse fails, and what was not seen never passes."""
 
-from __future__ import annotations
-
 import sys
 from dataclasses import replace
 
@@ -82,33 +80,27 @@ def test_counters_and_classes_are_those_of_the_baseline(counters):
     }  # fmt: skip
 
 
-@pytest.mark.parametrize(
-    ("before", "after", "change"),
-    [
-        ([19, 19], [19, 19], "same"),
-        ([19, 19], [19, 20], "worse"),
-        ([19, 19], [18, 20], "worse"),
-        ([19, 19], [18, 19], "better"),
-        ([19, 19], [19, 19, 19], "worse"),
-        ([10, 20, 40, 80], [10, 60], "worse"),
-        ([10, 20, 40], [10, 11, 12, 13, 14, 15], "worse"),
-        ([10, 20, 40], [10, 20], "better"),
-    ],
-)
+@pytest.mark.parametrize(("before", "after", "change"), [
+    ([19, 19], [19, 19], "same"),
+    ([19, 19], [19, 20], "worse"),
+    ([19, 19], [18, 20], "worse"),
+    ([19, 19], [18, 19], "better"),
+    ([19, 19], [19, 19, 19], "worse"),
+    ([10, 20, 40, 80], [10, 60], "worse"),
+    ([10, 20, 40], [10, 11, 12, 13, 14, 15], "worse"),
+    ([10, 20, 40], [10, 20], "better"),
+])  # fmt: skip
 def test_counts_are_compared_to_the_last_one(before, after, change):
     assert compare_values(before, after)[0] == change
 
 
-@pytest.mark.parametrize(
-    ("before", "after", "change"),
-    [
-        (("O(n)", "consistent"), ("O(1)", "violated"), "worse"),
-        (("O(1)", "no claim"), ("O(n)", "no claim"), "worse"),
-        (("O(n)", "violated"), ("O(1)", "consistent"), "better"),
-        (("O(n)", "consistent"), ("O(n)", "undetermined"), "undetermined"),
-        (("O(n)", "consistent"), ("O(n)", "consistent"), "same"),
-    ],
-)
+@pytest.mark.parametrize(("before", "after", "change"), [
+    (("O(n)", "consistent"), ("O(1)", "violated"), "worse"),
+    (("O(1)", "no claim"), ("O(n)", "no claim"), "worse"),
+    (("O(n)", "violated"), ("O(1)", "consistent"), "better"),
+    (("O(n)", "consistent"), ("O(n)", "undetermined"), "undetermined"),
+    (("O(n)", "consistent"), ("O(n)", "consistent"), "same"),
+])  # fmt: skip
 def test_classes_are_compared_by_what_became_of_the_claim(before, after, change):
     assert compare_classes(before, after)[0] == change
 

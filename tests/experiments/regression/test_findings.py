@@ -1,7 +1,5 @@
 """Laws of findings: what fails, what cannot be told, and what more than half say."""
 
-from __future__ import annotations
-
 import pytest
 
 from experiments.regression import CaseKey, Change, Finding, Kind, exit_code
@@ -38,19 +36,16 @@ def test_chance_may_leave_a_tenth_open_and_nothing_else_may_be():
     assert exit_code(left_open) == 2
 
 
-@pytest.mark.parametrize(
-    ("changes", "unanimous", "said"),
-    [
-        ([WORSE, WORSE, SAME], False, WORSE),
-        ([WORSE, WORSE, SAME], True, OPEN),
-        ([WORSE, WORSE, OPEN], True, WORSE),
-        ([WORSE, WORSE, OPEN, OPEN], True, OPEN),
-        ([BETTER] * 5, True, BETTER),
-        ([WORSE, SAME, SAME, OPEN, SAME], True, SAME),
-        ([WORSE, SAME, SAME, WORSE, SAME], True, OPEN),
-        ([WORSE, SAME, SAME, WORSE, SAME], False, OPEN),
-    ],
-)
+@pytest.mark.parametrize(("changes", "unanimous", "said"), [
+    ([WORSE, WORSE, SAME], False, WORSE),
+    ([WORSE, WORSE, SAME], True, OPEN),
+    ([WORSE, WORSE, OPEN], True, WORSE),
+    ([WORSE, WORSE, OPEN, OPEN], True, OPEN),
+    ([BETTER] * 5, True, BETTER),
+    ([WORSE, SAME, SAME, OPEN, SAME], True, SAME),
+    ([WORSE, SAME, SAME, WORSE, SAME], True, OPEN),
+    ([WORSE, SAME, SAME, WORSE, SAME], False, OPEN),
+])  # fmt: skip
 def test_a_vote_needs_more_than_half_and_few_who_say_otherwise(changes, unanimous, said):
     assert vote(changes, unanimous=unanimous)[0] == said
 

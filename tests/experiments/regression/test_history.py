@@ -1,7 +1,5 @@
 """The history keeps what was added, whole, once, and in spite of crashes and company."""
 
-from __future__ import annotations
-
 import errno
 import json
 import multiprocessing
@@ -29,11 +27,8 @@ def test_a_line_has_the_verdicts_and_figures_of_its_run(base):
     assert claim["slopes"]["work_faces"] == [0, 0, 0]
     slope, low, high = claim["slopes"]["time_valence"]
     assert low <= slope <= high
-    assert base["claims"]["queries/indexed/memory"] == {
-        "kind": "printed",
-        "outcome": "consistent",
-        "bytes": 36,
-    }
+    of_bytes = {"kind": "printed", "outcome": "consistent", "bytes": 36}
+    assert base["claims"]["queries/indexed/memory"] == of_bytes
     assert len(json.dumps(base)) < 500 * len(base["claims"])
 
 
@@ -144,19 +139,16 @@ def test_where_there_is_no_room_the_file_stays_as_it_was(base, tmp_path, monkeyp
     assert path.read_bytes() == before
 
 
-@pytest.mark.parametrize(
-    ("text", "said"),
-    [
-        ("[1, 2]", "is no run: it has no schema"),
-        ('{"schema": 3}', "has schema 3, this version knows 2"),
-        ('{"schema": 2}', "is no run: its commit is None"),
-        ('{"schema": 1}', "has schema 1, this version knows 2"),
-        ('{"schema": [1]}', "has schema [1], this version knows 2"),
-        ('{"schema": 2, "work": NaN}', "is cut short or damaged"),
-        ("\x00\x00\x00", "is cut short or damaged"),
-        ("[" * 100_000, "is cut short or damaged"),
-    ],
-)
+@pytest.mark.parametrize(("text", "said"), [
+    ("[1, 2]", "is no run: it has no schema"),
+    ('{"schema": 3}', "has schema 3, this version knows 2"),
+    ('{"schema": 2}', "is no run: its commit is None"),
+    ('{"schema": 1}', "has schema 1, this version knows 2"),
+    ('{"schema": [1]}', "has schema [1], this version knows 2"),
+    ('{"schema": 2, "work": NaN}', "is cut short or damaged"),
+    ("\x00\x00\x00", "is cut short or damaged"),
+    ("[" * 100_000, "is cut short or damaged"),
+])  # fmt: skip
 def test_a_line_that_is_no_run_is_named_and_skipped(base, tmp_path, text, said):
     path = tmp_path / "history.jsonl"
     append_run(line(base, 1), path)
@@ -178,11 +170,8 @@ def test_a_machine_is_the_same_after_an_update_and_another_with_another_processo
         "platform": "Linux 6.18.44 x86_64",
         "python": "cpython",
     }
-    updated = here | {
-        "platform": "Linux 7.1.2-other x86_64",
-        "memory_bytes": here["memory_bytes"] - 2**20,
-        "python": "other",
-    }
+    updated = here | {"platform": "Linux 7.1.2-other x86_64", "python": "other"}
+    updated["memory_bytes"] -= 2**20
     assert machine_id(here) == machine_id(updated)
     assert machine_id(machine()) == machine_id(machine())
     assert len(machine_id(here)) == 8

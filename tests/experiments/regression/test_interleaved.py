@@ -1,7 +1,5 @@
 """Two trees timed interleaved: identical code is not slower, and one that cannot run no pass."""
 
-from __future__ import annotations
-
 import pytest
 
 from experiments.regression import HERE, Change, compare_trees, exit_code, interleaved
@@ -20,21 +18,18 @@ SLOWER, FASTER = pair("worse", 1.6), pair("better", 0.6)
 ENDED = PairTimed(error="it ended")
 
 
-@pytest.mark.parametrize(
-    ("pairs", "change"),
-    [
-        ([AS_BEFORE, AS_BEFORE, SLOWER, SLOWER, SLOWER], "same"),  # the last ones are not asked
-        ([SLOWER] * 5, "worse"),
-        ([FASTER] * 5, "better"),
-        ([SLOWER, OPEN, SLOWER, SLOWER, OPEN], "worse"),
-        ([SLOWER, OPEN, SLOWER, OPEN, OPEN], "undetermined"),
-        ([SLOWER, SLOWER, SLOWER, SLOWER, AS_BEFORE], "undetermined"),
-        ([SLOWER, SLOWER, FASTER, SLOWER, SLOWER], "undetermined"),
-        ([SLOWER, AS_BEFORE, AS_BEFORE, OPEN, AS_BEFORE], "same"),
-        ([SLOWER, AS_BEFORE, AS_BEFORE, SLOWER, AS_BEFORE], "undetermined"),
-        ([AS_BEFORE, ENDED, *[AS_BEFORE] * 3], "undetermined"),
-    ],
-)
+@pytest.mark.parametrize(("pairs", "change"), [
+    ([AS_BEFORE, AS_BEFORE, SLOWER, SLOWER, SLOWER], "same"),  # the last ones are not asked
+    ([SLOWER] * 5, "worse"),
+    ([FASTER] * 5, "better"),
+    ([SLOWER, OPEN, SLOWER, SLOWER, OPEN], "worse"),
+    ([SLOWER, OPEN, SLOWER, OPEN, OPEN], "undetermined"),
+    ([SLOWER, SLOWER, SLOWER, SLOWER, AS_BEFORE], "undetermined"),
+    ([SLOWER, SLOWER, FASTER, SLOWER, SLOWER], "undetermined"),
+    ([SLOWER, AS_BEFORE, AS_BEFORE, OPEN, AS_BEFORE], "same"),
+    ([SLOWER, AS_BEFORE, AS_BEFORE, SLOWER, AS_BEFORE], "undetermined"),
+    ([AS_BEFORE, ENDED, *[AS_BEFORE] * 3], "undetermined"),
+])  # fmt: skip
 def test_a_tree_is_slower_only_if_no_pair_of_processes_says_otherwise(pairs, change, monkeypatch):
     """A process may be slow by where it lies in memory, and slow code is so in all of them."""
     rest = iter(pairs)
