@@ -28,9 +28,10 @@ HALF, WINGED = "half_edge", "winged_edge"
 HALF_EDGES = (HALF, "half_edge_objects", "plankton")
 
 TOUCHING = hem.TriangleMesh(
-    [(0, 0, 0), (1, 0, 0), (0, 1, 0), (1, 0, 0), (0, 1, 0), (1, 1, 0)], [(0, 1, 2), (3, 5, 4)]
+    [(0, 0, 0), (1, 0, 0), (0, 1, 0), (-1, 0, 0), (0, -1, 0), (1, 0, 0)],
+    [(0, 1, 2), (0, 2, 3), (0, 3, 4), (0, 4, 5)],
 )
-"""Two triangles with a side at the same place, and vertices of their own."""
+"""A sheet of triangles around a vertex whose first and last side are at the same place."""
 
 
 def books_built() -> Iterable[float]:

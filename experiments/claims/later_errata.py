@@ -166,7 +166,7 @@ def closed_only() -> Shown:
 
 
 def coincident() -> Shown:
-    """Vertices at the position of another, of triangles that touch: as they are, and welded."""
+    """Vertices at the position of another, of a sheet that meets itself: as it is, and welded."""
     welded = hem.mesh_from_render(TOUCHING.points, TOUCHING.triangles[:, [0, 2, 1]].reshape(-1))
     found, left = (int(*coincident_vertices(it)) for it in (TOUCHING, welded))
     words = "vertices at the position of another, in a valid half-edge mesh"

@@ -194,9 +194,9 @@ def _detail(of_run: Curves, operation: str, workload: str) -> Iterable[float]:
 
 
 def _more_bytes(of_run: Curves) -> Iterable[float]:
-    """Every query of the structures in the order of their bytes, by the next smaller one."""
+    """The query that gains most, of the structures in the order of their bytes."""
     for smaller, larger in itertools.pairwise((BASE, NEIGHBOR, HALF)):
-        yield from _times(of_run, larger, smaller, QUERIES)
+        yield min(_times(of_run, larger, smaller, QUERIES), default=np.nan)
 
 
 def _local_update(of_run: Curves) -> Iterable[float]:
@@ -205,6 +205,13 @@ def _local_update(of_run: Curves) -> Iterable[float]:
     costs = [of_run.named("bench_operations", HALF, "split_face", it).by_size for it in orders]
     for before, after in itertools.pairwise(costs):
         yield from (after / before).dropna()
+
+
+def _extra_bytes(of_run: Curves) -> Iterable[float]:
+    """Bytes beyond an indexed mesh, on the largest mesh by on the smallest of the larger."""
+    extra = of_run.memory(HALF).by_size - of_run.memory(BASE).by_size
+    extra = extra.dropna().loc[LARGER:]
+    yield extra.iloc[-1] / extra.iloc[0] if len(extra) > 1 else np.nan
 
 
 def _pays_at_most(of_run: Curves) -> Iterable[float]:
@@ -243,6 +250,7 @@ def _slopes(
 
 
 LISTED = ("as_printed",)
+OF_FACES = "face_faces", "face_vertices", "face_edges", "split_face"
 BETWEEN_EDGES = "edge_vertices", "edge_faces", "vertex_edges", "face_edges"
 
 QUANTITIES: dict[str, Quantity] = {
@@ -271,9 +279,10 @@ QUANTITIES: dict[str, Quantity] = {
     "dynamic": lambda of_run: _workload(of_run, "impacts"),
     "subdivision": lambda of_run: _detail(of_run, "split_face", "subdivision"),
     "reduction": lambda of_run: _detail(of_run, "collapse_edge", "simplification"),
-    "larger_meshes": _pays_at_most,
+    "larger_meshes": _extra_bytes,
+    "larger_meshes_repay": _pays_at_most,
     "edits_after_building": _edits_after_building,
-    "draft_faces": lambda of_run: _times(of_run, BASE, HALF, ("face_vertices", "split_face")),
+    "draft_faces": lambda of_run: _times(of_run, BASE, HALF, OF_FACES),
     "books_built": lambda of_run: shown.books_built(),
     "polygon_corners": lambda of_run: shown.polygon_corners(),
     "article_invariants": lambda of_run: shown.article_invariants(),
@@ -290,6 +299,6 @@ QUANTITIES: dict[str, Quantity] = {
 
 TIMED = {
     "winged_half_time", "more_bytes", "local_update", "static", "dynamic", "subdivision",
-    "reduction", "larger_meshes", "edits_after_building", "draft_faces",
+    "reduction", "larger_meshes_repay", "edits_after_building", "draft_faces",
 }  # fmt: skip
 """Those that compare times."""
