@@ -9,25 +9,18 @@ import typer
 from rich.markup import escape
 from typer import Option
 
-from experiments import require_known
+from experiments import presets, require_known
 from experiments.cli.console import OfMesh, Repair, Structures, completed, console, errors
-from experiments.presets import (
-    COARSER,
-    FINE_ENOUGH,
-    LARGEST,
-    LARGEST_COUNTED,
-    PRESETS,
-    SMALLEST,
-)
+from experiments.presets import PRESETS
 
 DEFAULT = "quick"  # the preset of a study that names none
 FILES = Path(__file__).parents[1].glob("bench_*.py")
 EXPERIMENTS = sorted(it.stem.removeprefix("bench_") for it in FILES)  # without importing them
 PRESETS_TOLD = "\n".join(["Presets:\n", *(f"- {name}: {it.what}" for name, it in PRESETS.items())])
 MESH_TOLD = (
-    f"Measure on this mesh, and on versions of it: up to {COARSER} coarser ones, down to {SMALLEST}"
-    f" vertices; finer ones up to {FINE_ENOUGH:,} vertices, or one up to {LARGEST:,}. Accesses are "
-    f"counted up to {LARGEST_COUNTED:,}."
+    f"Measure on this mesh, and on versions of it: up to {presets.COARSER} coarser ones, down to "
+    f"{presets.SMALLEST} vertices; finer ones up to {presets.FINE_ENOUGH:,} vertices, or one up to "
+    f"{presets.LARGEST:,}. Accesses are counted up to {presets.LARGEST_COUNTED:,}."
 )
 
 
