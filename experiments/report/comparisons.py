@@ -99,16 +99,15 @@ def by_family(families: Sequence[Family]) -> Html:
         "Family", "vertices", "edges at a vertex", "most at one", *(it.label for it in BY_TIME),
         f"not as on the {families[0].name}",
     )  # fmt: skip
-    return text_table(heads, [_family_row(it, families[0]) for it in families])
-
-
-def _family_row(it: Family, first: Family) -> tuple[Any, ...]:
-    counts = (Counter(it.outcomes(axis).values()) for axis in BY_TIME)
-    marks = (" ".join(f"{found[kind]} {kind.mark}" for kind in SHOWN) for found in counts)
-    mesh = it.largest
-    mean = two_digits(2 * mesh["edges"] / mesh["vertices"])
-    size, most = (f"{mesh[name]:,}" for name in ("vertices", "valence_max"))
-    return it.name, size, mean, most, *marks, part("denied", it, first, BY_TIME) or "–"
+    rows = []
+    for it in families:
+        mesh, counts = it.largest, [Counter(it.outcomes(axis).values()) for axis in BY_TIME]
+        marks = (" ".join(f"{found[kind]} {kind.mark}" for kind in SHOWN) for found in counts)
+        mean = two_digits(2 * mesh["edges"] / mesh["vertices"])
+        size, most = (f"{mesh[name]:,}" for name in ("vertices", "valence_max"))
+        denied = part("denied", it, families[0], BY_TIME) or "–"
+        rows.append((it.name, size, mean, most, *marks, denied))
+    return text_table(heads, rows)
 
 
 def families_in_words(families: Sequence[Family]) -> Html:

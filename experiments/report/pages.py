@@ -160,7 +160,7 @@ def each_table(
     """By title every table that claims are cells of, or a word on why it is not there."""
     named = {it.claim.table for it in claims if it.claim.structure}
     every = ((name, it.title) for name, it in tables().items() if name in named)
-    return {title: or_missing(partial(how, claims, name), otherwise) for name, title in every}
+    return {title: or_missing(otherwise, how, claims, name) for name, title in every}
 
 
 def reasons(claims: Iterable[JudgedClaim], name: str) -> Html:
@@ -180,10 +180,10 @@ def errata(every: Iterable[Erratum]) -> Html:
     return part("errata", [(it, it.show(), number) for number, it in enumerate(every, start=1)])
 
 
-def or_missing(make: Callable[[], str], otherwise: str) -> str:
-    """A part of a page, or a word on why it is not there."""
+def or_missing(otherwise: str, make: Callable[..., str], *given: Any) -> str:
+    """A part of a page, made of what is ``given``, or a word on why it is not there."""
     try:
-        return make()
+        return make(*given)
     except session.MissingError as missing:
         return otherwise.format(escape(str(missing), quote=False))
 
@@ -296,17 +296,19 @@ def cited(source: str) -> set[str]:
 def traced(claims: Iterable[JudgedClaim]) -> Html:
     """A row per section: what it says, where it is done, and what became of what it claims."""
     printed = [it for it in claims if it.claim.kind is Kind.PRINTED and it.claim.claims_something]
+    rows = []
+    for section in sections():
+        mine = [it for it in printed if section.of in cited(it.claim.source)]
+        said = [it for it in mine if it.claim.table == SENTENCES]
+        cells = Counter(it.mark for it in mine if it.claim.table != SENTENCES)
+        wrong = {
+            number: it.title
+            for number, it in enumerate(ERRATA, start=1)
+            if section.of in cited(it.source.removeprefix("quoted in "))
+        }
+        where = part("done", page_titles()[section.chapter], link(section.chapter), section.done)
+        became = part("became", said, cells, wrong)
+        number = section.of if section.of[0].isdigit() else ""
+        rows.append((f"{number} {section.title}", section.says, where, became))
     heads = "Section", "What it says", "Where it is done", "What became of it"
-    return text_table(heads, [_section_row(it, printed) for it in sections()])
-
-
-def _section_row(section: Section, printed: Sequence[JudgedClaim]) -> tuple[str, str, Html, Html]:
-    mine = [it for it in printed if section.of in cited(it.claim.source)]
-    said = [it for it in mine if it.claim.table == SENTENCES]
-    cells = Counter(it.mark for it in mine if it.claim.table != SENTENCES)
-    sources = [re.sub("^quoted in ", "", it.source) for it in ERRATA]
-    wrong = [k for k, source in enumerate(sources) if section.of in cited(source)]
-    became = part("became", said, cells, {k + 1: ERRATA[k].title for k in wrong})
-    where = part("done", page_titles()[section.chapter], link(section.chapter), section.done)
-    number = section.of if section.of[0].isdigit() else ""
-    return f"{number} {section.title}", section.says, where, became
+    return text_table(heads, rows)

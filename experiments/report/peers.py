@@ -104,6 +104,7 @@ class Peers:
         self.run = run
         here = run.cases[run.cases["experiment"] == EXPERIMENT]
         self.cases = {str(name): cases for name, cases in here.groupby("structure")}
+        self._weighed = {name: it[it["kind"] == BYTES] for name, it in self.cases.items()}
         self.names = [it for it in PEERS if it in self.cases]
         self.absent = [it.title for name, it in PEERS.items() if name not in self.cases]
 
@@ -137,12 +138,9 @@ class Peers:
         seconds, ratio = curve.by_size[size], ratios.get(size, np.nan)
         return Cell(float(seconds), float(ratio), size, verdicts, bool(claimed))
 
-    def _weighed(self, name: str) -> pd.DataFrame:
-        return self.cases[name][self.cases[name]["kind"] == BYTES]
-
     def weighed_at(self, name: str) -> int:
         """The vertices of the mesh whose bytes were taken; 0 where none were."""
-        return int(self._weighed(name)["vertices"].max()) if len(self._weighed(name)) else 0
+        return int(max(self._weighed[name]["vertices"], default=0))
 
     def weighed_smaller(self) -> str:
         """Whose bytes are of a smaller mesh than those of the others, in a sentence, if any are."""
@@ -153,7 +151,7 @@ class Peers:
 
     def bytes_per_vertex(self, name: str) -> float:
         """As the process sees them."""
-        found = self._weighed(name)
+        found = self._weighed[name]
         return float((found["samples"].str[0].astype(float) / found["vertices"]).max())
 
     def version(self, name: str) -> str:

@@ -79,7 +79,7 @@ def write_readme(run_folder: Path, folder: Path) -> Path:
     told = execute(read(FRONT), FRONT).get("answers", ())
     listed = "\n".join(f"{number}. {it.text}" for number, it in enumerate(told, start=1))
     answers = listed or MISSING.format("This run has measured none.")
-    recommended = pages.or_missing(partial(uses.recommended_markdown, run), MISSING)
+    recommended = pages.or_missing(MISSING, uses.recommended_markdown, run)
     absent = uses.left_out().striptags()
     parts = {"Which structure for which use": f"{uses.HOW_TO_READ}\n\n{recommended}\n\n{absent}"}
     parts["Who claims what"] = tables.markdown_rows(tables.tally_rows(claims))
@@ -88,10 +88,9 @@ def write_readme(run_folder: Path, folder: Path) -> Path:
         parts[f"In sentences: {kind.about}"] = pages.sentences_markdown(claims, kind)
     folder.mkdir(parents=True, exist_ok=True)
     for name, (title, draw) in DRAWN.items():
-        picture = partial(_draw, run, draw, folder / f"{name}.png", title)
-        parts[title] = pages.or_missing(picture, MISSING)
+        parts[title] = pages.or_missing(MISSING, _draw, run, draw, folder / f"{name}.png", title)
         for head, show in TABLES.get(name, {}).items():
-            parts[head] = pages.or_missing(partial(_written, run, show), MISSING)
+            parts[head] = pages.or_missing(MISSING, lambda show: show(run).markdown, show)
     facts = {"answers": answers, "legend": tables.legend(), "about": in_words(run)}
     (folder / "README.md").write_text(pages.page("readme.md.j2", parts=parts, **facts), "utf-8")
     readme = folder.parent / "README.md"
@@ -106,10 +105,6 @@ def _filled(text: str, name: str, part: str) -> str:
     """A text with a part between its marks of this name, if it has them."""
     marked = f"(?s)(<!-- {name} -->).*?(<!-- end of {name} -->)"
     return re.sub(marked, lambda it: f"{it[1]}\n{part}\n{it[2]}", text)
-
-
-def _written(run: Run, show: Callable[[Run], pages.Html]) -> str:
-    return show(run).markdown
 
 
 def _draw(run: Run, draw: Callable[[Run], Figure], file: Path, title: str) -> str:

@@ -7,7 +7,6 @@ import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.ticker import NullLocator
-from numpy.typing import NDArray
 
 from experiments.claims import Between, Curve, Exactly, JudgedClaim, curves
 from experiments.harness import Axis
@@ -15,8 +14,7 @@ from experiments.report import style
 from experiments.report.rows import two_digits
 from experiments.report.session import Session, claim_file, open_run
 from experiments.report.style import GRAY, RED, STYLES, Plot
-
-Array = NDArray[np.float64]
+from hem.arrays import Floats
 
 WIDTH, HEIGHT = 3.2, 2.3  # of one panel, in inches
 STEPS = 60  # points of a curve that is drawn smoothly
@@ -110,7 +108,7 @@ def _draw_bytes(axes: Axes, session: Session, judged: JudgedClaim, value: float 
     _name(axes, "bytes per vertex")
 
 
-def _draw_values(axes: Axes, values: Array, bounds: Between) -> None:
+def _draw_values(axes: Axes, values: Floats, bounds: Between) -> None:
     """The values of a sentence on one axis, and the bounds that they must keep."""
     every = np.r_[values, [it for it in (bounds.low, bounds.high) if np.isfinite(it)]]
     low, high = min(every.min(), 0), every.max()
