@@ -161,7 +161,7 @@ def _at_a_glance(trends: Trends, names: list[str]) -> pd.DataFrame:
 
 
 def as_json(trends: Trends, claim: str | None, last: int | None) -> dict[str, Any]:
-    """Everything that is shown, as records; ``run`` is an index into ``runs``."""
+    """Everything that is shown, as records, NaN where nothing is; ``run``: an index of ``runs``."""
     names, first = trends.claims(claim), len(trends.runs) - (last or len(trends.runs))
     content: dict[str, Any] = {
         "file": str(trends.history.path),
@@ -170,6 +170,6 @@ def as_json(trends: Trends, claim: str | None, last: int | None) -> dict[str, An
     }
     for name in ("figures", "verdicts", "changes"):
         rows = getattr(trends, name)
-        rows = rows[rows["claim"].isin(names) & (rows["run"] >= first)].astype(object)
-        content[name] = rows.where(rows.notna(), None).to_dict("records")
+        shown = rows["claim"].isin(names) & (rows["run"] >= first)
+        content[name] = rows[shown].to_dict("records")
     return content

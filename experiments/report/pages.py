@@ -40,15 +40,20 @@ NOT_OF_SECTIONS = r"table \d+|errat(?:um|a) \d+"
 
 
 class Html(Markup):
-    """A piece of a page, which notebooks show as it is."""
+    """A piece of a page, which notebooks show as it is.
+
+    ``rows``: of a table of numbers its texts, the heads first.
+    """
+
+    rows: Sequence[Sequence[str]] = ()
 
     def _repr_html_(self) -> str:
         return str(self)
 
     @property
     def markdown(self) -> str:
-        """The same for a page in Markdown, which may hold HTML."""
-        return str(self)
+        """The same for a page in Markdown, which may hold HTML; of a table of numbers its rows."""
+        return written.markdown_rows(self.rows) if self.rows else str(self)
 
 
 @cache
@@ -188,25 +193,14 @@ def or_missing(otherwise: str, make: Callable[..., str], *given: Any) -> str:
         return otherwise.format(escape(str(missing), quote=False))
 
 
-class Numbers(Html):
-    """A table of numbers. ``rows``: its texts, the heads first, which Markdown is written from."""
-
-    rows: Sequence[Sequence[str]] = ()
-
-    @property
-    def markdown(self) -> str:
-        """Its rows, for a page in Markdown."""
-        return written.markdown_rows(self.rows)
-
-
-def numbers(rows: Iterable[Sequence[Any]], heads: Heads) -> Numbers:
+def numbers(rows: Iterable[Sequence[Any]], heads: Heads) -> Html:
     """A table of numbers below their heads, a dash for NaN. MissingError where there is no row."""
     texts = [
         [how(it) if it == it else "–" for it, how in zip(row, heads.values(), strict=True)]
         for row in rows
     ]
     session.require(texts, "measured what would stand here")
-    table = Numbers(part("numbers", list(heads), texts))
+    table = part("numbers", list(heads), texts)
     table.rows = [list(heads), *texts]
     return table
 

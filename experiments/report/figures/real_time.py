@@ -11,7 +11,7 @@ from experiments.bench_workloads import COMPILED, FROM_PYTHON
 from experiments.report import style
 from experiments.report.comparisons import at_largest, bytes_held, medians
 from experiments.report.figures.growth import draw_lines
-from experiments.report.pages import Heads, Html, Numbers, numbers, part
+from experiments.report.pages import Heads, Html, numbers, part
 from experiments.report.session import MissingError, require
 from experiments.report.style import BLUE, GRAY, RED, STYLES, Plot
 from experiments.report.tables import count, duration
@@ -52,7 +52,7 @@ def waits(run: Run) -> Plot:
     return figure
 
 
-def frames(run: Run, order: str = GROWING) -> Numbers:
+def frames(run: Run, order: str = GROWING) -> Html:
     """At every size the median, 99 of 100 and the longest of the edits, and how many fit a frame.
 
     And the bytes that an edit uploads, at any size. ``order``: where arrays grow, or where room was
@@ -69,7 +69,7 @@ def frames(run: Run, order: str = GROWING) -> Numbers:
     return numbers(rows, {**heads, "uploaded, bytes": count, "at most": count})
 
 
-def compactions(run: Run) -> Numbers:
+def compactions(run: Run) -> Html:
     """How long it takes to drop what is dead, at every size."""
     table = _by_size(_cases(run, COMPACT), "cost")
     rows = [(REGISTRY[str(name)].title, *sizes) for name, sizes in table.iterrows()]
@@ -135,7 +135,7 @@ def picks_in_words(run: Run) -> Html:
     return part("picks", size, *(1e-6 * known.loc[size]), 1e-6 * neighbors)
 
 
-def weights(run: Run) -> Numbers:
+def weights(run: Run) -> Html:
     """Megabytes of a mesh that is shown and edited: as drawn, as a render mesh, and in all.
 
     A renderer is given a position, a normal and a texture coordinate per vertex, and three indices
