@@ -1,7 +1,5 @@
 """`hem check`: a mistake is one line and never a pass, and what is worse fails the command."""
 
-from __future__ import annotations
-
 import shutil
 from dataclasses import replace
 from io import StringIO
@@ -9,26 +7,13 @@ from pathlib import Path
 
 import pytest
 from rich.console import Console
-from typer.testing import CliRunner
 
-from experiments import cli
-from experiments.regression import (
-    COUNTERS,
-    compare_runs,
-    load_baseline,
-    reduce_run,
-    save_baseline,
-)
+from experiments.regression import COUNTERS, compare_runs, load_baseline, reduce_run, save_baseline
 from experiments.report import findings
 from experiments.runs import read_meta, write_meta
+from tests.experiments.cli.calls import hem
 
 REFERENCE = Path(__file__).parents[3] / "results/reference"
-
-
-def hem(*arguments: str, width: int = 400) -> tuple[int, str]:
-    cli.console.width = cli.errors.width = width
-    result = CliRunner().invoke(cli.app, arguments)
-    return result.exit_code, result.stdout + result.stderr
 
 
 @pytest.fixture

@@ -1,7 +1,5 @@
 """The command line as a newcomer types it, wrong arguments included."""
 
-from __future__ import annotations
-
 import os
 import shutil
 import subprocess
@@ -12,7 +10,6 @@ from pathlib import Path
 
 import pytest
 from rich.console import Console
-from typer.testing import CliRunner
 
 from experiments import cli, report
 from experiments.cli import app, progress
@@ -22,18 +19,11 @@ from experiments.runs import experiments, load
 from experiments.runs.study import plan
 from experiments.runs.worker import Job
 from structures import NAMES
+from tests.experiments.cli.calls import output_of, words
 from tests.experiments.made_runs import write_run
 from tests.experiments.small_study import samples
 from tests.extent import exhaustive
 from tests.structures.conftest import NEEDS_MANIFOLD
-
-runner = CliRunner()
-
-
-def hem(*arguments: str) -> tuple[int, str]:
-    cli.console.width = cli.errors.width = 200
-    result = runner.invoke(app, arguments)
-    return result.exit_code, " ".join((result.stdout + result.stderr).split())
 
 
 @pytest.mark.parametrize(
@@ -52,7 +42,7 @@ def hem(*arguments: str) -> tuple[int, str]:
 )
 def test_a_mistake_gets_one_clear_line_and_an_exit_code(arguments, said, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    code, output = hem(*arguments)
+    code, output = words(*arguments)
     assert code == 1
     assert output.startswith("hem:")
     assert said in output
@@ -76,27 +66,25 @@ def test_names_are_told_as_they_are_whatever_brackets_they_have(tmp_path, monkey
     mesh.parent.mkdir()
     mesh.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
     workload.write_text('title = "reads [/ops] only"\n[[rows]]\nwhat = "vertex_faces"\ntimes = 1\n')
-    assert hem("info", str(mesh))[1].startswith("a[/b].obj vertices 3")
+    assert output_of("info", str(mesh)).startswith("a[/b].obj vertices 3")
     run = str(Path(__file__).parents[3] / "results/reference/run")
-    code, output = hem("advise", str(mesh), "--workload", str(workload), "--run", run)
-    assert code == 0
-    assert "reads [/ops] only, on a[/b].obj (1 faces)." in output
+    assert "reads [/ops] only, on a[/b].obj (1 faces)." in output_of(
+        "advise", str(mesh), "--workload", str(workload), "--run", run
+    )
 
 
 def test_what_is_kept_of_a_run_is_not_resumed():
-    code, output = hem("study", "--resume", "--run", str(BASELINE / "run"))
+    code, output = words("study", "--resume", "--run", str(BASELINE / "run"))
     assert code == 1
     assert "holds what is kept of a run, which cannot be resumed" in output
 
 
 def test_a_page_goes_where_it_is_told_to(base_folder, tmp_path, monkeypatch):
     monkeypatch.setattr(report, "write_readme", lambda _, folder: folder / "README.md")
-    assert (
-        "elsewhere/README.md"
-        in hem("report", str(base_folder), "--page", "--output", "elsewhere")[1]
-    )
+    page = output_of("report", str(base_folder), "--page", "--output", "elsewhere")
+    assert "elsewhere/README.md" in page
     monkeypatch.chdir(tmp_path)
-    code, output = hem("report", str(base_folder), "--output", ".")
+    code, output = words("report", str(base_folder), "--output", ".")
     assert code == 1
     assert ". is the folder that you are in: choose one in it" in output
 
@@ -142,32 +130,26 @@ def read_only(tmp_path):
 
 
 def test_a_run_that_cannot_be_written_beside_has_its_table(read_only):
-    code, output = hem("table", str(read_only))
-    assert code == 0, output
-    assert "Table 1" in output
+    assert "Table 1" in output_of("table", str(read_only))
     assert not (read_only / "derived").exists()
 
 
 def test_info_says_which_structure_can_hold_a_mesh_and_why_another_cannot(tmp_path):
-    code, output = hem("info", "teapot")
-    assert code == 0
+    output = output_of("info", "teapot")
     assert "Half-Edge" in output
     assert "cannot hold" not in output
-    code, output = hem("info", "face")
-    assert code == 0
+    output = output_of("info", "face")
     assert output.count("cannot hold it") == len(NEEDS_MANIFOLD)
     assert "1850" in output
     (tmp_path / "quad.obj").write_text("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n")
-    code, output = hem("info", str(tmp_path / "quad.obj"))
-    assert code == 0
+    output = output_of("info", str(tmp_path / "quad.obj"))
     assert output.count("cannot hold it") == len(NAMES) - 1
     assert output.count("triangulate=True") == 1
 
 
 def test_what_a_file_loses_is_told_in_one_line(tmp_path):
     (tmp_path / "a.obj").write_text("v 0 0 0\nv 1 0 0\nv 1 1 0\nvn 0 0 1\nf 1 2 3\n")
-    code, output = hem("info", str(tmp_path / "a.obj"))
-    assert code == 0
+    output = output_of("info", str(tmp_path / "a.obj"))
     assert "a.obj has normals, which are dropped: a mesh is positions and faces" in output
     assert "MeshWarning" not in output
 
@@ -176,8 +158,7 @@ EVERY = tuple(name for name, it in experiments().items() if not it.by_name)
 
 
 def test_meshes_lists_every_family_and_model():
-    code, output = hem("meshes", "--size", "400")
-    assert code == 0
+    output = output_of("meshes", "--size", "400")
     assert all(name in output for name in ("torus", "isosurface", "bunny", "28,088", "teapot"))
 
 

@@ -1,7 +1,5 @@
 """What holds of every command: help with an example, completion, JSON where a program may read."""
 
-from __future__ import annotations
-
 import json
 import re
 import shlex

@@ -1,31 +1,21 @@
 """What `hem history` says is what is in the file, and a mistake gets one clear line."""
 
-from __future__ import annotations
-
 import json
 from pathlib import Path
 
 import pytest
 from matplotlib.figure import Figure
 from rich.console import Console
-from typer.testing import CliRunner
 
-from experiments import cli
 from experiments.regression import Trends, append_run, read_history
 from experiments.report import about_history, frame_table, history_tables
 from experiments.report.figures import history as history_figures
+from tests.experiments.cli.calls import hem, output_of, words
 from tests.experiments.histories import CLAIM, MACHINES, line, stepped
 from tests.extent import waiting_for
 
-runner = CliRunner()
 PEERS = Path(__file__).parents[3] / "results/reference/peers"
 NAME = "half_edge/vertex_faces"
-
-
-def hem(*arguments: str) -> tuple[int, str]:
-    cli.console.width = cli.errors.width = 200
-    result = runner.invoke(cli.app, ["history", *arguments])
-    return result.exit_code, " ".join((result.stdout + result.stderr).split())
 
 
 @pytest.fixture(scope="module")
@@ -70,7 +60,7 @@ def test_a_mistake_gets_one_clear_line_and_an_exit_code(
     kept, arguments, said, tmp_path, monkeypatch
 ):
     monkeypatch.chdir(tmp_path)
-    code, output = hem(*(str(kept) if it == "KEPT" else it for it in arguments))
+    code, output = words("history", *(str(kept) if it == "KEPT" else it for it in arguments))
     assert code == 1
     assert output.startswith("hem:")
     assert said in output
@@ -78,22 +68,19 @@ def test_a_mistake_gets_one_clear_line_and_an_exit_code(
 
 
 def test_of_a_history_at_least_one_run_is_shown(kept):
-    code, output = hem("show", "--last", "0", "--file", str(kept))
+    code, output = words("history", "show", "--last", "0", "--file", str(kept))
     assert code == 2
     assert "Invalid value for '--last'" in output
 
 
 def test_a_run_is_added_once_and_is_there_then(base_folder, base_run, tmp_path):
     path = str(tmp_path / "history.jsonl")
-    assert "Added" in hem("add", str(base_folder), "--file", path)[1]
-    code, output = hem("add", str(base_folder), "--file", path)
-    assert code == 0
+    assert "Added" in output_of("history", "add", str(base_folder), "--file", path)
+    output = output_of("history", "add", str(base_folder), "--file", path)
     assert "Already there" in output
     assert "has 1 runs" not in output
     assert len(read_history(tmp_path / "history.jsonl").runs) == 1
-    code, output = hem("show", "--file", path)
-    assert code == 0
-    assert base_run.meta["commit"][:7] in output
+    assert base_run.meta["commit"][:7] in output_of("history", "show", "--file", path)
 
 
 def test_damage_is_told_of_beside_what_is_whole(base, tmp_path):
@@ -101,8 +88,7 @@ def test_damage_is_told_of_beside_what_is_whole(base, tmp_path):
     append_run(line(base, 1), path)
     with path.open("a") as file:
         file.write('{"schema": 2, "comm')
-    code, output = hem("show", "--file", str(path))
-    assert code == 0
+    output = output_of("history", "show", "--file", str(path))
     assert "line 2 is cut short or damaged" in output
     assert line(base, 1)["commit"][:7] in output
 
@@ -118,32 +104,26 @@ def test_the_changes_are_those_that_were_made_and_no_others(trends):
 
 
 def test_show_marks_the_commit_at_which_work_time_and_verdict_changed(kept, base):
-    code, output = hem("show", NAME, "--file", str(kept))
-    assert code == 0
+    output = output_of("history", "show", NAME, "--file", str(kept))
     assert output.count("≠") == 2  # once in the legend
     assert "24 ▲+20.0%" in output
     assert "✗≠" in output
-    code, output = hem("show", "--file", str(kept))
-    assert code == 0
+    output = output_of("history", "show", "--file", str(kept))
     assert "✓ → ✗" in output
     assert "20 → 24" in output
-    code, output = hem("show", "half_edge", "--file", str(kept))
-    assert code == 0
+    output = output_of("history", "show", "half_edge", "--file", str(kept))
     assert line(base, 15)["commit"][:7] in output
     assert line(base, 14)["commit"][:7] not in output
 
 
 def test_last_shows_the_newest_and_judges_by_all(kept):
-    code, output = hem("show", NAME, "--file", str(kept), "--last", "15")
-    assert code == 0
-    assert "24 ▲+20.0%" in output
-    code, output = hem("show", NAME, "--file", str(kept), "--last", "3")
-    assert "▲+20.0%" not in output
+    assert "24 ▲+20.0%" in output_of("history", "show", NAME, "--file", str(kept), "--last", "15")
+    few = output_of("history", "show", NAME, "--file", str(kept), "--last", "3")
+    assert "▲+20.0%" not in few
 
 
 def test_json_has_every_figure_and_change(kept):
-    result = runner.invoke(cli.app, ["history", "show", NAME, "--file", str(kept), "--json"])
-    content = json.loads(result.stdout)
+    content = json.loads(hem("history", "show", NAME, "--file", str(kept), "--json")[1])
     work = [it for it in content["figures"] if it["measure"] == "work"]
     assert [it["value"] for it in work] == 15 * [20.0] + 15 * [24.0]
     assert [it["run"] for it in work if it["after"] is not None] == [15]
@@ -158,11 +138,8 @@ def test_times_of_two_machines_are_two_series_and_their_difference_is_no_step(mi
     runs = mine.groupby(["measure", "machine"])["run"].size().to_dict()
     assert [runs["time", machine] for machine in MACHINES] == [12, 12]
     assert runs["work", ""] == 24
-    code, output = hem("show", "--file", str(mixed))
-    assert code == 0
-    assert "Times are of one machine each" in output
-    code, output = hem("show", "--file", str(mixed), "--machine", "aaaa")
-    assert code == 0
+    assert "Times are of one machine each" in output_of("history", "show", "--file", str(mixed))
+    output = output_of("history", "show", "--file", str(mixed), "--machine", "aaaa")
     assert MACHINES[1] not in output
     assert "12 runs" in output
 
@@ -181,7 +158,7 @@ def test_what_was_measured_on_other_sizes_is_not_compared(base, tmp_path):
     assert work[work["preset"] == "quick"]["run"].tolist() == [2, 3]
     assert work[work["preset"] == "smoke"]["run"].tolist() == [4, 5]
     assert trends.changes.empty
-    assert "Different presets are not compared" in hem("show", "--file", str(path))[1]
+    assert "Different presets are not compared" in output_of("history", "show", "--file", str(path))
 
 
 @pytest.mark.parametrize("count", waiting_for([1, 30], [1, 2, 30]))

@@ -1,22 +1,17 @@
 """Laws of `hem judge`: the exit code is the verdict, and a mistake gets one clear line."""
 
-from __future__ import annotations
-
 import json
+from functools import partial
 from pathlib import Path
 
 import pytest
-from typer.testing import CliRunner
 
-from experiments import cli
+from tests.experiments.cli import calls
 
 SIZES = [100 * 4**k for k in range(6)]
 
 
-def hem(*arguments: str) -> tuple[int, str]:
-    cli.console.width = cli.errors.width = 200
-    result = CliRunner().invoke(cli.app, ["judge", *arguments])
-    return result.exit_code, result.stdout + result.stderr
+hem = partial(calls.hem, "judge")
 
 
 @pytest.fixture

@@ -1,20 +1,17 @@
 """What is printed fits 80 columns, and no figure and no class is cut, however long they are."""
 
-from __future__ import annotations
-
 import re
 
 import pytest
 from rich.console import Console
-from typer.testing import CliRunner
 
-from experiments import cli
 from experiments.claims import judge_run
 from experiments.regression import CaseKey, Change, Finding, Kind, Trends, append_run, read_history
 from experiments.report import findings, history_tables
 from experiments.runs import load
 from hem import FAMILIES
 from structures import NAMED, NAMES
+from tests.experiments.cli.calls import hem
 from tests.experiments.histories import CLAIM, MACHINES, line
 from tests.experiments.made_runs import LAWS, write_run
 from tests.extent import OF_EACH_KIND, waiting_for
@@ -24,10 +21,9 @@ RANGE = r"\d…-?\d"
 
 
 def printed(*arguments: str) -> str:
-    cli.console.width = cli.errors.width = 80
-    result = CliRunner().invoke(cli.app, arguments)
-    assert result.exit_code == 0, result.output
-    return require_fits(result.stdout)
+    code, output = hem(*arguments, width=80)
+    assert code == 0, output
+    return require_fits(output)
 
 
 def require_fits(text: str) -> str:
@@ -91,8 +87,7 @@ def test_a_history_of_two_machines_and_presets_with_large_figures(large, capsys,
 
 
 def test_the_meshes_and_their_sizes():
-    cli.console.width = 80
-    output = CliRunner().invoke(cli.app, ["meshes", "--size", "100000"]).stdout
+    _, output = hem("meshes", "--size", "100000", width=80)
     assert max(map(len, output.splitlines())) <= 80
     text = " ".join(output.split())
     assert all(it.what in text and it.sizes in text for it in FAMILIES.values())
@@ -114,8 +109,7 @@ def test_no_table_cuts_a_name_or_a_figure_where_it_is_narrow(tmp_path, width):
         ("advise", "torus:1000", "--workload", "remeshed"): "Half-Edge Objects",
     }
     for command, said in commands.items():
-        cli.console.width = width
-        output = CliRunner().invoke(cli.app, command).stdout
+        _, output = hem(*command, width=width)
         assert said in output
         cut = re.sub(rf"{RANGE}|nine of ten|\d (µs|ms|s)? ?… \d|: \d … \d", "", output)
         assert not re.search(r"\w…", cut), cut

@@ -1,7 +1,5 @@
 """The example workflow runs commands that there are, with options that they have."""
 
-from __future__ import annotations
-
 import re
 import shlex
 from pathlib import Path

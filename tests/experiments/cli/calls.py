@@ -1,0 +1,25 @@
+"""Commands as a user types them."""
+
+from typer.testing import CliRunner
+
+from experiments import cli
+
+
+def hem(*arguments: str, width: int = 400) -> tuple[int, str]:
+    """Run a command where lines are so wide -> its exit code, and all that it printed."""
+    cli.console.width = cli.errors.width = width
+    result = CliRunner().invoke(cli.app, arguments)
+    return result.exit_code, result.stdout + result.stderr
+
+
+def words(*arguments: str) -> tuple[int, str]:
+    """The same as one line, without the frame around a mistake."""
+    code, output = hem(*arguments)
+    return code, " ".join(output.replace("│", "").split())
+
+
+def output_of(*arguments: str) -> str:
+    """What a command says that does what it was asked, as one line."""
+    code, output = words(*arguments)
+    assert code == 0, output
+    return output
