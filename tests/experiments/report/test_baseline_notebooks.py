@@ -1,7 +1,5 @@
 """Notebooks open where nothing was measured yet: on the committed baseline, and they say so."""
 
-from __future__ import annotations
-
 import os
 from pathlib import Path
 
@@ -29,10 +27,7 @@ def _nothing_measured(tmp_path, monkeypatch):
     session.share(None)
 
 
-@pytest.mark.parametrize(
-    "name",
-    waiting_for(FEW, notebooks.page_titles()),
-)
+@pytest.mark.parametrize("name", waiting_for(FEW, notebooks.page_titles()))
 def test_a_notebook_runs_to_its_end_on_the_baseline(name):
     text = notebooks.body(name)
     assert "<h1" in text

@@ -1,7 +1,5 @@
 """The claim browser has every claim once, with its words, its figure and its data."""
 
-from __future__ import annotations
-
 import csv
 import io
 from xml.etree import ElementTree
@@ -11,17 +9,9 @@ import pytest
 from experiments.claims import MEMORY, judge_run, load_claims, sentence_claims
 from experiments.report import pages
 from experiments.report.figures import claims as figures
-from experiments.report.session import Session, claim_file, share
+from experiments.report.session import Session, claim_file
 from experiments.runs import load
 from tests.experiments.made_runs import SIZES, write_run
-
-
-@pytest.fixture(scope="module")
-def session(base_run):
-    session = Session(base_run, judge_run(base_run))
-    share(session)
-    yield session
-    share(None)
 
 
 @pytest.fixture(scope="module")

@@ -1,7 +1,5 @@
 """Laws of what chapters end with: a sentence stands only where the run bears it out."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """The report in print: all of it in one document, or a word on what is missing."""
 
-from __future__ import annotations
-
 import re
 import stat
 

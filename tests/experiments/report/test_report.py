@@ -1,7 +1,5 @@
 """The report opens from disk, says what was found, and can be read."""
 
-from __future__ import annotations
-
 import re
 import signal
 import subprocess
@@ -12,19 +10,11 @@ import nbformat
 import numpy as np
 import pytest
 
-from experiments.claims import CLAIMED, judge_run
+from experiments.claims import CLAIMED
 from experiments.harness import OPERATIONS, Axis
-from experiments.report import (
-    abstract,
-    answer,
-    notebooks,
-    readme,
-    site,
-    uses,
-    write_report,
-)
+from experiments.report import abstract, answer, notebooks, readme, site, uses, write_report
 from experiments.report.figures import growth
-from experiments.report.session import Session, share
+from experiments.report.session import share
 from experiments.report.style import panels, spread_apart, styled, words
 from experiments.report.tables import digits
 from experiments.runs import ResultsError
@@ -116,20 +106,22 @@ def test_a_cell_that_fails_names_its_notebook():
         executed("1 / 0")
 
 
-def test_the_answers_are_numbers_of_the_run(base_run):
-    share(Session(base_run, judge_run(base_run)))
-    body = notebooks.body("index")
-    share(None)
-    assert body.count('class="answer"') == 5
-    assert re.search(r"(59|60|61)\d µs at 200,000 triangles", body)  # 600 with 2 % of noise
-    assert "takes 228 bytes per vertex and an indexed mesh 36: 6.33 times" in body
-    assert "over all faces takes 1.0 times as long on a half-edge mesh" in body
+@pytest.fixture(scope="module")
+def front(session):
+    return notebooks.body("index")
+
+
+def test_the_answers_are_numbers_of_the_run(base_run, front):
+    assert front.count('class="answer"') == 5
+    assert re.search(r"(59|60|61)\d µs at 200,000 triangles", front)  # 600 with 2 % of noise
+    assert "takes 228 bytes per vertex and an indexed mesh 36: 6.33 times" in front
+    assert "over all faces takes 1.0 times as long on a half-edge mesh" in front
     asked = uses.ranking(base_run, "asked")
-    assert f"{uses.best(asked)} finds neighbors fastest" in body
+    assert f"{uses.best(asked)} finds neighbors fastest" in front
     behind = f"fastest; a half-edge mesh takes {digits(asked['half_edge'] / asked.min())} times"
-    assert (behind in body) == (asked["half_edge"] > uses.ALIKE * asked.min())
-    assert "Of the 30 cells that table 1 of the thesis prints" in body
-    assert "find 30 consistent. By time in order 26 of 26 cells are consistent" in body
+    assert (behind in front) == (asked["half_edge"] > uses.ALIKE * asked.min())
+    assert "Of the 30 cells that table 1 of the thesis prints" in front
+    assert "find 30 consistent. By time in order 26 of 26 cells are consistent" in front
 
 
 def test_the_committed_page_has_the_tables_and_its_pictures(base_folder, tmp_path, monkeypatch):
@@ -200,12 +192,9 @@ def test_labels_are_moved_as_little_as_need_be():
         assert np.isclose(np.mean(spread), np.mean(heights))
 
 
-def test_the_german_answers_have_the_numbers_of_the_english_ones(base_run):
-    share(Session(base_run, judge_run(base_run)))
-    body = notebooks.body("index")
-    share(None)
-    english = re.findall(r'(?s)<p class="answer">(.*?)<span class="rests">', body)
-    german = re.findall(r"<li>(.*?)</li>", re.search(r'(?s)lang="de">(.*?)</ol>', body)[1])
+def test_the_german_answers_have_the_numbers_of_the_english_ones(front):
+    english = re.findall(r'(?s)<p class="answer">(.*?)<span class="rests">', front)
+    german = re.findall(r"<li>(.*?)</li>", re.search(r'(?s)lang="de">(.*?)</ol>', front)[1])
     assert len(english) == len(german) == 5
     for here, there in zip(english, german, strict=True):
         numbers = re.findall(r"\d[\d,.]*\d|\d", here)

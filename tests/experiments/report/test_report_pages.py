@@ -1,7 +1,5 @@
 """Pages that are whole; in a real browser without errors, with links that lead, fit for a phone."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 from urllib.parse import unquote, urldefrag, urlparse

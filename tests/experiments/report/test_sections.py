@@ -1,7 +1,5 @@
 """Laws of the way from the thesis to here: nothing that a document claims is missing from it."""
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Sliders of advice: the page tells the order that is predicted, from disk and alone."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import replace
 from itertools import pairwise
@@ -20,11 +18,6 @@ SHOWN = "[...document.querySelectorAll('tbody tr')].map(row => row.cells[0].text
 WITHIN = SHOWN.replace("cells[0]", "cells[2]")
 UNITS = {"s": 1.0, "ms": 1e-3, "µs": 1e-6, "ns": 1e-9}
 CHOOSE = "s => { s.value = {place}; s.dispatchEvent(new Event('input')); }"
-
-
-@pytest.fixture(scope="module")
-def run(base_run: Run) -> Run:
-    return base_run
 
 
 def test_the_page_tells_the_predicted_order(chromium: Browser, run: Run, tmp_path: Path) -> None:

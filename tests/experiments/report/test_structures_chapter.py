@@ -1,7 +1,5 @@
 """The chapter on the structures: its bytes, ways and frames against documents and triangles."""
 
-from __future__ import annotations
-
 import ast
 import inspect
 import re

@@ -1,7 +1,5 @@
 """Meshes to be turned with the mouse: self-contained, and all of the mesh is there."""
 
-from __future__ import annotations
-
 import base64
 import gzip
 import json

@@ -1,7 +1,5 @@
 """Laws of the recommendations: the least cost comes first, and only what suits is compared."""
 
-from __future__ import annotations
-
 import re
 
 import numpy as np
@@ -13,11 +11,6 @@ from hem.contract import QUERIES
 from structures import REGISTRY
 
 COMPILED = {name for name, it in REGISTRY.items() if it.compiled}
-
-
-@pytest.fixture(scope="module")
-def run(base_run: Run) -> Run:
-    return base_run
 
 
 def bytes_of(run: Run, name: str) -> float:
