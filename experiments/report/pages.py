@@ -35,8 +35,6 @@ from structures import NAMED
 
 Heads = Mapping[str, Callable[[Any], str]]
 """What stands above the columns of a table of numbers, and how their values are written."""
-NOT_OF_SECTIONS = r"table \d+|errat(?:um|a) \d+"
-"""Numbers in a source that are not those of sections."""
 
 
 class Html(Markup):
@@ -281,7 +279,8 @@ def cited(source: str) -> set[str]:
         return {other[0]}
     if not document.startswith("thesis"):
         return set()
-    numbers = re.findall(r"\d(?:\.\d)*", re.sub(NOT_OF_SECTIONS, "", document))
+    of_others = r"table \d+|errat(?:um|a) \d+"
+    numbers = re.findall(r"\d(?:\.\d)*", re.sub(of_others, "", document))
     known = {it.of for it in sections()}
     found = {it if it in known else it.rpartition(".")[0] for it in numbers}
     return found | ({"abstract"} if "abstract" in document else set())

@@ -79,8 +79,8 @@ def shapes_of(s: Structure, kinds: Collection[str]) -> dict[Key, Shape]:
         middle = points[corners].mean(axis=0)
         outline = f"{_line(0.86 * points[corners] + 0.14 * middle)}Z"
         found[face, f] = Shape(outline, middle, middle)
-    for number, (e, ends) in enumerate((int(e), s.edge_vertices(int(e))) for e in s.edges()):
-        a, b = points[ends]
+    for number, e in enumerate(map(int, s.edges())):
+        a, b = points[s.edge_vertices(e)]
         line = _arrow(a, b, 0.12) if "edge" in kinds else _line([a, b])
         found["edge", e if "edge" in kinds else number] = Shape(line, (a + b) / 2, (a + b) / 2)
     if isinstance(s, Navigable):

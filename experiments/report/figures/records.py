@@ -3,7 +3,7 @@
 import inspect
 import re
 import textwrap
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from itertools import groupby
 from typing import Any, NamedTuple
 
@@ -65,19 +65,19 @@ class Term(NamedTuple):
 
     kind: str
     per_vertex: float
-    fields: Mapping[str, float]
+    fields: dict[str, float]
 
 
 def byte_terms(structure: type[Structure], reference_bytes: int) -> list[Term]:
     """What a vertex of a large closed mesh takes, with the records that come with it."""
     s = structure.build(hem.generate("torus", VERTICES), reference_bytes)
     counts = {"vertex": s.n_vertices, "edge": s.n_edges, "half_edge": s.n_half_edges}
-    taken: dict[str, dict[str, float]] = {}
+    terms: dict[str, Term] = {}
     for name, size in s.memory().items():
         kind, field = name.split(".")
-        taken.setdefault(kind, {})[field] = size / counts.get(kind, s.n_faces)
-    many = {kind: counts.get(kind, s.n_faces) / s.n_vertices for kind in taken}
-    return [Term(kind, many[kind], fields) for kind, fields in taken.items()]
+        count = counts.get(kind, s.n_faces)
+        terms.setdefault(kind, Term(kind, count / s.n_vertices, {})).fields[field] = size / count
+    return list(terms.values())
 
 
 def formula(terms: list[Term]) -> str:
