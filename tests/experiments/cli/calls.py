@@ -23,3 +23,11 @@ def output_of(*arguments: str) -> str:
     code, output = words(*arguments)
     assert code == 0, output
     return output
+
+
+def mistake(*arguments: str, code: int = 1) -> str:
+    """What a command says that ends with this exit code, as one line that it begins itself."""
+    ended, output = words(*arguments)
+    assert ended == code, output
+    assert output.startswith("hem:")
+    return output
