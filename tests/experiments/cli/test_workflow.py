@@ -11,17 +11,13 @@ from typer.main import get_command
 from experiments.cli import app
 
 ROOT = Path(__file__).parents[3]
-WORKFLOW = ROOT / ".github/workflows/ci.yml"
-
-
-def steps() -> list[dict]:
-    content = yaml.safe_load(WORKFLOW.read_text())
-    return [step for job in content["jobs"].values() for step in job["steps"]]
+JOBS = yaml.safe_load((ROOT / ".github/workflows/ci.yml").read_text())["jobs"]
+STEPS = [step for job in JOBS.values() for step in job["steps"]]
 
 
 def commands(program: str) -> list[list[str]]:
     """The arguments of every call of ``program`` in the workflow."""
-    scripts = "\n".join(step.get("run", "") for step in steps())
+    scripts = "\n".join(step.get("run", "") for step in STEPS)
     found = re.findall(rf"(?:^|[\s;|&])(?:\.venv/bin/)?{program} ([^\n;|&>]+)", scripts)
     return [shlex.split(arguments) for arguments in found]
 
@@ -29,12 +25,12 @@ def commands(program: str) -> list[list[str]]:
 def test_it_checks_tests_measures_judges_and_keeps_the_report():
     assert commands("make") == [["check"], ["test-all"], ["study"]]
     assert {tuple(it[:2]) for it in commands("hem")} >= {("check", "results/runs/*-quick")}
-    kept = [it["with"]["path"] for it in steps() if "upload-artifact" in it.get("uses", "")]
+    kept = [it["with"]["path"] for it in STEPS if "upload-artifact" in it.get("uses", "")]
     assert "report/html" in kept[0].split()
 
 
 def test_every_step_either_runs_something_or_uses_a_version_of_something():
-    for step in steps():
+    for step in STEPS:
         assert ("run" in step) != ("uses" in step)
         assert "run" in step or re.fullmatch(r"actions/[\w-]+@v\d+", step["uses"])
 
@@ -57,9 +53,8 @@ def test_hem_has_the_command_and_its_options_parse(arguments):
 
 
 def test_it_tests_every_python_that_is_promised():
-    job = yaml.safe_load(WORKFLOW.read_text())["jobs"]["test"]
     classifiers = re.findall(r"Python :: (3\.\d+)", (ROOT / "pyproject.toml").read_text())
-    assert job["strategy"]["matrix"]["python-version"] == classifiers
+    assert JOBS["test"]["strategy"]["matrix"]["python-version"] == classifiers
 
 
 def test_the_workflow_that_a_page_shows_runs_pytest_on_three_systems():
@@ -73,15 +68,15 @@ def test_the_workflow_that_a_page_shows_runs_pytest_on_three_systems():
 
 
 def test_it_judges_and_tests_the_core_on_the_other_systems():
-    job = yaml.safe_load(WORKFLOW.read_text())["jobs"]["elsewhere"]
-    assert job["strategy"]["matrix"]["os"] == ["macos-latest", "windows-latest"]
+    systems = JOBS["elsewhere"]["strategy"]["matrix"]["os"]
+    assert systems == ["macos-latest", "windows-latest"]
     (tests,) = commands("python -m pytest")
     assert all((ROOT / it).exists() for it in tests)
     assert ["judge", "costs.csv", "--expected", "O(n)", "--exact"] in commands("hem")
 
 
 def test_what_is_cached_and_installed_is_there():
-    caches = [it["with"] for it in steps() if "setup-python" in it.get("uses", "")]
+    caches = [it["with"] for it in STEPS if "setup-python" in it.get("uses", "")]
     assert caches
     for it in caches:
         assert all((ROOT / name).exists() for name in it["cache-dependency-path"].split())
