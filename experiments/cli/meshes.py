@@ -1,6 +1,6 @@
 """The commands ``hem meshes`` and ``hem info``: which meshes there are, what one consists of."""
 
-from __future__ import annotations
+from __future__ import annotations  # else NumPy is imported just to read them
 
 from dataclasses import asdict
 from typing import Annotated, Any
