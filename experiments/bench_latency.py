@@ -5,7 +5,15 @@ The whole curve, for the plots; a query is judged against the latency measured b
 
 import numpy as np
 
-from experiments.harness import Case, Experiment, Measurement, Preset, Timer, calibration
+from experiments.harness import (
+    NO_STRUCTURE,
+    Case,
+    Experiment,
+    Measurement,
+    Preset,
+    Timer,
+    calibration,
+)
 
 SMALLEST = 16 * 1024
 STEPS = 50_000
@@ -33,7 +41,7 @@ def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
 
 
 EXPERIMENT = Experiment(
-    title="Latency of the memory", cases=cases, measure=measure, structures=("machine",),
+    title="Latency of the memory", cases=cases, measure=measure, structures=(NO_STRUCTURE,),
     copies=0, turn=30,
 )  # fmt: skip
 test_latency = EXPERIMENT.test

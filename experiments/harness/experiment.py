@@ -69,6 +69,9 @@ QUERIES_TABLE = Table(
 )
 OPERATIONS_TABLE = Table("operations", "Operations", OPERATIONS, "operations")
 
+NO_STRUCTURE = "machine"
+"""Stands for a structure where none is measured."""
+
 
 @dataclass(frozen=True)
 class Experiment:

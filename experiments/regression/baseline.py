@@ -15,7 +15,7 @@ from typing import Any, Self
 import numpy as np
 import pandas as pd
 
-from experiments.harness import Measurement
+from experiments.harness import NO_STRUCTURE, Measurement
 from experiments.regression.snapshots import ClaimName, Figures, claim_figures
 from experiments.runs import CaseFile, ResultsError, Run, experiments, load, noise, write_meta
 from hem.whole_files import write_whole
@@ -31,8 +31,8 @@ HEAD = (
 )
 """What is kept of the head of a run."""
 KEPT = (
-    *("id", "kind", "subject", "order", "family", "vertices", "faces", "valence"),
-    *("working_set", "latency", "reference"),
+    *("id", "kind", "subject", "order", "family", "vertices", "edges", "faces", "valence"),
+    *("valence_max", "working_set", "latency", "reference"),
 )
 """What is kept of a case besides its samples and the calibration loop's readings."""
 LEAST_ROUNDS = 9  # rounds on either side with which a comparison of times can decide at all
@@ -55,9 +55,12 @@ class Measured:
 
 
 def reduce_run(run: Run) -> Measured:
-    """What of a run can be compared: counts, and named times to four digits. Judges it: seconds."""
+    """What of a run can be compared: counts, and named times to four digits. Judges it: seconds.
+
+    And the latency of the machine's memory, by which times are judged.
+    """
     meta = {**run.meta, "run": run.folder.resolve().name, "too_busy": noise(run).too_busy}
-    cases = run.cases[[_is_comparable(case) for case in run.cases.to_dict("records")]].copy()
+    cases = run.cases[[_is_kept(case) for case in run.cases.to_dict("records")]].copy()
     timed = cases["kind"] == "time"
     for column in ("samples", "calibration"):  # four digits are more than a clock tells
         short = cases.loc[timed, column].map(lambda rounds: [float(f"{it:.4g}") for it in rounds])
@@ -67,8 +70,8 @@ def reduce_run(run: Run) -> Measured:
     return Measured(kept, claim_figures(run))
 
 
-def _is_comparable(case: Mapping[Any, Any]) -> bool:
-    if case["kind"] != "time":
+def _is_kept(case: Mapping[Any, Any]) -> bool:
+    if case["kind"] != "time" or case["structure"] == NO_STRUCTURE:
         return True
     declared = experiments().get(case["experiment"])
     wanted = declared is not None and case["order"] in declared.baseline_orders

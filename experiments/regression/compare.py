@@ -15,7 +15,7 @@ import numpy as np
 import pandas as pd
 
 from experiments.claims import MEMORY, Outcome
-from experiments.harness import Axis
+from experiments.harness import NO_STRUCTURE, Axis
 from experiments.regression.baseline import COUNTERS, RUN, UPDATE, Measured
 from experiments.regression.findings import CaseKey, Change, Finding, Kind, vote
 from experiments.regression.significance import compare_rounds
@@ -117,7 +117,8 @@ def _pair_cases(before: Run, after: Run) -> tuple[list[Pair], list[str]]:
     for key in sorted({*old, *new, *skipped}):
         row = new.get(key) or old.get(key) or skipped[key]
         why = str(skipped[key]["skipped"]) if key in skipped else ""
-        if not (row["kind"] == Kind.BYTES and row["structure"] in objects):
+        of_objects = row["kind"] == Kind.BYTES and row["structure"] in objects
+        if row["structure"] != NO_STRUCTURE and not of_objects:
             of_case = {name: row[name] for name in named if not pd.isna(row[name])}
             valence = 0 if pd.isna(row["valence"]) else int(row["valence"])
             case = CaseKey(**of_case, size=int(row["faces"]), valence=valence)

@@ -9,6 +9,7 @@ import pytest
 from typer.testing import CliRunner
 
 from experiments import cli, regression
+from experiments.harness import NO_STRUCTURE
 from experiments.regression import COUNTERS, RUN, load_baseline, reduce_run, save_baseline
 from experiments.runs import read_meta, write_meta
 
@@ -78,6 +79,15 @@ def test_with_a_run_all_of_it_becomes_the_baseline_a_line_per_case(folder, base_
     lines = [it for path in (folder / RUN).glob("*.*.jsonl") for it in path.open()]
     assert sum('"id"' in line for line in lines) == len(measured.run.cases)
     assert update(folder, str(base_folder)) == (0, f"{folder} says just this already.\n")
+
+
+def test_what_times_are_judged_by_is_kept_with_them():
+    """Else a page that is opened on the baseline would tell other outcomes than its run."""
+    cases = load_baseline(RUN).run.cases
+    assert (cases["structure"] == NO_STRUCTURE).sum() > 20  # the latency of the memory
+    queries = cases[cases["experiment"] == "bench_queries"]
+    assert (queries["edges"] > queries["faces"]).all()
+    assert (queries["valence_max"] > 2).all()
 
 
 def test_a_baseline_that_cannot_be_read_is_replaced(folder):
