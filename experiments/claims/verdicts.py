@@ -119,13 +119,17 @@ def _verdict(of_run: Curves, table: str, axis: Axis, curve: Curve, expected: str
 
 
 def _class_found(axes: Sequence[Axis], verdicts: Mapping[Axis, Verdict]) -> str:
-    """What was measured in the table's own terms, such as ``O(n_ev)``; ``?`` where it was not."""
+    """What was measured in the table's own terms, such as ``O(n_ev)``; ``?`` where it was not.
+
+    Beside a scan of all faces the few of one vertex are not named, as there are always more.
+    """
     if not axes or not verdicts.keys() >= set(axes):
         return "?"
-    best = {axis: verdicts[axis].best for axis in axes}
-    factors = [it[2:-1].replace("n", axis.symbol) for axis, it in best.items() if it != "O(1)"]
-    flat = any(axis.variable == "valence" and verdicts[axis].slope < FLAT for axis in axes)
-    return f"O({(' + ' if flat else ' · ').join(factors) or '1'})"
+    grows = [axis for axis in axes if verdicts[axis].best != "O(1)"]
+    if len(grows) > 1:
+        grows = [it for it in grows if it.variable == "faces" or verdicts[it].slope >= FLAT]
+    factors = [verdicts[axis].best[2:-1].replace("n", axis.symbol) for axis in grows]
+    return f"O({' · '.join(factors) or '1'})"
 
 
 @lru_cache(maxsize=4)

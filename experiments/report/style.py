@@ -1,7 +1,6 @@
 """How every plot looks: one color, line and marker per structure, labels at the lines."""
 
 import io
-from collections import defaultdict
 from collections.abc import Sequence
 from colorsys import hls_to_rgb, rgb_to_hls
 from functools import partial
@@ -142,13 +141,13 @@ def label_ends(axes: Axes) -> None:
     when the axes' limits stand.
     """
     figure: Any = axes.get_figure(root=True)
-    groups: dict[int, list[tuple[float, Any, Line2D]]] = defaultdict(list)
-    for line in labeled(axes):
-        end = np.asarray(line.get_xydata())[-1]
-        x, y = axes.transData.transform(end) * 72 / figure.dpi
-        groups[round(x / APART)].append((y, end, line))
-    for ends in groups.values():
-        ends.sort(key=lambda it: it[0])
+    lines = labeled(axes)
+    last = np.array([np.asarray(line.get_xydata())[-1] for line in lines]).reshape(-1, 2)
+    across, up = (axes.transData.transform(last) * 72 / figure.dpi).T
+    side_by_side = np.argsort(across)
+    breaks = np.flatnonzero(np.diff(across[side_by_side]) > APART) + 1
+    for group in np.split(side_by_side, breaks):
+        ends = [(up[i], last[i], lines[i]) for i in group[np.argsort(up[group], kind="stable")]]
         lowest = axes.bbox.y0 * 72 / figure.dpi + GAP * (np.arange(len(ends)) + 0.5)
         places = np.maximum(spread_apart([height for height, _, _ in ends], GAP), lowest)
         for (height, end, line), place in zip(ends, places, strict=True):

@@ -114,6 +114,8 @@ def scaling(run: Run, axis: Axis, subjects: Iterable[str] = QUERIES) -> Plot:
     costs = _costs(run, axis, titles)
     also = partial(_draw_order_and_latency, run) if in_both_orders else None
     what, label = f"{axis.label} by {axis.variable}", style.axis_label(axis)
+    if axis is Axis.TIME_FACES:  # of operations, which no order of queries describes
+        label = f"time, of elements far apart, {axis.unit}"
     shape: dict[str, Any] = {"diagonals": True, "sharex": True, "sharey": True}
     return _draw(costs, titles, axis.variable, what, label, also=also, **shape)
 
@@ -160,7 +162,7 @@ def listings(run: Run, axis: Axis = Axis.WORK_FACES) -> Plot:
     costs = _costs(run, axis, table.subjects, table.name)
     label, scale = (axis.label, 1.0) if axis.exact else (f"{axis.label}, µs", 1e-3)
     costs = costs.assign(cost=scale * costs["cost"])
-    shape: dict[str, Any] = {"room": 0.45, "columns": 4, "size": (2.75, 2.7)}
+    shape: dict[str, Any] = {"room": 0.45, "columns": 4, "size": (2.75, 2.7), "plain": True}
     return _draw(costs, table.subjects, "faces", "the thesis' listings", label, **shape)
 
 

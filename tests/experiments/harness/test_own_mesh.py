@@ -13,7 +13,7 @@ from experiments.harness import PRESETS, Case, own_mesh, time_rounds
 from experiments.presets import COARSER, FINE_ENOUGH, LARGEST, SMALLEST
 from experiments.runs import experiments, load, read_meta, study
 from hem.meshes import non_manifold_edges
-from tests.experiments.cli.test_cli import hem as command
+from tests.experiments.cli.calls import hem as command
 from tests.experiments.small_study import begin, go_on
 from tests.extent import EVERYTHING, waiting_for
 

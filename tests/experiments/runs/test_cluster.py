@@ -8,7 +8,7 @@ import pytest
 
 from experiments.runs import cluster, load, read_meta, study
 from experiments.runs.worker import Job
-from tests.experiments.cli.test_cli import hem
+from tests.experiments.cli.calls import hem
 from tests.experiments.small_study import PATIENCE_SECONDS, Recorder, begin, in_new_process, samples
 from tests.extent import exhaustive, waiting_for
 

@@ -3,7 +3,7 @@
 from experiments.harness import PRESETS, memory
 from experiments.harness.memory import VARIABLE, estimate, why_too_large
 from experiments.runs import experiments, load
-from tests.experiments.cli.test_cli import hem as hem_command
+from tests.experiments.cli.calls import hem as hem_command
 from tests.experiments.small_study import begin, go_on
 
 MEMORY = experiments()["bench_memory"]

@@ -23,7 +23,7 @@ from experiments.runs import (
 )
 from experiments.runs.store import DamagedError, InUseError, case_files, lock_run
 from experiments.runs.worker import AGAIN, COMPILE, WorkerDiedError, perform
-from tests.experiments.cli.test_cli import hem
+from tests.experiments.cli.calls import hem
 from tests.experiments.made_runs import STEADY
 from tests.experiments.small_study import (
     begin,
