@@ -39,7 +39,7 @@ def show(
         changes = changes_frame(trends)
         recent = changes["run"].isin(shown) & (changes["figure"] != SHORT[OUTCOMES["outcome_time"]])
         tables = {
-            f"{len(trends.runs)} runs in {file}": runs_frame(trends)[shown.start :],
+            f"Runs in {file}: {len(trends.runs)}": runs_frame(trends)[shown.start :],
             "What changed": changes[recent].drop(columns=["run", "machine"]),
         }
     elif len(names) <= FEW:
