@@ -115,10 +115,10 @@ def test_the_answers_are_numbers_of_the_run(base_run, front):
     assert front.count('class="answer"') == 5
     assert re.search(r"(59|60|61)\d µs at 200,000 triangles", front)  # 600 with 2 % of noise
     assert "takes 228 bytes per vertex and an indexed mesh 36: 6.33 times" in front
-    assert "over all faces takes 1.0 times as long on a half-edge mesh" in front
+    assert "over all faces takes 1.00 times as long on a half-edge mesh" in front
     asked = uses.ranking(base_run, "asked")
     assert f"{uses.best(asked)} finds neighbors fastest" in front
-    behind = f"fastest; a half-edge mesh takes {digits(asked['half_edge'] / asked.min())} times"
+    behind = f"fastest; a half-edge mesh takes {digits(asked['half_edge'] / asked.min(), 3)} times"
     assert (behind in front) == (asked["half_edge"] > uses.ALIKE * asked.min())
     assert "Of the 30 cells that table 1 of the thesis prints" in front
     assert "find 30 consistent. By time in order 26 of 26 cells are consistent" in front

@@ -3,7 +3,7 @@
 from experiments.harness import PRESETS, memory
 from experiments.harness.memory import VARIABLE, estimate, why_too_large
 from experiments.runs import experiments, load
-from tests.experiments.cli.calls import hem as hem_command
+from tests.experiments.cli.calls import words
 from tests.experiments.small_study import begin, go_on
 
 MEMORY = experiments()["bench_memory"]
@@ -11,7 +11,7 @@ MEMORY = experiments()["bench_memory"]
 
 def test_a_size_that_is_none_is_refused_in_one_line(monkeypatch, tmp_path):
     monkeypatch.setenv(VARIABLE, "lots")
-    code, output = hem_command("study", "--output", str(tmp_path))
+    code, output = words("study", "--output", str(tmp_path))
     assert (code, output) == (1, "hem: HEM_MEMORY is a size such as 500M or 8G, not 'lots'")
     assert list(tmp_path.iterdir()) == []
 
