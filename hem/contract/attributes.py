@@ -7,13 +7,15 @@ keeps its rows. What it creates gets them by the attribute's rule, from what it 
 
 from collections.abc import Callable
 from typing import Any, Literal
+from weakref import ref
 
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike
 
 from hem.arrays import Array
-from hem.authoring import ENDS
+from hem.authoring import ENDS, SIDES
 from hem.contract import arguments
+from hem.contract.queries import Queries
 from hem.contract.state import State
 from hem.contract.surveying import Surveying
 from hem.edit import Edit, Remapping, generations, whole_faces
@@ -37,13 +39,16 @@ class Attribute:
 
     ``a[handle]`` and ``a[handles]`` read, ``a[handles] = values`` writes; both check the handles.
     ``a.values`` are all rows at once. ``Structure.vertex_attribute`` and its like make one.
+
+    The mesh holds it, and not the other way round, so that a mesh that is dropped is freed at once.
+    What is asked of an attribute that outlives its mesh goes by the parts of that.
     """
 
     def __init__(
-        self, mesh: Surveying, state: State, element: str, name: str, default: Array,
-        on_split: Rule | None = None,
+        self, mesh: Surveying, state: State, queries: Queries, element: str, name: str,
+        default: Array, on_split: Rule | None = None,
     ) -> None:  # fmt: skip
-        self.mesh, self._state = mesh, state
+        self._mesh, self._state, self._queries = ref(mesh), state, queries
         self.element, self.name, self.default = element, name, default
         between = element in ("vertex", "corner") and default.dtype.kind == "f"
         self.on_split = on_split or ("interpolate" if between else "copy")
@@ -56,6 +61,14 @@ class Attribute:
 
     def __repr__(self) -> str:
         return f"<{self.element} attribute {self.name!r}, {self.default.dtype} {self.values.shape}>"
+
+    @property
+    def mesh(self) -> Any:
+        """The mesh whose elements have the values. MeshError once it is gone, held by nobody."""
+        mesh = self._mesh()
+        if mesh is None:
+            raise MeshError(f"{self!r} has outlived its mesh; hold that as well to go on with it")
+        return mesh
 
     @property
     def values(self) -> Array:
@@ -112,7 +125,7 @@ class Attribute:
 
     @property
     def _end(self) -> int:
-        return int(self.mesh.records.counts[ENDS.get(self.element, ENDS["face"])])
+        return int(self._state.records.counts[ENDS.get(self.element, ENDS["face"])])
 
     def _fresh(self, *rows: int) -> Array:
         return np.tile(self.default, rows + (1,) * self.default.ndim)
@@ -166,8 +179,6 @@ class Attribute:
 
 class EdgeAttribute(Attribute):
     """Of edges or half-edges. The new part of an edge that is split has what the old part has."""
-
-    mesh: Any  # it records edges, or half-edges
 
     def _checked(self, handles: Any) -> Any:
         rows = super()._checked(handles)
@@ -289,7 +300,7 @@ class CornerAttribute(Attribute):
         """See ``Attribute.clear``."""
         self._keys = self._keys[:0]
         super().clear()
-        faces, corners = self._corners(self.mesh.faces())
+        faces, corners = self._corners(self._state.live("face"))
         self._write(faces, corners, self.default)
 
     def state(self) -> tuple[Array, ...]:
@@ -306,9 +317,9 @@ class CornerAttribute(Attribute):
         return super()._fresh(*rows, self._keys.shape[1])
 
     def _grow(self) -> None:
-        wider = self.mesh.most_corners - self._keys.shape[1]
-        if wider > 0:
-            self._keys = widened(self._keys, self.mesh.most_corners)
+        wide = int(self._state.records.counts[SIDES])
+        if wide > self._keys.shape[1]:
+            self._keys = widened(self._keys, wide)
             rows, self._rows = self._rows, self._fresh(len(self._rows))
             self._rows[:, : rows.shape[1]] = rows
         super()._grow()
@@ -329,7 +340,7 @@ class CornerAttribute(Attribute):
 
     def _corners(self, faces: Array) -> tuple[Array, Ragged]:
         faces = np.atleast_1d(faces).astype(np.int64)
-        return faces, self.mesh.face_vertices(faces)
+        return faces, self._queries.ask("face_vertices", faces)
 
     def _write(self, faces: Array, corners: Ragged, values: ArrayLike) -> None:
         """Have just these corners in these faces."""

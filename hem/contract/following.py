@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike, DTypeLike
 
 from hem.contract.attributes import Attribute, Rule
+from hem.contract.queries import Queries
 from hem.contract.sides import SideAttribute
 from hem.contract.state import State
 from hem.edit import Edit
@@ -19,7 +20,8 @@ Kept = dict[tuple[str, str], tuple[type[Attribute], Any, Rule, tuple[Any, ...]]]
 class Followers:
     """Subscribers of one mesh, and its attributes by element and name."""
 
-    def __init__(self) -> None:
+    def __init__(self, state: State, queries: Queries) -> None:
+        self._state, self._queries = state, queries
         self.subscribers = Listeners()
         self.attributes: dict[tuple[str, str], Attribute] = {}
 
@@ -50,11 +52,16 @@ class Followers:
             else:  # made since, if only anew under its name
                 attribute.clear()
 
-    def adopt(self, kept: Kept, mesh: Any, state: State) -> None:
-        """Have the same attributes, of another mesh."""
+    def adopt(self, kept: Kept, mesh: Any) -> None:
+        """Have the same attributes as another mesh."""
         for key, (kind, default, on_split, values) in kept.items():
-            self.attributes[key] = kind(mesh, state, *key, default, on_split)
-            self.attributes[key].restore(values)
+            self.make(kind, mesh, *key, default, on_split).restore(values)
+
+    def make(self, kind: type[Attribute], mesh: Any, element: str, name: str, *rule: Any) -> Any:
+        """An attribute that follows from here on, with a default and what else ``rule`` says."""
+        made = kind(mesh, self._state, self._queries, element, name, *rule)
+        self.attributes[element, name] = made
+        return made
 
 
 def _is_alike(attribute: Attribute, kind: type[Attribute], default: Any) -> bool:
@@ -67,9 +74,9 @@ class AttributeMethod:
     """Makes an attribute of one kind of elements of a mesh, or finds the one of the same name."""
 
     def __init__(
-        self, mesh: Any, state: State, known: Followers, element: str, kind: type[Attribute]
+        self, mesh: Any, followers: Followers, element: str, kind: type[Attribute]
     ) -> None:
-        self._mesh, self._state, self._known = mesh, state, known.attributes
+        self._mesh, self._followers = mesh, followers
         self._element, self._kind = element, kind
 
     def __call__(
@@ -80,7 +87,7 @@ class AttributeMethod:
         mesh, element = self._mesh, self._element
         if element == "edge" and mesh.emulated:
             raise MeshError(f"a {mesh.title} mesh records no edges that could have attributes")
-        known = self._known.get((element, name))
+        known = self._followers.attributes.get((element, name))
         if known is not None and dtype is None and shape == ():
             return known
         dtype = dtype or (known.default.dtype if known is not None else np.float32)
@@ -94,9 +101,7 @@ class AttributeMethod:
         if known is None:
             moved = "edge" in element and not mesh.stable_edge_handles
             kind = SideAttribute if moved else self._kind
-            made = kind(mesh, self._state, element, name, value, on_split)
-            self._known[element, name] = made
-            return made
+            return self._followers.make(kind, mesh, element, name, value, on_split)
         if (known.default.dtype, known.default.shape) != (value.dtype, value.shape):
             raise MeshError(
                 f"there is a {element} attribute {name!r} of {known.default.dtype} "

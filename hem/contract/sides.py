@@ -27,7 +27,7 @@ class SideAttribute(EdgeAttribute):
         self._rows[rows] = values
         if self.element == "edge":
             rows = np.atleast_1d(rows)
-            twin = self.mesh.twin(rows)
+            twin = self._state.declared.step("twin", self._state.records, rows)
             self._rows[twin[twin >= 0]] = self._rows[rows[twin >= 0]]
         self._listeners.tell(np.atleast_1d(np.asarray(handles)))
 

@@ -51,15 +51,18 @@ class Snapshot(NamedTuple):
     attributes: Kept
 
 
-def made_once(text: str, make: Callable[[Any], Any]) -> Any:
-    """A method that is made when a mesh is first asked for it, and kept: quick to call."""
-
+def _documented(text: str, make: Callable[[Any], Any]) -> Callable[[Any], Any]:
     def bound(self: Any) -> Any:
         method = make(self)
         method.__doc__ = text
         return method
 
-    attribute = cached_property(bound)
+    return bound
+
+
+def made_once(text: str, make: Callable[[Any], Any]) -> Any:
+    """A method that is made when a mesh is first asked for it, and kept: quick to call."""
+    attribute = cached_property(_documented(text, make))
     attribute.__doc__ = text
     return attribute
 
@@ -86,9 +89,8 @@ def attribute_method(element: str, kind: type[Attribute], words: str) -> Any:
         "Copies of the mesh and pickles have it, too; ``compact`` renumbers it. Cost O(n) once,\n"
         "then O(edit). MeshError where there is one of the name and of another type."
     )
-    return made_once(
-        text, lambda self: AttributeMethod(self, self._state, self._followers, element, kind)
-    )
+    make = _documented(text, lambda self: AttributeMethod(self, self._followers, element, kind))
+    return property(make, doc=text)  # kept, it would hold the mesh that holds it
 
 
 class Structure(Described, Surveying, abstract=True):
@@ -159,7 +161,8 @@ class Structure(Described, Surveying, abstract=True):
 
     def __init__(self, records: Any) -> None:
         self._state = State(self.declared, records)
-        self._queries, self._followers = Queries(self._state), Followers()
+        self._queries = Queries(self._state)
+        self._followers = Followers(self._state, self._queries)
         self._operations = Operations(self._state, self._queries, self._followers)
 
     @classmethod
@@ -546,7 +549,7 @@ class Structure(Described, Surveying, abstract=True):
     def _of(cls, saved: Snapshot) -> Self:
         """The structure of what is its own from here on."""
         made = cls(cls.declared.storage.loaded(saved.records))
-        made._followers.adopt(saved.attributes, made, made._state)
+        made._followers.adopt(saved.attributes, made)
         return made
 
     def _saved(self) -> Snapshot:

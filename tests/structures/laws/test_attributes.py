@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import contextlib
 import copy
+import gc
 import pickle
+import weakref
 from collections.abc import Callable
 
 import numpy as np
@@ -12,7 +14,7 @@ import pytest
 
 import hem
 import structures
-from hem.contract import Navigable, Structure
+from hem.contract import Attribute, Navigable, Structure
 from tests.extent import apart
 from tests.structures.conftest import octahedron, shuffled
 from tests.structures.test_polygons import mixed
@@ -106,6 +108,60 @@ def test_a_copy_has_attributes_of_its_own(name: str, how: str):
     assert [repr(it).split(",")[0] for it in made.attributes()] == [
         repr(it).split(",")[0] for it in s.attributes()
     ]
+
+
+def of_each_kind(s: Structure) -> list[Attribute]:
+    """An attribute for each kind of elements that may have one."""
+    kinds = ["vertex", "face", "corner"]
+    kinds += ["edge"] if s.name in WITH_EDGES else []
+    kinds += ["half_edge"] if s.name in NAVIGABLE else []
+    return [getattr(s, f"{it}_attribute")("kind", default=1) for it in kinds]
+
+
+def handles_of(s: Structure, attribute: Attribute) -> np.ndarray:
+    """The handles of all that has a value."""
+    if isinstance(s, Navigable) and attribute.element == "half_edge":
+        return s.half_edges()
+    return s.handles("face" if attribute.element == "corner" else attribute.element)
+
+
+def test_a_mesh_with_attributes_that_is_dropped_is_freed_at_once(name: str):
+    s = structures.build(name, SURFACES["closed"]())
+    many = of_each_kind(s)
+    for it in many:
+        it[handles_of(s, it)] = 2
+    edit_much(s)
+    s.compact()
+    gone = [weakref.ref(it) for it in (s, *s.arrays, *many)]
+    gc.disable()  # reference cycles would wait for it, and large meshes with them
+    try:
+        del s, many, it
+        assert all(it() is None for it in gone)
+    finally:
+        gc.enable()
+
+
+def test_an_attribute_that_is_held_works_without_its_mesh(name: str):
+    for place in range(len(of_each_kind(structures.build(name, octahedron())))):
+        s = structures.build(name, SURFACES["open"]())
+        edit_much(s)
+        attribute = of_each_kind(s)[place]
+        handles, end = handles_of(s, attribute), len(attribute.values)
+        assert attribute.mesh is s
+        gone, heard = weakref.ref(s), []
+        del s
+        assert gone() is None
+        attribute.subscribe(heard.append)
+        attribute[handles] = 3
+        attribute[int(handles[0])] = 5
+        assert {3, 5} == set(np.ravel(attribute[handles]).tolist())
+        assert (attribute[int(handles[0])] == 5).all()
+        assert len(heard) == 2
+        assert len(attribute.values) == len(np.asarray(attribute)) == end
+        with pytest.raises(hem.MeshError, match="no such"):
+            attribute[10**6]
+        with pytest.raises(hem.MeshError, match="outlived its mesh"):
+            _ = attribute.mesh
 
 
 def test_it_is_so_on_polygons_too():
