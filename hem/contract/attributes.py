@@ -62,6 +62,17 @@ class Attribute:
     def __repr__(self) -> str:
         return f"<{self.element} attribute {self.name!r}, {self.default.dtype} {self.values.shape}>"
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        """A deep copy, or a pickle, brings a copy of the mesh, of which it is the attribute.
+
+        Copy both at once, as in ``copy.deepcopy((mesh, attribute))``, and hold both; subscribers
+        are not of the copy. ``copy.copy`` brings the mesh itself, and so the attribute itself.
+        MeshError for one that was removed, or has outlived its mesh: its ``values`` can be copied.
+        """
+        if all(it is not self for it in self.mesh.attributes()):
+            raise MeshError(f"{self!r} was removed from its mesh; copy its values instead")
+        return _found, (self.mesh, self.element, self.name)
+
     @property
     def mesh(self) -> Any:
         """The mesh whose elements have the values. MeshError once it is gone, held by nobody."""
@@ -175,6 +186,11 @@ class Attribute:
         share = shares(at(vertices), at(parents.values), parents)
         share = share.reshape(-1, *(1,) * self.default.ndim)
         return np.add.reduceat(values * share, first).astype(values.dtype)
+
+
+def _found(mesh: Any, element: str, name: str) -> Attribute:
+    found: Attribute = getattr(mesh, f"{element}_attribute")(name)
+    return found
 
 
 class EdgeAttribute(Attribute):

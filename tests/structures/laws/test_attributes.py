@@ -125,6 +125,61 @@ def handles_of(s: Structure, attribute: Attribute) -> np.ndarray:
     return s.handles("face" if attribute.element == "corner" else attribute.element)
 
 
+@pytest.mark.parametrize("how", ["deepcopy", "pickle"])
+@pytest.mark.parametrize("compiled", [True, False])
+def test_what_is_copied_with_its_mesh_is_the_attribute_of_the_copy(
+    name: str, how: str, compiled: bool
+):
+    s = structures.build(name, SURFACES["closed"](), compiled=compiled)
+    s.vertex_faces(3)  # what was asked once is kept in the mesh
+    many = of_each_kind(s)
+    for it in many:
+        it.subscribe(pytest.fail)
+    for whole in ([s, *many], [*many, s], [many[0], s, *many]):
+        found = COPIES[how](whole)
+        (other,) = (it for it in found if isinstance(it, Structure))
+        copied = [it for it in found if isinstance(it, Attribute)]
+        assert all(it.mesh is other for it in copied)
+        assert {id(it) for it in copied} == {id(it) for it in other.attributes()}
+        for it in copied:
+            it[handles_of(other, it)] = 5
+        other.split_face(int(other.faces()[0]), (0, 0, 0))
+        for it in copied[-len(many) :]:
+            values = it[handles_of(other, it)]
+            assert 5 in values
+            assert (values == 5).all() == (it.element in ("vertex", "face", "corner"))
+        assert all((it[handles_of(s, it)] == 1).all() for it in many)
+
+
+@pytest.mark.parametrize("how", ["deepcopy", "pickle"])
+def test_an_attribute_that_is_copied_alone_has_its_values(name: str, how: str):
+    s = structures.build(name, SURFACES["open"]())
+    for it in of_each_kind(s):
+        it[handles_of(s, it)] = 4
+        alone = COPIES[how](it)
+        assert alone is not it
+        assert repr(alone) == repr(it)
+        assert np.array_equal(alone.values, it.values)
+        assert copy.copy(it) is it
+
+
+@pytest.mark.parametrize("how", ["copy.copy", "deepcopy", "pickle"])
+def test_what_was_removed_from_its_mesh_is_not_copied(name: str, how: str):
+    s = structures.build(name, octahedron())
+    for it in of_each_kind(s):
+        s.remove_attribute(it)
+        with pytest.raises(hem.MeshError, match="was removed"):
+            COPIES[how](it)
+        again = getattr(s, f"{it.element}_attribute")("kind", default=2)
+        with pytest.raises(hem.MeshError, match="was removed"):
+            COPIES[how](it)
+        assert len(COPIES[how](again).values) == len(again.values)
+    left = s.vertex_attribute("kind")
+    del s
+    with pytest.raises(hem.MeshError, match="outlived its mesh"):
+        COPIES[how](left)
+
+
 def test_a_mesh_with_attributes_that_is_dropped_is_freed_at_once(name: str):
     s = structures.build(name, SURFACES["closed"]())
     many = of_each_kind(s)
