@@ -76,13 +76,13 @@ class SideAttribute(EdgeAttribute):
     ) -> Callable[[int], int]:
         """Make ``heir(k)``: the row of what the k-th of the sides there are now was, or -1.
 
-        The parts of an edge that was split run as it did. A flipped one leaves the face at the
-        vertex where it started. Those at a vertex that was merged stay in their faces.
+        The parts of an edge that was split run as it did; the first is the edge that there was, and
+        what the second has is up to the rule. A flipped one leaves the face at the vertex where it
+        started. Those at a vertex that was merged stay in their faces.
         """
-        split: dict[int, list[int]] = {}
-        if self.on_split != "default":
-            rows = zip(edit.created_vertices.tolist(), edit.vertex_parents.to_list(), strict=True)
-            split = {v: ends for v, ends in rows if len(ends) == 2}
+        rows = zip(edit.created_vertices.tolist(), edit.vertex_parents.to_list(), strict=True)
+        split = {v: ends for v, ends in rows if len(ends) == 2}
+        parts = 1 if self.on_split == "default" else 2
         merged, kept = len(edit.removed_vertices) > 0, {*now, *((b, a) for a, b in now)}
         flipped = {} if len(edit.created_vertices) else was.keys() - kept
         left = {a: was[a, b] for a, b in flipped}
@@ -91,9 +91,9 @@ class SideAttribute(EdgeAttribute):
             (x, y), apex = now[k], now[k - k % 3 + (k + 1) % 3][1]
             if (y, x) in was:  # the edge was there, and only its side is new
                 return -1
-            if y in split.get(x, ()):
+            if y in split.get(x, ())[:parts]:
                 return was.get((sum(split[x]) - y, y), -1)
-            if x in split.get(y, ()):
+            if x in split.get(y, ())[:parts]:
                 return was.get((x, sum(split[y]) - x), -1)
             return int(sides[k]) if merged else left.get(apex, -1)
 

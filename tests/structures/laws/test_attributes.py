@@ -344,6 +344,67 @@ def test_both_parts_of_an_edge_have_what_it_had(name: str, source: str):
         assert ends[e] == before[where(s, e)]
 
 
+@pytest.mark.parametrize("name", WITH_EDGES)
+@pytest.mark.parametrize("source", SURFACES)
+@pytest.mark.parametrize("at_once", [False, True])
+def test_by_default_the_first_part_of_an_edge_alone_has_what_it_had(
+    name: str, source: str, at_once: bool
+):
+    s = structures.build(name, SURFACES[source]())
+    values = s.edge_attribute("ends", np.int64, default=-1, on_split="default")
+    expected = {tuple(row): 1000 * row[0] + row[1] for row in s.edge_array().tolist()}
+    values[s.edges()] = [*expected.values()]
+    for edit in split_some(s, at_once):
+        for v, (first, other) in zip(
+            edit.created_vertices.tolist(), edit.vertex_parents.to_list(), strict=True
+        ):
+            expected[first, v] = expected.pop((min(first, other), max(first, other)))
+    found = zip(map(tuple, s.edge_array().tolist()), values[s.edges()].tolist(), strict=True)
+    assert dict(found) == {it: expected.get(it, -1) for it in map(tuple, s.edge_array().tolist())}
+    assert len(expected) == len({*expected} & {*map(tuple, s.edge_array().tolist())})
+
+
+@pytest.mark.parametrize("name", NAVIGABLE)
+@pytest.mark.parametrize("source", SURFACES)
+@pytest.mark.parametrize("at_once", [False, True])
+def test_by_default_so_have_the_half_edges_of_the_first_part(name: str, source: str, at_once: bool):
+    s = structures.build(name, SURFACES[source]())
+    values = s.half_edge_attribute("way", np.int64, default=-1, on_split="default")
+    expected = {it: 1000 * it[0] + it[1] for it in ways(s)}
+    values[s.half_edges()] = [*expected.values()]
+    for edit in split_some(s, at_once):
+        for v, (first, other) in zip(
+            edit.created_vertices.tolist(), edit.vertex_parents.to_list(), strict=True
+        ):
+            for old, new in (((first, other), (first, v)), ((other, first), (v, first))):
+                if old in expected:
+                    expected[new] = expected.pop(old)
+    found = dict(zip(ways(s), values[s.half_edges()].tolist(), strict=True))
+    assert found == {it: expected.get(it, -1) for it in found}
+    assert {*expected} <= {*found}
+
+
+def split_some(s: Structure, at_once: bool) -> list[hem.Edit]:
+    """Split every third edge at its middle, one by one or all at once -> the edits."""
+    edits: list[hem.Edit] = []
+    stop = s.subscribe(edits.append)
+    ends = s.edge_array()[::3]
+    middles = s.points[ends].mean(axis=1)
+    if at_once:
+        s.split_edges(s.edges()[::3], middles)
+    else:
+        for (a, b), middle in zip(ends.tolist(), middles, strict=True):
+            s.split_edge(s.find_edge(a, b), middle)
+    stop()
+    return edits
+
+
+def ways(s: Structure) -> list[tuple[int, int]]:
+    """Where each half-edge starts and ends."""
+    h = s.half_edges()
+    return [*zip(s.origin(h).tolist(), s.tip(h).tolist(), strict=True)]
+
+
 @pytest.mark.parametrize("name", NAVIGABLE)
 def test_half_edges_keep_their_direction_when_they_are_split(name: str):
     s = structures.build(name, SURFACES["open"]())
