@@ -13,7 +13,8 @@ from hem import authoring
 from hem.arrays import Array, Bools, Handles, Indices, Points
 from hem.authoring import OPERATIONS, QUERIES, Field, Kernel, Operation
 from hem.contract import arguments
-from hem.contract.attributes import Attribute, CornerAttribute, EdgeAttribute
+from hem.contract.attributes import Attribute, EdgeAttribute
+from hem.contract.corners import CornerAttribute
 from hem.contract.description import Algorithm, Declared, Described
 from hem.contract.following import AttributeMethod, Followers, Kept
 from hem.contract.operations import Operations, Prepared
@@ -493,7 +494,8 @@ class Structure(Described, Surveying, abstract=True):
     corner_attribute: AttributeMethod = attribute_method(
         "corner",
         CornerAttribute,
-        "As for vertices; see ``CornerAttribute``. ``collapse_edges`` does an edit per edge then.",
+        "As for vertices; see ``CornerAttribute``. ``collapse_edges`` does an edit per edge then.\n"
+        "Takes memory for as many corners in every face as the largest one has.",
     )
 
     def attributes(self) -> list[Attribute]:

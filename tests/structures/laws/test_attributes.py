@@ -239,6 +239,29 @@ def test_it_is_so_on_polygons_too():
     assert_plain(s)
 
 
+def test_corners_take_room_for_the_largest_face_that_is_left_by_compact():
+    s = structures.build("plankton", hem.generate("torus", 100))
+    begin(s)
+    uv = s.corner_attribute("plain")
+    narrow = uv.values.nbytes
+    s.compact()
+    s.remove_vertex(7)
+    (hole,) = s.border_loops()
+    face = int(s.add_face(*hole[::-1].tolist()).created_faces[0])
+    uv[face] = plain(s.points[s.face_vertices(face)])
+    assert_plain(s)
+    assert uv.values.shape[1] == len(hole) == 6
+    s.stellate(face)
+    s.flip_edge(next(int(it) for it in s.edges() if s.can_flip_edge(int(it))))
+    assert uv.values.shape[1] == 6
+    s.compact()
+    assert uv.values.shape == (s.n_faces, 3, 2)
+    assert uv.values.nbytes == narrow
+    assert_plain(s)
+    edit_much(s)
+    assert_plain(s)
+
+
 def test_a_seam_is_never_torn_or_mended(s):
     """Every face lies in a chart; so do all its corners, whatever is done beside it."""
     faces = s.faces()
