@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike
 
+from hem.arrays import Array
 from hem.contract.attributes import Attribute, Rule
 from hem.contract.queries import Queries
 from hem.contract.sides import SideAttribute
@@ -81,7 +82,7 @@ class AttributeMethod:
 
     def __call__(
         self, name: str, dtype: DTypeLike | None = None, shape: int | tuple[int, ...] = (),
-        default: ArrayLike = 0, on_split: Rule | None = None,
+        default: ArrayLike | None = None, on_split: Rule | None = None,
     ) -> Attribute:  # fmt: skip
         """As ``Structure.vertex_attribute`` says."""
         mesh, element = self._mesh, self._element
@@ -89,10 +90,12 @@ class AttributeMethod:
             raise MeshError(f"a {mesh.title} mesh records no edges that could have attributes")
         known = self._followers.attributes.get((element, name))
         if known is not None and dtype is None and shape == ():
-            return known
+            if default is None and on_split is None:
+                return known
+            shape = known.default.shape
         dtype = dtype or (known.default.dtype if known is not None else np.float32)
         try:
-            value = np.broadcast_to(np.array(default, dtype), shape)  # in an array of its own
+            value = np.broadcast_to(_as_given(0 if default is None else default, dtype), shape)
         except (TypeError, ValueError, OverflowError) as error:
             raise MeshError(f"{element} attribute {name!r}: {error}") from error
         if value.dtype.hasobject or not value.size:
@@ -102,9 +105,30 @@ class AttributeMethod:
             moved = "edge" in element and not mesh.stable_edge_handles
             kind = SideAttribute if moved else self._kind
             return self._followers.make(kind, mesh, element, name, value, on_split)
-        if (known.default.dtype, known.default.shape) != (value.dtype, value.shape):
+        made = known.default.dtype, known.default.shape, known.on_split
+        alike = made == (value.dtype, value.shape, on_split or known.on_split)
+        if not alike or not (default is None or _same(value, known.default)):
             raise MeshError(
                 f"there is a {element} attribute {name!r} of {known.default.dtype} "
-                f"{known.default.shape} already; remove_attribute it first"
+                f"{known.default.shape} already, with the default {known.default.tolist()} and "
+                f"on_split={known.on_split!r}; ask for its name alone, or remove_attribute it first"
             )
         return known
+
+
+def _as_given(default: ArrayLike, dtype: DTypeLike) -> Array:
+    """A default in an array of its own. ValueError if the type makes it more than rounded."""
+    given = np.asarray(default)
+    with np.errstate(over="ignore", invalid="ignore"):
+        value = np.array(default, dtype)
+    if given.dtype.kind in "biuf" and value.dtype.kind in "biuf":
+        exact = value.dtype.kind != "f"
+        fits = value == given if exact else np.isfinite(value) == np.isfinite(given)
+        if not np.all(fits):
+            words = f"{value.dtype} cannot hold the default {default!r}"
+            raise ValueError(f"{words}; say another, or another dtype")
+    return value
+
+
+def _same(one: Array, other: Array) -> bool:
+    return np.array_equal(one, other, equal_nan=one.dtype.kind in "fc")

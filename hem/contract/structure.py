@@ -86,9 +86,10 @@ def attribute_method(element: str, kind: type[Attribute], words: str) -> Any:
         f"A value for every {element.replace('_', '-')}, found by its name, or made: the default\n"
         "everywhere.\n\n"
         "``dtype``: float32 unless it is said. ``shape``: of one value, () for a number.\n"
-        f"``on_split``: see ``Rule``. {words}\n"
+        f"``default``: 0 unless it is said. ``on_split``: see ``Rule``.\n{words}\n"
         "Copies of the mesh and pickles have it, too; ``compact`` renumbers it. Cost O(n) once,\n"
-        "then O(edit). MeshError where there is one of the name and of another type."
+        "then O(edit). MeshError where there is one of the name that is not as it is said, and\n"
+        "for a default that the type cannot hold."
     )
     make = _documented(text, lambda self: AttributeMethod(self, self._followers, element, kind))
     return property(make, doc=text)  # kept, it would hold the mesh that holds it

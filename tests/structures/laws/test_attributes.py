@@ -539,6 +539,50 @@ def test_a_name_is_one_attribute(s):
     assert s.vertex_attribute("weight", np.int8) is not weight
 
 
+def test_what_is_said_of_an_attribute_that_is_there_must_be_so(name: str):
+    s = structures.build(name, octahedron())
+    for it in of_each_kind(s):
+        find = getattr(s, f"{it.element}_attribute")
+        rule = it.on_split
+        for said in ({}, {"default": 1}, {"default": 1.0, "on_split": rule}, {"on_split": rule}):
+            assert find("kind", **said) is it
+            assert find("kind", np.float32, **said) is it
+        for said in ({"default": 0}, {"default": 7}, {"on_split": "default"}):
+            for more in ({}, {"dtype": np.float32}):
+                with pytest.raises(hem.MeshError, match=r"'kind' .* already, .* default 1\.0"):
+                    find("kind", **said, **more)
+        assert it.default == 1
+    color = s.face_attribute("color", shape=3, default=(1, np.nan, 0))
+    assert s.face_attribute("color", default=[1, np.nan, 0]) is color
+    for wrong in ((1, np.nan, 2), 1, (1, 2)):
+        with pytest.raises(hem.MeshError, match="face attribute 'color'"):
+            s.face_attribute("color", default=wrong)
+    assert s.copy().face_attribute("color", default=(1, np.nan, 0)).on_split == "copy"
+
+
+@pytest.mark.parametrize(
+    ("dtype", "default"),
+    [
+        (np.float32, 0.1),
+        (np.float32, 2**24 + 1),
+        (np.float32, np.inf),
+        (np.float64, np.nan),
+        (np.int32, 2.0),
+        (np.uint8, 255),
+        (np.int64, -(2**63)),
+        (np.uint64, 2**64 - 1),
+        (bool, True),
+        (bool, 0),
+        (np.complex64, 1j),
+        ("U3", "abc"),
+    ],
+)
+def test_a_default_that_fits_is_the_value(dtype, default):
+    s = structures.build("half_edge", octahedron())
+    found = s.vertex_attribute("weight", dtype, default=default)[0]
+    assert np.array_equal(found, np.array(default, dtype), equal_nan=dtype == np.float64)
+
+
 @pytest.mark.parametrize("wrong", [-1, 10**6, [0, 10**6], 1.5, [[0]], None, "a"])
 def test_what_names_no_live_element_has_no_value(s, wrong):
     for attribute in (s.vertex_attribute("a"), s.face_attribute("a"), s.corner_attribute("a")):
@@ -558,6 +602,13 @@ def test_what_names_no_live_element_has_no_value(s, wrong):
         ({"on_split": "mean"}, "on_split is one of"),
         ({"shape": (2,), "default": (1, 2, 3)}, "vertex attribute"),
         ({"dtype": "nonsense"}, "vertex attribute"),
+        ({"dtype": np.int32, "default": 1.7}, "int32 cannot hold the default 1.7"),
+        ({"dtype": np.int8, "default": [1, np.nan], "shape": 2}, "vertex attribute"),
+        ({"dtype": np.int8, "default": np.array([1, np.nan]), "shape": 2}, "cannot hold"),
+        ({"dtype": np.uint8, "default": -1}, "vertex attribute"),
+        ({"dtype": bool, "default": 2}, "bool cannot hold the default 2"),
+        ({"default": 1e40}, "float32 cannot hold"),
+        ({"dtype": np.float16, "default": 100_000}, "float16 cannot hold"),
     ],
 )
 def test_what_cannot_be_an_attribute_is_refused(name: str, made: dict, words: str):
