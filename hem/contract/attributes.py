@@ -156,9 +156,7 @@ class Attribute:
         """Keep anew whatever a kind of attribute keeps of the mesh beside the values."""
 
     def _renumber(self, remapping: Remapping) -> None:
-        number = self._numbers(remapping)
-        rows, self._rows = self._rows, self._fresh(self._end)
-        self._rows[number[number >= 0]] = rows[: len(number)][number >= 0]
+        self._rows = renumbered(self._rows, self._numbers(remapping), self._fresh(self._end))
 
     def _numbers(self, remapping: Remapping) -> Array:
         """The new row of every old one after ``compact``, -1 for what is dead."""
@@ -277,6 +275,13 @@ def enlarged(rows: Array, length: int, value: ArrayLike = -1) -> Array:
     rows = longer(rows, used, length)[:length]
     rows[used:] = value
     return rows
+
+
+def renumbered(rows: Array, number: Array, anew: Array) -> Array:
+    """``anew`` with the rows at their new places, -1 for none. Late ones may be missing."""
+    number = number[: len(rows)]
+    anew[number[number >= 0]] = rows[: len(number)][number >= 0]
+    return anew
 
 
 def widened(rows: Array, width: int) -> Array:

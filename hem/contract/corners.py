@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike
 
 from hem.arrays import Array
 from hem.authoring import SIDES
-from hem.contract.attributes import Attribute, enlarged, widened
+from hem.contract.attributes import Attribute, enlarged, renumbered, widened
 from hem.edit import Edit, Remapping, whole_faces
 from hem.ragged import Ragged
 from hem.room import roomy
@@ -71,12 +71,11 @@ class CornerAttribute(Attribute):
         self._keys = enlarged(self._keys, len(self._rows))
 
     def _renumber(self, remapping: Remapping) -> None:
-        wide = int(self._state.records.counts[SIDES])  # `compact` may have made it less
-        self._keys, self._rows = self._keys[:, :wide], self._rows[:, :wide]
-        number, old = self._numbers(remapping), np.append(remapping.vertices, -1)[self._keys]
-        super()._renumber(remapping)
-        self._keys = np.full(self._rows.shape[:2], -1, np.int32)
-        self._keys[number[number >= 0]] = old[: len(number)][number >= 0]
+        self._grow()
+        number, wide = self._numbers(remapping), int(self._state.records.counts[SIDES])
+        rows, keys = self._rows[:, :wide], np.append(remapping.vertices, -1)[self._keys[:, :wide]]
+        self._keys = renumbered(keys, number, np.full((self._end, wide), -1, np.int32))
+        self._rows = renumbered(rows, number, self._fresh(self._end))
 
     def _inherit(self, edit: Edit) -> None:
         """All corners of what was touched are written anew, as a face may begin elsewhere."""

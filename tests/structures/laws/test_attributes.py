@@ -742,6 +742,29 @@ def test_an_interrupted_edit_leaves_rows_for_all(name: str):
     assert len(weight.values) == len(s.points)
 
 
+def test_what_an_interrupted_edit_made_has_the_default_after_compact(name: str):
+    s = structures.build(name, SURFACES["open"]())
+    many = of_each_kind(s)
+    for it in many:
+        it[handles_of(s, it)] = 2
+    s.remove_face(int(s.faces()[0]))
+
+    def interrupt(edit: hem.Edit) -> None:
+        raise KeyboardInterrupt
+
+    many[0].follow = interrupt
+    with pytest.raises(KeyboardInterrupt):
+        s.split_face(int(s.faces()[-1]), (0, 0, 0))
+    del many[0].follow
+    s.compact()
+    for it in many:
+        values = it[handles_of(s, it)]
+        assert {*np.ravel(values).tolist()} == {1, 2}
+        assert (values == 1).sum() < len(values) / 10
+    s.split_all_faces()
+    s.validate()
+
+
 def test_values_grow_where_they_are(name):
     s = structures.build(name, hem.generate("torus", 1_600))
     of = [s.vertex_attribute("w", default=7), s.face_attribute("m"), s.corner_attribute("uv")]
