@@ -10,10 +10,10 @@ from hem.contract import Structure
 from hem.engine import kept
 from hem.errors import MeshError
 from hem.fracture.surface.breaking import JUMP, dot, finding, make_plan
-from hem.meshes import corners, diagonal, length
+from hem.meshes import bounds, corners, length
 from hem.meshes import position as as_position
 
-NEAR = 0.05  # how far from its face a walk may end and be believed: of the face's longest side
+ROUNDING = 32 * float(np.finfo(np.float32).eps)  # on a surface: a part of the largest coordinate
 FAR = 0.5  # how far from the surface a position may be at all: a part of the diagonal
 
 
@@ -35,12 +35,14 @@ def nearest_face(structure: Structure, position: ArrayLike, start: int = JUMP) -
     """The face nearest to a position (3,), found by walking from face to face over ``face_faces``.
 
     The walk begins at the nearest of n_t^(1/3) faces (Mücke, Saias & Zhu, Fast randomized point
-    location without preprocessing, 1996), or at ``start``. Where it ends off the surface, by more
-    than a twentieth of a side of the face, every face is looked at instead.
+    location without preprocessing, 1996), or at ``start``. It is believed where the position lies
+    on the face that it ends in, within 32 roundings of the largest coordinate there. Elsewhere
+    another face may be nearer, such as the other side of a thin plate, and every face is looked at.
 
-    Cost O(n_t^(1/3)), from ``start`` O(√n_t), times that of ``face_faces``; else O(n_t). Raises
-    MeshError for no position, one farther from the surface than half the diagonal of the bounding
-    box, a start that is no face, and a mesh without faces.
+    Cost for a position on the surface O(n_t^(1/3)), from ``start`` O(√n_t), times that of
+    ``face_faces``; beside it O(n_v + n_t). Raises MeshError for no position, one farther from the
+    surface than half the diagonal of the bounding box, a start that is no face, a mesh without
+    faces, and for polygons.
     """
     p = as_position(position)
     if start != JUMP:
@@ -50,10 +52,10 @@ def nearest_face(structure: Structure, position: ArrayLike, start: int = JUMP) -
     face = structure.run(finding, plan)
     if face >= 0:
         _, point = closest(face_corners(structure, np.array([face])), p)
-        if length(point - p) <= NEAR * plan.longest[0]:
+        if length(point - p) <= ROUNDING * np.abs(plan.xyz).max():
             return Found(face, point, int(plan.visited[0]), False)
-    found, size = scanned(structure, p), diagonal(structure.points)
-    far = length(found.point - p)
+    found, (low, high) = scanned(structure, p), extent(structure)
+    far, size = length(found.point - p), length(high - low)
     if far > FAR * size:
         raise MeshError(
             f"{_words(p)} is {far:.4g} from the mesh, more than half of its size {size:.4g}; "
@@ -69,6 +71,13 @@ def scanned(structure: Structure, position: ArrayLike) -> Found:
         raise MeshError("there are no faces that could be near to anything")
     nearest, point = closest(face_corners(structure, faces), p)
     return Found(int(faces[nearest]), point, len(faces), True)
+
+
+def extent(structure: Structure) -> tuple[Floats, Floats]:
+    """The lower and the upper corner (3,) of the bounding box of all faces. O(n_v + n_t)."""
+    used = np.zeros(len(structure.points), np.bool_)
+    used[structure.triangles()] = True
+    return bounds(structure.points[used])
 
 
 def corner_vertices(structure: Structure, faces: Array) -> Array:

@@ -25,15 +25,16 @@ from hem.fracture.pieces import Fracture, islands
 from hem.fracture.surface.breaking import OUTCOMES, Plan, breaking, make_plan
 from hem.fracture.surface.hanging import hanging
 from hem.fracture.surface.nearest import (
+    ROUNDING,
     corner_vertices,
+    extent,
     face_corners,
     nearest_face,
     require_triangles,
 )
-from hem.meshes import TriangleMesh, bounds, length, normals, unit
+from hem.meshes import TriangleMesh, length, normals, unit
 
 TOLERANCE = 1e-5  # what is nearer to a vertex or an edge lies on it: a part of the diagonal
-ROUNDING = 32 * float(np.finfo(np.float32).eps)  # at least: a part of the largest coordinate
 
 
 class LazyMeshes(Sequence[TriangleMesh]):
@@ -66,15 +67,15 @@ def shatter(
     lie, in units of the mesh; the material's unless it is said, 1 as printed. Points are placed in
     the plane of the face that is hit and carried straight over the surface. Those that come to lie
     beyond the border are dropped, and so are those within a tolerance of a vertex: 1e-5 of the
-    diagonal of the bounding box, or 32 roundings of the largest coordinate if that is more. Within
-    that tolerance of an edge the edge is split. ``Fracture.counts`` tells how many.
+    diagonal of the bounding box of all faces, or 32 roundings of the largest coordinate if that is
+    more. Within that tolerance of an edge the edge is split. ``Fracture.counts`` tells how many.
 
     The structure keeps the rest, sound, in which no handle changed; subscribers hear of one edit
     for what was split and one for what came out. The same seed gives the same shards on every
     structure and machine.
 
-    Cost: a walk of O(√n_t) to the face and to each point, and the splits; O(n_v + n_t) for the
-    bounding box and what is left. Raises MeshError for an impact that is no position or not near
+    Cost: a walk to the face, as ``nearest_face`` says, and of O(√n_t) to each point, and the
+    splits; O(n_v + n_t) for the bounding box and what is left. Raises MeshError for an impact that is no position or not near
     the surface, for polygons, and for a mesh without faces. Source: thesis 4.4.
     """
     chosen = _chosen(structure, impact, material)
@@ -130,7 +131,7 @@ def break_surface(
     """Split all that ``shatter`` splits -> what became of it, the split faces, the diagonal."""
     require_triangles(structure)
     found = nearest_face(structure, impact)
-    low, high = bounds(structure.points)
+    low, high = extent(structure)
     size = float(length(high - low))
     tolerance = max(TOLERANCE * size, ROUNDING * float(np.abs([low, high]).max()))
     offsets = break_points(material, seed, material.scale * size if scale is None else scale)

@@ -6,10 +6,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import trimesh
 
 import hem
 import structures
 from hem.fracture import MATERIALS, Material, nearest_face, scanned, shatter
+from hem.fracture.surface.nearest import ROUNDING
 from hem.fracture.surface.shatter import TOLERANCE, break_points, break_surface
 from tests.extent import OF_EACH_KIND, some
 from tests.hem.fracture.laws import MODELS, require_surface_laws, struck, surface
@@ -98,6 +100,17 @@ def test_break_points_lie_in_growing_circles():
     # Uniform in the circle: half of them within the radius over the root of 2.
     assert abs((far[500:] < 5 / np.sqrt(2)).mean() - 0.5) < 0.04
     assert abs(points[500:].mean(axis=0)).max() < 0.2
+
+
+@pytest.mark.parametrize("name", OF_EACH_KIND)
+def test_a_vertex_without_faces_changes_nothing_of_how_a_mesh_breaks(name):
+    mesh = sheet()
+    stray = hem.TriangleMesh(np.append(mesh.points, [(1000, 0, 0)], axis=0), mesh.triangles)
+    broken = [shatter(structures.build(name, it), (3.2, 4.1, 0)) for it in (mesh, stray)]
+    assert broken[1].diagonal == broken[0].diagonal
+    assert np.array_equal(corners(broken[1].shards), corners(broken[0].shards))
+    with pytest.raises(hem.MeshError, match="more than half of its size"):
+        nearest_face(structures.build(name, stray), (3.2, 4.1, 99))
 
 
 def test_in_the_plane_points_stay_where_they_were_scattered():
@@ -231,17 +244,34 @@ def test_neighbors_are_those_that_share_a_side():
     assert broken.neighbors.tolist() == expected
 
 
-@pytest.mark.parametrize("model", MODELS)
+def thin(height: float = 0.1) -> hem.TriangleMesh:
+    """A closed plate, 100 times as wide as it is thick."""
+    made = trimesh.creation.box((10, 10, height)).subdivide().subdivide()
+    return hem.TriangleMesh(made.vertices, made.faces)
+
+
+@pytest.mark.parametrize("name", OF_EACH_KIND)
+def test_a_blow_strikes_the_side_of_a_thin_plate_that_it_comes_from(name):
+    s = structures.build(name, thin())
+    rng = np.random.default_rng(0)
+    for way in (1, -1) * some(30):
+        at = np.append(10 * rng.random(2) - 5, way * 0.05)
+        for given in (at, at.astype(np.float32), at + way * np.array([0, 0, 0.01])):
+            assert np.allclose(nearest_face(s, given).point, at, rtol=0, atol=1e-5)
+    broken = shatter(s, (0.0482, 0.5207, 0.05), seed=1)
+    assert broken.direction.tolist() == [0, 0, -1]
+
+
+@pytest.mark.parametrize("model", [*MODELS, "cow", "thin"])
 def test_walking_finds_what_looking_at_every_face_finds(model):
-    mesh = surface(model)
+    mesh = thin() if model == "thin" else surface(model)
     s = structures.build("half_edge", mesh)
-    rng = np.random.default_rng(4)
+    rng, rounding = np.random.default_rng(4), ROUNDING * np.abs(mesh.points).max()
     for seed in range(40):
         at = struck(mesh, seed) + rng.normal(size=3) * (seed % 4) * 1e-3 * diagonal(mesh)
         walked, looked = nearest_face(s, at), scanned(s, at)
         apart = np.linalg.norm(walked.point - at), np.linalg.norm(looked.point - at)
-        side = np.ptp(s.points[s.face_vertices(walked.face)], axis=0).max()
-        assert apart[1] * (1 - 1e-9) <= apart[0] <= max(apart[1] * 1.001, 0.09 * side)
+        assert apart[1] * (1 - 1e-9) <= apart[0] <= apart[1] + rounding
         if not seed % 4:
             assert np.linalg.norm(walked.point - looked.point) < 1e-5 * diagonal(mesh)
 
