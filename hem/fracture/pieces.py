@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from hem.arrays import Floats, Indices
+from hem.errors import MeshError
 from hem.fracture.mass import Mass, of_bodies, of_sheets
 from hem.fracture.material import Material
 from hem.meshes import TriangleMesh, components, used_only
@@ -72,6 +73,7 @@ def islands(mesh: TriangleMesh) -> list[TriangleMesh]:
 
     Faces are connected that share a vertex. Vertices and faces keep their order. O(n + m log m).
     """
+    require_triangle_mesh(mesh, "islands")
     triangles = mesh.triangles
     if not len(triangles):
         return []
@@ -81,3 +83,12 @@ def islands(mesh: TriangleMesh) -> list[TriangleMesh]:
     groups = np.split(triangles[order], np.flatnonzero(np.diff(part[order])) + 1)
     found = [TriangleMesh(*used_only(mesh.points, it), mesh.points.dtype) for it in groups]
     return sorted(found, key=lambda it: -it.area())
+
+
+def require_triangle_mesh(mesh: Any, called: str) -> None:
+    """Raise MeshError for what is no TriangleMesh."""
+    if not isinstance(mesh, TriangleMesh):
+        raise MeshError(
+            f"{called} takes a TriangleMesh, such as hem.load(path), s.to_triangles() or "
+            f"polygons.triangulated(), not {type(mesh).__name__}"
+        )

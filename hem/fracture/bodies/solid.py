@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from functools import cached_property
+from numbers import Real
 from typing import Any
 
 import numpy as np
@@ -10,6 +11,7 @@ from numpy.typing import ArrayLike
 from hem import meshes
 from hem.arrays import Array, Bools, Floats, Indices
 from hem.errors import MeshError, load_optional
+from hem.fracture.pieces import require_triangle_mesh
 from hem.meshes import TriangleMesh, components, corners, diagonal, dot, normals, used_only, volume
 from hem.sources import meshlab
 
@@ -63,6 +65,7 @@ def require_body(mesh: TriangleMesh) -> Body:
     it or some component. Cost O(m log m), and O(m) for each component if there are several; 0.2 s
     for 50,000 faces, most of it for the intersections, which pymeshlab finds.
     """
+    require_triangle_mesh(mesh, "require_body")
     if not len(mesh.triangles):
         raise MeshError("an empty mesh has no inside that could be broken")
     _require_closed(mesh)
@@ -88,16 +91,21 @@ def wrapped(mesh: TriangleMesh, detail: float = 0.015, offset: float = 0.002) ->
     diagonal (a hole, a slit, the mouth of a spout) it is closed, and what is behind it filled;
     edges are rounded. So the teapot becomes one solid piece, with its handle still a handle. The
     number of faces grows with 1 / detail², and so does the time; 0.9 s for the teapot. Raises
-    MeshError for a mesh without faces and for numbers that are not between 0 and 1.
+    MeshError for a mesh without faces or size, and for numbers that are not between 0 and 1.
 
     Source: Portaneri et al., Alpha wrapping with an offset, 2022, as pymeshlab has it from CGAL.
     """
+    require_triangle_mesh(mesh, "wrapped")
     if not len(mesh.triangles):
         raise MeshError("an empty mesh cannot be wrapped")
-    if not (0 < detail < 1 and 0 < offset < 1):
-        raise MeshError(f"detail and offset are parts of the diagonal, not {detail} and {offset}")
+    if not all(isinstance(it, Real) and 0 < it < 1 for it in (detail, offset)):
+        words = "detail and offset are parts of the diagonal, between 0 and 1"
+        raise MeshError(f"{words}, not {detail!r} and {offset!r}")
     percent = {"alpha": 100 * detail, "offset": 100 * offset}
-    return meshlab.apply("generate_alpha_wrap", mesh, percent=percent)
+    found = meshlab.apply("generate_alpha_wrap", mesh, percent=percent)
+    if not len(found.triangles):
+        raise MeshError("there is nothing to wrap: all points of the mesh lie in one place")
+    return found
 
 
 def to_manifold(points: Floats, triangles: Array, labels: Array) -> Any:

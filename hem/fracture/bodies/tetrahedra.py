@@ -18,6 +18,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from hem.algorithms import require_mesh
 from hem.arrays import Array, Bools, Floats
 from hem.contract import Structure
 from hem.fracture.blow import Blow, generator
@@ -50,11 +51,13 @@ def tetrahedra(
     The surface is broken as by ``shatter``, which says what becomes of break points; here a shard
     stays in place that could be but a sliver (``too shallow``). Shards are closed, outward
     oriented, and overlap neither each other nor the rest, which the structure keeps, a closed
-    body. The same seed gives the same shards on every structure.
+    body. The same seed gives the same shards on every structure. An interrupt, or what a subscriber
+    raises, ends it after an edit: the mesh is whole, but may be split without its pits.
 
     Cost: that of ``shatter``, and O(shards × faces near them). Raises MeshError for what is no body
     and as ``shatter`` does. Source: thesis, chapter 6.
     """
+    require_mesh(structure, "tetrahedra")
     chosen = material if isinstance(material, Material) else named(material)
     blow = Blow(np.zeros(3), np.array([0.0, 0.0, 1.0]), force)
     require_body(structure.to_triangles())

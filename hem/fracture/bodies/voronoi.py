@@ -14,7 +14,7 @@ from hem.fracture.bodies.solid import Body, from_manifold, require_body, winding
 from hem.fracture.bodies.walls import touching
 from hem.fracture.material import Material
 from hem.fracture.material import material as named
-from hem.fracture.pieces import Fracture
+from hem.fracture.pieces import Fracture, require_triangle_mesh
 from hem.fracture.surface import closest
 from hem.meshes import TriangleMesh, bounds, corners, joined, length, normals, position
 
@@ -54,6 +54,8 @@ def voronoi(
 
     Source: Raghavachary, Fracture generation on polygonal meshes using Voronoi polygons, 2002.
     """
+    if not isinstance(mesh, Body):
+        require_triangle_mesh(mesh, "voronoi")
     body = mesh if isinstance(mesh, Body) else require_body(mesh)
     chosen = material if isinstance(material, Material) else named(material)
     blow = _aimed(body, position(impact, "an impact"), direction, force)

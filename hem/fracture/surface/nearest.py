@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
+from hem.algorithms import require_mesh
 from hem.arrays import Array, Floats
 from hem.contract import Structure
 from hem.engine import kept
@@ -44,6 +45,7 @@ def nearest_face(structure: Structure, position: ArrayLike, start: int = JUMP) -
     surface than half the diagonal of the bounding box, a start that is no face, a mesh without
     faces, and for polygons.
     """
+    require_mesh(structure, "nearest_face")
     p = as_position(position)
     if start != JUMP:
         structure.face_vertices(start)  # raises for what is no face
@@ -66,6 +68,7 @@ def nearest_face(structure: Structure, position: ArrayLike, start: int = JUMP) -
 
 def scanned(structure: Structure, position: ArrayLike) -> Found:
     """The same by looking at every face, the first of those that are equally near. Cost O(n_t)."""
+    require_mesh(structure, "scanned")
     p, faces = as_position(position), structure.faces()
     if not len(faces):
         raise MeshError("there are no faces that could be near to anything")
@@ -81,27 +84,10 @@ def extent(structure: Structure) -> tuple[Floats, Floats]:
 
 
 def corner_vertices(structure: Structure, faces: Array) -> Array:
-    """(k, 3): the corners of faces, from the smallest vertex on, as all structures agree.
-
-    Raises MeshError for faces of more corners.
-    """
-    found = structure.face_vertices(faces)
-    larger = np.asarray(faces)[found.counts > 3]
-    if len(larger):
-        raise MeshError(
-            "only triangles can be broken, and points sought on them; cut the polygons first, with "
-            "structures.build(name, mesh.triangulated())",
-            faces=larger,
-        )
-    vertices = found.values.reshape(-1, 3)
+    """(k, 3): the corners of triangles, from the smallest vertex on, as all structures agree."""
+    vertices = structure.face_vertices(faces).values.reshape(-1, 3)
     turned = (vertices.argmin(axis=1)[:, None] + np.arange(3)) % 3
     return np.take_along_axis(vertices, turned, axis=1)
-
-
-def require_triangles(structure: Structure) -> None:
-    """Raise MeshError that names the faces of more corners, where there are any."""
-    if structure.most_corners > 3:
-        corner_vertices(structure, structure.faces())
 
 
 def face_corners(structure: Structure, faces: Array) -> Floats:

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from hem.algorithms import put_back, require_mesh, require_surface
 from hem.arrays import Floats, Indices
 from hem.contract import Attribute, Structure
 from hem.edit import Edit
@@ -30,7 +31,6 @@ from hem.fracture.surface.nearest import (
     extent,
     face_corners,
     nearest_face,
-    require_triangles,
 )
 from hem.meshes import TriangleMesh, length, normals, unit
 
@@ -71,13 +71,19 @@ def shatter(
     more. Within that tolerance of an edge the edge is split. ``Fracture.counts`` tells how many.
 
     The structure keeps the rest, sound, in which no handle changed; subscribers hear of one edit
-    for what was split and one for what came out. The same seed gives the same shards on every
-    structure and machine.
+    for what was split and one for what came out. An interrupt, or what a subscriber raises, ends it
+    after an edit: the mesh is whole, but may be split and not broken yet. The same seed gives the
+    same shards on every structure and machine.
 
     Cost: a walk to the face, as ``nearest_face`` says, and of O(√n_t) to each point, and the
-    splits; O(n_v + n_t) for the bounding box and what is left. Raises MeshError for an impact that is no position or not near
-    the surface, for polygons, and for a mesh without faces. Source: thesis 4.4.
+    splits; O(n_v + n_t) for the bounding box and what is left, and that of ``vertex_faces`` of all,
+    or O(n_t log n_t) where nothing is recorded of neighbors. Raises MeshError for an impact that is
+    no position or not near the surface, for polygons, and for a mesh without faces or without size;
+    TopologyError for edges in more than two faces and for faces with the same three corners.
+    Source: thesis 4.4.
     """
+    require_mesh(structure, "shatter")
+    require_surface(structure, "shatter")
     chosen = _chosen(structure, impact, material)
     broken, new, size = break_surface(structure, impact, chosen, seed, scale)
     loose = hanging(structure, new)
@@ -100,7 +106,8 @@ def _chosen(
         return named(material)
     if material.element != "face" or material.mesh is not structure:
         raise MeshError(f"{material!r} is no attribute of the faces of this mesh")
-    require_triangles(structure)
+    if material.default.ndim or material.default.dtype.kind not in "iub":
+        raise MeshError(f"a material is one integer per face, its place, not {material!r}")
     face = nearest_face(structure, impact).face
     known, place = list(MATERIALS.values()), material[face]
     if not 0 <= place < len(known):
@@ -128,21 +135,29 @@ def break_surface(
     structure: Structure, impact: ArrayLike, material: Material, seed: int,
     scale: float | None = None,
 ) -> tuple[Plan, Indices, float]:  # fmt: skip
-    """Split all that ``shatter`` splits -> what became of it, the split faces, the diagonal."""
-    require_triangles(structure)
+    """Split all that ``shatter`` splits -> what became of it, the split faces, the diagonal.
+
+    One edit, of which followers are told whatever happens.
+    """
     found = nearest_face(structure, impact)
     low, high = extent(structure)
     size = float(length(high - low))
+    if not size > 0:
+        raise MeshError("all faces lie in one point; there is no surface that could be broken")
     tolerance = max(TOLERANCE * size, ROUNDING * float(np.abs([low, high]).max()))
     offsets = break_points(material, seed, material.scale * size if scale is None else scale)
     frame, start = tangent(structure, found.face), np.array([found.face])
     out, log = structure.scratch(len(offsets) + 4)
     plan = make_plan(found.point, tolerance, out, log, start=start, frame=frame, offsets=offsets)
-    if structure.run(breaking, plan) < 0:
+    try:
+        with put_back(structure, log):
+            done = structure.run(breaking, plan)
+    finally:
+        split = Edit("break_surface", -1, log[1 : log[0] + 1])
+        if log[0]:
+            structure.tell(split.kind, split.touched)
+    if done < 0:
         raise RuntimeError("there was not enough room for the splits")
-    touched = log[1 : log[0] + 1]
-    structure.tell("break_surface", touched)
-    split = Edit("break_surface", -1, touched)
     new = np.union1d(split.created_faces, split.changed_faces).astype(np.int64)
     return plan, new, size
 

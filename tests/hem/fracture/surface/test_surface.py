@@ -10,9 +10,22 @@ import trimesh
 
 import hem
 import structures
-from hem.fracture import MATERIALS, Material, nearest_face, scanned, shatter
+from hem.fracture import (
+    MATERIALS,
+    Material,
+    islands,
+    nearest_face,
+    require_body,
+    scanned,
+    shatter,
+    tetrahedra,
+    voronoi,
+    wrapped,
+)
+from hem.fracture.surface.breaking import breaking
 from hem.fracture.surface.nearest import ROUNDING
 from hem.fracture.surface.shatter import TOLERANCE, break_points, break_surface
+from structures import half_edge_objects
 from tests.extent import OF_EACH_KIND, some
 from tests.hem.fracture.laws import MODELS, require_surface_laws, struck, surface
 from tests.hem.rendering.test_render import assert_in_step
@@ -344,10 +357,10 @@ def test_what_cannot_be_shattered_is_said_and_nothing_changes(call, message):
 
 def test_polygons_and_empty_meshes_are_refused():
     quads = hem.PolygonMesh(np.eye(3)[[0, 1, 2, 0]] + [[0], [0], [0], [1]], [[0, 1, 2, 3]])
-    with pytest.raises(hem.MeshError, match="only triangles"):
+    with pytest.raises(hem.MeshError, match="triangles only"):
         shatter(structures.build("plankton", quads), (0, 0, 1))
     for find in (scanned, nearest_face):
-        with pytest.raises(hem.MeshError, match="only triangles"):
+        with pytest.raises(hem.MeshError, match="triangles only"):
             find(structures.build("plankton", quads), (0, 0, 1))
     empty = hem.TriangleMesh(np.zeros((0, 3)), np.zeros((0, 3), int))
     for name in OF_EACH_KIND:
@@ -372,6 +385,122 @@ def test_bad_arguments_are_refused_and_the_mesh_stays(given, words):
     assert np.array_equal(s.to_triangles().triangles, before.triangles)
 
 
+BOOK = hem.TriangleMesh(
+    [(0, 0, 0), (0, 0, 1), (1, 0, 0), (-1, 1, 0), (-1, -1, 0)], [(0, 1, 2), (0, 1, 3), (0, 1, 4)]
+)
+PILLOW = hem.TriangleMesh(np.eye(3), [(0, 1, 2), (0, 2, 1)])
+
+
+@pytest.mark.parametrize(
+    ("mesh", "words"),
+    [(BOOK, "edges lie in more than two faces"), (PILLOW, "same three corners")],
+    ids=["book", "pillow"],
+)
+def test_what_is_no_surface_is_refused_by_all_that_hold_it_and_stays(mesh, words):
+    held = 0
+    for name in structures.NAMES:
+        try:
+            s = structures.build(name, mesh)
+        except hem.NonManifoldError:
+            continue
+        with pytest.raises(hem.TopologyError, match=f"cannot shatter: .*{words}"):
+            shatter(s, mesh.points[mesh.triangles[0]].mean(axis=0))
+        assert np.array_equal(s.points, mesh.points)
+        held += 1
+    assert held
+
+
+@pytest.mark.parametrize("given", [sheet(), "bunny", None])
+def test_what_is_no_structure_is_told_what_to_give(given):
+    for ask in (shatter, tetrahedra, nearest_face, scanned):
+        words = f"{ask.__name__} takes a structure, such as .*, not {type(given).__name__}"
+        with pytest.raises(hem.MeshError, match=words):
+            ask(given, (0, 0, 0))
+
+
+@pytest.mark.parametrize("given", [structures.build("half_edge", sheet()), "bunny", None])
+def test_what_is_no_triangle_mesh_is_told_what_to_give(given):
+    for ask in (islands, require_body, wrapped, lambda it: voronoi(it, (0, 0, 0))):
+        name = getattr(ask, "__name__", "voronoi").replace("<lambda>", "voronoi")
+        words = f"{name} takes a TriangleMesh, such as .*, not {type(given).__name__}"
+        with pytest.raises(hem.MeshError, match=words):
+            ask(given)
+
+
+@pytest.mark.parametrize("name", OF_EACH_KIND)
+def test_a_mesh_in_one_point_is_told_to_be_so_and_not_of_a_scale(name):
+    s = structures.build(name, hem.TriangleMesh(np.ones((3, 3)), [(0, 1, 2)]))
+    with pytest.raises(hem.MeshError, match="all faces lie in one point"):
+        shatter(s, (1, 1, 1))
+
+
+class Stop(BaseException):
+    """An interrupt."""
+
+
+def require_whole(s: structures.Structure, render: hem.RenderMesh) -> None:
+    """The mesh is sound, followers know of all that was done, and it can be broken yet."""
+    s.validate()
+    assert_in_step(render)
+    shatter(s, (3.3, 4.2, 0), "stone", 2)
+    s.validate()
+    assert_in_step(render)
+
+
+@pytest.mark.parametrize("name", OF_EACH_KIND)
+def test_an_interrupt_leaves_a_whole_mesh_that_its_followers_know(name, monkeypatch):
+    """It reaches Python when compiled code ends."""
+    s = structures.build(name, sheet())
+    render, run = hem.RenderMesh(s), type(s).run
+
+    def stopped(mesh, make, plan):
+        result = run(mesh, make, plan)
+        if make is breaking:
+            raise Stop
+        return result
+
+    with monkeypatch.context() as patched:
+        patched.setattr(type(s), "run", stopped)
+        with pytest.raises(Stop):
+            shatter(s, (3.3, 4.2, 0), "stone", 2)
+    require_whole(s, render)
+
+
+@pytest.mark.parametrize("nth", [1, 2, 10, 99])
+def test_an_interrupt_in_the_midst_of_a_split_leaves_the_mesh_as_it_was(nth, monkeypatch):
+    """Python stops anywhere: here where a half-edge is made."""
+    s = structures.build("half_edge_objects", sheet())
+    render, made, make = hem.RenderMesh(s), [], half_edge_objects.new_half_edge
+
+    def stop(*args):
+        made.append(args)
+        if len(made) == nth:
+            raise Stop
+        return make(*args)
+
+    with monkeypatch.context() as patched:
+        patched.setattr(half_edge_objects, "new_half_edge", stop)
+        with pytest.raises(Stop):
+            shatter(s, (3.3, 4.2, 0), "stone", 2)
+    assert np.array_equal(s.to_triangles().triangles, sheet().triangles)
+    require_whole(s, render)
+
+
+@pytest.mark.parametrize("name", OF_EACH_KIND)
+def test_what_a_subscriber_raises_ends_it_after_an_edit_that_all_are_told_of(name):
+    s = structures.build(name, sheet())
+
+    def fail(edit: hem.Edit) -> None:
+        raise ZeroDivisionError
+
+    end = s.subscribe(fail)
+    render = hem.RenderMesh(s)
+    with pytest.raises(ZeroDivisionError):
+        shatter(s, (3.3, 4.2, 0), "stone", 2)
+    end()
+    require_whole(s, render)
+
+
 def test_faces_without_area_are_no_trouble_to_find_others():
     flat = hem.TriangleMesh(
         [(0, 0, 0), (0, 0, 0), (0, 0, 0), (1, 0, 0), (2, 0, 0), (5, 0, 0), (6, 0, 0), (5, 1, 0)],
@@ -394,6 +523,10 @@ def test_the_face_that_is_hit_says_of_what_material_it_is(name):
     assert broken.material == MATERIALS["glass"]
     assert np.array_equal(corners(broken.shards), corners(expected.shards))
     assert set(made_of[s.faces()].tolist()) <= {NAMES.index("wood"), NAMES.index("glass")}
+    for other in ({"dtype": np.int8, "shape": 2}, {}):
+        odd = s.face_attribute(f"odd {len(other)}", **other)
+        with pytest.raises(hem.MeshError, match="one integer per face"):
+            shatter(s, (7.5, 7.1, 0), odd)
     made_of[s.faces()] = 99
     with pytest.raises(hem.MeshError, match="material 99 is none of"):
         shatter(s, (7.5, 7.1, 0), made_of)
