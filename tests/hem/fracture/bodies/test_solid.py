@@ -131,9 +131,11 @@ def test_what_is_no_body_becomes_one_when_wrapped(mesh):
 def test_what_cannot_be_wrapped_says_so():
     with pytest.raises(hem.MeshError, match="empty"):
         wrapped(hem.TriangleMesh([], []))
-    for detail, offset in ((0, 0.1), (0.1, 0), (1, 0.1), (0.1, 2), (np.nan, 0.1)):
+    for detail, offset in ((0, 0.1), (0.1, 0), (1, 0.1), (0.1, 2), (np.nan, 0.1), ("a", 0.1)):
         with pytest.raises(hem.MeshError, match="parts of the diagonal"):
             wrapped(box(1, 1, 1), detail=detail, offset=offset)
+    with pytest.raises(hem.MeshError, match="all points of the mesh lie in one place"):
+        wrapped(hem.TriangleMesh(np.ones((3, 3)), [(0, 1, 2)]))
 
 
 @pytest.mark.parametrize("name", NAMES)
