@@ -47,6 +47,7 @@ def simplify(
 ) -> None:
     """Simplify a mesh in place until so few vertices or faces are left, or all else is worse.
 
+    Of vertices those count that have faces; the others stay, as no edge leads to them.
     ``quadrics`` collapses the edge whose planes are least far from where its vertex comes to lie,
     ``shortest_edge`` the shortest, into one of its ends; that keeps borders as they are. ``error``
     is the most that a collapse may cost: the root of the mean squared distance to these planes, or
@@ -66,6 +67,8 @@ def simplify(
         require_count("simplify", name, 0 if value is None else value)
         for name, value in (("vertices", vertices), ("faces", faces))
     ]
+    if vertices is not None:
+        most[0] += _without_faces(s)
     bound = np.inf if error is None else require_length("simplify", "error", error)
     for cosine in LEAST_COSINES:
         left = s.n_vertices + 1
@@ -73,6 +76,12 @@ def simplify(
             left = s.n_vertices
             plan = collapsible(s, measure, cosine, bound, most)
             change(s, "simplify", simplifying, plan)
+
+
+def _without_faces(s: Structure) -> int:
+    used = np.zeros(len(s.points), np.bool_)
+    used[s.triangles()] = True
+    return s.n_vertices - int(np.count_nonzero(used))
 
 
 def collapsible(

@@ -16,6 +16,7 @@ from hem.algorithms.collapsing import QUADRICS
 from hem.algorithms.simplification import LEAST_COSINES, collapsible
 from hem.meshes.measures import normals
 from hem.sources import meshlab
+from tests.extent import OF_EACH_KIND
 from tests.hem.algorithms.meshes import dented
 
 GRID = hem.generate("grid", 900)
@@ -58,6 +59,18 @@ def test_it_stops_at_the_number_asked_for(by: str) -> None:
     assert len(simplified(mesh, vertices=123, by=by).points) == 123
     assert len(simplified(mesh, faces=300, by=by).triangles) == 300
     assert len(simplified(mesh, vertices=10_000, by=by).points) == 400
+
+
+@pytest.mark.parametrize("name", OF_EACH_KIND)
+@pytest.mark.parametrize("by", algorithms.MEASURES)
+def test_of_vertices_those_count_that_have_faces(name: str, by: str) -> None:
+    mesh = dented("torus", 144)
+    stray = hem.TriangleMesh(np.concatenate([np.ones((500, 3)), mesh.points]), mesh.triangles + 500)
+    s = structures.build(name, stray)
+    algorithms.simplify(s, vertices=60, by=by)
+    s.validate()
+    assert s.n_vertices == 560
+    assert len(np.unique(s.triangles())) == 60
 
 
 def test_a_sphere_can_become_a_tetrahedron_and_nothing_less() -> None:
