@@ -240,6 +240,10 @@ def adding_around(k: Kernels, operations: Kernels) -> Kernel:
 def normals_around(s: Structure) -> Points:
     """What ``vertex_normals`` gives, (n, 3) float32, by walking around every vertex.
 
+    Twice the areas of faces are kept as float32: it holds where they are from 1e-37 to 1e38, as
+    they are where edges are from 1e-18 to 1e19 long. Smaller faces count less than they should, or
+    nothing; larger ones make zeros or NaN. ``vertex_normals`` has no such bounds.
+
     Cost: ``vertex_faces`` of all. MeshError for polygons.
     """
     require_mesh(s, "normals_around")

@@ -79,6 +79,13 @@ def test_normals_are_those_of_trimesh_weighted_by_area(mesh: hem.TriangleMesh) -
     assert np.allclose(algorithms.SIX["normals"](s), expected, atol=1e-5)
 
 
+@pytest.mark.parametrize("scale", [1e-18, 1.0, 1e18])
+def test_normals_around_vertices_are_vertex_normals_at_the_sizes_that_they_tell(scale) -> None:
+    mesh = hem.TriangleMesh(10 * scale * CLOSED.points.astype(np.float64), CLOSED.triangles)
+    s = structures.build("half_edge", mesh)
+    assert np.allclose(algorithms.SIX["normals"](s), algorithms.vertex_normals(s), atol=1e-6)
+
+
 def test_normals_of_a_sphere_point_away_from_its_middle() -> None:
     mesh = hem.generate("sphere", 2562)
     found = algorithms.vertex_normals(structures.build("winged_edge", mesh))
