@@ -9,9 +9,10 @@ the origin that no triangle uses. ``Structure.compact`` closes the gaps here, to
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
 from functools import partial
+from numbers import Real
 from types import MappingProxyType
 from typing import Any, NamedTuple, overload
 
@@ -51,9 +52,9 @@ class RenderMesh:
     Every edit is committed at once: whoever subscribed is told what to upload. Within
     ``transaction()`` edits are gathered and committed once at its end. ``attributes`` of vertices
     are uploaded, too: their ``values`` have a row where ``points`` has three numbers, and what is
-    written to them is committed like an edit. Cost to begin with, after ``compact``, and now and
-    then for more room: O(n_v + n_t). MeshError for a mesh with polygons, and when one arises: the
-    edit is done, and from then on the arrays stay as they are.
+    written to them is committed like an edit, until they are removed from the mesh. Cost to begin
+    with, after ``compact``, and now and then for more room: O(n_v + n_t). MeshError for a mesh with
+    polygons, and when one arises: the edit is done, and from then on the arrays stay as they are.
     """
 
     def __init__(self, structure: Structure, attributes: Sequence[Attribute] = ()) -> None:
@@ -61,23 +62,31 @@ class RenderMesh:
             raise MeshError(f"a render mesh follows a structure, not {type(structure)}; build one")
         self.structure = structure
         self.commits = 0
-        self.attributes = {it.name: it for it in attributes}
-        for it in attributes:
-            if it.element != "vertex" or it.mesh is not structure:
+        if isinstance(attributes, str) or not isinstance(attributes, Iterable):
+            raise MeshError(f"a render mesh takes a list of attributes, not {attributes!r}")
+        self._attributes = list(attributes)
+        for it in self._attributes:
+            if not isinstance(it, Attribute) or it.element != "vertex" or it.mesh is not structure:
                 raise MeshError(f"{it!r} is no attribute of vertices of this mesh")
-        self._written: dict[str, list[ArrayLike]] = {name: [] for name in self.attributes}
+        self._written: dict[str, list[ArrayLike]] = {it.name: [] for it in self._attributes}
         self._listeners = Listeners()
         self._pending: list[ArrayLike] = []
         self._depth, self._resized = 0, False
         self._following = ExitStack()
         self._rebuild()
         self._following.callback(structure.subscribe(self._follow))
-        for it in attributes:
+        for it in self._attributes:
             self._following.callback(it.subscribe(partial(self._rewrite, it.name)))
 
     def __reduce__(self) -> tuple[Any, ...]:
         """A copy follows its own structure from then on; subscribers are not of the copy."""
         return _following_anew, (self.structure, list(self.attributes))
+
+    @property
+    def attributes(self) -> dict[str, Attribute]:
+        """Those that are uploaded, by name. One that is removed from the mesh is no longer."""
+        of_mesh = {id(it) for it in self.structure.attributes()}
+        return {it.name: it for it in self._attributes if id(it) in of_mesh}
 
     @property
     def points(self) -> Points:
@@ -107,14 +116,16 @@ class RenderMesh:
     def reserve(self, splits: int) -> None:
         """Make room for so many splits at once, so that none of them has to. A commit. O(n).
 
-        The structure has a method of that name for its own arrays.
+        The structure has a method of that name for its own arrays. MeshError for what is no count.
         """
+        if isinstance(splits, bool) or not isinstance(splits, int | np.integer) or splits < 0:
+            raise MeshError(f"reserve takes a number of splits from 0 on, not {splits!r}")
         self._make_room(self._n_vertices + splits, self._n_triangles + 2 * splits)
         if self._resized and not self._depth:
             self._commit()
 
     def close(self) -> None:
-        """Follow no longer; the arrays stay as they are."""
+        """Follow no longer; the arrays stay as they are. A copy follows the mesh again."""
         self._following.close()
 
     def to_triangles(self) -> TriangleMesh:
@@ -124,7 +135,7 @@ class RenderMesh:
     def _rebuild(self) -> None:
         s = self.structure
         faces = s.faces()
-        self._require_triangles(faces)
+        _require_triangles(s, faces, f"and this {s.title} mesh has larger faces")
         self._n_vertices, self._n_triangles = len(s.points), s.face_end
         self._points = rows(self._n_vertices, 3, dtype=np.float32, zeros=True)
         self._points[:] = s.points
@@ -139,7 +150,7 @@ class RenderMesh:
             self._pending, self._resized = [], True
         else:
             if self.structure.most_corners > 3:
-                self._require_triangles(np.append(edit.created_faces, edit.changed_faces))
+                self._require_triangles_still(np.append(edit.created_faces, edit.changed_faces))
             self._pending.append(edit.touched)
             self._grow()
             self.structure.copy_touched(edit.touched, self._points, self._indices)
@@ -147,21 +158,20 @@ class RenderMesh:
             self._commit()
 
     def _rewrite(self, name: str, vertices: Handles) -> None:
-        self._written[name].append(vertices << 3 | VERTEX + CHANGED)
-        if not self._depth:
-            self._commit()
+        if name in self.attributes:
+            self._written[name].append(vertices << 3 | VERTEX + CHANGED)
+            if not self._depth:
+                self._commit()
 
-    def _require_triangles(self, faces: Handles) -> None:
+    def _require_triangles_still(self, faces: Handles) -> None:
         """Follow no longer once one of the faces is a polygon."""
-        s = self.structure
-        larger = faces[s.face_vertices(faces).counts > 3] if s.most_corners > 3 else faces[:0]
-        if len(larger):
+        try:
+            title = self.structure.title
+            words = f"and follows this {title} mesh no longer, which has larger faces now"
+            _require_triangles(self.structure, faces, words)
+        except MeshError:
             self._following.close()
-            raise MeshError(
-                f"a render mesh holds triangles only, and follows this {s.title} mesh no longer, "
-                "which has larger faces now; follow one built of to_triangles() instead",
-                faces=larger,
-            )
+            raise
 
     def _grow(self) -> None:
         vertices, triangles = self.structure.vertex_end, self.structure.face_end
@@ -181,17 +191,26 @@ class RenderMesh:
         if self._resized:
             ends = self._n_vertices, self._n_triangles
             parts = [np.array([(0, n)], np.int64)[: min(n, 1)] for n in ends]
-            written = dict.fromkeys(self._written, parts[0])
+            written = dict.fromkeys(self.attributes, parts[0])
         else:
             parts = list(dirty_ranges(self._pending, NEARBY))
             written = {
-                name: dirty_ranges([*self._pending, *logs], NEARBY)[0]
-                for name, logs in self._written.items()
+                name: dirty_ranges([*self._pending, *self._written[name]], NEARBY)[0]
+                for name in self.attributes
             }
         upload = Upload(parts[0], parts[1], self._resized, written)
         self._pending, self._resized = [], False
         self._written = {name: [] for name in self._written}
         self._listeners.tell(upload)
+
+
+def _require_triangles(s: Any, faces: Handles, words: str) -> None:
+    larger = faces[s.face_vertices(faces).counts > 3] if s.most_corners > 3 else faces[:0]
+    if len(larger):
+        raise MeshError(
+            f"what is rendered holds triangles only, {words}; take one built of to_triangles()",
+            faces=larger,
+        )
 
 
 def _following_anew(structure: Structure, names: Sequence[str]) -> RenderMesh:
@@ -208,6 +227,7 @@ def split_at_seams(corners: Attribute) -> tuple[Points, Handles, Array]:
     if corners.element != "corner":
         raise MeshError(f"{corners!r} is no attribute of corners")
     s = corners.mesh
+    _require_triangles(s, s.faces(), "and this mesh has larger faces")
     vertex, values = s.triangles().reshape(-1), corners[s.faces()]
     told_apart = values.reshape(len(vertex), math.prod(values.shape[1:]))
     told_apart = np.unique(told_apart, return_inverse=True)[1].reshape(told_apart.shape)  # nan too
@@ -239,6 +259,8 @@ def mesh_from_render(
     O(n log n + m). Raises MeshError for what is no such mesh. Source: thesis 3.3.2, where the
     search for repeated positions is quadratic.
     """
+    if not isinstance(tolerance, Real):
+        raise MeshError(f"a weld tolerance is finite and not negative, not {tolerance!r}")
     corners = _rows(indices, "indices")
     raw = TriangleMesh(_rows(points, "points"), corners[~repeated_corners(corners)][:, [0, 2, 1]])
     mesh = raw.welded(tolerance)
@@ -246,8 +268,9 @@ def mesh_from_render(
     if values is None:
         return found
     given = np.asarray(values)
-    if len(given) != len(raw.points):
-        raise MeshError(f"there are {len(given):,} values for {len(raw.points):,} positions")
+    if given.ndim == 0 or len(given) != len(raw.points):
+        count = f"{len(given):,} values" if given.ndim else "one value"
+        raise MeshError(f"there are {count} for {len(raw.points):,} positions")
     _, cluster = clusters(raw.points, tolerance)
     return found, given[raw.triangles[~repeated_corners(cluster[raw.triangles])]]
 

@@ -285,3 +285,60 @@ def test_corners_of_no_number_are_of_one_value() -> None:
     points, _, values = hem.split_at_seams(s.corner_attribute("uv", shape=2, default=np.nan))
     assert len(points) == 3 * s.n_vertices
     assert np.isnan(values).all()
+
+
+def test_an_attribute_that_is_removed_is_no_longer_rendered_nor_brought_back(s):
+    kept, gone = s.vertex_attribute("kept"), s.vertex_attribute("gone", dtype="i4", default=7)
+    render, told = hem.RenderMesh(s, [kept, gone]), []
+    render.subscribe(told.append)
+    s.split_face(0, (0, 0, 0))
+    assert list(told[-1].attributes) == ["kept", "gone"]
+    s.remove_attribute(gone)
+    s.split_face(0, (0, 0, 0))
+    assert list(told[-1].attributes) == list(render.attributes) == ["kept"]
+    commits = render.commits
+    gone[0] = 3
+    assert render.commits == commits
+    for made in (copy.copy, copy.deepcopy):
+        twin = made(render)
+        assert list(twin.attributes) == ["kept"]
+        assert [it.name for it in twin.structure.attributes()] == ["kept"]
+    again = s.vertex_attribute("gone")
+    assert list(render.attributes) == ["kept"]
+    assert list(hem.RenderMesh(s, [again]).attributes) == ["gone"]
+
+
+def test_a_copy_of_what_was_closed_follows_again(s):
+    render = hem.RenderMesh(s)
+    render.close()
+    s.split_face(0, (0, 0, 0))
+    twin = copy.copy(render)
+    s.split_face(0, (0, 0, 0))
+    assert_in_step(twin)
+
+
+def test_polygons_are_refused_in_words_that_say_what_to_do():
+    quad = hem.PolygonMesh(np.eye(3)[[0, 1, 2, 0]] + [[0], [0], [0], [1]], [[0, 1, 2, 3]])
+    s = structures.build("plankton", quad)
+    for make in (hem.RenderMesh, lambda it: hem.split_at_seams(it.corner_attribute("uv"))):
+        with pytest.raises(hem.MeshError, match=r"mesh has larger faces; .* of to_triangles\(\)"):
+            make(s)
+
+
+def test_odd_arguments_are_refused_in_words(s):
+    heat = s.vertex_attribute("heat")
+    for given in (heat, "heat", 3):
+        with pytest.raises(hem.MeshError, match="takes a list of attributes"):
+            hem.RenderMesh(s, given)
+    for given in (["heat"], [None], [s.face_attribute("heat")]):
+        with pytest.raises(hem.MeshError, match="no attribute of vertices of this mesh"):
+            hem.RenderMesh(s, given)
+    render = hem.RenderMesh(s, [heat])
+    for splits in ("a", -5, 1.5, True, None):
+        with pytest.raises(hem.MeshError, match="a number of splits from 0 on, not"):
+            render.reserve(splits)
+    arrays = render.points, render.indices
+    with pytest.raises(hem.MeshError, match="one value for 100 positions"):
+        hem.mesh_from_render(*arrays, values=3)
+    with pytest.raises(hem.MeshError, match="a weld tolerance is finite"):
+        hem.mesh_from_render(*arrays, tolerance="a")
