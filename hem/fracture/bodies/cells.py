@@ -56,13 +56,15 @@ class Cells:
 def cells(sites: Floats, center: Floats, radius: float) -> Cells:
     """The cells of n different sites (n, 3), which fill the ball of a radius around a center.
 
+    They are found in coordinates from the center, as Qhull squares them.
+
     Source: Qhull, by way of scipy (Barber et al., The quickhull algorithm for convex hulls, 1996).
     """
     from scipy.spatial import Voronoi
 
     extent = max(radius, float(np.abs(sites - center).max()))
     far = center + _FAR * extent * np.concatenate([np.eye(3), -np.eye(3)])
-    diagram = Voronoi(np.concatenate([sites, far]))
+    diagram = Voronoi(np.concatenate([sites, far]) - center)
     triangles, walls, sides = [], [], []
     pairs = diagram.ridge_points.tolist()
     for wall, (corners, (a, b)) in enumerate(zip(diagram.ridge_vertices, pairs, strict=True)):
@@ -77,4 +79,4 @@ def cells(sites: Floats, center: Floats, radius: float) -> Cells:
         sides += [(a, b) if from_b else (b, a)] * len(fan)
     front, back = np.array(sides, np.int64).T
     made = np.array(triangles, np.int64), np.array(walls)
-    return Cells(sites, diagram.vertices, *made, front, back)
+    return Cells(sites, diagram.vertices + center, *made, front, back)

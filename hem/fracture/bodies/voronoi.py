@@ -49,8 +49,8 @@ def voronoi(
     machine, and the pieces as far as Qhull's and manifold3d's float64 are; again on the same one.
 
     Cost O(sites × faces). Raises MeshError for a mesh that is no body (pass what ``require_body``
-    gave to have it checked only once), an impact farther away than half a diagonal, and for what
-    hem.fracture.Blow refuses.
+    gave to have it checked only once), an impact farther away than half a diagonal, a mesh so far
+    from the origin that all pieces vanish, and for what hem.fracture.Blow refuses.
 
     Source: Raghavachary, Fracture generation on polygonal meshes using Voronoi polygons, 2002.
     """
@@ -61,6 +61,10 @@ def voronoi(
     blow = _aimed(body, position(impact, "an impact"), direction, force)
     plan = _scattered(body, blow, chosen, seed) if sites is None else _given(body, sites)
     made = _cut(body, plan)
+    if not made.shards and not made.rest:
+        raise MeshError(
+            "so far from the origin float32 can hold no piece of this mesh; move it there first"
+        )
     shards, rest = ([it.mesh for it in pieces] for pieces in (made.shards, made.rest))
     walls, least = [it.walls for it in made.shards + made.rest], _TOUCH * body.diagonal**2
     counts = {"used": plan.breaking, "outside": plan.outside + made.missed}
