@@ -40,8 +40,8 @@ def nearest_face(structure: Structure, position: ArrayLike, start: int = JUMP) -
     on the face that it ends in, within 32 roundings of the largest coordinate there. Elsewhere
     another face may be nearer, such as the other side of a thin plate, and every face is looked at.
 
-    Cost for a position on the surface O(n_t^(1/3)), from ``start`` O(√n_t), times that of
-    ``face_faces``; beside it O(n_v + n_t). Raises MeshError for no position, one farther from the
+    Cost where the walk is believed O(n_t^(1/3)), from ``start`` O(√n_t), times that of
+    ``face_faces``; else O(n_v + n_t). Raises MeshError for no position, one farther from the
     surface than half the diagonal of the bounding box, a start that is no face, a mesh without
     faces, and for polygons.
     """

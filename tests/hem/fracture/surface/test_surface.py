@@ -447,10 +447,11 @@ def require_whole(s: structures.Structure, render: hem.RenderMesh) -> None:
     assert_in_step(render)
 
 
+@pytest.mark.parametrize("compiled", [True, False])
 @pytest.mark.parametrize("name", OF_EACH_KIND)
-def test_an_interrupt_leaves_a_whole_mesh_that_its_followers_know(name, monkeypatch):
+def test_an_interrupt_leaves_a_whole_mesh_that_its_followers_know(name, compiled, monkeypatch):
     """It reaches Python when compiled code ends."""
-    s = structures.build(name, sheet())
+    s = structures.build(name, sheet(), compiled=compiled)
     render, run = hem.RenderMesh(s), type(s).run
 
     def stopped(mesh, make, plan):
