@@ -122,8 +122,8 @@ def remesh(s: Structure, length: float | None = None, iterations: int = 10) -> N
     ``compact`` renumbers. Several edits per iteration. Cost per iteration: O(n_t log n_t) for
     bounded valence; where neighbors are searched for or found anew, that for each split, collapse
     and flip. MeshError for what is no length or number, for a length that takes more faces than
-    there are handles, and for polygons; TopologyError as ``subdivide``. Source: Botsch & Kobbelt
-    (2004).
+    there are handles, and for polygons; TopologyError as ``subdivide``.
+    Source: Botsch & Kobbelt (2004).
     """
     require_mesh(s, "remesh")
     require_surface(s, "remesh")

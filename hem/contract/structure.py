@@ -14,12 +14,12 @@ from hem.arrays import Array, Bools, Handles, Indices, Points
 from hem.authoring import OPERATIONS, QUERIES, Field, Kernel, Operation
 from hem.contract import arguments
 from hem.contract.attributes import Attribute, EdgeAttribute
-from hem.contract.corners import CornerAttribute
 from hem.contract.description import Algorithm, Declared, Described
 from hem.contract.following import AttributeMethod, Followers, Kept
 from hem.contract.operations import Operations, Prepared
 from hem.contract.queries import Queries, QueryMethod, Sweep
 from hem.contract.removal import planned, removing
+from hem.contract.sides import CornerAttribute
 from hem.contract.state import State
 from hem.contract.storage import Storage, UncompiledStorage
 from hem.contract.surveying import Surveying, centroids
