@@ -1,0 +1,178 @@
+"""An algorithm never meets machine code that was made of something else: in new processes."""
+
+from __future__ import annotations
+
+import dis
+import os
+import subprocess
+import sys
+from enum import IntEnum
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+import pytest
+
+import structures
+from hem.authoring import kernel
+from hem.engine import parts_of, uses
+from structures import indexed, triangle_soup
+
+ROOT = Path(__file__).parents[3]
+
+PLAN = """
+from typing import NamedTuple
+import numpy as np
+
+class Plan(NamedTuple):
+    vertices: np.ndarray
+"""
+
+COUNTING = """
+def above(queries, operations):
+    coordinate = queries["coordinate"]
+    @kernel
+    def count(m, plan):
+        found = 0
+        for v in plan.vertices:
+            if coordinate(m, v, 2) > {limit}:
+                found += 1
+        return found
+    return count
+"""
+
+ALGORITHM = "import conf\nfrom hem.authoring import kernel\n" + COUNTING.format(limit="conf.LIMIT")
+
+RUN = """
+import hem, structures
+from plans import Plan
+{above}
+s = structures.build("indexed", hem.generate("torus", 100))
+told = s.run(above, Plan(s.vertices()))
+assert told == (s.points[:, 2] > {limit}).sum(), told
+"""
+
+CELL = """
+from hem.authoring import kernel
+exec(compile({counting!r}, "/tmp/ipykernel_1/cell.py", "exec"))
+"""
+
+
+def in_new_process(folder: Path, text: str, **environment: str) -> str:
+    """What a program prints that stands in a folder, which also has its machine code."""
+    own = {"PYTHONPATH": f"{folder}{os.pathsep}{ROOT}", "PYTHONDONTWRITEBYTECODE": "1"}
+    own |= {"NUMBA_CACHE_DIR": str(folder / "machine code"), **environment}
+    command = [sys.executable, "-c", text]
+    ended = subprocess.run(command, env={**os.environ, **own}, capture_output=True, text=True)
+    assert not ended.returncode, ended.stderr
+    return ended.stdout
+
+
+def test_a_constant_of_another_file_is_never_that_of_a_former_run(tmp_path):
+    (tmp_path / "plans.py").write_text(PLAN)
+    (tmp_path / "alg.py").write_text(ALGORITHM)
+    for limit in (0.1, 9.0):
+        (tmp_path / "conf.py").write_text(f"LIMIT = {limit}")
+        in_new_process(tmp_path, RUN.format(above="from alg import above", limit=limit))
+
+
+def test_a_number_in_a_cell_of_a_notebook_is_never_that_of_a_former_run(tmp_path):
+    (tmp_path / "plans.py").write_text(PLAN)
+    for limit in (0.1, 9.0):
+        above = CELL.format(counting=COUNTING.format(limit=limit))
+        in_new_process(tmp_path, RUN.format(above=above, limit=limit))
+
+
+def compiled(limit: int, body: str) -> Any:
+    """A function of a cell, whose imported constants have this value."""
+    conf = ModuleType("conf")
+    conf.LIMIT, conf.Kind = limit, IntEnum("Kind", {"LIMIT": limit})
+    conf.inner = ModuleType("inner")
+    conf.inner.TABLE = np.array([limit])
+    scope = {"conf": conf, "LIMIT": limit, "Kind": conf.Kind, "kernel": kernel}
+    text = f"def made(closed):\n    @kernel\n    def it(i):\n        {body}\n    return it"
+    exec(compile(text, "/tmp/ipykernel_1/cell.py", "exec"), scope)
+    return scope["made"](limit)
+
+
+@pytest.mark.parametrize(
+    "body",
+    ["LIMIT", "conf.LIMIT", "conf.inner.TABLE[i]", "Kind.LIMIT", "conf.Kind.LIMIT", "closed"],
+)
+def test_what_a_constant_is_enters_the_name(body):
+    one, same, other = (compiled(limit, f"return {body}") for limit in (1, 1, 2))
+    assert uses._digest([one], "") == uses._digest([same], "") != uses._digest([other], "")
+
+
+@pytest.mark.parametrize(
+    ("body", "otherwise"),
+    [
+        ("return i + 1", "return i + 2"),
+        ("return [j + 1 for j in (i, i)]", "return [j + 2 for j in (i, i)]"),
+        ("return (lambda j: j + 1)(i)", "return (lambda j: j + 2)(i)"),
+        ("return i.real", "return i.imag"),
+        ("return i + 1", "return i + 1.0"),
+    ],
+)
+def test_what_is_written_enters_the_name(body, otherwise):
+    assert uses._digest([compiled(1, body)], "") != uses._digest([compiled(1, otherwise)], "")
+
+
+def test_what_a_function_of_a_module_is_made_of_enters_the_name():
+    assert uses.source_of(indexed.split_face_records) in parts_of(
+        triangle_soup.split_face_records, set()
+    )
+
+
+DIGEST = """
+import math, types
+import numpy as np
+from hem.authoring import kernel
+from hem.engine import uses
+
+names, table, thing = frozenset("some names in a set".split()), np.arange(3), object()
+one, other = types.ModuleType("one"), types.ModuleType("other")
+one.other, other.one, one.limit, other.limit = other, one, 2, 3
+
+def make(closed, also):
+    @kernel
+    def count(m, plan):
+        steps = [lambda i: i + math.pi, lambda i: i in {{"a", "b", "c", "d"}}]
+        return names, table[0], thing, one.limit, other.one.other.limit, closed, also, steps, {more}
+    return count
+
+print(uses._digest([make({{1: thing}}, (thing, 2.5))], ""))
+"""
+
+
+def test_unchanged_code_has_one_name_in_every_process(tmp_path):
+    named = {
+        in_new_process(tmp_path, DIGEST.format(more=more), PYTHONHASHSEED=seed)
+        for more in ("1", "2")
+        for seed in ("1", "2", "3")
+    }
+    assert len(named) == 2
+
+
+def test_globals_are_those_that_dis_tells():
+    for kind in structures.REGISTRY.values():
+        for it in kind.declared.operating.values():
+            for part in parts_of(it.kernel, set()):
+                told = dis.get_instructions(part)
+                named = {one.argval for one in told if one.opname == "LOAD_GLOBAL"}
+                assert uses._globals(part.__code__) == named
+
+
+def test_an_attribute_called_as_a_global_is_none():
+    scope: dict[str, object] = {"points": 1}
+    exec("def count(m, plan):\n    return plan.points\ndef read():\n    return points", scope)
+    assert not uses._named(scope["count"])
+    assert uses._named(scope["read"]) == {"points": 1}
+
+
+def test_more_names_than_an_instruction_can_count_are_all_found():
+    names = [f"name{i}" for i in range(300)]
+    scope: dict[str, object] = dict.fromkeys(names, 0)
+    exec(f"def count():\n    return {', '.join(names)}", scope)
+    assert uses._named(scope["count"]).keys() == set(names)
