@@ -185,7 +185,7 @@ def _validated_triangles(triangles: ArrayLike, n: int) -> Triangles:
 
 def _unit_or_zero(vectors: Floats) -> Floats:
     lengths = measures.length(vectors)[:, None]
-    return np.divide(vectors, lengths, out=np.zeros_like(vectors), where=lengths > 0)
+    return np.divide(vectors, lengths, out=np.zeros(vectors.shape), where=lengths > 0)
 
 
 def own(given: Array, dtype: DTypeLike) -> Array:

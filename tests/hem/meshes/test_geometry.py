@@ -54,6 +54,10 @@ def test_a_mesh_without_area_has_no_direction() -> None:
     mesh = hem.TriangleMesh([[0, 0, 0], [1, 1, 1], [2, 2, 2]], [[0, 1, 2]])
     assert not mesh.face_normals().any()
     assert not mesh.vertex_normals().any()
+    points_alone = hem.TriangleMesh([(0, 0, 0), (1, 0, 0)], [])
+    for it, n in ((points_alone, 2), (hem.TriangleMesh([], []), 0)):
+        assert np.array_equal(it.vertex_normals(), np.zeros((n, 3)))
+        assert it.vertex_normals().dtype == it.face_normals().dtype == np.float64
     assert hem.TriangleMesh([], []).face_normals().shape == (0, 3)
 
 
