@@ -516,6 +516,11 @@ def remove_records(m: PlanktonRecords, f: int) -> None:
         kill(m, begin)
 
 
+@kernel
+def set_vertex_face(m: PlanktonRecords, v: int, f: int) -> None:
+    """It knows of it: also past holes its half-edges lead on to all of its faces."""
+
+
 # Building ----------------------------------------------------------------------------------------
 
 

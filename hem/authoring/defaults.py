@@ -1,4 +1,7 @@
-"""Kernels that are the same wherever vertices are rows of an array and faces triangles."""
+"""Kernels that are the same wherever vertices are rows of an array and faces triangles.
+
+Where a vertex refers to other records, ``clear_vertex`` and ``set_vertex_face`` are its own.
+"""
 
 from __future__ import annotations
 

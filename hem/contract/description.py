@@ -10,6 +10,7 @@ import numpy as np
 
 from hem.arrays import Array, Indices
 from hem.authoring import (
+    OF_ARRAYS,
     OPERATIONS,
     QUERIES,
     Kernel,
@@ -114,6 +115,7 @@ class Declared:
         self._place = place_of(cls)
         self._require_parts(cls)
         self.kernels: Kernels = cls.kernels
+        self._require_kernels_of_vertices(cls)
         self.operations, self.steps = cls.operations, cls.steps
         self.storage = cls.storage(cls.fields, self.step if self.steps else None)
         self._uses, self._records = self.storage.uses, cls.records_type
@@ -191,6 +193,16 @@ class Declared:
         claimed = cls.claims.costs if hasattr(cls, "claims") else {}
         if unknown := sorted(set(claimed) - {*QUERIES, *OPERATIONS}):
             raise TypeError(f"{self._place}: claims of no query and no operation: {unknown}")
+
+    def _require_kernels_of_vertices(self, cls: Any) -> None:
+        """What vertices refer to is kept up by kernels of which the defaults do nothing."""
+        refers = any(it.element == "vertex" and it.target for it in cls.fields)
+        for name, called in (("clear_vertex", "(m, v)"), ("set_vertex_face", "(m, v, f)")):
+            if refers and self.kernels.get(name) in (None, OF_ARRAYS[name]):
+                raise TypeError(
+                    f"{self._place} has no kernel {name}{called}, and its vertices refer to "
+                    "records; see hem.authoring.defaults"
+                )
 
     def _kernel(self, name: str, called: str) -> Kernel:
         if name not in self.kernels:

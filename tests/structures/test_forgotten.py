@@ -40,6 +40,8 @@ def write(folder: Path, name: str, changes: dict[str, str]) -> str:
         ("def _require_invariants(", "def _forgotten(", "_require_invariants"),
         ("face_faces = ", "face_neighbors = ", "face_faces(m, f, out) -> count"),
         ("def flip_records(", "def flip(", "flip_records, which flip_edge takes"),
+        ("clear_vertex = ", "forget_vertex = ", "clear_vertex(m, v), and its vertices refer"),
+        ("def set_vertex_face(", "def set_face(", "set_vertex_face(m, v, f), and its vertices"),
     ],
 )
 def test_a_forgotten_part_is_named(tmp_path, monkeypatch, old, new, forgotten):
