@@ -34,6 +34,7 @@ from hem.engine.counting import (
 )
 from hem.engine.fresh import fresh
 from hem.engine.pinned import Columns, borrower, loader
+from hem.engine.plans import everywhere
 
 SHARED = ("edit.py", "authoring/**/*.py", "engine/*.py")
 """What every structure's machine code is made of, beside its own files."""
@@ -108,9 +109,12 @@ class Uses:
         """
         return self._compiled(templates.copy_touched, _EXISTS=exists, _COORDINATE=coordinate)
 
-    @cached_property
-    def run(self) -> Callable[..., int]:
+    def run(self, plan: Any, *records: Any) -> int:
         """``run(plan, *records) -> result``, for an algorithm ``kernel(m, plan)``."""
+        return self._run(everywhere(plan), *records)
+
+    @cached_property
+    def _run(self) -> Callable[..., int]:
         return self._compiled(templates.run)
 
     @property

@@ -125,6 +125,32 @@ def test_what_a_function_of_a_module_is_made_of_enters_the_name():
     )
 
 
+SCRIPT = PLAN + ALGORITHM.replace("import conf", "LIMIT = 0").replace("conf.", "")
+SCRIPT += """
+import hem, structures
+class Within(NamedTuple):
+    plan: Plan
+    also: np.ndarray
+def nested(queries, operations):
+    count = above(queries, operations)
+    @kernel
+    def within(m, plan):
+        return count(m, plan.plan) + plan.also[0]
+    return within
+s = structures.build("indexed", hem.generate("torus", 100))
+plan = Plan(s.vertices())
+assert s.run(above, plan) + 7 == s.run(nested, Within(plan, np.array([7])))
+"""
+
+
+def test_a_script_that_is_run_again_finds_its_machine_code(tmp_path):
+    kept = []
+    for _ in range(2):
+        in_new_process(tmp_path, SCRIPT)
+        kept.append({it.name for it in tmp_path.rglob("*.nbc")})
+    assert kept[0] == kept[1] != set()
+
+
 DIGEST = """
 import math, types
 import numpy as np
