@@ -33,7 +33,7 @@ from hem.contract import Claims, Look, Navigable
 from hem.edit import CHANGED, VERTEX, Edit
 from hem.engine import counting
 from hem.errors import MeshError
-from hem.meshes import TriangleMesh
+from hem.meshes import TriangleMesh, read_only
 from structures.half_edge import HalfEdge as HalfEdgeArrays
 from structures.objects import (
     COUNTED,
@@ -440,8 +440,11 @@ class HalfEdgeMesh(Navigable):
 
     @property
     def points(self) -> NDArray[np.float32]:
-        """(n, 3) float32: positions by vertex, NaN for dead ones; gathered anew. Cost O(n_v)."""
-        return records.positions(self.records.vertices.items)
+        """(n, 3) float32: positions by vertex, NaN for dead ones; gathered anew. Cost O(n_v).
+
+        Read-only, as the vertices would not follow.
+        """
+        return read_only(records.positions(self.records.vertices.items))
 
     def positions(self, vertices: ArrayLike) -> NDArray[np.float32]:
         """See ``Structure.positions``."""

@@ -50,7 +50,7 @@ from hem.authoring import (
     walks,
 )
 from hem.contract import Claims, Look, PackedEdges
-from hem.meshes import TriangleMesh
+from hem.meshes import TriangleMesh, read_only
 from hem.room import rows
 from structures import indexed
 from structures.indexed import Indexed, edge_vertices
@@ -199,9 +199,7 @@ class TriangleSoup(PackedEdges):
     @property
     def points(self) -> Points:
         """See ``Surveying.points``; read-only, as the triangles would not follow."""
-        points = super().points.view()
-        points.flags.writeable = False
-        return points
+        return read_only(super().points)
 
     @classmethod
     def build(cls, mesh: TriangleMesh, reference_bytes: int = 4) -> Self:

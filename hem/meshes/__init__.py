@@ -26,13 +26,13 @@ from hem.meshes.measures import (
 )
 from hem.meshes.polygons import PolygonMesh, repeats_a_corner, require_triangles, simplest
 from hem.meshes.summary import MeshSummary
-from hem.meshes.triangles import TriangleMesh, repeated_corners
+from hem.meshes.triangles import TriangleMesh, read_only, repeated_corners
 
 __all__ = [
     "NOTHING", "MeshSummary", "PolygonMesh", "TriangleMesh", "areas", "bounds", "clusters",
     "components", "corners", "diagonal", "direction", "dot", "euler_number", "foretold", "from_any",
     "from_meshio", "from_pyvista", "from_trimesh", "joined", "length", "non_manifold_edges",
-    "normals", "position", "repeated_corners", "repeats_a_corner", "require_manifold",
+    "normals", "position", "read_only", "repeated_corners", "repeats_a_corner", "require_manifold",
     "require_sound", "require_triangles", "same_way_edges", "simplest", "split_vertices",
     "undirected_edges", "unit", "used_only", "volume",
 ]  # fmt: skip

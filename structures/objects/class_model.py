@@ -28,6 +28,9 @@ from hem.meshes import position
 
 Point = tuple[float, float, float]
 
+BEYOND = 2.0**128 - 2.0**103
+"""What float32 rounds to infinity, and what is larger."""
+
 
 class Vertex:
     """A position, and one half-edge that leaves it; None as long as no face uses it."""
@@ -54,6 +57,8 @@ class Vertex:
     @point.setter
     def point(self, point: Point) -> None:
         x, y, z = position(point).tolist()
+        if max(abs(x), abs(y), abs(z)) >= BEYOND:
+            raise MeshError(f"a position is three finite numbers of float32, not {point!r}")
         self._point = x, y, z
         if (event := self.position_changed) is not None:
             try:

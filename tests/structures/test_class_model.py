@@ -228,10 +228,21 @@ def test_who_follows_the_mesh_is_told_though_a_subscriber_of_the_vertex_raises()
     assert edits[-1].changed_vertices.tolist() == [1]
 
 
-@pytest.mark.parametrize("wrong", [(1, 2), (np.nan, 0, 0), "abc", None])
+LARGEST = float(np.finfo(np.float32).max)
+BEYOND = (0, 0, LARGEST + 2.0**103)  # what rounds to infinity, and nothing less does
+
+
+@pytest.mark.parametrize("wrong", [(1, 2), (np.nan, 0, 0), (0, -1e300, 0), BEYOND, "abc", None])
 def test_a_point_that_is_no_position_moves_nothing(wrong: Any) -> None:
     s = cast("HalfEdgeMesh", structures.build("half_edge_objects", octahedron()))
     before = s.points.copy()
     with pytest.raises(hem.MeshError, match="a position is three finite numbers"):
         s.vertices[1].point = wrong
     assert np.array_equal(s.points, before)
+
+
+def test_a_point_as_large_as_float32_holds_is_a_position() -> None:
+    s = cast("HalfEdgeMesh", structures.build("half_edge_objects", octahedron()))
+    s.vertices[1].point = (0, 0, np.nextafter(LARGEST + 2.0**103, 0))
+    assert s.points[1].tolist() == [0, 0, LARGEST]
+    s.validate()

@@ -99,13 +99,6 @@ def test_what_an_algorithm_writes_is_in_the_soup(algorithm: Any):
     assert np.array_equal(soup_of(s), s.points[s.triangles()])
 
 
-def test_positions_cannot_be_written_past_the_triangles():
-    s = built()
-    with pytest.raises(ValueError, match="read-only"):
-        s.points[7] = 0
-    assert len(s.vertex_faces(7))
-
-
 def test_points_that_a_dead_triangle_kept_are_found():
     s = built()
     s.remove_face(3)
