@@ -29,8 +29,14 @@ from hem.ragged import Ragged
 ENDS = [authoring.VERTEX_END, authoring.EDGE_END, authoring.FACE_END]
 ROOMS = [authoring.VERTEX_ROOM, authoring.EDGE_ROOM, authoring.FACE_ROOM]
 
-TYPICAL_NEIGHBORS = {"vertex": 7, "edge": 11, "face": 3}
+TYPICAL_NEIGHBORS = {"vertex": 7, "edge": 2, "edge_edges": 11, "face": 3}
 """Room to begin with for the answers to a batch, per element; it grows where it is too small."""
+
+SPARE = 1 << 16
+"""Bytes that an answer keeps alive beside itself, at most, where it fills less than half of them.
+
+A vertex of many neighbors takes room for as many, and no other element has as many.
+"""
 
 
 class State:
@@ -111,7 +117,7 @@ class State:
         """The answers for live ``handles``, each of which has at most ``width`` neighbors."""
         self.prepare([query])
         source, target = QUERIES[query]
-        n, typical = len(handles), TYPICAL_NEIGHBORS[source]
+        n, typical = len(handles), TYPICAL_NEIGHBORS.get(query) or TYPICAL_NEIGHBORS[source]
         offsets = np.empty(n + 1, np.int64)
         room = np.empty(typical * n + slice_count(n) * width, HANDLE_TYPES[target])
         batch, records = self.declared.queries[query].batch, self.records
@@ -132,7 +138,9 @@ class State:
                 move(values, room, end)
             end += len(values)
         offsets[n] = end
-        return Ragged(offsets, room[:end])
+        values = room[:end]
+        wasteful = room.nbytes > max(2 * values.nbytes, SPARE)
+        return Ragged(offsets, values.copy() if wasteful else values)
 
     # What is replaced ------------------------------------------------------------------------
 

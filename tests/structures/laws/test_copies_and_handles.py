@@ -18,6 +18,7 @@ import pytest
 
 import hem
 import structures
+from hem.authoring import VALENCE
 from hem.contract import QUERIES, STEPS, Navigable, Structure
 from hem.errors import MeshError, TopologyError
 from hem.ragged import Ragged
@@ -409,6 +410,30 @@ def test_offsets_that_do_not_fit_are_refused() -> None:
             hem.PolygonMesh(np.eye(3), rows)
     of_lists: Any = [0, 3], [0, 1, 2]
     assert hem.PolygonMesh(np.eye(3), Ragged(*of_lists)).faces.to_list() == [[0, 1, 2]]
+
+
+def test_what_is_written_to_the_points_moves_vertices_or_is_refused(name: str) -> None:
+    s = structures.build(name, hem.generate("torus", 100))
+    if s.points.flags.writeable:
+        s.points[7] = 1, 2, 3
+        assert s.points[7].tolist() == s.to_triangles().points[7].tolist() == [1, 2, 3]
+    else:
+        with pytest.raises(ValueError, match="read-only"):
+            s.points[7] = 1, 2, 3
+    assert len(s.vertex_faces(7))
+    s.validate()
+
+
+def test_an_answer_keeps_little_alive_beside_itself(name: str) -> None:
+    s = structures.build(name, hem.generate("torus", 100))
+    s.vertex_faces()
+    s._state._valence_counted = s.records.counts[VALENCE] = 20_000  # as after so many flips
+    for query in QUERIES.values():
+        handles = s.handles(query.source)
+        for asked in (handles[:1], handles):
+            values = getattr(s, query.name)(asked).values
+            owner = values if values.base is None else values.base
+            assert owner.nbytes <= max(2 * values.nbytes, 1 << 16), query.name
 
 
 ALGORITHM = """
