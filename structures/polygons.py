@@ -281,18 +281,27 @@ def corners_around(m: PlanktonRecords, first: int) -> int:
 
 
 @kernel
-def ring_into(m: PlanktonRecords, first: int, out: Array) -> int:
-    """Write the corners across from a vertex, face by face, without the last of each -> count."""
-    v, spoke, count = m.half_edge[first, START], first, 0
-    while True:
-        h = m.half_edge[spoke, NEXT]
-        while tip(m, h) != v:
-            out[count] = m.half_edge[h, START]
-            count += 1
-            h = m.half_edge[h, NEXT]
-        spoke = counterclockwise(m, spoke)
-        if spoke == first:
-            return count
+def ring_touches(m: PlanktonRecords, first: int) -> bool:
+    """Whether a corner across from a vertex, a half-edge of it, comes twice. O(corners).
+
+    What those refer to that were met is turned negative meanwhile: that takes no scratch.
+    """
+    v, touches = m.half_edge[first, START], False
+    for back in range(2):
+        spoke = first
+        while True:
+            h = m.half_edge[spoke, NEXT]
+            while tip(m, h) != v:
+                corner = m.half_edge[h, START]
+                met = m.vertex_half_edge[corner] < 0
+                touches |= met and not back
+                if met == back:
+                    m.vertex_half_edge[corner] = ~m.vertex_half_edge[corner]
+                h = m.half_edge[h, NEXT]
+            spoke = counterclockwise(m, spoke)
+            if spoke == first:
+                break
+    return touches
 
 
 @kernel
@@ -326,20 +335,17 @@ def erase_vertex(
     first = m.vertex_half_edge[v]
     if first < 0 or m.half_edge[first, FACE_OF] < 0:
         return Refusal.BORDER_VERTEX
-    corners = corners_around(m, first)
-    m.counts[SIDES] = max(m.counts[SIDES], corners)
-    m.counts[VALENCE] = max(m.counts[VALENCE], corners)
-    if not has_room(m, 0, 0, log) or not has_scratch(m, out, log):
-        return NEEDS_ROOM
-    count = ring_into(m, first, out)
-    if distinct(out, count) != count or count < 3:
+    if corners_around(m, first) < 3 or ring_touches(m, first):
         return Refusal.TOUCHING
     if dry:
         return ALLOWED
+    if not has_room(m, 0, 0, log) or not has_scratch(m, out, log):
+        return NEEDS_ROOM
     stays, ring = m.half_edge[first, FACE_OF], m.half_edge[first, NEXT]
     edges = kill_spokes(m, first, stays, log)
     m.face_half_edge[stays] = ring
     set_loop_face(m, ring, stays)
+    more_corners(m, stays)
     m.vertex_half_edge[v] = -1
     kill_vertex(m, v)
     m.counts[VERTICES] -= 1

@@ -375,6 +375,39 @@ def test_faces_that_meet_twice_are_not_merged():
         s.merge_faces(ring[0])
 
 
+TOUCHING = [(0, 1, 4, 3, 5, 2), (0, 2, 6, 3, 7, 1), (3, 4, 1, 7), (3, 6, 2, 5)]
+"""Closed; the two faces around vertex 0 meet in vertex 3 as well."""
+
+
+@pytest.mark.parametrize("compiled", [True, False])
+def test_a_refusal_and_a_check_leave_the_bound_on_corners(compiled):
+    mesh = hem.PolygonMesh(np.random.default_rng(0).random((8, 3)), TOUCHING)
+    s = structures.build("plankton", mesh, compiled=compiled)
+    before, most = state(s), s.most_corners
+    for _ in range(2):
+        with pytest.raises(hem.TopologyError, match="other corners"):
+            s.erase_center_vertex(0)
+        assert not s.prepare("erase_vertex", [0]).check().any()
+        assert (state(s), s.most_corners) == (before, most)
+    s.validate()
+    s = structures.build("plankton", mixed_fan(), compiled=compiled)
+    before, most = state(s), s.most_corners
+    assert s.prepare("erase_vertex", [0]).check().all()
+    assert (state(s), s.most_corners) == (before, most)
+    s.erase_center_vertex(0)
+    assert s.most_corners == max(len(row) for row in rows(s).values()) > most
+    s.validate()
+
+
+def mixed_fan(faces: int = 9, corners: int = 30) -> hem.PolygonMesh:
+    """Faces of many corners around vertex 0, which makes one of many more."""
+    n = faces * (corners - 2)
+    points = [(0, 0, 0), *[(np.cos(i), np.sin(i), 0) for i in np.arange(n) * 2 * np.pi / n]]
+    step = corners - 2
+    rings = [[1 + (k * step + i) % n for i in range(corners - 1)] for k in range(faces)]
+    return hem.PolygonMesh(points, [[0, *ring] for ring in rings])
+
+
 def test_what_is_no_polygon_operation_is_an_error_that_says_so():
     s = plankton(sheet())
     with pytest.raises(hem.MeshError, match="three corners or more"):
