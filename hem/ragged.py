@@ -51,7 +51,7 @@ class Ragged:
         Raises IndexError outside ``-len … len - 1``.
         """
         n = len(self)
-        if isinstance(i, slice | list | np.ndarray):
+        if isinstance(i, slice | list) or (isinstance(i, np.ndarray) and i.ndim):
             rows = np.arange(n)[i]
             counts = self.counts[rows]
             offsets = np.concatenate([[0], np.cumsum(counts)])
@@ -59,7 +59,7 @@ class Ragged:
             return Ragged(offsets, self.values[places])
         if not -n <= i < n:
             raise IndexError(f"row {i} of a Ragged of {n} rows")
-        i %= n
+        i = i % n  # anew, as it may be the caller's array
         return self.values[self.offsets[i] : self.offsets[i + 1]]
 
     def __iter__(self) -> Iterator[Array]:

@@ -54,7 +54,7 @@ class Surveying(ABC):
         """(n, 3) float32: positions by vertex; those of dead ones are NaN.
 
         A view: ``move_vertex`` tells subscribers of a new position, writing here does not. It
-        cannot be written to where triangles have points of their own.
+        cannot be written to where positions stand elsewhere as well: in triangles, or in objects.
         """
         points: Points = self.records.vertex_point
         return points[: self.records.counts[VERTEX_END]]
@@ -136,16 +136,22 @@ class Surveying(ABC):
         """The vertices along every border, with the surface on the left, each from its smallest.
 
         Loops come in the order of their smallest vertices; one ends as soon as it is back at its
-        first vertex, also where fans of faces meet. Cost O(n_t log n_t).
+        first vertex, also where fans of faces meet. MeshError names the vertices where a border
+        ends, as it may at an edge with three faces. Cost O(n_t log n_t).
         """
+        border = self._border()
+        if not np.array_equal(*np.sort(border.T)):
+            leaving, arriving = (np.bincount(it, minlength=self.vertex_end) for it in border.T)
+            ends = np.flatnonzero(leaving != arriving)
+            raise MeshError("a border does not come round, but ends", vertices=ends)
         following: dict[int, list[int]] = {}
-        for here, there in self._border().tolist():
+        for here, there in border.tolist():
             following.setdefault(here, []).append(there)
         loops = []
         for start in sorted(following):
             while following[start]:
                 loop, v = [start], following[start].pop(0)
-                while v != start and following.get(v):
+                while v != start:
                     loop.append(v)
                     v = following[v].pop(0)
                 loops.append(np.array(loop, np.int32))

@@ -92,6 +92,20 @@ def test_where_fans_meet_each_has_a_border_of_its_own(name: str) -> None:
     assert sorted(map(sorted, loops)) == [[0, 1, 2], [0, 3, 4], [3, 5, 6]]
 
 
+BOOK = [(0, 1, 2), (1, 0, 3), (0, 1, 4)]
+ENDING = {"a book": (BOOK, [0, 1]), "two ways": ([*BOOK[:2], (0, 2, 1), (1, 2, 4)], [0, 1, 2])}
+
+
+@pytest.mark.parametrize("name", HOLDS_ANYTHING)
+@pytest.mark.parametrize("case", ENDING)
+def test_a_border_that_ends_is_no_loop(name: str, case: str) -> None:
+    faces, ends = ENDING[case]
+    s = structures.build(name, hem.TriangleMesh(np.random.default_rng(0).random((5, 3)), faces))
+    with pytest.raises(MeshError, match="does not come round") as refused:
+        s.border_loops()
+    assert refused.value.elements["vertices"].tolist() == ends
+
+
 def test_components_are_found_face_by_face(whole: structures.Structure) -> None:
     s = whole
     part: dict[int, set[int]] = {}  # by vertex, the vertices joined to it
@@ -134,7 +148,9 @@ def test_rows_of_different_lengths() -> None:
     assert rows[1:3].to_list() == [[], [3]]
     assert rows[::-2].to_list() == [[4, 5, 6], []]
     assert rows[[3, 0]].to_list() == rows[np.array([3, 0])].to_list() == [[4, 5, 6], [1, 2]]
-    assert [rows[i].tolist() for i in (-1, np.int64(0))] == [[4, 5, 6], [1, 2]]
+    place = np.array(-1)
+    assert [rows[i].tolist() for i in (place, np.int64(0))] == [[4, 5, 6], [1, 2]]
+    assert rows[place].tolist() == [4, 5, 6], "its place is the caller's"
     for outside in (4, -5):
         with pytest.raises(IndexError, match="of 4 rows"):
             rows[outside]
