@@ -38,6 +38,14 @@ def integer(called: str, element: str, handle: Any) -> int:
     return int(handle)
 
 
+def number(called: str, of: Any) -> int:
+    """How many; MeshError for what is no such number, or more than indices can name."""
+    most = np.iinfo(np.int32).max
+    if not isinstance(of, int | np.integer) or isinstance(of, bool) or not 0 <= of <= most:
+        raise MeshError(f"{called} takes a number from 0 to {most:,}, not {of!r}")
+    return int(of)
+
+
 def integers(called: str, values: ArrayLike, dimensions: tuple[int, ...] = (0, 1)) -> Array:
     """One handle or a row of them; MeshError for anything but such integers."""
     try:

@@ -318,8 +318,8 @@ class Operations:
         state.count_valence()
         state.widen(2 * n)  # an operation adds at most 2 to a valence
         positions = arguments.NO_POINT
-        if points is not None:
-            positions = arguments.positions("prepare", points, n)
+        if points is not None or self._operations[operation].takes_a_point:
+            positions = arguments.positions(operation, () if points is None else points, n)
         valence = int(state.records.counts[VALENCE])
         entries = n * (3 * valence + ENTRIES) + 2 * (valence + 2 * n + ENTRIES)
         results, log = np.zeros(n, np.int64), np.empty(entries, np.int64)
@@ -327,16 +327,17 @@ class Operations:
         scratch = task, rows, positions, results, state.seen, state.at, state.out["edge"], log
         return Prepared(perform, state.pinned_now(*scratch), task, results)
 
-    def work(self, operation: str, handles: tuple[int, ...], point: ArrayLike) -> int:
+    def work(self, operation: str, handles: tuple[int, ...], point: Any) -> int:
         """See ``Structure.operation_work``."""
         if not 1 <= len(handles) <= 3:
             raise MeshError(f"{operation} takes one to three handles, not {len(handles)}")
         element = self._operations[operation].element
         row = [arguments.integer(operation, element, it) for it in handles]
+        (position,) = arguments.positions(operation, [point], 1)
         self._queries.count_edges()
         self.make_way(operation)
         state, row = self._state, [*row, -1, -1][:3]
-        log, position = state.log, np.asarray(point, np.float32)
+        log = state.log
         log[0] = 0
         work = state.declared.operating[operation].operation_work
         result, accesses = work(row, position, state.out["edge"], log, state.records)

@@ -1,6 +1,5 @@
 """The contract: what every mesh data structure offers, derived from its kernels."""
 
-import operator
 from abc import abstractmethod
 from collections.abc import Callable, Mapping
 from functools import cache, cached_property
@@ -37,7 +36,7 @@ def _uncompiled(kind: Any) -> Any:
     if not kind.compiled:
         return kind
     storage = type("Uncompiled", (UncompiledStorage, kind.storage), {})
-    own = {"storage": storage, "compiled": False, "_like": kind}
+    own = {"storage": storage, "compiled": False, "_like": kind, "__module__": kind.__module__}
     return type(kind.__name__, (kind,), own)
 
 
@@ -275,9 +274,11 @@ class Structure(Described, Surveying, abstract=True):
     def operate(self, operation: str, *handles: int, point: ArrayLike | None = None) -> Edit:
         """Do an operation by its name, as the method of that name does where there is one.
 
-        ``handles``: one to three. Raises KeyError for no operation.
+        ``handles``: three at most. Raises KeyError for no operation.
         """
         first, *more = handles or (-1,)
+        if len(more) > 2:
+            raise MeshError(f"{operation} takes three handles at most, not {len(handles)}")
         ends = [NO_VERTEX if it == -1 else it for it in more]
         return self._do[operation](first, point, *ends, *[-1] * (2 - len(ends)))
 
@@ -629,16 +630,17 @@ class Structure(Described, Surveying, abstract=True):
         """Make all room for so many splits at once, so that none of them has to.
 
         Room for a vertex and two faces each, where a polygon of n corners takes n - 1 faces, and
-        scratch for as many operations of any kind. O(n_v + n_t).
+        scratch for as many operations of any kind. MeshError for more than indices can name. O(n_v
+        + n_t).
         """
-        self._operations.reserve(operator.index(splits))
+        self._operations.reserve(arguments.number("reserve", splits))
 
     def prepare(self, operation: str, args: ArrayLike, points: ArrayLike | None = None) -> Prepared:
         """Have operations ready to be run in one compiled loop, untold to anyone: for measuring.
 
         ``args``: (n,) first handles, or (n, 3) all of them. Refused ones are passed over. There is
         room for them all from here on; the arrays must stay the same until it is run. Raises
-        KeyError for no operation.
+        KeyError for no operation, MeshError without ``points`` where it takes some.
         """
         return self._operations.prepare(operation, args, points)
 

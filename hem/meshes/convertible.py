@@ -9,12 +9,24 @@ import numpy as np
 from numpy.typing import DTypeLike
 
 from hem.arrays import Indices, Points
+from hem.errors import MeshError
 from hem.meshes.edges import distinct_edges
 from hem.meshes.summary import MeshSummary, summarize
 from hem.ragged import Ragged
 
 CELLS = {3: "triangle", 4: "quad"}
 """What meshio calls faces by their corners; the others are polygons."""
+
+
+def position_type(dtype: DTypeLike) -> np.dtype[Any]:
+    """The type to keep positions as; MeshError for another than float32 and float64."""
+    try:
+        kind = np.dtype(dtype)
+    except TypeError:
+        raise MeshError(f"positions are kept as float32 or float64, not as {dtype!r}") from None
+    if kind not in (np.float32, np.float64):
+        raise MeshError(f"positions are kept as float32 or float64, not as {kind}")
+    return kind
 
 
 class Convertible(ABC):
@@ -37,7 +49,8 @@ class Convertible(ABC):
     def astype(self, dtype: DTypeLike) -> Self:
         """The mesh with positions of this type, float32 or float64: itself if they are. O(n)."""
         make: Any = type(self)
-        return self if self.points.dtype == np.dtype(dtype) else make(*self._parts(), dtype)
+        kind = position_type(dtype)
+        return self if self.points.dtype == kind else make(*self._parts(), kind)
 
     def _parts(self) -> list[Any]:
         return list(vars(self).values())[:2]  # behind them stands what others have added

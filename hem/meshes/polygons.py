@@ -9,7 +9,9 @@ from hem.arrays import Bools
 from hem.errors import MeshError
 from hem.meshes.convertible import Convertible
 from hem.meshes.triangles import (
+    NOT_WHOLE,
     TriangleMesh,
+    not_whole,
     out_of_range,
     own,
     read_only,
@@ -108,15 +110,21 @@ def _validated(faces: Faces, n: int) -> Ragged:
     faces = Ragged(offsets.astype(np.int64, copy=False), corners)
     counts = faces.counts
     refuse(counts < 3, "faces have three corners or more", "faces")
-    if not np.issubdtype(corners.dtype, np.integer):
+    if corners.dtype.kind not in "iuf":
         raise MeshError(f"corners are vertex indices, integers, not {corners.dtype}")
-    face = np.repeat(np.arange(len(counts)), counts)
+    if corners.dtype.kind == "f":
+        refuse(_with_any(not_whole(corners), faces), NOT_WHOLE, "faces")
     outside = (corners < 0) | (corners >= n)
     if outside.any():
-        strays = np.bincount(face[outside], minlength=len(counts)) > 0
-        refuse(strays, out_of_range(corners, n), "faces")
+        refuse(_with_any(outside, faces), out_of_range(corners, n), "faces")
     refuse(repeats_a_corner(faces), "faces come past a vertex twice; split or drop them", "faces")
     return Ragged(read_only(own(offsets, np.int64)), read_only(own(corners, np.int32)))
+
+
+def _with_any(corners: Bools, faces: Ragged) -> Bools:
+    """(m,): which faces have any of these ``corners``."""
+    face = np.repeat(np.arange(len(faces)), faces.counts)
+    return np.bincount(face[corners], minlength=len(faces)) > 0
 
 
 def _ragged(faces: Sequence[Sequence[int]]) -> Ragged:

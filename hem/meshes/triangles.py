@@ -1,6 +1,7 @@
 """A mesh as points and triangles: what every source gives and every structure is built from."""
 
 import warnings
+from numbers import Real
 from typing import Any
 
 import numpy as np
@@ -10,7 +11,7 @@ from hem.arrays import Array, Bools, Floats, Points, Triangles
 from hem.errors import MeshError, MeshWarning
 from hem.meshes import measures
 from hem.meshes.components import clusters
-from hem.meshes.convertible import Convertible, library
+from hem.meshes.convertible import Convertible, library, position_type
 from hem.meshes.edges import undirected_edges
 from hem.ragged import Ragged
 
@@ -62,8 +63,8 @@ class TriangleMesh(Convertible):
         Cost: O(n log n + m), and with a tolerance the pairs of vertices that close besides.
         Source: thesis, construction of the mesh (one vertex per position).
         """
-        if not (np.isfinite(tolerance) and tolerance >= 0):
-            raise MeshError(f"a weld tolerance is finite and not negative, not {tolerance}")
+        if not (isinstance(tolerance, Real) and 0 <= tolerance < np.inf):
+            raise MeshError(f"a weld tolerance is finite and not negative, not {tolerance!r}")
         first, cluster = clusters(self.points, tolerance)
         triangles = cluster[self.triangles]
         triangles = triangles[~repeated_corners(triangles)]
@@ -141,10 +142,9 @@ def repeated_corners(triangles: Triangles) -> Bools:
 def validated_points(points: ArrayLike, dtype: DTypeLike) -> Points:
     """The positions (n, 3) as this type."""
     given = _rows_of_three(points, "points", kinds="fiu")
-    if np.dtype(dtype) not in (np.float32, np.float64):
-        raise MeshError(f"positions are kept as float32 or float64, not as {np.dtype(dtype)}")
+    kind = position_type(dtype)
     with np.errstate(over="ignore"):
-        kept = own(given, dtype)
+        kept = own(given, kind)
     if not np.isfinite(kept).all():
         rows = np.flatnonzero(~np.isfinite(kept).all(axis=1))
         why = "not finite" if not np.isfinite(given[rows]).all() else f"too large for {kept.dtype}"
@@ -173,14 +173,20 @@ def _tell_of_equal(given: Array, kept: Points) -> None:
 def _validated_triangles(triangles: ArrayLike, n: int) -> Triangles:
     given = _rows_of_three(triangles, "triangles", kinds="iuf")
     if given.dtype.kind == "f":
-        refuse(
-            ~np.isfinite(given) | (given != np.floor(given)), "vertex indices are not whole numbers"
-        )
+        refuse(not_whole(given), NOT_WHOLE)
     if given.size and (given.min() < 0 or given.max() >= n):
         refuse((given < 0) | (given >= n), out_of_range(given, n))
     kept = own(given, np.int32)
     refuse(repeated_corners(kept), "triangles use a vertex twice; drop them, or see welded()")
     return kept
+
+
+NOT_WHOLE = "vertex indices are not whole numbers"
+
+
+def not_whole(given: Array) -> Bools:
+    """Which of these floats are no integers."""
+    return ~np.isfinite(given) | (given != np.floor(given))
 
 
 def _unit_or_zero(vectors: Floats) -> Floats:

@@ -5,7 +5,7 @@ import subprocess
 import sys
 from collections import Counter
 from itertools import combinations
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 import pytest
@@ -140,10 +140,33 @@ def test_welding_within_a_tolerance_joins_chains_and_parts_the_rest() -> None:
     assert np.array_equal(welded.points, points[first])
 
 
-@pytest.mark.parametrize("tolerance", [-1.0, np.nan, np.inf])
-def test_a_tolerance_is_finite_and_not_negative(tolerance: float) -> None:
+@pytest.mark.parametrize("tolerance", [-1.0, np.nan, np.inf, "a", None, [1.0]])
+def test_a_tolerance_is_finite_and_not_negative(tolerance: Any) -> None:
     with pytest.raises(hem.MeshError, match="tolerance"):
         hem.TriangleMesh(SQUARE, HALVES).welded(tolerance)
+
+
+@pytest.mark.parametrize("dtype", ["x", "float16", int, object()])
+def test_positions_are_kept_as_float32_or_float64(dtype: Any) -> None:
+    mesh = hem.TriangleMesh(SQUARE, HALVES)
+    for make in (hem.TriangleMesh, hem.PolygonMesh):
+        with pytest.raises(hem.MeshError, match="float32 or float64"):
+            make(SQUARE, HALVES, dtype)
+    with pytest.raises(hem.MeshError, match="float32 or float64"):
+        mesh.astype(dtype)
+
+
+def test_whole_floats_are_indices_of_triangles_and_of_polygons() -> None:
+    for make in (hem.TriangleMesh, hem.PolygonMesh):
+        mesh = make(SQUARE, HALVES.astype(float))
+        assert mesh.face_rows().to_list() == HALVES.tolist()
+        assert mesh.face_rows().values.dtype == np.int32
+        for wrong in (0.5, np.nan, np.inf):
+            with pytest.raises(hem.MeshError, match="not whole numbers") as refused:
+                make(SQUARE, np.where(HALVES == 3, wrong, HALVES))
+            assert [it.tolist() for it in refused.value.elements.values()] == [[1]]
+        with pytest.raises(hem.MeshError, match="out of the range"):
+            make(SQUARE, HALVES + 1.0)
 
 
 def test_a_summary_counts_what_sets_count() -> None:

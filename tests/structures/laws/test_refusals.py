@@ -371,6 +371,42 @@ def test_an_edge_of_another_face_that_runs_the_same_way_stays(name):
         assert s.n_edges == len(s.edges()) == 3
 
 
+def test_what_takes_a_point_is_not_prepared_without(name):
+    s = structures.build(name, octahedron())
+    before = s.copy()
+    for operation, handle in (("split_face", 0), ("split_edge", int(s.edges()[0]))):
+        with pytest.raises(hem.MeshError, match="one point per handle"):
+            s.prepare(operation, [handle])
+    for operation in ("split_face", "move_vertex"):
+        s.prepare(operation, np.zeros(0, np.int64)).run()
+    assert s.same_as(before)
+
+
+@pytest.mark.parametrize(
+    "point", [(1, 2), "a", None, (np.nan, 0, 0), [[1, 2, 3]], 7, (1e300, 0, 0)]
+)
+def test_no_work_is_counted_at_what_is_no_position(name, point):
+    s = structures.build(name, octahedron())
+    before = s.copy()
+    for operation in ("split_face", "move_vertex"):
+        with pytest.raises(hem.MeshError):
+            s.operation_work(operation, 0, point=point)
+    assert s.same_as(before)
+
+
+@pytest.mark.parametrize("wrong", [10**19, 2**31, -1, 1.5, "7", None, True])
+def test_room_is_made_for_a_number_of_splits(name, wrong):
+    s = structures.build(name, octahedron())
+    with pytest.raises(hem.MeshError, match="reserve takes a number"):
+        s.reserve(wrong)
+
+
+def test_more_handles_than_an_operation_can_take_are_refused(name):
+    s = structures.build(name, octahedron())
+    with pytest.raises(hem.MeshError, match="add_face takes three handles at most, not 4"):
+        s.operate("add_face", 0, 1, 2, 3)
+
+
 def test_a_vertex_that_names_none_is_not_told_by_another_number(name):
     s = structures.build(name, octahedron())
     with pytest.raises(TopologyError, match="end") as refused:

@@ -76,6 +76,12 @@ def test_queries_operations_and_refusals_are_those_of_compiled_code(name, mesh):
     require_alike(one, other)
 
 
+@pytest.mark.parametrize("name", COMPILED)
+def test_the_class_is_called_as_the_compiled_one(name):
+    kind = structures.REGISTRY[name]
+    assert repr(kind.uncompiled()) == repr(kind)
+
+
 @pytest.mark.parametrize("name", OF_POLYGONS)
 def test_polygons_are_as_in_compiled_code(name):
     points = [(x, y, 0) for y in range(3) for x in range(3)]
