@@ -10,7 +10,7 @@ A structure's file says once how its records answer a query for one element::
 Everything else is derived. When the class is made, a ``Uses`` is put around each kernel; nothing is
 compiled yet. It binds its kernel into one of the ``templates``, small loops with free names, and
 compiles the two as one function, which Numba keeps on disk under a name with a digest of all files
-that it is made of. That happens the first time each of these is asked for:
+and constants that it is made of. That happens the first time each of these is asked for:
 
 - *single*, ``s.vertex_faces(7)``. Records and scratch are ``Pinned`` in memory as one image that
   compiled code reads by its address, so that a call hands over two integers instead of a dozen

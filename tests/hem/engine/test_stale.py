@@ -176,7 +176,7 @@ def test_unchanged_code_has_one_name_in_every_process(tmp_path):
     named = {
         in_new_process(tmp_path, DIGEST.format(more=more), PYTHONHASHSEED=seed)
         for more in ("1", "2")
-        for seed in ("1", "2", "3")
+        for seed in ("1", "2")
     }
     assert len(named) == 2
 
@@ -187,7 +187,7 @@ def test_globals_are_those_that_dis_tells():
             for part in parts_of(it.kernel, set()):
                 told = dis.get_instructions(part)
                 named = {one.argval for one in told if one.opname == "LOAD_GLOBAL"}
-                assert uses._globals(part.__code__) == named
+                assert uses._names(part.__code__)[0] == sorted(named)
 
 
 def test_an_attribute_called_as_a_global_is_none():
