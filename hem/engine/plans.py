@@ -24,8 +24,10 @@ def everywhere(plan: Any) -> Any:
 
 @cache
 def _found_everywhere(kind: Any) -> Any:
-    home = None if kind.__module__ == "__main__" else sys.modules.get(kind.__module__)
-    if getattr(home, kind.__qualname__, None) is kind or not hasattr(kind, "_fields"):
+    home = sys.modules.get(kind.__module__)  # there is none where text is run under a made-up name,
+    if home is None or not hasattr(kind, "_fields"):  # and Numba looks for it to load kernels
+        return kind
+    if kind.__module__ != "__main__" and getattr(home, kind.__qualname__, None) is kind:
         return kind
     return getattr(sys.modules[__name__], CALLED + " ".join(kind._fields))
 

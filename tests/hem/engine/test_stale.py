@@ -151,6 +151,12 @@ def test_a_script_that_is_run_again_finds_its_machine_code(tmp_path):
     assert kept[0] == kept[1] != set()
 
 
+def test_text_that_is_of_no_module_runs_again(tmp_path):
+    """Numba could not load what it kept of it."""
+    for _ in range(2):
+        in_new_process(tmp_path, f"exec({SCRIPT!r}, {{'__name__': 'page'}})")
+
+
 DIGEST = """
 import math, types
 import numpy as np
