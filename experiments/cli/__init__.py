@@ -77,6 +77,8 @@ def show_table(
     """
     from experiments import report
 
+    if peers and (every or slopes):
+        raise ValueError("--all and --slopes are of our structures; leave them out with --peers")
     folder = None if peers and run is None else run_folder(run)
     if peers and as_json:
         print_json(report.peers_as_json(folder))
@@ -105,6 +107,8 @@ def write_report(
 
     Example: `hem report results/runs/NAME --output pages`
     """
+    if page and pdf:
+        raise ValueError("--page and --pdf write different things; ask for one of them")
     folder = run_folder(run)
     from experiments import report
 

@@ -49,8 +49,9 @@ def check(
     with user_errors(2):  # 1 says that something got worse
         if factor is not None and not factor > 1:
             raise ValueError(f"--factor is more than 1, such as 1.5, not {factor:g}")
-        if markdown is not None:  # rather now than after all was measured
+        if markdown is not None and not markdown.exists():  # rather now than after all is measured
             markdown.touch()
+            markdown.unlink()
         compared = _compare(run, beside, structure or [], factor, baseline)
         from experiments.regression import exit_code
         from experiments.report import findings as shown

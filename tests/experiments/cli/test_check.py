@@ -39,6 +39,19 @@ def test_a_mistake_is_one_line_and_never_a_pass(arguments, said, baseline):
     assert said in mistake("check", *arguments, *options, code=2)
 
 
+def test_a_mistake_leaves_no_empty_summary(baseline, tmp_path):
+    page = tmp_path / "check.md"
+    mistake("check", "nowhere", "--markdown", str(page), "--baseline", str(baseline), code=2)
+    assert not page.exists()
+
+
+@pytest.mark.parametrize(
+    "arguments", [("table", "--peers", "--all"), ("report", "--page", "--pdf")]
+)
+def test_options_that_do_not_go_together_are_refused(arguments):
+    assert arguments[1] in mistake(*arguments)
+
+
 @pytest.mark.parametrize("text", ["{", "[]", '{"schema": 99}'])
 def test_a_broken_baseline_is_named_with_the_way_out(text, baseline):
     (baseline / COUNTERS / "run.json").write_text(text)
