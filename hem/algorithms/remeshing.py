@@ -55,6 +55,9 @@ SHARP = 0.8
 STRAIGHT = 0.04
 """How much of the normals around a vertex may point along a crease: a part of their squares."""
 
+ACROSS = 0.5
+"""How far a crease may lean toward the normal of its vertex: the cosine between them."""
+
 
 class Flips(NamedTuple):
     """Which edges are looked at, and what is known of the vertices."""
@@ -197,23 +200,29 @@ def relax(s: Structure, surface: Surface) -> None:
 
 
 def stay_where_faces_turn(s: Structure, places: Floats) -> None:
-    """Put back, in ``places`` (n, 3), the corners of faces that turn, until none does."""
+    """Put back, in ``places`` (n, 3), the corners of faces that turn, until none does.
+
+    A face can turn only where a corner was moved, or put back just before.
+    """
     corners = from_smallest(s.triangles())
     before = face_normals(s.points[corners].astype(np.float64))
-    while True:
-        after = face_normals(places[corners])
-        least = LEAST_COSINE * np.sqrt((before**2).sum(axis=1) * (after**2).sum(axis=1))
-        turned = corners[(before * after).sum(axis=1) < least]
-        if not len(turned):
-            return
+    faces = np.arange(len(corners))
+    while len(faces):
+        was, now = before[faces], face_normals(places[corners[faces]])
+        least = LEAST_COSINE * np.sqrt((was**2).sum(axis=1) * (now**2).sum(axis=1))
+        turned = corners[faces[(was * now).sum(axis=1) < least]]
         places[turned] = s.points[turned]
+        put_back = np.zeros(len(places), np.bool_)
+        put_back[turned] = True
+        faces = np.flatnonzero(put_back[corners].any(axis=1))
 
 
 def find_creases(s: Structure, normals: Array) -> tuple[Indices, Floats]:
     """The vertices (k,) whose faces lean away from their normals, and which way (k, 3) creases run.
 
-    That is where the unit normals of the faces around a vertex point least. Zeros where they point
-    everywhere, as at the corner of a cube.
+    That is where the unit normals of the faces around a vertex point least, across the vertex's
+    own. Zeros where they point everywhere, as at the corner of a cube; where they lie in one line,
+    as at a fold; and where a crease would run along the vertex's own, as at the tip of a spike.
     """
     corners = from_smallest(s.triangles())
     facing = face_normals(s.points[corners].astype(np.float64))
@@ -226,5 +235,7 @@ def find_creases(s: Structure, normals: Array) -> tuple[Indices, Floats]:
     squares = around[:, :, None] * around[:, None]
     np.add.at(spread, np.searchsorted(sharp, corners[face, at]), squares)
     strengths, ways = np.linalg.eigh(spread)
-    runs = strengths[:, :1] <= STRAIGHT * strengths.sum(axis=1, keepdims=True)
-    return sharp, np.where(runs, ways[:, :, 0], 0.0)
+    crease, total = ways[:, :, 0], strengths.sum(axis=1)
+    runs = (strengths[:, 0] <= STRAIGHT * total) & (strengths[:, 1] > STRAIGHT**2 * total)
+    runs &= np.abs((crease * normals[sharp]).sum(axis=1)) < ACROSS
+    return sharp, np.where(runs[:, None], crease, 0.0)

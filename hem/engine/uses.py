@@ -18,7 +18,7 @@ from types import CodeType, FunctionType, ModuleType, NoneType
 from typing import Any
 
 import numpy as np
-from numba import njit
+from numba import njit, types
 from numpy.typing import NDArray
 
 from hem.arrays import Array
@@ -213,44 +213,56 @@ def _digest(bound: Iterable[Any], variant: str) -> str:
     """Of records, kernels and all that they call: the files they stand in, and which they are."""
     parts = {part for it in bound for part in parts_of(it, set())}
     files = sorted({inspect.getfile(part) for part in parts})
-    told_apart = "".join(sorted(map(_told_apart, parts))) + variant
+    told: dict[Any, str] = {}
+    told_apart = "".join(sorted(_told_apart(part, told) for part in parts)) + variant
     content = b"".join(map(_contents, files)) + _shared_contents() + told_apart.encode()
     return hashlib.blake2b(content, digest_size=6).hexdigest()
 
 
-def _told_apart(part: Any) -> str:
+def _told_apart(part: Any, told: dict[Any, str]) -> str:
     """What tells a function from others of its name in its file: its code, and what is baked in.
 
     Two kernels that one function makes differ by nothing else. Constants come from other files as
-    well, and a cell of a notebook has none.
+    well, and a cell of a notebook has none. ``told``: of those that were asked about already.
     """
-    if isinstance(part, type):
-        return part.__qualname__
-    values = {name: _spelled(it) for name, it in _named(part).items()}
-    told = [part.__qualname__, part.__code__.co_firstlineno, _spelled(part.__defaults__)]
-    return f"{told} {sorted(values.items())} {_written(part.__code__)}"
+    if part not in told:
+        told[part] = part.__qualname__  # where it names itself
+        if not isinstance(part, type):
+            values = {name: _spelled(it, told) for name, it in _named(part).items()}
+            which = [part.__code__.co_firstlineno, _spelled(part.__defaults__, told)]
+            content = f"{which} {sorted(values.items())} {_written(part.__code__)}"
+            told[part] += " " + hashlib.blake2b(content.encode(), digest_size=8).hexdigest()
+    return told[part]
 
 
 @cache
 def _written(code: CodeType) -> str:
     """What stands in the code of a function and of all within, names and constants included."""
-    constants = [_spelled(it) for code in _codes(code) for it in code.co_consts]
+    constants = [_spelled(it, {}) for code in _codes(code) for it in code.co_consts]
     return f"{[(it.co_code.hex(), it.co_names) for it in _codes(code)]} {constants}"
 
 
-def _spelled(value: Any) -> str:
+def _spelled(value: Any, told: dict[Any, str]) -> str:
     """A value that can be baked in, alike in every process: no address, no order by hashes."""
     if isinstance(value, np.ndarray) and not value.dtype.hasobject:
         content = hashlib.blake2b(value.tobytes()).hexdigest()
         return f"{value.dtype.descr} {value.shape} {content}"
     if isinstance(value, tuple | list):
-        return f"{type(value).__qualname__} {[*map(_spelled, value)]}"
+        return f"{type(value).__qualname__} {[_spelled(it, told) for it in value]}"
     if isinstance(value, frozenset):
-        return f"frozenset {sorted(map(_spelled, value))}"
-    return repr(value) if isinstance(value, _SPELLED) else type(value).__qualname__
+        return f"frozenset {sorted(_spelled(it, told) for it in value)}"
+    if is_compiled(value):
+        return _told_apart(source_of(value), told)
+    if isinstance(value, _SPELLED):
+        return repr(value)
+    name = getattr(value, "__qualname__", getattr(value, "__name__", None))  # of ufuncs, as well
+    return f"{getattr(value, '__module__', '')} {name or type(value).__qualname__}"
 
 
-_SPELLED = bool, int, float, complex, str, bytes, NoneType, np.generic, np.dtype, Enum
+_SPELLED = (
+    *(bool, int, float, complex, str, bytes, NoneType, Enum),
+    *(np.generic, np.dtype, types.Type),
+)
 
 
 def _named(source: FunctionType) -> dict[str, Any]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dis
+import math
 import os
 import subprocess
 import sys
@@ -13,6 +14,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from numba import types
 
 import structures
 from hem.authoring import kernel
@@ -117,6 +119,38 @@ def test_what_a_constant_is_enters_the_name(body):
 )
 def test_what_is_written_enters_the_name(body, otherwise):
     assert uses._digest([compiled(1, body)], "") != uses._digest([compiled(1, otherwise)], "")
+
+
+@kernel
+def one():
+    return 1
+
+
+@kernel
+def two():
+    return 2
+
+
+@pytest.mark.parametrize(
+    ("it", "other"),
+    [
+        ((one, two), (two, one)),
+        ((np.float32, one), (np.float64, one)),
+        ((np.sin, one), (np.cos, one)),
+        ((math.sin, one), (math.cos, one)),
+        ((types.int32, one), (types.int64, one)),
+    ],
+)
+def test_what_is_called_enters_the_name_by_where_it_is_called(it, other):
+    def made(first, second):
+        @kernel
+        def kernel_of_both(i):
+            return first(i) + second()
+
+        return kernel_of_both
+
+    assert uses._digest([made(*it)], "") == uses._digest([made(*it)], "")
+    assert uses._digest([made(*it)], "") != uses._digest([made(*other)], "")
 
 
 def test_what_a_function_of_a_module_is_made_of_enters_the_name():
