@@ -195,8 +195,9 @@ def _detail(of_run: Curves, operation: str, workload: str) -> Iterable[float]:
 
 def _more_bytes(of_run: Curves) -> Iterable[float]:
     """The query that gains most, of the structures in the order of their bytes."""
-    for smaller, larger in itertools.pairwise((BASE, NEIGHBOR, HALF)):
-        yield min(_times(of_run, larger, smaller, QUERIES), default=np.nan)
+    pairs = itertools.pairwise((BASE, NEIGHBOR, HALF))
+    gains = [min(_times(of_run, more, less, QUERIES), default=np.nan) for less, more in pairs]
+    yield from [] if np.isnan(gains).any() else gains
 
 
 def _local_update(of_run: Curves) -> Iterable[float]:
@@ -277,8 +278,10 @@ QUANTITIES: dict[str, Quantity] = {
     "collapse_by_valence": lambda of_run: _slopes(of_run, HALF_EDGES, COLLAPSE),
     "static": _static,
     "dynamic": lambda of_run: _workload(of_run, "impacts"),
-    "subdivision": lambda of_run: _detail(of_run, "split_face", "subdivision"),
-    "reduction": lambda of_run: _detail(of_run, "collapse_edge", "simplification"),
+    "subdivision": lambda of_run: _slopes(of_run, (HALF,), SPLITS, "operations"),
+    "subdivision_time": lambda of_run: _detail(of_run, "split_face", "subdivision"),
+    "reduction": lambda of_run: _slopes(of_run, (HALF,), COLLAPSE, "operations"),
+    "reduction_time": lambda of_run: _detail(of_run, "collapse_edge", "simplification"),
     "larger_meshes": _extra_bytes,
     "larger_meshes_repay": _pays_at_most,
     "edits_after_building": _edits_after_building,
@@ -298,7 +301,8 @@ QUANTITIES: dict[str, Quantity] = {
 """What can be measured of a sentence, by the name that ``sentences.toml`` uses, in its order."""
 
 TIMED = {
-    "winged_half_time", "more_bytes", "local_update", "static", "dynamic", "subdivision",
-    "reduction", "larger_meshes_repay", "edits_after_building", "draft_faces",
+    "winged_half_time", "more_bytes", "local_update", "static", "dynamic",
+    "subdivision_time", "reduction_time", "larger_meshes_repay", "edits_after_building",
+    "draft_faces",
 }  # fmt: skip
 """Those that compare times."""

@@ -121,12 +121,11 @@ def _as_given(default: ArrayLike, dtype: DTypeLike) -> Array:
     given = np.asarray(default)
     with np.errstate(over="ignore", invalid="ignore"):
         value = np.array(default, dtype)
-    if given.dtype.kind in "biuf" and value.dtype.kind in "biuf":
-        exact = value.dtype.kind != "f"
-        fits = value == given if exact else np.isfinite(value) == np.isfinite(given)
-        if not np.all(fits):
-            words = f"{value.dtype} cannot hold the default {default!r}"
-            raise ValueError(f"{words}; say another, or another dtype")
+    rounded = value.dtype.kind == "f" and given.dtype.kind in "biuf"
+    fits = np.isfinite(value) == np.isfinite(given) if rounded else value == given
+    if not np.all(fits):
+        words = f"{value.dtype} cannot hold the default {default!r}"
+        raise ValueError(f"{words}; say another, or another dtype")
     return value
 
 

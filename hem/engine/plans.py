@@ -35,6 +35,7 @@ def _found_everywhere(kind: Any) -> Any:
 def __getattr__(name: str) -> Any:
     if not name.startswith(CALLED):
         raise AttributeError(name)
-    made: Any = namedtuple("Plan", name.removeprefix(CALLED).split())  # type: ignore[misc]
+    fields = name.removeprefix(CALLED).split()
+    made: Any = namedtuple("Plan", fields, rename=True)  # type: ignore[misc]
     made.__module__, made.__qualname__ = __name__, name
     return globals().setdefault(name, made)

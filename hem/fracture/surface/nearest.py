@@ -37,8 +37,9 @@ def nearest_face(structure: Structure, position: ArrayLike, start: int = JUMP) -
 
     The walk begins at the nearest of n_t^(1/3) faces (Mücke, Saias & Zhu, Fast randomized point
     location without preprocessing, 1996), or at ``start``. It is believed where the position lies
-    on the face that it ends in, within 32 roundings of the largest coordinate there. Elsewhere
-    another face may be nearer, such as the other side of a thin plate, and every face is looked at.
+    on the face that it ends in, or beside it by a thousandth of its longest side or 32 roundings.
+    Elsewhere another face may be nearer, such as the other side of a thin plate, and every face is
+    looked at.
 
     Cost where the walk is believed O(n_t^(1/3)), from ``start`` O(√n_t), times that of
     ``face_faces``; else O(n_v + n_t). Raises MeshError for no position, one farther from the

@@ -9,6 +9,7 @@ that the rest is a sound mesh.
 
 from collections.abc import Callable, Sequence
 from functools import cached_property
+from numbers import Real
 from typing import Any
 
 import numpy as np
@@ -169,7 +170,7 @@ def break_points(material: Material, seed: int, step: float) -> Floats:
     arithmetic decides, the same on every machine. Raises MeshError for a step that is no length,
     and a seed that is none.
     """
-    if not (isinstance(step, int | float | np.number) and 0 < step < np.inf):
+    if not (isinstance(step, Real) and 0 < step < np.inf):
         raise MeshError(f"the scale of the circles is a positive length, not {step!r}")
     random = generator(seed).random
     circles = [np.zeros((0, 2))]

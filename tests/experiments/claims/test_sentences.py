@@ -69,11 +69,11 @@ def test_what_the_article_says_is_run(base_run):
 WHERE_ALL_HOLDS = (
     "soup", "winged_half_time", "published_splits", "corrected_splits", "published_collapse",
     "outlook", "corrected_collapse", "collapse_by_valence", "local_update", "almost_free",
-    "stored_previous", "reduction",
+    "stored_previous", "reduction_time",
 )  # fmt: skip
 ALSO_CONSISTENT = (
     "bytes_ratio", "winged_half", "dynamic", "static", "edits_after_building", "answers",
-    "more_bytes",
+    "more_bytes", "subdivision", "reduction",
 )  # fmt: skip
 
 
@@ -117,7 +117,11 @@ def contrary(tmp_path_factory: pytest.TempPathFactory):
 
 @pytest.mark.parametrize(
     "quantity",
-    [*(it for it in WHERE_ALL_HOLDS if it != "published_collapse"), "subdivision", "dynamic"],
+    [
+        *(it for it in WHERE_ALL_HOLDS if it != "published_collapse"),
+        "subdivision_time",
+        "dynamic",
+    ],
 )
 def test_what_holds_in_one_run_is_violated_in_the_contrary_one(contrary, quantity):
     assert outcome(contrary, quantity) == "violated"
@@ -133,12 +137,18 @@ def test_what_the_draft_says_of_faces_is_judged_by_time(tmp_path, indexed, said)
     law, timed = {"indexed": lambda n_t, n_ev: indexed}, ("bench_queries", "bench_operations")
     run = load(write_run(tmp_path, lambda s, q, p: law.get(s), lambda it, _: it in timed))
     assert outcome(run, "draft_faces") == said
-    assert outcome(run, "subdivision") == said
+    assert outcome(run, "subdivision_time") == said
 
 
 def test_more_bytes_that_quicken_no_query_refute_the_thesis(tmp_path):
     run = load(write_run(tmp_path, lambda s, q, p: lambda n_t, n_ev: 100.0))
     assert outcome(run, "more_bytes") == "violated"
+
+
+def test_operations_that_grow_with_the_mesh_suit_no_change_of_detail(tmp_path):
+    law = {"half_edge": lambda n_t, n_ev: 3.0 * n_t}
+    run = load(write_run(tmp_path, lambda s, q, p: law.get(s)))
+    assert outcome(run, "subdivision") == outcome(run, "reduction") == "violated"
 
 
 @pytest.mark.parametrize(("growth", "said"), [(100, "consistent"), (1, "violated")])
