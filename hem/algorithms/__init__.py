@@ -2,14 +2,13 @@
 
 It is compiled for every structure from that one source (``Structure.run``), and interpreted for
 those of objects; all structures give the same. README.md shows how to write one's own. What else
-changes meshes checks them by `require_mesh` and `require_surface`, and has interrupts `put_back`.
+changes meshes checks them by `require_mesh` and `require_edges`.
 """
 
+from hem.algorithms.arguments import require_edges as require_edges
 from hem.algorithms.arguments import require_mesh as require_mesh
-from hem.algorithms.arguments import require_surface as require_surface
 from hem.algorithms.impacts import impacts
 from hem.algorithms.normals import vertex_normals
-from hem.algorithms.parts import put_back as put_back
 from hem.algorithms.remeshing import remesh
 from hem.algorithms.sieger_botsch import SIX, center, circulate, split_and_collapse
 from hem.algorithms.simplification import MEASURES, simplify

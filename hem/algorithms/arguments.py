@@ -73,10 +73,10 @@ def finding_pillows(k: Kernels, operations: Kernels) -> Kernel:
     return find
 
 
-def require_surface(s: Structure, called: str) -> None:
-    """Raise TopologyError where some splits, flips or collapses would be refused.
+def require_edges(s: Structure, called: str) -> None:
+    """Raise TopologyError for edges in more than two faces, or in two that pass them the same way.
 
-    Cost: ``vertex_faces`` of all; O(n_t log n_t) where nothing is recorded of neighbors.
+    Cost O(n_t log n_t) where nothing is recorded of neighbors; else O(1), as none can be held.
     """
     if s.searches or s.rebuilds:
         here = s.triangles().astype(np.int64)
@@ -86,7 +86,15 @@ def require_surface(s: Structure, called: str) -> None:
             edges = np.sort(np.stack([crowded >> 32, crowded & 0xFFFFFFFF], axis=1), axis=1)
             words = "edges lie in more than two faces, or in two that pass them the same way"
             raise TopologyError(f"cannot {called}: {words}", edges=np.unique(edges, axis=0))
-    elif s.run(finding_pillows, Counting(s.scratch(0)[0])) < 0:
+
+
+def require_surface(s: Structure, called: str) -> None:
+    """Raise TopologyError where some splits, flips or collapses would be refused.
+
+    Cost: ``vertex_faces`` of all; O(n_t log n_t) where nothing is recorded of neighbors.
+    """
+    require_edges(s, called)
+    if not (s.searches or s.rebuilds) and s.run(finding_pillows, Counting(s.scratch(0)[0])) < 0:
         return
     corners = np.sort(s.triangles(), axis=1)
     _, first, count = np.unique(corners, axis=0, return_index=True, return_counts=True)

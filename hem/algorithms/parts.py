@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager
 from functools import cache
 from typing import Any, NamedTuple
 
@@ -136,27 +134,17 @@ def most_faces_at_a_vertex(s: Structure) -> int:
 
 def step(s: Structure, make: Algorithm, plan: Any, out: Any, log: Any, left: int) -> int:
     """Run an algorithm for so many operations -> its result. What is interrupted is not done."""
+    before = None if s.compiled else s.snapshot()
     args, point, at = np.full(3, -1), np.zeros(3, np.float32), np.zeros(6, np.int64)
     count, forgets = np.array([left]), np.array([int(not s.followed)])
     own: tuple[Any, ...] = args, point, at, out, log, count, forgets
     # True and True are 2 to Python's own numbers, as they are to compiled code.
     work = Work(*(it if s.compiled else memoryview(it) for it in own))
     log[0] = 0
-    with put_back(s, log):
-        return s.run(make, plan._replace(work=work))
-
-
-@contextmanager
-def put_back(s: Structure, log: Any) -> Iterator[None]:
-    """Put back a mesh that is interpreted, and empty the log, if what is within is interrupted.
-
-    Python may stop in the midst of an operation; compiled code does not. Cost O(n) then.
-    """
-    before = None if s.compiled else s.snapshot()
     try:
-        yield
+        return s.run(make, plan._replace(work=work))
     except BaseException:
-        if before is not None:
+        if before is not None:  # Python may stop in the midst of an operation
             log[0] = 0
             s.restore(before)
         raise

@@ -57,7 +57,7 @@ def nearest_face(structure: Structure, position: ArrayLike, start: int = JUMP) -
         _, point = closest(face_corners(structure, np.array([face])), p)
         if length(point - p) <= ROUNDING * np.abs(plan.xyz).max():
             return Found(face, point, int(plan.visited[0]), False)
-    found, (low, high) = scanned(structure, p), extent(structure)
+    found, (low, high) = scanned(structure, p), bounds(structure.points)
     far, size = length(found.point - p), length(high - low)
     if far > FAR * size:
         raise MeshError(
@@ -75,24 +75,6 @@ def scanned(structure: Structure, position: ArrayLike) -> Found:
         raise MeshError("there are no faces that could be near to anything")
     nearest, point = closest(face_corners(structure, faces), p)
     return Found(int(faces[nearest]), point, len(faces), True)
-
-
-def extent(structure: Structure) -> tuple[Floats, Floats]:
-    """The lower and the upper corner (3,) of the bounding box of all faces.
-
-    O(n_v), and `vertex_faces` of six; O(n_v + n_t) where a vertex without faces lies outermost.
-    """
-    points = structure.points
-    low, high = bounds(points)
-    outermost = [(points[:, i] == end[i]).argmax() for end in (low, high) for i in range(3)]
-    try:
-        if structure.vertex_faces(np.array(outermost)).counts.all():
-            return low, high
-    except MeshError:  # one of them is dead
-        pass
-    used = np.zeros(len(points), np.bool_)
-    used[structure.triangles()] = True
-    return bounds(points[used])
 
 
 def corner_vertices(structure: Structure, faces: Array) -> Array:

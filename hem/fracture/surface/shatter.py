@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from hem.algorithms import put_back, require_mesh, require_surface
+from hem.algorithms import require_edges, require_mesh
 from hem.arrays import Floats, Indices
 from hem.contract import Attribute, Structure
 from hem.edit import Edit
@@ -29,11 +29,10 @@ from hem.fracture.surface.hanging import hanging
 from hem.fracture.surface.nearest import (
     ROUNDING,
     corner_vertices,
-    extent,
     face_corners,
     nearest_face,
 )
-from hem.meshes import TriangleMesh, length, normals, unit
+from hem.meshes import TriangleMesh, bounds, length, normals, unit
 
 TOLERANCE = 1e-5  # what is nearer to a vertex or an edge lies on it: a part of the diagonal
 
@@ -68,23 +67,23 @@ def shatter(
     lie, in units of the mesh; the material's unless it is said, 1 as printed. Points are placed in
     the plane of the face that is hit and carried straight over the surface. Those that come to lie
     beyond the border are dropped, and so are those within a tolerance of a vertex: 1e-5 of the
-    diagonal of the bounding box of all faces, or 32 roundings of the largest coordinate if that is
-    more. Within that tolerance of an edge the edge is split. ``Fracture.counts`` tells how many.
+    diagonal of the bounding box of all vertices, or 32 roundings of the largest coordinate if that
+    is more. Within that tolerance of an edge the edge is split. ``Fracture.counts`` tells how many.
 
     The structure keeps the rest, sound, in which no handle changed; subscribers hear of one edit
     for what was split and one for what came out. An interrupt, or what a subscriber raises, ends it
-    after an edit: the mesh is whole, but may be split and not broken yet. The same seed gives the
-    same shards on every structure and machine.
+    after an edit: the mesh is whole, but may be split and not broken yet; of objects, which Python
+    itself runs, an interrupt may come within one. The same seed gives the same shards on every
+    structure and machine.
 
     Cost: a walk to the face, as ``nearest_face`` says, and of O(√n_t) to each point, and the
-    splits; O(n_v + n_t) for the bounding box and what is left, and that of ``vertex_faces`` of all,
-    or O(n_t log n_t) where nothing is recorded of neighbors. Raises MeshError for an impact that is
-    no position or not near the surface, for polygons, and for a mesh without faces or without size;
-    TopologyError for edges in more than two faces and for faces with the same three corners.
-    Source: thesis 4.4.
+    splits; O(n_v + n_t) for the bounding box and what is left, and O(n_t log n_t) where nothing is
+    recorded of neighbors, to see that edges have two faces at most. Raises MeshError for an impact
+    that is no position or not near the surface, for polygons, and for a mesh without faces or
+    without size; TopologyError for edges in more than two faces. Source: thesis 4.4.
     """
     require_mesh(structure, "shatter")
-    require_surface(structure, "shatter")
+    require_edges(structure, "shatter")
     chosen = _chosen(structure, impact, material)
     broken, new, size = break_surface(structure, impact, chosen, seed, scale)
     loose = hanging(structure, new)
@@ -141,18 +140,17 @@ def break_surface(
     One edit, of which followers are told whatever happens.
     """
     found = nearest_face(structure, impact)
-    low, high = extent(structure)
+    low, high = bounds(structure.points)
     size = float(length(high - low))
     if not size > 0:
-        raise MeshError("all faces lie in one point; there is no surface that could be broken")
+        raise MeshError("all vertices lie in one point; there is no surface that could be broken")
     tolerance = max(TOLERANCE * size, ROUNDING * float(np.abs([low, high]).max()))
     offsets = break_points(material, seed, material.scale * size if scale is None else scale)
     frame, start = tangent(structure, found.face), np.array([found.face])
     out, log = structure.scratch(len(offsets) + 4)
     plan = make_plan(found.point, tolerance, out, log, start=start, frame=frame, offsets=offsets)
     try:
-        with put_back(structure, log):
-            done = structure.run(breaking, plan)
+        done = structure.run(breaking, plan)
     finally:
         split = Edit("break_surface", -1, log[1 : log[0] + 1])
         if log[0]:

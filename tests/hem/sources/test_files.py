@@ -459,7 +459,7 @@ def test_a_triangle_structure_says_how_to_cut_polygons(tmp_path: Path) -> None:
         ([(0, 1, 2, 9)], "out of the range 0 … 3, such as 9"),
         ([(0, 1, 2), (0, -7, 2)], r"such as -7 \(faces: 1\)"),
         ([(0, 1, 2, 1)], "twice"),
-        ([[0.5, 1, 2, 3]], "integers"),
+        ([[0.5, 1, 2, 3]], "not whole numbers"),
         ([7], "rows"),
     ],
 )
