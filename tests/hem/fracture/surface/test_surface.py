@@ -393,7 +393,7 @@ def test_what_is_no_surface_is_refused_by_all_that_hold_it_and_stays():
     assert held
 
 
-@pytest.mark.parametrize("name", structures.NAMES)
+@pytest.mark.parametrize("name", OF_EACH_KIND)
 def test_two_faces_with_the_same_corners_break_alike_and_keep_their_area(name):
     broken = shatter(structures.build(name, PILLOW), (0.34, 0.33, 0.33), seed=1)
     assert len(broken.shards) == 186
