@@ -15,6 +15,7 @@ from hem.meshes import bounds, corners, length
 from hem.meshes import position as as_position
 
 ROUNDING = 32 * float(np.finfo(np.float32).eps)  # on a surface: a part of the largest coordinate
+NEAR = 1e-3  # how far from its face a walk may end and be believed: of the face's longest side
 FAR = 0.5  # how far from the surface a position may be at all: a part of the diagonal
 
 
@@ -55,7 +56,8 @@ def nearest_face(structure: Structure, position: ArrayLike, start: int = JUMP) -
     face = structure.run(finding, plan)
     if face >= 0:
         _, point = closest(face_corners(structure, np.array([face])), p)
-        if length(point - p) <= ROUNDING * np.abs(plan.xyz).max():
+        near = max(ROUNDING * float(np.abs(plan.xyz).max()), NEAR * float(plan.longest[0]))
+        if length(point - p) <= near:
             return Found(face, point, int(plan.visited[0]), False)
     found, (low, high) = scanned(structure, p), bounds(structure.points)
     far, size = length(found.point - p), length(high - low)

@@ -20,6 +20,7 @@ import structures
 from hem.authoring import kernel
 from hem.engine import parts_of, uses
 from structures import indexed, triangle_soup
+from tests.extent import exhaustive
 
 ROOT = Path(__file__).parents[3]
 
@@ -79,6 +80,7 @@ def test_a_constant_of_another_file_is_never_that_of_a_former_run(tmp_path):
         in_new_process(tmp_path, RUN.format(above="from alg import above", limit=limit))
 
 
+@exhaustive
 def test_a_number_in_a_cell_of_a_notebook_is_never_that_of_a_former_run(tmp_path):
     (tmp_path / "plans.py").write_text(PLAN)
     for limit in (0.1, 9.0):
@@ -185,6 +187,7 @@ def test_a_script_that_is_run_again_finds_its_machine_code(tmp_path):
     assert kept[0] == kept[1] != set()
 
 
+@exhaustive
 def test_text_that_is_of_no_module_runs_again(tmp_path):
     """Numba could not load what it kept of it."""
     for _ in range(2):

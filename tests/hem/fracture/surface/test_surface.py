@@ -277,6 +277,18 @@ def test_walking_finds_what_looking_at_every_face_finds(model):
             assert np.linalg.norm(walked.point - looked.point) < 1e-5 * diagonal(mesh)
 
 
+@pytest.mark.parametrize(("away", "looks"), [(0.0, False), (5e-4, False), (2e-3, True)])
+def test_only_what_lies_beside_its_face_has_every_face_looked_at(away, looks):
+    """A hit that a physics engine tells is a little off the surface."""
+    mesh = hem.generate("torus", 2_000)
+    s = structures.build("half_edge", mesh)
+    for corners in mesh.points[mesh.triangles[::500]].astype(float):
+        longest = np.linalg.norm(corners - np.roll(corners, 1, axis=0), axis=1).max()
+        across = np.cross(corners[1] - corners[0], corners[2] - corners[0])
+        at = corners.mean(axis=0) + away * longest * across / np.linalg.norm(across)
+        assert nearest_face(s, at).scanned == looks
+
+
 def test_a_walk_visits_few_faces_and_starts_where_it_is_told():
     mesh = hem.generate("grid", 40_000)
     s = structures.build("half_edge", mesh)
