@@ -12,6 +12,7 @@ from experiments.presets import PRESETS
 from experiments.report.figures import real_time
 from experiments.report.session import MissingError
 from experiments.runs import CaseFile, describe, load, write_meta
+from tests.extent import OF_EACH_KIND, waiting_for
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -81,7 +82,7 @@ def test_without_the_package_no_ray_is_cast_and_the_chapter_says_why(monkeypatch
         real_time.picks_in_words(load(tmp_path))
 
 
-@pytest.mark.parametrize("name", structures.NAMES)
+@pytest.mark.parametrize("name", waiting_for(OF_EACH_KIND, structures.NAMES))
 def test_as_many_are_found_around_picked_faces_as_the_triangles_say(name):
     mesh = hem.generate("grid", 100)
     s = structures.build(name, mesh)

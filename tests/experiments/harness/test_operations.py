@@ -15,7 +15,7 @@ from experiments.harness.operations import operation_arguments as arguments
 from experiments.harness.operations import operation_faces as faces_of
 from experiments.harness.reference import copies, copies_of
 from experiments.harness.timer import Timed
-from tests.extent import OF_EACH_KIND
+from tests.extent import OF_EACH_KIND, waiting_for
 
 
 def case(structure: str, family: str = "torus", valence: int | None = None) -> Case:
@@ -48,7 +48,7 @@ def test_a_reference_operates_on_no_element_twice(valence):
 
 
 @pytest.mark.parametrize("operation", OPERATIONS)
-@pytest.mark.parametrize("name", structures.NAMES)
+@pytest.mark.parametrize("name", waiting_for(OF_EACH_KIND, structures.NAMES))
 def test_a_batch_is_operated_on_and_restored(name, operation):
     it = case(name)
     batch = OperationBatch(it.build(), operation, faces_of(it))

@@ -17,7 +17,7 @@ from tests.experiments.cli.calls import hem as command
 from tests.experiments.small_study import begin, go_on
 from tests.extent import EVERYTHING, waiting_for
 
-ON_ONE_MESH = "memory", "queries", "operations", *(("operation_work", "real_time") * EVERYTHING)
+ON_ONE_MESH = "memory", *(("queries", "operations", "operation_work", "real_time") * EVERYTHING)
 
 
 def versions(folder: Path) -> list[hem.TriangleMesh]:

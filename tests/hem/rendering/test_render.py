@@ -10,11 +10,12 @@ import pytest
 
 import hem
 import structures
+from tests.extent import OF_EACH_KIND, waiting_for
 from tests.structures.conftest import octahedron, shuffled
 from tests.structures.histories.actions import KINDS, Action, aim, perform, surface_of
 
 
-@pytest.fixture(params=structures.NAMES)
+@pytest.fixture(params=waiting_for(OF_EACH_KIND, structures.NAMES))
 def s(request: pytest.FixtureRequest) -> structures.Structure:
     return structures.build(request.param, shuffled(hem.generate("torus", 100)))
 
