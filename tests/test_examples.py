@@ -170,6 +170,7 @@ def test_a_target_that_is_shown_is_in_the_makefile(target: str) -> None:
     assert re.search(rf"^{target}:", (ROOT / "Makefile").read_text(), re.MULTILINE)
 
 
+@exhaustive
 @pytest.mark.parametrize("line", PYTEST)
 def test_a_line_of_pytest_that_is_shown_selects_something(line: str) -> None:
     for name, text in FILES.items():

@@ -162,7 +162,7 @@ def test_meshes_lists_every_family_and_model():
     [
         (
             "half_edge_objects",  # nothing to compile
-            ("bench_latency", "bench_work", "bench_memory", "bench_queries", "bench_printed"),
+            ("bench_latency", "bench_work", "bench_memory", "bench_printed"),
         ),
         pytest.param("indexed", EVERY, marks=exhaustive, id="everything"),
     ],

@@ -11,7 +11,7 @@ from experiments.report import MissingError, comparisons, pages, uses
 from experiments.report.tables import table_1_in_words
 from experiments.runs import CaseFile, Run, load
 from hem.contract import QUERIES
-from structures import REGISTRY
+from structures import NAMES, REGISTRY, THESIS
 from tests.experiments.made_runs import LAWS, SIZES, write_run
 
 HOLDS, DENIED = "half_edge/face_faces", "as_printed/split_edge/listings"
@@ -25,6 +25,7 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> Run:
         lambda structure, subject, printed: (
             LAWS["O(n_t)"] if structure == "as_printed" and "split" in subject else None
         ),
+        only=lambda _, it: it in (*THESIS, "as_printed") or it not in NAMES,
     )
     latency = CaseFile(folder, "bench_latency", "machine")
     for size in (60 * SIZES[0], 60 * SIZES[-1]):

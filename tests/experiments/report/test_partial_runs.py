@@ -18,7 +18,7 @@ from experiments.report.tables import show_claims
 from experiments.runs import experiments, load, tables
 from structures import NAMES
 from tests.experiments.made_runs import write_run
-from tests.extent import waiting_for
+from tests.extent import exhaustive, waiting_for
 
 OF_RUN = (
     *(partial(growth.scaling, axis=axis) for axis in Axis),
@@ -92,6 +92,7 @@ def test_the_front_page_says_what_was_not_measured(tmp_path, part):
     assert body.count("<details") > 100
 
 
+@exhaustive
 def test_without_what_breaks_bodies_the_chapter_names_what_brings_it(tmp_path, monkeypatch):
     open_part(tmp_path, "half_edge")
     pictures.broken_by_force.cache_clear()

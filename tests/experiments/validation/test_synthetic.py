@@ -18,9 +18,10 @@ from experiments.validation.synthetic import (
     make_curve,
     make_curves,
 )
+from tests.extent import waiting_for
 
 
-@pytest.mark.parametrize("condition", CONDITIONS)
+@pytest.mark.parametrize("condition", waiting_for(SLOWED, CONDITIONS))
 def test_the_judge_names_as_many_right_and_as_few_wrong_as_asked(condition: str) -> None:
     drawn = [curve for name in GROWTH for curve in make_curves(name, condition, 48, seed=11)]
     shares = answer_shares(count_answers({"hem": JUDGES["hem"]}, drawn)).loc[("hem", condition)]
