@@ -15,6 +15,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.extent import exhaustive
+
 ROOT = Path(__file__).parents[1]
 COPIED = ("hem", "structures", "experiments", "notebooks", "results/reference", "tests")
 
@@ -89,6 +91,7 @@ def test_the_check_measures_them_and_says_what_is_next(extended):
     assert "hem baseline update" in said
 
 
+@exhaustive
 def test_a_structure_or_an_experiment_that_forgets_something_is_an_error_that_names_it(shown):
     for path, text, named in [
         ("structures/half_done.py", STRUCTURE.replace("claims =", "claimed ="), "claims"),

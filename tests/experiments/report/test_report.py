@@ -19,6 +19,7 @@ from experiments.report.style import panels, spread_apart, styled, words
 from experiments.report.tables import digits
 from experiments.runs import ResultsError
 from tests.experiments.small_study import wait_for
+from tests.extent import exhaustive
 
 
 @pytest.mark.parametrize("there", ["a file", "a folder of others"])
@@ -44,6 +45,7 @@ def test_a_report_that_fails_leaves_the_old_one(base_folder, tmp_path, monkeypat
     assert [path.name for path in tmp_path.iterdir()] == ["html"]
 
 
+@exhaustive
 def test_an_interrupt_leaves_the_old_report_and_no_process(base_folder, tmp_path):
     (tmp_path / "html").mkdir()
     (tmp_path / "html" / "index.html").write_text("old")

@@ -34,6 +34,7 @@ from tests.experiments.small_study import (
     wait_for,
     workers_of,
 )
+from tests.extent import exhaustive
 
 
 @pytest.fixture
@@ -136,6 +137,7 @@ def test_disturbed_cases_are_measured_again_no_more_often_than_they_may(run, mon
     assert len(actions) == REPEATS + 1
 
 
+@exhaustive
 def test_a_full_disk_stops_the_study_and_loses_nothing(small_disk):
     """The disk fills up after some cases; there is room again; the run is resumed and ends."""
     folder = begin(small_disk, "work")

@@ -7,6 +7,7 @@ from experiments.regression import reduce_run
 from experiments.runs import load
 from experiments.validation import aa
 from tests.experiments.made_runs import LAWS, write_run
+from tests.extent import exhaustive
 
 ROOT = Path(__file__).parents[3]
 
@@ -24,6 +25,7 @@ def test_the_kept_a_a_test_raised_few_alarms() -> None:
     assert f"{pairs['alarms']} false alarms in {pairs['comparisons']:,}" in aa.in_words(kept)
 
 
+@exhaustive
 def test_a_run_of_slower_code_is_an_alarm_and_deterministic_counters_are_not_compared(
     tmp_path: Path,
 ) -> None:

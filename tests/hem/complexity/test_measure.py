@@ -18,6 +18,7 @@ import pytest
 from hem.complexity import InParts, Measured, judge, measure
 from hem.complexity.memory import memory_times
 from hem.complexity.notation import Array, parse
+from tests.extent import waiting_for
 
 OVERHEAD = 1e-7
 module = sys.modules[measure.__module__]
@@ -444,7 +445,7 @@ def beside_parts(found: Measured, power: float, wobble: float = 0.0) -> Measured
     return replace(found, in_parts=InParts(sizes, rows))
 
 
-@pytest.mark.parametrize("log", [False, True])
+@pytest.mark.parametrize("log", waiting_for([False], [False, True]))
 @pytest.mark.parametrize(
     ("power", "wobble", "linear", "loglinear"),
     [
