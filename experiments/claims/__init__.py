@@ -28,6 +28,7 @@ from experiments.claims.verdicts import (
     CASE_ERROR,
     DETERMINED,
     Family,
+    class_told,
     judge_cells,
     judge_families,
     judge_run,
@@ -36,6 +37,6 @@ from experiments.claims.verdicts import (
 __all__ = [
     "BY_TIME", "CASE_ERROR", "CLAIMED", "DETERMINED", "ERRATA", "MEMORY", "MIXES", "NOT_POSSIBLE",
     "NO_CLAIM", "SENTENCES", "Between", "Claim", "Curve", "Curves", "Erratum", "Exactly", "Family",
-    "Growth", "JudgedClaim", "Kind", "Outcome", "break_even", "curves", "judge_cells",
+    "Growth", "JudgedClaim", "Kind", "Outcome", "break_even", "class_told", "curves", "judge_cells",
     "judge_families", "judge_run", "judge_sentences", "load_claims", "sentence_claims", "tally",
 ]  # fmt: skip

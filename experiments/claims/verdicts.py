@@ -21,6 +21,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from functools import lru_cache
+from itertools import product
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -42,6 +43,7 @@ CASE_ERROR = 0.15
 milliseconds, and other tenants of the machine slow its caches for longer than that. A reference is
 one more case, and strays as much."""
 
+NEAREST = "nearest "  # said before a class where none explains the costs
 FLAT = 0.5  # slope in n_ev below which what grows comes on top of a larger part that does not
 
 
@@ -128,8 +130,21 @@ def _class_found(axes: Sequence[Axis], verdicts: Mapping[Axis, Verdict]) -> str:
     grows = [axis for axis in axes if verdicts[axis].best != "O(1)"]
     if len(grows) > 1:
         grows = [it for it in grows if it.variable == "faces" or verdicts[it].slope >= FLAT]
-    factors = [verdicts[axis].best[2:-1].replace("n", axis.symbol) for axis in grows]
-    return f"O({' · '.join(factors) or '1'})"
+    told = [
+        [name[2:-1].replace("n", axis.symbol) for name in _classes(verdicts[axis])]
+        for axis in grows
+    ]
+    found = " or ".join(f"O({' · '.join(factors) or '1'})" for factors in product(*told))
+    return found if all(verdicts[axis].classes for axis in axes) else NEAREST + found
+
+
+def class_told(verdict: Verdict) -> str:
+    """The class that costs tell, or two; where they tell none, which one comes nearest."""
+    return verdict.answer or NEAREST + verdict.best
+
+
+def _classes(verdict: Verdict) -> list[str]:
+    return verdict.classes or [verdict.best]
 
 
 @lru_cache(maxsize=4)
@@ -204,7 +219,11 @@ class Family(NamedTuple):
 
 
 def judge_families(run: Run, judged: Sequence[JudgedClaim]) -> list[Family]:
-    """All families whose queries were timed, the judged one first: its claims are ``judged``."""
+    """All families whose queries were timed, the judged one first; their claims are ``judged``.
+
+    Each is judged by as much as all have: every second size, and no reference. Beside others the
+    judged one is judged anew, so that what comes out otherwise is due to the meshes.
+    """
     first = curves(run).judged_family
     timed = run.cases[run.cases["experiment"].isin(("bench_queries", "bench_latency"))]
     timed = timed[timed["family"] != HUBS]
@@ -212,10 +231,14 @@ def judge_families(run: Run, judged: Sequence[JudgedClaim]) -> list[Family]:
     asked = [it for it in queries if it.claim.claims_something and it.claim.subject != MEMORY]
     largest = timed[timed["experiment"] == "bench_queries"].sort_values("vertices")
     meshes = {name: of_family.iloc[-1] for name, of_family in largest.groupby("family")}
+    mine = timed["family"] == first
+    fewer = timed[mine].assign(reference=np.nan)
+    fewer = fewer[fewer["vertices"].isin(sorted(set(fewer["vertices"]))[::2])]
+    timed = pd.concat([timed[~mine], fewer]) if len(meshes) > 1 else timed
     families = []
     for name in sorted(meshes, key=lambda it: (it != first, it)):
         others = timed["family"].isin([it for it in meshes if it != name])
         alone = Run(run.folder, run.meta, timed[~others].reset_index(drop=True), run.skipped)
-        found = asked if name == first else judge_cells(alone, [it.claim for it in asked])
+        found = judge_cells(alone, [it.claim for it in asked]) if len(meshes) > 1 else asked
         families.append(Family(str(name), meshes[name], found))
     return families

@@ -59,7 +59,7 @@ def keep_versions(folder: Path, name: str, repair: bool = False) -> dict[str, No
 
 def of_run(folder: Path) -> OwnMesh | None:
     """The mesh of a run that is on one's own; its cases find it from here on."""
-    for kept in (folder / FOLDER).glob("*"):
+    for kept in (folder / FOLDER).glob("*/"):
         _folders[kept.name] = kept
         return kept.name, tuple(sorted(int(path.stem) for path in kept.glob("*.npz")))
     return None

@@ -18,6 +18,7 @@ from experiments.claims import (
     JudgedClaim,
     Kind,
     Outcome,
+    class_told,
     judge_run,
     tally,
 )
@@ -182,7 +183,7 @@ def _record(judged: JudgedClaim) -> dict[str, Any]:
         outcome = it.outcome if claim.claims_something else Outcome.NO_CLAIM.value
         about = {"measure": axis.measure, "variable": axis.symbol, "outcome": outcome}
         about |= {"expected": it.expected, "bound": it.bound} if claim.claims_something else {}
-        axes.append({**about, "found": it.best, **slopes})
+        axes.append({**about, "found": class_told(it), **slopes})
     costs = {"accesses": float(judged.work), "seconds": float(judged.seconds)}
     return said | {"found": judged.found, "reason": judged.reason, "axes": axes} | costs
 
@@ -207,7 +208,7 @@ def _show_slopes(console: Console, claims: Sequence[JudgedClaim]) -> None:
                 outcome = Outcome(it.outcome) if claimed else Outcome.NO_CLAIM
                 mark = judged.claim.kind.marks([outcome])
                 most = "≤ " if it.bound == "upper" else ""
-                found = (f"{most}{it.expected}" if claimed else "", it.best, mark)
+                found = (f"{most}{it.expected}" if claimed else "", class_told(it), mark)
                 title = f"{judged.claim.title}, {axis.measure} {axis.symbol}"
                 rows.append((title, *slopes, f"{low}…{high}", *found))
         if len(rows) > 1:

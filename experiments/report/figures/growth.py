@@ -230,7 +230,7 @@ def face_finding(run: Run) -> Plot:
     """Finding the face under an impact in three ways: faces looked at, and time."""
     looks = zip(WAYS, (BLUE, RED, GRAY), "oDs", strict=True)
     styles = {way: {"label": way, "color": color, "marker": it} for way, color, it in looks}
-    titles = {VISITED: VISITED.capitalize(), "": "Time each, µs"}
+    titles = {VISITED: f"{VISITED.capitalize()}, mean", "": "Time each, µs"}
     found = []
     for way in WAYS:
         for measure, order, scale in ((VISITED, f"{way}, {VISITED}", 1.0), ("", way, 1e6)):
