@@ -247,7 +247,7 @@ def _slopes(
         if not table:
             sizes, work = np.diff(sizes[-3:]), np.diff(work[-3:])
         if len(sizes) > 1:
-            yield float(slope(sizes, np.maximum(work, 1)))
+            yield round(float(slope(sizes, np.maximum(work, 1))), 3)
 
 
 LISTED = ("as_printed",)

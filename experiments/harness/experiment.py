@@ -22,14 +22,18 @@ MEASURED = "split_edge", "split_face", "collapse_edge", "flip_edge", "add_face",
 OPERATIONS = {name: name.replace("_", " ").capitalize() for name in MEASURED}
 """The operations that are measured, and how a table calls them."""
 SYMBOLS = {"faces": "n_t", "valence": "n_ev"}
-LABELS = {"work": "memory accesses", "time": "time in order", "random": "time in random order"}
+LABELS = {
+    "work_faces": "memory accesses", "work_valence": "memory accesses",
+    "time_faces": "time in order", "time_valence": "time", "random_faces": "time in random order",
+}  # fmt: skip
 
 
 class Axis(Enum):
     """What a claim is judged along: one measure by one variable, the other variable held.
 
-    ``WORK_…`` counts memory accesses, ``TIME_…`` is time in the order that finds most in the
-    caches, ``RANDOM_…`` time in random order. ``key``: the name in files, ``work_faces``.
+    ``WORK_…`` counts memory accesses, ``TIME_…`` is time where most is found in the caches: by
+    faces in consecutive order, by valence on a mesh that is no larger; ``RANDOM_…`` is time in
+    random order. ``key``: the name in files, ``work_faces``.
     ``symbol``: the variable's in the thesis. ``exact``: whether values are counted, and so the same
     on every machine. ``label`` and ``unit``: how a plot names the measure, and the unit that values
     are shown in, multiplied by ``scale``.
@@ -44,7 +48,7 @@ class Axis(Enum):
     def __init__(self, measure: str, variable: str) -> None:
         self.measure, self.variable = measure, variable
         self.key = f"{measure}_{variable}"
-        self.symbol, self.label = SYMBOLS[variable], LABELS[measure]
+        self.symbol, self.label = SYMBOLS[variable], LABELS[self.key]
         self.exact = measure == "work"
         self.unit, self.scale = ("", 1.0) if self.exact else ("ns", 1e9)
 

@@ -165,10 +165,14 @@ def overtaking(table: pd.DataFrame) -> Html:
     for subject, structure, n, times in at_largest(table, "subject").to_numpy():
         rows.append((MIXES[subject], REGISTRY[structure].title, n, times, times / n))
     heads: Heads = {
-        "": str, "structure": str, "vertices": count, "until repaid": digits,
-        "until repaid, per vertex": digits,
+        "": str, "structure": str, "vertices": count, "until repaid": _if_ever,
+        "until repaid, per vertex": _if_ever,
     }  # fmt: skip
     return numbers(rows, heads)
+
+
+def _if_ever(times: float) -> str:
+    return "never" if times == np.inf else digits(times)
 
 
 def _slope(verdict: Verdict) -> str:

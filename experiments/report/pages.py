@@ -22,6 +22,7 @@ from experiments.claims import (
     JudgedClaim,
     Kind,
     Outcome,
+    class_told,
     curves,
 )
 from experiments.harness import Axis, Table
@@ -64,6 +65,7 @@ def _templates() -> Environment:
         "Axis": Axis,
         "NAMED": NAMED,
         "Outcome": Outcome,
+        "class_told": class_told,
         "experiments": experiments,
         "in_words": in_words,
         "measured": lambda: curves(session.open_run().run),

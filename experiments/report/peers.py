@@ -175,13 +175,18 @@ class Peers:
         return rows
 
     def compared(self, title: str) -> list[list[str]]:
-        """A group of ``GROUPS``: a row per subject, ours first, and those that have any of it."""
+        """A group of ``GROUPS``: a row per subject, ours first, and those that have any of it.
+
+        The last row has how many vertices the meshes have.
+        """
         subjects, order = GROUPS[title]
-        columns = {"": list(subjects.values())}
+        columns = {"": [*subjects.values(), "vertices"]}
         for name in self.names:
-            texts = [_text(self.cell(name, it, order), name == OURS) for it in subjects]
-            if {*texts} - {NONE}:
-                columns[PEERS[name].title] = texts
+            cells = [self.cell(name, it, order) for it in subjects]
+            if any(cells):
+                sizes = sorted({it.size for it in cells if it})
+                texts = [_text(it, name == OURS) for it in cells]
+                columns[PEERS[name].title] = [*texts, " … ".join(f"{it:,}" for it in sizes)]
         rows = map(list, zip(*columns.values(), strict=True))
         return [list(columns), *(row for row in rows if {*row[1:]} - {NONE})]
 

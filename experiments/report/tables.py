@@ -49,8 +49,8 @@ def legend() -> list[str]:
     whose = "; ".join(f"{marks[kind]} {kind.about}" for kind in CLAIMED)
     return [
         "Each cell has what is claimed, and its marks: by work (memory accesses), by time in order "
-        "(of operations: far apart), and for queries by time at random. Work is exact, and it "
-        "decides.",
+        "(by valence: at random in a mesh that is no larger; of operations: far apart), and for "
+        "queries by time at random. Work is exact, and it decides.",
         f"{words}. Whose claim it is: {whose}.",
         f"{NO_CLAIM} {Kind.NOBODY.about}. {NOT_POSSIBLE}: table 1 prints this where a structure "
         "records no edges; what was found is the cost with the edge named by its two vertices.",

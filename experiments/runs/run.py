@@ -156,6 +156,6 @@ def in_words(run: Run) -> str:
     return (
         f"Preset {meta.get('preset')}, from {meta.get('started')} {finished}, at commit "
         f"{str(meta.get('commit'))[:10]}{changes}. "
-        f"{measured_by}. {versions}. {len(run.cases):,} cases, each checked against the "
-        f"triangle list before it was measured. {noise(run).words}"
+        f"{measured_by}. {versions}. {len(run.cases):,} cases; every query was checked "
+        f"against the triangle list before it was measured. {noise(run).words}"
     )
