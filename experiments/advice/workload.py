@@ -146,6 +146,8 @@ def _workload(given: Mapping[str, Any]) -> Workload:
     known = {it.name for it in fields(Workload)}
     if unknown := sorted(set(given) - known):
         raise ValueError(f"{', '.join(unknown)} is nothing that a workload has: {sorted(known)}")
+    if not isinstance(given.get("title", ""), str):
+        raise ValueError(f"its title is a text, not {given['title']!r}")
     if not given.get("rows"):
         raise ValueError("it has no rows, such as [[rows]] with what and times")
     rows = tuple(_read(Row, f"row {place}", it) for place, it in enumerate(given["rows"], 1))

@@ -49,9 +49,11 @@ def check(
     with user_errors(2):  # 1 says that something got worse
         if factor is not None and not factor > 1:
             raise ValueError(f"--factor is more than 1, such as 1.5, not {factor:g}")
-        if markdown is not None and not markdown.exists():  # rather now than after all is measured
-            markdown.touch()
-            markdown.unlink()
+        if markdown is not None:  # rather now than after all is measured
+            new = not markdown.exists()
+            markdown.open("a").close()
+            if new:
+                markdown.unlink()
         compared = _compare(run, beside, structure or [], factor, baseline)
         from experiments.regression import exit_code
         from experiments.report import findings as shown
@@ -164,10 +166,11 @@ def update(
 
 def _finished(folder: Path) -> Measured:
     from experiments.regression import reduce_run
+    from experiments.runs import resume_command
 
     run = _load(folder)
     if "finished" not in run.meta:
-        raise ValueError(f"{folder} is not finished; resume it with: hem study --resume")
+        raise ValueError(f"{folder} is not finished; resume it with: {resume_command(folder)}")
     if part := [key for key in ("structures", "experiments") if run.meta.get(key)]:
         raise ValueError(f"{folder} is of some {part[0]} alone, and a baseline is of all")
     measured = reduce_run(run)

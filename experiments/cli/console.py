@@ -7,6 +7,7 @@ import warnings
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager, suppress
 from importlib import import_module
+from io import TextIOWrapper
 from math import isfinite
 from pathlib import Path
 from typing import Annotated, Any
@@ -17,9 +18,16 @@ from rich.markup import escape
 from typer import Argument, Option
 from typer.core import TyperGroup
 
-console = Console(highlight=False)
+
+class _Console(Console):
+    def on_broken_pipe(self) -> None:
+        """Leave it to ``user_errors``: rich would end with 1, which some commands mean."""
+        raise
+
+
+console = _Console(highlight=False)
 CLOSED = 141  # exit code where nobody reads on, as a shell has it
-errors = Console(stderr=True, highlight=False, soft_wrap=True)
+errors = _Console(stderr=True, highlight=False, soft_wrap=True)
 
 
 def completed(module: str, *names: str) -> Callable[[str], list[str]]:
@@ -53,6 +61,8 @@ Repair = Annotated[bool, Option("--repair", help="Repair what is not manifold fi
 def print_json(content: Any) -> None:
     """For other programs, in UTF-8 and on standard output."""
     text = json.dumps(_strict(content), indent=1, ensure_ascii=False, allow_nan=False)
+    if isinstance(sys.stdout, TextIOWrapper):
+        sys.stdout.reconfigure(encoding="utf-8")
     sys.stdout.write(text + "\n")
 
 
@@ -103,6 +113,9 @@ class Commands(TyperGroup):
 
     def invoke(self, ctx: Any) -> Any:
         """Run the chosen command."""
+        for stream in (sys.stdout, sys.stderr):  # a sign that a terminal lacks loses no verdict
+            if isinstance(stream, TextIOWrapper):
+                stream.reconfigure(errors="replace")
         with user_errors(), warnings.catch_warnings():
             warnings.showwarning = lambda message, *_: errors.print(
                 f"[bold yellow]hem:[/] {escape(str(message))}"

@@ -100,6 +100,8 @@ def fracture(
         errors.print("Stopped; nothing was written.")
         raise typer.Exit(130) from None
     _print_summary(broken, folder, files)
+    if older := sorted({it.name for it in folder.iterdir()} - set(files)):
+        errors.print(f"In {folder} from before, and not of this fracture: {', '.join(older)}")
 # fmt: on
 
 

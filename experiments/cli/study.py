@@ -64,7 +64,7 @@ def run_study(
         raise ValueError(f"to resume {run}, say --resume as well")
     require_known("preset", [preset or DEFAULT], PRESETS)  # before anything heavy is imported
     from experiments.harness import memory
-    from experiments.runs import PEER_RUNS, RUNS, cluster, latest, study
+    from experiments.runs import PEER_RUNS, RUNS, cluster, experiments, latest, study
 
     memory.available()  # whether HEM_MEMORY can be read
     if peers and mesh:
@@ -90,7 +90,8 @@ def run_study(
         given |= {"mesh": mesh, "repair": repair}
         folder = study.begin(given.pop("preset", DEFAULT), output, **given)
     named = "" if output in (RUNS, PEER_RUNS) and not run else f" {shlex.quote(str(folder))}"
-    commands = ["hem table --peers"] if peers else ["hem table", "hem report"]
+    of_peers = any(experiments()[it].by_name for it in study.begun(folder)["experiments"])
+    commands = ["hem table --peers"] if of_peers else ["hem table", "hem report"]
     _measure(folder, workers, ", ".join(f"{it}{named}" for it in commands))
 
 

@@ -6,6 +6,7 @@ they said of every claim when they were measured, a line per claim.
 """
 
 import json
+import shlex
 import shutil
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -85,7 +86,8 @@ def load_baseline(part: str, folder: Path = FOLDER) -> Measured:
         lines = (folder / part / CLAIMS).read_text("utf-8").splitlines()
         return Measured(run, {claim.pop("claim"): claim for claim in map(json.loads, lines)})
     except (ValueError, OSError, KeyError) as error:
-        told = f"the baseline cannot be read: {error}. Make it anew: {UPDATE[part]}"
+        where = "" if folder == FOLDER else f" --baseline {shlex.quote(str(folder))}"
+        told = f"the baseline cannot be read: {error}. Make it anew: {UPDATE[part]}{where}"
         raise ResultsError(told) from error
 
 

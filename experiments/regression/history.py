@@ -9,7 +9,7 @@ from typing import Any
 from filelock import FileLock
 
 from experiments.regression.snapshots import claim_figures
-from experiments.runs import ResultsError, Run, git, machine_id
+from experiments.runs import ResultsError, Run, git, machine_id, resume_command
 from hem.whole_files import append_whole
 
 SCHEMA = 2
@@ -31,7 +31,9 @@ def record_run(run: Run) -> Line:
     """The line that the history keeps of a run. Raises ResultsError if it is not finished."""
     meta = run.meta
     if "finished" not in meta:
-        raise ResultsError(f"{run.folder} is not finished; go on with: hem study --resume")
+        raise ResultsError(
+            f"{run.folder} is not finished; go on with: {resume_command(run.folder)}"
+        )
     figures = claim_figures(run)
     if not figures:
         raise ResultsError(f"{run.folder} measured nothing of which anything is claimed")

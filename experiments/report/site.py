@@ -43,7 +43,9 @@ def write_report(run_folder: Path, output: Path) -> Path:
 
 def write_pdf(run_folder: Path, output: Path) -> Path:
     """Write the report as one document to print -> ``output``; PrintError without a browser."""
-    pdf.require_browser()  # rather now than after the notebooks
+    if output.is_dir():  # rather now than after the notebooks
+        raise ResultsError(f"{output} is a folder: name a file in it, such as report.pdf")
+    pdf.require_browser()
     session = read_session(run_folder, printed=True)
     with _beside(output) as fresh:
         bodies = _write_parts(session, fresh)

@@ -26,7 +26,7 @@ from experiments.harness import QUERIES_TABLE
 from experiments.report import rows as plain
 from experiments.report.rows import two_digits
 from experiments.report.session import MissingError
-from experiments.runs import Run, load, noise, tables
+from experiments.runs import Run, load, noise, resume_command, tables
 from structures import NAMED, THESIS
 
 COLORS = {
@@ -155,6 +155,9 @@ def show_claims(
 
 def _shown_claims(run: Run, every: bool) -> list[JudgedClaim]:
     """What was measured, of the thesis' structures or of all. Raises MissingError for nothing."""
+    if run.cases.empty:
+        resume = resume_command(run.folder)
+        raise MissingError(f"{run.folder} holds no case; resume it with: {resume}")
     shown = NAMED if every else THESIS
     claims = [it for it in judge_run(run) if it.claim.structure in shown and it.was_measured]
     if not claims:

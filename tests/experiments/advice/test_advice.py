@@ -257,7 +257,8 @@ def measured(structure: str, vertices: object) -> str:
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        ("title = 3\n", "no rows"),
+        ("title = 3\n", "title is a text, not 3"),
+        ('title = "mine"\n', "no rows"),
         ("rows = []\nspeed = 3\n", "speed is nothing that a workload has"),
         ('[[rows]]\nwhat = "vertex_face"\ntimes = 1\n', "row 1: what is 'vertex_face'; there are"),
         ('[[rows]]\nwhat = "vertex_faces"\ntimes = -1\n', "row 1: times is a number from 0 on"),

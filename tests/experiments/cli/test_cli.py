@@ -1,5 +1,6 @@
 """The command line as a newcomer types it, wrong arguments included."""
 
+import json
 import os
 import shutil
 import subprocess
@@ -11,11 +12,11 @@ from pathlib import Path
 import pytest
 from rich.console import Console
 
-from experiments import cli, report
-from experiments.cli import app, progress
+from experiments import report
+from experiments.cli import progress
 from experiments.cli.check import BASELINE
 from experiments.presets import PRESETS
-from experiments.runs import experiments, load
+from experiments.runs import experiments, load, read_meta, write_meta
 from experiments.runs.study import plan
 from experiments.runs.worker import Job
 from structures import NAMES
@@ -46,15 +47,29 @@ def test_a_mistake_gets_one_clear_line_and_an_exit_code(arguments, said, tmp_pat
     assert list(tmp_path.iterdir()) == []
 
 
-def test_a_reader_who_has_enough_is_no_mistake(monkeypatch, capsys):
-    def closed(*_: object, **__: object) -> None:
-        raise BrokenPipeError(32, "Broken pipe")
+@pytest.mark.parametrize("command", [["meshes"], ["table", "--json", str(BASELINE / "run")]])
+def test_a_reader_who_has_enough_is_no_mistake(command):
+    reads, writes = os.pipe()
+    os.close(reads)
+    run = [sys.executable, "-m", "experiments.cli", *command]
+    ended = subprocess.run(run, stdout=writes, stderr=subprocess.PIPE, text=True)
+    os.close(writes)
+    assert ended.returncode == 141  # neither a mistake nor a verdict
+    assert ended.stderr == ""
 
-    monkeypatch.setattr(cli.console, "print", closed)
-    with pytest.raises(SystemExit) as ended:
-        app(["meshes"])
-    assert ended.value.code == 141  # neither a mistake nor a verdict
-    assert "pipe" not in capsys.readouterr().err
+
+@pytest.mark.parametrize("how", [[], ["--json"]])
+def test_a_verdict_is_told_where_signs_cannot_be_written(tmp_path, how):
+    costs = tmp_path / "costs.csv"
+    costs.write_text("n,f\n" + "".join(f"{n},{n**0.5}\n" for n in (16, 64, 256, 1024, 4096)))
+    run = [sys.executable, "-m", "experiments.cli", "judge", str(costs), "--exact", *how]
+    ended = subprocess.run(
+        [*run, "--expected", "O(1)"], capture_output=True,
+        env={**os.environ, "PYTHONIOENCODING": "ascii"},
+    )  # fmt: skip
+    assert ended.returncode == 1
+    assert b"violated" in ended.stdout
+    assert not how or json.loads(ended.stdout.decode())[0]["outcome"] == "violated"
 
 
 def test_names_are_told_as_they_are_whatever_brackets_they_have(tmp_path, monkeypatch):
@@ -68,6 +83,29 @@ def test_names_are_told_as_they_are_whatever_brackets_they_have(tmp_path, monkey
     assert "reads [/ops] only, on a[/b].obj (1 faces)." in output_of(
         "advise", str(mesh), "--workload", str(workload), "--run", run
     )
+
+
+def test_a_run_that_is_not_ended_is_told_how_it_goes_on(tmp_path):
+    run = write_run(tmp_path / "half done", only=lambda _, it: it == "indexed")
+    meta = read_meta(run)
+    del meta["finished"]
+    write_meta(run, meta)
+    goes_on = f"hem study --resume --run '{run}'"
+    assert goes_on in mistake("history", "add", str(run), "--file", str(tmp_path / "h.jsonl"))
+    for path in run.glob("*.jsonl"):
+        path.unlink()
+    assert f"holds no case; resume it with: {goes_on}" in mistake("table", str(run))
+
+
+def test_what_cannot_be_written_is_told_before_anything_is_measured(tmp_path):
+    run = str(BASELINE / "run")
+    assert "Is a directory" in mistake("check", run, "--markdown", str(tmp_path), code=2)
+    assert "is a folder" in mistake("report", run, "--pdf", "--output", str(tmp_path))
+
+
+def test_a_baseline_that_is_not_there_is_made_where_it_was_looked_for(tmp_path):
+    said = mistake("check", "--structure", "indexed", "--baseline", str(tmp_path), code=2)
+    assert f"hem baseline update --baseline {tmp_path}" in said
 
 
 def test_what_is_kept_of_a_run_is_not_resumed():
