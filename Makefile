@@ -7,9 +7,9 @@ STUDY := $(VENV)/installed-study
 DEV := $(VENV)/installed-dev
 # Without `picking`, as Warp takes 150 MB; where it is missing, the chapter says how to add it.
 STUDY_EXTRAS := study,fracture,viz
-# One worker more than there are cores, as many tests wait for a process of their own. One takes all
-# tests that compile for a structure, or else all of a file (tests/conftest.py); the longest first.
-WORKERS := $(shell echo $$(($$(getconf _NPROCESSORS_ONLN) + 1)))
+# A worker per core: one more gains nothing where tests wait for processes, and compiles more. One takes
+# all tests that compile for a structure, or else all of a file (tests/conftest.py); the longest first.
+WORKERS := $(shell getconf _NPROCESSORS_ONLN)
 PYTEST := -m pytest tests -n $(WORKERS) --dist loadfile --no-loadscope-reorder --durations=20
 
 # Installs the project with extras $(2) into the environment $(1), held by the constraints $(3).

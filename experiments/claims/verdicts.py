@@ -43,7 +43,7 @@ CASE_ERROR = 0.15
 milliseconds, and other tenants of the machine slow its caches for longer than that. A reference is
 one more case, and strays as much."""
 
-NEAREST = "nearest "  # said before a class where none explains the costs
+NEAREST = "near "  # said before the closest class where none explains the costs
 FLAT = 0.5  # slope in n_ev below which what grows comes on top of a larger part that does not
 
 
