@@ -19,6 +19,7 @@ from hem.errors import MeshError, MeshWarning
 from hem.meshes import (
     PolygonMesh,
     TriangleMesh,
+    clusters,
     from_any,
     repeats_a_corner,
     require_triangles,
@@ -110,9 +111,10 @@ def save(mesh: Any, path: FilePath) -> None:
 
     Replaces what is there. ply, off and obj keep every bit, every vertex and every polygon; the
     others round to float32. 3ds keeps no polygons, and stl (binary) only triangles and vertices
-    that have faces; text formats such as wrl, dae and x3d round the coordinates once more. A broken
-    run never leaves half a file. Raises MeshError where the format is unknown, or keeps no
-    polygons, or the folder cannot be written.
+    that have faces; text formats such as wrl, dae and x3d round the coordinates once more, and ctm
+    has the faces in another order. x3d has one vertex per position: a MeshWarning tells where some
+    become one. A broken run never leaves half a file. Raises MeshError where the format is unknown,
+    or keeps no polygons, or the folder cannot be written.
     """
     with _about("save", path) as file:
         if not file.parent.is_dir():
@@ -134,6 +136,9 @@ def encoded(mesh: TriangleMesh | PolygonMesh, extension: str) -> bytes:
         raise MeshError("polygons are kept by ply, obj and off; or take mesh.triangulated()")
     if not len(mesh.points):
         raise MeshError("there are no vertices in it; ply, obj and off keep a mesh without any")
+    if extension == "x3d" and len(clusters(mesh.points, 0.0)[0]) < len(mesh.points):
+        message = "x3d has one vertex per position: those that coincide become one"
+        warnings.warn(message, MeshWarning, stacklevel=3)
     with tempfile.TemporaryDirectory(prefix="hem-") as folder:
         beside = Path(folder) / f"mesh.{extension}"
         try:

@@ -93,7 +93,8 @@ def load(pymeshlab: Any, path: str) -> tuple[Any, Any]:
 
 def save(pymeshlab: Any, mesh: Any, path: str) -> None:
     """Write a mesh into a file."""
-    filled(pymeshlab, mesh).save_current_mesh(path)
+    lossless = {"lossless": True} if path.endswith(".ctm") else {}  # or it would be quantized
+    filled(pymeshlab, mesh).save_current_mesh(path, **lossless)
 
 
 def filled(pymeshlab: Any, *given: Any) -> Any:

@@ -1,5 +1,6 @@
 """A mesh by a name, as every command takes it: a file, a sample, or a family and a size."""
 
+import re
 from pathlib import Path
 from typing import Literal, overload
 
@@ -41,6 +42,6 @@ def find_mesh(
             f"there is no model {name!r}: name a file, or one of "
             f"{', '.join((*SAMPLES, *FAMILIES))}; families take a size, as in sphere:2000"
         )
-    if size and not (size.isascii() and size.replace("_", "").isdigit()):
+    if size and not re.fullmatch(r"\d+(_\d+)*", size, re.ASCII):
         raise MeshError(f"{name!r}: after the colon stands a number of vertices")
     return generate(family, int(size or USUAL_SIZE))

@@ -3,6 +3,7 @@
 Source: Turk, The PLY polygon file format, 1994.
 """
 
+import re
 import struct
 from typing import Any, NamedTuple
 
@@ -86,7 +87,9 @@ def write_ply(points: Points, faces: Ragged) -> bytes:
 
 def _header(data: bytes) -> tuple[str, list[_Element], int]:
     """The byte order, empty for text; the elements; and where their numbers begin."""
-    text, end, _ = data.partition(b"end_header")
+    lines = rb"[^\r]*\r" if re.match(rb"ply[^\r\n]*\r(?!\n)", data) else rb"[^\n]*\n"
+    end = re.search(rb"[\r\n][ \t]*end_header\b" + lines, data)
+    text, begin = (data[: end.start()], end.end()) if end else (data, 0)
     elements: list[_Element] = []
     order = None
     try:
@@ -102,12 +105,13 @@ def _header(data: bytes) -> tuple[str, list[_Element], int]:
                     elements[-1].properties.append(_Property(name, _TYPES[kind], ""))
     except (KeyError, IndexError, ValueError) as error:
         raise MeshError(f"its head is not that of a ply file: {error}") from error
-    begin = data.find(b"\n", len(text)) + 1
-    if order is None or not (end and begin) or not data.startswith(b"ply"):
+    if order is None or not end or not data.startswith(b"ply"):
         raise MeshError("its head is not that of a ply file, or it is cut short; get it anew")
     for it in elements:
         if not 0 <= it.rows <= len(data):
             raise cut_short(f"{len(data):,} bytes, and promises {it.rows:,} of {it.name}")
+        if len({prop.name for prop in it.properties}) < len(it.properties):
+            raise MeshError(f"its head names a property of {it.name} twice")
     return order, elements, begin
 
 

@@ -6,7 +6,8 @@ from hem.meshes import TriangleMesh, require_manifold
 from hem.sources.meshlab import apply
 
 # Each filter is applied only where its fault is found: they leave a sound mesh as it is, but they
-# may renumber. In this order, since winding can only be made coherent along manifold edges.
+# may renumber. And as long as it changes something: of several fans it parts off one at a time. In
+# this order, since winding can only be made coherent along manifold edges.
 _REPAIRS = (
     (meshes.non_manifold_edges, "meshing_remove_duplicate_faces"),
     (meshes.non_manifold_edges, "meshing_repair_non_manifold_edges"),
@@ -24,10 +25,14 @@ def repaired(mesh: TriangleMesh) -> TriangleMesh:
     their index. Raises NonManifoldError for what no filter mends: a one-sided surface, say.
     """
     for fault, filter_name in _REPAIRS:
-        if len(fault(mesh.triangles)):
+        before = None
+        while len(fault(mesh.triangles)) and before != (len(mesh.points), len(mesh.triangles)):
+            before = len(mesh.points), len(mesh.triangles)
             mesh = apply(filter_name, mesh)
     try:
         require_manifold(mesh)
     except NonManifoldError as error:
-        raise NonManifoldError(f"beyond repair: {error.reason}", **error.elements) from error
+        found, _, _ = error.reason.partition(";")  # behind it is the advice to repair
+        words = f"beyond repair: {found}; use the indexed mesh"
+        raise NonManifoldError(words, **error.elements) from error
     return mesh

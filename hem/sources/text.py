@@ -18,6 +18,7 @@ from hem.ragged import Ragged
 
 _OBJ_BESIDE = {b"vt": "texture coordinates", b"vn": "normals"}
 _OFF_BESIDE = {b"ST": "texture coordinates", b"C": "colors", b"N": "normals"}
+_NAMED = re.compile(rb"\b(end)?solid\b.*?(?=[\r\n]|\bfacet\s+normal|\Z)")  # its name is any words
 
 
 class Parts(NamedTuple):
@@ -119,9 +120,9 @@ def read_stl(data: bytes) -> Parts:
     count = int.from_bytes(data[80:84], "little") if len(data) >= 84 else -1
     binary = count >= 0 and len(data) >= 84 + 50 * count
     if data[:80].lstrip()[:5].lower() == b"solid" and not binary:
-        text = data.lower()
+        text = _NAMED.sub(rb"\1solid", data.lower())
         numbers = re.findall(rb"\bvertex\s+(\S+)\s+(\S+)\s+(\S+)", text)
-        if b"endsolid" not in text[-500:] or len(numbers) != 3 * text.count(b"endfacet"):
+        if b"endsolid" not in text.rstrip()[-500:] or len(numbers) != 3 * text.count(b"endfacet"):
             raise cut_short("no 'endsolid' at its end, or a facet without three vertices")
         try:
             corners = np.array(numbers, np.bytes_).reshape(-1, 3).astype(np.float64)

@@ -83,6 +83,29 @@ def test_stl_has_one_vertex_per_position_and_none_without_faces(
     assert np.array_equal(*shape)
 
 
+def test_openctm_keeps_every_bit_and_the_order_of_vertices(
+    tmp_path: Path, lumpy: hem.TriangleMesh
+) -> None:
+    hem.save(lumpy, tmp_path / "mesh.ctm")
+    back = hem.load(tmp_path / "mesh.ctm")
+    assert np.array_equal(back.points, lumpy.points)
+    faces = (sorted(map(from_smallest, it.triangles.tolist())) for it in (back, lumpy))
+    assert next(faces) == next(faces)
+
+
+def from_smallest(face: list[int]) -> list[int]:
+    k = face.index(min(face))
+    return face[k:] + face[:k]
+
+
+def test_vertices_that_x3d_makes_one_are_told(tmp_path: Path, lumpy: hem.TriangleMesh) -> None:
+    with pytest.warns(hem.MeshWarning, match="one vertex per position"):
+        hem.save(lumpy, tmp_path / "mesh.x3d")
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        hem.save(lumpy.welded(), tmp_path / "mesh.x3d")
+
+
 @pytest.mark.parametrize("extension", FORMATS)
 def test_a_file_cut_anywhere_before_its_last_lines_is_refused(
     tmp_path: Path, extension: str
@@ -147,6 +170,41 @@ def test_a_cut_text_stl_is_refused(tmp_path: Path) -> None:
         cut = written(tmp_path / "cut.stl", whole[: int(share * len(whole))])
         with pytest.raises(hem.MeshError, match="cut short"):
             hem.load(cut)
+
+
+@pytest.mark.parametrize("name", ["vertex cloud of things", "endfacet", "a solid"])
+@pytest.mark.parametrize("parted", ["\n", "\r\n", "\r", " "])
+def test_a_text_stl_may_have_any_name_and_blanks_behind(
+    tmp_path: Path, name: str, parted: str
+) -> None:
+    facet = ["facet normal 0 0 1", "outer loop", "vertex 0 0 0", "vertex 1 0 0", "vertex 0 1 0"]
+    text = parted.join([f"solid {name}", *facet, "endloop", "endfacet", f"endsolid {name}"])
+    assert len(hem.load(written(tmp_path / "a.stl", text + 600 * " ")).triangles) == 1
+
+
+@pytest.mark.parametrize("parted", ["\n", "\r\n", "\r"])
+@pytest.mark.parametrize("binary", [False, True])
+def test_a_ply_head_ends_at_a_line_of_its_own_whatever_parts_lines(
+    tmp_path: Path, parted: str, binary: bool
+) -> None:
+    remark = "comment before end_header comes\n"
+    head, body = PLY.format(2).replace("element v", f"{remark}element v").split("end_header\n")
+    content = (head + "end_header\n" + body).replace("\n", parted).encode()
+    if binary:
+        head = head.replace("ascii", "binary_little_endian") + "end_header\n"
+        begin = np.array([10], "<i4").view("<f4").item()  # whose first byte is that of "\n"
+        numbers = struct.pack("<9fB3i", begin, 0, 0, 1, 0, 0, 1, 1, 0, 3, 0, 1, 2)
+        content = head.replace("\n", parted).encode() + numbers
+    mesh = hem.load(written(tmp_path / "a.ply", content))
+    assert np.allclose(mesh.points, [(0, 0, 0), (1, 0, 0), (1, 1, 0)])
+    assert mesh.triangles.tolist() == [[0, 1, 2]]
+
+
+def test_a_ply_head_that_names_a_property_twice_is_refused(tmp_path: Path) -> None:
+    twice = PLY.format(2).replace("property float y", "property float x")
+    for text in (twice, twice.replace("ascii", "binary_little_endian")):
+        with pytest.raises(hem.MeshError, match="names a property of vertex twice"):
+            hem.load(written(tmp_path / "a.ply", text))
 
 
 @pytest.mark.parametrize("extension", FORMATS)
@@ -237,12 +295,23 @@ def test_repair_makes_a_surface_of_what_is_none(tmp_path: Path, faces: list[str]
     assert len(mended.triangles) >= 2
 
 
+@pytest.mark.parametrize("fans", [3, 4])
+def test_repair_parts_all_fans_that_meet_in_a_vertex(tmp_path: Path, fans: int) -> None:
+    points = "".join(f"v {i} {i * i} {i**3}\n" for i in range(2 * fans + 1))
+    faces = "".join(f"f 1 {2 * i + 2} {2 * i + 3}\n" for i in range(fans))
+    mended = hem.load(written(tmp_path / "fans.obj", points + faces), repair=True)
+    hem.require_manifold(mended)
+    assert len(mended.triangles) == fans
+    assert len(mended.points) == 3 * fans
+
+
 def test_a_one_sided_surface_is_beyond_repair(tmp_path: Path) -> None:
     strip = [f"f {i + 1} {(i + 1) % 5 + 1} {(i + 2) % 5 + 1}\n" for i in range(5)]
     moebius = "".join(f"v {np.cos(i)} {np.sin(i)} {i}\n" for i in range(5)) + "".join(strip)
     file = written(tmp_path / "moebius.obj", moebius)
-    with pytest.raises(hem.NonManifoldError, match="beyond repair"):
+    with pytest.raises(hem.NonManifoldError, match="beyond repair") as refusal:
         hem.load(file, repair=True)
+    assert "--repair" not in str(refusal.value), "this was tried"
 
 
 POLYGONS = [(0, 1, 2, 3), (3, 2, 4), (1, 5, 7, 6, 2)]

@@ -40,6 +40,8 @@ def test_polygons_are_kept_unless_they_are_to_be_cut(tmp_path):
 @pytest.mark.parametrize(("name", "said"), [
     ("cube:3", "there is no model 'cube:3': name a file, or one of bunny"),
     ("sphere:many", "after the colon stands a number of vertices"),
+    ("sphere:1__000", "after the colon stands a number of vertices"),
+    ("sphere:_5", "after the colon stands a number of vertices"),
     ("sphere:٣", "after the colon stands a number of vertices"),
     ("torus:5", "reachable are"),
     ("no.obj", "there is no such file"),
