@@ -448,8 +448,9 @@ class HalfEdgeMesh(Navigable):
 
     def positions(self, vertices: ArrayLike) -> NDArray[np.float32]:
         """See ``Structure.positions``."""
-        items = self.records.vertices.items
-        return records.positions(items[v] for v in np.ravel(vertices))
+        items, at = self.records.vertices.items, np.asarray(vertices)
+        at = np.arange(len(items))[at] if at.dtype == bool else at
+        return records.positions(items[v] for v in at.flat).reshape(*at.shape, 3)
 
     def subscribe(self, callback: Callable[[Edit], Any]) -> Callable[[], None]:
         """See ``Structure.subscribe``; also told when the ``point`` of a vertex is set."""

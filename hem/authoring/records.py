@@ -127,16 +127,16 @@ def grown(records: Any, fields: Sequence[Field], vertices: int, faces: int) -> A
     wanted = {VERTEX_END: vertices, FACE_END: faces, EDGE_END: count[EDGE_GROWTH] * faces}
     rooms = {VERTEX_END: VERTEX_ROOM, FACE_END: FACE_ROOM, EDGE_END: EDGE_ROOM}
     short = [end for end, room in rooms.items() if count[end] + wanted[end] > count[room]]
-    for field in fields:
-        end = ENDS[field.element]
-        if end in short:
-            array, needed = arrays[field.array], count[end] + wanted[end]
-            if needed > _most_rows(array):
-                raise MeshError(
-                    f"{needed:,} records are more than references of {array.dtype.itemsize} "
-                    "bytes can name; build with reference_bytes=8"
-                )
-            arrays[field.array] = longer(array, count[end], needed)
+    growing = [(it.array, ENDS[it.element]) for it in fields if ENDS[it.element] in short]
+    for name, end in growing:  # all, before any takes memory
+        kind, needed = arrays[name].dtype, count[end] + wanted[end]
+        if needed > _most_rows(arrays[name]):
+            raise MeshError(
+                f"{needed:,} records are more than references of {kind.itemsize} "
+                "bytes can name; build with reference_bytes=8"
+            )
+    for name, end in growing:
+        arrays[name] = longer(arrays[name], count[end], count[end] + wanted[end])
     for end in short:
         mine = [arrays[it.array] for it in fields if ENDS[it.element] == end]
         count[rooms[end]] = min(min(len(it), _most_rows(it)) for it in mine)

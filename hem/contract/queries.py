@@ -24,7 +24,7 @@ from hem.authoring import (
 from hem.contract import arguments
 from hem.contract.arguments import MOST, integer
 from hem.contract.state import State
-from hem.contract.storage import HANDLE_TYPES, refuse_handles
+from hem.contract.storage import HANDLE_TYPES, UncompiledStorage, refuse_handles
 from hem.edit import FACE
 from hem.engine import Read
 from hem.errors import MeshError
@@ -86,7 +86,8 @@ class Queries:
         """The ``QueryMethod`` of a query, for whoever keeps it; kept here it would be a cycle."""
         state, (source, target) = self._state, QUERIES[name]
         pinned = state.pin(lambda its: (its.out[target],))
-        single = self._declared.queries[name].single(pinned, self._declared.exists(source))
+        exists = self._declared.exists(source)
+        single = self._prepared(name, self._declared.queries[name].single(pinned, exists))
         address = pinned.address
 
         def ask(handles: Any = ALL) -> Any:
@@ -99,6 +100,21 @@ class Queries:
             return self.ask(name, handles)
 
         return ask
+
+    def _prepared(self, name: str, ask: Any) -> Any:
+        """A single question, before which Python finds what compiled code finds within it.
+
+        Compiled code makes other threads wait meanwhile, and Python does not.
+        """
+        state = self._state
+        if not isinstance(state.storage, UncompiledStorage):
+            return ask
+
+        def prepared(*asked: Any) -> Any:
+            state.prepare([name])
+            return ask(*asked)
+
+        return prepared
 
     def ask(self, name: str, handles: Any = ALL) -> Any:
         """As the method of a query, for any handles; checked."""
@@ -202,7 +218,8 @@ class Queries:
         ends = state.storage.row(2, HANDLE_TYPES["edge"])
         pinned = state.pin(lambda its: (its.out["edge"], ends))
         uses = self._declared.queries["vertex_edges"]
-        return uses.find_edge(pinned, k["vertex_exists"], k["edge_vertices"]), pinned.address
+        find = uses.find_edge(pinned, k["vertex_exists"], k["edge_vertices"])
+        return self._prepared("vertex_edges", find), pinned.address
 
     def copy_touched(self, touched: ArrayLike, points: Points, indices: Handles) -> None:
         """See ``Structure.copy_touched``."""

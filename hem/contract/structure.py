@@ -31,6 +31,11 @@ NO_VERTEX = -2
 """Stands for a vertex to keep that is said to be -1, which means that none is said."""
 
 
+def _said(vertex: Any) -> Any:
+    """A vertex that is said, whatever it is; arrays, which are none, are refused later."""
+    return NO_VERTEX if not getattr(vertex, "ndim", 0) and vertex == -1 else vertex
+
+
 @cache
 def _uncompiled(kind: Any) -> Any:
     if not kind.compiled:
@@ -279,7 +284,7 @@ class Structure(Described, Surveying, abstract=True):
         first, *more = handles or (-1,)
         if len(more) > 2:
             raise MeshError(f"{operation} takes three handles at most, not {len(handles)}")
-        ends = [NO_VERTEX if it == -1 else it for it in more]
+        ends = [_said(it) for it in more]
         return self._do[operation](first, point, *ends, *[-1] * (2 - len(ends)))
 
     def split_edge(self, edge: int, point: ArrayLike) -> Edit:
@@ -305,8 +310,7 @@ class Structure(Described, Surveying, abstract=True):
         faces fewer; border: 1, 2 and 1. Cost O(n_ev), or O(n_t) where neighbors are searched for.
         Thesis 4.2; refused as ``hem.authoring.operations.collapse_edge`` says.
         """
-        end = -1 if keep is None else NO_VERTEX if keep == -1 else keep
-        return self._do["collapse_edge"](edge, None, end)
+        return self._do["collapse_edge"](edge, None, -1 if keep is None else _said(keep))
 
     def flip_edge(self, edge: int) -> Edit:
         """Turn an edge inside the two faces at it, so that it joins their other two corners.

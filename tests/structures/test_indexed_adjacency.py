@@ -196,6 +196,24 @@ def switching() -> Iterator[None]:
     sys.setswitchinterval(interval)
 
 
+@pytest.mark.parametrize("asked", ["vertex_faces", "find_edge"])
+def test_uncompiled_all_neighbors_are_found_in_one_go_before_another_thread_may_ask(
+    asked: str,
+) -> None:
+    """In compiled code: a profiler is not told of the slots that it hashes to."""
+    s, called = structures.build(NAME, hem.generate("torus", 100), compiled=False), set()
+    ask, handles = getattr(s, asked), s.edge_array()[7] if asked == "find_edge" else [7]
+    s.copy().vertex_faces([7])  # loads what is compiled
+    sys.setprofile(lambda frame, *_: called.add(frame.f_code.co_name))
+    try:
+        answer = ask(*handles)
+    finally:
+        sys.setprofile(None)
+    assert "slot" not in called
+    assert np.array_equal(answer, getattr(built(), asked)(*handles))
+    s.validate()
+
+
 def test_threads_that_ask_first_at_the_same_time_get_their_own_answers(switching: None) -> None:
     """So many vertices that to find all neighbors takes longer than to wake the other threads."""
     mesh, rng = hem.generate("torus", 200_000), np.random.default_rng(4)

@@ -11,6 +11,7 @@ import tracemalloc
 import weakref
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -286,6 +287,10 @@ def test_the_vertex_to_keep_is_an_end(name: str) -> None:
     for keep in (-1, -5, 99):
         with pytest.raises(TopologyError, match="not an end"):
             s.collapse_edge(edge, keep)
+    for keep in (np.array([1, 2]), np.array([-1]), [1, 2]):
+        for collapse in (s.collapse_edge, partial(s.operate, "collapse_edge")):
+            with pytest.raises(MeshError, match="takes handles"):
+                collapse(edge, keep)
     assert not s.collapse_edges([edge], [-1]).any()
     assert s.collapse_edge(edge).vertex >= 0
 

@@ -401,6 +401,15 @@ def test_room_is_made_for_a_number_of_splits(name, wrong):
         s.reserve(wrong)
 
 
+def test_no_room_is_made_for_more_than_indices_can_name(name):
+    if not structures.REGISTRY[name].compiled:
+        return  # objects are named by Python's own integers
+    s = structures.build(name, octahedron())
+    with pytest.raises(hem.MeshError, match="can name"):
+        s.reserve(2**31 - 1)
+    s.validate()
+
+
 def test_more_handles_than_an_operation_can_take_are_refused(name):
     s = structures.build(name, octahedron())
     with pytest.raises(hem.MeshError, match="add_face takes three handles at most, not 4"):

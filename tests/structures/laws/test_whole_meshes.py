@@ -46,6 +46,15 @@ def test_all_elements_are_asked_without_an_argument(whole: structures.Structure)
     assert sorted(s.edge_array().tolist()) == sorted(expected.tolist())
 
 
+def test_positions_are_indexed_as_arrays_are(name: str) -> None:
+    s = structures.build(name, hem.generate("torus", 9))
+    for at in (3, -1, [2, 2, 0], [[0, 1], [2, 3]], np.arange(9) % 2 == 0):
+        assert np.array_equal(s.positions(at), s.points[np.asarray(at)])
+    for beyond in (9, [True]):
+        with pytest.raises(IndexError):
+            s.positions(beyond)
+
+
 def test_a_face_is_found_by_its_corners(whole: structures.Structure) -> None:
     s, rows = whole, rows_of(whole)
     for face, (a, b, c) in rows.items():
