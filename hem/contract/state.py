@@ -160,8 +160,7 @@ class State:
         edges = counts[authoring.EDGE_GROWTH] * faces
         wanted = np.array([vertices, edges, faces]) + counts[ENDS]
         if (wanted > counts[ROOMS]).any():
-            self.records = self.storage.with_room(self.records, vertices, faces)
-            self._repin()
+            self.replace(records=self.storage.with_room(self.records, vertices, faces))
 
     def widen(self, more: int = 0, most: int | None = None) -> None:
         """See that the answer to any query fits into the scratch, at a valence by so many larger.
@@ -177,24 +176,31 @@ class State:
         if WIDTH * (counts[VALENCE] + more + 1) > room:
             if counts[VALENCE] > self._valence_counted + counts[FACES] // 8:
                 self.count_valence()
-            self.out.update(self._wide_enough(2 * (int(counts[VALENCE]) + more)))
-            self._repin()
+            self.replace(out=self._wide_enough(2 * (int(counts[VALENCE]) + more)))
 
     def lengthen(self, entries: int) -> None:
         """Have a log of at least so many entries."""
         if len(self.log) < entries:
-            self.log = memoryview(np.zeros(entries, np.int64).data)
-            self._repin()
+            self.replace(log=memoryview(np.zeros(entries, np.int64).data))
 
     def compact(self) -> dict[str, Array]:
         """Drop dead records and room -> the new number of each old record, by kind. O(records)."""
-        self.records, number = self.storage.compacted(self.records)
-        counts = self.records.counts
+        records, number = self.storage.compacted(self.records)
+        self.replace(records=records)
+        counts = records.counts
         if counts[SIDES] > 3:
             corners = self.answers("face_vertices", self.live("face"), int(counts[SIDES]))
             counts[SIDES] = corners.counts.max(initial=3)
-        self._repin()
         return number
+
+    def replace(self, **parts: Any) -> None:
+        """Have others of these parts, by name, and tell every pin, also where it is interrupted."""
+        try:
+            vars(self).update(parts)
+            self._repin()
+        except BaseException:  # kernels would write to what is nobody's any more
+            self._repin()
+            raise
 
     def count_valence(self) -> int:
         """The bound on the valence made exact: operations only ever raise it. Cost O(n_t)."""

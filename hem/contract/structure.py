@@ -308,7 +308,8 @@ class Structure(Described, Surveying, abstract=True):
 
         ``keep`` is ``edge_vertices(edge)[1]`` unless it is said. Interior: 1 vertex, 3 edges and 2
         faces fewer; border: 1, 2 and 1. Cost O(n_ev), or O(n_t) where neighbors are searched for.
-        Thesis 4.2; refused as ``hem.authoring.operations.collapse_edge`` says.
+        Thesis 4.2; refused as ``hem.authoring.operations.collapse_edge`` says. That looks only at
+        triangles at the edge: where there are polygons, two faces may have the same corners then.
         """
         return self._do["collapse_edge"](edge, None, -1 if keep is None else _said(keep))
 
@@ -433,17 +434,35 @@ class Structure(Described, Surveying, abstract=True):
 
         Elements keep their order. Cost O(n_v + n_t).
         """
+        edit, remapping = self._compacted()
+        self._followers.subscribers.tell(edit)
+        return remapping
+
+    def _compacted(self) -> tuple[Edit, Remapping]:
+        """As ``compact`` says, but told to the attributes only."""
         self._queries.count_edges()
+        edit, records = Edit("compact", -1, np.zeros(0, np.int64)), self.records
+        before = [(it, vars(it).copy()) for it in self.attributes()]
+        try:
+            edit.remapping = remapping = self._renumbered()
+            self._followers.carry(edit)
+        except BaseException:  # values must not stay at what other elements are called now
+            if self.arrays:  # objects were renumbered in their place
+                self._state.replace(records=records)
+                for attribute, parts in before:
+                    vars(attribute).update(parts)
+            raise
+        return edit, remapping
+
+    def _renumbered(self) -> Remapping:
+        """Drop what is dead from the records."""
         number, renumbered = self._state.compact(), self._state.storage.renumbered
         faces = next(number[it] for it in ("face", "triangle") if it in number)
-        edit = Edit("compact", -1, np.zeros(0, np.int64))
-        edit.remapping = Remapping(
+        return Remapping(
             np.asarray(number["vertex"], np.int32),
             np.asarray(faces, np.int32),
             lambda edges: renumbered(arguments.handles("Remapping.edges", edges), number),
         )
-        self._followers.publish(edit)
-        return edit.remapping
 
     # Algorithms ------------------------------------------------------------------------------
 

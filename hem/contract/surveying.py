@@ -111,7 +111,8 @@ class Surveying(ABC):
     def is_border(self, vertices: Any = None) -> Any:
         """Whether a vertex lies on the border, or each of (n,), or of all.
 
-        It has an edge more than faces there; one without faces lies on none. Cost:
+        It has an edge more than faces there; one without faces lies on none. So it is on a surface:
+        at an edge of three faces, as others than surfaces have, it may be missed. Cost:
         ``vertex_vertices`` and ``vertex_faces``.
         """
         on_border = self.valence(vertices) > _each(self.vertex_faces, vertices)

@@ -27,8 +27,9 @@ class TriangleMesh(Convertible):
     triangles  (m, 3) int32, indices into `points`, counterclockwise from outside, three different
                corners each
 
-    Vertices that no triangle uses are legal, and so is the empty mesh. What can still be written
-    to is copied; read-only arrays of the right type and order are shared.
+    Vertices that no triangle uses are legal, and so is the empty mesh. Arrays that can be written
+    to are copied; read-only ones of the right type and order are shared, and so is the memory
+    behind a read-only view, which must stay as it is.
 
     >>> mesh = hem.TriangleMesh([(0, 0, 0), (1, 0, 0), (1, 1, 0)], [(0, 1, 2)])
     >>> mesh.area()
@@ -195,7 +196,10 @@ def _unit_or_zero(vectors: Floats) -> Floats:
 
 
 def own(given: Array, dtype: DTypeLike) -> Array:
-    """The array as this type, and where the caller could still write to it a copy of it."""
+    """The array as this type: a copy of it, unless it is read-only and of that type already.
+
+    Then it is shared. Whoever has a writable array behind a read-only view can still write to it.
+    """
     kept = np.ascontiguousarray(given, dtype)
     return kept.copy() if given.flags.writeable and np.shares_memory(kept, given) else kept
 

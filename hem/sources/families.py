@@ -24,7 +24,7 @@ SEEDS = 2**32  # from far larger ones, pymeshlab makes points that are none
 class Family:
     """How to make the meshes of one family, and what is known of all of them.
 
-    `make(n_vertices, seed)` gives the mesh of the nearest reachable size. A closed family is
+    `make(n_vertices, seed)` gives the mesh of a reachable size near this. A closed family is
     wound outward, a family with a border counterclockwise as seen from above (+z).
     """
 
@@ -37,10 +37,10 @@ class Family:
 
 
 def generate(family: str, n_vertices: int, seed: int = 0) -> TriangleMesh:
-    """A manifold, consistently wound mesh of the family, of the reachable size nearest in ratio.
+    """A manifold, consistently wound mesh of the family, of a reachable size near this.
 
-    FAMILIES says what there is and which sizes it reaches. `seed` changes the random families
-    only; the same arguments always give the same mesh. The mesh is kept on disk (see cache).
+    FAMILIES says what there is and which sizes it reaches. `seed` changes the random families only;
+    the same arguments always give the same mesh. The mesh is kept on disk (see cache).
 
     Cost: O(n) or O(n log n) once, some 20 s at worst; afterwards that of reading a file. Raises
     MeshError for a family or a size that does not exist, naming those that do.
@@ -73,7 +73,8 @@ def _made_by() -> str:
 def _sides(n: int, least: int, widest: float, ideal: float) -> tuple[int, int]:
     """Two counts, long side first, whose product is nearest n and whose ratio is sensible.
 
-    The ratio is at most about `widest`, and as near to `ideal` as the product allows.
+    The ratio is at most about `widest`, but of small products, as the short side is rounded down;
+    and as near to `ideal` as the product allows.
     """
     root = np.sqrt(n)
     short = np.arange(max(least, int(root / np.sqrt(widest))), max(least, int(root)) + 1)
@@ -144,7 +145,7 @@ def _contour(expression: str, voxel: float) -> TriangleMesh:
 FAMILIES: dict[str, Family] = {
     "torus": Family(
         what="a torus of exactly two faces a vertex, every valence 6",
-        sizes="products of two counts in a ratio of 1 … 4",
+        sizes="products of two counts in a ratio of 1 … 4, small ones up to 6.4",
         closed=True, random=False, smallest=9, make=_torus,
     ),
     "sphere": Family(
@@ -154,7 +155,7 @@ FAMILIES: dict[str, Family] = {
     ),
     "grid": Family(
         what="a flat rectangle of square cells, each cut in two; it has a border",
-        sizes="products of two counts in a ratio of 1 … 2",
+        sizes="products of two counts in a ratio of 1 … 2, small ones up to 3.5",
         closed=False, random=False, smallest=4, make=_grid,
     ),
     "cone": Family(
@@ -164,12 +165,12 @@ FAMILIES: dict[str, Family] = {
     ),
     "terrain": Family(
         what="a fractal terrain over a rectangle; it has a border",
-        sizes="products of two counts in a ratio of 1 … 2",
+        sizes="products of two counts in a ratio of 1 … 2, small ones up to 3.5",
         closed=False, random=True, smallest=4, make=_terrain,
     ),
     "isosurface": Family(
         what="a wavy sphere cut by marching cubes: closed, with irregular valences",
-        sizes="within 10 percent of every size, within 2 percent from 1,000 on",
+        sizes="within 15 percent of every size, within 2 percent from 1,000 on",
         closed=True, random=True, smallest=100, make=_isosurface,
     ),
 }  # fmt: skip

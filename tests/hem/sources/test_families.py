@@ -60,10 +60,10 @@ def test_sizes_that_are_reachable_are_reached(family: str, n: int, reached: int)
     assert len(hem.generate(family, n).points) == reached
 
 
-def test_every_size_is_met_within_a_tenth_but_for_the_sphere() -> None:
+def test_every_size_is_met_within_15_percent_but_for_the_sphere() -> None:
     for family in set(hem.FAMILIES) - {"sphere"}:
-        for n in (*range(100, 200, 13), 997, 4_001):
-            assert len(hem.generate(family, n).points) == pytest.approx(n, rel=0.1), family
+        for n in (*range(100, 200, 13), 147, 997, 4_001):
+            assert len(hem.generate(family, n).points) == pytest.approx(n, rel=0.15), family
 
 
 def test_a_torus_has_two_faces_a_vertex_and_every_valence_six() -> None:

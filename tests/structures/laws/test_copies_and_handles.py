@@ -11,6 +11,7 @@ import tracemalloc
 import weakref
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
 from functools import partial
 from typing import Any
 
@@ -20,7 +21,8 @@ import pytest
 import hem
 import structures
 from hem.authoring import VALENCE
-from hem.contract import QUERIES, STEPS, Navigable, Structure
+from hem.contract import QUERIES, STEPS, Attribute, Navigable, Structure
+from hem.contract.state import State
 from hem.errors import MeshError, TopologyError
 from hem.ragged import Ragged
 from tests.structures.conftest import octahedron
@@ -260,6 +262,64 @@ def test_an_interrupted_question_leaves_the_mesh_ready(
     s.collapse_edge(edge)
     assert s.n_vertices == vertices - 1
     s.validate()
+
+
+def test_an_interrupt_while_room_is_made_leaves_the_mesh_ready(
+    name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    one, other = (structures.build(name, hem.generate("torus", 100)) for _ in range(2))
+    for s in (one, other):
+        s.split_face(0, (0, 0, 0))
+
+    def interrupted(state: State) -> None:
+        monkeypatch.undo()
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(State, "_repin", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        one.reserve(100_000)
+    for s in (one, other):
+        s.split_face(1, (0, 0, 0))
+        s.collapse_edge(collapsible(s.copy()))
+    assert answers(one) == answers(other)
+    assert one.same_as(other)
+    one.validate()
+
+
+@pytest.mark.parametrize("element", ["vertex", "face", "corner"])
+def test_an_interrupted_compact_renumbers_neither_elements_nor_their_values(
+    name: str, element: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    if not structures.REGISTRY[name].compiled:
+        return  # objects are renumbered in their place
+    s = structures.build(name, hem.generate("torus", 100))
+    for kind in ("vertex", "face", "corner"):
+        made = getattr(s, f"{kind}_attribute")("number")
+        made.values[...] = np.arange(made.values.size).reshape(made.values.shape)
+    for edge in s.edges()[:50].tolist():
+        with suppress(TopologyError):
+            s.collapse_edge(edge)
+    before, values = s.copy(), [it.values.copy() for it in s.attributes()]
+    follow = Attribute.follow
+
+    def interrupted(attribute: Attribute, edit: hem.Edit) -> None:
+        follow(attribute, edit)
+        if attribute.element == element:
+            raise KeyboardInterrupt
+
+    with monkeypatch.context() as patched:
+        patched.setattr(Attribute, "follow", interrupted)
+        with pytest.raises(KeyboardInterrupt):
+            s.compact()
+    assert s.same_as(before)
+    assert answers(s) == answers(before)
+    assert all(map(np.array_equal, values, (it.values for it in s.attributes())))
+    s.validate()
+    s.compact()
+    before.compact()
+    assert s.same_as(before)
+    pairs = zip(s.attributes(), before.attributes(), strict=True)
+    assert all(np.array_equal(one.values, other.values) for one, other in pairs)
 
 
 def test_what_is_restored_counts_on(name: str) -> None:
