@@ -401,12 +401,19 @@ def test_room_is_made_for_a_number_of_splits(name, wrong):
         s.reserve(wrong)
 
 
-def test_no_room_is_made_for_more_than_indices_can_name(name):
-    if not structures.REGISTRY[name].compiled:
-        return  # objects are named by Python's own integers
-    s = structures.build(name, octahedron())
-    with pytest.raises(hem.MeshError, match="can name"):
-        s.reserve(2**31 - 1)
+@pytest.mark.parametrize("reference_bytes", [4, 8])
+def test_no_room_is_made_for_more_than_indices_can_name(name, reference_bytes):
+    s = structures.build(name, octahedron(), reference_bytes)
+    for splits in (2**31 - 1, 2**30):
+        with pytest.raises(hem.MeshError, match="can name"):
+            s.reserve(splits)
+    s.validate()
+
+
+def test_what_takes_no_memory_is_checked_for_all_fields_before_any_takes_some():
+    s = structures.build("half_edge", octahedron())
+    with pytest.raises(hem.MeshError, match=r"can name; build with reference_bytes=8"):
+        s.reserve(2**30 - 9)  # as many faces as handles can name, and three times as many records
     s.validate()
 
 
