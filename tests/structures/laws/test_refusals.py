@@ -410,8 +410,12 @@ def test_no_room_is_made_for_more_than_indices_can_name(name, reference_bytes):
     s.validate()
 
 
-def test_what_takes_no_memory_is_checked_for_all_fields_before_any_takes_some():
+def test_all_fields_are_checked_before_any_takes_memory(monkeypatch):
+    def none_left(*_):
+        raise MemoryError
+
     s = structures.build("half_edge", octahedron())
+    monkeypatch.setattr("hem.authoring.records.longer", none_left)
     with pytest.raises(hem.MeshError, match=r"can name; build with reference_bytes=8"):
         s.reserve(2**30 - 9)  # as many faces as handles can name, and three times as many records
     s.validate()
