@@ -24,7 +24,7 @@ from hem.authoring import (
 from hem.contract import arguments
 from hem.contract.arguments import MOST, integer
 from hem.contract.state import State
-from hem.contract.storage import HANDLE_TYPES, UncompiledStorage, refuse_handles
+from hem.contract.storage import HANDLE_TYPES, Storage, UncompiledStorage, refuse_handles
 from hem.edit import FACE
 from hem.engine import Read
 from hem.errors import MeshError
@@ -106,8 +106,8 @@ class Queries:
 
         Compiled code makes other threads wait meanwhile, and Python does not.
         """
-        state = self._state
-        if not isinstance(state.storage, UncompiledStorage):
+        state, kind = self._state, type(self._state.storage)
+        if not issubclass(kind, UncompiledStorage) or kind.prepare is Storage.prepare:
             return ask
 
         def prepared(*asked: Any) -> Any:
