@@ -43,6 +43,9 @@ A calculation waits in the processor for its numbers. Where memory is slow there
 the loads that come after it: with 1,000,000 vertices, normals took twice the time.
 """
 
+MADE = [VERTICES, VERTEX_END, FACES, FACE_END]
+"""Of the counts: what differs once anything was made or removed. To ask changes none of them."""
+
 AT_ONCE = 8
 """Calls that the same scratch serves: no operation adds more than 2 to a valence, of WIDTH."""
 
@@ -151,11 +154,17 @@ def step(s: Structure, make: Algorithm, plan: Any, out: Any, log: Any, left: int
 
 
 def tell(s: Structure, kind: str, logs: list[Array]) -> None:
-    """Tell followers of one edit by its logs, which are forgotten."""
+    """Tell followers of one edit by its logs, which are forgotten.
+
+    MeshError if one of them edits: a plan would name what is gone. What was done stays, and whole.
+    """
     touched = np.concatenate([np.zeros(0, np.int64), *logs])
     logs.clear()
     if len(touched):
+        before = s.records.counts[MADE].tolist()
         s.tell(kind, touched)
+        if s.records.counts[MADE].tolist() != before:
+            raise MeshError(f"{kind}: a subscriber edited the mesh meanwhile")
 
 
 @cache

@@ -548,7 +548,8 @@ class Structure(Described, Surveying, abstract=True):
         """Have ``callback`` called with every ``Edit`` once it is done -> a way to end that.
 
         All are called, in the order they subscribed, even if one of them raises; what the first of
-        them raised is raised then.
+        them raised is raised then. A callback may ask, but not edit: an algorithm that is under way
+        ends with a MeshError where elements were made or removed.
         """
         return self._followers.subscribers.subscribe(callback)
 

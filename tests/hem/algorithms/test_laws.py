@@ -224,6 +224,21 @@ def test_what_a_subscriber_raises_ends_it_after_the_edit_that_all_are_told_of(sc
     assert np.array_equal(render.indices, hem.RenderMesh(s).indices)
 
 
+@pytest.mark.parametrize("algorithm", ["loop", "sqrt3 twice", "quadrics", "remesh"])
+def test_a_subscriber_that_edits_ends_an_algorithm_and_the_mesh_is_whole(algorithm: str) -> None:
+    s = structures.build("half_edge", MESHES["torus"]())
+    s.corner_attribute("any")  # so that every operation is told on its own
+
+    def edit_too(edit: hem.Edit) -> None:
+        if edit.kind != "split_face":
+            s.split_face(int(s.faces()[-1]), (0, 0, 0))
+
+    s.subscribe(edit_too)
+    with pytest.raises(hem.MeshError, match="a subscriber edited the mesh"):
+        ALGORITHMS[algorithm](s)
+    s.validate()
+
+
 @pytest.mark.parametrize("algorithm", ["quadrics", "shortest edge"])
 def test_an_interrupt_in_the_midst_of_an_operation_leaves_what_was_told(algorithm: str) -> None:
     """Python stops anywhere: here where the first vertex is moved, or the tenth."""
