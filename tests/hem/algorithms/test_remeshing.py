@@ -103,6 +103,14 @@ def test_what_is_sharp_stays_sharp(
     assert meshlab.distances(mesh, mine)[1] < 0.01
 
 
+@pytest.mark.parametrize("sides", [6, 8])
+def test_a_prism_keeps_the_creases_between_its_sides(sides: int) -> None:
+    prism = pytest.importorskip("trimesh").creation.cylinder(1, 3, sections=sides)
+    mesh = hem.TriangleMesh(prism.vertices, prism.faces)
+    mine = remeshed(mesh, length=0.15)
+    assert np.isclose(mine.volume(), mesh.volume(), rtol=1e-3)
+
+
 def test_two_sheets_that_lie_on_each_other_stay() -> None:
     angles = np.arange(6) * np.pi / 3
     hexagon = np.concatenate(
