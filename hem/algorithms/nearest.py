@@ -1,7 +1,8 @@
 """The nearest points of a surface, for vertices that are to stay on it.
 
 Of a few triangles, those whose middles are nearest, the nearest point is taken. On a surface of
-very long triangles that may be a point beside the nearest one.
+very long triangles that may be a point beside the nearest one. Triangles that face away from a
+vertex come last: they are the other side of a thin wall.
 
 Source: Ericson, Real-Time Collision Detection (2005), 5.1.5.
 """
@@ -12,6 +13,7 @@ import numpy as np
 from numba import njit
 from scipy.spatial import cKDTree
 
+from hem.algorithms.parts import cross
 from hem.arrays import Array, Floats
 from hem.authoring import kernel
 
@@ -26,13 +28,13 @@ class Surface:
         self._corners = points[triangles].astype(np.float64)
         self._middles = cKDTree(self._corners.mean(axis=1)) if len(triangles) else None
 
-    def nearest(self, points: Array) -> Floats:
-        """(n, 3) float64, for points (n, 3). Cost O(log n_t) each."""
+    def nearest(self, points: Array, normals: Array) -> Floats:
+        """(n, 3) float64, for points (n, 3) and their normals. Cost O(log n_t) each."""
         found = points.astype(np.float64)
         if self._middles is not None and len(points):
             few = range(1, min(CANDIDATES, len(self._corners)) + 1)
             _, candidates = self._middles.query(found, k=few)
-            _nearest(self._corners, candidates, found)
+            _nearest(self._corners, candidates, normals, found)
         return found
 
 
@@ -62,13 +64,16 @@ def _on_triangle(corners: Floats, p: Floats) -> Floats:
 
 
 @njit(cache=True)
-def _nearest(corners: Floats, candidates: Array, points: Floats) -> None:
-    """Take every point to the nearest of its candidates."""
+def _nearest(corners: Floats, candidates: Array, normals: Floats, points: Floats) -> None:
+    """Take every point to the nearest of its candidates, of those that face as it does if any."""
     for i in range(len(points)):
-        least, best = np.inf, points[i].copy()
+        least, best = (True, np.inf), points[i].copy()
         for f in candidates[i]:
+            a, b, c = corners[f, 0], corners[f, 1], corners[f, 2]
+            x, y, z = cross(b - a, c - a)
+            away = x * normals[i, 0] + y * normals[i, 1] + z * normals[i, 2] < 0
             there = _on_triangle(corners[f], points[i])
-            far = ((there - points[i]) ** 2).sum()
+            far = away, ((there - points[i]) ** 2).sum()
             if far < least:
                 least, best = far, there
         points[i] = best

@@ -199,7 +199,7 @@ def relax(s: Structure, surface: Surface) -> None:
     vertices = s.vertices()
     vertices = vertices[toward[vertices].any(axis=1)]
     places = s.points + toward
-    places[vertices] = surface.nearest(places[vertices])
+    places[vertices] = surface.nearest(places[vertices], normals[vertices])
     stay_where_faces_turn(s, places)
     move(s, "remesh", places.astype(np.float32), vertices)
 

@@ -128,6 +128,22 @@ def test_two_sheets_that_lie_on_each_other_stay() -> None:
     assert np.isclose(mine.area(), pillow.area(), rtol=0.05)
 
 
+def test_no_vertex_goes_to_the_other_side_of_a_thin_wall() -> None:
+    ball = hem.generate("sphere", 642)
+    points = np.concatenate([ball.points, 0.99 * ball.points])
+    faces = np.concatenate([ball.triangles, ball.triangles[:, ::-1] + len(ball.points)])
+    shell = hem.TriangleMesh(points, faces)
+    mine = remeshed(shell, length=0.3, iterations=3)
+    assert np.isclose(mine.volume(), shell.volume(), rtol=0.05)
+
+
+def test_a_nearest_point_is_found_where_all_faces_look_away() -> None:
+    surface = Surface(np.eye(3), np.array([[0, 1, 2]]))
+    for normal in ((1, 1, 1), (-1, -1, -1)):
+        found = surface.nearest(np.ones((1, 3)), np.array([normal], float))
+        assert np.allclose(found, 1 / 3)
+
+
 def test_the_length_is_the_mean_unless_it_is_said() -> None:
     mesh = hem.generate("sphere", 642)
     assert np.isclose(lengths(remeshed(mesh)).mean(), lengths(mesh).mean(), rtol=0.1)
@@ -168,7 +184,7 @@ def test_a_triangle_without_area_has_a_nearest_point_as_well(
     turn: int,
 ) -> None:
     surface = Surface(np.array(np.roll(corners, turn, axis=0)), np.array([[0, 1, 2]]))
-    assert np.allclose(surface.nearest(np.array([place], float)), [expected])
+    assert np.allclose(surface.nearest(np.array([place], float), np.zeros((1, 3))), [expected])
 
 
 def test_a_mesh_with_vertices_in_the_same_place_can_be_remeshed() -> None:
