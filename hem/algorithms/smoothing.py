@@ -19,6 +19,9 @@ from hem.authoring import FACE_END, VALENCE, Kernel, Kernels, Sum, is_point, ker
 from hem.contract import Structure
 from hem.naming import look_up
 
+SPREAD = 0x2545F491
+"""An odd number that takes vertices that are near each other far apart."""
+
 BORDER = -1
 """Where in a plan is told what goes for vertices on the border."""
 
@@ -44,11 +47,22 @@ class Plan(NamedTuple):
     out: Any
 
 
+@kernel
+def mixed(v: int) -> int:
+    """What a vertex counts as, in 38 bits: other vertices add up to something else, by far most.
+
+    Those of millions fit into 64 bits, which Python's own numbers do not wrap around.
+    """
+    spread = v * SPREAD & 0x7FFFFFFF
+    return spread * spread >> 24
+
+
 def adding_neighbors(k: Kernels, operations: Kernels) -> Kernel:
     """Make ``add_neighbors(m, plan) -> 0``: a pass over the faces, which asks for no neighbors.
 
     Each face adds to a corner the next one, which comes next in no other face. At a vertex where
-    the faces close around it the corners before are those after it, and their squares cancel out.
+    the faces close around it the corners before are those after it, and what they count as cancels
+    out.
     """
     lives, corners, position = living_face(k), cornering(k["face_vertices"]), k["position"]
 
@@ -63,9 +77,10 @@ def adding_neighbors(k: Kernels, operations: Kernels) -> Kernel:
                 sums.add_to(total, b, position(m, c))
                 sums.add_to(total, c, first)
                 if len(turns) > 0:
-                    turns[a] += b * b - c * c
-                    turns[b] += c * c - a * a
-                    turns[c] += a * a - b * b
+                    p, q, r = mixed(a), mixed(b), mixed(c)
+                    turns[a] += q - r
+                    turns[b] += r - p
+                    turns[c] += p - q
         return 0
 
     return add_neighbors

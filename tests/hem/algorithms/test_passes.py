@@ -108,6 +108,17 @@ def test_smoothing_is_a_product_with_the_matrix_of_means(mesh: hem.TriangleMesh)
     assert np.allclose(t.points, expected, atol=1e-5)
 
 
+@pytest.mark.parametrize("compiled", [True, False])
+def test_a_vertex_where_fans_of_faces_meet_stays_whatever_the_numbers_of_its_neighbors(
+    compiled: bool,
+) -> None:
+    points = np.random.default_rng(0).normal(size=(9, 3))  # 1² + 8² is 4² + 7²
+    mesh = hem.TriangleMesh(points, [(0, 1, 4), (0, 8, 7)])
+    s = structures.build("indexed", mesh, compiled=compiled)
+    algorithms.smooth(s)
+    assert np.array_equal(s.points, mesh.points)
+
+
 def test_taubin_keeps_the_volume_that_laplace_loses() -> None:
     mesh = hem.generate("sphere", 642)
     kept, lost = (structures.build("half_edge", mesh) for _ in range(2))
