@@ -16,7 +16,9 @@ import numpy as np
 from hem.arrays import Array
 from hem.authoring import kernel
 
-LEAST, MOST = -300, 300  # powers of two beyond which costs are not told apart
+LEAST, MOST = -640, 560
+"""Powers of two beyond which costs are not told apart: a cost grows with the length to the fourth.
+"""
 BITS = 4
 """Of the fraction of a cost that tell buckets apart, beside its exponent."""
 

@@ -152,6 +152,16 @@ def test_an_error_whose_square_is_infinite_bounds_nothing(error: float) -> None:
     assert len(simplified(mesh, error=error).points) == len(simplified(mesh, vertices=0).points)
 
 
+@pytest.mark.parametrize("power", [-100, 126])
+def test_the_unit_of_length_makes_no_difference(power: int) -> None:
+    mesh = hem.generate("sphere", 642)
+    expected = simplified(mesh, vertices=60)
+    scaled = hem.TriangleMesh(mesh.points * np.float32(2.0**power), mesh.triangles)
+    mine = simplified(scaled, vertices=60)
+    assert np.array_equal(mine.triangles, expected.triangles)
+    assert np.array_equal(mine.points, expected.points * np.float32(2.0**power))
+
+
 def test_positions_are_seen_from_the_middle_of_the_bounding_box() -> None:
     for mesh in (GRID, hem.TriangleMesh(GRID.points + np.float32(4096), GRID.triangles)):
         plan = collapsible(structures.build("half_edge", mesh), QUADRICS, 0.7, np.inf)
