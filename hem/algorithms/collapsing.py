@@ -265,11 +265,12 @@ def simplifying(k: Kernels, operations: Kernels) -> Kernel:
             if a == b:
                 drop(queue)
                 continue
-            if stamp[edge] == REFUSED + now:
+            known_as = edges[edge, 0], edges[edge, 1], stamp[edge]
+            if known_as == (a, b, REFUSED + now):
                 drop(queue)
                 put_off(queue, queue.state[HIGHEST], edge)
                 continue
-            cost, known_as = cost_of(plan, a, b), (edges[edge, 0], edges[edge, 1], stamp[edge])
+            cost = cost_of(plan, a, b)
             edges[edge, 0], edges[edge, 1], stamp[edge] = a, b, now
             bucket = bucket_of(queue, cost)
             if known_as != (a, b, now) and (cost == np.inf or bucket > queue.state[HIGHEST]):
