@@ -98,9 +98,12 @@ class Attribute:
         return self._rows[rows].copy()
 
     def __setitem__(self, handles: Any, values: ArrayLike) -> None:
-        """Give one element or many (n,) their values. Who follows the attribute is told."""
+        """Give one element or many (n,) their values. Who follows the attribute is told.
+
+        MeshError for what is not live, and for values of another shape or which do not fit.
+        """
         rows = self._checked(handles)
-        self._rows[rows] = values
+        self._put(rows, values)
         self._listeners.tell(np.atleast_1d(rows))
 
     def subscribe(self, callback: Callable[[Array], Any]) -> Callable[[], None]:
@@ -147,6 +150,13 @@ class Attribute:
         element = "face" if self.element == "corner" else self.element
         self._state.require(element, np.atleast_1d(rows))
         return rows
+
+    def _put(self, rows: Any, values: ArrayLike) -> None:
+        """Write values into their rows; MeshError for what are none."""
+        try:
+            self._rows[rows] = fitting(values, self.default.dtype, "the value")
+        except (TypeError, ValueError, OverflowError) as error:
+            raise MeshError(f"{self!r}: {error}") from error
 
     def _grow(self) -> None:
         """Have a row for every handle. An edit that was interrupted may not have seen to it."""
@@ -265,6 +275,21 @@ class HalfEdgeAttribute(EdgeAttribute):
             faces, first, h = (it[h != first] for it in (faces, first, h))
             if not len(faces):
                 return
+
+
+def fitting(values: ArrayLike, dtype: DTypeLike, called: str) -> Array:
+    """Values as such a type. ValueError if it makes them more than rounded."""
+    given = np.asarray(values)
+    if given.dtype == dtype:
+        return given
+    with np.errstate(over="ignore", invalid="ignore"):
+        value = np.array(values, dtype)
+    rounded = value.dtype.kind == "f" and given.dtype.kind in "biuf"
+    fits = np.isfinite(value) == np.isfinite(given) if rounded else value == given
+    if not np.all(fits):
+        words = f"{value.dtype} cannot hold {called} {values!r:.200}"
+        raise ValueError(f"{words}; say another, or another dtype")
+    return value
 
 
 def enlarged(rows: Array, length: int, value: ArrayLike = -1) -> Array:

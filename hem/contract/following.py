@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike, DTypeLike
 
 from hem.arrays import Array
-from hem.contract.attributes import Attribute, Rule
+from hem.contract.attributes import Attribute, Rule, fitting
 from hem.contract.queries import Queries
 from hem.contract.sides import SideAttribute
 from hem.contract.state import State
@@ -95,7 +95,8 @@ class AttributeMethod:
             shape = known.default.shape
         dtype = dtype or (known.default.dtype if known is not None else np.float32)
         try:
-            value = np.broadcast_to(_as_given(0 if default is None else default, dtype), shape)
+            given = fitting(0 if default is None else default, dtype, "the default")
+            value = np.broadcast_to(given.copy(), shape)
         except (TypeError, ValueError, OverflowError) as error:
             raise MeshError(f"{element} attribute {name!r}: {error}") from error
         if value.dtype.hasobject or not value.size:
@@ -114,19 +115,6 @@ class AttributeMethod:
                 f"on_split={known.on_split!r}; ask for its name alone, or remove_attribute it first"
             )
         return known
-
-
-def _as_given(default: ArrayLike, dtype: DTypeLike) -> Array:
-    """A default in an array of its own. ValueError if the type makes it more than rounded."""
-    given = np.asarray(default)
-    with np.errstate(over="ignore", invalid="ignore"):
-        value = np.array(default, dtype)
-    rounded = value.dtype.kind == "f" and given.dtype.kind in "biuf"
-    fits = np.isfinite(value) == np.isfinite(given) if rounded else value == given
-    if not np.all(fits):
-        words = f"{value.dtype} cannot hold the default {default!r}"
-        raise ValueError(f"{words}; say another, or another dtype")
-    return value
 
 
 def _same(one: Array, other: Array) -> bool:

@@ -27,7 +27,7 @@ class SideAttribute(EdgeAttribute):
     def __setitem__(self, handles: Any, values: ArrayLike) -> None:
         """See ``Attribute``."""
         rows = self._checked(handles)
-        self._rows[rows] = values
+        self._put(rows, values)
         if self.element == "edge":
             rows = np.atleast_1d(rows)
             twin = self._state.declared.step("twin", self._state.records, rows)
@@ -127,7 +127,7 @@ class CornerAttribute(Attribute):
         return self._known(np.repeat(faces, corners.counts), corners.values)[0]
 
     def __setitem__(self, handles: Any, values: ArrayLike) -> None:
-        """Give the corners of one face or of many their values. Who follows is told."""
+        """Give the corners of one face or of many their values. See ``Attribute``."""
         faces, corners = self._corners(self._checked(handles))
         shape, given = (len(corners.values), *self.default.shape), np.asarray(values)
         whole = given.size == np.prod(shape) and given.shape != self.default.shape
@@ -187,7 +187,7 @@ class CornerAttribute(Attribute):
         place = np.arange(len(face)) - np.repeat(corners.offsets[:-1], corners.counts)
         self._keys[faces] = -1
         self._keys[face, place] = corners.values
-        self._rows[face, place] = values
+        self._put((face, place), values)
 
     def _known(self, faces: Array, vertices: Array) -> tuple[Array, Array]:
         """(n, …) the values of vertices in faces, and (n,) which of them are corners there."""

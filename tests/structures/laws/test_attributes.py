@@ -583,6 +583,16 @@ def test_a_default_that_fits_is_the_value(dtype, default):
     assert np.array_equal(found, np.array(default, dtype), equal_nan=dtype == np.float64)
 
 
+@pytest.mark.parametrize("wrong", [[300], np.array([300]), 1.5, np.nan, "abc", [1, 2, 3], 10**30])
+def test_a_value_that_does_not_fit_is_refused_and_none_changes(wrong):
+    s = structures.build("half_edge", octahedron())
+    for kind in ("vertex", "face", "corner", "edge", "half_edge"):
+        attribute = getattr(s, f"{kind}_attribute")("weight", np.int8, default=7)
+        with pytest.raises(hem.MeshError, match=f"{kind} attribute 'weight'"):
+            attribute[[0, 2]] = wrong
+        assert (attribute.values == 7).all()
+
+
 @pytest.mark.parametrize("wrong", [-1, 10**6, [0, 10**6], 1.5, [[0]], None, "a"])
 def test_what_names_no_live_element_has_no_value(s, wrong):
     for attribute in (s.vertex_attribute("a"), s.face_attribute("a"), s.corner_attribute("a")):
