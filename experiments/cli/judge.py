@@ -37,6 +37,8 @@ def judge_file(
     Example: `hem judge benchmark.json --expected "O(n log n)" --plot costs.png`
     """
     with user_errors(2):
+        if upper and expected is None:
+            raise ValueError("--upper is of a claim: give one with --expected")
         from hem.complexity import judge, read_curves
 
         options: Any = {"exact": exact, "bound": "upper" if upper else "tight"}
@@ -44,6 +46,9 @@ def judge_file(
         claim = "O(1)" if expected is None else expected
         claim, options["variable"] = _by_letters(claim, curves[0].parameter, curves[0].fixed)
         verdicts = [judge(it.sizes, it.samples, claim, **options) for it in curves]
+        if expected is None:  # then what is said is of the class that comes closest
+            pairs = zip(curves, verdicts, strict=True)
+            verdicts = [judge(it.sizes, it.samples, own.best, **options) for it, own in pairs]
         if plot is not None:
             from experiments.report.figures.accuracy import save_costs
 

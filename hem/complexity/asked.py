@@ -228,7 +228,10 @@ class Asked:
     @cached_property
     def _told_in_caches(self) -> list[Verdict]:
         """What sizes in the caches tell, of those that a small integer may bend and of all."""
-        found = (self._in_caches(*it) for it in ((KEPT, UNSEEN_CACHED, FREE), (0, UNSEEN_CACHED)))
+        sizes = self.of.sizes
+        bent = sizes[0] < KEPT < np.quantile(sizes, 3 / 4) and sizes[-1] < REACH * KEPT
+        every = 0, UNSEEN if bent else UNSEEN_CACHED
+        found = (self._in_caches(*it) for it in ((KEPT, UNSEEN_CACHED, FREE), every))
         return [it for it in found if it]
 
     def _in_caches(self, beyond: float, unseen: float, lower: ArrayLike = ()) -> Verdict | None:
@@ -302,8 +305,10 @@ def _agreeing(it: Verdict) -> Verdict:
 
 
 def _untold(it: Verdict) -> Verdict:
-    """A verdict that confirms no claim where no class is told."""
-    if it.classes or it.outcome != "consistent" or it.bound == "upper":
+    """A verdict that confirms no claim where no class is told, nor accuses it by a slower one."""
+    accused = it.outcome == "violated" and parse(it.best) < parse(it.expected)
+    confirmed = it.outcome == "consistent" and it.bound != "upper"
+    if it.classes or not (accused or confirmed):
         return it
     reason = f"{it.best} comes closest, but larger sizes do not go on as it does."
     return replace(it, outcome="undetermined", reason=reason)

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 from hem.complexity.notation import Array
 
 FLOOR = 0.02  # relative error between sizes that no repetition at one size shows
+WIDEST = 1e60  # of the largest cost to the smallest: products of four are still numbers
 
 
 @dataclass(frozen=True)
@@ -51,6 +52,8 @@ def summarize(
     cells = [cells[i] for i in order]
     error, scatter = _errors(cells)
     cost = np.array([midmean(cell) for cell in cells])
+    if cost.max() / WIDEST > cost.min():
+        raise ValueError(f"no cost may be more than {WIDEST:g} times another: leave some sizes out")
     told = None if latency is None else waits[:, order]
     return Costs(n[order], cells, told, cost, error, scatter)
 

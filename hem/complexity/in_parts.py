@@ -4,6 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from hem.complexity.asked import KEPT, REACH
 from hem.complexity.judge import Outcome, Verdict
 from hem.complexity.notation import Array, parse
 
@@ -55,13 +56,15 @@ class InParts:
 
         They take the same memory, so that only the work can differ. What does not grow beside them
         is linear. What does may be slower at random access, or of O(n log n): where it grows
-        evenly, linear costs are not certain, and where both are open no cache grows so evenly.
+        evenly, linear costs are not certain, and where both are open no cache grows so evenly:
+        but more and more integers that Python does not keep do.
         """
         power, stray = self.logs()
         if stray > UNEVEN:
             return told
         flat = QUITE_FLAT if told.classes == LOGLINEAR else FLAT
-        as_log = power > LOG and stray < CLOSELY
+        bent = self.sizes[0] < 2 * KEPT < 2 * self.sizes[-1] < 2 * REACH * KEPT
+        as_log = power > LOG and stray < CLOSELY and not bent
         evenly = as_log or (power > RISING and stray < EVENLY)
         few = told.classes == LOGLINEAR and len(self.sizes) < 2 * HALF
         is_flat = power < flat or self.levels_off

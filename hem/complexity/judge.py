@@ -32,6 +32,7 @@ STEEPER = 2.1  # slope of the larger half of the sizes beyond which steep classe
 NEAR_HALF = 0.06  # of exponents: a power law so close to a half is told as that
 STEADY = 0.2  # of exponents: by so much the halves of a power law may differ
 APART, ABOVE = 0.2, 0.3  # of exponents: what is closer to a class is that, bent, or with log n
+LESS = np.linspace(-0.5, 0, 8, endpoint=False)  # of the smallest size: terms taken off of counts
 
 
 @dataclass(frozen=True, repr=False)
@@ -110,7 +111,8 @@ def judge(
     A size whose own samples tell its cost worse than `MAX_ERROR` is skipped, up to a quarter of
     the sizes: another tenant of the machine spoils a size for some milliseconds, not the curve.
     Times that grow more than any slowdown excuses violate a claim even where no class explains
-    them. None is violated in favor of a class whose slope the largest sizes do not come near.
+    them. None is violated in favor of a class whose slope the largest sizes do not come near, nor
+    by counts that it explains with a lower term taken off.
     Growth below `selection.GROWTH` over the sizes is taken for O(1): beside so large an intercept
     no class shows. Beside a tenfold slowdown by caches, growth below 1.5 may be missed as well.
     Times that grow by less than `selection.ACCUSING_GROWTH` violate no claim of slower growth.
@@ -139,10 +141,15 @@ def judge(
     outcome, reason = _decide(measured, models, claim, bound)
     if not exact and (size := _hinge(outcome, measured, models, claim, bound)):
         outcome, reason = "undetermined", f"One size decides: without {size:,g}, it is otherwise."
-    classes = _classes(measured, models)
-    if outcome == "consistent" and len(classes) > 1:
-        worse = " and ".join(it for it in classes if it != names[models.best])
-        reason = f"{names[models.best]} explains the costs best, and {worse} is not ruled out."
+    best, classes = names[models.best], _classes(measured, models)
+    exactly = exact and outcome == "violated" and not terms.size
+    if exactly and (other := _less_a_term(measured, memory, claimed, bound)):
+        outcome, both = "undetermined", sorted({*classes, other}, key=parse)
+        classes = both if classes and len(both) <= 2 else []
+        reason = f"{best} explains the counts; {claimed} does, too, with a lower term taken off."
+    if outcome == "consistent" and (worse := [it for it in _open(models) if it != best]):
+        are = "is" if len(worse) == 1 else "are"
+        reason = f"{best} explains the costs best, and {' and '.join(worse)} {are} not ruled out."
     replicates = resample(costs, models.predicted[models.best], resamples, seed)
     tails = [(1 - confidence) / 2, (1 + confidence) / 2]
     told = float(slope(costs.sizes, models.steady(costs.cost)))  # a model may miss it by a little
@@ -230,13 +237,28 @@ def _hinge(
     return None
 
 
+def _less_a_term(costs: Costs, memory: Memory, claimed: str, bound: Bound) -> str:
+    """What explains counts best where a lower term may be taken off; empty if that excuses nothing.
+
+    n - 1 comparisons of a few things grow like n log n.
+    """
+    models = _fitted(costs, memory, claimed, LESS * costs.sizes[0])
+    outcome, _ = _decide(costs, models, models.names.index(claimed), bound)
+    return "" if outcome == "violated" else models.names[models.best]
+
+
+def _open(models: Comparison) -> list[str]:
+    """The classes that the best one does not rule out, itself among them."""
+    best, every = models.best, range(len(models.names))
+    ruled_out = [m for m in every if models.confirms(best, m) and models.refutes(best, m)]
+    return [models.names[m] for m in every if m == best or m not in ruled_out]
+
+
 def _classes(costs: Costs, models: Comparison) -> list[str]:
     if _doubt(costs):
         return []
     if models.explained:
-        best, every = models.best, range(len(models.names))
-        ruled_out = [m for m in every if models.confirms(best, m) and models.refutes(best, m)]
-        open_ = [models.names[m] for m in every if m == best or m not in ruled_out]
+        open_ = _open(models)
         return open_ if len(open_) <= 2 else []
     cost = models.costs
     exponent = round(max(float(slope(cost.sizes, cost.cost)), 0.0), 2)

@@ -213,18 +213,26 @@ class Comparison:
     def outgrows(self, claimed: int) -> bool:
         """Whether times grow more than a claim could by any slowdown, whichever size is left out.
 
-        What violates a claim like that needs no class that explains the costs.
+        What violates a claim like that needs no class that explains the costs. The largest sizes
+        have to grow more, too: a single step between them, such as of a stack that outgrows a
+        cache, is no growth.
         """
         slow = self.memory.slowdowns.scaling
         if self.memory.unmeasured is not None:
             slow = np.vstack([slow, self.memory.unmeasured.scaling])
-        f, cost = np.maximum(self.design.growth[claimed, 0], 1e-300), self.costs.cost
-        excused = (slow[:, :, None] / slow[:, None, :]).max(0) * (f[:, None] / f)
+        f, cost = self.design.growth[claimed, 0], self.costs.cost
+        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+            grown = np.where(f > 1e-300, f[:, None] / f, np.inf)  # steep growth may leave no digits
+        excused = (slow[:, :, None] / slow[:, None, :]).max(0) * grown
         beyond = np.tril(cost[:, None] / cost > ACCUSING_GROWTH * excused)
         pairs = np.argwhere(beyond)
         rising = np.all(cost[1:] > (1 - MOST_WOBBLE) * cost[:-1])  # noise alone is not
         without = (np.any((pairs != size).all(axis=1)) for size in range(len(cost)))
-        return bool(rising) and not self.memory.exact and all(without)
+        last = slice(-max(3, len(cost) // 3), None)
+        told, own = (
+            slope(self.costs.sizes[last], np.maximum(it[last], 1e-300)) for it in (cost, f)
+        )
+        return bool(rising and told - own > UNLIKE) and not self.memory.exact and all(without)
 
     def _near(self, model: int) -> bool:
         """Whether a model, as fitted, comes near its own slope at the largest sizes, and theirs.

@@ -49,6 +49,21 @@ def test_too_little_data_cannot_be_told(tmp_path: Path) -> None:
     assert "Too few sizes" in hem(str(file))[1]  # without a claim, too
 
 
+def test_a_reason_answers_no_claim_that_nobody_made(tmp_path: Path) -> None:
+    file = tmp_path / "open.csv"
+    rows = [f"{n},{n * k}" for n in (1_000, 4_000, 16_000, 64_000) for k in (0.99, 1, 1.01)]
+    file.write_text("\n".join(["n,a", *rows]))
+    words = " ".join(hem(str(file))[1].split())
+    assert "O(√n) and O(n log n) are not ruled out" in words
+    assert "O(1)" not in words
+
+
+def test_a_bound_needs_a_claim(costs: Path) -> None:
+    code, words = hem(str(costs), "--upper")
+    assert code == 2
+    assert "--upper is of a claim" in words
+
+
 @pytest.mark.parametrize("head", ["rows", "nv", "n_v", "n"])
 def test_the_variable_of_a_claim_is_named_as_the_sizes_are(
     costs: Path, tmp_path: Path, head: str

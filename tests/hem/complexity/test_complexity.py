@@ -292,6 +292,39 @@ def test_a_reason_does_not_deny_a_class_that_is_named() -> None:
     assert verdict.reason == "O(n) explains the costs best, and O(n log n) is not ruled out."
 
 
+def test_a_reason_denies_no_class_where_several_are_open() -> None:
+    sizes = [1_000, 4_000, 16_000, 64_000]
+    verdict = judge(sizes, [[0.99 * n, n, 1.01 * n] for n in sizes], "O(n)")
+    assert (verdict.outcome, verdict.answer) == ("consistent", "")
+    worse = "O(√n) and O(n log n) are not ruled out."
+    assert verdict.reason == f"O(n) explains the costs best, and {worse}"
+
+
+def test_an_exponential_bound_is_kept_by_linear_costs_at_any_size() -> None:
+    sizes = [10, 100, 1000, 10_000, 100_000]  # 2^n of the smaller ones is no number beside that
+    samples = [[n * 1e-6] for n in sizes]
+    assert judge(sizes, samples, "O(2^n)", bound="upper").outcome == "consistent"
+    assert judge(sizes, samples, "O(2^n)").outcome == "violated"
+
+
+def test_a_step_between_sizes_is_no_growth() -> None:
+    sizes = np.geomspace(4, 900, 20).round()
+    each = 26e-9 + 84e-9 / (1 + (80 / sizes) ** 4)  # of a level of recursion, as measured
+    samples = [[n * it * k for k in (0.99, 1, 1.01)] for n, it in zip(sizes, each, strict=True)]
+    assert judge(sizes, samples, "O(n)", np.ones(20)).outcome == "undetermined"
+    assert judge(sizes, samples, "O(log n)", np.ones(20)).outcome == "violated"
+
+
+@pytest.mark.parametrize("bound", ["tight", "upper"])
+def test_counts_less_a_term_do_not_violate_their_class(bound: Any) -> None:
+    sizes = range(4, 21)
+    comparisons = [[n - 1] for n in sizes]
+    verdict = judge(sizes, comparisons, "O(n)", exact=True, bound=bound)
+    assert (verdict.outcome, verdict.answer) == ("undetermined", "O(n) or O(n log n)")
+    for claim in ("O(1)", "O(√n)"):
+        assert judge(sizes, comparisons, claim, exact=True, bound=bound).outcome == "violated"
+
+
 def test_an_interval_holds_its_own_slope() -> None:
     sizes = [100, 316, 1_000, 3_160, 10_000]
     falling = [[57.0], [54.0], [51.0], [48.0], [45.0]]  # O(1) comes closest
@@ -349,6 +382,7 @@ def test_a_verdict_survives_json() -> None:
         ({"bound": "loose"}, "bound"),
         ({"resamples": 0}, "resamples must be at least 1"),
         ({"lower": [float("nan")]}, "lower must be numbers"),
+        ({"samples": [[1], [1], [1], [2.0**512]]}, "no cost may be more than 1e[+]60 times"),
     ],
 )
 def test_malformed_input_is_named(change: dict[str, Any], message: str) -> None:

@@ -341,6 +341,36 @@ def test_a_class_that_is_told_as_possible_is_not_violated() -> None:
     assert found.judge("O(n)").outcome == "violated"
 
 
+def test_a_class_that_larger_sizes_do_not_go_on_as_accuses_no_steeper_one() -> None:
+    sizes = np.geomspace(4, 10_000, 20).round()
+    found = costs(7e-8 * np.minimum(sizes**0.5, (1_400 * sizes) ** 0.25), sizes)
+    found.memory[0] = 5e-9 * (1 + 8 / (1 + (10_000 / sizes) ** 2))
+    for claim in ("O(√n)", "O(n)", "O(n log n)"):
+        told = found.judge(claim)
+        assert (told.outcome, told.answer) == ("undetermined", "")
+    assert found.judge("O(1)").outcome == "violated"
+
+
+@pytest.mark.parametrize("claim", ["O(n)", "O(n log n)"])
+def test_integers_that_python_keeps_accuse_nothing(claim: str) -> None:
+    """The sum of a range, as measured: what is added is made anew from 257 on."""
+    sizes, seconds = np.arange(100.0, 1_001, 100), 1e-9 * np.array([
+        505, 895, 1626, 2606, 3549, 4502, 5480, 6619, 7492, 8465,
+    ])  # fmt: skip
+    assert costs(seconds, sizes, np.full(10, 160.0)).judge(claim).outcome != "violated"
+
+
+def test_small_inputs_of_integers_that_python_keeps_accuse_nothing() -> None:
+    """The same as a loop: beside calls on these, what is made anew looks like a logarithm."""
+    sizes, seconds = np.geomspace(10, 1_000, 12).round(), 1e-9 * np.array([
+        220, 250, 337, 493, 702, 1112, 1623, 2460, 3889, 6615, 10630, 17160,
+    ])  # fmt: skip
+    ratios = [np.full(9, it) for it in (0.827, 0.892, 0.976, 1.065, 1.113)]
+    beside = InParts(np.array([187.0, 285, 433, 658, 1000]), ratios)
+    found = replace(costs(seconds, sizes, np.full(12, 112.0)), in_parts=beside)
+    assert found.judge("O(n)").outcome != "violated"
+
+
 def test_a_long_beginning_hides_no_steep_end() -> None:
     """As of a convolution: each of n calls has a cost of its own."""
     sizes = np.geomspace(4, 100_000, 20).round()
