@@ -9,7 +9,7 @@ import re
 import warnings
 from collections import Counter, defaultdict
 from collections.abc import Iterator
-from math import inf
+from math import inf, isfinite, nan
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -70,8 +70,10 @@ def read_curves(path: Path, parameter: str | None = None) -> list[Curve]:
     found: dict[str, dict[float, list[float]]] = defaultdict(lambda: defaultdict(list))
     for name, parameters, samples in rows:
         if chosen in parameters:
+            if (size := parameters[chosen]) < 1:
+                raise ValueError(f"{path}, {name}: {chosen} is {size:g}, and sizes are at least 1")
             fixed = (f"{k}={v:.15g}" for k, v in parameters.items() if k != chosen)
-            found[", ".join([name, *fixed])][parameters[chosen]] += samples
+            found[", ".join([name, *fixed])][size] += samples
     held = tuple(name for name in values if name != chosen)
     return [
         Curve(name, chosen, np.array(ns := sorted(cells)), [np.array(cells[n]) for n in ns], held)
@@ -87,8 +89,8 @@ def _read_csv(text: str, path: Path) -> Iterator[Row]:
     if not lines or len(lines[0][1]) < 2:
         needed = "sizes first, then a column per function, with commas between"
         raise ValueError(f"{path} is no CSV of costs: {needed}")
-    first = lines[0][1]
-    headed = _number(first[0]) is None and not first[0].strip()[:1].isdigit()  # 1O0 is a mistake
+    first = [it.strip() for it in lines[0][1]]
+    headed = _number(first[0]) is None and not first[0][:1].isdigit()  # 1O0 is a mistake
     names = first if headed else ["n", *(f"column {i + 1}" for i in range(1, len(first)))]
     if again := [name for name, times in Counter(names).items() if times > 1]:
         raise ValueError(f"{path} has two columns {again[0]!r}: each function needs a name")
@@ -119,15 +121,22 @@ def _read_json(text: str, path: Path) -> list[Row]:
 
 
 def _hyperfine(results: list[dict[str, Any]]) -> Iterator[Row]:
-    """A command's name has a parameter where its number is that of the parameter in every run."""
+    """A command's name has a parameter where its number is that of the parameter in every run.
+
+    It ends with what else was varied where the command does not tell that.
+    """
     alike: dict[tuple[str, ...], list[tuple[list[str], dict[str, float], list[float]]]] = {}
     for it in results:
-        numbers = {key: _number(value) for key, value in it.get("parameters", {}).items()}
-        parameters = {key: value for key, value in numbers.items() if value is not None}
-        parts, times = DIGITS.split(it["command"]), it.get("times") or [it["mean"]]
-        codes = it.get("exit_codes") or [0] * len(times)
+        command, given = it["command"], it.get("parameters", {})
+        parameters = _numbers(given)
+        others = [str(value) for key, value in given.items() if key not in parameters]
+        told = [it for it in others if re.search(rf"(?<![^\W_]){re.escape(it)}(?![^\W_])", command)]
+        title = ", ".join([command, *(it for it in others if it not in told)])
+        parts, times = DIGITS.split(title), it.get("times") or [it["mean"]]
+        codes = (it.get("times") and it.get("exit_codes")) or [0] * len(times)
         if failed := sum(code != 0 for code in codes):
-            warnings.warn(f"{it['command']} failed {failed} times, skipped", stacklevel=2)
+            words = f"{command}: {failed} of {len(codes)} runs failed and are skipped"
+            warnings.warn(words, stacklevel=2)
         times = [time for time, code in zip(times, codes, strict=True) if code == 0]
         if not times:
             continue
@@ -155,19 +164,26 @@ def _pytest_benchmark(benchmarks: list[dict[str, Any]]) -> Iterator[Row]:
         given = it.get("params") or {}
         if all(_number(value) is None for value in given.values()):
             given = (it.get("extra_info") or {}) | given
-        numbers = {key: _number(value) for key, value in given.items()}
-        parameters = {key: value for key, value in numbers.items() if value is not None}
-        named = [str(value) for key, value in given.items() if key not in parameters]
+        parameters = _numbers(given)
+        others = [str(value) for key, value in given.items() if key not in parameters]
+        named = [it for it in others if not it.startswith("UNSERIALIZABLE[")]  # it has an address
         stats = it["stats"]
         title = ", ".join([name if names[name] == 1 else full, *named])
         yield title, parameters, stats.get("data") or [stats["median"]]
 
 
 def _google_benchmark(benchmarks: list[dict[str, Any]]) -> Iterator[Row]:
-    runs = [it for it in benchmarks if it.get("run_type", "iteration") == "iteration"]
-    for it in runs or [it for it in benchmarks if it.get("aggregate_name") == "median"]:
+    """A benchmark of which no run is told, or none that did not fail, costs its median."""
+    told = []
+    for it in benchmarks:
         if it.get("error_occurred") or it.get("skipped"):
             warnings.warn(f"{it['name']} failed and is skipped", stacklevel=2)
+        else:
+            told.append((it, it.get("run_type", "iteration") == "iteration"))
+    known = {it.get("run_name", it["name"]) for it, is_run in told if is_run}
+    for it, is_run in told:
+        is_median = it.get("aggregate_name") == "median"
+        if not is_run and (not is_median or it.get("run_name", it["name"]) in known):
             continue
         name, *arguments = it.get("run_name", it["name"]).split("/")
         parameters, unnamed = {}, []
@@ -190,6 +206,13 @@ def _google_benchmark(benchmarks: list[dict[str, Any]]) -> Iterator[Row]:
 
 def _number(value: Any) -> float | None:
     try:
-        return None if isinstance(value, bool) else float(value)
-    except (TypeError, ValueError):
+        number = nan if isinstance(value, bool) else float(value)
+    except (TypeError, ValueError, OverflowError):
         return None
+    return number if isfinite(number) else None
+
+
+def _numbers(given: dict[str, Any]) -> dict[str, float]:
+    """Those of some values that are numbers."""
+    numbers = {key: _number(value) for key, value in given.items()}
+    return {key: value for key, value in numbers.items() if value is not None}

@@ -162,9 +162,61 @@ def test_commands_that_failed_cost_nothing(tmp_path: Path) -> None:
         for n, it in ((10, [0, 127, 0]), (20, [0, 0, 0]), (30, [127, 127, 127]))
     ]
     (tmp_path / "file").write_text(json.dumps({"results": runs}))
-    with pytest.warns(UserWarning, match="sort 30 failed 3 times, skipped"):
+    with pytest.warns(UserWarning, match="sort 10: 1 of 3 runs failed and are skipped"):
         (curve,) = read_curves(tmp_path / "file")
     assert [it.tolist() for it in curve.samples] == [[10, 10], [20, 1, 20]]
+
+
+def test_commands_without_times_may_have_exit_codes(tmp_path: Path) -> None:
+    runs = [
+        {"command": f"x {n}", "parameters": {"n": str(n)}, "mean": n, "exit_codes": [0, 0]}
+        for n in (1, 2)
+    ]
+    assert curves_of(tmp_path / "file", {"results": runs}) == {"x {n}": [1, 2]}
+
+
+@pytest.mark.parametrize("command", ["sort {n}", "sort {n} --as={kind}"])
+def test_each_program_that_a_command_was_given_is_a_curve(tmp_path: Path, command: str) -> None:
+    runs = [
+        {"command": command.format(n=n, kind=it), "parameters": {"n": n, "kind": it}, "mean": 1.0}
+        for n in ("1", "2") for it in ("s", "sorted")
+    ]  # fmt: skip
+    named = command if "kind" in command else "sort {n}, {kind}"
+    assert curves_of(tmp_path / "file", {"results": runs}) == {
+        named.replace("{kind}", it): [1, 2] for it in ("s", "sorted")
+    }
+
+
+def test_of_each_benchmark_the_runs_are_read_or_else_the_median(tmp_path: Path) -> None:
+    def aggregate(name: str, n: int) -> dict[str, Any]:
+        run = {"name": f"{name}/{n}_median", "run_name": f"{name}/{n}", "cpu_time": 9}
+        return run | {"run_type": "aggregate", "aggregate_name": "median"}
+
+    runs = [{"name": f"BM_T/{n}", "run_type": "iteration", "cpu_time": n} for n in (1, 2)]
+    failed = {"name": "BM_F/1", "run_type": "iteration", "error_occurred": True}
+    medians = [aggregate(name, n) for name in ("BM_S", "BM_T", "BM_F") for n in (1, 2)]
+    content = {"benchmarks": [*medians, *runs, failed]}
+    (tmp_path / "file").write_text(json.dumps(content))
+    with pytest.warns(UserWarning, match="BM_F/1 failed"):
+        found = {it.name: it for it in read_curves(tmp_path / "file")}
+    assert {name: it.sizes.tolist() for name, it in found.items()} == {
+        name: [1, 2] for name in ("BM_S", "BM_F", "BM_T")
+    }
+    assert [row[0] / 1e-9 for row in found["BM_T"].samples] == pytest.approx([1, 2])
+
+
+def test_objects_and_what_is_no_number_split_no_curve(tmp_path: Path) -> None:
+    rows = [
+        ("a.py::t[g]", {"n": n, "g": f"UNSERIALIZABLE[<t.G object at {n:#x}>]", "m": "nan"}, {})
+        for n in (1, 2)
+    ]
+    assert curves_of(tmp_path / "file", written_of(*rows)) == {"t, nan": [1, 2]}
+
+
+def test_spaces_around_names_of_columns_are_none_of_theirs(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("n , f\n1,2\n2,3\n")
+    (curve,) = read_curves(tmp_path / "file", "n")
+    assert (curve.name, curve.parameter) == ("f", "n")
 
 
 def test_values_that_differ_in_the_last_digit_are_two_curves(tmp_path: Path) -> None:
@@ -193,7 +245,9 @@ def test_cells_may_be_empty_and_a_file_that_is_no_text_is_named(tmp_path: Path) 
         ("n,a\n1,2\n1,3\n", "nothing varies"),
         ("n,a,a\n1,2,3\n2,3,4\n", "two columns 'a'"),
         ("n,fast\n1,0\n2,3\n", "fast, n=1: a cost is positive, not 0"),
-        ("n,a\n1,nan\n2,3\n", "a, n=1: a cost is positive, not nan"),
+        ("n,a\n1,nan\n2,3\n", "row 2, a: 'nan' is no number"),
+        ("n,a\n0,2\n1,3\n", "a: n is 0, and sizes are at least 1"),
+        ("n,a\nnan,2\n1,3\n", "row 2: a size and a number"),
         ("1O00,1\n2000,2\n", "row 1: a size and a number"),
         ("n,a\n1," + "9" * 200_000, "no CSV of costs: field larger"),
         ("{}", "no JSON of .*: it has no benchmarks and no results"),
