@@ -4,6 +4,7 @@ import gc
 import tracemalloc
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from time import perf_counter
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -90,14 +91,19 @@ class Calls(NamedTuple):
         return clock() - begin
 
     def seconds_of_one(self, n: int) -> Array:
-        """(2,) what an input takes, and a call: of two, as one that was disturbed says little."""
+        """(3,) what an input takes, a call, and both beside the clock, such as asleep.
+
+        Of two, as one that was disturbed says little.
+        """
         taken = []
         for _ in range(2):
-            begin = self.clock()
+            first, begin = perf_counter(), self.clock()
             it = self.make(n)
             made = self.clock()
             self.f(it)
-            taken.append((made - begin, self.clock() - made))
+            end = self.clock()
+            waited = max(perf_counter() - first - (end - begin), 0.0)
+            taken.append((made - begin, end - made, waited))
             del it
         return np.min(taken, axis=0)
 
@@ -106,7 +112,8 @@ class Calls(NamedTuple):
 
         share: seconds that making the inputs of a sample may take.
         """
-        made, call = np.maximum(self.seconds_of_one(n), (0, 1e-9))
+        made, call, waited = np.maximum(self.seconds_of_one(n), (0, 1e-9, 0))
+        call = max(call, waited * (waited > SAMPLE))  # less is what it takes to read clocks
         most = SAMPLE * LONGER / (made + call if self.fresh else max(made / LONGER, call))
         calls = int(np.clip(min(BATCH / size, most), 1, MOST_CALLS))
         again = 1 if self.fresh else int(np.clip(SAMPLE / (calls * call), 1, MOST_CALLS))

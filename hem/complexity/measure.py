@@ -81,9 +81,7 @@ def measure(
     Raises ValueError for sizes that are not whole numbers from 1 on, for too small a `most` and for
     no budget or rounds; what f raises goes through.
     """
-    given = np.unique([] if sizes is None else np.asarray(sizes))
-    if sizes is not None and (not given.size or np.any(given < 1) or np.any(given % 1)):
-        raise ValueError("sizes must be whole numbers, each at least 1")
+    given = np.empty(0) if sizes is None else _given(sizes)
     if most < FIRST or most % 1:
         raise ValueError(f"most must be a whole number from {FIRST} on, not {most}")
     if not budget > 0 or rounds < 1 or rounds % 1:
@@ -102,6 +100,15 @@ def measure(
     if sizes is not None or not between or found.is_settled:
         return found
     return found.joined(_measured(calls, sorted(between), turn, rounds, amortized))
+
+
+def _given(sizes: ArrayLike) -> Array:
+    """Sizes as they were given, ascending; ValueError for what are none."""
+    given = np.ravel(np.asarray(sizes))
+    numbers = given.size and given.dtype.kind in "iuf" and np.isfinite(given).all()
+    if not numbers or np.any(given < 1) or np.any(given % 1):
+        raise ValueError("sizes must be whole numbers, each at least 1")
+    return np.unique(given)
 
 
 def _measured(
@@ -150,8 +157,8 @@ def _choose_sizes(calls: Calls, turn: float, most: int) -> list[int]:
     """Sizes of equal ratio, up to where a turn of all of them takes as long as it may."""
     n, tried, least = FIRST, list[tuple[int, float]](), min(REACH * FIRST // 2, most)
     while not tried or tried[-1][0] < most:
-        made, call = calls.seconds_of_one(n)
-        tried.append((n, float(call + made * (1 if calls.fresh else 0.1))))
+        made, call, waited = calls.seconds_of_one(n)
+        tried.append((n, float(call + waited + made * (1 if calls.fresh else 0.1))))
         if len(tried) > 1 and _seconds_of_turn(tried, turn, least) > turn:
             (last, took), (before, less) = tried.pop(), tried[-1]
             if np.log(took / less) > EXPLODES * np.log(last / before):

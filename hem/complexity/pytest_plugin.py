@@ -15,6 +15,7 @@ All else that `hem.complexity.measure` and `judge` are told by name may be given
 
 import inspect
 import json
+import os
 import subprocess
 import warnings
 from collections.abc import Iterator
@@ -53,7 +54,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     """What is done about a verdict, and where runs are kept."""
     group = parser.getgroup("complexity", "growth of costs")
     for outcome, default in DEFAULTS.items():
-        words = f"What an {outcome} claim does: {', '.join(DOINGS)}. Default: {default}."
+        words = f"What is done about {outcome} claims: {', '.join(DOINGS)}. Default: {default}."
         group.addoption(f"--complexity-{outcome}", choices=DOINGS, help=words)
         parser.addini(f"complexity_{outcome}", words, default=default)
     group.addoption("--complexity-budget", type=float, help=SECONDS)
@@ -71,9 +72,13 @@ def pytest_configure(config: pytest.Config) -> None:
         _doing(config, f"complexity_{outcome}")
     if (budget := config.getoption("complexity_budget")) is not None and not 0 < budget < inf:
         raise pytest.UsageError(f"--complexity-budget is a number of seconds, not {budget:g}")
-    history = config.getoption("complexity_history")
-    if history and (config.invocation_params.dir / history).is_dir():
-        raise pytest.UsageError(f"--complexity-history is a file; {history} is a folder")
+    if history := config.getoption("complexity_history"):
+        path = config.invocation_params.dir / history
+        if path.is_dir():
+            raise pytest.UsageError(f"--complexity-history is a file; {history} is a folder")
+        found = next(it for it in (path, *path.parents) if it.exists())
+        if not os.access(found, os.W_OK) or (found != path and not found.is_dir()):
+            raise pytest.UsageError(f"--complexity-history cannot be written: {history}")
     config.stash[LINES], config.stash[CHANGES] = [], []
 
 
@@ -190,6 +195,8 @@ def _mistake(options: dict[str, Any]) -> str:
         return f"unknown: {', '.join(unknown)}; known are {', '.join(sorted(KNOWN))}"
     if not options.get("expected"):
         return 'say what is claimed: expected="O(n)"'
+    if not isinstance(options["expected"], str):
+        return f'expected is a growth class such as "O(n)", not {options["expected"]!r}'
     try:
         canonical(options["expected"], options.get("variable"))
         require_bound(options.get("bound", "tight"))

@@ -11,6 +11,7 @@ import threading
 import tracemalloc
 from collections.abc import Callable, Iterator
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -612,8 +613,12 @@ def test_what_no_machine_has_room_for_is_measured_as_the_largest(
     assert (memory_times([1e5, 1 << 20, 1e15])[:, 1:].std(axis=1) == 0).all()
 
 
-@pytest.mark.parametrize("sizes", [[0, 1, 2, 3], [1.5, 2, 3], []])
-def test_sizes_that_are_none_are_refused(sizes: list[float]) -> None:
+@pytest.mark.parametrize(
+    "sizes",
+    [[0, 1, 2, 3], [1.5, 2, 3], [], ["10", "20"], (n for n in (10, 20)), [1, math.inf, math.nan]],
+)
+@pytest.mark.filterwarnings("error")
+def test_sizes_that_are_none_are_refused(sizes: Any) -> None:
     with pytest.raises(ValueError, match="sizes must be whole numbers"):
         measure(len, list, sizes)
 
@@ -635,6 +640,21 @@ def test_what_explodes_is_asked_of_nothing_larger_than_there_is_time_for(clock: 
     assert max(asked) <= 10
     assert found.sizes[-1] < 10
     assert found.judge("O(n²)").outcome != "consistent"
+
+
+def test_sizes_end_where_a_call_waits_longer_than_it_may(
+    clock: Clock, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Waiting is no cost by the clock, but the budget is of seconds."""
+    waited = 0.0
+
+    def wait(n: int) -> None:
+        nonlocal waited
+        waited += 1e-4 * n
+
+    monkeypatch.setattr("hem.complexity.calls.perf_counter", lambda: clock.now + waited)
+    measure(wait, int, budget=1.0)
+    assert waited < 5
 
 
 @pytest.mark.parametrize("most", [4, 7, 10])

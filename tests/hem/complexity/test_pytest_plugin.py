@@ -203,6 +203,8 @@ def test_history_tells_calls_of_one_test_apart_and_leaves_out_what_it_cannot_rea
     [
         ("", 'say what is claimed: expected="O(n)"'),
         ('expected="O(m n)"', "'O(m n)' names m, n: say which"),
+        ("expected=3", 'expected is a growth class such as "O(n)", not 3'),
+        ("expected=['O(n)']", "expected is a growth class such as *, not [[]'O(n)']"),
         ('expected="fast"', "unknown growth class 'fast'"),
         ('expected="O(n)", bounds="upper"', "unknown: bounds; known are *bound*"),
         ('expected="O(n)", bound="lower"', 'bound must be "tight" or "upper"'),
@@ -351,6 +353,7 @@ def test_a_fixture_that_asks_for_complexity_keeps_no_body_from_being_measured(
         (("-o", "complexity_violated=nope"), "complexity_violated is pass, warn, fail, not 'nope'"),
         (("--complexity-budget", "0"), "--complexity-budget is a number of seconds, not 0"),
         (("--complexity-history", "."), "--complexity-history is a file; * is a folder"),
+        (("--complexity-history", "/dev/null/a/b"), "--complexity-history cannot be written: *"),
     ],
 )
 def test_settings_that_are_none_are_told_before_any_test(run, options, message: str) -> None:
