@@ -362,6 +362,12 @@ def test_settings_that_are_none_are_told_before_any_test(run, options, message: 
     assert "test_body" not in result.stdout.str()
 
 
+def test_help_says_what_is_done_about_claims(run) -> None:
+    words = " ".join(run("--help").stdout.str().split())
+    for outcome in ("violated", "undetermined"):
+        assert f"What is done about {outcome} claims: pass, warn, fail." in words
+
+
 def test_history_tells_that_the_claim_is_another_and_passes_over_what_is_no_verdict(
     run, pytester: pytest.Pytester
 ) -> None:
