@@ -10,12 +10,12 @@ Source: Ericson, Real-Time Collision Detection (2005), 5.1.5.
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from scipy.spatial import cKDTree
 
 from hem.algorithms.parts import cross
 from hem.arrays import Array, Floats
 from hem.authoring import kernel
+from hem.engine import kept
 
 CANDIDATES = 12
 """How many triangles are looked at for each point."""
@@ -63,7 +63,7 @@ def _on_triangle(corners: Floats, p: Floats) -> Floats:
     return a + ab * (vb / total) + ac * (vc / total) if total > 0 else a
 
 
-@njit(cache=True)
+@kept
 def _nearest(corners: Floats, candidates: Array, normals: Floats, points: Floats) -> None:
     """Take every point to the nearest of its candidates, of those that face as it does if any."""
     for i in range(len(points)):

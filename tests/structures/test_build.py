@@ -96,13 +96,13 @@ def test_more_half_edges_than_int32_can_name_are_refused(name, monkeypatch):
 
 
 @pytest.mark.parametrize("name", OF_ARRAYS)
-def test_more_elements_than_references_can_name_find_no_room(name, monkeypatch):
+def test_more_elements_than_handles_can_name_find_no_room(name, monkeypatch):
     def large(array, used, length):
         return np.broadcast_to(array[:1], (length, *array.shape[1:]))  # takes no memory
 
     monkeypatch.setattr("hem.authoring.records.longer", large)
     s = structures.build(name, hem.generate("torus", 100))
-    with pytest.raises(hem.MeshError, match="more than references of 4 bytes"):
+    with pytest.raises(hem.MeshError, match="more than handles can name"):
         s.reserve(1_200_000_000)
 
 

@@ -10,10 +10,8 @@ from experiments.claims import judge_run
 from experiments.report import write_report
 from experiments.report.notebooks import page_titles
 from experiments.runs import load
-from structures import NAMES
 from tests.experiments.chromium import Browser
-from tests.experiments.made_runs import write_run
-from tests.extent import EVERYTHING
+from tests.extent import exhaustive
 
 PAGES = tuple(page_titles())
 SHOWN = "[...document.querySelectorAll('.entry')].filter(it => it.checkVisibility())"
@@ -21,23 +19,13 @@ KEYS = f"{SHOWN}.map(it => it.id)"
 COUNT = "document.getElementById('shown').textContent"
 
 
-FEW = "indexed", "half_edge", "plankton"
-"""The structures that a report is of where people wait for it; its pages are the same."""
+pytestmark = exhaustive  # the chapters are tested otherwise, and to draw all of them takes long
 
 
 @pytest.fixture(scope="module")
-def folder(tmp_path_factory, base_folder) -> Path:
-    """A run of all that is not a structure, and of some structures or of all."""
-    if EVERYTHING:
-        return base_folder
-    folder = tmp_path_factory.mktemp("few")
-    return write_run(folder, only=lambda _, it: it in FEW or it not in NAMES)
-
-
-@pytest.fixture(scope="module")
-def report(tmp_path_factory, folder) -> Path:
+def report(tmp_path_factory, base_folder) -> Path:
     """The pages of a whole report."""
-    return write_report(folder, tmp_path_factory.mktemp("report") / "html").parent
+    return write_report(base_folder, tmp_path_factory.mktemp("report") / "html").parent
 
 
 @pytest.fixture
@@ -60,14 +48,14 @@ def search(browser: Browser, words: str) -> list[str]:
     )
 
 
-def test_the_pages_are_whole_and_need_nothing_from_elsewhere(report, folder):
+def test_the_pages_are_whole_and_need_nothing_from_elsewhere(report, base_folder):
     pages = {page.name: page.read_text("utf-8") for page in report.glob("*.html")}
     assert set(pages) == {f"{name}.html" for name in PAGES}
     assert {path.suffix for path in (report / "claims").iterdir()} == {".svg", ".csv"}
     for text in pages.values():
         assert not re.search(r'(src|href)="(?!data:|claims/|[\w.]+\.html|#)', text)
         assert "No description" not in text
-    judged = judge_run(load(folder))
+    judged = judge_run(load(base_folder))
     tables = sum(it.claim.structure != "" and it.was_measured for it in judged)
     cells = re.findall(r'<td class="[^"]*\b(?:consistent|no-claim)\b', pages["index.html"])
     assert len(cells) == tables
@@ -112,7 +100,7 @@ def test_every_link_leads_to_a_file_and_a_place_that_exist(chromium, report):
             )
             if not it.startswith("data:")
         }
-    assert len(links) > (450 if EVERYTHING else 250)
+    assert len(links) > 450
     for page, link in links:
         target, place = urldefrag(link)
         assert target.startswith("file:"), (page.name, link)
