@@ -43,7 +43,7 @@ CASE_ERROR = 0.15
 milliseconds, and other tenants of the machine slow its caches for longer than that. A reference is
 one more case, and strays as much."""
 
-NEAREST = "near "  # said before the closest class where none explains the costs
+NEAR = "near "  # said before the closest class where none explains the costs
 FLAT = 0.5  # slope in n_ev below which what grows comes on top of a larger part that does not
 
 
@@ -135,12 +135,12 @@ def _class_found(axes: Sequence[Axis], verdicts: Mapping[Axis, Verdict]) -> str:
         for axis in grows
     ]
     found = " or ".join(f"O({' · '.join(factors) or '1'})" for factors in product(*told))
-    return found if all(verdicts[axis].classes for axis in axes) else NEAREST + found
+    return found if all(verdicts[axis].classes for axis in axes) else NEAR + found
 
 
 def class_told(verdict: Verdict) -> str:
     """The class that costs tell, or two; where they tell none, which one comes nearest."""
-    return verdict.answer or NEAREST + verdict.best
+    return verdict.answer or NEAR + verdict.best
 
 
 def _classes(verdict: Verdict) -> list[str]:
@@ -219,10 +219,10 @@ class Family(NamedTuple):
 
 
 def judge_families(run: Run, judged: Sequence[JudgedClaim]) -> list[Family]:
-    """All families whose queries were timed, the judged one first; their claims are ``judged``.
+    """All families whose queries were timed, the one that ``judged`` is of first.
 
-    Each is judged by as much as all have: every second size, and no reference. Beside others the
-    judged one is judged anew, so that what comes out otherwise is due to the meshes.
+    Where there are several, that one is judged anew by as much as the others have: every second
+    size, and no reference. So what comes out otherwise is due to the meshes.
     """
     first = curves(run).judged_family
     timed = run.cases[run.cases["experiment"].isin(("bench_queries", "bench_latency"))]

@@ -22,10 +22,6 @@ MEASURED = "split_edge", "split_face", "collapse_edge", "flip_edge", "add_face",
 OPERATIONS = {name: name.replace("_", " ").capitalize() for name in MEASURED}
 """The operations that are measured, and how a table calls them."""
 SYMBOLS = {"faces": "n_t", "valence": "n_ev"}
-LABELS = {
-    "work_faces": "memory accesses", "work_valence": "memory accesses",
-    "time_faces": "time in order", "time_valence": "time", "random_faces": "time in random order",
-}  # fmt: skip
 
 
 class Axis(Enum):
@@ -39,16 +35,16 @@ class Axis(Enum):
     are shown in, multiplied by ``scale``.
     """
 
-    WORK_FACES = "work", "faces"
-    WORK_VALENCE = "work", "valence"
-    TIME_FACES = "time", "faces"
-    TIME_VALENCE = "time", "valence"
-    RANDOM_FACES = "random", "faces"
+    WORK_FACES = "work", "faces", "memory accesses"
+    WORK_VALENCE = "work", "valence", "memory accesses"
+    TIME_FACES = "time", "faces", "time in order"
+    TIME_VALENCE = "time", "valence", "time"
+    RANDOM_FACES = "random", "faces", "time in random order"
 
-    def __init__(self, measure: str, variable: str) -> None:
-        self.measure, self.variable = measure, variable
+    def __init__(self, measure: str, variable: str, label: str) -> None:
+        self.measure, self.variable, self.label = measure, variable, label
         self.key = f"{measure}_{variable}"
-        self.symbol, self.label = SYMBOLS[variable], LABELS[self.key]
+        self.symbol = SYMBOLS[variable]
         self.exact = measure == "work"
         self.unit, self.scale = ("", 1.0) if self.exact else ("ns", 1e9)
 
