@@ -158,6 +158,12 @@ class Attribute:
         except (TypeError, ValueError, OverflowError) as error:
             raise MeshError(f"{self!r}: {error}") from error
 
+    def _as_array(self, values: ArrayLike) -> Array:
+        try:
+            return np.asarray(values)
+        except ValueError as error:  # rows of different lengths
+            raise MeshError(f"{self!r}: {error}") from error
+
     def _grow(self) -> None:
         """Have a row for every handle. An edit that was interrupted may not have seen to it."""
         self._rows = enlarged(self._rows, self._end, self.default)

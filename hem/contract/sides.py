@@ -129,7 +129,7 @@ class CornerAttribute(Attribute):
     def __setitem__(self, handles: Any, values: ArrayLike) -> None:
         """Give the corners of one face or of many their values. See ``Attribute``."""
         faces, corners = self._corners(self._checked(handles))
-        shape, given = (len(corners.values), *self.default.shape), np.asarray(values)
+        shape, given = (len(corners.values), *self.default.shape), self._as_array(values)
         whole = given.size == np.prod(shape) and given.shape != self.default.shape
         self._write(faces, corners, given.reshape(shape) if whole else given)
         self._listeners.tell(faces)

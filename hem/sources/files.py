@@ -192,15 +192,15 @@ def _promised(data: bytes, extension: str) -> int:
 
 
 def _bytes(file: Path) -> bytes:
-    if file.is_dir():
-        raise MeshError("it is a folder; name a file in it")
-    if not file.exists():
-        raise MeshError(f"there is no such file; the current folder is {Path.cwd()}")
-    if not file.suffix:
-        raise MeshError(f"its name has no extension to tell the format (usual: {_COMMON})")
     try:
+        if file.is_dir():
+            raise MeshError("it is a folder; name a file in it")
+        if not file.exists():
+            raise MeshError(f"there is no such file; the current folder is {Path.cwd()}")
+        if not file.suffix:
+            raise MeshError(f"its name has no extension to tell the format (usual: {_COMMON})")
         data = file.read_bytes()
-    except OSError as error:
+    except OSError as error:  # a name that is too long for a file, as well
         raise MeshError(f"it cannot be read: {error.strerror}") from error
     data = data.removeprefix(codecs.BOM_UTF8)
     if not data.strip():

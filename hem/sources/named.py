@@ -1,6 +1,7 @@
 """A mesh by a name, as every command takes it: a file, a sample, or a family and a size."""
 
 import re
+from os.path import exists, isfile  # which say no where a name is too long for a path
 from pathlib import Path
 from typing import Literal, overload
 
@@ -31,8 +32,8 @@ def find_mesh(
     cannot be read.
     """
     family, _, size = name.partition(":")
-    known, path = name in SAMPLES or family in FAMILIES, Path(name)
-    if path.is_file() or (not known and (path.exists() or path.suffix)):
+    known = name in SAMPLES or family in FAMILIES
+    if isfile(name) or (not known and (exists(name) or Path(name).suffix)):
         cut = repair or triangulate
         return load(name, repair, triangulate=True) if cut else as_mesh(name)
     if name in SAMPLES:

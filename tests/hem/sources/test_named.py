@@ -45,6 +45,8 @@ def test_polygons_are_kept_unless_they_are_to_be_cut(tmp_path):
     ("sphere:٣", "after the colon stands a number of vertices"),
     ("torus:5", "reachable are"),
     ("no.obj", "there is no such file"),
+    (300 * "x", "there is no model 'xxx"),
+    (300 * "x" + ".obj", "it cannot be read: File name too long"),
 ])  # fmt: skip
 def test_a_name_that_nothing_has_is_refused_with_those_that_there_are(name, said):
     with pytest.raises(hem.MeshError, match=said.replace("(", r"\(")):

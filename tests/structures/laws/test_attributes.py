@@ -583,7 +583,10 @@ def test_a_default_that_fits_is_the_value(dtype, default):
     assert np.array_equal(found, np.array(default, dtype), equal_nan=dtype == np.float64)
 
 
-@pytest.mark.parametrize("wrong", [[300], np.array([300]), 1.5, np.nan, "abc", [1, 2, 3], 10**30])
+UNFIT = [300], np.array([300]), 1.5, np.nan, "abc", [1, 2, 3], [[1, 2], [3]], 10**30
+
+
+@pytest.mark.parametrize("wrong", UNFIT)
 def test_a_value_that_does_not_fit_is_refused_and_none_changes(wrong):
     s = structures.build("half_edge", octahedron())
     for kind in ("vertex", "face", "corner", "edge", "half_edge"):
