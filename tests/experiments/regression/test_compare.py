@@ -241,10 +241,21 @@ def of_curve(before: Measured, after: Measured) -> Finding:
     return found
 
 
-@pytest.mark.parametrize("slower", [0, 1, 2])
-def test_a_curve_is_not_as_before_where_some_of_it_is_slower(before, slower):
-    after = changed(before, curve(before, slower), samples=lambda samples: 3 * samples)
-    assert of_curve(before, after).change == ("undetermined" if slower == 2 else "same")
+@pytest.mark.parametrize(("slower", "times", "change"), [
+    (0, 3, "same"), (1, 3, "same"), (1, 100, "undetermined"), (2, 3, "undetermined"),
+    (3, 3, "worse"),
+])  # fmt: skip
+def test_a_curve_is_slower_where_all_its_largest_cases_are(before, slower, times, change):
+    after = changed(before, curve(before, slower), samples=lambda samples: times * samples)
+    found = of_curve(before, after)
+    assert found.change == change
+    assert ("n_t on" in found.why) == (change == "worse")
+
+
+def test_the_smallest_cases_alone_do_not_make_a_curve_slower(before):
+    rows = curve(before) & ~curve(before, sum(curve(before)) // 2 + 1)
+    after = changed(before, rows, samples=lambda samples: 3 * samples)
+    assert of_curve(before, after).change == "undetermined"
 
 
 @pytest.mark.parametrize(("times", "change"), [(1.6, "same"), (2.5, "worse"), (0.4, "better")])
