@@ -23,7 +23,7 @@ from hem.sources import as_mesh
 def find_described(folders: Iterable[str], package: str) -> dict[str, Any]:
     """Every class with a name that a module in a package's folders defines, by name and in order.
 
-    Raises TypeError for a class that forgets a part, or has the name of another.
+    Raises TypeError for a class that forgets a part, or has the name or the look of another.
     """
     found = [
         it
@@ -32,12 +32,13 @@ def find_described(folders: Iterable[str], package: str) -> dict[str, Any]:
         if isinstance(it, type) and issubclass(it, Described) and it.__module__ == module.name
     ]
     found.sort(key=lambda it: (it.order, it.name))
-    named: dict[str, Any] = {}
-    for it in found:
-        other = named.setdefault(it.name, it)
-        if other is not it:
-            raise TypeError(f"{it.__module__} and {other.__module__} are both called {it.name!r}")
-    return named
+    for part in ("name", "abbreviation", "look"):  # which it may have inherited
+        known: dict[Any, Any] = {}
+        for it in found:
+            other = known.setdefault(own := getattr(it, part), it)
+            if other is not it:
+                raise TypeError(f"{it.__module__} and {other.__module__} have one {part}: {own!r}")
+    return {it.name: it for it in found}
 
 
 NAMED: dict[str, Any] = find_described(__path__, __name__)

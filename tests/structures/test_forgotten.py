@@ -57,7 +57,17 @@ def test_two_structures_of_one_name_are_refused(tmp_path, monkeypatch):
     package = write(tmp_path, "twice", {})
     (tmp_path / "twice" / "again.py").write_text(SOURCE, "utf-8")
     monkeypatch.syspath_prepend(tmp_path)
-    with pytest.raises(TypeError, match="are both called 'half_edge'"):
+    with pytest.raises(TypeError, match="have one name: 'half_edge'"):
+        structures.find_described([str(tmp_path / package)], package)
+
+
+def test_a_look_that_is_inherited_is_no_look_of_its_own(tmp_path, monkeypatch):
+    package = write(tmp_path, "alike", {})
+    own = 'name, title, abbreviation = "other", "Other", "OTH"'
+    text = f"from {package} import quarter_edge as it\n\n\nclass Other(it.HalfEdge):\n    {own}\n"
+    (tmp_path / "alike" / "other.py").write_text(text, "utf-8")
+    monkeypatch.syspath_prepend(tmp_path)
+    with pytest.raises(TypeError, match="have one look"):
         structures.find_described([str(tmp_path / package)], package)
 
 
