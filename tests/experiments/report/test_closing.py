@@ -3,11 +3,12 @@
 import re
 from dataclasses import replace
 
+import pandas as pd
 import pytest
 
 from experiments.claims import JudgedClaim, Outcome, judge_run
 from experiments.harness import Measurement
-from experiments.report import MissingError, comparisons, pages, uses
+from experiments.report import MissingError, about_run, comparisons, pages, uses
 from experiments.report.tables import table_1_in_words
 from experiments.runs import CaseFile, Run, load
 from hem.contract import QUERIES
@@ -125,3 +126,11 @@ def test_what_waits_is_not_told_without_the_latency(run) -> None:
     cases = run.cases[run.cases["experiment"] != "bench_latency"]
     with pytest.raises(MissingError, match="counted and timed"):
         comparisons.waiting_in_words(Run(run.folder, run.meta, cases, run.skipped))
+
+
+def test_what_was_skipped_of_an_experiment_that_is_gone_is_told_by_its_name(run):
+    skipped = pd.DataFrame(
+        [{"experiment": "bench_gone", "structure": "indexed", "skipped": "too large"}]
+    )
+    html = str(about_run(Run(run.folder, run.meta, run.cases, skipped)))
+    assert "bench_gone, Indexed: 1 case; too large" in html
