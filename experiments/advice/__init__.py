@@ -5,11 +5,11 @@ measurements of a run; ``advise`` ranks the structures, with intervals, reasons 
 """
 
 from experiments.advice.advise import ALIKE, NEEDS, Advice, Limits, Option, advise, best, flips
-from experiments.advice.prices import BEYOND, SIGMAS, UNMODELED, Forecast, Prices, predict
+from experiments.advice.prices import SIGMAS, UNMODELED, Forecast, Prices, predict
 from experiments.advice.workload import PRESETS, Measured, Row, Workload, find_workload, recorded
 
 __all__ = [
-    "ALIKE", "BEYOND", "NEEDS", "PRESETS", "SIGMAS", "UNMODELED", "Advice", "Forecast", "Limits",
+    "ALIKE", "NEEDS", "PRESETS", "SIGMAS", "UNMODELED", "Advice", "Forecast", "Limits",
     "Measured", "Option", "Prices", "Row", "Workload", "advise", "best", "find_workload", "flips",
     "predict", "recorded",
 ]  # fmt: skip

@@ -21,6 +21,8 @@ PER_FACE = {"": 0.0, "vertex": 0.5, "edge": 1.5, "face": 1.0}
 """Elements per face of a large closed mesh."""
 
 BUILD, FRAME = "build", "frame"
+LOST = {"collapse_edge": -2, "remove_face": -1}
+"""Faces that an operation takes away."""
 NUMBERS = "times", "in_order", "frames", "builds", "vertices", "seconds"
 
 
@@ -65,6 +67,12 @@ class Row:
         """Whether there is more of it where there are more edits."""
         return is_edit(self.what) or self.what == ANEW
 
+    @property
+    def gain(self) -> int:
+        """Faces that one of them adds to the mesh."""
+        growth = OPERATIONS[self.what].growth[1] if self.what in OPERATIONS else 0
+        return growth or LOST.get(self.what, 0)
+
     def count(self, faces: float, frames: float) -> float:
         """How often on a mesh of so many faces."""
         many = self.share_of_faces * faces if self.each else 1.0
@@ -91,13 +99,21 @@ class Measured:
 
 @dataclass(frozen=True)
 class Workload:
-    """``builds``: how often the mesh is built, ``frames``: how many there are after a build."""
+    """``builds``: how often the mesh is built, ``frames``: how many there are after each build.
+
+    0 builds: it is there already, and building it is not counted.
+    """
 
     title: str
     rows: tuple[Row, ...]
     frames: float = 1.0
     builds: float = 1.0
     measured: Measured | None = None
+
+    @property
+    def often(self) -> float:
+        """How often all its rows come: as often as it is built, or once."""
+        return self.builds or 1.0
 
     def more_edits(self, times: float) -> Self:
         """The same with so many times the operations."""
@@ -134,10 +150,10 @@ def find_workload(name: str) -> Workload:
     given: dict[str, Any] = {"title": path.stem}
     try:
         if path.suffix == ".csv":
-            with path.open(newline="", encoding="utf-8") as lines:
+            with path.open(newline="", encoding="utf-8-sig") as lines:
                 rows = csv.DictReader(lines, restkey="a cell too many")
                 return _workload({**given, "builds": 0, "rows": list(rows)})
-        return _workload({**given, **tomllib.loads(path.read_text("utf-8"))})
+        return _workload({**given, **tomllib.loads(path.read_text("utf-8-sig"))})
     except (ValueError, TypeError) as error:
         raise ValueError(f"{path}: {error}") from error
 
@@ -148,7 +164,7 @@ def _workload(given: Mapping[str, Any]) -> Workload:
         raise ValueError(f"{', '.join(unknown)} is nothing that a workload has: {sorted(known)}")
     if not isinstance(given.get("title", ""), str):
         raise ValueError(f"its title is a text, not {given['title']!r}")
-    if not given.get("rows"):
+    if not (isinstance(given.get("rows"), list) and given["rows"]):
         raise ValueError("it has no rows, such as [[rows]] with what and times")
     rows = tuple(_read(Row, f"row {place}", it) for place, it in enumerate(given["rows"], 1))
     measured = _read(Measured, "[measured]", given["measured"]) if "measured" in given else None

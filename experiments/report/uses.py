@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from experiments.advice import ALIKE, BEYOND, PRESETS, SIGMAS, UNMODELED, Prices
+from experiments.advice import ALIKE, PRESETS, SIGMAS, UNMODELED, Prices
 from experiments.bench_workloads import COMPILED
 from experiments.claims import Curves, Kind, curves, load_claims
 from experiments.harness import Axis
@@ -202,10 +202,11 @@ def _rows(run: Run, bold: str, pair: str) -> list[tuple[str, str, str, str]]:
     return rows
 
 
-SLID = attrgetter("what", "times", "share_of_faces", "per_frame", "in_order", "edits")
+SLID = attrgetter("what", "times", "share_of_faces", "per_frame", "in_order", "edits", "gain")
 """What ``advice.js`` needs of a row of a workload."""
 POINTS = 9
-"""Sizes that prices are given at; between them their logarithms follow straight lines."""
+"""Sizes that prices are given at where they were measured, beside one on either side: between them,
+and beyond, their logarithms follow straight lines."""
 
 
 def advice_sliders(run: Run) -> Html:
@@ -216,7 +217,7 @@ def advice_sliders(run: Run) -> Html:
     prices = Prices(run).irregular
     low, high = prices.measured
     require(low < high and not run.machines, "measured what advice rests on")
-    sizes = np.geomspace(low, high, POINTS)
+    sizes = np.array([8, *np.geomspace(low, high, POINTS), 100 * high])
     whats = sorted({row.what for it in PRESETS.values() for row in it.rows})
     try:
         measured = [name for name in REGISTRY if name in prices.structures]
@@ -228,7 +229,7 @@ def advice_sliders(run: Run) -> Html:
         for it in PRESETS.values()
     ]
     data = {"sizes": sizes.tolist(), "structures": structures, "workloads": presets,
-            "sigmas": SIGMAS, "unmodeled": UNMODELED, "beyond": BEYOND}  # fmt: skip
+            "sigmas": SIGMAS, "unmodeled": UNMODELED}  # fmt: skip
     return page("sliders.html.j2", data=data)
 
 

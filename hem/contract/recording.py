@@ -9,6 +9,7 @@ import io
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import cache, partial
+from inspect import signature
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -159,6 +160,7 @@ def _called(s: Structure) -> Iterator[tuple[str, str]]:
 def _counting(s: Structure, called: str, what: str, found: Recording) -> Callable[..., Any]:
     """A method that is counted as ``what``, or as what its first argument names."""
     method = getattr(s, called)
+    known = signature(method).parameters  # in which order keywords stand, too
 
     def counted(*args: Any, **more: Any) -> Any:
         name, given = (what, args) if what else (args[0], args[1:])
@@ -167,7 +169,7 @@ def _counting(s: Structure, called: str, what: str, found: Recording) -> Callabl
         except TopologyError:
             found.add(CHECKED + name.removeprefix(CHECKED), 0)
             raise
-        handles = next(iter((*given, *more.values())), None)
+        handles = next(iter((*given, *(more[it] for it in known if it in more))), None)
         if handles is None:  # all there are
             handles = range(len(result))
         if called == "collapse_edges":  # those that were refused were looked at, and no more

@@ -1,34 +1,32 @@
 "use strict";
 // Every row of a workload times its price, as experiments/advice predicts it; works from disk.
 for (const part of document.querySelectorAll(".advice")) {
-  const { sizes, structures, workloads, sigmas, unmodeled, beyond } = JSON.parse(part.querySelector("script").textContent);
+  const { sizes, structures, workloads, sigmas, unmodeled } = JSON.parse(part.querySelector("script").textContent);
   const select = part.querySelector("select"), logs = sizes.map(Math.log);
   const slider = (name) => part.querySelector(`[name=${name}]`);
   const value = (name) => 10 ** Number(slider(name).value);
   workloads.forEach((it, place) => select.add(new Option(it.title, place)));
 
-  // Beyond what was measured a price stays as it is at the last size.
-  function at(costs, faces) {
-    const x = Math.log(faces);
-    let right = logs.findIndex((it) => it >= x);
-    if (right === 0) return costs[0];
-    if (right < 0) return costs[costs.length - 1];
-    const part = (x - logs[right - 1]) / (logs[right] - logs[right - 1]);
-    const [a, b] = [costs[right - 1], costs[right]].map((it) => Math.log(Math.max(it, 1e-15)));
-    return Math.exp(a + part * (b - a));
+  // At so many faces, along the line between two sizes, or on beyond the last.
+  function at(values, faces) {
+    const x = Math.log(faces), found = logs.findIndex((it) => it >= x);
+    const right = Math.max(1, found < 0 ? logs.length - 1 : found), [a, b] = [values[right - 1], values[right]];
+    return a + ((x - logs[right - 1]) / (logs[right] - logs[right - 1])) * (b - a);
   }
 
-  // Seconds, and the factor by which nine of ten should be off at most.
+  // Seconds, and the factor by which nine of ten should be off at most. Prices are those half-way through the edits.
   function forecast(structure, workload, faces) {
-    const parts = workload.rows.map(([what, times, each, perFrame, inOrder, edit]) => {
-      const count = times * (each ? each * faces : 1) * (perFrame ? value("frames") : 1);
-      const [random, consecutive, spread] = structure.costs[what].map((costs) => at(costs, faces));
-      const price = (1 - inOrder) * random + inOrder * consecutive;
-      return [count * (edit ? value("edits") : 1) * price, spread];
+    const count = ([, times, each, perFrame, , edit]) =>
+      times * (each ? each * faces : 1) * (perFrame ? value("frames") : 1) * (edit ? value("edits") : 1);
+    const gained = workload.rows.reduce((sum, row) => sum + row[6] * count(row), 0);
+    const middle = Math.max(8, faces / 8, faces + gained / 2);
+    const parts = workload.rows.map((row) => {
+      const [random, consecutive, spread] = structure.costs[row[0]], inOrder = row[4];
+      const [apart, near] = [random, consecutive].map((it) => Math.exp(at(it.map((cost) => Math.log(Math.max(cost, 1e-15))), middle)));
+      return [count(row) * ((1 - inOrder) * apart + inOrder * near), at(spread, middle)];
     });
-    const total = parts.reduce((sum, [seconds]) => sum + seconds, 0), last = logs[logs.length - 1];
-    const outside = beyond * Math.max(0, logs[0] - Math.log(faces), Math.log(faces) - last);
-    const shares = parts.map(([seconds, spread]) => (total ? (seconds / total) * (spread + outside) : 0));
+    const total = parts.reduce((sum, [seconds]) => sum + seconds, 0);
+    const shares = parts.map(([seconds, spread]) => (total ? (seconds / total) * spread : 0));
     return [total, Math.exp(sigmas * Math.hypot(unmodeled, ...shares))];
   }
 

@@ -220,6 +220,32 @@ def test_more_of_each_element_is_asked_of_a_larger_mesh(prices: Prices) -> None:
     assert predict(prices, each, "half_edge", 20_000).seconds == pytest.approx(40_000 * flat)
 
 
+def test_rows_come_after_each_build(prices: Prices) -> None:
+    rows = Row("vertex_faces", 100.0), Row("split_face", 2.0, per="frame")
+    once, thrice = (
+        predict(prices, Workload("built", rows, frames=5, builds=it), "half_edge", 2_000)
+        for it in (1, 3)
+    )
+    assert thrice.parts == pytest.approx({it: 3 * cost for it, cost in once.parts.items()})
+
+
+@pytest.mark.parametrize(
+    ("preset", "times", "algorithm"),
+    [
+        ("simplified", 400, lambda s: hem.algorithms.simplify(s, vertices=s.n_vertices // 4)),
+        ("remeshed", 400, lambda s: hem.algorithms.remesh(s, iterations=1)),
+        ("edited", 100, lambda s: hem.algorithms.impacts(s, list(range(0, 800, 8)))),
+    ],
+)
+def test_what_a_preset_says_of_an_algorithm_is_what_it_does(preset, times, algorithm) -> None:
+    s = build("half_edge", hem.find_mesh("isosurface:400"))
+    with hem.record(s) as recording:
+        algorithm(s)
+    does = {it.what: it.times / times for it in recording.rows}
+    said = {it.what: it.times for it in PRESETS[preset].rows}
+    assert said == pytest.approx(does, rel=0.1)
+
+
 def test_a_flip_is_where_the_best_changes(prices: Prices) -> None:
     for workload in PRESETS.values():
         found = advise(prices, workload, MESH)
@@ -259,6 +285,7 @@ def measured(structure: str, vertices: object) -> str:
     [
         ("title = 3\n", "title is a text, not 3"),
         ('title = "mine"\n', "no rows"),
+        ("rows = 3\n", "no rows"),
         ("rows = []\nspeed = 3\n", "speed is nothing that a workload has"),
         ('[[rows]]\nwhat = "vertex_face"\ntimes = 1\n', "row 1: what is 'vertex_face'; there are"),
         ('[[rows]]\nwhat = "vertex_faces"\ntimes = -1\n', "row 1: times is a number from 0 on"),
@@ -280,6 +307,13 @@ def test_a_file_that_is_wrong_is_told_with_its_place(tmp_path, text: str, said: 
     path.write_text(text)
     with pytest.raises(ValueError, match=rf"mine\.toml: .*{said}"):
         find_workload(str(path))
+
+
+def test_what_a_spreadsheet_puts_before_the_first_line_is_passed_over(tmp_path) -> None:
+    (tmp_path / "mine.csv").write_text("what,times\nvertex_faces,3\n", "utf-8-sig")
+    (tmp_path / "mine.toml").write_text(ASKING, "utf-8-sig")
+    for name in ("mine.csv", "mine.toml"):
+        assert find_workload(str(tmp_path / name)).rows[0].what == "vertex_faces"
 
 
 def test_a_line_of_a_csv_that_is_too_long_is_told_with_its_place(tmp_path) -> None:

@@ -2,9 +2,9 @@
 
 import re
 from dataclasses import replace
-from itertools import pairwise
 from pathlib import Path
 
+import numpy as np
 import pandas as pd
 import pytest
 
@@ -14,42 +14,48 @@ from experiments.runs import Run
 from structures import REGISTRY
 from tests.experiments.chromium import Browser
 
-SHOWN = "[...document.querySelectorAll('tbody tr')].map(row => row.cells[0].textContent)"
-WITHIN = SHOWN.replace("cells[0]", "cells[2]")
+SHOWN = "[...document.querySelectorAll('tbody tr')].map(row => row.cells[{}].textContent)"
 UNITS = {"s": 1.0, "ms": 1e-3, "µs": 1e-6, "ns": 1e-9}
-CHOOSE = "s => { s.value = {place}; s.dispatchEvent(new Event('input')); }"
+SLIDE = """(where, value) => {
+    const it = document.querySelector(where);
+    it.value = value;
+    it.dispatchEvent(new Event('input'));
+}"""
 
 
-def test_the_page_tells_the_predicted_order(chromium: Browser, run: Run, tmp_path: Path) -> None:
+@pytest.mark.parametrize(("vertices", "edits"), [(10_000, 1), (100, 1000), (1_000_000, 0.1)])
+def test_the_page_tells_what_is_predicted(
+    chromium: Browser, run: Run, tmp_path: Path, vertices: float, edits: float
+) -> None:
     html = advice_sliders(run)
     assert "://" not in html
     assert "src=" not in html
     page = tmp_path / "sliders.html"
     page.write_text(f"<meta charset=utf-8>{html}", "utf-8")
-    prices, faces = Prices(run).irregular, 20_000  # the sliders begin at 10,000 vertices
+    prices = Prices(run).irregular
     chromium.open(page.as_uri())
-    for place, workload in enumerate(PRESETS.values()):
-        chromium.run(f"({CHOOSE.replace('{place}', str(place))})(document.querySelector('select'))")
-        costs = {
-            REGISTRY[name].title: sum(
-                row.count(faces, workload.frames)
-                * prices.price(name, row.what, faces, row.in_order).seconds
-                for row in workload.rows
+    for name, value in (("vertices", vertices), ("edits", edits)):
+        chromium.run(f"({SLIDE})('[name={name}]', {np.log10(value)})")
+    for place, (name, workload) in enumerate(PRESETS.items()):
+        chromium.run(f"({SLIDE})('select', {place})")
+        titles, times, within = (chromium.run(SHOWN.format(it)) for it in range(3))
+        assert set(titles) == {it.title for it in REGISTRY.values()}
+        given = replace(workload.more_edits(edits), builds=0, measured=None)
+        for title, time, interval in zip(titles, times, within, strict=True):
+            (structure,) = (it for it, kind in REGISTRY.items() if kind.title == title)
+            told = predict(prices, given, structure, 2 * vertices)
+            assert seconds(time) == pytest.approx([told.seconds], rel=0.15), (name, title)
+            assert seconds(interval) == pytest.approx([told.low, told.high], rel=0.15), (
+                name,
+                title,
             )
-            for name in REGISTRY
-        }
-        shown = [costs[title] for title in chromium.run(SHOWN)]
-        assert len(shown) == len(REGISTRY)
-        assert all(b > 0.95 * a for a, b in pairwise(shown))
-        least = chromium.run(SHOWN)[0]
-        (name,) = (name for name, it in REGISTRY.items() if it.title == least)
-        told = predict(prices, replace(workload, builds=0, measured=None), name, faces)
-        low, high = (
-            float(number.replace(",", "")) * UNITS[unit]
-            for number, unit in re.findall(r"([\d.,]+) (\w+)", chromium.run(WITHIN)[0])
-        )
-        assert high / low == pytest.approx(told.high / told.low, rel=0.15)
     assert not chromium.errors
+
+
+def seconds(text: str) -> list[float]:
+    """The times that a text names."""
+    found = re.findall(r"([\d.,]+) (\w+)", text)
+    return [float(number.replace(",", "")) * UNITS[unit] for number, unit in found]
 
 
 def test_a_run_without_queries_says_so(run: Run) -> None:

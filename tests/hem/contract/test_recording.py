@@ -165,6 +165,23 @@ def test_of_a_batch_what_was_refused_is_no_edit() -> None:
     assert counts(workload) == {(what, COMPILED): times for what, times in told.items()}
 
 
+def test_arguments_by_name_count_as_in_their_places() -> None:
+    told = []
+    for by_name in (False, True):
+        s = structures.build("half_edge", hem.generate("torus", 100))
+        points, faces, keep = np.arange(9.0).reshape(3, 3), [1, 50, 100], int(s.edge_vertices(9)[0])
+        with hem.record(s) as recording:
+            if by_name:
+                s.split_faces(points=points, faces=faces)
+                s.collapse_edge(keep=keep, edge=9)
+            else:
+                s.split_faces(faces, points)
+                s.collapse_edge(9, keep)
+        told.append(recording.rows)
+    assert told[0] == told[1]
+    assert all(0 <= it.in_order <= 1 for it in told[1])
+
+
 def test_a_point_is_one_vertex() -> None:
     s = build()
     with hem.record(s) as workload:
