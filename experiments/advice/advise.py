@@ -100,7 +100,7 @@ def advise(
     limits = limits or Limits()
     triangles = mesh.triangulated() if isinstance(mesh, hem.PolygonMesh) else mesh
     faces, prices = len(triangles.triangles), prices.like(triangles.triangles)
-    options, refused = [], {}
+    options, refused, beyond = [], {}, {}
     for name, kind in REGISTRY.items():
         wrong = [NEEDS[it][0] for it in needs if not NEEDS[it][1](kind)]
         if name not in prices.structures:
@@ -110,22 +110,23 @@ def advise(
             taken = _bytes(name, mesh, faces)
         except hem.MeshError as error:
             wrong.append(f"cannot hold it: {error}")
-        edit = _edit(prices, workload, name, faces)
-        wrong += _beyond(limits, taken, edit)
         if workload.measured and not kind.compiled:
             wrong.append("is interpreted, and the measured whole was compiled")
+        edit = _edit(prices, workload, name, faces)
+        beyond[name] = _beyond(limits, taken, edit)
         if wrong:
-            refused[name] = "; ".join(wrong)
+            refused[name] = "; ".join(wrong + beyond[name])
         else:
             options.append(Option(predict(prices, workload, name, faces), taken, edit))
     refused |= _told_less_of(options)
+    weights = {name: it.bytes for it in options if (name := it.forecast.structure) not in refused}
+    refused |= {name: "; ".join(beyond[name]) for name in weights if beyond[name]}
     options = [it for it in options if it.forecast.structure not in refused]
     costs = {it.forecast.structure: it.forecast.seconds for it in options}
     first = best(costs, workload.measured.structure if workload.measured else "")
     options.sort(key=lambda it: (it.forecast.structure != first, it.forecast.seconds))
     named = [replace(it, behind=_behind(options[0].forecast, it.forecast)) for it in options]
-    names = [it.forecast.structure for it in options]
-    found = flips(prices, workload, names, faces)
+    found = flips(prices, workload, weights, faces, limits, first) if first else []
     return Advice(faces, not prices.family, workload, named, refused, found)
 
 
@@ -191,19 +192,23 @@ def best(costs: Mapping[str, float], held: str = "") -> str:
 
 
 def flips(
-    prices: Prices, workload: Workload, names: Sequence[str], faces: float
-) -> list[dict[str, Any]]:
-    """Where another structure is the best: at which number of vertices, at how many more edits.
+    prices: Prices, workload: Workload, weights: Mapping[str, float], faces: float, limits: Limits,
+    first: str,
+) -> list[dict[str, Any]]:  # fmt: skip
+    """Where another structure than ``first`` is the best: at how many vertices, or more edits.
 
-    Only where it is ahead by more than ``ALIKE``. Sizes are those that were measured.
+    Only where it is ahead by more than ``ALIKE``, or ``first`` is beyond the limits; "" where all
+    are. ``weights``: the bytes of those that suit but for the limits. Sizes are those measured.
     """
-    if len(names) < 2:
-        return []
 
-    def best_of(given: Workload, many: float, now: str) -> str:
-        return best({it: predict(prices, given, it, many).seconds for it in names}, now)
+    def best_of(given: Workload, many: float) -> str:
+        within = (
+            name
+            for name, taken in weights.items()
+            if not _beyond(limits, taken * many / max(faces, 1), _edit(prices, given, name, many))
+        )
+        return best({it: predict(prices, given, it, many).seconds for it in within}, first)
 
-    first = best_of(workload, faces, names[0])
     low, high = prices.measured
     sizes = [n for n in SIZES if low <= 2 * n <= high]
     ways = [
@@ -216,7 +221,7 @@ def flips(
     found = []
     for kind, points in ways:
         for x, given, many in points:
-            other = best_of(given, many, first)
+            other = best_of(given, many)
             if other != first:
                 found.append({"of": kind, "at": float(x), "best": other})
                 break

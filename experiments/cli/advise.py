@@ -100,7 +100,7 @@ def _show(found: Advice, run: Run, called: str, mesh: str) -> None:
     from structures import REGISTRY
 
     cpu = run.meta.get("machine", {}).get("cpu", "an unknown machine")
-    on = f"{escape(mesh)} ({found.faces:,} faces)"
+    on = f"{escape(mesh)} ({found.faces:,} triangles)"
     console.print(f"[bold]{escape(found.workload.title)}[/], on {on}.", highlight=False)
     kind = "regular" if found.regular else "irregular"
     where = f"on {cpu}, on {kind} meshes"
@@ -125,7 +125,9 @@ def _show(found: Advice, run: Run, called: str, mesh: str) -> None:
     for flip in found.flips:
         vertices, at = flip["of"] == "vertices", flip["at"]
         where = f"{at:,.0f} vertices" if vertices else f"{digits(at)} × the edits"
-        console.print(f"At {where} {REGISTRY[flip['best']].title} is the best.")
+        best = flip["best"]
+        told = f"{REGISTRY[best].title} is the best" if best else "nothing suits"
+        console.print(f"At {where} {told}.")
     untold = sorted({what for it in found.options for what in it.forecast.untold})
     if untold:
         console.print(f"Skipped, as the run does not tell what it takes: {', '.join(untold)}.")

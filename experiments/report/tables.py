@@ -162,7 +162,8 @@ def _shown_claims(run: Run, every: bool) -> list[JudgedClaim]:
     shown = NAMED if every else THESIS
     claims = [it for it in judge_run(run) if it.claim.structure in shown and it.was_measured]
     if not claims:
-        more = "" if every else ": try --all"
+        of_peers = (run.cases["experiment"] == "bench_peers").any()
+        more = ": try --peers" if of_peers else "" if every else ": try --all"
         raise MissingError(f"{run.folder} holds no measurements of these structures{more}")
     return claims
 

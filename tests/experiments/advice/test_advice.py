@@ -258,6 +258,17 @@ def test_a_flip_is_where_the_best_changes(prices: Prices) -> None:
             assert min(costs, key=costs.__getitem__) == flip["best"]
 
 
+def test_limits_hold_where_the_best_changes_too(prices: Prices) -> None:
+    free = advise(prices, ASKED, MESH)
+    quickest, smallest = free.options[0], min(free.options, key=lambda it: it.bytes)
+    found = advise(prices, ASKED, MESH, Limits(bytes=1.5 * smallest.bytes))
+    assert names(found) == [smallest.forecast.structure]
+    larger, smaller = sorted(found.flips, key=lambda it: -it["at"])
+    assert (larger["best"], smaller["best"]) == ("", quickest.forecast.structure)
+    assert 1_500 < larger["at"] < 1_500 * 1.3  # the sizes looked at grow by a quarter
+    assert smaller["at"] * quickest.bytes / 1_000 <= 1.5 * smallest.bytes
+
+
 def test_a_recording_is_a_workload_also_by_way_of_its_file(tmp_path) -> None:
     s = REGISTRY["half_edge"].build(MESH)
     with hem.record(s) as recording:
