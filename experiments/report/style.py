@@ -4,6 +4,7 @@ import io
 from collections.abc import Sequence
 from colorsys import hls_to_rgb, rgb_to_hls
 from functools import partial
+from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +14,7 @@ from matplotlib.axes import Axes
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.text import Annotation
 from matplotlib.ticker import LogLocator, NullLocator
 from scipy.optimize import isotonic_regression
 
@@ -37,6 +39,7 @@ BLUE = "#2f7fc1"
 
 GAP = 10.5  # points from one label to the next
 APART = 40.0  # points between the ends of two lines from which on their labels cannot meet
+SIDES = {5: "left", 0: "center", -5: "right"}  # of a label, by its points from the end of its line
 RC = rc_params_from_file(Path(__file__).parent / "static" / "hem.mplstyle", False, False)
 styled = partial(rc_context, RC)
 """A context in which figures are made."""
@@ -137,8 +140,8 @@ def finish_panels(figure: Figure, every: Sequence[Axes], room: float = 0.17) -> 
 def label_ends(axes: Axes) -> None:
     """Write each line's label to the right of its end, above the axis, ``GAP`` points apart.
 
-    Lines that end elsewhere, by more than ``APART`` points, are not in each other's way. Call it
-    when the axes' limits stand.
+    Lines that end elsewhere, by more than ``APART`` points, are not in each other's way; where
+    others go on, a label stands aside of them. Call it when the axes' limits stand.
     """
     figure: Any = axes.get_figure(root=True)
     lines = labeled(axes)
@@ -150,11 +153,28 @@ def label_ends(axes: Axes) -> None:
         ends = [(up[i], last[i], lines[i]) for i in group[np.argsort(up[group], kind="stable")]]
         lowest = axes.bbox.y0 * 72 / figure.dpi + GAP * (np.arange(len(ends)) + 0.5)
         places = np.maximum(spread_apart([height for height, _, _ in ends], GAP), lowest)
-        for (height, end, line), place in zip(ends, places, strict=True):
-            axes.annotate(
+        for (height, end, line), place in zip(ends[::-1], places[::-1], strict=True):
+            label = axes.annotate(
                 str(line.get_label()), end, (5, place - height), textcoords="offset points",
                 annotation_clip=False, color=darker(line.get_color()), va="center", fontsize=8,
             )  # fmt: skip
+            if end[0] < last[:, 0].max():
+                _step_aside(label, axes)
+
+
+def _step_aside(label: Annotation, axes: Axes) -> None:
+    """Move a label as little as need be to where it lies over no line and no other label."""
+    lines = [it.get_transform().transform_path(it.get_path()) for it in axes.lines]
+    others = [it.get_window_extent() for it in axes.texts if it is not label]
+    _, y = start = label.get_position()
+    for shift, (x, side) in product(sorted(range(-40, 41, 2), key=abs), SIDES.items()):
+        label.set(position=(x, y + shift), ha=side)
+        box = label.get_window_extent()
+        inside = axes.bbox.contains(*box.min) and axes.bbox.contains(*box.max)
+        struck = any(it.intersects_bbox(box, filled=False) for it in lines)
+        if inside and not struck and not box.count_overlaps(others):
+            return
+    label.set(position=start, ha="left")
 
 
 def darker(color: Any) -> tuple[float, ...]:

@@ -15,7 +15,7 @@ from experiments.harness import OPERATIONS, Axis
 from experiments.report import abstract, answer, notebooks, readme, site, uses, write_report
 from experiments.report.figures import growth
 from experiments.report.session import share
-from experiments.report.style import panels, spread_apart, styled, words
+from experiments.report.style import finish_panels, panels, spread_apart, styled, words
 from experiments.report.tables import digits
 from experiments.runs import ResultsError
 from tests.experiments.small_study import wait_for
@@ -173,6 +173,21 @@ def test_labels_do_not_overlap_and_stay_inside_the_figure(base_run, name):
         for i, box in enumerate(boxes):
             assert figure.bbox.x1 >= box.x1
             assert not any(box.overlaps(other) for other in boxes[i + 1 :])
+
+
+def test_no_label_lies_over_a_line_that_goes_on():
+    with styled():
+        plot, (axes,) = panels(["Splits"])
+        for name, length, rise in (("scan", 40, 1.0), ("walk", 40, 1.1), ("level", 20, 0.0)):
+            x = np.geomspace(100, 100 * 10 ** (length / 10), length)
+            axes.plot(x, 3e4 * (x / 2e4) ** rise, label=name)
+        finish_panels(plot, [axes])
+    points = [
+        axes.transData.transform(np.geomspace(*line.get_xydata()[[0, -1]], 5000))
+        for line in axes.lines
+    ]
+    for label in axes.texts:
+        assert not label.get_window_extent().count_contains(np.vstack(points))
 
 
 def test_who_does_not_see_a_plot_is_told_its_panels_and_where_its_lines_go():
