@@ -399,7 +399,7 @@ class HalfEdgeMesh(Navigable):
     """The half-edge mesh of the thesis' class model."""
 
     name, title, abbreviation = "half_edge_objects", "Half-Edge Objects", "Objects"
-    look, order = Look("#8c6bb1", "v", ":"), 5
+    look, order = Look("#8c6bb1", "v", "--"), 5
     claims = Claims(
         "the class model of thesis 3.2, with the circulator that chapter 6 asks for",
         like="half_edge",

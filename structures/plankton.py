@@ -62,7 +62,7 @@ class Plankton(Navigable):
     """The half-edge mesh of Plankton."""
 
     name, title, abbreviation = "plankton", "Plankton", "Plankton"
-    look, order = Look("#1b7f5c", "P", "--"), 6
+    look, order = Look("#1b7f5c", "P", ":"), 6
     claims = Claims("the article on Plankton: a half-edge mesh", like="half_edge")
     holds_polygons = True
     records_type = PlanktonRecords

@@ -27,7 +27,7 @@ Algorithm = Callable[[Kernels, Kernels], Kernel]
 
 @dataclass(frozen=True)
 class Look:
-    """A line in every plot. The colors differ in lightness, so that they can be told in gray.
+    """A line in every plot. Where two have one ``line``, the color-blind can tell their colors.
 
     ``color`` as ``#e69f00``; ``marker`` and ``line`` as Matplotlib has them: ``o``, ``--``.
     """

@@ -4,11 +4,13 @@ import re
 import signal
 import subprocess
 import sys
+from itertools import combinations
 from pathlib import Path
 
 import nbformat
 import numpy as np
 import pytest
+from matplotlib.colors import to_rgb
 
 from experiments.claims import CLAIMED
 from experiments.harness import OPERATIONS, Axis
@@ -18,6 +20,7 @@ from experiments.report.session import share
 from experiments.report.style import finish_panels, panels, spread_apart, styled, words
 from experiments.report.tables import digits
 from experiments.runs import ResultsError
+from structures import REGISTRY
 from tests.experiments.small_study import wait_for
 from tests.extent import exhaustive
 
@@ -188,6 +191,26 @@ def test_no_label_lies_over_a_line_that_goes_on():
     ]
     for label in axes.texts:
         assert not label.get_window_extent().count_contains(np.vstack(points))
+
+
+# How colors are seen where a receptor is missing, by Machado, Oliveira and Fernandes (2009).
+BLIND_TO = {
+    "red": [(0.152, 1.053, -0.205), (0.115, 0.786, 0.099), (-0.004, -0.048, 1.052)],
+    "green": [(0.367, 0.861, -0.228), (0.280, 0.673, 0.047), (-0.012, 0.043, 0.969)],
+    "blue": [(1.256, -0.077, -0.179), (-0.078, 0.931, 0.148), (0.005, 0.691, 0.304)],
+}
+TO_XYZ = [(0.434, 0.376, 0.190), (0.213, 0.715, 0.072), (0.018, 0.109, 0.873)]  # of white: 1, 1, 1
+TO_LAB = [(0, 116, 0), (500, -500, 0), (0, 200, -200)]
+
+
+@pytest.mark.parametrize("missing", BLIND_TO)
+def test_structures_drawn_with_one_dash_differ_in_color_to_the_color_blind(missing):
+    looks = [it.look for it in REGISTRY.values()]
+    light = np.array([[((c + 0.055) / 1.055) ** 2.4 for c in to_rgb(it.color)] for it in looks])
+    seen = np.clip(light @ np.transpose(BLIND_TO[missing]), 0, 1)
+    lab = np.cbrt(seen @ np.transpose(TO_XYZ)) @ np.transpose(TO_LAB)
+    for (a, one), (b, other) in combinations(zip(lab, looks, strict=True), 2):
+        assert one.line != other.line or np.linalg.norm(a - b) > 25
 
 
 def test_who_does_not_see_a_plot_is_told_its_panels_and_where_its_lines_go():
