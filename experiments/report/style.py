@@ -123,10 +123,14 @@ def labeled(axes: Axes) -> list[Line2D]:
 
 
 def finish_panels(figure: Figure, every: Sequence[Axes], room: float = 0.17) -> None:
-    """Label the lines. They need room beside the last point, and a settled layout before that."""
+    """Label the lines. They need room beside the axis, and a settled layout before that."""
     limits = np.array([axes.get_xlim() for axes in every if labeled(axes)])
     low, high = limits[:, 0].min(), limits[:, 1].max()
     for axes in every:
+        axes.set_xlim(low, high)
+        axes.set_xticks([it for it in axes.get_xticks() if low <= it <= high])
+        axes.spines["bottom"].set_bounds(low, high)
+        axes.xaxis.label.set_x(0.5 / (1 + room))
         axes.set_xlim(low, high * (high / low) ** room)
         if not labeled(axes):
             axes.text(0.5, 0.5, "not measured", transform=axes.transAxes, ha="center", color=GRAY)

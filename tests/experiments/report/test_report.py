@@ -193,6 +193,13 @@ def test_no_label_lies_over_a_line_that_goes_on():
         assert not label.get_window_extent().count_contains(np.vstack(points))
 
 
+def test_an_axis_ends_with_what_was_measured(base_run):
+    (axes,) = growth.rendering(base_run).axes
+    largest = max(line.get_xdata()[-1] for line in axes.lines)
+    assert largest / 10 < axes.get_xticks()[-1] < largest * 2
+    assert axes.spines["bottom"].get_bounds()[1] < largest * 2 < axes.get_xlim()[1]
+
+
 # How colors are seen where a receptor is missing, by Machado, Oliveira and Fernandes (2009).
 BLIND_TO = {
     "red": [(0.152, 1.053, -0.205), (0.115, 0.786, 0.099), (-0.004, -0.048, 1.052)],
