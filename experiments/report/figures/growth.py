@@ -81,11 +81,11 @@ def _draw(
 
 
 def _draw_diagonals(axes: Axes) -> None:
-    """Dotted lines of slope 1."""
-    (left, right), (low, high) = axes.get_xlim(), axes.get_ylim()
-    dotted: dict[str, Any] = {"color": "#c9c9c9", "linewidth": 0.6, "linestyle": (0, (1, 3))}
+    """Dotted lines of slope 1, along the axis."""
+    (left, right), (low, high) = axes.spines["bottom"].get_bounds(), axes.get_ylim()
+    dotted: dict[str, Any] = {"color": "#9a9a9a", "linewidth": 0.8, "linestyle": (0, (1, 3))}
     for y in np.geomspace(low * left / right, high, 8)[1:-1]:
-        axes.axline((left, y), (right, y * right / left), zorder=0, **dotted)
+        axes.plot((left, right), (y, y * right / left), zorder=0, **dotted)
 
 
 def _heights(*every: Axes) -> tuple[float, float]:
