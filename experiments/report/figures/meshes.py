@@ -54,8 +54,9 @@ def quad() -> hem.TriangleMesh:
 def steps(every: Sequence[Step], labels: bool = True) -> Figure:
     """Flat meshes side by side, with their vertices numbered."""
     with styled():
-        size = (3.1, 2.7)
-        figure, panels = grid([title for title, *_ in every], size, sharex=True, sharey=True)
+        titles, *_ = zip(*every, strict=True)
+        widths = [np.ptp(s.points[s.vertices(), 0]) for _, s, _ in every]
+        figure, panels = grid(titles, (3.1, 2.7), sharey=True, width_ratios=widths)
         for axes, (_, s, shown) in zip(panels, every, strict=True):
             _draw_flat(axes, s, shown, labels)
     return figure

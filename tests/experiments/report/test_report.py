@@ -15,7 +15,7 @@ from matplotlib.colors import to_rgb
 from experiments.claims import CLAIMED
 from experiments.harness import OPERATIONS, Axis
 from experiments.report import abstract, answer, notebooks, readme, site, uses, write_report
-from experiments.report.figures import growth
+from experiments.report.figures import growth, meshes
 from experiments.report.session import share
 from experiments.report.style import finish_panels, panels, spread_apart, styled, words
 from experiments.report.tables import digits
@@ -191,6 +191,14 @@ def test_no_label_lies_over_a_line_that_goes_on():
     ]
     for label in axes.texts:
         assert not label.get_window_extent().count_contains(np.vstack(points))
+
+
+def test_a_mesh_begins_below_its_title():
+    figure = meshes.quad_splits("half_edge")
+    figure.draw_without_rendering()
+    for axes in figure.axes:
+        points = axes.transData.transform(axes.collections[1].get_offsets())
+        assert 0 < points[:, 0].min() - axes.bbox.x0 < 0.15 * axes.bbox.width
 
 
 def test_an_axis_ends_with_what_was_measured(base_run):
