@@ -13,7 +13,7 @@ import numpy as np
 
 import structures
 from experiments.harness import OPERATIONS
-from experiments.report.figures.meshes import edge_of, hexagon
+from experiments.report.figures.meshes import edge_of, hexagon, off_edges
 from experiments.report.figures.records import Entry, Key, path, records
 from experiments.report.pages import Html, page
 from experiments.report.tables import spelled
@@ -23,7 +23,7 @@ from hem.contract import Navigable, Structure
 SCALE, MARGIN = 110.0, 26.0
 ASIDE, SHORTER = 8.0, 0.17  # of a half-edge: beside its edge, and cut off at either end
 DOT, HEAD = 5.5, 6.0
-BEND = 0.14  # of an arrow between records
+BEND, CLEAR = 0.14, 7.0  # of an arrow between records: how far aside, and off either number
 
 CENTER, BESIDE = 0, 1  # the two inner vertices of the mesh that is drawn
 ABOVE, BELOW = 4, 8  # the other corners of the faces at the edge between them
@@ -91,8 +91,8 @@ def shapes_of(s: Structure, kinds: Collection[str]) -> dict[Key, Shape]:
             line, middle = _arrow(a, b, SHORTER, left), (a + b) / 2
             found["half_edge", h] = Shape(line, middle, middle + 8 * left)
     for v in s.vertices().tolist():
-        away = points[v] - np.nanmean(points, axis=0)
-        found["vertex", v] = Shape(_dot(points[v]), points[v], points[v] + 13 * _unit(away))
+        away = off_edges(s, v) * (1, -1)
+        found["vertex", v] = Shape(_dot(points[v]), points[v], points[v] + 13 * away)
     return found
 
 
@@ -108,13 +108,20 @@ def _head(tip: Array, way: Array, side: Array | None = None) -> str:
     return _line([tip, back + across]) + (_line([tip, back - across]) if side is None else "")
 
 
-def bent(a: Array, b: Array, words: str) -> Pointer:
-    """A slightly bent arrow from a to b, as ``explore.js`` draws it, too."""
-    aside = _unit(b - a)[::-1] * (1, -1)
-    control = (a + b) / 2 + BEND * float(np.hypot(*(b - a))) * aside
+def bent(a: Array, b: Array, words: str, along: float = 0.7, to: Array | None = None) -> Pointer:
+    """A slightly bent arrow between the numbers at a and b, its words so far ``along`` it.
+
+    It is bent to the left, as ``explore.js`` draws it, too, or to where a point lies.
+    """
+    way, length = _unit(b - a), float(np.hypot(*(b - a)))
+    a, b = a + min(CLEAR, 0.15 * length) * way, b - min(CLEAR, 0.15 * length) * way
+    aside = way[::-1] * (1, -1)
+    aside *= 1 if to is None or aside @ (to - a) >= 0 else -1
+    control = (a + b) / 2 + BEND * length * aside
     line = f"M{_xy(a)}Q{_xy(control)} {_xy(b)}"
+    at = (1 - along) ** 2 * a + 2 * along * (1 - along) * control + along**2 * b + 6 * aside
     anchor = "middle" if abs(aside[0]) < 0.4 else "start" if aside[0] > 0 else "end"
-    return Pointer(line + _head(b, b - control), words, control + 4 * aside, anchor)
+    return Pointer(line + _head(b, b - control), words, at, anchor)
 
 
 def examples(entries: Mapping[Key, Sequence[Entry]]) -> list[Key]:
@@ -149,8 +156,8 @@ def walk(structure: type[Structure], query: str) -> Html:
     found = getattr(s, query)(CENTER)
     (entries, shapes), stops = drawn_records(s), path(s, query, CENTER)
     places = [shapes[it.key].at for it in stops if it.key in shapes]
-    ways = enumerate(pairwise(places), start=1)
-    arrows = [bent(a, b, str(number)) for number, (a, b) in ways]
+    middle, ways = shapes["vertex", CENTER].at, enumerate(pairwise(places), start=1)
+    arrows = [bent(a, b, str(number), 0.5, middle) for number, (a, b) in ways]
     faces = {key: "found" for key in shapes if key[0] in ("face", "triangle") and key[1] in found}
     drawing = Drawing(shapes, entries, arrows, faces, [])
     caption = f"{structure.title}: {query.replace('_', ' → ')}"

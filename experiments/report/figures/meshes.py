@@ -76,10 +76,22 @@ def _draw_flat(axes: Axes, s: Structure, shown: dict[str, Any], labels: bool) ->
     strong = np.isin(used, list(shown.get("vertices", ())))
     sizes, tones = np.where(strong, 42, 12), np.where(strong, STRONG, INK)
     axes.scatter(flat[used, 0], flat[used, 1], sizes, list(tones), zorder=3)
+    place: dict[str, Any] = {"textcoords": "offset points", "ha": "center", "va": "center"}
     for v in used.tolist() if labels else ():
-        axes.annotate(str(v), flat[v], (4, 4), textcoords="offset points", fontsize=8)
+        x, y = 10 * off_edges(s, v)
+        axes.annotate(str(v), flat[v], (x, y), fontsize=8, **place)
+    axes.margins(0.12)
     axes.set_aspect("equal")
     axes.axis("off")
+
+
+def off_edges(s: Structure, v: int) -> Array:
+    """The direction from a vertex of a flat mesh into the widest gap between its edges."""
+    x, y = (s.points[s.vertex_vertices(v)] - s.points[v])[:, :2].T
+    angles = np.sort(np.arctan2(y, x))
+    gaps = np.diff(angles, append=angles[0] + 2 * np.pi)
+    middle = (angles + gaps / 2)[gaps.argmax()]
+    return np.array([np.cos(middle), np.sin(middle)])
 
 
 def _step(title: str, s: Structure, edit: hem.Edit | None = None, **marked: Any) -> Step:

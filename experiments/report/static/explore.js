@@ -2,7 +2,7 @@
 // Drawings of records can be read without this. With it a click chooses a record, whose references
 // are drawn and can be followed; the frames of an operation are shown one at a time.
 (() => {
-  const SVG = "http://www.w3.org/2000/svg", BEND = 0.14, HEAD = 6;
+  const SVG = "http://www.w3.org/2000/svg", BEND = 0.14, CLEAR = 7, HEAD = 6;
   const words = (name) => name.replace("half_edge", "half-edge").replaceAll("_", " ");
   const unit = ([x, y]) => { const n = Math.hypot(x, y) || 1; return [x / n, y / n]; };
 
@@ -14,16 +14,18 @@
   }
 
   // As drawings.bent draws it.
-  function bent([ax, ay], [bx, by]) {
-    const side = unit([by - ay, ax - bx]), far = BEND * Math.hypot(bx - ax, by - ay);
-    const control = [(ax + bx) / 2 + far * side[0], (ay + by) / 2 + far * side[1]];
-    const [x, y] = unit([bx - control[0], by - control[1]]);
-    const back = [bx - HEAD * x, by - HEAD * y], wide = HEAD * 0.6;
-    const line = `M${ax} ${ay}Q${control} ${bx} ${by}`;
-    const head = [1, -1].map((k) => `M${bx} ${by}L${back[0] + k * wide * y} ${back[1] - k * wide * x}`);
+  function bent(from, to) {
+    const length = Math.hypot(to[0] - from[0], to[1] - from[1]), clear = Math.min(CLEAR, 0.15 * length);
+    const way = unit([to[0] - from[0], to[1] - from[1]]), side = [way[1], -way[0]];
+    const [a, b] = [from.map((it, i) => it + clear * way[i]), to.map((it, i) => it - clear * way[i])];
+    const control = a.map((it, i) => (it + b[i]) / 2 + BEND * length * side[i]);
+    const [x, y] = unit([b[0] - control[0], b[1] - control[1]]);
+    const back = [b[0] - HEAD * x, b[1] - HEAD * y], wide = HEAD * 0.6;
+    const line = `M${a}Q${control} ${b}`;
+    const head = [1, -1].map((k) => `M${b}L${back[0] + k * wide * y} ${back[1] - k * wide * x}`);
     const anchor = Math.abs(side[0]) < 0.4 ? "middle" : side[0] > 0 ? "start" : "end";
-    const words = { x: control[0] + 4 * side[0], y: control[1] + 4 * side[1], style: `text-anchor:${anchor}` };
-    return { d: line + head.join(""), words };
+    const at = a.map((it, i) => 0.09 * it + 0.42 * control[i] + 0.49 * b[i] + 6 * side[i]);
+    return { d: line + head.join(""), words: { x: at[0], y: at[1], style: `text-anchor:${anchor}` } };
   }
 
   function explore(figure) {

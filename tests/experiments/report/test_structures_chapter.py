@@ -71,6 +71,20 @@ def test_the_way_to_the_faces_ends_in_those_of_the_triangle_list(name):
     assert int(told[1]) == work == sum(len(it.fields) for it in stops)
 
 
+NUMBER = re.compile(r"""<text (?:style="text-anchor:(\w+)" )?x="([\d.]+)" y="([\d.]+)">\d+<""")
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_no_step_of_a_way_is_written_over_a_face_that_is_found(name):
+    shown, _, steps = drawings.walk(REGISTRY[name], "vertex_faces").partition('class="pointers"')
+    found = re.findall(r'(?s)<g class="(?:face|triangle) found".*?</g>', shown)
+    for anchor, x, y in NUMBER.findall(steps):
+        to_middle = {"start": 5, "middle": 0, "end": -5}[anchor]
+        for _, face_x, face_y in NUMBER.findall("".join(found)):
+            off = float(x) + to_middle - float(face_x), float(y) - float(face_y)
+            assert abs(off[0]) > 6 or abs(off[1]) > 6
+
+
 @pytest.mark.parametrize("name", NAMES)
 def test_every_reference_leads_to_a_record_that_is_drawn(name):
     entries, shapes = drawings.drawn_records(structures.build(name, hexagon()))
@@ -92,6 +106,17 @@ def test_a_half_edge_is_drawn_along_its_edge(name):
         first, last, *_ = re.findall(r"([\d.]+) ([\d.]+)", shape.outline)
         way = np.array(last, float) - np.array(first, float)
         assert way @ (end - start) > 0.6 * np.sum((end - start) ** 2)
+
+
+def test_the_number_of_a_vertex_lies_on_no_edge():
+    shapes = drawings.shapes_of(structures.build("half_edge", hexagon()), {"vertex"})
+    for sides in np.moveaxis(hexagon().triangles[:, [[0, 1], [1, 2], [2, 0]]], 1, 0):
+        for v, other in [*sides.tolist(), *sides[:, ::-1].tolist()]:
+            (dx, dy), (x, y) = (
+                to - shapes["vertex", v].at
+                for to in (shapes["vertex", other].at, shapes["vertex", v].label)
+            )
+            assert abs(dx * y - dy * x) > 6 * np.hypot(dx, dy) or dx * x + dy * y < 0
 
 
 @pytest.mark.parametrize("name", OF_EACH_KIND)
@@ -183,6 +208,20 @@ def test_next_is_followed_round_a_face(chromium: Browser, chapter):
     assert visited == ["half-edge 12", "half-edge 13", "half-edge 14"]  # 3 f + i of face 4
     assert chromium.run("its.querySelectorAll('.pointers path').length") == 4
     assert chromium.errors == []
+
+
+def test_a_record_that_is_chosen_looks_as_it_is_drawn_without_scripts(chromium: Browser, chapter):
+    chromium.open(chapter)
+    drawn = "[...document.querySelectorAll('figure.mesh:has(.chosen) .pointers')].map(it => "
+    drawn += "[...it.children].map(of => of.outerHTML).join())"
+    choose = "document.querySelectorAll(':not(.steps) > figure.mesh .chosen').forEach(it => "
+    before, _, after = map(
+        chromium.run, (drawn, f"{choose} it.dispatchEvent(new Event('click')))", drawn)
+    )
+    assert len(before) >= len(NAMES)
+    for one, other in zip(before, after, strict=True):
+        numbers = (re.findall(r"-?\d+\.?\d*", it) for it in (one, other))
+        np.testing.assert_allclose(*(np.array(it, float) for it in numbers), atol=0.11)
 
 
 def test_frames_are_stepped_through_one_at_a_time(chromium: Browser, chapter):
