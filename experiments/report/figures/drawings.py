@@ -217,12 +217,12 @@ def operation(structure: type[Structure], name: str) -> Html:
     kept = [(words, *drawn_records(s)) for words, s in states(structure, name)]
     frames = []
     for k, (words, entries, shapes) in enumerate(kept):
-        after = kept[min(k + 1, len(kept) - 1)][1]
-        marked = dict.fromkeys(entries.keys() - after.keys(), "gone")
+        after = next((its for _, its, _ in kept[k + 1 :] if its != entries), entries)
+        going = entries.keys() - after.keys()
         if k:
-            marked |= _changes(kept[k - 1][1], entries)
+            marked = dict.fromkeys(going, "gone") | _changes(kept[k - 1][1], entries)
         else:
-            marked |= dict.fromkeys(entries.keys() & _changes(entries, after), "chosen")
+            marked = dict.fromkeys(going | entries.keys() & _changes(entries, after), "chosen")
         frames.append((words, Drawing(shapes, entries, [], marked, [])))
     return page("steps.html.j2", title=OPERATIONS[name], frames=frames)
 

@@ -144,6 +144,12 @@ def test_new_records_are_marked_as_new():
     assert sorted(made) == ["face"] * 2 + ["half_edge"] * 6 + ["vertex"]
 
 
+def test_before_a_collapse_what_it_takes_away_is_marked():
+    first, *_ = drawings.operation(drawings.by_half_edges(), "collapse_edge").split("<figcaption>")
+    chosen = set(re.findall(r'<g class="\w+ chosen" data-at="(\w+ \d+)"', first))
+    assert chosen >= {"vertex 0", "face 8", "face 9"}
+
+
 def test_a_structure_is_described_by_its_own_file_or_that_of_what_it_is_made_of():
     for structure in REGISTRY.values():
         assert "**Invariants**\n\n- " in records.described(structure)
