@@ -9,8 +9,8 @@ from experiments.report.pages import Html, page
 from structures import object_tools as tools
 from structures.half_edge_objects import HalfEdgeMesh
 
-WIDTH, LINE, GAP = 245, 15, 32
-"""Of a box; of a line of text; between boxes."""
+WIDTH, LINE, GAP = 270, 15, 32
+"""Of a box, which is that of its longest line; of a line of text; between boxes."""
 
 
 class Box(NamedTuple):
@@ -28,7 +28,7 @@ def class_diagram() -> Html:
     """The classes, and who holds whom."""
     rows = _live_objects()
     at = {it.name: it for it in _boxes(rows)}
-    lines = [_line(at[a], at[b]) for a, b in sorted(_uses(at, rows))]
+    lines = [_line(at[a], at[b], at) for a, b in sorted(_uses(at, rows))]
     size = 3 * (WIDTH + GAP), max(it.top + it.height for it in at.values()) + 1
     every = list(at.values())
     return page("classes.html.j2", boxes=every, lines=lines, size=size, width=WIDTH, line=LINE)
@@ -82,7 +82,8 @@ def _uses(boxes: dict[str, Box], rows: list[list[Any]]) -> Iterator[tuple[str, s
     }
     for kind in (type(it) for row in rows for it in row):
         makers = [it for it in vars(kind).values() if isinstance(it, staticmethod)]
-        held |= {(kind.__name__, it.__annotations__.get("return", "")) for it in makers}
+        made = (it.__annotations__.get("return") for it in makers)
+        held |= {(kind.__name__, getattr(it, "__name__", "")) for it in made}
     return ((a, b) for a, b in held if a != b and {a, b} <= boxes.keys())
 
 
@@ -92,12 +93,16 @@ def _methods(cls: type) -> list[str]:
     return [f"{name}()" for name, value in own.items() if isroutine(value) and name[0] != "_"]
 
 
-def _line(a: Box, b: Box) -> tuple[float, float, float, float]:
-    """From box to box, between the sides that face each other."""
+def _line(a: Box, b: Box, boxes: dict[str, Box]) -> list[tuple[float, float]]:
+    """From box to box, between the sides that face each other; beside the boxes between them."""
     if a.top == b.top:
         right = a.left < b.left
         y = a.top + 1.6 * LINE + (6 if right else 0)
-        return (a.left + WIDTH, b.left, y, y) if right else (a.left, b.left + WIDTH, y, y)
+        return [(a.left + WIDTH, y), (b.left, y)] if right else [(a.left, y), (b.left + WIDTH, y)]
+    if any(min(a.top, b.top) < it.top < max(a.top, b.top) for it in boxes.values()):
+        x, y, end = a.left + WIDTH + GAP / 2, a.top + 0.8 * LINE, b.top + 0.8 * LINE
+        to = b.left if b.left > a.left else b.left + WIDTH
+        return [(a.left + WIDTH, y), (x, y), (x, end), (to, end)]
     down = a.top < b.top
     ys = (a.top + a.height, b.top) if down else (a.top, b.top + b.height)
-    return a.left + WIDTH / 2, b.left + WIDTH / 2, *ys
+    return [(a.left + WIDTH / 2, ys[0]), (b.left + WIDTH / 2, ys[1])]

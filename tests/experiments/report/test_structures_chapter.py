@@ -183,6 +183,20 @@ def test_the_class_diagram_has_what_the_source_of_the_classes_declares():
         assert f">{held}</text>" in shown
 
 
+def test_lines_of_the_class_diagram_run_beside_its_boxes_from_who_makes_what_too():
+    shown = class_diagram.class_diagram()
+    boxes, lines = (
+        [[float(it) for it in re.findall(r'="([\d.]+)"', tag)] for tag in re.findall(kind, shown)]
+        for kind in ("<rect[^>]+>", "<line[^>]+>")
+    )
+    for x1, x2, y1, y2 in lines:
+        for left, top, width, height in boxes:
+            way = np.linspace((x1, y1), (x2, y2), 99) - (left + width / 2, top + height / 2)
+            assert not (abs(way) < (width / 2 - 1, height / 2 - 1)).all(axis=1).any()
+    builder, mesh = (boxes[k] for k in (0, 3))
+    assert any(y1 == builder[3] + 1 and y2 == mesh[1] for _, _, y1, y2 in lines)
+
+
 # In a browser -------------------------------------------------------------------------------------
 
 
@@ -228,6 +242,14 @@ def test_a_record_that_is_chosen_looks_as_it_is_drawn_without_scripts(chromium: 
     for one, other in zip(before, after, strict=True):
         numbers = (re.findall(r"-?\d+\.?\d*", it) for it in (one, other))
         np.testing.assert_allclose(*(np.array(it, float) for it in numbers), atol=0.11)
+
+
+def test_the_lines_of_a_class_stand_inside_its_box(chromium: Browser, chapter):
+    chromium.open(chapter)
+    right = "getBoundingClientRect().right"
+    box = f"it.parentNode.querySelector('rect').{right}"
+    over = f"[...document.querySelectorAll('.classes text')].filter(it => it.{right} > {box} - 4)"
+    assert chromium.run(f"{over}.map(it => it.textContent)") == []
 
 
 def test_frames_are_stepped_through_one_at_a_time(chromium: Browser, chapter):
