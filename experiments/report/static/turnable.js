@@ -61,7 +61,7 @@
       gl.vertexAttribPointer(where, 3, gl.FLOAT, false, 48, 12 * i);
     });
     const set = (name) => gl.getUniformLocation(program, name);
-    let around = 0.5, lifted = 0.32, zoom = 1.2;
+    let around = 0.5, lifted = 0.32, zoom = 0.97;  // the whole sphere around the mesh is seen
     function draw() {
       canvas.width = canvas.clientWidth * devicePixelRatio;
       canvas.height = canvas.clientHeight * devicePixelRatio;
