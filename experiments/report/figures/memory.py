@@ -1,6 +1,8 @@
 """Bytes per vertex as stacked bars: by field, and by what they are for."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
+from itertools import groupby
+from operator import itemgetter
 from typing import Any
 
 import pandas as pd
@@ -9,6 +11,7 @@ from matplotlib.axes import Axes
 from experiments.claims import Exactly, curves, load_claims
 from experiments.report.session import require
 from experiments.report.style import STYLES, Plot, styled
+from experiments.report.tables import spelled
 from experiments.runs import Run
 from structures import NAMED, REGISTRY
 
@@ -37,6 +40,8 @@ def by_field(run: Run) -> Plot:
             note = f"{sum(fields.values()):.4g} B with {case['reference_bytes']}-byte references"
             note += f" · {traced:.1f} traced · {peak:.0f} at the peak"
             _bar(axes, height, 0.36, fields, STYLES[name]["color"], note, 2.9)
+            if height > rows.index(name):
+                axes.text(1, height + 0.2, in_words(fields), va="top", fontsize=7)
         for claim in load_claims():
             name, claimed = claim.structure, claim.expects
             if name in rows and isinstance(claimed, Exactly) and claimed.value:
@@ -92,13 +97,20 @@ def _bar(
     """A stacked bar whose parts are named where letters of this width fit, and a note beside it."""
     start = 0.0
     for k, (part, size) in enumerate(parts.items()):
-        name = part.rpartition(".")[2].replace("_", " ")
+        name = spelled(part.rpartition(".")[2])
         shade = 0.28 if k % 2 else 0.48
         axes.barh(height, size, thickness, start, color=color, alpha=shade, edgecolor="white")
         if size > letter * len(name):
             axes.text(start + size / 2, height, name, ha="center", va="center", fontsize=8)
         start += size
     axes.text(start + 4, height, note, va="center", **{"fontsize": 9, **look})
+
+
+def in_words(fields: Iterable[str]) -> str:
+    """Fields in the order of a bar, behind their records: a narrow part of it has no name."""
+    records = groupby((it.split(".") for it in fields), key=itemgetter(0))
+    told = (f"{record}: {', '.join(name for _, name in its)}" for record, its in records)
+    return spelled(" · ".join(told))
 
 
 def _parts(cases: pd.DataFrame, kind: str) -> dict[str, float]:

@@ -12,10 +12,11 @@ import numpy as np
 import pytest
 from matplotlib.colors import to_rgb
 
+import structures
 from experiments.claims import CLAIMED
 from experiments.harness import OPERATIONS, Axis
 from experiments.report import abstract, answer, notebooks, readme, site, uses, write_report
-from experiments.report.figures import growth, meshes
+from experiments.report.figures import growth, memory, meshes
 from experiments.report.session import share
 from experiments.report.style import finish_panels, panels, spread_apart, styled, words
 from experiments.report.tables import digits
@@ -191,6 +192,14 @@ def test_no_label_lies_over_a_line_that_goes_on():
     ]
     for label in axes.texts:
         assert not label.get_window_extent().count_contains(np.vstack(points))
+
+
+def test_below_a_bar_every_field_is_named_behind_its_record(base_run):
+    (axes,) = memory.by_field(base_run).axes
+    assert [it.get_text() for it in axes.texts].count("vertex: point") == len(axes.get_yticks())
+    told = memory.in_words(structures.build("winged_edge", meshes.hexagon()).memory())
+    wings = "left previous, right previous, left next, right next"
+    assert told == f"vertex: point, edge · face: edge · edge: tail, head, left, right, {wings}"
 
 
 def test_a_mesh_begins_below_its_title():
