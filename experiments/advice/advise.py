@@ -151,7 +151,7 @@ def _bytes(name: str, mesh: Any, faces: int) -> int:
     return round(sum(build(name, small).memory().values()) * faces / len(small.triangles))
 
 
-def _beyond(limits: Limits, taken: int, edit: float) -> list[str]:
+def _beyond(limits: Limits, taken: float, edit: float) -> list[str]:
     """What is more than it may be; what is limited and not known is, too."""
     wrong = []
     if taken > limits.bytes:

@@ -17,9 +17,7 @@ REFUSED = "cannot hold it"
 
 
 def meshes(
-    size: Annotated[
-        int, Option(min=100, help="Number of vertices to make the families with.")
-    ] = 1000,
+    size: Annotated[int, Option(help="Vertices to make the families with; 100 or more.")] = 1000,
     as_json: AsJson = False,
 ) -> None:
     """List the families and the real models, with their counts.

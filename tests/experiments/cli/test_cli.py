@@ -80,7 +80,7 @@ def test_names_are_told_as_they_are_whatever_brackets_they_have(tmp_path, monkey
     workload.write_text('title = "reads [/ops] only"\n[[rows]]\nwhat = "vertex_faces"\ntimes = 1\n')
     assert output_of("info", str(mesh)).startswith("a[/b].obj vertices 3")
     run = str(Path(__file__).parents[3] / "results/reference/run")
-    assert "reads [/ops] only, on a[/b].obj (1 faces)." in output_of(
+    assert "reads [/ops] only, on a[/b].obj (1 triangles)." in output_of(
         "advise", str(mesh), "--workload", str(workload), "--run", run
     )
 
