@@ -50,6 +50,7 @@ REGISTRY: dict[str, type[Structure]] = {
 """Every structure by name, those of the thesis' table 1 first."""
 
 NAMES = tuple(REGISTRY)
+"""Their names."""
 
 THESIS = tuple(name for name, it in NAMED.items() if it.thesis)
 """Those of the thesis' table 1."""

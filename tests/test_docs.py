@@ -79,8 +79,11 @@ def test_every_public_name_of_the_library_is_documented(pages: dict[Path, Page])
     anchors = set().union(*(page.anchors for page in pages.values()))
     known = {it.rpartition(".")[2] for it in anchors}
     assert set(hem.__all__) - known == set()
-    for room in hem._ROOMS:
-        assert f"hem.{room}" in anchors
+    for name in hem._ROOMS:
+        room, inside = getattr(hem, name), {it for it in anchors if it.startswith(f"hem.{name}.")}
+        assert f"hem.{name}" in anchors
+        called = {it for it in room.__all__ if callable(getattr(room, it))}
+        assert called - {it.rpartition(".")[2] for it in inside if it.count(".") > 1} == set(), name
 
 
 def test_no_page_shows_marks_that_were_not_read(site: Path) -> None:

@@ -1,8 +1,8 @@
 """What programs do with meshes, each algorithm written once over the contract of all structures.
 
 It is compiled for every structure from that one source (``Structure.run``), and interpreted for
-those of objects; all structures give the same. README.md shows how to write one's own. What else
-changes meshes checks them by `require_mesh` and `require_edges`.
+those of objects; all structures give the same. ``hem/algorithms/README.md`` shows how to write
+one's own. What else changes meshes checks them by `require_mesh` and `require_edges`.
 """
 
 from hem.algorithms.arguments import require_edges as require_edges

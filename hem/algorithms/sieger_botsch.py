@@ -299,4 +299,4 @@ SIX: dict[str, Callable[[Structure], Any]] = {
     "subdivision": partial(subdivide, scheme="sqrt3"),
     "collapse": split_and_collapse,
 }
-"""By the names that they have there."""
+"""The six algorithms by the names that the paper gives them."""

@@ -30,3 +30,4 @@ QUERIES = {
     query.name: query
     for query in (Query(source, target) for source in ELEMENTS for target in ELEMENTS)
 }
+"""The nine queries by name."""

@@ -19,10 +19,13 @@ from hem.complexity.notation import Array, Order, canonical, parse
 from hem.complexity.selection import LATENCY_ERROR, MOST_WOBBLE, Comparison, Memory, compare_models
 
 Outcome = Literal["consistent", "violated", "undetermined"]
+"""What measurements say about a claim."""
 Bound = Literal["tight", "upper"]
+"""Whether a claim is the class itself, or a bound that slower growth keeps, too."""
 COEFFICIENTS = "fixed", "factor", "lower", "slowdown"
 
 MIN_SIZES = 4
+"""How many distinct sizes it takes to decide a claim."""
 MIN_RANGE = 4.0
 MIN_GROWTH = 64.0  # of costs over sizes of a shorter range: what is exponential has no longer one
 MAX_SCATTER = 0.4  # relative scatter of samples beyond which nothing is concluded

@@ -37,7 +37,8 @@ from hem.complexity.measured import Measured
 from hem.complexity.memory import CLOCK, memory_times
 from hem.complexity.notation import Array
 
-BUDGET = 4.0  # seconds per function
+BUDGET = 4.0
+"""Seconds per function, where nothing else is said."""
 COUNT = 20  # sizes, where none are given; fewer where a round has no time for twice as many
 TRIED = 8  # the size to see at whether a function changes its input
 FIRST = 4  # the first that is tried

@@ -25,6 +25,7 @@ MODELS: dict[str, Order] = {
 """Growth functions by name, slowest growth first: those that costs are always held against."""
 
 NAMES = tuple(MODELS)
+"""Their names."""
 
 STEEP = ("O(n² log n)", "O(n³)", "O(2^n)")
 """Further ones, for costs that grow faster than O(n²)."""
