@@ -1,9 +1,11 @@
 """Other libraries beside our half-edge mesh: tables for a terminal, for a page and for programs."""
 
+import re
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
+from html import escape
 from pathlib import Path
 from typing import Any
 
@@ -41,7 +43,7 @@ LIKE = "half_edge"
 """The structure of ours that stands beside the libraries, and whose claims theirs are held to."""
 MISSING = "Other libraries were not measured here: hem study --peers does that."
 NONE = "N/A"
-NUMBERS = "bytes per vertex", "build a vertex", "of ours"
+NUMBERS = "bytes per vertex", "build a vertex", "times ours"
 PER_ELEMENT = {"faces": "O(1)"}
 """What is claimed of a call that asks all elements, for each of them."""
 
@@ -195,7 +197,8 @@ class Peers:
         rows = [["", *(it.title for it in BAD_INPUT.values())]]
         for name in self.names:
             told = [self.trial(name, bad)[: 2 if in_full else 1] for bad in BAD_INPUT]
-            rows.append([PEERS[name].title, *(": ".join(filter(None, it)) for it in told)])
+            words = (": ".join(filter(None, it)).partition(";")[0] for it in told)  # no advice
+            rows.append([PEERS[name].title, *words])
         return rows
 
 
@@ -326,5 +329,13 @@ def portraits(peers: Peers) -> Html:
     """How each library's manual has it used, and what it does that ours does not."""
     heads = "Library", "As its manual has it used", "Its manual", "What it does beyond ours"
     others = [PEERS[name] for name in peers.names if name != OURS]
-    rows = ((it.title, it.manual, it.site.removeprefix("https://"), it.more) for it in others)
+    rows = (
+        (it.title, _coded(it.manual), it.site.removeprefix("https://"), _coded(it.more))
+        for it in others
+    )
     return page_table([heads, *rows])
+
+
+def _coded(text: str) -> Html:
+    """Words for a page, with what stands between backticks as code."""
+    return Html(re.sub("`(.+?)`", r"<code>\1</code>", escape(text, quote=False)))

@@ -55,6 +55,7 @@ def test_the_pages_are_whole_and_need_nothing_from_elsewhere(report, base_folder
     for text in pages.values():
         assert not re.search(r'(src|href)="(?!data:|claims/|[\w.]+\.html|#)', text)
         assert "No description" not in text
+        assert "`" not in re.sub(r"(?s)<(pre|script|style).*?</\1>", "", text)  # Markdown, unread
     judged = judge_run(load(base_folder))
     tables = sum(it.claim.structure != "" and it.was_measured for it in judged)
     cells = re.findall(r'<td class="[^"]*\b(?:consistent|no-claim)\b', pages["index.html"])
