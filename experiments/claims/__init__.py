@@ -22,7 +22,13 @@ from experiments.claims.claim import (
 )
 from experiments.claims.curves import Curve, Curves, curves
 from experiments.claims.errata import ERRATA, Erratum
-from experiments.claims.quantities import MIXES, break_even, judge_sentences, sentence_claims
+from experiments.claims.quantities import (
+    MIXES,
+    break_even,
+    in_digits,
+    judge_sentences,
+    sentence_claims,
+)
 from experiments.claims.verdicts import (
     BY_TIME,
     CASE_ERROR,
@@ -37,6 +43,7 @@ from experiments.claims.verdicts import (
 __all__ = [
     "BY_TIME", "CASE_ERROR", "CLAIMED", "DETERMINED", "ERRATA", "MEMORY", "MIXES", "NOT_POSSIBLE",
     "NO_CLAIM", "SENTENCES", "Between", "Claim", "Curve", "Curves", "Erratum", "Exactly", "Family",
-    "Growth", "JudgedClaim", "Kind", "Outcome", "break_even", "class_told", "curves", "judge_cells",
-    "judge_families", "judge_run", "judge_sentences", "load_claims", "sentence_claims", "tally",
+    "Growth", "JudgedClaim", "Kind", "Outcome", "break_even", "class_told", "curves", "in_digits",
+    "judge_cells", "judge_families", "judge_run", "judge_sentences", "load_claims",
+    "sentence_claims", "tally",
 ]  # fmt: skip

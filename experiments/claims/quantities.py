@@ -10,6 +10,7 @@ built, or counted in the code, stands in ``demonstrations.py``.
 import itertools
 import tomllib
 from collections.abc import Callable, Iterable, Sequence
+from decimal import Decimal
 from importlib.resources import files
 from typing import cast
 
@@ -93,8 +94,13 @@ def _span(values: Array) -> str:
     if not len(values):
         return "–"
     values = np.round(values, 6) + 0
-    ends = f"{values.min():.3g}", f"{values.max():.3g}"
+    ends = in_digits(values.min(), 3), in_digits(values.max(), 3)
     return " … ".join(dict.fromkeys(ends))
+
+
+def in_digits(value: float, count: int) -> str:
+    """A number with at most so many digits, without powers: 0.000005, 0.25, 46,400."""
+    return f"{Decimal(f'{value:.{count}g}'):,f}"
 
 
 def break_even(of_run: Curves) -> pd.DataFrame:

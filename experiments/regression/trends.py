@@ -12,6 +12,7 @@ from typing import Any, Self
 import numpy as np
 import pandas as pd
 
+from experiments.claims import in_digits
 from experiments.regression.change_points import Step, find_steps
 from experiments.regression.history import History
 from experiments.regression.snapshots import LEAST_SLOPE, ClaimName
@@ -128,7 +129,7 @@ class Trends:
         seen = self.verdicts[self.verdicts["changed"]].rename(columns={"outcome": "after"})[columns]
         steps = self.figures[self.figures["before"].notna()][columns].astype(object)
         steps["measure"] = steps["measure"].map(lambda name: MEASURES[name].title)
-        levels = steps[["before", "after"]].map("{:.4g}".format)
+        levels = steps[["before", "after"]].map(in_digits, count=4)
         both = pd.concat([seen.assign(verdict=True), steps.assign(**levels, verdict=False)])
         return both.sort_values(["run", "verdict"], ascending=[True, False], kind="stable")
 

@@ -163,11 +163,8 @@ def overtaking(table: pd.DataFrame) -> Html:
     """After how many queries or edits a structure has repaid its building, on the largest mesh."""
     rows = []
     for subject, structure, n, times in at_largest(table, "subject").to_numpy():
-        rows.append((MIXES[subject], REGISTRY[structure].title, n, times, times / n))
-    heads: Heads = {
-        "": str, "structure": str, "vertices": count, "until repaid": _if_ever,
-        "until repaid, per vertex": _if_ever,
-    }  # fmt: skip
+        rows.append((MIXES[subject], REGISTRY[structure].title, n, times))
+    heads: Heads = {"": str, "structure": str, "vertices": count, "until repaid": _if_ever}
     return numbers(rows, heads)
 
 

@@ -10,7 +10,7 @@ from typing import Any
 import pandas as pd
 from rich.console import Console
 
-from experiments.claims import Outcome
+from experiments.claims import Outcome, in_digits
 from experiments.regression import MEASURES, OUTCOMES, ClaimName, Trends
 from experiments.report.rows import two_digits
 from experiments.report.tables import SHOWN, show_rows
@@ -134,7 +134,7 @@ def _verdicts(trends: Trends) -> pd.DataFrame:
 def _figure(row: Any) -> str:
     """A figure, of time a slope with its interval; in parentheses if it is of other meshes."""
     measure = MEASURES[row.measure]
-    text = two_digits(row.value) if measure.slope else f"{row.value:,.5g}"
+    text = two_digits(row.value) if measure.slope else in_digits(row.value, 5)
     if measure.slope and not measure.exact:
         text += f" [{two_digits(row.low)}, {two_digits(row.high)}]"
     text = text if row.comparable else f"({text})"
@@ -153,7 +153,7 @@ def _at_a_glance(trends: Trends, names: list[str]) -> pd.DataFrame:
     newest = newest.reindex(index=names, columns=list(MEASURES))
     changed = changes[changes["measure"] != OUTCOMES["outcome_time"]].groupby("claim")["run"].last()
     shown = {"work or bytes": newest["bytes"].fillna(newest["work"]), "time": newest["time"]}
-    texts = pd.DataFrame(shown).map("{:,.5g}".format).replace("nan", "–")
+    texts = pd.DataFrame(shown).map(in_digits, count=5).replace("NaN", "–")
     glance = texts.assign(changed=changed.map(trends.about["commit"]).reindex(names).fillna(""))
     glance.insert(0, "claim", [short_claim(name) for name in names])
     glance.insert(1, "verdict", verdicts[names].ffill().iloc[-1].str.replace("≠", " "))

@@ -14,6 +14,7 @@ from experiments.claims import (
     Outcome,
     break_even,
     curves,
+    in_digits,
     judge_sentences,
     sentence_claims,
 )
@@ -272,6 +273,15 @@ def test_bounds_and_spans_are_given_in_words(base_run):
     assert told["bytes_winged_half"].claim.expects.words == "1"
     assert told["winged_half"].claim.expects.words == "0.5 to 2"
     assert told["dynamic"].claim.expects.words == "at most 1"
+
+
+@pytest.mark.parametrize(
+    ("value", "told"),
+    [(5e-6, "0.000005"), (0.0765, "0.0765"), (1e3, "1,000"), (46_412.0, "46,400"), (0.0, "0")],
+)
+def test_what_was_found_is_told_without_powers(value, told):
+    assert in_digits(value, 3) == told
+    assert float(told.replace(",", "")) == pytest.approx(value, rel=5e-3)
 
 
 def test_break_even_is_where_building_and_asking_cost_the_same(base_run):
