@@ -46,7 +46,8 @@ def sound(mesh: hem.TriangleMesh = OCTAHEDRON) -> HalfEdgeMesh:
 def faults_of(m: AsPrinted, about: str = "") -> tuple[Counter[str], str]:
     """What does not hold together, of what has ``about`` in its name; and the same in words."""
     faults = Counter({what: often for what, often in m.faults().items() if about in what})
-    return faults, "; ".join(f"{often} {what}" for what, often in faults.items()) or "nothing wrong"
+    words = (f"{what}: {often}" for what, often in faults.items())
+    return faults, "; ".join(words) or "nothing wrong"
 
 
 def require_valid(s: HalfEdgeMesh) -> str:

@@ -170,4 +170,4 @@ def coincident() -> Shown:
     welded = hem.mesh_from_render(TOUCHING.points, TOUCHING.triangles[:, [0, 2, 1]].reshape(-1))
     found, left = (int(*coincident_vertices(it)) for it in (TOUCHING, welded))
     words = "vertices at the position of another, in a valid half-edge mesh"
-    return Shown(f"{found} {words}", f"{left} where points are welded before", found > 0 == left)
+    return Shown(f"{words}: {found}", f"{left} where points are welded before", found > 0 == left)

@@ -1,5 +1,7 @@
 """Every erratum is shown by a run of what is printed, beside one of what is sound."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -21,6 +23,7 @@ from structures.printed_breaking import (
 @pytest.mark.parametrize("number", range(len(ERRATA)))
 def test_an_erratum_shows_when_the_listing_is_run(number):
     shown = ERRATA[number].show()
+    assert not re.match(r"1 [\w-]+s ", shown.printed), "one of several"
     assert shown.confirmed, f"{ERRATA[number].title}: {shown.printed} beside {shown.sound}"
 
 
