@@ -161,7 +161,8 @@ def weights(run: Run) -> Html:
 def _told(seconds: Any) -> str:
     """What single edits took, and how many a frame has time for."""
     times = [duration(it) for it in np.percentile(seconds, [50, 99, 100])]
-    return " · ".join([*times, _in_a_frame(np.array(seconds))])
+    told = [it.replace(" ", "\N{NO-BREAK SPACE}") for it in times]
+    return " · ".join([*told, _in_a_frame(np.array(seconds))])
 
 
 def _in_a_frame(seconds: Any) -> str:
