@@ -3,7 +3,7 @@
 (() => {
   const form = document.getElementById("filters"), search = document.getElementById("search");
   const shown = document.getElementById("shown"), none = document.getElementById("none");
-  const entries = [...document.querySelectorAll(".entry")];
+  const entries = [...document.querySelectorAll(".entry")], every = shown.textContent;
   const buttons = [...form.querySelectorAll("button[data-group]")];
   const groups = ["outcome", "claimed", "structure", "kind"];
   const heads = entries.map((it) => it.querySelector("summary"));
@@ -37,8 +37,7 @@
       button.querySelector("span").textContent = number;
       button.classList.toggle("empty", !number);
     }
-    shown.textContent = count === entries.length ? `${count} claims`
-      : `${count} of ${entries.length} claims`;
+    shown.textContent = count === entries.length ? every : `${count} of ${entries.length} entries`;
     none.hidden = count > 0;
     reachable(heads.find((it) => !it.parentElement.hidden));
   }

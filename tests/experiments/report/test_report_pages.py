@@ -131,11 +131,13 @@ def test_the_navigation_stays_on_one_line(chromium, report):
 
 def test_filters_show_what_they_name_and_counts_follow(front):
     every = front.run(KEYS)
-    assert front.run(COUNT) == f"{len(every)} claims"
+    unclaimed = """document.querySelector('[data-value="not claimed"] span').textContent"""
+    claims = len(every) - int(front.run(unclaimed))
+    assert front.run(COUNT) == f"{len(every)} entries, {claims} of them claims"
     press(front, "structure", "half_edge")
     mine = front.run(KEYS)
     assert mine == [it for it in every if it.startswith("half_edge/")]
-    assert front.run(COUNT) == f"{len(mine)} of {len(every)} claims"
+    assert front.run(COUNT) == f"{len(mine)} of {len(every)} entries"
     press(front, "structure", "indexed")  # either
     assert len(front.run(KEYS)) == len(mine) + sum(it.startswith("indexed/") for it in every)
     press(front, "structure", "indexed")
