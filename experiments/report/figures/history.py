@@ -30,9 +30,9 @@ STRONGEST = 1.5  # the ratio to its usual time from which on a color is as stron
 def by_commit(trends: Trends, subject: str) -> Figure:
     """Slope, work, bytes and time of a query or operation by commit: a line per structure.
 
-    Runs of the newest one's preset. Times of its machine have full lines, those of others dotted
-    ones, each machine a line of its own. A ring is a step to a new level, a cross a verdict by work
-    that changed.
+    Runs of the newest one's preset. Times of other machines than its own are paler, each
+    machine a line of its own. A ring is a step to a new level, a cross a verdict by work that
+    changed.
     """
     trends = trends.of_newest_preset()
     rows = _of_newest(trends)
@@ -79,7 +79,7 @@ def _draw_line(axes: Axes, trends: Trends, line: pd.DataFrame) -> None:
     width = SPREAD * min(len(trends.runs), 10) if sloped else 0.0
     part = NAMES.index(last["structure"]) / max(len(NAMES) - 1, 1)
     x, y = line["run"].to_numpy() + width * (part - 0.5), line["value"].to_numpy(float)
-    other = {} if last["here"] else {"linestyle": ":", "alpha": 0.5}
+    other = {} if last["here"] else {"alpha": 0.5}
     axes.plot(x, y, **(look | other | {"label": "_"}))
     if sloped:
         axes.vlines(x, line["low"], line["high"], color=look["color"], linewidth=1, alpha=0.6)
