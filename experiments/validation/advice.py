@@ -226,7 +226,7 @@ def in_words(kept: dict[str, Any]) -> str:
         "whose width an earlier run of them chose; "
         "the best structure was told in {winner_right:.0%} (the one that programs were timed on, "
         "where none is predicted to be a tenth quicker), in {winner_right_counted:.0%} by counts "
-        "alone, as where nothing is [measured], and in {best_among_alike:.0%} it was "
+        "alone, as where no whole program was timed, and in {best_among_alike:.0%} it was "
         "among those that are predicted to be within a tenth of the best. Meanwhile the load of "
         "the machine was {load:.1f}.".format(**kept)
     )
