@@ -80,8 +80,8 @@ def words(plot: Figure) -> str:
             first, last = (compact(float(f"{y:.2g}")) for y in ends)
             lines.append(f"{line.get_label()} {first} to {last}")
         about = ", ".join(filter(None, [axes.get_title("left"), axes.get_ylabel()]))
-        told.append(f"{about}: {'; '.join(lines)}")
-    return ". ".join(told)
+        told.append(": ".join(filter(None, [about, "; ".join(lines)])))
+    return ". ".join(filter(None, told))
 
 
 def panels(

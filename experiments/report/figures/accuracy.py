@@ -6,10 +6,9 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
-from experiments.report.style import BLUE, FADED, GRAY, RED, grid, styled
+from experiments.report.style import BLUE, FADED, GRAY, RED, Plot, grid, styled
 from hem.complexity import Curve, Verdict
 
 KINDS = {"right": BLUE, "undetermined": "#d5d5d5", "wrong": RED}
@@ -18,13 +17,13 @@ KINDS = {"right": BLUE, "undetermined": "#d5d5d5", "wrong": RED}
 LEAST_WRITTEN = 0.045  # a share from which on there is room for its number
 
 
-def plot_answer_shares(shares: pd.DataFrame, titles: Mapping[str, str]) -> Figure:
+def plot_answer_shares(shares: pd.DataFrame, titles: Mapping[str, str]) -> Plot:
     """A panel per condition, a bar per judge: right, undetermined and wrong.
 
     shares: a row per judge and condition, a column per kind of answer. titles: by condition.
     """
     with styled():
-        figure, panels = grid(list(titles.values()), (4.8, 2.3), 2, sharex=True, sharey=True)
+        figure, panels = grid(list(titles.values()), (4.8, 2.3), 2, Plot, sharex=True, sharey=True)
         for axes, condition in zip(panels, titles, strict=True):
             mine = shares.xs(condition, level="condition").loc[shares.index.unique("judge")]
             left = np.zeros(len(mine))
@@ -44,10 +43,10 @@ def plot_answer_shares(shares: pd.DataFrame, titles: Mapping[str, str]) -> Figur
     return figure
 
 
-def plot_confusions(confusions: Mapping[str, pd.DataFrame]) -> Figure:
+def plot_confusions(confusions: Mapping[str, pd.DataFrame]) -> Plot:
     """A panel per judge: which answers curves of each class got. A "?" is undetermined."""
     with styled():
-        figure, panels = grid(list(confusions), (2.8, 3.3), sharey=True)
+        figure, panels = grid(list(confusions), (2.8, 3.3), kind=Plot, sharey=True)
         for axes, counts in zip(panels, confusions.values(), strict=True):
             _draw_matrix(axes, counts)
         panels[0].set_ylabel("true class")

@@ -7,11 +7,10 @@ import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.colors import TwoSlopeNorm
-from matplotlib.figure import Figure
 
 from experiments.claims import MEMORY
 from experiments.regression import OUTCOMES, ClaimName, Trends
-from experiments.report.style import STYLES, TITLES, grid, label_ends, styled
+from experiments.report.style import STYLES, TITLES, Plot, grid, label_ends, styled
 from structures import NAMES, REGISTRY
 
 PANELS = {
@@ -27,7 +26,7 @@ SPREAD = 0.03  # how far apart structures' intervals are drawn, as part of the w
 STRONGEST = 1.5  # the ratio to its usual time from which on a color is as strong as can be
 
 
-def by_commit(trends: Trends, subject: str) -> Figure:
+def by_commit(trends: Trends, subject: str) -> Plot:
     """Slope, work, bytes and time of a query or operation by commit: a line per structure.
 
     Runs of the newest one's preset. Times of other machines than its own are paler, each
@@ -39,7 +38,7 @@ def by_commit(trends: Trends, subject: str) -> Figure:
     with styled():
         ends = {key: "" if key == "bytes" else f": {TITLES[subject]}" for key in PANELS}
         titles = [title + ends[key] for key, title in PANELS.items()]
-        figure, panels = grid(titles, (5.5, 2.9), 2, sharex=True)
+        figure, panels = grid(titles, (5.5, 2.9), 2, Plot, sharex=True)
         for axes, measure in zip(panels, PANELS, strict=True):
             sloped = measure == SLOPE
             axes.set_yscale("linear" if sloped else "log")
@@ -114,7 +113,7 @@ def _name_commits(axes: Axes, trends: Trends, room: float = 0.0) -> None:
     axes.set_xlim(-0.5, count - 0.5 + room * max(count, 1))
 
 
-def departures(trends: Trends) -> Figure:
+def departures(trends: Trends) -> Plot:
     """How far every claim of every structure is from its usual time, run by run, as colors.
 
     Of the newest run's preset and machine. A ring is a step to a new level, a
@@ -127,7 +126,7 @@ def departures(trends: Trends) -> Figure:
     ticks, names = np.log(ends), [f"{it - 1:+.0%}" if it != 1 else "as usual" for it in ends]
     with styled():
         titles = [REGISTRY[it].title for it in NAMES]
-        figure, panels = grid(titles, (11 / 3, 3.5), 3, sharex=True, sharey=True)
+        figure, panels = grid(titles, (11 / 3, 3.5), 3, Plot, sharex=True, sharey=True)
         for axes, structure in zip(panels, NAMES, strict=True):
             image = _departures(axes, trends, rows[rows["structure"] == structure])
             norm = TwoSlopeNorm(0.0, ticks[0], ticks[-1])

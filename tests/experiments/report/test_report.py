@@ -242,7 +242,7 @@ def test_who_does_not_see_a_plot_is_told_its_panels_and_where_its_lines_go():
         plot, (axes, _) = panels(["Faces", "Edges"])
         axes.plot([1, 10, 100], [2, 300, 15_000], label="TNS")
         axes.set_ylabel("time, ns")
-    assert words(plot) == "Faces, time, ns: TNS 2 to 15k. Edges: "
+    assert words(plot) == "Faces, time, ns: TNS 2 to 15k. Edges"
 
 
 def test_labels_are_moved_as_little_as_need_be():
