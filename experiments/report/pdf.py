@@ -44,7 +44,8 @@ def print_pdf(page: Path, output: Path) -> Path:
     with tempfile.TemporaryDirectory(prefix="hem-print-", ignore_cleanup_errors=True) as profile:
         command = [
             require_browser(), *FLAGS, f"--user-data-dir={profile}", "--no-pdf-header-footer",
-            "--virtual-time-budget=20000", f"--print-to-pdf={output}", page.resolve().as_uri(),
+            "--generate-pdf-document-outline", "--virtual-time-budget=20000",
+            f"--print-to-pdf={output}", page.resolve().as_uri(),
         ]  # fmt: skip
         try:
             done = subprocess.run(command, capture_output=True, text=True, timeout=PATIENCE)

@@ -68,4 +68,5 @@ def test_the_document_is_printed_with_all_its_claims(document, tmp_path):
     page.write_text(document, "utf-8")
     content = pdf.print_pdf(page, tmp_path / "it.pdf").read_bytes()
     assert content.startswith(b"%PDF-")
+    assert b"/Outlines" in content, "bookmarks, as paper has no navigation"
     assert len(re.findall(rb"/Type\s*/Page\b", content)) > 10

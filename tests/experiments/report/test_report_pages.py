@@ -84,6 +84,11 @@ def test_no_page_is_wider_than_a_phone(chromium, report, width):
         if name == "index":
             chromium.run("document.querySelectorAll('.entry').forEach(it => { it.open = true; })")
         assert chromium.run("document.documentElement.scrollWidth") <= width, name
+        drawn = "[...document.querySelectorAll('.highlight pre')].map(it => it.offsetHeight)"
+        chromium.size(1300)
+        wide = chromium.run(drawn)
+        chromium.size(width)
+        assert chromium.run(drawn) == wide, f"lines of a drawing in characters break: {name}"
 
 
 def test_every_link_leads_to_a_file_and_a_place_that_exist(chromium, report):
