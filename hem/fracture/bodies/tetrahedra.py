@@ -28,7 +28,7 @@ from hem.fracture.material import Material
 from hem.fracture.material import material as named
 from hem.fracture.pieces import Fracture
 from hem.fracture.surface import break_surface, face_corners, in_place
-from hem.meshes import TriangleMesh, areas, dot, length, normals, unit
+from hem.meshes import TriangleMesh, areas, bounds, dot, length, normals, unit
 
 SLENDER = 3.0  # a shard is at most so many times as deep as its face is wide
 LEAN = 0.9  # the part of half the angle between two faces that a side may lean
@@ -116,7 +116,7 @@ def _free(structure: Structure, faces: Array, solids: Array, size: float) -> Boo
     """Raise the fourth points, in place, until nothing is in the way -> (k,) which have a depth."""
     least = 1e-7 * size
     middle = solids[:, :3].mean(axis=1)
-    low, high = np.nanmin(solids, axis=(0, 1)), np.nanmax(solids, axis=(0, 1))  # but of no area
+    low, high = bounds(solids.reshape(-1, 3))
     others = face_corners(structure, np.setdiff1d(structure.faces(), faces))
     near = ((others.max(axis=1) > low) & (others.min(axis=1) < high)).all(axis=1)
     skin = np.concatenate([others[near], solids[:, :3]])

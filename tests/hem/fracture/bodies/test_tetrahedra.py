@@ -128,6 +128,15 @@ def test_what_has_no_inside_is_refused_and_nothing_changes(mesh, force, message)
     assert s.n_faces == before.n_faces
 
 
+def test_where_all_lies_on_vertices_nothing_comes_out():
+    far = trimesh.creation.box((1, 1, 1)).apply_translation((5e5, 0, 0))  # within 32 roundings
+    s = structures.build("half_edge", far)
+    broken = tetrahedra(s, (5e5 + 0.5, 0, 0))
+    assert len(broken.pieces) == len(broken.rest) == 1
+    assert broken.counts["on a vertex"] == sum(MATERIALS["glass"].circles)
+    assert s.same_as(structures.build("half_edge", far))
+
+
 def test_a_face_of_no_area_that_is_touched_hides_no_wall():
     box = trimesh.creation.box((1, 1, 0.02))
     for _ in range(3):
