@@ -27,12 +27,8 @@ class Broken(NamedTuple):
     blow: Any
     motion: Any
     up: str
-
-    @property
-    def held(self) -> list[int]:
-        """The pieces that stay where they are: of a surface the largest part of the rest."""
-        held = self.fracture.rest and not self.fracture.closed
-        return [len(self.fracture.shards)] if held else []
+    held: list[int]
+    """The pieces that stay where they are: of a surface the largest part of the rest."""
 
     def scene(self) -> FractureScene:
         """How it is drawn."""
@@ -94,7 +90,8 @@ def break_up(
     if direction is not None:
         fracture = replace(fracture, direction=given.direction)
     blow = Blow(fracture.impact, fracture.direction, force)
-    return Broken(mesh, fracture, blow, motion(fracture, blow), up)
+    held = [len(fracture.shards)] if fracture.rest and not fracture.closed else []
+    return Broken(mesh, fracture, blow, motion(fracture, blow, held=held), up, held)
 
 
 def enough_seconds(scene: FractureScene) -> float:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from hem.arrays import Bools, Floats
 from hem.errors import MeshError
@@ -113,26 +114,32 @@ def sites(
     return Sites(found[:wanted], anchors, tried - len(found))
 
 
-def motion(fracture: Fracture, blow: Blow, seed: int | None = None) -> Motion:
+def motion(fracture: Fracture, blow: Blow, seed: int | None = None, held: ArrayLike = ()) -> Motion:
     """How the pieces fly: their velocities and spins, right after the blow.
 
     What was struck was at rest, and a striker of a tenth of its mass brings the energy force ×
     mass. As in an inelastic impact it gives the whole the momentum J × direction at the impact,
     for which J stands to the striker's momentum as the mass that the whole opposes there to the
     sum of both (Mirtich, Impulse-based dynamic simulation, 1996): at most a quarter of the energy.
-    Apart from that the pieces burst outward from a point above the impact, the near ones faster,
-    and tumble, half by the seed (the fracture's own if not given); the whole gains no momentum
-    from it and material.burst × energy, three quarters at most.
+    Apart from that the pieces burst outward from a point above the impact, the faster the nearer
+    their centers of mass are, and tumble, half by the seed (the fracture's own if not given); the
+    whole gains no momentum from it and material.burst × energy, three quarters at most. The pieces
+    of the indices ``held`` stay at rest: what holds them takes up their part of the blow, and the
+    others are the whole.
 
     So Σ m v = J d, the angular momentum about the impact is 0, and the kinetic energy is at most
     force × mass; for pieces of sheets as for bodies. O(n).
     """
-    mass = fracture.mass
-    if not mass.masses.sum() > 0:
+    if not fracture.mass.masses.sum() > 0:
         raise MeshError("the pieces weigh nothing, and no blow moves them")
+    moving = Motion(*np.zeros((2, len(fracture.pieces), 3)))
+    free = np.setdiff1d(np.arange(len(fracture.pieces)), np.asarray(held, int))
+    mass = Mass(*(column[free] for column in fracture.mass))
+    if not mass.masses.sum() > 0:
+        return moving
     whole = _whole(mass)
     random = generator(fracture.seed if seed is None else seed)
-    thrown = _thrown(fracture, blow, random)
+    thrown = _thrown(mass, fracture, blow, random)
     burst = _without_momentum(mass, whole, thrown)
     part = min(fracture.material.burst, 0.75) * float(whole.masses[0])
     own = kinetic_energy(mass, burst)
@@ -140,7 +147,9 @@ def motion(fracture: Fracture, blow: Blow, seed: int | None = None) -> Motion:
     real = own > 1e-20 * kinetic_energy(mass, thrown)
     scale = math.sqrt(blow.force) * math.sqrt(part / own) if real else 0.0
     velocities, spins = _carried(mass, whole, _struck(whole, blow))
-    return Motion(velocities + scale * burst.velocities, spins + scale * burst.spins)
+    moving.velocities[free] = velocities + scale * burst.velocities
+    moving.spins[free] = spins + scale * burst.spins
+    return moving
 
 
 def momentum(mass: Mass, motion: Motion, about: Floats) -> tuple[Floats, Floats]:
@@ -211,9 +220,8 @@ def _struck(whole: Mass, blow: Blow) -> Motion:
     return Motion((impulse / total * blow.direction)[None], (impulse * turning @ lever)[None])
 
 
-def _thrown(fracture: Fracture, blow: Blow, random: np.random.Generator) -> Motion:
+def _thrown(mass: Mass, fracture: Fracture, blow: Blow, random: np.random.Generator) -> Motion:
     """Away from a point above the impact, at speeds without a scale; and tumbling."""
-    mass = fracture.mass
     reach = blow.reach(fracture.material, fracture.diagonal)
     away = mass.centers - (blow.impact - 0.02 * fracture.diagonal * blow.direction)
     far = length(away)[:, None]

@@ -116,6 +116,12 @@ def test_every_method_can_be_had_and_the_same_call_gives_the_same(arguments, met
     for name in files:
         one, two = ((tmp_path / it / name).read_bytes() for it in ("one", "two"))
         assert one == two, name
+    told = json.loads((tmp_path / "two" / "fracture.json").read_text())
+    totals, held = told["totals"], [told["pieces"][i] for i in told["held"]]
+    assert bool(held) == (method == "surface")
+    assert not any(it["kinetic_energy_J"] or any(it["velocity_m_s"]) for it in held)
+    assert np.dot(totals["momentum_kg_m_s"], told["direction"]) > 0
+    assert totals["kinetic_energy_J"] < told["force_J_kg"] * totals["mass_kg"]
 
 
 def test_materials_of_ones_own_are_read(tmp_path):

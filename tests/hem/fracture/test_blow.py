@@ -149,6 +149,19 @@ def test_pieces_of_sheets_keep_the_same_laws():
     assert GLASS.burst * brought < kinetic_energy(found.mass, moved) < brought
 
 
+def test_what_is_held_stays_and_the_others_fly_as_if_it_were_not_there():
+    random = np.random.default_rng(5)
+    triangles = [hem.TriangleMesh(random.random((3, 3)), [(0, 1, 2)]) for _ in range(30)]
+    plate = hem.TriangleMesh(9 * random.random((3, 3)), [(0, 1, 2)])
+    blow = Blow((0.1, 0.2, 0.3), (1, 2, 2), 3.0)
+    alone = motion(sheets(*triangles), blow)
+    beside = motion(sheets(*triangles, plate), blow, held=[30])
+    for without, every in zip(alone, beside, strict=True):
+        np.testing.assert_array_equal(every, [*without, (0, 0, 0)])
+    assert momentum(sheets(*triangles, plate).mass, beside, blow.impact)[0] @ blow.direction > 0
+    assert not np.any(motion(sheets(plate), blow, held=[0]))
+
+
 def test_pieces_without_weight_stand_no_blow():
     flat = hem.TriangleMesh([(0, 0, 0), (1, 0, 0), (2, 0, 0)], [(0, 1, 2)])
     for found in (sheets(), sheets(flat)):
