@@ -46,6 +46,15 @@ def number(called: str, of: Any) -> int:
     return int(of)
 
 
+def grown(splits: Any, vertices: int, faces: int) -> tuple[int, int]:
+    """How many vertices and faces there are after so many splits; MeshError for too many."""
+    more = number("reserve", splits)
+    ends = vertices + more, faces + 2 * more
+    if max(ends) > np.iinfo(np.int32).max:
+        raise MeshError(f"{max(ends):,} vertices or faces are more than handles can name")
+    return ends
+
+
 def integers(called: str, values: ArrayLike, dimensions: tuple[int, ...] = (0, 1)) -> Array:
     """One handle or a row of them; MeshError for anything but such integers."""
     try:

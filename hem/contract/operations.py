@@ -303,9 +303,7 @@ class Operations:
     def reserve(self, splits: int) -> None:
         """See ``Structure.reserve``."""
         counts = self._state.records.counts
-        wanted = max(int(counts[VERTEX_END]) + splits, int(counts[FACE_END]) + 2 * splits)
-        if wanted > np.iinfo(np.int32).max:
-            raise MeshError(f"{wanted:,} vertices or faces are more than handles can name")
+        arguments.grown(splits, int(counts[VERTEX_END]), int(counts[FACE_END]))
         self._state.make_room(splits, 2 * splits)
         self._state.widen(splits)
         for operation in self._operations:

@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from hem.arrays import Array, Handles, Indices, Points
-from hem.contract import Attribute, Structure
+from hem.contract import Attribute, Structure, arguments
 from hem.edit import CHANGED, FACE, PARENT, VERTEX, Edit
 from hem.engine import kept
 from hem.errors import MeshError
@@ -116,11 +116,10 @@ class RenderMesh:
     def reserve(self, splits: int) -> None:
         """Make room for so many splits at once, so that none of them has to. A commit. O(n).
 
-        The structure has a method of that name for its own arrays. MeshError for what is no count.
+        The structure has a method of that name for its own arrays. MeshError for what is no count,
+        or more than indices can name.
         """
-        if isinstance(splits, bool) or not isinstance(splits, int | np.integer) or splits < 0:
-            raise MeshError(f"reserve takes a number of splits from 0 on, not {splits!r}")
-        self._make_room(self._n_vertices + splits, self._n_triangles + 2 * splits)
+        self._make_room(*arguments.grown(splits, self._n_vertices, self._n_triangles))
         if self._resized and not self._depth:
             self._commit()
 

@@ -335,9 +335,11 @@ def test_odd_arguments_are_refused_in_words(s):
         with pytest.raises(hem.MeshError, match="no attribute of vertices of this mesh"):
             hem.RenderMesh(s, given)
     render = hem.RenderMesh(s, [heat])
-    for splits in ("a", -5, 1.5, True, None):
-        with pytest.raises(hem.MeshError, match="a number of splits from 0 on, not"):
+    for splits in ("a", -5, 1.5, True, None, 2**31, 2**70):
+        with pytest.raises(hem.MeshError, match="reserve takes a number from 0 to 2,147,483,647"):
             render.reserve(splits)
+    with pytest.raises(hem.MeshError, match="more than handles can name"):
+        render.reserve(2**30)
     arrays = render.points, render.indices
     with pytest.raises(hem.MeshError, match="one value for 100 positions"):
         hem.mesh_from_render(*arrays, values=3)
