@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from hem.arrays import Floats
 from hem.errors import MeshError, load_optional
 from hem.fracture.blow import Blow, Motion, kinetic_energies, kinetic_energy
 from hem.fracture.pieces import Fracture
@@ -46,8 +47,9 @@ def save_pieces(
     """
     if format not in FORMATS:
         raise MeshError(f"pieces cannot be saved as {format!r}; formats are {', '.join(FORMATS)}")
+    top = direction(up)
     with whole(folder) as beside:
-        made = [path.relative_to(beside) for path in FORMATS[format](fracture, beside, up)]
+        made = [path.relative_to(beside) for path in FORMATS[format](fracture, beside, top)]
     return [Path(folder) / path for path in made]
 
 
@@ -101,13 +103,13 @@ def _move(beside: Path, target: Path, aside: Path) -> None:
         os.replace(path, place)
 
 
-def _save_glb(fracture: Fracture, folder: Path, up: ArrayLike) -> list[Path]:
+def _save_glb(fracture: Fracture, folder: Path, up: Floats) -> list[Path]:
     from scipy.spatial.transform import Rotation
 
     trimesh = load_optional("trimesh", "fracture")
 
     upright = np.eye(4)  # glTF has y up
-    upright[:3, :3] = Rotation.align_vectors([(0, 1, 0)], [direction(up)])[0].as_matrix()
+    upright[:3, :3] = Rotation.align_vectors([(0, 1, 0)], [up])[0].as_matrix()
     look = trimesh.visual.material.PBRMaterial(
         name=fracture.material.name, baseColorFactor=[*fracture.material.rgb, 255],
         roughnessFactor=0.5, metallicFactor=0.0, doubleSided=True,
@@ -122,7 +124,7 @@ def _save_glb(fracture: Fracture, folder: Path, up: ArrayLike) -> list[Path]:
     return [path]
 
 
-def _save_obj(fracture: Fracture, folder: Path, up: ArrayLike) -> list[Path]:
+def _save_obj(fracture: Fracture, folder: Path, up: Floats) -> list[Path]:
     lines = [f"# {len(fracture.pieces)} pieces of {fracture.material.name}, by hem"]
     before = 1
     for name, piece in zip(names(fracture), fracture.pieces, strict=True):
@@ -136,7 +138,7 @@ def _save_obj(fracture: Fracture, folder: Path, up: ArrayLike) -> list[Path]:
     return [path]
 
 
-def _save_ply(fracture: Fracture, folder: Path, up: ArrayLike) -> list[Path]:
+def _save_ply(fracture: Fracture, folder: Path, up: Floats) -> list[Path]:
     inner = folder / "pieces"
     inner.mkdir()
     paths = [inner / f"{name}.ply" for name in names(fracture)]
@@ -145,7 +147,7 @@ def _save_ply(fracture: Fracture, folder: Path, up: ArrayLike) -> list[Path]:
     return paths
 
 
-FORMATS: dict[str, Callable[[Fracture, Path, ArrayLike], list[Path]]] = {
+FORMATS: dict[str, Callable[[Fracture, Path, Floats], list[Path]]] = {
     "glb": _save_glb,
     "obj": _save_obj,
     "ply": _save_ply,

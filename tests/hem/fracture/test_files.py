@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 import os
 import sys
@@ -108,11 +109,12 @@ def test_the_numbers_are_those_of_the_fracture_and_json_can_hold_them(kind, requ
         assert each["area_m2"] * told["thickness_m"] == pytest.approx(each["volume_m3"])
 
 
-def test_another_format_is_refused_and_nothing_is_made(broken, tmp_path):
+def test_another_format_or_no_direction_is_refused_and_nothing_is_made(broken, tmp_path):
     with pytest.raises(hem.MeshError, match=r"'stl'.*glb, obj, ply"):
         save_pieces(broken, tmp_path / "new", "stl")
-    with pytest.raises(hem.MeshError, match="a direction"):
-        save_pieces(broken, tmp_path / "new", up=(0, 0, 0))
+    for format, up in itertools.product(("glb", "obj", "ply"), ((0, 0, 0), (np.nan, 0, 0), "y")):
+        with pytest.raises(hem.MeshError, match="a direction"):
+            save_pieces(broken, tmp_path / "new", format, up)
     assert not (tmp_path / "new").exists()
 
 
