@@ -539,10 +539,11 @@ class Structure(Described, Surveying, abstract=True):
 
     def remove_attribute(self, attribute: Attribute) -> None:
         """Have an attribute follow no longer. Raises MeshError if it is not of this mesh."""
-        key, known = (attribute.element, attribute.name), self._followers.attributes
-        if known.get(key) is not attribute:
-            raise MeshError(f"{attribute!r} is no attribute of this mesh")
-        del known[key]
+        known = self._followers.attributes
+        if not any(it is attribute for it in known.values()):
+            words = "is no attribute of this mesh, such as s.vertex_attribute(name) gives"
+            raise MeshError(f"{attribute!r} {words}")
+        del known[attribute.element, attribute.name]
 
     def subscribe(self, callback: Callable[[Edit], Any]) -> Callable[[], None]:
         """Have ``callback`` called with every ``Edit`` once it is done -> a way to end that.

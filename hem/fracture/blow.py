@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from hem.arrays import Bools, Floats
 from hem.errors import MeshError
-from hem.fracture.mass import Mass
+from hem.fracture.mass import Mass, positive
 from hem.fracture.material import Material
 from hem.fracture.pieces import Fracture
 from hem.meshes import direction, dot, length, position
@@ -39,10 +39,7 @@ class Blow:
     force: float
 
     def __post_init__(self) -> None:
-        force = self.force
-        if not (isinstance(force, int | float | np.number) and 0 < force < math.inf):
-            raise MeshError(f"a force is positive and finite, in J/kg, not {force!r}")
-        object.__setattr__(self, "force", float(force))
+        object.__setattr__(self, "force", positive(self.force, "a force in J/kg"))
         object.__setattr__(self, "impact", position(self.impact, "an impact"))
         object.__setattr__(self, "direction", direction(self.direction))
 

@@ -8,7 +8,9 @@ all pieces are worked through together: O(faces), whatever the number of pieces.
 """
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from contextlib import suppress
+from numbers import Real
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -40,7 +42,7 @@ def of_bodies(meshes: Sequence[TriangleMesh], density: float) -> Mass:
     """
     corners, owner, origins = _corners(meshes)
     volumes = dot(corners[:, 0], np.cross(corners[:, 1], corners[:, 2])) / 6
-    return _mass(corners, owner, origins, volumes, (4, 20), _positive(density, "a density"))
+    return _mass(corners, owner, origins, volumes, (4, 20), positive(density, "a density"))
 
 
 def of_sheets(meshes: Sequence[TriangleMesh], density: float, thickness: float) -> Mass:
@@ -50,14 +52,17 @@ def of_sheets(meshes: Sequence[TriangleMesh], density: float, thickness: float) 
     Raises MeshError for a density or a thickness that is not positive and finite.
     """
     corners, owner, origins = _corners(meshes)
-    volumes = areas(corners) * _positive(thickness, "a thickness")
-    return _mass(corners, owner, origins, volumes, (3, 12), _positive(density, "a density"))
+    volumes = areas(corners) * positive(thickness, "a thickness")
+    return _mass(corners, owner, origins, volumes, (3, 12), positive(density, "a density"))
 
 
-def _positive(value: float, what: str) -> float:
-    if not (np.isfinite(value) and value > 0):
-        raise MeshError(f"{what} is positive and finite, not {value}")
-    return float(value)
+def positive(value: Any, what: str) -> float:
+    """The value, if it is a positive and finite number; else MeshError."""
+    if isinstance(value, Real) and not isinstance(value, bool):
+        with suppress(OverflowError):  # an integer that is no float any more
+            if 0 < float(value) < np.inf:
+                return float(value)
+    raise MeshError(f"{what} is positive and finite, not {value!r:.60}")
 
 
 def _corners(meshes: Sequence[TriangleMesh]) -> tuple[Floats, Indices, Floats]:

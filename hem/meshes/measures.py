@@ -46,7 +46,7 @@ def position(given: object, what: str = "a position") -> Floats:
     """Three finite numbers as (3,), or MeshError."""
     try:
         at = np.array(given, np.float64)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         at = np.zeros(0)
     if at.shape != (3,) or not np.isfinite(at).all():
         raise MeshError(f"{what} is three finite numbers, not {given!r}")

@@ -33,6 +33,7 @@ class Found(NamedTuple):
     scanned: bool
 
 
+@np.errstate(over="ignore")
 def nearest_face(structure: Structure, position: ArrayLike, start: int = JUMP) -> Found:
     """The face nearest to a position (3,), found by walking from face to face over ``face_faces``.
 

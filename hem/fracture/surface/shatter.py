@@ -9,7 +9,6 @@ that the rest is a sound mesh.
 
 from collections.abc import Callable, Sequence
 from functools import cached_property
-from numbers import Real
 from typing import Any
 
 import numpy as np
@@ -21,6 +20,7 @@ from hem.contract import Attribute, Structure
 from hem.edit import Edit
 from hem.errors import MeshError
 from hem.fracture.blow import generator
+from hem.fracture.mass import positive
 from hem.fracture.material import MATERIALS, Material
 from hem.fracture.material import material as named
 from hem.fracture.pieces import Fracture, islands
@@ -168,8 +168,7 @@ def break_points(material: Material, seed: int, step: float) -> Floats:
     arithmetic decides, the same on every machine. Raises MeshError for a step that is no length,
     and a seed that is none.
     """
-    if not (isinstance(step, Real) and 0 < step < np.inf):
-        raise MeshError(f"the scale of the circles is a positive length, not {step!r}")
+    step = positive(step, "the scale of the circles")
     random = generator(seed).random
     circles = [np.zeros((0, 2))]
     for i, count in enumerate(material.circles):

@@ -261,7 +261,7 @@ def test_cube_roots_are_those_of_the_library_to_the_last_digits(value):
     assert cube_root(value) == pytest.approx(float(np.cbrt(value)), rel=5e-16)
 
 
-@pytest.mark.parametrize("force", [0, -1, np.nan, np.inf, None, "1", [1.0]])
+@pytest.mark.parametrize("force", [0, -1, np.nan, np.inf, 10**400, True, None, "1", [1.0]])
 def test_forces_are_positive_and_finite(force):
     with pytest.raises(hem.MeshError, match="force"):
         Blow((0, 0, 0), (0, 0, 1), force)

@@ -535,6 +535,8 @@ def test_a_name_is_one_attribute(s):
     s.remove_attribute(weight)
     with pytest.raises(hem.MeshError, match="no attribute of this mesh"):
         s.remove_attribute(weight)
+    with pytest.raises(hem.MeshError, match="'weight' is no attribute of this mesh, such as"):
+        s.remove_attribute("weight")
     s.split_face(int(s.faces()[0]), (0, 0, 0))
     assert s.vertex_attribute("weight", np.int8) is not weight
 

@@ -343,7 +343,7 @@ def test_a_wrong_number_of_a_material_is_told_with_its_file(tmp_path, wrong, wor
         (lambda s: shatter(s, (1, 2, 99)), "more than half of its size"),
         (lambda s: shatter(s, (1, 2, 0), "glas"), "did you mean 'glass'"),
         (lambda s: shatter(s, (1, 2, 0), seed=-1), "a seed is a whole number"),
-        (lambda s: shatter(s, (1, 2, 0), scale=0), "positive length"),
+        (lambda s: shatter(s, (1, 2, 0), scale=0), "positive and finite"),
     ],
 )
 def test_what_cannot_be_shattered_is_said_and_nothing_changes(call, message):
@@ -368,20 +368,25 @@ def test_polygons_and_empty_meshes_are_refused():
             shatter(structures.build(name, empty), (0, 0, 1))
 
 
+@pytest.mark.filterwarnings("error")
 @pytest.mark.parametrize(
     ("given", "words"),
     [
         ({"material": None}, "no material None"),
         ({"material": "gold"}, "no material 'gold'"),
-        ({"scale": "wide"}, "positive length, not 'wide'"),
-        ({"scale": 0}, "positive length, not 0"),
+        ({"scale": "wide"}, "positive and finite, not 'wide'"),
+        ({"scale": 0}, "positive and finite, not 0"),
+        ({"scale": True}, "positive and finite, not True"),
+        ({"scale": 10**400}, "positive and finite, not 1000"),
+        ({"impact": (1e308, 1e308, 1e308)}, "more than half of its size"),
+        ({"impact": (10**400, 0, 0)}, "three finite numbers"),
     ],
 )
 def test_bad_arguments_are_refused_and_the_mesh_stays(given, words):
     s = structures.build("half_edge", sheet())
     before = s.to_triangles()
     with pytest.raises(hem.MeshError, match=words):
-        shatter(s, (3.2, 4.1, 0), **given)
+        shatter(s, **{"impact": (3.2, 4.1, 0)} | given)
     assert np.array_equal(s.to_triangles().triangles, before.triangles)
 
 
