@@ -1,6 +1,7 @@
 """The command ``hem fracture``: break a model, and keep pieces, pictures and numbers."""
 
 import json
+import signal
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from enum import StrEnum
@@ -78,23 +79,24 @@ def fracture(
 
     Example: `hem fracture bunny --material glass --force 10 --out broken`
     """
-    from experiments.report import fracture_scenes
-    from hem import fracture as breaking
-
-    # What can be wrong at a glance is told before anything is computed.
-    own = breaking.materials(materials) if materials else {}
-    known = breaking.material(material, breaking.MATERIALS | own)
-    folder = out or Path("fractured") / Path(model.replace(":", "-")).stem
-    breaking.require_writable(folder)
-    mesh, axis = fracture_scenes.model(model, wrap, scale, repair)
-    usual = Method.surface if mesh.summary().border_edges else Method.voronoi
-    broken = fracture_scenes.break_up(
-        mesh, method or usual, known, force,
-        impact=impact, direction=direction, seed=seed, structure=structure, up=up or axis,
-    )
-    if method is None and usual is Method.surface:
-        console.print(f"{model} is open: its surface is broken (or a body of it, with --wrap)")
+    signal.signal(signal.SIGTERM, signal.default_int_handler)  # what job systems send
     try:
+        from experiments.report import fracture_scenes
+        from hem import fracture as breaking
+
+        # What can be wrong at a glance is told before anything is computed.
+        own = breaking.materials(materials) if materials else {}
+        known = breaking.material(material, breaking.MATERIALS | own)
+        folder = out or Path("fractured") / Path(model.replace(":", "-")).stem
+        breaking.require_writable(folder)
+        mesh, axis = fracture_scenes.model(model, wrap, scale, repair)
+        usual = Method.surface if mesh.summary().border_edges else Method.voronoi
+        broken = fracture_scenes.break_up(
+            mesh, method or usual, known, force,
+            impact=impact, direction=direction, seed=seed, structure=structure, up=up or axis,
+        )
+        if method is None and usual is Method.surface:
+            console.print(f"{model} is open: its surface is broken (or a body of it, with --wrap)")
         files = _write(broken, model, folder, format or [Format.glb], seconds, size, animation)
     except KeyboardInterrupt:
         errors.print("Stopped; nothing was written.")

@@ -137,7 +137,8 @@ def test_materials_of_ones_own_are_read(tmp_path):
     assert told["material"]["name"] == "jelly"
 
 
-def test_an_interrupted_run_leaves_a_folder_as_it_was(tmp_path):
+@pytest.mark.parametrize("by", [signal.SIGINT, signal.SIGTERM])
+def test_a_run_that_is_stopped_leaves_a_folder_as_it_was(by, tmp_path):
     out = tmp_path / "out"
     out.mkdir()
     (out / "fracture.json").write_text("before")
@@ -147,12 +148,23 @@ def test_an_interrupted_run_leaves_a_folder_as_it_was(tmp_path):
     while not list(out.glob(".hem-*/new/fracture.png")):
         assert child.poll() is None
         time.sleep(0.05)
-    child.send_signal(signal.SIGINT)
+    child.send_signal(by)
     _, said = child.communicate(timeout=300)
     assert child.returncode == 130
     assert "nothing was written" in said
     assert [path.name for path in out.iterdir()] == ["fracture.json"]
     assert (out / "fracture.json").read_text() == "before"
+
+
+def test_a_run_that_is_stopped_while_it_breaks_says_so(tmp_path, monkeypatch):
+    def stopped(*_: object, **__: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("experiments.report.fracture_scenes.break_up", stopped)
+    code, output = words("fracture", "sphere:162", "--out", str(tmp_path / "out"))
+    assert code == 130
+    assert "nothing was written" in output
+    assert not (tmp_path / "out").exists()
 
 
 @pytest.mark.parametrize("name", ["bunny", "teapot", "plate", "sphere:642"])
