@@ -97,7 +97,9 @@ def fracture(
         )
         if method is None and usual is Method.surface:
             console.print(f"{model} is open: its surface is broken (or a body of it, with --wrap)")
-        files = _write(broken, model, folder, format or [Format.glb], seconds, size, animation)
+        asked = {"scale": scale, "wrap": wrap, "repair": repair, "structure": structure}
+        formats = format or [Format.glb]
+        files = _write(broken, model, asked, folder, formats, seconds, size, animation)
     except KeyboardInterrupt:
         errors.print("Stopped; nothing was written.")
         raise typer.Exit(130) from None
@@ -108,8 +110,8 @@ def fracture(
 
 
 def _write(
-    broken: Any, model: str, folder: Path, formats: Sequence[str], seconds: float | None,
-    size: Size, animation: bool,
+    broken: Any, model: str, asked: dict[str, Any], folder: Path, formats: Sequence[str],
+    seconds: float | None, size: Size, animation: bool,
 ) -> list[str]:  # fmt: skip
     """Make everything beside the folder and move it there at the end -> the files' names."""
     from PIL import Image
@@ -122,7 +124,7 @@ def _write(
         for format in dict.fromkeys(formats):
             save_pieces(broken.fracture, beside, format, scene.up)
         numbers = describe(broken.fracture, broken.blow, broken.motion, model)
-        numbers |= {"up": broken.up, "held": broken.held}
+        numbers |= asked | {"up": broken.up, "held": broken.held}
         Image.fromarray(scene.still(size)).save(beside / "fracture.png", optimize=True)
         if animation:
             lasting = seconds or fracture_scenes.enough_seconds(scene)

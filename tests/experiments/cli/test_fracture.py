@@ -101,7 +101,10 @@ def test_a_sphere_breaks_into_all_that_is_promised(tmp_path):
     ("arguments", "method"),
     [
         (["plate"], "surface"),
-        (["plate:100", "--structure", "half_edge", "--direction", "0,0,-1"], "surface"),
+        (
+            ["plate:100", "--structure", "plankton", "--direction", "0,0,-1", "--scale", "2"],
+            "surface",
+        ),
         (["sphere:162", "--method", "tetra", "--impact", "0,1,0"], "tetra"),
         pytest.param(["terrain:100", "--wrap"], "voronoi", marks=exhaustive),
     ],
@@ -117,6 +120,9 @@ def test_every_method_can_be_had_and_the_same_call_gives_the_same(arguments, met
         one, two = ((tmp_path / it / name).read_bytes() for it in ("one", "two"))
         assert one == two, name
     told = json.loads((tmp_path / "two" / "fracture.json").read_text())
+    assert told["scale"] == (2 if "--scale" in arguments else 1)
+    assert told["structure"] == ("plankton" if "plankton" in arguments else "half_edge")
+    assert (told["wrap"], told["repair"]) == ("--wrap" in arguments, False)
     totals, held = told["totals"], [told["pieces"][i] for i in told["held"]]
     assert bool(held) == (method == "surface")
     assert not any(it["kinetic_energy_J"] or any(it["velocity_m_s"]) for it in held)
