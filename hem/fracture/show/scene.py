@@ -55,9 +55,9 @@ class FractureScene:
     def exploded(self, factor: float = 0.4) -> Array:
         """Centers (p, 3) moved apart: each away from the middle of all, none below the floor."""
         mass, broken = self.fracture.mass, self.fracture
-        if not broken.closed:  # shards come out of a surface toward whom it is struck by
-            moved = mass.centers + factor * (mass.centers - broken.impact)
-            moved -= factor * 0.4 * broken.diagonal * broken.direction
+        if not broken.closed:  # in front of the surface, beside the hole rather than before it
+            moved = mass.centers + factor * 0.5 * (mass.centers - broken.impact)
+            moved -= factor * 1.5 * broken.diagonal * broken.direction
             moved[len(broken.shards) :] = mass.centers[len(broken.shards) :]
             return moved
         middle = np.average(mass.centers, axis=0, weights=np.maximum(mass.masses, 1e-12))
@@ -81,7 +81,7 @@ class FractureScene:
         with closing(self._picture(size)) as picture:
             picture.look_at(self._stays(flight))
             for time, positions, rotations in zip(*flight[:3], strict=True):
-                moved = self.placed(positions, rotations, _GAP / 3)
+                moved = self.placed(positions, rotations, _GAP)
                 picture.move(moved, rotations[self.piece])
                 picture.draw_text(f"{caption}, {time:.2f} s after the blow" if caption else "")
                 yield picture.image()
