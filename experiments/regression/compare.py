@@ -2,7 +2,7 @@
 
 Rounds of a case are milliseconds apart, so what they differ by within a case says nothing about
 what two runs differ by. A curve, one query of one structure at all sizes, is therefore judged as a
-whole: it got slower only if most of its cases say so, each by significance and by size, relative to
+whole: it got slower only if most of its cases say so, or all of its largest, each by significance and by size, relative to
 the calibration loop that ran beside its rounds.
 """
 
@@ -311,7 +311,7 @@ def _all_slower_from(sizes: Sequence[float], cases: Sequence[Comparison]) -> flo
 
 
 def _compare_curve(key: CaseKey, axis: str, pairs: list[Pair], factor: float) -> Finding:
-    """One curve: decided where more than half of its cases say the same, and none is lost."""
+    """One curve: decided where more than half of its cases, or all large ones, say the same."""
     claim, both = claim_of(key), [(it.before, it.after) for it in pairs if it.before and it.after]
     if not both:
         was, now = (None if it is None else () for it in pairs[0][2:4])
