@@ -2,8 +2,8 @@
 
 Rounds of a case are milliseconds apart, so what they differ by within a case says nothing about
 what two runs differ by. A curve, one query of one structure at all sizes, is therefore judged as a
-whole: it got slower only if most of its cases say so, or all of its largest, each by significance and by size, relative to
-the calibration loop that ran beside its rounds.
+whole: it got slower only if most of its cases say so, or all of its largest, each by significance
+and by size, relative to the calibration loop that ran beside its rounds.
 """
 
 from collections import defaultdict
