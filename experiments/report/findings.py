@@ -31,6 +31,15 @@ SUMMARY = {
 """What the exit codes mean."""
 
 
+def summary(findings: Sequence[Finding]) -> str:
+    """What the exit code means, and of a pass that a part of it is open, where one is."""
+    code = exit_code(findings)
+    open_still = any(it.change == Change.UNDETERMINED for it in findings)
+    return SUMMARY[code].replace(
+        ".", ", as far as can be told." if open_still and not code else "."
+    )
+
+
 def show(findings: Sequence[Finding], notes: Sequence[str], console: Console) -> None:
     """Print what is not as before, worst first, a line each under its claim; then the counts."""
     for title, color, chosen in _by_change(findings):
@@ -45,7 +54,7 @@ def show(findings: Sequence[Finding], notes: Sequence[str], console: Console) ->
         last.append("What got better becomes the baseline with: hem baseline update")
     last += [f"Next: {it}" for it in dict.fromkeys(it.next for it in findings if it.next)]
     console.print(escape("\n".join(last)), highlight=False)
-    console.print(f"[bold]{SUMMARY[exit_code(findings)]}[/]")
+    console.print(f"[bold]{summary(findings)}[/]")
 
 
 def line(finding: Finding) -> str:
@@ -82,8 +91,7 @@ def as_json(findings: Sequence[Finding], notes: Sequence[str]) -> dict[str, Any]
 
 def as_markdown(findings: Sequence[Finding], notes: Sequence[str]) -> str:
     """A summary for a pull request: a table for each title."""
-    summary = SUMMARY[exit_code(findings)]
-    parts = [f"## hem check: {summary}", f"Compared: {count_same(findings)}."]
+    parts = [f"## hem check: {summary(findings)}", f"Compared: {count_same(findings)}."]
     for title, _, chosen in _by_change(findings):
         rows = [["what", "where", "before", "after", "claim"]]
         for it in chosen[:MOST]:

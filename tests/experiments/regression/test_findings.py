@@ -4,7 +4,7 @@ import pytest
 
 from experiments.regression import CaseKey, Change, Finding, Kind, exit_code
 from experiments.regression.findings import vote
-from experiments.report.findings import as_json, as_markdown
+from experiments.report.findings import as_json, as_markdown, summary
 
 WORSE, OPEN, BETTER, SAME = Change.WORSE, Change.UNDETERMINED, Change.BETTER, Change.SAME
 CASE = CaseKey("bench_work", "half_edge", "vertex_faces", "torus", 200, order="random")
@@ -58,3 +58,11 @@ def test_json_and_markdown_say_what_is_worse():
     text = as_markdown([counted(WORSE)], ["a note"])
     assert f"| work | `{CASE}` | 19 | 20 |" in text
     assert "- a note" in text
+
+
+def test_a_pass_says_that_some_of_it_is_open():
+    assert summary([timed(SAME)] * 18) == "Nothing got worse."
+    assert (
+        summary([timed(SAME)] * 18 + [timed(OPEN)]) == "Nothing got worse, as far as can be told."
+    )
+    assert summary([timed(SAME), counted(WORSE)]) == "Something got worse."
