@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from experiments.regression.change_points import SHORTEST, Step, find_steps
+from experiments.regression.change_points import ALARM, SHORTEST, Step, find_steps
 
 SERIES = 500
 NOISES = {
@@ -19,6 +19,23 @@ def test_noise_alone_has_no_steps_but_in_one_series_of_a_hundred(noise, runs):
     rng = np.random.default_rng(5)
     alarms = sum(bool(find_steps(np.exp(NOISES[noise](rng, runs)))) for _ in range(SERIES))
     assert alarms <= 0.01 * SERIES
+
+
+def test_few_values_of_normal_noise_have_no_more_false_steps_than_alarm_says():
+    rng = np.random.default_rng(9)
+    series = [rng.normal(0, 0.2, runs) for runs in (8, 9, 10, 12) for _ in range(2 * SERIES)]
+    assert sum(bool(find_steps(np.exp(it))) for it in series) <= ALARM * len(series)
+
+
+@pytest.mark.parametrize("before", [8, 12, 20, 30, 48])
+def test_a_doubling_is_told_from_its_third_value_on_and_at_no_other_commit(before):
+    rng = np.random.default_rng(8)
+    for after in range(1, 5):
+        for _ in range(30):
+            values = np.repeat([1.0, 2.0], [before, after]) * rng.normal(1, 0.03, before + after)
+            found = [[it.index for it in find_steps(way)] for way in (values, values[::-1])]
+            told = after >= SHORTEST
+            assert found == [[before] * told, [after] * told]
 
 
 def test_a_tenth_more_or_less_in_noise_of_three_percent_is_found_to_within_a_commit():
