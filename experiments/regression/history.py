@@ -9,7 +9,7 @@ from typing import Any
 from filelock import FileLock
 
 from experiments.regression.snapshots import claim_figures
-from experiments.runs import ResultsError, Run, git, machine_id, resume_command
+from experiments.runs import ResultsError, Run, git, machine_id, noise, resume_command
 from hem.whole_files import append_whole
 
 SCHEMA = 2
@@ -40,7 +40,7 @@ def record_run(run: Run) -> Line:
     return {
         "schema": SCHEMA, "run": run.folder.resolve().name,
         "commit": meta["commit"], "committed": commit_date(meta["commit"]), "dirty": meta["dirty"],
-        "started": meta["started"], "profile": meta["preset"],
+        "started": meta["started"], "profile": meta["preset"], "too_busy": noise(run).too_busy,
         "structures": list(meta.get("structures", ())),
         "machine": {"id": machine_id(meta["machine"]), **meta["machine"]},
         "versions": meta["versions"], "claims": figures,

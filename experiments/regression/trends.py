@@ -1,7 +1,8 @@
 """What a history says of every claim from commit to commit, and where it changed.
 
 Work, bytes and outcomes by work are comparable between machines, times are not: a series of times
-is of one machine. All series are of one preset, as the preset sets the sizes.
+is of one machine, and of runs in which that was not too busy to judge by time. All series are of
+one preset, as the preset sets the sizes.
 """
 
 from collections.abc import Callable, Iterator
@@ -54,10 +55,11 @@ class Trends:
 
     @cached_property
     def about(self) -> pd.DataFrame:
-        """By run its ``commit``, with a star where there were changes besides, and the like."""
+        """By run its ``commit``, ``*`` with changes besides, ``~`` if too busy; and the like."""
+        marks = ["*" * bool(it.get("dirty")) + "~" * bool(it.get("too_busy")) for it in self.runs]
         rows = [
-            (it["commit"][:7] + "*" * bool(it.get("dirty")), it["profile"], it["machine"]["id"])
-            for it in self.runs
+            (it["commit"][:7] + mark, it["profile"], it["machine"]["id"])
+            for it, mark in zip(self.runs, marks, strict=True)
         ]
         return pd.DataFrame(rows, columns=["commit", "preset", "machine"])
 
@@ -140,6 +142,7 @@ class Trends:
             for k, run in enumerate(self.runs)
             for name, claim in run["claims"].items()
             for measure, exact, *values in of_claim(claim)
+            if exact or not run.get("too_busy")
         ]
         return pd.DataFrame(rows, columns=["run", *SERIES, *columns])
 

@@ -22,7 +22,7 @@ SHORT = {what: what.replace("verdict by ", "by ") for what in OUTCOMES.values()}
 LEGEND = """\
 ✓ consistent, ✗ violated, ? undetermined: by work, which decides, and by time.
 Work: elements accessed; bytes: per vertex; time: in memory accesses.
-* with changes that were not committed."""
+* with changes that were not committed; ~ too busy to judge by time."""
 LEGEND_RUNS = "Changed: verdicts by work/by time/figures."
 LEGEND_CLAIMS = """\
 ≠ not the verdict before, ▲▼ a step to a new level, ( ) of other meshes than now.

@@ -142,6 +142,25 @@ def test_times_of_two_machines_are_two_series_and_their_difference_is_no_step(mi
     assert "mixed.jsonl: 12" in output
 
 
+def test_times_of_a_run_on_too_busy_a_machine_are_not_compared_and_its_commit_is_marked(
+    base, tmp_path
+):
+    path, busy = tmp_path / "history.jsonl", range(10, 15)
+    for k in range(20):
+        made = line(base, k) | ({"too_busy": k in busy} if k > 4 else {})  # older lines lack it
+        made["claims"][CLAIM]["relative"] *= 3 if k in busy else 1
+        made["claims"][CLAIM]["outcome_time"] = "undetermined" if k in busy else "consistent"
+        append_run(made, path)
+    trends = Trends(read_history(path))
+    assert trends.changes.empty
+    runs = trends.figures[trends.figures["claim"] == CLAIM].groupby("measure")["run"].agg(list)
+    assert runs["time"] == runs["slope_time"] == [*range(10), *range(15, 20)]
+    assert runs["work"] == list(range(20))
+    output = output_of("history", "show", NAME, "--file", str(path))
+    marked = [it for it in range(20) if f"{line(base, it)['commit'][:7]}~" in output]
+    assert marked == list(busy)
+
+
 def test_what_was_measured_on_other_sizes_is_not_compared(base, tmp_path):
     path = tmp_path / "history.jsonl"
     for k in range(4):

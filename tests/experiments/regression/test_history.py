@@ -13,7 +13,7 @@ from experiments.regression import append_run, read_history, record_run
 from experiments.regression.history import commit_date
 from experiments.runs import ResultsError, load, machine, machine_id, read_meta, write_meta
 from tests.experiments.histories import CLAIM, line, lines
-from tests.experiments.made_runs import write_run
+from tests.experiments.made_runs import STEADY, write_run
 
 
 def test_a_line_has_the_verdicts_and_figures_of_its_run(base):
@@ -40,6 +40,14 @@ def test_a_run_says_nothing_of_what_it_has_not_measured(base_run, kind, missing,
     judged = [it for it in known if Outcome.NO_CLAIM not in it.values()]
     assert judged
     assert not any(missing in it for it in judged)
+
+
+@pytest.mark.parametrize("busy", [False, True])
+def test_a_line_says_whether_the_machine_was_too_busy_to_judge_by_time(base_run, busy, tmp_path):
+    slow = {**STEADY, "after": 9 * STEADY["fastest"]} if busy else STEADY
+    cases = base_run.cases.assign(noise=base_run.cases["noise"].map(lambda it: it and slow))
+    kept = record_run(replace(base_run, folder=tmp_path, cases=cases))
+    assert json.loads(json.dumps(kept))["too_busy"] is busy
 
 
 def test_a_run_that_is_not_finished_is_refused(tmp_path):
