@@ -113,7 +113,11 @@ class CaseFile:
             where = f"{self.path}, line {number + 1},"
             content = _unsealed(line, where, again)
             if number:
-                self.measurements.append(Measurement(**content))
+                try:
+                    self.measurements.append(Measurement(**content))
+                except TypeError as error:  # as of a head that stands there twice
+                    told = f"{where} is no measurement ({error}): {again}"
+                    raise DamagedError(told) from error
             elif content != self._head:
                 other = f"{where} is the head of another file, {content}"
                 raise ResultsError(f"{other}: move the file away")

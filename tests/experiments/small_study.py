@@ -82,6 +82,7 @@ def damage(path: Path, how: str) -> None:
         "without its checksum": content.replace(b',"checksum":', b',"summary":'),
         "a line less": b"".join(lines[:1] + lines[2:]),
         "a list": b"[]\n",
+        "joined with a copy": 2 * content,
     }[how]
     assert changed != content
     path.write_bytes(changed)

@@ -12,7 +12,7 @@ from tests.experiments.small_study import damage, in_new_process
 
 DAMAGES = (
     "truncated", "emptied", "overwritten", "another number", "without its checksum", "a line less",
-    "a list",
+    "a list", "joined with a copy",
 )  # fmt: skip
 CALM = {"fastest": 1e-4, "before": 1e-4, "after": 1e-4, "off_cpu": 0.0}
 BUSY = {**CALM, "off_cpu": 0.9}

@@ -271,7 +271,7 @@ def test_what_is_left_of_several_experiments_is_compiled_whatever_else_is_done(t
     assert set(perform(folder, left, COMPILE)) == set(left)
 
 
-@pytest.mark.parametrize("what", ["another number", "gone"])
+@pytest.mark.parametrize("what", ["another number", "joined with a copy", "gone"])
 def test_a_damaged_run_is_mended_by_the_command_that_its_error_names(run, what):
     (path,) = case_files(run)
     before = samples(run)
