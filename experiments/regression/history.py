@@ -3,6 +3,7 @@
 import json
 from dataclasses import dataclass
 from datetime import UTC, datetime
+from math import inf
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +16,8 @@ from hem.whole_files import append_whole
 SCHEMA = 2
 REQUIRED = {"commit": str, "started": str, "profile": str, "machine": dict, "claims": dict}
 """What every line has, and of what type."""
+TEXTS = ("kind", "outcome", "outcome_time")
+"""What of the figures of a claim is text; all else is numbers."""
 Line = dict[str, Any]
 
 
@@ -112,9 +115,27 @@ def _line(raw: bytes) -> Line:
         if not isinstance(line.get(key), kind):
             raise ValueError(f"is no run: its {key} is {line.get(key)!r:.40}")
     try:
-        _identity(line), _times(line)
+        "".join(_identity(line)), _times(line)
     except (KeyError, TypeError, ValueError, AttributeError) as error:
         raise ValueError(f"is no run: {type(error).__name__} {error}") from None
-    if not all(isinstance(claim, dict) for claim in line["claims"].values()):
-        raise ValueError("is no run: not all of its claims have figures")
+    for name, claim in line["claims"].items():
+        if not isinstance(claim, dict):
+            raise ValueError("is no run: not all of its claims have figures")
+        for key, value in claim.items():
+            if not _is_figure(key, value):
+                raise ValueError(f"is no run: {key} of {name} is {value!r:.40}")
     return line
+
+
+def _is_figure(name: str, value: Any) -> bool:
+    """Whether a figure of a claim is of the type that it is written with."""
+    if name == "slopes":
+        rows = list(value.values()) if isinstance(value, dict) else [()]
+        return all(
+            isinstance(it, list) and len(it) == 3 and all(map(_is_number, it)) for it in rows
+        )
+    return isinstance(value, str) if name in TEXTS else _is_number(value)
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, (int, float)) and abs(value) < inf

@@ -169,6 +169,30 @@ def test_a_line_that_is_no_run_is_named_and_skipped(base, tmp_path, text, said):
     assert f"line 2 {said}" in kept.faults[0]
 
 
+@pytest.mark.parametrize("odd", [
+    {"slopes": None}, {"slopes": {"work_faces": [1, 2]}}, {"slopes": {"work_faces": [0, 0, "1"]}},
+    {"outcome": None}, {"outcome_time": 3}, {"work": None}, {"work": [1]}, {"relative": "12"},
+])  # fmt: skip
+def test_a_line_whose_figures_are_none_is_named_and_skipped(base, tmp_path, odd):
+    path, made = tmp_path / "history.jsonl", line(base, 1)
+    made["claims"][CLAIM] |= odd
+    append_run(line(base, 2), path)
+    with path.open("a") as file:
+        file.write(json.dumps(made) + "\n")
+    kept = read_history(path)
+    assert kept.runs == [line(base, 2)]
+    (fault,) = kept.faults
+    assert f"line 2 is no run: {next(iter(odd))} of {CLAIM} is " in fault
+
+
+def test_a_line_of_a_machine_without_a_name_is_named_and_skipped(base, tmp_path):
+    made = line(base, 1)
+    made["machine"]["id"] = ["a list"]
+    (tmp_path / "history.jsonl").write_text(json.dumps(made) + "\n")
+    kept = read_history(tmp_path / "history.jsonl")
+    assert (kept.runs, len(kept.faults)) == ([], 1)
+
+
 def test_a_machine_is_the_same_after_an_update_and_another_with_another_processor():
     here = {
         "cpu": "AMD EPYC",
