@@ -81,9 +81,11 @@ def _is_kept(case: Mapping[Any, Any]) -> bool:
 
 def load_baseline(part: str, folder: Path = FOLDER) -> Measured:
     """The counters or the run of the baseline. Raises ResultsError that names the way out."""
+    kept, old = folder / part, folder / f"{part}.old"
+    if old.exists() and not kept.exists():  # a save was killed between its two renames
+        kept = old
     try:
-        run = load(folder / part)
-        lines = (folder / part / CLAIMS).read_text("utf-8").splitlines()
+        run, lines = load(kept), (kept / CLAIMS).read_text("utf-8").splitlines()
         return Measured(run, {claim.pop("claim"): claim for claim in map(json.loads, lines)})
     except (ValueError, OSError, KeyError) as error:
         where = "" if folder == FOLDER else f" --baseline {shlex.quote(str(folder))}"
@@ -102,8 +104,8 @@ def save_baseline(part: str, measured: Measured, folder: Path = FOLDER) -> None:
     lines = (json.dumps({"claim": name, **it}) + "\n" for name, it in measured.claims.items())
     write_whole(beside / CLAIMS, "".join(lines))
     target, old = folder / part, folder / f"{part}.old"
-    shutil.rmtree(old, ignore_errors=True)
     if target.exists():
+        shutil.rmtree(old, ignore_errors=True)
         target.rename(old)
     try:
         beside.rename(target)

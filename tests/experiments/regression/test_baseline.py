@@ -151,3 +151,24 @@ def test_what_cannot_be_put_in_place_leaves_the_baseline(folder, monkeypatch):
     with pytest.raises(OSError, match="No space"):
         save_baseline(COUNTERS, measured, folder)
     assert {it.name: it.read_bytes() for it in (folder / COUNTERS).iterdir()} == before
+
+
+def test_a_save_that_was_killed_between_its_renames_loses_no_baseline(folder, monkeypatch):
+    before, measured = contents(folder), load_baseline(COUNTERS, folder)
+
+    def fail(*_):
+        raise OSError(28, "No space left on device")
+
+    def require_kept():
+        assert not (folder / COUNTERS).exists()
+        assert load_baseline(COUNTERS, folder).claims == measured.claims
+
+    (folder / COUNTERS).rename(folder / f"{COUNTERS}.old")
+    require_kept()
+    with monkeypatch.context() as full:
+        full.setattr("experiments.regression.baseline.write_whole", fail)
+        with pytest.raises(OSError, match="No space"):
+            save_baseline(COUNTERS, measured, folder)
+    require_kept()
+    save_baseline(COUNTERS, measured, folder)
+    assert contents(folder) == before
