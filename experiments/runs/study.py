@@ -211,10 +211,9 @@ def compile_and_count(
         try:
             for future in as_completed(running):
                 future.result()
-        except BaseException:
+        finally:
             stop.set()
             pool.shutdown(cancel_futures=True)
-            raise
 
 
 def _compile(
@@ -226,7 +225,8 @@ def _compile(
     waiting = {it[0].structure: it for it in groups}
     while waiting and not stop.is_set():
         jobs = [job for it in waiting.values() for job in it]
-        with suppress(WorkerDiedError, OSError), closing(perform(folder, jobs, COMPILE)) as done:
+        worker = perform(folder, jobs, COMPILE, stop)
+        with suppress(WorkerDiedError, OSError), closing(worker) as done:
             for structure, finished in groupby(done, attrgetter("structure")):
                 if any(stop.is_set() for _ in finished):
                     return
@@ -260,7 +260,7 @@ def _measure(folder: Path, jobs: list[Job], observer: Observer, stop: Event) -> 
     begin = monotonic()
     done = Counter({job: len(job.ids) - len(job.left(folder)) for job in jobs})
     try:
-        with closing(perform(folder, jobs)) as finished:
+        with closing(perform(folder, jobs, stop=stop)) as finished:
             for job in finished:
                 done[job] += 1
                 observer.measured(job, done[job])

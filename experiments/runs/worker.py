@@ -11,7 +11,7 @@ from collections.abc import Generator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from threading import Thread
+from threading import Event, Thread
 from typing import Any, TextIO
 
 from experiments.harness import PRESETS, Case
@@ -72,12 +72,15 @@ class WorkerDiedError(RuntimeError):
     """A worker ended before its time; the message is the end of its log."""
 
 
-def perform(folder: Path, jobs: Sequence[Job], action: str = MEASURE) -> Generator[Job]:
+def perform(
+    folder: Path, jobs: Sequence[Job], action: str = MEASURE, stop: Event | None = None
+) -> Generator[Job]:
     """Perform jobs in a process of their own -> after each case its job.
 
     They are performed in the order of the experiments, and every experiment on all structures that
-    one of the jobs is about: what is left of those. Closing the iterator ends the process. Raises
-    WorkerDiedError if it dies, CannotWriteError if there is no more room for results.
+    one of the jobs is about: what is left of those. Closing the iterator ends the process, and so
+    does ``stop``, amid a case. Raises WorkerDiedError if it dies, CannotWriteError if there is no
+    more room for results.
     """
     first, by_name = jobs[0], {f"{job.experiment} {job.structure}": job for job in jobs}
     log = _log(folder, first, action)
@@ -91,6 +94,8 @@ def perform(folder: Path, jobs: Sequence[Job], action: str = MEASURE) -> Generat
                 stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=output, text=True,
             )  # fmt: skip
     with worker:
+        if stop:
+            Thread(target=_end_at, args=(stop, worker), daemon=True).start()
         try:
             names = map(str.strip, worker.stdout or ())  # it compiles for jobs that are done, too
             yield from (by_name[name] for name in names if name in by_name)
@@ -105,6 +110,11 @@ def perform(folder: Path, jobs: Sequence[Job], action: str = MEASURE) -> Generat
     if code not in (0, 1):  # pytest's: all passed, and some failed
         said = end_of_log(folder, first, action)
         raise WorkerDiedError(said or f"it ended with exit code {code}")
+
+
+def _end_at(stop: Event, worker: subprocess.Popen[str]) -> None:
+    stop.wait()
+    worker.terminate()  # which does nothing to one that has ended
 
 
 def _asked(folder: Path, jobs: Sequence[Job], action: str) -> list[str]:

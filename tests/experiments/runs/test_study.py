@@ -307,10 +307,18 @@ def test_a_run_resumed_with_changes_is_told_to_be_changed(run, monkeypatch):
     assert read_meta(run)["dirty"] is True
 
 
+def test_a_stop_ends_a_worker_before_its_first_case(tmp_path):
+    folder, stop = begin(tmp_path, "work"), Event()
+    stop.set()
+    with pytest.raises(WorkerDiedError):
+        list(perform(folder, study.plan(folder), stop=stop))
+    assert samples(folder) == {}
+
+
 def test_once_stopped_no_other_worker_begins(run, monkeypatch):
     begun, stop = [], Event()
 
-    def perform(*given):
+    def perform(*given, stop):
         begun.append(given)
         stop.set()
         raise WorkerDiedError("interrupted")
