@@ -30,8 +30,8 @@ between runs by up to 1.65 at all sizes, by where the process lies in memory, an
 them, by another tenant of the same caches. Two trees timed interleaved show far smaller changes."""
 
 LARGE = 3
-"""Cases, the largest of a curve, that make it slower though most of it is not. Of 2,244 comparisons
-of curves of standard runs, of the same structures, none had even two of them slower."""
+"""Cases, the largest of a curve, that make it slower though most of it is not. Three standard runs,
+each compared with each other, had no curve of which even two of them were slower."""
 
 SLOPE_DRIFT = 0.25
 """How far beyond their intervals slopes of times may differ. Between runs of the same code they
@@ -289,17 +289,17 @@ def _compare_times(pairs: Sequence[Pair], factor: float) -> list[Finding]:
         return [_no_times("the baseline has no times that can be compared", UPDATE[RUN])]
     if not any(it.after for it in pairs):
         return [_no_times("the run has no times that can be compared")]
-    curves: dict[tuple[CaseKey, str], list[Pair]] = defaultdict(list)
+    curves: dict[tuple[CaseKey, Axis], list[Pair]] = defaultdict(list)
     for pair in pairs:
         axis = Axis.TIME_VALENCE if pair.case.valence else Axis.TIME_FACES
-        curves[CaseKey(*pair.case[:3], order=pair.case.order), axis.symbol].append(pair)
+        curves[CaseKey(*pair.case[:3], order=pair.case.order), axis].append(pair)
     return [_compare_curve(*key, cases, factor) for key, cases in curves.items()]
 
 
 def _all_slower_from(sizes: Sequence[float], cases: Sequence[Comparison]) -> float:
     """The size from which on all of at least `LARGE` cases are slower; 0 where there is none.
 
-    What only large meshes show is most of a curve at no time.
+    A slowdown that only large meshes show is never most of a curve.
     """
     least, count = 0.0, 0
     for size in sorted(set(sizes), reverse=True):
@@ -310,12 +310,12 @@ def _all_slower_from(sizes: Sequence[float], cases: Sequence[Comparison]) -> flo
     return least if count >= LARGE else 0.0
 
 
-def _compare_curve(key: CaseKey, axis: str, pairs: list[Pair], factor: float) -> Finding:
+def _compare_curve(key: CaseKey, axis: Axis, pairs: list[Pair], factor: float) -> Finding:
     """One curve: decided where more than half of its cases, or all large ones, say the same."""
     claim, both = claim_of(key), [(it.before, it.after) for it in pairs if it.before and it.after]
     if not both:
         was, now = (None if it is None else () for it in pairs[0][2:4])
-        return _finding(Kind.TIME, key, was, now, RUN, pairs[0].why, axis=axis, claim=claim)
+        return _finding(Kind.TIME, key, was, now, RUN, pairs[0].why, axis=axis.symbol, claim=claim)
     cases = [
         compare_rounds(
             old["samples"], new["samples"], old["calibration"], new["calibration"], factor
@@ -323,10 +323,9 @@ def _compare_curve(key: CaseKey, axis: str, pairs: list[Pair], factor: float) ->
         for old, new in both
     ]
     change, why = vote(case.change for case in cases)
-    size = "valence" if axis == Axis.TIME_VALENCE.symbol else "faces"
-    sizes = [float(old[size]) for old, _ in both]
+    sizes = [float(old[axis.variable]) for old, _ in both]
     if change != Change.WORSE and (least := _all_slower_from(sizes, cases)):
-        change, why = Change.WORSE, f"{why}, all from {least:,.0f} {axis} on"
+        change, why = Change.WORSE, f"{why}, all from {least:,.0f} {axis.symbol} on"
     if change == Change.SAME and max(case.low for case in cases) > STRAY:
         change = Change.UNDETERMINED
     if lost := sum(it.after is None for it in pairs):  # perhaps just the largest are slower
@@ -335,4 +334,4 @@ def _compare_curve(key: CaseKey, axis: str, pairs: list[Pair], factor: float) ->
     ratios = [case.ratio for case in cases]
     middle = np.exp(np.nanmedian(np.log(ratios)))
     ratio = f"× {middle:.2f} ({min(ratios):.2f} … {max(ratios):.2f})"
-    return Finding(change, Kind.TIME, key, "", ratio, why, "", axis, claim, random=True)
+    return Finding(change, Kind.TIME, key, "", ratio, why, "", axis.symbol, claim, random=True)

@@ -29,15 +29,14 @@ SUMMARY = {
     2: "Too much of it cannot be told, so this is no pass.",
 }
 """What the exit codes mean."""
+PASSED_SO_FAR = "Nothing got worse, as far as can be told."
 
 
 def summary(findings: Sequence[Finding]) -> str:
     """What the exit code means, and of a pass that a part of it is open, where one is."""
     code = exit_code(findings)
-    open_still = any(it.change == Change.UNDETERMINED for it in findings)
-    return SUMMARY[code].replace(
-        ".", ", as far as can be told." if open_still and not code else "."
-    )
+    left_open = any(it.change == Change.UNDETERMINED for it in findings)
+    return PASSED_SO_FAR if left_open and code == 0 else SUMMARY[code]
 
 
 def show(findings: Sequence[Finding], notes: Sequence[str], console: Console) -> None:
