@@ -101,17 +101,12 @@ def advise(
     triangles = mesh.triangulated() if isinstance(mesh, hem.PolygonMesh) else mesh
     faces, prices = len(triangles.triangles), prices.like(triangles.triangles)
     options, refused, beyond = [], {}, {}
-    for name, kind in REGISTRY.items():
-        wrong = [NEEDS[it][0] for it in needs if not NEEDS[it][1](kind)]
-        if name not in prices.structures:
-            wrong.append("the run has not measured it")
-        taken = 0
+    for name in REGISTRY:
+        wrong, taken = _unfit(prices, workload, name, needs), 0
         try:
             taken = _bytes(name, mesh, faces)
         except hem.MeshError as error:
             wrong.append(f"cannot hold it: {error}")
-        if workload.measured and not kind.compiled:
-            wrong.append("is interpreted, and the measured whole was compiled")
         edit = _edit(prices, workload, name, faces)
         beyond[name] = _beyond(limits, taken, edit)
         if wrong:
@@ -128,6 +123,16 @@ def advise(
     named = [replace(it, behind=_behind(options[0].forecast, it.forecast)) for it in options]
     found = flips(prices, workload, weights, faces, limits, first) if first else []
     return Advice(faces, not prices.family, workload, named, refused, found)
+
+
+def _unfit(prices: Prices, workload: Workload, name: str, needs: Sequence[str]) -> list[str]:
+    """Why a structure is none for a workload, on whatever mesh."""
+    wrong = [NEEDS[it][0] for it in needs if not NEEDS[it][1](REGISTRY[name])]
+    if name not in prices.structures:
+        wrong.append("the run has not measured it")
+    if workload.measured and not REGISTRY[name].compiled:
+        wrong.append("is interpreted, and the measured whole was compiled")
+    return wrong
 
 
 def _told_less_of(options: Sequence[Option]) -> dict[str, str]:
