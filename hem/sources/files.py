@@ -212,9 +212,11 @@ def _read_mesh(file: Path, repair: bool, dtype: DTypeLike) -> TriangleMesh | Pol
     points, faces, dropped = _read(file)
     if repair:
         points, faces = _usable(points, faces, dtype)
+    names = ", ".join(dict.fromkeys(dropped))
     if not len(faces):
-        raise MeshError(f"there are no triangles in it, only {len(points):,} points")
-    if names := ", ".join(dropped):
+        beside = f" and {names}" if names else ""
+        raise MeshError(f"there are no triangles in it, only {len(points):,} points{beside}")
+    if names:
         message = f"{file} has {names}, which are dropped: a mesh is positions and faces"
         warnings.warn(message, MeshWarning, stacklevel=3)
     try:

@@ -21,6 +21,7 @@ _TYPES = {
 }  # fmt: skip
 _ORDERS = {"ascii": "", "binary_little_endian": "<", "binary_big_endian": ">"}
 _CORNERS = ("vertex_indices", "vertex_index")
+_KEPT = {"vertex": "xyz", "face": _CORNERS}
 _BESIDE = {
     "normals": "nx ny nz",
     "texture coordinates": "s t u v texture_u texture_v texcoord texnumber",
@@ -59,10 +60,10 @@ def read_ply(data: bytes) -> Parts:
         _WORDS.get(name, name) if element in ("vertex", "face") else element
         for element, columns in found.items()
         for name in columns
-        if name not in (*"xyz", *_CORNERS)
+        if name not in _KEPT.get(element, ())
     )
     corners = as_ragged(rows) if isinstance(rows, list) else uniform(rows)
-    return Parts(points, corners, dict.fromkeys(dropped))
+    return Parts(points, corners, dropped)
 
 
 def write_ply(points: Points, faces: Ragged) -> bytes:
@@ -93,8 +94,8 @@ def _header(data: bytes) -> tuple[str, list[_Element], int]:
     elements: list[_Element] = []
     order = None
     try:
-        for words in (line.split() for line in text.decode("latin-1").splitlines()):
-            match words:
+        for line in text.splitlines():  # not as text, where some letters of UTF-8 part lines
+            match line.decode("latin-1").split():
                 case ["format", name, _]:
                     order = _ORDERS[name]
                 case ["element", name, count]:
@@ -112,7 +113,20 @@ def _header(data: bytes) -> tuple[str, list[_Element], int]:
             raise cut_short(f"{len(data):,} bytes, and promises {it.rows:,} of {it.name}")
         if len({prop.name for prop in it.properties}) < len(it.properties):
             raise MeshError(f"its head names a property of {it.name} twice")
+        if wrong := [prop.name for prop in it.properties if not _fits(it.name, prop)]:
+            raise MeshError(f"its head gives {wrong[0]} of {it.name} a type that it cannot have")
+    if len({it.name for it in elements}) < len(elements):
+        raise MeshError("its head names an element twice")
     return order, elements, begin
+
+
+def _fits(element: str, prop: _Property) -> bool:
+    """Whether lists have a whole length, coordinates are numbers, and corners lists of integers."""
+    if prop.name not in _KEPT.get(element, ()):
+        return prop.length not in ("f", "d")
+    if element == "vertex":
+        return not prop.length
+    return prop.length not in ("", "f", "d") and prop.kind not in "fd"
 
 
 class _Numbers:
@@ -140,8 +154,8 @@ class _Numbers:
             self.at += struct.calcsize(f"{self.order}{k}{kind}")
             return struct.unpack_from(f"{self.order}{k}{kind}", self.data, start)
         self.at += k
-        if self.at > len(self.words):
-            raise IndexError("it ends too early")
+        if not start <= self.at <= len(self.words):
+            raise IndexError("it ends too early, or has a list of less than nothing")
         number = float if kind in "fd" else int
         return [number(word) for word in self.words[start : self.at]]
 

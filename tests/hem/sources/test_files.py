@@ -207,6 +207,54 @@ def test_a_ply_head_that_names_a_property_twice_is_refused(tmp_path: Path) -> No
             hem.load(written(tmp_path / "a.ply", text))
 
 
+LIST = "property list uchar int vertex_indices"
+
+
+@pytest.mark.parametrize(
+    ("was", "now", "words"),
+    [
+        ("property float x", "property list uchar float x", "x of vertex a type"),
+        (LIST, LIST.replace("uchar", "float"), "vertex_indices of face a type"),
+        (LIST, LIST.replace("int ", "float "), "vertex_indices of face a type"),
+        (LIST, "property int vertex_indices", "vertex_indices of face a type"),
+        (LIST, f"{LIST}\nelement face 1\n{LIST}", "names an element twice"),
+    ],
+)
+@pytest.mark.parametrize("repair", [False, True])
+def test_a_ply_head_that_no_mesh_can_have_is_refused(
+    tmp_path: Path, was: str, now: str, words: str, repair: bool
+) -> None:
+    text = PLY.format(2.5).replace(was, now)
+    for content in (text, text.replace("ascii", "binary_little_endian")):
+        with pytest.raises(hem.MeshError, match=words):
+            hem.load(written(tmp_path / "a.ply", content + 99 * "0 "), repair)
+
+
+def test_a_list_of_less_than_nothing_is_refused_and_takes_no_face_with_it(tmp_path: Path) -> None:
+    text = PLY.format(2).replace("face 1", "face 2").replace("uchar", "char") + "-1\n"
+    with pytest.raises(hem.MeshError, match="less than nothing"):
+        hem.load(written(tmp_path / "a.ply", text), repair=True)
+
+
+@pytest.mark.parametrize("names", [["vertex_indices"], ["x", "y", "z"]])
+def test_what_other_elements_of_a_ply_file_have_is_told_whatever_its_name(
+    tmp_path: Path, names: list[str]
+) -> None:
+    beside = "".join(f"property list uchar int {name}\n" for name in names)
+    text = PLY.format(2).replace("element face", f"element tristrips 1\n{beside}element face")
+    text = text.replace("3 0 1 2", "3 0 1 2\n" * len(names) + "3 0 1 2")
+    file = written(tmp_path / "a.ply", text)
+    with pytest.warns(hem.MeshWarning, match="has tristrips, which are dropped"):
+        hem.load(file)
+    with pytest.raises(hem.MeshError, match="only 3 points and tristrips"):
+        hem.load(written(file, text.replace("face 1", "face 0")))
+
+
+def test_no_letter_of_a_comment_parts_the_lines_of_a_ply_head(tmp_path: Path) -> None:
+    text = PLY.format(2).replace("element face", "comment by Å property float w\nelement face")
+    assert len(hem.load(written(tmp_path / "a.ply", text)).points) == 3
+
+
 @pytest.mark.parametrize("extension", FORMATS)
 @pytest.mark.parametrize("junk", [b"this is no mesh at all\n" * 9, bytes(range(256)) * 9])
 def test_what_is_no_mesh_is_refused(tmp_path: Path, extension: str, junk: bytes) -> None:
