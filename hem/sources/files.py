@@ -21,6 +21,7 @@ from hem.meshes import (
     TriangleMesh,
     clusters,
     from_any,
+    position_type,
     repeats_a_corner,
     require_triangles,
     simplest,
@@ -209,9 +210,10 @@ def _bytes(file: Path) -> bytes:
 
 
 def _read_mesh(file: Path, repair: bool, dtype: DTypeLike) -> TriangleMesh | PolygonMesh:
+    kind = position_type(dtype)
     points, faces, dropped = _read(file)
     if repair:
-        points, faces = _usable(points, faces, dtype)
+        points, faces = _usable(points, faces, kind)
     names = ", ".join(dict.fromkeys(dropped))
     if not len(faces):
         beside = f" and {names}" if names else ""

@@ -255,6 +255,13 @@ def test_no_letter_of_a_comment_parts_the_lines_of_a_ply_head(tmp_path: Path) ->
     assert len(hem.load(written(tmp_path / "a.ply", text)).points) == 3
 
 
+def test_a_type_that_positions_cannot_have_is_told_before_a_file_is_read(tmp_path: Path) -> None:
+    file = written(tmp_path / "a.ply", PLY.format(2))
+    for repair, kind in product((False, True), (int, "no type")):
+        with pytest.raises(hem.MeshError, match=r"float64, not as \S+( type')?$"):
+            hem.load(file, repair, dtype=kind)
+
+
 @pytest.mark.parametrize("extension", FORMATS)
 @pytest.mark.parametrize("junk", [b"this is no mesh at all\n" * 9, bytes(range(256)) * 9])
 def test_what_is_no_mesh_is_refused(tmp_path: Path, extension: str, junk: bytes) -> None:
