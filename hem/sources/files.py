@@ -112,17 +112,17 @@ def save(mesh: Any, path: FilePath) -> None:
 
     Replaces what is there. ply, off and obj keep every bit, every vertex and every polygon; the
     others round to float32. 3ds keeps no polygons, and stl (binary) only triangles and vertices
-    that have faces; text formats such as wrl, dae and x3d round the coordinates once more, and ctm
-    has the faces in another order. x3d has one vertex per position: a MeshWarning tells where some
-    become one. A broken run never leaves half a file. Raises MeshError where the format is unknown,
-    or keeps no polygons, or the folder cannot be written.
+    that have faces; text formats such as wrl, dae and x3d round the coordinates once more, 3mf to
+    six decimals, and ctm has the faces in another order. x3d has one vertex per position: a
+    MeshWarning tells where some become one. A broken run never leaves half a file. Raises MeshError
+    where the format is none that `load` reads, or keeps no polygons or not all faces, or the folder
+    cannot be written.
     """
     with _about("save", path) as file:
-        if not file.parent.is_dir():
-            raise MeshError(f"there is no folder {file.parent}")
-        content = encoded(as_mesh(mesh), _extension(file))
         try:
-            write_whole(file, content)
+            if not file.parent.is_dir():
+                raise MeshError(f"there is no folder {file.parent}")
+            write_whole(file, encoded(as_mesh(mesh), _extension(file)))
         except OSError as error:
             raise MeshError(error.strerror or str(error)) from error
 
@@ -148,6 +148,9 @@ def encoded(mesh: TriangleMesh | PolygonMesh, extension: str) -> bytes:
             raise MeshError(_words(error)) from error
         if not beside.exists():
             raise MeshError(f"pymeshlab writes no {extension} file")
+        kept = len(_read(beside).faces)  # of what it could not write, pymeshlab tells nothing
+        if kept < len(mesh.triangles):
+            raise MeshError(f"pymeshlab writes {kept:,} of {len(mesh.triangles):,} faces into it")
         return beside.read_bytes()
 
 
@@ -165,7 +168,7 @@ def _read(file: Path) -> Parts:
     try:
         points, triangles = load_file(file)
     except MeshlabError as error:
-        raise MeshError(_words(error)) from error
+        raise MeshError(_words(error, "; is it whole, and of the format of its name?")) from error
     return Parts(points, uniform(triangles), _besides(data, extension))
 
 
@@ -255,11 +258,11 @@ def _usable(points: Array, faces: Ragged, dtype: DTypeLike) -> tuple[Array, Ragg
     return points[finite], Ragged(offsets, renumbered[corners[good[face]]])
 
 
-def _words(error: MeshlabError) -> str:
+def _words(error: MeshlabError, hint: str = "") -> str:
     """The message of pymeshlab in one line, without the path, which the caller has named."""
     lines = [line.strip() for line in error.reason.splitlines() if line.strip()]
     said = [line for line in lines if not line.startswith(_SAYS_ONLY_WHERE)]
     message = " ".join(said or lines).replace("Error details: ", "")
     if "Unknown format" in message:
         return f"{message} (usual: {_COMMON})"
-    return f"pymeshlab says {message!r}; is it whole, and of the format of its name?"
+    return f"pymeshlab says {message!r}{hint}"

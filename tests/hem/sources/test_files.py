@@ -295,6 +295,43 @@ def test_what_cannot_be_saved_is_refused_with_the_reason(tmp_path: Path) -> None
     assert not list(tmp_path.iterdir())
 
 
+def test_what_a_format_does_not_keep_replaces_no_file(tmp_path: Path) -> None:
+    mesh = hem.TriangleMesh([(0, 0, 0), (0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2), (1, 2, 3)])
+    for extension, words in {
+        "xyz": "0 of 2 faces", "x3d": "1 of 2 faces", "json": "Unknown format for load",
+    }.items():  # fmt: skip
+        file = written(tmp_path / f"mesh.{extension}", "what was there")
+        with pytest.raises(hem.MeshError, match=words), warnings.catch_warnings(action="ignore"):
+            hem.save(mesh, file)
+        assert file.read_text() == "what was there"
+
+
+@pytest.mark.parametrize("extension", ["dae", "wrl", "x3d", "3mf", "ctm", "3ds"])
+def test_half_of_what_pymeshlab_should_have_written_replaces_no_file(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, extension: str
+) -> None:
+    def half(mesh: hem.TriangleMesh, path: Path) -> None:  # as on a full disk
+        meshlab.save_file(mesh, path)
+        os.truncate(path, path.stat().st_size * 2 // 3)
+
+    monkeypatch.setattr("hem.sources.files.save_file", half)
+    file = written(tmp_path / f"mesh.{extension}", "what was there")
+    with pytest.raises(hem.MeshError, match=f"cannot save .*mesh.{extension}"):
+        hem.save(hem.generate("sphere", 642), file)
+    assert file.read_text() == "what was there"
+
+
+def test_what_the_system_refuses_while_saving_is_a_mesh_error(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    mesh = hem.TriangleMesh(np.eye(3), [[0, 1, 2]])
+    with pytest.raises(hem.MeshError, match="too long"):
+        hem.save(mesh, tmp_path / (300 * "x") / "mesh.ply")
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path / "nowhere"))
+    with pytest.raises(hem.MeshError, match="No such file or directory"):
+        hem.save(mesh, tmp_path / "mesh.dae")
+
+
 @pytest.mark.parametrize(
     ("name", "content"),
     [
