@@ -46,6 +46,7 @@ _WRITERS: dict[str, Callable[[Points, Ragged], bytes]] = {
 _BESIDE = {
     "texture coordinates": rb'"TEXCOORD|\bTextureCoordinate\b',
     "normals": rb'"NORMAL"|<Normal\b|\bNormal\s*\{',
+    "colors": rb'"COLOR|<Color|\bColor(RGBA)?\s*\{',
 }
 """What text that pymeshlab reads has beside; it does not tell, and makes normals of its own."""
 

@@ -93,8 +93,8 @@ def load(pymeshlab: Any, path: str) -> tuple[Any, Any]:
 
 def save(pymeshlab: Any, mesh: Any, path: str) -> None:
     """Write a mesh into a file."""
-    lossless = {"lossless": True} if path.endswith(".ctm") else {}  # or it would be quantized
-    filled(pymeshlab, mesh).save_current_mesh(path, **lossless)
+    options = {name: name == "lossless" for name in _OPTIONS.get(path[-3:], "").split()}
+    filled(pymeshlab, mesh).save_current_mesh(path, **options)
 
 
 def filled(pymeshlab: Any, *given: Any) -> Any:
@@ -104,6 +104,12 @@ def filled(pymeshlab: Any, *given: Any) -> Any:
         meshes.add_mesh(pymeshlab.Mesh(points.astype(np.float64), triangles.astype(np.int32)))
     return meshes
 
+
+_OPTIONS = {
+    "ctm": "lossless", "wrl": "save_vertex_color",
+    "dae": "save_vertex_color save_vertex_normal", "x3d": "save_vertex_color save_vertex_normal",
+}  # fmt: skip
+"""What is said of a format to write: lossless, or it would be quantized, and nothing made up."""
 
 JOBS: dict[str, Callable[..., Any]] = {
     job.__name__: job for job in (apply, crossing, distances, load, save)

@@ -16,8 +16,12 @@ from hem.errors import MeshError
 from hem.meshes import clusters
 from hem.ragged import Ragged
 
-_OBJ_BESIDE = {b"vt": "texture coordinates", b"vn": "normals"}
+_OBJ_BESIDE = {
+    b"vt": "texture coordinates", b"vn": "normals", b"usemtl": "materials", b"p": "points",
+    b"l": "lines", b"curv": "curves", b"surf": "free-form surfaces",
+}  # fmt: skip
 _OFF_BESIDE = {b"ST": "texture coordinates", b"C": "colors", b"N": "normals"}
+_LOOP = rb"\bloop" + 3 * rb"\s+vertex\s+(\S+)\s+(\S+)\s+(\S+)" + rb"\s+endloop"
 _NAMED = re.compile(rb"\b(end)?solid\b.*?(?=[\r\n]|\bfacet\s+normal|\Z)")  # its name is any words
 
 
@@ -66,7 +70,7 @@ def read_obj(data: bytes) -> Parts:
                 points.append([float(word) for word in words[:3]])
                 if len(words) >= 6:
                     dropped["colors"] = None
-            elif kind == b"f":
+            elif kind in (b"f", b"fo"):  # fo: of old files
                 corners = [int(word.partition(b"/")[0]) for word in words]
                 faces.append([v - 1 if v >= 0 else max(len(points) + v, -1) for v in corners])
             elif kind in _OBJ_BESIDE:
@@ -99,7 +103,9 @@ def read_off(data: bytes) -> Parts:
         points = [[float(word) for word in line[:3]] for line in elements[:n]]
         faces = [(line, max(int(line[0]), 0)) for line in elements[n : n + m]]
         rows = [[int(word) for word in line[: corners + 1]] for line, corners in faces]
-        if any(len(line) > len(row) for line, row in zip(elements[n:], rows, strict=False)):
+        if any(len(line) > len(row) for line, row in zip(elements[n:], rows, strict=False)) or (
+            not kind and any(len(line) > 3 for line in elements[:n])
+        ):
             dropped.append("colors")
     except MeshError:
         raise
@@ -115,14 +121,16 @@ def read_off(data: bytes) -> Parts:
 def read_stl(data: bytes) -> Parts:
     """Points, one per position, and triangles of an stl file, binary or text.
 
-    Its normals are those of the triangles, so that nothing is lost with them.
+    Its normals are those of the triangles, so that nothing is lost with them; what a binary file
+    has beside, two bytes a triangle, are colors where they are not zero.
     """
+    dropped: list[str] = []
     count = int.from_bytes(data[80:84], "little") if len(data) >= 84 else -1
     binary = count >= 0 and len(data) >= 84 + 50 * count
     if data[:80].lstrip()[:5].lower() == b"solid" and not binary:
         text = _NAMED.sub(rb"\1solid", data.lower())
-        numbers = re.findall(rb"\bvertex\s+(\S+)\s+(\S+)\s+(\S+)", text)
-        if b"endsolid" not in text.rstrip()[-500:] or len(numbers) != 3 * text.count(b"endfacet"):
+        numbers = re.findall(_LOOP, text)
+        if b"endsolid" not in text.rstrip()[-500:] or len(numbers) != text.count(b"endfacet"):
             raise cut_short("no 'endsolid' at its end, or a facet without three vertices")
         try:
             corners = np.array(numbers, np.bytes_).reshape(-1, 3).astype(np.float64)
@@ -131,10 +139,11 @@ def read_stl(data: bytes) -> Parts:
     elif binary:
         facets = np.frombuffer(data, _FACET, count, offset=84)
         corners = facets["corners"].reshape(-1, 3)
+        dropped += ["colors"] * bool(facets["attribute"].any())
     else:
         raise cut_short(f"{len(data):,} bytes" + (f" of {84 + 50 * count:,}" if count >= 0 else ""))
     first, cluster = clusters(corners, 0.0)
-    return Parts(corners[first], uniform(cluster.reshape(-1, 3)))
+    return Parts(corners[first], uniform(cluster.reshape(-1, 3)), dropped)
 
 
 def write_obj(points: Points, faces: Ragged) -> bytes:
