@@ -50,6 +50,9 @@ _BESIDE = {
 }
 """What text that pymeshlab reads has beside; it does not tell, and makes normals of its own."""
 
+_NOT_PLAIN = rb'"mode"\s*:\s*[0-356]|"sparse"\s*:\s*\{'
+"""What gltf and glb may have for triangles and numbers, and pymeshlab takes for plain ones."""
+
 _SAYS_ONLY_WHERE = ("Unable to open file", "Error encountered while loading file", "File:", '"')
 
 
@@ -166,6 +169,8 @@ def _read(file: Path) -> Parts:
     promised = _promised(data, extension)
     if len(data) < promised:  # pymeshlab would read the half of it
         raise cut_short(f"{len(data):,} of {promised:,} bytes")
+    if re.search(_NOT_PLAIN, data):
+        raise MeshError("it has lines, strips, fans or sparse numbers; write plain triangles to it")
     try:
         points, triangles = load_file(file)
     except MeshlabError as error:

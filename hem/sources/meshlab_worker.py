@@ -85,10 +85,13 @@ def load(pymeshlab: Any, path: str) -> tuple[Any, Any]:
     """The points and triangles of a file, all its meshes as one."""
     meshes = pymeshlab.MeshSet(verbose=False)
     meshes.load_new_mesh(path)
-    if meshes.mesh_number() > 1:
-        meshes.generate_by_merging_visible_meshes(mergevertices=False, alsounreferenced=True)
-    current = meshes.current_mesh()
-    return current.transformed_vertex_matrix(), current.face_matrix()
+    points = [part.transformed_vertex_matrix() for part in meshes]
+    starts = np.cumsum([0, *map(len, points)])
+    faces = [part.face_matrix() + start for part, start in zip(meshes, starts, strict=False)]
+    for part, rows in zip(meshes, faces, strict=True):
+        if np.linalg.det(part.transform_matrix()) < 0:  # mirrored, its faces run the other way
+            rows[:, 1:] = rows[:, :0:-1].copy()
+    return np.concatenate(points), np.concatenate(faces)
 
 
 def save(pymeshlab: Any, mesh: Any, path: str) -> None:

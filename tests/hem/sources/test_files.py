@@ -1,5 +1,7 @@
 """Files: what is saved comes back, and what is broken is refused by name and reason."""
 
+import base64
+import json
 import os
 import struct
 import subprocess
@@ -584,6 +586,40 @@ def test_nothing_is_written_that_a_mesh_has_not(tmp_path: Path, extension: str) 
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         hem.load(tmp_path / f"mesh.{extension}")
+
+
+def gltf(primitive: dict[str, int], node: dict[str, list[float]]) -> str:
+    """A scene of a triangle at the axes, or of what else its three corners are to be."""
+    data = struct.pack("<9f3H", 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 1, 2)
+    uri = "data:application/octet-stream;base64," + base64.b64encode(data).decode()
+    scene = {
+        "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0, 1]}],
+        "nodes": [{"mesh": 0, "translation": [0, 0, 5]}, {"mesh": 0, **node}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1, **primitive}]}],
+        "buffers": [{"byteLength": len(data), "uri": uri}],
+        "bufferViews": [
+            {"buffer": 0, "byteOffset": 0, "byteLength": 36},
+            {"buffer": 0, "byteOffset": 36, "byteLength": 6},
+        ],
+        "accessors": [
+            {"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"},
+            {"bufferView": 1, "componentType": 5123, "count": 3, "type": "SCALAR"},
+        ],
+    }  # fmt: skip
+    return json.dumps(scene)
+
+
+def test_a_mirrored_part_of_a_scene_is_seen_from_the_same_side(tmp_path: Path) -> None:
+    for sides, up in (([2, 2, 1], 1), ([-1, 1, 1], 1), ([1, 1, -1], -1), ([-1, -1, -1], -1)):
+        mesh = hem.load(written(tmp_path / "a.gltf", gltf({"mode": 4}, {"scale": sides})))
+        assert mesh.points.tolist()[:3] == [[0, 0, 5], [1, 0, 5], [0, 1, 5]]
+        assert mesh.face_normals()[:, 2].tolist() == [1, up]
+
+
+@pytest.mark.parametrize("mode", [0, 1, 2, 3, 5, 6])
+def test_what_gltf_has_for_triangles_is_not_taken_for_some(tmp_path: Path, mode: int) -> None:
+    with pytest.raises(hem.MeshError, match="lines, strips, fans"):
+        hem.load(written(tmp_path / "a.gltf", gltf({"mode": mode}, {})))
 
 
 def test_a_part_of_texture_in_a_3ds_file_is_told(tmp_path: Path) -> None:
