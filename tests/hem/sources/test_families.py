@@ -1,5 +1,6 @@
 """Generated meshes: every family is a surface of the promised size, kept soundly on disk."""
 
+import io
 from itertools import combinations
 from pathlib import Path
 
@@ -125,8 +126,14 @@ def test_a_kept_mesh_is_read_and_a_broken_file_made_anew(
     assert len(made) == 1
     (file,) = (tmp_path / "deep" / "folder").iterdir()
     whole = file.read_bytes()
-    for broken in (b"", b"junk", whole[: len(whole) // 2], whole.replace(b"points", b"pointy")):
-        file.write_bytes(broken)
+    array, at = io.BytesIO(), whole.index(b"PK\1\2")
+    np.save(array, np.eye(3))  # of one array, and no archive
+    broken = [b"", b"junk", array.getvalue(), whole[: len(whole) // 2]]
+    broken += [whole.replace(b"points", b"pointy")]
+    for byte in (6, 8, 10):  # the version that is needed, a password, the way of packing
+        broken += [whole[: at + byte] + b"\x63" + whole[at + byte + 1 :]]
+    for content in broken:
+        file.write_bytes(content)
         assert len(cached("key", make).points) == 3
         assert file.read_bytes() == whole, "made anew, and nothing left beside"
     assert [file] == list(file.parent.iterdir())
