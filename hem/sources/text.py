@@ -93,7 +93,8 @@ def read_off(data: bytes) -> Parts:
         raise MeshError("it does not begin as off files do, with OFF and how much it holds")
     kind = lines[0][0].removesuffix(b"OFF")
     if re.search(rb"[4n]", kind):
-        raise MeshError(f"its points are not of three dimensions: {lines[0][0].decode()!r}")
+        named = lines[0][0].decode("latin-1")
+        raise MeshError(f"its points are not of three dimensions: {named!r}")
     dropped = [words for letter, words in _OFF_BESIDE.items() if letter in kind]
     counts, *elements = lines[1:] if len(lines[0]) == 1 else [lines[0][1:], *lines[1:]]
     try:

@@ -644,9 +644,10 @@ def test_the_head_of_an_openctm_file_says_what_it_has() -> None:
 
 
 def test_off_files_of_other_dimensions_are_refused(tmp_path: Path) -> None:
-    for head in ("4OFF", "nOFF"):
+    for head in ("4OFF", "nOFF", "nÄOFF"):
+        text = OFF.format(0, 3).replace("OFF", head).encode("latin-1")
         with pytest.raises(hem.MeshError, match=f"three dimensions: '{head}'"):
-            hem.load(written(tmp_path / "a.off", OFF.format(0, 3).replace("OFF", head)))
+            hem.load(written(tmp_path / "a.off", text))
 
 
 def test_repair_leaves_polygons_with_repeated_corners_out(tmp_path: Path) -> None:
