@@ -47,11 +47,16 @@ _BESIDE = {
     "texture coordinates": rb'"TEXCOORD|\bTextureCoordinate\b',
     "normals": rb'"NORMAL"|<Normal\b|\bNormal\s*\{',
     "colors": rb'"COLOR|<Color|\bColor(RGBA)?\s*\{',
+    "shapes that pymeshlab leaves out": rb"<(tri(strips|fans)|line(s|strips)|polygons)\b"
+    rb"|(<|\bgeometry\s+)(Indexed)?(LineSet|PointSet|Box|Cone|Extrusion|Text|Nurbs\w+)\b",
 }
 """What text that pymeshlab reads has beside; it does not tell, and makes normals of its own."""
 
-_NOT_PLAIN = rb'"mode"\s*:\s*[0-356]|"sparse"\s*:\s*\{'
-"""What gltf and glb may have for triangles and numbers, and pymeshlab takes for plain ones."""
+_UNNOTICED = (
+    rb'"mode"\s*:\s*[0-356]|"sparse"\s*:\s*\{'  # strips, fans, lines; numbers that replace some
+    rb"|<scale\b[^>]*>(?!(\s*1(\.0*)?){3}\s*<)[^<]*"
+)
+"""What gltf, glb and dae may have, and pymeshlab reads the triangles as if it were not there."""
 
 _SAYS_ONLY_WHERE = ("Unable to open file", "Error encountered while loading file", "File:", '"')
 
@@ -169,8 +174,9 @@ def _read(file: Path) -> Parts:
     promised = _promised(data, extension)
     if len(data) < promised:  # pymeshlab would read the half of it
         raise cut_short(f"{len(data):,} of {promised:,} bytes")
-    if re.search(_NOT_PLAIN, data):
-        raise MeshError("it has lines, strips, fans or sparse numbers; write plain triangles to it")
+    if unnoticed := re.search(_UNNOTICED, data):
+        words = unnoticed[0].decode("latin-1")
+        raise MeshError(f"pymeshlab takes no notice of {words!r}; write plain triangles into it")
     try:
         points, triangles = load_file(file)
     except MeshlabError as error:

@@ -528,6 +528,9 @@ def test_what_an_obj_file_may_say_of_its_corners(tmp_path: Path) -> None:
 
 
 NORMALS, TEXTURE = "normals", "texture coordinates"
+LEFT_OUT = "shapes that pymeshlab leaves out"
+LINE = """<Shape><IndexedLineSet coordIndex="0 1 -1">
+<Coordinate point="0 0 0 1 0 0"/></IndexedLineSet></Shape>"""
 VERTEX = "element vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
 X3D = """<X3D><Scene><Shape><IndexedFaceSet coordIndex="0 1 2 -1">
 <Coordinate point="0 0 0 1 0 0 0 1 0"/>{}</IndexedFaceSet></Shape></Scene></X3D>"""
@@ -562,7 +565,10 @@ coordIndex [0, 1, 2, -1] {} }} }}"""
         ("a.x3d", X3D.format('<Normal vector="0 0 1 0 0 1 0 0 1"/>'), [NORMALS]),
         ("a.x3d", X3D.format('<Color color="1 0 0 1 0 0 1 0 0"/>'), ["colors"]),
         ("a.x3d", X3D.format('<TextureCoordinate point="0 0 1 0 0 1"/>'), [TEXTURE]),
+        ("a.x3d", X3D.format("").replace("<Scene>", f"<Scene>{LINE}"), [LEFT_OUT]),
+        ("a.x3d", X3D.format("").replace("<Scene>", "<Scene><Shape><Box/></Shape>"), [LEFT_OUT]),
         ("a.wrl", WRL.format(""), []),
+        ("a.wrl", WRL.format("") + "Shape { geometry PointSet { } }", [LEFT_OUT]),
         ("a.wrl", WRL.format("normal Normal { vector [0 0 1, 0 0 1, 0 0 1] }"), [NORMALS]),
     ],
 )  # fmt: skip
@@ -618,8 +624,22 @@ def test_a_mirrored_part_of_a_scene_is_seen_from_the_same_side(tmp_path: Path) -
 
 @pytest.mark.parametrize("mode", [0, 1, 2, 3, 5, 6])
 def test_what_gltf_has_for_triangles_is_not_taken_for_some(tmp_path: Path, mode: int) -> None:
-    with pytest.raises(hem.MeshError, match="lines, strips, fans"):
+    with pytest.raises(hem.MeshError, match=f"takes no notice of '\"mode\": {mode}'"):
         hem.load(written(tmp_path / "a.gltf", gltf({"mode": mode}, {})))
+
+
+def test_a_scene_of_dae_whose_scale_would_get_lost_is_refused(tmp_path: Path) -> None:
+    mesh = hem.TriangleMesh(np.eye(3), [[0, 1, 2]])
+    hem.save(mesh, tmp_path / "a.dae")
+    text = (tmp_path / "a.dae").read_text()
+    node = "<instance_geometry"
+    assert text.count(node) == 1
+    for scale in ("2 2 2", "1 1 -1", " 1.0 1.01 1"):
+        file = written(tmp_path / "a.dae", text.replace(node, f"<scale>{scale}</scale>{node}"))
+        with pytest.raises(hem.MeshError, match=f"takes no notice of '<scale>{scale}'"):
+            hem.load(file)
+    written(file, text.replace(node, f'<scale sid="scale"> 1 1.0 1.000\n</scale>{node}'))
+    assert np.array_equal(hem.load(file).points, mesh.points)
 
 
 def test_a_part_of_texture_in_a_3ds_file_is_told(tmp_path: Path) -> None:
