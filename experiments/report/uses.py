@@ -152,13 +152,12 @@ def by_valence(run: Run) -> pd.DataFrame:
 def fastest_by_valence(run: Run) -> Html:
     """The fastest structures for each query, by valence, with their times."""
     table = by_valence(run)
-    valences = sorted({valence for _, valence in table.index})
-    rows = []
-    for query in table.index.unique(level=0):
-        found = [table.loc[(query, it)].sort_values(kind="stable") for it in valences]
-        cells = [f"{best(it)}, {duration(it.iloc[0])}" for it in found]
-        rows.append((QUERIES[query].title, *cells))
-    return text_table(["", *(f"{it:,} edges at the vertex" for it in valences)], rows)
+    told = table.apply(
+        lambda it: f"{best(it.sort_values(kind='stable'))}, {duration(it.min())}", axis=1
+    )
+    every = told.unstack(fill_value="–")  # a stopped run has not the same valences of each query
+    rows = [(QUERIES[it].title, *every.loc[it]) for it in table.index.unique(level=0)]
+    return text_table(["", *(f"{it:,} edges at the vertex" for it in every)], rows)
 
 
 def best(found: pd.Series) -> str:

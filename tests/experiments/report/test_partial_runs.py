@@ -2,6 +2,7 @@
 
 import sys
 from contextlib import suppress
+from dataclasses import replace
 from functools import partial
 
 import pytest
@@ -16,8 +17,9 @@ from experiments.report.figures import growth, memory, real_time
 from experiments.report.session import MissingError, Session, share
 from experiments.report.tables import show_claims
 from experiments.runs import experiments, load, tables
+from hem.contract import QUERIES
 from structures import NAMES
-from tests.experiments.made_runs import write_run
+from tests.experiments.made_runs import VALENCES, write_run
 from tests.extent import exhaustive, waiting_for
 
 OF_RUN = (
@@ -80,6 +82,15 @@ def test_what_was_measured_is_shown_and_the_rest_is_named_as_missing(tmp_path, m
         shown += [is_shown(how, session.claims, table) for how in (pages.verdicts, pages.slopes)]
     assert any(shown)
     assert not all(shown)
+
+
+def test_of_a_stopped_run_each_query_is_told_at_the_valences_that_it_has(tmp_path):
+    run = open_part(tmp_path, "winged_edge").run
+    missing = run.cases["subject"].eq("face_faces") & run.cases["valence"].eq(VALENCES[-1])
+    html = uses.fastest_by_valence(replace(run, cases=run.cases[~missing]))
+    assert f"{VALENCES[-1]:,} edges" in html  # of all queries but this one …
+    assert f"{VALENCES[-2]:,} edges" in html  # … whose largest valence no other is told at
+    assert html.count(">–</td>") == len(QUERIES)
 
 
 @pytest.mark.parametrize(
