@@ -152,9 +152,10 @@ def _bytes_of_models(of_run: Curves) -> Iterable[float]:
     yield from _bytes_ratio(of_run, HALF, BASE)
     cases = of_run.cases.query("experiment == 'bench_memory' and reference_bytes == 8")
     models = cases[cases["family"] != of_run.judged_family]
-    table = models.assign(bytes=models["samples"].str[0])
+    table = models.assign(bytes=models["samples"].str[0].astype(float))
     both = table.pivot_table(index="family", columns="structure", values="bytes")
-    yield from (both.get(HALF, both) / both.get(BASE, both)).dropna().to_numpy(float).ravel()
+    both = both.reindex(columns=[HALF, BASE])
+    yield from (both[HALF] / both[BASE]).dropna()
 
 
 def _answers(of_run: Curves) -> Iterable[float]:

@@ -172,6 +172,13 @@ def test_a_real_model_counts_in_the_sentence_on_bytes(tmp_path):
     assert outcome(run, "bytes_ratio") == "undetermined"
 
 
+def test_of_structures_that_were_not_weighed_the_sentence_on_bytes_tells_nothing(tmp_path):
+    folder = write_run(tmp_path, only=lambda *it: it == ("bench_memory", "winged_edge"))
+    case = Measurement("bone/0/8", "bytes", family="bone", reference_bytes=8, samples=[599.0])
+    CaseFile(folder, "bench_memory", "winged_edge").add(case)
+    assert outcome(load(folder), "bytes_ratio") == "undetermined"
+
+
 def test_a_split_as_published_is_not_conforming_and_a_corrected_one_is(base_run):
     assert outcome(base_run, "conforming") == "violated"
     s = sound()
