@@ -3,8 +3,8 @@
 The sentences stand in ``sentences.toml``: what the documents say, and what this study expects. A
 quantity is a list of values, one per size, query or the like, and the claim holds if all of them
 lie within its bounds. It is violated if none does, or if one does not and the claim is of ``every``
-one; in between, or where nothing was measured, it is undetermined. What is not read off a run, but
-built, or counted in the code, stands in ``demonstrations.py``.
+one; in between, or where a part of it was not measured, which is nan, it is undetermined. What is
+not read off a run, but built, or counted in the code, stands in ``demonstrations.py``.
 """
 
 import itertools
@@ -79,7 +79,8 @@ def _judge(of_run: Curves, claim: Claim, expects: Between) -> JudgedClaim:
     values = measured[~np.isnan(measured)]
     inside = (values >= expects.low) & (values <= expects.high)
     outcome = Outcome.CONSISTENT if inside.all() else Outcome.VIOLATED
-    if not len(values) or (inside.any() > inside.all() and not expects.every):
+    unsure = inside.any() > inside.all() or not 0 < len(values) == len(measured)
+    if unsure and (inside.all() or not expects.every):
         outcome = Outcome.UNDETERMINED
     reason = f"{inside.sum()} of {len(values)} values are {expects.words}."
     if timed and of_run.too_busy and outcome == Outcome.VIOLATED:
@@ -168,10 +169,12 @@ def _answers(of_run: Curves) -> Iterable[float]:
         yield local[0] - local[1]
 
 
-def _time_ratios(of_run: Curves, experiment: str, subject: str = "", order: str = "") -> pd.Series:
-    """The time at every size that both were measured at, half-edge by indexed."""
+def _time_ratios(
+    of_run: Curves, experiment: str, subject: str = "", order: str = "", since: int = LARGER
+) -> Iterable[float]:
+    """The time at every size that both were measured at, half-edge by indexed; nan without any."""
     mine, base = (of_run.named(experiment, it, subject, order).by_size for it in (HALF, BASE))
-    return (mine / base).dropna()
+    return list((mine / base).dropna().loc[since:]) or [np.nan]
 
 
 def _times(of_run: Curves, mine: str, other: str, subjects: Iterable[str]) -> Iterable[float]:
@@ -184,19 +187,19 @@ def _times(of_run: Curves, mine: str, other: str, subjects: Iterable[str]) -> It
 
 def _static(of_run: Curves) -> Iterable[float]:
     """Building and bytes, and what a pass over all faces takes."""
-    yield from _time_ratios(of_run, "bench_build", order="consecutive")
+    yield from _time_ratios(of_run, "bench_build", order="consecutive", since=0)
     yield from _bytes_ratio(of_run, HALF, BASE)
     yield from _workload(of_run, "vertex_normals")
 
 
 def _workload(of_run: Curves, name: str) -> Iterable[float]:
     """Compiled: from Python the interpreter would be measured, which is the same for both."""
-    yield from _time_ratios(of_run, "bench_workloads", name, "compiled").loc[LARGER:]
+    return _time_ratios(of_run, "bench_workloads", name, "compiled")
 
 
 def _detail(of_run: Curves, operation: str, workload: str) -> Iterable[float]:
     """One operation at a time, and all that a workload does of it."""
-    yield from _time_ratios(of_run, "bench_operations", operation, "batched").loc[LARGER:]
+    yield from _time_ratios(of_run, "bench_operations", operation, "batched")
     yield from _workload(of_run, workload)
 
 
@@ -253,8 +256,8 @@ def _slopes(
         sizes, work = curve.sizes, curve.centers
         if not table:
             sizes, work = np.diff(sizes[-3:]), np.diff(work[-3:])
-        if len(sizes) > 1:
-            yield round(float(slope(sizes, np.maximum(work, 1))), 3)
+        known = len(sizes) > 1
+        yield round(float(slope(sizes, np.maximum(work, 1))), 3) if known else np.nan
 
 
 LISTED = ("as_printed",)

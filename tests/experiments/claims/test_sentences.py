@@ -133,12 +133,16 @@ def test_what_is_violated_in_one_run_holds_in_the_contrary_one(contrary, quantit
     assert outcome(contrary, quantity) == "consistent"
 
 
-@pytest.mark.parametrize(("indexed", "said"), [(1e3, "consistent"), (1e-3, "violated")])
-def test_what_the_draft_says_of_faces_is_judged_by_time(tmp_path, indexed, said):
-    law, timed = {"indexed": lambda n_t, n_ev: indexed}, ("bench_queries", "bench_operations")
+@pytest.mark.parametrize(
+    ("indexed", "said", "also"),
+    [(1e3, "consistent", "consistent"), (1e-3, "violated", "undetermined")],
+)
+def test_what_the_draft_says_of_faces_is_judged_by_time(tmp_path, indexed, said, also):
+    law = {"indexed": lambda n_t, n_ev: indexed}
+    timed = "bench_queries", "bench_operations", "bench_workloads"
     run = load(write_run(tmp_path, lambda s, q, p: law.get(s), lambda it, _: it in timed))
     assert outcome(run, "draft_faces") == said
-    assert outcome(run, "subdivision_time") == said
+    assert outcome(run, "subdivision_time") == also  # all faces take as long to split on both
 
 
 def test_more_bytes_that_quicken_no_query_refute_the_thesis(tmp_path):
@@ -260,6 +264,31 @@ def test_where_nothing_was_measured_nothing_is_told(tmp_path):
     run = load(folder)
     assert outcome(run, "dynamic") == "undetermined"
     assert [it.found for it in judge_sentences(run) if it.claim.key == "sentence/dynamic"] == ["–"]
+
+
+@pytest.mark.parametrize(
+    ("quantity", "experiment", "structure"),
+    [
+        *(
+            (it, "bench_operation_work", "plankton")
+            for it in ("corrected_splits", "corrected_collapse")
+        ),
+        ("collapse_by_valence", "bench_operation_work", "half_edge_objects"),
+        *((it, "bench_workloads", "half_edge") for it in ("static", "reduction_time")),
+        ("subdivision_time", "bench_operations", "indexed"),
+    ],
+)
+def test_a_sentence_of_which_a_part_was_not_measured_passes_for_no_lack_of_it(
+    base_run, quantity, experiment, structure
+):
+    mine = base_run.cases["experiment"].eq(experiment) & base_run.cases["structure"].eq(structure)
+    run = replace(base_run, cases=base_run.cases[~mine].reset_index(drop=True))
+    assert outcome(run, quantity) == "undetermined"
+
+
+def test_what_refutes_a_sentence_of_every_one_refutes_it_though_others_were_not_measured(contrary):
+    less = contrary.cases[contrary.cases["structure"] != "half_edge_objects"].reset_index(drop=True)
+    assert outcome(replace(contrary, cases=less), "corrected_splits") == "violated"
 
 
 def slow_on_large_meshes(case) -> dict:
