@@ -33,6 +33,13 @@ def test_what_a_section_names_is_there(section) -> None:
     assert re.search(r"\w\.$|\?$", section.says)
 
 
+def test_the_outlook_leads_to_the_walk_and_to_the_destruction_that_it_asks_for() -> None:
+    (outlook,) = (it for it in sections() if it.of == "6")
+    assert all(it in outlook.says for it in ("circulator", "bodies", "forces", "Voronoi"))
+    assert "indices" not in outlook.says  # of which 3.2.1 tells, and of Plankton
+    assert {"structures/plankton.py", "hem/fracture"} <= set(outlook.done)
+
+
 @pytest.mark.parametrize(
     ("source", "expected"),
     [
