@@ -44,14 +44,14 @@ def objects_against_arrays(run: Run) -> Html:
     """Work and time of queries and operations, at the largest size that both were measured at."""
     rows = []
     for subject, title in TITLES.items():
-        costs: list[float] = []
+        found = []
         for axis in (Axis.WORK_FACES, Axis.TIME_FACES):
-            found = (curves(run).curve(axis, name, subject).by_size for name in (ARRAYS, OBJECTS))
-            both = pd.concat(found, axis=1).dropna()
-            size = both.index.max() if len(both) else 0
-            costs += both.reindex([size]).to_numpy()[0].tolist()
-        if not np.isnan(costs).all():
-            rows.append((title, *costs, costs[3] / costs[2], size))
+            both = (curves(run).curve(axis, name, subject).by_size for name in (ARRAYS, OBJECTS))
+            found.append(pd.concat(both, axis=1).dropna())
+        sizes = [set(it.index) for it in found if len(it)]
+        if shared := set.intersection(*sizes) if sizes else set():
+            costs = [cost for it in found for cost in it.reindex([max(shared)]).to_numpy()[0]]
+            rows.append((title, *costs, costs[3] / costs[2], max(shared)))
     heads: Heads = {
         "": str, "accesses, arrays": count, "accesses, objects": count,
         "time, arrays (compiled)": duration, "time, objects (Python)": duration,

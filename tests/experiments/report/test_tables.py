@@ -1,6 +1,7 @@
 """Tables: every claim and its mark, in 80 columns, and numbers as they were measured."""
 
 import re
+from dataclasses import replace
 from itertools import pairwise
 from types import SimpleNamespace
 
@@ -16,7 +17,7 @@ from experiments.report.session import share
 from experiments.report.tables import digits, duration, legend, show_claims, tally_rows
 from experiments.runs import load
 from structures import NAMED, NAMES, REGISTRY
-from tests.experiments.made_runs import LAWS, write_run
+from tests.experiments.made_runs import LAWS, SIZES, write_run
 
 
 @pytest.mark.parametrize(
@@ -118,6 +119,17 @@ def test_structures_are_compared_with_the_indexed_mesh_at_its_size(run):
     for name, it in REGISTRY.items():
         assert (f"<td>{it.title}</td>" in text) == it.compiled, name
         assert (f"<td>{it.title}</td>" in from_python) != it.compiled, name
+
+
+def test_work_and_time_of_objects_and_arrays_are_those_of_the_same_mesh(run):
+    largest, by_time = run.cases["faces"].eq(SIZES[-1]), run.cases["kind"].eq("time")
+    samples = run.cases["samples"].mask(largest & ~by_time, 2 * run.cases["samples"])
+    untimed = largest & by_time & run.cases["structure"].eq("half_edge_objects")
+    shown, smaller = (
+        comparisons.objects_against_arrays(replace(run, cases=it))
+        for it in (run.cases.assign(samples=samples)[~untimed], run.cases[~largest])
+    )
+    assert shown.rows == smaller.rows
 
 
 def test_bytes_per_vertex_are_shown_of_every_mesh_and_structure(run):
