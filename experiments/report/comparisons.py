@@ -197,7 +197,7 @@ def waiting_in_words(run: Run) -> Html:
     for asked in product(names, QUERIES):
         found = [measured.curve(it, *asked) for it in (Axis.WORK_FACES, *BY_TIME)]
         work, *times = found
-        if all(len(it) > 1 for it in found) and work.largest < FLAT * work.centers[0]:
+        if all(len(it) > 1 for it in found) and work.largest <= FLAT * work.centers[0]:
             grown.append([it.largest / it.centers[0] for it in times])
     sets = measured.curve(Axis.RANDOM_FACES, ARRAYS, "vertex_faces").cases
     latency = measured.latency(sets["working_set"].to_numpy(float))

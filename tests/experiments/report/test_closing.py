@@ -116,6 +116,13 @@ def test_what_waits_is_told_beside_the_latency(run) -> None:
     assert "that of a memory access 1,000-fold" in text
 
 
+def test_a_query_that_reads_nothing_does_no_more_work_on_a_larger_mesh_either(run) -> None:
+    counted = run.cases["kind"].eq("work") & run.cases["subject"].eq("edge_vertices")
+    unread = run.cases.assign(samples=run.cases["samples"].mask(counted, 0 * run.cases["samples"]))
+    told = [comparisons.waiting_in_words(replace(run, cases=it)) for it in (run.cases, unread)]
+    assert told[0] == told[1]
+
+
 @pytest.mark.parametrize(("grown", "waits"), [(1.0, False), (30.0, True), (2_000.0, False)])
 def test_a_query_waits_where_its_time_grows_and_by_less_than_an_access(grown, waits) -> None:
     text = pages.part("waiting", 69, (200, 200_000), 1.0, grown, 1_000.0)
