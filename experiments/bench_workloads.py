@@ -77,15 +77,16 @@ def vertex_normals(s: Structure) -> None:
 
 
 def smoothing(s: Structure) -> None:
-    """Move every vertex to the mean of its neighbors, once; those on a border stay."""
-    vertices = s.vertices()
-    rings = s.vertex_vertices(vertices)
-    sums = np.add.reduceat(s.points[rings.values].astype(np.float64), rings.offsets[:-1])
-    means = sums / rings.counts[:, None]
+    """Move every vertex to the mean of its neighbors, once; those on a border or alone stay."""
+    rings = s.vertex_vertices(s.vertices())
+    some = rings.counts > 0
+    vertices, counts = s.vertices()[some], rings.counts[some]
+    sums = np.add.reduceat(s.points[rings.values].astype(np.float64), rings.offsets[:-1][some])
+    means = sums / counts[:, None]
     if len(rings.values) == s.n_half_edges:  # closed
         s.move_vertices(vertices, means)
     else:
-        inside = rings.counts == s.vertex_faces(vertices).counts
+        inside = counts == s.vertex_faces(vertices).counts
         s.move_vertices(vertices[inside], means[inside])
 
 

@@ -132,6 +132,21 @@ def test_smoothing_moves_every_vertex_to_the_mean_of_its_neighbors(order):
         assert np.allclose(s.points[v], expected, atol=1e-5)
 
 
+@pytest.mark.parametrize("order", ["compiled", "from Python"])
+@pytest.mark.parametrize("family", ["torus", "grid"])
+def test_smoothing_leaves_vertices_that_no_face_has_where_they_are(family, order):
+    mesh, alone = hem.generate(family, 100), [0, 51, 101, 102]
+    numbers = np.setdiff1d(np.arange(len(mesh.points) + len(alone)), alone)
+    points = np.full((len(mesh.points) + len(alone), 3), 9, np.float32)
+    points[numbers] = mesh.points
+    s = structures.build("half_edge", mesh)
+    other = structures.build("half_edge", hem.TriangleMesh(points, numbers[mesh.triangles]))
+    for it in (s, other):
+        WORKLOADS["smoothing"].run(order)(it)
+    assert np.allclose(other.points[numbers], s.points, atol=1e-6)
+    assert np.all(other.points[alone] == 9)
+
+
 def counted(name: str, operation: str, size: int) -> list[int]:
     """Elements that an operation reads and writes in some of the copies that make up a mesh."""
     small = Case(name, "torus", 100)
