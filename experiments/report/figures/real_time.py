@@ -77,18 +77,20 @@ def compactions(run: Run) -> Html:
 
 
 def keeping_up(run: Run) -> Html:
-    """Up to how many vertices every edit fits into a frame, whatever the room, and the longest."""
+    """Up to how many vertices every edit fits into a frame, whatever the room.
+
+    And the longest edit at the next size, or at that one where it is the last.
+    """
     cases = _cases(run, EDITS)
     cases = cases.assign(longest=cases["samples"].map(max))
     cases = cases.groupby(["structure", "vertices"], sort=False)["longest"].max().reset_index()
     found: dict[tuple[int, int], dict[str, float]] = {}
     for name, mine in cases.groupby("structure", sort=False):
-        late = mine[mine["longest"] > FRAME]["vertices"].min()
-        kept = mine[~(mine["vertices"] >= late)]
+        kept = mine[~(mine["longest"] > FRAME).cummax()]
         size = 0 if kept.empty else int(kept["vertices"].max())
-        largest = mine.iloc[-1]
-        of_size = found.setdefault((size, int(largest["vertices"])), {})
-        of_size[str(name)] = float(largest["longest"])
+        told = mine.iloc[min(len(kept), len(mine) - 1)]
+        of_size = found.setdefault((size, int(told["vertices"])), {})
+        of_size[str(name)] = float(told["longest"])
     return part("keeping_up", sorted(found.items(), reverse=True))
 
 

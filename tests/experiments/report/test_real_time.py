@@ -59,6 +59,23 @@ def test_every_size_is_told_and_with_room_apart_from_without(monkeypatch):
     ]
 
 
+def test_an_edit_that_is_too_long_is_told_where_it_is_and_not_of_a_larger_mesh(monkeypatch):
+    longest = {"half_edge": (1e-3, 2e-3, 3e-3), "indexed": (1e-3, 4e-2, 5e-3), "plankton": (3e-2,)}
+    cases = [
+        (name, n, GROWING, [1e-6, seconds])
+        for name, each in longest.items()
+        for n, seconds in zip((100, 1_000, 10_000), each, strict=False)
+    ]
+    table = pd.DataFrame(cases, columns=["structure", "vertices", "order", "samples"])
+    monkeypatch.setattr(real_time, "_cases", lambda run, subject: table)
+    assert re.findall(r"<li>(.*)</li>", real_time.keeping_up(None)) == [
+        "on up to 10,000 vertices, the most that were measured, with Half-Edge: an edit took up to "
+        "3.0 ms at 10,000.",
+        "on up to 100 vertices, with Indexed: an edit took up to 40 ms at 1,000.",
+        "on no mesh, with Plankton: an edit took up to 30 ms at 100.",
+    ]
+
+
 def test_a_run_in_which_nothing_around_a_face_was_asked_compiled_says_so(monkeypatch):
     rays = [(what, how) for what in (RAY, FOLLOWING) for how in (REBUILT, REFITTED)]
     cases = [("half_edge", 400, *it, 2.0) for it in [*rays, (NEIGHBORS, None)]]
