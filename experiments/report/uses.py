@@ -145,7 +145,7 @@ def by_valence(run: Run) -> pd.DataFrame:
         table = pd.DataFrame(costs).dropna()
         for place in (0, len(table) // 2, -1) if len(table) > 2 else ():
             rows[query, int(table.index[place])] = table.iloc[place]
-    require(rows, "measured queries by valence")
+    require(rows, "measured queries at three valences")
     return pd.DataFrame(rows).T
 
 

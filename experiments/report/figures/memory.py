@@ -81,7 +81,7 @@ def references(run: Run) -> Plot:
 
 def _rows(names: list[str], height: float, more: float) -> tuple[Plot, Axes]:
     """A row for each name. Raises MissingError if there is none."""
-    require(names, "measured memory")
+    require(names, "measured memory field by field")
     plot = Plot(figsize=(11, height * len(names) + more), layout="constrained")
     axes = plot.subplots()
     axes.set_yticks(range(len(names)), names)
