@@ -1,5 +1,6 @@
 """A mesh as points and triangles: what every source gives and every structure is built from."""
 
+import sys
 import warnings
 from numbers import Real
 from typing import Any
@@ -64,8 +65,8 @@ class TriangleMesh(Convertible):
         Cost: O(n log n + m), and with a tolerance the pairs of vertices that close besides.
         Source: thesis, construction of the mesh (one vertex per position).
         """
-        if not (isinstance(tolerance, Real) and 0 <= tolerance < np.inf):
-            raise MeshError(f"a weld tolerance is finite and not negative, not {tolerance!r}")
+        if not (isinstance(tolerance, Real) and 0 <= tolerance <= sys.float_info.max):
+            raise MeshError(f"a weld tolerance is finite and not negative, not {tolerance!r:.60}")
         first, cluster = clusters(self.points, tolerance)
         triangles = cluster[self.triangles]
         triangles = triangles[~repeated_corners(triangles)]

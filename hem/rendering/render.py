@@ -12,7 +12,6 @@ import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
 from functools import partial
-from numbers import Real
 from types import MappingProxyType
 from typing import Any, NamedTuple, overload
 
@@ -258,8 +257,6 @@ def mesh_from_render(
     O(n log n + m). Raises MeshError for what is no such mesh. Source: thesis 3.3.2, where the
     search for repeated positions is quadratic.
     """
-    if not isinstance(tolerance, Real):
-        raise MeshError(f"a weld tolerance is finite and not negative, not {tolerance!r}")
     corners = _rows(indices, "indices")
     raw = TriangleMesh(_rows(points, "points"), corners[~repeated_corners(corners)][:, [0, 2, 1]])
     mesh = raw.welded(tolerance)

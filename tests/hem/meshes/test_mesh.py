@@ -140,7 +140,9 @@ def test_welding_within_a_tolerance_joins_chains_and_parts_the_rest() -> None:
     assert np.array_equal(welded.points, points[first])
 
 
-@pytest.mark.parametrize("tolerance", [-1.0, np.nan, np.inf, "a", None, [1.0]])
+@pytest.mark.parametrize(
+    "tolerance", [-1.0, np.nan, np.inf, "a", None, [1.0], pytest.param(10**400, id="no float")]
+)
 def test_a_tolerance_is_finite_and_not_negative(tolerance: Any) -> None:
     with pytest.raises(hem.MeshError, match="tolerance"):
         hem.TriangleMesh(SQUARE, HALVES).welded(tolerance)
