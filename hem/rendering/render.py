@@ -222,7 +222,7 @@ def split_at_seams(corners: Attribute) -> tuple[Points, Handles, Array]:
     indices (3 m,) int32, clockwise, and the values (n, …). MeshError for polygons, and for what is
     no attribute of corners. Cost O(m log m). ``mesh_from_render`` is the way back.
     """
-    if corners.element != "corner":
+    if not isinstance(corners, Attribute) or corners.element != "corner":
         raise MeshError(f"{corners!r} is no attribute of corners")
     s = corners.mesh
     _require_triangles(s, s.faces(), "and this mesh has larger faces")
