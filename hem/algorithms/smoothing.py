@@ -49,12 +49,13 @@ class Plan(NamedTuple):
 
 @kernel
 def mixed(v: int) -> int:
-    """What a vertex counts as, in 38 bits: other vertices add up to something else, by far most.
+    """What a vertex counts as, in 39 bits: each for itself, as the whole grows with ``spread``.
 
-    Those of millions fit into 64 bits, which Python's own numbers do not wrap around.
+    Sums differ, too, by far most. Those of millions fit into 64 bits, which Python's own numbers do
+    not wrap around.
     """
     spread = v * SPREAD & 0x7FFFFFFF
-    return spread * spread >> 24
+    return spread + (spread * spread >> 24)
 
 
 def adding_neighbors(k: Kernels, operations: Kernels) -> Kernel:

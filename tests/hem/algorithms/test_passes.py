@@ -119,6 +119,14 @@ def test_a_vertex_where_fans_of_faces_meet_stays_whatever_the_numbers_of_its_nei
     assert np.array_equal(s.points, mesh.points)
 
 
+def test_a_lone_triangle_stays_whatever_the_numbers_of_its_corners() -> None:
+    first, last = 0, 389_588  # whose squares were as good as one, once they had been spread
+    points = np.random.default_rng(0).normal(size=(last + 1, 3)).astype(np.float32)
+    s = structures.build("half_edge", hem.TriangleMesh(points, [(first, 1, last)]))
+    algorithms.smooth(s)
+    assert np.array_equal(s.points, points)
+
+
 def test_taubin_keeps_the_volume_that_laplace_loses() -> None:
     mesh = hem.generate("sphere", 642)
     kept, lost = (structures.build("half_edge", mesh) for _ in range(2))
