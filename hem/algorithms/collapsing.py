@@ -215,14 +215,16 @@ def collapsing(k: Kernels, operations: Kernels) -> Kernel:
 
     @kernel
     def collapse(m: Any, a: int, b: int, plan: Plan) -> int:
+        stays = which_stays(plan, a, b)
         for j in range(3):
             plan.work.point[j] = plan.target[j] + plan.middle[j]
+            if plan.target[j] == plan.rows[stays, j]:  # small numbers would lose digits on the way
+                plan.work.point[j] = coordinate(m, stays, j)
         if not is_point(plan.work.point):
             return PASSED_OVER
         for v in (a, b):
             if not (keeps_sides(m, v, a + b - v, plan) and keeps_short(m, v, plan)):
                 return PASSED_OVER
-        stays = which_stays(plan, a, b)
         done = collapse_edge(m, edge_between(m, a, b), stays, plan.work)
         if done < 0:
             return done
