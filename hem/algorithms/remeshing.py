@@ -165,7 +165,7 @@ def split_longer(s: Structure, length: float) -> None:
         ends = np.stack([keys >> 32, keys & 0xFFFFFFFF], axis=1)
         places = s.points[ends].astype(np.float64)
         least = LEAST_STEPS * np.spacing(np.abs(s.points[ends]).max(axis=(1, 2)))
-        longest = np.maximum(length, least)
+        longest = np.maximum(np.float64(length), least)  # and not as float32, as the steps are
         long = np.linalg.norm(places[:, 0] - places[:, 1], axis=1) > longest
         points = places[long].mean(axis=1).astype(np.float32)
         start = np.array([len(s.points)]), np.zeros(1, np.int64), NO_WORK

@@ -149,6 +149,14 @@ def test_the_length_is_the_mean_unless_it_is_said() -> None:
     assert np.isclose(lengths(remeshed(mesh)).mean(), lengths(mesh).mean(), rtol=0.1)
 
 
+@pytest.mark.parametrize("length", [3e38, 1e300])
+def test_a_length_beyond_all_positions_is_one_as_well(length: float) -> None:
+    mesh = hem.generate("sphere", 162)
+    with np.errstate(all="raise"):
+        mine = remeshed(mesh, length=length, iterations=1)
+    assert np.array_equal(mine.points, remeshed(mesh, length=100, iterations=1).points)
+
+
 def test_border_vertices_stay() -> None:
     edges, faces = edges_of(OPEN)
     border = np.unique(edges[faces == 1])
