@@ -8,8 +8,8 @@ import pytest
 
 import hem
 import structures
-from experiments.bench_workloads import KEPT, UNITS, WORKLOADS, without_call
-from experiments.harness import HUBS, OPERATIONS, PRESETS, Case, disturbed, time_rounds
+from experiments.bench_workloads import KEPT, UNITS, WORKLOADS, _check, without_call
+from experiments.harness import BASE, HUBS, OPERATIONS, PRESETS, Case, disturbed, time_rounds
 from experiments.harness.operations import OperationBatch, constant_work, time_operations
 from experiments.harness.operations import operation_arguments as arguments
 from experiments.harness.operations import operation_faces as faces_of
@@ -100,6 +100,20 @@ def test_a_workload_makes_of_every_structure_the_same_mesh(workload, order):
         corners = np.sort(s.face_vertices(s.faces()).values.reshape(-1, 3), axis=1)
         made.append((units, corners.tolist()))
     assert all(it == made[0] for it in made)
+
+
+@pytest.mark.parametrize("workload", ["vertex_normals", "impacts"])
+def test_a_workload_that_tells_otherwise_than_on_the_base_structure_is_not_timed(workload):
+    given = WORKLOADS[workload]
+
+    def tells_otherwise(s, *faces):
+        told = given.compiled(s, *faces)
+        return told if s.name == BASE else 1.01 * told
+
+    case = Case("half_edge", "sphere", 162, workload, "compiled")
+    _check(case, given.compiled)
+    with pytest.raises(AssertionError, match=f"{workload} on half_edge"):
+        _check(case, tells_otherwise)
 
 
 @pytest.mark.parametrize("workload", WORKLOADS)
