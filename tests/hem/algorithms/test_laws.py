@@ -275,6 +275,8 @@ def test_an_algorithm_that_needs_more_room_than_it_says_is_ended() -> None:
     lambda s: algorithms.smooth(s, 1, "gauss"),
     lambda s: algorithms.subdivide(s, "catmull"),
     lambda s: algorithms.subdivide(s, times=-1),
+    lambda s: algorithms.subdivide(s, times=12),
+    lambda s: algorithms.subdivide(s, "sqrt3", 10**400),
     lambda s: algorithms.simplify(s),
     lambda s: algorithms.remesh(s, 0.0),
     lambda s: algorithms.remesh(s, -0.1),
