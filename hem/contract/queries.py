@@ -247,13 +247,16 @@ class Queries:
 
     def reads(self, name: str, handle: int, fields: Sequence[Field]) -> list[Read]:
         """See ``Structure.reads``."""
-        (wanted,), out = self._ready(name, np.array([handle]))
+        (wanted,), out = self._ready(name, [handle])
         state = self._state
         state.prepare([name])
         return self._declared.queries[name].reads(int(wanted), out, state.records, fields)
 
-    def _ready(self, name: str, handles: Array) -> tuple[Array, Any]:
-        """Handles that were checked, and scratch for the answers to each."""
-        wanted = self._checked(name, handles)
+    def _ready(self, name: str, handles: ArrayLike) -> tuple[Array, Any]:
+        """Handles that were checked, and scratch of its own for the answers to each.
+
+        Other threads may ask meanwhile.
+        """
+        wanted, target = self._checked(name, handles), QUERIES[name].target
         self._state.widen()
-        return wanted, self._state.out[QUERIES[name].target]
+        return wanted, self._state.storage.row(len(self._state.out[target]), HANDLE_TYPES[target])
