@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from functools import cached_property
+from threading import Lock
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -75,6 +76,7 @@ class Operations:
         self._state, self._queries, self._followers = state, queries, followers
         self._operations = state.declared.operations
         self._known: dict[str, Bound] = {}
+        self._asking = Lock()  # to ask whether something may be done is no operation
 
     # One at a time ---------------------------------------------------------------------------
 
@@ -121,25 +123,26 @@ class Operations:
 
     def may(self, operation: str, edge: Any) -> bool:
         """Whether an operation on an edge would be done; TopologyError if there is no edge."""
-        perform, address, task, args, _, result = self._bound(operation)
-        try:
-            if type(edge) is bool:
-                raise TypeError  # it would count as 1 or 0
-            args[0] = edge
-            args[1] = -1
-        except (TypeError, ValueError, OverflowError) as error:
-            raise arguments.refusal(operation, (edge,), None) from error
-        try:
-            task[MODE] = CHECK
-            perform(address)
-            if result[0] == NEEDS_ROOM:
-                self.make_way(operation)
+        with self._asking:
+            perform, address, task, args, _, result = self._bound(operation)
+            try:
+                if type(edge) is bool:
+                    raise TypeError  # it would count as 1 or 0
+                args[0] = edge
+                args[1] = -1
+            except (TypeError, ValueError, OverflowError) as error:
+                raise arguments.refusal(operation, (edge,), None) from error
+            try:
+                task[MODE] = CHECK
                 perform(address)
-        finally:  # interrupted or not: or nothing would ever be done again
-            task[MODE] = DO
-        if result[0] == Refusal.NO_EDGE:
-            raise self.refusal(operation, Refusal.NO_EDGE, args)
-        return bool(result[0] >= 0)
+                if result[0] == NEEDS_ROOM:
+                    self.make_way(operation)
+                    perform(address)
+            finally:  # interrupted or not: or nothing would ever be done again
+                task[MODE] = DO
+            if result[0] == Refusal.NO_EDGE:
+                raise self.refusal(operation, Refusal.NO_EDGE, args)
+            return bool(result[0] >= 0)
 
     def make_way(self, operation: str) -> None:
         """Make room for what one operation may need."""

@@ -9,10 +9,11 @@ import pickle
 import sys
 import tracemalloc
 import weakref
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import suppress
+from contextlib import contextmanager, suppress
 from functools import partial
+from threading import Event
 from typing import Any
 
 import numpy as np
@@ -209,6 +210,17 @@ def test_numpy_integers_are_handles_and_take_the_way_of_pythons(
             s.vertex_faces(wrong)  # type: ignore[call-overload]
 
 
+@contextmanager
+def switching_often() -> Iterator[None]:
+    """Have Python change threads as often as it can."""
+    before = sys.getswitchinterval()
+    sys.setswitchinterval(1e-6)
+    try:
+        yield
+    finally:
+        sys.setswitchinterval(before)
+
+
 def test_threads_that_only_read_get_their_own_answers(name: str) -> None:
     s = structures.build(name, hem.generate("torus", 400))
     vertices = s.vertices().tolist()
@@ -226,6 +238,46 @@ def test_threads_that_only_read_get_their_own_answers(name: str) -> None:
 
     with ThreadPoolExecutor(4) as pool:
         assert list(pool.map(read, range(4))) == [0] * 4
+
+
+def test_threads_that_ask_what_may_be_done_get_their_own_answers(name: str) -> None:
+    s = structures.build(name, hem.generate("grid", 49))
+    edges, before = s.edges().tolist(), s.copy()
+    asked = [(ask, e) for ask in (s.can_flip_edge, s.can_collapse_edge) for e in edges]
+    expected = {it: it[0](it[1]) for it in asked}
+
+    def wrong(seed: int) -> int:
+        order = np.random.default_rng(seed).permutation(len(asked)).tolist()
+        order *= 100 if s.compiled and not s.searches else 2
+        return sum(asked[i][0](asked[i][1]) != expected[asked[i]] for i in order)
+
+    with switching_often(), ThreadPoolExecutor(4) as pool:
+        assert list(pool.map(wrong, range(4))) == [0] * 4
+    assert s.same_as(before)
+
+
+def test_a_sweep_in_one_thread_leaves_the_answers_in_others_alone(name: str) -> None:
+    if not structures.REGISTRY[name].compiled:
+        return  # a sweep lets no other thread run
+    s = structures.build(name, hem.generate("torus", 1_000))
+    vertices = s.vertices()
+    expected, checksum = s.vertex_faces(vertices).to_list(), s.sweep("vertex_faces", vertices)
+    end = Event()
+
+    def sweeps() -> bool:
+        right = True
+        while not end.is_set():
+            right = right and s.sweep("vertex_faces", vertices) == checksum
+        return right
+
+    with switching_often(), ThreadPoolExecutor(1) as pool:
+        swept = pool.submit(sweeps)
+        try:
+            order = vertices.tolist() * (1 if s.searches else 20)
+            assert all(s.vertex_faces(v).tolist() == expected[v] for v in order)
+        finally:
+            end.set()
+        assert swept.result()
 
 
 def test_a_mesh_that_is_dropped_is_freed_at_once(name: str) -> None:
