@@ -23,12 +23,12 @@ class Listeners(list[Listener]):
         return unsubscribe
 
     def tell(self, what: Any) -> None:
-        """Call them all, even if one of them raises; then raise what the first of them raised."""
+        """Call them all, even if one raises or is interrupted; then raise what the first raised."""
         failures = []
         for listener in tuple(self):
             try:
                 listener(what)
-            except Exception as failure:
+            except BaseException as failure:
                 failures.append(failure)
         if failures:
             raise failures[0]

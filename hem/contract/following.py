@@ -30,9 +30,11 @@ class Followers:
         return bool(self.subscribers or self.attributes)
 
     def publish(self, edit: Edit) -> None:
-        """Have all follow an edit."""
-        self.carry(edit)
-        self.subscribers.tell(edit)
+        """Have all follow an edit. Whoever is not told of it is out of step from then on."""
+        try:
+            self.carry(edit)
+        finally:
+            self.subscribers.tell(edit)
 
     def carry(self, edit: Edit) -> None:
         """Have the attributes follow, before anyone looks at them."""

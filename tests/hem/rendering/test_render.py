@@ -194,6 +194,23 @@ def test_every_subscriber_hears_of_an_edit_even_if_another_raises(s):
     assert s.split_face(0, (0, 0, 0)) is heard[1]
 
 
+@pytest.mark.parametrize("source", ["a subscriber", "an attribute"])
+def test_an_interrupt_while_an_edit_is_told_leaves_a_render_mesh_in_step(s, source):
+    def interrupted(edit: hem.Edit) -> None:
+        raise KeyboardInterrupt
+
+    if source == "a subscriber":
+        s.subscribe(interrupted)
+    else:
+        s.vertex_attribute("weight").follow = interrupted
+    render = hem.RenderMesh(s)
+    with pytest.raises(KeyboardInterrupt):
+        s.split_face(0, (0, 0, 0))
+    afresh = hem.RenderMesh(s)
+    assert np.array_equal(render.points, afresh.points)
+    assert np.array_equal(render.indices, afresh.indices)
+
+
 def seamed(mesh: hem.TriangleMesh) -> tuple[np.ndarray, np.ndarray]:
     """As Unity stores it: positions repeated for every face, clockwise, flat."""
     corners = mesh.triangles[:, [0, 2, 1]].ravel()
