@@ -617,6 +617,7 @@ def test_what_names_no_live_element_has_no_value(s, wrong):
         ({"on_split": "mean"}, "on_split is one of"),
         ({"shape": (2,), "default": (1, 2, 3)}, "vertex attribute"),
         ({"dtype": "nonsense"}, "vertex attribute"),
+        ({"dtype": np.ones(6)}, "vertex attribute"),
         ({"dtype": np.int32, "default": 1.7}, "int32 cannot hold the default 1.7"),
         ({"dtype": np.int8, "default": [1, np.nan], "shape": 2}, "vertex attribute"),
         ({"dtype": np.int8, "default": np.array([1, np.nan]), "shape": 2}, "cannot hold"),
@@ -630,6 +631,8 @@ def test_what_cannot_be_an_attribute_is_refused(name: str, made: dict, words: st
     s = structures.build(name, octahedron())
     with pytest.raises(hem.MeshError, match=words):
         s.vertex_attribute("weight", **made)
+    with pytest.raises(hem.MeshError, match="its name"):
+        s.vertex_attribute([1, 2], **made)
     assert not s.attributes()
 
 
