@@ -128,10 +128,11 @@ def record(s: Structure) -> Iterator[Recording]:
 
     ``workload.save("workload.csv", each="vertex")`` writes the table that ``hem advise`` reads.
     Algorithms run uncompiled meanwhile, some hundred times slower, with the same outcome: take a
-    mesh of some hundred vertices. ``find_edge`` counts as the query that it searches by. What is
-    read of the whole mesh at once (``edges()``, ``points``) and steps along half-edges are not
-    counted. From one thread, and of one structure's meshes one at a time. Raises MeshError where
-    the mesh is recorded already.
+    mesh of some hundred vertices. ``find_edge`` counts as the query that it searches by, and
+    ``remove_vertex`` as the removal of its faces. What is read of the whole mesh at once
+    (``edges()``, ``points``), steps along half-edges, and operations that polygons alone have are
+    not counted. From one thread, and of one structure's meshes one at a time. Raises MeshError
+    where the mesh is recorded already.
     """
     if "run" in vars(s):
         raise MeshError("this mesh is recorded already: end that recording first")
@@ -154,28 +155,32 @@ def _called(s: Structure) -> Iterator[tuple[str, str]]:
         named[CHECKED + name] = CHECKED + name
         named[f"{name.removesuffix(it.element)}{ELEMENTS[it.element]}"] = name  # split_edges
     named |= {"find_edge": "vertex_edges", "split_all_faces": "split_face", "operate": ""}
+    named |= {"remove_vertex": "remove_face"}
     return ((called, what) for called, what in named.items() if hasattr(s, called))
 
 
 def _counting(s: Structure, called: str, what: str, found: Recording) -> Callable[..., Any]:
     """A method that is counted as ``what``, or as what its first argument names."""
     method = getattr(s, called)
-    known = signature(method).parameters  # in which order keywords stand, too
+    known = signature(method)
 
     def counted(*args: Any, **more: Any) -> Any:
-        name, given = (what, args) if what else (args[0], args[1:])
+        bound = known.bind(*args, **more)  # in the method's order, what is named as well
+        name, *given = (what, *bound.args) if what else bound.args
         try:
             result = method(*args, **more)
         except TopologyError:
             found.add(CHECKED + name.removeprefix(CHECKED), 0)
             raise
-        handles = next(iter((*given, *(more[it] for it in known if it in more))), None)
+        handles = next(iter((*given, *bound.kwargs.values())), None)
         if handles is None:  # all there are
             handles = range(len(result))
         if called == "collapse_edges":  # those that were refused were looked at, and no more
             handles = np.asarray(handles)
             found.add(CHECKED + name, handles[~result])
             handles = handles[result]
+        if called == "remove_vertex":
+            handles = result.removed_faces
         single = called in OPERATIONS or called == "operate"  # of a point, if of no handle
         found.add(name, 0 if single and np.ndim(handles) else handles)
         return result

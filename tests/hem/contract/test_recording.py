@@ -66,6 +66,26 @@ def test_calls_from_python_are_told_from_batches() -> None:
     assert found["vertex_edges", PYTHON] == 1
 
 
+def test_a_vertex_that_is_removed_counts_as_the_faces_at_it() -> None:
+    s, at_it = build(), len(build().vertex_faces(7))
+    with hem.record(s) as workload:
+        s.remove_vertex(7)
+        s.face_faces(0)
+    assert counts(workload)["remove_face", COMPILED] == at_it
+    assert counts(workload)[ANEW, COMPILED] == 1
+
+
+def test_an_operation_by_its_name_counts_however_it_is_called() -> None:
+    s = build()
+    with hem.record(s) as workload:
+        s.operate("add_vertex", point=(0, 0, 0))
+        s.operate(operation="add_vertex", point=(0, 0, 0))
+        s.operate("flip_edge", int(s.edges()[0]))
+        with pytest.raises(TypeError, match="operation"):
+            s.operate()
+    assert counts(workload) == {("add_vertex", PYTHON): 2, ("flip_edge", PYTHON): 1}
+
+
 def test_a_recording_is_shown_in_a_line() -> None:
     s = structures.build("half_edge", hem.generate("torus", 100))
     with hem.record(s) as recording:
