@@ -16,6 +16,7 @@ takes a corner from it, ``remove_face`` and ``add_face`` take it as it is; ``fli
 
 from __future__ import annotations
 
+from numbers import Real
 from operator import attrgetter
 from typing import Any, Self
 
@@ -144,7 +145,7 @@ class Plankton(Navigable):
 
     def vertex_naked_edges(self, vertex: int) -> int:
         """How many edges at a vertex lie on the border: 0 or 2. Cost O(1)."""
-        h = self.outgoing_half_edge(vertex)
+        h = self.outgoing_half_edge(arguments.integer("vertex_naked_edges", "vertex", vertex))
         return 2 if h >= 0 and self.records.half_edge[h, FACE] < 0 else 0
 
     def face_naked_edges(self, face: int) -> int:
@@ -227,7 +228,7 @@ class Plankton(Navigable):
         """
         if triangles:
             return super().split_edge(edge, point)
-        return self.operate("insert_vertex", edge, point=point)
+        return self._polygonal("split_edge", "insert_vertex", edge, point=point)[1]
 
     def split_face(self, face: int, point: Any) -> Any:
         """Split a face: at a point into triangles -> Edit, or along a diagonal -> its half-edge.
@@ -246,7 +247,8 @@ class Plankton(Navigable):
         """Join all corners of a face to a new vertex, in their middle unless a point is given."""
         self._operations.require_different("stellate", "face", [face])
         middle = self.points[self.face_vertices(face)].mean(axis=0, dtype=np.float64)
-        return super().split_face(face, middle if point is None else point)
+        place = middle if point is None else point
+        return self._polygonal("stellate", "split_face", face, point=place)[1]
 
     def merge_faces(self, half_edge: int) -> int:
         """Make one face of the two at an edge: that of the half-edge takes in the other -> it.
@@ -282,8 +284,9 @@ class Plankton(Navigable):
         The new vertices lie at a fraction of the way along the edges. n - 1 vertices, n edges and 1
         face more. Refused at the border, and for fewer than three edges. One edit. O(corners).
         """
-        if not 0 < fraction < 1:
-            raise MeshError(f"a vertex is truncated at a fraction between 0 and 1, not {fraction}")
+        if not (isinstance(fraction, Real) and 0 < fraction < 1):
+            words = f"a vertex is truncated at a fraction between 0 and 1, not {fraction!r}"
+            raise MeshError(words)
         self._operations.require_different("truncate_vertex", "vertex", [vertex])
         spokes = self.vertex_half_edges(vertex)
         if len(spokes) < 3 or self.vertex_naked_edges(vertex):
@@ -332,15 +335,11 @@ class Plankton(Navigable):
         return face, points, points[rows.following]
 
     def _polygonal(
-        self, called: str, operation: str, *handles: Any, point: ArrayLike | None = None
+        self, called: str, operation: str, *handles: Any, point: Any = None
     ) -> tuple[int, Edit]:
         """Do one operation -> its result and its edit, of which the subscribers are told."""
-        points = (
-            arguments.NO_POINT
-            if point is None
-            else arguments.positions(called, np.asarray(point)[None], 1)
-        )
-        element = self.operations[operation].element
+        _, element, takes_a_point, *_ = self.operations[operation]
+        points = arguments.positions(called, [point], 1) if takes_a_point else arguments.NO_POINT
         row = [arguments.integer(called, element, it) for it in handles]
         args = np.array([[*row, -1, -1][: max(3, len(row))]])
         results, log = self._operations.run(operation, args, points)

@@ -356,7 +356,7 @@ def test_what_names_nothing_is_not_operated_on(call):
 
 
 @pytest.mark.parametrize("call", ASKED_OF_POLYGONS)
-@pytest.mark.parametrize("wrong", [0.5, 1.0, "1", None, True, -1, 10_000, 2**70])
+@pytest.mark.parametrize("wrong", [0.5, 1.0, "1", None, True, -1, 10_000, 2**70, [1, 2], [1]])
 def test_what_names_nothing_has_no_half_edges(call, wrong):
     with pytest.raises(hem.MeshError):
         ASKED_OF_POLYGONS[call](plankton(sheet()), wrong)
@@ -408,12 +408,36 @@ def mixed_fan(faces: int = 9, corners: int = 30) -> hem.PolygonMesh:
     return hem.PolygonMesh(points, [[0, *ring] for ring in rings])
 
 
+@pytest.mark.parametrize(
+    ("method", "do"),
+    [
+        ("stellate", lambda s: s.stellate(7)),
+        ("split_face", lambda s: s.split_face(*s.face_half_edges(7)[[0, 2]].tolist())),
+        ("split_edge", lambda s: s.split_edge(s.find_edge(0, 1), (0, 0, 0), triangles=False)),
+        ("merge_faces", lambda s: s.merge_faces(s.find_half_edge(7, 8))),
+        ("split_vertex", lambda s: s.split_vertex(*s.vertex_half_edges(7)[:2].tolist())),
+        ("erase_center_vertex", lambda s: s.erase_center_vertex(7)),
+        ("truncate_vertex", lambda s: s.truncate_vertex(7)),
+    ],
+)
+def test_an_edit_is_called_as_the_method_that_did_it(method, do):
+    s, heard = plankton(sheet()), []
+    s.subscribe(heard.append)
+    do(s)
+    assert [edit.kind for edit in heard] == [method]
+    s.validate()
+
+
 def test_what_is_no_polygon_operation_is_an_error_that_says_so():
     s = plankton(sheet())
     with pytest.raises(hem.MeshError, match="three corners or more"):
         s.add_face(0, 1)
-    with pytest.raises(hem.MeshError, match="between 0 and 1"):
-        s.truncate_vertex(14, 1.5)
+    for fraction in (1.5, None, "half", [0.5]):
+        with pytest.raises(hem.MeshError, match="between 0 and 1"):
+            s.truncate_vertex(14, fraction)
+    for point in (None, "abc", [[0], [1, 2]], (0, 0)):
+        with pytest.raises(hem.MeshError, match="split_edge takes"):
+            s.split_edge(0, point, triangles=False)
     with pytest.raises(hem.MeshError, match="no such half-edge"):
         s.next_half_edge(10_000)
     with pytest.raises(hem.MeshError, match="encloses no volume"):
