@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from functools import cached_property
-from threading import Lock
+from threading import RLock
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -76,7 +76,7 @@ class Operations:
         self._state, self._queries, self._followers = state, queries, followers
         self._operations = state.declared.operations
         self._known: dict[str, Bound] = {}
-        self._asking = Lock()  # to ask whether something may be done is no operation
+        self._asking = RLock()  # to ask whether something may be done is no operation
 
     # One at a time ---------------------------------------------------------------------------
 
