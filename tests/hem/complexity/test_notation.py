@@ -49,6 +49,8 @@ def test_of_several_variables_one_is_varied_and_the_others_are_held_fixed() -> N
     assert canonical("linear", "m") == "O(n)"
     assert canonical("O(2^k·n)", "n") == "O(n)"
     assert canonical("O(2^k·n)", "k") == "O(2^n)"
+    for name in ("n_old", "n_Fields", "n_time", "n_lg2"):  # that hold what is a word of its own
+        assert canonical(f"O({name}² log {name} · m)", name) == "O(n² log n)"
     for name in ("", "nv", "rows"):
         with pytest.raises(ValueError, match="a variable is a letter"):
             canonical("O(n·m)", name)
