@@ -3,6 +3,7 @@
 import json
 from collections import Counter
 from dataclasses import asdict
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -39,6 +40,20 @@ def test_curves_of_known_class_are_judged_right_and_hardly_ever_wrong(name: str)
         if condition != "latency unknown":
             assert true["consistent"] >= 0.85 * true.total(), condition
     assert wrong <= 0.01 * judged
+
+
+def test_a_cache_that_nobody_measured_makes_no_constant_cost_a_violation() -> None:
+    """Wherever among the sizes its step lies, however high and wide it is."""
+    violated = []
+    for count, at, height, width in product(
+        (5, 7, 12), np.linspace(0.05, 1, 20), (2.5, 4.3, 6.3, 9.3), (0.3, 0.7, 1.2)
+    ):
+        sizes = np.geomspace(16, 4096, count).round()
+        step = (sizes[0] / sizes) ** (1 / width) * (sizes[-1] / sizes[0]) ** (at / width)
+        cost = 1 + (height - 1) / (1 + step)
+        verdict = judge(sizes, [[0.99 * it, it, 1.01 * it] for it in cost], resamples=1)
+        violated.append(verdict.outcome == "violated")
+    assert np.mean(violated) <= 0.01
 
 
 def noise_alone(rng: np.random.Generator, kind: str) -> list[Array]:
