@@ -72,7 +72,7 @@ class Calls(NamedTuple):
         inputs = (plan.pool or [self.make(plan.n) for _ in range(plan.calls)]) * plan.again
         own, before = self.idle(inputs), self.idle(IDLE)
         seconds = self.seconds(inputs)
-        return max(seconds - own, 1e-9) / len(inputs), max(before, self.idle(IDLE))
+        return max(seconds - own, 1e-9) / len(inputs), max(before, self.idle(IDLE), 1e-9)
 
     def idle(self, inputs: Sequence[Any]) -> float:
         """Seconds of the timer and a loop that does nothing."""
@@ -103,7 +103,7 @@ class Calls(NamedTuple):
             self.f(it)
             end = self.clock()
             waited = max(perf_counter() - first - (end - begin), 0.0)
-            taken.append((made - begin, end - made, waited))
+            taken.append((made - begin, max(end - made, 1e-9), waited))
             del it
         return np.min(taken, axis=0)
 
@@ -112,7 +112,7 @@ class Calls(NamedTuple):
 
         share: seconds that making the inputs of a sample may take.
         """
-        made, call, waited = np.maximum(self.seconds_of_one(n), (0, 1e-9, 0))
+        made, call, waited = self.seconds_of_one(n)
         call = max(call, waited * (waited > SAMPLE))  # less is what it takes to read clocks
         most = SAMPLE * LONGER / (made + call if self.fresh else max(made / LONGER, call))
         calls = int(np.clip(min(BATCH / size, most), 1, MOST_CALLS))

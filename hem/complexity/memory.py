@@ -4,11 +4,12 @@ A function that goes from record to record waits for the memory's latency, one t
 its bandwidth, and one that makes something new for the system, which gives memory page by page.
 """
 
+import sys
 from collections.abc import Callable
 from functools import reduce
 from itertools import repeat
 from operator import getitem
-from time import get_clock_info, perf_counter, thread_time
+from time import perf_counter, thread_time
 from typing import Any
 
 import numpy as np
@@ -25,8 +26,9 @@ SMALLEST = 16 * 1024  # bytes; less than that is in the first cache, and beside 
 QUICKEST = 2e-11  # seconds that a byte takes at least, as a program reads it that does more
 AT_BEST = 5e-9  # seconds: what a step from record to record takes at least, in the caches
 Call = Callable[[], object]
-CLOCK = thread_time if get_clock_info("thread_time").resolution <= 1e-6 else perf_counter
-"""The processor's time: what other programs take meanwhile is of no function's cost."""
+CLOCK = perf_counter if sys.platform == "win32" else thread_time
+"""The processor's time: what other programs take meanwhile is of no function's cost. Windows counts
+that in ticks of 1/64 s, though it says otherwise, and a sample takes less."""
 
 
 def memory_times(working_sets: ArrayLike) -> Array:

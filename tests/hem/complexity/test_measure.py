@@ -5,9 +5,11 @@ import math
 import os
 import platform
 import random
+import runpy
 import subprocess
 import sys
 import threading
+import time
 import tracemalloc
 from collections.abc import Callable, Iterator
 from dataclasses import replace
@@ -655,6 +657,23 @@ def test_sizes_end_where_a_call_waits_longer_than_it_may(
     monkeypatch.setattr("hem.complexity.calls.perf_counter", lambda: clock.now + waited)
     measure(wait, int, budget=1.0)
     assert waited < 5
+
+
+def test_where_a_threads_time_is_told_in_ticks_the_clock_on_the_wall_is_read(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(sys, "platform", "win32")
+    assert runpy.run_path(memory_times.__code__.co_filename)["CLOCK"] is time.perf_counter
+
+
+@pytest.mark.filterwarnings("error")
+def test_a_clock_may_stand_still_beside_what_is_measured(clock: Clock) -> None:
+    for factor, claim in ((1e-8, "O(n)"), (0, "O(1)")):
+        found = measure(
+            lambda n, factor=factor: clock.work(factor * n), int, budget=0.1, rounds=1, most=500,
+            clock=lambda: clock.now,
+        )  # fmt: skip
+        assert found.judge(claim).outcome == "consistent"
 
 
 @pytest.mark.parametrize("most", [4, 7, 10])
