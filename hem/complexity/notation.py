@@ -64,11 +64,12 @@ SPELLED = (
     ("{", "("), ("}", ")"),
     (r"\b(amortized|amortised|expected|average|time)\b|\b[oθ](?=\s*\()|\btheta(?=\s*\()", ""),
     (r"\*\*", "^"), (r"²", "^(2)"), (r"³", "^(3)"), (r"ⁿ", "^n"), (r"√", "sqrt "),
-    (r"log_?(2|10|₂)(?!\d)|lg|ln|ld", "log"), (r"[\\·⋅×*|]", " "),
+    (r"[\\·⋅×*|]", " "),
     (r"\^\s*\(\s*([a-z])\s*\)", r"^\1"), (r"\be(?=\s*\^\s*[a-z])", f"{e}"),
     (r"(?<=[a-z)])\s*/\s*\d+(\.\d+)?", ""),  # a factor
     (r"(?<=[a-z)])\s*-\s*\d+(\.\d+)?(?!\s*[\w.^(/])", ""),  # a term, not the factor of one
 )  # fmt: skip
+LOGS = r"(_\w+)|log_?(2|10|₂)(?!\d)|lg|ln|ld"  # or, told apart from them, what a name ends with
 VARIABLE = re.compile(r"[a-z](_\w+)?", re.IGNORECASE)
 TOKEN = re.compile(r"\s*(sqrt|log|[a-z](?:_\w+)?|\d+(?:\.\d+)?(?:/\d+)?|[()^+])")
 
@@ -83,11 +84,13 @@ def parse(claim: str, variable: str | None = None) -> Order:
     """
     if variable is not None and not VARIABLE.fullmatch(variable):
         raise ValueError(f"a variable is a letter, or such as n_ev, not {variable!r}")
-    if re.search(r"log\s*\^?\s*\*(?!\*)", claim.lower()):  # the iterated logarithm, of union-find
+    text = re.sub(LOGS, lambda it: it[1] or "log", claim.strip().lower())
+    if re.search(r"log\s*\^?\s*\*(?!\*)", text):  # the iterated logarithm, of union-find
         raise _unknown(claim)
-    text = _plain(claim)
+    for pattern, plain in SPELLED:
+        text = re.sub(pattern, plain, text)
     word = WORDS.get(text.strip(" ()"))
-    text = word or text
+    text = word or text.strip()
     tokens = TOKEN.findall(text)
     words = re.search(r"[a-z]{3}|[a-zO]\d", re.sub("sqrt|log", "O", re.sub(r"_\w+", "_", text)))
     if not tokens or words or "".join(tokens) != re.sub(r"\s", "", text):
@@ -99,7 +102,7 @@ def parse(claim: str, variable: str | None = None) -> Order:
             f"{claim!r} names {names}: say which of them is varied, as variable=…; to hem judge, "
             "which knows it by its parameter, by the parameter's name"
         )
-    chosen = _plain(variable) if variable and not word else next(iter(found), "n")
+    chosen = variable.lower() if variable and not word else next(iter(found), "n")
     try:
         reader = _Reader(iter([*tokens, ""]), chosen)
         order = reader.sum()
@@ -108,14 +111,6 @@ def parse(claim: str, variable: str | None = None) -> Order:
     if reader.token or order.base < 0 or not all(map(isfinite, order)):
         raise _unknown(claim)
     return order
-
-
-def _plain(text: str) -> str:
-    """A claim in plain symbols, or a variable as one then has it: of n_old the ld is read, too."""
-    text = text.lower()
-    for pattern, plain in SPELLED:
-        text = re.sub(pattern, plain, text)
-    return text.strip()
 
 
 def _unknown(claim: str) -> ValueError:
