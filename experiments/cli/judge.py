@@ -64,14 +64,17 @@ def _by_letters(claim: str, varied: str, fixed: Sequence[str]) -> tuple[str, str
 
     None where it names neither that nor one that is held fixed.
     """
-    names = [name for name in (varied, *fixed) if name]
-    letters = {it: it if re.fullmatch("[a-zA-Z]", it) else f"n_{k}" for k, it in enumerate(names)}
-    named = 0
-    for name, letter in letters.items():  # "nlog n" is read, too
+    from hem.complexity import canonical
+
+    own, named = varied if re.fullmatch("[a-zA-Z]", varied) else "n_varied", set[str]()
+    for name in filter(None, (varied, *fixed)):  # "nlog n" is read, too
+        letter = own if name == varied else "n_held"
         whole = rf"(?<![a-z_]){re.escape(name)}(?![a-z_])"
         claim, times = re.subn(whole, letter, claim, flags=re.IGNORECASE)
-        named += times
-    return claim, letters.get(varied, "n_varied") if named else None
+        named |= {letter} if times else set()
+    if named == {"n_held"}:
+        canonical(claim)  # one letter more, that nobody knows, may be meant for the varied one
+    return claim, own if named else None
 
 
 def _print_data(curves: Any, verdicts: Any, expected: str | None) -> None:

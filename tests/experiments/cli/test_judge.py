@@ -83,6 +83,7 @@ def test_a_claim_on_what_is_held_fixed_is_no_claim_on_the_sizes(tmp_path: Path) 
     file.write_text(json.dumps({"benchmarks": runs}))
     asked = str(file), "--exact", "--parameter", "n", "--expected"
     assert [hem(*asked, claim)[0] for claim in ("O(n)", "O(m)", "O(n·m)")] == [0, 1, 0]
+    assert "names k, n_held: say which" in hem(*asked, "O(k·m)")[1]  # k may be meant for n
 
 
 def test_sizes_without_a_name_are_judged(costs: Path) -> None:
