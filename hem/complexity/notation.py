@@ -92,7 +92,8 @@ def parse(claim: str, variable: str | None = None) -> Order:
     word = WORDS.get(text.strip(" ()"))
     text = word or text.strip()
     tokens = TOKEN.findall(text)
-    words = re.search(r"[a-z]{3}|[a-zO]\d", re.sub("sqrt|log", "O", re.sub(r"_\w+", "_", text)))
+    short = re.sub("sqrt|log", "O", re.sub(r"_\w+", "_", text))  # √2n and 2^2n are two things each
+    words = re.search(r"[a-z]{3}|[a-z]\d|O\s*\d|\d\^\d+[a-zO]", short)
     if not tokens or words or "".join(tokens) != re.sub(r"\s", "", text):
         raise _unknown(claim)
     found = sorted({it for it in tokens if it[0].isalpha() and it not in ("sqrt", "log")})
