@@ -20,6 +20,7 @@ from hem.complexity.notation import Array
 Row = tuple[str, dict[str, float], list[float]]  # a function's name, its parameters, its samples
 UNITS = {"ns": 1e-9, "us": 1e-6, "ms": 1e-3, "s": 1.0}
 DIGITS = re.compile(r"(\d+(?:\.\d+)?(?:e[+-]?\d+)?)")  # what splits by it has numbers at odd places
+OBJECT, ADDRESS = "UNSERIALIZABLE[", re.compile(r"^UNSERIALIZABLE\[| at 0x\w+|(?<=>)\]$")
 
 
 class Curve(NamedTuple):
@@ -154,22 +155,31 @@ def _hyperfine(results: list[dict[str, Any]]) -> Iterator[Row]:
 
 
 def _pytest_benchmark(benchmarks: list[dict[str, Any]]) -> Iterator[Row]:
-    """A test is named by its file and class, too, where another has its name."""
-    tests = [
-        tuple((it.get(key) or it["name"]).partition("[")[0] for key in ("name", "fullname"))
-        for it in benchmarks
-    ]
-    names = Counter(name for name, _ in {*tests})
-    for (name, full), it in zip(tests, benchmarks, strict=True):
+    """A test is named by its file and class, too, where another has its name.
+
+    An object names a curve of its own where it is given at several sizes; where each size has its
+    own, it names none. Its address is told where that alone tells it from another.
+    """
+    rows, asked = [], defaultdict[Any, set[Any]](set)
+    for it in benchmarks:
+        test = tuple((it.get(key) or it["name"]).partition("[")[0] for key in ("name", "fullname"))
         given = it.get("params") or {}
         if all(_number(value) is None for value in given.values()):
             given = (it.get("extra_info") or {}) | given
         parameters = _numbers(given)
         others = [str(value) for key, value in given.items() if key not in parameters]
-        named = [it for it in others if not it.startswith("UNSERIALIZABLE[")]  # it has an address
-        stats = it["stats"]
-        title = ", ".join([name if names[name] == 1 else full, *named])
-        yield title, parameters, stats.get("data") or [stats["median"]]
+        rows.append((test, parameters, others, it["stats"]))
+        for value in others:
+            asked[test, value].add(tuple(parameters.values()))
+    names = Counter(name for name, _ in {test for test, *_ in rows})
+    kept = {key for key, at in asked.items() if len(at) > 1 or not key[1].startswith(OBJECT)}
+    alike = Counter((test, ADDRESS.sub("", value)) for test, value in kept)
+    for test, parameters, others, stats in rows:
+        title = [test[0] if names[test[0]] == 1 else test[1]]
+        for value in others:
+            plain = ADDRESS.sub("", value)
+            title += [plain if alike[test, plain] == 1 else value] * ((test, value) in kept)
+        yield ", ".join(title), parameters, stats.get("data") or [stats["median"]]
 
 
 def _google_benchmark(benchmarks: list[dict[str, Any]]) -> Iterator[Row]:

@@ -213,6 +213,18 @@ def test_objects_and_what_is_no_number_split_no_curve(tmp_path: Path) -> None:
     assert curves_of(tmp_path / "file", written_of(*rows)) == {"t, nan": [1, 2]}
 
 
+def test_each_function_and_object_that_a_test_was_given_is_a_curve(tmp_path: Path) -> None:
+    given = ["<class 'list'>", "<function f at 0x1a>", "<t.A object at 0x2>", "<t.A object at 0x3>"]
+    rows = [
+        (f"a.py::t[{n}-{k}]", {"n": n, "f": f"UNSERIALIZABLE[{it}]"}, {})
+        for n in (1, 2) for k, it in enumerate(given)
+    ]  # fmt: skip
+    found = curves_of(tmp_path / "file", written_of(*rows))
+    assert [*found.values()] == [[1, 2]] * 4
+    assert [*found][:2] == ["t, <class 'list'>", "t, <function f>"]
+    assert all(it in name for it, name in zip(given[2:], [*found][2:], strict=True))
+
+
 def test_spaces_around_names_of_columns_are_none_of_theirs(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("n , f\n1,2\n2,3\n")
     (curve,) = read_curves(tmp_path / "file", "n")
