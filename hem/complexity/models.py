@@ -17,6 +17,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 from numpy.typing import NDArray
 
+from hem.complexity.estimates import WIDEST
 from hem.complexity.notation import Array, Order, parse
 
 MODELS: dict[str, Order] = {
@@ -121,6 +122,7 @@ def design(
     orders = [parse(name) for name in names]
     f = np.array([order(sizes) for order in orders])
     scale = np.maximum(f.max(1), 1e-9)
+    f = np.maximum(f, scale[:, None] / WIDEST)  # log 1 is 0, which has no slope
     beside = 1 + np.array([terms * has_lower_terms(order) for order in orders])[..., None] / sizes
     f = f[:, None] / scale[:, None, None] * beside
     intercept = np.maximum((f.max(2) - growth * f.min(2)) / (growth - 1), 0)

@@ -56,6 +56,17 @@ def test_a_cache_that_nobody_measured_makes_no_constant_cost_a_violation() -> No
     assert np.mean(violated) <= 0.01
 
 
+@pytest.mark.filterwarnings("error")
+def test_slopes_are_numbers_where_sizes_begin_at_one() -> None:
+    """A logarithm is 0 there."""
+    rng = np.random.default_rng(2)
+    for claim in ("O(log n)", "O(n log n)", "O(log^2 n)"):
+        for _ in range(30):
+            samples = [n * rng.lognormal(0, 2, 2) for n in range(1, 6)]
+            told = judge([*range(1, 6)], samples, claim, exact=True, resamples=9)
+            assert np.isfinite([told.slope, told.slope_low, told.slope_high]).all()
+
+
 def noise_alone(rng: np.random.Generator, kind: str) -> list[Array]:
     if kind == "wild samples":
         return [rng.lognormal(0, 1, 20) for _ in range(7)]
