@@ -53,7 +53,8 @@ def apply(
     except MeshlabError as error:
         said = " ".join(error.reason.split())
         raise MeshError(f"pymeshlab's {filter_name} failed: {said}") from error
-    return TriangleMesh(points, triangles, mesh.points.dtype if mesh else np.float32)
+    kind = mesh.points.dtype if mesh else np.float32
+    return TriangleMesh(points.astype(kind), triangles, kind)  # rounded, which nobody can change
 
 
 def intersecting_faces(mesh: TriangleMesh) -> Indices:

@@ -1,6 +1,7 @@
 """Generated meshes: every family is a surface of the promised size, kept soundly on disk."""
 
 import io
+import warnings
 from itertools import combinations
 from pathlib import Path
 
@@ -104,8 +105,10 @@ def test_what_does_not_exist_is_refused_naming_what_does() -> None:
             hem.generate("torus", n)
 
 
-def test_nothing_is_printed(capfd: pytest.CaptureFixture[str]) -> None:
-    hem.generate("isosurface", 321)
+@pytest.mark.parametrize("seed", [0, 6, 95])  # of 95, marching cubes cuts two corners that are one
+def test_nothing_is_printed(capfd: pytest.CaptureFixture[str], seed: int) -> None:
+    with warnings.catch_warnings(action="error"):
+        hem.generate("isosurface", 321, seed)
     assert capfd.readouterr() == ("", "")
 
 
