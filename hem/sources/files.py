@@ -157,7 +157,7 @@ def encoded(mesh: TriangleMesh | PolygonMesh, extension: str) -> bytes:
             raise MeshError(_words(error)) from error
         if not beside.exists():
             raise MeshError(f"pymeshlab writes no {extension} file")
-        kept = len(_read(beside).faces)  # of what it could not write, pymeshlab tells nothing
+        kept = len(_read(beside, repair=True).faces)  # of what it could not write, it tells nothing
         if kept < len(mesh.triangles):
             raise MeshError(f"pymeshlab writes {kept:,} of {len(mesh.triangles):,} faces into it")
         return beside.read_bytes()
@@ -167,7 +167,7 @@ def _extension(file: Path) -> str:
     return file.suffix.lower().removeprefix(".")
 
 
-def _read(file: Path) -> Parts:
+def _read(file: Path, repair: bool = False) -> Parts:
     data, extension = _bytes(file), _extension(file)
     if extension in _READERS:
         return _READERS[extension](data)
@@ -178,9 +178,14 @@ def _read(file: Path) -> Parts:
         words = unnoticed[0].decode("latin-1")
         raise MeshError(f"pymeshlab takes no notice of {words!r}; write plain triangles into it")
     try:
-        points, triangles = load_file(file)
+        points, triangles, left_out = load_file(file)
     except MeshlabError as error:
         raise MeshError(_words(error, "; is it whole, and of the format of its name?")) from error
+    if left_out and not repair:
+        raise MeshError(
+            f"{left_out:,} of its points and triangles are not finite or use a vertex twice; "
+            "leave them out with hem.load(path, repair=True)"
+        )
     return Parts(points, uniform(triangles), _besides(data, extension))
 
 
@@ -226,7 +231,7 @@ def _bytes(file: Path) -> bytes:
 
 def _read_mesh(file: Path, repair: bool, dtype: DTypeLike) -> TriangleMesh | PolygonMesh:
     kind = position_type(dtype)
-    points, faces, dropped = _read(file)
+    points, faces, dropped = _read(file, repair)
     if repair:
         points, faces = _usable(points, faces, kind)
     names = ", ".join(dict.fromkeys(dropped))

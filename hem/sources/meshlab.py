@@ -71,8 +71,11 @@ def distances(one: TriangleMesh, other: TriangleMesh, samples: int = 40_000) -> 
     return _WORKER.ask("distances", meshes=meshes, samples=samples)
 
 
-def load_file(path: Path) -> tuple[Any, Any]:
-    """The points and the triangles of a file, all its meshes as one. Raises MeshlabError."""
+def load_file(path: Path) -> tuple[Any, Any, int]:
+    """The points and the triangles of a file, all its meshes as one. Raises MeshlabError.
+
+    And how many of both pymeshlab has left out, as they are not finite or have a corner twice.
+    """
     return _WORKER.ask("load", path=str(path))
 
 

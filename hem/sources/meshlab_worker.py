@@ -9,8 +9,11 @@ import contextlib
 import io
 import os
 import pickle
+import re
 import sys
+import tempfile
 from collections.abc import Callable
+from itertools import chain
 from typing import Any
 
 import numpy as np
@@ -81,17 +84,24 @@ def distances(pymeshlab: Any, meshes: list[Any], samples: int) -> tuple[float, f
     return float(parts[:, 0].max()), float(np.sqrt((parts[:, 1] ** 2).mean()))
 
 
-def load(pymeshlab: Any, path: str) -> tuple[Any, Any]:
-    """The points and triangles of a file, all its meshes as one."""
-    meshes = pymeshlab.MeshSet(verbose=False)
-    meshes.load_new_mesh(path)
+def load(pymeshlab: Any, path: str) -> tuple[Any, Any, int]:
+    """The points and triangles of a file, all its meshes as one, and how many were left out."""
+    with tempfile.TemporaryFile() as said:
+        os.dup2(said.fileno(), 2)
+        try:
+            meshes = pymeshlab.MeshSet(verbose=True)
+            meshes.load_new_mesh(path)
+        finally:
+            os.dup2(1, 2)
+        said.seek(0)
+        left_out = sum(map(int, chain(*re.findall(_LEFT_OUT, said.read()))))
     points = [part.transformed_vertex_matrix() for part in meshes]
     starts = np.cumsum([0, *map(len, points)])
     faces = [part.face_matrix() + start for part, start in zip(meshes, starts, strict=False)]
     for part, rows in zip(meshes, faces, strict=True):
         if np.linalg.det(part.transform_matrix()) < 0:  # mirrored, its faces run the other way
             rows[:, 1:] = rows[:, :0:-1].copy()
-    return np.concatenate(points), np.concatenate(faces)
+    return np.concatenate(points), np.concatenate(faces), left_out
 
 
 def save(pymeshlab: Any, mesh: Any, path: str) -> None:
@@ -108,6 +118,7 @@ def filled(pymeshlab: Any, *given: Any) -> Any:
     return meshes
 
 
+_LEFT_OUT = rb"contains (\d+) vertices with NAN coords and (\d+) degenerated faces"
 _OPTIONS = {
     "ctm": "lossless", "wrl": "save_vertex_color",
     "dae": "save_vertex_color save_vertex_normal", "x3d": "save_vertex_color save_vertex_normal",

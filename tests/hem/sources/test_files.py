@@ -358,6 +358,20 @@ def test_unusable_elements_are_never_left_out_silently(
 
 
 @pytest.mark.parametrize(
+    ("was", "now"), [("2 -1", "2 -1 0 1 1 -1"), ("2 -1", "2 -1 3 4 3 -1"), ("7 7 7", "7 nan 7")]
+)
+def test_what_pymeshlab_leaves_out_is_left_out_by_repair_alone(
+    tmp_path: Path, was: str, now: str
+) -> None:
+    text = X3D.format("").replace('0 1 0"', '0 1 0 7 7 7 8 8 8"').replace(was, now)
+    file = written(tmp_path / "a.x3d", text)
+    for read in (hem.load, hem.load_polygons, hem.as_mesh):
+        with pytest.raises(hem.MeshError, match=r"1 of its points and triangles .*repair=True"):
+            read(file)
+    assert hem.load(file, repair=True).triangles.tolist() == [[0, 1, 2]]
+
+
+@pytest.mark.parametrize(
     ("name", "content", "faces"),
     [
         ("a.off", OFF.format(0, -1), 1), ("b.off", OFF.format(0, 2), 1),
