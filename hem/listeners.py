@@ -23,7 +23,10 @@ class Listeners(list[Listener]):
         return unsubscribe
 
     def tell(self, what: Any) -> None:
-        """Call them all, even if one raises or is interrupted; then raise what the first raised."""
+        """Call them all, even if one of them raises; then raise what the first of them raised.
+
+        An interrupt, too: whoever was not told of something would be out of step from then on.
+        """
         failures = []
         for listener in tuple(self):
             try:

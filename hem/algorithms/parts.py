@@ -124,8 +124,10 @@ def change(
             if s.told_one_by_one:
                 tell(s, kind, logs)
     finally:
-        s.scratch(0, 0, valence)
-        tell(s, kind, logs)
+        try:
+            s.scratch(0, 0, valence)
+        finally:
+            tell(s, kind, logs)
     return result
 
 

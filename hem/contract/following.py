@@ -30,7 +30,7 @@ class Followers:
         return bool(self.subscribers or self.attributes)
 
     def publish(self, edit: Edit) -> None:
-        """Have all follow an edit. Whoever is not told of it is out of step from then on."""
+        """Have all follow an edit, also where one of them is interrupted."""
         try:
             self.carry(edit)
         finally:
@@ -38,8 +38,7 @@ class Followers:
 
     def carry(self, edit: Edit) -> None:
         """Have the attributes follow, before anyone looks at them."""
-        for attribute in self.attributes.values():
-            attribute.follow(edit)
+        Listeners(it.follow for it in self.attributes.values()).tell(edit)
 
     def kept(self) -> Kept:
         """What the attributes are, in arrays of its own."""
@@ -90,17 +89,14 @@ class AttributeMethod:
         mesh, element = self._mesh, self._element
         if element == "edge" and mesh.emulated:
             raise MeshError(f"a {mesh.title} mesh records no edges that could have attributes")
-        if not isinstance(name, str):
-            raise MeshError(f"an attribute is asked for by its name, not {name!r}")
         known = self._followers.attributes.get((element, name))
         if known is not None and dtype is None and shape == ():
             if default is None and on_split is None:
                 return known
             shape = known.default.shape
-        if dtype is None:
-            dtype = np.float32 if known is None else known.default.dtype
+        dtype = dtype or (known.default.dtype if known is not None else np.float32)
         try:
-            given = fitting(0 if default is None else default, np.dtype(dtype), "the default")
+            given = fitting(0 if default is None else default, dtype, "the default")
             value = np.broadcast_to(given.copy(), shape)
         except (TypeError, ValueError, OverflowError) as error:
             raise MeshError(f"{element} attribute {name!r}: {error}") from error

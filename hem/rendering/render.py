@@ -150,8 +150,13 @@ class RenderMesh:
             if self.structure.most_corners > 3:
                 self._require_triangles_still(np.append(edit.created_faces, edit.changed_faces))
             self._pending.append(edit.touched)
-            self._grow()
-            self.structure.copy_touched(edit.touched, self._points, self._indices)
+            try:
+                self._grow()
+                self.structure.copy_touched(edit.touched, self._points, self._indices)
+            except BaseException:  # an interrupt, say: the next commit has all
+                self._rebuild()
+                self._resized = True
+                raise
         if not self._depth:
             self._commit()
 

@@ -206,6 +206,22 @@ def test_an_interrupt_between_two_steps_leaves_what_was_told(monkeypatch, algori
     require_whole(s, render, algorithm)
 
 
+def test_an_interrupt_after_the_last_step_leaves_what_was_told(monkeypatch) -> None:
+    s = structures.build("half_edge", MESHES["torus"]())
+    render, scratch = hem.RenderMesh(s), s.scratch
+
+    def stop(*given: Any) -> Any:
+        if given[:2] == (0, 0):  # no more room is wanted
+            raise KeyboardInterrupt
+        return scratch(*given)
+
+    monkeypatch.setattr(s, "scratch", stop)
+    with pytest.raises(KeyboardInterrupt):
+        ALGORITHMS["impacts"](s)
+    monkeypatch.undo()
+    require_whole(s, render, "impacts")
+
+
 @pytest.mark.parametrize("scheme", algorithms.SCHEMES)
 def test_what_a_subscriber_raises_ends_it_after_the_edit_that_all_are_told_of(scheme: str) -> None:
     s = structures.build("half_edge", MESHES["torus"]())

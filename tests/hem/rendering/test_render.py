@@ -194,21 +194,30 @@ def test_every_subscriber_hears_of_an_edit_even_if_another_raises(s):
     assert s.split_face(0, (0, 0, 0)) is heard[1]
 
 
-@pytest.mark.parametrize("source", ["a subscriber", "an attribute"])
-def test_an_interrupt_while_an_edit_is_told_leaves_a_render_mesh_in_step(s, source):
-    def interrupted(edit: hem.Edit) -> None:
+@pytest.mark.parametrize("interrupted", ["attribute", "subscriber", "render mesh"])
+def test_an_interrupt_while_an_edit_is_followed_leaves_all_others_in_step(
+    s, interrupted, monkeypatch
+):
+    def stop(*given):
         raise KeyboardInterrupt
 
-    if source == "a subscriber":
-        s.subscribe(interrupted)
-    else:
-        s.vertex_attribute("weight").follow = interrupted
-    render = hem.RenderMesh(s)
+    heat, ids = s.vertex_attribute("heat"), s.vertex_attribute("id", int, default=7)
+    end = s.subscribe(stop if interrupted == "subscriber" else str)
+    render, told = hem.RenderMesh(s), []
+    render.subscribe(told.append)
+    if interrupted == "attribute":
+        monkeypatch.setattr(heat, "follow", stop)
+    elif interrupted == "render mesh":
+        monkeypatch.setattr(s, "copy_touched", stop)
     with pytest.raises(KeyboardInterrupt):
         s.split_face(0, (0, 0, 0))
-    afresh = hem.RenderMesh(s)
-    assert np.array_equal(render.points, afresh.points)
-    assert np.array_equal(render.indices, afresh.indices)
+    end()
+    monkeypatch.undo()
+    assert_in_step(render)
+    new = s.split_face(0, (0, 0, 0)).vertex
+    assert ids.values[[new - 1, new]].tolist() == [7, 7]
+    assert_in_step(render)
+    assert len(told) == 2 or told[-1].resized
 
 
 def seamed(mesh: hem.TriangleMesh) -> tuple[np.ndarray, np.ndarray]:

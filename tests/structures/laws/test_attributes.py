@@ -770,10 +770,12 @@ def test_what_an_interrupted_edit_made_has_the_default_after_compact(name: str):
     def interrupt(edit: hem.Edit) -> None:
         raise KeyboardInterrupt
 
-    many[0].follow = interrupt
+    for it in many:
+        it.follow = interrupt
     with pytest.raises(KeyboardInterrupt):
         s.split_face(int(s.faces()[-1]), (0, 0, 0))
-    del many[0].follow
+    for it in many:
+        del it.follow
     s.compact()
     for it in many:
         values = it[handles_of(s, it)]
