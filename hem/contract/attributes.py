@@ -28,6 +28,8 @@ Rule = Literal["interpolate", "copy", "default"]
 """What a new element gets: a value between its parents' by where it lies, that of its first parent,
 or the default, which it also gets where it has no parents."""
 
+Way = tuple[int, int]  # where a half-edge starts, and where it ends
+
 RULES = ("interpolate", "copy", "default")
 
 ROUNDING = 1e-6  # faces that are flatter than this part of their length have no direction across
@@ -221,23 +223,24 @@ class EdgeAttribute(Attribute):
     def _inherit(self, edit: Edit) -> None:
         if self.on_split == "default":
             return
-        for v, ends in zip(edit.created_vertices.tolist(), edit.vertex_parents, strict=True):
-            if len(ends) == 2:
-                old, new = (self.mesh.find_edge(v, int(end)) for end in ends)
-                for one, other in self._sides(v, old, new):
-                    self._rows[other] = self._rows[one]
+        for parts, kept in parts_of_edges(edit):
+            rows = self._along(kept)
+            for part in parts:
+                for one, other in zip(rows, self._along(part), strict=False):
+                    if one >= 0 and other >= 0:
+                        self._rows[other] = self._rows[one]
 
-    def _sides(self, middle: int, old: int | None, new: int | None) -> list[tuple[int, int]]:
-        """Which row goes into which where an edge was split: half-edges keep their direction."""
-        if old is None or new is None:  # split again by the same batch
-            return []
-        if self.element == "edge":
-            return [(old, new)]
+    def _along(self, way: Way) -> list[int]:
+        """The rows of what joins two vertices, of half-edges first that which runs so."""
         mesh = self.mesh
-        apart = (mesh.origin(old) == middle) == (mesh.origin(new) == middle)
-        one, other = [old, mesh.twin(old)], [new, mesh.twin(new)]
-        pairs = zip(one, other[::-1] if apart else other, strict=True)
-        return [(h, g) for h, g in pairs if h >= 0 and g >= 0]
+        try:
+            e = mesh.find_edge(*way)
+        except MeshError:  # an end went in the same edit
+            return []
+        if e is None or self.element == "edge":
+            return [e] if e is not None else []
+        pair = [e, mesh.twin(e)]
+        return pair if mesh.origin(e) == way[0] else pair[::-1]
 
 
 class HalfEdgeAttribute(EdgeAttribute):
@@ -281,6 +284,24 @@ class HalfEdgeAttribute(EdgeAttribute):
             faces, first, h = (it[h != first] for it in (faces, first, h))
             if not len(faces):
                 return
+
+
+def parts_of_edges(edit: Edit) -> list[tuple[list[Way], Way]]:
+    """For each edge that was split its parts, all along it, and that which keeps its handle."""
+    wholes: dict[Way, tuple[list[Way], Way]] = {}  # by part
+    rows = zip(edit.created_vertices.tolist(), edit.vertex_parents.to_list(), strict=True)
+    for v, ends in rows:
+        if len(ends) != 2:
+            continue
+        first, second = ends
+        way = (first, second) if (first, second) in wholes else (second, first)
+        parts, kept = wholes.pop(way, ([way], way))
+        i = parts.index(way)
+        parts[i : i + 1] = new = (way[0], v), (v, way[1])
+        if kept == way:
+            kept = new[way[0] != first]
+        wholes |= dict.fromkeys(parts, (parts, kept))
+    return list({id(parts): (parts, kept) for parts, kept in wholes.values()}.values())
 
 
 def fitting(values: ArrayLike, dtype: DTypeLike, called: str) -> Array:

@@ -8,12 +8,18 @@ from numpy.typing import ArrayLike
 
 from hem.arrays import Array
 from hem.authoring import BITS, SIDES
-from hem.contract.attributes import Attribute, EdgeAttribute, enlarged, renumbered, widened
+from hem.contract.attributes import (
+    Attribute,
+    EdgeAttribute,
+    Way,
+    enlarged,
+    renumbered,
+    widened,
+)
 from hem.edit import Edit, Remapping, whole_faces
 from hem.ragged import Ragged
 from hem.room import roomy
 
-Way = tuple[int, int]  # where a half-edge starts, and where it ends
 ALIKE = 1e-5  # corners whose values differ by less, or by this part of them, are at no seam
 
 

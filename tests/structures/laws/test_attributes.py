@@ -341,6 +341,55 @@ def where(s: Structure, edge: int) -> frozenset:
     return frozenset(map(tuple, s.points[s.edge_vertices(edge)].tolist()))
 
 
+@pytest.mark.parametrize("toward", [0, 1, "the last one"])
+@pytest.mark.parametrize("name", WITH_EDGES)
+def test_all_parts_of_an_edge_that_one_edit_splits_again_and_again_have_what_it_had(name, toward):
+    s = structures.build(name, octahedron())
+    if not s.stable_edge_handles:
+        return  # every split is an edit of its own
+    ends, values = s.edge_array().tolist()[0], s.edge_attribute("crease", np.int64)
+    a, b = s.points[ends].astype(float)
+    values[s.edges()[0]] = 7
+    other, edges, points, log = s.copy(), [int(s.edges()[0])], [(a + b) / 2], []
+    for _ in range(5):  # toward one end, or on either side of the last one in turn
+        edit = other.split_edge(edges[-1], points[-1])
+        log += np.asarray(edit.touched).tolist()
+        near = other.vertex_vertices(edit.vertex).tolist()
+        on_it = [v for v in near if np.allclose(np.cross(other.points[v] - a, b - a), 0)]
+        end = max(on_it) if toward == "the last one" else min(on_it, key=lambda v: abs(
+            other.points[v] - (a, b)[toward]).sum())  # fmt: skip
+        edges.append(other.find_edge(edit.vertex, end))
+        points.append((other.points[edit.vertex] + other.points[end]) / 2)
+    s.prepare("split_edge", edges[:-1], points[:-1]).run()
+    s.tell("splits", log)
+    assert s.same_as(other)
+    at = s.points[s.edge_array()].astype(float)
+    parts = np.isclose(np.cross(at - a, b - a), 0).all(axis=(1, 2))
+    assert parts.sum() == 6
+    assert values[s.edges()].tolist() == (7 * parts).tolist()
+
+
+@pytest.mark.parametrize("name", WITH_EDGES)
+def test_an_end_of_a_split_edge_may_go_in_the_same_edit(name):
+    s = structures.build(name, octahedron())
+    if not s.stable_edge_handles:
+        return  # every operation is an edit of its own
+    edges = s.edges()
+    values = s.edge_attribute("crease", np.int64)
+    values[edges] = edges
+    other, edge = s.copy(), int(edges[0])
+    split = other.split_edge(edge, (0, 0, 0))
+    part = other.find_edge(split.vertex, int(other.edge_vertices(edge)[0]))
+    merged = other.collapse_edge(part, split.vertex)
+    s.prepare("split_edge", [edge], [(0, 0, 0)]).run()
+    s.prepare("collapse_edge", [(part, split.vertex, -1)]).run()
+    s.tell("both", np.concatenate([split.touched, merged.touched]))
+    assert s.same_as(other)
+    kept = np.intersect1d(edges, s.edges())
+    assert len(kept) > len(edges) / 2
+    assert np.array_equal(values[kept], kept)
+
+
 @pytest.mark.parametrize("name", WITH_EDGES)
 @pytest.mark.parametrize("source", SURFACES)
 def test_both_parts_of_an_edge_have_what_it_had(name: str, source: str):
