@@ -268,7 +268,7 @@ def mesh_from_render(
     found = TriangleMesh(*used_only(mesh.points, mesh.triangles))
     if values is None:
         return found
-    given = np.asarray(values)
+    given = _array(values, "values")
     if given.ndim == 0 or len(given) != len(raw.points):
         count = f"{len(given):,} values" if given.ndim else "one value"
         raise MeshError(f"there are {count} for {len(raw.points):,} positions")
@@ -276,8 +276,15 @@ def mesh_from_render(
     return found, given[raw.triangles[~repeated_corners(cluster[raw.triangles])]]
 
 
+def _array(values: ArrayLike, name: str) -> Array:
+    try:
+        return np.asarray(values)
+    except ValueError as error:  # rows of several lengths
+        raise MeshError(f"{name} are no array: {error}") from error
+
+
 def _rows(values: ArrayLike, name: str) -> Array:
-    given = np.asarray(values)
+    given = _array(values, name)
     if given.size % 3 or given.ndim > 2 or (given.ndim == 2 and given.shape[1] != 3):
         raise MeshError(f"{name} come in threes, not in shape {given.shape}")
     return given.reshape(-1, 3)

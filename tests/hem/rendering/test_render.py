@@ -269,11 +269,15 @@ def test_what_is_no_structure_is_not_followed(given):
         ([0.0] * 9, [0, 1, 3]),
         ([np.nan] * 9, [0, 1, 2]),
         (np.zeros((3, 2)), [0, 1, 2]),
+        ([[0, 0, 0], [1, 0], [0, 1, 0]], [0, 1, 2]),
+        (np.eye(3), [[0, 1, 2], [0, 2]]),
     ],
 )
 def test_what_is_no_render_mesh_is_refused(points, indices):
     with pytest.raises(hem.MeshError):
         hem.mesh_from_render(points, indices)
+    with pytest.raises(hem.MeshError, match="values"):
+        hem.mesh_from_render(np.eye(3), [0, 1, 2], values=[[1], [2, 3], [4]])
 
 
 def test_welding_equals_a_search_through_all_positions():
