@@ -13,7 +13,8 @@ from rich.markup import escape
 from typer import Argument, Option
 
 import hem
-from experiments.cli.check import BASELINE
+from experiments import carried
+from experiments.cli.check import HERE
 from experiments.cli.console import (
     AsJson,
     OfMesh,
@@ -78,7 +79,9 @@ def advise(
 
     limits = advice.Limits(most_bytes, worst_edit / 1e3)
     wanted = advice.find_workload(workload)
-    source = load(run_folder(run) if run else BASELINE / RUN)
+    usual = HERE / RUN  # who keeps a baseline of counters alone has none there
+    usual = usual if usual.is_dir() else carried(str(HERE)) / RUN
+    source = load(run_folder(run) if run else usual)
     if source.machines:
         raise ValueError(f"{source.folder} was measured by several machines: give one's folder")
     of_mesh = hem.find_mesh(mesh, repair)

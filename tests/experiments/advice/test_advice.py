@@ -359,6 +359,16 @@ def test_the_command_says_to_stay_where_nothing_is_a_tenth_quicker(run: Run, tmp
     assert "measured on Winged-Edge, and nothing is a tenth quicker: stay" in text
 
 
+def test_a_folder_with_a_baseline_of_counters_alone_takes_prices_from_the_run_of_the_project(
+    tmp_path, monkeypatch
+) -> None:
+    (tmp_path / "results/reference/counters").mkdir(parents=True)  # as hem baseline update does
+    usual = told("torus:1000")
+    monkeypatch.chdir(tmp_path)
+    assert told("torus:1000") == usual
+    assert usual[0] == 0
+
+
 def test_structures_with_the_same_reason_are_told_together(tmp_path) -> None:
     lines = [f"v {x} {y} {z}" for x, y, z in np.eye(5, 3)]
     lines += ["f 1 2 3", "f 2 1 4", "f 1 2 5"]  # three at an edge
