@@ -149,12 +149,12 @@ def find_workload(name: str) -> Workload:
         )
     given: dict[str, Any] = {"title": path.stem}
     try:
-        if path.suffix == ".csv":
+        if path.suffix.lower() == ".csv":
             with path.open(newline="", encoding="utf-8-sig") as lines:
                 rows = csv.DictReader(lines, restkey="a cell too many")
                 return _workload({**given, "builds": 0, "rows": list(rows)})
         return _workload({**given, **tomllib.loads(path.read_text("utf-8-sig"))})
-    except (ValueError, TypeError) as error:
+    except (ValueError, TypeError, csv.Error) as error:
         raise ValueError(f"{path}: {error}") from error
 
 

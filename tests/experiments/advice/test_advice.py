@@ -327,6 +327,14 @@ def test_what_a_spreadsheet_puts_before_the_first_line_is_passed_over(tmp_path) 
         assert find_workload(str(tmp_path / name)).rows[0].what == "vertex_faces"
 
 
+def test_a_csv_is_known_by_its_extension_in_any_case_and_told_where_it_is_none(tmp_path) -> None:
+    (tmp_path / "MINE.CSV").write_text("what,times\nvertex_faces,3\n")
+    assert find_workload(str(tmp_path / "MINE.CSV")).rows == (Row("vertex_faces", 3),)
+    (tmp_path / "no.csv").write_text("what,times\n" + "x" * 200_000)
+    with pytest.raises(ValueError, match=r"no\.csv: field larger than"):
+        find_workload(str(tmp_path / "no.csv"))
+
+
 def test_a_line_of_a_csv_that_is_too_long_is_told_with_its_place(tmp_path) -> None:
     (tmp_path / "mine.csv").write_text("what,times\nvertex_faces,1\nface_faces,1,random\n")
     with pytest.raises(ValueError, match=r"mine\.csv: row 2: .*'a cell too many'; there are what"):
