@@ -18,6 +18,9 @@ from rich.markup import escape
 from typer import Argument, Option
 from typer.core import TyperGroup
 
+if os.environ.get("COLUMNS") == "0":  # nobody knows the width, and rich would print nothing
+    del os.environ["COLUMNS"]
+
 
 class _Console(Console):
     def on_broken_pipe(self) -> None:

@@ -72,6 +72,16 @@ def test_a_verdict_is_told_where_signs_cannot_be_written(tmp_path, how):
     assert not how or json.loads(ended.stdout.decode())[0]["outcome"] == "violated"
 
 
+def test_a_width_of_nothing_is_none_and_loses_no_line():
+    run = [sys.executable, "-m", "experiments.cli"]
+    for words in ("-h", "info -h", "info torus:100"):
+        printed, known = (
+            subprocess.check_output([*run, *words.split()], env={**os.environ, "COLUMNS": width})
+            for width in ("0", "80")
+        )
+        assert printed == known
+
+
 def test_names_are_told_as_they_are_whatever_brackets_they_have(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     mesh, workload = Path("a[/b].obj"), tmp_path / "w.toml"
