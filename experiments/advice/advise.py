@@ -127,7 +127,7 @@ def advise(
 
 def _unfit(prices: Prices, workload: Workload, name: str, needs: Sequence[str]) -> list[str]:
     """Why a structure is none for a workload, on whatever mesh."""
-    wrong = [NEEDS[it][0] for it in needs if not NEEDS[it][1](REGISTRY[name])]
+    wrong = [NEEDS[it][0] for it in dict.fromkeys(needs) if not NEEDS[it][1](REGISTRY[name])]
     if name not in prices.structures:
         wrong.append("the run has not measured it")
     if workload.measured and not REGISTRY[name].compiled:

@@ -112,6 +112,7 @@ def test_every_structure_is_an_option_or_refused_with_a_reason(prices: Prices, n
     found = advise(prices, ASKED, MESH, needs=[need])
     assert sorted([*names(found), *found.refused]) == sorted(REGISTRY)
     assert all(found.refused.values())
+    assert found.refused == advise(prices, ASKED, MESH, needs=[need, need]).refused
 
 
 def test_needs_follow_from_what_structures_declare(prices: Prices) -> None:
