@@ -109,10 +109,11 @@ def break_even(of_run: Curves) -> pd.DataFrame:
 
     It takes longer to build and answers faster. After k it has caught up where build + k · cost is
     the base's build + k · its cost. Columns: subject, structure, vertices, times: 0 where the
-    structure is ahead from the beginning, infinite where it never catches up.
+    structure is ahead from the beginning, infinite where it never catches up. No rows for several
+    machines, whose times are not compared.
     """
     rows = []
-    for subject in MIXES:
+    for subject in () if of_run.of_machines else MIXES:
         base = _costs(of_run, BASE, subject)
         for structure in structures.NAMES:
             if structure != BASE and structures.REGISTRY[structure].compiled:

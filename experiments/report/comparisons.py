@@ -51,7 +51,7 @@ def objects_against_arrays(run: Run) -> Html:
         sizes = [set(it.index) for it in found if len(it)]
         if shared := set.intersection(*sizes) if sizes else set():
             costs = [cost for it in found for cost in it.reindex([max(shared)]).to_numpy()[0]]
-            rows.append((title, *costs, costs[3] / costs[2], max(shared)))
+            rows.append((title, *costs, _ratio(run, costs[3], costs[2]), max(shared)))
     heads: Heads = {
         "": str, "accesses, arrays": count, "accesses, objects": count,
         "time, arrays (compiled)": duration, "time, objects (Python)": duration,
@@ -131,13 +131,19 @@ def shattering(run: Run, compiled: bool = True) -> Html:
     shared: Any = cases[cases["vertices"] <= base.index.max()] if len(base) else cases
     rows = []
     for it in shared.groupby("structure", sort=False).tail(1).itertuples():
-        title, times = REGISTRY[it.structure].title, base.get(it.vertices, np.nan) / it.cost
+        title = REGISTRY[it.structure].title
+        times = _ratio(run, base.get(it.vertices, np.nan), it.cost)
         row = title, it.vertices, it.handles, it.handles * it.cost, 1 / it.cost
         rows.append((*row, times) if compiled else row)
     heads: dict[str, Any] = {"": str, "vertices": count, "shards": count, "in all": duration}
     heads |= {"shards per second": count}
     heads |= {"times faster than indexed": digits} if compiled else {}
     return numbers(rows, heads)
+
+
+def _ratio(run: Run, one: float, other: float) -> float:
+    """How many times as long one takes; nan of several machines, whose times are not compared."""
+    return np.nan if run.machines else one / other
 
 
 def face_finding(run: Run) -> Html:

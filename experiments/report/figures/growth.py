@@ -212,7 +212,7 @@ def overtaking(run: Run) -> Plot:
         axes.set_ylim(0, 2 * max([1.0, *table["times"]]))
 
     titles = {name: title.capitalize() for name, title in MIXES.items()}
-    what = "building and queries or operations of the same meshes, beside an indexed mesh"
+    what = "on one machine building and queries of the same meshes, beside an indexed mesh"
     shape: dict[str, Any] = {"also": also, "room": 0.3, "columns": 4, "size": (2.75, 2.9)}
     return _draw(table, titles, "vertices", what, "how many until building is repaid", **shape)
 

@@ -10,7 +10,7 @@ import pytest
 from rich.console import Console
 
 from experiments.bench_workloads import COMPILED, FROM_PYTHON
-from experiments.claims import CLAIMED, Kind, Outcome, judge_run
+from experiments.claims import CLAIMED, Kind, Outcome, break_even, curves, judge_run
 from experiments.report import comparisons
 from experiments.report.pages import claims_markdown, verdicts
 from experiments.report.session import share
@@ -119,6 +119,17 @@ def test_structures_are_compared_with_the_indexed_mesh_at_its_size(run):
     for name, it in REGISTRY.items():
         assert (f"<td>{it.title}</td>" in text) == it.compiled, name
         assert (f"<td>{it.title}</td>" in from_python) != it.compiled, name
+
+
+def test_times_of_several_machines_are_not_compared(run):
+    several = {**run.meta, "machine": {"cpu": "2 machines", "machines": ["a", "b"]}}
+    for show in (comparisons.objects_against_arrays, comparisons.shattering):
+        alone, apart = (show(replace(run, meta=it)).rows for it in (run.meta, several))
+        (place,) = (k for k, head in enumerate(alone[0]) if re.match("slower|times", head))
+        assert "–" not in {row[place] for row in alone[1:]}
+        assert {row[place] for row in apart[1:]} == {"–"}
+    assert len(break_even(curves(run)))
+    assert break_even(curves(replace(run, meta=several))).empty
 
 
 def test_work_and_time_of_objects_and_arrays_are_those_of_the_same_mesh(run):
