@@ -223,12 +223,15 @@ class Answer:
         return str(part("answer", self.text, self.measured, self.rests))
 
 
+UNTOLD = "Dieser Lauf hat das auf keiner Maschine ganz gemessen."
+
+
 def answer(
     text: str, german: str, rests: Mapping[str, str], needs: Sequence[float], missing: str
 ) -> Answer:
     """An answer with its links, or ``missing`` where a number is."""
     measured = all(value == value for value in needs)  # nan where nothing was measured
-    german = written.german_numbers(german) if measured else "Dieser Lauf hat das nicht gemessen."
+    german = written.german_numbers(german if measured else UNTOLD)
     return Answer(text if measured else missing, german, rests, measured)
 
 

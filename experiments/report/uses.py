@@ -124,7 +124,7 @@ def beside(run: Run, one: str, other: str) -> Html:
     asked = partial(measured.curve, Axis.RANDOM_FACES)
     ratios = {it: asked(one, it).by_size / asked(other, it).by_size for it in QUERIES}
     table = pd.DataFrame(ratios).dropna()
-    require(len(table) and not run.machines, "measured the queries of both on the same mesh")
+    require(len(table) and not run.machines, "measured the queries of both on one mesh and machine")
     vertices, found = table.index[-1], table.iloc[-1]
     faster, slower = (found < 1 / ALIKE).sum(), (found > ALIKE).sum()
     titles = [REGISTRY[it].title for it in (one, other)]
@@ -145,7 +145,7 @@ def by_valence(run: Run) -> pd.DataFrame:
         table = pd.DataFrame(costs).dropna()
         for place in (0, len(table) // 2, -1) if len(table) > 2 else ():
             rows[query, int(table.index[place])] = table.iloc[place]
-    require(rows, "measured queries at three valences")
+    require(rows, "measured queries at three valences on one machine")
     return pd.DataFrame(rows).T
 
 
@@ -197,7 +197,7 @@ def _rows(run: Run, bold: str, pair: str) -> list[tuple[str, str, str, str]]:
             words.append(pair.format(bold.format(title) if ratio <= ALIKE else title, beside))
         if words:
             rows.append((use.title, use.compared, f"{found.name:,}", Html(" · ".join(words))))
-    require(rows, "measured what decides between structures")
+    require(rows, "measured on one machine what decides between structures")
     return rows
 
 
