@@ -229,11 +229,10 @@ def _extra_bytes(of_run: Curves) -> Iterable[float]:
 def _pays_at_most(of_run: Curves) -> Iterable[float]:
     """Queries until building is repaid, on the largest mesh by on the smallest of the larger."""
     table = break_even(of_run).query("structure == @HALF and vertices >= @LARGER")
-    finite = np.isfinite(table["times"].to_numpy(float))
-    for _, of_mix in table[finite].groupby("subject", sort=False):
-        if len(of_mix) > 1:
-            times = of_mix.sort_values("vertices")["times"].to_numpy(float)
-            yield times[-1] / times[0]
+    for _, of_mix in table.groupby("subject", sort=False):
+        first, last = of_mix.sort_values("vertices")["times"].to_numpy(float)[[0, -1]]
+        if len(of_mix) > 1 and min(first, last) < np.inf:  # where it is repaid at all
+            yield last / first
 
 
 def _edits_after_building(of_run: Curves) -> Iterable[float]:

@@ -286,6 +286,17 @@ def test_a_sentence_of_which_a_part_was_not_measured_passes_for_no_lack_of_it(
     assert outcome(run, quantity) == "undetermined"
 
 
+def test_building_that_is_never_repaid_on_a_large_mesh_is_not_repaid_as_soon_as_on_a_small_one(
+    tmp_path,
+):
+    folder = write_run(tmp_path)
+    rewrite(
+        folder, "bench_queries", "half_edge",
+        lambda it: {"samples": [1.0]} if it.faces == SIZES[-1] else {},
+    )  # fmt: skip
+    assert outcome(load(folder), "larger_meshes_repay") == "undetermined"
+
+
 def test_what_refutes_a_sentence_of_every_one_refutes_it_though_others_were_not_measured(contrary):
     less = contrary.cases[contrary.cases["structure"] != "half_edge_objects"].reset_index(drop=True)
     assert outcome(replace(contrary, cases=less), "corrected_splits") == "violated"
