@@ -83,6 +83,7 @@ def _judge(of_run: Curves, claim: Claim, expects: Between) -> JudgedClaim:
     if unsure and (inside.all() or not expects.every):
         outcome = Outcome.UNDETERMINED
     reason = f"{inside.sum()} of {len(values)} values are {expects.words}."
+    reason += " A part of it was not measured." * (len(values) < len(measured))
     if timed and of_run.too_busy and outcome == Outcome.VIOLATED:
         outcome, reason = Outcome.UNDETERMINED, TOO_BUSY
     elif timed and of_run.of_machines:

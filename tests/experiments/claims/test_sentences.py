@@ -283,7 +283,9 @@ def test_a_sentence_of_which_a_part_was_not_measured_passes_for_no_lack_of_it(
 ):
     mine = base_run.cases["experiment"].eq(experiment) & base_run.cases["structure"].eq(structure)
     run = replace(base_run, cases=base_run.cases[~mine].reset_index(drop=True))
-    assert outcome(run, quantity) == "undetermined"
+    (judged,) = (it for it in judge_sentences(run) if it.claim.expects.quantity == quantity)
+    assert judged.outcome == "undetermined"
+    assert "not measured" in judged.reason
 
 
 def test_building_that_is_never_repaid_on_a_large_mesh_is_not_repaid_as_soon_as_on_a_small_one(
