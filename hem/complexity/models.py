@@ -74,9 +74,9 @@ def unknown_slowdowns(sizes: Array, highest: float) -> Slowdowns:
     So close that one between them is as a neighbor, or a constant cost would be accused by it.
     """
     x = np.log(sizes)
-    center = np.linspace(x.min(), x.max(), 17)[:, None, None, None]
+    center = np.linspace(x.min(), x.max(), 13)[:, None, None, None]
     width = np.array([0.3, 0.7, 1.2])[:, None, None]
-    height = np.geomspace(min(1.5, highest**0.5), highest, 11)[:, None]
+    height = np.geomspace(min(1.5, highest**0.5), highest, 8)[:, None]
     step = 1 / (1 + np.exp((center - x) / width))
     low, high = step.min(-1, keepdims=True), step.max(-1, keepdims=True)
     slowdown = (1 + (height - 1) * (step - low) / np.maximum(high - low, 1e-9)).reshape(-1, len(x))
