@@ -89,14 +89,17 @@ class AttributeMethod:
         mesh, element = self._mesh, self._element
         if element == "edge" and mesh.emulated:
             raise MeshError(f"a {mesh.title} mesh records no edges that could have attributes")
+        if not isinstance(name, str):
+            raise MeshError(f"an attribute is asked for by its name, not {name!r}")
         known = self._followers.attributes.get((element, name))
         if known is not None and dtype is None and shape == ():
             if default is None and on_split is None:
                 return known
             shape = known.default.shape
-        dtype = dtype or (known.default.dtype if known is not None else np.float32)
+        if dtype is None:
+            dtype = np.float32 if known is None else known.default.dtype
         try:
-            given = fitting(0 if default is None else default, dtype, "the default")
+            given = fitting(0 if default is None else default, np.dtype(dtype), "the default")
             value = np.broadcast_to(given.copy(), shape)
         except (TypeError, ValueError, OverflowError) as error:
             raise MeshError(f"{element} attribute {name!r}: {error}") from error
