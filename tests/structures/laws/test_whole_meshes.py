@@ -10,6 +10,7 @@ import structures
 from hem.contract import QUERIES
 from hem.errors import MeshError
 from hem.meshes import undirected_edges
+from tests.extent import OF_EACH_KIND
 from tests.structures.conftest import HOLDS_ANYTHING
 from tests.structures.test_polygons import CUBE, plankton, sheet
 
@@ -168,14 +169,16 @@ def test_rows_of_different_lengths() -> None:
 
 def test_nothing_is_asked_of_a_mesh_without_faces(name: str) -> None:
     for points in ([], [[0, 0, 0]]):
-        s = structures.build(name, hem.TriangleMesh(points, []))
+        mesh = hem.TriangleMesh(points, [])
+        s = structures.build(name, mesh)
+        swept = structures.build(name, mesh, compiled=name in OF_EACH_KIND)
         assert (s.border_loops(), s.components(), s.is_closed()) == ([], [], True)
         assert (len(s.triangles()), len(s.edge_array()), len(s.split_all_faces())) == (0, 0, 0)
         assert s.valence([]).tolist() == []
         assert s.is_border().tolist() == [False] * len(points)
         for query in QUERIES:
             assert getattr(s, query)([]).to_list() == []
-            assert (s.sweep(query, []), s.work(query, []).tolist()) == (0, [])
+            assert (swept.sweep(query, []), s.work(query, []).tolist()) == (0, [])
             with pytest.raises(MeshError, match="no such"):
                 getattr(s, query)(len(points))
         s.reserve(3)
