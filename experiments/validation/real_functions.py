@@ -160,7 +160,8 @@ def main(
         os.execve(sys.executable, sys.orig_argv, os.environ | ONE_THREAD)
     rows = list(_rows(budget, alone, busy, measured))
     other = [] if not output.exists() else load_answers(output)[1].to_numpy().tolist()
-    rows += [row for row in other if row[4] != rows[0][4]]
+    anew = {(row[3], row[4]) for row in rows}
+    rows += [row for row in other if (row[3], row[4]) not in anew]
     kept = {key: value for key, value in describe("").items() if key != "preset"}
     kept |= {"budget": budget, "columns": COLUMNS, "rows": rows}
     output.write_text(json.dumps(kept, indent=1, ensure_ascii=False) + "\n", "utf-8")

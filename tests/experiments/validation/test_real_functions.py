@@ -51,6 +51,20 @@ def test_every_judge_is_counted_on_every_function_once() -> None:
     assert (real_functions.shares(held).sum(axis=1) == len(HELD_OUT)).all()
 
 
+def test_what_is_measured_anew_leaves_the_other_answers_as_they_were(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name, value in real_functions.ONE_THREAD.items():
+        monkeypatch.setenv(name, value)
+    who, output = ("f", "O(n)", "a book"), tmp_path / "answers.json"
+    for answer, halves in {"O(1)": real_functions.HALVES, "O(n)": [real_functions.HELD]}.items():
+        rows = [[*who, half, "shared", "hem", answer] for half in halves]
+        monkeypatch.setattr(real_functions, "_rows", lambda *_, rows=rows: iter(rows))
+        real_functions.main(output)
+    told = real_functions.load_answers(output)[1].set_index("half")["answer"]
+    assert told.to_dict() == {"tuned on": "O(1)", real_functions.HELD: "O(n)"}
+
+
 def test_the_readme_shows_the_kept_answers() -> None:
     _, answers = real_functions.load_answers(ROOT / real_functions.RESULT)
     page = (ROOT / "hem" / "complexity" / "README.md").read_text("utf-8")
