@@ -17,7 +17,7 @@ from experiments.report.fracture_scenes import break_up, default_impact, model
 from hem.fracture import MATERIALS
 from hem.fracture.show.scene import on_surface
 from tests.experiments.cli.calls import output_of, words
-from tests.extent import exhaustive
+from tests.extent import exhaustive, waiting_for
 from tests.pictures import require_pictures
 
 
@@ -143,7 +143,7 @@ def test_materials_of_ones_own_are_read(tmp_path):
     assert told["material"]["name"] == "jelly"
 
 
-@pytest.mark.parametrize("by", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("by", waiting_for([signal.SIGTERM], [signal.SIGINT, signal.SIGTERM]))
 def test_a_run_that_is_stopped_leaves_a_folder_as_it_was(by, tmp_path):
     out = tmp_path / "out"
     out.mkdir()
