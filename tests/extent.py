@@ -32,8 +32,9 @@ exhaustive = pytest.mark.exhaustive
 
 
 def waiting_for(few: Collection[Any], every: Iterable[Any]) -> list[Any]:
-    """The parameters of a test: but for a few they are ``exhaustive``."""
-    return [pytest.param(it, marks=() if it in few else exhaustive) for it in every]
+    """The parameters of a test, or tuples of some: but for a few they are ``exhaustive``."""
+    rows = ((it, it if isinstance(it, tuple) else (it,)) for it in every)
+    return [pytest.param(*row, marks=() if it in few else exhaustive) for it, row in rows]
 
 
 _half_edges_first = sorted(NAMES, key=lambda name: not issubclass(REGISTRY[name], Navigable))

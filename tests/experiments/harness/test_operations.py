@@ -175,9 +175,10 @@ WITH_A_REFERENCE = [
     for name, operation in product(structures.NAMES, OPERATIONS)
     if structures.REGISTRY[name].compiled and not Case(name, "torus", 100, operation).searches
 ]
+FEW = [it for it in WITH_A_REFERENCE if it[0] in OF_EACH_KIND]
 
 
-@pytest.mark.parametrize(("name", "operation"), WITH_A_REFERENCE)
+@pytest.mark.parametrize(("name", "operation"), waiting_for(FEW, WITH_A_REFERENCE))
 def test_on_more_copies_an_operation_does_no_more_where_it_has_a_reference(name, operation):
     few, many = (counted(name, operation, size) for size in (400, 6400))
     assert max(many) <= 1.1 * max(few)
