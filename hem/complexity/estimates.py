@@ -85,9 +85,16 @@ def slope(sizes: Array, cost: Array) -> Array:
 
 
 def resample(costs: Costs, fitted: Array, count: int, seed: int) -> Array:
-    """(count, k) bootstrap replicates: samples drawn anew, residuals' signs turned at random."""
+    """(count, k) bootstrap replicates: samples drawn anew, residuals' signs turned at random.
+
+    A line through few sizes follows each of them, so that residuals are less than errors by the
+    size's leverage h: they count for 1 / (1 - h) of themselves (MacKinnon & White 1985, HC3).
+    """
     rng = np.random.default_rng(seed)
     cells = (c[rng.integers(len(c), size=(count, len(c)))] for c in costs.samples)
     drawn = np.stack([midmean(cell) for cell in cells], axis=1)
-    sign = rng.choice([-1.0, 1.0], size=drawn.shape)
-    return drawn * (costs.cost / fitted) ** (sign - 1)
+    x = np.log(costs.sizes) - np.log(costs.sizes).mean()
+    leverage = 1 / len(x) + x**2 / max(float(x @ x), 1e-12)
+    sign = rng.choice([-1.0, 1.0], size=drawn.shape) / np.maximum(1 - leverage, 0.25)
+    off = np.clip(np.log(costs.cost / fitted), -20, 20)  # a model may be nothing at size 1
+    return drawn * np.exp(off * (sign - 1))

@@ -311,6 +311,16 @@ def test_the_slope_interval_holds_the_exponent_as_often_as_it_says(exponent: flo
     assert np.mean([v.slope_high - v.slope_low for v in verdicts]) < 0.05
 
 
+@pytest.mark.parametrize("count", [6, 9])
+def test_it_does_so_where_few_sizes_have_one_noisy_sample_each(count: int) -> None:
+    rng = np.random.default_rng(4)
+    sizes, held = np.geomspace(100, 1e5, count), 0
+    for seed in range(200):
+        told = judge(sizes, [[n * rng.lognormal(0, 0.05)] for n in sizes], "O(n)", seed=seed)
+        held += told.slope_low <= 1 <= told.slope_high
+    assert held >= 184
+
+
 def test_a_reason_does_not_deny_a_class_that_is_named() -> None:
     sizes = [10, 20, 40, 80, 160]
     verdict = judge(sizes, [[float(n)] for n in sizes], "O(n)")
