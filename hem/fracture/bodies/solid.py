@@ -1,9 +1,10 @@
 """Bodies: meshes with an inside, which is what can be broken through."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from numbers import Real
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -54,6 +55,13 @@ class Body:
         """Which of k positions (k, 3) are inside: (k,). Cost O(faces) each."""
         at = np.asarray(points, np.float64).reshape(-1, 3)
         return windings(self.corners, at) > 0
+
+
+class Shell(NamedTuple):
+    """A closed surface, and the labels of its faces (m,)."""
+
+    mesh: TriangleMesh
+    labels: Array
 
 
 def require_body(mesh: TriangleMesh) -> Body:
@@ -173,6 +181,27 @@ def _collapse(triangles: Array, alive: Bools, keep: int, drop: int) -> bool:
     rows[rows == drop] = keep
     triangles[of_drop] = rows
     return True
+
+
+def with_hollows(shells: Sequence[Shell]) -> list[Shell]:
+    """The bodies of connected shells, the largest first.
+
+    A shell inside out is a hollow, and belongs to the smallest body around it.
+    """
+    bodies: list[Shell] = []
+    for shell in sorted(shells, key=lambda it: it.mesh.volume(), reverse=True):
+        if shell.mesh.volume() > 0:
+            bodies.append(shell)
+            continue
+        at = shell.mesh.points[:1].astype(np.float64)
+        outer = [corners(it.mesh.points, it.mesh.triangles) for it in bodies]
+        around = [i for i, it in enumerate(outer) if windings(it, at)[0] > 0]
+        # The smallest around is the last. Rounding may put a vertex on the surface: then no other.
+        chosen = around[-1] if around else 0
+        both = bodies[chosen], shell
+        mesh = TriangleMesh(*meshes.joined((it.mesh.points, it.mesh.triangles) for it in both))
+        bodies[chosen] = Shell(mesh, np.concatenate([it.labels for it in both]))
+    return bodies
 
 
 def windings(corners: Floats, at: Floats) -> Indices:

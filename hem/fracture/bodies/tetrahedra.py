@@ -23,10 +23,10 @@ from hem.arrays import Array, Bools, Floats
 from hem.contract import Structure
 from hem.fracture.blow import Blow, generator
 from hem.fracture.bodies.overlap import crossing, overlapping
-from hem.fracture.bodies.solid import require_body
+from hem.fracture.bodies.solid import Shell, require_body, with_hollows
 from hem.fracture.material import Material
 from hem.fracture.material import material as named
-from hem.fracture.pieces import Fracture
+from hem.fracture.pieces import Fracture, islands
 from hem.fracture.surface import break_surface, face_corners, in_place
 from hem.meshes import TriangleMesh, areas, bounds, dot, length, normals, unit
 
@@ -76,8 +76,13 @@ def tetrahedra(
     inside = (len(shards) - len(solids)) // 3
     return in_place(
         structure, broken, shards, {"inside": inside, "too shallow": int((~deep).sum())},
-        method="tetra", material=chosen, seed=seed, diagonal=size,
+        parts=_bodies, method="tetra", material=chosen, seed=seed, diagonal=size,
     )  # fmt: skip
+
+
+def _bodies(mesh: TriangleMesh) -> list[TriangleMesh]:
+    """The connected bodies of a closed mesh, the largest first, hollows with what is around."""
+    return [it.mesh for it in with_hollows([Shell(it, np.zeros(0)) for it in islands(mesh)])]
 
 
 def _fourth_points(

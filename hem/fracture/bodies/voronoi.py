@@ -5,18 +5,18 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from hem.arrays import Floats, Indices
+from hem.arrays import Floats
 from hem.errors import MeshError, load_optional
 from hem.fracture.blow import Blow
 from hem.fracture.blow import sites as sites_of
 from hem.fracture.bodies.cells import Cells, cells
-from hem.fracture.bodies.solid import Body, from_manifold, require_body, windings
+from hem.fracture.bodies.solid import Body, Shell, from_manifold, require_body, with_hollows
 from hem.fracture.bodies.walls import touching
 from hem.fracture.material import Material
 from hem.fracture.material import material as named
 from hem.fracture.pieces import Fracture, require_triangle_mesh
 from hem.fracture.surface import closest
-from hem.meshes import TriangleMesh, bounds, corners, joined, length, normals, position
+from hem.meshes import TriangleMesh, bounds, length, normals, position
 
 VANISHING = 1e-9  # a piece of less than this part of the body's volume is dropped
 _THIN = 4  # so is one thinner than so many roundings of the largest coordinate, nearly flat
@@ -63,7 +63,7 @@ def voronoi(
     plan = _scattered(body, blow, chosen, seed) if sites is None else _given(body, sites)
     made = _cut(body, plan)
     shards, rest = ([it.mesh for it in pieces] for pieces in (made.shards, made.rest))
-    walls, least = [it.walls for it in made.shards + made.rest], _TOUCH * body.diagonal**2
+    walls, least = [it.labels for it in made.shards + made.rest], _TOUCH * body.diagonal**2
     counts = {"used": plan.breaking, "outside": plan.outside + made.missed}
     broken = Fracture(
         "voronoi", chosen, seed, blow.impact, blow.direction, shards, rest,
@@ -86,14 +86,9 @@ class _Plan(NamedTuple):
     repeated: int
 
 
-class _Piece(NamedTuple):
-    mesh: TriangleMesh
-    walls: Indices  # (m,): the wall that each face is on, or negative
-
-
 class _Made(NamedTuple):
-    shards: list[_Piece]
-    rest: list[_Piece]
+    shards: list[Shell]  # labeled by the walls that faces are on, negative where they are on none
+    rest: list[Shell]
     missed: int
     vanished: int
 
@@ -146,14 +141,14 @@ def _cut(body: Body, plan: _Plan) -> _Made:
     cut = cells(plan.sites, (low + high) / 2, body.diagonal / 2)
     thin = _THIN * float(np.spacing(np.abs(body.mesh.points).max()))
     label = len(body.mesh.triangles)  # of the first wall
-    shards: list[_Piece] = []
+    shards: list[Shell] = []
     missed = vanished = 0
     for site in range(plan.breaking):
         parts, lost = _parts(cut.cell(site, label) ^ body.manifold, body, thin)
         shards += parts
         missed += not parts and not lost
         vanished += lost
-    rest: list[_Piece] = []
+    rest: list[Shell] = []
     if plan.breaking < len(plan.sites):
         rest, lost = _parts(_remainder(body, cut, plan.breaking, label), body, thin)
         vanished += lost
@@ -172,28 +167,12 @@ def _remainder(body: Body, cut: Cells, breaking: int, label: int) -> Any:
         return manifold3d.Manifold.batch_boolean([body.manifold, *each], manifold3d.OpType.Subtract)
 
 
-def _parts(made: Any, body: Body, thin: float) -> tuple[list[_Piece], int]:
-    """The connected parts, the largest first, and how many were too small and vanished.
-
-    manifold3d gives a hollow as a part of its own, inside out; here it belongs to what is around.
-    """
-    found, pieces, vanished = made.decompose(), [], 0
-    for part in sorted(found, key=lambda it: it.volume(), reverse=True):
-        size = abs(part.volume())
-        if not (size > VANISHING * body.volume and 2 * size > thin * part.surface_area()):
-            vanished += 1
-            continue
-        mesh, labels = from_manifold(part)
-        walls = labels - len(body.mesh.triangles)
-        if part.volume() > 0:
-            pieces.append(_Piece(mesh, walls))
-            continue
-        at = mesh.points[:1].astype(np.float64)
-        shells = [corners(it.points, it.triangles) for it, _ in pieces]
-        around = [i for i, shell in enumerate(shells) if windings(shell, at)[0] > 0]
-        # The smallest around is the last. Rounding may put a vertex on the surface: then no other.
-        chosen = around[-1] if around else 0
-        outer = pieces[chosen]
-        both = joined((it.points, it.triangles) for it in (outer.mesh, mesh))
-        pieces[chosen] = _Piece(TriangleMesh(*both), np.concatenate([outer.walls, walls]))
-    return pieces, vanished
+def _parts(made: Any, body: Body, thin: float) -> tuple[list[Shell], int]:
+    """The connected bodies, the largest first, and how many parts were too small and vanished."""
+    found = made.decompose()
+    least = VANISHING * body.volume
+    large = [it for it in found if abs(it.volume()) > max(least, thin * it.surface_area() / 2)]
+    shells = [
+        Shell(mesh, label - len(body.mesh.triangles)) for mesh, label in map(from_manifold, large)
+    ]
+    return with_hollows(shells), len(found) - len(large)

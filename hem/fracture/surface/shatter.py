@@ -118,11 +118,11 @@ def _chosen(
 
 def in_place(
     structure: Structure, broken: Plan, shards: Sequence[TriangleMesh], counts: dict[str, int],
-    **told: Any,
+    parts: Callable[[TriangleMesh], list[TriangleMesh]] = islands, **told: Any,
 ) -> Fracture:  # fmt: skip
-    """The fracture of what ``break_surface`` broke; the structure keeps the rest."""
+    """The fracture of what ``break_surface`` broke; the structure keeps the rest, in ``parts``."""
     left = structure.to_triangles()  # now: the structure may change before the rest is asked for
-    rest = LazyMeshes(lambda: islands(left))
+    rest = LazyMeshes(lambda: parts(left))
     became = {words: int((broken.outcome == it).sum()) for words, it in OUTCOMES.items()}
     return Fracture(
         impact=broken.target, direction=-np.cross(broken.frame[0], broken.frame[1]), shards=shards,

@@ -10,6 +10,7 @@ from hem.fracture import MATERIALS, require_body, tetrahedra
 from hem.fracture.bodies.overlap import crossing, overlapping
 from tests.extent import OF_EACH_KIND, some, waiting_for
 from tests.hem.fracture.laws import body, holders, require_body_laws, struck
+from tests.hem.fracture.solids import require_pieces, together
 
 SEEDS = {"plate": 100, "sphere": 100, "bunny": 4, "teapot": 20}
 """The soak takes 100 of each."""
@@ -155,3 +156,13 @@ def test_a_face_of_no_area_that_is_touched_hides_no_wall():
     broken = tetrahedra(s, points[list(struck)].mean(axis=0), "glass", 1.0, 0)
     assert broken.shards
     assert min(float(it.points[:, 2].min()) for it in broken.shards) >= -0.01
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_hollows_stay_with_what_is_around_them(seed):
+    ball = hem.generate("sphere", 162)
+    shells = [hem.TriangleMesh(ball.points * np.float32(r), ball.triangles) for r in (1, 0.8, 0.6)]
+    mesh = together(shells[0], shells[1].flipped(), shells[2])
+    broken = tetrahedra(structures.build("half_edge", mesh), struck(mesh, seed), "stone", 2, seed)
+    require_pieces(broken, require_body(mesh))
+    assert len(broken.rest) == 2
