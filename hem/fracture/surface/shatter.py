@@ -196,15 +196,15 @@ def tangent(structure: Structure, face: int) -> Floats:
 def sharing_edges(pieces: Sequence[TriangleMesh]) -> Indices:
     """(k, 2): the pieces that share an edge, by position, each pair once and ascending.
 
-    Cost O(faces log faces).
+    Cost O(faces log faces), and that of the pairs.
     """
+    from scipy.sparse import csr_array, triu
+
     corners = np.concatenate([it.points[it.triangles] for it in pieces])
     owner = np.repeat(np.arange(len(pieces)), [len(it.triangles) for it in pieces])
     _, vertex = np.unique(corners.reshape(-1, 3), axis=0, return_inverse=True)
     vertex = vertex.reshape(-1, 3)
     sides = np.sort(np.concatenate([vertex, np.roll(vertex, -1, axis=1)]).reshape(2, -1).T)
-    owners = np.repeat(owner, 3)
-    order = np.lexsort((owners, sides[:, 1], sides[:, 0]))
-    sides, owners = sides[order], owners[order]
-    same = (sides[1:] == sides[:-1]).all(axis=1) & (owners[1:] != owners[:-1])
-    return np.unique(np.stack([owners[:-1], owners[1:]], axis=1)[same], axis=0)
+    _, side = np.unique(sides, axis=0, return_inverse=True)
+    holds = csr_array((np.ones(len(side)), (np.repeat(owner, 3), side)))
+    return np.unique(np.stack(triu(holds @ holds.T, 1).nonzero(), axis=1, dtype=np.int64), axis=0)

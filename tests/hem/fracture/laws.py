@@ -79,6 +79,17 @@ def unpaired(meshes: list[hem.TriangleMesh]) -> tuple[int, int]:
     return int(alone.sum()), int((count > 1).sum())
 
 
+def sharing_sides(pieces: list[hem.TriangleMesh]) -> list[list[int]]:
+    """The pairs of pieces that have a side in common, by position."""
+    ends = []
+    for piece in pieces:
+        at = [tuple(point) for point in piece.points.tolist()]
+        faces = piece.triangles.tolist()
+        ends.append({frozenset((at[t[i]], at[t[i - 1]])) for t in faces for i in range(3)})
+    several = range(len(ends))
+    return [[i, j] for i in several for j in several[i + 1 :] if ends[i] & ends[j]]
+
+
 @cache
 def unbroken(whole: hem.TriangleMesh) -> tuple[float, int, int]:
     """The area of a mesh, and its unpaired sides once welded, as ``unpaired`` counts them."""

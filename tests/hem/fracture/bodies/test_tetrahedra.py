@@ -9,7 +9,7 @@ import structures
 from hem.fracture import MATERIALS, require_body, tetrahedra
 from hem.fracture.bodies.overlap import crossing, overlapping
 from tests.extent import OF_EACH_KIND, some, waiting_for
-from tests.hem.fracture.laws import body, holders, require_body_laws, struck
+from tests.hem.fracture.laws import body, holders, require_body_laws, sharing_sides, struck
 from tests.hem.fracture.solids import require_pieces, together
 
 SEEDS = {"plate": 100, "sphere": 100, "bunny": 4, "teapot": 20}
@@ -166,3 +166,9 @@ def test_hollows_stay_with_what_is_around_them(seed):
     broken = tetrahedra(structures.build("half_edge", mesh), struck(mesh, seed), "stone", 2, seed)
     require_pieces(broken, require_body(mesh))
     assert len(broken.rest) == 2
+
+
+def test_neighbors_are_those_that_share_a_side():
+    broken = tetrahedra(structures.build("half_edge", body("sphere")), (0, 0, 1), "stone", 2, 1)
+    assert broken.counts["inside"]
+    assert broken.neighbors.tolist() == sharing_sides(broken.pieces)

@@ -26,7 +26,7 @@ from hem.fracture.surface.breaking import breaking
 from hem.fracture.surface.nearest import ROUNDING
 from hem.fracture.surface.shatter import TOLERANCE, break_points, break_surface
 from tests.extent import OF_EACH_KIND, some, waiting_for
-from tests.hem.fracture.laws import MODELS, require_surface_laws, struck, surface
+from tests.hem.fracture.laws import MODELS, require_surface_laws, sharing_sides, struck, surface
 from tests.hem.rendering.test_render import assert_in_step
 
 NAMES = tuple(MATERIALS)
@@ -234,15 +234,7 @@ def test_a_render_mesh_follows(name):
 
 def test_neighbors_are_those_that_share_a_side():
     broken = shatter(structures.build("half_edge", sheet()), (3.3, 4.2, 0), "stone", 2)
-    ends = []
-    for piece in broken.pieces:
-        at = [tuple(point) for point in piece.points.tolist()]
-        faces = piece.triangles.tolist()
-        ends.append({frozenset((at[t[i]], at[t[i - 1]])) for t in faces for i in range(3)})
-    expected = [
-        [i, j] for i in range(len(ends)) for j in range(i + 1, len(ends)) if ends[i] & ends[j]
-    ]
-    assert broken.neighbors.tolist() == expected
+    assert broken.neighbors.tolist() == sharing_sides(broken.pieces)
 
 
 def thin(height: float = 0.1) -> hem.TriangleMesh:
