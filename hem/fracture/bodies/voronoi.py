@@ -21,6 +21,7 @@ from hem.meshes import TriangleMesh, bounds, length, normals, position
 VANISHING = 1e-9  # a piece of less than this part of the body's volume is dropped
 _THIN = 4  # so is one thinner than so many roundings of the largest coordinate, nearly flat
 _CLOSE = 1e-6  # sites nearer to each other than this part of the diagonal are one
+_DISTANT = 10_000  # diagonals to the nearest site, as walls are found from squares of distances
 _TOUCH = 1e-9  # pieces are neighbors that share more than this part of the diagonal's square
 _MISSING = 1e-3  # the part of the volume that rounding to float32 may lose, in all
 
@@ -36,7 +37,8 @@ def voronoi(
     force      J / kg: hem.fracture.Blow says how it decides on the sites
     direction  (3,): where the blow goes, of any length; into the surface if not given
     sites      (k, 3): to break into exactly their cells, all of the body, instead of those of the
-               blow. They may lie anywhere; cells that the body has no part in are counted outside
+               blow, the nearest at most 10,000 diagonals away. Those whose cells the body has no
+               part in are counted outside
 
     The shards are closed bodies, in the order of their sites, a cell in several parts with the
     largest first. What is beyond the reach of the blow is the rest; parts of it that no longer
@@ -50,8 +52,9 @@ def voronoi(
     machine, and the pieces as far as Qhull's and manifold3d's float64 are; again on the same one.
 
     Cost O(sites × faces). Raises MeshError for a mesh that is no body (pass what ``require_body``
-    gave to have it checked only once), an impact farther away than half a diagonal, a mesh so far
-    from the origin that a thousandth of the volume is lost, and for what hem.fracture.Blow refuses.
+    gave to have it checked only once), an impact farther away than half a diagonal, sites that are
+    none, a mesh so far from the origin that a thousandth of the volume is lost, and for what
+    hem.fracture.Blow refuses.
 
     Source: Raghavachary, Fracture generation on polygonal meshes using Voronoi polygons, 2002.
     """
@@ -105,7 +108,8 @@ def _aimed(body: Body, at: Floats, direction: ArrayLike | None, force: float) ->
             f"the impact is {far:.6g} away from the mesh, more than half the diagonal of "
             f"{body.diagonal:.6g}; the surface is nearest to it at {spot.round(6).tolist()}"
         )
-    return Blow(spot, -across[faces[face]] if direction is None else np.asarray(direction), force)
+    way: Any = -across[faces[face]] if direction is None else direction
+    return Blow(spot, way, force)
 
 
 def _scattered(body: Body, blow: Blow, material: Material, seed: int) -> _Plan:
@@ -115,15 +119,24 @@ def _scattered(body: Body, blow: Blow, material: Material, seed: int) -> _Plan:
 
 
 def _given(body: Body, sites: ArrayLike) -> _Plan:
-    points = np.asarray(sites)
-    rows = points.ndim == 2 and points.shape[1] == 3 and len(points)
-    if not rows or points.dtype.kind not in "iuf":
-        raise MeshError(f"sites are a row of three numbers each, not {points.shape}")
+    try:
+        points = np.array(sites, np.float64)
+    except (TypeError, ValueError, OverflowError):
+        points = np.zeros(0)
+    if points.ndim != 2 or points.shape[1] != 3 or not len(points):
+        raise MeshError(f"sites are a row of three numbers each, not {sites!r:.60}")
     bad = ~np.isfinite(points).all(axis=1)
     if bad.any():
         raise MeshError("sites are not finite", rows=np.flatnonzero(bad))
-    found, repeated = _distinct(points.astype(np.float64), body.diagonal)
-    return _Plan(found, len(found), 0, repeated)
+    with np.errstate(over="ignore"):
+        away = length(points - np.mean(bounds(body.mesh.points), axis=0))
+    if not away.min() <= _DISTANT * body.diagonal:
+        words = f"all sites are more than {_DISTANT:,.0f} diagonals away from the mesh"
+        raise MeshError(f"{words}, where a wall in it cannot be told")
+    # To all of the body others are nearer: nothing but digits of the walls would be lost to them.
+    far = away > away.min() + body.diagonal
+    found, repeated = _distinct(points[~far], body.diagonal)
+    return _Plan(found, len(found), int(far.sum()), repeated)
 
 
 def _distinct(points: Floats, diagonal: float) -> tuple[Floats, int]:

@@ -198,6 +198,8 @@ DEGENERATE = {
     "huddled": (1e-4 * np.random.default_rng(0).random((20, 3))).tolist(),
     "beyond": [(0, 0, 0), (30, 0, 0), (0, -50, 1)],
     "all beyond": [(9, 0, 0), (30, 0, 0), (0, -50, 1)],
+    "one beyond the stars": [(0, 0, 0), (0.5, 0, 0), (0, 0.2, 0.1), (1e9, 0, 0), (0, 1e300, 0)],
+    "far off": [(1e4, 0, 0), (1e4, 1, 0), (1e4, 0, 1)],
 }
 
 
@@ -213,9 +215,14 @@ def test_sites_in_special_positions_break_the_body_as_any_others(name, sites):
         assert same.sum() <= 0.05 * len(edges)
     at = inside(it, 60, 1)
     held = holders(found.pieces, at)
-    nearest = cKDTree(np.array(sites, float)).query(at, k=min(2, len(sites)))[0].reshape(60, -1)
-    clear = np.diff(nearest, axis=1, append=np.inf)[:, 0] > 1e-5
+    away = np.array([[np.hypot.reduce(p - site) for site in np.array(sites, float)] for p in at])
+    clear = np.diff(np.sort(away, axis=1), axis=1, append=np.inf)[:, 0] > 1e-5
     assert (held[clear].sum(axis=1) == 1).all()
+    # What is in one piece has one nearest site.
+    of_site = away[clear].argmin(axis=1)
+    of_piece = held[clear].argmax(axis=1)
+    for piece in np.unique(of_piece):
+        assert len(np.unique(of_site[of_piece == piece])) == 1
 
 
 def test_repeated_sites_count_once():
@@ -260,6 +267,7 @@ def test_the_impact_is_taken_to_the_nearest_point_and_the_blow_goes_inward():
         ({"force": "much"}, "force"),
         ({"direction": (0, 0, 0)}, "direction"),
         ({"direction": (np.inf, 0, 0)}, "direction"),
+        ({"direction": [(0, 1), 2]}, "direction"),
         ({"seed": -1}, "seed"),
         ({"seed": 0.5}, "seed"),
         ({"material": "jelly"}, "no material"),
@@ -267,6 +275,8 @@ def test_the_impact_is_taken_to_the_nearest_point_and_the_blow_goes_inward():
         ({"sites": [(0, 0)]}, "sites"),
         ({"sites": [(0, 0, np.nan)]}, "sites"),
         ({"sites": [("a", "b", "c")]}, "sites"),
+        ({"sites": [(0, 0, 0), (0, 0)]}, "sites"),
+        ({"sites": [(1e9, 0, 0), (0, 0, 1e200)]}, "sites"),
     ],
 )
 def test_wrong_arguments_are_named(wrong, words):
