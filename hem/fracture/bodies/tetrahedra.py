@@ -21,7 +21,7 @@ from numpy.typing import ArrayLike
 from hem.algorithms import require_mesh
 from hem.arrays import Array, Bools, Floats
 from hem.contract import Structure
-from hem.fracture.blow import Blow, generator
+from hem.fracture.blow import MOST_SITES, Blow, generator
 from hem.fracture.bodies.overlap import crossing, overlapping
 from hem.fracture.bodies.solid import Shell, require_body, with_hollows
 from hem.fracture.material import Material
@@ -44,9 +44,9 @@ def tetrahedra(
     """Break tetrahedra out of the body that a structure holds, in place -> the pieces.
 
     impact  (3,): taken to the nearest point of the surface
-    force   J / kg: the break points on the surface are the material's × √force, the shards at most
-            material.scale × diagonal × √force deep, and a part of 1 - 1/(1 + force/10) of them
-            is split by a break point inside
+    force   J / kg: the break points on the surface are the material's × √force, which makes no more
+            than 1,000 of them; the shards are at most material.scale × diagonal × √force deep, and
+            a part of 1 - 1/(1 + force/10) of them is split by a break point inside
 
     The surface is broken as by ``shatter``, which says what becomes of break points; here a shard
     stays in place that could be but a sliver (``too shallow``). Shards are closed, outward
@@ -62,7 +62,8 @@ def tetrahedra(
     blow = Blow(np.zeros(3), np.array([0.0, 0.0, 1.0]), force)
     require_body(structure.to_triangles())
     more = np.sqrt(blow.force)
-    scattered = replace(chosen, circles=tuple(round(it * more) for it in chosen.circles))
+    denser = min(more, max(MOST_SITES / max(sum(chosen.circles), 1), 1))
+    scattered = replace(chosen, circles=tuple(round(it * denser) for it in chosen.circles))
     broken, faces, size = break_surface(structure, impact, scattered, seed)
     random = generator(seed).random
     corners = face_corners(structure, faces)

@@ -1,12 +1,14 @@
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import trimesh
 
 import hem
 import structures
-from hem.fracture import MATERIALS, require_body, tetrahedra
+from hem.fracture import MATERIALS, material, require_body, tetrahedra
 from hem.fracture.bodies.overlap import crossing, overlapping
 from tests.extent import OF_EACH_KIND, some, waiting_for
 from tests.hem.fracture.laws import body, holders, require_body_laws, sharing_sides, struck
@@ -82,6 +84,14 @@ def test_stronger_blows_make_more_and_smaller_shards_near_the_impact():
     assert many == sorted(many)
     assert many[-1] > 4 * many[0]
     assert sizes == sorted(sizes, reverse=True)
+
+
+def test_the_largest_number_of_break_points_is_bounded():
+    s, chosen = structures.build("half_edge", body("sphere")), material("glass")
+    broken = tetrahedra(s, (0, 0, 1), replace(chosen, scale=1e-3), 1e300)
+    require_body_laws(body("sphere"), broken)
+    landed = sum(broken.counts[it] for it in ("in a face", "on an edge", "on a vertex", "outside"))
+    assert landed == pytest.approx(1000, abs=len(chosen.circles) / 2)
 
 
 def test_each_shard_has_its_face_on_the_surface_and_its_fourth_point_inside():
