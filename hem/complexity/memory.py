@@ -5,6 +5,7 @@ its bandwidth, and one that makes something new for the system, which gives memo
 """
 
 import sys
+import timeit
 from collections.abc import Callable
 from functools import reduce
 from itertools import repeat
@@ -79,16 +80,6 @@ def _write(size: int) -> float:
 
 def _seconds_per_byte(call: Call, empty: Call, size: int) -> float:
     """What a call takes beyond one that does next to nothing."""
-    repeats = max(1, (1 << 20) // size)
-    beyond = _least_seconds(call, repeats) - _least_seconds(empty, repeats)
-    return max(beyond, 0.0) / size + QUICKEST
-
-
-def _least_seconds(call: Call, repeats: int) -> float:
-    seconds = []
-    for _ in range(SAMPLES):
-        begin = CLOCK()
-        for _ in range(repeats):
-            call()
-        seconds.append(CLOCK() - begin)
-    return min(seconds) / repeats
+    many = max(1, (1 << 20) // size)
+    taken, beside = (min(timeit.repeat(it, "", CLOCK, SAMPLES, many)) for it in (call, empty))
+    return max(taken - beside, 0.0) / many / size + QUICKEST
