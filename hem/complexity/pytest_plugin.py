@@ -253,16 +253,12 @@ def _keep(item: pytest.Item, call: int, verdict: Verdict, path: Path) -> None:
 
 def _commit(folder: Path) -> str:
     """Ten digits of the commit that is tested, and a star where files differ from it."""
+    asked = "describe", "--always", "--exclude=*", "--abbrev=10", "--dirty=*"  # but no tag
+    command = ["git", "-C", str(folder), *asked]
     try:
-        commit, differing = (
-            subprocess.check_output(
-                ["git", "-C", str(folder), *asked], stderr=subprocess.DEVNULL, text=True
-            ).strip()
-            for asked in (("rev-parse", "--short=10", "HEAD"), ("status", "--porcelain", "-uno"))
-        )
+        return subprocess.check_output(command, stderr=subprocess.DEVNULL, text=True).strip()
     except (OSError, subprocess.CalledProcessError):
         return "no commit"
-    return commit + "*" * bool(differing)
 
 
 def _change(before: dict[str, Any], now: dict[str, Any]) -> str:
