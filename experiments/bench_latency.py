@@ -5,15 +5,8 @@ The whole curve, for the plots; a query is judged against the latency measured b
 
 import numpy as np
 
-from experiments.harness import (
-    NO_STRUCTURE,
-    Case,
-    Experiment,
-    Measurement,
-    Preset,
-    Timer,
-    calibration,
-)
+from experiments import harness
+from experiments.harness import Case, Experiment, Measurement, Preset, Timer, calibration
 
 SMALLEST = 16 * 1024
 STEPS = 50_000
@@ -41,7 +34,7 @@ def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
 
 
 EXPERIMENT = Experiment(
-    title="Latency of the memory", cases=cases, measure=measure, structures=(NO_STRUCTURE,),
+    title="Latency of the memory", cases=cases, measure=measure, structures=(harness.NO_STRUCTURE,),
     copies=0, turn=30,
 )  # fmt: skip
 test_latency = EXPERIMENT.test

@@ -7,18 +7,8 @@ split from Python, with the room made before.
 
 import numpy as np
 
-from experiments.harness import (
-    Axis,
-    Case,
-    Experiment,
-    Measurement,
-    Preset,
-    Table,
-    Timer,
-    latency_now,
-    operation_faces,
-    validate_operated,
-)
+from experiments import harness
+from experiments.harness import Axis, Case, Experiment, Measurement, Preset, Table, Timer
 from hem.contract import Structure
 from structures import NAMES, REGISTRY
 
@@ -39,7 +29,7 @@ def cases(preset: Preset, structure: str) -> list[Case]:
 
 def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
     """Count one split, or time some, and check what they made."""
-    s, faces = case.build(), operation_faces(case, SPLITS).tolist()
+    s, faces = case.build(), harness.operation_faces(case, SPLITS).tolist()
     named = [tuple(s.face_vertices(face).tolist()) for face in faces]
     by_index = case.subject == BY_INDEX
     if any(s.find_face(*corners) != face for face, corners in zip(faces, named, strict=True)):
@@ -50,7 +40,7 @@ def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
         if not by_index:  # the search of `find_face`, and a look at every face that it finds
             around, looks = s.vertex_faces(named[0][0]), np.array([named[0][0]])
             work += s.work("vertex_faces", looks).sum() + s.work("face_vertices", around).sum()
-        validate_operated(copy, case)
+        harness.validate_operated(copy, case)
         return case.result("work", s, [work], handles=1, checked=True)
 
     def ready() -> tuple[Structure]:  # a copy with room for the splits, whose methods are bound
@@ -65,7 +55,7 @@ def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
             assert found is not None  # which was checked above
             copy.split_face(found, CENTER)
 
-    latency = latency_now(sum(s.memory().values()))
+    latency = harness.latency_now(sum(s.memory().values()))
     timed = timer(split, setup=ready, rounds=preset.fewest_rounds + 2, per=len(faces))
     return case.result("time", s, **timed.fields, latency=latency)
 

@@ -3,19 +3,8 @@
 Each is done uncompiled on a copy of the mesh. The counts are exact and the same on every machine.
 """
 
-from experiments.harness import (
-    OPERATIONS_TABLE,
-    Axis,
-    Case,
-    Experiment,
-    Measurement,
-    Preset,
-    Timer,
-    measured_operations,
-    operation_arguments,
-    operation_faces,
-    validate_operated,
-)
+from experiments import harness
+from experiments.harness import Axis, Case, Experiment, Measurement, Preset, Timer
 
 SEARCHED = 1  # one search of the whole mesh reads as much as another
 
@@ -25,23 +14,24 @@ def cases(preset: Preset, structure: str) -> list[Case]:
     return [
         Case(structure, family, size, operation, "counted", valence)
         for family, size, valence in preset.work_points()
-        for operation in measured_operations(preset)
+        for operation in harness.measured_operations(preset)
     ]
 
 
 def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
     """Count what operations read and write, and check what they make of the mesh."""
     s, operation = case.build().copy(), str(case.subject)
-    faces = operation_faces(case, SEARCHED if s.searches or s.rebuilds else case.repetitions)
-    rows = operation_arguments(s, operation, faces).tolist()
+    many = SEARCHED if s.searches or s.rebuilds else case.repetitions
+    faces = harness.operation_faces(case, many)
+    rows = harness.operation_arguments(s, operation, faces).tolist()
     s = s.copy()  # which knows nothing of what was asked meanwhile
     work = [s.operation_work(operation, *row) for row in rows]
-    validate_operated(s, case)
+    harness.validate_operated(s, case)
     return case.result("work", case.build(), work, handles=1, checked=True)
 
 
 EXPERIMENT = Experiment(
     title="Work of operations", kind="work", cases=cases, measure=measure, copies=3, turn=11,
-    table=OPERATIONS_TABLE, axes={Axis.WORK_FACES: "counted", Axis.WORK_VALENCE: "counted"},
+    table=harness.OPERATIONS_TABLE, axes={Axis.WORK_FACES: "counted", Axis.WORK_VALENCE: "counted"},
 )  # fmt: skip
 test_operation_work = EXPERIMENT.test

@@ -11,21 +11,8 @@ from typing import Any
 import numpy as np
 
 import hem
-from experiments.harness import (
-    HUBS,
-    IRREGULAR,
-    OPERATIONS_TABLE,
-    Axis,
-    Case,
-    Experiment,
-    Measurement,
-    Preset,
-    Timer,
-    measured_operations,
-    operation_arguments,
-    operation_faces,
-    time_operations,
-)
+from experiments import harness
+from experiments.harness import Axis, Case, Experiment, Measurement, Preset, Timer
 from hem.contract import Structure
 
 FEWEST_HUBS = 64  # in a mesh whose valence is varied; fewer are not worth timing
@@ -45,10 +32,10 @@ def cases(preset: Preset, structure: str) -> list[Case]:
     family, faces = preset.families[0], preset.operation_faces
     meshes: list[tuple[str, int, int | None]]
     meshes = [(family, size, None) for size in preset.operation_sizes]
-    if IRREGULAR in preset.families[1:]:
-        meshes += [(IRREGULAR, size, None) for size in preset.operation_sizes[1::2]]
-    meshes += [(HUBS, faces, k) for k in preset.valences if k <= faces // FEWEST_HUBS]
-    operations = measured_operations(preset)
+    if harness.IRREGULAR in preset.families[1:]:
+        meshes += [(harness.IRREGULAR, size, None) for size in preset.operation_sizes[1::2]]
+    meshes += [(harness.HUBS, faces, k) for k in preset.valences if k <= faces // FEWEST_HUBS]
+    operations = harness.measured_operations(preset)
     batched = [
         Case(structure, where, size, operation, "batched", valence)
         for where, size, valence in meshes
@@ -62,8 +49,8 @@ def cases(preset: Preset, structure: str) -> list[Case]:
 
 def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
     """Time one case, and check what the operations make of the mesh."""
-    timed = (time_operations if case.order == "batched" else _time_one_by_one)(case, preset, timer)
-    return case.result("time", case.build(), **timed)
+    time = harness.time_operations if case.order == "batched" else _time_one_by_one
+    return case.result("time", case.build(), **time(case, preset, timer))
 
 
 def _follow(order: str, s: Structure) -> Ending:
@@ -82,15 +69,15 @@ def _follow(order: str, s: Structure) -> Ending:
 def _time_one_by_one(case: Case, preset: Preset, timer: Timer) -> dict[str, Any]:
     s, operation, order = case.build(), str(case.subject), str(case.order)
     few = SCANNED_FACES if order == ANEW or case.searches else SINGLE_FACES
-    first, *faces = operation_faces(case, few).tolist()
-    done = len(operation_arguments(s.copy(), operation, np.array(faces)))
+    first, *faces = harness.operation_faces(case, few).tolist()
+    done = len(harness.operation_arguments(s.copy(), operation, np.array(faces)))
     given = 3 if operation == "add_face" else 1
     point = ((0.0, 0.0, 0.0),) if operation.startswith("split") else ()
 
     def fresh() -> tuple[Any, list[list[int]], Ending]:
         copy = s.copy()
         copy.reserve(2 * SINGLE_FACES)
-        rows = operation_arguments(copy, operation, np.array(faces))[:, :given].tolist()
+        rows = harness.operation_arguments(copy, operation, np.array(faces))[:, :given].tolist()
         end = _follow(order, copy)
         copy.split_face(first, (0, 0, 0))  # makes room, here and in the render mesh
         return getattr(copy, operation), rows, end
@@ -105,7 +92,7 @@ def _time_one_by_one(case: Case, preset: Preset, timer: Timer) -> dict[str, Any]
 
 EXPERIMENT = Experiment(
     title="Time of operations", cases=cases, measure=measure, copies=22, turn=42,
-    table=OPERATIONS_TABLE, axes={Axis.TIME_FACES: "batched", Axis.TIME_VALENCE: "batched"},
+    table=harness.OPERATIONS_TABLE, axes={Axis.TIME_FACES: "batched", Axis.TIME_VALENCE: "batched"},
     just_written=frozenset({Axis.TIME_FACES}), baseline_orders=("batched",),
 )  # fmt: skip
 test_operation = EXPERIMENT.test

@@ -18,17 +18,9 @@ from numpy.typing import ArrayLike
 
 import hem
 import structures
+from experiments import harness
 from experiments.bench_workloads import COMPILED, FROM_PYTHON
-from experiments.harness import (
-    BASE,
-    Case,
-    Experiment,
-    Measurement,
-    Preset,
-    Timer,
-    check_query,
-    took,
-)
+from experiments.harness import Case, Experiment, Measurement, Preset, Timer
 from hem.arrays import Array, Floats
 from hem.authoring import Kernel, Kernels, kernel
 from hem.contract import QUERIES, Structure
@@ -114,7 +106,7 @@ def cases(preset: Preset, structure: str) -> list[Case]:
     """What is around a face on every structure; rays on one, as the render mesh is the same."""
     compiled = (COMPILED,) if structures.REGISTRY[structure].compiled else ()
     kinds = [(NEIGHBORS, it) for it in (*compiled, FROM_PYTHON)]
-    if structure == BASE:
+    if structure == harness.BASE:
         kinds += product((RAY, FOLLOWING), (REBUILT, REFITTED))
     family, sizes = preset.families[0], preset.real_time_sizes
     return [Case(structure, family, size, *it) for size in sizes for it in kinds]
@@ -138,7 +130,7 @@ def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
         s.split_face(face, s.points[s.face_vertices(face)].mean(axis=0))
         return ()
 
-    rounds = preset.affordable_rounds(took(follow)[1])
+    rounds = preset.affordable_rounds(harness.took(follow)[1])
     if case.subject == FOLLOWING:
         timed = timer(follow, setup=edit, rounds=rounds, warmup=1)
     else:
@@ -160,9 +152,9 @@ def _time_neighbors(case: Case, s: Structure, preset: Preset, timer: Timer) -> M
         return case.result("time", s, skipped=reason)
     faces = np.random.default_rng(PICK_SEED).choice(s.faces(), picks)
     for kind, asked in ("face_faces", faces[:1]), ("vertex_faces", s.face_vertices(faces[0])):
-        check_query(s, case.mesh(), QUERIES[kind], asked)
+        harness.check_query(s, case.mesh(), QUERIES[kind], asked)
     ask = ask_compiled if case.order == COMPILED else ask_from_python
-    answers, seconds = took(ask, s, faces)
+    answers, seconds = harness.took(ask, s, faces)
     if answers != ask_from_python(s, faces):
         raise AssertionError(f"{case.id}: {answers} neighbors, and otherwise from Python")
     rounds = preset.affordable_rounds(seconds)

@@ -13,18 +13,8 @@ from typing import Any
 import numpy as np
 
 import structures
-from experiments.harness import (
-    OPERATIONS,
-    Axis,
-    Case,
-    Experiment,
-    Measurement,
-    Preset,
-    Table,
-    Timer,
-    latency_now,
-    operation_faces,
-)
+from experiments import harness
+from experiments.harness import Axis, Case, Experiment, Measurement, Preset, Table, Timer
 from hem.arrays import Array
 from hem.engine import CountingArray
 from hem.fracture import MATERIALS, shatter
@@ -40,7 +30,7 @@ MENDED = HalfEdgeMesh.name
 STEPPING = "collapse_stepping"
 LISTINGS = {
     "build": "Build from a render mesh",
-    **{name: OPERATIONS[name] for name in ("split_edge", "split_face", "collapse_edge")},
+    **{name: harness.OPERATIONS[name] for name in ("split_edge", "split_face", "collapse_edge")},
     STEPPING: "Collapse edge, stepping",
     "create_mesh": "Create a triangle",
     "find_edges": "Find the faces at an edge",
@@ -88,7 +78,7 @@ def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
         fields: dict[str, Any] = {"samples": samples, "handles": 1, "checked": True}
     else:
         waiting = iter([(step,) for step in steps])
-        latency = latency_now(500 * len(case.mesh().points))
+        latency = harness.latency_now(500 * len(case.mesh().points))
         timed = timer(lambda step: step(), setup=waiting.__next__, rounds=len(steps), warmup=0)
         fields = {**timed.fields, "latency": latency}
         steps = steps[: len(steps) - len(list(waiting))]  # but one with --benchmark-disable
@@ -106,7 +96,7 @@ def _steps(case: Case, most: int) -> tuple[list[Step], Callable[[], int]]:
     if case.subject == "build":
         times = 3 if most == TIMED_OPERATIONS else 1
         return [partial(_build, case.structure, mesh)] * times, lambda: len(mesh.triangles)
-    faces = operation_faces(case, most + WARM_UP)
+    faces = harness.operation_faces(case, most + WARM_UP)
     if case.structure == MENDED:
         m: Any = structures.build(MENDED, mesh)
         calls = _corrected(m, faces)

@@ -4,16 +4,8 @@ Along one family the valence stays, so the sizes show how a query depends on the
 the hubs the number of faces stays.
 """
 
-from experiments.harness import (
-    HUBS,
-    ORDERS,
-    QUERIES_TABLE,
-    Axis,
-    Case,
-    Experiment,
-    Preset,
-    time_query,
-)
+from experiments import harness
+from experiments.harness import Axis, Case, Experiment, Preset
 from hem.contract import QUERIES
 
 
@@ -26,18 +18,18 @@ def cases(preset: Preset, structure: str) -> list[Case]:
         for family, sizes in meshes
         for size in sizes
         for query in QUERIES
-        for order in ORDERS
+        for order in harness.ORDERS
     ]
     return by_size + [
-        Case(structure, HUBS, preset.valence_faces, query, "random", valence)
+        Case(structure, harness.HUBS, preset.valence_faces, query, "random", valence)
         for valence in preset.valences
         for query in QUERIES
     ]
 
 
 EXPERIMENT = Experiment(
-    title="Time of queries", cases=cases, measure=time_query, copies=3, turn=40,
-    table=QUERIES_TABLE, axes={
+    title="Time of queries", cases=cases, measure=harness.time_query, copies=3, turn=40,
+    table=harness.QUERIES_TABLE, axes={
         Axis.TIME_FACES: "consecutive", Axis.RANDOM_FACES: "random", Axis.TIME_VALENCE: "random",
     },
     baseline_orders=("consecutive", "random"),

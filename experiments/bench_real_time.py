@@ -10,16 +10,8 @@ from typing import Any
 import numpy as np
 
 import hem
-from experiments.harness import (
-    Case,
-    Experiment,
-    Measurement,
-    Preset,
-    Timer,
-    operation_arguments,
-    operation_faces,
-    validate_operated,
-)
+from experiments import harness
+from experiments.harness import Case, Experiment, Measurement, Preset, Timer
 from hem.contract import Structure
 
 EDITED = "split_edge", "split_face", "collapse_edge", "flip_edge"
@@ -64,7 +56,7 @@ def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
         lambda edit: copy.operate(edit[0], edit[1], point=edit[2]),
         setup=lambda: (next(following),), rounds=len(edits), warmup=0,
     )  # fmt: skip
-    validate_operated(copy, case)
+    harness.validate_operated(copy, case)
     afresh = hem.RenderMesh(copy)
     pairs = (render.points, afresh.points), (render.indices, afresh.indices)
     if len(timed.samples) and not all(np.array_equal(*it) for it in pairs):  # not just compiled
@@ -75,8 +67,9 @@ def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
 
 def _planned(case: Case, s: Structure) -> list[tuple[str, int, Any]]:
     """Operations in turn, each at a place of its own, where it may be done."""
-    faces = operation_faces(case, MOST_SEARCHING if case.searches else MOST_EDITS)
-    rows = [operation_arguments(s, it, faces[k :: len(EDITED)]) for k, it in enumerate(EDITED)]
+    faces = harness.operation_faces(case, MOST_SEARCHING if case.searches else MOST_EDITS)
+    every = len(EDITED)
+    rows = [harness.operation_arguments(s, it, faces[k::every]) for k, it in enumerate(EDITED)]
     points = [np.zeros(3) if it.startswith("split") else None for it in EDITED]
     turns = zip_longest(*(it[:, 0].tolist() for it in rows))
     edits = (edit for turn in turns for edit in zip(EDITED, turn, points, strict=True))

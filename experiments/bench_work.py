@@ -4,16 +4,8 @@ The counts are exact and the same on every machine. They come from uncompiled co
 are small; that is enough, as nothing disturbs them.
 """
 
-from experiments.harness import (
-    QUERIES_TABLE,
-    Axis,
-    Case,
-    Experiment,
-    Measurement,
-    Preset,
-    Timer,
-    checked_handles,
-)
+from experiments import harness
+from experiments.harness import Axis, Case, Experiment, Measurement, Preset, Timer
 from hem.contract import QUERIES
 
 
@@ -28,13 +20,13 @@ def cases(preset: Preset, structure: str) -> list[Case]:
 
 def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
     """Check the query against the triangle list, then count what it reads."""
-    s, handles = checked_handles(case)
+    s, handles = harness.checked_handles(case)
     work = s.work(case.query.name, handles[: case.repetitions])
     return case.result("work", s, work, handles=1, checked=True)
 
 
 EXPERIMENT = Experiment(
     title="Work of queries", kind="work", cases=cases, measure=measure, copies=1, turn=10,
-    table=QUERIES_TABLE, axes={Axis.WORK_FACES: "random", Axis.WORK_VALENCE: "random"},
+    table=harness.QUERIES_TABLE, axes={Axis.WORK_FACES: "random", Axis.WORK_VALENCE: "random"},
 )  # fmt: skip
 test_work = EXPERIMENT.test

@@ -12,17 +12,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 import structures
-from experiments.harness import (
-    BASE,
-    Case,
-    Experiment,
-    Measurement,
-    Preset,
-    Timed,
-    Timer,
-    time_rounds,
-    took,
-)
+from experiments import harness
+from experiments.harness import Case, Experiment, Measurement, Preset, Timed, Timer
 from hem import algorithms
 from hem.arrays import Floats
 from hem.contract import QUERIES, Structure
@@ -197,12 +188,12 @@ def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
     before = workload.one if case.order == COMPILED else None
     begun = _ready(s, before)
     done = begun.copy()
-    rounds = preset.affordable_rounds(took(partial(run, done))[1])
+    rounds = preset.affordable_rounds(harness.took(partial(run, done))[1])
     units = UNITS[workload.unit](begun, done)
     given: Any = {"setup": lambda: (_ready(s, before),), "rounds": rounds, "warmup": 0}
     timed = timer(run, **given, per=units)
     if before:
-        timed = without_call(timed, float(np.median(time_rounds(before, **given).samples)))
+        timed = without_call(timed, float(np.median(harness.time_rounds(before, **given).samples)))
     return case.result("time", s, **timed.fields)
 
 
@@ -234,7 +225,7 @@ def _ready(s: Structure, before: Callable[[Structure], Any] | None) -> Structure
 def _check(case: Case, run: Callable[..., Any]) -> None:
     """On a small mesh the outcome is the same on every structure."""
     mesh = Case(case.structure, case.family, SMALL).mesh()
-    mine, other = (structures.build(name, mesh) for name in (case.structure, BASE))
+    mine, other = (structures.build(name, mesh) for name in (case.structure, harness.BASE))
     same = [_hit(mine)] if case.subject == "impacts" else []  # of which others get fewer
     told = [np.array(run(s, *same), float) for s in (mine, other)]  # of None nan
     for s in (mine, other):
@@ -243,7 +234,7 @@ def _check(case: Case, run: Callable[..., Any]) -> None:
     pairs = (mine.points, other.points), told
     alike = all(np.allclose(a, b, atol=1e-5, equal_nan=True) for a, b in pairs)
     if not (np.array_equal(corners, expected) and alike):
-        raise AssertionError(f"{case.subject} on {case.structure} differs from {BASE}")
+        raise AssertionError(f"{case.subject} on {case.structure} differs from {harness.BASE}")
 
 
 EXPERIMENT = Experiment(title="Workloads", cases=cases, measure=measure, copies=4, turn=60)
