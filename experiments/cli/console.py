@@ -4,11 +4,11 @@ import json
 import os
 import sys
 import warnings
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from importlib import import_module
 from io import TextIOWrapper
-from math import isfinite
+from itertools import chain
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -37,8 +37,8 @@ def completed(module: str, *names: str) -> Callable[[str], list[str]]:
     """What completes a word to names of a module, which is imported when a shell asks."""
 
     def complete(incomplete: str) -> list[str]:
-        known: list[Iterable[str]] = [getattr(import_module(module), it) for it in names]
-        return [it for some in known for it in some if it.startswith(incomplete)]
+        known = chain(*(getattr(import_module(module), it) for it in names))
+        return [it for it in known if it.startswith(incomplete)]
 
     return complete
 
@@ -62,20 +62,12 @@ Repair = Annotated[bool, Option("--repair", help="Repair what is not manifold fi
 
 
 def print_json(content: Any) -> None:
-    """For other programs, in UTF-8 and on standard output."""
-    text = json.dumps(_strict(content), indent=1, ensure_ascii=False, allow_nan=False)
+    """For other programs, in UTF-8 and on standard output; NaN and infinity as null."""
+    strict = json.loads(json.dumps(content), parse_constant=lambda _: None)
+    text = json.dumps(strict, indent=1, ensure_ascii=False)
     if isinstance(sys.stdout, TextIOWrapper):
         sys.stdout.reconfigure(encoding="utf-8")
     sys.stdout.write(text + "\n")
-
-
-def _strict(content: Any) -> Any:
-    """The same without NaN and infinity, which JSON has no words for: null."""
-    if isinstance(content, dict):
-        return {key: _strict(it) for key, it in content.items()}
-    if isinstance(content, list | tuple):
-        return [_strict(it) for it in content]
-    return None if isinstance(content, float) and not isfinite(content) else content
 
 
 def run_folder(run: Path | None) -> Path:
