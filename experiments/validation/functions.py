@@ -1,19 +1,23 @@
 """Real functions whose cost is known, with the source that tells it: data, to try judges on.
 
 A cost is that of what a call does, the making of its input left out. n is the length of the input
-unless the name says otherwise. The judge was tuned on these, and on some 580 that are no longer
-kept. How good it is others tell, those of `held_out`, which were written down before any judge was
-asked about them. What is decided by their answers makes them functions to tune on, and asks for
+unless the name says otherwise. The judge was tuned on `FUNCTIONS`, and on some 580 that are no
+longer kept. How good it is `HELD_OUT` tells, written down before any judge was asked about them.
+Whoever changes the judge for what it says of them makes them functions to tune on, and writes
 others.
 """
 
 import array
+import ast
 import base64
 import binascii
 import bisect
 import collections
 import copy
+import decimal
+import fnmatch
 import functools
+import gzip
 import hashlib
 import heapq
 import itertools
@@ -22,16 +26,19 @@ import marshal
 import math
 import operator
 import pickle
+import plistlib
 import random
 import re
 import statistics
 import string
 import struct
 import textwrap
+import zlib
 from collections.abc import Callable, Mapping, Sequence
 from operator import getitem
 from typing import Any, NamedTuple
 from urllib import parse
+from xml.etree import ElementTree
 
 import numpy as np
 from scipy import (
@@ -365,5 +372,204 @@ FUNCTIONS = functions({"O(1)": [
 ], "O(2^n)": [
     ("sums to a target, by trying all", floats, by_hand.tried, CLRS),
     ("bits of every mask, by a table", int, by_hand.bit_counts, LOOP),
+]})
+
+HELD_OUT = functions({"O(1)": [
+    ("tuple[-1], 1,000 times", "tuple", times(lambda s: s[-1]), WIKI),
+    ("list.append and del of the last, 1,000 times", "floats",
+        times(lambda s: (s.append(0.5), s.__delitem__(-1))), WIKI),
+    ("pair in dict, 1,000 random", lambda n: looked_up({(i, i + 1): i for i in range(n)}),
+        each(dict.__contains__), WIKI),
+    ("len(str), 1,000 times", "letters", times(len), WIKI),
+    ("array.flat[i], 1,000 random", "uniform asked", each(lambda a, i: a.flat[i]), NUMPY),
+    ("memoryview.cast, 1,000 views", lambda n: memoryview(random.randbytes(8 * n)),
+        times(lambda s: s.cast("d")), PYDOC),
+    ("matrix.diagonal, 1,000 views", "matrix", times(np.ndarray.diagonal), VIEWS, SQUARE_BOUND),
+    ("bytes[i:i + 8], 1,000 random", "bytes asked", each(lambda s, i: s[i:i + 8]), WIKI),
+    ("array[1,000 random indices] + 1",
+        lambda n: (uniform(n).astype(np.float32), INPUTS["picked"](n)), lambda s: s[0][s[1]] + 1,
+        *ONE_PASS),
+], "O(log n)": [
+    ("heappop and heappush of the least, 1,000 times", "heap",
+        times(lambda s: heapq.heappush(s, heapq.heappop(s))), CLRS),
+    ("np.searchsorted in seconds, 1,000 random", by_hand.seconds, lambda s: np.searchsorted(*s),
+        BISECT),
+    ("segment tree, 1,000 sums from a place on",
+        lambda n: (by_hand.sums_in_a_tree(n), INPUTS["asked"](n)), each(by_hand.sum_from), CLRS),
+    ("least of a turned list, 1,000 times", lambda n: [*range(n // 3, n), *range(n // 3)],
+        times(by_hand.turned_at), LOOP),
+    ("spline of n pieces, at 1,000 random places",
+        lambda n: (interpolate.PPoly(uniform(2, n), np.arange(n + 1.0)), n * uniform(KEYS)),
+        lambda s: s[0](s[1]), SCIPY + ": binary search"),
+], "O(√n)": [
+    ("squares up to n", int,
+        lambda n: list(itertools.takewhile(lambda q: q <= n, (k * k for k in itertools.count()))),
+        LOOP),
+    ("lattice points in a disk", int,
+        lambda n: sum(math.isqrt(n - x * x) for x in range(math.isqrt(n) + 1)), LOOP),
+], "O(n)": [
+    ("sum of the lengths of words", lambda n: [f"{i:x}" for i in range(n)],
+        lambda s: sum(map(len, s)), PYDOC),
+    ("del list[n // 2]", "floats", lambda s: s.__delitem__(len(s) // 2), WIKI),
+    ("the larger of two lists", "floats floats", lambda s: list(map(max, *s)), PYDOC),
+    ("sums of a zip", "floats floats", lambda s: [a + b for a, b in zip(*s, strict=True)], PYDOC),
+    ("tuple.count", "tuple", lambda s: s.count(2.0), WIKI),
+    ("any of a map", "floats", lambda s: any(map((2.0).__lt__, s)), PYDOC),
+    ("min(dict)", "floats_dict", min, WIKI),
+    ("sorted, of a range backward", lambda n: range(n, 0, -1), sorted, TIMSORT),
+    ("set.union of a list", "floats_set floats", lambda s: s[0].union(s[1]), WIKI),
+    ("set.intersection of a generator", "set", lambda s: s.intersection(x + 1 for x in s), WIKI),
+    ("sum over dict.items", "floats_dict", lambda s: sum(k + v for k, v in s.items()), WIKI),
+    ("Counter of letters", "letters", collections.Counter, PYDOC),
+    ("Counter.subtract", lambda n: collections.Counter(range(n)), lambda s: s.subtract(s), PYDOC),
+    ("deque.extend", "floats", lambda s: collections.deque().extend(s), PYDOC),
+    ("deque == deque", "deque deque", lambda s: s[0] == s[1], PYDOC),
+    ("OrderedDict.fromkeys", "floats", collections.OrderedDict.fromkeys, PYDOC),
+    ("itertools.cycle, n of ten", int,
+        lambda n: list(itertools.islice(itertools.cycle(range(10)), n)), PYDOC),
+    ("itertools.tee, both read", "floats", lambda s: [sum(it) for it in itertools.tee(iter(s))],
+        PYDOC),
+    ("operator.countOf", "numbers", lambda s: operator.countOf(s, -1), PYDOC),
+    ("math.floor of each", "floats", lambda s: [math.floor(x) for x in s], PYDOC),
+    ("hash of each", "pairs", lambda s: list(map(hash, s)), PYDOC),
+    ("str of each", "floats", lambda s: list(map(str, s)), PYDOC),
+    ("sum of decimals", lambda n: [decimal.Decimal(i) / 7 for i in range(n)], sum, PYDOC),
+    ("statistics.pvariance", "floats", statistics.pvariance, PYDOC),
+    ("random.expovariate, n times", int, lambda n: [random.expovariate(1.0) for _ in range(n)],
+        PYDOC),
+    ("random.getrandbits", int, random.getrandbits, PYDOC, 10_000_000),
+    ("str.isupper", lambda n: "A" * n, str.isupper, CPYTHON),
+    ("str.lstrip", lambda n: " " * n + "x", str.lstrip, CPYTHON),
+    ("str.rpartition, absent", "letters", lambda s: s.rpartition("-"), CPYTHON),
+    ("join of letters", lambda n: random.choices(string.ascii_letters, k=n), "".join, CPYTHON),
+    ("str.encode, ascii", "letters", lambda s: s.encode("ascii"), CPYTHON),
+    ("f-string of each", "numbers", lambda s: [f"{x:>9}" for x in s], CPYTHON),
+    ("bytes.lower", "bytes", bytes.lower, CPYTHON),
+    ("bytes.splitlines", lambda n: b"ab\n" * (n // 3 + 1), bytes.splitlines, CPYTHON),
+    ("memoryview.tobytes", lambda n: memoryview(random.randbytes(n)), memoryview.tobytes, PYDOC,
+        CACHE_BOUND),
+    ("array.array.count", "doubles", lambda s: s.count(1.0), PYDOC),
+    ("array.array.fromlist", "floats", lambda s: array.array("d").fromlist(s), PYDOC),
+    ("int ^ int, n bits", "bits bits", lambda s: s[0] ^ s[1], LONG, 10_000_000),
+    ("hex of an int, n bits", "bits", hex, LONG),
+    ("int.to_bytes, n bits", "bits", lambda a: a.to_bytes(a.bit_length(), "big"), LONG),
+    ("base64.b16encode", "bytes", base64.b16encode, "RFC 4648"),
+    ("binascii.unhexlify", lambda n: random.randbytes(n).hex(), binascii.unhexlify, PYDOC),
+    ("parse.urlencode", "pairs", parse.urlencode, PYDOC),
+    ("gzip.decompress", lambda n: gzip.compress(random.randbytes(n)), gzip.decompress, "RFC 1952"),
+    ("zlib.compress, stored", "bytes", lambda s: zlib.compress(s, 0), "RFC 1951"),
+    ("hashlib.sha384", "bytes", lambda s: hashlib.sha384(s).digest(), "FIPS 180-4"),
+    ("hashlib.shake_256", "bytes", lambda s: hashlib.shake_256(s).digest(64), "FIPS 202"),
+    ("json.dumps of an object", lambda n: {f"{i:x}": i for i in range(n)}, json.dumps, CPYTHON),
+    ("pickle.dumps of words", lambda n: [f"{i:x}" for i in range(n)], pickle.dumps, CPYTHON),
+    ("marshal.loads of floats", lambda n: marshal.dumps(floats(n)), marshal.loads, CPYTHON),
+    ("plistlib.dumps", lambda n: {f"{i:x}": i for i in range(n)},
+        lambda s: plistlib.dumps(s, sort_keys=False), CPYTHON),
+    ("ElementTree.tostring", lambda n: ElementTree.fromstring(f"<a>{'<b/>' * n}</a>"),
+        ElementTree.tostring, CPYTHON),
+    ("ast.literal_eval of a list", lambda n: repr(list(range(n))), ast.literal_eval, CPYTHON),
+    ("re.findall of numbers", lambda n: "ab 12 " * (n // 6 + 1), re.compile(r"\d+").findall,
+        CPYTHON),
+    ("fnmatch.filter", lambda n: [f"{i}.txt" for i in range(n)],
+        lambda s: fnmatch.filter(s, "*7.txt"), PYDOC),
+    ("textwrap.fill", lambda n: "ab cde " * (n // 7 + 1), textwrap.fill, CPYTHON),
+    ("Template.substitute", lambda n: string.Template("$a b " * (n // 5 + 1)),
+        lambda s: s.substitute(a="c"), PYDOC),
+    ("the next permutation, of the last", lambda n: list(range(n, 0, -1)), by_hand.next_permutation,
+        LOOP),
+    ("a linked list turned round", by_hand.linked, by_hand.turned, CLRS),
+    ("two to a sum, by a set", "floats", by_hand.two_to_a_sum, LOOP),
+    ("bits of all up to n", int, by_hand.bits_of_all, LOOP),
+    ("two sorted lists merged by hand", "heap heap", by_hand.merged, CLRS),
+    ("longest rising part", "floats", by_hand.longest_rise, LOOP),
+    ("np.ceil", "uniform", np.ceil, *ONE_PASS),
+    ("np.expm1", "uniform", np.expm1, *ONE_PASS),
+    ("np.cbrt", "uniform", np.cbrt, *ONE_PASS),
+    ("np.power", "uniform", lambda a: np.power(a, 2.5), *ONE_PASS),
+    ("np.isfinite", "uniform", np.isfinite, *ONE_PASS),
+    ("np.left_shift", "places", lambda a: np.left_shift(a, 3), *ONE_PASS),
+    ("np.any", lambda n: np.zeros(n, bool) & True, np.any, NUMPY, 8 * CACHE_BOUND),
+    ("np.nanmean", "uniform", np.nanmean, *ONE_PASS),
+    ("np.subtract", "uniform uniform", lambda s: np.subtract(*s), *ONE_PASS),
+    ("np.fmax of float32", lambda n: uniform(n).astype(np.float32), lambda a: np.fmax(a, a[::-1]),
+        *ONE_PASS),
+    ("np.append", "uniform", lambda a: np.append(a, 1.0), *ONE_PASS),
+    ("every second of an array, copied", "uniform", lambda a: a[::2].copy(), *ONE_PASS),
+    ("np.ediff1d", "uniform", np.ediff1d, NUMPY),
+    ("np.unwrap", "uniform", np.unwrap, NUMPY),
+    ("np.einsum of squares", "uniform", lambda a: np.einsum("i,i->", a, a), *ONE_PASS),
+    ("points turned by a matrix", "points", lambda p: p @ np.eye(3), NUMPY),
+    ("exponential random numbers", int, lambda n: np.random.default_rng().exponential(size=n),
+        NUMPY),
+    ("permuted by numpy", "uniform", np.random.default_rng().permutation, NUMPY),
+    ("np.bincount, weighted", "uniform", lambda a: np.bincount((a * 50).astype(int), a), NUMPY),
+    ("np.nan_to_num", "uniform", np.nan_to_num, *ONE_PASS),
+    ("np.angle", lambda n: uniform(n) + 1j, np.angle, NUMPY),
+    ("points.mean(axis=0)", "points", lambda p: p.mean(axis=0), NUMPY),
+    ("np.convolve with five", "uniform", lambda a: np.convolve(a, np.ones(5)), NUMPY),
+    ("scipy.special.digamma", "uniform", special.digamma, SCIPY),
+    ("scipy.special.ndtr", "uniform", special.ndtr, *ONE_PASS),
+    ("scipy.stats.gmean", "uniform", stats.gmean, SCIPY),
+    ("scipy.stats.ttest_ind", "uniform uniform", lambda s: stats.ttest_ind(s[0], s[1]), SCIPY),
+    ("scipy.stats.entropy", "uniform", stats.entropy, SCIPY),
+    ("ndimage.sobel", "uniform", ndimage.sobel, SCIPY),
+    ("ndimage.grey_dilation, 5 wide", "uniform", lambda a: ndimage.grey_dilation(a, (5,)), SCIPY),
+    ("ndimage.sum_labels", lambda n: (uniform(n), np.arange(n) % 10),
+        lambda s: ndimage.sum_labels(s[0], s[1], np.arange(10)), SCIPY),
+    ("scipy.signal.filtfilt", lambda n: uniform(n + 20),
+        lambda a: signal.filtfilt([1.0], [1.0, -0.5], a), SCIPY),
+    ("scipy.signal.sawtooth", "uniform", signal.sawtooth, SCIPY),
+    ("BSpline of ten knots, at n places", "uniform",
+        interpolate.BSpline(np.arange(10.0), np.ones(6), 3), SCIPY),
+    ("cumulative_simpson", "uniform", lambda a: integrate.cumulative_simpson(a, dx=1.0), SCIPY),
+    ("solveh_banded, 2 diagonals", lambda n: (np.vstack([np.ones(n), np.full(n, 4.0)]), uniform(n)),
+        lambda s: linalg.solveh_banded(*s), LAPACK),
+    ("product of diagonal csr_arrays", lambda n: sparse.diags_array(np.ones(n)).tocsr(),
+        lambda a: a @ a, SCIPY),
+    ("distance.cosine", "uniform uniform", lambda s: spatial.distance.cosine(s[0], s[1]), SCIPY),
+], "O(n log n)": [
+    ("scipy.stats.iqr", "uniform", stats.iqr, SCIPY + ": it sorts"),
+    ("sorted, pairs by the second", "pairs", lambda s: sorted(s, key=operator.itemgetter(1)), WIKI),
+    ("random.choices by weights, n of n", "floats", lambda s: random.choices(s, s, k=len(s)),
+        PYDOC + ": it bisects"),
+    ("n × heappush, descending", lambda n: list(range(n, 0, -1)), by_hand.pushed, CLRS),
+    ("most talks that fit", "pairs", by_hand.most_that_fit, CLRS + ": it sorts"),
+    ("every ending of halves added", "floats", by_hand.halves, CLRS + ": as mergesort"),
+    ("np.argsort of float32", lambda n: uniform(n).astype(np.float32), np.argsort, SORT),
+    ("np.sort of uint64", lambda n: np.random.default_rng().integers(0, 2**60, n).astype(np.uint64),
+        np.sort, SORT, CACHE_BOUND),
+    ("np.unique, inverse", "uniform", lambda a: np.unique(a, return_inverse=True), BY_SORT),
+    ("scipy.stats.mannwhitneyu", "uniform uniform",
+        lambda s: stats.mannwhitneyu(s[0], s[1], method="asymptotic"), SCIPY + ": it sorts"),
+    ("np.fft.rfft, powers of two", "uniform", np.fft.rfft, NUMPY, *TWOS),
+    ("scipy.signal.periodogram, powers of two", "uniform", signal.periodogram, SCIPY, *TWOS),
+], "O(n^1.5)": [
+    ("divisors of each, below the root of n", int,
+        lambda n: sum(1 for i in range(1, n) for d in range(1, math.isqrt(n)) if i % d == 0), LOOP),
+], "O(n²)": [
+    ("products of all pairs, added", "floats",
+        lambda s: sum(itertools.starmap(operator.mul, itertools.combinations(s, 2))), PYDOC),
+    ("those not met before, by a list", "numbers", by_hand.not_met, WIKI),
+    ("the longest part of two texts", "letters letters", by_hand.longest_part, CLRS),
+    ("hull by wrapping a circle", by_hand.on_circle, by_hand.wrapped, CLRS),
+    ("np.minimum.outer", "uniform", lambda a: np.minimum.outer(a, a), NUMPY),
+    ("np.triu", "matrix", np.triu, NUMPY, SQUARE_BOUND),
+    ("matrix.argmax(axis=0)", "matrix", lambda a: a.argmax(axis=0), NUMPY, SQUARE_BOUND),
+    ("matrix.T @ vector", "matrix uniform", lambda s: s[0].T @ s[1], LAPACK),
+    ("scipy.linalg.circulant", "uniform", linalg.circulant, SCIPY),
+    ("convolve2d, 3 by 3", "matrix", lambda a: signal.convolve2d(a, np.ones((3, 3)), "same"),
+        SCIPY),
+], "O(n² log n)": [
+    ("each row's median", "rows", lambda s: list(map(statistics.median, s)), PYDOC + ": it sorts"),
+], "O(n³)": [
+    ("np.linalg.lstsq", "matrix uniform", lambda s: np.linalg.lstsq(s[0], s[1], rcond=None),
+        LAPACK),
+    ("scipy.linalg.cho_factor", "symmetric", linalg.cho_factor, LAPACK),
+    ("Cholesky by hand", "symmetric", by_hand.cholesky, CLRS),
+    ("the best search tree, by a table", "floats", by_hand.best_tree, CLRS),
+], "O(2^n)": [
+    ("every subset's sum, by a table", floats, by_hand.subset_sums, LOOP),
+    ("truth table", int, lambda n: sum(map(all, itertools.product((True, False), repeat=n))),
+        PYDOC),
 ]})
 # fmt: on

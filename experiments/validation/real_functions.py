@@ -24,8 +24,7 @@ from typer import Option
 from experiments.runs import describe
 from experiments.validation.accuracy import UNDETERMINED, Judge, installed_judges
 from experiments.validation.accuracy import load_accuracy as load_answers
-from experiments.validation.functions import FUNCTIONS
-from experiments.validation.held_out import HELD_OUT
+from experiments.validation.functions import FUNCTIONS, HELD_OUT
 from hem.complexity import BUDGET, InParts, Measured, canonical, measure, parse
 
 RESULT = Path("results/reference/real_functions.json")
