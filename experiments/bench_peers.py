@@ -77,16 +77,15 @@ def _measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
     if case.order == LOOPED or (what == BUILD and BUILD in peer.loops):
         fields = measuring.read_looped(case, preset)
     elif what in QUERIES:
-        fields = (measuring.time_bulk if case.order == BULK else measuring.time_single)(*given)
-        fields |= measuring.beside(case)
+        ask = measuring.time_bulk if case.order == BULK else measuring.time_single
+        fields = ask(*given) | measuring.beside(case)
     elif what in OPERATIONS:
         fields = measuring.time_operations(*given, batched=case.order == BULK)
     elif what in peers.ALGORITHMS:
         fields = measuring.time_algorithm(*given)
     else:
         fields = measuring.time_building(*given)
-    beside = {it: fields.pop(it) for it in ("working_set",) if it in fields}
-    return replace(case.result("time", None, **fields, detail=version), **beside)
+    return replace(case.result("time", None, detail=version), **fields)
 
 
 IN_CPP = next(name for name, it in PEERS.items() if it.told_version)  # they share one program
