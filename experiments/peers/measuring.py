@@ -12,20 +12,8 @@ import psutil
 
 import hem
 import structures
-from experiments.harness import (
-    BASE,
-    Case,
-    CheckFailedError,
-    Preset,
-    Timer,
-    check_rows,
-    check_told,
-    latency_now,
-    operation_faces,
-    pack_pairs,
-    row,
-    took,
-)
+from experiments import harness
+from experiments.harness import Case, CheckFailedError, Preset, Timer, took
 from experiments.peers.outcome import Arrays, check_counts, check_outcome, counted
 from experiments.peers.peer import Peer
 from experiments.peers.registry import PEERS
@@ -89,7 +77,7 @@ def _check(case: Case, built: Built, numbers: Array, answers: list[Any]) -> None
     peer, ends = PEERS[case.structure], built.corners["edge"]
     keys = ends[numbers] if case.query.source == "edge" else numbers
     named = partial(peer.named, built.mesh) if peer.named else ends.__getitem__
-    check_rows(peer.title, case.query, built.corners["face"], keys, answers, named)
+    harness.check_rows(peer.title, case.query, built.corners["face"], keys, answers, named)
 
 
 def _ends_within(seconds: float, ask: Callable[[Any], Any], handle: Any) -> bool:
@@ -149,7 +137,7 @@ def time_bulk(case: Case, preset: Preset, timer: Timer) -> Fields:
     ask, per = peer.bulk[case.query.name], len(built.corners[case.query.source])
     rows, seconds = took(ask, peer.fresh(built.mesh))
     few = _numbers(case, built)[:CHECKED]
-    _check(case, built, few, [row(rows, it) for it in few.tolist()])
+    _check(case, built, few, [harness.row(rows, it) for it in few.tolist()])
     kept: list[Any] = []  # so that freeing is not timed
 
     def ready() -> tuple[Any]:
@@ -171,12 +159,12 @@ def time_building(case: Case, preset: Preset, timer: Timer) -> Fields:
 
 def _apart(case: Case) -> Array:
     """Elements to operate on, the same for all libraries, see ``operation_faces``."""
-    faces = operation_faces(case)
+    faces = harness.operation_faces(case)
     if str(case.subject).endswith("face"):
         return faces
-    ends = pack_pairs(_mesh_of(case).corners["edge"])
+    ends = harness.pack_pairs(_mesh_of(case).corners["edge"])
     order = np.argsort(ends)
-    wanted = pack_pairs(case.mesh().triangles[faces][:, :2])
+    wanted = harness.pack_pairs(case.mesh().triangles[faces][:, :2])
     return order[np.searchsorted(ends, wanted, sorter=order)]
 
 
@@ -214,7 +202,7 @@ def time_algorithm(case: Case, preset: Preset, timer: Timer) -> Fields:
     if name == "simplify":
         _require(peer, abs(found - more[0]) <= more[0] / PART, f"{found} faces for {more[0]}")
     elif name == "vertex_normals":
-        ours = vertex_normals(structures.build(BASE, case.mesh()))
+        ours = vertex_normals(structures.build(harness.BASE, case.mesh()))
         cosine = (np.asarray(found) * ours).sum(axis=1).min()
         _require(peer, cosine > COSINE, f"normals are turned by {np.arccos(cosine):.2f}")
     rounds = preset.affordable_rounds(seconds)
@@ -228,7 +216,7 @@ def _looped(case: Case, rounds: int, whole: int) -> tuple[dict[str, list[float]]
     assert peer.looped is not None  # or there is no such case
     few = 0 if case.valence is None else len(hem.valence_hubs(case.valence, case.size))
     told = peer.looped(*given, few, rounds, whole)
-    check_told(peer.title, given[1], told["answers"])
+    harness.check_told(peer.title, given[1], told["answers"])
     for operation, (done, *left) in told["operated"].items():
         check_counts(peer.title, operation, counted(*given), done, left)
     return told["times"], _memory(told["bytes"])
@@ -258,4 +246,4 @@ def beside(case: Case) -> Fields:
 
 
 def _memory(working_set: int) -> Fields:
-    return {"working_set": working_set, "latency": latency_now(working_set)}
+    return {"working_set": working_set, "latency": harness.latency_now(working_set)}
