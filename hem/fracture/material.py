@@ -1,15 +1,15 @@
 """Materials: how what is hit breaks, as data."""
 
-import math
 import os
 import re
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any
 
 from hem.errors import MeshError
+from hem.fracture.mass import positive
 from hem.naming import look_up
 
 _OWN = Path(__file__).parent / "materials.toml"
@@ -39,13 +39,15 @@ class Material:
         return bytes.fromhex(self.color[1:])
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "circles", tuple(self.circles))
         wrong = []
         for it in ("density", "thickness", "scale", "sites", "reach", "burst"):
-            value = getattr(self, it)
-            if not (isinstance(value, int | float) and 0 < value < math.inf):
+            try:
+                object.__setattr__(self, it, positive(getattr(self, it), it))
+            except MeshError:
                 wrong.append(it)
-        if not all(isinstance(count, int) and count >= 0 for count in self.circles):
+        if isinstance(self.circles, Iterable):
+            object.__setattr__(self, "circles", tuple(self.circles))
+        if not (isinstance(self.circles, tuple) and all(map(_is_count, self.circles))):
             wrong.append("circles")
         if "burst" not in wrong and self.burst > 1:
             wrong.append("burst")
@@ -54,7 +56,7 @@ class Material:
         if wrong:
             raise MeshError(
                 f"material {self.name!r}: {', '.join(wrong)} cannot be "
-                f"{', '.join(repr(getattr(self, it)) for it in wrong)}; numbers are positive, "
+                f"{', '.join(f'{getattr(self, it)!r:.60}' for it in wrong)}; numbers are positive, "
                 "circles are counts of break points, burst is a part of 1, and a color is #rrggbb"
             )
 
@@ -73,6 +75,10 @@ def material(name: str, known: Mapping[str, Material] | None = None) -> Material
     return look_up(name, MATERIALS if known is None else known, "material")
 
 
+def _is_count(value: Any) -> bool:
+    return isinstance(value, int) and not isinstance(value, bool) and value >= 0
+
+
 def _material(name: str, entry: Any, path: Any) -> Material:
     names = {field.name for field in fields(Material)} - {"name"}
     if not isinstance(entry, dict):
@@ -84,7 +90,7 @@ def _material(name: str, entry: Any, path: Any) -> Material:
         raise MeshError(f"{path}: material {name!r} {' and '.join(what)}")
     try:
         return Material(name, **entry)
-    except (MeshError, TypeError) as error:
+    except MeshError as error:
         raise MeshError(f"{path}: material {name!r}: {error}") from error
 
 

@@ -307,7 +307,10 @@ def test_materials_of_ones_own(tmp_path):
 @pytest.mark.parametrize(
     ("wrong", "words"),
     [
-        ("circles = 5", "not iterable"),
+        ("circles = 5", "circles cannot be 5"),
+        ("circles = [3, true]", "circles"),
+        ("thickness = true", "thickness"),
+        (f"density = 1{400 * '0'}", "density"),
         ('burst = "0.3"', "burst"),
         ("density = -1.0", "density"),
         ('color = "blue"', "color"),
