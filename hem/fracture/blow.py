@@ -130,7 +130,7 @@ def motion(fracture: Fracture, blow: Blow, seed: int | None = None, held: ArrayL
     if not fracture.mass.masses.sum() > 0:
         raise MeshError("the pieces weigh nothing, and no blow moves them")
     moving = Motion(*np.zeros((2, len(fracture.pieces), 3)))
-    free = np.setdiff1d(np.arange(len(fracture.pieces)), np.asarray(held, int))
+    free = fracture.free(held)
     mass = Mass(*(column[free] for column in fracture.mass))
     if not mass.masses.sum() > 0:
         return moving

@@ -59,6 +59,14 @@ class Fracture:
         """(k, 2): the pieces that touch along more than a point, each pair once and ascending."""
         return self.find_neighbors()
 
+    def free(self, held: Any) -> Indices:
+        """The indices of all pieces but those that are ``held``. MeshError for what are none."""
+        try:
+            return np.delete(np.arange(len(self.pieces)), held)
+        except (IndexError, TypeError, ValueError):
+            words = f"{len(self.pieces):,} pieces, not {held!r:.60}"
+            raise MeshError(f"what is held are indices of {words}") from None
+
     @cached_property
     def mass(self) -> Mass:
         """What the pieces weigh. Cost O(faces)."""

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 from hem.arrays import Bools, Floats
 from hem.errors import MeshError
 from hem.fracture.pieces import Fracture
-from hem.meshes import TriangleMesh
+from hem.meshes import TriangleMesh, direction
 
 GRAVITY = 9.81
 """m/s²"""
@@ -41,21 +41,22 @@ def flight(
     """The flight of a fracture's pieces from the velocities and spins of a motion.
 
     ``frames`` moments from 0 to ``seconds``, both included, at (i / last) ** ``ease`` of it: with
-    more than 1 the first ones are slow motion. The floor lies across ``up`` (3,), of length 1, at
+    more than 1 the first ones are slow motion. The floor lies across ``up`` (3,), of any length, at
     the height ``floor``. The pieces of the indices ``held`` stay where they are. Cost O(pieces ·
     seconds · vertices of a hull). Raises MeshError for times and frames that make no sense.
     """
-    if not (0 < seconds <= 600 and 2 <= frames <= 100_000 and 0 < ease <= 10):
+    whole = isinstance(frames, int | np.integer)
+    if not (0 < seconds <= 600 and whole and 2 <= frames <= 100_000 and 0 < ease <= 10):
         raise MeshError(
             "a flight takes 0 … 600 seconds, 2 … 100,000 frames and an ease of 0 … 10, not "
             f"{seconds}, {frames} and {ease}"
         )
-    times, top = seconds * np.linspace(0, 1, frames) ** ease, np.asarray(up, float)
+    times, top = seconds * np.linspace(0, 1, frames) ** ease, direction(up)
     mass = fracture.mass
     positions = np.tile(mass.centers, (frames, 1, 1))
     rotations = np.tile(np.eye(3), (frames, len(mass.centers), 1, 1))
     at_rest = np.ones(len(mass.centers), bool)
-    for i in np.setdiff1d(np.arange(len(at_rest)), np.asarray(held, int)):
+    for i in fracture.free(held):
         piece = _Piece(fracture.pieces[i], mass.centers[i], top, floor)
         fallen = piece.fly(motion.velocities[i], motion.spins[i], times)
         positions[:, i], rotations[:, i], at_rest[i] = fallen

@@ -162,6 +162,18 @@ def test_what_is_held_stays_and_the_others_fly_as_if_it_were_not_there():
     assert not np.any(motion(sheets(plate), blow, held=[0]))
 
 
+def test_held_are_told_by_index_from_either_end_or_by_a_mask_and_nothing_else():
+    random = np.random.default_rng(5)
+    broken = sheets(*(hem.TriangleMesh(random.random((3, 3)), [(0, 1, 2)]) for _ in range(4)))
+    blow = Blow((0.1, 0.2, 0.3), (1, 2, 2), 3.0)
+    for held in ([3], 3, [-1], np.arange(4) == 3):
+        still = ~motion(broken, blow, held=held).velocities.any(axis=1)
+        assert still.tolist() == [False, False, False, True]
+    for held in ([4], [-5], [0.5], [True], "abc", None):
+        with pytest.raises(hem.MeshError, match="indices of 4 pieces"):
+            motion(broken, blow, held=held)
+
+
 def test_pieces_without_weight_stand_no_blow():
     flat = hem.TriangleMesh([(0, 0, 0), (1, 0, 0), (2, 0, 0)], [(0, 1, 2)])
     for found in (sheets(), sheets(flat)):
