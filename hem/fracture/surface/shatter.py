@@ -168,7 +168,7 @@ def break_points(material: Material, seed: int, step: float) -> Floats:
     arithmetic decides, the same on every machine. Raises MeshError for a step that is no length,
     and a seed that is none.
     """
-    step = positive(step, "the scale of the circles")
+    step = min(positive(step, "the scale of the circles"), 1e100)  # whose square is a number, too
     random = generator(seed).random
     circles = [np.zeros((0, 2))]
     for i, count in enumerate(material.circles):

@@ -139,6 +139,13 @@ def test_on_a_sphere_points_keep_their_distance_over_the_surface():
         assert np.abs(arcs - wanted).min() < 2e-3 * radius
 
 
+def test_points_that_are_cast_too_far_to_be_followed_are_outside():
+    for scale in (1e99, 1e300):
+        s = structures.build("half_edge", hem.generate("sphere", 42))
+        broken = shatter(s, (0, 0, 1), "glass", scale=scale)
+        assert broken.counts["outside"] == sum(MATERIALS["glass"].circles)
+
+
 def test_the_impact_and_the_middles_of_the_sides_are_split():
     s = structures.build("half_edge", sheet())
     bare = replace(MATERIALS["glass"], circles=())
