@@ -17,6 +17,8 @@ Mesh = Any
 Rows = Any
 """What a library answers for every element: an array with a row for each, padded with −1, or all
 answers and where each begins, or a list of lists."""
+Ask = Callable[[Any], Any]
+"""What asks of one handle."""
 
 SINGLE, BULK, LOOPED = "one by one", "all at once", "in a loop"
 """Ways to ask and to operate, the order of a case: by calls of Python, or in a compiled loop."""
@@ -46,7 +48,7 @@ class Lazy:
         return value
 
 
-def row_of(rows: Callable[[Mesh], Any]) -> Callable[[Mesh], Callable[[Any], Any]]:
+def row_of(rows: Callable[[Mesh], Any]) -> Callable[[Mesh], Ask]:
     """What reads the row of one element, of an array that was asked for once."""
     return lambda m: rows(m).__getitem__
 
@@ -87,7 +89,7 @@ class Peer:
     ends: Callable[[Mesh], Any] | None = None
     handles: Callable[[Mesh, str, list[int]], Sequence[Any]] = lambda m, element, numbers: numbers
     named: Callable[[Mesh, Array], Array] | None = None
-    single: Mapping[str, Callable[[Mesh], Callable[[Any], Any]]] = field(default_factory=dict)
+    single: Mapping[str, Callable[[Mesh], Ask]] = field(default_factory=dict)
     bulk: Mapping[str, Callable[[Mesh], Rows]] = field(default_factory=dict)
     fresh: Callable[[Mesh], Mesh] = lambda m: m
     operations: Mapping[str, Callable[[Mesh, Any, Array], int]] = field(default_factory=dict)

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from experiments.peers.peer import Lazy, Mesh, Peer
+from experiments.peers.peer import Ask, Lazy, Mesh, Peer
 from hem.arrays import Array
 
 bpy, bmesh = Lazy("bpy"), Lazy("bmesh")
@@ -36,7 +36,7 @@ def _handles(m: Mesh, element: str, numbers: list[int]) -> list[Any]:
     return [elements[number] for number in numbers]
 
 
-def _listed(name: str) -> Callable[[Mesh], Callable[[Any], list[int]]]:
+def _listed(name: str) -> Callable[[Mesh], Ask]:
     """What reads an element's list of others."""
     read = attrgetter(name)
     return lambda m: lambda it: [other.index for other in read(it)]

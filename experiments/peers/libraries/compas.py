@@ -1,12 +1,11 @@
 """COMPAS: half-edges in dictionaries, all in Python."""
 
-from collections.abc import Callable
 from operator import attrgetter, methodcaller
 from typing import Any
 
 import numpy as np
 
-from experiments.peers.peer import Lazy, Mesh, Peer
+from experiments.peers.peer import Ask, Lazy, Mesh, Peer
 from hem.arrays import Array
 
 structures = Lazy("compas.datastructures")
@@ -27,14 +26,10 @@ def _handles(m: Mesh, element: str, numbers: list[int]) -> list[Any]:
     return [tuple(it) for it in _ends(m)[numbers].tolist()]
 
 
-def _known(query: str) -> Callable[[Mesh], Callable[[Any], Any]]:
-    """What asks; where there is no face it says None, here −1."""
-
-    def bind(m: Mesh) -> Callable[[Any], Any]:
-        ask = getattr(m, query)
-        return lambda edge: [-1 if it is None else it for it in ask(edge)]
-
-    return bind
+def _edge_faces(m: Mesh) -> Ask:
+    """Where there is no face it says None, here −1."""
+    ask = m.edge_faces
+    return lambda edge: [-1 if it is None else it for it in ask(edge)]
 
 
 def _insert(m: Mesh, faces: list[int], places: Array) -> int:
@@ -81,7 +76,7 @@ PEER = Peer(
         "vertex_vertices": attrgetter("vertex_neighbors"),
         "vertex_edges": attrgetter("vertex_edges"),
         "vertex_faces": attrgetter("vertex_faces"),
-        "edge_faces": _known("edge_faces"),
+        "edge_faces": _edge_faces,
         "face_vertices": attrgetter("face_vertices"),
         "face_edges": attrgetter("face_halfedges"),
         "face_faces": attrgetter("face_neighbors"),

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from experiments.peers.peer import Lazy, Mesh, Peer, Rows, row_of
+from experiments.peers.peer import Ask, Lazy, Mesh, Peer, Rows, row_of
 from hem.arrays import Array
 
 igl = Lazy("igl")
@@ -24,7 +24,7 @@ def _topology(m: Mesh) -> Any:
     return igl.edge_topology(m.V, m.F)
 
 
-def _faces_of_vertex(m: Mesh) -> Callable[[int], Any]:
+def _faces_of_vertex(m: Mesh) -> Ask:
     values, begin = BULK["vertex_faces"](m)
     return lambda vertex: values[begin[vertex] : begin[vertex + 1]]
 

@@ -1,12 +1,11 @@
 """MeshLib: half-edges in arrays, named by typed indices."""
 
-from collections.abc import Callable
 from functools import partial
 from typing import Any
 
 import numpy as np
 
-from experiments.peers.peer import Lazy, Mesh, Peer
+from experiments.peers.peer import Ask, Lazy, Mesh, Peer
 from hem.arrays import Array
 
 arrays, mr = Lazy("meshlib.mrmeshnumpy"), Lazy("meshlib.mrmeshpy")
@@ -24,27 +23,19 @@ def _ends(m: Mesh) -> Array:
     return np.array([(int(org(it)), int(dest(it))) for it in every])
 
 
-def _around(ring: str, read: str) -> Callable[[Mesh], Callable[[Any], list[int]]]:
+def _around(ring: str, read: str, m: Mesh) -> Ask:
     """What reads each half-edge around a vertex or in a face."""
-
-    def bind(m: Mesh) -> Callable[[Any], list[int]]:
-        topology, walk = m.topology, getattr(mr, ring)
-        if read == "undirected":
-            return lambda handle: [int(it.undirected()) for it in walk(topology, handle)]
-        at = getattr(topology, read)
-        return lambda handle: [int(at(it)) for it in walk(topology, handle)]
-
-    return bind
+    topology, walk = m.topology, getattr(mr, ring)
+    if read == "undirected":
+        return lambda handle: [int(it.undirected()) for it in walk(topology, handle)]
+    at = getattr(topology, read)
+    return lambda handle: [int(at(it)) for it in walk(topology, handle)]
 
 
-def _both(one: str, other: str) -> Callable[[Mesh], Callable[[Any], list[int]]]:
+def _both(one: str, other: str, m: Mesh) -> Ask:
     """What reads both sides or both ends of an edge."""
-
-    def bind(m: Mesh) -> Callable[[Any], list[int]]:
-        first, second = getattr(m.topology, one), getattr(m.topology, other)
-        return lambda edge: [int(first(edge)), int(second(edge))]
-
-    return bind
+    first, second = getattr(m.topology, one), getattr(m.topology, other)
+    return lambda edge: [int(first(edge)), int(second(edge))]
 
 
 def _split(split: str, m: Mesh, handles: list[Any], places: Array) -> int:
@@ -104,14 +95,14 @@ PEER = Peer(
     ends=_ends,
     handles=_handles,
     single={
-        "vertex_vertices": _around("orgRing", "dest"),
-        "vertex_edges": _around("orgRing", "undirected"),
-        "vertex_faces": _around("orgRing", "left"),
-        "edge_vertices": _both("org", "dest"),
-        "edge_faces": _both("left", "right"),
-        "face_vertices": _around("leftRing", "org"),
-        "face_edges": _around("leftRing", "undirected"),
-        "face_faces": _around("leftRing", "right"),
+        "vertex_vertices": partial(_around, "orgRing", "dest"),
+        "vertex_edges": partial(_around, "orgRing", "undirected"),
+        "vertex_faces": partial(_around, "orgRing", "left"),
+        "edge_vertices": partial(_both, "org", "dest"),
+        "edge_faces": partial(_both, "left", "right"),
+        "face_vertices": partial(_around, "leftRing", "org"),
+        "face_edges": partial(_around, "leftRing", "undirected"),
+        "face_faces": partial(_around, "leftRing", "right"),
     },
     bulk={"face_vertices": lambda m: arrays.getNumpyFaces(m.topology)},
     operations={

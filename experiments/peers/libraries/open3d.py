@@ -1,12 +1,13 @@
 """Open3D: its half-edge mesh, made of its mesh of triangles."""
 
 from collections.abc import Callable
+from functools import partial
 from operator import attrgetter
 from typing import Any
 
 import numpy as np
 
-from experiments.peers.peer import Lazy, Mesh, Peer, Rows
+from experiments.peers.peer import Ask, Lazy, Mesh, Peer, Rows
 from hem.arrays import Array
 
 geometry, utility = Lazy("open3d.geometry"), Lazy("open3d.utility")
@@ -22,14 +23,10 @@ def _flat(m: Mesh) -> Any:
     return geometry.TriangleMesh(m.vertices, m.triangles)
 
 
-def _around(read: Callable[[Any], int]) -> Callable[[Mesh], Callable[[int], list[int]]]:
+def _around(read: Callable[[Any], int], m: Mesh) -> Ask:
     """What reads each half-edge that leaves a vertex; the lists are asked for once."""
-
-    def bind(m: Mesh) -> Callable[[int], list[int]]:
-        half_edges, leaving = m.half_edges, m.ordered_half_edge_from_vertex
-        return lambda vertex: [read(half_edges[it]) for it in leaving[vertex]]
-
-    return bind
+    half_edges, leaving = m.half_edges, m.ordered_half_edge_from_vertex
+    return lambda vertex: [read(half_edges[it]) for it in leaving[vertex]]
 
 
 def _neighbors(m: Mesh) -> Rows:
@@ -50,8 +47,8 @@ PEER = Peer(
     faces=lambda m: len(m.triangles),
     arrays=attrgetter("vertices", "triangles"),
     single={
-        "vertex_vertices": _around(lambda it: it.vertex_indices[1]),
-        "vertex_faces": _around(attrgetter("triangle_index")),
+        "vertex_vertices": partial(_around, lambda it: it.vertex_indices[1]),
+        "vertex_faces": partial(_around, attrgetter("triangle_index")),
         "face_vertices": lambda m: m.triangles.__getitem__,
     },
     bulk={"vertex_vertices": _neighbors},

@@ -1,10 +1,10 @@
 """OpenMesh: half-edges in arrays; its Python package is compiled from source."""
 
-from collections.abc import Callable
+from functools import partial
 from operator import methodcaller
 from typing import Any
 
-from experiments.peers.peer import Lazy, Mesh, Peer
+from experiments.peers.peer import Ask, Lazy, Mesh, Peer
 from hem.arrays import Array
 
 openmesh = Lazy("openmesh")
@@ -14,22 +14,15 @@ def _handles(m: Mesh, element: str, numbers: list[int]) -> list[Any]:
     return [getattr(m, f"{element}_handle")(number) for number in numbers]
 
 
-def _ring(walk: str) -> Callable[[Mesh], Callable[[Any], list[int]]]:
+def _ring(walk: str, m: Mesh) -> Ask:
     """What walks around an element with one of its iterators."""
-
-    def bind(m: Mesh) -> Callable[[Any], list[int]]:
-        around = getattr(m, walk)
-        return lambda handle: [it.idx() for it in around(handle)]
-
-    return bind
+    around = getattr(m, walk)
+    return lambda handle: [it.idx() for it in around(handle)]
 
 
-def _of_both_half_edges(read: str) -> Callable[[Mesh], Callable[[Any], list[int]]]:
-    def bind(m: Mesh) -> Callable[[Any], list[int]]:
-        half_edge, at = m.halfedge_handle, getattr(m, read)
-        return lambda edge: [at(half_edge(edge, 0)).idx(), at(half_edge(edge, 1)).idx()]
-
-    return bind
+def _of_both_half_edges(read: str, m: Mesh) -> Ask:
+    half_edge, at = m.halfedge_handle, getattr(m, read)
+    return lambda edge: [at(half_edge(edge, 0)).idx(), at(half_edge(edge, 1)).idx()]
 
 
 def _split(m: Mesh, handles: list[Any], places: Array) -> int:
@@ -93,12 +86,12 @@ PEER = Peer(
     handles=_handles,
     single={
         **{
-            f"{source}_{target}": _ring(f"{source[0]}{letter}")
+            f"{source}_{target}": partial(_ring, f"{source[0]}{letter}")
             for source in ("vertex", "face")
             for target, letter in (("vertices", "v"), ("edges", "e"), ("faces", "f"))
         },
-        "edge_vertices": _of_both_half_edges("to_vertex_handle"),
-        "edge_faces": _of_both_half_edges("face_handle"),
+        "edge_vertices": partial(_of_both_half_edges, "to_vertex_handle"),
+        "edge_faces": partial(_of_both_half_edges, "face_handle"),
     },
     bulk={
         f"{source}_{target}": methodcaller(f"{source[0]}{target[0]}_indices")
