@@ -198,7 +198,8 @@ class Forecast:
 
 def predict(prices: Prices, workload: Workload, structure: str, faces: float) -> Forecast:
     """What a workload takes on a structure and a mesh of so many faces."""
-    middle = _grown(workload, faces)
+    more = sum(row.gain * row.count(faces, workload.frames) for row in workload.rows)
+    middle = max(8.0, faces / 8, faces + more / 2)  # faces half-way through the edits
     found: dict[str, list[Price]] = {}
     untold = []
     for row in _with_anew(workload.rows):
@@ -235,12 +236,6 @@ def _own(prices: Prices, workload: Workload, faces: float) -> float:
     alone = predict(prices, replace(workload, measured=None), known.structure, there)
     then, now = (sum(it.count(n, workload.frames) for it in workload.rows) for n in (there, faces))
     return max(0.0, known.seconds - alone.seconds) * (now / then if then else 1.0)
-
-
-def _grown(workload: Workload, faces: float) -> float:
-    """The faces half-way through the edits."""
-    more = sum(row.gain * row.count(faces, workload.frames) for row in workload.rows)
-    return max(8.0, faces / 8, faces + more / 2)
 
 
 def _with_anew(rows: tuple[Row, ...]) -> tuple[Row, ...]:
