@@ -158,14 +158,11 @@ class _Reader:
             return atom
         if number and self._took(self._variable):
             return Order(base=log(float(number)))
-        if atom == Order() and self._is_held():
-            self._take()
-            return atom
-        return atom.to_the(self._number())
-
-    def _is_held(self) -> bool:
-        """Whether the next token is a variable that is held fixed."""
-        return self.token[:1].isalpha() and self.token not in ("sqrt", "log", self._variable)
+        varies = not self.token[:1].isalpha() or self.token in ("sqrt", "log", self._variable)
+        if varies or atom != Order():
+            return atom.to_the(self._number())
+        self._take()  # a variable that is held fixed
+        return atom
 
     def _atom(self) -> Order:
         token = self._take()
