@@ -131,7 +131,11 @@ class Complexity:
         if path := config.getoption("complexity_history"):
             _keep(self._item, self.calls, verdict, config.invocation_params.dir / path)
         if verdict.outcome != "consistent":
-            _settle(config, words, f"complexity_{verdict.outcome}")
+            doing = _doing(config, f"complexity_{verdict.outcome}")
+            if doing == "fail":
+                pytest.fail(words, pytrace=False)
+            elif doing == "warn":
+                warnings.warn(ComplexityWarning(words), stacklevel=2)
         return verdict
 
 
@@ -203,14 +207,6 @@ def _mistake(options: dict[str, Any]) -> str:
     except ValueError as error:
         return str(error)
     return ""
-
-
-def _settle(config: pytest.Config, words: str, key: str) -> None:
-    doing = _doing(config, key)
-    if doing == "fail":
-        pytest.fail(words, pytrace=False)
-    elif doing == "warn":
-        warnings.warn(ComplexityWarning(words), stacklevel=3)
 
 
 def _doing(config: pytest.Config, key: str) -> str:
