@@ -70,16 +70,12 @@ class Trends:
             if wanted is not None:
                 known = about[what].unique()
                 named = [it for it in known if wanted and it.startswith(wanted)]
+                named = [wanted] if wanted in named else named
                 if len(named) != 1:
                     which, there = "several runs are" if named else "no run is", ", ".join(known)
                     raise ValueError(f"{which} of {what} {wanted!r}; there are {there}")
                 about = about[about[what] == named[0]]
         return type(self)(replace(self.history, runs=[self.runs[k] for k in about.index]))
-
-    def of_newest_preset(self) -> Self:
-        """The runs of the newest one's preset."""
-        alike = [it for it in self.runs if it["profile"] == self.runs[-1]["profile"]]
-        return type(self)(replace(self.history, runs=alike))
 
     def claims(self, text: str | None = None) -> list[str]:
         """The claims, in the newest run's order, that ``text`` names; None: all.

@@ -33,8 +33,7 @@ def by_commit(trends: Trends, subject: str) -> Plot:
     machine a line of its own. A ring is a step to a new level, a cross a verdict by work that
     changed.
     """
-    trends = trends.of_newest_preset()
-    rows = _of_newest(trends)
+    trends, rows = _of_newest(trends)
     with styled():
         ends = {key: "" if key == "bytes" else f": {TITLES[subject]}" for key in PANELS}
         titles = [title + ends[key] for key, title in PANELS.items()]
@@ -56,19 +55,21 @@ def by_commit(trends: Trends, subject: str) -> Plot:
     return figure
 
 
-def _of_newest(trends: Trends) -> pd.DataFrame:
-    """What is comparable with the newest run, by structure and subject.
+def _of_newest(trends: Trends) -> tuple[Trends, pd.DataFrame]:
+    """The runs of the newest one's preset, and what is comparable with it.
 
     ``here``: it is of the newest one's machine, or of any. Raises ValueError without a run.
     """
     if not trends.runs:
         raise ValueError(f"there is no run in {trends.history.path}; begin with: hem history add")
-    rows, newest = trends.figures, trends.runs[-1]
+    newest = trends.runs[-1]
+    trends = trends.only(preset=newest["profile"])
+    rows = trends.figures
     names = pd.DataFrame(map(ClaimName.read, rows["claim"]), rows.index, ClaimName._fields)
     here = rows["machine"].isin(("", newest["machine"]["id"]))
     rows = rows.assign(structure=names["structure"], subject=names["subject"], here=here)
     wanted = rows["comparable"] & (names["table"] != "listings")
-    return rows[wanted & rows["structure"].isin(NAMES)]
+    return trends, rows[wanted & rows["structure"].isin(NAMES)]
 
 
 def _draw_line(axes: Axes, trends: Trends, line: pd.DataFrame) -> None:
@@ -119,8 +120,7 @@ def departures(trends: Trends) -> Plot:
     Of the newest run's preset and machine. A ring is a step to a new level, a
     cross a verdict by work that changed.
     """
-    trends = trends.of_newest_preset()
-    rows = _of_newest(trends)
+    trends, rows = _of_newest(trends)
     rows = rows[rows["here"] & (rows["measure"] == "time") & (rows["value"] > 0)]
     ends = (1 / STRONGEST, 1.0, STRONGEST)
     ticks, names = np.log(ends), [f"{it - 1:+.0%}" if it != 1 else "as usual" for it in ends]

@@ -65,6 +65,16 @@ def test_a_mistake_gets_one_clear_line_and_an_exit_code(
     assert list(tmp_path.iterdir()) == []
 
 
+def test_a_preset_that_is_named_in_full_is_that_one_beside_those_of_a_mesh_of_ones_own(
+    base, tmp_path
+):
+    path = tmp_path / "history.jsonl"
+    for k, preset in enumerate(("quick", "quick on model.ply")):
+        append_run({**line(base, k), "profile": preset}, path)
+    output = output_of("history", "show", "--preset", "quick", "--file", str(path), "--json")
+    assert [it["profile"] for it in json.loads(output)["runs"]] == ["quick"]
+
+
 def test_of_a_history_at_least_one_run_is_shown(kept):
     code, output = words("history", "show", "--last", "0", "--file", str(kept))
     assert code == 2
