@@ -1,8 +1,7 @@
 """Two trees timed interleaved, so that whatever slows the machine slows both.
 
 Each tree has a worker process, some one after another; a pair of them answers the same query a
-round at a time, ABBA, with the calibration loop beside every round. That tells a slowdown of a
-fifth that no two runs apart could show.
+round at a time, ABBA, the calibration loop beside every round. A slowdown of a fifth shows then.
 """
 
 import json
@@ -33,10 +32,9 @@ ROUND_SECONDS = 0.002
 
 PAIRS, FURTHER = 2, 3
 """Pairs of processes that time a query, and how many more where one of the first does not find it
-as before. Where a process happens to lie in memory alone was measured to make a query slower by
-1.6, in two of ten processes of the same code (compare Mytkowicz et al., Producing wrong data
-without doing anything obviously wrong, ASPLOS 2009): so a tree is slower only if no pair says
-otherwise."""
+as before. Where a process lies in memory was measured to make a query slower by 1.6, in two of ten
+processes of the same code (compare Mytkowicz et al., Producing wrong data without doing anything
+obviously wrong, ASPLOS 2009): so a tree is slower only if no pair says otherwise."""
 
 Case = tuple[str, str]  # a structure and a query
 
@@ -61,8 +59,7 @@ def compare_trees(
 ) -> list[Finding]:
     """Time every query of the compiled structures in both trees, usually in a minute or two.
 
-    A tree that never ran compiles first. Raises ValueError where ``before`` is no tree; what does
-    not run there cannot be told.
+    The first time it compiles; what does not run cannot be told. Raises ValueError for no tree.
     """
     require_tree(before)
     chosen = structures or REGISTRY
@@ -73,15 +70,17 @@ def compare_trees(
         why = f"{none}, so there is nothing to time interleaved"
         return [Finding(Change.UNDETERMINED, Kind.TIME, CaseKey("interleaved"), why=why)]
     timed: dict[Case, list[PairTimed]] = {case: [] for case in wanted}
-    still = set(wanted)
-    for k in range(PAIRS + FURTHER):
-        asked = [case for case in wanted if case in still]
-        for case, pair in time_in_new_processes(before, after, asked, factor):
+    for _ in range(PAIRS + FURTHER):
+        for case, pair in time_in_new_processes(before, after, wanted, factor):
             timed[case].append(pair)
-            as_before = all(it.compared.change == Change.SAME for it in timed[case][:PAIRS])
-            if pair.error or (k + 1 >= PAIRS and as_before):  # further pairs could tell no more
-                still.discard(case)
-    return [_judge(*case, timed[case]) for case in wanted]
+        wanted = [case for case in wanted if _is_open(timed[case])]
+    return [_judge(*case, pairs) for case, pairs in timed.items()]
+
+
+def _is_open(pairs: Sequence[PairTimed]) -> bool:
+    """Whether further pairs could tell more."""
+    not_as_before = any(it.compared.change != Change.SAME for it in pairs[:PAIRS])
+    return not pairs[-1].error and (len(pairs) < PAIRS or not_as_before)
 
 
 def _judge(name: str, query: str, pairs: Sequence[PairTimed]) -> Finding:
@@ -115,9 +114,10 @@ def time_in_new_processes(
 
 def _time_pair(workers: Sequence[Popen[str]], name: str, query: str, factor: float) -> PairTimed:
     """More rounds as long as they cannot tell, ``MOST_ROUNDS`` at most."""
-    once = min(_ask(worker, structure=name, query=query) for worker in workers)
+    ask = {"structure": name, "query": query}
+    once = min(_ask(worker, **ask, times=1)[1] for worker in workers)
     times = max(1, round(ROUND_SECONDS / once))
-    handles = [_ask(worker, times=times) for worker in workers]
+    handles = [_ask(worker, **ask, times=times)[0] for worker in workers]
     rounds: list[list[Any]] = [[], []]
     while True:
         for k in range(2 * ROUNDS):

@@ -25,42 +25,31 @@ TRIES = 5
 def main(calibration: str, vertices: int) -> None:
     """Answer until nobody asks any more.
 
-    A ``structure`` and a ``query`` are made ready -> seconds that all its elements take; ``times``
-    asks them so often in each round from now on -> how many that are; anything else times a round
-    -> its seconds, and those of the calibration loop. What fails is answered by its ``error``.
+    A ``structure`` and a ``query`` are made ready, to ask all elements so many ``times`` a round ->
+    how many that are, and the seconds of a round; nothing times a round -> its seconds, and those
+    of the calibration loop. What fails is answered by its ``error``.
     """
     loop: dict[str, Any] = {"__name__": "calibration"}
     exec(compile(Path(calibration).read_text("utf-8"), calibration, "exec"), loop)
     loop["compiled_walk"] = njit(loop["walk"])  # Numba's cache knows it by its own module's name
     mesh = hem.generate("torus", vertices)
     for line in sys.stdin:
-        question = json.loads(line)
         try:
-            if "structure" in question:
+            if question := json.loads(line):
                 s, query = structures.build(question["structure"], mesh), question["query"]
-                handles = s.handles(query.split("_")[0])
-                sweep = _prepared(s, query, handles)
+                handles = np.tile(s.handles(query.split("_")[0]), question["times"])
+                if hasattr(s, "prepare_sweep"):
+                    sweep = s.prepare_sweep(query, handles).run
+                else:  # an old tree, whose ``sweep`` checked no handles
+                    sweep = partial(s.sweep, query, handles)
                 sweep()  # compiles
-                answer: Any = min(_seconds(sweep) for _ in range(TRIES))
-            elif "times" in question:
-                many = np.tile(handles, question["times"])
-                sweep = _prepared(s, query, many)
-                sweep()
-                answer = len(many)
+                answer: Any = len(handles), min(_seconds(sweep) for _ in range(TRIES))
             else:
                 reading = loop["calibration_loop"]()
                 answer = _seconds(sweep), reading
         except Exception as error:  # the others can be timed all the same
             answer = {"error": f"{type(error).__name__}: {error}"}
         print(json.dumps(answer), flush=True)
-
-
-def _prepared(s: Any, query: str, handles: Any) -> Callable[[], Any]:
-    """What to time: in old trees ``sweep`` itself, which checked no handles."""
-    if hasattr(s, "prepare_sweep"):
-        prepared: Callable[[], Any] = s.prepare_sweep(query, handles).run
-        return prepared
-    return partial(s.sweep, query, handles)
 
 
 def _seconds(call: Callable[[], Any]) -> float:
