@@ -1,9 +1,8 @@
 """Two measured runs compared: every count and class exactly, slopes by intervals, times by curve.
 
-Rounds of a case are milliseconds apart, so what they differ by within a case says nothing about
-what two runs differ by. A curve, one query of one structure at all sizes, is therefore judged as a
-whole: it got slower only if most of its cases say so, or all of its largest, each by significance
-and by size, relative to the calibration loop that ran beside its rounds.
+Rounds of a case are milliseconds apart, and say nothing about what two runs differ by. So a curve,
+one query of one structure at all sizes, is judged as a whole: it got slower only if most of its
+cases say so, or all large ones, by significance and size, relative to the loop beside the rounds.
 """
 
 from collections import defaultdict
@@ -26,18 +25,17 @@ from structures import REGISTRY
 
 FACTOR = 2.0
 """How much slower a curve must be from run to run. Curves of the same code were measured to differ
-between runs by up to 1.65 at all sizes, by where the process lies in memory, and by 1.8 at most of
-them, by another tenant of the same caches. Two trees timed interleaved show far smaller changes."""
+by up to 1.65 at all sizes, by where the process lies in memory, and by 1.8 at most of them, by
+another tenant of the same caches. Two trees timed interleaved show far smaller changes."""
 
 LARGE = 3
-"""Cases, the largest of a curve, that make it slower though most of it is not. Three standard runs,
-each compared with each other, had no curve of which even two of them were slower."""
+"""Cases, the largest of a curve, that make it slower though most of it, the smaller ones, is not.
+No two of three standard runs had a curve of which even two of them were slower."""
 
 SLOPE_DRIFT = 0.25
-"""How far beyond their intervals slopes of times may differ. Between runs of the same code they
-were measured to differ by up to 0.17, where one of them took a rise for the memory's and the other
-did not; a query that becomes linear moves its slope by 1. Where nothing is claimed they are not
-compared."""
+"""How far beyond their intervals slopes of times may differ. Of the same code they were measured to
+differ by up to 0.17, where one run took a rise for the memory's and the other did not; a query that
+becomes linear moves its slope by 1. Where nothing is claimed they are not compared."""
 
 MACHINE = [("machine", it) for it in ("cpu", "cores", "caches", "machines")]
 MACHINE += [("versions", "numba")]  # what must be the same for times to be comparable
@@ -134,13 +132,12 @@ def _pair_cases(before: Run, after: Run) -> tuple[list[Pair], list[str]]:
 
 def claim_of(case: CaseKey) -> str:
     """The claim that a case bears on, in words: of its table, or on memory; empty if none."""
-    declared = experiments().get(case.experiment)
-    name = ClaimName("queries", case.structure, MEMORY)
+    declared, table, subject = experiments().get(case.experiment), "queries", MEMORY
     if declared and declared.table:
-        name = ClaimName(declared.table.name, case.structure, case.subject)
+        table, subject = declared.table.name, case.subject
     elif declared and declared.kind != Kind.BYTES:
         return ""
-    return describe_claim(str(name))[0]
+    return describe_claim(str(ClaimName(table, case.structure, subject)))[0]
 
 
 def _finding(
@@ -188,8 +185,7 @@ def _pair_claims(
 ) -> Iterator[tuple[CaseKey, dict[str, str], Any, Any]]:
     """Every claim of either: what it is about, in words and by kind, and the figures of both."""
     for name in dict.fromkeys((*before.claims, *after.claims)):
-        _, structure, subject = ClaimName.read(name)
-        key = CaseKey("", structure, subject)
+        key = CaseKey("", *ClaimName.read(name)[1:])
         said = dict(zip(("claim", "claimed"), describe_claim(name), strict=True))
         yield key, said, before.claims.get(name), after.claims.get(name)
 
@@ -260,12 +256,12 @@ def _find_gone(pairs: Iterable[Pair]) -> tuple[list[Finding], list[Pair]]:
     """A finding for each experiment on a structure of which the run has no case; the others."""
     findings, others = [], []
     for key, group in groupby(pairs, lambda it: it.case[:2]):
-        cases, change = list(group), Change.UNDETERMINED
-        if any(it.after is not None for it in cases):
+        cases = list(group)
+        if any(it.after for it in cases):
             others += cases
         else:
-            were = f"{len(cases):,} cases"
-            findings.append(Finding(change, cases[0].kind, CaseKey(*key), were, "none"))
+            gone = cases[0].kind, CaseKey(*key), f"{len(cases):,} cases", "none"
+            findings.append(Finding(Change.UNDETERMINED, *gone))
     return findings, others
 
 
@@ -296,18 +292,12 @@ def _compare_times(pairs: Sequence[Pair], factor: float) -> list[Finding]:
     return [_compare_curve(*key, cases, factor) for key, cases in curves.items()]
 
 
-def _all_slower_from(sizes: Sequence[float], cases: Sequence[Comparison]) -> float:
-    """The size from which on all of at least `LARGE` cases are slower; 0 where there is none.
-
-    A slowdown that only large meshes show is never most of a curve.
-    """
-    least, count = 0.0, 0
-    for size in sorted(set(sizes), reverse=True):
-        here = [case.change for it, case in zip(sizes, cases, strict=True) if it == size]
-        if any(change != Change.WORSE for change in here):
-            break
-        least, count = size, count + len(here)
-    return least if count >= LARGE else 0.0
+def _all_slower_from(sizes: list[float], cases: Sequence[Comparison]) -> float:
+    """The size from which on all of at least `LARGE` cases are slower; 0 where there is none."""
+    slower = pd.Series([case.change == Change.WORSE for case in cases], sizes)
+    so_far = slower.groupby(level=0).all()[::-1].cummin()
+    least = so_far.index[so_far].min()  # nan where the largest is not
+    return float(least) if (slower.index >= least).sum() >= LARGE else 0.0
 
 
 def _compare_curve(key: CaseKey, axis: Axis, pairs: list[Pair], factor: float) -> Finding:

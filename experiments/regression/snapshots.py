@@ -11,8 +11,7 @@ from experiments.harness import Axis
 from experiments.runs import Run, tables
 
 LEAST_SLOPE = 0.01
-"""Slopes of counts that differ by less are the same one: not even they come out alike everywhere,
-to the last digit."""
+"""Slopes of counts that differ by less are the same one: their last digits differ by machine."""
 
 LEAST_SIZES = 4  # sizes below which counts show no class
 DIGITS = 5
@@ -47,24 +46,22 @@ def claim_figures(run: Run) -> dict[str, Figures]:
     ``kind``: who claims it; ``outcome`` by work, which decides (of memory: by bytes), and
     ``outcome_time``; ``slopes`` with their intervals, by axis; ``work``, accesses at
     ``work_faces``, the largest mesh; ``seconds`` at ``time_faces``, the largest one that was timed,
-    of ``time_sizes``; ``relative``: the time in memory accesses, which take what they took beside
-    the measurement; ``bytes`` per vertex.
-    Judges the run, which takes some seconds.
+    of ``time_sizes``; ``relative``: the time in memory accesses, as long as they took beside it;
+    ``bytes`` per vertex. Judges the run: seconds.
     """
-    cells = [judged for judged in claims.judge_run(run) if judged.claim.structure]
-    figures = {str(ClaimName.of(judged.claim)): _figures(run, judged) for judged in cells}
-    return {name: kept for name, kept in figures.items() if kept}
+    measured = (it for it in claims.judge_run(run) if it.claim.structure and it.was_measured)
+    return {str(ClaimName.of(it.claim)): _figures(run, it) for it in measured}
 
 
 def class_figures(run: Run) -> dict[str, Figures]:
     """Of every claim the ``classes`` that its counts show, by axis, and what becomes of it."""
     figures: dict[str, Figures] = {}
-    for judged in claims.judge_cells(run):
-        claim, classes = judged.claim, Figures()
-        for axis, verdict in judged.verdicts.items():
-            if len(curves(run).of(claim, axis)) >= LEAST_SIZES:
-                outcome = verdict.outcome if axis.variable in claim.classes else Outcome.NO_CLAIM
-                classes[axis.key] = [verdict.best, outcome]
+    for claim, verdicts in ((it.claim, it.verdicts) for it in claims.judge_cells(run)):
+        classes = {
+            axis.key: [it.best, it.outcome if axis.variable in claim.classes else Outcome.NO_CLAIM]
+            for axis, it in verdicts.items()
+            if len(curves(run).of(claim, axis)) >= LEAST_SIZES
+        }
         if classes:
             figures[str(ClaimName.of(claim))] = {"classes": classes}
     return figures
@@ -87,8 +84,6 @@ def _claims() -> dict[str, Claim]:
 
 
 def _figures(run: Run, judged: JudgedClaim) -> Figures:
-    if not judged.was_measured:
-        return {}
     known = {"kind": judged.claim.kind.value}
     if not judged.verdicts:
         return {**known, "outcome": judged.outcome, "bytes": _short(judged.values[0])}
@@ -97,12 +92,10 @@ def _figures(run: Run, judged: JudgedClaim) -> Figures:
         for axis, verdict in judged.verdicts.items()
     }
     claim, figures = judged.claim, Figures(**known, slopes=slopes)
-    seen = {axis.exact for axis in judged.verdicts}  # what was not measured has not changed
-    for name, it, exact in (
-        ("outcome", judged.outcome, True), ("outcome_time", judged.outcome_time, False)
-    ):  # fmt: skip
-        if exact in seen or it is Outcome.NO_CLAIM:
-            figures[name] = it
+    seen = {"outcome" if axis.exact else "outcome_time" for axis in judged.verdicts}
+    for name in ("outcome", "outcome_time"):
+        if name in seen or getattr(judged, name) is Outcome.NO_CLAIM:  # else it has not changed
+            figures[name] = getattr(judged, name)
     work = curves(run).of(claim, Axis.WORK_FACES)
     if len(work):
         figures |= {"work": _short(judged.work), "work_faces": int(work.sizes[-1])}
