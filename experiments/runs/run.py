@@ -6,7 +6,7 @@ import warnings
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Any, NamedTuple, Self
 
 import numpy as np
 
@@ -26,7 +26,7 @@ Found = tuple[str, str, str, Measurement]  # experiment, structure, machine, and
 class Run:
     """A run as read: ``meta`` is run.json, ``cases`` has one row per measured case.
 
-    ``cases`` has the fields of ``Measurement``, ``samples`` as an array, besides ``experiment``,
+    Its fields are those of ``Measurement``, ``samples`` as an array, and ``experiment``,
     ``structure`` and ``machine``: the folder of the machine that measured it, empty where there was
     only one. ``skipped``: the cases that were not measured, with the reason.
     """
@@ -90,54 +90,42 @@ def latest(root: Path | str = RUNS, *, unfinished: bool = False) -> Path:
     raise store.ResultsError(f"there is no {what} in {root}; start one with: hem study")
 
 
-@dataclass(frozen=True)
-class Noise:
+class Noise(NamedTuple):
     """How steady the machine was during a run, over its timed cases.
 
-    ``cases``: how many said so; ``disturbed``: how many were even when they were repeated;
-    ``repeated``: how many were measured more than once; ``probe_spread``: the 90th percentile of
-    the calibration loop's readings over its fastest, less one; ``worst``: the processes with most
-    disturbed cases; ``share``: the disturbed part; ``too_busy``: whether not to judge by time.
+    ``cases``: how many said so; ``disturbed``: how many were even when they were repeated, and
+    their ``share``; ``repeated``: how many were measured more than once; ``too_busy``: whether not
+    to judge by time; ``words``: all that in a sentence or two.
     """
 
     cases: int
     disturbed: int
     repeated: int
-    probe_spread: float
-    worst: dict[str, int]
     share: float
     too_busy: bool
-
-    @property
-    def words(self) -> str:
-        """All that in a sentence or two."""
-        if not self.cases:
-            return "The run timed nothing that could be disturbed."
-        found = (
-            f"{self.disturbed:,} of {self.cases:,} timed cases ({self.share:.0%}) were disturbed, "
-            f"{self.repeated:,} were repeated; a fixed loop took up to {self.probe_spread:.0%} "
-            "longer than at its fastest in nine of ten probes."
-        )
-        if not self.too_busy:
-            return f"The machine was steady: {found}"
-        most = ", ".join(f"{name} ({count})" for name, count in self.worst.items())
-        return f"The machine was too busy to judge by time: {found} Most: {most}."
+    words: str
 
 
 def noise(run: Run) -> Noise:
     """How steady the machine was during a run; no cases for runs that did not watch."""
     timed = run.cases[(run.cases["kind"] == "time") & run.cases["noise"].map(bool)]
     bad = timed[timed["noise"].map(disturbed).astype(bool)]
-    worst = (bad["experiment"] + " on " + bad["structure"]).value_counts().head(3)
     seen = list(timed["noise"])
+    share, repeated = len(bad) / max(len(seen), 1), sum(it.get("measured", 1) > 1 for it in seen)
     over = [it[when] / it["fastest"] - 1 for it in seen for when in ("before", "after")]
-    share = len(bad) / max(len(seen), 1)
-    return Noise(
-        cases=len(seen), disturbed=len(bad), share=share, too_busy=share > BUSY,
-        repeated=sum(it.get("measured", 1) > 1 for it in seen),
-        probe_spread=float(np.quantile(over or [0.0], 0.9)),
-        worst={str(name): int(count) for name, count in worst.items()},
-    )  # fmt: skip
+    found = (
+        f"{len(bad):,} of {len(seen):,} timed cases ({share:.0%}) were disturbed, {repeated:,} "
+        f"were repeated; a fixed loop took up to {np.quantile(over or [0.0], 0.9):.0%} longer "
+        "than at its fastest in nine of ten probes."
+    )
+    words = f"The machine was steady: {found}"
+    if not seen:
+        words = "The run timed nothing that could be disturbed."
+    elif share > BUSY:
+        worst = (bad["experiment"] + " on " + bad["structure"]).value_counts().head(3)
+        most = ", ".join(f"{name} ({count})" for name, count in worst.items())
+        words = f"The machine was too busy to judge by time: {found} Most: {most}."
+    return Noise(len(seen), len(bad), repeated, share, share > BUSY, words)
 
 
 def in_words(run: Run) -> str:

@@ -13,7 +13,6 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from contextlib import closing, contextmanager, suppress
-from dataclasses import asdict
 from datetime import UTC, datetime
 from functools import cache
 from importlib.metadata import version
@@ -31,14 +30,13 @@ from experiments.runs import store
 from experiments.runs.catalog import PART_OF
 from experiments.runs.catalog import experiments as catalog
 from experiments.runs.provenance import describe, machine_id, now
-from experiments.runs.run import RUNS, load, noise
+from experiments.runs.run import RUNS
 from experiments.runs.worker import AGAIN, COMPILE, Job, WorkerDiedError, end_of_log, perform
 from hem.errors import MeshError, MeshWarning
 from structures import NAMED, REGISTRY
 
 ROOT = Path(__file__).parents[2]
-COMPILED = "hem", "structures", "experiments/harness", "experiments/peers"
-"""Where the sources are that Numba compiles, and the program in C++."""
+COMPILED = "hem", "structures", "experiments/harness", "experiments/peers"  # sources, some in C++
 ON = " on "  # between a preset and one's own mesh, in the name of what was measured
 SAME = "python", "numpy", "numba"  # the versions that times depend on
 MOSTLY = 0.5  # part of disturbed cases above which measuring them again will not be calmer
@@ -343,10 +341,8 @@ def _differences(meta: Mapping[str, Any], here: Mapping[str, Any], elsewhere: bo
 
 
 def finish(folder: Path, machine: dict[str, Any] | None = None) -> None:
-    """Mark a run as finished: what it has, how steady the machine was, or another ``machine``."""
-    paths = store.case_files(folder)
+    """Mark a run as finished: what it has, which is held against it; or another ``machine``."""
+    paths, meta = store.case_files(folder), store.read_meta(folder)
     files = {str(it.relative_to(folder)): len(store.CaseFile.at(it).measurements) for it in paths}
-    meta = {**store.read_meta(folder), "files": files}
-    store.write_meta(folder, meta)  # what is loaded is held against it
-    more = {"finished": now(), "noise": asdict(noise(load(folder)))}
-    store.write_meta(folder, {**meta, **more, "machine": machine or meta["machine"]})
+    more = {"files": files, "finished": now(), "machine": machine or meta["machine"]}
+    store.write_meta(folder, {**meta, **more})
