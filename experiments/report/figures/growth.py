@@ -42,7 +42,7 @@ def draw_lines(
             axes.plot(mine[x].to_numpy(float), mine["cost"].to_numpy(float), **styles[name] | look)
 
 
-def _draw(
+def draw(
     cases: pd.DataFrame, titles: Mapping[str, str], x: str, what: str, ylabel: str = "", *,
     panel: str = "subject", by: str = "structure", styles: Mapping[str, Any] = STYLES,
     also: Callable[[Axes, str], None] | None = None, room: float = 0.17, plain: bool = False,
@@ -117,7 +117,7 @@ def scaling(run: Run, axis: Axis, subjects: Iterable[str] = QUERIES) -> Plot:
     if axis is Axis.TIME_FACES:  # of operations, which no order of queries describes
         label = f"time, of elements far apart, {axis.unit}"
     shape: dict[str, Any] = {"diagonals": True, "sharex": True, "sharey": True}
-    return _draw(costs, titles, axis.variable, what, label, also=also, **shape)
+    return draw(costs, titles, axis.variable, what, label, also=also, **shape)
 
 
 def overview(run: Run) -> Plot:
@@ -131,7 +131,7 @@ def overview(run: Run) -> Plot:
             _draw_order_and_latency(run, axes, subject)
 
     what = "the faces around a vertex"
-    return _draw(costs, titles, "faces", what, panel="axis", also=also, size=(4.5, 3.1), plain=True)
+    return draw(costs, titles, "faces", what, panel="axis", also=also, size=(4.5, 3.1), plain=True)
 
 
 def _draw_order_and_latency(run: Run, axes: Axes, subject: str) -> None:
@@ -163,7 +163,7 @@ def listings(run: Run, axis: Axis = Axis.WORK_FACES) -> Plot:
     label, scale = (axis.label, 1.0) if axis.exact else (f"{axis.label}, µs", 1e-3)
     costs = costs.assign(cost=scale * costs["cost"])
     shape: dict[str, Any] = {"room": 0.45, "columns": 4, "size": (2.75, 2.7), "plain": True}
-    return _draw(costs, table.subjects, "faces", "the thesis' listings", label, **shape)
+    return draw(costs, table.subjects, "faces", "the thesis' listings", label, **shape)
 
 
 def building(run: Run) -> Plot:
@@ -174,7 +174,7 @@ def building(run: Run) -> Plot:
     if (cases["order"] == ANSWERING).any():
         titles[ANSWERING] = "Building, and finding neighbors"
     shape: dict[str, Any] = {"panel": "order", "plain": True, "size": (4.3, 2.9), "sharey": True}
-    return _draw(cases, titles, "vertices", "building", "time per vertex, ns", **shape)
+    return draw(cases, titles, "vertices", "building", "time per vertex, ns", **shape)
 
 
 def rendering(run: Run) -> Plot:
@@ -185,7 +185,7 @@ def rendering(run: Run) -> Plot:
     titles = {"split_face": "Splitting a face from Python, half-edge mesh"}
     shape: dict[str, Any] = {"room": 0.75, "plain": True, "size": (7.5, 3.3), "styles": styles}
     what, label = "operations with a render mesh", "time per edit, µs"
-    return _draw(cases, titles, "faces", what, label, by="order", **shape)
+    return draw(cases, titles, "faces", what, label, by="order", **shape)
 
 
 def workloads(run: Run, order: str = COMPILED) -> Plot:
@@ -198,7 +198,7 @@ def workloads(run: Run, order: str = COMPILED) -> Plot:
     cases = cases[cases["order"] == order]
     measured = set(cases["subject"]) or WORKLOADS.keys()
     titles = {name: it.title for name, it in WORKLOADS.items() if name in measured}
-    return _draw(cases, titles, "vertices", f"any workload {order}", also=also, plain=True)
+    return draw(cases, titles, "vertices", f"any workload {order}", also=also, plain=True)
 
 
 def overtaking(run: Run) -> Plot:
@@ -214,7 +214,7 @@ def overtaking(run: Run) -> Plot:
     titles = {name: title.capitalize() for name, title in MIXES.items()}
     what = "on one machine building and queries of the same meshes, beside an indexed mesh"
     shape: dict[str, Any] = {"also": also, "room": 0.3, "columns": 4, "size": (2.75, 2.9)}
-    return _draw(table, titles, "vertices", what, "how many until building is repaid", **shape)
+    return draw(table, titles, "vertices", what, "how many until building is repaid", **shape)
 
 
 def shards_per_second(run: Run) -> Plot:
@@ -223,7 +223,7 @@ def shards_per_second(run: Run) -> Plot:
     cases = cases[cases["structure"].isin([it for it in NAMES if REGISTRY[it].compiled])]
     cases = cases.assign(cost=1 / cases["cost"])
     titles, label = {SHATTER: "Breaking a surface around an impact"}, "shards per second"
-    return _draw(cases, titles, "faces", "how a surface breaks", label, size=(7.5, 3.5))
+    return draw(cases, titles, "faces", "how a surface breaks", label, size=(7.5, 3.5))
 
 
 def face_finding(run: Run) -> Plot:
@@ -239,4 +239,4 @@ def face_finding(run: Run) -> Plot:
             found.append(curve.cases.assign(**costs))
     shape: dict[str, Any] = {"room": 0.45, "plain": True, "size": (5.2, 3.2), "panel": "measure"}
     what = "how a face is found"
-    return _draw(pd.concat(found), titles, "faces", what, by="way", styles=styles, **shape)
+    return draw(pd.concat(found), titles, "faces", what, by="way", styles=styles, **shape)

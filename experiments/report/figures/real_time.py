@@ -10,7 +10,7 @@ from experiments.bench_real_time import COMPACT, EDITS, GROWING, RESERVED
 from experiments.bench_workloads import COMPILED, FROM_PYTHON
 from experiments.report import style
 from experiments.report.comparisons import at_largest, bytes_held, medians
-from experiments.report.figures.growth import draw_lines
+from experiments.report.figures.growth import draw
 from experiments.report.pages import Heads, Html, numbers, part
 from experiments.report.session import MissingError, require
 from experiments.report.style import BLUE, GRAY, RED, STYLES, Plot
@@ -102,22 +102,14 @@ def _by_size(cases: pd.DataFrame, column: str) -> pd.DataFrame:
 def picks(run: Run) -> Plot:
     """The time of each part of a pick by size: what rays take, and the neighbors by structure."""
     cases = medians(run, "bench_picking", 1e6)
-    require(len(cases), "measured picking")
-    asked = cases["subject"] == NEIGHBORS
-    cases["part"] = cases["subject"] + ", " + cases["order"]
-    ways = COMPILED, FROM_PYTHON
-    titles = ["the ray, and following an edit", *(f"the neighbors, {it}" for it in ways)]
-    with style.styled():
-        figure, every = style.panels(titles, (4.6, 3.2), 3, sharex=True, sharey=True)
-        draw_lines(every[0], cases[~asked], "vertices", "part", WAYS, marker=".")
-        for axes, way in zip(every[1:], ways, strict=True):
-            mine = cases[asked & (cases["order"] == way)]
-            draw_lines(axes, mine, "vertices", "structure", STYLES)
-        for axes in every:
-            label = "time, µs" if axes is every[0] else ""
-            axes.set(xlabel=style.VARIABLES["vertices"], ylabel=label)
-        style.finish_panels(figure, every, 0.6)
-    return figure
+    asked, ways = cases["subject"] == NEIGHBORS, (COMPILED, FROM_PYTHON)
+    lines = cases["structure"].where(asked, cases["subject"] + ", " + cases["order"])
+    cases = cases.assign(panel=cases["order"].where(asked, RAY), line=lines)
+    titles = {RAY: "the ray, and following an edit", **{it: f"the neighbors, {it}" for it in ways}}
+    shape: dict[str, Any] = {"size": (4.6, 3.2), "sharex": True, "sharey": True, "room": 0.6}
+    styles = STYLES | {line: {**look, "marker": "."} for line, look in WAYS.items()}
+    shape |= {"panel": "panel", "by": "line", "styles": styles}
+    return draw(cases, titles, "vertices", "picking", "time, µs", **shape)
 
 
 def picks_in_words(run: Run) -> Html:
