@@ -48,21 +48,6 @@ PER_ELEMENT = {"faces": "O(1)"}
 """What is claimed of a call that asks all elements, for each of them."""
 
 
-def measured_peers(run: Run) -> "Peers":
-    """What a run measured of other libraries; where it did not, the newest run of them did."""
-    here = Peers(run)
-    return here if here.names else _newest() or here
-
-
-def _newest() -> "Peers | None":
-    """Of the newest run of other libraries; where there is none, of that which is kept."""
-    with suppress(ResultsError):
-        return Peers(load(latest(PEER_RUNS)))
-    with suppress(ResultsError, MissingError):
-        return Peers(load(project_file(KEPT)))
-    return None
-
-
 @dataclass(frozen=True)
 class Cell:
     """What became of one subject on one library.
@@ -98,6 +83,10 @@ class Cell:
         taken = f"{digits(self.ratio)} ×" if self.ratio == self.ratio else duration(self.seconds)
         return " ".join(filter(None, (self.found, "".join(marks), taken)))
 
+    def in_seconds(self, many: int = 1) -> str:
+        """Such as ``30 ns O(1)``: the time of one of so ``many``, and the class."""
+        return f"{duration(self.seconds / many)} {self.found}".strip()
+
 
 class Peers:
     """A run as far as it is about other libraries: what was measured, and what is ``absent``."""
@@ -106,9 +95,12 @@ class Peers:
         self.run = run
         here = run.cases[run.cases["experiment"] == EXPERIMENT]
         self.cases = {str(name): cases for name, cases in here.groupby("structure")}
-        self._weighed = {name: it[it["kind"] == BYTES] for name, it in self.cases.items()}
         self.names = [it for it in PEERS if it in self.cases]
         self.absent = [it.title for name, it in PEERS.items() if name not in self.cases]
+        weighed = here[here["kind"] == BYTES].set_index("structure")
+        each = weighed["samples"].str[0].astype(float) / weighed["vertices"]
+        self.bytes_per_vertex = each.groupby(level=0).max().reindex(self.names)
+        self.weighed_at = weighed["vertices"].groupby(level=0).max().reindex(self.names)
 
     @cached_property
     def _claims(self) -> dict[str, Mapping[str, str]]:
@@ -140,21 +132,12 @@ class Peers:
         seconds, ratio = curve.by_size[size], ratios.get(size, np.nan)
         return Cell(float(seconds), float(ratio), size, verdicts, bool(claimed))
 
-    def weighed_at(self, name: str) -> int:
-        """The vertices of the mesh whose bytes were taken; 0 where none were."""
-        return int(max(self._weighed[name]["vertices"], default=0))
-
     def weighed_smaller(self) -> str:
         """Whose bytes are of a smaller mesh than those of the others, in a sentence, if any are."""
-        of = {PEERS[name].title: self.weighed_at(name) for name in self.names}
-        most = max(of.values(), default=0)
-        few = [f"of {title} at {size:,}" for title, size in of.items() if 0 < size < most]
-        return f"Bytes are weighed at {most:,} vertices, {', '.join(few)}." if few else ""
-
-    def bytes_per_vertex(self, name: str) -> float:
-        """As the process sees them."""
-        found = self._weighed[name]
-        return float((found["samples"].str[0].astype(float) / found["vertices"]).max())
+        most = self.weighed_at.max()
+        less = self.weighed_at[self.weighed_at < most]
+        few = [f"of {PEERS[str(name)].title} at {size:,.0f}" for name, size in less.items()]
+        return f"Bytes are weighed at {most:,.0f} vertices, {', '.join(few)}." if few else ""
 
     def version(self, name: str) -> str:
         """The version that was measured."""
@@ -169,8 +152,8 @@ class Peers:
         """Version, bytes and building, a row for each; the heads first."""
         rows = [["", "version", *NUMBERS]]
         for name in self.names:
-            cell, size = self.cell(name, BUILD), self.bytes_per_vertex(name)
-            built = f"{duration(cell.seconds / cell.size)} {cell.found}".strip() if cell else "?"
+            cell, size = self.cell(name, BUILD), self.bytes_per_vertex[name]
+            built = cell.in_seconds(cell.size) if cell else "?"
             ratio = f"{digits(cell.ratio)} ×" if cell and cell.ratio == cell.ratio else "?"
             weighed = f"{size:,.0f}" if size == size else "?"
             rows.append([PEERS[name].title, self.version(name), weighed, built, ratio])
@@ -187,7 +170,8 @@ class Peers:
             cells = [self.cell(name, it, order) for it in subjects]
             if any(cells):
                 sizes = sorted({it.size for it in cells if it})
-                texts = [_text(it, name == OURS) for it in cells]
+                told = (it and (it.in_seconds() if name == OURS else it.text) for it in cells)
+                texts = [it or NONE for it in told]
                 columns[PEERS[name].title] = [*texts, " … ".join(f"{it:,}" for it in sizes)]
         rows = map(list, zip(*columns.values(), strict=True))
         return [list(columns), *(row for row in rows if {*row[1:]} - {NONE})]
@@ -200,13 +184,6 @@ class Peers:
             words = (": ".join(filter(None, it)).partition(";")[0] for it in told)  # no advice
             rows.append([PEERS[name].title, *words])
         return rows
-
-
-def _text(cell: Cell | None, ours: bool) -> str:
-    """What is beside ours as ratios; ours in seconds."""
-    if cell is None:
-        return NONE
-    return f"{duration(cell.seconds)} {cell.found}".strip() if ours else cell.text
 
 
 QUESTIONS = QUERIES_TABLE.subjects
@@ -229,6 +206,21 @@ READING = (
 )
 
 
+def measured_peers(run: Run) -> Peers:
+    """What a run measured of other libraries; where it did not, the newest run of them did."""
+    here = Peers(run)
+    return here if here.names else _newest() or here
+
+
+def _newest() -> Peers | None:
+    """Of the newest run of other libraries; where there is none, of that which is kept."""
+    with suppress(ResultsError):
+        return Peers(load(latest(PEER_RUNS)))
+    with suppress(ResultsError, MissingError):
+        return Peers(load(project_file(KEPT)))
+    return None
+
+
 def _of_folder(folder: Path | None) -> Peers:
     """Those of a run, or of the newest there is of them. Raises MissingError where it has none."""
     peers = Peers(load(folder)) if folder else _newest()
@@ -241,8 +233,8 @@ def show_peers(folder: Path | None, console: Console) -> None:
     """Print all that was measured of other libraries."""
     peers = _of_folder(folder)
     meta = peers.run.meta
-    of = f"[bold]{peers.run.folder.name}[/], preset {meta.get('preset')}"
-    console.print(f"{of}, measured on {meta['started'][:10]}")
+    preset, day = meta.get("preset"), meta["started"][:10]
+    console.print(f"[bold]{peers.run.folder.name}[/], preset {preset}, measured on {day}")
     shown = {"Other libraries": peers.overview(), **{it: peers.compared(it) for it in GROUPS}}
     for title, rows in {**shown, "Bad input": peers.trials()}.items():
         if len(rows) > 1:
@@ -265,8 +257,8 @@ def peers_as_json(folder: Path | None) -> dict[str, Any]:
                 "title": PEERS[name].title,
                 "manual": PEERS[name].site,
                 "version": peers.version(name),
-                "bytes_per_vertex": peers.bytes_per_vertex(name),
-                "bytes_at_vertices": peers.weighed_at(name),
+                "bytes_per_vertex": float(peers.bytes_per_vertex[name]),
+                "bytes_at_vertices": int(peers.weighed_at.fillna(0)[name]),
                 "bad_input": {bad: list(peers.trial(name, bad)) for bad in BAD_INPUT},
                 "subjects": list(_records(peers, name)),
             }
@@ -293,12 +285,11 @@ def beside_ours(
     ``measured``: a row per work, size and cores, a column per program; ``shares``: the works that
     are told in parts of the whole instead of seconds.
     """
-    titles = {name: it.title for name, it in PEERS.items()}
-    titles |= {name: it.title for name, it in REGISTRY.items()}
-    here = measured[measured.index.get_level_values(0).isin(works)].dropna(subset=[LIKE])
+    here = measured[measured.index.isin([*works], level=0)].dropna(subset=[LIKE])
     here = here.dropna(axis=1, how="all")
     names = sorted(here.columns, key=lambda it: (it != LIKE, it not in REGISTRY, it))
-    rows = [["", "vertices", *(titles.get(it, it) for it in names)]]
+    known: Mapping[str, Any] = {**PEERS, **REGISTRY}
+    rows = [["", "vertices", *(known[it].title if it in known else it for it in names)]]
     every: list[Any] = sorted(here.iterrows(), key=lambda it: ([*works].index(it[0][0]), it[0][1]))
     for (work, size, cores), values in every:
         first = f"{digits(100 * values[LIKE])} %" if work in shares else duration(values[LIKE])
