@@ -16,7 +16,7 @@ from nbconvert import HTMLExporter
 from traitlets.config import Config
 
 from experiments import carried
-from experiments.report.session import MissingError
+from experiments.report.session import LACKING
 from experiments.runs import ResultsError
 
 FRONT = "index"  # the notebook of the front page
@@ -48,19 +48,16 @@ def body(name: str) -> str:
 
 
 def execute(notebook: Any, name: str) -> dict[str, Any]:
-    """Run every cell into the notebook -> what they named.
-
-    A cell that lacks a measurement or a package says so instead.
-    """
+    """Run every cell into the notebook -> what they named; one that lacks something says so."""
     InteractiveShell.clear_instance()
     shell: Any = InteractiveShell.instance(config=Config({"HistoryManager": {"enabled": False}}))
     heading = name
     for cell in notebook.cells:
-        if cell.cell_type == "markdown":
-            lines = [line for line in cell.source.splitlines() if line.startswith("#")]
-            heading = lines[-1].strip("# ") if lines else heading
-        elif cell.cell_type == "code":
+        if cell.cell_type == "code":
             cell.outputs = _outputs(shell, cell.source, heading, name)
+        else:
+            heads = [line.strip("# ") for line in cell.source.splitlines() if line[:1] == "#"]
+            heading = [heading, *heads][-1]
     return dict(shell.user_ns)
 
 
@@ -72,7 +69,7 @@ def _outputs(shell: Any, source: str, heading: str, name: str) -> list[Any]:
     outputs = [_output(shown.data, shown.metadata, heading) for shown in captured.outputs]
     if captured.stdout and not error:
         outputs.append(nbformat.v4.new_output("stream", text=captured.stdout))
-    if isinstance(error, MissingError):
+    if isinstance(error, LACKING):
         missing = {"metadata": {"missing": True}, "data": {"text/plain": str(error)}}
         outputs.append(nbformat.v4.new_output("display_data", **missing))
     elif error:
@@ -87,7 +84,7 @@ def _output(data: Any, metadata: Any, heading: str) -> Any:
     for kind, value in data.items():
         if kind.startswith("image/"):
             shown = metadata.get(kind, {})
-            more = str(shown.get("alt", "")).strip(" :")
+            more = shown.get("alt", "").strip(" :")
             metadata[kind] = shown | {"alt": f"Plot: {heading}. {more}".strip()}
         if isinstance(value, bytes):
             texts[kind] = b64encode(value).decode()

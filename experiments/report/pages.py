@@ -189,7 +189,7 @@ def or_missing(otherwise: str, make: Callable[..., str], *given: Any) -> str:
     """A part of a page, made of what is ``given``, or a word on why it is not there."""
     try:
         return make(*given)
-    except session.MissingError as missing:
+    except session.LACKING as missing:
         return otherwise.format(escape(str(missing), quote=False))
 
 

@@ -11,6 +11,7 @@ from experiments import carried
 from experiments.claims import JudgedClaim, judge_run
 from experiments.regression import RUN
 from experiments.runs import RUNS, ResultsError, Run, latest, load
+from hem import NotInstalledError
 
 RUN_VARIABLE = "HEM_RUN"  # the environment variable that tells a notebook which run to read
 CLAIMS = "claims"  # the folder beside the pages that holds the claims' figures and data
@@ -22,6 +23,10 @@ class MissingError(ValueError):
     def _render_traceback_(self) -> list[str]:
         """What a notebook shows of it."""
         return [str(self)]
+
+
+LACKING = MissingError, NotInstalledError
+"""What a page says in place of what it would show."""
 
 
 def require(there: Any, what: str) -> None:
@@ -55,10 +60,9 @@ def share(session: Session | None) -> None:
 
 
 def open_run() -> Session:
-    """The run of this report; in a notebook of its own the one of ``HEM_RUN``, or the newest.
+    """The run of this report; else that of ``HEM_RUN``, the newest, or the committed baseline.
 
-    Where there is none it is the committed baseline, and the notebook says so. Raises ResultsError
-    for what is no run.
+    Raises ResultsError for what is no run.
     """
     from experiments.report.style import show_figures  # which a terminal does not wait for
 
@@ -80,12 +84,12 @@ def _go_on_in_jupyter() -> None:
 
 
 def _pass_over(result: Any) -> None:
-    if isinstance(result.error_in_exec, MissingError):
+    if isinstance(result.error_in_exec, LACKING):
         result.error_in_exec = None
 
 
 def _newest_run() -> Path:
-    """The newest run, of this folder or of the checkout; without any the baseline."""
+    """The newest run, of this folder or of the checkout; without any the baseline, and a word."""
     for root in (RUNS, carried(str(RUNS))):
         with suppress(ResultsError):
             return latest(root)

@@ -2,20 +2,19 @@
 
 from collections.abc import Sequence
 from functools import cache
-from html import escape
+from typing import Any
 
 import numpy as np
-from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 
 import hem
 import structures
-from experiments.report.figures.meshes import INK, PAPER, STRONG, show_picture, turnable
+from experiments.report.figures.meshes import INK, PAPER, STRONG, turnable
 from experiments.report.fracture_scenes import Broken, break_up, model
-from experiments.report.session import MissingError
+from experiments.report.pages import Html
 from experiments.report.style import grid, styled
-from hem.fracture import MATERIALS, Fracture, material, shatter
+from hem.fracture import MATERIALS, material, shatter
 
 APART = 0.4  # how far shards are drawn from their places, as part of the way to the impact
 FORCES = (1.0, 10.0, 50.0)
@@ -48,41 +47,31 @@ def materials() -> Figure:
 
 
 def _plates(every: Sequence[tuple[str, str, tuple[float, float]]]) -> Figure:
+    """The rest of each plate in place, every shard moved away from the impact."""
     with styled():
         figure, panels = grid([title for title, _, _ in every], (3.3, 3.6))
         for axes, (title, name, at) in zip(panels, every, strict=True):
             broken = shatter(structures.build("half_edge", plate()), (*at, 0), name, seed=4)
-            _draw_plate(axes, broken)
+            rest = np.concatenate([part.points[part.triangles] for part in broken.rest])[:, :, :2]
+            shards = np.array([it.points for it in broken.shards])[:, :, :2].astype(float)
+            moved = shards + APART * (shards.mean(axis=1, keepdims=True) - broken.impact[:2])
+            for corners, color, width in ((rest, PAPER, 0.5), (moved, broken.material.color, 0.3)):
+                look: Any = {"facecolors": color, "edgecolors": INK, "linewidths": width}
+                axes.add_collection(PolyCollection(list(corners), **look))
+            axes.plot(*broken.impact[:2], "x", color=STRONG, markersize=7, markeredgewidth=2)
+            axes.set(xlim=(-0.22, 1.22), ylim=(-0.22, 1.22), aspect="equal")
             axes.set_title(f"{title}: {len(broken.shards)} shards")
+            axes.axis("off")
     return figure
-
-
-def _draw_plate(axes: Axes, broken: Fracture) -> None:
-    """The rest in place, every shard moved away from the impact."""
-    rest = np.concatenate([part.points[part.triangles] for part in broken.rest])[:, :, :2]
-    shards = np.array([it.points for it in broken.shards])[:, :, :2].astype(float)
-    moved = shards + APART * (shards.mean(axis=1, keepdims=True) - broken.impact[:2])
-    for corners, color, width in ((rest, PAPER, 0.5), (moved, broken.material.color, 0.3)):
-        drawn = PolyCollection(list(corners), facecolors=color, edgecolors=INK, linewidths=width)
-        axes.add_collection(drawn)
-    axes.plot(*broken.impact[:2], "x", color=STRONG, markersize=7, markeredgewidth=2)
-    axes.set(xlim=(-0.22, 1.22), ylim=(-0.22, 1.22), aspect="equal")
-    axes.axis("off")
 
 
 @cache
 def broken_by_force(
     name: str, of: str, *forces: float, method: str = "voronoi", wrap: bool = False
 ) -> tuple[Broken, ...]:
-    """A model of a material, struck in the same place with several forces, J/kg.
-
-    Raises MissingError without what breaks it.
-    """
-    try:
-        mesh, up = model(name, wrap)
-        return tuple(break_up(mesh, method, material(of), it, up=up) for it in forces or FORCES)
-    except hem.NotInstalledError as error:
-        raise MissingError(str(error)) from error
+    """A model of a material, struck in the same place with several forces, J/kg."""
+    mesh, up = model(name, wrap)
+    return tuple(break_up(mesh, method, material(of), it, up=up) for it in forces or FORCES)
 
 
 def gallery(every: Sequence[Broken]) -> Figure:
@@ -90,16 +79,14 @@ def gallery(every: Sequence[Broken]) -> Figure:
     with styled():
         figure, panels = grid(list(map(_title, every)), (9.6, 3.75), 1)
         for axes, broken in zip(panels, every, strict=True):
-            show_picture(axes, lambda it: it.scene().still(), broken)
+            axes.imshow(broken.scene().still())
+            axes.axis("off")
     return figure
 
 
-def turnable_pieces(broken: Broken) -> str:
-    """The pieces to be turned with the mouse, as HTML; without PyVista what is missing."""
-    try:
-        return turnable(broken.scene(), _title(broken), broken.up)
-    except hem.NotInstalledError as missing:
-        return f"<p>{escape(str(missing))}</p>"
+def turnable_pieces(broken: Broken) -> Html:
+    """The pieces to be turned with the mouse."""
+    return turnable(broken.scene(), _title(broken), broken.up)
 
 
 def _title(broken: Broken) -> str:

@@ -19,7 +19,7 @@ from experiments.report.pages import Html, page
 from experiments.report.style import grid, styled
 from hem.arrays import Array
 from hem.contract import Structure
-from hem.fracture.show import AXES, FractureScene, Image, Picture
+from hem.fracture.show import AXES, FractureScene, Picture
 from structures.plankton import Plankton
 
 PAPER = "#f4f1ea"
@@ -224,27 +224,15 @@ def flip_steps(structure: str) -> Figure:
 
 def shaded(meshes: Mapping[str, hem.TriangleMesh]) -> Figure:
     """Meshes side by side with their edges, z up."""
-
-    def shade(mesh: hem.TriangleMesh) -> Image:
-        look: dict[str, Any] = {"up": AXES["z"], "wires": True}
-        with closing(Picture(mesh.points, mesh.triangles, SAND, (740, 560), **look)) as picture:
-            picture.look_at(mesh.points.astype(float), -60, 22)
-            return picture.image()
-
+    look: dict[str, Any] = {"up": AXES["z"], "wires": True}
     with styled():
         figure, panels = grid(list(meshes), (3.7, 3.0))
         for axes, mesh in zip(panels, meshes.values(), strict=True):
-            show_picture(axes, shade, mesh)
+            with closing(Picture(mesh.points, mesh.triangles, SAND, (740, 560), **look)) as picture:
+                picture.look_at(mesh.points.astype(float), -60, 22)
+                axes.imshow(picture.image())
+            axes.axis("off")
     return figure
-
-
-def show_picture(axes: Axes, draw: Callable[[Any], Image], shown: Any) -> None:
-    """Put a picture into a panel; without PyVista what is missing is said there instead."""
-    axes.axis("off")
-    try:
-        axes.imshow(draw(shown))
-    except hem.NotInstalledError as missing:
-        axes.text(0.5, 0.5, str(missing), ha="center", va="center", wrap=True)
 
 
 def jpeg(figure: Figure) -> Any:
