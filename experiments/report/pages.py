@@ -39,12 +39,9 @@ Heads = Mapping[str, Callable[[Any], str]]
 
 
 class Html(Markup):
-    """A piece of a page, which notebooks show as it is.
+    """A piece of a page, which notebooks show as it is."""
 
-    ``rows``: of a table of numbers its texts, the heads first.
-    """
-
-    rows: Sequence[Sequence[str]] = ()
+    rows: Sequence[Sequence[str]] = ()  # of a table of numbers its texts, the heads first
 
     def _repr_html_(self) -> str:
         return str(self)
@@ -246,28 +243,24 @@ def closing(claims: Iterable[JudgedClaim], points: Mapping[str, Sequence[str]]) 
     rows = []
     for text, keys in points.items():
         rests = [judged[key.removeprefix("not ")] for key in keys]
-        nots = [key.startswith("not ") for key in keys]
+        nots = (key.startswith("not ") for key in keys)
         expected = [Outcome.VIOLATED if it else Outcome.CONSISTENT for it in nots]
-        pairs = list(zip((it.outcome for it in rests), expected, strict=True))
-        denied = any({found, wanted} == DETERMINED for found, wanted in pairs)
+        pairs = [{it.outcome, wanted} for it, wanted in zip(rests, expected, strict=True)]
+        denied, doubted = DETERMINED in pairs, any(len(it) > 1 for it in pairs)
         doubt = "This run does not bear it out: " if denied else "This run cannot tell: "
-        doubt *= any(found != wanted for found, wanted in pairs)
-        rows.append((text.format(*(it.found for it in rests)), doubt, rests))
+        rows.append((text.format(*(it.found for it in rests)), doubt if doubted else "", rests))
     return part("closing", rows)
 
 
 @dataclass(frozen=True)
 class Section:
-    """A section of the thesis, or the article: what it says, and where it is done.
+    """A section of the thesis, or the article: what it says, and where it is done."""
 
-    ``of``: its number as sources have it. ``done``: files and rooms. ``chapter``: of the report.
-    """
-
-    of: str
+    of: str  # its number as sources have it
     title: str
     says: str
-    chapter: str
-    done: Sequence[str]
+    chapter: str  # of the report
+    done: Sequence[str]  # files and rooms
 
 
 @cache
@@ -293,7 +286,7 @@ def cited(source: str) -> set[str]:
 
 def traced(claims: Iterable[JudgedClaim]) -> Html:
     """A row per section: what it says, where it is done, and what became of what it claims."""
-    printed = [it for it in claims if it.claim.kind is Kind.PRINTED and it.claim.claims_something]
+    printed = [it for it in claims if it.claim.claimant is Kind.PRINTED]
     rows = []
     for section in sections():
         mine = [it for it in printed if section.of in cited(it.claim.source)]
