@@ -4,7 +4,7 @@ import io
 from collections.abc import Sequence
 from colorsys import hls_to_rgb, rgb_to_hls
 from functools import partial
-from itertools import product
+from itertools import product, zip_longest
 from pathlib import Path
 from typing import Any
 
@@ -154,15 +154,15 @@ def label_ends(axes: Axes) -> None:
     side_by_side = np.argsort(across)
     breaks = np.flatnonzero(np.diff(across[side_by_side]) > APART) + 1
     for group in np.split(side_by_side, breaks):
-        ends = [(up[i], last[i], lines[i]) for i in group[np.argsort(up[group], kind="stable")]]
-        lowest = axes.bbox.y0 * 72 / figure.dpi + GAP * (np.arange(len(ends)) + 0.5)
-        places = np.maximum(spread_apart([height for height, _, _ in ends], GAP), lowest)
-        for (height, end, line), place in zip(ends[::-1], places[::-1], strict=True):
+        upward = group[np.argsort(up[group], kind="stable")]
+        lowest = axes.bbox.y0 * 72 / figure.dpi + GAP * (np.arange(len(group)) + 0.5)
+        places = np.maximum(spread_apart(up[upward].tolist(), GAP), lowest)
+        for i, place in zip(upward[::-1], places[::-1], strict=True):
             label = axes.annotate(
-                str(line.get_label()), end, (5, place - height), textcoords="offset points",
-                annotation_clip=False, color=darker(line.get_color()), va="center", fontsize=8,
+                str(lines[i].get_label()), last[i], (5, place - up[i]), textcoords="offset points",
+                annotation_clip=False, color=darker(lines[i].get_color()), va="center", fontsize=8,
             )  # fmt: skip
-            if end[0] < last[:, 0].max():
+            if last[i, 0] < last[:, 0].max():
                 _step_aside(label, axes)
 
 
@@ -202,8 +202,7 @@ def grid(
     rows = -(-len(titles) // columns)
     figure = kind(figsize=(size[0] * columns, size[1] * rows), layout="constrained")
     every = list(figure.subplots(rows, columns, squeeze=False, **shared).flat)
-    for axes in every[len(titles) :]:
-        axes.set_visible(False)
-    for axes, title in zip(every, titles, strict=False):
-        axes.set_title(title)
+    for axes, title in zip_longest(every, titles):
+        axes.set_visible(title is not None)
+        axes.set_title(title or "")
     return figure, every[: len(titles)]
