@@ -20,7 +20,7 @@ from experiments.report.session import require
 from experiments.report.style import BLUE, GRAY, RED, STYLES, Plot
 from experiments.runs import Run
 from hem.contract import QUERIES
-from structures import NAMED, NAMES, REGISTRY
+from structures import NAMED, REGISTRY
 
 RENDERED: dict[str, dict[str, Any]] = {
     "one by one": {"label": "no render mesh", "linestyle": "-", "color": GRAY},
@@ -104,20 +104,18 @@ def _costs(run: Run, axis: Axis, subjects: Iterable[str], table: str = "") -> pd
 def scaling(run: Run, axis: Axis, subjects: Iterable[str] = QUERIES) -> Plot:
     """Cost along an axis: a panel per query or operation, a line per structure.
 
-    Time of queries against size has random handles in bold, consecutive ones thin, and in gray
-    below them the latency of the memory at the working set that a half-edge mesh of that size has,
-    with a mark where that outgrows a cache.
+    Queries against size by time: in random order, and beside that in order, and the latency.
     """
     titles = {name: style.TITLES[name] for name in subjects}
-    in_both_orders = axis is Axis.TIME_FACES and titles.keys() <= QUERIES.keys()
-    axis = Axis.RANDOM_FACES if in_both_orders else axis
-    costs = _costs(run, axis, titles)
-    also = partial(_draw_order_and_latency, run) if in_both_orders else None
-    what, label = f"{axis.label} by {axis.variable}", style.axis_label(axis)
-    if axis is Axis.TIME_FACES:  # of operations, which no order of queries describes
-        label = f"time, of elements far apart, {axis.unit}"
     shape: dict[str, Any] = {"diagonals": True, "sharex": True, "sharey": True}
-    return draw(costs, titles, axis.variable, what, label, also=also, **shape)
+    label = style.axis_label(axis)
+    if axis is Axis.TIME_FACES and titles.keys() <= QUERIES.keys():
+        axis, shape["also"] = Axis.RANDOM_FACES, partial(_draw_order_and_latency, run)
+        label = style.axis_label(axis)
+    elif axis is Axis.TIME_FACES:  # of operations, which no order of queries describes
+        label = f"time, of elements far apart, {axis.unit}"
+    what = f"{axis.label} by {axis.variable}"
+    return draw(_costs(run, axis, titles), titles, axis.variable, what, label, **shape)
 
 
 def overview(run: Run) -> Plot:
@@ -135,7 +133,10 @@ def overview(run: Run) -> Plot:
 
 
 def _draw_order_and_latency(run: Run, axes: Axes, subject: str) -> None:
-    """Thin lines for queries in order, and in gray the latency below them."""
+    """Thin lines for queries in order, and in gray the latency below them.
+
+    It is that at the working set of a half-edge mesh, with a mark where that outgrows a cache.
+    """
     thin = {"label": "_", "marker": "", "linewidth": 0.7}
     draw_lines(axes, _costs(run, Axis.TIME_FACES, [subject]), "faces", "structure", STYLES, **thin)
     cases = curves(run).curve(Axis.RANDOM_FACES, "half_edge", subject).cases
@@ -144,15 +145,12 @@ def _draw_order_and_latency(run: Run, axes: Axes, subject: str) -> None:
         x, y = cases["faces"].to_numpy(float), 1e9 * latency
         axes.fill_between(x, y, 1e-3, color=style.FADED, linewidth=0, zorder=0)
         axes.plot(x, y, color=GRAY, linewidth=1, label="latency")
+        foot, look = axes.get_xaxis_transform(), dict[str, Any](fontsize=7, color=GRAY)
         for level, size in run.meta["machine"].get("caches", {}).items():
-            kilobytes = float(size.removesuffix("K"))
-            place = np.interp(1024 * kilobytes, cases["working_set"], x, left=0, right=0)
-            if place:
-                foot = axes.get_xaxis_transform()
+            held = 1024 * float(size.removesuffix("K"))
+            if place := np.interp(held, cases["working_set"], x, left=0, right=0):
                 axes.vlines(place, 0, 0.05, GRAY, linewidth=1, transform=foot)
-                axes.annotate(
-                    level, (place, 0), (3, 3), foot, "offset points", fontsize=7, color=GRAY
-                )
+                axes.annotate(level, (place, 0), (3, 3), foot, "offset points", **look)
 
 
 def listings(run: Run, axis: Axis = Axis.WORK_FACES) -> Plot:
@@ -194,8 +192,7 @@ def workloads(run: Run, order: str = COMPILED) -> Plot:
     def also(axes: Axes, name: str) -> None:
         axes.set_ylabel(f"time per {WORKLOADS[name].unit}, µs")
 
-    cases = medians(run, "bench_workloads", 1e6)
-    cases = cases[cases["order"] == order]
+    cases = medians(run, "bench_workloads", 1e6).query("order == @order")
     measured = set(cases["subject"]) or WORKLOADS.keys()
     titles = {name: it.title for name, it in WORKLOADS.items() if name in measured}
     return draw(cases, titles, "vertices", f"any workload {order}", also=also, plain=True)
@@ -220,7 +217,7 @@ def overtaking(run: Run) -> Plot:
 def shards_per_second(run: Run) -> Plot:
     """How many shards each compiled structure makes a second, by size."""
     cases = medians(run, "bench_fracture")
-    cases = cases[cases["structure"].isin([it for it in NAMES if REGISTRY[it].compiled])]
+    cases = cases[cases["structure"].isin([name for name, it in REGISTRY.items() if it.compiled])]
     cases = cases.assign(cost=1 / cases["cost"])
     titles, label = {SHATTER: "Breaking a surface around an impact"}, "shards per second"
     return draw(cases, titles, "faces", "how a surface breaks", label, size=(7.5, 3.5))
