@@ -61,17 +61,14 @@ def objects_against_arrays(run: Run) -> Html:
 
 
 def workloads(run: Run, order: str = COMPILED) -> Html:
-    """Time per unit of every workload on the largest mesh that a structure did it on, compiled or
-    from Python, never both.
-    """
+    """Time per unit of workloads on each structure's largest mesh, compiled or from Python."""
     cases = medians(run, "bench_workloads").query("order == @order")
     largest = at_largest(cases, "structure", "subject")
     table = largest.pivot_table("cost", ["structure", "vertices"], "subject")
-    shown = {name: it for name, it in WORKLOADS.items() if name in table}
-    every: Any = table[list(shown)].iterrows()
-    inorder = sorted(every, key=lambda it: NAMES.index(it[0][0]))
-    rows = [(REGISTRY[name].title, size, *costs) for (name, size), costs in inorder]
-    heads = [f"{it.title}, per {it.unit}" for it in shown.values()]
+    shown = [name for name in WORKLOADS if name in table]
+    every: Any = table[shown].reindex(NAMES, level="structure").iterrows()
+    rows = [(REGISTRY[name].title, size, *costs) for (name, size), costs in every]
+    heads = [f"{WORKLOADS[it].title}, per {WORKLOADS[it].unit}" for it in shown]
     return numbers(rows, {order: str, "vertices": count, **dict.fromkeys(heads, duration)})
 
 
@@ -95,10 +92,8 @@ def bytes_by_mesh(run: Run) -> Html:
 def by_family(families: Sequence[Family]) -> Html:
     """What became of the claims on queries on each family, by time, and what the first denies."""
     require(families, "timed any query")
-    heads = (
-        "Family", "vertices", "edges at a vertex", "most at one", *(it.label for it in BY_TIME),
-        f"not as on the {families[0].name}",
-    )  # fmt: skip
+    heads = ["Family", "vertices", "edges at a vertex", "most at one"]
+    heads += [*(it.label for it in BY_TIME), f"not as on the {families[0].name}"]
     rows = []
     for it in families:
         mesh, counts = it.largest, [Counter(it.outcomes(axis).values()) for axis in BY_TIME]
@@ -169,13 +164,9 @@ def overtaking(table: pd.DataFrame) -> Html:
     """After how many queries or edits a structure has repaid its building, on the largest mesh."""
     rows = []
     for subject, structure, n, times in at_largest(table, "subject").to_numpy():
-        rows.append((MIXES[subject], REGISTRY[structure].title, n, times))
-    heads: Heads = {"": str, "structure": str, "vertices": count, "until repaid": _if_ever}
-    return numbers(rows, heads)
-
-
-def _if_ever(times: float) -> str:
-    return "never" if times == np.inf else digits(times)
+        until = "never" if times == np.inf else digits(times)
+        rows.append((MIXES[subject], REGISTRY[structure].title, n, until))
+    return numbers(rows, {"": str, "structure": str, "vertices": count, "until repaid": str})
 
 
 def _slope(verdict: Verdict) -> str:
@@ -194,10 +185,7 @@ def bytes_in_words(run: Run) -> Html:
 
 
 def waiting_in_words(run: Run) -> Html:
-    """How the times of queries grow whose work does not, beside the latency of the memory.
-
-    Of compiled structures. Raises MissingError where none was measured.
-    """
+    """How the times of queries grow whose work does not, compiled, beside the memory's latency."""
     measured, grown = curves(run), []
     names = [it for it in NAMES if REGISTRY[it].compiled and not run.machines]
     for asked in product(names, QUERIES):

@@ -103,19 +103,17 @@ def left_out() -> Html:
 
 
 def ranking(run: Run, name: str) -> pd.Series:
-    """The costs of a use by structure, the least first; its name is the number of vertices.
+    """The costs of a use by compiled structure, the least first; its name is the vertices.
 
-    The mesh is one that all structures were measured on that suit and were measured at all; they
-    are compiled. Empty if there are none.
+    Of those that suit and were measured, on a mesh that all of them were. Empty if there is none.
     """
     use = USES[name]
-    names = [name for name, it in REGISTRY.items() if it.compiled and use.suits(it)]
-    costs = {name: use.costs(curves(run), name) for name in names}
+    suited = (name for name, it in REGISTRY.items() if it.compiled and use.suits(it))
+    costs = {name: use.costs(curves(run), name) for name in suited}
     table = pd.DataFrame({name: it for name, it in costs.items() if len(it)}).dropna()
     if run.machines or table.empty:
         return pd.Series(dtype=float, name=0)
-    found = table.loc[table.index.max() if use.largest else table.index.min()]
-    return found.sort_values(kind="stable")
+    return table.sort_index().iloc[-1 if use.largest else 0].sort_values(kind="stable")
 
 
 def beside(run: Run, one: str, other: str) -> Html:
@@ -133,9 +131,9 @@ def beside(run: Run, one: str, other: str) -> Html:
 
 
 def by_valence(run: Run) -> pd.DataFrame:
-    """The time of each query by structure, at the least, a middle and the largest valence.
+    """The time of each query by compiled structure, at the least, a middle and the largest valence.
 
-    Compiled structures; rows are query and valence. Raises MissingError where none was measured.
+    Rows are query and valence. Raises MissingError where none was measured.
     """
     names = [name for name, it in REGISTRY.items() if it.compiled and not run.machines]
     rows = {}
@@ -152,9 +150,8 @@ def by_valence(run: Run) -> pd.DataFrame:
 def fastest_by_valence(run: Run) -> Html:
     """The fastest structures for each query, by valence, with their times."""
     table = by_valence(run)
-    told = table.apply(
-        lambda it: f"{best(it.sort_values(kind='stable'))}, {duration(it.min())}", axis=1
-    )
+    ranked = (row.sort_values(kind="stable") for _, row in table.iterrows())
+    told = pd.Series([f"{best(it)}, {duration(it.iloc[0])}" for it in ranked], table.index)
     every = told.unstack(fill_value="–")  # a stopped run has not the same valences of each query
     rows = [(QUERIES[it].title, *every.loc[it]) for it in table.index.unique(level=0)]
     return text_table(["", *(f"{it:,} edges at the vertex" for it in every)], rows)
@@ -209,17 +206,14 @@ and beyond, their logarithms follow straight lines."""
 
 
 def advice_sliders(run: Run) -> Html:
-    """The prices of a run, for what the presets count, on a page; MissingError without them.
-
-    On irregular meshes, as models are, where those were measured.
-    """
+    """The prices of a run, on irregular meshes if it has them, on a page; or MissingError."""
     prices = Prices(run).irregular
     low, high = prices.measured
     require(low < high and not run.machines, "measured what advice rests on")
     sizes = np.array([8, *np.geomspace(low, high, POINTS), 100 * high])
     whats = sorted({row.what for it in PRESETS.values() for row in it.rows})
+    measured = (name for name in REGISTRY if name in prices.structures)
     try:
-        measured = [name for name in REGISTRY if name in prices.structures]
         structures = [_prices(prices, name, whats, sizes) for name in measured]
     except KeyError as error:
         raise MissingError(f"This run cannot advise: {error.args[0]}.") from error
@@ -227,9 +221,8 @@ def advice_sliders(run: Run) -> Html:
         {"title": it.title, "frames": it.frames, "rows": list(map(SLID, it.rows))}
         for it in PRESETS.values()
     ]
-    data = {"sizes": sizes.tolist(), "structures": structures, "workloads": presets,
-            "sigmas": SIGMAS, "unmodeled": UNMODELED}  # fmt: skip
-    return page("sliders.html.j2", data=data)
+    data = {"sizes": sizes.tolist(), "structures": structures, "workloads": presets}
+    return page("sliders.html.j2", data=data | {"sigmas": SIGMAS, "unmodeled": UNMODELED})
 
 
 def _prices(prices: Prices, name: str, whats: list[str], sizes: Any) -> dict[str, Any]:
