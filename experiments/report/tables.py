@@ -66,11 +66,10 @@ def tally_rows(claims: Iterable[JudgedClaim]) -> list[list[str]]:
     for kind in CLAIMED:
         of_kind = [it for it in every if it.claim.kind is kind]
         for place, inside in (("in tables", False), ("in sentences", True)):
-            mine = [it for it in of_kind if (it.claim.table == SENTENCES) == inside]
-            counts = tally(mine)
-            timed = [counts.pop((kind, it), Counter()) for it in list(MEASURES)[1:]]
-            decides = sum(counts.values(), Counter[Outcome]())
-            if mine:
+            if mine := [it for it in of_kind if (it.claim.table == SENTENCES) == inside]:
+                counts = tally(mine)
+                timed = [counts.pop((kind, it), Counter()) for it in list(MEASURES)[1:]]
+                decides = sum(counts.values(), Counter[Outcome]())
                 cells = [_counted(kind, it) for it in (decides, *timed)]
                 rows.append([f"{kind.value}, {place}", str(len(mine)), *cells])
     return rows
@@ -79,8 +78,7 @@ def tally_rows(claims: Iterable[JudgedClaim]) -> list[list[str]]:
 def table_1_in_words(claims: Iterable[JudgedClaim]) -> str:
     """What became of the cells that table 1 prints, by what is counted and by time."""
     in_table = [it for it in claims if it.claim.table == QUERIES_TABLE.name]
-    printed = [it for it in in_table if it.claim.kind is Kind.PRINTED]
-    cells = [it for it in printed if it.claim.claims_something]
+    cells = [it for it in in_table if it.claim.claimant is Kind.PRINTED]
     outcomes = Counter(it.outcome for it in cells)
     counts = ", ".join(f"{outcomes[it]} {it.value}" for it in SHOWN if outcomes[it])
     timed = []
@@ -112,10 +110,7 @@ def markdown_rows(rows: Iterable[Sequence[str]]) -> str:
 def by_subject(
     claims: Iterable[JudgedClaim], name: str
 ) -> tuple[list[str], dict[str, dict[str, JudgedClaim]]]:
-    """The columns and the rows of a table of claims: structures; title -> structure -> claim.
-
-    A structure of which nothing was measured has no column. Raises MissingError if none is left.
-    """
+    """A table's measured structures; title -> structure -> claim. MissingError: there are none."""
     mine = [it for it in claims if it.claim.table == name and it.claim.structure]
     columns = list(dict.fromkeys(it.claim.structure for it in mine if it.was_measured))
     if not columns:
@@ -208,14 +203,13 @@ def _show_slopes(console: Console, claims: Sequence[JudgedClaim]) -> None:
         for judged in (it for it in claims if it.claim.structure == structure):
             for axis, it in judged.verdicts.items():
                 low, high = two_digits(it.slope_low), two_digits(it.slope_high)
-                slopes = two_digits(it.raw_slope), two_digits(it.slope)
+                slopes = two_digits(it.raw_slope), two_digits(it.slope), f"{low}…{high}"
                 claimed = judged.claim.claims_something
                 outcome = Outcome(it.outcome) if claimed else Outcome.NO_CLAIM
-                mark = judged.claim.kind.marks([outcome])
-                most = "≤ " if it.bound == "upper" else ""
-                found = (f"{most}{it.expected}" if claimed else "", class_told(it), mark)
+                bound = f"{'≤ ' if it.bound == 'upper' else ''}{it.expected}" if claimed else ""
                 title = f"{judged.claim.title}, {axis.measure} {axis.symbol}"
-                rows.append((title, *slopes, f"{low}…{high}", *found))
+                mark = judged.claim.kind.marks([outcome])
+                rows.append((title, *slopes, bound, class_told(it), mark))
         if len(rows) > 1:
             show_rows(console, rows, NAMED[structure].title, numbers=["raw slope", "memory out"])
 
