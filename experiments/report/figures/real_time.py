@@ -21,7 +21,6 @@ from structures import NAMES, REGISTRY
 LABEL = "share of edits that take longer"
 PER_VERTEX = 12 + 12 + 8
 """Bytes of a position, a normal and a texture coordinate."""
-MEGABYTES = "{:.3g}".format
 MOST_OF_16_BITS = 1 << 16
 FRAME = 1 / 60
 """Seconds between two frames, which a monitor shows in 16.7 ms."""
@@ -55,8 +54,7 @@ def waits(run: Run) -> Plot:
 def frames(run: Run, order: str = GROWING) -> Html:
     """At every size the median, 99 of 100 and the longest of the edits, and how many fit a frame.
 
-    And the bytes that an edit uploads, at any size. ``order``: where arrays grow, or where room was
-    made, never both.
+    And the bytes that an edit uploads. ``order``: where arrays grow, or where room was made.
     """
     cases = _cases(run, EDITS).query("order == @order")
     table = _by_size(cases.assign(told=cases["samples"].map(_told)), "told")
@@ -133,9 +131,8 @@ def picks_in_words(run: Run) -> Html:
 def weights(run: Run) -> Html:
     """Megabytes of a mesh that is shown and edited: as drawn, as a render mesh, and in all.
 
-    A renderer is given a position, a normal and a texture coordinate per vertex, and three indices
-    per face, of 16 bits where these are enough. A ``RenderMesh`` has a position of float32 per
-    vertex and three int32 per face. To both comes the structure.
+    A renderer is given ``PER_VERTEX``, and three indices per face, of 16 bits where these are
+    enough; a ``RenderMesh`` has three float32 per vertex and three int32 per face.
     """
     table = bytes_held(run, 4)
     require(len(table), "measured bytes")
@@ -144,12 +141,11 @@ def weights(run: Run) -> Html:
     for (family, vertices, faces), sizes in every:
         drawn = vertices * PER_VERTEX + faces * 3 * (2 if vertices <= MOST_OF_16_BITS else 4)
         beside = 12 * (vertices + faces)
-        whole = (drawn + beside + sizes) / 1e6
-        rows.append((family, vertices, faces, drawn / 1e6, beside / 1e6, *whole))
-    heads: dict[str, Any] = {"": str, "vertices": count, "faces": count}
-    heads |= {"renderer": MEGABYTES, "render mesh": MEGABYTES}
-    heads |= {REGISTRY[str(it)].title: MEGABYTES for it in table}
-    return numbers(rows, heads)
+        megabytes = np.array([drawn, beside, *(drawn + beside + sizes)]) / 1e6
+        rows.append((family, vertices, faces, *megabytes))
+    titles = ["renderer", "render mesh", *(REGISTRY[str(it)].title for it in table)]
+    heads: Heads = {"": str, "vertices": count, "faces": count}
+    return numbers(rows, {**heads, **dict.fromkeys(titles, "{:.3g}".format)})
 
 
 def _told(seconds: Any) -> str:
