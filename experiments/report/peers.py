@@ -52,9 +52,8 @@ PER_ELEMENT = {"faces": "O(1)"}
 class Cell:
     """What became of one subject on one library.
 
-    ``seconds`` at the largest size that ours was measured at, too, and ``ratio``: how many times
-    ours that is. ``verdicts``: by the thesis' sign of what varies; ``claimed``: whether it claims
-    anything.
+    ``seconds`` and the ``ratio`` to ours, at the largest ``size`` of both. ``verdicts``: by the
+    thesis' sign of what varies; ``claimed``: whether it claims anything.
     """
 
     seconds: float
@@ -75,10 +74,7 @@ class Cell:
 
     @property
     def text(self) -> str:
-        """Such as ``O(n_ev) ✓✓ 3.1 ×``: what became of the claim by faces and by valence, if any.
-
-        The time where ours has none to be compared with.
-        """
+        """Such as ``O(n_ev) ✓✓ 3.1 ×``: marks by faces and valence; the time if ours has none."""
         marks = (Outcome(it.outcome).mark for it in self.verdicts.values() if self.claimed)
         taken = f"{digits(self.ratio)} ×" if self.ratio == self.ratio else duration(self.seconds)
         return " ".join(filter(None, (self.found, "".join(marks), taken)))
@@ -108,10 +104,7 @@ class Peers:
         return {it.subject: it.classes for it in load_claims() if it.structure == LIKE}
 
     def cell(self, name: str, subject: str, order: str = "") -> Cell | None:
-        """One subject on one library; None where it has no call.
-
-        Judged are queries, and what was measured at sizes enough.
-        """
+        """One subject on a library, judged if it is a query or has sizes enough; None: no call."""
         of_run = curves(self.run)
         curve, ours = (of_run.named(EXPERIMENT, it, subject, order) for it in (name, OURS))
         if not len(curve):
@@ -160,10 +153,7 @@ class Peers:
         return rows
 
     def compared(self, title: str) -> list[list[str]]:
-        """A group of ``GROUPS``: a row per subject, ours first, and those that have any of it.
-
-        The last row has how many vertices the meshes have.
-        """
+        """A group of ``GROUPS``: a column per library that has any of it, at last the vertices."""
         subjects, order = GROUPS[title]
         columns = {"": [*subjects.values(), "vertices"]}
         for name in self.names:
@@ -282,8 +272,8 @@ def beside_ours(
 ) -> list[list[str]]:
     """Half-edges as measured, and how many times that all others take; the heads first.
 
-    ``measured``: a row per work, size and cores, a column per program; ``shares``: the works that
-    are told in parts of the whole instead of seconds.
+    ``measured``: a row per work, size and cores, a column per program. ``shares``: the works whose
+    measure is a part of the whole, not seconds.
     """
     here = measured[measured.index.isin([*works], level=0)].dropna(subset=[LIKE])
     here = here.dropna(axis=1, how="all")
@@ -293,9 +283,9 @@ def beside_ours(
     every: list[Any] = sorted(here.iterrows(), key=lambda it: ([*works].index(it[0][0]), it[0][1]))
     for (work, size, cores), values in every:
         first = f"{digits(100 * values[LIKE])} %" if work in shares else duration(values[LIKE])
-        ratios = (values[names[1:]] / values[LIKE]).tolist()
+        ratios = values[names[1:]] / values[LIKE]
         told = [f"{digits(it)} ×" if it == it else NONE for it in ratios]
-        head = f"{works[work]}, all cores" if cores == "all" else works[work]
+        head = works[work] + (", all cores" if cores == "all" else "")
         rows.append([head, f"{size:,}", first, *told])
     return rows
 

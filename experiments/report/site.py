@@ -71,11 +71,8 @@ def _write_parts(session: Session, folder: Path) -> dict[str, str]:
 
 @contextmanager
 def _workers(session: Session) -> Iterator[ProcessPoolExecutor]:
-    """Processes that know the run, one per core; an interrupt or an error ends them.
-
-    Where the system can fork them they share what the door of this room had imported for them.
-    """
-    methods = multiprocessing.get_all_start_methods()
+    """Processes that know the run, one per core; an interrupt or an error ends them."""
+    methods = multiprocessing.get_all_start_methods()  # forks share what this room's door imported
     context: Any = multiprocessing.get_context("forkserver" if "forkserver" in methods else "spawn")
     others = set(multiprocessing.active_children())
     pool = ProcessPoolExecutor(len(allowed_cores()) or None, context, _begin, (session,))

@@ -6,7 +6,7 @@ its references. Without scripts those of some records are drawn, and written bes
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import pairwise
+from itertools import chain, pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -109,7 +109,7 @@ def _head(tip: Array, way: Array, side: Array | None = None) -> str:
 
 
 def bent(a: Array, b: Array, words: str, along: float = 0.7, to: Array | None = None) -> Pointer:
-    """A slightly bent arrow between the numbers at a and b, its words so far ``along`` it.
+    """An arrow between the numbers at a and b, its words so far ``along`` it.
 
     It is bent to the left, as ``explore.js`` draws it, too, or to where a point lies.
     """
@@ -128,12 +128,10 @@ def examples(entries: Mapping[Key, Sequence[Entry]]) -> list[Key]:
     """A record of each kind, each reached from the one before, beginning with the inner vertex."""
     found: dict[str, Key] = {}
     waiting: list[Key] = [("vertex", CENTER)]
-    for key in waiting:
+    for key in chain(waiting, entries):  # those that nothing leads to come last
         if key in entries and key[0] not in found:
             found[key[0]] = key
             waiting += [(it.target, v) for it in entries[key] for v in it.values]
-    for kind, row in entries:
-        found.setdefault(kind, (kind, row))
     return list(found.values())
 
 

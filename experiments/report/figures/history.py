@@ -29,9 +29,8 @@ STRONGEST = 1.5  # the ratio to its usual time from which on a color is as stron
 def by_commit(trends: Trends, subject: str) -> Plot:
     """Slope, work, bytes and time of a query or operation by commit: a line per structure.
 
-    Runs of the newest one's preset. Times of other machines than its own are paler, each
-    machine a line of its own. A ring is a step to a new level, a cross a verdict by work that
-    changed.
+    Of the newest run's preset; times of other machines than its own have paler lines. A ring is a
+    step to a new level, a cross a verdict by work that changed.
     """
     trends, rows = _of_newest(trends)
     with styled():
@@ -117,8 +116,7 @@ def _name_commits(axes: Axes, trends: Trends, room: float = 0.0) -> None:
 def departures(trends: Trends) -> Plot:
     """How far every claim of every structure is from its usual time, run by run, as colors.
 
-    Of the newest run's preset and machine. A ring is a step to a new level, a
-    cross a verdict by work that changed.
+    Of the newest run's preset and machine, with the same marks.
     """
     trends, rows = _of_newest(trends)
     rows = rows[rows["here"] & (rows["measure"] == "time") & (rows["value"] > 0)]
