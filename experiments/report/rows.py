@@ -5,6 +5,7 @@ from typing import Any
 
 from rich import box
 from rich.console import Console
+from rich.markup import escape
 from rich.table import Table
 from rich.text import Text
 
@@ -27,7 +28,7 @@ def show_rows(
         while stop < len(widths) and widths[0] + sum(widths[start : stop + 1]) <= console.width:
             stop += 1
         whole = widths[0] + widths[start] <= console.width  # else lines are broken, and not cut
-        table = Table(title=title or None, title_justify="left", box=box.SIMPLE_HEAD)
+        table = Table(title=escape(title) or None, title_justify="left", box=box.SIMPLE_HEAD)
         table.pad_edge, table.padding = False, (0, 1, 0, 0)
         heads, *body = ([row[0], *row[start:stop]] for row in every)
         for head in heads:

@@ -7,7 +7,7 @@ from rich.console import Console
 
 from experiments.claims import judge_run
 from experiments.regression import CaseKey, Change, Finding, Kind, Trends, append_run, read_history
-from experiments.report import findings, history_tables
+from experiments.report import findings, history_tables, show_rows
 from experiments.runs import load
 from hem import FAMILIES
 from structures import NAMED, NAMES
@@ -84,6 +84,11 @@ def test_a_history_of_two_machines_and_presets_with_large_figures(large, capsys,
     text = require_fits(capsys.readouterr().out)
     if claim:
         assert "time" in text
+
+
+def test_brackets_in_a_title_are_no_markup(capsys):
+    show_rows(Console(width=80), [["name", "what a row tells"]], title="Runs in a[b]/[/c]")
+    assert "Runs in a[b]/[/c]" in capsys.readouterr().out
 
 
 def test_the_meshes_and_their_sizes():

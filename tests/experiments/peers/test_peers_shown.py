@@ -79,6 +79,10 @@ def test_the_table_fits_and_shows_class_verdict_and_ratio(run):
     assert "300" in text  # bytes per vertex
 
 
+def test_the_name_of_a_folder_is_no_markup(run):
+    assert "old[b], preset" in printed("table", str(run.rename(run.with_name("old[b]"))), "--peers")
+
+
 def test_as_json_it_has_every_library_and_subject(run):
     content = json.loads(printed("table", str(run), "--peers", "--json"))
     ours, slow = content["libraries"]
