@@ -1,7 +1,7 @@
 """How every plot looks: one color, line and marker per structure, labels at the lines."""
 
 import io
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from colorsys import hls_to_rgb, rgb_to_hls
 from functools import partial
 from itertools import product, zip_longest
@@ -15,7 +15,7 @@ from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.text import Annotation
-from matplotlib.ticker import LogLocator, NullLocator
+from matplotlib.ticker import LogLocator, MaxNLocator, NullLocator
 from scipy.optimize import isotonic_regression
 
 from experiments.harness import OPERATIONS, QUERIES_TABLE, Axis
@@ -96,10 +96,26 @@ def panels(
     return plot, every
 
 
+class Tens(LogLocator):
+    """Ticks at powers of ten, and closer ones on a short axis."""
+
+    def tick_values(self, vmin: float, vmax: float) -> Any:
+        """The widest of which two are to be seen, between these limits and beside them."""
+        closer = LogLocator(subs=(1.0, 2.0, 5.0)), MaxNLocator(4)
+        tries = [super().tick_values, *(it.tick_values for it in closer)]
+        every = (find(vmin, vmax) for find in tries)
+        return next((it for it in every if len(inside(it, vmin, vmax)) > 1), [])
+
+
+def inside(ticks: Iterable[float], low: float, high: float) -> list[float]:
+    """The ticks that are within these limits."""
+    return [it for it in ticks if low <= it <= high]
+
+
 def short_numbers(axes: Axes) -> None:
-    """Ticks at powers of ten alone, as 1k and 10k: what else there is takes long to draw."""
+    """Few ticks, as 1k and 10k: what else there is takes long to draw."""
     for direction in (axes.xaxis, axes.yaxis):
-        direction.set_major_locator(LogLocator(numticks=7))
+        direction.set_major_locator(Tens(numticks=7))
         direction.set_major_formatter(lambda value, _: compact(value))
         direction.set_minor_locator(NullLocator())
 
@@ -128,7 +144,7 @@ def finish_panels(figure: Figure, every: Sequence[Axes], room: float = 0.17) -> 
     low, high = limits[:, 0].min(), limits[:, 1].max()
     for axes in every:
         axes.set_xlim(low, high)
-        axes.set_xticks([it for it in axes.get_xticks() if low <= it <= high])
+        axes.set_xticks(inside(axes.get_xticks(), low, high))
         axes.spines["bottom"].set_bounds(low, high)
         axes.xaxis.label.set_x(0.5 / (1 + room))
         axes.set_xlim(low, high * (high / low) ** room)

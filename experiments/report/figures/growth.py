@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
-from matplotlib.ticker import LogLocator
 
 from experiments.bench_fracture import FIND, SHATTER, VISITED, WAYS
 from experiments.bench_printed import EXPERIMENT as PRINTED
@@ -67,9 +66,6 @@ def draw(
                 low, high = _heights(axes)
                 margin = max((high / low) ** 0.18, 1.05)  # of costs that are the same, too
                 axes.set_ylim(low / margin, high * margin)
-                # Numbers also between the decades, where there is no whole one to be seen.
-                marks = (1.0,) if high / low * margin**2 > 30 else (1.0, 2.0, 5.0)
-                axes.yaxis.set_major_locator(LogLocator(subs=marks))
         require(any(map(style.labeled, every)), f"measured {what}")
         if layout.get("sharey"):  # what lies below the lines does not count
             low, high = _heights(*every)

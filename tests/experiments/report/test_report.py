@@ -217,6 +217,18 @@ def test_an_axis_ends_with_what_was_measured(base_run):
     assert axes.spines["bottom"].get_bounds()[1] < largest * 2 < axes.get_xlim()[1]
 
 
+@pytest.mark.parametrize("high", [1.3, 2, 5, 30, 1e3, 1e7])
+@pytest.mark.parametrize("low", [1, 190, 650])
+def test_an_axis_of_any_length_has_two_numbers_and_no_crowd(low, high):
+    with styled():
+        plot, (axes,) = panels(["A small run, or a large one"])
+        axes.plot([low, low * high], [low, low * high], label="a line")
+        finish_panels(plot, [axes])
+        plot.draw_without_rendering()
+    for ticks, ends in ((axes.get_xticks(), axes.get_xlim()), (axes.get_yticks(), axes.get_ylim())):
+        assert 2 <= np.count_nonzero((ends[0] <= ticks) & (ticks <= ends[1])) <= 9, ticks
+
+
 # How colors are seen where a receptor is missing, by Machado, Oliveira and Fernandes (2009).
 BLIND_TO = {
     "red": [(0.152, 1.053, -0.205), (0.115, 0.786, 0.099), (-0.004, -0.048, 1.052)],
