@@ -120,7 +120,7 @@ def noise(run: Run) -> Noise:
     )
     words = f"The machine was steady: {found}"
     if not seen:
-        words = "The run timed nothing that could be disturbed."
+        words = "No timed case says how steady the machine was."
     elif share > BUSY:
         worst = (bad["experiment"] + " on " + bad["structure"]).value_counts().head(3)
         most = ", ".join(f"{name} ({count})" for name, count in worst.items())

@@ -32,4 +32,4 @@ def test_counts_are_not_judged_by_noise(tmp_path):
     counted = noise(run_of(tmp_path, [{**CALM, "off_cpu": 0.5}], "work"))
     assert (counted.cases, counted.too_busy) == (0, False)
     older = noise(run_of(tmp_path / "older", [{}, {}]))
-    assert (older.cases, older.words) == (0, "The run timed nothing that could be disturbed.")
+    assert (older.cases, older.words) == (0, "No timed case says how steady the machine was.")
