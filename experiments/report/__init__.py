@@ -27,7 +27,9 @@ _PLACES = {
     "session": ("MissingError", "claim_link", "link", "open_run", "project_file"),
     "site": ("write_pdf", "write_report"),
     "style": ("show_figures",),
-    "tables": ("claims_as_json", "digits", "duration", "show_claims", "table_1_in_words"),
+    "tables": (
+        "abbreviations", "claims_as_json", "digits", "duration", "show_claims", "table_1_in_words",
+    ),
     "uses": ("advice_sliders",),
 }  # fmt: skip
 """The public names by their file."""

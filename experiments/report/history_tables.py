@@ -13,7 +13,7 @@ from rich.console import Console
 from experiments.claims import Outcome, in_digits
 from experiments.regression import MEASURES, OUTCOMES, ClaimName, Trends
 from experiments.report.rows import two_digits
-from experiments.report.tables import SHOWN, show_rows
+from experiments.report.tables import SHOWN, abbreviations, show_rows
 from structures import NAMED
 
 FEW = 6  # claims that get a table each; more of them share one
@@ -54,7 +54,7 @@ def show(
     machines = {run["machine"]["id"]: run["machine"] for run in trends.runs}
     told = (f"{key}: {it.get('cores')} cores of {it.get('cpu')}" for key, it in machines.items())
     last_words = [LEGEND, LEGEND_RUNS if claim is None else LEGEND_CLAIMS]
-    last_words.append(f"Machine {'; '.join(told)}.")
+    last_words += [f"{abbreviations(NAMED)}.", f"Machine {'; '.join(told)}."]
     if len(machines) > 1:
         last_words.append("Times are of one machine each; --machine shows one.")
     if len({run["profile"] for run in trends.runs}) > 1:

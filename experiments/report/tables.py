@@ -27,7 +27,7 @@ from experiments.report import rows as plain
 from experiments.report.rows import two_digits
 from experiments.report.session import MissingError
 from experiments.runs import Run, load, noise, resume_command, tables
-from structures import NAMED, THESIS
+from structures import NAMED, NAMES, THESIS
 
 COLORS = {
     **{f"[{it.mark}{it.own}]": it.color for it in Outcome if it is not Outcome.NO_CLAIM},
@@ -122,6 +122,12 @@ def by_subject(
     return columns, rows
 
 
+def abbreviations(names: Iterable[str] = NAMES) -> str:
+    """What the short name of each of these structures stands for, where it is not the title."""
+    pairs = ((NAMED[it].abbreviation, NAMED[it].title) for it in names)
+    return ", ".join(f"{short}: {title}" for short, title in pairs if short != title)
+
+
 def show_claims(
     run_folder: Path, console: Console, every: bool = False, slopes: bool = False
 ) -> None:
@@ -146,7 +152,10 @@ def show_claims(
         console.print(f"[yellow]{seen.words}[/]", highlight=False)
     console.print("\n[bold]Who claims what, of all structures[/]")
     show_rows(console, tally_rows(judge_run(run)))
-    console.print("\n".join(legend()), style="dim", highlight=False)
+    of = {it.claim.structure for it in claims if not slopes}
+    short = abbreviations(it for it in NAMED if it in of)
+    words = [*legend(), f"{short}."] if short else legend()
+    console.print(*words, sep="\n", style="dim", highlight=False)
 
 
 def _shown_claims(run: Run, every: bool) -> list[JudgedClaim]:

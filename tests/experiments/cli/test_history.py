@@ -227,3 +227,4 @@ def test_the_tables_fit_80_columns_and_cut_no_figure(trends, capsys, claim, slop
     output = capsys.readouterr().out
     assert max(map(len, output.splitlines())) <= 80
     assert "…" not in output
+    assert "TNS: Triangle-Neighbor, WEM: Winged-Edge, HEM: Half-Edge" in output

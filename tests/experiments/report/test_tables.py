@@ -47,6 +47,15 @@ def test_the_table_fits_80_columns_and_cuts_nothing(run, capsys, every, slopes):
         assert (head in text.split()) == (every or NAMED[name].thesis) or " " in head
 
 
+@pytest.mark.parametrize("every", [False, True])
+def test_a_terminal_says_what_each_short_name_stands_for(run, capsys, every):
+    show_claims(run.folder, Console(width=80), every)
+    text = " ".join(capsys.readouterr().out.split())
+    for it in NAMED.values():
+        shown = f" {it.abbreviation} " in text and it.abbreviation != it.title
+        assert (f"{it.abbreviation}: {it.title}" in text) == shown
+
+
 def test_the_tables_as_markdown_have_every_mark(run):
     claims = judge_run(run)
     text = claims_markdown(claims, "queries")
