@@ -67,14 +67,14 @@ def info(
         print_json({"mesh": mesh, **asdict(found.summary()), "structures": rows})
         return
     console.print(f"[bold]{escape(mesh)}[/]\n{found.summary()}\n")
-    heads = "structure", "bytes", "per vertex", "with 8-byte references", "per vertex of these"
+    heads = "structure", "bytes", "per vertex", "8-byte references", "per vertex"
     table: list[tuple[str, ...]] = [heads]
     for row in rows:
         if row["refusal"]:
             table.append((row["title"], REFUSED, "", "", ""))
         else:
             sizes = row["bytes"], row["bytes_with_8_byte_references"]
-            each = [(f"{it:,}", f"{it / max(len(found.points), 1):.1f}") for it in sizes]
+            each = [(f"{it:,}", f"{it / max(len(found.points), 1):,.1f}") for it in sizes]
             table.append((row["title"], *each[0], *each[1]))
     show_rows(console, table, numbers=heads[1:], colors={REFUSED: "red"})
     for reason in dict.fromkeys(row["refusal"] for row in rows if row["refusal"]):

@@ -101,6 +101,12 @@ def test_the_meshes_and_their_sizes():
     assert "torus 100,000 300,000 200,000 0 6…6" in text
 
 
+def test_the_bytes_of_a_mesh_stand_in_one_row_per_structure():
+    _, text = hem("info", "bunny", width=80)
+    for name in NAMES:
+        assert len(re.findall(rf"^ {NAMED[name].title} +[\d,.]+ ", text, re.MULTILINE)) == 1
+
+
 @pytest.mark.parametrize("width", waiting_for([40], [40, 60, 80]))
 def test_no_table_cuts_a_name_or_a_figure_where_it_is_narrow(tmp_path, width):
     costs = tmp_path / "costs.csv"
