@@ -115,20 +115,21 @@ def _mark(outcome: str) -> str:
 def _by_run(trends: Trends, name: str, shown: Collection[int], slopes: bool) -> pd.DataFrame:
     """A row per run of one claim, a column per figure."""
     figures = trends.figures.query("claim == @name")
-    figures = figures[figures["measure"].map(lambda it: MEASURES[it].slope == slopes)]
+    figures = figures[figures["measure"].map(lambda it: MEASURES[it].slope == slopes).astype(bool)]
     cells = figures.assign(text=[_figure(row) for row in figures.itertuples()])
     table = cells.pivot_table("text", "run", "measure", aggfunc="first", sort=False)
     table = table.rename(columns={key: measure.title for key, measure in MEASURES.items()})
-    joined = _heads(trends).join(_verdicts(trends)[name].dropna().rename("verdict"), how="inner")
-    joined = joined.join(table).fillna("–")
-    return joined[joined.index.isin(shown)]
+    measured = [k for k in shown if name in trends.runs[k]["claims"]]
+    verdicts = _verdicts(trends, [name]).set_axis(["verdict"], axis=1)
+    return _heads(trends).loc[measured].join([verdicts, table]).fillna("–")
 
 
-def _verdicts(trends: Trends) -> pd.DataFrame:
+def _verdicts(trends: Trends, names: list[str]) -> pd.DataFrame:
     """By run and claim the verdicts by work and by time, marked where they are not as before."""
     rows = trends.verdicts
     marks = rows["outcome"].map(_mark) + rows["changed"].map({True: "≠ ", False: "  "})
-    return marks.groupby([rows["run"], rows["claim"]]).sum().unstack()
+    table = marks.groupby([rows["run"], rows["claim"]]).sum().unstack()
+    return table.reindex(index=trends.about.index, columns=names)  # a busy run may have none
 
 
 def _figure(row: Any) -> str:
@@ -148,7 +149,7 @@ def _figure(row: Any) -> str:
 
 def _at_a_glance(trends: Trends, names: list[str]) -> pd.DataFrame:
     """A row per claim: where its verdict and figures are now, and when they changed last."""
-    figures, verdicts, changes = trends.figures, _verdicts(trends), trends.changes
+    figures, verdicts, changes = trends.figures, _verdicts(trends, names), trends.changes
     newest = figures.groupby(["claim", "measure"])["value"].last().unstack()
     newest = newest.reindex(index=names, columns=list(MEASURES))
     changed = changes[changes["measure"] != OUTCOMES["outcome_time"]].groupby("claim")["run"].last()
@@ -156,7 +157,7 @@ def _at_a_glance(trends: Trends, names: list[str]) -> pd.DataFrame:
     texts = pd.DataFrame(shown).map(in_digits, count=5).replace("NaN", "–")
     glance = texts.assign(changed=changed.map(trends.about["commit"]).reindex(names).fillna(""))
     glance.insert(0, "claim", [short_claim(name) for name in names])
-    glance.insert(1, "verdict", verdicts[names].ffill().iloc[-1].str.replace("≠", " "))
+    glance.insert(1, "verdict", verdicts.ffill().iloc[-1].fillna("–").str.replace("≠", " "))
     return glance
 
 

@@ -171,6 +171,18 @@ def test_times_of_a_run_on_too_busy_a_machine_are_not_compared_and_its_commit_is
     assert marked == list(busy)
 
 
+@pytest.mark.parametrize("name", [NAME, "half_edge"])
+def test_what_was_timed_on_too_busy_a_machine_alone_is_shown_as_not_told(base, tmp_path, name):
+    path, made = tmp_path / "history.jsonl", line(base, 1) | {"too_busy": True}
+    for claim in made["claims"].values():
+        for counted in {"outcome", "work", "bytes"} & claim.keys():
+            del claim[counted]
+        claim["slopes"] = {}
+    append_run(made, path)
+    output = output_of("history", "show", name, "--file", str(path))
+    assert "HEM vertex_faces – – –" in output or f"{made['commit'][:7]}~ –" in output
+
+
 def test_what_was_measured_on_other_sizes_is_not_compared(base, tmp_path):
     path = tmp_path / "history.jsonl"
     for k in range(4):
