@@ -57,8 +57,9 @@ def save_pieces(
 def whole(folder: str | os.PathLike[str]) -> Iterator[Path]:
     """A folder to write into that becomes, file by file, part of ``folder`` if all went well.
 
-    A folder ``pieces`` is replaced as a whole, files of the same name are, all others stay. Raises
-    MeshError where the folder cannot be made or written.
+    Files of the same name are replaced, all others stay, but for a fracture's pieces in a folder
+    ``pieces`` if there are new ones. An interrupt leaves what was there. Raises MeshError where the
+    folder cannot be made or written.
     """
     target = Path(folder).absolute()
     kept = require_writable(target)
@@ -88,19 +89,30 @@ def require_writable(folder: str | os.PathLike[str]) -> Path:
 
 
 def _move(beside: Path, target: Path, aside: Path) -> None:
-    files = [path for path in sorted(beside.rglob("*")) if path.is_file()]
-    for path in files:
-        place = target / path.relative_to(beside)
+    """Move all files into place, and those whose place it is aside; or none, if interrupted."""
+    within = [path.relative_to(beside) for path in sorted(beside.rglob("*")) if path.is_file()]
+    for path in within:
+        place = target / path
         if place.is_dir() or (place.parent.exists() and not place.parent.is_dir()):
             raise MeshError(f"cannot write {place}: something else has this name")
     before = (target / "pieces").glob("*.ply") if (beside / "pieces").is_dir() else []
-    for path in list(before):
-        if path.name.startswith(("shard_", "rest.", "island_")):
-            os.replace(path, aside / path.name)
-    for path in files:
-        place = target / path.relative_to(beside)
-        place.parent.mkdir(parents=True, exist_ok=True)
-        os.replace(path, place)
+    stale = [it for it in before if it.name.startswith(("shard_", "rest.", "island_"))]
+    moves = []
+    for path in dict.fromkeys([*within, *(it.relative_to(target) for it in stale)]):
+        if os.path.lexists(target / path):
+            moves.append((target / path, aside / "old" / path))
+        if (beside / path).exists():
+            moves.append((beside / path, target / path))
+    done = []
+    try:
+        for here, there in moves:
+            there.parent.mkdir(parents=True, exist_ok=True)
+            os.replace(here, there)
+            done.append((here, there))
+    except BaseException:
+        for here, there in reversed(done):
+            os.replace(there, here)
+        raise
 
 
 def _save_glb(fracture: Fracture, folder: Path, up: Floats) -> list[Path]:

@@ -142,6 +142,29 @@ def test_a_broken_run_leaves_what_was_there(broken, tmp_path, monkeypatch):
     assert not (tmp_path / "a").exists()
 
 
+@pytest.mark.parametrize("error", [KeyboardInterrupt, OSError])
+@pytest.mark.parametrize("moves", [0, 1, 9, 40])
+def test_what_ends_while_files_are_moved_leaves_those_that_were_there(
+    broken, sheet, tmp_path, monkeypatch, moves, error
+):
+    def found():
+        return {path: path.read_bytes() for path in tmp_path.rglob("*") if path.is_file()}
+
+    steps, move = iter([*[None] * moves, error]), os.replace
+
+    def move_or_end(*given):
+        if ends := next(steps, None):
+            raise ends
+        move(*given)
+
+    save_pieces(sheet, tmp_path, "ply")
+    before = found()
+    monkeypatch.setattr(os, "replace", move_or_end)
+    with pytest.raises((KeyboardInterrupt, hem.MeshError)):
+        save_pieces(broken, tmp_path, "ply")
+    assert found() == before
+
+
 def test_a_folder_that_cannot_be_written_is_told(tmp_path):
     (tmp_path / "file").write_text("")
     for place in (tmp_path / "file", tmp_path / "file" / "inner"):
