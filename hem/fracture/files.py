@@ -137,7 +137,7 @@ def _save_glb(fracture: Fracture, folder: Path, up: Floats) -> list[Path]:
 
 
 def _save_obj(fracture: Fracture, folder: Path, up: Floats) -> list[Path]:
-    lines = [f"# {len(fracture.pieces)} pieces of {fracture.material.name}, by hem"]
+    lines = [f"# {len(fracture.pieces)} pieces of {fracture.material.name!a}, by hem"]
     before = 1
     for name, piece in zip(names(fracture), fracture.pieces, strict=True):
         lines.append(f"o {name}")

@@ -6,6 +6,7 @@ import itertools
 import json
 import os
 import sys
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -64,6 +65,14 @@ def test_obj_holds_a_group_for_every_piece_to_the_last_bit(broken, tmp_path):
     whole_mesh = hem.load(path)
     every = np.concatenate([corners(piece) for piece in broken.pieces])
     np.testing.assert_array_equal(corners(whole_mesh), every)
+
+
+def test_a_material_of_any_name_can_be_saved(broken, tmp_path):
+    named = replace(broken, material=replace(broken.material, name="Größe 石\nv 1 2 3"))
+    for format in ("glb", "obj"):
+        (path,) = save_pieces(named, tmp_path, format)
+        every = np.concatenate([it.points for it in broken.pieces])
+        assert np.array_equal(np.sort(hem.load(path).points, axis=0), np.sort(every, axis=0))
 
 
 def test_ply_holds_a_file_for_every_piece_and_none_of_a_fracture_before(broken, sheet, tmp_path):
