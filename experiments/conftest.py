@@ -18,18 +18,8 @@ from typing import Any
 
 import pytest
 
-from experiments.harness import (
-    CLOCK,
-    BenchmarkTimer,
-    Case,
-    Experiment,
-    Keep,
-    Measurement,
-    in_random_order,
-    memory,
-    own_mesh,
-    steadiness,
-)
+from experiments import harness
+from experiments.harness import Case, Experiment, Measurement, memory, own_mesh, steadiness
 from experiments.presets import PRESETS, Preset
 from experiments.runs import AGAIN, COMPILE, DEFAULT_SEED, MEASURE, CannotWriteError, CaseFile
 
@@ -73,7 +63,7 @@ def _cases(config: pytest.Config, experiment: Experiment, structure: str) -> lis
     file = _file(config, experiment.name, structure)
     chosen = file.disturbed if action == AGAIN else {it.id for it in cases} - file.cases.keys()
     seed = f"{config.getoption('--case-seed')} {experiment.name} {structure}"
-    return in_random_order([case for case in cases if case.id in chosen], seed)
+    return harness.in_random_order([case for case in cases if case.id in chosen], seed)
 
 
 @cache
@@ -98,7 +88,7 @@ def pytest_collection_modifyitems(items: list[Any]) -> None:
         cases = {item: item.callspec.params["case"] for item in items}
         items.sort(key=lambda item: place.get(getattr(cases[item], "structure", ""), -1))
     for item in items:
-        item.add_marker(pytest.mark.benchmark(timer=CLOCK))
+        item.add_marker(pytest.mark.benchmark(timer=harness.CLOCK))
 
 
 @pytest.fixture
@@ -114,15 +104,15 @@ def core(request: pytest.FixtureRequest) -> int | None:
 
 
 @pytest.fixture
-def timer(benchmark: Any) -> Iterator[BenchmarkTimer]:
+def timer(benchmark: Any) -> Iterator[harness.BenchmarkTimer]:
     """The timer that also feeds pytest-benchmark."""
-    timer = BenchmarkTimer(benchmark)
+    timer = harness.BenchmarkTimer(benchmark)
     yield timer
     timer.end()
 
 
 @pytest.fixture
-def keep(request: pytest.FixtureRequest, case: Case, core: int | None) -> Keep:
+def keep(request: pytest.FixtureRequest, case: Case, core: int | None) -> harness.Keep:
     """Keep a case's result in the run and for pytest-benchmark; too large a case is skipped."""
     config, experiment = request.config, request.module.EXPERIMENT
 
