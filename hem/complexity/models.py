@@ -12,7 +12,8 @@ contain O(1), and no measurement could ever tell them apart.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,8 +33,7 @@ STEEP = ("O(n² log n)", "O(n³)", "O(2^n)")
 """Further ones, for costs that grow faster than O(n²)."""
 
 
-@dataclass(frozen=True)
-class Slowdowns:
+class Slowdowns(NamedTuple):
     """Candidates, each (s, k): of the intercept of a cost and of the part that scales."""
 
     intercept: Array
@@ -103,11 +103,8 @@ class DesignMatrix:
 
     def only(self, model: int) -> "DesignMatrix":
         """The columns of one model."""
-        one = slice(model, model + 1)
-        return DesignMatrix(
-            self.names[one], self.slowdowns, self.lower,
-            self.growth[one], self.intercept[one], self.scale[one],
-        )  # fmt: skip
+        cut = "names", "growth", "intercept", "scale"
+        return replace(self, **{it: getattr(self, it)[model : model + 1] for it in cut})
 
 
 def design(
@@ -135,8 +132,7 @@ def has_lower_terms(order: Order) -> bool:
     return order >= parse("O(n)")
 
 
-@dataclass(frozen=True)
-class Fit:
+class Fit(NamedTuple):
     """Best nonnegative fit of each model: misfit and coefficients, (..., m) each."""
 
     chi2: Array  # squared relative residuals over their variances
@@ -144,10 +140,6 @@ class Fit:
     factor: Array  # factor a of f(n)
     slowdown: NDArray[np.intp]  # row of the slowdowns that served best …
     lower: NDArray[np.intp]  # … and place of the lower-order term
-
-    def row(self, place: int) -> "Fit":
-        """The fit of one row of several."""
-        return Fit(*(getattr(self, it.name)[place] for it in fields(self)))
 
 
 def fit(models: DesignMatrix, costs: Array, weight: Array) -> Fit:

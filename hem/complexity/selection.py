@@ -176,9 +176,8 @@ class Comparison:
     def without_each(self) -> Iterator["Comparison"]:
         """The models fitted to all sizes but one, by its place."""
         weights = np.where(np.eye(len(self.weight), dtype=bool), 0, self.weight)
-        fits = fit(self.design, self.costs.cost, weights)
-        for place, weight in enumerate(weights):
-            yield replace(self, weight=weight, fit=fits.row(place))
+        for weight, *row in zip(weights, *fit(self.design, self.costs.cost, weights), strict=True):
+            yield replace(self, weight=weight, fit=Fit(*row))
 
     def steady(self, costs: Array) -> Array:
         """Costs (..., k) with the memory's part, as the best model sees it in each row, removed."""
