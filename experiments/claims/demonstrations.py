@@ -1,7 +1,6 @@
 """Quantities that no run has to measure: something is built and looked at, or counted in code.
 
-A kernel's code is its own and that of all parts that it calls, each once, without the annotations
-and the docstrings.
+A kernel's code is its own and that of all parts that it calls, each once, without docstrings.
 """
 
 import ast
@@ -11,7 +10,7 @@ from collections import Counter
 from collections.abc import Iterable, Iterator
 from contextlib import suppress
 from functools import cache
-from typing import Any, NamedTuple, TypeGuard
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -161,7 +160,7 @@ def code_facts(kernels: Iterable[Kernel]) -> CodeFacts:
 def come_round_tests(kernels: Iterable[Kernel]) -> int:
     """How often a loop in some kernels asks whether it is back at where it began."""
     loops = (it for it in _nodes(kernels) if isinstance(it, ast.While))
-    return sum(_compares(it, ast.Name, ast.Name) for loop in loops for it in ast.walk(loop))
+    return sum(_compares(it, ast.Name) for loop in loops for it in ast.walk(loop))
 
 
 def _nodes(kernels: Iterable[Kernel]) -> Iterator[ast.AST]:
@@ -175,20 +174,16 @@ def _nodes_of(part: Kernel) -> list[ast.AST]:
 
 
 def _tests_direction(it: ast.AST) -> bool:
-    if not _compares(it, ast.Subscript, ast.Name):
-        return False
-    return any(isinstance(n, ast.Name) and n.id == RECORDS for n in ast.walk(it.left))
+    named = {n.id for n in ast.walk(it) if isinstance(n, ast.Name)}
+    return _compares(it, ast.Subscript) and RECORDS in named
 
 
-def _compares(it: ast.AST, one: type[ast.expr], other: type[ast.expr]) -> TypeGuard[ast.Compare]:
-    """Whether it says that something of these two sorts is equal, or that it is not."""
-    return (
-        isinstance(it, ast.Compare)
-        and len(it.ops) == 1
-        and isinstance(it.ops[0], ast.Eq | ast.NotEq)
-        and isinstance(it.left, one)
-        and isinstance(it.comparators[0], other)
-    )
+def _compares(it: ast.AST, sort: type[ast.expr]) -> bool:
+    """Whether it says that something of a sort equals what has a name, or that it does not."""
+    match it:
+        case ast.Compare(left, [ast.Eq() | ast.NotEq()], [ast.Name()]):
+            return isinstance(left, sort)
+    return False
 
 
 def _says_nothing(it: ast.stmt) -> bool:
