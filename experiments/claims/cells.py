@@ -1,8 +1,7 @@
 """The claims in the cells of tables: of the documents, of structures' files, of experiments.
 
-What the thesis prints stands in ``claims.toml``, and what follows from it; what is expected of a
-structure that it does not print, in that structure's file; what is expected of an experiment's own
-subjects, in its file.
+What the thesis prints stands in ``claims.toml``, and what follows from it; what is expected of
+another structure or of an experiment's own subjects, in the file of that.
 """
 
 import tomllib
@@ -37,12 +36,9 @@ HOW = {
 }
 """How a cost of a class moves with its variable."""
 
-Entry = Mapping[str, Any]
-"""One entry of claims.toml."""
-Claimed = tuple[Any, Kind, str]
-"""What is printed, who claims it, and where or why."""
-Cell = tuple[Table, str, str, Claimed]
-"""A table, a subject and a structure, and what is claimed of them."""
+Entry = Mapping[str, Any]  # one of claims.toml
+Claimed = tuple[Any, Kind, str]  # what is printed, who claims it, and where or why
+Cell = tuple[Table, str, str, Claimed]  # a table, a subject, a structure; what is claimed of them
 NOTHING: Claimed = NO_CLAIM, Kind.NOBODY, "nobody claims what it costs"
 
 
@@ -97,12 +93,11 @@ def _of_row(table_name: str, what: str, entries: Sequence[Entry]) -> Iterator[Ce
 def _own_claim(name: str, what: str, said: Mapping[str, Claimed]) -> Claimed:
     """What a structure's file claims of a subject, by itself or as is ``said`` of another."""
     own: Claims | None = getattr(NAMED[name], "claims", None)
-    if own and what != MEMORY:
-        if what in own.costs:
-            return own.costs[what], Kind.EXPECTED, own.source
-        if own.like in said:
-            printed, kind, _ = said[own.like]
-            return printed, Kind.EXPECTED if kind is Kind.EXPECTED else Kind.FOLLOWS, own.source
+    if own and what in own.costs:
+        return own.costs[what], Kind.EXPECTED, own.source
+    if own and what != MEMORY and own.like in said:
+        printed, kind, _ = said[own.like]
+        return printed, Kind.EXPECTED if kind is Kind.EXPECTED else Kind.FOLLOWS, own.source
     return NOTHING
 
 

@@ -24,8 +24,7 @@ SENTENCES = "sentences"  # the table of what is not a cell
 class Outcome(StrEnum):
     """What can become of a claim. Too little or too noisy data is undetermined, never a pass.
 
-    ``mark``: one character that stands for it; ``own``: that where this study expects it itself;
-    ``color``: a color's name that terminals know.
+    ``mark``: a character for it; ``own``: that where we expect it; ``color``: a terminal's.
     """
 
     mark: str
@@ -56,10 +55,7 @@ class Outcome(StrEnum):
 
 
 class Kind(StrEnum):
-    """Who claims something. ``about``: the same as a part of a sentence.
-
-    Their marks differ, so that nothing we expect is ever taken for a document's claim.
-    """
+    """Who claims something, in ``about`` as a part of a sentence; each has marks of its own."""
 
     about: str
 
@@ -78,10 +74,6 @@ class Kind(StrEnum):
         """A character per outcome: what follows stands in brackets, what we expect has circles."""
         text = "".join(it.own if self is Kind.EXPECTED else it.mark for it in outcomes)
         return f"({text})" if self is Kind.FOLLOWS else text
-
-    def words(self, outcome: Outcome) -> str:
-        """An outcome in words."""
-        return MET.get(outcome, outcome.value) if self is Kind.EXPECTED else outcome.value
 
 
 CLAIMED = Kind.PRINTED, Kind.FOLLOWS, Kind.EXPECTED
@@ -133,10 +125,9 @@ class Claim:
     """One claim.
 
     ``key``: its name in links and files, such as ``half_edge/vertex_faces`` or
-    ``sentence/bytes_ratio``. ``text``: the claim as a sentence. ``kind``: who claims it;
-    ``source``: where it stands, or why it is expected. ``table`` and ``title``: the table it is a
-    row or a cell of, and the row's head. ``structure`` and ``subject``: of a cell, else empty.
-    ``printed``: as the table has it.
+    ``sentence/bytes_ratio``. ``text``: the claim as a sentence. ``source``: where it stands, or why
+    it is expected. ``table`` and ``title``: the table it is a row or a cell of, and the row's head.
+    ``structure`` and ``subject``: of a cell, else empty. ``printed``: as the table has it.
     """
 
     key: str
@@ -173,8 +164,7 @@ class JudgedClaim:
     ``outcome``: by what is exact where there is such a measure, else by time. ``outcomes``: of a
     growth, by measure: ``work``, ``time`` in order and at ``random``. ``found``: short, such as
     ``O(n_ev)`` or ``6.33``; ``reason``: a sentence. ``verdicts``: of a growth, by axis. ``values``:
-    of a quantity, or the bytes per vertex. ``work`` and ``seconds``: per query at the largest size,
-    at random handles where that was measured.
+    of a quantity, or the bytes per vertex. ``work``, ``seconds``: per query at the largest size.
     """
 
     claim: Claim
@@ -205,7 +195,8 @@ class JudgedClaim:
     @property
     def words(self) -> str:
         """What became of it, such as ``consistent``."""
-        return self.claim.kind.words(self.outcome)
+        met = MET if self.claim.kind is Kind.EXPECTED else {}
+        return met.get(self.outcome, self.outcome.value)
 
     @property
     def was_measured(self) -> bool:

@@ -69,7 +69,7 @@ class Curves:
     def __init__(self, run: Run) -> None:
         self.cases = run.cases
         self.too_busy = noise(run).too_busy
-        self.of_machines = bool((run.meta.get("machine") or {}).get("machines"))
+        self.of_machines = bool(run.machines)
         self._made: dict[tuple[str, bytes], Curve] = {}
         self._jobs: dict[Any, Any] = self.cases.groupby(["experiment", "structure"]).indices
         self._columns = {str(name): column.to_numpy() for name, column in self.cases.items()}
@@ -78,10 +78,7 @@ class Curves:
 
     @cached_property
     def judged_family(self) -> str | None:
-        """The family whose valence is the same at every size: the first one that was measured.
-
-        A preset names it first, and everything but the valences is measured on it.
-        """
+        """The family that is measured first and most: its valence is the same at every size."""
         families = self.cases["family"]
         counted = self.cases[(self.cases["kind"] == "work") & (families != HUBS)]["family"]
         if len(counted):
@@ -109,19 +106,14 @@ class Curves:
         timed = timed if len(timed) else self.of(claim, Axis.TIME_FACES)
         every = self.of(claim, Axis.WORK_FACES), timed
         work, seconds = (pd.Series(it.centers, it.sizes, dtype=float) for it in every)
-        both = work.index.intersection(seconds.index)
-        if both.empty:
-            return 0, np.nan, np.nan
-        return int(both.max()), float(work[both.max()]), float(seconds[both.max()])
+        most = work.index.intersection(seconds.index).max()
+        return (0, np.nan, np.nan) if np.isnan(most) else (int(most), work[most], seconds[most])
 
     def named(
         self, experiment: str, structure: str, subject: str = "", order: str = "", *,
         width: int = 4, family: str = "",
     ) -> Curve:  # fmt: skip
-        """A family's cases of an experiment by size, the judged one's unless told otherwise.
-
-        ``width``: bytes of a reference.
-        """
+        """Cases by size, of the judged family unless told; ``width``: bytes of a reference."""
         known: dict[str, Any] = {"family": family or self.judged_family, "reference_bytes": width}
         known |= {name: it for name, it in (("subject", subject), ("order", order)) if it}
         return self._select("faces", experiment, structure, **known)
@@ -159,10 +151,7 @@ class Curves:
         return None if np.isnan(beside).any() else beside
 
     def latencies(self, curve: Curve) -> Array | None:
-        """(a, k): what each case may have waited for, beside it or in a part of its working set.
-
-        None where it was not measured, or is not kept.
-        """
+        """(a, k): what cases may have waited for, beside them or in part of their working sets."""
         beside = curve.cases["latency"].to_numpy(float)
         if np.isnan(beside).any():
             return None

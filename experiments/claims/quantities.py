@@ -1,10 +1,9 @@
 """What is said in sentences: each a quantity that is measured, and what it must be.
 
-The sentences stand in ``sentences.toml``: what the documents say, and what this study expects. A
-quantity is a list of values, one per size, query or the like, and the claim holds if all of them
-lie within its bounds. It is violated if none does, or if one does not and the claim is of ``every``
-one; in between, or where a part of it was not measured, which is nan, it is undetermined. What is
-not read off a run, but built, or counted in the code, stands in ``demonstrations.py``.
+The sentences stand in ``sentences.toml``. A quantity is a list of values, one per size, query or
+the like, and the claim holds if all of them lie within its bounds. It is violated if none does, or
+if one does not and the claim is of ``every`` one; in between, or where a part of it was not
+measured, which is nan, it is undetermined. What no run has to tell is in ``demonstrations.py``.
 """
 
 import itertools
@@ -36,10 +35,11 @@ NEIGHBOR, ADJACENCY, DIRECTED = "triangle_neighbor", "indexed_adjacency", "direc
 PAIRS = ("plankton",)
 SPLITS, COLLAPSE = ("split_edge", "split_face"), ("collapse_edge",)
 AT_EDGES = "split_edge", "collapse_edge", "flip_edge"
-STEPPING = "collapse_stepping"
+OF_FACES = "face_faces", "face_vertices", "face_edges", "split_face"
+BETWEEN_EDGES = "edge_vertices", "edge_faces", "vertex_edges", "face_edges"
+LISTED, STEPPING = ("as_printed",), "collapse_stepping"
 
-SOUP_BYTES = 3 * 12
-"""Of a triangle that stores its own three points."""
+SOUP_BYTES = 3 * 12  # of a triangle that stores its own three points
 
 MIXES = {
     "vertex_faces": "faces around a vertex",
@@ -55,14 +55,12 @@ def sentence_claims() -> list[Claim]:
     content = tomllib.loads((files("experiments.claims") / "sentences.toml").read_text("utf-8"))
     claims = []
     for name, row in content.items():
-        says, kind = row["says"], Kind(row["kind"])
+        says, kind, source = row.pop("says"), Kind(row.pop("kind")), row.pop("source")
         if name not in QUANTITIES:
             known = ", ".join(QUANTITIES)
             raise ValueError(f"sentences.toml: {says!r} rests on {name!r}; there are {known}")
-        bounds = {end: float(row[end]) for end in ("low", "high") if end in row}
-        expects = Between(name, row["measured"], **bounds, every=row.get("every", False))
-        claim = Claim(f"sentence/{name}", says, kind, row["source"], SENTENCES, says, expects)
-        claims.append(claim)
+        expects = Between(name, **row)
+        claims.append(Claim(f"sentence/{name}", says, kind, source, SENTENCES, says, expects))
     return claims
 
 
@@ -108,10 +106,9 @@ def in_digits(value: float, count: int) -> str:
 def break_even(of_run: Curves) -> pd.DataFrame:
     """How many queries or edits after building a structure overtakes the base structure.
 
-    It takes longer to build and answers faster. After k it has caught up where build + k · cost is
-    the base's build + k · its cost. Columns: subject, structure, vertices, times: 0 where the
-    structure is ahead from the beginning, infinite where it never catches up. No rows for several
-    machines, whose times are not compared.
+    After k it has caught up where build + k · cost is the base's build + k · its cost. Columns:
+    subject, structure, vertices, times: 0 where the structure is ahead from the beginning, infinite
+    where it never catches up. No rows for several machines, whose times are not compared.
     """
     rows = []
     for subject in () if of_run.of_machines else MIXES:
@@ -260,10 +257,6 @@ def _slopes(
         known = len(sizes) > 1
         yield round(float(slope(sizes, np.maximum(work, 1))), 3) if known else np.nan
 
-
-LISTED = ("as_printed",)
-OF_FACES = "face_faces", "face_vertices", "face_edges", "split_face"
-BETWEEN_EDGES = "edge_vertices", "edge_faces", "vertex_edges", "face_edges"
 
 QUANTITIES: dict[str, Quantity] = {
     "bytes_ratio": _bytes_of_models,

@@ -5,14 +5,12 @@ query finds what it needs in the caches, and time shows its steps. Asked at rand
 memory, which is slower the larger the mesh. Constant costs are judged in proportion to the
 reference beside them, the same code where its work cannot grow. What is claimed to grow goes
 through more memory than that; it, and what has no reference, is judged by the memory's latency.
-
-``derived/judged.json`` in the folder of a run holds what follows from the measurements, the claims
-and the code that judges; it is read only as long as all are what they were.
+Times of a machine that was too busy accuse no claim.
 
 Claims are judged on one family, whose vertices all have the same valence, and whose work is
 counted. Others are timed alone, so that what holds there is told by time.
 
-Times of a machine that was too busy accuse no claim.
+``derived/judged.json`` in a run is read as long as measurements, claims and code are the same.
 """
 
 import hashlib
@@ -39,9 +37,8 @@ from hem.complexity import Verdict, judge
 from hem.whole_files import write_whole
 
 CASE_ERROR = 0.15
-"""How far cases of one curve stray, beyond what their own rounds tell: each is measured within some
-milliseconds, and other tenants of the machine slow its caches for longer than that. A reference is
-one more case, and strays as much."""
+"""How far cases of one curve stray, beyond what their own rounds tell: each takes milliseconds, and
+other tenants slow the machine's caches for longer. A reference is a case, and strays as much."""
 
 NEAR = "near "  # said before the closest class where none explains the costs
 FLAT = 0.5  # slope in n_ev below which what grows comes on top of a larger part that does not
@@ -130,10 +127,8 @@ def _class_found(axes: Sequence[Axis], verdicts: Mapping[Axis, Verdict]) -> str:
     grows = [axis for axis in axes if verdicts[axis].best != "O(1)"]
     if len(grows) > 1:
         grows = [it for it in grows if it.variable == "faces" or verdicts[it].slope >= FLAT]
-    told = [
-        [name[2:-1].replace("n", axis.symbol) for name in _classes(verdicts[axis])]
-        for axis in grows
-    ]
+    classes = [(axis.symbol, verdicts[axis].classes or [verdicts[axis].best]) for axis in grows]
+    told = [[name[2:-1].replace("n", symbol) for name in names] for symbol, names in classes]
     found = " or ".join(f"O({' · '.join(factors) or '1'})" for factors in product(*told))
     return found if all(verdicts[axis].classes for axis in axes) else NEAR + found
 
@@ -141,10 +136,6 @@ def _class_found(axes: Sequence[Axis], verdicts: Mapping[Axis, Verdict]) -> str:
 def class_told(verdict: Verdict) -> str:
     """The class that costs tell, or two; where they tell none, which one comes nearest."""
     return verdict.answer or NEAR + verdict.best
-
-
-def _classes(verdict: Verdict) -> list[str]:
-    return verdict.classes or [verdict.best]
 
 
 @lru_cache(maxsize=4)
@@ -184,14 +175,14 @@ def _plain(judged: JudgedClaim) -> dict[str, Any]:
 
 def _judged(claim: Claim, row: dict[str, Any]) -> JudgedClaim:
     kept = row["verdicts"]
-    read = {
+    row |= {
         "claim": claim,
         "outcome": Outcome(row["outcome"]),
         "outcomes": {measure: Outcome(it) for measure, it in row["outcomes"].items()},
         "verdicts": {axis: Verdict(**kept[axis.key]) for axis in Axis if axis.key in kept},
         "values": np.array(row["values"], float),
     }
-    return JudgedClaim(**{**row, **read})
+    return JudgedClaim(**row)
 
 
 BY_TIME = Axis.TIME_FACES, Axis.RANDOM_FACES
