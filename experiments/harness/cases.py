@@ -32,11 +32,10 @@ class Measurement:
     ("work"), or bytes ("bytes"). ``handles``: queries per sample. ``working_set``: bytes of the
     structure's live records, or of the chased array in the latency experiment. ``valence``: that of
     the queried vertices where the experiment varies it. ``latency``: seconds per memory access in
-    the working set, measured beside the case. ``reference``: seconds per query where the work is
-    that of a small mesh, as much memory is taken and the order is the same (see ``reference.py``).
-    ``calibration``: seconds per step of the calibration loop before each round. ``skipped``: why
-    nothing was measured, else empty. ``noise``: how steady the machine was meanwhile, and how often
-    the case was ``measured``.
+    the working set, beside the case. ``reference``: seconds per query of constant work, see
+    ``reference.py``. ``calibration``: seconds per step of the calibration loop before each round.
+    ``skipped``: why nothing was measured, else empty. ``noise``: how steady the machine was
+    meanwhile, and how often the case was ``measured``.
     """
 
     id: str
@@ -44,7 +43,6 @@ class Measurement:
     subject: str | None = None
     order: str | None = None
     family: str | None = None
-    seed: int = 0
     vertices: int = 0
     edges: int = 0
     faces: int = 0
@@ -90,12 +88,9 @@ class Case:
 
     @property
     def repetitions(self) -> int:
-        """How often something is counted: more often where elements differ, and not all is read.
-
-        Elements differ in a mesh of one's own, and where what is found is hashed.
-        """
+        """How often something is counted: more often where elements differ, unless all is read."""
         kind = structures.REGISTRY[self.structure]
-        uneven = own_mesh.is_own(self.family, self.size) or kind.rebuilds
+        uneven = own_mesh.is_own(self.family, self.size) or kind.rebuilds  # what is found is hashed
         return OF_UNEVEN if uneven and not kind.searches else OF_ALIKE
 
     @property
@@ -126,16 +121,15 @@ class Case:
         counts = {it: getattr(mesh, it) for it in ("vertices", "edges", "faces", "valence_max")}
         working_set = 0 if s is None else sum(s.memory().values())
         samples = np.asarray(samples, float).tolist()
-        return self._measurement(kind, working_set=working_set, samples=samples, **counts, **more)
+        made = {"working_set": working_set, "samples": samples, **counts, **more}
+        return replace(self.not_measured(kind, ""), **made)
 
     def not_measured(self, kind: str, reason: str) -> Measurement:
         """The case where its mesh was not even made; its counts are about those asked for."""
         faces = self.size if self.family == HUBS else 2 * self.size
-        return self._measurement(kind, vertices=self.vertices, faces=faces, skipped=reason)
-
-    def _measurement(self, kind: str, **fields: Any) -> Measurement:
-        names = "id", "subject", "order", "family", "valence", "reference_bytes"
-        return Measurement(kind=kind, **{name: getattr(self, name) for name in names} | fields)
+        names = "id", "subject", "order", "family", "valence", "reference_bytes", "vertices"
+        known: dict[str, Any] = {name: getattr(self, name) for name in names}
+        return Measurement(kind=kind, **known, faces=faces, skipped=reason)
 
 
 def in_random_order(cases: Sequence[Case], seed: int | str) -> list[Case]:
@@ -155,8 +149,7 @@ def in_random_order(cases: Sequence[Case], seed: int | str) -> list[Case]:
 def queried_handles(case: Case, s: Structure) -> Array:
     """The handles a case asks, each once: in ascending order, or all of them in random order.
 
-    Where the valence varies they are the hubs, and the edges and faces at hubs; there are as many
-    of these at every valence.
+    Where the valence varies: the hubs, or the edges or faces at hubs, as many at every valence.
     """
     source = case.query.source
     handles = s.handles(source)

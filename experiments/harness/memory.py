@@ -1,10 +1,8 @@
-"""What a case will take of memory, before it takes it.
-
-Estimated in proportion from a small mesh; a case that would take too much is skipped and says so.
-"""
+"""What a case will take of memory, in proportion to a small mesh: too large a case is skipped."""
 
 import os
 import re
+from contextlib import suppress
 from functools import lru_cache
 from pathlib import Path
 
@@ -44,8 +42,7 @@ def why_too_large(case: Case, copies: int) -> str:
 def estimate(case: Case, copies: int) -> int:
     """Bytes that a case takes at its peak, about; more rather than less.
 
-    ``copies``: how many structures' bytes its experiment holds at a time; 0 where a case is just so
-    many bytes.
+    ``copies``: how many structures' bytes its experiment holds; 0 where a case is so many bytes.
     """
     if not copies:
         return CHASE_COPIES * case.size
@@ -83,13 +80,11 @@ def _left_in_cgroups() -> list[int]:
     """What control groups still allow; copies of files are let go where memory is needed."""
     left = []
     for limit, used in CGROUPS:
-        try:
+        with suppress(OSError):
             most, taken = Path(limit).read_text().strip(), int(Path(used).read_text())
-        except OSError:
-            continue
-        stat = Path(used).with_name("memory.stat")
-        counts = dict(map(str.split, stat.read_text().splitlines() if stat.exists() else []))
-        files = int(counts.get("total_inactive_file") or counts.get("inactive_file") or 0)
-        if most != "max":
-            left.append(max(0, int(most) - taken + files))
+            stat = Path(used).with_name("memory.stat")
+            counts = dict(map(str.split, stat.read_text().splitlines() if stat.exists() else []))
+            files = int(counts.get("total_inactive_file") or counts.get("inactive_file") or 0)
+            if most != "max":
+                left.append(max(0, int(most) - taken + files))
     return left
