@@ -32,7 +32,7 @@ HEAD = (
 )
 """What is kept of the head of a run."""
 KEPT = (
-    *("id", "kind", "subject", "order", "family", "vertices", "edges", "faces", "valence"),
+    *("id", "kind", "subject", "order", "family", "vertices", "edges", "faces"),
     *("valence_max", "working_set", "latency", "reference"),
 )
 """What is kept of a case besides its samples and the calibration loop's readings."""
@@ -48,18 +48,14 @@ class Measured:
 
     def only(self, structures: list[str]) -> Self:
         """What is of these structures."""
-        run = self.run
+        run, every = self.run, self.claims.items()
         parts = (rows[rows["structure"].isin(structures)] for rows in (run.cases, run.skipped))
-        named = {name: ClaimName.read(name).structure for name in self.claims}
-        claims = {name: it for name, it in self.claims.items() if named[name] in structures}
+        claims = {name: it for name, it in every if ClaimName.read(name).structure in structures}
         return type(self)(Run(run.folder, run.meta, *parts), claims)
 
 
 def reduce_run(run: Run) -> Measured:
-    """What of a run can be compared: counts, and named times to four digits. Judges it: seconds.
-
-    And the latency of the machine's memory, by which times are judged.
-    """
+    """What of a run can be compared: counts, named times, the latency. Judges it, for seconds."""
     meta = {**run.meta, "run": run.folder.resolve().name, "too_busy": noise(run).too_busy}
     cases = run.cases[[_is_kept(case) for case in run.cases.to_dict("records")]].copy()
     timed = cases["kind"] == "time"
@@ -119,10 +115,9 @@ def save_baseline(part: str, measured: Measured, folder: Path = FOLDER) -> None:
 def _reduced(case: Mapping[Any, Any]) -> Measurement:
     """A row of a run as a line of the baseline."""
     values: dict[str, Any] = {key: None if pd.isna(case[key]) else case[key] for key in KEPT}
-    if values["valence"] is not None:
-        values["valence"] = int(values["valence"])
     return Measurement(
         **values,
+        valence=None if pd.isna(case["valence"]) else int(case["valence"]),
         reference_bytes=int(case["reference_bytes"]),
         samples=[it if case["kind"] == "time" else int(it) for it in case["samples"]],
         calibration=list(case["calibration"]),

@@ -1,8 +1,7 @@
 """Where a series of figures, one per commit, steps from one level to another.
 
 Counts and bytes are exact: every other value is a step. Times are noisy: `ruptures` finds the best
-places for any number of steps, and an F test says how many the noise does not explain. It learns
-the noise from the series itself, and pays for the number of places there were to choose from.
+places for any number of steps, and an F test how many the series' own noise does not explain.
 """
 
 from collections.abc import Sequence
@@ -18,8 +17,8 @@ from scipy.stats import f as f_distribution
 from hem.arrays import Floats
 
 ALARM = 2e-3
-"""The share of series of nothing but normal noise in which a step may be found, at most. All claims
-of one preset on one machine are some three hundred series: less than one false step in them."""
+"""The share of series of nothing but normal noise in which a step may be found, at most: less than
+one false step in the three hundred series that the claims of a preset are on one machine."""
 SHORTEST = 3  # noisy values that make a level: a step is seen from the third value after it on
 SMALLEST = 0.05  # noisy steps below this ratio are not told: real or not, they matter to nobody
 FARTHEST = 4.0  # standard deviations from its surroundings at which a value is cut off
@@ -62,10 +61,9 @@ def _noisy(series: Floats) -> list[int]:
     """
     series = _hampel(series)
     most = min(MOST, len(series) // SHORTEST - 1)
-    best: list[list[int]] = [[]]  # places for 0, 1, 2 … steps: of the least squares around them
-    if most >= 1:
-        search = ruptures.KernelCPD(kernel="linear", min_size=SHORTEST).fit(series[:, None])
-        best += [search.predict(count)[:-1] for count in range(1, most + 1)]
+    search = ruptures.KernelCPD(kernel="linear", min_size=SHORTEST).fit(series[:, None])
+    # Places for 0, 1, 2 … steps: of the least squares around them.
+    best = [[], *(search.predict(count)[:-1] for count in range(1, most + 1))]
     chosen, more = 0, 1
     while more <= 2 and chosen + more < len(best):
         if _chance(series, best[chosen], best[chosen + more]) < ALARM / 2:

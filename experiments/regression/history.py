@@ -2,7 +2,7 @@
 
 import json
 from dataclasses import dataclass
-from datetime import UTC, datetime
+from datetime import datetime
 from math import inf
 from pathlib import Path
 from typing import Any
@@ -15,9 +15,7 @@ from hem.whole_files import append_whole
 
 SCHEMA = 2
 REQUIRED = {"commit": str, "started": str, "profile": str, "machine": dict, "claims": dict}
-"""What every line has, and of what type."""
-TEXTS = ("kind", "outcome", "outcome_time")
-"""What of the figures of a claim is text; all else is numbers."""
+TEXTS = ("kind", "outcome", "outcome_time")  # of the figures of a claim; all else is numbers
 Line = dict[str, Any]
 
 
@@ -86,8 +84,7 @@ def _identity(line: Line) -> tuple[str, ...]:
 def _times(line: Line) -> tuple[datetime, ...]:
     """The time of the commit, as far as it is known, and that of the run."""
     texts = line.get("committed") or line["started"], line["started"]
-    times = map(datetime.fromisoformat, texts)
-    return tuple(it if it.tzinfo else it.replace(tzinfo=UTC) for it in times)
+    return tuple(datetime.fromisoformat(it).astimezone() for it in texts)
 
 
 def _parse(content: bytes, path: Path) -> History:
