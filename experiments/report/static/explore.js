@@ -32,6 +32,7 @@
     const records = JSON.parse(figure.querySelector("script").textContent);
     const told = figure.querySelector(".told"), pointers = figure.querySelector(".pointers");
     const shapes = new Map([...figure.querySelectorAll("[data-at]")].map((it) => [it.dataset.at, it]));
+    let chosen = figure.querySelector(".chosen")?.dataset.at;
     const place = (shape) => [Number(shape.dataset.x), Number(shape.dataset.y)];
 
     function reference(start, field, target, value) {
@@ -41,10 +42,14 @@
       const way = bent(place(start), place(end));
       pointers.append(element("path", { d: way.d }), element("text", way.words, words(field)));
       end.classList.add("pointed");
-      const follow = document.createElement("button");
-      follow.textContent = `${words(target)} ${value}`;
-      follow.addEventListener("click", () => { choose(end.dataset.at); told.querySelector("button")?.focus(); });
-      return follow;
+      return chooser(end.dataset.at);
+    }
+
+    function chooser(key) { // for the keyboard as well, which then goes on from the first reference
+      const made = document.createElement("button");
+      made.textContent = words(key);
+      made.addEventListener("click", () => { choose(key); told.querySelector("button")?.focus(); });
+      return made;
     }
 
     function choose(key) {
@@ -62,9 +67,12 @@
         line.append(` · ${words(field)} → `);
         values.forEach((value, k) => line.append(k ? ", " : "", reference(start, field, target, value)));
       }
+      if (chosen && !line.querySelector("button")) line.append(" Back to ", chooser(chosen));
+      chosen = key;
       told.replaceChildren(line);
     }
 
+    for (const it of told.querySelectorAll("b")) it.replaceWith(chooser(it.dataset.record));
     for (const [key, shape] of shapes) shape.addEventListener("click", () => choose(key));
     figure.classList.add("live");
   }

@@ -230,6 +230,22 @@ def test_next_is_followed_round_a_face(chromium: Browser, chapter):
     assert chromium.errors == []
 
 
+def test_records_are_chosen_by_the_keyboard_which_no_record_loses(chromium: Browser, chapter):
+    chromium.errors.clear()
+    chromium.open(chapter)
+    chromium.run("var figures = document.querySelectorAll('figure.mesh:has(.told button)')")
+    assert chromium.run("figures.length") == len(NAMES)
+    for figure in (f"figures[{k}]" for k in range(len(NAMES))):
+        chromium.run(f"{figure}.querySelector('.told button').focus()")
+        for _ in range(4):
+            name = chromium.run("document.activeElement.textContent")
+            chromium.call("Input.dispatchKeyEvent", type="keyDown", key="Enter", text="\r")
+            chromium.call("Input.dispatchKeyEvent", type="keyUp", key="Enter")
+            assert chromium.run(f"{figure}.querySelector('.told b').textContent") == name
+            assert chromium.run(f"{figure}.contains(document.activeElement)"), name
+    assert chromium.errors == []
+
+
 def test_a_record_that_is_chosen_looks_as_it_is_drawn_without_scripts(chromium: Browser, chapter):
     chromium.open(chapter)
     drawn = "[...document.querySelectorAll('figure.mesh:has(.chosen) .pointers')].map(it => "
