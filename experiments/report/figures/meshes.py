@@ -263,7 +263,7 @@ def turnable(shown: hem.TriangleMesh | FractureScene, caption: str, up: str = "y
     """What can be turned with the mouse: HTML without anything from elsewhere.
 
     Of a mesh one sees the edges; a slider moves the pieces of a fracture apart. Arrow keys turn it,
-    too, and the wheel zooms. Some 15 bytes a face. O(n).
+    too, and the wheel, + and - zoom. Some 15 bytes a face. O(n).
     """
     colors, piece = np.full((len(shown.triangles), 3), SAND), np.zeros(len(shown.points))
     ways = np.zeros((1, 3))

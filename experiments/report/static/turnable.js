@@ -75,22 +75,26 @@
       gl.uniform1f(set("wires"), mesh.wires ? 1 : 0);
       gl.drawArrays(gl.TRIANGLES, 0, data.length / 12);
     }
+    function move(right, down, nearer = 1) {
+      around += right;
+      lifted = Math.max(-1.5, Math.min(1.5, lifted + down));
+      zoom *= nearer;
+      draw();
+    }
     canvas.onpointerdown = (event) => canvas.setPointerCapture(event.pointerId);
     canvas.onpointermove = (event) => {
-      if (!event.buttons) return;
-      around += event.movementX / 150;
-      lifted = Math.max(-1.5, Math.min(1.5, lifted + event.movementY / 150));
-      draw();
+      if (event.buttons) move(event.movementX / 150, event.movementY / 150);
     };
     canvas.onkeydown = (event) => {
-      const steps = { ArrowLeft: [-0.1, 0], ArrowRight: [0.1, 0], ArrowUp: [0, -0.1],
-        ArrowDown: [0, 0.1] };
-      const step = steps[event.key];
-      if (!step) return;
-      around += step[0]; lifted += step[1]; event.preventDefault(); draw();
+      const step = { ArrowLeft: [-0.1, 0], ArrowRight: [0.1, 0], ArrowUp: [0, -0.1],
+        ArrowDown: [0, 0.1], "+": [0, 0, 1.1], "-": [0, 0, 1 / 1.1] }[event.key];
+      if (!step || event.ctrlKey || event.metaKey) return; // these zoom the whole page
+      event.preventDefault();
+      move(...step);
     };
     canvas.addEventListener("wheel", (event) => {
-      event.preventDefault(); zoom *= Math.exp(-event.deltaY / 800); draw();
+      event.preventDefault();
+      move(0, 0, Math.exp(-event.deltaY / 800));
     }, { passive: false });
     if (slider) slider.oninput = draw;
     new ResizeObserver(draw).observe(canvas);
