@@ -40,6 +40,7 @@ for (const part of document.querySelectorAll(".advice")) {
   function show() {
     for (const name of ["vertices", "frames", "edits"]) {
       slider(name).nextElementSibling.textContent = digits(value(name));
+      slider(name).setAttribute("aria-valuetext", digits(value(name))); // its own value is a logarithm
     }
     const workload = workloads[select.value], faces = 2 * value("vertices");
     const found = structures.map((it) => [it.title, ...forecast(it, workload, faces)]);

@@ -36,6 +36,8 @@ def test_the_page_tells_what_is_predicted(
     chromium.open(page.as_uri())
     for name, value in (("vertices", vertices), ("edits", edits)):
         chromium.run(f"({SLIDE})('[name={name}]', {np.log10(value)})")
+        said = f"document.querySelector('[name={name}]').ariaValueText"
+        assert float(chromium.run(said).replace(",", "")) == value
     for place, (name, workload) in enumerate(PRESETS.items()):
         chromium.run(f"({SLIDE})('select', {place})")
         titles, times, within = (chromium.run(SHOWN.format(it)) for it in range(3))
