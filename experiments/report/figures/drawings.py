@@ -6,7 +6,7 @@ its references. Without scripts those of some records are drawn, and written bes
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import chain, pairwise
+from itertools import chain, pairwise, product
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -25,6 +25,8 @@ ASIDE, SHORTER = 8.0, 0.17  # of a half-edge: beside its edge, and cut off at ei
 DOT, HEAD = 5.5, 6.0
 BEND, CLEAR = 0.14, 7.0  # of an arrow between records: how far aside, and off either number
 
+FACES = "face", "triangle"  # what records of faces are called
+ALONG = 0.5, 0.35, 0.65, 0.2, 0.8  # an arrow is where its number may stand, the best first
 CENTER, BESIDE = 0, 1  # the two inner vertices of the mesh that is drawn
 ABOVE, BELOW = 4, 8  # the other corners of the faces at the edge between them
 
@@ -44,6 +46,12 @@ class Pointer(NamedTuple):
     words: str
     label: Array
     anchor: str
+
+    @property
+    def middle(self) -> Array:
+        """That of its words."""
+        aside = {"start": 3, "middle": 0, "end": -3}[self.anchor]
+        return np.add(self.label, (aside * len(self.words), 0))
 
 
 @dataclass(frozen=True)
@@ -155,11 +163,22 @@ def walk(structure: type[Structure], query: str) -> Html:
     (entries, shapes), stops = drawn_records(s), path(s, query, CENTER)
     places = [shapes[it.key].at for it in stops if it.key in shapes]
     middle, ways = shapes["vertex", CENTER].at, enumerate(pairwise(places), start=1)
-    arrows = [bent(a, b, str(number), 0.5, middle) for number, (a, b) in ways]
-    faces = {key: "found" for key in shapes if key[0] in ("face", "triangle") and key[1] in found}
+    arrows, taken = [], [it.label for (kind, _), it in shapes.items() if kind in FACES]
+    for number, (a, b) in ways:
+        sides = product(ALONG, (middle, a + b - middle))
+        tried = [bent(a, b, str(number), along, to) for along, to in sides]
+        arrows.append(max(tried, key=lambda it: _apart(it.middle, taken)))
+        taken.append(arrows[-1].middle)
+    faces = {key: "found" for key in shapes if key[0] in FACES and key[1] in found}
     drawing = Drawing(shapes, entries, arrows, faces, [])
     caption = f"{structure.title}: {query.replace('_', ' → ')}"
     return page("mesh.html.j2", drawing=drawing, caption=caption, stops=stops, found=found)
+
+
+def _apart(number: Array, others: Sequence[Array]) -> float:
+    """How far a number lies off others: 1 where all of them can be read."""
+    off = abs(np.array(others) - number) / (12, 9)
+    return float(off.max(axis=1).min(initial=1))
 
 
 def _changes(before: Mapping[Key, Any], after: Mapping[Key, Any]) -> dict[Key, str]:

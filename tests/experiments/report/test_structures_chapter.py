@@ -3,6 +3,7 @@
 import ast
 import inspect
 import re
+from itertools import combinations
 
 import numpy as np
 import pytest
@@ -83,6 +84,18 @@ def test_no_step_of_a_way_is_written_over_a_face_that_is_found(name):
         for _, face_x, face_y in NUMBER.findall("".join(found)):
             off = float(x) + to_middle - float(face_x), float(y) - float(face_y)
             assert abs(off[0]) > 6 or abs(off[1]) > 6
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_no_step_of_a_way_is_written_over_another(name):
+    steps = drawings.walk(REGISTRY[name], "vertex_faces").partition('class="pointers"')[2]
+    written = re.findall(r'text-anchor:(\w+)" x="([\d.]+)" y="([\d.]+)">(\d+)<', steps)
+    width = [5 * len(number) for *_, number in written]  # bold digits of 8.5 pixels, at least
+    begins = {"start": 0.0, "middle": 0.5, "end": 1.0}
+    left = [float(x) - begins[side] * w for (side, x, *_), w in zip(written, width, strict=True)]
+    boxes = [(x, float(it[2]), w) for x, it, w in zip(left, written, width, strict=True)]
+    for (x, y, w), (x2, y2, w2) in combinations(boxes, 2):
+        assert x + w < x2 or x2 + w2 < x or abs(y - y2) > 7
 
 
 @pytest.mark.parametrize("name", NAMES)
