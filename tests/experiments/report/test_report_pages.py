@@ -91,6 +91,15 @@ def test_no_page_is_wider_than_a_phone(chromium, report, width):
         assert chromium.run(drawn) == wide, f"lines of a drawing in characters break: {name}"
 
 
+def test_a_table_that_scrolls_is_reached_by_the_keyboard(chromium, report):
+    chromium.size(390)
+    for name in PAGES:
+        chromium.open((report / f"{name}.html").as_uri())
+        wide = "it => it.scrollWidth > it.clientWidth + 1 && it.tabIndex < 0"
+        unreached = f"[...document.querySelectorAll('.wide')].filter({wide})"
+        assert chromium.run(f"{unreached}.map(it => it.textContent)") == [], name
+
+
 def test_every_link_leads_to_a_file_and_a_place_that_exist(chromium, report):
     chromium.size(1300)
     ids, links = {}, set()
@@ -162,6 +171,11 @@ def test_outcomes_are_told_apart_by_the_filter(front):
         assert front.run(f"{SHOWN}.every(it => it.dataset.outcome === '{outcome}')")
         assert front.run(f"{SHOWN}.length") > 9
         press(front, "outcome", outcome)
+
+
+def test_the_mark_of_a_claim_stands_on_one_line(front):
+    heights = "[...document.querySelectorAll('.entry .mark')].map(it => it.offsetHeight)"
+    assert len(set(front.run(heights))) == 1
 
 
 def test_search_finds_the_claims_that_have_all_the_words(front):
