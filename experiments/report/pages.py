@@ -78,7 +78,6 @@ def _templates() -> Environment:
     environment.filters |= {
         "digits": written.digits, "spelled": written.spelled, "time": written.duration,
         "two_digits": two_digits, "whole": written.count,
-        "where": lambda source: re.split("[:;]|, (?!abstract|table)", source)[0],
     }  # fmt: skip
     return environment
 

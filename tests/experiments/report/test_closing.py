@@ -67,6 +67,12 @@ def test_a_sentence_on_what_cannot_be_told_is_neither_borne_out_nor_denied(claim
     )
 
 
+def test_what_a_sentence_rests_on_is_told_apart_by_the_words_of_its_links(claims) -> None:
+    keys = [it.claim.key for it in claims if it.claim.table == "sentences"]
+    links = re.findall(r"<a [^>]*>([^<]+)</a>", pages.closing(claims, {"It is so.": keys}))
+    assert len(set(links)) == len(keys) > 30
+
+
 def test_a_sentence_tells_what_was_found(claims) -> None:
     text = pages.closing(claims, {"It costs {1}, and not {0}.": [HOLDS, f"not {DENIED}"]})
     assert "It costs O(n_t), and not O(1)." in text
