@@ -107,9 +107,9 @@ def scaling(run: Run, axis: Axis, subjects: Iterable[str] = QUERIES) -> Plot:
     label = style.axis_label(axis)
     if axis is Axis.TIME_FACES and titles.keys() <= QUERIES.keys():
         axis, shape["also"] = Axis.RANDOM_FACES, partial(_draw_order_and_latency, run)
-        label = style.axis_label(axis)
+        label = f"time, {axis.unit}"
     elif axis is Axis.TIME_FACES:  # of operations, which no order of queries describes
-        label = f"time, of elements far apart, {axis.unit}"
+        label = f"time at elements far apart, {axis.unit}"
     what = f"{axis.label} by {axis.variable}"
     return draw(_costs(run, axis, titles), titles, axis.variable, what, label, **shape)
 
@@ -117,7 +117,8 @@ def scaling(run: Run, axis: Axis, subjects: Iterable[str] = QUERIES) -> Plot:
 def overview(run: Run) -> Plot:
     """The study in one picture: the faces around a vertex, by work and by time."""
     subject, shown = "vertex_faces", (Axis.WORK_FACES, Axis.RANDOM_FACES)
-    titles = {axis.key: f"Vertex → Faces: {style.axis_label(axis)}" for axis in shown}
+    kinds = Axis.WORK_FACES.label, "time, ns"
+    titles = {axis.key: f"Vertex → Faces: {it}" for axis, it in zip(shown, kinds, strict=True)}
     costs = pd.concat(_costs(run, axis, [subject]).assign(axis=axis.key) for axis in shown)
 
     def also(axes: Axes, key: str) -> None:

@@ -210,6 +210,15 @@ def test_a_mesh_begins_below_its_title():
         assert 0 < points[:, 0].min() - axes.bbox.x0 < 0.15 * axes.bbox.width
 
 
+def test_an_axis_of_lines_in_both_orders_names_neither(base_run):
+    overview, scaling = growth.overview(base_run), growth.scaling(base_run, Axis.TIME_FACES)
+    for axes in (overview.axes[1], scaling.axes[0]):
+        assert sum(line.get_label().startswith("_") for line in axes.lines) > 3  # thin, in order
+        told = f"{axes.get_title('left')} {axes.get_ylabel()}"
+        assert "time, ns" in told
+        assert "order" not in told
+
+
 def test_an_axis_ends_with_what_was_measured(base_run):
     (axes,) = growth.rendering(base_run).axes
     largest = max(line.get_xdata()[-1] for line in axes.lines)
