@@ -149,7 +149,7 @@ def update(
     fresh = {regression.COUNTERS: counters} | of_run
     changed = {part: it for part, it in fresh.items() if _print_difference(part, it, baseline)}
     if not changed:
-        console.print(f"{baseline} says just this already.")
+        console.print(f"{baseline} says just this already.", markup=False)
         return
     if regression.RUN in changed:
         for key, words in DOUBTS.items():

@@ -96,7 +96,8 @@ def fracture(
             impact=impact, direction=direction, seed=seed, structure=structure, up=up or axis,
         )
         if method is None and usual is Method.surface:
-            console.print(f"{model} is open: its surface is broken (or a body of it, with --wrap)")
+            told = f"{model} is open: its surface is broken (or a body of it, with --wrap)"
+            console.print(told, markup=False)
         asked = {"scale": scale, "wrap": wrap, "repair": repair, "structure": structure}
         formats = format or [Format.glb]
         files = _write(broken, model, asked, folder, formats, seconds, size, animation)
@@ -105,7 +106,8 @@ def fracture(
         raise typer.Exit(130) from None
     _print_summary(broken, folder, files)
     if older := sorted({it.name for it in folder.iterdir()} - set(files)):
-        errors.print(f"In {folder} from before, and not of this fracture: {', '.join(older)}")
+        told = f"In {folder} from before, and not of this fracture: {', '.join(older)}"
+        errors.print(told, markup=False)
 # fmt: on
 
 

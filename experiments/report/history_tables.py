@@ -59,7 +59,7 @@ def show(
         last_words.append("Times are of one machine each; --machine shows one.")
     if len({run["profile"] for run in trends.runs}) > 1:
         last_words.append("Different presets are not compared; --preset shows one.")
-    console.print(*last_words, sep="\n", style="dim", highlight=False)
+    console.print(*last_words, sep="\n", style="dim", markup=False, highlight=False)
 
 
 def _heads(trends: Trends) -> pd.DataFrame:

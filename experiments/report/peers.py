@@ -12,7 +12,6 @@ from typing import Any
 import numpy as np
 import pandas as pd
 from rich.console import Console
-from rich.markup import escape as escaped
 
 from experiments.claims import CASE_ERROR, Curve, Outcome, curves, load_claims
 from experiments.harness import OPERATIONS, QUERIES_TABLE
@@ -224,8 +223,8 @@ def show_peers(folder: Path | None, console: Console) -> None:
     """Print all that was measured of other libraries."""
     peers = _of_folder(folder)
     meta = peers.run.meta
-    name, preset, day = escaped(peers.run.folder.name), meta.get("preset"), meta["started"][:10]
-    console.print(f"[bold]{name}[/], preset {preset}, measured on {day}")
+    of = f"{peers.run.folder.name}, preset {meta.get('preset')}"
+    console.print(f"{of}, measured on {meta['started'][:10]}", markup=False)
     shown = {"Other libraries": peers.overview(), **{it: peers.compared(it) for it in GROUPS}}
     for title, rows in {**shown, "Bad input": peers.trials()}.items():
         if len(rows) > 1:

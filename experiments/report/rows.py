@@ -5,7 +5,6 @@ from typing import Any
 
 from rich import box
 from rich.console import Console
-from rich.markup import escape
 from rich.table import Table
 from rich.text import Text
 
@@ -28,7 +27,7 @@ def show_rows(
         while stop < len(widths) and widths[0] + sum(widths[start : stop + 1]) <= console.width:
             stop += 1
         whole = widths[0] + widths[start] <= console.width  # else lines are broken, and not cut
-        table = Table(title=escape(title) or None, title_justify="left", box=box.SIMPLE_HEAD)
+        table = Table(box=box.SIMPLE_HEAD)
         table.pad_edge, table.padding = False, (0, 1, 0, 0)
         heads, *body = ([row[0], *row[start:stop]] for row in every)
         for head in heads:
@@ -39,6 +38,8 @@ def show_rows(
         for row in body:
             if any(row[1:]):
                 table.add_row(*(_colored(cell, colors or {}) for cell in row))
+        if title:  # as it is, and not broken where a narrow table ends
+            console.print(title, style="table.title", markup=False, highlight=False)
         console.print(table)
         start = stop
 

@@ -91,6 +91,15 @@ def test_a_run_is_added_once_and_is_there_then(base_folder, base_run, tmp_path):
     assert base_run.meta["commit"][:7] in output_of("history", "show", "--file", path)
 
 
+def test_brackets_in_a_path_and_in_the_name_of_a_processor_are_told_as_they_are(base, tmp_path):
+    path, made = tmp_path / "[bold] [" / "h].jsonl", line(base, 1)
+    made["machine"]["cpu"] = "Fast [/x] One"
+    append_run(made, path)
+    output = output_of("history", "show", "--file", str(path))
+    assert f"Runs in {path}: 1 " in output
+    assert "cores of Fast [/x] One." in output
+
+
 def test_damage_is_told_of_beside_what_is_whole(base, tmp_path):
     path = tmp_path / "history.jsonl"
     append_run(line(base, 1), path)
