@@ -116,8 +116,8 @@ def _line(raw: bytes) -> Line:
     except (KeyError, TypeError, ValueError, AttributeError) as error:
         raise ValueError(f"is no run: {type(error).__name__} {error}") from None
     for name, claim in line["claims"].items():
-        if not isinstance(claim, dict):
-            raise ValueError("is no run: not all of its claims have figures")
+        if not isinstance(claim, dict) or name.count("/") != 2:
+            raise ValueError("is no run: not all of its claims have a whole name and figures")
         for key, value in claim.items():
             if not _is_figure(key, value):
                 raise ValueError(f"is no run: {key} of {name} is {value!r:.40}")

@@ -9,7 +9,7 @@ from dataclasses import replace
 import pytest
 
 from experiments.claims import Outcome
-from experiments.regression import append_run, read_history, record_run
+from experiments.regression import Trends, append_run, read_history, record_run
 from experiments.regression.history import commit_date
 from experiments.runs import ResultsError, load, machine, machine_id, read_meta, write_meta
 from tests.experiments.histories import CLAIM, line, lines
@@ -183,6 +183,19 @@ def test_a_line_whose_figures_are_none_is_named_and_skipped(base, tmp_path, odd)
     assert kept.runs == [line(base, 2)]
     (fault,) = kept.faults
     assert f"line 2 is no run: {next(iter(odd))} of {CLAIM} is " in fault
+
+
+@pytest.mark.parametrize("name", ["half_edge", "queries/half_edge/vertex_faces/more"])
+def test_a_line_with_a_claim_of_another_name_is_named_and_skipped(base, tmp_path, name):
+    path, made = tmp_path / "history.jsonl", line(base, 1)
+    made["claims"][name] = made["claims"][CLAIM]
+    path.write_text(json.dumps(made) + "\n")
+    append_run(line(base, 2), path)
+    kept = read_history(path)
+    assert kept.runs == [line(base, 2)]
+    assert len(kept.faults) == 1
+    with pytest.raises(ValueError, match="no claim 'nothing'; say one of"):
+        Trends(kept).claims("nothing")
 
 
 def test_a_line_of_a_machine_without_a_name_is_named_and_skipped(base, tmp_path):
