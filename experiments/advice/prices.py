@@ -197,7 +197,7 @@ class Forecast:
 
 
 def predict(prices: Prices, workload: Workload, structure: str, faces: float) -> Forecast:
-    """What a workload takes on a structure and a mesh of so many faces."""
+    """What a workload takes on a structure and a mesh of so many faces; ValueError for no end."""
     more = sum(row.gain * row.count(faces, workload.frames) for row in workload.rows)
     middle = max(8.0, faces / 8, faces + more / 2)  # faces half-way through the edits
     found: dict[str, list[Price]] = {}
@@ -218,7 +218,8 @@ def predict(prices: Prices, workload: Workload, structure: str, faces: float) ->
     if own := _own(prices, workload, faces):
         found[OWN] = [Price(own, 0.0)]
     parts = {what: sum(it.seconds for it in costs) for what, costs in found.items()}
-    total = sum(parts.values())
+    if not (total := sum(parts.values())) < np.inf:
+        raise ValueError(f"{workload.title!r} takes longer than a number tells: ask for less")
     shares = [it.seconds * it.spread / total for costs in found.values() for it in costs if total]
     reach = np.exp(SIGMAS * np.hypot(UNMODELED, np.linalg.norm(shares)))
     low, high = float(total / reach), float(total * reach)

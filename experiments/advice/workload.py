@@ -43,7 +43,7 @@ class Row:
 
     def __post_init__(self) -> None:
         allowed: dict[str, Any] = {
-            "what": KNOWN, "each": PER_FACE, "per": (BUILD, FRAME), "caller": (COMPILED, PYTHON)
+            "what": KNOWN, "each": [*PER_FACE], "per": (BUILD, FRAME), "caller": (COMPILED, PYTHON)
         }  # fmt: skip
         for name, known in allowed.items():
             if getattr(self, name) not in known:

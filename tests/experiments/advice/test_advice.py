@@ -307,6 +307,7 @@ def measured(structure: str, vertices: object) -> str:
         (f'builds = "x"\n{ASKING}', "builds is a number from 0 on, not 'x'"),
         (f"measured = 3\n{ASKING}", r"\[measured\] is a table; there are structure"),
         (f"{ASKING}[measured]\nseconds = 1\n", r"\[measured\]: 'structure' is missing and 've"),
+        (f'{ASKING}each = ["vertex"]\n', r"row 1: each is \['vertex'\]; there are '', 'vertex'"),
         (measured("nothing", 9), r"\[measured\]: no structure is called 'nothing'; there are"),
         (measured("indexed", '"x"'), r"\[measured\]: vertices is a number from 0 on, not 'x'"),
         (measured("half_edge_objects", 9), r"no structure is called 'half_edge_objects'; there"),
@@ -376,6 +377,14 @@ def test_a_folder_with_a_baseline_of_counters_alone_takes_prices_from_the_run_of
     monkeypatch.chdir(tmp_path)
     assert told("torus:1000") == usual
     assert usual[0] == 0
+
+
+def test_a_workload_that_never_ends_is_refused(tmp_path) -> None:
+    path = tmp_path / "mine.toml"
+    path.write_text(f'frames = 1e300\n{ASKING.replace("= 1", "= 1e300")}per = "frame"\n')
+    assert told("torus:1000", "--workload", str(path)) == (
+        1, "hem: 'mine' takes longer than a number tells: ask for less\n"
+    )  # fmt: skip
 
 
 def test_structures_with_the_same_reason_are_told_together(tmp_path) -> None:
