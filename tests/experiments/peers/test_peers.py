@@ -1,6 +1,7 @@
 """Laws of measuring other libraries: each answer is checked first, and nobody stops the others."""
 
 from dataclasses import replace
+from importlib import import_module
 
 import numpy as np
 import pytest
@@ -20,7 +21,7 @@ from experiments.peers import (
     trials,
 )
 from experiments.runs import experiments, study
-from hem.contract import QUERIES
+from hem.contract import OPERATIONS, QUERIES
 from tests.experiments.peers.slow_library import ABSENT, LIAR, LIBRARY
 from tests.extent import exhaustive
 
@@ -61,6 +62,12 @@ def test_every_operation_and_algorithm_leaves_the_faces_it_should(name):
     peer = PEERS[name]
     for subject in {*peer.operations, *peer.batches, *peer.algorithms}:
         assert all(it.samples for it in measured(name, subject=subject))
+
+
+@pytest.mark.parametrize("name", [it for it in installed() if not PEERS[it].told_version])
+def test_an_operation_that_a_library_calls_as_we_do_is_measured(name):
+    module = import_module(PEERS[name].module or PEERS[name].distribution)
+    assert {it for it in OPERATIONS if hasattr(module, it)} <= {*PEERS[name].operations}
 
 
 def test_a_library_is_asked_at_hubs_where_the_valence_varies(library):
