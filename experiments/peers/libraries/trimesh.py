@@ -19,7 +19,7 @@ PEER = Peer(
     site="https://trimesh.org/",
     manual="Properties of the whole mesh, computed when they are first asked for and kept until it "
     "changes; one element is then a row. A mesh changes as a whole.",
-    more="Loading some thirty formats, scenes, ray casts, Booleans, voxels, mass and collision, "
+    more="Loading a dozen formats, scenes, ray casts, Booleans, voxels, mass and collision, "
     "slicing, sampling: a tool box around a mesh that stays as it is.",
     build=lambda points, triangles: trimesh.Trimesh(points, triangles, process=False),
     faces=lambda m: len(m.faces),
