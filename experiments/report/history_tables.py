@@ -53,8 +53,8 @@ def show(
             show_rows(console, rows, title, numbers)
     machines = {run["machine"]["id"]: run["machine"] for run in trends.runs}
     told = (f"{key}: {it.get('cores')} cores of {it.get('cpu')}" for key, it in machines.items())
-    last_words = [LEGEND, LEGEND_RUNS if claim is None else LEGEND_CLAIMS]
-    last_words += [f"{abbreviations(NAMED)}.", f"Machine {'; '.join(told)}."]
+    legend = LEGEND_RUNS if claim is None else LEGEND_CLAIMS
+    last_words = [LEGEND, legend, f"{abbreviations(NAMED)}.", f"Machine {'; '.join(told)}."]
     if len(machines) > 1:
         last_words.append("Times are of one machine each; --machine shows one.")
     if len({run["profile"] for run in trends.runs}) > 1:
@@ -78,10 +78,9 @@ def short_claim(name: str) -> str:
 def runs_frame(trends: Trends) -> pd.DataFrame:
     """A row per run: how many claims have which outcome, and how much changed."""
     runs = _heads(trends).assign(measured=[run["started"][:10] for run in trends.runs])
-    for what, short in SHORT.items():
-        seen = trends.verdicts[trends.verdicts["measure"] == what]
-        counts = seen.groupby("run")["outcome"].agg(_count_outcomes)
-        runs[short] = counts.reindex(runs.index, fill_value="")
+    counts = trends.verdicts.groupby(["run", "measure"])["outcome"].agg(_count_outcomes).unstack()
+    counts = counts.reindex(runs.index, columns=list(SHORT)).fillna("")
+    runs = runs.join(counts.rename(columns=SHORT))
     changes, kinds = trends.changes, [*SHORT, "figures"]
     kind = changes["measure"].where(changes["measure"].isin(SHORT), kinds[-1])
     counted = pd.crosstab(changes["run"], kind).reindex(runs.index, columns=kinds, fill_value=0)
@@ -114,14 +113,13 @@ def _mark(outcome: str) -> str:
 
 def _by_run(trends: Trends, name: str, shown: Collection[int], slopes: bool) -> pd.DataFrame:
     """A row per run of one claim, a column per figure."""
-    figures = trends.figures.query("claim == @name")
-    figures = figures[figures["measure"].map(lambda it: MEASURES[it].slope == slopes).astype(bool)]
+    titles = {key: measure.title for key, measure in MEASURES.items() if measure.slope == slopes}
+    figures = trends.figures.query("claim == @name and measure in @titles")
     cells = figures.assign(text=[_figure(row) for row in figures.itertuples()])
     table = cells.pivot_table("text", "run", "measure", aggfunc="first", sort=False)
-    table = table.rename(columns={key: measure.title for key, measure in MEASURES.items()})
     measured = [k for k in shown if name in trends.runs[k]["claims"]]
     verdicts = _verdicts(trends, [name]).set_axis(["verdict"], axis=1)
-    return _heads(trends).loc[measured].join([verdicts, table]).fillna("–")
+    return _heads(trends).loc[measured].join([verdicts, table.rename(columns=titles)]).fillna("–")
 
 
 def _verdicts(trends: Trends, names: list[str]) -> pd.DataFrame:
@@ -139,18 +137,17 @@ def _figure(row: Any) -> str:
     if measure.slope and not measure.exact:
         text += f" [{two_digits(row.low)}, {two_digits(row.high)}]"
     text = text if row.comparable else f"({text})"
-    if pd.isna(row.before):
-        return text
-    change = row.after - row.before
-    relative = row.before and not measure.slope
-    step = f"{change / row.before:+.1%}" if relative else f"{change:+.2f}"
-    return f"{text} {'▲' if change > 0 else '▼'}{step}"
+    if pd.notna(change := row.after - row.before):
+        relative = row.before and not measure.slope
+        step = f"{change / row.before:+.1%}" if relative else f"{change:+.2f}"
+        text += f" {'▲' if change > 0 else '▼'}{step}"
+    return text
 
 
 def _at_a_glance(trends: Trends, names: list[str]) -> pd.DataFrame:
     """A row per claim: where its verdict and figures are now, and when they changed last."""
-    figures, verdicts, changes = trends.figures, _verdicts(trends, names), trends.changes
-    newest = figures.groupby(["claim", "measure"])["value"].last().unstack()
+    verdicts, changes = _verdicts(trends, names), trends.changes
+    newest = trends.figures.groupby(["claim", "measure"])["value"].last().unstack()
     newest = newest.reindex(index=names, columns=list(MEASURES))
     changed = changes[changes["measure"] != OUTCOMES["outcome_time"]].groupby("claim")["run"].last()
     shown = {"work or bytes": newest["bytes"].fillna(newest["work"]), "time": newest["time"]}
