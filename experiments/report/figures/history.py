@@ -76,10 +76,9 @@ def _draw_line(axes: Axes, trends: Trends, line: pd.DataFrame) -> None:
     last = line.iloc[-1]
     look, sloped = STYLES[last["structure"]], last["measure"] == SLOPE
     width = SPREAD * min(len(trends.runs), 10) if sloped else 0.0
-    part = NAMES.index(last["structure"]) / max(len(NAMES) - 1, 1)
+    part = NAMES.index(last["structure"]) / (len(NAMES) - 1)
     x, y = line["run"].to_numpy() + width * (part - 0.5), line["value"].to_numpy(float)
-    other = {} if last["here"] else {"alpha": 0.5}
-    axes.plot(x, y, **(look | other | {"label": "_"}))
+    axes.plot(x, y, **(look | {"label": "_", "alpha": 1.0 if last["here"] else 0.5}))
     if sloped:
         axes.vlines(x, line["low"], line["high"], color=look["color"], linewidth=1, alpha=0.6)
     stepped = line["before"].notna().to_numpy()
@@ -87,8 +86,7 @@ def _draw_line(axes: Axes, trends: Trends, line: pd.DataFrame) -> None:
     changed = line["run"].isin(_changed(trends, [last["claim"]])["run"]).to_numpy()
     _mark(axes, x[changed], y[changed], "verdict", look["color"], 10)
     if last["here"] and (sloped or y[-1] > 0):
-        end: Any = last["run"] + width / 2, y[-1]
-        axes.plot(*end, label=look["label"], color=look["color"])
+        axes.plot(last["run"] + width / 2, y[-1], label=look["label"], color=look["color"])
 
 
 def _changed(trends: Trends, claims: Iterable[str]) -> pd.DataFrame:
@@ -125,9 +123,9 @@ def departures(trends: Trends) -> Plot:
     with styled():
         titles = [REGISTRY[it].title for it in NAMES]
         figure, panels = grid(titles, (11 / 3, 3.5), 3, Plot, sharex=True, sharey=True)
+        norm = TwoSlopeNorm(0.0, ticks[0], ticks[-1])
         for axes, structure in zip(panels, NAMES, strict=True):
             image = _departures(axes, trends, rows[rows["structure"] == structure])
-            norm = TwoSlopeNorm(0.0, ticks[0], ticks[-1])
             drawn = axes.imshow(image, cmap="RdBu_r", norm=norm, aspect="auto")
         bar = figure.colorbar(drawn, ax=panels, shrink=0.5, label=PANELS["time"])
         bar.set_ticks(ticks.tolist(), labels=names)
