@@ -68,10 +68,9 @@ def open_run() -> Session:
 
     show_figures()
     _go_on_in_jupyter()
-    if _current is None:
-        share(read_session(os.environ.get(RUN_VARIABLE) or _newest_run()))
-    assert _current is not None
-    return _current
+    session = _current or read_session(os.environ.get(RUN_VARIABLE) or _newest_run())
+    share(session)
+    return session
 
 
 def _go_on_in_jupyter() -> None:

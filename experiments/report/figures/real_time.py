@@ -18,10 +18,8 @@ from experiments.report.tables import count, duration
 from experiments.runs import Run
 from structures import NAMES, REGISTRY
 
-LABEL = "share of edits that take longer"
 PER_VERTEX = 12 + 12 + 8
 """Bytes of a position, a normal and a texture coordinate."""
-MOST_OF_16_BITS = 1 << 16
 FRAME = 1 / 60
 """Seconds between two frames, which a monitor shows in 16.7 ms."""
 WAYS = {
@@ -41,11 +39,12 @@ def waits(run: Run) -> Plot:
         figure, every = style.panels(list(titles.values()), (4.6, 3.2), 2, sharex=True, sharey=True)
         for axes, order in zip(every, titles, strict=True):
             axes.axvline(1e6 * FRAME, color=GRAY, linewidth=1)
-            axes.set(xlabel="time of an edit, µs", ylabel="" if axes is every[1] else LABEL)
+            axes.set_xlabel("time of an edit, µs")
             for case in cases[cases["order"] == order].to_dict("records"):
                 slower = np.arange(len(case["samples"]), 0, -1) / len(case["samples"])
                 look = {**STYLES[case["structure"]], "marker": ""}
                 axes.step(1e6 * np.sort(case["samples"]), slower, where="pre", **look)
+        every[0].set_ylabel("share of edits that take longer")
         every[0].text(1e6 * FRAME, 1, " a frame", color=GRAY, va="top", fontsize=7)
         figure.legend(*every[0].get_legend_handles_labels(), loc="outside right upper", fontsize=7)
     return figure
@@ -139,7 +138,7 @@ def weights(run: Run) -> Html:
     rows: list[Any] = []
     every: Any = table.T.items()
     for (family, vertices, faces), sizes in every:
-        drawn = vertices * PER_VERTEX + faces * 3 * (2 if vertices <= MOST_OF_16_BITS else 4)
+        drawn = vertices * PER_VERTEX + faces * 3 * (2 if vertices <= 1 << 16 else 4)
         beside = 12 * (vertices + faces)
         megabytes = np.array([drawn, beside, *(drawn + beside + sizes)]) / 1e6
         rows.append((family, vertices, faces, *megabytes))
