@@ -20,10 +20,6 @@ CLAIMS = "claims"  # the folder beside the pages that holds the claims' figures 
 class MissingError(ValueError):
     """What a cell would show was not measured, or cannot be shown here; the page says so."""
 
-    def _render_traceback_(self) -> list[str]:
-        """What a notebook shows of it."""
-        return [str(self)]
-
 
 LACKING = MissingError, NotInstalledError
 """What a page says in place of what it would show."""
@@ -74,10 +70,12 @@ def open_run() -> Session:
 
 
 def _go_on_in_jupyter() -> None:
-    """Have the cells below one that lacks a measurement run, as they do for a page."""
+    """Have a cell that lacks something say just so, and those below it run, as for a page."""
     from IPython.core.getipython import get_ipython
 
     shell: Any = get_ipython()
+    if shell:
+        shell.set_custom_exc(LACKING, lambda shell, kind, error, *_, **__: print(error))
     if hasattr(shell, "kernel") and _pass_over not in shell.events.callbacks["post_run_cell"]:
         shell.events.register("post_run_cell", _pass_over)
 
