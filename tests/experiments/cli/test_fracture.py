@@ -101,9 +101,10 @@ def test_a_sphere_breaks_into_all_that_is_promised(tmp_path):
     ("arguments", "method"),
     [
         (["plate"], "surface"),
-        (
+        pytest.param(
             ["plate:100", "--structure", "plankton", "--direction", "0,0,-1", "--scale", "2"],
             "surface",
+            marks=exhaustive,
         ),
         (["sphere:162", "--method", "tetra", "--impact", "0,1,0"], "tetra"),
         pytest.param(["terrain:100", "--wrap"], "voronoi", marks=exhaustive),
