@@ -19,7 +19,7 @@ FEWEST_HUBS = 64  # in a mesh whose valence is varied; fewer are not worth timin
 SINGLE_FACES = 50
 SCANNED_FACES = 5  # how many are operated on one by one where each takes a scan of the mesh
 
-Ending = Callable[[], Any]
+Ending = Callable[[], hem.RenderMesh | None]
 RENDERED = EACH, TOGETHER, ANEW = "rendered", "in a transaction", "render mesh built anew"
 """Ways to keep a render mesh up to date, by the name of the order in a case."""
 
@@ -54,16 +54,22 @@ def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
 
 
 def _follow(order: str, s: Structure) -> Ending:
-    """Have a render mesh follow what is done, in some orders -> how that ends."""
-    if order == EACH:
-        hem.RenderMesh(s)
-    elif order == ANEW:
+    """Have a render mesh follow what is done, in some orders -> how that ends, which gives it."""
+    if order == ANEW:
         s.subscribe(lambda edit: hem.RenderMesh(s).close())
-    elif order == TOGETHER:
-        transaction = hem.RenderMesh(s).transaction()
-        transaction.__enter__()
-        return lambda: transaction.__exit__(None, None, None)
-    return lambda: None
+    if order not in (EACH, TOGETHER):
+        return lambda: None
+    render = hem.RenderMesh(s)
+    if order == EACH:
+        return lambda: render
+    transaction = render.transaction()
+    transaction.__enter__()
+
+    def commit() -> hem.RenderMesh:
+        transaction.__exit__(None, None, None)
+        return render
+
+    return commit
 
 
 def _time_one_by_one(case: Case, preset: Preset, timer: Timer) -> dict[str, Any]:
@@ -74,19 +80,22 @@ def _time_one_by_one(case: Case, preset: Preset, timer: Timer) -> dict[str, Any]
     given = 3 if operation == "add_face" else 1
     point = ((0.0, 0.0, 0.0),) if operation.startswith("split") else ()
 
-    def fresh() -> tuple[Any, list[list[int]], Ending]:
+    def fresh() -> tuple[Structure, Any, list[list[int]], Ending]:
         copy = s.copy()
         copy.reserve(2 * SINGLE_FACES)
         rows = harness.operation_arguments(copy, operation, np.array(faces))[:, :given].tolist()
         end = _follow(order, copy)
         copy.split_face(first, (0, 0, 0))  # makes room, here and in the render mesh
-        return getattr(copy, operation), rows, end
+        return copy, getattr(copy, operation), rows, end
 
-    def operate(method: Callable[..., Any], rows: list[list[int]], end: Ending) -> None:
+    def operate(_: Structure, method: Any, rows: list[list[int]], end: Ending) -> Any:
         for row in rows:
             method(*row, *point)
-        end()
+        return end()
 
+    trial = fresh()
+    harness.validate_operated(trial[0], case, operate(*trial))
+    del trial  # which would take memory while others are timed
     return timer(operate, setup=fresh, rounds=preset.rounds, per=done).fields
 
 

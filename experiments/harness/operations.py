@@ -156,9 +156,19 @@ class OperationBatch:
         return ()
 
 
-def validate_operated(operated: Structure, case: Case) -> None:
-    """Validate what operations made, by its records and where that is quick by its triangles."""
+def validate_operated(
+    operated: Structure, case: Case, render: hem.RenderMesh | None = None
+) -> None:
+    """Validate what operations made, by its records and where that is quick by its triangles.
+
+    ``render``: one that followed, to be compared with one made anew.
+    """
     operated.validate()
+    if render:
+        anew = hem.RenderMesh(operated)
+        pairs = (render.points, anew.points), (render.indices, anew.indices)
+        if not all(np.array_equal(*it) for it in pairs):
+            raise AssertionError(f"{case.id} on {case.structure}: the render mesh is not in step")
     if operated.n_faces <= SMALL:
         try:
             hem.require_sound(case.mesh())

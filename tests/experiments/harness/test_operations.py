@@ -15,6 +15,8 @@ from experiments.harness.operations import operation_arguments as arguments
 from experiments.harness.operations import operation_faces as faces_of
 from experiments.harness.reference import copies, copies_of
 from experiments.harness.timer import Timed
+from experiments.runs import experiments
+from structures import REGISTRY
 from tests.extent import OF_EACH_KIND, waiting_for
 
 
@@ -228,3 +230,33 @@ def test_as_many_impacts_are_counted_as_were_made(name):
         before = s.copy()
         workload.compiled(s)
         assert UNITS[workload.unit](before, s) == (s.n_vertices - before.n_vertices) / 2
+
+
+@pytest.mark.parametrize(
+    ("experiment", "subject", "order"),
+    [
+        *(("operations", "split_face", it) for it in ("one by one", "rendered")),
+        *(
+            ("operations", "split_face", it)
+            for it in ("in a transaction", "render mesh built anew")
+        ),
+        ("naming", "split_by_index", "timed"),
+        ("real_time", "compact", None),
+    ],
+)
+def test_what_breaks_a_mesh_is_never_timed(monkeypatch, experiment, subject, order):
+    kind = REGISTRY[BASE]
+    method = "compact" if subject == "compact" else "split_face"
+    sound = getattr(kind, method)
+
+    def broken(s, *given):
+        told = sound(s, *given)
+        s.records.triangle[0] = s.records.triangle[0, 0]  # a corner thrice
+        return told
+
+    monkeypatch.setattr(kind, method, broken)
+    its = experiments()[f"bench_{experiment}"]
+    every = its.cases(PRESETS["smoke"], BASE)
+    case = next(it for it in every if (it.subject, it.order) == (subject, order))
+    with pytest.raises(hem.MeshError):
+        its.measure(case, PRESETS["smoke"], time_rounds)
