@@ -213,7 +213,9 @@ def aimed(s: Structure, count: int) -> list[tuple[Floats, Floats]]:
     corners = s.points[s.face_vertices(faces).values.reshape(-1, 3)].astype(np.float64)
     goals = np.einsum("c,kcx->kx", (0.25, 0.33, 0.42), corners)
     low, high = (it(s.points, axis=0).astype(np.float64) for it in (np.nanmin, np.nanmax))
-    eye = high + (high - low) * (0.31, 0.47, 1.13)
+    size = high - low
+    # A flat mesh must not be looked at from within its plane.
+    eye = high + np.where(size > 0, size, size.max()) * (0.31, 0.47, 1.13)
     return [(eye, goal - eye) for goal in goals]
 
 
