@@ -189,7 +189,8 @@ def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
     begun = _ready(s, before)
     done = begun.copy()
     rounds = preset.affordable_rounds(harness.took(partial(run, done))[1])
-    units = UNITS[workload.unit](begun, done)
+    if not (units := UNITS[workload.unit](begun, done)):
+        raise harness.NothingToMeasureError(f"there is no {workload.unit} to be done")
     given: Any = {"setup": lambda: (_ready(s, before),), "rounds": rounds, "warmup": 0}
     timed = timer(run, **given, per=units)
     if before:

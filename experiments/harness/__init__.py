@@ -5,7 +5,13 @@ What each experiment measures stands in its ``bench_*.py``. Of the files ``calib
 """
 
 from experiments.harness.calibration import calibration_loop, latency_now
-from experiments.harness.cases import BASE, Case, Measurement, in_random_order
+from experiments.harness.cases import (
+    BASE,
+    Case,
+    Measurement,
+    NothingToMeasureError,
+    in_random_order,
+)
 from experiments.harness.experiment import (
     NO_STRUCTURE,
     OPERATIONS,
@@ -40,8 +46,8 @@ __all__ = [
     "ANSWERING", "BASE", "BUSY", "CLOCK", "HUBS", "IRREGULAR", "NO_STRUCTURE", "OPERATIONS",
     "OPERATIONS_TABLE", "ORDERS", "PRESETS", "QUERIES_TABLE", "REPEATS", "Axis",
     "BenchmarkTimer", "Case", "CheckFailedError", "Clock", "Experiment", "Keep", "Measurement",
-    "Preset", "Table", "Timed", "Timer", "allowed_cores", "badness", "calibration_loop",
-    "check_query", "check_rows", "check_told", "checked_handles", "disturbed",
+    "NothingToMeasureError", "Preset", "Table", "Timed", "Timer", "allowed_cores", "badness",
+    "calibration_loop", "check_query", "check_rows", "check_told", "checked_handles", "disturbed",
     "in_random_order", "latency_now", "measured_operations", "operation_arguments",
     "operation_faces", "pack_pairs", "pin", "row", "time_operations", "time_query",
     "time_rounds", "took", "validate_operated",

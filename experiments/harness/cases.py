@@ -16,12 +16,17 @@ from experiments.harness import own_mesh
 from experiments.presets import HUBS
 from hem.arrays import Array
 from hem.contract import QUERIES, Query, Structure
+from hem.errors import MeshError
 from hem.meshes import MeshSummary, TriangleMesh
 
 BASE = "indexed"  # the structure that the others are compared with: what a renderer stores
 
 OF_ALIKE, OF_UNEVEN = 3, 60  # how often accesses are counted where elements are alike, and else
 SHUFFLE_SEED, HANDLE_SEED = 20, 21
+
+
+class NothingToMeasureError(MeshError):
+    """A mesh has nothing that a case could measure, as a single triangle has no edge to flip."""
 
 
 @dataclass

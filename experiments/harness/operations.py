@@ -1,5 +1,6 @@
 """Operations as they are measured: on which elements, on a copy that is made new each time."""
 
+from contextlib import suppress
 from functools import lru_cache, partial
 from typing import Any
 
@@ -9,7 +10,7 @@ from scipy.sparse import coo_array
 import hem
 import structures
 from experiments.harness.calibration import latency_now
-from experiments.harness.cases import BASE, Case
+from experiments.harness.cases import BASE, Case, NothingToMeasureError
 from experiments.harness.reference import copies, copies_of, small_case, typical
 from experiments.harness.timer import Timed, Timer, time_rounds, took
 from experiments.presets import HUBS, Preset
@@ -70,7 +71,7 @@ def operation_arguments(s: Structure, operation: str, faces: Array) -> Array:
     """(k, 3) the handles of the operations at these faces: their first edges, or they themselves.
 
     Those that may be done; in a mesh of one's own there are others. To be added are faces that are
-    not there yet: ``s`` loses them. Raises MeshError if nothing may be done.
+    not there yet: ``s`` loses them. Raises NothingToMeasureError if nothing may be done.
     """
     if operation == "add_face":
         faces = operation_arguments(s, "remove_face", faces)[:, 0]  # at a border some may not go
@@ -85,7 +86,8 @@ def operation_arguments(s: Structure, operation: str, faces: Array) -> Array:
         rows[:, 0] = faces
     allowed = rows[s.prepare(operation, rows, np.zeros((len(rows), 3))).check()]
     if not len(allowed):
-        raise hem.MeshError(f"none of {len(rows)} elements of the mesh allows {operation}")
+        why = f"none of {len(rows)} elements of the mesh allows {operation}"
+        raise NothingToMeasureError(why)
     return allowed
 
 
@@ -227,7 +229,9 @@ def constant_work(case: Case, preset: Preset, count: int) -> OperationBatch | No
     if case.family == HUBS:  # at distances as even as theirs, which is easily foreseen
         hubs = min(len(_apart(case.family, case.size, case.valence)), len(faces))
         faces = faces[np.linspace(0, len(faces) - 1, hubs).astype(int)]
-    return OperationBatch(s, str(case.subject), _some(faces, count))
+    with suppress(NothingToMeasureError):  # a mesh of one's own may have too small a version
+        return OperationBatch(s, str(case.subject), _some(faces, count))
+    return None
 
 
 def _some(faces: Array, count: int) -> Array:

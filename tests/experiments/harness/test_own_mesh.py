@@ -168,3 +168,23 @@ def test_every_size_of_a_preset_is_one_of_the_mesh():
     for sizes in (preset.sizes, preset.build_sizes, preset.operation_sizes, preset.workload_sizes):
         assert sizes == (100, 400_000)
     assert preset.work_sizes == (100,)  # Python counts
+
+
+ON_A_TRIANGLE = "operations", "operation_work", "workloads", "real_time", "picking"
+
+
+@pytest.mark.parametrize("name", ON_A_TRIANGLE)
+def test_what_a_triangle_does_not_allow_is_skipped_and_the_rest_measured(tmp_path, name):
+    file = tmp_path / "triangle.off"
+    hem.save(hem.TriangleMesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]), file)
+    own_mesh.keep_versions(tmp_path, str(file))
+    called, sizes = own_mesh.of_run(tmp_path)
+    preset = PRESETS["smoke"].on(called, sizes[:4])
+    its = experiments()[f"bench_{name}"]
+    cases = [it for it in its.cases(preset, "indexed") if it.family == called]
+    found = [its.measured(it, preset, time_rounds) for it in cases]
+    assert all(bool(it.samples) != bool(it.skipped) for it in found)
+    assert name != "picking" or not any(it.skipped for it in found)  # nothing of it is an edit
+    if name == "operation_work":
+        skipped = {it.subject for it in found if it.skipped and it.vertices == 3}
+        assert skipped == {"collapse_edge", "flip_edge"}
