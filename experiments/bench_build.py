@@ -8,7 +8,16 @@ from typing import Any
 import numpy as np
 
 import structures
-from experiments.harness import ANSWERING, ORDERS, Case, Experiment, Measurement, Preset, Timer
+from experiments.harness import (
+    ANSWERING,
+    ORDERS,
+    Case,
+    Experiment,
+    Measurement,
+    Preset,
+    Timer,
+    turned,
+)
 
 
 def cases(preset: Preset, structure: str) -> list[Case]:
@@ -28,7 +37,9 @@ def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
     given = case.structure, mesh, case.reference_bytes
     s = structures.build(*given)
     s.validate()
-    assert np.array_equal(np.sort(s.to_triangles().triangles), np.sort(mesh.triangles))
+    back = s.to_triangles()
+    assert np.array_equal(back.points, mesh.points.astype(np.float32))
+    assert np.array_equal(turned(back.triangles), turned(mesh.triangles))
 
     def build_and_ask(*given: Any) -> None:
         structures.build(*given).vertex_faces(0)

@@ -36,6 +36,7 @@ from experiments.harness.oracle import (
     check_told,
     pack_pairs,
     row,
+    turned,
 )
 from experiments.harness.queries import checked_handles, time_query
 from experiments.harness.steadiness import BUSY, REPEATS, allowed_cores, badness, disturbed, pin
@@ -50,5 +51,5 @@ __all__ = [
     "calibration_loop", "check_query", "check_rows", "check_told", "checked_handles", "disturbed",
     "in_random_order", "latency_now", "measured_operations", "operation_arguments",
     "operation_faces", "pack_pairs", "pin", "row", "time_operations", "time_query",
-    "time_rounds", "took", "validate_operated",
+    "time_rounds", "took", "turned", "validate_operated",
 ]  # fmt: skip

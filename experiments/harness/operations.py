@@ -11,6 +11,7 @@ import hem
 import structures
 from experiments.harness.calibration import latency_now
 from experiments.harness.cases import BASE, Case, NothingToMeasureError
+from experiments.harness.oracle import turned
 from experiments.harness.reference import copies, copies_of, small_case, typical
 from experiments.harness.timer import Timed, Timer, time_rounds, took
 from experiments.presets import HUBS, Preset
@@ -182,9 +183,7 @@ def validate_operated(
 def _operated(name: str, case: Case, faces: Array) -> list[list[int]]:
     batch = OperationBatch(structures.build(name, case.mesh()), str(case.subject), faces)
     batch.operate()
-    rows = batch.mesh.triangles()
-    turned = (rows.argmin(axis=1)[:, None] + np.arange(3)) % 3
-    return sorted(np.take_along_axis(rows, turned, axis=1).tolist())
+    return sorted(turned(batch.mesh.triangles()).tolist())
 
 
 def time_operations(case: Case, preset: Preset, timer: Timer) -> dict[str, Any]:

@@ -42,6 +42,12 @@ def pack_pairs(pairs: Array) -> Array:
     return (pairs[:, 0] << 32) | pairs[:, 1]
 
 
+def turned(triangles: Array) -> Array:
+    """Triangles (k, 3), each from its smallest corner on: where one begins says nothing."""
+    begin = triangles.argmin(axis=1)[:, None]
+    return np.take_along_axis(triangles, (begin + np.arange(3)) % 3, axis=1)
+
+
 def neighbors(triangles: Array, query: Query, key: int) -> Array:
     """The sorted neighbors of one vertex, face or packed edge; edges packed. Cost O(n_t)."""
     return np.unique(RULES[query.name](triangles, key))

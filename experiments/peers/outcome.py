@@ -8,7 +8,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from experiments.harness import CheckFailedError, pack_pairs
+from experiments.harness import CheckFailedError, pack_pairs, turned
 from hem.arrays import Array
 
 Arrays = tuple[Array, Array]
@@ -91,6 +91,5 @@ def expected_faces(operation: str, triangles: Array, elements: Array) -> Array:
 
 def _in_order(faces: Array) -> Array:
     """Faces that begin with their smallest corner, in one order, so that one set is one array."""
-    least = faces.argmin(axis=1)[:, None]
-    turned = np.take_along_axis(faces, (least + TURNS[0]) % 3, axis=1)
-    return turned[np.lexsort(turned.T)]
+    faces = turned(faces)
+    return faces[np.lexsort(faces.T)]

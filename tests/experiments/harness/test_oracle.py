@@ -5,7 +5,9 @@ import pytest
 
 import hem
 import structures
+from experiments.harness import PRESETS, time_rounds
 from experiments.harness.oracle import CheckFailedError, check_query, neighbors, pack_pairs
+from experiments.runs import experiments
 from hem.contract import QUERIES
 from tests.extent import OF_EACH_KIND, waiting_for
 
@@ -63,3 +65,20 @@ def test_an_edge_between_two_vertices_that_no_face_joins_is_caught():
     s.__dict__["edge_vertices"] = wrong
     with pytest.raises(CheckFailedError, match="edge_vertices"):
         check_query(s, mesh, QUERIES["edge_vertices"], s.handles("edge")[:3])
+
+
+@pytest.mark.parametrize("wrong", ["inside out", "a point elsewhere"])
+def test_a_structure_that_does_not_give_its_mesh_back_is_not_timed(monkeypatch, wrong):
+    its, build = experiments()["bench_build"], structures.build
+
+    def build_wrong(name, mesh, *given):
+        if wrong == "inside out":
+            return build(name, hem.TriangleMesh(mesh.points, mesh.triangles[:, ::-1]), *given)
+        s = build(name, mesh, *given)
+        s.move_vertex(0, (9, 9, 9))
+        return s
+
+    monkeypatch.setattr(structures, "build", build_wrong)
+    case = its.cases(PRESETS["smoke"], "half_edge")[0]
+    with pytest.raises(AssertionError):
+        its.measure(case, PRESETS["smoke"], time_rounds)
