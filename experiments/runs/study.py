@@ -72,8 +72,8 @@ def begin(
     ``structures``, ``experiments``: just these, all of them for none; an experiment with or without
     ``bench_``. ``seed``: of the order of the cases; ``pin``: whether to stay on one core. ``mesh``:
     one's own to measure on, see ``hem.find_mesh``. Raises ValueError for a name that there is not,
-    MeshError for a mesh that none of the structures holds, CannotWriteError. Warns of structures
-    that are skipped, as they do not hold it.
+    and where nothing is left to measure, MeshError for a mesh that none of the structures holds,
+    CannotWriteError. Warns of structures that are skipped, as they do not hold it.
     """
     short = [name.removeprefix("bench_") for name in called(experiments)]
     require_known("experiment", short, [name.removeprefix("bench_") for name in catalog()])
@@ -90,6 +90,9 @@ def begin(
             known["structures"] = _holding(mesh, refusals, known["structures"])
             known["preset"] += ON + own_mesh.called(mesh)  # what is compared is of one mesh
         store.write_meta(folder, known)
+        if not plan(folder):
+            of = (f"{it} is of {', '.join(catalog()[f'bench_{it}'].structures)}" for it in short)
+            raise ValueError(f"there is nothing to measure: {'; '.join(of)}")
     except BaseException:
         shutil.rmtree(folder, ignore_errors=True)
         raise

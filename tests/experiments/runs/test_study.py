@@ -78,6 +78,12 @@ def test_an_experiment_that_became_part_of_another_keeps_its_name_and_its_older_
     assert load(folder).cases["experiment"].tolist() == ["bench_queries"]
 
 
+def test_what_leaves_nothing_to_measure_is_refused_and_leaves_no_run(tmp_path):
+    with pytest.raises(ValueError, match="nothing to measure: printed is of as_printed, "):
+        begin(tmp_path, "printed", structures=["half_edge", "indexed"])
+    assert not list(tmp_path.iterdir())
+
+
 def test_names_that_there_are_not_are_told_with_those_there_are(tmp_path):
     with pytest.raises(ValueError, match=r"no experiment is called 'nothing'; there are .*memory"):
         begin(tmp_path, "nothing")
