@@ -19,7 +19,7 @@ from hem.authoring import (
     nothing,
     prefetching,
 )
-from hem.engine import Uses
+from hem.engine import Uses, is_compiled
 
 Algorithm = Callable[[Kernels, Kernels], Kernel]
 """Makes an algorithm of one structure's queries and operations, see ``Structure.run``."""
@@ -115,10 +115,14 @@ class Declared:
         self._place = place_of(cls)
         self._require_parts(cls)
         self.kernels: Kernels = cls.kernels
+        if cls.compiled and is_compiled(OF_ARRAYS["set_point"]):  # and Numba is not told otherwise
+            self.kernels = {name: it for name, it in cls.kernels.items() if is_compiled(it)}
         self._require_kernels_of_vertices(cls)
         self.operations, self.steps = cls.operations, cls.steps
         self.storage = cls.storage(cls.fields, self.step if self.steps else None)
         self._uses, self._records = self.storage.uses, cls.records_type
+        if wrong := self.storage.wrong_fields(cls.records_type._fields):
+            raise TypeError(f"{self._place}: {wrong}")
         self._algorithms: dict[Algorithm, tuple[Uses, frozenset[str]]] = {}
         self.queries = {
             name: self._derived(self._kernel(name, f"(m, {name[0]}, out) -> count"))
@@ -200,13 +204,13 @@ class Declared:
         for name, called in (("clear_vertex", "(m, v)"), ("set_vertex_face", "(m, v, f)")):
             if refers and self.kernels.get(name) in (None, OF_ARRAYS[name]):
                 raise TypeError(
-                    f"{self._place} has no kernel {name}{called}, and its vertices refer to "
+                    f"{self._place} has no @kernel {name}{called}, and its vertices refer to "
                     "records; see hem.authoring.defaults"
                 )
 
     def _kernel(self, name: str, called: str) -> Kernel:
         if name not in self.kernels:
-            raise TypeError(f"{self._place} has no kernel {name}{called}")
+            raise TypeError(f"{self._place} has no @kernel {name}{called}")
         return self.kernels[name]
 
     def _operation(self, name: str) -> Kernel:
@@ -215,6 +219,6 @@ class Declared:
             return make(self.kernels)
         except KeyError as missing:
             raise TypeError(
-                f"{self._place} has no kernel {missing.args[0]}, which {name} takes; see "
+                f"{self._place} has no @kernel {missing.args[0]}, which {name} takes; see "
                 f"{make.__module__}"
             ) from None

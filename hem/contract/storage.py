@@ -37,15 +37,32 @@ class Storage:
             counts[field.array] += field.width
         return tuple(counts[name] for name in records._fields)
 
+    def wrong_fields(self, arrays: Sequence[str]) -> str:
+        """What does not fit in the fields, of records of these arrays; empty where all does."""
+        kinds = {it.element for it in self.fields}
+        for it in self.fields:
+            known = (it.element, ENDS), (it.array, arrays[:-1]), (it.target, {"", *kinds})
+            for named, among in known:
+                if named not in among:
+                    there_are = ", ".join(sorted(filter(None, among)))
+                    return f"field {it.name} names {named!r}, and there are {there_are}"
+        for kind in kinds:
+            if not any(it.marks and ENDS[it.element] == ENDS[kind] for it in self.fields):
+                return f"no field of {kind} says marks=True, which tells the dead"
+        lacking = set(arrays[:-1]) - {it.array for it in self.fields}
+        if lacking and type(self).compacted is Storage.compacted:  # which knows no other arrays
+            return f"arrays of its records have no field: {', '.join(sorted(lacking))}"
+        return "" if arrays[-1] == "counts" else "the last array of its records is not counts"
+
     def require_columns(self, records: Any) -> None:
         """Raise TypeError if an array has another number of columns, as kernels rely on it."""
         for name, array, count in zip(
             records._fields, records, self.columns(type(records)), strict=True
         ):
-            if count and array.ndim == 2 and array.shape[1] != count:
+            columns = array.shape[1] if count and array.ndim == 2 else 1
+            if count and columns != count:
                 raise TypeError(
-                    f"{type(records).__name__}.{name} has {array.shape[1]} columns, "
-                    f"and its fields {count}"
+                    f"{type(records).__name__}.{name} has {columns} columns, and its fields {count}"
                 )
 
     def alive(self, records: Any, element: str, rows: Any = slice(None)) -> Bools:

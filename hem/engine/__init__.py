@@ -40,7 +40,13 @@ Structures made of objects (``InterpretedUses``, ``Held``) run the same template
 those of arrays that are built to be stepped through (``UncompiledUses``).
 """
 
-from hem.engine.counting import CountingArray, Read, interpreted, of_pythons_numbers
+from hem.engine.counting import (
+    CountingArray,
+    Read,
+    interpreted,
+    is_compiled,
+    of_pythons_numbers,
+)
 from hem.engine.objects import Held, InterpretedUses, UncompiledUses, counting
 from hem.engine.pinned import Pinned
 from hem.engine.templates import (
@@ -62,5 +68,5 @@ from hem.engine.uses import Uses, kept, parts_of
 __all__ = [
     "AHEAD", "BEGIN", "CHECK", "DO", "END", "ENDED", "FORGET", "KEEP", "MODE", "PERSIST", "TELL",
     "CountingArray", "Held", "InterpretedUses", "Pinned", "Read", "UncompiledUses", "Uses",
-    "counting", "interpreted", "kept", "move", "of_pythons_numbers", "parts_of",
+    "counting", "interpreted", "is_compiled", "kept", "move", "of_pythons_numbers", "parts_of",
 ]  # fmt: skip

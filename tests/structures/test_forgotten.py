@@ -42,10 +42,25 @@ def write(folder: Path, name: str, changes: dict[str, str]) -> str:
         ("def flip_records(", "def flip(", "flip_records, which flip_edge takes"),
         ("clear_vertex = ", "forget_vertex = ", "clear_vertex(m, v), and its vertices refer"),
         ("def set_vertex_face(", "def set_face(", "set_vertex_face(m, v, f), and its vertices"),
+        ("@kernel\ndef flip_records", "def flip_records", "@kernel flip_records, which flip_edge"),
+        (
+            '"vertex_point", 3',
+            '"vertex_points", 3',
+            "'vertex_points', and there are face_half_edge",
+        ),
+        ('Field("half_edge.twin', 'Field("twin', "'twin', and there are edge, face, half_edge"),
+        (
+            'origin", "half_edge", target="vertex',
+            'origin", "half_edge", target="v',
+            "'v', and there",
+        ),
+        ('target="half_edge", marks=True', 'target="half_edge"', "no field of face says marks"),
+        ("    counts: Array", "    numbers: Array", "last array of its records is not counts"),
+        ("    counts: Array", "    age: Array\n    counts: Array", "have no field: age"),
     ],
 )
 def test_a_forgotten_part_is_named(tmp_path, monkeypatch, old, new, forgotten):
-    package = write(tmp_path, f"forgotten_{forgotten.split('(')[0].split(',')[0]}", {old: new})
+    package = write(tmp_path, f"forgotten_{abs(hash(forgotten))}", {old: new})
     monkeypatch.syspath_prepend(tmp_path)
     with pytest.raises(TypeError) as refused:
         structures.find_described([str(tmp_path / package)], package)
