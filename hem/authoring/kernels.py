@@ -11,10 +11,16 @@ from collections.abc import Callable, Mapping
 from types import FunctionType
 from typing import Any
 
-from numba import njit
+from numba import config, njit
 from numba.core.registry import CPUDispatcher
 
 from hem.arrays import Array
+
+if config.DISABLE_JIT:  # with which functions that Numba makes are none of Python's
+    raise ImportError(
+        "meshes need Numba's compiler: unset NUMBA_DISABLE_JIT; Python runs the kernels of "
+        "structures.build(…, compiled=False)"
+    )
 
 Kernel = Callable[..., Any]
 Kernels = Mapping[str, Kernel]
@@ -39,9 +45,8 @@ def kernel(function: Kernel) -> Kernel:
     queries; an operation that is called takes up to four times as long. Called from Python it is
     run by Python.
     """
-    compiled = njit(forceinline=True, **WITHOUT_WRAPPERS)(function)
-    if isinstance(compiled, CPUDispatcher):  # and not Python, where Numba is told to leave it
-        compiled.__class__ = _INSIDE
+    compiled: Kernel = njit(forceinline=True, **WITHOUT_WRAPPERS)(function)
+    compiled.__class__ = _INSIDE
     return compiled
 
 

@@ -115,7 +115,7 @@ class Declared:
         self._place = place_of(cls)
         self._require_parts(cls)
         self.kernels: Kernels = cls.kernels
-        if cls.compiled and is_compiled(OF_ARRAYS["set_point"]):  # and Numba is not told otherwise
+        if cls.compiled:
             self.kernels = {name: it for name, it in cls.kernels.items() if is_compiled(it)}
         self._require_kernels_of_vertices(cls)
         self.operations, self.steps = cls.operations, cls.steps

@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import os
+import subprocess
+import sys
+
 import numpy as np
 import pytest
 
@@ -164,3 +168,10 @@ def test_no_large_array_is_moved_while_a_mesh_grows_threefold(name):
     s.split_all_faces()
     assert len(s.points) == 300_000
     assert set(large) <= {it.ctypes.data for it in s.arrays}
+
+
+def test_without_a_compiler_it_is_said_what_to_do():
+    environment = {**os.environ, "NUMBA_DISABLE_JIT": "1"}
+    command = [sys.executable, "-c", "import structures"]
+    ended = subprocess.run(command, env=environment, capture_output=True, text=True)
+    assert "ImportError: meshes need Numba's compiler: unset NUMBA_DISABLE_JIT" in ended.stderr
