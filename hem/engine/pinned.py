@@ -120,6 +120,8 @@ def _without_owner(context: Any, builder: Any, kind: Any, value: Any, columns: C
         array.meminfo = get_null_value(array.meminfo.type)
         array.parent = get_null_value(array.parent.type)
         return array._getvalue()
+    if not isinstance(kind, types.BaseTuple):  # a list in a plan, say, of which references count
+        context.nrt.incref(builder, kind, value)
     return value
 
 

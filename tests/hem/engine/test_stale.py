@@ -245,3 +245,32 @@ def test_more_names_than_an_instruction_can_count_are_all_found():
     scope: dict[str, object] = dict.fromkeys(names, 0)
     exec(f"def count():\n    return {', '.join(names)}", scope)
     assert uses._named(scope["count"]).keys() == set(names)
+
+
+LISTS = """
+from typing import NamedTuple
+import numpy as np
+import hem, structures
+from hem.authoring import kernel
+
+class Plan(NamedTuple):
+    numbers: list
+    told: np.ndarray
+
+def adding(queries, operations):
+    @kernel
+    def add(m, plan):
+        for it in plan.numbers:
+            plan.told[0] += it
+        return 0
+    return add
+
+s, plan = structures.build("indexed", hem.generate("torus", 100)), Plan([1, 2, 4], np.zeros(1))
+for _ in range(1000):
+    s.run(adding, plan)
+assert plan.told[0] == 7000
+"""
+
+
+def test_a_list_in_a_plan_is_left_whole(tmp_path):
+    in_new_process(tmp_path, LISTS)
