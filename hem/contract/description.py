@@ -168,7 +168,10 @@ class Declared:
         if make not in self._algorithms:
             operations = {name: uses.kernel for name, uses in self.operating.items()}
             asked = [_Asked(self.kernels), _Asked(operations)]
-            uses = self._derived(make(*asked))
+            made = make(*asked)
+            if self._uses is Uses and not is_compiled(made):
+                raise TypeError(f"{make!r} makes no @kernel algorithm(m, plan) -> result")
+            uses = self._derived(made)
             self._algorithms[make] = uses, frozenset[str]().union(*(it.names for it in asked))
         return self._algorithms[make]
 

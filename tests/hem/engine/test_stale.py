@@ -16,6 +16,7 @@ import numpy as np
 import pytest
 from numba import types
 
+import hem
 import structures
 from hem.authoring import kernel
 from hem.engine import parts_of, uses
@@ -274,3 +275,14 @@ assert plan.told[0] == 7000
 
 def test_a_list_in_a_plan_is_left_whole(tmp_path):
     in_new_process(tmp_path, LISTS)
+
+
+def test_an_algorithm_without_its_decorator_is_named():
+    s = structures.build("indexed", hem.generate("torus", 100))
+    with pytest.raises(TypeError, match=r"lambda.* makes no @kernel algorithm\(m, plan\)"):
+        s.run(lambda queries, operations: undecorated, None)
+    assert not s.uncompiled().build(s.to_triangles()).run(lambda q, o: undecorated, None)
+
+
+def undecorated(m: Any, plan: Any) -> int:
+    return 0
