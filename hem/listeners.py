@@ -25,12 +25,14 @@ class Listeners(list[Listener]):
     def tell(self, what: Any) -> None:
         """Call them all, even if one of them raises; then raise what the first of them raised.
 
-        An interrupt, too: whoever was not told of something would be out of step from then on.
+        An interrupt, too: whoever was not told of something would be out of step from then on. Who
+        ended it meanwhile is not called.
         """
         failures = []
         for listener in tuple(self):
             try:
-                listener(what)
+                if listener in self:
+                    listener(what)
             except BaseException as failure:
                 failures.append(failure)
         if failures:

@@ -339,6 +339,14 @@ def test_an_attribute_that_is_removed_is_no_longer_rendered_nor_brought_back(s):
     assert list(hem.RenderMesh(s, [again]).attributes) == ["gone"]
 
 
+def test_closed_by_who_is_told_first_it_follows_no_more(s):
+    s.subscribe(lambda edit: render.close())
+    render = hem.RenderMesh(s)
+    before = render.to_triangles()
+    s.split_face(3, (1, 2, 3))
+    assert np.array_equal(render.to_triangles().triangles, before.triangles)
+
+
 def test_a_copy_of_what_was_closed_follows_again(s):
     render = hem.RenderMesh(s)
     render.close()
