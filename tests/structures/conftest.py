@@ -10,7 +10,10 @@ import pytest
 import hem
 import structures
 
-HOLDS_ANYTHING = "indexed", "indexed_adjacency", "triangle_soup"
+_declared = structures.REGISTRY.items()
+HOLDS_ANYTHING = tuple(name for name, it in _declared if it.searches or it.rebuilds)
+"""Where nothing is recorded that would hold faces together."""
+
 NEEDS_MANIFOLD = tuple(name for name in structures.NAMES if name not in HOLDS_ANYTHING)
 OF_ARRAYS = tuple(name for name in structures.NAMES if structures.REGISTRY[name].fields)
 """Those whose records can be changed at random; the others are made of objects."""
