@@ -73,6 +73,13 @@ def kernels_of(module: str) -> dict[str, Kernel]:
     }
 
 
+try:
+    njit(cache=True)(kernels_of)  # is nothing to compile, but Numba looks where it could be kept
+except RuntimeError as error:
+    words = "set NUMBA_CACHE_DIR to a folder that can be written, where machine code is kept"
+    raise ImportError(f"{words}: {error}") from error
+
+
 @kernel
 def without(out: Array, count: int, value: int) -> int:
     """Take ``value`` out of the first ``count`` elements, in place -> how many are left."""

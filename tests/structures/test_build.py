@@ -175,3 +175,10 @@ def test_without_a_compiler_it_is_said_what_to_do():
     command = [sys.executable, "-c", "import structures"]
     ended = subprocess.run(command, env=environment, capture_output=True, text=True)
     assert "ImportError: meshes need Numba's compiler: unset NUMBA_DISABLE_JIT" in ended.stderr
+
+
+def test_where_no_folder_can_be_written_it_is_said_what_to_do():
+    nowhere = "from numba.core.caching import CacheImpl; CacheImpl._locator_classes = []"
+    command = [sys.executable, "-c", f"{nowhere}; import structures"]
+    ended = subprocess.run(command, capture_output=True, text=True)
+    assert "ImportError: set NUMBA_CACHE_DIR to a folder that can be written" in ended.stderr
