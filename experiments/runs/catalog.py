@@ -37,4 +37,10 @@ def experiments() -> dict[str, Experiment]:
 
 def tables() -> dict[str, Table]:
     """Every table that an experiment decides claims of, by name."""
-    return {it.table.name: it.table for it in experiments().values() if it.table is not None}
+    found: dict[str, Table] = {}
+    of_them = {name: it.table for name, it in experiments().items() if it.table}
+    for table in of_them.values():
+        if found.setdefault(table.name, table) != table:
+            named = " and ".join(it for it, one in of_them.items() if one.name == table.name)
+            raise ValueError(f"{named} have different tables called {table.name!r}")
+    return found
