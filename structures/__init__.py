@@ -23,7 +23,8 @@ from hem.sources import as_mesh
 def find_described(folders: Iterable[str], package: str) -> dict[str, Any]:
     """Every class with a name that a module in a package's folders defines, by name and in order.
 
-    Raises TypeError for a class that forgets a part, or has the name or the look of another.
+    Raises TypeError for a class that forgets a part, has the name or the look of another, or
+    claims what is claimed of none.
     """
     found = [
         it
@@ -38,6 +39,12 @@ def find_described(folders: Iterable[str], package: str) -> dict[str, Any]:
             other = known.setdefault(own := getattr(it, part), it)
             if other is not it:
                 raise TypeError(f"{it.__module__} and {other.__module__} have one {part}: {own!r}")
+    names = {"", *(it.name for it in found), *globals().get("NAMED", {})}
+    for it in found:
+        if hasattr(it, "claims") and it.claims.like not in names:
+            raise TypeError(
+                f"{it.__module__} claims what is claimed of {it.claims.like!r}, no name"
+            )
     return {it.name: it for it in found}
 
 

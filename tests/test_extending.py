@@ -93,12 +93,36 @@ def test_the_check_measures_them_and_says_what_is_next(extended):
 
 @exhaustive
 def test_a_structure_or_an_experiment_that_forgets_something_is_an_error_that_names_it(shown):
+    walks = EXPERIMENT.replace("test_walk", "test_half_done")
+    other = STRUCTURE.replace("QEM", "HDM").replace('"D", ":"', '"P", ":"')
+    costs = '{"vertex_faces": "O(n_x)"}'
     for path, text, named in [
         ("structures/half_done.py", STRUCTURE.replace("claims =", "claimed ="), "claims"),
+        ("structures/half_done.py", other.replace('"half_edge")', '"halfedge")'), "'halfedge'"),
+        (
+            "structures/half_done.py",
+            other.replace('like="half_edge"', costs),
+            "'O(n_x)' is none of",
+        ),
+        (
+            "experiments/bench_half_done.py",
+            walks.replace("copies=1", 'copies=1, structures=("indexedd",)'),
+            "claims of ['indexedd'], which are no structures",
+        ),
+        (
+            "experiments/bench_half_done.py",
+            walks.replace('"indexed"', '"indexedd"'),
+            "claims of ['indexedd'], which are no structures",
+        ),
+        (
+            "experiments/bench_half_done.py",
+            walks.replace('"Random walks"', '"Half"'),
+            "have different tables called 'walks'",
+        ),
         ("experiments/bench_half_done.py", '"""Nothing."""\n', "EXPERIMENT"),
         (
             "experiments/bench_half_done.py",
-            EXPERIMENT.replace("test_walk", "walk"),
+            walks.replace("test_half_done", "walk"),
             "test_half_done = EXPERIMENT.test",
         ),
     ]:

@@ -126,7 +126,8 @@ def _claim(
         expects = Exactly(printed)
         text = f"{name} takes {printed} bytes per vertex, with references of 8 bytes."
     elif not silent and printed not in classes:
-        raise ValueError(f"claims.toml, row {what}: {printed!r} is none of {', '.join(classes)}")
+        claimed_by = f"what {source!r} claims of {what} on {structure}"
+        raise ValueError(f"{claimed_by}: {printed!r} is none of {', '.join(classes)}")
     else:
         measured = {axis.variable for axis in axes_of(table.name)}
         grown = {k: v for k, v in classes.get(printed, {}).items() if k in measured}

@@ -13,7 +13,7 @@ from experiments.harness.own_mesh import is_own
 from experiments.harness.timer import Timer, time_rounds
 from experiments.presets import Preset
 from hem.contract import QUERIES
-from structures import NAMES, REGISTRY
+from structures import NAMED, NAMES, REGISTRY
 
 Keep = Callable[[Measurement], None]  # what a measurement is handed to
 KINDS = ("time", "work", "bytes")
@@ -111,14 +111,17 @@ class Experiment:
     def __post_init__(self) -> None:
         """Raises ValueError for what does not fit together."""
         strange = set(self.claims) - set(self.table.subjects if self.table else ())
+        claimed = {name for it in self.claims.values() for name in (*it, *self.structures)}
+        unknown = claimed - {ANYONE, *NAMED}
         for wrong, why in (
             (self.kind not in KINDS, f"kind must be one of {KINDS}, not {self.kind!r}"),
             (self.axes and not self.table, "axes need the table whose claims they decide"),
             (strange, f"claims name {sorted(strange)}, which are no subjects of its table"),
+            (unknown, f"claims of {sorted(unknown)}, which are no structures"),
             (self.claims and not self.source, "claims need a source: who expects them"),
         ):
             if wrong:
-                raise ValueError(f"{self.title}: {why}")
+                raise ValueError(f"{self.name}: {why}")
 
     @property
     def name(self) -> str:
