@@ -20,6 +20,7 @@ from hem.complexity.notation import Array
 Row = tuple[str, dict[str, float], list[float]]  # a function's name, its parameters, its samples
 UNITS = {"ns": 1e-9, "us": 1e-6, "ms": 1e-3, "s": 1.0}
 DIGITS = re.compile(r"(\d+(?:\.\d+)?(?:e[+-]?\d+)?)")  # what splits by it has numbers at odd places
+MALFORMED = KeyError, TypeError, AttributeError, OverflowError, RecursionError
 OBJECT, ADDRESS = "UNSERIALIZABLE[", re.compile(r"^UNSERIALIZABLE\[| at 0x\w+|(?<=>)\]$")
 
 
@@ -117,7 +118,7 @@ def _read_json(text: str, path: Path) -> list[Row]:
         if "machine_info" in content:
             return list(_pytest_benchmark(content["benchmarks"]))
         return list(_google_benchmark(content["benchmarks"]))
-    except (KeyError, TypeError, AttributeError, json.JSONDecodeError) as error:
+    except (*MALFORMED, json.JSONDecodeError) as error:
         raise ValueError(f"{path} is no JSON of {known}: {error!r}") from error
 
 
@@ -138,7 +139,7 @@ def _hyperfine(results: list[dict[str, Any]]) -> Iterator[Row]:
         if failed := sum(code != 0 for code in codes):
             words = f"{command}: {failed} of {len(codes)} runs failed and are skipped"
             warnings.warn(words, stacklevel=2)
-        times = [time for time, code in zip(times, codes, strict=True) if code == 0]
+        times = [1.0 * time for time, code in zip(times, codes, strict=True) if code == 0]
         if not times:
             continue
         alike.setdefault(tuple(parts[::2]), []).append((parts, parameters, times))
@@ -179,7 +180,8 @@ def _pytest_benchmark(benchmarks: list[dict[str, Any]]) -> Iterator[Row]:
         for value in others:
             plain = ADDRESS.sub("", value)
             title += [plain if alike[test, plain] == 1 else value] * ((test, value) in kept)
-        yield ", ".join(title), parameters, stats.get("data") or [stats["median"]]
+        costs = [1.0 * it for it in stats.get("data") or [stats["median"]]]
+        yield ", ".join(title), parameters, costs
 
 
 def _google_benchmark(benchmarks: list[dict[str, Any]]) -> Iterator[Row]:

@@ -149,8 +149,8 @@ def test_each_number_of_threads_is_a_curve(tmp_path: Path) -> None:
 
 
 def test_runs_that_failed_are_skipped_and_named(tmp_path: Path) -> None:
-    failed = {"name": "BM_Sort/30", "error_occurred": True, "error_message": "no room"}
-    (tmp_path / "file").write_text(json.dumps({"benchmarks": [*GOOGLE["benchmarks"], failed]}))
+    failed = [{"name": "BM_Sort/30", key: True} for key in ("error_occurred", "skipped")]
+    (tmp_path / "file").write_text(json.dumps({"benchmarks": [*GOOGLE["benchmarks"], *failed]}))
     with pytest.warns(UserWarning, match="BM_Sort/30 failed and is skipped"):
         (curve,) = read_curves(tmp_path / "file")
     assert curve.sizes.tolist() == [10, 20]
@@ -211,6 +211,8 @@ def test_objects_and_what_is_no_number_split_no_curve(tmp_path: Path) -> None:
         for n in (1, 2)
     ]
     assert curves_of(tmp_path / "file", written_of(*rows)) == {"t, nan": [1, 2]}
+    rows = [(f"a.py::t[{n}-{k}]", {"n": n, "k": k}, {}) for n, k in ((1, "up"), (2, "down"))]
+    assert curves_of(tmp_path / "file", written_of(*rows)) == {"t, up": [1], "t, down": [2]}
 
 
 def test_each_function_and_object_that_a_test_was_given_is_a_curve(tmp_path: Path) -> None:
@@ -239,8 +241,11 @@ def test_values_that_differ_in_the_last_digit_are_two_curves(tmp_path: Path) -> 
 
 
 def test_cells_may_be_empty_and_a_file_that_is_no_text_is_named(tmp_path: Path) -> None:
-    (tmp_path / "file").write_text("n,a,b\n1,2,\n2, ,4\n3,5,6\n")
-    assert [it.sizes.tolist() for it in read_curves(tmp_path / "file")] == [[1, 3], [2, 3]]
+    (tmp_path / "file").write_text("n,a,b\n1,2,\n2, ,4\n3,5,6\n4,7\n")
+    assert [it.sizes.tolist() for it in read_curves(tmp_path / "file")] == [[1, 3, 4], [2, 3]]
+    (tmp_path / "file").write_text("1,,5\n2,3,4\n")
+    found = [(it.name, it.parameter, it.sizes.tolist()) for it in read_curves(tmp_path / "file")]
+    assert found == [("column 3", "n", [1, 2]), ("column 2", "n", [2])]
     (tmp_path / "binary").write_bytes(b"\x7fELF\xff")
     with pytest.raises(ValueError, match="binary is no text"):
         read_curves(tmp_path / "binary")
@@ -265,6 +270,12 @@ def test_cells_may_be_empty_and_a_file_that_is_no_text_is_named(tmp_path: Path) 
         ("{}", "no JSON of .*: it has no benchmarks and no results"),
         ("[1, 2]", "no JSON of"),
         ("{", "no JSON of"),
+        ("[" * 100_000, "no JSON of"),
+        ('{"results": [{"command": "f 1", "mean": null}]}', "no JSON of"),
+        ('{"results": [{"command": "f 1", "times": ["1 s"]}]}', "no JSON of"),
+        ('{"machine_info": 0, "benchmarks": [{"name": "f", "stats": {"median": null}}]}', "JSON"),
+        (f'{{"results": [{{"command": "f 1", "mean": 1{"0" * 400}}}]}}', "no JSON of"),
+        ("", "no CSV of costs"),
     ],
 )
 def test_what_is_wrong_with_a_file_is_named(tmp_path: Path, text: str, message: str) -> None:
