@@ -63,7 +63,7 @@ def test_of_several_variables_one_is_varied_and_the_others_are_held_fixed() -> N
     "claim",
     [
         "", "N/A", "O(n!)", "O(n", "O(n))", "log log n", "n^n", "fast",
-        "O(log 2n)", "O(n log 2 n)", "O(√2n)", "O(sqrt 2 n)", "O(2^2n)",
+        "O(log 2n)", "O(log^2 2n)", "O(n log 2 n)", "O(√2n)", "O(sqrt 2 n)", "O(2^2n)",
         "O(n2)", "O(3n2)", "log3(n)", "n^1/2", "n^2/2", "n - 2n", "n^-1", "2^{2n}",
         "O(log* n)", "O(lg* n)", "O(n log*n)", "O(n log^* n)", "O(0.5^n)", f"n^{10**400}",
     ],
