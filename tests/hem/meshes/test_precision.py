@@ -29,6 +29,7 @@ def test_positions_that_become_equal_are_told_of_by_their_rows() -> None:
     assert len(expected) > 10
     with pytest.warns(hem.MeshWarning, match="equal as float32") as told:
         hem.TriangleMesh(points, [])
+    assert told[0].filename == __file__
     listed = re.search(r"rows: (.*) and (\d+) more", str(told[0].message))
     assert listed
     assert listed[1].split(", ") == expected[:6]
@@ -41,6 +42,7 @@ def test_positions_that_become_equal_are_told_of_by_their_rows() -> None:
         FAR.astype(np.float32),  # nothing is rounded
         FAR - FAR[0],  # near the origin float32 is fine enough
         np.repeat(FAR[:1], 4, axis=0),  # they were equal before
+        np.full((4, 3), -0.1),  # as they were here
         FAR[[0, 2, 3, 3]] * (1 + np.arange(4)[:, None] * 2e-16),  # what computing them left
         (FAR * 100).astype(np.int64)[[0, 2, 3, 3]],
     ],

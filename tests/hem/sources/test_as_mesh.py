@@ -16,10 +16,10 @@ QUAD = [[0, 1, 2, 3], [3, 2, 4]]
 TRIANGLES = [[0, 1, 2], [0, 2, 3]]
 
 
-def blocks(*faces: tuple[str, Any]) -> SimpleNamespace:
+def blocks(*faces: tuple[str, Any], points: np.ndarray = POINTS) -> SimpleNamespace:
     """A mesh as meshio has it."""
     return SimpleNamespace(
-        points=POINTS,
+        points=points,
         cells=[SimpleNamespace(type=kind, data=np.array(rows)) for kind, rows in faces],
     )
 
@@ -38,6 +38,7 @@ def of_triangles(folder: Path) -> dict[str, Any]:
         "pyvista": SimpleNamespace(points=POINTS, faces=np.array([3, 0, 1, 2, 3, 0, 2, 3])),
         "open3d": SimpleNamespace(vertices=POINTS.tolist(), triangles=TRIANGLES),
         "meshio": blocks(("triangle", TRIANGLES)),
+        "meshio in the plane": blocks(("triangle", TRIANGLES), points=POINTS[:, :2]),
         **{name: structures.build(name, mesh) for name in structures.NAMES},
     }
 

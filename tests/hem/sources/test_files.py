@@ -710,10 +710,16 @@ def test_a_triangle_structure_says_how_to_cut_polygons(tmp_path: Path) -> None:
         ([(0, 1)], "three corners"),
         ([(0, 1, 2), ()], r"three corners or more \(faces: 1\)"),
         ([(0, 1, 2, 9)], "out of the range 0 … 3, such as 9"),
+        ([(0, 1, 2), (0, 1, 2, 9), (0, 1, 2)], r"such as 9 \(faces: 1\)"),
         ([(0, 1, 2), (0, -7, 2)], r"such as -7 \(faces: 1\)"),
         ([(0, 1, 2, 1)], "twice"),
         ([[0.5, 1, 2, 3]], "not whole numbers"),
         ([7], "rows"),
+        *(
+            (hem.Ragged(np.array(offsets), np.array([0, 1, 2, 0, 2, 3])), "offsets of faces")
+            for offsets in ([], [1, 6], [0, 3], [0, 3, 7], [0.0, 3.0, 6.0], [[0, 6]])
+        ),
+        (hem.Ragged(np.array([0, 6, 3, 6], np.uint8), np.arange(6) % 4), r"three.* \(faces: 1\)"),
     ],
 )
 def test_bad_polygons_are_refused(faces: Any, words: str) -> None:
