@@ -10,6 +10,13 @@ WORSE, OPEN, BETTER, SAME = Change.WORSE, Change.UNDETERMINED, Change.BETTER, Ch
 CASE = CaseKey("bench_work", "half_edge", "vertex_faces", "torus", 200, order="random")
 
 
+def test_a_case_is_named_by_what_it_has():
+    assert str(CASE) == "bench_work/half_edge/vertex_faces/torus/200/random"
+    weighed = CaseKey("bytes", "indexed", "faces", size=9, valence=8, reference_bytes=8)
+    assert str(weighed) == "bytes/indexed/faces/9/valence 8/8-byte references"
+    assert str(weighed._replace(reference_bytes=4)) == "bytes/indexed/faces/9/valence 8"
+
+
 def counted(change: Change) -> Finding:
     return Finding(change, Kind.WORK, CASE, "19", "20")
 

@@ -60,13 +60,20 @@ def test_a_run_that_is_not_finished_is_refused(tmp_path):
 
 
 def test_what_is_added_is_read_again_in_the_order_of_the_commits(base, tmp_path):
-    path = tmp_path / "deep" / "history.jsonl"
+    path = tmp_path / "deep" / "deeper" / "history.jsonl"
     for k in (4, 1, 3):
         assert append_run(line(base, k), path)
     kept = read_history(path)
     assert kept.runs == [line(base, k) for k in (1, 3, 4)]
     assert kept.faults == []
     assert [it["commit"] for it in lines(path)] == [line(base, k)["commit"] for k in (4, 1, 3)]
+
+
+def test_a_run_of_a_commit_without_a_date_stands_where_it_was_measured(base, tmp_path):
+    undated = line(base, 2) | {"committed": None, "started": line(base, 3)["started"]}
+    for it in (line(base, 4), undated, line(base, 1)):
+        append_run(it, tmp_path / "history.jsonl")
+    assert read_history(tmp_path / "history.jsonl").runs == [line(base, 1), undated, line(base, 4)]
 
 
 def test_without_a_file_the_history_is_empty(tmp_path):
@@ -198,10 +205,12 @@ def test_a_line_with_a_claim_of_another_name_is_named_and_skipped(base, tmp_path
         Trends(kept).claims("nothing")
 
 
-def test_a_line_of_a_machine_without_a_name_is_named_and_skipped(base, tmp_path):
-    made = line(base, 1)
-    made["machine"]["id"] = ["a list"]
-    (tmp_path / "history.jsonl").write_text(json.dumps(made) + "\n")
+@pytest.mark.parametrize("odd", [
+    {"machine": {"id": ["a list"]}}, {"claims": {CLAIM: 3}}, {"committed": "yesterday"},
+    {"committed": 3}, {"started": "today"},
+])  # fmt: skip
+def test_a_line_without_a_machine_s_name_figures_or_dates_is_named_and_skipped(base, tmp_path, odd):
+    (tmp_path / "history.jsonl").write_text(json.dumps(line(base, 1) | odd) + "\n")
     kept = read_history(tmp_path / "history.jsonl")
     assert (kept.runs, len(kept.faults)) == ([], 1)
 

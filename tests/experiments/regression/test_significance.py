@@ -120,6 +120,14 @@ def test_a_noisy_loop_makes_the_interval_wider() -> None:
     assert np.log(loud.high / loud.low) > 2 * np.log(still.high / still.low)
 
 
+def test_rounds_that_resemble_each_other_count_as_fewer() -> None:
+    drifting = np.exp(np.linspace(-0.1, 0.1, 200))
+    turned = np.stack([drifting[:100], drifting[:99:-1]], axis=1).ravel()  # low and high in turn
+    apart, alike = (compare_rounds(it, it, [1.0], [1.0]) for it in (turned, drifting))
+    wider = np.log(alike.high / alike.low) / np.log(apart.high / apart.low)
+    assert wider == pytest.approx(np.sqrt(1.9 / 0.1))  # an autocorrelation of 0.9 at most
+
+
 def test_too_few_rounds_are_undetermined() -> None:
     for rounds in range(9):
         times = np.linspace(1, 1.01, rounds)
