@@ -19,6 +19,9 @@ from hem.meshes import require_triangles
 from hem.naming import look_up
 from hem.sources import as_mesh
 
+NAMED: dict[str, Any] = {}
+"""Everything that has a name in a table; what is as published is measured, and not to be used."""
+
 
 def find_described(folders: Iterable[str], package: str) -> dict[str, Any]:
     """Every class with a name that a module in a package's folders defines, by name and in order.
@@ -39,17 +42,14 @@ def find_described(folders: Iterable[str], package: str) -> dict[str, Any]:
             other = known.setdefault(own := getattr(it, part), it)
             if other is not it:
                 raise TypeError(f"{it.__module__} and {other.__module__} have one {part}: {own!r}")
-    names = {"", *(it.name for it in found), *globals().get("NAMED", {})}
+    names = {"", *NAMED, *(it.name for it in found)}
     for it in found:
         if hasattr(it, "claims") and it.claims.like not in names:
-            raise TypeError(
-                f"{it.__module__} claims what is claimed of {it.claims.like!r}, no name"
-            )
+            raise TypeError(f"{it.__module__} claims what is claimed of no {it.claims.like!r}")
     return {it.name: it for it in found}
 
 
-NAMED: dict[str, Any] = find_described(__path__, __name__)
-"""Everything that has a name in a table; what is as published is measured, and not to be used."""
+NAMED |= find_described(__path__, __name__)
 
 REGISTRY: dict[str, type[Structure]] = {
     name: it for name, it in NAMED.items() if issubclass(it, Structure)
