@@ -101,9 +101,21 @@ def test_a_slowdown_beyond_the_latency_is_held_against_queries_and_not_against_b
 def test_a_byte_too_many_is_a_violation(tmp_path):
     folder = write_run(tmp_path, only=lambda experiment, structure: experiment == "bench_memory")
     rewrite(folder, "bench_memory", "half_edge", lambda it: {"samples": [228_001.0]})
+    next(folder.glob("bench_memory.indexed.*")).unlink()
     judged = {it.claim.structure: it.outcome for it in cells(load(folder), subject=MEMORY)}
     assert judged["half_edge"] == Outcome.VIOLATED
     assert judged["winged_edge"] == Outcome.CONSISTENT
+    assert judged["indexed"] == Outcome.UNDETERMINED
+
+
+@pytest.mark.parametrize(
+    ("size", "outcome"), [(227_700.0, Outcome.CONSISTENT), (227_400.0, Outcome.UNDETERMINED)]
+)
+def test_bytes_of_other_than_two_faces_per_vertex_accuse_nothing(tmp_path, size, outcome):
+    write_run(tmp_path, only=lambda *it: it == ("bench_memory", "half_edge"))
+    rewrite(tmp_path, "bench_memory", "half_edge", lambda _: {"samples": [size], "faces": 1_996})
+    (judged,) = cells(load(tmp_path), subject=MEMORY, structure="half_edge")
+    assert judged.outcome == outcome
 
 
 def test_a_query_that_was_not_measured_is_undetermined_never_a_pass(tmp_path):
