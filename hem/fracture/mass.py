@@ -73,10 +73,9 @@ def _corners(meshes: Sequence[TriangleMesh]) -> tuple[Floats, Indices, Floats]:
     corners = points[triangles]
     origins = np.zeros((len(meshes), 3))
     filled = np.flatnonzero(counts)
-    if len(filled):  # those without triangles begin where the next one does
-        first = np.cumsum([0, *counts])[filled]
-        low = np.minimum.reduceat(corners.min(axis=1), first)
-        origins[filled] = (low + np.maximum.reduceat(corners.max(axis=1), first)) / 2
+    first = np.cumsum([0, *counts])[filled]  # those without triangles begin where the next one does
+    low = np.minimum.reduceat(corners.min(axis=1), first)
+    origins[filled] = (low + np.maximum.reduceat(corners.max(axis=1), first)) / 2
     return corners - origins[owner, None], owner, origins
 
 

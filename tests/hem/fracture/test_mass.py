@@ -62,12 +62,15 @@ def test_what_has_no_faces_weighs_nothing():
     found = of_bodies([empty, box(1, 1, 1), empty], 2.0)
     np.testing.assert_allclose(found.masses, [0, 2, 0])
     assert np.isfinite(found.centers).all()
-    assert of_bodies([], 1.0).inertias.shape == (0, 3, 3)
+    for none in ([], [empty, empty]):
+        assert of_bodies(none, 1.0).inertias.shape == (len(none), 3, 3)
 
 
 @pytest.mark.parametrize("wrong", [0, -1, np.nan, np.inf])
 def test_densities_and_thicknesses_are_positive(wrong):
     with pytest.raises(hem.MeshError, match="density"):
         of_bodies([], wrong)
+    with pytest.raises(hem.MeshError, match="density"):
+        of_sheets([], wrong, 1.0)
     with pytest.raises(hem.MeshError, match="thickness"):
         of_sheets([], 1.0, wrong)
