@@ -40,13 +40,7 @@ Structures made of objects (``InterpretedUses``, ``Held``) run the same template
 those of arrays that are built to be stepped through (``UncompiledUses``).
 """
 
-from hem.engine.counting import (
-    CountingArray,
-    Read,
-    interpreted,
-    is_compiled,
-    of_pythons_numbers,
-)
+from hem.engine.counting import CountingArray, Read, interpreted, is_compiled, of_pythons_numbers
 from hem.engine.objects import Held, InterpretedUses, UncompiledUses, counting
 from hem.engine.pinned import Pinned
 from hem.engine.templates import (

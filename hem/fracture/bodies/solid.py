@@ -190,7 +190,7 @@ def with_hollows(shells: Sequence[Shell]) -> list[Shell]:
     """
     bodies: list[Shell] = []
     for shell in sorted(shells, key=lambda it: it.mesh.volume(), reverse=True):
-        if shell.mesh.volume() > 0:
+        if shell.mesh.volume() > 0 or not bodies:  # one without volume is no hollow of another
             bodies.append(shell)
             continue
         at = shell.mesh.points[:1].astype(np.float64)

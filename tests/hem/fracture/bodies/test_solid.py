@@ -2,7 +2,15 @@ import numpy as np
 import pytest
 
 import hem
-from hem.fracture.bodies.solid import Body, from_manifold, require_body, to_manifold, wrapped
+from hem.fracture.bodies.solid import (
+    Body,
+    Shell,
+    from_manifold,
+    require_body,
+    to_manifold,
+    with_hollows,
+    wrapped,
+)
 from hem.meshes.manifold import require_manifold
 from tests.extent import waiting_for
 from tests.hem.fracture.solids import (
@@ -182,3 +190,8 @@ def opened(triangles, at, other, new):
         triangles[row][triangles[row] == at] = new
         walk = end
     return np.concatenate([triangles, [(at, other, new), (at, new, end)]])
+
+
+def test_what_has_no_volume_is_a_body_of_its_own_where_there_is_no_other():
+    pillow = Shell(hem.TriangleMesh(np.eye(3), [(0, 1, 2), (0, 2, 1)]), np.zeros(2))
+    assert with_hollows([pillow]) == [pillow]
