@@ -20,7 +20,7 @@ from hem.complexity.notation import Array
 Row = tuple[str, dict[str, float], list[float]]  # a function's name, its parameters, its samples
 UNITS = {"ns": 1e-9, "us": 1e-6, "ms": 1e-3, "s": 1.0}
 DIGITS = re.compile(r"(\d+(?:\.\d+)?(?:e[+-]?\d+)?)")  # what splits by it has numbers at odd places
-MALFORMED = KeyError, TypeError, AttributeError, OverflowError, RecursionError
+MALFORMED = KeyError, TypeError, AttributeError, OverflowError, RecursionError, json.JSONDecodeError
 OBJECT, ADDRESS = "UNSERIALIZABLE[", re.compile(r"^UNSERIALIZABLE\[| at 0x\w+|(?<=>)\]$")
 
 
@@ -118,7 +118,7 @@ def _read_json(text: str, path: Path) -> list[Row]:
         if "machine_info" in content:
             return list(_pytest_benchmark(content["benchmarks"]))
         return list(_google_benchmark(content["benchmarks"]))
-    except (*MALFORMED, json.JSONDecodeError) as error:
+    except MALFORMED as error:
         raise ValueError(f"{path} is no JSON of {known}: {error!r}") from error
 
 
@@ -139,6 +139,7 @@ def _hyperfine(results: list[dict[str, Any]]) -> Iterator[Row]:
         if failed := sum(code != 0 for code in codes):
             words = f"{command}: {failed} of {len(codes)} runs failed and are skipped"
             warnings.warn(words, stacklevel=2)
+        # Times 1.0, as null and text are no costs.
         times = [1.0 * time for time, code in zip(times, codes, strict=True) if code == 0]
         if not times:
             continue

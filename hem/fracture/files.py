@@ -103,15 +103,14 @@ def _move(beside: Path, target: Path, aside: Path) -> None:
             moves.append((target / path, aside / "old" / path))
         if (beside / path).exists():
             moves.append((beside / path, target / path))
-    done = []
     try:
         for here, there in moves:
             there.parent.mkdir(parents=True, exist_ok=True)
             os.replace(here, there)
-            done.append((here, there))
     except BaseException:
-        for here, there in reversed(done):
-            os.replace(there, here)
+        for here, there in reversed(moves):
+            if not os.path.lexists(here):  # it was moved, even if nothing more was noted of it
+                os.replace(there, here)
         raise
 
 
