@@ -55,7 +55,7 @@ def polygon_corners() -> Iterable[float]:
 
 def article_invariants() -> Iterable[float]:
     """The share of half-edges for which what the article says of them holds."""
-    s = Plankton.uncompiled().build(hem.generate("grid", 400))
+    s = Plankton.uncompiled().build(hem.generate("grid", 100))
     for _ in range(2):
         holds = [
             s.start_vertex(h ^ 1) == s.start_vertex(s.next_half_edge(h))

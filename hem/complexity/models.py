@@ -145,10 +145,10 @@ class Fit(NamedTuple):
 def fit(models: DesignMatrix, costs: Array, weight: Array) -> Fit:
     """Nonnegative least squares of weighted costs, in closed form, under the best slowdown each.
 
-    costs: (..., k). weight: (k,) or (..., k), 1/(cost·relative error): a size counts for its
-    precision, not for its magnitude. O(m·t·s·k) per row of costs.
+    costs: (..., k), of one order of magnitude. weight: (k,) or (..., k), 1/(cost·relative error): a
+    size counts for its precision, not for its magnitude. O(m·t·s·k) per row of costs.
     """
-    unit = costs.max(axis=-1)[..., None]  # or squares of large ones were lost
+    unit = costs.max()  # or squares of large ones were lost
     t, weighted = costs * weight, weight * unit
     u, v = (column * weighted[..., None, None, :] for column in models.columns())
     uu, vv, uv = (np.maximum((p * q).sum(-1), 1e-30) for p, q in ((u, u), (v, v), (u, v)))
