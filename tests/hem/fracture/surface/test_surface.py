@@ -25,7 +25,7 @@ from hem.fracture import (
 from hem.fracture.surface.breaking import breaking
 from hem.fracture.surface.nearest import ROUNDING
 from hem.fracture.surface.shatter import TOLERANCE, break_points, break_surface
-from tests.extent import OF_EACH_KIND, some, waiting_for
+from tests.extent import OF_EACH_KIND, THAT_WALK, some, waiting_for
 from tests.hem.fracture.laws import MODELS, require_surface_laws, sharing_sides, struck, surface
 from tests.hem.rendering.test_render import assert_in_step
 
@@ -231,7 +231,7 @@ def test_what_broke_stays_as_it_was_whatever_is_done_to_the_mesh_later(name):
     assert all(np.array_equal(*it) for it in zip(found[1:], wanted[1:], strict=True))
 
 
-@pytest.mark.parametrize("name", OF_EACH_KIND)
+@pytest.mark.parametrize("name", THAT_WALK)
 def test_a_render_mesh_follows(name):
     s = structures.build(name, sheet())
     render = hem.RenderMesh(s)
