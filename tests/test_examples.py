@@ -20,7 +20,7 @@ from typer.testing import CliRunner
 import hem
 import structures
 from experiments.cli import app
-from tests.extent import exhaustive
+from tests.extent import exhaustive, waiting_for
 
 ROOT = Path(__file__).parents[1]
 README = (ROOT / "README.md").read_text()
@@ -96,7 +96,11 @@ def test_the_python_of_the_readme_runs_from_top_to_bottom(names: dict[str, Any])
     assert names["verdict"].outcome == "consistent"
 
 
-@pytest.mark.parametrize("page", [name for name in PAGES if "```python\n" in PAGES[name]])
+WITH_PYTHON = [name for name in PAGES if "```python\n" in PAGES[name]]
+AT_ONCE = [name for name in WITH_PYTHON if name != "measure.md"]  # which measures for seconds
+
+
+@pytest.mark.parametrize("page", waiting_for(AT_ONCE, WITH_PYTHON))
 def test_the_python_of_a_page_runs_from_top_to_bottom_and_imports_what_it_uses(page: str) -> None:
     given: dict[str, Any] = {"__name__": "page"}
     for language, text in blocks_of(PAGES[page]):

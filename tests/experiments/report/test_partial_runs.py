@@ -42,7 +42,7 @@ OF_RUN = (
 """What the chapters show of a run, beside its claims."""
 
 PARTS = [*NAMES, *(name for name, it in experiments().items() if not it.by_name)]
-FEW = "half_edge", "bench_queries"
+FEW = ("bench_queries",)
 LAYOUT = "matplotlib.layout_engine.ConstrainedLayoutEngine"
 
 

@@ -34,7 +34,7 @@ from tests.experiments.small_study import (
     wait_for,
     workers_of,
 )
-from tests.extent import exhaustive
+from tests.extent import exhaustive, waiting_for
 
 
 @pytest.fixture
@@ -277,7 +277,10 @@ def test_what_is_left_of_several_experiments_is_compiled_whatever_else_is_done(t
     assert set(perform(folder, left, COMPILE)) == set(left)
 
 
-@pytest.mark.parametrize("what", ["another number", "joined with a copy", "gone"])
+DAMAGES = "another number", "joined with a copy", "gone"
+
+
+@pytest.mark.parametrize("what", waiting_for(DAMAGES[:1], DAMAGES))
 def test_a_damaged_run_is_mended_by_the_command_that_its_error_names(run, what):
     (path,) = case_files(run)
     before = samples(run)
