@@ -93,7 +93,7 @@ def test_all_structures_are_asked_for_the_same(monkeypatch):
 @pytest.mark.parametrize("workload", WORKLOADS)
 def test_a_workload_makes_of_every_structure_the_same_mesh(workload, order):
     made = []
-    for name in OF_EACH_KIND:
+    for name in THAT_WALK:
         s = structures.build(name, hem.generate("sphere", 162))
         before = s.copy()
         WORKLOADS[workload].run(order)(s)

@@ -33,8 +33,8 @@ ALGORITHMS: dict[str, Callable[[Structure], Any]] = {
 }
 CHANGING = [it for it in ALGORITHMS if it not in ("circulator", "normals", "vertex normals")]
 MOVING = "barycenter", "smoothing", "taubin"  # in one step
-DONE_BY_ALL = "circulator", "smoothing", "collapse"
-"""Of each kind: what asks, moves, splits and collapses."""
+DONE_BY_ALL = "circulator", "smoothing", "collapse", *["loop"] * EVERYTHING
+"""Of each kind: what asks, moves, splits and collapses; where nobody waits what flips, too."""
 
 
 def is_done(algorithm: str, name: str) -> bool:
