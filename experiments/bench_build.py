@@ -8,8 +8,16 @@ from typing import Any
 import numpy as np
 
 import structures
-from experiments import harness
-from experiments.harness import ANSWERING, ORDERS, Case, Experiment, Measurement, Preset, Timer
+from experiments.harness import (
+    ANSWERING,
+    ORDERS,
+    Case,
+    Experiment,
+    Measurement,
+    Preset,
+    Timer,
+    turned,
+)
 
 
 def cases(preset: Preset, structure: str) -> list[Case]:
@@ -31,7 +39,7 @@ def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
     s.validate()
     back = s.to_triangles()
     assert np.array_equal(back.points, mesh.points.astype(np.float32))
-    assert np.array_equal(harness.turned(back.triangles), harness.turned(mesh.triangles))
+    assert np.array_equal(turned(back.triangles), turned(mesh.triangles))
 
     def build_and_ask(*given: Any) -> None:
         structures.build(*given).vertex_faces(0)

@@ -43,5 +43,5 @@ _chosen = {(REGISTRY[it].compiled, REGISTRY[it].searches): it for it in reversed
 OF_EACH_KIND = NAMES if EVERYTHING else tuple(it for it in NAMES if it in _chosen.values())
 """One structure that searches, one that has half-edges, and one of objects; or all of them."""
 
-THAT_WALK = tuple(it for it in OF_EACH_KIND if EVERYTHING or not REGISTRY[it].searches)
-"""Of these the latter two: to compile what simplifies for one that searches takes ten seconds."""
+QUICK_TO_COMPILE = tuple(it for it in OF_EACH_KIND if EVERYTHING or not REGISTRY[it].searches)
+"""Of these the latter two, or all: for a search an algorithm may take ten seconds to compile."""

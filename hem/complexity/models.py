@@ -145,7 +145,7 @@ class Fit(NamedTuple):
 def fit(models: DesignMatrix, costs: Array, weight: Array) -> Fit:
     """Nonnegative least squares of weighted costs, in closed form, under the best slowdown each.
 
-    costs: (..., k), of one order of magnitude. weight: (k,) or (..., k), 1/(cost·relative error): a
+    costs: (..., k), rows of like magnitude. weight: (k,) or (..., k), 1/(cost·relative error): a
     size counts for its precision, not for its magnitude. O(m·t·s·k) per row of costs.
     """
     unit = costs.max()  # or squares of large ones were lost

@@ -181,8 +181,6 @@ class Comparison:
 
     def steady(self, costs: Array) -> Array:
         """Costs (..., k) with the memory's part, as the best model sees it in each row, removed."""
-        if self.memory.exact:
-            return costs
         best = self.design.only(self.best)
         slowed, fast = predict(best, fit(best, costs, self.weight))
         return costs * (fast / slowed)[..., 0, :]

@@ -17,7 +17,7 @@ from experiments.harness.reference import copies, copies_of
 from experiments.harness.timer import Timed
 from experiments.runs import experiments
 from structures import REGISTRY
-from tests.extent import OF_EACH_KIND, THAT_WALK, waiting_for
+from tests.extent import OF_EACH_KIND, QUICK_TO_COMPILE, waiting_for
 
 
 def case(structure: str, family: str = "torus", valence: int | None = None) -> Case:
@@ -93,7 +93,7 @@ def test_all_structures_are_asked_for_the_same(monkeypatch):
 @pytest.mark.parametrize("workload", WORKLOADS)
 def test_a_workload_makes_of_every_structure_the_same_mesh(workload, order):
     made = []
-    for name in THAT_WALK:
+    for name in QUICK_TO_COMPILE:
         s = structures.build(name, hem.generate("sphere", 162))
         before = s.copy()
         WORKLOADS[workload].run(order)(s)
@@ -221,7 +221,7 @@ def test_what_the_call_itself_takes_is_taken_off_and_a_round_that_tells_nothing_
     assert found.calibration.tolist() == [1.0, 2.0]
 
 
-@pytest.mark.parametrize("name", THAT_WALK)
+@pytest.mark.parametrize("name", QUICK_TO_COMPILE)
 def test_as_many_impacts_are_counted_as_were_made(name):
     workload = WORKLOADS["impacts"]
     s = structures.build(name, hem.generate("torus", 1_000))

@@ -8,11 +8,11 @@ import pytest
 import hem
 import structures
 from hem.algorithms import impacts
-from tests.extent import THAT_WALK
+from tests.extent import QUICK_TO_COMPILE
 from tests.hem.algorithms.meshes import MESHES, used
 
 
-@pytest.mark.parametrize("name", THAT_WALK)
+@pytest.mark.parametrize("name", QUICK_TO_COMPILE)
 @pytest.mark.parametrize("mesh", ["torus", "grid"])
 def test_impacts_are_their_single_operations(name: str, mesh: str) -> None:
     one, many = (used(name, MESHES[mesh]()) for _ in "12")

@@ -33,7 +33,7 @@ ALGORITHMS: dict[str, Callable[[Structure], Any]] = {
 }
 CHANGING = [it for it in ALGORITHMS if it not in ("circulator", "normals", "vertex normals")]
 MOVING = "barycenter", "smoothing", "taubin"  # in one step
-DONE_BY_ALL = "circulator", "smoothing", "collapse", *["loop"] * EVERYTHING
+DONE_BY_ALL = "circulator", "smoothing", "collapse", *(["loop"] if EVERYTHING else [])
 """Of each kind: what asks, moves, splits and collapses; where nobody waits what flips, too."""
 
 

@@ -16,7 +16,7 @@ from hem.algorithms.collapsing import QUADRICS
 from hem.algorithms.simplification import LEAST_COSINES, collapsible
 from hem.meshes.measures import normals
 from hem.sources import meshlab
-from tests.extent import THAT_WALK
+from tests.extent import QUICK_TO_COMPILE
 from tests.hem.algorithms.meshes import dented
 
 GRID = hem.generate("grid", 900)
@@ -61,7 +61,7 @@ def test_it_stops_at_the_number_asked_for(by: str) -> None:
     assert len(simplified(mesh, vertices=10_000, by=by).points) == 400
 
 
-@pytest.mark.parametrize("name", THAT_WALK)
+@pytest.mark.parametrize("name", QUICK_TO_COMPILE)
 @pytest.mark.parametrize("by", algorithms.MEASURES)
 def test_of_vertices_those_count_that_have_faces(name: str, by: str) -> None:
     mesh = dented("torus", 144)

@@ -25,7 +25,7 @@ from hem.fracture import (
 from hem.fracture.surface.breaking import breaking
 from hem.fracture.surface.nearest import ROUNDING
 from hem.fracture.surface.shatter import TOLERANCE, break_points, break_surface
-from tests.extent import THAT_WALK, some, waiting_for
+from tests.extent import OF_EACH_KIND, QUICK_TO_COMPILE, some, waiting_for
 from tests.hem.fracture.laws import MODELS, require_surface_laws, sharing_sides, struck, surface
 from tests.hem.rendering.test_render import assert_in_step
 
@@ -67,7 +67,7 @@ def test_shards_and_rest_make_up_the_surface_again(model):
 @pytest.mark.parametrize(("model", "seeds"), [("plate", 100), ("sphere", 25), ("teapot", 4)])
 def test_all_structures_give_the_same_shards(model, seeds):
     mesh = surface(model)
-    originals = [structures.build(name, mesh) for name in THAT_WALK]
+    originals = [structures.build(name, mesh) for name in QUICK_TO_COMPILE]
     for seed in range(some(seeds)):
         at, material = struck(mesh, seed), NAMES[seed % len(NAMES)]
         broken = [shatter(it.copy(), at, material, seed) for it in originals]
@@ -160,7 +160,7 @@ def test_the_impact_and_the_middles_of_the_sides_are_split():
     ("impact", "what"), [((4, 4, 0), "a vertex"), ((4.5, 4, 0), "a side"), ((0, 0.5, 0), "border")]
 )
 def test_an_impact_on_a_vertex_or_a_side_is_handled(impact, what):
-    for name in THAT_WALK:
+    for name in QUICK_TO_COMPILE:
         s = structures.build(name, sheet())
         broken = shatter(s, impact, "glass", 3)
         s.validate()
@@ -216,7 +216,7 @@ def test_islands_are_parts_of_the_rest_the_largest_first():
     assert found > 3
 
 
-@pytest.mark.parametrize("name", waiting_for(["half_edge"], THAT_WALK))
+@pytest.mark.parametrize("name", waiting_for(["half_edge"], QUICK_TO_COMPILE))
 def test_what_broke_stays_as_it_was_whatever_is_done_to_the_mesh_later(name):
     meshes = [structures.build(name, sheet()) for _ in "12"]
     broken, expected = (shatter(s, (3.3, 4.2, 0), "stone", 2) for s in meshes)
@@ -231,7 +231,7 @@ def test_what_broke_stays_as_it_was_whatever_is_done_to_the_mesh_later(name):
     assert all(np.array_equal(*it) for it in zip(found[1:], wanted[1:], strict=True))
 
 
-@pytest.mark.parametrize("name", THAT_WALK)
+@pytest.mark.parametrize("name", QUICK_TO_COMPILE)
 def test_a_render_mesh_follows(name):
     s = structures.build(name, sheet())
     render = hem.RenderMesh(s)
@@ -250,7 +250,7 @@ def thin(height: float = 0.1) -> hem.TriangleMesh:
     return hem.TriangleMesh(made.vertices, made.faces)
 
 
-@pytest.mark.parametrize("name", THAT_WALK)
+@pytest.mark.parametrize("name", QUICK_TO_COMPILE)
 def test_a_blow_strikes_the_side_of_a_thin_plate_that_it_comes_from(name):
     s = structures.build(name, thin())
     rng = np.random.default_rng(0)
@@ -365,7 +365,7 @@ def test_polygons_and_empty_meshes_are_refused():
         with pytest.raises(hem.MeshError, match="triangles only"):
             find(structures.build("plankton", quads), (0, 0, 1))
     empty = hem.TriangleMesh(np.zeros((0, 3)), np.zeros((0, 3), int))
-    for name in THAT_WALK:
+    for name in OF_EACH_KIND:
         with pytest.raises(hem.MeshError, match="no faces"):
             shatter(structures.build(name, empty), (0, 0, 1))
 
@@ -412,7 +412,7 @@ def test_what_is_no_surface_is_refused_by_all_that_hold_it_and_stays():
     assert held
 
 
-@pytest.mark.parametrize("name", THAT_WALK)
+@pytest.mark.parametrize("name", QUICK_TO_COMPILE)
 def test_two_faces_with_the_same_corners_break_alike_and_keep_their_area(name):
     broken = shatter(structures.build(name, PILLOW), (0.34, 0.33, 0.33), seed=1)
     assert len(broken.shards) == 186
@@ -436,7 +436,7 @@ def test_what_is_no_triangle_mesh_is_told_what_to_give(given):
             ask(given)
 
 
-@pytest.mark.parametrize("name", THAT_WALK)
+@pytest.mark.parametrize("name", OF_EACH_KIND)
 def test_a_mesh_in_one_point_is_told_to_be_so_and_not_of_a_scale(name):
     s = structures.build(name, hem.TriangleMesh(np.ones((3, 3)), [(0, 1, 2)]))
     with pytest.raises(hem.MeshError, match="all vertices lie in one point"):
@@ -457,7 +457,7 @@ def require_whole(s: structures.Structure, render: hem.RenderMesh) -> None:
 
 
 @pytest.mark.parametrize("compiled", [True, False])
-@pytest.mark.parametrize("name", THAT_WALK)
+@pytest.mark.parametrize("name", QUICK_TO_COMPILE)
 def test_an_interrupt_leaves_a_whole_mesh_that_its_followers_know(name, compiled, monkeypatch):
     """It reaches Python when compiled code ends."""
     s = structures.build(name, sheet(), compiled=compiled)
@@ -476,7 +476,7 @@ def test_an_interrupt_leaves_a_whole_mesh_that_its_followers_know(name, compiled
     require_whole(s, render)
 
 
-@pytest.mark.parametrize("name", THAT_WALK)
+@pytest.mark.parametrize("name", QUICK_TO_COMPILE)
 def test_what_a_subscriber_raises_ends_it_after_an_edit_that_all_are_told_of(name):
     s = structures.build(name, sheet())
 
@@ -501,7 +501,7 @@ def test_faces_without_area_are_no_trouble_to_find_others():
         assert scanned(s, at).face == face
 
 
-@pytest.mark.parametrize("name", THAT_WALK)
+@pytest.mark.parametrize("name", QUICK_TO_COMPILE)
 def test_the_face_that_is_hit_says_of_what_material_it_is(name):
     at = (3.2, 4.1, 0)
     s = structures.build(name, sheet())
