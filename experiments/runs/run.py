@@ -125,7 +125,31 @@ def noise(run: Run) -> Noise:
         worst = (bad["experiment"] + " on " + bad["structure"]).value_counts().head(3)
         most = ", ".join(f"{name} ({count})" for name, count in worst.items())
         words = f"The machine was too busy to judge by time: {found} Most: {most}."
+    words += _cache_in_words(run)
     return Noise(len(seen), len(bad), repeated, share, share > BUSY, words)
+
+
+def _cache_in_words(run: Run) -> str:
+    """That the last cache was not the run's own, where the latencies tell it; else nothing.
+
+    What fits into a quarter of a cache waits for it, less than half as long as for the memory.
+    """
+    caches = run.meta.get("machine", {}).get("caches", {})
+    latency = run.cases[run.cases["experiment"] == "bench_latency"].sort_values("working_set")
+    if not caches or latency.empty:
+        return ""
+    level, size = max(caches.items())
+    sets = latency["working_set"] / (1024 * int(size.removesuffix("K")))
+    within, beyond = latency[sets <= 1 / 4]["samples"], latency[sets >= 2]["samples"]
+    if within.empty or beyond.empty:
+        return ""
+    inside, outside = (1e9 * float(np.median(samples.iloc[-1])) for samples in (within, beyond))
+    if inside < outside / 2:
+        return ""
+    return (
+        f" Others used the {level} cache of {size}: a dependent access to a quarter of that took "
+        f"{inside:.0f} ns, to memory {outside:.0f} ns; times at random are higher for it."
+    )
 
 
 def in_words(run: Run) -> str:

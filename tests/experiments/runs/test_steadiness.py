@@ -33,3 +33,17 @@ def test_counts_are_not_judged_by_noise(tmp_path):
     assert (counted.cases, counted.too_busy) == (0, False)
     older = noise(run_of(tmp_path / "older", [{}, {}]))
     assert (older.cases, older.words) == (0, "No timed case says how steady the machine was.")
+
+
+@pytest.mark.parametrize(("inside", "others"), [(20e-9, False), (49e-9, False), (51e-9, True)])
+@pytest.mark.parametrize("largest", [1 << 24, 1 << 30])
+def test_a_run_says_when_the_last_cache_was_not_its_own(tmp_path, inside, others, largest):
+    run = run_of(tmp_path, [CALM])
+    write_meta(tmp_path, {**run.meta, "machine": {"caches": {"L2": "1024K", "L3": "32768K"}}})
+    file = CaseFile(tmp_path, "bench_latency", "machine")
+    for size in (1 << k for k in range(14, 31)):
+        seconds = 4e-9 if size <= 1 << 20 else inside if size <= 1 << 23 else 100e-9
+        if size <= largest:
+            file.add(Measurement(str(size), "time", samples=[seconds], working_set=size))
+    told = "Others used the L3 cache of 32768K" in noise(load(tmp_path)).words
+    assert told == (others and largest > 1 << 25)  # what reaches no memory cannot tell
