@@ -119,6 +119,16 @@ def test_a_structure_or_an_experiment_that_forgets_something_is_an_error_that_na
             walks.replace('"Random walks"', '"Half"'),
             "have different tables called 'walks'",
         ),
+        (
+            "experiments/bench_half_done.py",
+            walks.replace('"query_scaling"', '"query_scalling"'),
+            "'query_scalling', its chapter, is no notebook",
+        ),
+        (
+            "experiments/bench_half_done.py",
+            walks.replace("WORK_FACES:", "TIME_FACES:"),
+            "axes ['time_faces']: an order has to be counted for work",
+        ),
         ("experiments/bench_half_done.py", '"""Nothing."""\n', "EXPERIMENT"),
         (
             "experiments/bench_half_done.py",

@@ -113,9 +113,12 @@ class Experiment:
         strange = set(self.claims) - set(self.table.subjects if self.table else ())
         claimed = {name for it in self.claims.values() for name in (*it, *self.structures)}
         unknown = claimed - {ANYONE, *NAMED}
+        kinds = {axis: self._kind_in(order) for axis, order in self.axes.items()}
+        amiss = [axis.key for axis, kind in kinds.items() if axis.exact != (kind == "work")]
         for wrong, why in (
             (self.kind not in KINDS, f"kind must be one of {KINDS}, not {self.kind!r}"),
             (self.axes and not self.table, "axes need the table whose claims they decide"),
+            (amiss, f"axes {amiss}: an order has to be counted for work, and timed for time"),
             (strange, f"claims name {sorted(strange)}, which are no subjects of its table"),
             (unknown, f"claims of {sorted(unknown)}, which are no structures"),
             (self.claims and not self.source, "claims need a source: who expects them"),
@@ -155,4 +158,7 @@ class Experiment:
 
     def kind_of(self, case: Case) -> str:
         """What a case measures."""
-        return "work" if case.order in self.counted else self.kind
+        return self._kind_in(case.order)
+
+    def _kind_in(self, order: str | None) -> str:
+        return "work" if order in self.counted else self.kind

@@ -5,6 +5,7 @@ from importlib import import_module
 from pkgutil import iter_modules
 
 import experiments as package
+from experiments import carried
 from experiments.harness import Experiment, Table
 
 PART_OF = {"bench_valence": "bench_queries"}
@@ -36,10 +37,12 @@ def experiments() -> dict[str, Experiment]:
 
 
 def tables() -> dict[str, Table]:
-    """Every table that an experiment decides claims of, by name."""
+    """Every table that an experiment decides claims of, by name; ValueError where they clash."""
     found: dict[str, Table] = {}
     of_them = {name: it.table for name, it in experiments().items() if it.table}
-    for table in of_them.values():
+    for experiment, table in of_them.items():
+        if table.chapter and not (carried("notebooks") / f"{table.chapter}.ipynb").exists():
+            raise ValueError(f"{experiment}: {table.chapter!r}, its chapter, is no notebook")
         if found.setdefault(table.name, table) != table:
             named = " and ".join(it for it, one in of_them.items() if one.name == table.name)
             raise ValueError(f"{named} have different tables called {table.name!r}")
