@@ -219,5 +219,5 @@ def aimed(s: Structure, count: int) -> list[tuple[Floats, Floats]]:
     return [(eye, goal - eye) for goal in goals]
 
 
-EXPERIMENT = Experiment(title="Picking", cases=cases, measure=measure, copies=4, turn=66)
+EXPERIMENT = Experiment(title="Picking", cases=cases, measure=measure, copies=15, turn=66)
 test_picking = EXPERIMENT.test

@@ -84,5 +84,5 @@ def _edited(s: Structure, edits: list[tuple[str, int, Any]]) -> Structure:
     return copy
 
 
-EXPERIMENT = Experiment(title="Real time", cases=cases, measure=measure, copies=8, turn=65)
+EXPERIMENT = Experiment(title="Real time", cases=cases, measure=measure, copies=14, turn=65)
 test_real_time = EXPERIMENT.test
