@@ -96,9 +96,9 @@ def _chance(series: Floats, fewer: Sequence[int], more: Sequence[int]) -> float:
     extra, left = len(more) - len(fewer), len(series) - len(more) - 1
     rest = _squares(series, more)
     gained = max(_squares(series, fewer) - rest, 0.0)
-    if rest <= 1e-24 * max(gained, 1e-300):
+    if rest <= 1e-24 * gained:
         return 0.0 if gained > 0 else 1.0
-    places = comb(max(len(series) - 2 * SHORTEST + 1, 1), extra)
+    places = comb(len(series) - 2 * SHORTEST + 1, extra)
     return float(places * f_distribution.sf(gained / extra / (rest / left), extra, left))
 
 
