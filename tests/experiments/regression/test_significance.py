@@ -123,9 +123,20 @@ def test_a_noisy_loop_makes_the_interval_wider() -> None:
 def test_rounds_that_resemble_each_other_count_as_fewer() -> None:
     drifting = np.exp(np.linspace(-0.1, 0.1, 200))
     turned = np.stack([drifting[:100], drifting[:99:-1]], axis=1).ravel()  # low and high in turn
-    apart, alike = (compare_rounds(it, it, [1.0], [1.0]) for it in (turned, drifting))
-    wider = np.log(alike.high / alike.low) / np.log(apart.high / apart.low)
-    assert wider == pytest.approx(np.sqrt(1.9 / 0.1))  # an autocorrelation of 0.9 at most
+    mixed = np.random.default_rng(8).permutation(drifting)
+    found = (compare_rounds(it, it, [1.0], [1.0]) for it in (turned, mixed, drifting))
+    apart, by_chance, alike = (np.log(it.high / it.low) for it in found)
+    assert by_chance == pytest.approx(apart)
+    assert alike / apart == pytest.approx(np.sqrt(1.9 / 0.1))  # an autocorrelation of 0.9 at most
+
+
+@pytest.mark.parametrize(("delayed", "change"), [(0, "worse"), (1, "undetermined")])
+def test_a_slow_down_that_ranks_do_not_show_is_left_open(delayed: int, change: str) -> None:
+    """Of 48,620 orders of the rounds 2 are as clear with none delayed, and 194 with one."""
+    old = np.linspace(1, 1.01, 9)
+    new = 2 * old
+    old[:delayed] *= 10
+    assert compare_rounds(old, new, [1.0], [1.0]).change == change
 
 
 def test_too_few_rounds_are_undetermined() -> None:
