@@ -184,7 +184,7 @@ def _behind(best: Forecast, other: Forecast) -> str:
     if other.seconds <= ALIKE * best.seconds:
         return ""
     more = {it: cost - best.parts.get(it, 0.0) for it, cost in other.parts.items()}
-    return max(more, key=lambda it: more[it], default="")
+    return max(more, key=lambda it: more[it])
 
 
 def best(costs: Mapping[str, float], held: str = "") -> str:

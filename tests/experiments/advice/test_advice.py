@@ -24,14 +24,16 @@ from experiments.advice import (
     predict,
     recorded,
 )
+from experiments.advice.workload import KNOWN
 from experiments.cli.check import BASELINE
 from experiments.harness import IRREGULAR
 from experiments.regression import RUN
 from experiments.runs import Run, load
-from hem.contract import QUERIES
+from hem.contract import ANEW, QUERIES
 from hem.contract.recording import COMPILED as COMPILED_CODE
 from hem.contract.recording import PYTHON
 from structures import REGISTRY, build
+from tests.experiments.made_runs import SIZES
 
 COMPILED = [name for name, it in REGISTRY.items() if it.compiled]
 MESH = hem.generate("torus", 1_000)
@@ -53,10 +55,12 @@ def names(found: Advice) -> list[str]:
     return [it.forecast.structure for it in found.options]
 
 
-def seconds(run: Run, structure: str, query: str, order: str, faces: int) -> float:
+def seconds(
+    run: Run, structure: str, what: str, order: str, faces: int, of: str = "bench_queries"
+) -> float:
     """The median of a case, from the table of cases itself."""
     found = run.cases.query(
-        "experiment == 'bench_queries' and structure == @structure and subject == @query "
+        "experiment == @of and structure == @structure and subject == @what "
         "and order == @order and faces == @faces and family == 'torus'"
     )
     return float(np.median(found["samples"].iloc[0]))
@@ -72,6 +76,56 @@ def test_what_was_measured_is_predicted_times_how_often(run, prices, structure) 
     expected += 5 * seconds(run, structure, "face_faces", "consecutive", faces)
     assert found.seconds == pytest.approx(expected, rel=1e-6)
     assert found.low < found.seconds < found.high
+
+
+@pytest.mark.parametrize("structure", COMPILED)
+def test_an_edit_takes_what_it_took_and_neighbors_found_anew_where_they_are_kept(
+    run, prices, structure
+) -> None:
+    kind, faces = REGISTRY[structure], SIZES[0]
+    rows = Row("collapse_edge", 3), Row("move_vertex", 7)
+    found = predict(prices, Workload("edits", rows, builds=0), structure, faces)
+    edits = ("split_face", "flip_edge") if kind.rebuilds else ("collapse_edge",)
+    moved = "vertex_faces" if kind.searches_to_move else "face_vertices"
+    expected = 7 * seconds(run, structure, moved, "random", faces)
+    expected += sum(
+        3 * seconds(run, structure, it, "batched", faces, "bench_operations") for it in edits
+    )
+    assert found.seconds == pytest.approx(expected, rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("what", "times", "faces"),
+    [("split_face", 1_000, 3_000), ("collapse_edge", 500, 1_500), ("collapse_edge", 1e9, 250)],
+)
+def test_edits_are_those_of_the_mesh_half_way_through(prices, what, times, faces) -> None:
+    found = predict(prices, Workload("edits", (Row(what, times),), builds=0), "indexed", 2_000)
+    assert found.seconds == pytest.approx(times * prices.price("indexed", what, faces).seconds)
+
+
+def test_the_slowest_edit_takes_what_it_alone_would(prices: Prices) -> None:
+    edits, asked = ("split_face", "collapse_edge"), (Row(it, 1) for it in QUERIES)
+    found = advise(prices, Workload("edited", (*map(Row, edits, (1, 1)), *asked)), MESH)
+    for it in found.options:
+        once = (Workload("once", (Row(edit, 1, caller=PYTHON),), builds=0) for edit in edits)
+        alone = [predict(prices, only, it.forecast.structure, 2_000).seconds for only in once]
+        assert it.edit == pytest.approx(max(alone), rel=0.01)
+
+
+def test_building_is_timed_until_it_answers() -> None:
+    measured, name = load(BASELINE / RUN), "indexed_adjacency"
+    built = measured.cases.query(
+        "experiment == 'bench_build' and structure == @name and order == 'until it answers'"
+    )
+    case = built[built["family"] == "torus"].iloc[0]
+    expected = pytest.approx(np.median(case["samples"]))
+    assert Prices(measured).build(name, case["faces"]).seconds == expected
+
+
+def test_a_mix_is_as_unsure_as_what_is_least_sure_of_it(prices: Prices) -> None:
+    for query in QUERIES:
+        one, mix, other = (prices.price("half_edge", query, 2_000, it).spread for it in (0, 0.5, 1))
+        assert mix == max(one, other)
 
 
 def test_prices_grow_between_sizes_as_at_them(prices: Prices) -> None:
@@ -95,6 +149,7 @@ def test_a_call_from_python_costs_an_operation_more_than_a_query(prices: Prices)
 
     for name in COMPILED:
         assert 0 < longer(name, "vertex_faces") < longer(name, "split_face")
+        assert longer(name, "split_face") == pytest.approx(3e-6, rel=0.01)  # one by one, in the run
     for name in REGISTRY.keys() - COMPILED:
         assert longer(name, "vertex_faces") == 0  # Python asks them in any case
 
@@ -142,7 +197,7 @@ def test_a_run_without_operations_tells_so_and_refuses_where_edits_are_limited(r
     edited = Workload("edited", (Row("vertex_faces", 10.0), Row("split_face", 1.0)))
     found = advise(Prices(queries), edited, MESH)
     assert len(found.options) == len(REGISTRY)
-    assert all("split_face" in it.forecast.untold for it in found.options)
+    assert all({"split_face", "build"} <= set(it.forecast.untold) for it in found.options)
     limited = advise(Prices(queries), edited, MESH, Limits(edit=1.0))
     assert limited.options == []
     assert all("does not tell what an edit takes" in why for why in limited.refused.values())
@@ -185,6 +240,7 @@ def test_what_was_measured_stays_first_until_something_is_a_tenth_quicker(
     for own in (0.0, 1.0):  # beside a second of its own, all are alike
         known = replace(ASKED, measured=Measured(name, 1_000, alone + own))
         found = advise(prices, known, MESH)
+        assert found.refused.keys() == REGISTRY.keys() - COMPILED  # as the whole was compiled
         seconds = {it.forecast.structure: it.forecast.seconds for it in found.options}
         stays = seconds[name] <= 1.1 * min(seconds.values())
         assert stays or own == 0.0
@@ -259,6 +315,12 @@ def test_a_flip_is_where_the_best_changes(prices: Prices) -> None:
             assert min(costs, key=costs.__getitem__) == flip["best"]
 
 
+def test_more_edits_have_more_neighbors_found_anew_and_no_more_asked() -> None:
+    rows = [Row(it, 1) for it in ("vertex_faces", "move_vertex", "split_face", ANEW)]
+    more = Workload("edited", tuple(rows)).more_edits(2)
+    assert [it.times for it in more.rows] == [1, 1, 2, 2]
+
+
 def test_limits_hold_where_the_best_changes_too(prices: Prices) -> None:
     free = advise(prices, ASKED, MESH)
     quickest, smallest = free.options[0], min(free.options, key=lambda it: it.bytes)
@@ -301,6 +363,7 @@ def measured(structure: str, vertices: object) -> str:
         ("rows = []\nspeed = 3\n", "speed is nothing that a workload has"),
         ('[[rows]]\nwhat = "vertex_face"\ntimes = 1\n', "row 1: what is 'vertex_face'; there are"),
         ('[[rows]]\nwhat = "vertex_faces"\ntimes = -1\n', "row 1: times is a number from 0 on"),
+        (f"{ASKING}in_order = 1.5\n", "row 1: .*in_order a share from 0 to 1"),
         ('[[rows]]\nwhat = "vertex_faces"\ntime = 1\n', "row 1: nothing is called 'time' and"),
         ("what\n", "Expected '='"),
         (f"frames = -5\n{ASKING}", "frames is a number from 0 on, not -5"),
@@ -417,6 +480,6 @@ def test_mistakes_are_told_and_so_is_that_nothing_suits(arguments, code, said) -
     assert said in found[1]
 
 
-def test_every_query_can_be_in_a_workload(prices: Prices) -> None:
-    rows = tuple(Row(name, 1) for name in QUERIES)
+def test_all_that_a_workload_may_count_has_a_price(prices: Prices) -> None:
+    rows = tuple(Row(name, 1) for name in KNOWN)
     assert not predict(prices, Workload("all", rows, builds=0), "half_edge", 2_000).untold
