@@ -8,6 +8,7 @@ cases say so, or all large ones, by significance and size, relative to the loop 
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import groupby
+from operator import lt
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -173,10 +174,8 @@ def compare_values(old: Sequence[int], new: Sequence[int]) -> tuple[Change, str]
     """
     if old == new:
         return Change.SAME, ""
-    more, why = any(before < after for before, after in zip(old, new, strict=False)), ""
-    if len(old) != len(new):
-        more |= sum(new) > sum(old)
-        why = f"{len(new)} instead of {len(old)} values"
+    why = f"{len(new)} instead of {len(old)} values" if len(old) != len(new) else ""
+    more = any(map(lt, old, new)) or sum(new) > sum(old)
     return Change.WORSE if more else Change.BETTER, why
 
 

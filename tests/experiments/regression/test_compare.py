@@ -9,6 +9,8 @@ import pytest
 from experiments.harness import Axis
 from experiments.regression import (
     COUNTERS,
+    RUN,
+    CaseKey,
     Change,
     Finding,
     Kind,
@@ -20,7 +22,8 @@ from experiments.regression import (
     measure_counters,
     reduce_run,
 )
-from experiments.regression.compare import compare_classes, compare_values
+from experiments.regression.baseline import UPDATE
+from experiments.regression.compare import claim_of, compare_classes, compare_values
 from experiments.runs import load
 from structures import NAMED, NAMES
 from tests.experiments.made_runs import LAWS, write_run
@@ -91,7 +94,8 @@ def test_counters_and_classes_are_those_of_the_baseline(counters):
     ([10, 20, 40], [10, 20], "better"),
 ])  # fmt: skip
 def test_counts_are_compared_to_the_last_one(before, after, change):
-    assert compare_values(before, after)[0] == change
+    found, why = compare_values(before, after)
+    assert (found, bool(why)) == (change, len(before) != len(after))
 
 
 @pytest.mark.parametrize(("before", "after", "change"), [
@@ -174,10 +178,21 @@ def test_by_time_a_claim_is_lost_only_where_a_slope_says_so(before, steeper, cha
     assert (found.case[1:3], found.change) == (("half_edge", "face_edges"), change)
 
 
-@pytest.mark.parametrize(("by", "change"), [(1e-9, None), (0.02, "worse")])
+@pytest.mark.parametrize(("by", "change"), [(1e-9, None), (0.02, "worse"), (-0.02, "better")])
 def test_slopes_of_work_may_differ_by_rounding_and_no_more(before, by, change):
     found = not_same(compare_runs(before, with_figures(before, by, "work_faces")).findings)
     assert [finding.change for finding in found] == ([change] if change else [])
+
+
+@pytest.mark.parametrize(("outcome", "told"), [("consistent", ["worse"]), ("no claim", [])])
+def test_slopes_of_time_are_compared_where_something_is_claimed(before, outcome, told):
+    old, new = (with_figures(before, it, "time_faces", outcome=outcome) for it in (0.0, 1.0))
+    assert [it.change for it in not_same(compare_runs(old, new).findings)] == told
+
+
+def test_what_no_claim_is_about_bears_on_none():
+    assert claim_of(CaseKey("bench_workloads", "half_edge", "impacts")) == ""
+    assert "228" in claim_of(CaseKey("bench_memory", "half_edge"))
 
 
 def test_of_another_preset_no_slopes_are_compared_and_that_is_said(before):
@@ -261,7 +276,8 @@ def test_the_smallest_cases_alone_do_not_make_a_curve_slower(before):
 @pytest.mark.parametrize(("times", "change"), [(1.6, "same"), (2.5, "worse"), (0.4, "better")])
 def test_from_run_to_run_a_curve_must_be_twice_as_slow(before, times, change):
     after = changed(before, curve(before), samples=lambda samples: times * samples)
-    assert of_curve(before, after).change == change
+    found = of_curve(before, after)
+    assert (found.change, found.after.split(" (")[0]) == (change, f"× {times:.2f}")
 
 
 def test_a_machine_that_slowed_as_much_as_the_curve_is_no_slower_code(before):
@@ -272,9 +288,12 @@ def test_a_machine_that_slowed_as_much_as_the_curve_is_no_slower_code(before):
     assert of_curve(before, after).change == "undetermined"
 
 
-def test_a_timed_case_that_is_gone_is_missed(before):
-    found = of_curve(before, without(before, curve(before, 1)))
-    assert (found.change, "1 not measured" in found.why) == ("undetermined", True)
+@pytest.mark.parametrize(("count", "said"), [(1, "1 not measured"), (None, "was not measured")])
+def test_a_timed_case_that_is_gone_is_missed_and_so_is_a_curve(before, count, said):
+    found = of_curve(before, without(before, curve(before, count)))
+    assert (found.change, said in found.why) == ("undetermined", True)
+    new = of_curve(without(before, curve(before)), before)
+    assert (new.change, new.next) == ("undetermined", UPDATE[RUN])
 
 
 def test_a_baseline_without_calibration_says_which_command_is_next(before):
