@@ -125,7 +125,7 @@ def test_building_is_timed_until_it_answers() -> None:
 def test_a_mix_is_as_unsure_as_what_is_least_sure_of_it(prices: Prices) -> None:
     for query in QUERIES:
         one, mix, other = (prices.price("half_edge", query, 2_000, it).spread for it in (0, 0.5, 1))
-        assert mix == max(one, other)
+        assert mix == max(one, other) > 0
 
 
 def test_prices_grow_between_sizes_as_at_them(prices: Prices) -> None:

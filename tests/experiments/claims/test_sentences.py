@@ -1,5 +1,6 @@
 """Sentences and break-even: judged on runs whose costs are known."""
 
+import itertools
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -10,6 +11,7 @@ import hem
 import structures
 from experiments.claims import (
     CLAIMED,
+    Between,
     Kind,
     Outcome,
     break_even,
@@ -255,6 +257,38 @@ def test_what_lies_outside_its_bounds_is_violated(tmp_path):
     law = {"winged_edge": lambda n_t, n_ev: 1e6}
     run = load(write_run(tmp_path, lambda s, q, p: law.get(s)))
     assert outcome(run, "winged_half") == "violated"
+
+
+@pytest.mark.parametrize(
+    ("values", "of_every", "of_another", "found"),
+    [
+        ([0.5], "consistent", "consistent", "0.5"),
+        ([0.5, 1.0, 0.7], "consistent", "consistent", "0.5 … 1"),
+        ([0.5, 2.0], "violated", "undetermined", "0.5 … 2"),
+        ([2.0, 3.0], "violated", "violated", "2 … 3"),
+        ([0.5, np.nan], "undetermined", "undetermined", "0.5"),
+        ([2.0, np.nan], "violated", "undetermined", "2"),
+        ([], "undetermined", "undetermined", "–"),
+    ],
+)
+def test_one_value_refutes_a_sentence_of_every_one_and_no_busy_machine_refutes_any(
+    monkeypatch, values, of_every, of_another, found
+):
+    monkeypatch.setitem(QUANTITIES, "dynamic", lambda _: values)
+    for busy, every in itertools.product((False, True), repeat=2):
+        of_run = SimpleNamespace(too_busy=busy, of_machines=False)
+        monkeypatch.setattr("experiments.claims.quantities.curves", lambda _, it=of_run: it)
+        claim = replace(sentence_claims()[0], expects=Between("dynamic", "it", 0, 1, every))
+        (judged,) = judge_sentences(None, [claim])
+        said = of_every if every else of_another
+        said = "undetermined" if busy and said == "violated" else said
+        assert (judged.outcome, judged.found) == (said, found)
+
+
+def test_of_an_empty_run_only_what_no_run_has_to_measure_is_told(base_run, tmp_path):
+    empty = judge_sentences(load(write_run(tmp_path, only=lambda *_: False)))
+    for one, other in zip(empty, judge_sentences(base_run), strict=True):
+        assert one.outcome == "undetermined" or np.array_equal(one.values, other.values)
 
 
 def test_where_nothing_was_measured_nothing_is_told(tmp_path):

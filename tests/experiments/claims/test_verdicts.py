@@ -13,11 +13,13 @@ from experiments.claims import (
     SENTENCES,
     JudgedClaim,
     Outcome,
+    curves,
     judge_cells,
     judge_run,
     load_claims,
 )
-from experiments.runs import Run, load
+from experiments.harness import NO_STRUCTURE, Axis, Measurement
+from experiments.runs import CaseFile, Run, load
 from structures import NAMES, REGISTRY, THESIS
 from tests.experiments import made_runs
 from tests.experiments.made_runs import LAWS, LIKE_THE_THESIS, SIZES, rewrite, write_run
@@ -134,6 +136,30 @@ def test_the_class_found_names_its_variables(every):
             if it.claim.table in ("listings", "naming"):  # whose valence is not varied
                 expected = expected.replace("n_ev", "1")
             assert it.found == expected
+
+
+@pytest.mark.parametrize(
+    ("law", "found"),
+    [
+        (lambda n_t, n_ev: 10.0 + 3.0 * n_t + 60.0 * n_ev, "O(n_t)"),
+        (lambda n_t, n_ev: 1.0 * n_t * n_ev, "O(n_t · n_ev)"),
+        (lambda n_t, n_ev: 9.0 + 0.01 * n_ev, "O(n_ev)"),
+    ],
+)
+def test_beside_a_scan_of_all_faces_the_few_of_a_vertex_are_not_named(tmp_path, law, found):
+    made = write_run(tmp_path, lambda *_: law, lambda _, structure: structure == "indexed")
+    (judged,) = cells(load(made), structure="indexed", subject="vertex_faces")
+    assert judged.found == found
+
+
+def test_a_case_may_wait_as_long_as_a_quarter_or_a_sixteenth_of_its_working_set(tmp_path):
+    folder = write_run(tmp_path, only=lambda *it: it == ("bench_queries", "half_edge"))
+    for size in (1e2, 1e9):
+        chase = {"family": "chase", "working_set": int(size), "samples": [1e-15 * size]}
+        CaseFile(folder, "bench_latency", NO_STRUCTURE).add(Measurement(f"{size}", "time", **chase))
+    of_run, sets = curves(load(folder)), 60 * np.array(SIZES)  # bytes, as such runs have them
+    found = of_run.latencies(of_run.curve(Axis.TIME_FACES, "half_edge", "face_edges"))
+    assert found == pytest.approx(np.stack([0 * sets + 2e-9, 1e-15 * sets / 4, 1e-15 * sets / 16]))
 
 
 def of_two(folder: Path) -> Path:
