@@ -3,6 +3,7 @@
 import json
 from pathlib import Path
 
+import numpy as np
 import pytest
 from matplotlib.figure import Figure
 from rich.console import Console
@@ -191,6 +192,22 @@ def test_what_was_timed_on_too_busy_a_machine_alone_is_shown_as_not_told(base, t
     append_run(made, path)
     output = output_of("history", "show", name, "--file", str(path))
     assert "HEM vertex_faces – – –" in output or f"{made['commit'][:7]}~ –" in output
+
+
+def test_slopes_step_where_they_left_a_level_by_more_than_their_last_digits(base, tmp_path):
+    path, by_time = tmp_path / "history.jsonl", np.repeat([0.1, 0.9], 6) + np.tile([0.01, -0.01], 6)
+    for k in range(12):
+        made = line(base, k)
+        slopes = {"work_faces": 0.004 * k, "time_faces": by_time[k]}
+        made["claims"][CLAIM]["slopes"] = {axis: 3 * [float(it)] for axis, it in slopes.items()}
+        append_run(made, path)
+    changes = Trends(read_history(path)).changes[["measure", "run", "before", "after"]]
+    assert changes.to_numpy().tolist() == [
+        ["slope n_t", 3, "0", "0.012"],
+        ["slope n_t", 6, "0.012", "0.024"],
+        ["slope n_t, time", 6, "0.1", "0.9"],
+        ["slope n_t", 9, "0.024", "0.036"],
+    ]
 
 
 def test_what_was_measured_on_other_sizes_is_not_compared(base, tmp_path):

@@ -81,6 +81,16 @@ def test_with_a_run_all_of_it_becomes_the_baseline_a_line_per_case(folder, base_
     assert update(folder, str(base_folder)) == (0, f"{folder} says just this already.\n")
 
 
+def test_of_times_those_are_kept_that_are_named_and_can_decide(base_run):
+    short = base_run.cases["id"].str.startswith("face_edges/200/")
+    rounds = base_run.cases["samples"].where(~short, base_run.cases["samples"].str[:8])
+    kept = reduce_run(replace(base_run, cases=base_run.cases.assign(samples=rounds))).run.cases
+    assert not kept[kept["kind"] == "time"]["id"].str.startswith("face_edges/200/").any()
+    orders = kept[kept["kind"] == "time"].groupby("experiment")["order"].agg(set)
+    assert orders["bench_queries"] == {"consecutive", "random"}
+    assert orders["bench_operations"] == {"batched"}
+
+
 def test_what_times_are_judged_by_is_kept_with_them():
     """Else a page that is opened on the baseline would tell other outcomes than its run."""
     cases = load_baseline(RUN).run.cases

@@ -156,6 +156,7 @@ def test_where_there_is_no_room_the_file_stays_as_it_was(base, tmp_path, monkeyp
 
 @pytest.mark.parametrize(("text", "said"), [
     ("[1, 2]", "is no run: it has no schema"),
+    ('{"commit": "c"}', "is no run: it has no schema"),
     ('{"schema": 3}', "has schema 3, this version knows 2"),
     ('{"schema": 2}', "is no run: its commit is None"),
     ('{"schema": 1}', "has schema 1, this version knows 2"),
