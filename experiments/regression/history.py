@@ -64,7 +64,7 @@ def append_run(line: Line, path: Path) -> bool:
     Who adds at the same time waits. The line goes in whole and reaches the disk, or, where there is
     no room, not at all; what is there stays, a line that another crash cut short included.
     """
-    path.parent.mkdir(parents=True, exist_ok=True)
+    # The lock makes the folder, too.
     with FileLock(f"{path}.lock"), path.open("a+b", buffering=0) as file:
         file.seek(0)
         content = file.readall()
