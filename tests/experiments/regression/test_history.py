@@ -6,6 +6,7 @@ import multiprocessing
 import os
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from experiments.claims import Outcome
@@ -50,6 +51,13 @@ def test_a_line_says_whether_the_machine_was_too_busy_to_judge_by_time(base_run,
     assert json.loads(json.dumps(kept))["too_busy"] is busy
 
 
+def test_a_run_without_latencies_has_times_and_none_relative_to_them(base_run, tmp_path):
+    cases = base_run.cases[base_run.cases["structure"] == "half_edge"].assign(latency=np.nan)
+    claim = record_run(replace(base_run, folder=tmp_path, cases=cases))["claims"][CLAIM]
+    assert "seconds" in claim
+    assert "relative" not in claim
+
+
 def test_a_run_that_is_not_finished_is_refused(tmp_path):
     folder = write_run(tmp_path / "run")
     meta = read_meta(folder)
@@ -82,7 +90,7 @@ def test_without_a_file_the_history_is_empty(tmp_path):
 
 
 def test_the_same_run_is_kept_once(base, tmp_path):
-    path = tmp_path / "history.jsonl"
+    path = tmp_path / "a folder" / "not yet there" / "history.jsonl"
     assert append_run(line(base, 1), path)
     before = path.read_bytes()
     assert not append_run(line(base, 1), path)
@@ -178,7 +186,8 @@ def test_a_line_that_is_no_run_is_named_and_skipped(base, tmp_path, text, said):
 
 
 @pytest.mark.parametrize("odd", [
-    {"slopes": None}, {"slopes": {"work_faces": [1, 2]}}, {"slopes": {"work_faces": [0, 0, "1"]}},
+    {"slopes": None}, {"slopes": {"work_faces": 3}}, {"slopes": {"work_faces": [1, 2]}},
+    {"slopes": {"work_faces": [0, 0, "1"]}},
     {"outcome": None}, {"outcome_time": 3}, {"work": None}, {"work": [1]}, {"relative": "12"},
 ])  # fmt: skip
 def test_a_line_whose_figures_are_none_is_named_and_skipped(base, tmp_path, odd):
