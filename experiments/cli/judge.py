@@ -13,6 +13,7 @@ from experiments.cli.console import AsJson, console, print_json, user_errors
 from experiments.report import show_rows, two_digits
 
 CODES = {"consistent": 0, "violated": 1, "undetermined": 2}
+WRITTEN = "", "log", "lg", "ln", "ld", "sqrt"  # in claims, where they name no parameter
 COLORS = {"^consistent$": "green", "^violated$": "red", "^undetermined$": "yellow"}
 
 
@@ -67,9 +68,10 @@ def _by_letters(claim: str, varied: str, fixed: Sequence[str]) -> tuple[str, str
     from hem.complexity import canonical
 
     own, named = varied if re.fullmatch("[a-zA-Z]", varied) else "n_varied", set[str]()
-    for name in filter(None, (varied, *fixed)):  # "nlog n" is read, too
+    for name in (it for it in (varied, *fixed) if it.lower() not in WRITTEN):
         letter = own if name == varied else "n_held"
-        whole = rf"(?<![a-z_]){re.escape(name)}(?![a-z_])"
+        # "nlog n" is read, too, and the O of O(…) is no parameter.
+        whole = rf"(?<![a-z_]){re.escape(name)}(?![a-z_]|(?<=o)\s*\()"
         claim, times = re.subn(whole, letter, claim, flags=re.IGNORECASE)
         named |= {letter} if times else set()
     if named == {"n_held"}:

@@ -64,7 +64,7 @@ def test_a_bound_needs_a_claim(costs: Path) -> None:
     assert "--upper is of a claim" in words
 
 
-@pytest.mark.parametrize("head", ["rows", "nv", "n_v", "n"])
+@pytest.mark.parametrize("head", ["rows", "nv", "n_v", "n", "O"])
 def test_the_variable_of_a_claim_is_named_as_the_sizes_are(
     costs: Path, tmp_path: Path, head: str
 ) -> None:
@@ -73,6 +73,8 @@ def test_the_variable_of_a_claim_is_named_as_the_sizes_are(
     _, words = hem(str(file), "--json", "--expected", f"O({head}·m log m)")
     assert [it["outcome"] for it in json.loads(words)] == ["violated", "consistent"]
     assert "scan [/ms]" in hem(str(file), "--expected", f"O({head})")[1]
+    _, words = hem(str(file), "--json", "--expected", "O(k)")  # any letter of one, as ever
+    assert [it["outcome"] for it in json.loads(words)] == ["violated", "consistent"]
 
 
 def test_a_claim_on_what_is_held_fixed_is_no_claim_on_the_sizes(tmp_path: Path) -> None:
@@ -84,6 +86,9 @@ def test_a_claim_on_what_is_held_fixed_is_no_claim_on_the_sizes(tmp_path: Path) 
     asked = str(file), "--exact", "--parameter", "n", "--expected"
     assert [hem(*asked, claim)[0] for claim in ("O(n)", "O(m)", "O(n·m)")] == [0, 1, 0]
     assert "names k, n_held: say which" in hem(*asked, "O(k·m)")[1]  # k may be meant for n
+    for name in ("Log", "O"):  # a claim is written with them
+        file.write_text(json.dumps({"benchmarks": runs}).replace("m:", f"{name}:"))
+        assert [hem(*asked, it)[0] for it in ("O(n)", "O(log n)", "O(log(n))")] == [0, 1, 1]
 
 
 def test_sizes_without_a_name_are_judged(costs: Path) -> None:
