@@ -150,7 +150,6 @@ def _hyperfine(results: list[dict[str, Any]]) -> Iterator[Row]:
             for key in runs[0][1]:
                 if all(float(parts[place]) == known.get(key) for parts, known, _ in runs):
                     named[place] = "{" + key + "}"
-                    break
         for parts, parameters, times in runs:
             name = "".join(named.get(place, part) for place, part in enumerate(parts))
             yield name, parameters, times

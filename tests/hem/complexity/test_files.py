@@ -4,6 +4,7 @@ import json
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from hem.complexity import read_curves
@@ -88,7 +89,7 @@ def curves_of(path: Path, content: dict[str, Any], parameter: str | None = None)
     return {it.name: it.sizes.tolist() for it in read_curves(path, parameter)}
 
 
-def written_of(*rows: tuple[str, dict[str, Any], dict[str, Any]]) -> dict[str, Any]:
+def written_of(*rows: tuple[str, dict[str, Any] | None, dict[str, Any]]) -> dict[str, Any]:
     """What pytest-benchmark writes of tests: by full name, parameters and extra information."""
     return {
         "machine_info": {},
@@ -141,11 +142,20 @@ def test_two_parameters_of_a_command_may_have_one_value(tmp_path: Path) -> None:
 
 def test_each_number_of_threads_is_a_curve(tmp_path: Path) -> None:
     runs = [
-        {"name": f"BM/{n}/min_warmup_time:1/threads:{t}", "cpu_time": n * t}
+        {"name": f"BM/{n}/min_time:{t}/min_warmup_time:1/threads:{t}", "cpu_time": n * t}
         for n in (1, 2) for t in (1, 8)
     ]  # fmt: skip
+    runs += [{"name": f"BI/{n}/iterations:{9 - n}/repeats:{n}", "cpu_time": n} for n in (3, 4)]
     found = curves_of(tmp_path / "file", {"benchmarks": runs}, "n")
-    assert found == {"BM, threads=1": [1, 2], "BM, threads=8": [1, 2]}
+    assert found == {"BM, threads=1": [1, 2], "BM, threads=8": [1, 2], "BI": [3, 4]}
+
+
+def test_arguments_without_names_are_told_by_their_places(tmp_path: Path) -> None:
+    runs = [{"name": f"BM/{n}/{m}", "cpu_time": n} for n in (1, 2) for m in (7, 8)]
+    runs += [{"name": f"BK/k:3/{n}", "cpu_time": n} for n in (5, 6)]
+    runs += [{"name": "BM_of_nothing", "cpu_time": 9}]
+    found = curves_of(tmp_path / "file", {"benchmarks": runs}, "argument 1")
+    assert found == {"BM, argument 2=7": [1, 2], "BM, argument 2=8": [1, 2], "BK, k=3": [5, 6]}
 
 
 def test_runs_that_failed_are_skipped_and_named(tmp_path: Path) -> None:
@@ -159,7 +169,7 @@ def test_runs_that_failed_are_skipped_and_named(tmp_path: Path) -> None:
 def test_commands_that_failed_cost_nothing(tmp_path: Path) -> None:
     runs = [
         {"command": f"sort {n}", "parameters": {"n": str(n)}, "times": [n, 1, n], "exit_codes": it}
-        for n, it in ((10, [0, 127, 0]), (20, [0, 0, 0]), (30, [127, 127, 127]))
+        for n, it in ((30, [127, 127, 127]), (10, [0, 127, 0]), (20, [0, 0, 0]))
     ]
     (tmp_path / "file").write_text(json.dumps({"results": runs}))
     with pytest.warns(UserWarning, match="sort 10: 1 of 3 runs failed and are skipped"):
@@ -179,23 +189,26 @@ def test_commands_without_times_may_have_exit_codes(tmp_path: Path) -> None:
 def test_each_program_that_a_command_was_given_is_a_curve(tmp_path: Path, command: str) -> None:
     runs = [
         {"command": command.format(n=n, kind=it), "parameters": {"n": n, "kind": it}, "mean": 1.0}
-        for n in ("1", "2") for it in ("s", "sorted")
+        for n in ("1", "2") for it in ("s", "sorted", "*")
     ]  # fmt: skip
     named = command if "kind" in command else "sort {n}, {kind}"
     assert curves_of(tmp_path / "file", {"results": runs}) == {
-        named.replace("{kind}", it): [1, 2] for it in ("s", "sorted")
+        named.replace("{kind}", it): [1, 2] for it in ("s", "sorted", "*")
     }
 
 
 def test_of_each_benchmark_the_runs_are_read_or_else_the_median(tmp_path: Path) -> None:
-    def aggregate(name: str, n: int) -> dict[str, Any]:
-        run = {"name": f"{name}/{n}_median", "run_name": f"{name}/{n}", "cpu_time": 9}
-        return run | {"run_type": "aggregate", "aggregate_name": "median"}
+    def aggregate(name: str, n: int, of: str) -> dict[str, Any]:
+        run = {"name": f"{name}/{n}_{of}", "run_name": f"{name}/{n}", "cpu_time": len(of)}
+        return run | {"run_type": "aggregate", "aggregate_name": of}
 
     runs = [{"name": f"BM_T/{n}", "run_type": "iteration", "cpu_time": n} for n in (1, 2)]
     failed = {"name": "BM_F/1", "run_type": "iteration", "error_occurred": True}
-    medians = [aggregate(name, n) for name in ("BM_S", "BM_T", "BM_F") for n in (1, 2)]
-    content = {"benchmarks": [*medians, *runs, failed]}
+    told = [
+        aggregate(name, n, of) for name in ("BM_S", "BM_T", "BM_F") for n in (1, 2)
+        for of in ("mean", "median", "stddev")
+    ]  # fmt: skip
+    content = {"benchmarks": [*told, *runs, failed]}
     (tmp_path / "file").write_text(json.dumps(content))
     with pytest.warns(UserWarning, match="BM_F/1 failed"):
         found = {it.name: it for it in read_curves(tmp_path / "file")}
@@ -203,6 +216,7 @@ def test_of_each_benchmark_the_runs_are_read_or_else_the_median(tmp_path: Path) 
         name: [1, 2] for name in ("BM_S", "BM_F", "BM_T")
     }
     assert [row[0] / 1e-9 for row in found["BM_T"].samples] == pytest.approx([1, 2])
+    assert np.array(found["BM_S"].samples) / 1e-9 == pytest.approx(np.full((2, 1), len("median")))
 
 
 def test_objects_and_what_is_no_number_split_no_curve(tmp_path: Path) -> None:
@@ -211,8 +225,11 @@ def test_objects_and_what_is_no_number_split_no_curve(tmp_path: Path) -> None:
         for n in (1, 2)
     ]
     assert curves_of(tmp_path / "file", written_of(*rows)) == {"t, nan": [1, 2]}
-    rows = [(f"a.py::t[{n}-{k}]", {"n": n, "k": k}, {}) for n, k in ((1, "up"), (2, "down"))]
-    assert curves_of(tmp_path / "file", written_of(*rows)) == {"t, up": [1], "t, down": [2]}
+    given = {"t, up": "up", "t, True": True, "t, None": None, "t, [1, 2]": [1, 2]}
+    rows = [(f"a.py::t[{k}]", {"n": n, "k": k}, {}) for n, k in enumerate(given.values(), 1)]
+    rows += [("a.py::plain", None, {})]
+    found = curves_of(tmp_path / "file", written_of(*rows))
+    assert found == {name: [n] for n, name in enumerate(given, 1)}
 
 
 def test_each_function_and_object_that_a_test_was_given_is_a_curve(tmp_path: Path) -> None:
@@ -241,7 +258,7 @@ def test_values_that_differ_in_the_last_digit_are_two_curves(tmp_path: Path) -> 
 
 
 def test_cells_may_be_empty_and_a_file_that_is_no_text_is_named(tmp_path: Path) -> None:
-    (tmp_path / "file").write_text("n,a,b\n1,2,\n2, ,4\n3,5,6\n4,7\n")
+    (tmp_path / "file").write_text("n,a,b\n1,2,\n2, ,4\n,,\n3,5,6\n4,7\n")
     assert [it.sizes.tolist() for it in read_curves(tmp_path / "file")] == [[1, 3, 4], [2, 3]]
     (tmp_path / "file").write_text("1,,5\n2,3,4\n")
     found = [(it.name, it.parameter, it.sizes.tolist()) for it in read_curves(tmp_path / "file")]
@@ -258,6 +275,8 @@ def test_cells_may_be_empty_and_a_file_that_is_no_text_is_named(tmp_path: Path) 
         ("n;a\n1;2\n2;3\n", "commas between"),
         ("n,a\n1,2\nx,3\n", "row 3"),
         ("n,a\n\n1,2\nx,3\n", "row 4"),
+        ("n,a\n1,2\n2,3,4\n", "row 3: a size and a number"),
+        ("-1,2\n2,3\n", "column 2: n is -1, and sizes are at least 1"),
         ("n,a\n1,2\n2,3 s\n", "row 3, a: '3 s' is no number"),
         ("n,a\n1,2\n1,3\n", "nothing varies"),
         ("n,a,a\n1,2,3\n2,3,4\n", "two columns 'a'"),
@@ -269,6 +288,9 @@ def test_cells_may_be_empty_and_a_file_that_is_no_text_is_named(tmp_path: Path) 
         ("n,a\n1," + "9" * 200_000, "no CSV of costs: field larger"),
         ("{}", "no JSON of .*: it has no benchmarks and no results"),
         ("[1, 2]", "no JSON of"),
+        ('{"results": [{"command": "f", "mean": 1}]}', "nothing varies"),
+        ('{"benchmarks": [{"name": "f/1"}]}', "no JSON of"),
+        ('{"benchmarks": ["f/1"]}', "no JSON of"),
         ("{", "no JSON of"),
         ("[" * 100_000, "no JSON of"),
         ('{"results": [{"command": "f 1", "mean": null}]}', "no JSON of"),
