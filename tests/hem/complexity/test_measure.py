@@ -520,6 +520,7 @@ def test_costs_are_held_to_those_of_small_inputs(
         (1.0, 0.0, "O(n log n)"),
         (1.0, 0.2, "O(n) or O(n log n)"),
         (0.3, 0.0, "O(n) or O(n log n)"),
+        (0.15, 0.0, "O(n)"),
         (0.0, 0.0, "O(n)"),
     ],
 )
@@ -539,7 +540,7 @@ def test_small_inputs_that_stray_or_are_few_accuse_nothing(log: bool) -> None:
     told, stray = found.judge().answer, beside_parts(found, -1.0, wobble=3.0)
     assert stray.in_parts is not None
     assert stray.in_parts.logs()[1] > 0.5
-    assert stray.judge().answer == told
+    assert stray.judge().answer == beside_parts(found, 0.15).judge().answer == told
     flat = beside_parts(found, 0.0).in_parts
     assert flat
     few = replace(found, in_parts=InParts(flat.sizes[:6], flat.ratios[:6]))
@@ -562,7 +563,12 @@ def test_what_rises_from_some_size_on_and_no_further_is_linear() -> None:
     found = costs(1e-8 * sizes * np.log(sizes), sizes)
     for grown, told in ((np.clip(np.log(parts), 6, 8), "O(n)"), (np.log(parts), "O(n log n)")):
         rows = list(np.outer(grown, np.linspace(0.98, 1.02, 9)))
-        assert replace(found, in_parts=InParts(parts, rows)).judge().answer == told
+        beside = replace(found, in_parts=InParts(parts, rows))
+        assert beside.judge().answer == told
+        assert beside.is_settled == (told == "O(n)")
+        few = replace(found, in_parts=InParts(parts[1::2], rows[1::2]))  # of which it is not said
+        assert (few.judge().answer, few.is_settled) == ("O(n log n)", False)
+    assert beside_parts(found, 0.0).is_settled
 
 
 def test_rounds_are_interleaved_over_the_sizes(clock: Clock) -> None:
