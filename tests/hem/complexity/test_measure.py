@@ -13,12 +13,15 @@ import time
 import tracemalloc
 from collections.abc import Callable, Iterator
 from dataclasses import replace
+from itertools import chain
 from typing import Any
+from unittest.mock import Mock
 
 import numpy as np
 import pytest
 
 from hem.complexity import InParts, Measured, judge, measure
+from hem.complexity.calls import Plan, compared
 from hem.complexity.memory import memory_times
 from hem.complexity.notation import Array, parse
 from tests.extent import waiting_for
@@ -148,6 +151,19 @@ def test_a_machine_that_became_slower_bends_no_curve() -> None:
     both = found(2.0 ** np.arange(2, 12), 1).joined(found(2.0 ** np.arange(2.5, 11), 1.4))
     assert both.sizes.tolist() == (2.0 ** np.arange(2, 11.5, 0.5)).tolist()
     assert both.cost == pytest.approx(1e-6 * both.sizes**1.5)
+
+
+@pytest.mark.parametrize(("changes", "kept"), [(3, 6), (6, 3), (7, 9)])
+def test_pairs_in_which_the_machine_changed_its_speed_count_where_few_others_are_left(
+    changes: int, kept: int
+) -> None:
+    steady, changed, told = (2.0, 1.0), (6.0, 3.0), Mock()
+    told.sample.side_effect = chain.from_iterable(
+        (it, (1.0, 1.0)) for it in [changed, *[changed] * changes, *[steady] * (9 - changes)]
+    )
+    plan = Plan(told, 8, 1, 1, [])
+    (ratios,) = compared([(plan, plan)], 9)
+    assert sorted(ratios) == [2.0] * (9 - changes) + [6.0] * (kept - 9 + changes)
 
 
 @pytest.mark.parametrize("slow", [1.5, 2.0, 3.0])
