@@ -390,6 +390,20 @@ def test_small_inputs_of_integers_that_python_keeps_accuse_nothing() -> None:
     assert found.judge("O(n)").outcome != "violated"
 
 
+def test_a_class_that_explains_all_closely_is_named_alone_beside_a_large_constant() -> None:
+    sizes = np.geomspace(300, 100_000, 20).round()
+    told = answer(lambda n: 1e-8 * (30 * n[0] * np.log(n[0]) + n * np.log(n)), sizes)
+    assert told == "O(n log n)"
+
+
+def test_a_power_that_waiting_may_have_made_is_told_where_it_is_claimed_alone() -> None:
+    sizes = np.geomspace(4, 1_000_000, 20).round()
+    found = costs(1e-8 * sizes**1.3, sizes, 200 * sizes)
+    found.memory[0, 5:] = 2e-8
+    assert found.judge().answer == found.judge("O(n)").answer == ""
+    assert "O(n^1.3)" in found.judge("O(n^1.3)").answer
+
+
 def test_a_long_beginning_hides_no_steep_end() -> None:
     """As of a convolution: each of n calls has a cost of its own."""
     sizes = np.geomspace(4, 100_000, 20).round()
