@@ -352,6 +352,7 @@ def test_a_fixture_that_asks_for_complexity_keeps_no_body_from_being_measured(
     [
         (("-o", "complexity_violated=nope"), "complexity_violated is pass, warn, fail, not 'nope'"),
         (("--complexity-budget", "0"), "--complexity-budget is a number of seconds, not 0"),
+        (("--complexity-budget", "inf"), "--complexity-budget is a number of seconds, not inf"),
         (("--complexity-history", "."), "--complexity-history is a file; * is a folder"),
         (("--complexity-history", "/dev/null/a/b"), "--complexity-history cannot be written: *"),
     ],
@@ -360,6 +361,19 @@ def test_settings_that_are_none_are_told_before_any_test(run, options, message: 
     result = run(*options)
     result.stderr.fnmatch_lines([f"*{message}*"])
     assert "test_body" not in result.stdout.str()
+
+
+def test_a_budget_of_the_command_line_goes_before_one_of_a_test(pytester: pytest.Pytester) -> None:
+    pytester.makepyfile("""
+        def test_it(complexity):
+            now = [0.0]
+            def work(n):
+                now[0] += 1e-6 * n
+            complexity(work, int, expected="O(n)", budget=1e9, clock=lambda: now[0])
+            assert 0.1 < now[0] < 1
+    """)
+    result = pytester.runpytest("-p", PLUGIN, "--complexity-budget", "0.2")
+    result.assert_outcomes(passed=1)
 
 
 def test_help_says_what_is_done_about_claims(run) -> None:
