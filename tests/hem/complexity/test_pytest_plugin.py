@@ -251,6 +251,26 @@ def test_marked_tests_that_cannot_be_measured_fail(pytester: pytest.Pytester) ->
     result.stdout.fnmatch_lines([f"*::{it} is not measured: a marked test is*" for it in names])
 
 
+def test_what_is_no_function_is_left_alone(pytester: pytest.Pytester) -> None:
+    """The plugin comes with the distribution, for whatever else is tested there."""
+    pytester.makeconftest("""
+        import pytest
+
+        class Item(pytest.Item):
+            def runtest(self):
+                pass
+
+        class File(pytest.File):
+            def collect(self):
+                yield Item.from_parent(self, name="it")
+
+        def pytest_collect_file(parent, file_path):
+            return File.from_parent(parent, path=file_path) if file_path.suffix == ".txt" else None
+    """)
+    pytester.maketxtfile(test_words="words")
+    pytester.runpytest("-p", PLUGIN).assert_outcomes(passed=1)
+
+
 def test_an_input_without_a_mark_and_a_mark_of_too_much_fail(pytester: pytest.Pytester) -> None:
     pytester.makepyfile("""
         import pytest
