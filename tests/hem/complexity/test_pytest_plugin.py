@@ -418,6 +418,11 @@ def test_history_tells_that_the_claim_is_another_and_passes_over_what_is_no_verd
         ["*: O(1) is claimed, violated, O(n), *; O(n) is claimed, consistent, O(n), *"]
     )
     line = json.loads(before)
+    answer = {"answer": "O(n²)"}
+    up, down = ({"slope": it, "slope_low": it - 0.1, "slope_high": it + 0.1} for it in (2, 0.2))
+    for other, changed in ((answer, 0), (up, 0), (answer | up, 1), (answer | down, 1)):
+        kept.write_text(json.dumps(line | other) + "\n")
+        assert ("complexity: changed" in run(*history).stdout.str()) == changed
     kept.write_text(json.dumps(line | {"slope_low": None}) + "\n")
     result = run(*history)
     result.assert_outcomes(passed=1, deselected=2)
