@@ -404,6 +404,17 @@ def test_a_power_that_waiting_may_have_made_is_told_where_it_is_claimed_alone() 
     assert "O(n^1.3)" in found.judge("O(n^1.3)").answer
 
 
+def test_what_sizes_in_the_caches_leave_open_all_sizes_tell() -> None:
+    """Waiting only adds: what shows no logarithm beyond the caches has none."""
+    sizes = np.geomspace(20, 1_000_000, 20).round()
+    seconds = 1e-8 * (600 + sizes) * np.random.default_rng(1).normal(1, 0.02, 20)
+    found = costs(seconds, sizes, 60 * sizes)
+    found.memory[0, 12:] = 3e-8
+    few = slice(10)
+    assert costs(seconds[few], sizes[few]).judge().answer == "O(n) or O(n log n)"
+    assert found.judge().answer == "O(n)"
+
+
 def test_a_long_beginning_hides_no_steep_end() -> None:
     """As of a convolution: each of n calls has a cost of its own."""
     sizes = np.geomspace(4, 100_000, 20).round()
