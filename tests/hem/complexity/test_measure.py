@@ -432,6 +432,13 @@ def test_a_jump_near_the_end_is_no_steep_class() -> None:
     assert answer(lambda _: seconds, sizes) != "O(n²)"
 
 
+@pytest.mark.parametrize("largest", [300, 1_000])
+def test_what_is_linear_and_becomes_cubic_is_not_quadratic_between(largest: int) -> None:
+    sizes = np.geomspace(4, largest, 20).round()
+    told = answer(lambda n: 5e-7 * n * (1 + (n / (0.6 * largest)) ** 2), sizes)
+    assert told in ("", "O(n³)")
+
+
 def test_what_grows_ever_steeper_is_no_power_law() -> None:
     """As of inverting a matrix: what is of n² fades as what is of n³ grows."""
     between = np.geomspace(20, 900, 20).round()
