@@ -127,11 +127,12 @@ def motion(fracture: Fracture, blow: Blow, seed: int | None = None, held: ArrayL
     So Σ m v = J d, the angular momentum about the impact is 0, and the kinetic energy is at most
     force × mass; for pieces of sheets as for bodies. O(n).
     """
-    if not fracture.mass.masses.sum() > 0:
+    pieces = fracture.of_density_1  # a blow is per kilogram; no sum of squares overflows then
+    if not pieces.masses.sum() > 0:
         raise MeshError("the pieces weigh nothing, and no blow moves them")
     moving = Motion(*np.zeros((2, len(fracture.pieces), 3)))
     free = fracture.free(held)
-    mass = Mass(*(column[free] for column in fracture.mass))
+    mass = Mass(*(column[free] for column in pieces))
     if not mass.masses.sum() > 0:
         return moving
     whole = _whole(mass)

@@ -70,10 +70,16 @@ class Fracture:
     @cached_property
     def mass(self) -> Mass:
         """What the pieces weigh. Cost O(faces)."""
+        volumes, masses, centers, inertias = self.of_density_1
         density = self.material.density
+        return Mass(volumes, density * masses, centers, density * inertias)
+
+    @cached_property
+    def of_density_1(self) -> Mass:
+        """The same if it were of 1 kg / m³: how they move does not depend on the density."""
         if self.closed:
-            return of_bodies(self.pieces, density)
-        return of_sheets(self.pieces, density, self.material.thickness * self.diagonal)
+            return of_bodies(self.pieces, 1.0)
+        return of_sheets(self.pieces, 1.0, self.material.thickness * self.diagonal)
 
 
 def islands(mesh: TriangleMesh) -> list[TriangleMesh]:

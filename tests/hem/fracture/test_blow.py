@@ -1,4 +1,5 @@
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -112,6 +113,14 @@ def test_forces_without_measure_give_finite_motions(force):
     moved = motion(found, Blow(found.impact, found.direction, force))
     assert np.isfinite(moved.velocities).all()
     assert np.isfinite(moved.spins).all()
+
+
+@pytest.mark.parametrize("density", [5e-324, 1e-300, 1e300, 1.7e308])
+def test_a_blow_per_kilogram_moves_a_light_and_a_heavy_material_alike(density):
+    found, blow = struck("sphere", 3)
+    other = replace(found, material=replace(found.material, density=density))
+    for one, it in zip(motion(found, blow), motion(other, blow), strict=True):
+        np.testing.assert_allclose(it, one, rtol=1e-9)
 
 
 def test_the_same_seed_gives_the_same_motion_and_another_one_another():
