@@ -74,9 +74,22 @@ def test_a_torus_has_two_faces_a_vertex_and_every_valence_six() -> None:
     assert set(valences(mesh)) == {6}
 
 
-def test_a_grid_of_a_hundred_is_ten_by_ten() -> None:
-    x, y, z = hem.generate("grid", 100).points.T
-    assert (len(np.unique(x)), len(np.unique(y)), len(np.unique(z))) == (10, 10, 1)
+@pytest.mark.parametrize(("n", "columns", "rows"), [(100, 10, 10), (137, 17, 8), (2_000, 50, 40)])
+def test_a_grid_is_of_square_cells_and_as_near_to_a_square_as_its_size_allows(
+    n: int, columns: int, rows: int
+) -> None:
+    x, y, z = (np.unique(it) for it in hem.generate("grid", n).points.T)
+    assert (len(x), len(y), len(z)) == (columns, rows, 1)
+    assert np.allclose(np.diff(x), 1 / (columns - 1))
+    assert np.allclose(np.diff(y), 1 / (columns - 1))
+
+
+@pytest.mark.parametrize("n", [100, 1_800, 10_000])
+def test_a_torus_is_as_near_to_twice_as_long_as_wide_as_its_size_allows(n: int) -> None:
+    ways = [(n / it**2, n // it) for it in range(3, n) if n % it == 0 and n <= 4 * it**2 <= 4 * n]
+    _, around = min((abs(ratio - 2), long) for ratio, long in ways)
+    x, y, _ = hem.generate("torus", n).points.T
+    assert len(np.unique(np.arctan2(y, x).round(3))) == around
 
 
 def test_a_cone_has_two_vertices_of_valence_n_less_two() -> None:

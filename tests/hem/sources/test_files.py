@@ -677,6 +677,42 @@ def test_the_head_of_an_openctm_file_says_what_it_has() -> None:
     assert besides(head) == [TEXTURE, NORMALS]
 
 
+def test_an_openctm_file_of_all_parts_is_read_whole_and_refused_without_its_last_byte(
+    tmp_path: Path,
+) -> None:
+    head = struct.pack("<4sI4s6I", b"OCTM", 5, b"RAW", 3, 1, 1, 1, 1, 2) + b"by"
+    parts = b"INDX" + struct.pack("<3I", 0, 1, 2) + b"VERT" + np.eye(3, dtype="<f4").tobytes()
+    parts += b"NORM" + np.ones((3, 3), "<f4").tobytes()
+    parts += b"TEXC" + struct.pack("<I3sI2s6f", 3, b"map", 2, b"it", *range(6))
+    parts += b"ATTR" + struct.pack("<I5s12f", 5, b"Color", *12 * [0.5])
+    with pytest.warns(hem.MeshWarning, match=f"{TEXTURE}, {NORMALS}"):
+        assert np.array_equal(hem.load(written(tmp_path / "a.ctm", head + parts)).points, np.eye(3))
+    size = len(head + parts)
+    with pytest.raises(hem.MeshError, match=f"{size - 1} of {size} bytes"):
+        hem.load(written(tmp_path / "b.ctm", (head + parts)[:-1]))
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "words"),
+    [
+        ("flat.obj", "v 0 0\nv 1 0\nv 0 1\nf 1 2 3\n", "without three coordinates"),
+        ("flat.off", OFF.format(0, 3).replace(" 0\n3", "\n3"), "without three coordinates"),
+        ("zero.obj", "v 0 0 0\nf 0 2 3\nv 1 0 0\nv 0 1 0\n", "such as -1"),
+        ("other.off", OFF.format(0, 3).replace("OFF", "COFFEE"), "does not begin as off files do"),
+        ("points.off", "OFF\n3 0 0\n0 0 0\n1 0 0\n0 1 0\n", "only 3 points"),
+        (
+            "words.stl", "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 no\nvertex 1 0 0\n"
+            "vertex 0 1 0\nendloop\nendfacet\nendsolid\n", "coordinate that is no number",
+        ),
+    ],
+)  # fmt: skip
+def test_what_a_text_file_has_instead_of_points_and_corners_is_told(
+    tmp_path: Path, name: str, content: str, words: str
+) -> None:
+    with pytest.raises(hem.MeshError, match=words):
+        hem.load(written(tmp_path / name, content))
+
+
 def test_off_files_of_other_dimensions_are_refused(tmp_path: Path) -> None:
     for head in ("4OFF", "nOFF", "nÄOFF"):
         text = OFF.format(0, 3).replace("OFF", head).encode("latin-1")
