@@ -49,13 +49,16 @@ def test_neighbors_are_those_that_face_each_other(name):
         assert apart.min() < 1e-5 * it.diagonal
 
 
-def test_cells_in_several_parts_have_neighbors_of_their_own():
-    # A frame: the cells of left and right each reach both arms, and touch in both.
-    ring = Manifold.cube((3, 3, 1), True) - Manifold.cube((1, 1, 3), True).scale((2.5, 1, 1))
-    made = ring.to_mesh64()
-    frame = hem.TriangleMesh(np.asarray(made.vert_properties)[:, :3], np.asarray(made.tri_verts))
-    found = voronoi(frame, (0, 1.5, 0), "wood", sites=[(-0.9, 0, 0), (0, 0, 0), (0.9, 0, 0)])
+@pytest.mark.parametrize("axis", range(3))
+def test_cells_in_several_parts_have_neighbors_of_their_own(axis):
+    # A frame with a larger and a smaller arm: the cells of the middle have a part in each.
+    hole = Manifold.cube((2.5, 1, 3), True).translate((0, 0.2, 0))
+    made = (Manifold.cube((3, 3, 1), True) - hole).to_mesh64()
+    points = np.roll(np.asarray(made.vert_properties)[:, :3], axis, axis=1)
+    frame = hem.TriangleMesh(points, np.asarray(made.tri_verts))
+    sites = np.roll([(x, 0, 0) for x in (-1.2, -0.4, 0.4, 1.2)], axis, axis=1)
+    found = voronoi(frame, np.roll((0, 1.5, 0), axis), "wood", sites=sites)
     require_pieces(found, require_body(frame))
-    # left | upper and lower middle | right
-    assert len(found.shards) == 4
-    assert found.neighbors.tolist() == [[0, 1], [0, 2], [1, 3], [2, 3]]
+    # left | two of either arm | right
+    assert len(found.shards) == 6
+    assert found.neighbors.tolist() == [[0, 1], [0, 2], [1, 3], [2, 4], [3, 5], [4, 5]]
