@@ -61,6 +61,7 @@ def test_after_any_edits_it_equals_one_made_afresh(s):
     for seed in range(8):
         some_edits(s, 25, seed)
         assert_in_step(render)
+        assert_in_step(hem.RenderMesh(s))
 
 
 def test_batches_moves_and_compaction_are_followed(s):
@@ -176,6 +177,20 @@ def test_closed_it_follows_no_more(s):
     render.close()
     s.split_face(0, (0, 0, 0))
     assert render.indices.tolist() == before
+
+
+def test_arrays_that_lie_elsewhere_than_before_are_told_with_all_they_hold():
+    render, told = hem.RenderMesh(structures.build("half_edge", hem.generate("torus", 100))), []
+    render.subscribe(told.append)
+    before = render.points, render.indices
+    render.reserve(10)
+    assert not told  # there was room
+    render.reserve(5_000_000)
+    for now, was in zip((render.points, render.indices), before, strict=True):
+        assert now.ctypes.data != was.ctypes.data
+        assert np.array_equal(now, was)
+    assert [it.resized for it in told] == [True]
+    assert (told[0].vertices.tolist(), told[0].triangles.tolist()) == ([[0, 100]], [[0, 200]])
 
 
 def test_every_subscriber_hears_of_an_edit_even_if_another_raises(s):
@@ -369,7 +384,8 @@ def test_odd_arguments_are_refused_in_words(s):
     for given in (heat, "heat", 3):
         with pytest.raises(hem.MeshError, match="takes a list of attributes"):
             hem.RenderMesh(s, given)
-    for given in (["heat"], [None], [s.face_attribute("heat")]):
+    other = copy.copy(s)
+    for given in (["heat"], [None], [s.face_attribute("heat")], [other.vertex_attribute("heat")]):
         with pytest.raises(hem.MeshError, match="no attribute of vertices of this mesh"):
             hem.RenderMesh(s, given)
     for given in (heat, "uv", None):
