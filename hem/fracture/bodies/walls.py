@@ -30,8 +30,8 @@ def touching(pieces: Sequence[TriangleMesh], labels: Sequence[Indices], least: f
     """
     walls = _gathered(pieces, labels)
     pairs: dict[tuple[int, int], float] = defaultdict(float)
-    ends = np.flatnonzero(np.diff(walls.wall)) + 1
-    for of_wall in np.split(np.arange(len(walls.wall)), ends):
+    begins = np.flatnonzero(np.diff(walls.wall, prepend=-1))
+    for of_wall in np.split(np.arange(len(walls.wall)), begins)[1:]:
         one, other = _sides(walls, of_wall)
         for here, there in ((one, other), (other, one)):
             for pair, area in _met(walls, here, there).items():
@@ -53,8 +53,6 @@ def _gathered(pieces: Sequence[TriangleMesh], labels: Sequence[Indices]) -> _Wal
 
 def _sides(walls: _Walls, of_wall: Indices) -> tuple[Indices, Indices]:
     """The triangles of a wall that look one way, as its largest does, and the other way."""
-    if not len(of_wall):
-        return of_wall, of_wall
     largest = of_wall[np.argmax(walls.areas[of_wall])]
     alike = walls.normals[of_wall] @ walls.normals[largest] > 0
     return of_wall[alike], of_wall[~alike]
@@ -62,8 +60,6 @@ def _sides(walls: _Walls, of_wall: Indices) -> tuple[Indices, Indices]:
 
 def _met(walls: _Walls, here: Indices, there: Indices) -> dict[tuple[int, int], float]:
     """How much of the triangles here lies against which pieces' there."""
-    if not len(here) or not len(there):
-        return {}
     ours, theirs = walls.piece[here], walls.piece[there]
     if len(set(ours.tolist())) == 1 and len(set(theirs.tolist())) == 1:
         facing = np.full(len(here), theirs[0])

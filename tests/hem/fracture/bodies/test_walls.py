@@ -62,3 +62,7 @@ def test_cells_in_several_parts_have_neighbors_of_their_own(axis):
     # left | two of either arm | right
     assert len(found.shards) == 6
     assert found.neighbors.tolist() == [[0, 1], [0, 2], [1, 3], [2, 4], [3, 5], [4, 5]]
+
+
+def test_a_body_in_one_piece_has_no_neighbors():
+    assert voronoi(body("plate"), (0, 0, 1), sites=[(0, 0, 0)]).neighbors.shape == (0, 2)
