@@ -39,8 +39,8 @@ class Cells:
     def union(self, chosen: Bools, first_label: int = 0) -> Any:
         """Some of the n cells together, as a body for manifold3d. O(t).
 
-        Its faces are labeled ``first_label`` + wall. Raises MeshError where they meet in an edge or
-        a corner only, so that their union has no surface.
+        Its faces are labeled ``first_label`` + wall. Of sites in general position: of cells that
+        meet in an edge only manifold3d may make another body, and does not say so.
         """
         of = np.append(chosen, np.zeros(6, bool))
         outward, inward = of[self.front] & ~of[self.back], of[self.back] & ~of[self.front]

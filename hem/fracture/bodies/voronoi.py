@@ -6,10 +6,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from hem.arrays import Floats
-from hem.errors import MeshError, load_optional
+from hem.errors import MeshError
 from hem.fracture.blow import Blow
 from hem.fracture.blow import sites as sites_of
-from hem.fracture.bodies.cells import Cells, cells
+from hem.fracture.bodies.cells import cells
 from hem.fracture.bodies.solid import Body, Shell, from_manifold, require_body, with_hollows
 from hem.fracture.bodies.walls import touching
 from hem.fracture.material import Material
@@ -163,21 +163,10 @@ def _cut(body: Body, plan: _Plan) -> _Made:
         vanished += lost
     rest: list[Shell] = []
     if plan.breaking < len(plan.sites):
-        rest, lost = _parts(_remainder(body, cut, plan.breaking, label), body, thin)
+        broken = cut.union(np.arange(len(plan.sites)) < plan.breaking, label)
+        rest, lost = _parts(body.manifold - broken, body, thin)
         vanished += lost
     return _Made(shards, rest, missed, vanished)
-
-
-def _remainder(body: Body, cut: Cells, breaking: int, label: int) -> Any:
-    """The body without the cells that break off."""
-    manifold3d = load_optional("manifold3d", "fracture")
-
-    broken = np.arange(len(cut.sites)) < breaking
-    try:
-        return body.manifold - cut.union(broken, label)
-    except MeshError:  # cells that meet in an edge only are taken out one by one
-        each = [cut.cell(site, label) for site in range(breaking)]
-        return manifold3d.Manifold.batch_boolean([body.manifold, *each], manifold3d.OpType.Subtract)
 
 
 def _parts(made: Any, body: Body, thin: float) -> tuple[list[Shell], int]:

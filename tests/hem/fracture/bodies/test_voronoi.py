@@ -110,20 +110,6 @@ def test_cells_inside_the_body_leave_a_hollow():
     )
 
 
-def test_cells_that_meet_in_an_edge_only_leave_what_is_between_them():
-    it = body("plate")
-    sites = np.array([(1, 1, 0), (-1, -1, 0), (1, -1, 0), (-1, 1, 0)]) / 2
-    module = import_module("hem.fracture.bodies.voronoi")
-    made = module._cut(it, module._Plan(sites, 2, 0, 0))
-    assert len(made.shards) == len(made.rest) == 2
-    for found, corners in ((made.shards, sites[:2]), (made.rest, sites[2:])):
-        pieces = [as_trimesh(piece.mesh) for piece in found]
-        assert sum(piece.volume for piece in pieces) == pytest.approx(it.volume / 2, rel=1e-6)
-        assert {*map(tuple, np.sign([p.centroid[:2] for p in pieces]))} == {
-            *map(tuple, np.sign(corners[:, :2]))
-        }
-
-
 @pytest.mark.parametrize("name", waiting_for(QUICK, ["plate", "sphere", "teapot"]))
 def test_stronger_blows_make_more_shards_that_are_smaller_near_the_impact(name):
     it = body(name)
