@@ -6,13 +6,15 @@ from typing import NamedTuple
 
 import numpy as np
 import pytest
+from scipy.spatial import Delaunay
+from scipy.spatial.transform import Rotation
 
 import hem
 from hem.fracture.files import names
 from hem.fracture.material import MATERIALS
 from hem.fracture.pieces import Fracture
 from hem.fracture.show import GRAVITY, Flight, flight
-from hem.fracture.show.flight import FRICTION
+from hem.fracture.show.flight import BOUNCE, FRICTION
 
 
 class Motion(NamedTuple):
@@ -113,6 +115,43 @@ def test_a_sliding_box_is_stopped_by_friction_after_the_way_that_coulomb_says():
     flown = flight(broken, Motion(np.array([[2.0, 0, 0]]), np.zeros((1, 3))), 2.0, 41)
     way = 2.0**2 / (2 * FRICTION * GRAVITY)
     np.testing.assert_allclose(flown.positions[-1, 0, 0], way, rtol=1e-6)
+
+
+def test_a_box_thrown_flat_hops_once_and_slides_from_where_it_meets_the_floor():
+    broken = fracture([box((0.4, 0.2, 0.4), (0, 0.6, 0))])
+    flown = flight(broken, Motion(np.array([[1.0, 2, 0]]), np.array([[0, 5.0, 0]])), 1.2, 241)
+    arrives = np.sqrt(2.0**2 + 2 * GRAVITY * 0.5)
+    landing, stop = (2 + arrives) / GRAVITY, 1 / (FRICTION * GRAVITY)
+    t, after = flown.times, np.maximum(flown.times - landing, 0)
+    hop = np.maximum(BOUNCE * arrives * after - GRAVITY / 2 * after**2, 0)
+    height = np.where(after > 0, hop, 0.5 + 2 * t - GRAVITY / 2 * t**2)
+    slid = np.minimum(after, stop)
+    way = np.minimum(t, landing) + slid - slid**2 / (2 * stop)
+    np.testing.assert_allclose(flown.positions[:, 0, 1], 0.1 + height, atol=0.01)
+    np.testing.assert_allclose(flown.positions[:, 0, 0], way, atol=0.01)
+
+
+def test_a_leaning_piece_comes_to_rest_on_a_side_that_its_center_is_above():
+    upright = box((0.2, 0.6, 0.2))
+    leaning = upright.points + upright.points[:, 1:2] * (1, 0, 0)
+    turns = Rotation.random(12, random_state=1).as_matrix()
+    pieces = [hem.TriangleMesh(leaning @ it.T, upright.triangles) for it in (np.eye(3), *turns)]
+    flown = flight(fracture(pieces), Motion(*np.zeros((2, 13, 3))), 6.0, 5, floor=-1)
+    for piece in range(len(pieces)):
+        points = points_of(fracture(pieces), flown, 4, piece)
+        below = points[points[:, 1] < -1 + 1e-3][:, [0, 2]]
+        assert Delaunay(below).find_simplex(flown.positions[4, piece, [0, 2]]) >= 0
+
+
+@pytest.mark.parametrize(("spin", "turned"), [(3.0, 47), (-3.0, -43)])
+def test_a_tilted_box_falls_onto_the_side_that_it_turns_to(spin, turned):
+    upright = box((0.2, 0.2, 0.2))
+    tilted = Rotation.from_rotvec((0, 0, 43), degrees=True).apply(upright.points)
+    broken = fracture([hem.TriangleMesh(tilted, upright.triangles)])
+    motion = Motion(np.zeros((1, 3)), np.array([[0, 0, spin]]))
+    flown = flight(broken, motion, 3.0, 5, floor=float(tilted[:, 1].min()))
+    found = Rotation.from_matrix(flown.rotations[-1, 0]).as_rotvec(degrees=True)
+    np.testing.assert_allclose(found, (0, 0, turned), atol=0.1)
 
 
 def test_held_pieces_stay_and_the_same_arguments_give_the_same_flight():
