@@ -77,8 +77,8 @@ class _Piece:
         positions, rotations = self._free(velocity, spin, np.minimum(times, landing))
         after = np.maximum(times - landing, 0)
         arrived = velocity - GRAVITY * landing * self.up
-        sinking = min(float(arrived @ self.up), 0.0)
-        along = arrived - (arrived @ self.up) * self.up
+        sinking = float(arrived @ self.up)
+        along = arrived - sinking * self.up
         speed = float(np.linalg.norm(along))
         stop = speed / (FRICTION * GRAVITY)
         t = np.minimum(after, stop)[:, None]
@@ -133,7 +133,7 @@ def _hull(points: Floats) -> tuple[Floats, Floats]:
         return points, np.stack([flat, -flat])
     normals, far = hull.equations[:, :3], -hull.equations[:, 3]
     below = (normals @ normals.T * far[:, None] <= far[None, :] + 1e-9 * far.max()).all(axis=1)
-    return points[hull.vertices], normals[below] if below.any() else normals
+    return points[hull.vertices], normals[below]  # the nearest side is always one of them
 
 
 def _turned(angles: Floats) -> Floats:

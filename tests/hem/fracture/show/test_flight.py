@@ -152,6 +152,7 @@ def test_a_tilted_box_falls_onto_the_side_that_it_turns_to(spin, turned):
     flown = flight(broken, motion, 3.0, 5, floor=float(tilted[:, 1].min()))
     found = Rotation.from_matrix(flown.rotations[-1, 0]).as_rotvec(degrees=True)
     np.testing.assert_allclose(found, (0, 0, turned), atol=0.1)
+    np.testing.assert_allclose(flown.rotations[0, 0], np.eye(3), atol=1e-12)
 
 
 def test_held_pieces_stay_and_the_same_arguments_give_the_same_flight():
