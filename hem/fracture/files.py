@@ -23,7 +23,7 @@ SCHEMA = 1
 
 def names(fracture: Fracture) -> list[str]:
     """The names of all pieces: shard_000 and on, then rest, island_0 and on."""
-    digits = max(3, len(str(max(len(fracture.shards) - 1, 0))))
+    digits = max(3, len(str(len(fracture.shards) - 1)))
     shards = [f"shard_{i:0{digits}d}" for i in range(len(fracture.shards))]
     islands = [f"island_{i}" for i in range(len(fracture.rest) - 1)]
     return [*shards, *(["rest"] if len(fracture.rest) else []), *islands]
@@ -211,7 +211,7 @@ def _described_pieces(fracture: Fracture, motion: Motion) -> list[dict[str, Any]
         "velocity_m_s": motion.velocities.tolist(),
         "spin_rad_s": motion.spins.tolist(),
         "kinetic_energy_J": kinetic_energies(mass, motion).tolist(),
-        "neighbors": [sorted(indices) for indices in beside],
+        "neighbors": beside,
     }
     if not fracture.closed:
         columns["area_m2"] = (mass.volumes / _thickness(fracture)).tolist()

@@ -77,12 +77,12 @@ def test_a_material_of_any_name_can_be_saved(broken, tmp_path):
 
 def test_ply_holds_a_file_for_every_piece_and_none_of_a_fracture_before(broken, sheet, tmp_path):
     (tmp_path / "pieces").mkdir()
-    for name in ("notes.txt", "shard_999.ply", "island_7.ply"):
+    for name in ("notes.txt", "mine.ply", "shard_999.ply", "island_7.ply"):
         (tmp_path / "pieces" / name).write_text("before")
     paths = save_pieces(broken, tmp_path, "ply")
     assert [path.stem for path in paths] == names(broken)
     kept = {path.name for path in (tmp_path / "pieces").iterdir()}
-    assert kept == {"notes.txt", *(path.name for path in paths)}
+    assert kept == {"notes.txt", "mine.ply", *(path.name for path in paths)}
     for path, piece in zip(paths, broken.pieces, strict=True):
         np.testing.assert_array_equal(corners(hem.load(path)), corners(piece))
 
@@ -92,6 +92,8 @@ def test_the_rest_and_its_islands_have_names_of_their_own(sheet):
     assert len(given) == len(set(given)) == len(sheet.pieces)
     assert given[len(sheet.shards)] == "rest"
     assert given[0] == "shard_000"
+    assert names(replace(sheet, rest=[])) == given[: len(sheet.shards)]
+    assert names(replace(sheet, shards=[])) == given[len(sheet.shards) :]
 
 
 @pytest.mark.parametrize("kind", ["broken", "sheet"])
@@ -113,6 +115,7 @@ def test_the_numbers_are_those_of_the_fracture_and_json_can_hold_them(kind, requ
     np.testing.assert_allclose(momentum, totals["momentum_kg_m_s"], atol=1e-9 * totals["mass_kg"])
     pairs = {(i, j) for i, it in enumerate(pieces) for j in it["neighbors"]}
     assert pairs == {pair for a, b in found.neighbors.tolist() for pair in ((a, b), (b, a))}
+    assert all(it["neighbors"] == sorted(it["neighbors"]) for it in pieces)
     if not found.closed:
         each = pieces[0]
         assert each["area_m2"] * told["thickness_m"] == pytest.approx(each["volume_m3"])
