@@ -300,7 +300,8 @@ def test_what_cannot_be_saved_is_refused_with_the_reason(tmp_path: Path) -> None
 def test_what_a_format_does_not_keep_replaces_no_file(tmp_path: Path) -> None:
     mesh = hem.TriangleMesh([(0, 0, 0), (0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2), (1, 2, 3)])
     for extension, words in {
-        "xyz": "0 of 2 faces", "x3d": "1 of 2 faces", "json": "Unknown format for load",
+        "xyz": "0 of 2 faces", "u3d": "writes no u3d file", "x3d": "1 of 2 faces",
+        "json": "Unknown format for load",
     }.items():  # fmt: skip
         file = written(tmp_path / f"mesh.{extension}", "what was there")
         with pytest.raises(hem.MeshError, match=words), warnings.catch_warnings(action="ignore"):

@@ -491,6 +491,25 @@ def test_what_a_subscriber_raises_ends_it_after_an_edit_that_all_are_told_of(nam
     require_whole(s, render)
 
 
+def test_far_from_the_origin_what_is_within_roundings_of_a_vertex_lies_on_it():
+    far = 2.0**14
+    near, corner = ((far + 4 + it, 4 + it / 2, 0) for it in (0.03, 0))
+    assert TOLERANCE * diagonal(sheet()) < 0.03 < ROUNDING * far
+    mesh = hem.TriangleMesh(sheet().points + np.float32((far, 0, 0)), sheet().triangles)
+    none = replace(MATERIALS["glass"], circles=())
+    found = [shatter(structures.build("half_edge", mesh), it, none).shards for it in (near, corner)]
+    assert len(found[0]) == len(found[1])
+
+
+def test_a_mesh_without_area_is_told_to_be_struck_elsewhere_and_stays():
+    s = structures.build(
+        "half_edge", hem.TriangleMesh([(0, 0, 0), (1, 0, 0), (3, 0, 0)], [(0, 1, 2)])
+    )
+    with pytest.raises(hem.MeshError, match="has no area; strike beside it"):
+        shatter(s, (1, 0, 0))
+    assert s.n_faces == 1
+
+
 def test_faces_without_area_are_no_trouble_to_find_others():
     flat = hem.TriangleMesh(
         [(0, 0, 0), (0, 0, 0), (0, 0, 0), (1, 0, 0), (2, 0, 0), (5, 0, 0), (6, 0, 0), (5, 1, 0)],
