@@ -67,13 +67,13 @@ def run_study(
     from experiments.runs import PEER_RUNS, RUNS, cluster, experiments, latest, study
 
     memory.available()  # whether HEM_MEMORY can be read
-    if peers and mesh:
+    if peers and mesh is not None:
         raise ValueError("other libraries are measured on meshes of their own: leave out --mesh")
-    if workers:
-        if mesh:
+    if workers is not None:
+        if mesh is not None:
             raise ValueError("--mesh is measured on this machine: leave out --workers")
         cluster.require(workers)
-    if repair and not mesh:
+    if repair and mesh is None:
         raise ValueError("--repair is about a mesh: say --mesh as well")
     output = output or (PEER_RUNS if peers else RUNS)
     if peers and not resume:
@@ -82,7 +82,7 @@ def run_study(
     options |= {"structures": structure, "experiments": experiment}
     given = {key: it for key, it in options.items() if it not in (None, [])}
     if resume:
-        if mesh:
+        if mesh is not None:
             raise ValueError("a run is resumed on the mesh it was begun with: leave out --mesh")
         folder = run or latest(output, unfinished=True)
         _require_as_begun(folder, given, workers)

@@ -82,10 +82,10 @@ def begin(
     require_known("preset", [preset], PRESETS)
     chosen = {"structures": list(structures), "experiments": [f"bench_{name}" for name in short]}
     name = f"{datetime.now(UTC).strftime('%Y%m%d-%H%M%S')}-{preset}"
-    folder = _new_folder(root, f"{name}-{own_mesh.called(mesh)}" if mesh else name)
+    folder = _new_folder(root, f"{name}-{own_mesh.called(mesh)}" if mesh is not None else name)
     try:
         known = {**describe(preset), **chosen, "seed": seed, "pin": pin}
-        if mesh:
+        if mesh is not None:
             refusals = own_mesh.keep_versions(folder, mesh, repair)
             known["structures"] = _holding(mesh, refusals, known["structures"])
             known["preset"] += ON + own_mesh.called(mesh)  # what is compared is of one mesh

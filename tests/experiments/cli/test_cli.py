@@ -113,6 +113,14 @@ def test_what_cannot_be_written_is_told_before_anything_is_measured(tmp_path):
     assert "is a folder" in mistake("report", run, "--pdf", "--output", str(tmp_path))
 
 
+@pytest.mark.parametrize(
+    ("option", "said"), [("--mesh", "there is no model ''"), ("--workers", "no cluster answers at")]
+)
+def test_an_empty_name_is_a_mistake_and_no_study_without_it(option, said, tmp_path):
+    assert said in mistake("study", option, "", "--experiment", "naming", "--output", str(tmp_path))
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_a_baseline_that_is_not_there_is_made_where_it_was_looked_for(tmp_path):
     said = mistake("check", "--structure", "indexed", "--baseline", str(tmp_path), code=2)
     assert f"hem baseline update --baseline {tmp_path}" in said
