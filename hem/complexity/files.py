@@ -34,7 +34,7 @@ class Curve(NamedTuple):
     fixed: tuple[str, ...] = ()
 
 
-def read_curves(path: Path, parameter: str | None = None) -> list[Curve]:
+def read_curves(path: str | Path, parameter: str | None = None) -> list[Curve]:
     """The curves of a file, a function each, in the file's order.
 
     parameter: the one that sizes are of; it may be left out where only one varies. The others are
@@ -44,7 +44,7 @@ def read_curves(path: Path, parameter: str | None = None) -> list[Curve]:
     Raises ValueError that says what is wrong with the file, OSError if there is none.
     """
     try:
-        text = path.read_text("utf-8-sig")
+        text = Path(path).read_text("utf-8-sig")
     except UnicodeDecodeError as error:
         raise ValueError(f"{path} is no text in UTF-8: {error}") from error
     is_json = text.lstrip()[:1] in ("{", "[")
@@ -83,7 +83,7 @@ def read_curves(path: Path, parameter: str | None = None) -> list[Curve]:
     ]
 
 
-def _read_csv(text: str, path: Path) -> Iterator[Row]:
+def _read_csv(text: str, path: str | Path) -> Iterator[Row]:
     try:
         lines = [(i, line) for i, line in enumerate(csv.reader(text.splitlines()), 1) if any(line)]
     except csv.Error as error:
@@ -107,7 +107,7 @@ def _read_csv(text: str, path: Path) -> Iterator[Row]:
                 raise ValueError(f"{path}, row {number}, {name}: {cell!r} is no number")
 
 
-def _read_json(text: str, path: Path) -> list[Row]:
+def _read_json(text: str, path: str | Path) -> list[Row]:
     known = "pytest-benchmark, Google Benchmark or hyperfine"
     try:
         content = json.loads(text)

@@ -1,6 +1,7 @@
 """A mesh by a name, as every command takes it: a file, a sample, or a family and a size."""
 
 import re
+from os import PathLike, fspath
 from os.path import exists, isfile  # which say no where a name is too long for a path
 from pathlib import Path
 from typing import Literal, overload
@@ -13,14 +14,15 @@ from hem.sources.repair import repaired
 from hem.sources.samples import SAMPLES, sample
 
 USUAL_SIZE = 2_000  # vertices of a family that is named without a size
+Name = str | PathLike[str]
 
 
 @overload
-def find_mesh(name: str, repair: bool = ..., *, triangulate: Literal[True]) -> TriangleMesh: ...
+def find_mesh(name: Name, repair: bool = ..., *, triangulate: Literal[True]) -> TriangleMesh: ...
 @overload
-def find_mesh(name: str, repair: bool = ...) -> TriangleMesh | PolygonMesh: ...
+def find_mesh(name: Name, repair: bool = ...) -> TriangleMesh | PolygonMesh: ...
 def find_mesh(
-    name: str, repair: bool = False, *, triangulate: bool = False
+    name: Name, repair: bool = False, *, triangulate: bool = False
 ) -> TriangleMesh | PolygonMesh:
     """The mesh of a file, of a sample (`bunny`), or of a family and its size (`sphere:2000`).
 
@@ -31,6 +33,7 @@ def find_mesh(
     `load`. Raises MeshError for a name that nothing has, with those that there are, and for what
     cannot be read.
     """
+    name = fspath(name)
     family, _, size = name.partition(":")
     known = name in SAMPLES or family in FAMILIES
     if isfile(name) or (not known and (exists(name) or Path(name).suffix)):

@@ -47,8 +47,9 @@ CSV = "n,sort\n10,3\n20,7\n10,4\n"
 def test_samples_are_told_by_size(tmp_path: Path, content: Any, name: str, unit: float) -> None:
     file = tmp_path / "costs"
     file.write_text(content if isinstance(content, str) else json.dumps(content))
-    (curve,) = read_curves(file)
-    assert (curve.name, curve.parameter) == (name, "n")
+    for path in (file, str(file)):
+        (curve,) = read_curves(path)
+        assert (curve.name, curve.parameter) == (name, "n")
     assert curve.sizes.tolist() == [10, 20]
     for row, told in zip(curve.samples, ([3, 4], [7]), strict=True):
         assert row / unit == pytest.approx(told)

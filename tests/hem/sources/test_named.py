@@ -33,7 +33,8 @@ def test_a_file_comes_before_a_sample_of_its_name(tmp_path, monkeypatch):
 def test_polygons_are_kept_unless_they_are_to_be_cut(tmp_path):
     file = tmp_path / "quad.obj"
     file.write_text("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n")
-    assert len(hem.find_mesh(str(file)).faces) == 1
+    for path in (file, str(file)):
+        assert len(hem.find_mesh(path).faces) == 1
     assert len(hem.find_mesh(str(file), triangulate=True).triangles) == 2
 
 
