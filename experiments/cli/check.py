@@ -95,7 +95,7 @@ def _compare(
         notes.append("just the counters were compared; all of a run with: hem check RUN")
     if beside:
         findings += gate.compare_trees(beside, structures=structures, **factors)
-    return gate.Compared(findings, notes)
+    return gate.Compared(findings, list(dict.fromkeys(notes)))
 
 
 def _load(folder: Path) -> Run:

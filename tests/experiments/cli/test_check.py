@@ -8,7 +8,14 @@ from pathlib import Path
 import pytest
 from rich.console import Console
 
-from experiments.regression import COUNTERS, compare_runs, load_baseline, reduce_run, save_baseline
+from experiments.regression import (
+    COUNTERS,
+    RUN,
+    compare_runs,
+    load_baseline,
+    reduce_run,
+    save_baseline,
+)
 from experiments.report import findings
 from experiments.runs import read_meta, write_meta
 from tests.experiments.cli.calls import hem, mistake
@@ -84,6 +91,17 @@ def test_a_worse_structure_fails_the_command_and_shows_the_numbers_in_80_columns
     assert max(map(len, output.splitlines())) <= 80
     assert "Table 1, Face → Vertices: O(1)" in output
     assert "Something got worse" in page.read_text()
+
+
+def test_what_holds_of_counters_and_of_a_run_is_said_once(baseline, base_folder, base_run):
+    for part, measured in (
+        (COUNTERS, load_baseline(COUNTERS, baseline)),
+        (RUN, reduce_run(base_run).only(["indexed"])),
+    ):
+        meta = measured.run.meta | {"versions": {"python": "3.0.0"}}
+        save_baseline(part, replace(measured, run=replace(measured.run, meta=meta)), baseline)
+    options = "--structure", "indexed", "--baseline", str(baseline)
+    assert hem("check", str(base_folder), *options)[1].count("the baseline has 3.0.0") == 1
 
 
 @pytest.mark.parametrize("differs", [{"machine": {"cpu": "another"}}, {"too_busy": True}])
