@@ -15,7 +15,7 @@ from experiments.runs import experiments, load, read_meta, study
 from hem.meshes import non_manifold_edges
 from tests.experiments.cli.calls import hem as command
 from tests.experiments.small_study import begin, go_on
-from tests.extent import EVERYTHING, waiting_for
+from tests.extent import EVERYTHING, exhaustive, waiting_for
 
 ON_ONE_MESH = "memory", *(("queries", "operations", "operation_work", "real_time") * EVERYTHING)
 
@@ -99,7 +99,8 @@ def test_a_run_keeps_its_mesh_and_is_called_by_it(tmp_path):
     [
         ("bench_queries", "grid:400"),
         ("bench_operations", "grid:400"),
-        ("bench_workloads", "sphere:642"),  # none of its versions is as small as a torus can be
+        # None of its versions is as small as a torus can be.
+        pytest.param("bench_workloads", "sphere:642", marks=exhaustive),
     ],
 )
 def test_everything_is_timed_on_the_versions_of_a_mesh(tmp_path, experiment, mesh):
