@@ -91,50 +91,31 @@ def test_the_check_measures_them_and_says_what_is_next(extended):
     assert "hem baseline update" in said
 
 
+NO_STRUCTURE = "claims of ['indexedd'], which are no structures"
+
+
 @exhaustive
 def test_a_structure_or_an_experiment_that_forgets_something_is_an_error_that_names_it(shown):
     walks = EXPERIMENT.replace("test_walk", "test_half_done")
     other = STRUCTURE.replace("QEM", "HDM").replace('"D", ":"', '"P", ":"')
     costs = '{"vertex_faces": "O(n_x)"}'
+    of_structure, of_experiment = "structures/half_done.py", "experiments/bench_half_done.py"
     for path, text, named in [
-        ("structures/half_done.py", STRUCTURE.replace("claims =", "claimed ="), "claims"),
-        ("structures/half_done.py", other.replace('"half_edge")', '"halfedge")'), "'halfedge'"),
-        (
-            "structures/half_done.py",
-            other.replace('like="half_edge"', costs),
-            "'O(n_x)' is none of",
-        ),
-        (
-            "experiments/bench_half_done.py",
-            walks.replace("copies=1", 'copies=1, structures=("indexedd",)'),
-            "claims of ['indexedd'], which are no structures",
-        ),
-        (
-            "experiments/bench_half_done.py",
-            walks.replace('"indexed"', '"indexedd"'),
-            "claims of ['indexedd'], which are no structures",
-        ),
-        (
-            "experiments/bench_half_done.py",
-            walks.replace('"Random walks"', '"Half"'),
-            "have different tables called 'walks'",
-        ),
-        (
-            "experiments/bench_half_done.py",
-            walks.replace('"query_scaling"', '"query_scalling"'),
-            "'query_scalling', its chapter, is no notebook",
-        ),
-        (
-            "experiments/bench_half_done.py",
-            walks.replace("WORK_FACES:", "TIME_FACES:"),
-            "axes ['time_faces']: an order has to be counted for work",
-        ),
-        ("experiments/bench_half_done.py", '"""Nothing."""\n', "EXPERIMENT"),
-        (
-            "experiments/bench_half_done.py",
-            walks.replace("test_half_done", "walk"),
-            "test_half_done = EXPERIMENT.test",
-        ),
+        (of_structure, STRUCTURE.replace("claims =", "claimed ="), "claims"),
+        (of_structure, other.replace('"half_edge")', '"halfedge")'), "'halfedge'"),
+        (of_structure, other.replace('like="half_edge"', costs), "'O(n_x)' is none of"),
+        *[
+            (of_experiment, walks.replace(was, now), told)
+            for was, now, told in [
+                ("copies=1", 'copies=1, structures=("indexedd",)', NO_STRUCTURE),
+                ('"indexed"', '"indexedd"', NO_STRUCTURE),
+                ('"Random walks"', '"Half"', "have different tables called 'walks'"),
+                ("query_scaling", "query_scalling", "'query_scalling', its chapter"),
+                ("WORK_FACES:", "TIME_FACES:", "['time_faces']: an order has"),
+                ("test_half_done", "walk", "test_half_done = EXPERIMENT.test"),
+            ]
+        ],
+        (of_experiment, '"""Nothing."""\n', "EXPERIMENT"),
     ]:
         file = shown / path
         file.write_text(text.replace("quarter_edge", "half_done"))
