@@ -40,9 +40,8 @@ def tables() -> dict[str, Table]:
     """Every table that an experiment decides claims of, by name; ValueError where they clash."""
     found: dict[str, Table] = {}
     of_them = {name: it.table for name, it in experiments().items() if it.table}
-    chapters = {it.stem for it in carried("notebooks").glob("*.ipynb")}  # none beside code alone
     for experiment, table in of_them.items():
-        if table.chapter and chapters and table.chapter not in chapters:
+        if table.chapter and not (carried("notebooks") / f"{table.chapter}.ipynb").exists():
             raise ValueError(f"{experiment}: {table.chapter!r}, its chapter, is no notebook")
         if found.setdefault(table.name, table) != table:
             named = " and ".join(it for it, one in of_them.items() if one.name == table.name)

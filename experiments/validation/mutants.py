@@ -19,7 +19,7 @@ from typing import Annotated, Any
 import typer
 
 HERE = Path(__file__).parents[2]
-COPIED = ("hem", "structures", "experiments", "results/reference")
+COPIED = ("hem", "structures", "experiments", "notebooks", "results/reference")
 GATES = ("work", "bytes", "class", "time")
 LONGEST_SECONDS = 900
 ROW = "{:<50} {:<18} {:<6} {:<7} {}"

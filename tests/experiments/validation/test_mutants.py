@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from experiments.validation.mutants import GATES, MutantError, load_mutants
+from experiments.validation.mutants import GATES, MutantError, copied_tree, load_mutants
 from tests.extent import exhaustive
 
 HERE = Path(__file__).parents[3]
@@ -55,6 +55,15 @@ def test_every_fault_can_be_compiled(mutant, tmp_path):
         [sys.executable, "-c", code], cwd=tmp_path, env=environment, capture_output=True, text=True
     )
     assert done.returncode == 0, done.stderr[-2000:]
+
+
+@exhaustive
+def test_the_copy_has_all_that_the_gate_reads():
+    """Else it refuses every fault alike, and the copy without one."""
+    command = [sys.executable, "-m", "experiments.cli", "check", "--structure", "indexed"]
+    with copied_tree() as tree:
+        done = subprocess.run(command, cwd=tree, capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout + done.stderr
 
 
 def test_there_is_a_fault_for_every_gate():
