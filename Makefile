@@ -77,9 +77,11 @@ format: $(DEV)  ## format the code
 	@$(BIN)/ruff format .
 	@$(BIN)/ruff check --fix .
 
-# OpenMesh comes as source, and some come not for every Python. What cannot be installed is left out,
-# and named; CGAL and OpenMesh in C++ are measured where Debian's libcgal-dev and libopenmesh-dev are.
+# OpenMesh comes as source, which is compiled and linked on all cores; some come not for every Python.
+# What cannot be installed is left out, and named; CGAL and OpenMesh in C++ are measured where Debian's
+# libcgal-dev and libopenmesh-dev are.
 peers: export CMAKE_BUILD_PARALLEL_LEVEL := $(shell getconf _NPROCESSORS_ONLN)
+peers: export LDFLAGS := -flto=auto
 peers: $(STUDY)  ## measure other libraries beside ours, and print what came out
 	@install="$(BIN)/python -m pip --disable-pip-version-check install"; \
 	uv="$(BIN)/uv pip install --python $(BIN)/python"; \

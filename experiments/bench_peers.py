@@ -78,7 +78,7 @@ def _measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
         fields = measuring.read_looped(case, preset)
     elif what in QUERIES:
         ask = measuring.time_bulk if case.order == BULK else measuring.time_single
-        fields = ask(*given) | measuring.beside(case)
+        fields = ask(*given) | measuring.beside(case, bytes_per_vertex(case, preset))
     elif what in OPERATIONS:
         fields = measuring.time_operations(*given, batched=case.order == BULK)
     elif what in peers.ALGORITHMS:
@@ -86,6 +86,15 @@ def _measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
     else:
         fields = measuring.time_building(*given)
     return replace(case.result("time", None, detail=version), **fields)
+
+
+def bytes_per_vertex(case: Case, preset: Preset) -> float:
+    """What a library's largest mesh was weighed at; its triangle list, where that ended it."""
+    largest = sizes(preset, PEERS[case.structure])[-1]
+    weighed = peers.told_by_child(case.structure, preset.families[0], largest)[BYTES]
+    mesh = case.mesh()
+    least = sum(it.nbytes for it in peers.as_given(mesh)) / len(mesh.points)
+    return least if weighed is None else weighed / largest
 
 
 IN_CPP = next(name for name, it in PEERS.items() if it.told_version)  # they share one program

@@ -5,7 +5,8 @@ measured here; nothing of a library is imported before it is. ``experiments/benc
 what is measured of them, and ``measuring`` does it.
 """
 
-from experiments.peers.measuring import PART, as_given, ask_each
+from experiments.peers.measuring import PART, ask_each
+from experiments.peers.outcome import as_given
 from experiments.peers.peer import (
     ALGORITHMS,
     BATCHED,

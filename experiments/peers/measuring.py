@@ -1,4 +1,7 @@
-"""How a library is measured: asked, operated on, built, and given whole meshes."""
+"""How a library is measured: asked, operated on, built, and given whole meshes.
+
+What is checked before it is timed is warm by that: its first round counts.
+"""
 
 import signal
 from collections.abc import Callable, Sequence
@@ -8,13 +11,12 @@ from itertools import count
 from typing import Any, NamedTuple
 
 import numpy as np
-import psutil
 
 import hem
 import structures
 from experiments import harness
 from experiments.harness import Case, CheckFailedError, Preset, Timer, took
-from experiments.peers.outcome import Arrays, check_counts, check_outcome, counted
+from experiments.peers.outcome import Arrays, as_given, check_counts, check_outcome, counted
 from experiments.peers.peer import Peer
 from experiments.peers.registry import PEERS
 from hem.algorithms import vertex_normals
@@ -23,6 +25,8 @@ from hem.arrays import Array
 CHECKED = 3
 SEED = 23
 MOST_HANDLES = 20_000
+WARMUP = 1
+"""Rounds that do not count."""
 NOWHERE = np.zeros((0, 2), np.int64)
 COSINE = 0.9
 """Of the angle between normals, at least: libraries weight faces differently."""
@@ -33,28 +37,19 @@ Fields = dict[str, Any]
 
 
 class Built(NamedTuple):
-    """A library's mesh, the bytes that its process grew by, and by element (k, ·) its vertices."""
+    """A library's mesh, and by element (k, ·) its vertices."""
 
     mesh: Any
-    working_set: int
     corners: dict[str, Array]
-
-
-def as_given(mesh: hem.TriangleMesh) -> Arrays:
-    """Positions and triangles, as libraries take them."""
-    return mesh.points.astype(np.float64), mesh.triangles.astype(np.int32)
 
 
 @lru_cache(maxsize=1)
 def _built(case: Case) -> Built:
-    peer, process, given = PEERS[case.structure], psutil.Process(), as_given(case.mesh())
-    before = process.memory_info().rss
-    m = peer.build(*given)
-    grown = max(process.memory_info().rss - before, sum(it.nbytes for it in given))
-    points, triangles = given
+    peer, (points, triangles) = PEERS[case.structure], as_given(case.mesh())
+    m = peer.build(points, triangles)
     ends = np.asarray(peer.ends(m)) if peer.ends else NOWHERE
     vertices = np.arange(len(points))[:, None]
-    return Built(m, grown, {"vertex": vertices, "edge": ends, "face": triangles})
+    return Built(m, {"vertex": vertices, "edge": ends, "face": triangles})
 
 
 def _mesh_of(case: Case) -> Built:
@@ -113,22 +108,23 @@ def time_single(case: Case, preset: Preset, timer: Timer) -> Fields:
     """Ask one element after the other, other ones every round, until all were asked."""
     peer, query, built = PEERS[case.structure], case.query, _mesh_of(case)
     numbers = _numbers(case, built)
-    handles = list(peer.handles(built.mesh, query.source, numbers.tolist()))
-    ask = peer.single[query.name](built.mesh)
-    if peer.objects and not _ends_within(preset.case_seconds, ask, handles[0]):
+    handles_of = partial(peer.handles, built.mesh, query.source)
+    ask, few = peer.single[query.name](built.mesh), handles_of(numbers[:CHECKED].tolist())
+    if peer.objects and not _ends_within(preset.case_seconds, ask, few[0]):
         return {"skipped": f"one query takes longer than the {preset.case_seconds} s of a case"}
-    _check(case, built, numbers[:CHECKED], [ask(it) for it in handles[:CHECKED]])
-    seconds = took(ask_each, ask, handles[:CHECKED])[1] / CHECKED
-    many = int(np.clip(preset.round_seconds / seconds, 1, len(handles)))
+    _check(case, built, numbers[:CHECKED], [ask(it) for it in few])
+    seconds = took(ask_each, ask, few)[1] / CHECKED
+    many = int(np.clip(preset.round_seconds / seconds, 1, len(numbers)))
+    rounds = preset.affordable_rounds(seconds * many)
+    handles = list(handles_of(numbers[: many * (rounds + WARMUP)].tolist()))
     windows = (np.arange(many) + many * k for k in count())
 
     def some() -> tuple[Any, ...]:
         return ask, [handles[it] for it in (next(windows) % len(handles)).tolist()]
 
-    if seconds * len(handles) < preset.case_seconds:
+    if len(handles) == len(numbers):  # they are asked again, and not all as for the first time
         ask_each(ask, handles)
-    rounds = preset.affordable_rounds(seconds * many)
-    return timer(ask_each, setup=some, rounds=rounds, per=many).fields
+    return timer(ask_each, setup=some, rounds=rounds, warmup=WARMUP, per=many).fields
 
 
 def time_bulk(case: Case, preset: Preset, timer: Timer) -> Fields:
@@ -145,7 +141,9 @@ def time_bulk(case: Case, preset: Preset, timer: Timer) -> Fields:
         return (peer.fresh(built.mesh),)
 
     rounds = preset.affordable_rounds(seconds)
-    return timer(lambda m: kept.append(ask(m)), setup=ready, rounds=rounds, per=per).fields
+    return timer(
+        lambda m: kept.append(ask(m)), setup=ready, rounds=rounds, warmup=0, per=per
+    ).fields
 
 
 def time_building(case: Case, preset: Preset, timer: Timer) -> Fields:
@@ -154,7 +152,7 @@ def time_building(case: Case, preset: Preset, timer: Timer) -> Fields:
     m, seconds = took(peer.build, *given)
     _check_left(peer, "", given, NOWHERE, m)
     rounds = preset.affordable_rounds(seconds)
-    return timer(peer.build, setup=lambda: given, rounds=rounds).fields
+    return timer(peer.build, setup=lambda: given, rounds=rounds, warmup=0).fields
 
 
 def _apart(case: Case) -> Array:
@@ -187,7 +185,7 @@ def time_operations(case: Case, preset: Preset, timer: Timer, batched: bool) -> 
     _require(peer, done == len(numbers), f"{done} of {len(numbers)} × {operation}")
     _check_left(peer, operation, given, _mesh_of(case).corners[element][numbers], m)
     rounds = preset.affordable_rounds(took(operate, *ready())[1])
-    return timer(operate, setup=ready, rounds=rounds, per=done).fields
+    return timer(operate, setup=ready, rounds=rounds, warmup=0, per=done).fields
 
 
 def time_algorithm(case: Case, preset: Preset, timer: Timer) -> Fields:
@@ -206,7 +204,7 @@ def time_algorithm(case: Case, preset: Preset, timer: Timer) -> Fields:
         cosine = (np.asarray(found) * ours).sum(axis=1).min()
         _require(peer, cosine > COSINE, f"normals are turned by {np.arccos(cosine):.2f}")
     rounds = preset.affordable_rounds(seconds)
-    return timer(peer.algorithms[name], setup=ready, rounds=rounds).fields
+    return timer(peer.algorithms[name], setup=ready, rounds=rounds, warmup=0).fields
 
 
 @lru_cache(maxsize=2)
@@ -240,10 +238,12 @@ def _require(peer: Peer, holds: bool, otherwise: str) -> None:
         raise CheckFailedError(f"{peer.title}: {otherwise}")
 
 
-def beside(case: Case) -> Fields:
-    """What a case works on, and the memory's latency there."""
-    return _memory(_mesh_of(case).working_set)
+def beside(case: Case, weighed: float) -> Fields:
+    """What a case works on, by the bytes per vertex of a mesh, and the memory's latency there."""
+    return _memory(round(weighed * len(case.mesh().points)))
 
 
+@lru_cache(maxsize=2)
 def _memory(working_set: int) -> Fields:
+    """The latency, taken once for the cases of a mesh, which come together and within seconds."""
     return {"working_set": working_set, "latency": harness.latency_now(working_set)}

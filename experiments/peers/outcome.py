@@ -9,6 +9,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from experiments.harness import CheckFailedError, pack_pairs, turned
+from hem import TriangleMesh
 from hem.arrays import Array
 
 Arrays = tuple[Array, Array]
@@ -23,6 +24,11 @@ MORE = {
 """Vertices, edges and faces that an operation adds to a closed mesh; building adds none."""
 
 TURNS = np.array([[0, 1, 2], [1, 2, 0], [2, 0, 1]])
+
+
+def as_given(mesh: TriangleMesh) -> Arrays:
+    """Positions and triangles, as libraries take them."""
+    return mesh.points.astype(np.float64), mesh.triangles.astype(np.int32)
 
 
 def check_counts(

@@ -20,7 +20,7 @@ import psutil
 
 import hem
 from experiments.harness import CheckFailedError, check_rows
-from experiments.peers.measuring import as_given
+from experiments.peers.outcome import as_given
 from experiments.peers.peer import BYTES, Mesh, Peer
 from experiments.peers.registry import PEERS
 from hem.arrays import Array
