@@ -29,6 +29,20 @@ def test_a_watch_sees_that_its_process_did_not_run():
     assert disturbed(seen)
 
 
+BURNING = """
+from time import process_time
+while process_time() < 0.5: pass
+print(process_time())
+"""
+
+
+def test_while_a_program_runs_that_a_case_waits_for_the_case_runs():
+    watch, begin = Watch(), time.perf_counter()
+    done = subprocess.run([sys.executable, "-c", BURNING], capture_output=True, check=True)
+    most = 1 - float(done.stdout) / (time.perf_counter() - begin)
+    assert watch.seen()["off_cpu"] <= most + 0.02
+
+
 def test_a_watch_sees_that_the_same_work_takes_longer(monkeypatch):
     watch = Watch()
     monkeypatch.setattr(steadiness, "reading", lambda: 3 * watch.before)
