@@ -5,7 +5,6 @@ from functools import lru_cache, partial
 from typing import Any
 
 import numpy as np
-from scipy.sparse import coo_array
 
 import hem
 import structures
@@ -51,6 +50,8 @@ def _apart(family: str, size: int, valence: int | None, seed: int = ELEMENT_SEED
         # Half-way around, not where every walk around the hub begins.
         across = np.searchsorted(mesh.triangles[order, 0], hubs) + int(valence or 0) // 2
         return np.sort(order[across])
+    from scipy.sparse import coo_array
+
     n, (edges, _) = len(mesh.points), undirected_edges(mesh.triangles)
     ends = np.concatenate([edges, edges[:, ::-1]]).T
     joined = coo_array((np.ones(ends.shape[1], np.bool_), tuple(ends)), (n, n)).tocsr()

@@ -28,6 +28,7 @@ IMPOSSIBLE = 0.1  # the same of its rounds that took less than can be, idle call
 REPEATS = 2  # how often a disturbed case is measured again, at most
 BUSY = 0.10  # share of disturbed cases above which times should not be judged by
 WATCHED_SECONDS = 0.1
+SHORT_WAIT = 1e-3  # seconds, which spoil one round at most: what reads progress takes as long
 
 
 def reading() -> float:
@@ -58,7 +59,7 @@ class Watch:
         after = reading()
         Watch.fastest = min(Watch.fastest, self.before, after)
         readings = {"fastest": Watch.fastest, "before": self.before, "after": after}
-        return {**readings, "off_cpu": max(0.0, 1 - ran / wall)}
+        return {**readings, "off_cpu": 1 - ran / wall if wall > ran + SHORT_WAIT else 0.0}
 
 
 def _ran() -> float:

@@ -10,7 +10,6 @@ Source: Ericson, Real-Time Collision Detection (2005), 5.1.5.
 from __future__ import annotations
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from hem.algorithms.parts import cross
 from hem.arrays import Array, Floats
@@ -25,6 +24,8 @@ class Surface:
     """Triangles to be asked for nearest points. Cost O(n_t log n_t)."""
 
     def __init__(self, points: Array, triangles: Array) -> None:
+        from scipy.spatial import cKDTree  # here, as it is long to import
+
         self._corners = points[triangles].astype(np.float64)
         self._middles = cKDTree(self._corners.mean(axis=1)) if len(triangles) else None
 

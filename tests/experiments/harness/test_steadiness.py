@@ -43,6 +43,14 @@ def test_while_a_program_runs_that_a_case_waits_for_the_case_runs():
     assert watch.seen()["off_cpu"] <= most + 0.02
 
 
+def test_a_wait_that_spoils_one_round_at_most_is_none(monkeypatch):
+    monkeypatch.setattr(steadiness, "reading", lambda: 1e-9)
+    for waited, off_cpu in ((5e-4, 0.0), (1e-2, 1.0)):
+        monkeypatch.setattr(steadiness, "process_time", lambda: 0.0)
+        monkeypatch.setattr(steadiness, "perf_counter", iter([0.0, waited]).__next__)
+        assert Watch().seen()["off_cpu"] == off_cpu
+
+
 def test_a_watch_sees_that_the_same_work_takes_longer(monkeypatch):
     watch = Watch()
     monkeypatch.setattr(steadiness, "reading", lambda: 3 * watch.before)
