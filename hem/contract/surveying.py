@@ -123,10 +123,12 @@ class Surveying(ABC):
 
         Raises MeshError if one of them is no vertex.
         """
-        faces, *_ = (self.vertex_faces(integer("find_face", "vertex", v)) for v in (a, b, c))
+        a, b, c = (integer("find_face", "vertex", v) for v in (a, b, c))
+        faces = self.vertex_faces(a)
         for face, row in zip(faces.tolist(), self.face_vertices(faces), strict=True):
             if sorted(row.tolist()) == sorted((a, b, c)):
                 return face
+        self.vertex_faces([b, c])  # refuses what is no vertex; a corner of a face is one
         return None
 
     def is_closed(self) -> bool:

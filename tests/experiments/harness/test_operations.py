@@ -1,6 +1,7 @@
 """How operations are measured: on what, on how many copies, and that all did the same."""
 
 from dataclasses import replace
+from functools import partial
 from itertools import product
 
 import numpy as np
@@ -260,3 +261,24 @@ def test_what_breaks_a_mesh_is_never_timed(monkeypatch, experiment, subject, ord
     case = next(it for it in every if (it.subject, it.order) == (subject, order))
     with pytest.raises(hem.MeshError):
         its.measure(case, PRESETS["smoke"], time_rounds)
+
+
+@pytest.mark.parametrize("name", ["indexed", "triangle_soup"])
+def test_what_is_counted_of_a_search_by_corners_is_what_is_asked_for_it(name):
+    its, small = experiments()["bench_naming"], PRESETS["smoke"]
+    every = {it.subject: it for it in its.cases(small, name) if it.order == "counted"}
+    by_index, by_corners = (every[f"split_by_{it}"] for it in ("index", "corners"))
+    counted = [its.measure(it, small, time_rounds).samples[0] for it in (by_index, by_corners)]
+    s, asked = by_corners.build().copy(), []
+
+    def spy(query, ask, handles):
+        asked.append((query, np.atleast_1d(handles)))
+        return ask(handles)
+
+    for query in ("vertex_faces", "face_vertices"):
+        vars(s)[query] = partial(spy, query, getattr(s, query))
+    face = faces_of(by_corners, 10)[0]
+    corners = s.face_vertices(face).tolist()
+    asked.clear()
+    assert s.find_face(*corners) == face
+    assert sum(s.work(*it).sum() for it in asked) == counted[1] - counted[0]
