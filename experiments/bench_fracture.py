@@ -6,13 +6,12 @@ by looking at every face: timed, and counted in faces looked at.
 
 from collections.abc import Callable
 from dataclasses import replace
-from time import perf_counter
 from typing import Any
 
 import numpy as np
 
 import structures
-from experiments.harness import Case, Experiment, Measurement, Preset, Timer, latency_now
+from experiments.harness import Case, Experiment, Measurement, Preset, Timer, latency_now, took
 from hem.arrays import Array, Floats
 from hem.contract import Structure
 from hem.fracture import JUMP, MATERIALS, Found, nearest_face, scanned, shatter
@@ -56,7 +55,7 @@ def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
         scans = ASKED_PER_BREAK_POINT * sum(BREAKING[s.compiled].circles) * searches
     else:
         scans = IMPACTS * per_search[str(case.order).partition(",")[0]] * searches
-    # With a round to check it, and one to warm up.
+    # With a round to check it, and one to see how long it takes.
     if reason := preset.why_too_slow(scans, s.n_faces, preset.fewest_rounds + 2):
         return case.result(EXPERIMENT.kind_of(case), s, skipped=reason)
     return (_shatter if case.subject == SHATTER else _find)(case, s, preset, timer)
@@ -65,9 +64,8 @@ def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
 def _shatter(case: Case, s: Structure, preset: Preset, timer: Timer) -> Measurement:
     at, material = _impacts(s)[0], BREAKING[s.compiled]
     expected = shatter(structures.build(REFERENCE, case.mesh()), at, material).shards
-    begin, copy = perf_counter(), s.copy()
-    shards = shatter(copy, at, material).shards
-    seconds = perf_counter() - begin
+    copy = s.copy()
+    shards = shatter(copy, at, material).shards  # compiles
     copy.validate()
     if not np.array_equal([it.points for it in shards], [it.points for it in expected]):
         raise AssertionError(f"{case.structure} gives other shards than {REFERENCE}")
@@ -77,8 +75,8 @@ def _shatter(case: Case, s: Structure, preset: Preset, timer: Timer) -> Measurem
         ready.reserve(2 * sum(material.circles))
         return ready, at, material
 
-    rounds = preset.affordable_rounds(seconds)
-    timed = timer(shatter, setup=fresh, rounds=rounds, per=len(shards))
+    rounds = preset.affordable_rounds(took(shatter, *fresh())[1])
+    timed = timer(shatter, setup=fresh, rounds=rounds, warmup=0, per=len(shards))
     return case.result("time", s, **timed.fields)
 
 

@@ -154,11 +154,11 @@ def _time_neighbors(case: Case, s: Structure, preset: Preset, timer: Timer) -> M
     for kind, asked in ("face_faces", faces[:1]), ("vertex_faces", s.face_vertices(faces[0])):
         harness.check_query(s, case.mesh(), QUERIES[kind], asked)
     ask = ask_compiled if case.order == COMPILED else ask_from_python
-    answers, seconds = harness.took(ask, s, faces)
+    answers = ask(s, faces)  # compiles
     if answers != ask_from_python(s, faces):
         raise AssertionError(f"{case.id}: {answers} neighbors, and otherwise from Python")
-    rounds = preset.affordable_rounds(seconds)
-    timed = timer(ask, setup=lambda: (s, faces), rounds=rounds, per=picks)
+    rounds = preset.affordable_rounds(harness.took(ask, s, faces)[1])
+    timed = timer(ask, setup=lambda: (s, faces), rounds=rounds, warmup=0, per=picks)
     return case.result("time", s, **timed.fields)
 
 

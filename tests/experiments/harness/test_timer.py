@@ -1,7 +1,9 @@
 """Laws of timing: rounds are separate samples, and a delay while calibrating decides nothing."""
 
+from dataclasses import replace
 from functools import partial
-from time import perf_counter
+from importlib import import_module
+from time import perf_counter, sleep
 from types import SimpleNamespace
 from typing import NamedTuple
 
@@ -11,6 +13,7 @@ import pytest
 from experiments.harness import PRESETS, time_rounds
 from experiments.harness.queries import _seconds_per_query
 from experiments.harness.timer import BenchmarkTimer, UnitClock, took
+from experiments.runs import experiments
 from hem.contract import Sweep
 
 
@@ -91,3 +94,24 @@ def test_a_case_that_would_search_for_too_long_says_so() -> None:
     preset = PRESETS["quick"]
     assert preset.why_too_slow(10, 1_000, 3) == ""
     assert "all rounds together get 5 s" in preset.why_too_slow(10**6, 10**6, 3)
+
+
+@pytest.mark.parametrize(
+    ("experiment", "subject", "call", "checks"),
+    [("fracture", "shatter", "shatter", 2), ("picking", "neighbors", "ask_compiled", 1)],
+)
+def test_what_is_slow_when_it_is_checked_gets_as_many_rounds_as_any(
+    monkeypatch: pytest.MonkeyPatch, experiment: str, subject: str, call: str, checks: int
+) -> None:
+    its = experiments()[f"bench_{experiment}"]
+    preset = replace(PRESETS["smoke"], rounds=4, case_seconds=1.0)
+    case = next(it for it in its.cases(preset, "half_edge") if it.subject == subject)
+    module, delays = import_module(its.cases.__module__), iter([1.0] * checks)
+    sound = getattr(module, call)
+
+    def compiling(*given: object) -> object:
+        sleep(next(delays, 0))
+        return sound(*given)
+
+    monkeypatch.setattr(module, call, compiling)
+    assert len(its.measure(case, preset, time_rounds).samples) == preset.rounds
