@@ -42,6 +42,7 @@ COUNTED, TIMED = "counted", "timed"  # the kinds of cases: work, and time
 TIMED_OPERATIONS = 9
 COUNTED_OPERATIONS = 3
 WARM_UP = 2
+BYTES = {AsPrinted.name: 1_300, MENDED: 1_000}  # per vertex of meshes of these sizes, about
 MORE_FACES = {"split_edge": 2, "split_face": 2, "collapse_edge": -2, STEPPING: -2, "create_mesh": 1}
 """How many faces more there are after each, inside a surface; as many as before after others."""
 BROKEN_OUT = -4  # the same of the corrected breaking: a face, and half of each beside it
@@ -78,9 +79,10 @@ def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
         fields: dict[str, Any] = {"samples": samples, "handles": 1, "checked": True}
     else:
         waiting = iter([(step,) for step in steps])
-        latency = harness.latency_now(500 * len(case.mesh().points))
+        working_set = BYTES[case.structure] * len(case.mesh().points)
+        latency = harness.latency_now(working_set)
         timed = timer(lambda step: step(), setup=waiting.__next__, rounds=len(steps), warmup=0)
-        fields = {**timed.fields, "latency": latency}
+        fields = {**timed.fields, "working_set": working_set, "latency": latency}
         steps = steps[: len(steps) - len(list(waiting))]  # but one with --benchmark-disable
     broken_out = (case.subject, case.structure) == ("simulate_breaking", MENDED)
     more = BROKEN_OUT if broken_out else MORE_FACES.get(str(case.subject), 0)

@@ -6,7 +6,7 @@ import pytest
 
 import hem
 import structures
-from experiments import bench_memory
+from experiments import bench_memory, bench_printed, harness
 from experiments.harness import PRESETS, memory, time_rounds
 from experiments.harness.cases import Case
 from experiments.harness.memory import VARIABLE, available, estimate, size_of
@@ -73,3 +73,21 @@ def test_addresses_that_were_never_written_are_not_weighed(structure: str) -> No
     (model,) = found.samples
     assert model <= found.detail["traced"] < 1.01 * model
     assert model < found.detail["peak"] < 2 * model
+
+
+@pytest.mark.parametrize("structure", bench_printed.EXPERIMENT.structures)
+@pytest.mark.parametrize("size", [100, 800])
+def test_the_latency_beside_a_listing_is_that_of_what_its_mesh_takes(monkeypatch, structure, size):
+    beside: list[int] = []
+    monkeypatch.setattr(harness, "latency_now", lambda it: beside.append(it) or 1e-9)
+    case = Case(structure, "torus", size, "split_face", bench_printed.TIMED)
+    found = bench_printed.measure(case, PRESETS["smoke"], time_rounds)
+    mesh = case.mesh()
+    tracemalloc.start()
+    built = bench_printed._build(structure, mesh)
+    if structure == "as_printed":
+        built.generate_render_mesh()
+    traced = tracemalloc.get_traced_memory()[0]
+    tracemalloc.stop()
+    assert beside == [found.working_set]
+    assert 0.75 < found.working_set / traced < 1.25
