@@ -129,7 +129,7 @@ def keep(request: pytest.FixtureRequest, case: Case, core: int | None) -> harnes
     watch = steadiness.Watch()
 
     def keep_result(result: Measurement) -> None:
-        result = replace(result, noise={**result.noise, **watch.seen(), "core": core})
+        result = replace(result, noise={**watch.seen(), **result.noise, "core": core})
         if "benchmark" in request.fixturenames:
             facts = {key: value for key, value in asdict(result).items() if key != "samples"}
             request.getfixturevalue("benchmark").extra_info.update(facts)

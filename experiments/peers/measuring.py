@@ -16,6 +16,7 @@ import hem
 import structures
 from experiments import harness
 from experiments.harness import Case, CheckFailedError, Preset, Timer, took
+from experiments.harness.steadiness import Watch
 from experiments.peers.outcome import Arrays, as_given, check_counts, check_outcome, counted
 from experiments.peers.peer import Peer
 from experiments.peers.registry import PEERS
@@ -209,15 +210,17 @@ def time_algorithm(case: Case, preset: Preset, timer: Timer) -> Fields:
 
 @lru_cache(maxsize=2)
 def _looped(case: Case, rounds: int, whole: int) -> tuple[dict[str, list[float]], Fields]:
-    """What compiled loops took on a mesh, by subject, and the memory beside it; checked."""
+    """What compiled loops took on a mesh, by subject, and memory and noise beside; checked."""
     peer, given = PEERS[case.structure], as_given(case.mesh())
     assert peer.looped is not None  # or there is no such case
     few = 0 if case.valence is None else len(hem.valence_hubs(case.valence, case.size))
+    watch = Watch()  # of every case that this tells of; others only read
     told = peer.looped(*given, few, rounds, whole)
+    noise = watch.seen()
     harness.check_told(peer.title, given[1], told["answers"])
     for operation, (done, *left) in told["operated"].items():
         check_counts(peer.title, operation, counted(*given), done, left)
-    return told["times"], _memory(told["bytes"])
+    return told["times"], {**_memory(told["bytes"]), "noise": noise}
 
 
 def read_looped(case: Case, preset: Preset) -> Fields:

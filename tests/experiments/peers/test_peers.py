@@ -1,7 +1,11 @@
 """Laws of measuring other libraries: each answer is checked first, and nobody stops the others."""
 
+import os
+import subprocess
+import sys
 from dataclasses import replace
 from importlib import import_module
+from time import sleep
 
 import numpy as np
 import pytest
@@ -13,6 +17,7 @@ from experiments.peers import (
     BAD_INPUT,
     BULK,
     BYTES,
+    LOOPED,
     OURS,
     PEERS,
     SINGLE,
@@ -21,6 +26,7 @@ from experiments.peers import (
     trials,
 )
 from experiments.runs import experiments, study
+from experiments.runs.worker import EXPERIMENTS, PYTEST
 from hem.contract import OPERATIONS, QUERIES
 from tests.experiments.peers.slow_library import ABSENT, LIAR, LIBRARY
 from tests.extent import exhaustive
@@ -184,3 +190,28 @@ def test_libraries_that_are_named_are_measured_alone(tmp_path):
     assert {job.structure for job in study.plan(begun)} == {OURS}
     with pytest.raises(ValueError, match="no structure is called 'ours'"):
         study.begin("smoke", tmp_path, experiments=["latency"], structures=[OURS])
+
+
+def test_cases_that_one_program_tells_of_are_all_as_disturbed_as_it_was(library, monkeypatch):
+    def looped(*_: object) -> dict:
+        sleep(0.1)  # off its core, however idle the machine is
+        return {"times": times, "answers": {}, "operated": {}, "bytes": 640}
+
+    times = {"vertex_faces": [1e-9], "face_faces": [1e-9]}
+    monkeypatch.setitem(PEERS, library, replace(LIBRARY, looped=looped, loops=tuple(times)))
+    found = measured(library, size=PRESET.sizes[0], order=LOOPED)
+    assert [it.subject for it in found] == [*times]
+    assert all(it.noise["off_cpu"] > 0.5 for it in found)
+
+
+def test_a_run_keeps_the_noise_that_a_program_saw_with_every_case_of_it(tmp_path):
+    begun = study.begin("smoke", tmp_path, experiments=["peers"], structures=[OURS])
+    (job,) = study.plan(begun)
+    words = "loop and torus and 100 and (edge_vertices or face_faces or vertex_edges)"
+    command = [sys.executable, "-m", "pytest", str(EXPERIMENTS / "bench_peers.py"), *PYTEST]
+    options = ["--preset", "smoke", "--structure", OURS, "--run", str(begun), "-k", words]
+    alone = {**os.environ, "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1"}
+    subprocess.run([*command, *options], check=True, capture_output=True, env=alone)
+    seen = [it.noise["before"] for it in job.file(begun).measurements]
+    assert len(seen) == 3
+    assert len(set(seen)) == 1
