@@ -1,7 +1,6 @@
 """Families of meshes that can be had at any size up to 2,000,000 vertices."""
 
 import hashlib
-import operator
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
@@ -12,7 +11,7 @@ import numpy as np
 
 from hem.errors import MeshError
 from hem.meshes import TriangleMesh, require_manifold
-from hem.naming import look_up
+from hem.naming import look_up, whole
 from hem.sources.cache import cached
 from hem.sources.meshlab import apply, installed_version
 
@@ -45,13 +44,14 @@ def generate(family: str, n_vertices: int, seed: int = 0) -> TriangleMesh:
     Cost: O(n) or O(n log n) once, some 20 s at worst; afterwards that of reading a file. Raises
     MeshError for a family or a size that does not exist, naming those that do.
     """
-    chosen, n_vertices = look_up(family, FAMILIES, "family"), operator.index(n_vertices)
+    chosen = look_up(family, FAMILIES, "family")
+    n_vertices = whole(n_vertices, "a number of vertices")
     if not chosen.smallest <= n_vertices <= LARGEST:
         raise MeshError(
             f"no {family} of {n_vertices:,} vertices: reachable are {chosen.smallest} … "
             f"{LARGEST:,}, {chosen.sizes}"
         )
-    variant = operator.index(seed) if chosen.random else 0
+    variant = whole(seed, "a seed") if chosen.random else 0
     if not 0 <= variant < SEEDS:
         raise MeshError(f"a seed is an integer from 0 to {SEEDS - 1:,}, not {seed:,}")
 

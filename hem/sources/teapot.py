@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from hem.arrays import Bools, Floats, Indices
 from hem.errors import MeshError
 from hem.meshes import TriangleMesh, joined
+from hem.naming import whole
 
 # What is welded together. The handle touches the body in a single point of both, where a weld
 # would make a vertex of two fans, which is no surface.
@@ -31,7 +32,7 @@ def teapot(tessellation: int = 10, welded: bool = True) -> TriangleMesh:
     O(n²). Raises MeshError for a tessellation below 1; below 2 if welded, since handle and spout
     are then flat, and both sides of them the same triangles.
     """
-    least = 2 if welded else 1
+    least, tessellation = 2 if welded else 1, whole(tessellation, "a tessellation")
     if tessellation < least:
         kind = "welded" if welded else "unwelded"
         raise MeshError(f"the {kind} teapot needs a tessellation of {least} or more")

@@ -15,6 +15,7 @@ import numpy as np
 from hem.arrays import Floats, Indices
 from hem.errors import MeshError
 from hem.meshes import TriangleMesh, joined
+from hem.naming import whole
 
 _LEAST = 3
 _SPACING = 3.0
@@ -27,6 +28,7 @@ def valence_mesh(valence: int, n_faces: int) -> TriangleMesh:
     bipyramids are closed and wound outward. Only the strip has a border, and it is empty when
     2 · valence divides n_faces. O(n_faces). Raises MeshError unless 3 <= valence <= n_faces / 2.
     """
+    valence, n_faces = whole(valence, "a valence"), whole(n_faces, "a number of faces")
     count = len(valence_hubs(valence, n_faces)) // 2
     rest = n_faces - 2 * valence * count
     return TriangleMesh(*joined([_bipyramids(valence, count), _strip(rest)]))
@@ -34,6 +36,7 @@ def valence_mesh(valence: int, n_faces: int) -> TriangleMesh:
 
 def valence_hubs(valence: int, n_faces: int) -> range:
     """The vertices of `valence_mesh(valence, n_faces)` that have the wanted valence."""
+    valence, n_faces = whole(valence, "a valence"), whole(n_faces, "a number of faces")
     if not _LEAST <= valence <= n_faces // 2:
         raise MeshError(
             f"no vertex of valence {valence:,} in a mesh of {n_faces:,} faces: "

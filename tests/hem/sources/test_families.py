@@ -2,6 +2,7 @@
 
 import io
 import warnings
+from collections.abc import Callable
 from itertools import combinations
 from pathlib import Path
 
@@ -195,3 +196,30 @@ def test_bipyramids_are_wound_outward_and_the_strip_upward() -> None:
 def test_a_valence_out_of_reach_is_refused(valence: int, n_faces: int) -> None:
     with pytest.raises(hem.MeshError, match="half the faces"):
         hem.valence_mesh(valence, n_faces)
+
+
+def test_what_numpy_counts_in_few_bits_makes_the_same_meshes() -> None:
+    pairs = (
+        (hem.valence_mesh(np.int8(100), np.int16(300)), hem.valence_mesh(100, 300)),
+        (hem.sample("teapot", tessellation=np.int8(20)), hem.sample("teapot", tessellation=20)),
+    )
+    for one, other in pairs:
+        assert np.array_equal(one.points, other.points)
+        assert np.array_equal(one.triangles, other.triangles)
+    hubs = valence_hubs(np.int8(100), np.int16(300))  # type: ignore[arg-type]
+    assert set(valences(pairs[0][0])[list(hubs)]) == {100}
+
+
+@pytest.mark.parametrize(
+    ("make", "words"),
+    [
+        (lambda: hem.generate("torus", 1e4), "a number of vertices is an integer, not 10000.0"),  # type: ignore[arg-type]
+        (lambda: hem.generate("terrain", 100, "1"), "a seed is an integer, not '1'"),  # type: ignore[arg-type]
+        (lambda: hem.valence_mesh(6, 24.0), "a number of faces is an integer"),  # type: ignore[arg-type]
+        (lambda: hem.valence_mesh(None, 24), "a valence is an integer"),  # type: ignore[arg-type]
+        (lambda: hem.sample("teapot", tessellation=2.5), "a tessellation is an integer"),
+    ],
+)
+def test_a_size_that_is_no_integer_is_refused(make: Callable[[], object], words: str) -> None:
+    with pytest.raises(hem.MeshError, match=words):
+        make()
