@@ -170,7 +170,7 @@ class _Numbers:
             columns += [(prop.name, self.order + prop.kind, (k,) if prop.length else ())]
         self.at = start
         size = element.rows * np.dtype(columns).itemsize
-        if len(self.data) < start + size:
+        if not 0 < size <= len(self.data) - start:  # nothing, of an element without properties
             return None
         table = np.frombuffer(self.data[start : start + size], columns)
         lengths = [table[f"{prop.name} length"] for prop in element.properties if prop.length]

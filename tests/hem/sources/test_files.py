@@ -507,6 +507,17 @@ def test_a_binary_ply_file_may_hold_more_than_a_mesh(
     assert [tuple(face) for face in mesh.faces] == faces
 
 
+@pytest.mark.parametrize("text", [True, False])
+def test_an_element_of_a_ply_file_may_have_no_properties(tmp_path: Path, text: bool) -> None:
+    content = PLY.format(2).replace("element vertex", "element mark 2\nelement vertex").encode()
+    if not text:
+        head = content[: content.index(b"0 0 0")].replace(b"ascii", b"binary_big_endian")
+        content = head + struct.pack(">9fB3i", *np.ravel(CORNERS[:3]), 3, 0, 1, 2)
+    mesh = hem.load(written(tmp_path / "a.ply", content))
+    assert mesh.points.tolist() == [list(point) for point in CORNERS[:3]]
+    assert mesh.triangles.tolist() == [[0, 1, 2]]
+
+
 @pytest.mark.parametrize("head", ["OFF 3 1 0\n", "COFF\n# colors\n3 1 0\n"])
 def test_an_off_file_may_have_colors_and_comments(tmp_path: Path, head: str) -> None:
     text = head + "0 0 0 9 9 9\n1 0 0 9 9 9 # here\n\n0 1 0 9 9 9\n3 0 1 2 255 0 0\n"
