@@ -20,7 +20,7 @@ _TAKEN = (
 
 def from_trimesh(given: Any, dtype: DTypeLike = np.float32) -> TriangleMesh:
     """The mesh of a ``trimesh.Trimesh``. O(n + m)."""
-    return TriangleMesh(np.asarray(given.vertices), np.asarray(given.faces), dtype)
+    return TriangleMesh(given.vertices, given.faces, dtype)
 
 
 def from_pyvista(given: Any, dtype: DTypeLike = np.float32) -> TriangleMesh | PolygonMesh:
@@ -51,9 +51,9 @@ def from_meshio(given: Any, dtype: DTypeLike = np.float32) -> TriangleMesh | Pol
     others = {block.type for block in given.cells} - {*CELLS.values(), "polygon"}
     if others:
         raise MeshError(f"a surface consists of faces; there are cells that are {sorted(others)}")
-    points = np.asarray(given.points)
-    flat = points.ndim == 2 and points.shape[1] == 2
-    rows = [np.asarray(row) for block in given.cells for row in block.data]
+    points = given.points
+    flat = np.shape(points)[1:] == (2,)
+    rows = [row for block in given.cells for row in block.data]
     return _of_rows(np.pad(points, ((0, 0), (0, 1))) if flat else points, rows, dtype)
 
 
@@ -87,5 +87,5 @@ def _of_rows(points: Any, rows: Any, dtype: DTypeLike = np.float32) -> TriangleM
     except ValueError:  # rows of several lengths
         size = ()
     if size == (3,):
-        return TriangleMesh(np.asarray(points), np.asarray(rows), dtype)
-    return simplest(PolygonMesh(np.asarray(points), rows, dtype))
+        return TriangleMesh(points, rows, dtype)
+    return simplest(PolygonMesh(points, rows, dtype))

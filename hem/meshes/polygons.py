@@ -16,6 +16,7 @@ from hem.meshes.triangles import (
     own,
     read_only,
     refuse,
+    refuse_masked,
     validated_points,
 )
 from hem.ragged import Ragged
@@ -99,6 +100,7 @@ def repeats_a_corner(faces: Ragged) -> Bools:
 
 def _validated(faces: Faces, n: int) -> Ragged:
     if not isinstance(faces, Ragged):
+        refuse_masked(faces, "faces")
         faces = _ragged(faces)
     offsets, corners = np.asarray(faces.offsets), np.asarray(faces.values)
     legal = offsets.ndim == corners.ndim == 1 and len(offsets) > 0 and offsets.dtype.kind in "iu"

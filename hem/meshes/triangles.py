@@ -206,6 +206,7 @@ def own(given: Array, dtype: DTypeLike) -> Array:
 
 
 def _rows_of_three(values: ArrayLike, name: str, kinds: str) -> Array:
+    refuse_masked(values, name)
     try:
         rows = np.asarray(values)
     except ValueError as error:
@@ -219,6 +220,12 @@ def _rows_of_three(values: ArrayLike, name: str, kinds: str) -> Array:
     if len(rows) > _MOST_ELEMENTS:
         raise MeshError(f"{len(rows):,} {name} are more than int32 indices can name")
     return rows
+
+
+def refuse_masked(values: object, name: str) -> None:
+    """Raise a MeshError for a masked array that lacks some of its values, as any stand behind."""
+    if np.ma.is_masked(values):
+        raise MeshError(f"some of the {name} are masked; leave out what has none, or fill them")
 
 
 def out_of_range(given: Array, n: int) -> str:

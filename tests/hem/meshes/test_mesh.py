@@ -80,6 +80,18 @@ def test_what_is_no_mesh_is_refused_naming_the_rows(
     assert (named if named is None else named.tolist()) == rows
 
 
+def test_what_is_masked_is_no_position_and_no_corner() -> None:
+    points = np.ma.masked_equal(SQUARE, 1)
+    faces = np.ma.array([[0, 1, 2, 3], [0, 1, 2, 3]], mask=[4 * [False], [False] * 3 + [True]])
+    for make in (hem.TriangleMesh, hem.PolygonMesh, lambda *it: hem.as_mesh(it)):
+        with pytest.raises(hem.MeshError, match="some of the points are masked"):
+            make(points, HALVES)
+        with pytest.raises(hem.MeshError, match=r"some of the (faces|triangles) are masked"):
+            make(SQUARE, faces if make is hem.PolygonMesh else np.ma.masked_equal(HALVES, 3))
+        mesh = make(np.ma.array(SQUARE), np.ma.array(HALVES, mask=False))
+        assert mesh.face_rows().to_list() == HALVES.tolist()
+
+
 def test_an_error_lists_the_first_elements_and_how_many_more_there_are() -> None:
     error = hem.MeshError("wrong", edges=[[i, i + 1] for i in range(9)], faces=[])
     assert str(error) == "wrong (edges: 0-1, 1-2, 2-3, 3-4, 4-5, 5-6 and 3 more)"
