@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+import warnings
 from types import SimpleNamespace
 
 import numpy as np
@@ -38,6 +39,14 @@ def test_geometry_is_that_of_trimesh(mesh: hem.TriangleMesh) -> None:
             mesh.volume()
 
 
+def test_a_volume_is_that_of_a_closed_surface_wherever_it_lies() -> None:
+    box = trimesh.creation.box()
+    far = hem.TriangleMesh(box.vertices + 2.0**24, box.faces, np.float64)
+    assert far.volume() == 1
+    with pytest.raises(MeshError, match="borders encloses no volume"):
+        hem.TriangleMesh(far.points, far.triangles[1:], np.float64).volume()
+
+
 def test_vertex_normals_weigh_by_area() -> None:
     mesh = hem.generate("sphere", 500)
     outward = mesh.points / np.linalg.norm(mesh.points, axis=1, keepdims=True)
@@ -54,6 +63,8 @@ def test_a_mesh_without_area_has_no_direction() -> None:
     mesh = hem.TriangleMesh([[0, 0, 0], [1, 1, 1], [2, 2, 2]], [[0, 1, 2]])
     assert not mesh.face_normals().any()
     assert not mesh.vertex_normals().any()
+    with warnings.catch_warnings(action="error"):
+        assert np.isnan(mesh.centroid()).all()
     points_alone = hem.TriangleMesh([(0, 0, 0), (1, 0, 0)], [])
     for it, n in ((points_alone, 2), (hem.TriangleMesh([], []), 0)):
         assert np.array_equal(it.vertex_normals(), np.zeros((n, 3)))

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import hem
-from hem.meshes.manifold import non_manifold_edges, same_way_edges, split_vertices
+from hem.meshes import euler_number, non_manifold_edges, same_way_edges, split_vertices
 
 Faces = list[list[int]]
 PILLOW = [[0, 1, 2], [0, 2, 1]]
@@ -83,3 +83,25 @@ def test_all_faults_are_told_at_once() -> None:
         if words in str(refusal.value)
     }  # fmt: skip
     assert refusal.value.elements["edges"].tolist() == [[0, 1], [7, 8]]
+
+
+@pytest.mark.parametrize("faces", [[], PILLOW, TETRAHEDRON, FAN, *soups()])
+def test_eulers_number_is_that_of_the_vertices_edges_and_faces_in_sets(faces: Faces) -> None:
+    edges = {frozenset(e) for e in directed(faces)}
+    vertices = {v for f in faces for v in f}
+    assert euler_number(mesh_of(faces, 9)) == len(vertices) - len(edges) + len(faces)
+
+
+def test_a_mesh_is_sound_as_a_surface_with_no_face_twice_and_eulers_number_as_foretold() -> None:
+    for faces, euler in (([], 0), (TETRAHEDRON, 2), (FAN, 1), ([*FAN, [5, 6, 7]], 2)):
+        mesh = mesh_of(faces, 9)
+        hem.require_sound(mesh)
+        hem.require_sound(mesh, euler)
+        for wrong in {euler + 1, 0} - {euler}:
+            with pytest.raises(hem.MeshError, match=f"number is {euler} instead of {wrong}"):
+                hem.require_sound(mesh, wrong)
+    with pytest.raises(hem.NonManifoldError):
+        hem.require_sound(mesh_of(TWISTED))
+    with pytest.raises(hem.MeshError, match="the same three corners as others") as refusal:
+        hem.require_sound(mesh_of([[5, 6, 7], *PILLOW], 9))
+    assert refusal.value.elements["faces"].tolist() == [2]

@@ -3,6 +3,7 @@
 import pickle
 import subprocess
 import sys
+import warnings
 from collections import Counter
 from itertools import combinations
 from typing import Any, Literal
@@ -69,12 +70,17 @@ def test_other_types_and_orders_become_contiguous_float32_and_int32(
         (SQUARE, [[0, 1, 2], [0, 1, np.inf]], "whole numbers", [1]),
         (SQUARE, [[0, 1, 2], [3, 1, 3], [2, 2, 1]], "a vertex twice", [1, 2]),
         ([], [[0, 1, 2]], "no points", [0]),
+        (np.broadcast_to(SQUARE[0], (2**31, 3)), [], "points are more than int32", None),
+        (SQUARE, np.broadcast_to(HALVES[0], (2**31, 3)), "triangles are more than int32", None),
     ],
 )
 def test_what_is_no_mesh_is_refused_naming_the_rows(
     points: ArrayLike, triangles: ArrayLike, words: str, rows: list[int] | None
 ) -> None:
-    with pytest.raises(hem.MeshError, match=words) as refusal:
+    with (
+        pytest.raises(hem.MeshError, match=words) as refusal,
+        warnings.catch_warnings(action="error"),
+    ):
         hem.TriangleMesh(points, triangles)
     named = refusal.value.elements.get("rows")
     assert (named if named is None else named.tolist()) == rows
