@@ -15,6 +15,7 @@ OCTAHEDRON = hem.TriangleMesh(
     POINTS, [(0, 1, 2), (1, 3, 2), (3, 4, 2), (4, 0, 2), (1, 0, 5), (3, 1, 5), (4, 3, 5), (0, 4, 5)]
 )
 TETRAHEDRON = hem.TriangleMesh(POINTS[:4], [(0, 2, 1), (0, 1, 3), (1, 2, 3), (2, 0, 3)])
+PAIR = hem.TriangleMesh(POINTS[:4], [(0, 1, 2), (1, 3, 2)])  # has outer edges that may collapse
 TRIANGLE = hem.TriangleMesh(POINTS[:3], [(0, 1, 2)])
 BOOK = hem.TriangleMesh(POINTS[:5], [(0, 1, 2), (1, 0, 3), (0, 1, 4)])  # three faces at one edge
 

@@ -90,10 +90,10 @@ def _kept_half_edge() -> Shown:
 
 
 def _border_collapse() -> Shown:
-    m, s = printed(beside.TRIANGLE), sound(beside.TRIANGLE)
+    m, s = printed(beside.PAIR), sound(beside.PAIR)
     words = attempt(lambda: m.collapse_edge(m.half_edges[0]))
-    refusal = attempt(lambda: s.collapse_edge(0))
-    return Shown(words, refusal, "null" in words and "refused" in refusal)
+    s.collapse_edge(s.half_edges[0].edge)
+    return Shown(words, require_valid(s), "null" in words and s.n_faces == 1)
 
 
 def _no_link_condition() -> Shown:
