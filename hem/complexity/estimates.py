@@ -52,8 +52,9 @@ def summarize(
     cells = [cells[i] for i in order]
     error, scatter = _errors(cells)
     cost = np.array([midmean(cell) for cell in cells])
-    if cost.max() / WIDEST > cost.min():
-        raise ValueError(f"no cost may be more than {WIDEST:g} times another: leave some sizes out")
+    if any(it.max() / WIDEST > it.min() for it in (cost, waits)):
+        most = f"no cost and no latency may be more than {WIDEST:g} times another"
+        raise ValueError(f"{most}: leave some sizes out")
     told = None if latency is None else waits[:, order]
     return Costs(n[order], cells, told, cost, error, scatter)
 

@@ -127,14 +127,19 @@ def judge(
     require_bound(bound)
     if resamples < 1:
         raise ValueError(f"resamples must be at least 1, not {resamples}")
+    if not 0 < confidence < 1:
+        raise ValueError(f"confidence must be between 0 and 1, not {confidence}")
+    if not all(0 <= it < np.inf for it in (latency_error, unseen)):
+        given = f"{latency_error} and {unseen}"
+        raise ValueError(f"latency_error and unseen must be numbers from 0 on, not {given}")
     claimed = canonical(expected, variable)
     if reference is not None and latency is not None:
         raise ValueError("give either latency or reference")
     terms = np.ravel(np.asarray(lower, float))
-    if not np.isfinite(terms).all():
-        raise ValueError(f"lower must be numbers, not {lower!r}")
     waits, entire = (latency, False) if reference is None else (np.ravel(reference), True)
     measured = summarize(sizes, samples, waits)
+    if not np.all((terms > -measured.sizes[0]) & (terms < np.inf)):
+        raise ValueError(f"lower must be numbers above minus the smallest size, not {lower!r}")
     noisy = measured.error > MAX_ERROR
     if 0 < noisy.mean() <= MOST_SKIPPED and np.count_nonzero(~noisy) >= MIN_SIZES:
         measured = measured.only(np.flatnonzero(~noisy))

@@ -418,7 +418,13 @@ def test_a_verdict_survives_json() -> None:
         ({"bound": "loose"}, "bound"),
         ({"resamples": 0}, "resamples must be at least 1"),
         ({"lower": [float("nan")]}, "lower must be numbers"),
-        ({"samples": [[1], [1], [1], [2.0**512]]}, "no cost may be more than 1e[+]60 times"),
+        ({"lower": [float("inf")]}, "lower must be numbers"),
+        ({"lower": [0, -1]}, "lower must be numbers above minus the smallest size"),
+        *(({"confidence": it}, "confidence must be between") for it in (-0.5, 95, float("nan"))),
+        *(({"latency_error": it}, "from 0 on") for it in (-0.1, float("inf"), float("nan"))),
+        *(({"unseen": it}, "from 0 on") for it in (-1, float("inf"), float("nan"))),
+        ({"latency": [1, 1, 1, 2.0**512]}, "no latency may be more than 1e[+]60 times"),
+        ({"samples": [[1], [1], [1], [2.0**512]]}, "no cost and no latency may be more than 1e"),
     ],
 )
 def test_malformed_input_is_named(change: dict[str, Any], message: str) -> None:
