@@ -19,7 +19,7 @@ from experiments.report.tables import show_claims
 from experiments.runs import experiments, load, tables
 from hem.contract import QUERIES
 from structures import NAMES
-from tests.experiments.made_runs import VALENCES, write_run
+from tests.experiments.made_runs import VALENCES, rewrite, write_run
 from tests.extent import exhaustive, waiting_for
 
 OF_RUN = (
@@ -101,6 +101,23 @@ def test_the_front_page_says_what_was_not_measured(tmp_path, part):
     body = notebooks.body("index")
     assert body.count('class="answer missing"') == 5
     assert body.count("<details") > 100
+
+
+def test_the_front_page_compares_the_medians_of_an_even_number_of_rounds_too(tmp_path):
+    write_run(tmp_path, only=lambda experiment, structure: structure in ("half_edge", "indexed"))
+
+    def scattered(it):
+        return {"samples": [k * it.samples[0] for k in (1, 1, 3, 3)]}
+
+    rewrite(tmp_path, "bench_build", "half_edge", scattered)  # at first 31 times as long
+    rewrite(tmp_path, "bench_workloads", "half_edge", scattered)  # and as long
+    run = load(tmp_path)
+    share(Session(run, judge_run(run)))
+    front = notebooks.read(notebooks.FRONT)
+    del front.cells[4:]  # what does not answer
+    answers = notebooks.execute(front, notebooks.FRONT)["answers"]
+    assert "takes 62 times as long to build" in answers[1].text
+    assert "takes 2.00 times as long on a half-edge mesh" in answers[3].text
 
 
 @exhaustive
