@@ -287,6 +287,7 @@ def test_the_german_answers_have_the_numbers_of_the_english_ones(front):
         assert sorted(re.findall(r"\d[\d,.]*\d|\d", there)) == sorted(swapped)
         assert re.search("[äöü]", there)
     assert all(it in " ".join(german) for it in ("6,33-Fache", "bei 200.000 Dreiecken"))
+    assert re.search(r" zu, \d+ nicht; offen: \d+\. ", german[4])  # no verb that one alone has not
 
 
 def test_what_was_not_measured_is_said_in_german_too():
