@@ -40,7 +40,7 @@ CASE_ERROR = 0.15
 """How far cases of one curve stray, beyond what their own rounds tell: each takes milliseconds, and
 other tenants slow the machine's caches for longer. A reference is a case, and strays as much."""
 
-NEAR = "near "  # said before the closest class where none explains the costs
+NEAR = "near "  # said before the closest class where costs do not tell which it is
 FLAT = 0.5  # slope in n_ev below which what grows comes on top of a larger part that does not
 
 

@@ -52,7 +52,7 @@ def legend() -> list[str]:
         "(by valence: at random in a mesh that is no larger; of operations: far apart), and for "
         "queries by time at random. Work is exact, and it decides.",
         f"{words}. Whose claim it is: {whose}.",
-        f"{NO_CLAIM} {Kind.NOBODY.about}. Near a class: none explains the costs, and that one "
+        f"{NO_CLAIM} {Kind.NOBODY.about}. Near a class: the costs do not tell which, and that one "
         f"comes closest. {NOT_POSSIBLE}: table 1 prints this where a structure records no edges; "
         "what was found is the cost with the edge named by its two vertices.",
         "n_t is the number of triangles, n_ev that of the edges at a vertex.",

@@ -10,12 +10,13 @@ import pytest
 from rich.console import Console
 
 from experiments.bench_workloads import COMPILED, FROM_PYTHON
-from experiments.claims import CLAIMED, Kind, Outcome, break_even, curves, judge_run
+from experiments.claims import CLAIMED, Kind, Outcome, break_even, class_told, curves, judge_run
 from experiments.report import comparisons
 from experiments.report.pages import claims_markdown, verdicts
 from experiments.report.session import share
 from experiments.report.tables import digits, duration, legend, show_claims, tally_rows
 from experiments.runs import load
+from hem.complexity import judge
 from structures import NAMED, NAMES, REGISTRY
 from tests.experiments.made_runs import LAWS, SIZES, write_run
 
@@ -33,6 +34,13 @@ def test_numbers_are_written_with_the_digits_that_count(value, count, written):
 )
 def test_times_have_the_unit_that_suits_them(seconds, written):
     assert duration(seconds) == written
+
+
+def test_near_a_class_is_explained_for_costs_that_it_explains_too():
+    few = judge([100, 200, 400], [[100], [200], [400]], "O(n)", exact=True)
+    assert class_told(few) == "near O(n)"
+    assert few.errors["O(n)"] == pytest.approx(0, abs=1e-9)  # it explains them, and so do others
+    assert "Near a class: the costs do not tell which" in " ".join(legend())
 
 
 @pytest.mark.parametrize("every", [False, True])
