@@ -8,7 +8,7 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.ticker import NullLocator
 
-from experiments.claims import Between, Curve, Exactly, JudgedClaim, curves
+from experiments.claims import Between, Curve, Exactly, Growth, JudgedClaim, curves
 from experiments.harness import Axis
 from experiments.report import style
 from experiments.report.rows import two_digits
@@ -55,7 +55,8 @@ def _draw_growth(axes: Axes, curve: Curve, judged: JudgedClaim, axis: Axis) -> N
     """Costs on logarithmic axes, and the class that is claimed, as it fits them best.
 
     The gray band is what waiting for memory can add to it. Where another class explains the costs,
-    that one is drawn as well. The limits are at least 1.6 decades apart, so that noise stays small.
+    that one is drawn as well. No access counts as one. The limits are at least 1.6 decades apart,
+    so that noise stays small.
     """
     verdict, claimed = judged.verdicts[axis], judged.claim.claims_something
     smooth = np.geomspace(curve.sizes.min(), curve.sizes.max(), STEPS)
@@ -69,7 +70,7 @@ def _draw_growth(axes: Axes, curve: Curve, judged: JudgedClaim, axis: Axis) -> N
             axes.fill_between(smooth, costs, slowdown * costs, color=GRAY, alpha=0.16, lw=0)
         axes.plot(smooth, costs, "--", color=color)
     color = STYLES[judged.claim.structure]["color"] if judged.claim.structure else INK
-    found = axis.scale * _summary(curve)
+    found = axis.scale * _summary(curve).clip(lower=1.0 if axis.exact else 0.0)
     axes.vlines(curve.sizes, found["smallest"], found["largest"], color=color, linewidth=1.2)
     axes.plot(curve.sizes, found["center"], "o", color=color)
     _name(axes, style.axis_label(axis))
@@ -84,10 +85,9 @@ def _draw_growth(axes: Axes, curve: Curve, judged: JudgedClaim, axis: Axis) -> N
 
 
 def _summary(curve: Curve) -> pd.DataFrame:
-    """The center, the smallest and the largest sample of each case; no access counts as one."""
+    """The center, the smallest and the largest sample of each case."""
     low, high = ([end(it) for it in curve.samples] for end in (np.min, np.max))
-    summary = pd.DataFrame({"center": curve.centers, "smallest": low, "largest": high})
-    return summary.clip(lower=1.0 if curve.measure == "work" else 0.0)
+    return pd.DataFrame({"center": curve.centers, "smallest": low, "largest": high})
 
 
 def _name(axes: Axes, title: str) -> None:
@@ -126,8 +126,9 @@ def _draw_values(axes: Axes, values: Floats, bounds: Between) -> None:
 def data(session: Session, judged: JudgedClaim) -> str:
     """What a claim was judged by, and who claims it, as comma-separated values; in seconds."""
     of_run, bounds = curves(session.run), judged.claim.expects
-    if judged.verdicts:
-        table = pd.concat([_cases(of_run.of(judged.claim, it), it) for it in judged.verdicts])
+    if isinstance(bounds, Growth):
+        axes = judged.verdicts or [Axis.WORK_FACES]  # of what was not measured the heads alone
+        table = pd.concat([_cases(of_run.of(judged.claim, it), it) for it in axes])
     elif isinstance(bounds, Between):
         table = pd.DataFrame({"value": judged.values, "low": bounds.low, "high": bounds.high})
     else:

@@ -11,7 +11,9 @@ from experiments.report import pages
 from experiments.report.figures import claims as figures
 from experiments.report.session import Session, claim_file
 from experiments.runs import load
-from tests.experiments.made_runs import SIZES, write_run
+from tests.experiments.made_runs import SIZES, rewrite, write_run
+
+READ = "bench_work"
 
 
 @pytest.fixture(scope="module")
@@ -50,6 +52,20 @@ def test_the_data_of_a_claim_are_the_cases_it_was_judged_by(session, claims):
     assert [int(row["faces"]) for row in work] == SIZES
     assert {float(row["center"]) for row in work} == {20.0}
     assert {row["unit"] for row in rows if row["measure"] == "time"} == {"seconds"}
+
+
+def test_of_what_was_not_measured_there_are_no_data_and_of_what_reads_nothing_no_access(tmp_path):
+    write_run(tmp_path, only=lambda experiment, structure: experiment in ("bench_memory", READ))
+    rewrite(tmp_path, READ, "indexed", lambda it: {"samples": [0.0]})
+    run = load(tmp_path)
+    session = Session(run, judge_run(run))
+    told = {it.claim.key: figures.data(session, it).splitlines() for it in session.claims}
+    assert "vertex.point" in told[f"half_edge/{MEMORY}"][1]
+    assert len(told["half_edge/split_edge"]) == 1  # it has bytes, but they are not of a split
+    heads, *rows = csv.reader(told["indexed/edge_vertices"])
+    assert heads == told["half_edge/split_edge"][0].split(",")
+    assert rows
+    assert {row[heads.index("center")] for row in rows} == {"0"}
 
 
 def test_bytes_are_given_by_field(session, claims):
