@@ -163,12 +163,13 @@ def _shown_claims(run: Run, every: bool) -> list[JudgedClaim]:
     if run.cases.empty:
         resume = resume_command(run.folder)
         raise MissingError(f"{run.folder} holds no case; resume it with: {resume}")
-    shown = NAMED if every else THESIS
-    claims = [it for it in judge_run(run) if it.claim.structure in shown and it.was_measured]
+    measured = [it for it in judge_run(run) if it.claim.structure in NAMED and it.was_measured]
+    claims = [it for it in measured if every or it.claim.structure in THESIS]
     if not claims:
         of_peers = (run.cases["experiment"] == "bench_peers").any()
-        more = ": try --peers" if of_peers else "" if every else ": try --all"
-        raise MissingError(f"{run.folder} holds no measurements of these structures{more}")
+        instead = "try --peers" if of_peers else "hem report shows what there is"
+        told = "of the thesis' structures: try --all" if measured else f"of the tables: {instead}"
+        raise MissingError(f"{run.folder} holds nothing {told}")
     return claims
 
 

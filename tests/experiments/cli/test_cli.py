@@ -107,6 +107,18 @@ def test_a_run_that_is_not_ended_is_told_how_it_goes_on(tmp_path):
     assert f"holds no case; resume it with: {goes_on}" in mistake("table", str(run))
 
 
+@pytest.mark.parametrize(
+    ("part", "said"), [("triangle_soup", "try --all"), ("bench_build", "hem report shows")]
+)
+def test_who_is_told_to_try_a_command_is_shown_something_by_it(tmp_path, part, said):
+    run = str(write_run(tmp_path, only=lambda *job: part in job))
+    assert said in mistake("table", run)
+    if part == "triangle_soup":
+        assert "Soup" in output_of("table", run, "--all")
+    else:
+        assert said in mistake("table", run, "--all")
+
+
 def test_what_cannot_be_written_is_told_before_anything_is_measured(tmp_path):
     run = str(BASELINE / "run")
     assert "Is a directory" in mistake("check", run, "--markdown", str(tmp_path), code=2)
