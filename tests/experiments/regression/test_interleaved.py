@@ -1,5 +1,6 @@
 """Two trees timed interleaved: identical code is not slower, and one that cannot run no pass."""
 
+import numpy as np
 import pytest
 
 from experiments.regression import HERE, Change, compare_trees, exit_code, interleaved
@@ -42,6 +43,34 @@ def test_a_tree_is_slower_only_if_no_pair_of_processes_says_otherwise(pairs, cha
     findings = compare_trees(HERE, HERE, ["indexed"])
     assert {finding.change for finding in findings} == {change}
     assert ENDED not in pairs or "could not be timed: it ended" in findings[0].why
+
+
+@pytest.mark.parametrize(("cost", "noise", "change", "rounds"), [
+    (1.0, 0.01, "same", 24),
+    (1.05, 0.01, "same", 24),
+    (1.3, 0.01, "worse", 24),
+    (0.7, 0.01, "better", 24),
+    (1.15, 0.02, "undetermined", 96),
+])  # fmt: skip
+def test_two_processes_are_asked_in_turn_until_they_tell(cost, noise, change, rounds, monkeypatch):
+    """Of a machine that slows down: neither is always the first, and what both do cancels out."""
+    rng, asked, handles = np.random.default_rng(1), [], 1_000
+
+    def ask(each, **question):
+        if times := question.get("times"):
+            return handles * times, 4e-6 * each * times
+        asked.append(each)
+        slow = 1.002 ** len(asked)
+        return 2e-3 * each * slow * rng.normal(1, noise), 1e-4 * slow
+
+    monkeypatch.setattr(interleaved, "_ask", ask)
+    found = interleaved._time_pair([1.0, cost], "indexed", "vertex_faces", 1.15)
+    assert found.compared.change == change
+    assert found.compared.ratio == pytest.approx(cost, rel=0.02)
+    assert found.after / found.before == pytest.approx(cost, rel=0.03)
+    each = 2e-3 / (handles * round(2e-3 / (4e-6 * min(1, cost))))  # the quicker one sets the times
+    assert each < found.before < each * 1.002 ** len(asked)
+    assert (asked[:4], len(asked)) == ([1, cost, cost, 1], 2 * rounds)
 
 
 @exhaustive
