@@ -46,6 +46,7 @@ COUNTED = {
     "Twice as many vertices as triangles": ([2], [2]),
     "The bytes leave out what the classes have": ([228], [48 + 6 * 56 + 2 * 32 + 9 * 8]),
     "The text promises of winged edges what table 1 does not": ([2, 8, 2, 64], [18, 130, 1]),
+    "Break points keep the height of the impact": ([88, 88, 0], [88, 88, 88]),
     "A guard lets the count itself through": ([24, 23], []),
     "The bytes are those of closed meshes": (
         [1083, 20 * 400 + 8 * 722 + 64 * 1083, 7, 3, 400], [1121, 83_088 + 64 * 38, 214, 228]
@@ -59,6 +60,15 @@ def test_an_erratum_tells_what_counting_by_hand_gives(title):
     shown = next(it.show() for it in ERRATA if it.title == title)
     told = [re.findall(r"\d[\d,]*", it) for it in (shown.printed, shown.sound)]
     assert tuple([int(it.replace(",", "")) for it in row] for row in told) == COUNTED[title]
+
+
+def test_as_many_points_of_a_disc_lie_in_a_smaller_one_as_its_area_has_a_share():
+    shown = next(it.show() for it in ERRATA if it.title == "Circles are discs")
+    share = (3.5 / 4.5) ** 2  # the last two of glass
+    for told in (shown.printed, shown.sound):
+        inside, count = map(int, re.findall(r"\d+", told))
+        assert count == 24
+        assert abs(inside - 24 * share) < 2.5 * (24 * share * (1 - share)) ** 0.5
 
 
 def test_a_walk_is_shown_to_come_round_by_running_the_one_that_is_quoted(monkeypatch):
