@@ -53,8 +53,9 @@ def summarize(
     error, scatter = _errors(cells)
     cost = np.array([midmean(cell) for cell in cells])
     if any(it.max() / WIDEST > it.min() for it in (cost, waits)):
-        most = f"no cost and no latency may be more than {WIDEST:g} times another"
-        raise ValueError(f"{most}: leave some sizes out")
+        raise ValueError(
+            f"no cost or latency may be over {WIDEST:g} times another: leave sizes out"
+        )
     told = None if latency is None else waits[:, order]
     return Costs(n[order], cells, told, cost, error, scatter)
 

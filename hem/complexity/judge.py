@@ -130,8 +130,7 @@ def judge(
     if not 0 < confidence < 1:
         raise ValueError(f"confidence must be between 0 and 1, not {confidence}")
     if not all(0 <= it < np.inf for it in (latency_error, unseen)):
-        given = f"{latency_error} and {unseen}"
-        raise ValueError(f"latency_error and unseen must be numbers from 0 on, not {given}")
+        raise ValueError("latency_error and unseen must be numbers from 0 on")
     claimed = canonical(expected, variable)
     if reference is not None and latency is not None:
         raise ValueError("give either latency or reference")

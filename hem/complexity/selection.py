@@ -52,7 +52,7 @@ class Memory:
 
 
 def account_for_memory(
-    costs: Costs, exact: bool, latency_error: float, allow_unmeasured: float, entire: bool = False
+    costs: Costs, exact: bool, latency_error: float, allow_unmeasured: float, entire: bool
 ) -> tuple[Costs, Memory]:
     """The costs, with the latency's error added to theirs, and what caches may have done to them.
 
