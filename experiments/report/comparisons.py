@@ -196,7 +196,7 @@ def waiting_in_words(run: Run) -> Html:
     sets = measured.curve(Axis.RANDOM_FACES, ARRAYS, "vertex_faces").cases
     latency = measured.latency(sets["working_set"].to_numpy(float))
     if not grown or sets.empty or latency is None:
-        raise MissingError("This run has not counted and timed the same queries.")
+        raise MissingError("This run has not counted and timed queries of a half-edge mesh, too.")
     in_order, at_random = np.median(grown, axis=0)
     sizes = sets["faces"].iloc[[0, -1]].tolist()
     return part("waiting", len(grown), sizes, in_order, at_random, latency[-1] / latency[0])

@@ -84,6 +84,14 @@ def test_what_was_measured_is_shown_and_the_rest_is_named_as_missing(tmp_path, m
     assert not all(shown)
 
 
+def test_what_is_told_beside_a_half_edge_mesh_names_it_where_it_was_not_measured(tmp_path):
+    run = open_part(tmp_path, "directed_edge").run
+    for asked in ("kind == 'work'", "kind == 'time'"):
+        assert "vertex_faces" in set(run.cases.query(asked)["subject"])  # what is there
+    with pytest.raises(MissingError, match="of a half-edge mesh"):
+        comparisons.waiting_in_words(run)
+
+
 def test_of_a_stopped_run_each_query_is_told_at_the_valences_that_it_has(tmp_path):
     run = open_part(tmp_path, "winged_edge").run
     missing = run.cases["subject"].eq("face_faces") & run.cases["valence"].eq(VALENCES[-1])
