@@ -135,7 +135,7 @@ def _claim(
         words = [f"{HOW.get(it, f'as {it} in')} {SYMBOLS[k]}" for k, it in grown.items()]
         text = f"{title} on {name} costs {printed}: {' and '.join(words)}."
         if not grown:
-            text = f"Of {title} on {name}, nothing is claimed. The class that was found is shown."
+            text = f"Of {title} on {name}, nothing is claimed."
     return Claim(
         f"{structure}/{what}{suffix}", text, kind, source, table.name, title, expects,
         structure, what, str(printed),

@@ -62,6 +62,7 @@ def test_of_what_was_not_measured_there_are_no_data_and_of_what_reads_nothing_no
     told = {it.claim.key: figures.data(session, it).splitlines() for it in session.claims}
     assert "vertex.point" in told[f"half_edge/{MEMORY}"][1]
     assert len(told["half_edge/split_edge"]) == 1  # it has bytes, but they are not of a split
+    assert all("is shown" not in it.claim.text for it in session.claims if not it.was_measured)
     heads, *rows = csv.reader(told["indexed/edge_vertices"])
     assert heads == told["half_edge/split_edge"][0].split(",")
     assert rows
