@@ -53,15 +53,17 @@ def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
     return case.result("time", case.build(), **time(case, preset, timer))
 
 
-def _follow(order: str, s: Structure) -> Ending:
-    """Have a render mesh follow what is done, in some orders -> how that ends, which gives it."""
+def _follow(order: str, s: Structure) -> tuple[Ending, Callable[[], None]]:
+    """Have a render mesh follow what is done, in some orders -> how that ends, which gives it, and
+    what lets go of the mesh: one that is followed is freed no sooner.
+    """
     if order == ANEW:
-        s.subscribe(lambda edit: hem.RenderMesh(s).close())
+        return lambda: None, s.subscribe(lambda edit: hem.RenderMesh(s).close())
     if order not in (EACH, TOGETHER):
-        return lambda: None
+        return lambda: None, lambda: None
     render = hem.RenderMesh(s)
     if order == EACH:
-        return lambda: render
+        return lambda: render, render.close
     transaction = render.transaction()
     transaction.__enter__()
 
@@ -69,7 +71,7 @@ def _follow(order: str, s: Structure) -> Ending:
         transaction.__exit__(None, None, None)
         return render
 
-    return commit
+    return commit, render.close
 
 
 def _time_one_by_one(case: Case, preset: Preset, timer: Timer) -> dict[str, Any]:
@@ -79,12 +81,16 @@ def _time_one_by_one(case: Case, preset: Preset, timer: Timer) -> dict[str, Any]
     done = len(harness.operation_arguments(s.copy(), operation, np.array(faces)))
     given = 3 if operation == "add_face" else 1
     point = ((0.0, 0.0, 0.0),) if operation.startswith("split") else ()
+    followed: list[Callable[[], None]] = []
 
     def fresh() -> tuple[Structure, Any, list[list[int]], Ending]:
+        while followed:
+            followed.pop()()
         copy = s.copy()
         copy.reserve(2 * SINGLE_FACES)
         rows = harness.operation_arguments(copy, operation, np.array(faces))[:, :given].tolist()
-        end = _follow(order, copy)
+        end, leave = _follow(order, copy)
+        followed.append(leave)
         copy.split_face(first, (0, 0, 0))  # makes room, here and in the render mesh
         return copy, getattr(copy, operation), rows, end
 

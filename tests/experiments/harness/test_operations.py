@@ -1,5 +1,7 @@
 """How operations are measured: on what, on how many copies, and that all did the same."""
 
+import gc
+import weakref
 from dataclasses import replace
 from functools import partial
 from itertools import product
@@ -282,3 +284,25 @@ def test_what_is_counted_of_a_search_by_corners_is_what_is_asked_for_it(name):
     asked.clear()
     assert s.find_face(*corners) == face
     assert sum(s.work(*it).sum() for it in asked) == counted[1] - counted[0]
+
+
+@pytest.mark.parametrize("order", ["rendered", "in a transaction", "render mesh built anew"])
+def test_a_copy_that_a_render_mesh_followed_is_freed_before_another_round(monkeypatch, order):
+    kind, copies, most = REGISTRY[BASE], weakref.WeakSet(), 0
+    sound = kind.copy
+
+    def copy(s):
+        nonlocal most
+        copies.add(made := sound(s))
+        most = max(most, len(copies))
+        return made
+
+    monkeypatch.setattr(kind, "copy", copy)
+    its, small = experiments()["bench_operations"], replace(PRESETS["smoke"], rounds=12)
+    timed = next(it for it in its.cases(small, BASE) if it.order == order)
+    gc.disable()  # as while a study times
+    try:
+        its.measure(timed, small, time_rounds)
+    finally:
+        gc.enable()
+    assert most <= 3  # of a trial, of the round before, and of this one
