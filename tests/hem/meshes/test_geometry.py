@@ -40,9 +40,9 @@ def test_geometry_is_that_of_trimesh(mesh: hem.TriangleMesh) -> None:
 
 
 def test_a_volume_is_that_of_a_closed_surface_wherever_it_lies() -> None:
-    box = trimesh.creation.box()
-    far = hem.TriangleMesh(box.vertices + 2.0**24, box.faces, np.float64)
-    assert far.volume() == 1
+    box = trimesh.creation.box((1, 2, 3))
+    far = hem.TriangleMesh(box.vertices + 2.0**33, box.faces, np.float64)
+    assert far.volume() == 6
     with pytest.raises(MeshError, match="borders encloses no volume"):
         hem.TriangleMesh(far.points, far.triangles[1:], np.float64).volume()
 
@@ -70,6 +70,7 @@ def test_a_mesh_without_area_has_no_direction() -> None:
         assert np.array_equal(it.vertex_normals(), np.zeros((n, 3)))
         assert it.vertex_normals().dtype == it.face_normals().dtype == np.float64
     assert hem.TriangleMesh([], []).face_normals().shape == (0, 3)
+    assert [it.tolist() for it in hem.TriangleMesh([], []).bounds] == [3 * [np.inf], 3 * [-np.inf]]
 
 
 @pytest.fixture

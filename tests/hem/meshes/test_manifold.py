@@ -61,16 +61,16 @@ def test_surfaces_pass(faces: Faces) -> None:
 @pytest.mark.parametrize(
     ("faces", "words", "kind", "elements", "at"),
     [
-        (FIN, "1 edge in more than two faces", "edges", [[0, 1]], [0, 1, 2]),
-        (TWISTED, "run the same way", "edges", [[0, 1]], [0, 1]),
-        (BOW_TIE, "1 vertex where more than one fan", "vertices", [0], [0, 1]),
+        (FIN, "1 edge in more than two faces", "edges", [[0, 1]], [1, 2, 3]),
+        (TWISTED, "run the same way", "edges", [[0, 1]], [1, 2]),
+        (BOW_TIE, "1 vertex where more than one fan", "vertices", [0], [1, 2]),
     ],
 )
 def test_what_is_no_surface_is_refused_naming_the_elements(
     faces: Faces, words: str, kind: str, elements: list[int], at: list[int]
 ) -> None:
     with pytest.raises(hem.NonManifoldError, match=words) as refusal:
-        hem.require_manifold(mesh_of(faces))
+        hem.require_manifold(mesh_of([[5, 6, 7], *faces], 9))
     assert refusal.value.elements[kind].tolist() == elements
     assert refusal.value.elements["faces"].tolist() == at
 

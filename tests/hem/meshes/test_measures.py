@@ -43,6 +43,8 @@ def test_vectors_are_measured_as_numpy_does() -> None:
     assert length(a) == pytest.approx(np.linalg.norm(a, axis=1))
     assert length(unit(a)) == pytest.approx(np.ones(50))
     assert direction((3e-300, 0, 4e-300)) == pytest.approx([0.6, 0, 0.8])
+    with pytest.raises(hem.MeshError, match="this one has none"):
+        direction((0, -0.0, 0))
 
 
 @pytest.mark.parametrize("given", [(1, 2), (1, 2, np.inf), "here", None])

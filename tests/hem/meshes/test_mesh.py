@@ -153,10 +153,18 @@ def test_welding_within_a_tolerance_joins_chains_and_parts_the_rest() -> None:
     for i, j in combinations(range(120), 2):
         if np.linalg.norm(points[i].astype(float) - points[j]) <= tolerance:
             label[label == label[j]] = label[i]
-    first = sorted(min(np.flatnonzero(label == x)) for x in set(label))
-    welded = hem.TriangleMesh(points, []).welded(tolerance)
+    first = {x: min(np.flatnonzero(label == x)) for x in set(label.tolist())}
+    faces = [[first[label[v]] for v in t] for t in combinations(range(0, 120, 7), 3)]
+    welded = hem.TriangleMesh(points, [*combinations(range(0, 120, 7), 3)]).welded(tolerance)
     assert 1 < len(welded.points) < 120
-    assert np.array_equal(welded.points, points[first])
+    assert np.array_equal(welded.points, points[sorted(first.values())])
+    kept = [points[t].tolist() for t in faces if len(set(t)) == 3]
+    assert welded.points[welded.triangles].tolist() == kept
+
+
+def test_welding_parts_what_is_next_to_nothing_apart() -> None:
+    points = np.array([(0, 0, 0), (1e-30, 0, 0), (2e-30, 0, 0), (-0.0, 0, 0)])
+    assert np.array_equal(hem.TriangleMesh(points, []).welded().points, np.float32(points[:3]))
 
 
 @pytest.mark.parametrize(
