@@ -191,6 +191,7 @@ def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
     rounds = preset.affordable_rounds(harness.took(partial(run, done))[1])
     if not (units := UNITS[workload.unit](begun, done)):
         raise harness.NothingToMeasureError(f"there is no {workload.unit} to be done")
+    del begun, done  # which would take memory while others are timed
     given: Any = {"setup": lambda: (_ready(s, before),), "rounds": rounds, "warmup": 0}
     timed = timer(run, **given, per=units)
     if before:
