@@ -106,6 +106,30 @@ def test_polygons_there_and_back() -> None:
             assert other.faces.to_list() == mesh.faces.to_list()
 
 
+@pytest.mark.usefixtures("meshio")
+def test_meshio_is_told_faces_by_its_names_of_them_a_block_for_every_run() -> None:
+    faces = [(0, 1, 2), (2, 3, 0), (0, 1, 2, 3), (0, 1, 2, 3, 4), (4, 1, 2)]
+    blocks = hem.PolygonMesh(np.eye(5)[:, :3], faces).to_meshio().cells
+    assert [it.type for it in blocks] == ["triangle", "quad", "polygon", "triangle"]
+    assert [tuple(row) for it in blocks for row in np.asarray(it.data).tolist()] == faces
+
+
+@pytest.mark.parametrize("name", ["trimesh", "pyvista", "meshio"])
+def test_a_library_that_is_not_there_is_named_with_how_to_get_it(
+    monkeypatch: pytest.MonkeyPatch, name: str
+) -> None:
+    monkeypatch.setitem(sys.modules, name, None)
+    with pytest.raises(ImportError, match=f"{name} is not installed; pip install {name}"):
+        getattr(hem.TriangleMesh([], []), f"to_{name}")()
+
+
+def test_no_polygons_have_three_corners_at_most() -> None:
+    for none in ([], np.zeros((0, 4), int)):
+        mesh = hem.PolygonMesh(np.eye(3), none)
+        assert (mesh.most_corners, mesh.face_rows().to_list()) == (3, [])
+        assert isinstance(hem.as_mesh(mesh), hem.TriangleMesh)
+
+
 def test_a_mesh_is_shown_as_a_picture() -> None:
     require_pictures()
     for mesh in (hem.generate("sphere", 42), CUBE):

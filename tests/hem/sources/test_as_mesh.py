@@ -99,9 +99,11 @@ def test_what_is_no_mesh_is_named_with_what_would_be_taken(given: Any, tmp_path:
 
 
 def test_what_looks_like_a_mesh_and_is_none_is_a_mesh_error(tmp_path: Path) -> None:
-    for given in ([1, 2], (POINTS, [[0, 1, 9]]), ("points", "faces"), blocks(("tetra", [[0]]))):
+    for given in ([1, 2], (POINTS, [[0, 1, 9]]), ("points", "faces")):
         with pytest.raises(hem.MeshError):
             hem.as_mesh(given)
+    with pytest.raises(hem.MeshError, match=r"there are cells that are \['tetra'\]"):
+        hem.as_mesh(blocks(("tetra", [[0, 1, 2, 3]])))  # as many corners as a quad has
     flat = SimpleNamespace(points=POINTS, faces=np.array([0, 1, 2, -1, 0, 2, 3, -1]))
     with pytest.raises(hem.MeshError, match=r"corners behind their count.*number 3 is -1"):
         hem.as_mesh(flat)

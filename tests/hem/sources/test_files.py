@@ -763,9 +763,13 @@ def test_a_triangle_structure_says_how_to_cut_polygons(tmp_path: Path) -> None:
         ([(0, 1, 2, 1)], "twice"),
         ([[0.5, 1, 2, 3]], "not whole numbers"),
         ([7], "rows"),
+        (None, "rows of vertex indices: 'NoneType'"),
+        ([[[0, 1], [2]]], "rows of vertex indices: "),
+        ([["a", "b", "c"]], "integers, not <U1"),
+        ([(0, 1, 2j)], "integers, not complex128"),
         *(
             (hem.Ragged(np.array(offsets), np.array([0, 1, 2, 0, 2, 3])), "offsets of faces")
-            for offsets in ([], [1, 6], [0, 3], [0, 3, 7], [0.0, 3.0, 6.0], [[0, 6]])
+            for offsets in (np.zeros(0, int), [1, 6], [0, 3], [0, 3, 7], [0.0, 3.0, 6.0], [[0, 6]])
         ),
         (hem.Ragged(np.array([0, 6, 3, 6], np.uint8), np.arange(6) % 4), r"three.* \(faces: 1\)"),
     ],
