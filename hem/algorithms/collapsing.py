@@ -181,7 +181,7 @@ def keeping_sides(k: Kernels) -> Kernel:
                 before = side[p] * (xyz[v, q] - xyz[a, q]) - side[q] * (xyz[v, p] - xyz[a, p])
                 after = side[p] * (target[q] - xyz[a, q]) - side[q] * (target[p] - xyz[a, p])
                 was, new, both = was + before**2, new + after**2, both + before * after
-            if was > 0 and not both > plan.cosine[0] * np.sqrt(was * new):
+            if was > 0 and not both > plan.cosine[0] * np.sqrt(was) * np.sqrt(new):
                 return False
         return True
 

@@ -82,8 +82,8 @@ def facing(xyz: Floats, a: int, b: int, c: int) -> tuple[float, float, float]:
 def agree(n: tuple[float, ...], m: tuple[float, ...]) -> bool:
     """Whether two normals point the same way."""
     both = n[0] * m[0] + n[1] * m[1] + n[2] * m[2]
-    sizes = (n[0] ** 2 + n[1] ** 2 + n[2] ** 2) * (m[0] ** 2 + m[1] ** 2 + m[2] ** 2)
-    return bool(both > LEAST_COSINE * np.sqrt(sizes))
+    one, other = n[0] ** 2 + n[1] ** 2 + n[2] ** 2, m[0] ** 2 + m[1] ** 2 + m[2] ** 2
+    return bool(both > LEAST_COSINE * np.sqrt(one) * np.sqrt(other))
 
 
 def evening_out(k: Kernels, operations: Kernels) -> Kernel:
@@ -214,7 +214,7 @@ def stay_where_faces_turn(s: Structure, places: Floats) -> None:
     faces = np.arange(len(corners))
     while len(faces):
         was, now = before[faces], face_normals(places[corners[faces]])
-        least = LEAST_COSINE * np.sqrt((was**2).sum(axis=1) * (now**2).sum(axis=1))
+        least = LEAST_COSINE * length_of(was) * length_of(now)
         turned = corners[faces[(was * now).sum(axis=1) < least]]
         places[turned] = s.points[turned]
         put_back = np.zeros(len(places), np.bool_)

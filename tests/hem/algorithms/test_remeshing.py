@@ -157,6 +157,17 @@ def test_a_length_beyond_all_positions_is_one_as_well(length: float) -> None:
     assert np.array_equal(mine.points, remeshed(mesh, length=100, iterations=1).points)
 
 
+@pytest.mark.parametrize("power", [-100, 127])  # nearly as large as numbers are
+def test_the_unit_of_length_makes_no_difference(power: int) -> None:
+    corners = 1.99 * np.array([(1, 1, 1), (1, -1, -1), (-1, 1, -1), (-1, -1, 1)], np.float32)
+    faces = [(0, 1, 2), (0, 3, 1), (0, 2, 3), (1, 3, 2)]
+    scale = np.float32(2.0**power)
+    one = remeshed(hem.TriangleMesh(corners, faces), length=2, iterations=3)
+    mine = remeshed(hem.TriangleMesh(corners * scale, faces), length=2 * 2.0**power, iterations=3)
+    assert np.array_equal(mine.triangles, one.triangles)
+    assert np.array_equal(mine.points, one.points * scale)
+
+
 def test_border_vertices_stay() -> None:
     edges, faces = edges_of(OPEN)
     border = np.unique(edges[faces == 1])
