@@ -189,6 +189,23 @@ def test_edges_that_have_no_middle_in_float32_stay() -> None:
     assert np.isclose(mine.face_areas().sum(), 64)
 
 
+def test_a_nearest_point_is_that_of_trimesh_on_the_triangle_that_faces_as_the_vertex_does() -> None:
+    closest_point = pytest.importorskip("trimesh").triangles.closest_point
+    rng = np.random.default_rng(3)
+    for corners in rng.normal(size=(50, 3, 3)):
+        normal = np.cross(corners[1] - corners[0], corners[2] - corners[0])
+        points = corners.mean(axis=0) + 2 * rng.normal(size=(40, 3)) + 0.3 * normal
+        both = Surface(
+            np.concatenate([corners, corners + 0.3 * normal]), np.array([[0, 1, 2], [3, 5, 4]])
+        )
+        normals = rng.normal(size=(40, 3))
+        along = normals @ normal > 0
+        expected = closest_point(
+            np.where(along[:, None, None], corners, corners + 0.3 * normal), points
+        )
+        assert np.allclose(both.nearest(points, normals), expected)
+
+
 @pytest.mark.parametrize("turn", range(3))
 @pytest.mark.parametrize(("corners", "place", "expected"), [
     ([(0, 0, 0), (0, 0, 0), (2, 0, 0)], (1, 1, 0), (1, 0, 0)),
