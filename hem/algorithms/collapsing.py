@@ -117,7 +117,7 @@ def cost_of(plan: Plan, a: int, b: int) -> float:
     error = value(total, target[0], target[1], target[2])
     if plan.measure[0] == SHORTEST_TO_PLANES:
         return long if error <= FLAT * long * total[10] else np.inf
-    if error > plan.error[0] * total[10]:
+    if error > 0 and error > plan.error[0] * total[10]:  # no weight and no bound make NaN
         return np.inf
     return error + LENGTH_WEIGHT * long * total[10]
 

@@ -166,6 +166,16 @@ def test_the_unit_of_length_makes_no_difference(power: int) -> None:
     assert np.array_equal(mine.points, expected.points * np.float32(2.0**power))
 
 
+def test_faces_without_area_are_simplified_without_a_warning() -> None:
+    mesh = hem.generate("sphere", 42)
+    s = structures.build(
+        "half_edge_objects", hem.TriangleMesh(mesh.points * (1, 0, 0), mesh.triangles)
+    )
+    with np.errstate(all="raise"):
+        algorithms.simplify(s, vertices=8)
+    assert s.n_vertices == 8
+
+
 def test_positions_are_seen_from_the_middle_of_the_bounding_box() -> None:
     for mesh in (GRID, hem.TriangleMesh(GRID.points + np.float32(4096), GRID.triangles)):
         plan = collapsible(structures.build("half_edge", mesh), QUADRICS, 0.7, np.inf)
