@@ -209,6 +209,34 @@ def test_a_ply_head_that_names_a_property_twice_is_refused(tmp_path: Path) -> No
             hem.load(written(tmp_path / "a.ply", text))
 
 
+@pytest.mark.parametrize(
+    ("was", "now"),
+    [
+        ("ply", "Ply"), ("format ascii 1.0\n", ""), ("ascii", "roman"), ("end_header", "end"),
+        ("float x", "rational x"), ("vertex 3", "vertex three"),
+        ("element vertex 3\nproperty float x", "property float x\nelement vertex 3"),
+    ],
+)  # fmt: skip
+def test_what_is_no_head_of_a_ply_file_is_told_as_such(tmp_path: Path, was: str, now: str) -> None:
+    with pytest.raises(hem.MeshError, match="its head is not that of a ply file"):
+        hem.load(written(tmp_path / "a.ply", PLY.format(2).replace(was, now)))
+
+
+def test_a_ply_head_without_a_coordinate_is_told_which(tmp_path: Path) -> None:
+    with pytest.raises(hem.MeshError, match="its head names no 'z' of vertices"):
+        hem.load(written(tmp_path / "a.ply", PLY.format(2).replace("float z", "float w")))
+
+
+def test_a_text_ply_or_off_that_lacks_any_of_its_last_numbers_is_refused(tmp_path: Path) -> None:
+    whole = {"ply": house("ply"), "off": house("off")}
+    for extension, text in whole.items():
+        begin = text.index("0 0 0\n")
+        for end in [begin, *(i for i, it in enumerate(text) if it in " \n" and i > begin)][:-1]:
+            with pytest.raises(hem.MeshError, match="the file is cut short"):
+                hem.load_polygons(written(tmp_path / f"a.{extension}", text[:end]))
+        assert len(hem.load_polygons(written(tmp_path / f"a.{extension}", text[:-1])).faces) == 3
+
+
 LIST = "property list uchar int vertex_indices"
 
 
@@ -475,6 +503,29 @@ def test_polygons_are_saved_and_come_back(tmp_path: Path, extension: str) -> Non
     back = hem.load_polygons(tmp_path / f"house.{extension}")
     assert np.array_equal(back.points, mesh.points)
     assert [tuple(face) for face in back.faces] == POLYGONS
+
+
+def test_a_face_of_more_corners_than_ply_can_count_is_kept_by_obj_and_off(tmp_path: Path) -> None:
+    angles = np.arange(256)
+    circle = np.stack([np.cos(angles), np.sin(angles), 0 * angles], axis=1)
+    for corners, extension in ((255, "ply"), (256, "obj"), (256, "off")):
+        mesh = hem.PolygonMesh(circle, [range(corners), (0, 1, 2)])
+        hem.save(mesh, tmp_path / f"a.{extension}")
+        back = hem.load_polygons(tmp_path / f"a.{extension}")
+        assert back.faces.to_list() == mesh.faces.to_list()
+    with pytest.raises(hem.MeshError, match="more than 255 corners are kept by obj and off"):
+        hem.save(mesh, tmp_path / "a.ply")
+
+
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+def test_text_keeps_every_bit_of_numbers_of_any_size(tmp_path: Path, dtype: type) -> None:
+    random = np.random.default_rng(0)
+    exponents = random.uniform(*np.log10([np.finfo(dtype).tiny, np.finfo(dtype).max]), (3000, 3))
+    points = (random.choice([-1, 1], (3000, 3)) * 10**exponents).astype(dtype)
+    mesh = hem.TriangleMesh(points, [(0, 1, 2)], dtype)
+    for extension in ("obj", "off"):
+        hem.save(mesh, tmp_path / f"a.{extension}")
+        assert np.array_equal(hem.load(tmp_path / f"a.{extension}", dtype=dtype).points, points)
 
 
 @pytest.mark.parametrize("extension", ["stl", "3ds"])
