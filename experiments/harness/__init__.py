@@ -39,7 +39,15 @@ from experiments.harness.oracle import (
     turned,
 )
 from experiments.harness.queries import checked_handles, time_query
-from experiments.harness.steadiness import BUSY, REPEATS, allowed_cores, badness, disturbed, pin
+from experiments.harness.steadiness import (
+    BUSY,
+    REPEATS,
+    Watch,
+    allowed_cores,
+    badness,
+    disturbed,
+    pin,
+)
 from experiments.harness.timer import CLOCK, BenchmarkTimer, Clock, Timed, Timer, time_rounds, took
 from experiments.presets import ANSWERING, HUBS, IRREGULAR, ORDERS, PRESETS, Preset
 
@@ -47,7 +55,7 @@ __all__ = [
     "ANSWERING", "BASE", "BUSY", "CLOCK", "HUBS", "IRREGULAR", "NO_STRUCTURE", "OPERATIONS",
     "OPERATIONS_TABLE", "ORDERS", "PRESETS", "QUERIES_TABLE", "REPEATS", "Axis",
     "BenchmarkTimer", "Case", "CheckFailedError", "Clock", "Experiment", "Keep", "Measurement",
-    "NothingToMeasureError", "Preset", "Table", "Timed", "Timer", "allowed_cores", "badness",
+    "NothingToMeasureError", "Preset", "Table", "Timed", "Timer", "Watch", "allowed_cores", "badness",
     "calibration_loop", "check_query", "check_rows", "check_told", "checked_handles", "disturbed",
     "in_random_order", "latency_now", "measured_operations", "operation_arguments",
     "operation_faces", "pack_pairs", "pin", "row", "time_operations", "time_query",

@@ -15,8 +15,7 @@ import numpy as np
 import hem
 import structures
 from experiments import harness
-from experiments.harness import Case, CheckFailedError, Preset, Timer, took
-from experiments.harness.steadiness import Watch
+from experiments.harness import Case, CheckFailedError, Preset, Timer, Watch, took
 from experiments.peers.outcome import Arrays, as_given, check_counts, check_outcome, counted
 from experiments.peers.peer import Peer
 from experiments.peers.registry import PEERS
