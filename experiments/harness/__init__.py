@@ -55,9 +55,9 @@ __all__ = [
     "ANSWERING", "BASE", "BUSY", "CLOCK", "HUBS", "IRREGULAR", "NO_STRUCTURE", "OPERATIONS",
     "OPERATIONS_TABLE", "ORDERS", "PRESETS", "QUERIES_TABLE", "REPEATS", "Axis",
     "BenchmarkTimer", "Case", "CheckFailedError", "Clock", "Experiment", "Keep", "Measurement",
-    "NothingToMeasureError", "Preset", "Table", "Timed", "Timer", "Watch", "allowed_cores", "badness",
-    "calibration_loop", "check_query", "check_rows", "check_told", "checked_handles", "disturbed",
-    "in_random_order", "latency_now", "measured_operations", "operation_arguments",
+    "NothingToMeasureError", "Preset", "Table", "Timed", "Timer", "Watch", "allowed_cores",
+    "badness", "calibration_loop", "check_query", "check_rows", "check_told", "checked_handles",
+    "disturbed", "in_random_order", "latency_now", "measured_operations", "operation_arguments",
     "operation_faces", "pack_pairs", "pin", "row", "time_operations", "time_query",
     "time_rounds", "took", "turned", "validate_operated",
 ]  # fmt: skip
