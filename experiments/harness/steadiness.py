@@ -15,11 +15,6 @@ import psutil
 
 from experiments.harness.calibration import filling_loop
 
-try:
-    import resource
-except ImportError:  # on Windows, where no case starts a program that times itself
-    resource = None  # type: ignore[assignment]
-
 READINGS = 5
 FIRST_READINGS = 50  # readings at the start of a process, to know how fast the loop can be
 SLOWDOWN = 0.25  # part by which the loop may be slower than at its fastest …
@@ -64,10 +59,13 @@ class Watch:
 
 def _ran() -> float:
     """Seconds for which this process ran, and those that it started and that have ended."""
-    if resource is None:
-        return process_time()
-    others = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return process_time() + others.ru_utime + others.ru_stime
+    mine = process_time()
+    with suppress(ImportError):  # as on Windows, which tells of this process alone
+        from resource import RUSAGE_CHILDREN, getrusage
+
+        ended = getrusage(RUSAGE_CHILDREN)
+        return mine + ended.ru_utime + ended.ru_stime
+    return mine
 
 
 def disturbed(noise: dict[str, Any]) -> bool:
