@@ -6,6 +6,7 @@ anew after every edit, as the thesis prints it.
 """
 
 from collections.abc import Callable
+from contextlib import ExitStack
 from typing import Any
 
 import numpy as np
@@ -53,17 +54,19 @@ def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
     return case.result("time", case.build(), **time(case, preset, timer))
 
 
-def _follow(order: str, s: Structure) -> tuple[Ending, Callable[[], None]]:
-    """Have a render mesh follow what is done, in some orders -> how that ends, which gives it, and
-    what lets go of the mesh: one that is followed is freed no sooner.
+def _follow(order: str, s: Structure, followed: ExitStack) -> Ending:
+    """Have a render mesh follow what is done, in some orders -> how that ends, which gives it.
+
+    ``followed`` is told how to let go of the mesh, which is freed no sooner.
     """
     if order == ANEW:
-        return lambda: None, s.subscribe(lambda edit: hem.RenderMesh(s).close())
+        followed.callback(s.subscribe(lambda edit: hem.RenderMesh(s).close()))
     if order not in (EACH, TOGETHER):
-        return lambda: None, lambda: None
+        return lambda: None
     render = hem.RenderMesh(s)
+    followed.callback(render.close)
     if order == EACH:
-        return lambda: render, render.close
+        return lambda: render
     transaction = render.transaction()
     transaction.__enter__()
 
@@ -71,7 +74,7 @@ def _follow(order: str, s: Structure) -> tuple[Ending, Callable[[], None]]:
         transaction.__exit__(None, None, None)
         return render
 
-    return commit, render.close
+    return commit
 
 
 def _time_one_by_one(case: Case, preset: Preset, timer: Timer) -> dict[str, Any]:
@@ -81,16 +84,14 @@ def _time_one_by_one(case: Case, preset: Preset, timer: Timer) -> dict[str, Any]
     done = len(harness.operation_arguments(s.copy(), operation, np.array(faces)))
     given = 3 if operation == "add_face" else 1
     point = ((0.0, 0.0, 0.0),) if operation.startswith("split") else ()
-    followed: list[Callable[[], None]] = []
+    followed = ExitStack()
 
     def fresh() -> tuple[Structure, Any, list[list[int]], Ending]:
-        while followed:
-            followed.pop()()
+        followed.close()
         copy = s.copy()
         copy.reserve(2 * SINGLE_FACES)
         rows = harness.operation_arguments(copy, operation, np.array(faces))[:, :given].tolist()
-        end, leave = _follow(order, copy)
-        followed.append(leave)
+        end = _follow(order, copy, followed)
         copy.split_face(first, (0, 0, 0))  # makes room, here and in the render mesh
         return copy, getattr(copy, operation), rows, end
 
