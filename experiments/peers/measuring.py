@@ -181,10 +181,10 @@ def time_operations(case: Case, preset: Preset, timer: Timer, batched: bool) -> 
         return m, handles, places
 
     m = peer.build(*given)  # without room, the making of which may operate
-    done, seconds = took(operate, m, peer.handles(m, element, numbers), places)
+    done = operate(m, peer.handles(m, element, numbers), places)
     _require(peer, done == len(numbers), f"{done} of {len(numbers)} × {operation}")
     _check_left(peer, operation, given, _mesh_of(case).corners[element][numbers], m)
-    rounds = preset.affordable_rounds(seconds)
+    rounds = preset.affordable_rounds(took(operate, *ready())[1])
     return timer(operate, setup=ready, rounds=rounds, warmup=0, per=done).fields
 
 
