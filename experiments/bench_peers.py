@@ -92,9 +92,10 @@ def bytes_per_vertex(case: Case, preset: Preset) -> float:
     """What a library's largest mesh was weighed at; its triangle list, where that ended it."""
     largest = sizes(preset, PEERS[case.structure])[-1]
     weighed = peers.told_by_child(case.structure, preset.families[0], largest)[BYTES]
+    if weighed is not None:
+        return float(weighed / largest)
     mesh = case.mesh()
-    least = sum(it.nbytes for it in peers.as_given(mesh)) / len(mesh.points)
-    return least if weighed is None else weighed / largest
+    return sum(it.nbytes for it in peers.as_given(mesh)) / len(mesh.points)
 
 
 IN_CPP = next(name for name, it in PEERS.items() if it.told_version)  # they share one program

@@ -192,6 +192,19 @@ def test_libraries_that_are_named_are_measured_alone(tmp_path):
         study.begin("smoke", tmp_path, experiments=["latency"], structures=[OURS])
 
 
+@pytest.mark.parametrize("weighed", [1_000_000, None])
+def test_a_case_works_on_what_its_mesh_weighs_whatever_was_built_before(
+    library, monkeypatch, weighed
+):
+    monkeypatch.setattr(bench_peers.peers, "told_by_child", lambda *_: {BYTES: weighed})
+    largest = bench_peers.sizes(PRESET, LIBRARY)[-1]
+    of_arrays = {n: 3 * 8 * n + 3 * 4 * 2 * n for n in PRESET.sizes}  # of a torus of n vertices
+    for size in (*PRESET.sizes, *PRESET.sizes):
+        found = measured(library, size=size, order=SINGLE)
+        expected = of_arrays[size] if weighed is None else weighed * size / largest
+        assert {it.working_set for it in found if it.subject in QUERIES} == {round(expected)}
+
+
 def test_cases_that_one_program_tells_of_are_all_as_disturbed_as_it_was(library, monkeypatch):
     def looped(*_: object) -> dict:
         sleep(0.1)  # off its core, however idle the machine is
