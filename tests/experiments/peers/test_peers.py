@@ -13,7 +13,7 @@ import pytest
 import hem
 import structures
 from experiments import bench_peers
-from experiments.harness import BASE, PRESETS, Measurement, time_rounds
+from experiments.harness import PRESETS, Measurement, time_rounds
 from experiments.harness.oracle import CheckFailedError
 from experiments.peers import (
     BAD_INPUT,
@@ -167,7 +167,7 @@ def test_a_process_that_ends_is_told_and_what_is_left_is_tried_in_another(monkey
 
 def test_a_process_grows_by_what_ours_takes():
     told = trials.told_by_child(OURS, "torus", 100_000)
-    s = structures.build(BASE, hem.generate("torus", 100_000))
+    s = structures.build("half_edge", hem.generate("torus", 100_000))
     assert 0.95 < told[BYTES] / sum(s.memory(room=True).values()) < 1.15
     assert {it[0] for name, it in told.items() if name != BYTES} == {"refused"}
 
