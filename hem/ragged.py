@@ -51,7 +51,7 @@ class Ragged:
         Raises IndexError outside ``-len … len - 1``.
         """
         n = len(self)
-        if isinstance(i, slice | list) or (isinstance(i, np.ndarray) and i.ndim):
+        if isinstance(i, (slice, list)) or (isinstance(i, np.ndarray) and i.ndim):
             rows = np.arange(n)[i]
             counts = self.counts[rows]
             offsets = np.concatenate([[0], np.cumsum(counts)])

@@ -53,6 +53,8 @@ from structures import pairs
 from structures.pairs import FACE, NEXT, PREVIOUS, START, PlanktonRecords
 from structures.polygons import POLYGON_OPERATIONS
 
+INTEGERS = int, np.integer  # made once: to make a union of types takes as long as to split a face
+
 
 def _known_as(step: str) -> Any:
     """A step under the name that the article gives it. See ``Navigable``."""
@@ -227,7 +229,7 @@ class Plankton(Navigable):
         1 vertex and 1 edge more.
         """
         if triangles:
-            return super().split_edge(edge, point)
+            return self._do["split_edge"](edge, point)
         return self._polygonal("split_edge", "insert_vertex", edge, point=point)[1]
 
     def split_face(self, face: int, point: Any) -> Any:
@@ -239,9 +241,9 @@ class Plankton(Navigable):
         in the face that keeps its index, and ``merge_faces`` of it undoes the split. Refused where
         both corners are joined already. Cost O(n).
         """
-        if isinstance(point, int | np.integer):
+        if isinstance(point, INTEGERS):
             return self._polygonal("split_face", "cut_across", face, point)[0]
-        return super().split_face(face, point)
+        return self._do["split_face"](face, point)
 
     def stellate(self, face: int, point: ArrayLike | None = None) -> Edit:
         """Join all corners of a face to a new vertex, in their middle unless a point is given."""
