@@ -5,7 +5,7 @@ another structure or of an experiment's own subjects, in the file of that.
 """
 
 import tomllib
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from importlib.resources import files
 from typing import Any
 
@@ -20,7 +20,7 @@ from experiments.claims.claim import (
     Growth,
     Kind,
 )
-from experiments.claims.curves import axes_of, table_of
+from experiments.claims.curves import axes_of
 from experiments.harness import Axis, Table
 from experiments.runs import experiments, tables
 from hem.contract import Claims
@@ -36,8 +36,8 @@ HOW = {
 }
 """How a cost of a class moves with its variable."""
 
-Entry = Mapping[str, Any]  # one of claims.toml
 Claimed = tuple[Any, Kind, str]  # what is printed, who claims it, and where or why
+Said = dict[str, Claimed]  # a row of a table, by structure
 Cell = tuple[Table, str, str, Claimed]  # a table, a subject, a structure; what is claimed of them
 NOTHING: Claimed = NO_CLAIM, Kind.NOBODY, "nobody claims what it costs"
 
@@ -45,52 +45,56 @@ NOTHING: Claimed = NO_CLAIM, Kind.NOBODY, "nobody claims what it costs"
 def load_claims(text: str | None = None) -> list[Claim]:
     """All cells of all tables, row by row; ``text`` instead of the project's claims.toml.
 
-    Raises ValueError naming the row for a subject, a structure, a class or a kind that is none.
+    Raises ValueError naming a table, a subject, a structure, a class or a kind that is none.
     """
     known = files("experiments.claims") / "claims.toml"
     content = tomllib.loads(text or known.read_text("utf-8"))
-    rows: dict[tuple[str, str], list[Entry]] = {}
-    for entry in map(_checked, content["row"]):
-        name = entry.get("table") or table_of(entry["what"])
-        rows.setdefault((name, entry["what"]), []).append(entry)
-    cells = [cell for row, entries in rows.items() for cell in _of_row(*row, entries)]
+    rows: dict[tuple[str, str], Said] = {}
+    for entry in content["claim"]:
+        for row, said in _read(entry):
+            rows.setdefault(row, {}).update(said)
+    cells = [cell for row, said in rows.items() for cell in _of_row(*row, said)]
     cells += [] if text else _of_experiments()
     return [_claim(content["classes"], *cell) for cell in cells]
 
 
-def _checked(entry: Entry) -> Entry:
+def _read(entry: dict[str, Any]) -> Iterator[tuple[tuple[str, str], Said]]:
+    """What an entry of claims.toml says, by table and subject."""
+    kind, source = entry.pop("kind", None), entry.pop("source", None)
+    for table, rows in entry.items():
+        if table not in tables():
+            there = ", ".join(tables())
+            raise ValueError(f"claims.toml: no table is called {table!r}; there are {there}")
+        for what, cells in rows.items():
+            _require_sound(what, cells, kind, source)
+            yield (table, what), {name: (it, Kind(kind), source) for name, it in cells.items()}
+
+
+def _require_sound(what: str, cells: Mapping[str, Any], kind: Any, source: Any) -> None:
     known = [MEMORY, *dict.fromkeys(it for table in tables().values() for it in table.subjects)]
-    what, claimed = entry.get("what"), set(entry) - {"what", "table", "kind", "source"}
     wrong = ""
     if what not in known:
         raise ValueError(f"claims.toml: no query is called {what!r}; there are {', '.join(known)}")
-    if claimed - set(NAMED):
-        wrong = f"no structure is called {min(claimed - set(NAMED))!r}"
-    elif claimed and "source" not in entry:
+    if strange := set(cells) - set(NAMED):
+        wrong = f"no structure is called {min(strange)!r}"
+    elif cells and source is None:
         wrong = "no source is given"
-    elif claimed and entry.get("kind") not in CLAIMED:
-        wrong = f"kind is {entry.get('kind')!r}, none of {', '.join(CLAIMED)}"
-    elif entry.get("table", table_of(what)) not in tables():
-        wrong = f"no table is called {entry['table']!r}"
+    elif cells and kind not in CLAIMED:
+        wrong = f"kind is {kind!r}, none of {', '.join(CLAIMED)}"
     if wrong:
         raise ValueError(f"claims.toml, row {what}: {wrong}")
-    return entry
 
 
-def _of_row(table_name: str, what: str, entries: Sequence[Entry]) -> Iterator[Cell]:
+def _of_row(table_name: str, what: str, said: Said) -> Iterator[Cell]:
     """What is claimed in a row, and what the files of the other structures say of the subject."""
     table = tables()[table_name]
-    said: dict[str, Claimed] = {}
-    for entry in entries:
-        for name in set(entry) & set(NAMED):
-            said[name] = entry[name], Kind(entry["kind"]), entry["source"]
     measured = {it for e in experiments().values() if e.table is table for it in e.structures}
     for name in NAMED:
         if name in said or name in measured:
             yield table, what, name, said.get(name) or _own_claim(name, what, said)
 
 
-def _own_claim(name: str, what: str, said: Mapping[str, Claimed]) -> Claimed:
+def _own_claim(name: str, what: str, said: Said) -> Claimed:
     """What a structure's file claims of a subject, by itself or as is ``said`` of another."""
     own: Claims | None = getattr(NAMED[name], "claims", None)
     if own and what in own.costs:

@@ -93,16 +93,17 @@ def test_every_claim_has_a_key_of_its_own_a_source_and_a_sentence():
 
 
 @pytest.mark.parametrize(("entry", "named"), [
-    ('what = "vertex_corners"\nsource = "x"', "vertex_corners"),
-    ('what = "face_faces"\nsource = "x"\nhalf_edges = "O(1)"', "half_edges"),
-    ('what = "face_faces"\nkind = "printed"\nsource = "x"\nhalf_edge = "O(n_v)"', r"O\(n_v\)"),
-    ('what = "face_faces"\nkind = "printed"\nhalf_edge = "O(1)"', "no source"),
-    ('what = "face_faces"\nsource = "x"\nhalf_edge = "O(1)"', "kind is None"),
-    ('what = "face_faces"\nkind = "said"\nsource = "x"\nhalf_edge = "O(1)"', "'said'"),
-    ('what = "face_faces"\nsource = "x"\ntable = "tables"', "tables"),
+    ('source = "x"\nqueries.vertex_corners = {}', "vertex_corners"),
+    ('source = "x"\nqueries.face_faces.half_edges = "O(1)"', "half_edges"),
+    ('kind = "printed"\nsource = "x"\nqueries.face_faces.half_edge = "O(n_v)"', r"O\(n_v\)"),
+    ('kind = "printed"\nqueries.face_faces.half_edge = "O(1)"', "no source"),
+    ('source = "x"\nqueries.face_faces.half_edge = "O(1)"', "kind is None"),
+    ('kind = "said"\nsource = "x"\nqueries.face_faces.half_edge = "O(1)"', "'said'"),
+    ('source = "x"\ntables.face_faces = {}', "tables"),
+    ('sources = "x"\nqueries.face_faces = {}', "sources"),
 ])  # fmt: skip
 def test_a_claim_that_makes_no_sense_is_refused_by_name(entry, named):
-    classes = '[classes]\n"O(1)" = { faces = "O(1)", valence = "O(1)" }\n[[row]]\n'
+    classes = '[classes]\n"O(1)" = { faces = "O(1)", valence = "O(1)" }\n[[claim]]\n'
     with pytest.raises(ValueError, match=named):
         load_claims(classes + entry)
 

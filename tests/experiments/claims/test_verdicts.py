@@ -207,11 +207,10 @@ def test_one_entry_adds_a_claim(base_run):
     text = """
         [classes]
         "O(1)" = { faces = "O(1)", valence = "O(1)" }
-        [[row]]
-        what = "vertex_vertices"
+        [[claim]]
         kind = "printed"
         source = "another document"
-        half_edge = "O(1)"
+        queries.vertex_vertices = { half_edge = "O(1)" }
     """
     claim = next(it for it in load_claims(text) if it.printed == "O(1)")
     (judged,) = judge_cells(base_run, [claim])
