@@ -59,6 +59,8 @@ def sentence_claims() -> list[Claim]:
         if name not in QUANTITIES:
             known = ", ".join(QUANTITIES)
             raise ValueError(f"sentences.toml: {says!r} rests on {name!r}; there are {known}")
+        if "exactly" in row:
+            row["low"] = row["high"] = row.pop("exactly")
         expects = Between(name, **row)
         claims.append(Claim(f"sentence/{name}", says, kind, source, SENTENCES, says, expects))
     return claims
