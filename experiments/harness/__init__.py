@@ -10,6 +10,7 @@ from experiments.harness.cases import (
     Case,
     Measurement,
     NothingToMeasureError,
+    elements_at,
     in_random_order,
 )
 from experiments.harness.experiment import (
@@ -57,7 +58,7 @@ __all__ = [
     "BenchmarkTimer", "Case", "CheckFailedError", "Clock", "Experiment", "Keep", "Measurement",
     "NothingToMeasureError", "Preset", "Table", "Timed", "Timer", "Watch", "allowed_cores",
     "badness", "calibration_loop", "check_query", "check_rows", "check_told", "checked_handles",
-    "disturbed", "in_random_order", "latency_now", "measured_operations", "operation_arguments",
-    "operation_faces", "pack_pairs", "pin", "row", "time_operations", "time_query",
-    "time_rounds", "took", "turned", "validate_operated",
+    "disturbed", "elements_at", "in_random_order", "latency_now", "measured_operations",
+    "operation_arguments", "operation_faces", "pack_pairs", "pin", "row", "time_operations",
+    "time_query", "time_rounds", "took", "turned", "validate_operated",
 ]  # fmt: skip

@@ -109,6 +109,11 @@ class Case:
         """How many vertices its mesh is asked for; 0 for a sample, which has as many as it has."""
         return self.size // 2 if self.family == HUBS else self.size
 
+    @property
+    def hubs(self) -> int:
+        """How many vertices, the first ones, have the valence that is varied; 0 where none is."""
+        return len(hem.valence_hubs(self.valence, self.size)) if self.valence else 0
+
     def mesh(self) -> TriangleMesh:
         """The mesh, renumbered at random where the case says so and asks nothing."""
         renumbered = self.order == "random" and self.subject is None
@@ -151,24 +156,17 @@ def in_random_order(cases: Sequence[Case], seed: int | str) -> list[Case]:
     return [case for block in blocks for case in block]
 
 
-def queried_handles(case: Case, s: Structure) -> Array:
-    """The handles a case asks, each once: in ascending order, or all of them in random order.
-
-    Where the valence varies: the hubs, or the edges or faces at hubs, as many at every valence.
-    """
-    source = case.query.source
-    handles = s.handles(source)
-    if case.valence is not None:
-        corners = handles
-        if source != "vertex":
-            corners = getattr(s, f"{source}_vertices")(handles).values
-        hubs = hem.valence_hubs(case.valence, case.size)
-        handles = handles[(corners < len(hubs)).reshape(len(handles), -1).any(axis=1)]
-    return in_order_of(case, handles)
+def elements_at(s: Structure, source: str, few: int) -> Array:
+    """Handles of the first ``few`` vertices, or of the edges or faces at them; of all for 0."""
+    every = s.handles(source)
+    if not few:
+        return every
+    corners = every if source == "vertex" else getattr(s, f"{source}_vertices")(every).values
+    return every[(corners < few).reshape(len(every), -1).any(axis=1)]
 
 
 def in_order_of(case: Case, handles: Array) -> Array:
-    """Handles in the order in which a case asks."""
+    """Handles in the order in which a case asks: as they are, ascending, or all at random."""
     random = np.random.default_rng(HANDLE_SEED)
     return random.permutation(handles) if case.order == "random" else handles
 

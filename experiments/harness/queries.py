@@ -5,7 +5,7 @@ from itertools import count
 import numpy as np
 
 from experiments.harness.calibration import latency_now
-from experiments.harness.cases import Case, Measurement, queried_handles
+from experiments.harness.cases import Case, Measurement, elements_at, in_order_of
 from experiments.harness.oracle import check_query
 from experiments.harness.reference import Reference, typical
 from experiments.harness.timer import Timer, took
@@ -21,7 +21,8 @@ TRIES = 3  # times that a number of handles is tried before it is believed to la
 def checked_handles(case: Case) -> tuple[Structure, Array]:
     """The structure of a case and its handles; CheckFailedError if some answers are wrong."""
     s = case.build()
-    handles = queried_handles(case, s)
+    # Where the valence varies those at hubs, as many at every valence.
+    handles = in_order_of(case, elements_at(s, case.query.source, case.hubs))
     check_query(s, case.mesh(), case.query, handles[:CHECKED_HANDLES])
     return s, handles
 

@@ -16,7 +16,6 @@ from functools import lru_cache
 
 import numpy as np
 
-import hem
 import structures
 from experiments.harness.cases import Case, in_order_of
 from experiments.harness.timer import time_rounds
@@ -88,8 +87,7 @@ def copies(small: Case, vertices: int) -> tuple[Structure, tuple[Array, ...]]:
     mesh = small.mesh()
     n_points, n_faces = len(mesh.points), len(mesh.triangles)
     count = max(1, round(vertices / n_points))
-    hubs = len(hem.valence_hubs(int(small.valence), small.size)) if small.valence else 0
-    vertex, face = _places(small, n_points, count, hubs), _places(small, n_faces, count)
+    vertex, face = _places(small, n_points, count, small.hubs), _places(small, n_faces, count)
     points = np.empty((count * n_points, 3), mesh.points.dtype)
     triangles = np.empty((count * n_faces, 3), mesh.triangles.dtype)
     points[vertex], triangles[face] = mesh.points, vertex[:, mesh.triangles]

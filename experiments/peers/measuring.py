@@ -12,7 +12,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-import hem
 import structures
 from experiments import harness
 from experiments.harness import Case, CheckFailedError, Preset, Timer, Watch, took
@@ -61,9 +60,8 @@ def _numbers(case: Case, built: Built) -> Array:
     """The elements that a case asks, at random; where the valence varies those at hubs."""
     rows = built.corners[case.query.source]
     numbers = np.random.default_rng(SEED).permutation(len(rows))
-    if case.valence is not None:
-        hubs = len(hem.valence_hubs(case.valence, case.size))
-        numbers = numbers[(rows[numbers] < hubs).any(axis=1)]
+    if case.hubs:
+        numbers = numbers[(rows[numbers] < case.hubs).any(axis=1)]
     return numbers[:MOST_HANDLES]
 
 
@@ -212,9 +210,8 @@ def _looped(case: Case, rounds: int, whole: int) -> tuple[dict[str, list[float]]
     """What compiled loops took on a mesh, by subject, and memory and noise beside; checked."""
     peer, given = PEERS[case.structure], as_given(case.mesh())
     assert peer.looped is not None  # or there is no such case
-    few = 0 if case.valence is None else len(hem.valence_hubs(case.valence, case.size))
     watch = Watch()  # of every case that this tells of; others only read
-    told = peer.looped(*given, few, rounds, whole)
+    told = peer.looped(*given, case.hubs, rounds, whole)
     noise = watch.seen()
     harness.check_told(peer.title, given[1], told["answers"])
     for operation, (done, *left) in told["operated"].items():

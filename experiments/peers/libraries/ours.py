@@ -9,7 +9,7 @@ import numpy as np
 
 import hem
 import structures
-from experiments.harness import time_rounds, took
+from experiments.harness import elements_at, time_rounds, took
 from experiments.peers.peer import BATCHED, SIX, Mesh, Peer, Rows
 from hem import algorithms
 from hem.arrays import Array
@@ -77,7 +77,7 @@ def _times(s: Mesh, few: int, rounds: int, whole: int) -> dict[str, list[float]]
     """
     times = {}
     for query, it in QUERIES.items() if rounds else ():
-        handles = np.random.default_rng(7).permutation(_at(s, it.source, few))[:ASKED]
+        handles = np.random.default_rng(7).permutation(elements_at(s, it.source, few))[:ASKED]
         timed = time_rounds(s.prepare_sweep(query, handles).run, rounds=rounds)
         times[query] = (timed.samples / len(handles)).tolist()
     for name, algorithm in algorithms.SIX.items() if whole else ():
@@ -97,15 +97,6 @@ def _seconds_each(operation: str, s: Mesh) -> float:
     begin = process_time()
     done = _all_at_once(operation, s, handles, places)
     return (process_time() - begin) / done
-
-
-def _at(s: Mesh, source: str, few: int) -> Array:
-    """The vertices below ``few`` and the edges and faces at them, or all."""
-    every = s.handles(source)
-    if not few or source == "vertex":
-        return every[:few] if few else every
-    corners = getattr(s, f"{source}_vertices")(every).values.reshape(len(every), -1)
-    return every[(corners < few).any(axis=1)]
 
 
 ASKED = 20_000
