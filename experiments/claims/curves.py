@@ -32,11 +32,6 @@ class Curve:
         return len(self.cases)
 
     @property
-    def measure(self) -> str:
-        """``work``, whose center is the mean, or ``time``, whose center is the median."""
-        return "work" if (self.cases["kind"] == "work").any() else "time"
-
-    @property
     def sizes(self) -> Array:
         """(k,) the variable."""
         return self.cases[self.variable].to_numpy(float)
@@ -49,7 +44,7 @@ class Curve:
     @cached_property
     def centers(self) -> Array:
         """(k,) the cost of each case: mean accesses, or median seconds."""
-        center = np.mean if self.measure == "work" else np.median
+        center = np.mean if (self.cases["kind"] == "work").any() else np.median
         return np.array([float(center(it)) for it in self.samples])
 
     @cached_property
