@@ -27,15 +27,12 @@ def describe(preset: str) -> dict[str, Any]:
     for name in LIBRARIES:
         with suppress(PackageNotFoundError):  # some are optional
             versions[name] = version(name)
-    head = {"schema": SCHEMA, "preset": preset, "started": now(), **source()}
-    return {**head, "machine": machine(), "versions": versions}
-
-
-def source() -> dict[str, Any]:
-    """The commit that is run, and whether anything was changed since."""
     commit = git("rev-parse", "HEAD")
-    dirty = bool(git("status", "--porcelain")) if commit else None
-    return {"commit": commit or "unknown", "dirty": dirty}
+    return {
+        "schema": SCHEMA, "preset": preset, "started": now(), "commit": commit or "unknown",
+        "dirty": bool(git("status", "--porcelain")) if commit else None,  # changed since
+        "machine": machine(), "versions": versions,
+    }  # fmt: skip
 
 
 def git(*arguments: str) -> str:
