@@ -70,10 +70,7 @@ def _seconds_per_query(sweep: Sweep, enough: float) -> float:
     many = 1
     while True:
         asked = sweep.successive(0, many)
-        seconds = took(asked.run)[1]
-        for _ in range(TRIES - 1):
-            if seconds >= enough:
-                seconds = min(seconds, took(asked.run)[1])
+        seconds = min(took(asked.run)[1] for _ in range(TRIES))
         if seconds >= enough or many >= MOST_HANDLES:
             return max(seconds / many, 1e-10)
         many *= 4
