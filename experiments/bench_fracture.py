@@ -57,7 +57,7 @@ def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
         scans = IMPACTS * per_search[str(case.order).partition(",")[0]] * searches
     # With a round to check it, and one to see how long it takes.
     if reason := preset.why_too_slow(scans, s.n_faces, preset.fewest_rounds + 2):
-        return case.result(EXPERIMENT.kind_of(case), s, skipped=reason)
+        return case.result(EXPERIMENT.kind_of(case.order), s, skipped=reason)
     return (_shatter if case.subject == SHATTER else _find)(case, s, preset, timer)
 
 

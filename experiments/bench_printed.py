@@ -89,7 +89,7 @@ def measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
     expected = before + len(steps) * more
     if faces() != expected:
         raise AssertionError(f"{case.id} on {case.structure}: {faces()} faces, not {expected}")
-    return case.result(EXPERIMENT.kind_of(case), None, reference_bytes=8, **fields)
+    return case.result(EXPERIMENT.kind_of(case.order), None, reference_bytes=8, **fields)
 
 
 def _steps(case: Case, most: int) -> tuple[list[Step], Callable[[], int]]:

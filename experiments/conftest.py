@@ -124,7 +124,7 @@ def keep(request: pytest.FixtureRequest, case: Case, core: int | None) -> harnes
                 pytest.exit(str(error), returncode=pytest.ExitCode.INTERNAL_ERROR)
 
     if reason := memory.why_too_large(case, experiment.copies):
-        add(case.not_measured(experiment.kind_of(case), reason))
+        add(case.not_measured(experiment.kind_of(case.order), reason))
         pytest.skip(reason)
     watch = steadiness.Watch()
 

@@ -113,7 +113,7 @@ class Experiment:
         strange = set(self.claims) - set(self.table.subjects if self.table else ())
         claimed = {name for it in self.claims.values() for name in (*it, *self.structures)}
         unknown = claimed - {ANYONE, *NAMED}
-        kinds = {axis: self._kind_in(order) for axis, order in self.axes.items()}
+        kinds = {axis: self.kind_of(order) for axis, order in self.axes.items()}
         amiss = [axis.key for axis, kind in kinds.items() if axis.exact != (kind == "work")]
         for wrong, why in (
             (self.kind not in KINDS, f"kind must be one of {KINDS}, not {self.kind!r}"),
@@ -150,15 +150,12 @@ class Experiment:
         except NothingToMeasureError as error:
             if not is_own(case.family, case.size):
                 raise
-            return case.result(self.kind_of(case), None, skipped=str(error))
+            return case.result(self.kind_of(case.order), None, skipped=str(error))
 
     def expected(self, subject: str, structure: str) -> str | None:
         """The growth class that it expects of a subject on a structure; None for nothing."""
         return self.claims[subject].get(structure, self.claims[subject].get(ANYONE))
 
-    def kind_of(self, case: Case) -> str:
-        """What a case measures."""
-        return self._kind_in(case.order)
-
-    def _kind_in(self, order: str | None) -> str:
+    def kind_of(self, order: str | None) -> str:
+        """What a case in such an order measures."""
         return "work" if order in self.counted else self.kind

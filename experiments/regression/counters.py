@@ -57,7 +57,7 @@ def _tasks(chosen: Collection[str]) -> Iterator[Task]:
     for it in experiments().values():
         for name in it.structures if it.table else ():
             for case in it.cases(EXTENT.of(name), name) if not chosen or name in chosen else ():
-                if it.kind_of(case) == "work":
+                if it.kind_of(case.order) == "work":
                     yield it.name, name, case.not_measured("work", ""), partial(_work, it, case)
     for name in structures.NAMES:
         if not chosen or name in chosen:
