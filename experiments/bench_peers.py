@@ -78,7 +78,7 @@ def _measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
         fields = measuring.read_looped(case, preset)
     elif what in QUERIES:
         ask = measuring.time_bulk if case.order == BULK else measuring.time_single
-        fields = ask(*given) | measuring.beside(case, bytes_per_vertex(case, preset))
+        fields = ask(*given) | measuring.beside(working_set(case, preset))
     elif what in OPERATIONS:
         fields = measuring.time_operations(*given, batched=case.order == BULK)
     elif what in peers.ALGORITHMS:
@@ -88,14 +88,13 @@ def _measure(case: Case, preset: Preset, timer: Timer) -> Measurement:
     return replace(case.result("time", None, detail=version), **fields)
 
 
-def bytes_per_vertex(case: Case, preset: Preset) -> float:
-    """What a library's largest mesh was weighed at; its triangle list, where that ended it."""
-    largest = sizes(preset, PEERS[case.structure])[-1]
+def working_set(case: Case, preset: Preset) -> int:
+    """Bytes a case works on, as the largest mesh was weighed; its triangle list, where none was."""
+    mesh, largest = case.mesh(), sizes(preset, PEERS[case.structure])[-1]
     weighed = peers.told_by_child(case.structure, preset.families[0], largest)[BYTES]
-    if weighed is not None:
-        return float(weighed / largest)
-    mesh = case.mesh()
-    return sum(it.nbytes for it in peers.as_given(mesh)) / len(mesh.points)
+    if weighed is None:
+        return sum(it.nbytes for it in peers.as_given(mesh))
+    return round(weighed / largest * len(mesh.points))
 
 
 IN_CPP = next(name for name, it in PEERS.items() if it.told_version)  # they share one program

@@ -216,7 +216,7 @@ def _looped(case: Case, rounds: int, whole: int) -> tuple[dict[str, list[float]]
     harness.check_told(peer.title, given[1], told["answers"])
     for operation, (done, *left) in told["operated"].items():
         check_counts(peer.title, operation, counted(*given), done, left)
-    return told["times"], {**_memory(told["bytes"]), "noise": noise}
+    return told["times"], {**beside(told["bytes"]), "noise": noise}
 
 
 def read_looped(case: Case, preset: Preset) -> Fields:
@@ -237,12 +237,7 @@ def _require(peer: Peer, holds: bool, otherwise: str) -> None:
         raise CheckFailedError(f"{peer.title}: {otherwise}")
 
 
-def beside(case: Case, weighed: float) -> Fields:
-    """What a case works on, by the bytes per vertex of a mesh, and the memory's latency there."""
-    return _memory(round(weighed * len(case.mesh().points)))
-
-
 @lru_cache(maxsize=2)
-def _memory(working_set: int) -> Fields:
+def beside(working_set: int) -> Fields:
     """The latency, taken once for the cases of a mesh, which come together and within seconds."""
     return {"working_set": working_set, "latency": harness.latency_now(working_set)}
