@@ -18,7 +18,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
-#include <numeric>
 #include <random>
 #include <string>
 #include <unistd.h>
@@ -242,6 +241,19 @@ template <class L> struct Measured {
   static void key(L &s, E e, std::vector<double> &into) { s.ends(e, [&](V v) { into.push_back(number(v)); }); }
   template <class H> static void key(L &, H h, std::vector<double> &into) { into.push_back(number(h)); }
 
+  // Some elements in random order: of those with a corner below `few`, or of all.
+  template <class H, class Corners> static std::vector<int> some(size_t elements, int few, Corners corners) {
+    std::vector<int> chosen;
+    for (size_t i = 0; i < elements; i++) {
+      bool at = !few;
+      corners(H(i), [&](V v) { at = at || number(v) < few; });
+      if (at) chosen.push_back(i);
+    }
+    std::shuffle(chosen.begin(), chosen.end(), std::mt19937(7));
+    if (chosen.size() > asked) chosen.resize(asked);
+    return chosen;
+  }
+
   // Ask some elements in random order, round by round; answers are summed, as a caller would use them.
   template <class H, class Ask> static void query(L &s, const char *title, const std::vector<int> &chosen, int rounds, bool check, Ask ask) {
     name(title);
@@ -272,22 +284,9 @@ template <class L> struct Measured {
 
   // All queries: answers to check, or times. Of the vertices below `few` and what is at them, or of all.
   static void queries(L &s, int few, int rounds, bool check) {
-    std::vector<int> vertices, edges, faces;
-    for (size_t i = 0; i < s.vertices(); i++) if (!few || int(i) < few) vertices.push_back(i);
-    for (size_t i = 0; i < s.edges(); i++) {
-      bool at = !few;
-      s.ends(E(i), [&](V v) { at = at || number(v) < few; });
-      if (at) edges.push_back(i);
-    }
-    for (size_t i = 0; i < s.faces(); i++) {
-      bool at = !few;
-      s.corners_of(F(i), [&](V v) { at = at || number(v) < few; });
-      if (at) faces.push_back(i);
-    }
-    for (auto *chosen : {&vertices, &edges, &faces}) {
-      std::shuffle(chosen->begin(), chosen->end(), std::mt19937(7));
-      if (chosen->size() > asked) chosen->resize(asked);
-    }
+    auto vertices = some<V>(s.vertices(), few, [](V v, auto visit) { visit(v); });
+    auto edges = some<E>(s.edges(), few, [&](E e, auto visit) { s.ends(e, visit); });
+    auto faces = some<F>(s.faces(), few, [&](F f, auto visit) { s.corners_of(f, visit); });
     first = true;
     query<V>(s, "vertex_vertices", vertices, rounds, check, [&](V v, auto visit) { s.around(v, visit); });
     query<V>(s, "vertex_edges", vertices, rounds, check, [&](V v, auto visit) { s.edges_at(v, visit); });
@@ -327,10 +326,7 @@ template <class L> struct Measured {
 
   // Operate on some elements in random order, of a new mesh every round; those that are refused do not count.
   template <class Operate> static void operation(Counts &counts, const char *title, size_t elements, int rounds, Operate operate) {
-    std::vector<int> chosen(elements);
-    std::iota(chosen.begin(), chosen.end(), 0);
-    std::shuffle(chosen.begin(), chosen.end(), std::mt19937(7));
-    if (elements > asked) chosen.resize(asked);
+    auto chosen = some<F>(elements, 0, [](F, auto) {});
     std::vector<double> seconds;
     for (int round = -1; round < rounds; round++) {
       L fresh = build();
