@@ -9,7 +9,6 @@ import json
 import re
 import shutil
 import subprocess
-from collections.abc import Callable
 from functools import lru_cache, partial
 from operator import itemgetter
 from pathlib import Path
@@ -74,13 +73,13 @@ def header_version(header: str, pattern: str) -> str:
     return found[1] if "." in found[1] else ".".join(f"{int(found[1], 16) >> 8:x}")
 
 
-def peer(library: str, version: Callable[[], str], site: str, manual: str, more: str) -> Peer:
-    """A library of the program."""
+def peer(library: str, header: str, pattern: str, site: str, manual: str, more: str) -> Peer:
+    """A library of the program, whose version a header names by a pattern."""
     tells = partial(tell, library)
     return Peer(
         f"{library} (C++)", PACKAGES, site, manual, more, build=tells,
         faces=itemgetter("faces"), weigh=itemgetter("bytes"), collapse=_collapsed,
-        looped=tells, loops=LOOPS, told_version=version,
+        looped=tells, loops=LOOPS, told_version=partial(header_version, header, pattern),
     )  # fmt: skip
 
 

@@ -1,12 +1,11 @@
 """CGAL's Surface_mesh, in C++."""
 
-from functools import partial
-
-from experiments.peers.program import header_version, peer
+from experiments.peers.program import peer
 
 PEER = peer(
     "CGAL",
-    partial(header_version, "CGAL/version.h", r"define CGAL_VERSION (\S+)"),
+    "CGAL/version.h",
+    r"define CGAL_VERSION (\S+)",
     "https://doc.cgal.org/latest/Surface_mesh/",
     "Ranges such as `faces_around_target` around an element, `reserve` before adding, "
     "`CGAL::Euler` for operations after `does_satisfy_link_condition`.",

@@ -1,12 +1,11 @@
 """OpenMesh in C++, with its array kernel."""
 
-from functools import partial
-
-from experiments.peers.program import header_version, peer
+from experiments.peers.program import peer
 
 PEER = peer(
     "OpenMesh",
-    partial(header_version, "OpenMesh/Core/System/config.h", r"define OM_VERSION 0x(\w+)"),
+    "OpenMesh/Core/System/config.h",
+    r"define OM_VERSION 0x(\w+)",
     "https://www.graphics.rwth-aachen.de/media/openmesh_static/Documentations/OpenMesh-Doc-Latest/",
     "Ranges such as `vf_range` around an element, `reserve` before adding, `is_collapse_ok` before "
     "`collapse`, and `garbage_collection` after it.",
