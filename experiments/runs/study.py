@@ -250,8 +250,8 @@ def _stamp(jobs: list[Job]) -> Path:
 @cache
 def _sources() -> bytes:
     """A digest of everything that is compiled, and of what compiles it."""
-    files = [path for room in COMPILED for path in sorted((ROOT / room).rglob("*.py"))]
-    content = b"".join(path.read_bytes() for path in files)
+    files = (path for room in COMPILED for path in sorted((ROOT / room).rglob("*")))
+    content = b"".join(it.read_bytes() for it in files if it.suffix in (".py", ".cpp"))
     where = os.environ.get("NUMBA_CACHE_DIR", "")
     return hashlib.blake2b(content + f"{version('numba')} {where}".encode()).digest()
 

@@ -277,6 +277,16 @@ def test_what_is_left_of_several_experiments_is_compiled_whatever_else_is_done(t
     assert set(perform(folder, left, COMPILE)) == set(left)
 
 
+def test_a_changed_source_is_compiled_anew_in_whichever_language(tmp_path, monkeypatch):
+    monkeypatch.setattr(study, "ROOT", tmp_path)
+    room = tmp_path / "experiments" / "peers"
+    room.mkdir(parents=True)
+    for name in ("peer.py", "program.cpp"):
+        before = study._sources.__wrapped__()
+        (room / name).write_text("another")
+        assert study._sources.__wrapped__() != before
+
+
 DAMAGES = "another number", "joined with a copy", "gone"
 
 
