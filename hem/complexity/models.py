@@ -40,11 +40,6 @@ class Slowdowns(NamedTuple):
     scaling: Array
 
 
-def no_slowdown(k: int) -> Slowdowns:
-    """Memory does not matter: the cost is a count of work, or is taken at its word."""
-    return Slowdowns(np.ones((1, k)), np.ones((1, k)))
-
-
 def measured_slowdowns(latency: Array, steps: int = 65) -> Slowdowns:
     """Every mixture of computing and waiting for memory, from none to all of the measured one.
 

@@ -63,7 +63,7 @@ def account_for_memory(
     """
     if exact and costs.latency is not None:
         raise ValueError("exact counts wait for no memory: give either latency or exact")
-    nothing = growth_models.no_slowdown(len(costs.sizes))
+    nothing = growth_models.entire_slowdown(np.ones(len(costs.sizes)))
     if exact:
         return costs, Memory(nothing, None, True, exact)
     limited = allow_unmeasured > 1

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from hem.complexity import judge
-from hem.complexity.models import NAMES, design, fit, measured_slowdowns, no_slowdown, predict
+from hem.complexity.models import NAMES, design, entire_slowdown, fit, measured_slowdowns, predict
 from hem.complexity.notation import Array
 
 
@@ -32,7 +32,7 @@ def test_fits_are_the_nonnegative_least_squares_of_scipy(lower: Array | None) ->
 def test_a_lower_order_term_is_told_with_its_class() -> None:
     sizes, lower = np.geomspace(10, 1e4, 12), np.array([-8.0, 30.0, 300.0])
     cost = 4e-9 * sizes**2 * (1 + 300 / sizes)
-    models = design(sizes, no_slowdown(12), 1.3, lower=lower)
+    models = design(sizes, entire_slowdown(np.ones(12)), 1.3, lower=lower)
     fitted = fit(models, cost, 1 / cost)
     assert fitted.chi2.argmin() == NAMES.index("O(n²)")
     assert models.lower[fitted.lower[-1]] == 300
@@ -61,7 +61,7 @@ def test_predictions_have_the_misfit_of_their_fit(lower: Array | None) -> None:
 @pytest.mark.parametrize("growth", [1.3, 2.1])
 def test_no_model_but_constant_time_hides_its_growth_in_the_intercept(growth: float) -> None:
     sizes = np.geomspace(100, 1e6, 7)
-    models = design(sizes, no_slowdown(7), growth)
+    models = design(sizes, entire_slowdown(np.ones(7)), growth)
     _, fast = predict(models, fit(models, np.ones(7), np.ones(7)))
     assert fast[0] == pytest.approx(np.ones(7))
     assert fast[1:, -1] / fast[1:, 0] == pytest.approx(np.full(5, growth), rel=1e-6)
