@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 
 from hem.complexity import selection
 from hem.complexity.estimates import Costs, resample, slope, summarize
-from hem.complexity.models import NAMES, STEEP, has_lower_terms
+from hem.complexity.models import NAMES, STEEP
 from hem.complexity.notation import Array, Order, canonical, parse
 from hem.complexity.selection import LATENCY_ERROR, MOST_WOBBLE, Comparison, Memory, compare_models
 
@@ -184,11 +184,9 @@ def _fitted(costs: Costs, memory: Memory, claimed: str, lower: Array) -> Compari
 def _coefficients(models: Comparison) -> dict[str, dict[str, float]]:
     """By model what its fit consists of, see `Verdict`."""
     design, fit = models.design, models.fit
-    with_lower = [has_lower_terms(parse(name)) for name in models.names]
-    lower = np.where(with_lower, design.lower[fit.lower], 0)
     slowdown = design.slowdowns.scaling[fit.slowdown].max(axis=1)
-    rows = np.stack([fit.intercept, fit.factor, lower, slowdown], axis=1).tolist()
-    told = (dict(zip(COEFFICIENTS, row, strict=True)) for row in rows)
+    rows = np.stack([fit.intercept, fit.factor, design.lower[fit.lower], slowdown], axis=1)
+    told = (dict(zip(COEFFICIENTS, row, strict=True)) for row in rows.tolist())
     return dict(zip(models.names, told, strict=True))
 
 

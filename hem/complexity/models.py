@@ -115,16 +115,13 @@ def design(
     f = np.array([order(sizes) for order in orders])
     scale = np.maximum(f.max(1), 1e-9)
     f = np.maximum(f, scale[:, None] / WIDEST)  # log 1 is 0, which has no slope
-    beside = 1 + np.array([terms * has_lower_terms(order) for order in orders])[..., None] / sizes
+    # What grows less than n has nothing below: beside any term it is the same, and 0 serves first.
+    lowered = np.outer([order >= parse("O(n)") for order in orders], terms)
+    beside = 1 + lowered[..., None] / sizes
     f = f[:, None] / scale[:, None, None] * beside
     intercept = np.maximum((f.max(2) - growth * f.min(2)) / (growth - 1), 0)
     intercept[0] = 0.0
     return DesignMatrix(tuple(names), slowdowns, terms, f, intercept, scale)
-
-
-def has_lower_terms(order: Order) -> bool:
-    """Whether a class may have a lower-order term: what grows less than n has nothing below."""
-    return order >= parse("O(n)")
 
 
 class Fit(NamedTuple):
