@@ -157,7 +157,7 @@ def judge(
     if outcome == "consistent" and (worse := [it for it in _open(models) if it != best]):
         are = "is" if len(worse) == 1 else "are"
         reason = f"{best} explains the costs best, and {' and '.join(worse)} {are} not ruled out."
-    replicates = resample(costs, models.predicted[models.best], resamples, seed)
+    replicates = resample(costs, models.predicted[0][models.best], resamples, seed)
     tails = [(1 - confidence) / 2, (1 + confidence) / 2]
     told = float(slope(costs.sizes, models.steady(costs.cost)))  # a model may miss it by a little
     low, high = np.quantile(slope(costs.sizes, models.steady(replicates)), tails)

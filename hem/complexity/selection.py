@@ -14,7 +14,6 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from hem.complexity import models as growth_models
 from hem.complexity.estimates import Costs, slope
@@ -103,14 +102,14 @@ class Comparison:
         return self.design.names
 
     @cached_property
-    def predicted(self) -> Array:
-        """(m, k) the costs that each model predicts."""
-        return predict(self.design, self.fit)[0]
+    def predicted(self) -> tuple[Array, Array]:
+        """(m, k) each: the costs that the models predict, and those with memory at its fastest."""
+        return predict(self.design, self.fit)
 
     @property
     def errors(self) -> Array:
         """(m,) root mean square of the relative residuals of each model."""
-        return np.sqrt(np.mean((self.predicted / self.costs.cost - 1) ** 2, axis=1))
+        return np.sqrt(np.mean((self.predicted[0] / self.costs.cost - 1) ** 2, axis=1))
 
     @property
     def chi2(self) -> Array:
@@ -132,13 +131,6 @@ class Comparison:
         """(m,) that, or with unmeasured slowdowns, whichever fits better."""
         unmeasured = self._misfit(self.memory.unmeasured, CLEAR_GROWTH)
         return np.minimum(self.chi2_at_clear_growth, unmeasured)
-
-    @cached_property
-    def grows_enough_to_reject(self) -> NDArray[np.bool_]:
-        """(m,) whether a model grew enough to violate a simpler claim."""
-        _, steady = predict(self.design, self.fit)
-        enough = 1.0 if self.memory.exact else ACCUSING_GROWTH
-        return steady.max(axis=1) >= enough * steady.min(axis=1)
 
     def _misfit(self, slowdowns: Slowdowns | None, growth: float) -> Array:
         if slowdowns is None:
@@ -204,7 +196,9 @@ class Comparison:
         own = self.chi2[favored]
         if claimed < favored:
             ruled_out = self.evidence(own, self.chi2_if_slowed[claimed]) >= AGAINST_SIMPLER
-            return ruled_out and bool(self.grows_enough_to_reject[favored])
+            steady = self.predicted[1][favored]
+            enough = 1.0 if self.memory.exact else ACCUSING_GROWTH
+            return ruled_out and bool(steady.max() >= enough * steady.min())
         clear = self.chi2_at_clear_growth_if_slowed[claimed]
         ruled_out = self.evidence(own, clear) >= AGAINST_COMPLEX_CLAIM
         return ruled_out and self.evidence(self.chi2[claimed], own) < NO_BETTER
@@ -239,7 +233,7 @@ class Comparison:
         Beside a large intercept a steep class explains a last size that rose for another reason.
         """
         last = slice(-max(3, len(self.costs.sizes) // 3), None)
-        slowed, steady = (it[model, last] for it in predict(self.design, self.fit))
+        slowed, steady = (it[model, last] for it in self.predicted)
         sizes = self.costs.sizes[last]
         growth = self.design.growth[model, self.fit.lower[model], last]
         own, told = slope(sizes, np.maximum(growth, 1e-300)), slope(sizes, self.costs.cost[last])
