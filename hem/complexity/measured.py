@@ -31,16 +31,13 @@ class Measured(Sampled):
         """
         between = np.interp(np.log(other.sizes), np.log(self.sizes), np.log(self.cost))
         level = np.exp(np.median(np.log(other.cost) - between))
-        sizes = np.concatenate([self.sizes, other.sizes])
-        order = np.argsort(sizes)
+        order = np.argsort([*self.sizes, *other.sizes])
         samples = [*self.samples, *(row / level for row in other.samples)]
-        working_sets = np.concatenate([self.working_sets, other.working_sets])
-        memory = np.hstack([self.memory, other.memory])
-        rows = [samples[k] for k in order]
-        return replace(
-            self, sizes=sizes[order], samples=rows, working_sets=working_sets[order],
-            memory=memory[:, order],
-        )  # fmt: skip
+        both: dict[str, Any] = {
+            name: np.hstack([getattr(self, name), getattr(other, name)])[..., order]
+            for name in ("sizes", "working_sets", "memory")
+        }
+        return replace(self, samples=[samples[k] for k in order], **both)
 
     @property
     def is_settled(self) -> bool:
