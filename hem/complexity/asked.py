@@ -21,8 +21,7 @@ from hem.complexity.notation import Array, parse
 MEMORY_ERROR = 0.05  # relative error of what memory did to a call, beside what was measured …
 UNSEEN = 2.0  # … and the slowdown that allocators and caches cause beside it, over the sizes …
 BENT = 4.0  # … or this, where sizes in the caches do not tell that there is less
-CACHED_ERROR = 0.05  # the same for sizes that are in the caches …
-UNSEEN_CACHED = 1.15  # … as a first cache is quicker than a second …
+UNSEEN_CACHED = 1.15  # the same for sizes in the caches, as a first one is quicker than a second …
 UNSEEN_COSTLY = 1.3  # … and for sizes where a call works longer than it waits
 CACHED = 2.0  # factor by which an access takes longer than at the smallest size, in the caches …
 NEAR_CACHED = 1.2  # … and in the first ones
@@ -252,8 +251,7 @@ class Asked:
     ) -> Verdict:
         """Judge some of the sizes, by what the memory was measured to do there."""
         memory = self.of.memory[0, sizes] if cached else self.of.memory[:, sizes]
-        given: dict[str, Any] = {"latency": memory, "lower": lower}
-        given["latency_error"] = CACHED_ERROR if cached else MEMORY_ERROR
+        given: dict[str, Any] = {"latency": memory, "latency_error": MEMORY_ERROR, "lower": lower}
         if self.options.get("latency", 0) is not None:
             given["unseen"] = unseen
         rows = [row for row, asked in zip(self.of.samples, sizes, strict=True) if asked]
