@@ -107,14 +107,8 @@ class Asked:
         told = self.by_work() or self.without_reserve() or self.with_reserve()
         told = _agreeing(told if _names_a_class(told, self.steep) else replace(told, classes=[]))
         if self.bends_up(told):
-            return _untold(self.at_the_top() or _open_upward(told))
+            told = _open_upward(told)
         return _untold(told if told.classes else self.at_the_top() or told)
-
-    @property
-    def is_settled(self) -> bool:
-        """Whether some of the sizes tell one class closely."""
-        told = self.by_work() or self.without_reserve()
-        return told is not None and _names_one(told)
 
     def whole(self, unseen: float = UNSEEN) -> Verdict:
         """What all sizes tell."""
