@@ -6,10 +6,9 @@ the reason. `measure(f, make_input).judge("O(n)")` measures a function first.
 
 from hem.complexity.estimates import slope
 from hem.complexity.files import Curve, read_curves
-from hem.complexity.in_parts import InParts
 from hem.complexity.judge import MIN_SIZES, Bound, Outcome, Verdict, judge
 from hem.complexity.measure import BUDGET, measure
-from hem.complexity.measured import Measured
+from hem.complexity.measured import InParts, Measured
 from hem.complexity.models import MODELS, NAMES
 from hem.complexity.notation import canonical, parse
 

@@ -32,8 +32,7 @@ from hem.complexity.calls import (
     keep_memory,
 )
 from hem.complexity.estimates import slope
-from hem.complexity.in_parts import InParts
-from hem.complexity.measured import Measured
+from hem.complexity.measured import InParts, Measured
 from hem.complexity.memory import CLOCK, memory_times
 from hem.complexity.notation import Array
 
