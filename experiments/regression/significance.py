@@ -46,8 +46,8 @@ def compare_rounds(
     """Compare the rounds of one case in two runs.
 
     before, after: seconds per round, in the order they were measured; 9 rounds each can decide.
-    loop_before, loop_after: readings of the calibration loop of the same run, one beside each round
-    or evenly between the first and the last. Any unit will do.
+    loop_before, loop_after: readings of the calibration loop of the same run, one beside each
+    round, or one beside all. Any unit will do.
 
     The loop may slow down beside a case that does not follow it. So a case is worse only if it is
     so both as measured and relative to the loop: its ranks differ by more than `DRIFT` explains
@@ -65,7 +65,7 @@ def compare_rounds(
         raise ValueError("no calibration loop was read: times of two runs compare only beside one")
     if min(len(old), len(new)) < FEWEST:
         return Comparison(Change.UNDETERMINED, np.nan, 0.0, np.inf)
-    relative = old - _beside(loops[0], len(old)), new - _beside(loops[1], len(new))
+    relative = old - loops[0], new - loops[1]
     ends = np.exp(_intervals(*zip(relative, (old, new), strict=True)))
     ratio, low, high = float(np.sqrt(ends[0].prod())), float(ends.min()), float(ends.max())
     change = Change.SAME if 1 / factor < low and high < factor else Change.UNDETERMINED
@@ -82,11 +82,6 @@ def _logs(name: str, times: ArrayLike) -> Array:
     if not np.all(np.isfinite(values) & (values > 0)):
         raise ValueError(f"{name} must be positive, finite times")
     return np.log(values)
-
-
-def _beside(loop: Array, rounds: int) -> Array:
-    """The readings of the loop at each round, between those that were taken."""
-    return np.interp(np.linspace(0, 1, rounds), np.linspace(0, 1, len(loop)), loop)
 
 
 def _intervals(old: Sequence[Array], new: Sequence[Array]) -> Array:

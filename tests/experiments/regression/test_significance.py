@@ -114,7 +114,7 @@ def test_a_change_below_the_factor_is_none_however_sure() -> None:
 def test_a_noisy_loop_makes_the_interval_wider() -> None:
     rng = np.random.default_rng(7)
     old, new = np.exp(white(rng, 15, 0.02)), np.exp(white(rng, 15, 0.02))
-    quiet, noisy = np.ones(9), np.exp(white(rng, 9, 0.1))
+    quiet, noisy = np.ones(15), np.exp(white(rng, 15, 0.1))
     still = compare_rounds(old, new, quiet, quiet)
     loud = compare_rounds(old, new, noisy, noisy[::-1])
     assert np.log(loud.high / loud.low) > 2 * np.log(still.high / still.low)
