@@ -39,13 +39,9 @@ def find_steps(values: ArrayLike, *, exact: bool = False) -> list[Step]:
 
     exact: the values have no noise, and may be anything. Else they are positive, and their noise is
     relative; a series of less than ``2 * SHORTEST`` has no step. Takes milliseconds for a hundred
-    values. Raises ValueError for values that are not one row of finite, and positive, numbers.
+    values.
     """
     series = np.asarray(values, np.float64)
-    if series.ndim != 1 or not np.isfinite(series).all():
-        raise ValueError("a series is one row of finite numbers")
-    if not exact and (series <= 0).any():
-        raise ValueError("noisy values are positive: their noise is taken as relative")
     if not len(series):
         return []
     starts = np.flatnonzero(np.diff(series)) + 1 if exact else _noisy(np.log(series))

@@ -106,9 +106,3 @@ def test_few_noisy_values_have_no_steps(count):
 def test_values_without_any_noise_are_told_apart_as_well():
     assert find_steps(np.ones(20)) == []
     assert [it.index for it in find_steps(np.repeat([1.0, 2.0], 10))] == [10]
-
-
-@pytest.mark.parametrize("values", [[[1.0, 2.0]], [1.0, np.nan], [1.0, 0.0], [1.0, -2.0]])
-def test_what_is_no_series_is_refused(values):
-    with pytest.raises(ValueError, match=r"row|positive"):
-        find_steps(values)
