@@ -79,6 +79,7 @@ def pytest_configure(config: pytest.Config) -> None:
         found = next(it for it in (path, *path.parents) if it.exists())
         if not os.access(found, os.W_OK) or (found != path and not found.is_dir()):
             raise pytest.UsageError(f"--complexity-history cannot be written: {history}")
+        config.stash[COMMIT] = _commit(config.rootpath)  # now, as the history may be tracked
     config.stash[LINES], config.stash[CHANGES] = [], []
 
 
@@ -219,12 +220,8 @@ def _doing(config: pytest.Config, key: str) -> str:
 
 def _keep(item: pytest.Item, call: int, verdict: Verdict, path: Path) -> None:
     """Add a verdict to the history, and what changed since the same call to the end's list."""
-    time = datetime.now(UTC).isoformat(timespec="seconds")
-    now: dict[str, Any] = {"test": item.nodeid, "call": call, "time": time}
-    stash = item.config.stash
-    if COMMIT not in stash:  # once, as the history itself may be tracked
-        stash[COMMIT] = _commit(item.config.rootpath)
-    now["commit"] = stash[COMMIT]
+    time, stash = datetime.now(UTC).isoformat(timespec="seconds"), item.config.stash
+    now: dict[str, Any] = {"test": item.nodeid, "call": call, "time": time, "commit": stash[COMMIT]}
     now |= {key: getattr(verdict, key) for key in TOLD}
     text = path.read_text("utf-8-sig", "replace") if path.exists() else ""
     before, unread = None, list[str]()
