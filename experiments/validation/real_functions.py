@@ -100,25 +100,16 @@ def shares(answers: pd.DataFrame) -> pd.DataFrame:
 def held_out(answers: pd.DataFrame) -> pd.DataFrame:
     """The shares of what no judge was tuned on, as a page shows them."""
     table = shares(answers).loc[HELD].reset_index().rename_axis(columns=None)
-    judge = [f"{it.judge}, {it.neighbor} machine" for it in table.itertuples()]
-    return table[KINDS].assign(judge=judge)[["judge", *KINDS]]
-
-
-def markdown(answers: pd.DataFrame) -> str:
-    """The same as a table of a page."""
-    rows = held_out(answers).astype(str).to_numpy().tolist()
-    lines = [["judge", *KINDS], ["---"] * 5, *rows]
-    return "\n".join(f"| {' | '.join(line)} |" for line in lines)
+    table["judge"] += ", " + table["neighbor"] + " machine"
+    return table[["judge", *KINDS]]
 
 
 def _read(line: dict[str, Any]) -> Measured:
     """What was measured, as it was written down."""
-    parts = line.pop("in_parts")
-    rows = [np.array(row) for row in line.pop("samples")]
+    parts, rows = line.pop("in_parts"), map(np.array, line.pop("samples"))
     known: dict[str, Any] = {key: np.array(values) for key, values in line.items()}
-    ratios = [np.array(row) for row in parts["ratios"]] if parts else []
-    beside = InParts(np.array(parts["sizes"]), ratios) if parts else None
-    return Measured(samples=rows, in_parts=beside, **known)
+    beside = parts and InParts(np.array(parts["sizes"]), list(map(np.array, parts["ratios"])))
+    return Measured(samples=list(rows), in_parts=beside, **known)
 
 
 def _rows(budget: float, alone: bool, busy: bool, measured: Path | None) -> Iterator[list[str]]:
