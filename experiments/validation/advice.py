@@ -114,6 +114,7 @@ PROGRAMS = {
 }
 
 
+@cache
 def learned(prices: Prices, name: str) -> Workload:
     """What a program does, and its own part: from one structure on a mesh as that of the prices."""
     program, mesh = PROGRAMS[name], hem.find_mesh(TIMED[prices.family])
@@ -151,16 +152,11 @@ def timed(prices: Prices, program: Program, names: Iterable[str], mesh: Any) -> 
     return least
 
 
-def compare(
-    prices: Prices, known: Callable[[Prices, str], Workload], name: str, mesh_name: str
-) -> dict[str, Any]:
-    """Predict a program on a mesh for every structure, then run it on all that are not hopeless.
-
-    ``known``: see ``learned``.
-    """
+def compare(prices: Prices, name: str, mesh_name: str) -> dict[str, Any]:
+    """Predict a program on a mesh for every structure, then run it on all that are not hopeless."""
     mesh = hem.find_mesh(mesh_name, triangulate=True)
     faces, prices = len(mesh.triangles), prices.like(mesh.triangles)
-    workload = known(prices, name)
+    workload = learned(prices, name)
     told = [predict(prices, workload, structure, faces) for structure in COMPILED]
     counted = replace(workload, measured=None)
     untimed = {it: predict(prices, counted, it, faces).seconds for it in COMPILED}
@@ -175,14 +171,12 @@ def compare(
 
 def figures(rows: list[dict[str, Any]]) -> dict[str, Any]:
     """How far off the predictions were; what they learned from is not among them."""
-    told = [
-        it for row in rows for it in row["structures"] if it["taken"] and it["structure"] != BASE
-    ]
+    every = ([it for it in row["structures"] if it["taken"]] for row in rows)
+    ran = [some for some in every if some]
+    told = [it for some in ran for it in some if it["structure"] != BASE]
     errors, counted = (
         np.array([abs(it[by] / it["taken"] - 1) for it in told]) for by in ("predicted", "counted")
     )
-    ran = [[it for it in row["structures"] if it["taken"]] for row in rows]
-    ran = [it for it in ran if it]
     return {
         "workloads": len(rows),
         "predictions": len(told),
@@ -240,11 +234,11 @@ def main(output: Path = RESULT, run: Path | None = None, program: list[str] | No
         if run is None:
             study.run(folder)
         prices = Prices(load(folder))
-        known, rows = cache(learned), []
+        rows = []
         names = list(program or PROGRAMS)  # every one on two of the meshes, in turn
         pairs = [(name, ON[(k + n) % len(ON)]) for k, name in enumerate(names) for n in (0, 2)]
         for name, mesh in pairs:
-            rows.append(compare(prices, known, name, mesh))
+            rows.append(compare(prices, name, mesh))
             ran = [it for it in rows[-1]["structures"] if it["taken"]]
             ratios = {it["structure"]: round(it["predicted"] / it["taken"], 2) for it in ran}
             print(name, mesh, ratios, flush=True)
