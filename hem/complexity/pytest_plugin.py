@@ -161,37 +161,27 @@ def pytest_runtest_call(item: pytest.Item) -> Iterator[None]:
     """
     if not isinstance(item, pytest.Function):
         return (yield)
-    body = item.obj
-    try:
-        _measure_body(item)
-        return (yield)
-    finally:
-        item.obj = body
-
-
-def _measure_body(item: pytest.Function) -> None:
     body, names = item.obj, item._fixtureinfo.argnames
     awaited, marked = inspect.iscoroutinefunction(body), item.get_closest_marker("complexity")
     by_fixture = marked and "complexity" in item.fixturenames and "complexity_input" not in names
-    if ("complexity" in names or by_fixture) and not awaited:
-
-        def run_body(**given: Any) -> None:
-            body(**given)
-            measured: Any = item.funcargs["complexity"]
-            if not measured.calls:
-                pytest.fail(f"{item.nodeid} is not measured: {UNCALLED}", pytrace=False)
-
-        item.obj = run_body
-    elif marked:
+    asks = ("complexity" in names or by_fixture) and not awaited
+    if marked and not asks:
         if "complexity_input" not in names or awaited:
             pytest.fail(f"{item.nodeid} is not measured: {UNMEASURED}", pytrace=False)
-        given = {name: item.funcargs[name] for name in names}
-        measured = Complexity(item)
+        given, measured = {name: item.funcargs[name] for name in names}, Complexity(item)
 
         def measure_body(**_: Any) -> None:
             measured(lambda it: body(**given | {"complexity_input": it}))
 
         item.obj = measure_body
+    try:
+        result = yield
+    finally:
+        item.obj = body
+    asked: Any = item.funcargs["complexity"] if asks else None
+    if asked and not asked.calls:
+        pytest.fail(f"{item.nodeid} is not measured: {UNCALLED}", pytrace=False)
+    return result
 
 
 def _mistake(options: dict[str, Any]) -> str:
