@@ -49,6 +49,7 @@ def read_curves(path: str | Path, parameter: str | None = None) -> list[Curve]:
         raise ValueError(f"{path} is no text in UTF-8: {error}") from error
     is_json = text.lstrip()[:1] in ("{", "[")
     rows = list(_read_json(text, path) if is_json else _read_csv(text, path))
+    values: dict[str, set[float]] = defaultdict(set)
     for function, parameters, samples in rows:
         if wrong := [it for it in samples if not 0 < it < inf]:
             where = ", ".join([function, *(f"{k}={v:.15g}" for k, v in parameters.items())])
@@ -56,8 +57,6 @@ def read_curves(path: str | Path, parameter: str | None = None) -> list[Curve]:
                 f"{path}, {where}: a cost is positive, not {wrong[0]:g}; leave out what was too "
                 "quick for the clock"
             )
-    values: dict[str, set[float]] = defaultdict(set)
-    for _, parameters, _ in rows:
         for name, value in parameters.items():
             values[name].add(value)
     varied = [name for name, some in values.items() if len(some) > 1]
@@ -129,9 +128,7 @@ def _hyperfine(results: list[dict[str, Any]]) -> Iterator[Row]:
     """
     alike: dict[tuple[str, ...], list[tuple[list[str], dict[str, float], list[float]]]] = {}
     for it in results:
-        command, given = it["command"], it.get("parameters", {})
-        parameters = _numbers(given)
-        others = [str(value) for key, value in given.items() if key not in parameters]
+        command, (parameters, others) = it["command"], _parted(it.get("parameters", {}))
         told = [it for it in others if re.search(rf"(?<![^\W_]){re.escape(it)}(?![^\W_])", command)]
         title = ", ".join([command, *(it for it in others if it not in told)])
         parts, times = DIGITS.split(title), it.get("times") or [it["mean"]]
@@ -165,10 +162,9 @@ def _pytest_benchmark(benchmarks: list[dict[str, Any]]) -> Iterator[Row]:
     for it in benchmarks:
         test = tuple((it.get(key) or it["name"]).partition("[")[0] for key in ("name", "fullname"))
         given = it.get("params") or {}
-        if all(_number(value) is None for value in given.values()):
+        if not _parted(given)[0]:
             given = (it.get("extra_info") or {}) | given
-        parameters = _numbers(given)
-        others = [str(value) for key, value in given.items() if key not in parameters]
+        parameters, others = _parted(given)
         rows.append((test, parameters, others, it["stats"]))
         for value in others:
             asked[test, value].add(tuple(parameters.values()))
@@ -224,7 +220,8 @@ def _number(value: Any) -> float | None:
     return number if isfinite(number) else None
 
 
-def _numbers(given: dict[str, Any]) -> dict[str, float]:
-    """Those of some values that are numbers."""
+def _parted(given: dict[str, Any]) -> tuple[dict[str, float], list[str]]:
+    """Those of some values that are numbers, and the others as text."""
     numbers = {key: _number(value) for key, value in given.items()}
-    return {key: value for key, value in numbers.items() if value is not None}
+    others = [str(value) for key, value in given.items() if numbers[key] is None]
+    return {key: value for key, value in numbers.items() if value is not None}, others
