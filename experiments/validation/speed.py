@@ -134,9 +134,7 @@ def building(vertices: int, cores: str) -> Rows:
     """From arrays in Python."""
     mesh, clock = hem.generate("torus", vertices), CLOCKS[cores]
     builds = {name: partial(structures.build, name, mesh) for name in STRUCTURES}
-    for name in BUILT:
-        if PEERS[name].version:
-            builds[name] = partial(PEERS[name].build, *as_given(mesh))
+    builds |= {it: partial(PEERS[it].build, *as_given(mesh)) for it in BUILT if PEERS[it].version}
     for _, (name, call) in product(range(TURNS), builds.items()):
         yield BUILD, vertices, cores, name, _least(call, clock=clock)
 
