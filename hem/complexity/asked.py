@@ -82,8 +82,7 @@ class Asked:
 
     def _works(self, some: Sizes) -> bool:
         """Whether a call of some of the sizes does much more than to read what it works on."""
-        of = self.of
-        return bool(np.median((of.cost / self._bytes / of.memory[1])[some]) > READS)
+        return bool(np.median((self.of.cost / self._bytes / self.of.memory[1])[some]) > READS)
 
     @property
     def steep(self) -> float:

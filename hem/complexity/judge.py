@@ -269,8 +269,7 @@ def _classes(costs: Costs, models: Comparison) -> list[str]:
     exponent = round(max(float(slope(cost.sizes, cost.cost)), 0.0), 2)
     if any(-APART < exponent - known < ABOVE for known in (0, 0.5, 1, 2, 3)):
         return []
-    halves = np.array_split(np.arange(len(cost.sizes)), 2)
-    first, last = (slope(cost.sizes[it], cost.cost[it]) for it in halves)
+    first, last = map(slope, np.array_split(cost.sizes, 2), np.array_split(cost.cost, 2))
     if abs(last - first) > STEADY:
         return []
     near = round(2 * exponent) / 2
