@@ -25,10 +25,6 @@ LONGEST_SECONDS = 900
 ROW = "{:<50} {:<18} {:<6} {:<7} {}"
 
 
-class MutantError(ValueError):
-    """A fault cannot be injected, or names no gate."""
-
-
 @dataclass(frozen=True)
 class Mutant:
     """A fault: a text or pairs of them (``changes``) in one file; a gate must catch it."""
@@ -43,15 +39,15 @@ class Mutant:
 
     def __post_init__(self) -> None:
         if self.gate not in GATES:
-            raise MutantError(f"{self.name!r}: no gate is called {self.gate!r}; there are {GATES}")
+            raise ValueError(f"{self.name!r}: no gate is called {self.gate!r}; there are {GATES}")
 
     def apply(self, tree: Path) -> None:
-        """Inject it. Raises MutantError unless each old text is there just once."""
+        """Inject it. Raises ValueError unless each old text is there just once."""
         path = tree / self.file
         text = path.read_text("utf-8") if path.exists() else ""
         for old, new in self.changes or [(self.old, self.new)]:
             if text.count(old) != 1 or old == new:
-                raise MutantError(
+                raise ValueError(
                     f"{self.name!r}: its old text is {text.count(old)} times in {self.file}, not "
                     f"once, or does not change; bring it in line with the source:\n{old}"
                 )
@@ -60,7 +56,7 @@ class Mutant:
 
 
 def load_mutants(text: str | None = None) -> list[Mutant]:
-    """Read ``mutants.toml``, or a text like it. Raises MutantError for a gate that there is not."""
+    """Read ``mutants.toml``, or a text like it. Raises ValueError for a gate that there is not."""
     content = tomllib.loads(text or (Path(__file__).parent / "mutants.toml").read_text("utf-8"))
     return [Mutant(name, **entry) for name, entry in content.items()]
 
@@ -119,7 +115,7 @@ def main(word: Annotated[str, typer.Option("-k", help="Just those named so.")] =
     """Inject faults; hem check must catch each. Exits with 1 if one was missed."""
     chosen = [mutant for mutant in load_mutants() if word in mutant.name]
     if not chosen:
-        raise MutantError(f"no name in experiments/validation/mutants.toml has {word!r} in it")
+        raise ValueError(f"no name in experiments/validation/mutants.toml has {word!r} in it")
     print(ROW.format("mutant", "structure", "gate", "caught", "what the gate said"))
     unchanged, line = try_unchanged()
     print(ROW.format("none", "all", "all", "passes" if unchanged else "NO", line), flush=True)
@@ -136,5 +132,5 @@ def main(word: Annotated[str, typer.Option("-k", help="Just those named so.")] =
 if __name__ == "__main__":
     try:
         typer.run(main)
-    except MutantError as error:
+    except ValueError as error:
         sys.exit(f"hem: {error}")
