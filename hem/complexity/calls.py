@@ -15,6 +15,8 @@ from hem.complexity.notation import Array
 Function = Callable[[Any], object]
 MakeInput = Callable[[int], Any]
 Clock = Callable[[], float]
+Sampler = Callable[[], tuple[float, float]]
+"""Takes a sample: seconds per call, and of a loop that says how slow the machine was then."""
 
 BATCH = 1 << 18  # bytes of the inputs of a sample, where one takes less: they fit into caches
 MOST_CALLS = 4_096  # inputs of a sample
@@ -30,16 +32,6 @@ FREED, SMALL, ARENA = (1 << 25) - (1 << 16), 400, 1 << 20
 that Python itself finds room for, and of what it asks for at once to do so."""
 
 
-class Plan(NamedTuple):
-    """How one size is sampled."""
-
-    of: "Calls"
-    n: int
-    calls: int
-    again: int  # times that each input is used in a sample
-    pool: list[Any]  # inputs for all rounds; where there are none, each makes its own
-
-
 class Calls(NamedTuple):
     """Calls of a function; ``fresh``: each gets an input of its own; ``held``: keeps memory."""
 
@@ -48,31 +40,6 @@ class Calls(NamedTuple):
     fresh: bool
     clock: Clock
     held: list[bytes]
-
-    def interleaved(self, plans: Sequence[Plan], rounds: int) -> list[Array]:
-        """Samples of each size, all up and down in turn, after a round that does not count.
-
-        There are more rounds while at no speed of the machine each size has samples enough.
-        """
-        samples: list[list[tuple[float, float]]] = [[] for _ in plans]
-        enough = -(-rounds // ENOUGH)
-        with _uncollected():
-            for turn in range(rounds * MOST_ROUNDS + 1):
-                for row, plan in list(zip(samples, plans, strict=True))[:: 1 - 2 * (turn % 2)]:
-                    row.append(self.sample(plan))
-                told = np.array(samples)[:, 1:]
-                alike = None if turn < rounds else _at_one_speed(told[..., 1], enough)
-                if alike is not None:
-                    break
-        kept = np.ones(told.shape[:2], bool) if alike is None else alike
-        return [row[few, 0] for row, few in zip(told, kept, strict=True)]
-
-    def sample(self, plan: Plan) -> tuple[float, float]:
-        """Seconds per call, and of a loop that says how slow the machine was then."""
-        inputs = (plan.pool or [self.make(plan.n) for _ in range(plan.calls)]) * plan.again
-        own, before = self.idle(inputs), self.idle(IDLE)
-        seconds = self.seconds(inputs)
-        return max(seconds - own, 1e-9) / len(inputs), max(before, self.idle(IDLE), 1e-9)
 
     def idle(self, inputs: Sequence[Any]) -> float:
         """Seconds of the timer and a loop that does nothing."""
@@ -107,18 +74,26 @@ class Calls(NamedTuple):
             del it
         return np.min(taken, axis=0)
 
-    def plan(self, n: int, size: float, share: float) -> Plan:
+    def sampler(self, n: int, size: float, share: float) -> Sampler:
         """As many calls as a clock needs, on inputs that caches hold; few are learned by heart.
 
-        share: seconds that making the inputs of a sample may take.
+        size: bytes of a call. share: seconds that making the inputs of a sample may take.
         """
         made, call, waited = self.seconds_of_one(n)
         call = max(call, waited * (waited > SAMPLE))  # less is what it takes to read clocks
         most = SAMPLE * LONGER / (made + call if self.fresh else max(made / LONGER, call))
         calls = int(np.clip(min(BATCH / size, most), 1, MOST_CALLS))
         again = 1 if self.fresh else int(np.clip(SAMPLE / (calls * call), 1, MOST_CALLS))
-        anew = self.fresh or made * calls < share
-        return Plan(self, n, calls, again, [] if anew else [self.make(n) for _ in range(calls)])
+        anew = self.fresh or made * calls < share  # or all samples have the same inputs
+        pool = [] if anew else [self.make(n) for _ in range(calls)]
+
+        def sample() -> tuple[float, float]:
+            inputs = (pool or [self.make(n) for _ in range(calls)]) * again
+            own, before = self.idle(inputs), self.idle(IDLE)
+            seconds = self.seconds(inputs)
+            return max(seconds - own, 1e-9) / len(inputs), max(before, self.idle(IDLE), 1e-9)
+
+        return sample
 
     def memory(self, n: int) -> tuple[int, int]:
         """Bytes of an input and of what a call makes beside it; and what of these it gives back.
@@ -154,7 +129,26 @@ def _uncollected() -> Iterator[None]:
             gc.enable()
 
 
-def compared(pairs: Sequence[tuple[Plan, Plan]], rounds: int) -> list[Array]:
+def interleaved(samplers: Sequence[Sampler], rounds: int) -> list[Array]:
+    """Samples of each size, all up and down in turn, after a round that does not count.
+
+    There are more rounds while at no speed of the machine each size has samples enough.
+    """
+    samples: list[list[tuple[float, float]]] = [[] for _ in samplers]
+    enough = -(-rounds // ENOUGH)
+    with _uncollected():
+        for turn in range(rounds * MOST_ROUNDS + 1):
+            for row, sample in list(zip(samples, samplers, strict=True))[:: 1 - 2 * (turn % 2)]:
+                row.append(sample())
+            told = np.array(samples)[:, 1:]
+            alike = None if turn < rounds else _at_one_speed(told[..., 1], enough)
+            if alike is not None:
+                break
+    kept = np.ones(told.shape[:2], bool) if alike is None else alike
+    return [row[few, 0] for row, few in zip(told, kept, strict=True)]
+
+
+def compared(pairs: Sequence[tuple[Sampler, Sampler]], rounds: int) -> list[Array]:
     """Of each pair what one sample takes, times the other that is taken right beside it.
 
     After a round that does not count. Pairs in which the machine changed its speed do not, either,
@@ -164,7 +158,7 @@ def compared(pairs: Sequence[tuple[Plan, Plan]], rounds: int) -> list[Array]:
     with _uncollected():
         for turn in range(rounds + 1):
             for row, pair in list(zip(told, pairs, strict=True))[:: 1 - 2 * (turn % 2)]:
-                (one, slow), (other, slow_too) = (plan.of.sample(plan) for plan in pair)
+                (one, slow), (other, slow_too) = (sample() for sample in pair)
                 row.append((one / other, max(slow, slow_too) / min(slow, slow_too)))
     found = np.array(told)[:, 1:]
     steady = found[..., 1] <= ALIKE

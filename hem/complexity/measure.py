@@ -29,6 +29,7 @@ from hem.complexity.calls import (
     Function,
     MakeInput,
     compared,
+    interleaved,
     keep_memory,
 )
 from hem.complexity.estimates import slope
@@ -117,9 +118,9 @@ def _measured(
     """What a call takes by size, or one of n operations; turn: seconds of a round."""
     working_sets, n = _working_sets(calls, sizes, turn), np.array(sizes, float)
     share = turn / len(sizes) / 2
-    plans = [calls.plan(*row, share) for row in zip(sizes, working_sets, strict=True)]
+    samplers = [calls.sampler(*row, share) for row in zip(sizes, working_sets, strict=True)]
     memory = memory_times(working_sets)
-    samples = calls.interleaved(plans, rounds)
+    samples = interleaved(samplers, rounds)
     if amortized:
         samples = [row / size for row, size in zip(samples, n, strict=True)]
     return Measured(n, samples, working_sets, memory, amortized=amortized)
@@ -147,7 +148,7 @@ def _in_parts(
     apart, share = calls._replace(f=call_each, make=make_parts), turn / len(asked) / 4
     sets = np.interp(np.log(asked), np.log(found.sizes), np.log(found.working_sets))
     rows = [(int(n), size, share) for n, size in zip(asked, np.exp(sets), strict=True)]
-    pairs = [(calls.plan(*row), apart.plan(*row)) for row in rows]
+    pairs = [(calls.sampler(*row), apart.sampler(*row)) for row in rows]
     ratios = compared(pairs, -(-rounds * 3 // 5))  # of two samples each
     missing = asked // part * part / asked  # as the small ones are whole
     return InParts(asked, [row * less for row, less in zip(ratios, missing, strict=True)])
