@@ -160,19 +160,17 @@ def one_after_the_other(vertices: int) -> Rows:
             yield "flip_edge", vertices, ONE, name, min(taken / done for done, taken in flips)
 
 
-def ours(structure: str) -> Simplifier:
-    """One of our structures."""
-    return Simplifier(
-        partial(build, structure=structure),
-        lambda s, faces: algorithms.simplify(s, faces=faces),
-        lambda s, _: s.to_triangles(),
-    )
-
-
 def simplifiers() -> dict[str, Simplifier]:
     """Ours and others, OpenMesh where it is installed."""
     openmesh, quadrics = PEERS["openmesh"], "meshing_decimation_quadric_edge_collapse"
-    found = {name: ours(name) for name in STRUCTURES}
+    found = {
+        name: Simplifier(
+            partial(build, structure=name),
+            lambda s, faces: algorithms.simplify(s, faces=faces),
+            lambda s, _: s.to_triangles(),
+        )
+        for name in STRUCTURES
+    }
     if openmesh.version:
         found["openmesh"] = Simplifier(
             openmesh.build,
