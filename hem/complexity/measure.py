@@ -51,8 +51,6 @@ NEARLY_LINEAR = 0.75, 1.4  # slopes of costs that are compared with those of sma
 PART = 3, 12  # … of which each takes so many times as long as a call does beside its work …
 WIDER, PARTS, FEWEST_PARTS = 8, 9, 4  # … up to so many of them, at so many sizes, or these at least
 SHORTER, WIDE = 4, 64  # of the largest size to the largest in parts; or it is so many of them
-
-
 LAZY = inspect.isgenerator, inspect.isawaitable, inspect.isasyncgen
 
 

@@ -14,8 +14,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
-
-
 LARGE = 500  # logarithm of the largest value of what outgrows all numbers
 
 
