@@ -138,9 +138,8 @@ def _hyperfine(results: list[dict[str, Any]]) -> Iterator[Row]:
             warnings.warn(words, stacklevel=2)
         # Times 1.0, as null and text are no costs.
         times = [1.0 * time for time, code in zip(times, codes, strict=True) if code == 0]
-        if not times:
-            continue
-        alike.setdefault(tuple(parts[::2]), []).append((parts, parameters, times))
+        if times:
+            alike.setdefault(tuple(parts[::2]), []).append((parts, parameters, times))
     for runs in alike.values():
         named = {}
         for place in range(1, len(runs[0][0]), 2):
