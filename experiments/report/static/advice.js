@@ -47,7 +47,8 @@ for (const part of document.querySelectorAll(".advice")) {
     found.sort((a, b) => a[1] - b[1]);
     part.querySelector("tbody").replaceChildren(...found.map(([title, s, off]) => {
       const row = document.createElement("tr"), within = `${words(s / off)} … ${words(s * off)}`;
-      for (const text of [title, words(s), within, `${digits(s / found[0][1])} ×`]) row.insertCell().textContent = text;
+      row.append(Object.assign(document.createElement("th"), { scope: "row", textContent: title }));
+      for (const text of [words(s), within, `${digits(s / found[0][1])} ×`]) row.insertCell().textContent = text;
       return row;
     }));
   }

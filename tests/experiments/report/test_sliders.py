@@ -40,6 +40,8 @@ def test_the_page_tells_what_is_predicted(
         assert float(chromium.run(said).replace(",", "")) == value
     for place, (name, workload) in enumerate(PRESETS.items()):
         chromium.run(f"({SLIDE})('select', {place})")
+        frames = "document.querySelector('[name=frames]').ariaValueText"
+        assert float(chromium.run(frames)) == workload.frames, "not those of its title"
         titles, times, within = (chromium.run(SHOWN.format(it)) for it in range(3))
         assert set(titles) == {it.title for it in REGISTRY.values()}
         given = replace(workload.more_edits(edits), builds=0, measured=None)
