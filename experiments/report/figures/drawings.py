@@ -239,7 +239,7 @@ def operation(structure: type[Structure], name: str) -> Html:
         if k:
             marked = dict.fromkeys(going, "gone") | _changes(kept[k - 1][1], entries)
         else:
-            marked = dict.fromkeys(going | entries.keys() & _changes(entries, after), "chosen")
+            marked = dict.fromkeys(going | entries.keys() & _changes(entries, after), "going")
         frames.append((words, Drawing(shapes, entries, [], marked, [])))
     return page("steps.html.j2", title=OPERATIONS[name], frames=frames)
 

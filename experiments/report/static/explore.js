@@ -73,6 +73,7 @@
     }
 
     for (const it of told.querySelectorAll("b")) it.replaceWith(chooser(it.dataset.record));
+    if (!told.firstElementChild) told.append(chooser(Object.keys(records)[0]));
     for (const [key, shape] of shapes) shape.addEventListener("click", () => choose(key));
     figure.classList.add("live");
   }
@@ -100,6 +101,6 @@
     show(0);
   }
 
-  document.querySelectorAll("figure.mesh").forEach(explore);
+  document.querySelectorAll("figure.mesh:has(> script)").forEach(explore);
   document.querySelectorAll(".steps").forEach(stepper);
 })();

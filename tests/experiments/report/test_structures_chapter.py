@@ -159,7 +159,7 @@ def test_new_records_are_marked_as_new():
 
 def test_before_a_collapse_what_it_takes_away_is_marked():
     first, *_ = drawings.operation(drawings.by_half_edges(), "collapse_edge").split("<figcaption>")
-    chosen = set(re.findall(r'<g class="\w+ chosen" data-at="(\w+ \d+)"', first))
+    chosen = set(re.findall(r'<g class="\w+ going" data-at="(\w+ \d+)"', first))
     assert chosen >= {"vertex 0", "face 8", "face 9"}
 
 
@@ -246,9 +246,10 @@ def test_next_is_followed_round_a_face(chromium: Browser, chapter):
 def test_records_are_chosen_by_the_keyboard_which_no_record_loses(chromium: Browser, chapter):
     chromium.errors.clear()
     chromium.open(chapter)
-    chromium.run("var figures = document.querySelectorAll('figure.mesh:has(.told button)')")
-    assert chromium.run("figures.length") == len(NAMES)
-    for figure in (f"figures[{k}]" for k in range(len(NAMES))):
+    chromium.run("var figures = document.querySelectorAll('figure.mesh.live:not([hidden])')")
+    count = len(NAMES) + len(drawings.STEPS)
+    assert chromium.run("figures.length") == count
+    for figure in (f"figures[{k}]" for k in range(count)):
         chromium.run(f"{figure}.querySelector('.told button').focus()")
         for _ in range(4):
             name = chromium.run("document.activeElement.textContent")
@@ -257,6 +258,15 @@ def test_records_are_chosen_by_the_keyboard_which_no_record_loses(chromium: Brow
             assert chromium.run(f"{figure}.querySelector('.told b').textContent") == name
             assert chromium.run(f"{figure}.contains(document.activeElement)"), name
     assert chromium.errors == []
+
+
+def test_no_click_takes_a_way_away(chromium: Browser, chapter):
+    chromium.open(chapter)
+    chromium.run("var its = document.querySelector('figure.mesh:has(details)')")
+    told = "[its.textContent, its.querySelectorAll('.pointers path').length]"
+    before = chromium.run(told)
+    chromium.run("its.querySelector('[data-at]').dispatchEvent(new Event('click'))")
+    assert chromium.run(told) == before
 
 
 def test_a_record_that_is_chosen_looks_as_it_is_drawn_without_scripts(chromium: Browser, chapter):
@@ -289,6 +299,17 @@ def test_frames_are_stepped_through_one_at_a_time(chromium: Browser, chapter):
     assert chromium.run(shown) == [False, True, False]
     chromium.run("document.querySelectorAll('.steps button')[0].click()")
     assert chromium.run(shown) == [True, False, False]
+
+
+def test_on_paper_there_is_every_frame_and_nothing_to_step_by(chromium: Browser, chapter):
+    chromium.open(chapter)
+    chromium.call("Emulation.setEmulatedMedia", media="print")
+    try:
+        for part, seen in (("figure", True), ("p button", False)):
+            parts = f"[...document.querySelectorAll('.steps > {part}')]"
+            assert set(chromium.run(f"{parts}.map(it => it.checkVisibility())")) == {seen}
+    finally:
+        chromium.call("Emulation.setEmulatedMedia", media="")
 
 
 def test_without_scripts_every_frame_and_the_references_of_a_record_are_shown(chromium, chapter):
