@@ -15,6 +15,7 @@ from experiments.report import comparisons
 from experiments.report.pages import claims_markdown, verdicts
 from experiments.report.session import share
 from experiments.report.tables import digits, duration, legend, show_claims, tally_rows
+from experiments.report.uses import recommended
 from experiments.runs import load
 from hem.complexity import judge
 from structures import NAMED, NAMES, REGISTRY
@@ -121,8 +122,16 @@ def test_a_table_of_a_page_leads_to_every_claim(run):
             assert f'href="index.html#{judged.claim.key}"' in text
 
 
+def test_the_first_cell_of_a_row_of_numbers_or_words_is_its_head(run):
+    numbers, words = comparisons.face_finding(run), recommended(run)
+    for text in (numbers, words):
+        rows = re.findall(r"<tr>(.*?)</tr>", text.partition("<tbody>")[2])
+        assert len(rows) > 2
+        assert all(it.startswith('<th scope="row"') and it.count("<th") == 1 for it in rows)
+
+
 def test_walks_and_scans_are_told_apart_by_their_growth(run):
-    row = r"<td>(walk|jump and walk|scan)</td><td>([\d.]+) "
+    row = r"<th[^>]*>(walk|jump and walk|scan)</th><td>([\d.]+) "
     slopes = dict(re.findall(row, comparisons.face_finding(run)))
     expected = {"walk": 1 / 2, "jump and walk": 1 / 3, "scan": 1}
     assert {way: float(slope) for way, slope in slopes.items()} == pytest.approx(expected, abs=0.05)
@@ -130,12 +139,12 @@ def test_walks_and_scans_are_told_apart_by_their_growth(run):
 
 def test_structures_are_compared_with_the_indexed_mesh_at_its_size(run):
     text = comparisons.shattering(run)
-    assert re.search(r"<td>Half-Edge</td><td>100,000</td>.*<td>200,000</td></tr>", text)
-    assert re.search(r"<td>Indexed</td>.*<td>1\.0</td></tr>", text)
+    assert re.search(r">Half-Edge</th><td>100,000</td>.*<td>200,000</td></tr>", text)
+    assert re.search(r">Indexed</th>.*<td>1\.0</td></tr>", text)
     from_python = comparisons.shattering(run, compiled=False)
     for name, it in REGISTRY.items():
-        assert (f"<td>{it.title}</td>" in text) == it.compiled, name
-        assert (f"<td>{it.title}</td>" in from_python) != it.compiled, name
+        assert (f">{it.title}</th>" in text) == it.compiled, name
+        assert (f">{it.title}</th>" in from_python) != it.compiled, name
 
 
 def test_times_of_several_machines_are_not_compared(run):
@@ -166,7 +175,7 @@ def test_bytes_per_vertex_are_shown_of_every_mesh_and_structure(run):
     for name in NAMES:
         assert f">{NAMED[name].title}<" in text
     for it in cases[cases["family"] != "torus"].itertuples():
-        (row,) = (line for line in text.split("<tr>") if f"<td>{it.family}</td>" in line)
+        (row,) = (line for line in text.split("<tr>") if f">{it.family}</th>" in line)
         assert f"<td>{it.samples[0] / it.vertices:,.1f}</td>" in row
     assert text.count("<tr>") == 1 + cases["family"].nunique()
 

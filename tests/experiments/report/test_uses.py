@@ -60,7 +60,7 @@ def test_small_meshes_are_compared_on_the_smallest(run: Run) -> None:
 
 
 def test_structures_within_a_tenth_of_the_best_are_bold(run: Run) -> None:
-    rows = re.findall(r"<tr><td>(.*?)</td>(.*?)</tr>", uses.recommended(run))
+    rows = re.findall(r'<tr><th scope="row"[^>]*>(.*?)</th>(.*?)</tr>', uses.recommended(run))
     for title, row in rows:
         name = next(it for it, use in uses.USES.items() if use.title == title)
         found = uses.ranking(run, name)
