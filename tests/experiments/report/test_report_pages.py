@@ -138,6 +138,27 @@ def test_every_chapter_is_reached_from_every_page(chromium, report):
 def test_the_navigation_stays_on_one_line(chromium, report):
     for width in (360, 1300):
         chromium.size(width)
+def test_words_are_as_large_as_the_reader_has_them(chromium, report):
+    size = "parseFloat(getComputedStyle(document.querySelector('main p')).fontSize)"
+    try:
+        for standard in (16, 32):
+            chromium.call("Page.setFontSizes", fontSizes={"standard": standard})
+            chromium.open((report / "index.html").as_uri())
+            assert chromium.run(size) == standard
+    finally:
+        chromium.call("Page.setFontSizes", fontSizes={"standard": 16})
+
+
+def test_the_keyboard_stops_at_nothing_but_what_is_used_or_scrolls(chromium, report):
+    chromium.size(1300)
+    used = "a, button, input, select, summary, canvas, table, img, svg"
+    for name in PAGES:
+        chromium.open((report / f"{name}.html").as_uri())
+        idle = f"[...document.querySelectorAll('[tabindex]')].filter(it => !it.matches('{used}')"
+        idle += " && !it.querySelector(':scope > :is(table, img, svg)'))"
+        assert chromium.run(f"{idle}.map(it => it.textContent)") == [], name
+
+
         for name in PAGES:
             chromium.open((report / f"{name}.html").as_uri())
             assert chromium.run("document.querySelector('nav').offsetHeight") < 60
