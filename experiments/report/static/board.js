@@ -53,6 +53,7 @@
     if (!it || !it.classList.contains("entry")) return;
     if (it.hidden) reset();
     it.open = true;
+    it.firstElementChild.focus({ preventScroll: true });
     it.scrollIntoView();
   }
 

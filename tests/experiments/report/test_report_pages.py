@@ -132,12 +132,12 @@ def test_every_chapter_is_reached_from_every_page(chromium, report):
         seen = "[...document.querySelectorAll('nav a')].filter(it => it.checkVisibility())"
         names = chromium.run(f"{seen}.map(it => it.getAttribute('href'))")
         assert {f"{it}.html" for it in PAGES} <= set(names)
+        chromium.run("document.querySelector('nav ol a').focus()")
+        chromium.call("Input.dispatchKeyEvent", type="keyDown", key="Escape")
+        assert chromium.run("document.activeElement.matches('nav details:not([open]) > *')")
         assert chromium.run("document.querySelectorAll('nav [aria-current]').length") == 1
 
 
-def test_the_navigation_stays_on_one_line(chromium, report):
-    for width in (360, 1300):
-        chromium.size(width)
 def test_words_are_as_large_as_the_reader_has_them(chromium, report):
     size = "parseFloat(getComputedStyle(document.querySelector('main p')).fontSize)"
     try:
@@ -159,6 +159,9 @@ def test_the_keyboard_stops_at_nothing_but_what_is_used_or_scrolls(chromium, rep
         assert chromium.run(f"{idle}.map(it => it.textContent)") == [], name
 
 
+def test_the_navigation_stays_on_one_line(chromium, report):
+    for width in (360, 1300):
+        chromium.size(width)
         for name in PAGES:
             chromium.open((report / f"{name}.html").as_uri())
             assert chromium.run("document.querySelector('nav').offsetHeight") < 60
@@ -216,6 +219,7 @@ def test_a_deep_link_opens_its_claim_even_if_it_is_filtered_out(front, report):
     front.run("new Promise(done => setTimeout(done, 100))")
     opened = "[...document.querySelectorAll('.entry[open]')].map(it => it.id)"
     assert front.run(opened) == ["plankton/vertex_faces"]
+    assert front.run("document.activeElement.parentNode.id") == "plankton/vertex_faces"
     front.open((report / "index.html").as_uri() + "#sentence/bytes_ratio")
     assert front.run(opened) == ["sentence/bytes_ratio"]
     top = front.run("document.querySelector('.entry[open]').getBoundingClientRect().top")
