@@ -330,7 +330,7 @@ class DirectedEdge(MarkedEdges):
     """The mesh of directed edges."""
 
     name, title, abbreviation = "directed_edge", "Directed-Edge", "DE"
-    look, order = Look("#56b4e9", "*", "-."), 7
+    look, order = Look("#2497d6", "*", "-."), 7
     claims = Claims("no document says what it costs; what is found is shown")
     records_type = DirectedEdgeRecords
     fields = (

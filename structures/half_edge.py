@@ -362,7 +362,7 @@ class HalfEdge(Navigable):
     """The half-edge mesh."""
 
     name, title, abbreviation = "half_edge", "Half-Edge", "HEM"
-    look, thesis, order = Look("#e69f00", "D", "-"), True, 4
+    look, thesis, order = Look("#c77f00", "D", "-"), True, 4
     records_type = HalfEdgeRecords
     fields = (
         Field("vertex.point", "vertex_point", 3, marks=True),

@@ -32,7 +32,7 @@ TITLES = {**QUERIES_TABLE.subjects, **OPERATIONS}
 """The queries and the operations, and what a panel or a row of them is called."""
 
 VARIABLES = {"faces": "faces n_t", "valence": "valence n_ev", "vertices": "vertices n_v"}
-GRAY = "#8a8a8a"
+GRAY = "#737373"
 FADED = "#efefef"
 RED = "#c23b22"
 BLUE = "#2f7fc1"

@@ -27,9 +27,10 @@ Algorithm = Callable[[Kernels, Kernels], Kernel]
 
 @dataclass(frozen=True)
 class Look:
-    """A line in every plot. Where two have one ``line``, the color-blind can tell their colors.
+    """A line in every plot, which stands out from white.
 
-    ``color`` as ``#e69f00``; ``marker`` and ``line`` as Matplotlib has them: ``o``, ``--``.
+    Where two have one ``line``, the color-blind can tell their colors. ``color`` as
+    ``#c77f00``; ``marker`` and ``line`` as Matplotlib has them: ``o``, ``--``.
     """
 
     color: str

@@ -18,10 +18,10 @@ from experiments.harness import OPERATIONS, Axis
 from experiments.report import abstract, answer, notebooks, readme, site, uses, write_report
 from experiments.report.figures import growth, memory, meshes
 from experiments.report.session import share
-from experiments.report.style import finish_panels, panels, spread_apart, styled, words
+from experiments.report.style import GRAY, finish_panels, panels, spread_apart, styled, words
 from experiments.report.tables import digits
 from experiments.runs import ResultsError
-from structures import REGISTRY
+from structures import NAMED, REGISTRY
 from tests.experiments.small_study import wait_for
 from tests.extent import exhaustive
 
@@ -256,6 +256,18 @@ def test_structures_drawn_with_one_dash_differ_in_color_to_the_color_blind(missi
     lab = np.cbrt(seen @ np.transpose(TO_XYZ)) @ np.transpose(TO_LAB)
     for (a, one), (b, other) in combinations(zip(lab, looks, strict=True), 2):
         assert one.line != other.line or np.linalg.norm(a - b) > 25
+
+
+def contrast(color: str) -> float:
+    """To white, as the Web Content Accessibility Guidelines have it."""
+    light = [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in to_rgb(color)]
+    return 1.05 / (np.dot(light, (0.2126, 0.7152, 0.0722)) + 0.05)
+
+
+def test_lines_and_gray_words_stand_out_from_white():
+    lines = {it.title: round(contrast(it.look.color), 2) for it in NAMED.values()}
+    assert {name: it for name, it in lines.items() if it < 3} == {}
+    assert contrast(GRAY) >= 4.5
 
 
 def test_who_does_not_see_a_plot_is_told_its_panels_and_where_its_lines_go():
