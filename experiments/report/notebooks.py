@@ -85,7 +85,7 @@ def _output(data: Any, metadata: Any, heading: str) -> Any:
         if kind.startswith("image/"):
             shown = metadata.get(kind, {})
             more = shown.get("alt", "").strip(" :")
-            metadata[kind] = shown | {"alt": f"Plot: {heading}. {more}".strip()}
+            metadata[kind] = shown | {"alt": f"{heading}. {more}".strip()}
         if isinstance(value, bytes):
             texts[kind] = b64encode(value).decode()
     return nbformat.v4.new_output("display_data", data=texts, metadata=metadata)

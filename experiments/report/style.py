@@ -52,14 +52,20 @@ class Plot(Figure):
 def show_figures() -> None:
     """Let the interpreter that runs a notebook show plots as SVG and pictures as PNG."""
     from IPython.core.getipython import get_ipython
-    from IPython.core.pylabtools import select_figure_formats
 
     shell: Any = get_ipython()
     if shell:
-        select_figure_formats(shell, {"retina"})  # type: ignore[no-untyped-call]
         formatters = shell.display_formatter.formatters
         formatters["image/svg+xml"].for_type(Plot, lambda plot: (svg(plot), {"alt": words(plot)}))
+        formatters["image/png"].for_type(Figure, _picture)
         formatters["image/png"].for_type(Plot, lambda plot: None)
+
+
+def _picture(figure: Figure) -> Any:
+    from IPython.core.pylabtools import retina_figure
+
+    data, size = retina_figure(figure, base64=True)  # type: ignore[no-untyped-call]
+    return data, size | {"alt": words(figure)}
 
 
 def svg(plot: Figure) -> str:
@@ -79,7 +85,9 @@ def words(plot: Figure) -> str:
             ends = np.asarray(line.get_ydata(), float)[[0, -1]]
             first, last = (compact(float(f"{y:.2g}")) for y in ends)
             lines.append(f"{line.get_label()} {first} to {last}")
-        about = ", ".join(filter(None, [axes.get_title("left"), axes.get_ylabel()]))
+        about = ", ".join(
+            filter(None, [axes.get_title("left").replace("\n", " "), axes.get_ylabel()])
+        )
         told.append(": ".join(filter(None, [about, "; ".join(lines)])))
     return ". ".join(filter(None, told))
 

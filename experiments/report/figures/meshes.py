@@ -16,7 +16,7 @@ import hem
 import structures
 from experiments.bench_workloads import simplification
 from experiments.report.pages import Html, page
-from experiments.report.style import grid, styled
+from experiments.report.style import grid, styled, words
 from hem.arrays import Array
 from hem.contract import Structure
 from hem.fracture.show import AXES, FractureScene, Picture
@@ -242,7 +242,8 @@ def jpeg(figure: Figure) -> Any:
     data = BytesIO()
     figure.savefig(data, format="jpeg", dpi=130, pil_kwargs={"quality": 85})
     width = round(float(figure.get_size_inches()[0]) * 80)
-    return Displayed(data.getvalue(), format="jpeg", width=width)  # type: ignore[no-untyped-call]
+    about: dict[str, Any] = {"width": width, "alt": words(figure)}
+    return Displayed(data.getvalue(), format="jpeg", **about)  # type: ignore[no-untyped-call]
 
 
 def shrunk(mesh: hem.TriangleMesh, part: float, structure: str) -> hem.TriangleMesh:

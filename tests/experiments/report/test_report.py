@@ -278,6 +278,16 @@ def test_who_does_not_see_a_plot_is_told_its_panels_and_where_its_lines_go():
     assert words(plot) == "Faces, time, ns: TNS 2 to 15k. Edges"
 
 
+def test_who_does_not_see_a_picture_is_told_its_titles_too():
+    shown = (
+        "from experiments.report import open_run\nfrom experiments.report.figures import meshes\n"
+    )
+    (steps,) = executed(f"{shown}open_run()\nmeshes.collapse_steps('half_edge')")
+    (still,) = executed(f"{shown}meshes.jpeg(meshes.quad_splits('half_edge'))")
+    assert "Vertex 0 is to merge into 1" in steps[0]["metadata"]["image/png"]["alt"]
+    assert "a quarter up its left side" in still[0]["metadata"]["image/jpeg"]["alt"]
+
+
 def test_labels_are_moved_as_little_as_need_be():
     assert spread_apart([0.0, 30.0], 10) == [0.0, 30.0]
     assert spread_apart([0.0, 0.0], 10) == [-5.0, 5.0]
