@@ -17,6 +17,7 @@ from experiments.claims import CLAIMED
 from experiments.harness import OPERATIONS, Axis
 from experiments.report import abstract, answer, notebooks, readme, site, uses, write_report
 from experiments.report.figures import growth, memory, meshes
+from experiments.report.pages import page
 from experiments.report.session import share
 from experiments.report.style import GRAY, finish_panels, panels, spread_apart, styled, words
 from experiments.report.tables import digits
@@ -268,6 +269,12 @@ def test_lines_and_gray_words_stand_out_from_white():
     lines = {it.title: round(contrast(it.look.color), 2) for it in NAMED.values()}
     assert {name: it for name, it in lines.items() if it < 3} == {}
     assert contrast(GRAY) >= 4.5
+
+
+def test_the_words_of_the_demo_stand_out_by_day_and_by_night():
+    by_day, by_night = re.findall(r"--soft: (#\w+)", page("demo.html.j2", shown=[], size=(1, 1)))
+    assert contrast(by_day) >= 4.5
+    assert contrast("#121212") / contrast(by_night) >= 4.5
 
 
 def test_who_does_not_see_a_plot_is_told_its_panels_and_where_its_lines_go():
