@@ -25,6 +25,7 @@ def test_a_page_holds_the_whole_mesh_upright_and_asks_for_nothing_else():
     assert "src=" not in html
     assert "A &lt;teapot&gt;" in html
     assert "<input" not in html
+    assert "<noscript>" in html, "without scripts there is an empty box"
     np.testing.assert_array_equal(packed(html, "triangles", "<u4"), mesh.triangles.ravel())
     placed = packed(html, "points", "<i2").reshape(-1, 3) / 32767
     heights = placed[:, 1] - placed[:, 1].min()
