@@ -221,6 +221,16 @@ def chapter(tmp_path_factory):
     return file.as_uri()
 
 
+def test_drawings_are_seen_without_the_page_around_them_as_in_jupyter(chromium, tmp_path):
+    cells = tmp_path / "cells.html"
+    cells.write_text(f"<meta charset=utf-8>{notebooks.body('structures')}", "utf-8")
+    chromium.open(cells.as_uri())
+    shapes = "[...document.querySelectorAll('.mesh :is(.face, .edge, .half_edge) path, rect')]"
+    fills = chromium.run(f"{shapes}.map(it => getComputedStyle(it).fill)")
+    assert len(fills) > 100
+    assert "rgb(0, 0, 0)" not in fills  # of what has no style
+
+
 def test_next_is_followed_round_a_face(chromium: Browser, chapter):
     chromium.errors.clear()
     chromium.size(1200)
