@@ -10,6 +10,8 @@ from urllib.parse import unquote, urlsplit
 import pytest
 
 import hem
+from experiments.report.pdf import find_browser
+from tests.experiments.chromium import started
 from tests.extent import exhaustive
 
 build = pytest.importorskip("mkdocs.commands.build", reason="the extra docs is not installed")
@@ -73,6 +75,20 @@ def test_a_page_loads_nothing_from_elsewhere(pages: dict[Path, Page]) -> None:
         for link in page.loaded:
             assert not urlsplit(link).netloc, (path.name, link)
             assert (path.parent / urlsplit(link).path).exists(), (path.name, link)
+
+
+def test_links_are_told_by_more_than_color_and_comments_in_code_can_be_read(site: Path) -> None:
+    if find_browser() is None:
+        pytest.skip("no Chromium or Chrome is installed")
+    with started() as browser:
+        browser.open((site / "start.html").as_uri())
+        link = "getComputedStyle(document.querySelector('article p > a:not(.headerlink)'))"
+        assert browser.run(f"{link}.textDecorationLine") == "underline"
+        comment = browser.run("getComputedStyle(document.querySelector('article .c1')).color")
+        *_, opaque = re.findall(r"[\d.]+", comment)  # black over the gray of code, #f5f5f5
+        assert comment.startswith("rgba(0, 0, 0")
+        light = ((1 - float(opaque)) * 0.96 + 0.055) / 1.055
+        assert (0.913 + 0.05) / (light**2.4 + 0.05) >= 4.5
 
 
 def test_every_public_name_of_the_library_is_documented(pages: dict[Path, Page]) -> None:
