@@ -124,6 +124,8 @@ def _asked(folder: Path, jobs: Sequence[Job], action: str) -> list[str]:
     asked += [f"--structure={name}" for name in dict.fromkeys(it.structure for it in jobs)]
     asked += ["--preset", first.preset, "--case-seed", str(first.seed), "--action", action]
     asked += ["--run", str(folder.resolve())]
+    # Whose project it is installed in, that one has settings and a conftest.py of its own.
+    asked += ["-c", os.devnull, f"--rootdir={EXPERIMENTS}", f"--confcutdir={EXPERIMENTS}"]
     if action == COMPILE:
         return [*asked, "--benchmark-disable"]
     return [*asked, "--pin"] if first.pin and first.timed else asked

@@ -19,6 +19,7 @@ from experiments.runs import (
     load,
     read_meta,
     study,
+    worker,
     write_meta,
 )
 from experiments.runs.store import DamagedError, InUseError, case_files, lock_run
@@ -76,6 +77,19 @@ def test_an_experiment_that_became_part_of_another_keeps_its_name_and_its_older_
     older = CaseFile(folder, "bench_valence", "half_edge")
     older.add(Measurement("a", "time", samples=[1.0], valence=8))
     assert load(folder).cases["experiment"].tolist() == ["bench_queries"]
+
+
+def test_a_study_heeds_no_settings_of_the_project_that_it_is_installed_in(tmp_path, monkeypatch):
+    site = tmp_path / "project" / "site-packages"
+    site.mkdir(parents=True)
+    for package in ("experiments", "hem", "structures"):
+        (site / package).symlink_to(worker.EXPERIMENTS.parent / package)
+    (site.parent / "pytest.ini").write_text("[pytest]\naddopts = --of-another-plugin\n")
+    (site.parent / "conftest.py").write_text("raise OSError")
+    monkeypatch.setattr(worker, "EXPERIMENTS", site / "experiments")
+    folder = begin(tmp_path)
+    assert go_on(folder) == []
+    assert len(load(folder).cases)
 
 
 def test_what_leaves_nothing_to_measure_is_refused_and_leaves_no_run(tmp_path):
