@@ -27,7 +27,8 @@ def describe(preset: str) -> dict[str, Any]:
     for name in LIBRARIES:
         with suppress(PackageNotFoundError):  # some are optional
             versions[name] = version(name)
-    commit = git("rev-parse", "HEAD")
+    # Nothing is told of a project that this is only installed in.
+    commit = git("rev-parse", "HEAD") if git("ls-files", Path(__file__).name) else ""
     return {
         "schema": SCHEMA, "preset": preset, "started": now(), "commit": commit or "unknown",
         "dirty": bool(git("status", "--porcelain")) if commit else None,  # changed since

@@ -17,6 +17,7 @@ from experiments.runs import (
     Job,
     ResultsError,
     load,
+    provenance,
     read_meta,
     study,
     worker,
@@ -90,6 +91,30 @@ def test_a_study_heeds_no_settings_of_the_project_that_it_is_installed_in(tmp_pa
     folder = begin(tmp_path)
     assert go_on(folder) == []
     assert len(load(folder).cases)
+
+
+def test_a_run_tells_no_commit_of_the_project_that_it_is_installed_in(tmp_path, monkeypatch):
+    def git(*arguments: str) -> str:
+        name = "-c", "user.name=a", "-c", "user.email=a@b"
+        command = ["git", "-C", str(tmp_path), *name, *arguments]
+        return subprocess.check_output(command, text=True).strip()
+
+    own = tmp_path / "provenance.py"
+    own.touch()
+    (tmp_path / "theirs.py").touch()
+    git("init", "--quiet")
+    git("add", "theirs.py")
+    git("commit", "--quiet", "-m", "theirs")
+    monkeypatch.setattr(provenance, "__file__", str(own))
+
+    def told() -> tuple[str, bool | None]:
+        head = provenance.describe("smoke")
+        return head["commit"], head["dirty"]
+
+    assert told() == ("unknown", None)
+    git("add", own.name)
+    git("commit", "--quiet", "-m", "ours")
+    assert told() == (git("rev-parse", "HEAD"), False)
 
 
 def test_what_leaves_nothing_to_measure_is_refused_and_leaves_no_run(tmp_path):
