@@ -128,8 +128,7 @@ def is_edit(what: str) -> bool:
 
 def recorded(recording: Recording, title: str = "Recorded", each: str = "") -> Workload:
     """A workload as it was recorded; ``each``: an element in proportion to which it grows."""
-    many = {"": 1.0, "vertex": recording.vertices, "face": recording.faces}[each]
-    rows = (Row(it.what, it.times / many, each, BUILD, it.in_order, it.caller)
+    rows = (Row(it.what, it.times / recording.many(each), each, BUILD, it.in_order, it.caller)
             for it in recording.rows)  # fmt: skip
     return Workload(title, tuple(rows), builds=0.0)
 

@@ -20,6 +20,7 @@ from hem.contract.description import Algorithm
 from hem.contract.structure import Structure
 from hem.engine import CountingArray, interpreted, of_pythons_numbers
 from hem.errors import MeshError, TopologyError
+from hem.naming import look_up
 from hem.whole_files import write_whole
 
 COMPILED, PYTHON = "compiled", "python"
@@ -90,12 +91,17 @@ class Recording:
             for (what, caller), (times, near) in counts
         ]
 
+    def many(self, each: str) -> int:
+        """How many elements of a kind the mesh had at first, 1 for none; MeshError for no kind."""
+        known = {"vertex": self.vertices, "face": self.faces}
+        return max(look_up(each, known, "element"), 1) if each else 1
+
     def text(self, each: str = "") -> str:
         """The rows as CSV, which ``hem advise`` reads: per mesh, or per ``vertex`` or ``face``.
 
-        KeyError for another element.
+        MeshError for another element.
         """
-        many = {"": 1, "vertex": max(self.vertices, 1), "face": max(self.faces, 1)}[each]
+        many = self.many(each)
         lines = io.StringIO()
         out = csv.writer(lines, lineterminator="\n")
         out.writerow(("what", "times", "each", "in_order", "caller"))
@@ -132,8 +138,10 @@ def record(s: Structure) -> Iterator[Recording]:
     ``remove_vertex`` as the removal of its faces. What is read of the whole mesh at once
     (``edges()``, ``points``), steps along half-edges, and operations that polygons alone have are
     not counted. From one thread, and of one structure's meshes one at a time. Raises MeshError
-    where the mesh is recorded already.
+    where the mesh is recorded already, and for what is no structure.
     """
+    if not isinstance(s, Structure):
+        raise MeshError(f"what is recorded is a structure, not {type(s).__name__}; build one")
     if "run" in vars(s):
         raise MeshError("this mesh is recorded already: end that recording first")
     found, before = Recording(s), dict(vars(s))
@@ -167,6 +175,8 @@ def _counting(s: Structure, called: str, what: str, found: Recording) -> Callabl
     def counted(*args: Any, **more: Any) -> Any:
         bound = known.bind(*args, **more)  # in the method's order, what is named as well
         name, *given = (what, *bound.args) if what else bound.args
+        if not what and name not in OPERATIONS:  # of polygons alone
+            return method(*args, **more)
         try:
             result = method(*args, **more)
         except TopologyError:

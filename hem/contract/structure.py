@@ -606,7 +606,7 @@ class Structure(Described, Surveying, abstract=True):
         such. With ``room`` that, too, and all that is taken beside: ``dead and room to grow`` is
         what the arrays hold besides, up to as much again after they grew, and is given memory when
         it is first written, see ``hem.room``; ``scratch`` is where queries and operations work,
-        nothing before the first of them.
+        little before the first of them.
         """
         taken = self._live_bytes()
         naming = sum(taken.pop(it.name) for it in self.fields if it.names)

@@ -84,6 +84,15 @@ def test_an_operation_by_its_name_counts_however_it_is_called() -> None:
     assert counts(workload) == {("add_vertex", PYTHON): 2, ("flip_edge", PYTHON): 1}
 
 
+def test_what_polygons_alone_have_is_not_counted_nor_is_what_is_no_structure_recorded() -> None:
+    s = build("plankton")
+    with hem.record(s) as workload:
+        s.operate("merge_faces", int(s.edges()[0]))
+    assert (s.n_faces, counts(workload)) == (len(TORUS.triangles) - 1, {})
+    with pytest.raises(hem.MeshError, match="not TriangleMesh; build one"), hem.record(TORUS):
+        pass
+
+
 def test_a_recording_is_shown_in_a_line() -> None:
     s = structures.build("half_edge", hem.generate("torus", 100))
     with hem.record(s) as recording:
@@ -153,6 +162,8 @@ def test_a_recording_is_told_per_element_as_csv() -> None:
     with hem.record(s) as workload:
         s.face_vertices(np.arange(50))
     assert workload.text("vertex").splitlines()[1] == "face_vertices,0.5,vertex,0.98,compiled"
+    with pytest.raises(hem.MeshError, match=r"no element 'vertices'.* did you mean 'vertex'"):
+        workload.text("vertices")
 
 
 @pytest.mark.parametrize("name", [INTERPRETED, COMPILED_ONE])
