@@ -347,7 +347,7 @@ class DirectedEdge(MarkedEdges):
         half_edge = rows(3 * n, 2, dtype=reference)
         pairing = pair_half_edges(mesh, room=half_edge)
         in_slices(_fill, n, mesh.triangles, pairing.twin, half_edge)
-        vertex = pairing.vertex_half_edge.astype(reference, copy=False)
+        vertex = pairing.leaving(reference)
         count = counted(len(mesh.points), pairing.n_edges, n, 3 * n, valence=pairing.valence)
         count[FACE_ROOM] = ENDLESS  # faces have no records of their own
         return cls(DirectedEdgeRecords(roomy(mesh.points), vertex, half_edge, count))

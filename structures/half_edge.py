@@ -381,7 +381,7 @@ class HalfEdge(Navigable):
         face, half_edge = rows(n, dtype=reference), rows(3 * n, 4, dtype=reference)
         pairing = pair_half_edges(mesh, room=half_edge)
         in_slices(_fill, n, mesh.triangles, pairing.twin, face, half_edge)
-        vertex = pairing.vertex_half_edge.astype(reference, copy=False)
+        vertex = pairing.leaving(reference)
         count = counted(len(mesh.points), pairing.n_edges, n, 3 * n, valence=pairing.valence)
         return cls(HalfEdgeRecords(roomy(mesh.points), vertex, face, half_edge, count))
 

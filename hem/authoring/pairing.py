@@ -12,14 +12,14 @@ from typing import NamedTuple
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
+from numpy.typing import DTypeLike, NDArray
 
 from hem.arrays import Array
 from hem.authoring.invariants import require_one_fan
 from hem.authoring.slices import in_slices, slice_count
 from hem.errors import MeshError, NonManifoldError
 from hem.meshes import PolygonMesh, TriangleMesh, require_manifold
-from hem.room import rows
+from hem.room import roomy, rows
 
 MOST_HALF_EDGES = np.iinfo(np.int32).max
 
@@ -38,6 +38,11 @@ class Pairing(NamedTuple):
 
     valence: int = 0
     """The most edges that a vertex may have, where the fans were walked; 0 where they were not."""
+
+    def leaving(self, reference: DTypeLike) -> Array:
+        """``vertex_half_edge`` as references of a type, with room: itself if it is of that."""
+        own = self.vertex_half_edge
+        return own if own.dtype == reference else roomy(own, reference)
 
 
 def pair_half_edges(mesh: TriangleMesh, room: Array | None = None) -> Pairing:

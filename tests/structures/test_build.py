@@ -14,7 +14,7 @@ import structures
 from hem.authoring import EDGE_ROOM, FACE_ROOM, VALENCE
 from hem.authoring.records import grown
 from hem.meshes import undirected_edges
-from hem.room import ADDRESSES, LARGE
+from hem.room import ADDRESSES, LARGE, behind
 from tests.structures.conftest import HOLDS_ANYTHING, NEEDS_MANIFOLD, OF_ARRAYS, shuffled
 
 NON_MANIFOLD = {
@@ -168,6 +168,15 @@ def test_no_large_array_is_moved_while_a_mesh_grows_threefold(name):
     s.split_all_faces()
     assert len(s.points) == 300_000
     assert set(large) <= {it.ctypes.data for it in s.arrays}
+
+
+@pytest.mark.skipif(ADDRESSES == 1, reason="here addresses count as memory")
+@pytest.mark.parametrize("reference_bytes", [4, 8])
+@pytest.mark.parametrize("name", OF_ARRAYS)
+def test_behind_every_large_array_there_are_addresses_as_soon_as_it_is_built(name, reference_bytes):
+    s = structures.build(name, hem.generate("torus", 150_000), reference_bytes)
+    behind_each = [behind(it) / it.nbytes for it in s.arrays if it.nbytes >= LARGE]
+    assert min(behind_each) >= ADDRESSES - 1
 
 
 def test_without_a_compiler_it_is_said_what_to_do():
