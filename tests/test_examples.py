@@ -135,6 +135,14 @@ def test_code_in_a_docstring_runs(name: str, names: dict[str, Any]) -> None:
     exec(compile(LITERAL[name], name, "exec"), names)
 
 
+@pytest.mark.parametrize("page", sorted((ROOT / "docs").glob("*.md")), ids=lambda it: it.name)
+def test_a_link_to_a_place_leads_there_in_the_repository_too(page: Path) -> None:
+    for target, anchor in re.findall(r"\]\(([^)#:\s]+)#([^)\s]+)", page.read_text()):
+        headings = re.findall(r"(?m)^#+ (.+)$", (page.parent / target).read_text())
+        anchors = [re.sub(r"[^\w -]", "", it.lower()).replace(" ", "-") for it in headings]
+        assert anchor in anchors, target
+
+
 @pytest.mark.parametrize("words", COMMANDS, ids=" ".join)
 def test_a_command_that_is_shown_is_one(words: list[str]) -> None:
     command: Any = get_command(app)
