@@ -22,15 +22,15 @@ if os.environ.get("COLUMNS") == "0":  # nobody knows the width, and rich would p
     del os.environ["COLUMNS"]
 
 
-class _Console(Console):
-    def on_broken_pipe(self) -> None:
-        """Leave it to ``user_errors``: rich would end with 1, which some commands mean."""
-        raise
+def _on_broken_pipe(_: Console) -> None:
+    """Leave it to ``user_errors``, of help as well: rich ends with 1, which some commands mean."""
+    raise
 
 
-console = _Console(highlight=False)
+Console.on_broken_pipe = _on_broken_pipe  # type: ignore[assignment, method-assign]
+console = Console(highlight=False)
 CLOSED = 141  # exit code where nobody reads on, as a shell has it
-errors = _Console(stderr=True, highlight=False, soft_wrap=True)
+errors = Console(stderr=True, highlight=False, soft_wrap=True)
 
 
 def completed(module: str, *names: str) -> Callable[[str], list[str]]:
@@ -105,6 +105,11 @@ def user_errors(code: int = 1) -> Iterator[None]:
 
 class Commands(TyperGroup):
     """Commands that tell a user's mistakes, and what is warned of, in one line each."""
+
+    def make_context(self, *args: Any, **more: Any) -> Any:
+        """Read the command line, and print the help that it asks for."""
+        with user_errors():
+            return super().make_context(*args, **more)
 
     def invoke(self, ctx: Any) -> Any:
         """Run the chosen command."""

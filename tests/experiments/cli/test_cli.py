@@ -47,7 +47,9 @@ def test_a_mistake_gets_one_clear_line_and_an_exit_code(arguments, said, tmp_pat
     assert list(tmp_path.iterdir()) == []
 
 
-@pytest.mark.parametrize("command", [["meshes"], ["info", "torus:100", "--json"]])
+@pytest.mark.parametrize(
+    "command", [["meshes"], ["info", "torus:100", "--json"], ["-h"], ["check", "-h"], ["baseline"]]
+)
 def test_a_reader_who_has_enough_is_no_mistake(command):
     reads, writes = os.pipe()
     os.close(reads)
