@@ -81,6 +81,10 @@ def _query_method(name: str) -> Any:
         "counterclockwise where the structure knows the order. Cost per handle: thesis, table 1.\n"
         f"Raises MeshError for a handle that names no {source} of this mesh."
     )
+    if name == "edge_vertices":
+        text += (
+            "\nWhere none is recorded, the handle is its ends: they are told of any two vertices."
+        )
     return made_once(text, lambda self: self._queries.method(name))
 
 

@@ -139,6 +139,17 @@ def test_an_edge_that_died_without_a_face_is_refused(died: str) -> None:
                     getattr(s, step)(asked)
 
 
+@pytest.mark.parametrize("name", [it for it, kind in structures.REGISTRY.items() if kind.emulated])
+def test_of_what_is_no_edge_its_name_tells_the_ends_and_all_else_is_refused(name: str) -> None:
+    s = structures.build(name, hem.generate("torus", 100))
+    far = int(np.setdiff1d(s.vertices(), [0, *s.vertex_vertices(0)])[0])
+    assert s.find_edge(0, far) is None
+    assert s.edge_vertices(far).tolist() == [0, far]  # 0 stands in the upper half
+    for query in ("edge_faces", "edge_edges"):
+        with pytest.raises(MeshError, match="no such edge"):
+            getattr(s, query)(far)
+
+
 def test_a_handle_is_checked_by_its_own_record_whatever_died_before(name: str) -> None:
     """What is allocated meanwhile is as little on a large mesh: no mark of another is looked at."""
     peaks = []
