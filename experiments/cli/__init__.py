@@ -16,15 +16,7 @@ except ModuleNotFoundError as error:  # the library alone was installed
 
 from experiments.cli.advise import advise
 from experiments.cli.check import baseline_app, check
-from experiments.cli.console import (
-    AsJson,
-    Commands,
-    RunArgument,
-    console,
-    errors,
-    print_json,
-    run_folder,
-)
+from experiments.cli.console import AsJson, Commands, RunArgument, console, print_json, run_folder
 from experiments.cli.fracture import fracture
 from experiments.cli.history import history
 from experiments.cli.judge import judge_file
@@ -129,5 +121,3 @@ app.command()(check)
 app.command("judge")(judge_file)
 app.add_typer(baseline_app, name="baseline")
 app.add_typer(baseline_app, name="reference", hidden=True)
-
-__all__ = ["app", "console", "errors"]

@@ -6,10 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pandas as pd
 import pytest
-from typer.testing import CliRunner
 
 import hem
-from experiments import cli
 from experiments.advice import (
     NEEDS,
     PRESETS,
@@ -33,6 +31,7 @@ from hem.contract import ANEW, QUERIES
 from hem.contract.recording import COMPILED as COMPILED_CODE
 from hem.contract.recording import PYTHON
 from structures import REGISTRY, build
+from tests.experiments.cli.calls import hem as command
 from tests.experiments.made_runs import SIZES
 
 COMPILED = [name for name, it in REGISTRY.items() if it.compiled]
@@ -408,9 +407,7 @@ def test_a_line_of_a_csv_that_is_too_long_is_told_with_its_place(tmp_path) -> No
 
 
 def told(*arguments: str) -> tuple[int, str]:
-    cli.console.width = cli.errors.width = 300
-    result = CliRunner().invoke(cli.app, ["advise", *arguments])
-    return result.exit_code, result.stdout + result.stderr
+    return command("advise", *arguments, width=300)
 
 
 def test_the_command_says_what_it_rests_on_and_tells_programs_the_same(run: Run) -> None:

@@ -2,13 +2,14 @@
 
 from typer.testing import CliRunner
 
-from experiments import cli
+from experiments.cli import app
+from experiments.cli.console import console, errors
 
 
-def hem(*arguments: str, width: int = 400) -> tuple[int, str]:
+def hem(*arguments: str, width: int = 400, said: str | None = None) -> tuple[int, str]:
     """Run a command where lines are so wide -> its exit code, and all that it printed."""
-    cli.console.width = cli.errors.width = width
-    result = CliRunner().invoke(cli.app, arguments)
+    console.width = errors.width = width
+    result = CliRunner().invoke(app, arguments, input=said)
     return result.exit_code, result.stdout + result.stderr
 
 

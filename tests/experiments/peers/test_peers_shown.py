@@ -5,15 +5,14 @@ import re
 from pathlib import Path
 
 import pytest
-from typer.testing import CliRunner
 
-from experiments import cli
 from experiments.harness import HUBS, Measurement
 from experiments.peers import ALGORITHMS, BAD_INPUT, BUILD, BULK, BYTES, OURS, PEERS, SINGLE
 from experiments.report import measured_peers, notebooks
 from experiments.report import peers as report_peers
 from experiments.report.session import Session, share
 from experiments.runs import CaseFile, describe, load, write_meta
+from tests.experiments.cli.calls import hem
 from tests.experiments.made_runs import write_run
 from tests.experiments.peers.slow_library import LIBRARY
 
@@ -62,10 +61,9 @@ def run(tmp_path, monkeypatch):
 
 
 def printed(*arguments: str, code: int = 0) -> str:
-    cli.console.width = cli.errors.width = 80
-    done = CliRunner().invoke(cli.app, arguments)
-    assert done.exit_code == code, done.output
-    return done.output
+    ended, output = hem(*arguments, width=80)
+    assert ended == code, output
+    return output
 
 
 def test_the_table_fits_and_shows_class_verdict_and_ratio(run):

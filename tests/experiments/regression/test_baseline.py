@@ -6,12 +6,12 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from typer.testing import CliRunner
 
-from experiments import cli, regression
+from experiments import regression
 from experiments.harness import NO_STRUCTURE
 from experiments.regression import COUNTERS, RUN, load_baseline, reduce_run, save_baseline
 from experiments.runs import ResultsError, read_meta, write_meta
+from tests.experiments.cli.calls import hem
 
 COMMITTED = Path(__file__).parents[3] / "results/reference"
 
@@ -26,10 +26,7 @@ def folder(tmp_path, monkeypatch) -> Path:
 
 
 def update(folder: Path, *arguments: str, said: str | None = None) -> tuple[int, str]:
-    cli.console.width = cli.errors.width = 400
-    command = ["baseline", "update", *arguments, "--baseline", str(folder)]
-    result = CliRunner().invoke(cli.app, command, input=said)
-    return result.exit_code, result.stdout + result.stderr
+    return hem("baseline", "update", *arguments, "--baseline", str(folder), said=said)
 
 
 def contents(folder: Path) -> dict[str, bytes]:
