@@ -251,26 +251,17 @@ def closing(claims: Iterable[JudgedClaim], points: Mapping[str, Sequence[str]]) 
     return part("closing", rows)
 
 
-@dataclass(frozen=True)
-class Section:
-    """A section of the thesis, or the article: what it says, and where it is done."""
-
-    of: str  # its number as sources have it
-    title: str
-    says: str
-    chapter: str  # of the report
-    done: Sequence[str]  # files and rooms
-
-
 @cache
-def sections() -> tuple[Section, ...]:
-    """All of them, in the order of the documents."""
-    text = (files("experiments.claims") / "sections.toml").read_text("utf-8")
-    return tuple(Section(of, **it) for of, it in tomllib.loads(text).items())
+def sections() -> dict[str, dict[str, Any]]:
+    """The sections of the documents in their order, by the numbers that sources have.
+
+    ``title``, what it ``says``, its ``chapter`` here, and the files and rooms where it is ``done``.
+    """
+    return tomllib.loads((files("experiments.claims") / "sections.toml").read_text("utf-8"))
 
 
 def cited(source: str) -> set[str]:
-    """The sections that a source cites, as ``Section.of`` has them: those of 7.1 are 7's."""
+    """The sections that a source cites, by their numbers there: those of 7.1 are 7's."""
     document = re.split("[;:]", source)[0]
     if other := re.match("article|draft", document):
         return {other[0]}
@@ -278,8 +269,7 @@ def cited(source: str) -> set[str]:
         return set()
     of_others = r"table \d+|errat(?:um|a) \d+"
     numbers = re.findall(r"\d(?:\.\d)*", re.sub(of_others, "", document))
-    known = {it.of for it in sections()}
-    found = {it if it in known else it.rpartition(".")[0] for it in numbers}
+    found = {it if it in sections() else it.rpartition(".")[0] for it in numbers}
     return found | ({"abstract"} if "abstract" in document else set())
 
 
@@ -287,18 +277,18 @@ def traced(claims: Iterable[JudgedClaim]) -> Html:
     """A row per section: what it says, where it is done, and what became of what it claims."""
     printed = [it for it in claims if it.claim.claimant is Kind.PRINTED]
     rows = []
-    for section in sections():
-        mine = [it for it in printed if section.of in cited(it.claim.source)]
+    for number, section in sections().items():
+        mine = [it for it in printed if number in cited(it.claim.source)]
         said = [it for it in mine if it.claim.table == SENTENCES]
         cells = Counter(it.mark for it in mine if it.claim.table != SENTENCES)
         wrong = {
-            number: it.title
-            for number, it in enumerate(ERRATA, start=1)
-            if section.of in cited(it.source.removeprefix("quoted in "))
+            place: it.title
+            for place, it in enumerate(ERRATA, start=1)
+            if number in cited(it.source.removeprefix("quoted in "))
         }
-        where = part("done", page_titles()[section.chapter], link(section.chapter), section.done)
+        chapter, shown = section["chapter"], number if number[0].isdigit() else ""
+        where = part("done", page_titles()[chapter], link(chapter), section["done"])
         became = part("became", said, cells, wrong)
-        number = section.of if section.of[0].isdigit() else ""
-        rows.append((f"{number} {section.title}", section.says, where, became))
+        rows.append((f"{shown} {section['title']}", section["says"], where, became))
     heads = "Section", "What it says", "Where it is done", "What became of it"
     return text_table(heads, rows)
