@@ -14,7 +14,7 @@ from typing import Any
 
 _PLACES = {
     "pages": (
-        "Html", "about_history", "about_run", "abstract", "answer", "browser", "chapter_list",
+        "Answer", "Html", "about_history", "about_run", "abstract", "browser", "chapter_list",
         "claim_tables", "closing", "errata", "frame_table", "legend", "reasons", "sentences",
         "slopes", "tally", "text_table", "traced", "verdicts",
     ),

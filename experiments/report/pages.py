@@ -4,7 +4,6 @@ import re
 import tomllib
 from collections import Counter
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from functools import cache, partial
 from html import escape
 from importlib.resources import files
@@ -206,29 +205,20 @@ def frame_table(frame: pd.DataFrame) -> Html:
     return numbers(frame.to_numpy(), dict.fromkeys(frame.columns, str))
 
 
-@dataclass(frozen=True)
 class Answer:
-    """An answer of the front page, also in German; if not ``measured``, it says what is missing."""
+    """An answer of the front page with its links, also in German; ``missing`` where a number is."""
 
-    text: str
-    german: str
-    rests: Mapping[str, str]
-    measured: bool
+    def __init__(
+        self, text: str, german: str, rests: Mapping[str, str], needs: Sequence[float], missing: str
+    ) -> None:
+        self.measured = all(value == value for value in needs)  # nan where nothing was measured
+        self.text, self.rests = text if self.measured else missing, rests
+        told = german if self.measured else "Dieser Lauf hat das auf keiner Maschine ganz gemessen."
+        swapped = str.maketrans(",.", ".,")  # 1.234,5 for 1,234.5
+        self.german = re.sub(r"\d[\d,.]*\d", lambda it: it[0].translate(swapped), told)
 
     def _repr_html_(self) -> str:
         return str(part("answer", self.text, self.measured, self.rests))
-
-
-UNTOLD = "Dieser Lauf hat das auf keiner Maschine ganz gemessen."
-
-
-def answer(
-    text: str, german: str, rests: Mapping[str, str], needs: Sequence[float], missing: str
-) -> Answer:
-    """An answer with its links, or ``missing`` where a number is."""
-    measured = all(value == value for value in needs)  # nan where nothing was measured
-    german = written.german_numbers(german if measured else UNTOLD)
-    return Answer(text if measured else missing, german, rests, measured)
 
 
 def closing(claims: Iterable[JudgedClaim], points: Mapping[str, Sequence[str]]) -> Html:

@@ -1,6 +1,5 @@
 """Rows as a table for a terminal, in 80 columns, or in Markdown; and so the tables of claims."""
 
-import re
 from collections import Counter
 from collections.abc import Iterable, Sequence
 from functools import partial
@@ -258,9 +257,3 @@ def count(value: float) -> str:
 def spelled(name: str) -> str:
     """A name of a record or a field as one writes it."""
     return name.replace("half_edge", "half-edge").replace("_", " ")
-
-
-def german_numbers(text: str) -> str:
-    """Numbers as one writes them in German: 1.234,5 for 1,234.5."""
-    swapped = str.maketrans(",.", ".,")
-    return re.sub(r"\d[\d,.]*\d", lambda it: it[0].translate(swapped), text)

@@ -15,7 +15,7 @@ from matplotlib.colors import to_rgb
 import structures
 from experiments.claims import CLAIMED
 from experiments.harness import OPERATIONS, Axis
-from experiments.report import abstract, answer, notebooks, readme, site, uses, write_report
+from experiments.report import Answer, abstract, notebooks, readme, site, uses, write_report
 from experiments.report.figures import growth, memory, meshes
 from experiments.report.pages import page
 from experiments.report.session import share
@@ -320,6 +320,6 @@ def test_the_german_answers_have_the_numbers_of_the_english_ones(front):
 
 
 def test_what_was_not_measured_is_said_in_german_too():
-    missing = answer("2", german="2,5", rests={}, needs=(np.nan,), missing="nothing")
+    missing = Answer("2", german="2,5", rests={}, needs=(np.nan,), missing="nothing")
     assert (missing.text, missing.measured) == ("nothing", False)
     assert "auf keiner Maschine ganz gemessen" in abstract([missing])
