@@ -2,10 +2,9 @@
 
 import json
 import tomllib
-from collections.abc import Sequence
 from pathlib import Path
 from time import perf_counter
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -15,33 +14,24 @@ from experiments.report import pages
 
 OUT = Path("report/demo")
 SIZE = 480, 360
-
-
-class DemoCase(NamedTuple):
-    """A call of ``hem fracture``, and the forces to strike with; and what to look at."""
-
-    title: str
-    command: str
-    forces: Sequence[float]
-    what: str
-
+Case = dict[str, Any]  # of demo.toml
 
 _TEXT = Path(__file__).with_name("demo.toml").read_text("utf-8")
-CASES = tuple(DemoCase(**it) for it in tomllib.loads(_TEXT)["case"])
+CASES: list[Case] = tomllib.loads(_TEXT)["case"]
 
 
-def write(folder: Path, cases: tuple[DemoCase, ...] = CASES, size: tuple[int, int] = SIZE) -> Path:
+def write(folder: Path, cases: list[Case] = CASES, size: tuple[int, int] = SIZE) -> Path:
     """Run the commands, and write a page that shows what they made, without a network -> it."""
-    shown = [(case, [_strike(case, it, size, folder) for it in case.forces]) for case in cases]
+    shown = [(case, [_strike(case, it, size, folder) for it in case["forces"]]) for case in cases]
     (folder / "index.html").write_text(pages.page("demo.html.j2", shown=shown, size=size), "utf-8")
     return folder / "index.html"
 
 
-def _strike(case: DemoCase, force: float, size: tuple[int, int], folder: Path) -> dict[str, Any]:
+def _strike(case: Case, force: float, size: tuple[int, int], folder: Path) -> dict[str, Any]:
     """Strike once -> what the page says of it."""
-    name = f"{case.title}-{force:g}".lower().replace(" ", "-").replace(".", "_")
+    name = f"{case['title']}-{force:g}".lower().replace(" ", "-").replace(".", "_")
     size_and_place = ["--size", f"{size[0]}x{size[1]}", "--out", str(folder / name)]
-    words = ["fracture", *case.command.split(), "--force", f"{force:g}", *size_and_place]
+    words = ["fracture", *case["command"].split(), "--force", f"{force:g}", *size_and_place]
     if code := app(words, standalone_mode=False):
         raise SystemExit(code)
     told = json.loads((folder / name / "fracture.json").read_text("utf-8"))

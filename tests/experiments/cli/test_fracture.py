@@ -199,8 +199,8 @@ def test_skin_is_told_from_the_walls_of_cuts():
 
 @exhaustive
 def test_the_demo_is_one_page_that_needs_no_network(tmp_path):
-    case = demo.CASES[-1]._replace(forces=(0.5, 2))
-    page = demo.write(tmp_path / "demo", (case,), size=(64, 64))
+    case = {**demo.CASES[-1], "forces": (0.5, 2)}
+    page = demo.write(tmp_path / "demo", [case], size=(64, 64))
     text = page.read_text(encoding="utf-8")
     assert "://" not in text
     assert "hem fracture plate:144 --material glass --method surface --force 0.5" in text
