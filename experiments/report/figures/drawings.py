@@ -222,16 +222,10 @@ STEPS = {it.__name__[1:]: it for it in (_split_edge, _collapse_edge, _split_face
 """By operation what is done for each frame but the first -> what is to be seen then."""
 
 
-def states(structure: type[Structure], operation: str) -> Iterator[tuple[str, Structure]]:
-    """The frames of an operation: words, and the one mesh as it is at that time."""
-    s = structure.build(hexagon())
-    for words in STEPS[operation](s):
-        yield words, s
-
-
 def operation(structure: type[Structure], name: str) -> Html:
     """An operation frame by frame, each drawn from the mesh that it has left."""
-    kept = [(words, *drawn_records(s)) for words, s in states(structure, name)]
+    s = structure.build(hexagon())
+    kept = [(words, *drawn_records(s)) for words in STEPS[name](s)]
     frames = []
     for k, (words, entries, shapes) in enumerate(kept):
         after = next((its for _, its, _ in kept[k + 1 :] if its != entries), entries)
