@@ -5,7 +5,7 @@ And advice to play with: sliders for a mesh and a workload, and the structures i
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cache, partial
+from functools import partial
 from operator import attrgetter
 from typing import Any
 
@@ -33,17 +33,15 @@ def bytes_per_vertex(measured: Curves, structure: str) -> pd.Series:
     return sizes / sizes.index.to_numpy(float)
 
 
+PRINTED = {it.subject for it in load_claims() if it.kind is Kind.PRINTED}
+TABLE_1 = [it for it in QUERIES if it in PRINTED]
+"""The queries that the thesis prints costs of."""
+
+
 def queries(measured: Curves, structure: str) -> pd.Series:
     """The queries of table 1 together, each once, in random order."""
-    costs = [measured.curve(Axis.RANDOM_FACES, structure, it).by_size for it in _of_table_1()]
+    costs = [measured.curve(Axis.RANDOM_FACES, structure, it).by_size for it in TABLE_1]
     return pd.concat(costs, axis=1).dropna().sum(axis=1)
-
-
-@cache
-def _of_table_1() -> tuple[str, ...]:
-    """The queries that the thesis prints costs of."""
-    printed = {it.subject for it in load_claims() if it.kind is Kind.PRINTED}
-    return tuple(it for it in QUERIES if it in printed)
 
 
 def workload(name: str) -> Costs:
