@@ -4,7 +4,6 @@ import re
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
-from functools import cached_property
 from html import escape
 from pathlib import Path
 from typing import Any
@@ -41,6 +40,8 @@ KEPT = "results/reference/peers"
 """A run of them that is part of the project, for who has none of these libraries."""
 LIKE = "half_edge"
 """The structure of ours that stands beside the libraries, and whose claims theirs are held to."""
+CLAIMED = {it.subject: it.classes for it in load_claims() if it.structure == LIKE}
+"""By query what it is claimed to cost, by variable."""
 MISSING = "Other libraries were not measured here: hem study --peers does that."
 NONE = "N/A"
 NUMBERS = "bytes per vertex", "build a vertex", "times ours"
@@ -98,11 +99,6 @@ class Peers:
         self.bytes_per_vertex = each.groupby(level=0).max().reindex(self.names)
         self.weighed_at = weighed["vertices"].groupby(level=0).max().reindex(self.names)
 
-    @cached_property
-    def _claims(self) -> dict[str, Mapping[str, str]]:
-        """By query what our structure is claimed to cost, by variable."""
-        return {it.subject: it.classes for it in load_claims() if it.structure == LIKE}
-
     def cell(self, name: str, subject: str, order: str = "") -> Cell | None:
         """One subject on a library, judged if it is a query or has sizes enough; None: no call."""
         of_run = curves(self.run)
@@ -111,7 +107,7 @@ class Peers:
             return None
         ratios = (curve.by_size / ours.by_size).dropna()
         size = int(max(ratios.index if len(ratios) else curve.by_size.index))
-        claimed = PER_ELEMENT if order == BULK else self._claims.get(subject, {})
+        claimed = PER_ELEMENT if order == BULK else CLAIMED.get(subject, {})
         verdicts = {}
         if subject in QUERIES or len(curve.by_size) >= MIN_SIZES:
             asked = self.cases[name].query("subject == @subject and order == @order")
