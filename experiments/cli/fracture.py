@@ -118,7 +118,6 @@ def _write(
     """Make everything beside the folder and move it there at the end -> the files' names."""
     from PIL import Image
 
-    from experiments.report import fracture_scenes
     from hem.fracture import describe, save_pieces, whole
 
     with whole(folder) as beside:
@@ -129,20 +128,20 @@ def _write(
         numbers |= asked | {"up": broken.up, "held": broken.held}
         Image.fromarray(scene.still(size)).save(beside / "fracture.png", optimize=True)
         if animation:
-            lasting = seconds or fracture_scenes.enough_seconds(scene)
-            numbers["animation"] = _animate(broken, scene, lasting, size, beside)
+            flight = broken.flight(scene, seconds)
+            numbers["animation"] = _animate(broken, scene, flight, size, beside)
         (beside / "fracture.json").write_text(json.dumps(numbers, indent=1, allow_nan=False) + "\n")
         return sorted(path.name for path in beside.iterdir())
 
 
-def _animate(broken: Any, scene: Any, seconds: float, size: Size, folder: Path) -> dict[str, Any]:
+def _animate(broken: Any, scene: Any, flight: Any, size: Size, folder: Path) -> dict[str, Any]:
     from rich.progress import track
 
     from hem.fracture.show import FRAMES_PER_SECOND, save_animation
 
-    flight = broken.flight(scene, seconds)
     caption = f"{broken.fracture.material.name}, {broken.blow.force:g} J/kg"
     frames, count = scene.frames(flight, size, caption), len(flight.times)
+    seconds = float(flight.times[-1])
     images = list(track(frames, "Animation", count, console=console, transient=True))
     save_animation(images, folder / "fracture.gif")
     return {

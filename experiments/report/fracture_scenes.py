@@ -34,8 +34,13 @@ class Broken(NamedTuple):
         """How it is drawn."""
         return FractureScene.build(self.fracture, self.mesh, self.up)
 
-    def flight(self, scene: FractureScene, seconds: float) -> Flight:
-        """How the pieces fly for so many seconds, in pictures for some more."""
+    def flight(self, scene: FractureScene, seconds: float | None) -> Flight:
+        """How the pieces fly for so many seconds, in pictures for some more.
+
+        None: until all has fallen and come to rest, more or less: four times a fall from the top.
+        """
+        height = float((scene.points @ scene.up).max()) - scene.floor
+        seconds = seconds or float(np.clip(4 * np.sqrt(2 * height / GRAVITY), 0.4, 8.0))
         frames = round(3.2 * FRAMES_PER_SECOND)
         options: Any = {"up": scene.up, "floor": scene.floor, "held": self.held, "ease": EASE}
         return fly(self.fracture, self.motion, seconds, frames, **options)
@@ -92,9 +97,3 @@ def break_up(
     blow = Blow(fracture.impact, fracture.direction, force)
     held = [len(fracture.shards)] if fracture.rest and not fracture.closed else []
     return Broken(mesh, fracture, blow, motion(fracture, blow, held=held), up, held)
-
-
-def enough_seconds(scene: FractureScene) -> float:
-    """Until all has fallen and come to rest, more or less: four times a fall from the top."""
-    height = float((scene.points @ scene.up).max()) - scene.floor
-    return float(np.clip(4 * np.sqrt(2 * height / GRAVITY), 0.4, 8.0))
