@@ -28,8 +28,6 @@ INK = "#333333"
 STRONG = "#c0392b"
 
 SAND = (0.96, 0.82, 0.55)
-UPRIGHT = {"x": (1, 2, 0), "y": (0, 1, 2), "z": (1, 2, 0)}
-"""By the axis that points up, the coordinates that go right, up and to the front."""
 
 Step = tuple[str, Structure, dict[str, Any]]
 """A title, a mesh, and what to point out in it: ``faces``, ``edges``, ``arrows``, ``vertices``."""
@@ -275,7 +273,8 @@ def turnable(shown: hem.TriangleMesh | FractureScene, caption: str, up: str = "y
     middle = (used.max(axis=0) + used.min(axis=0)) / 2
     reach = float(np.linalg.norm(used - middle, axis=1).max())
     placed = np.clip((shown.points - middle) / reach, -1, 1)
-    order = list(UPRIGHT[up])
+    at = "xyz".index(up)
+    order = [(at + k) % 3 for k in (-1, 0, 1)]  # what goes right, up and to the front
     packed = {
         "points": _pack(np.rint(placed[:, order] * 32767), "<i2"),
         "triangles": _pack(shown.triangles, "<u4"),
