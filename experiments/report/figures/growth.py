@@ -9,7 +9,6 @@ import pandas as pd
 from matplotlib.axes import Axes
 
 from experiments.bench_fracture import FIND, SHATTER, VISITED, WAYS
-from experiments.bench_printed import EXPERIMENT as PRINTED
 from experiments.bench_workloads import COMPILED, WORKLOADS
 from experiments.claims import MIXES, break_even, curves
 from experiments.harness import ANSWERING, Axis
@@ -17,7 +16,7 @@ from experiments.report import style
 from experiments.report.comparisons import medians
 from experiments.report.session import require
 from experiments.report.style import BLUE, GRAY, RED, STYLES, Plot
-from experiments.runs import Run
+from experiments.runs import Run, tables
 from hem.contract import QUERIES
 from structures import NAMED, REGISTRY
 
@@ -152,8 +151,7 @@ def _draw_order_and_latency(run: Run, axes: Axes, subject: str) -> None:
 
 def listings(run: Run, axis: Axis = Axis.WORK_FACES) -> Plot:
     """What the thesis' listings cost as published and as corrected: a panel each, against size."""
-    table = PRINTED.table
-    assert table is not None
+    table = tables()["listings"]
     costs = _costs(run, axis, table.subjects, table.name)
     label, scale = (axis.label, 1.0) if axis.exact else (f"{axis.label}, µs", 1e-3)
     costs = costs.assign(cost=scale * costs["cost"])
