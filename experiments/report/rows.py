@@ -27,8 +27,7 @@ def show_rows(
         while stop < len(widths) and widths[0] + sum(widths[start : stop + 1]) <= console.width:
             stop += 1
         whole = widths[0] + widths[start] <= console.width  # else lines are broken, and not cut
-        table = Table(box=box.SIMPLE_HEAD)
-        table.pad_edge, table.padding = False, (0, 1, 0, 0)
+        table = Table(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1, 0, 0))
         heads, *body = ([row[0], *row[start:stop]] for row in every)
         for head in heads:
             justify: Any = "right" if head in numbers else "left"
