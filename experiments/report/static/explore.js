@@ -13,6 +13,13 @@
     return made;
   }
 
+  function button(text, click) {
+    const made = document.createElement("button");
+    made.textContent = text;
+    made.addEventListener("click", click);
+    return made;
+  }
+
   // As drawings.bent draws it.
   function bent(from, to) {
     const length = Math.hypot(to[0] - from[0], to[1] - from[1]), clear = Math.min(CLEAR, 0.15 * length);
@@ -46,10 +53,7 @@
     }
 
     function chooser(key) { // for the keyboard as well, which then goes on from the first reference
-      const made = document.createElement("button");
-      made.textContent = words(key);
-      made.addEventListener("click", () => { choose(key); told.querySelector("button")?.focus(); });
-      return made;
+      return button(words(key), () => { choose(key); told.querySelector("button")?.focus(); });
     }
 
     function choose(key) {
@@ -80,8 +84,8 @@
 
   function stepper(section) {
     const frames = [...section.querySelectorAll("figure")];
-    const back = document.createElement("button"), on = document.createElement("button");
-    const at = document.createElement("span");
+    const back = button("‹ back", () => show(shown - 1)), on = button("step ›", () => show(shown + 1));
+    const at = document.createElement("span"), controls = document.createElement("p");
     let shown = 0;
     function show(index) {
       shown = index;
@@ -90,11 +94,6 @@
       on.disabled = shown === frames.length - 1;
       at.textContent = ` ${shown + 1} of ${frames.length} `;
     }
-    back.textContent = "‹ back";
-    on.textContent = "step ›";
-    back.addEventListener("click", () => show(shown - 1));
-    on.addEventListener("click", () => show(shown + 1));
-    const controls = document.createElement("p");
     controls.append(back, at, on);
     frames[0].before(controls);
     section.classList.add("live");
