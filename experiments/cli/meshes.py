@@ -24,34 +24,29 @@ def meshes(
 
     Example: `hem meshes --size 5000`
     """
-    families = {
-        name: (hem.generate(name, size), it.what, it.sizes) for name, it in hem.FAMILIES.items()
-    }
-    models = {name: (hem.sample(name), it.what, "") for name, it in hem.SAMPLES.items()}
+    families = [_told(name, it, hem.generate(name, size)) for name, it in hem.FAMILIES.items()]
+    models = [_told(name, it, hem.sample(name)) for name, it in hem.SAMPLES.items()]
     if as_json:
-        print_json({"families": _listed(families), "models": _listed(models)})
+        print_json({"families": families, "models": models})
         return
     titles = "Families, made by hem.generate(name, n_vertices)", "Models, read by hem.sample(name)"
     for title, made in zip(titles, (families, models), strict=True):
         rows: list[tuple[str, ...]] = [("name", "vertices", "edges", "faces", "border", "valence")]
         notes = Table.grid(padding=(0, 2, 0, 0))
-        for name, (mesh, what, sizes) in made.items():
-            s = mesh.summary()
-            counts = (s.vertices, s.edges, s.faces, s.border_edges)
-            valence = f"{s.valence_min}…{s.valence_max}"
-            rows.append((name, *map("{:,}".format, counts), valence))
-            notes.add_row(name, what)
-            if sizes:
-                notes.add_row("  sizes", sizes)
+        for it in made:
+            counts = (it[key] for key in ("vertices", "edges", "faces", "border_edges"))
+            valence = f"{it['valence_min']}…{it['valence_max']}"
+            rows.append((it["name"], *map("{:,}".format, counts), valence))
+            notes.add_row(it["name"], it["what"])
+            if it["sizes"]:
+                notes.add_row("  sizes", it["sizes"])
         show_rows(console, rows, title, numbers=rows[0][1:])
         console.print(notes, "")
 
 
-def _listed(made: dict[str, tuple[hem.TriangleMesh, str, str]]) -> list[dict[str, Any]]:
-    return [
-        {"name": name, "what": what, "sizes": sizes or None, **asdict(mesh.summary())}
-        for name, (mesh, what, sizes) in made.items()
-    ]
+def _told(name: str, of: Any, mesh: hem.TriangleMesh) -> dict[str, Any]:
+    sizes = getattr(of, "sizes", None)  # which models have not
+    return {"name": name, "what": of.what, "sizes": sizes, **asdict(mesh.summary())}
 
 
 def info(
