@@ -33,9 +33,8 @@ def by_commit(trends: Trends, subject: str) -> Plot:
     step to a new level, a cross a verdict by work that changed.
     """
     trends, rows = _of_newest(trends)
+    titles = [it if key == "bytes" else f"{it}: {TITLES[subject]}" for key, it in PANELS.items()]
     with styled():
-        ends = {key: "" if key == "bytes" else f": {TITLES[subject]}" for key in PANELS}
-        titles = [title + ends[key] for key, title in PANELS.items()]
         figure, panels = grid(titles, (5.5, 2.9), 2, Plot, sharex=True)
         for axes, measure in zip(panels, PANELS, strict=True):
             sloped = measure == SLOPE
