@@ -119,15 +119,10 @@ DOUBTS = {
     "too_busy": "the machine was too busy to judge the run by time",
 }
 """What speaks against a run as a baseline."""
-baseline_app = typer.Typer(no_args_is_help=True)
+baseline_app = typer.Typer(help="What hem check compares with.", no_args_is_help=True)
 
 
-@baseline_app.callback()
-def _baseline() -> None:
-    """What hem check compares with."""
-
-
-@baseline_app.command("update")
+@baseline_app.command()
 def update(
     run: Annotated[Path | None, Argument(help="A run; without it only what is counted.")] = None,
     yes: Annotated[bool, Option("--yes", help="Do not ask.")] = False,
