@@ -35,19 +35,11 @@ PAGE, PAGES, DOCUMENT = Path("report"), Path("report/html"), Path("report/report
 """Where the report goes."""
 
 
-def _show_version(wanted: bool) -> None:
-    if wanted:
+@app.callback(invoke_without_command=True)
+def _options(show_version: Annotated[bool, Option("--version", help="Say which.")] = False) -> None:
+    if show_version:
         console.print(f"hem {version('hem-mesh')}")
         raise typer.Exit
-
-
-@app.callback()
-def _options(
-    show_version: Annotated[
-        bool, Option("--version", callback=_show_version, is_eager=True, help="Say which.")
-    ] = False,
-) -> None:
-    pass
 
 
 app.command("study", epilog=PRESETS_TOLD)(run_study)
