@@ -17,7 +17,6 @@ from experiments.claims import (
     DETERMINED,
     ERRATA,
     SENTENCES,
-    Erratum,
     JudgedClaim,
     Kind,
     Outcome,
@@ -29,7 +28,6 @@ from experiments.report import session
 from experiments.report import tables as written
 from experiments.report.notebooks import page_titles
 from experiments.report.rows import two_digits
-from experiments.report.session import link
 from experiments.runs import experiments, in_words, tables
 from structures import NAMED
 
@@ -175,9 +173,9 @@ def reasons(claims: Iterable[JudgedClaim], name: str) -> Html:
     return text_table(["Query", "Structure", "Axis", "Reason"], rows)
 
 
-def errata(every: Iterable[Erratum]) -> Html:
+def errata() -> Html:
     """What is published, what it does, and what a run of it gave beside the corrected version."""
-    return part("errata", [(it, it.show(), number) for number, it in enumerate(every, start=1)])
+    return part("errata", [(it, it.show(), number) for number, it in enumerate(ERRATA, start=1)])
 
 
 def or_missing(otherwise: str, make: Callable[..., str], *given: Any) -> str:
@@ -277,7 +275,7 @@ def traced(claims: Iterable[JudgedClaim]) -> Html:
             if number in cited(it.source.removeprefix("quoted in "))
         }
         chapter, shown = section["chapter"], number if number[0].isdigit() else ""
-        where = part("done", page_titles()[chapter], link(chapter), section["done"])
+        where = part("done", page_titles()[chapter], session.link(chapter), section["done"])
         became = part("became", said, cells, wrong)
         rows.append((f"{shown} {section['title']}", section["says"], where, became))
     heads = "Section", "What it says", "Where it is done", "What became of it"
