@@ -12,7 +12,7 @@ from experiments.bench_fracture import FIND, SHATTER, VISITED, WAYS
 from experiments.bench_workloads import COMPILED, WORKLOADS
 from experiments.claims import BY_TIME, MIXES, Family, class_told, curves
 from experiments.harness import BASE, Axis
-from experiments.report.pages import Heads, Html, numbers, part, text_table
+from experiments.report.pages import Html, numbers, part, text_table
 from experiments.report.rows import two_digits
 from experiments.report.session import MissingError, require
 from experiments.report.style import TITLES
@@ -52,12 +52,11 @@ def objects_against_arrays(run: Run) -> Html:
         if shared := set.intersection(*sizes) if sizes else set():
             costs = [cost for it in found for cost in it.reindex([max(shared)]).to_numpy()[0]]
             rows.append((title, *costs, _ratio(run, costs[3], costs[2]), max(shared)))
-    heads: Heads = {
+    return numbers(rows, {
         "": str, "accesses, arrays": count, "accesses, objects": count,
         "time, arrays (compiled)": duration, "time, objects (Python)": duration,
         "slower": lambda value: f"{digits(value)} ×", "vertices": count,
-    }  # fmt: skip
-    return numbers(rows, heads)
+    })  # fmt: skip
 
 
 def workloads(run: Run, order: str = COMPILED) -> Html:
@@ -153,11 +152,10 @@ def face_finding(run: Run) -> Html:
             work = judge(counted.sizes, counted.samples, exact=True)
             time = judge(timed.sizes, timed.samples, latency=latency)
             rows.append((way, work, time, counted.largest, timed.largest))
-    heads: Heads = {
+    return numbers(rows, {
         "": str, "faces looked at: slope": _slope, "time: slope": _slope,
         "faces, largest mesh, mean": count, "time, largest mesh": duration,
-    }  # fmt: skip
-    return numbers(rows, heads)
+    })  # fmt: skip
 
 
 def overtaking(table: pd.DataFrame) -> Html:
