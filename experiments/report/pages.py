@@ -13,16 +13,7 @@ import pandas as pd
 from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescape
 from markupsafe import Markup
 
-from experiments.claims import (
-    DETERMINED,
-    ERRATA,
-    SENTENCES,
-    JudgedClaim,
-    Kind,
-    Outcome,
-    class_told,
-    curves,
-)
+from experiments.claims import DETERMINED, ERRATA, SENTENCES, JudgedClaim, Kind, Outcome, curves
 from experiments.harness import Axis, Table
 from experiments.report import session
 from experiments.report import tables as written
@@ -59,7 +50,6 @@ def _templates() -> Environment:
         "Axis": Axis,
         "NAMED": NAMED,
         "Outcome": Outcome,
-        "class_told": class_told,
         "experiments": experiments,
         "in_words": in_words,
         "measured": lambda: curves(session.open_run().run),
