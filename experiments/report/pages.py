@@ -240,15 +240,9 @@ def sections() -> dict[str, dict[str, Any]]:
 
 def cited(source: str) -> set[str]:
     """The sections that a source cites, by their numbers there: those of 7.1 are 7's."""
-    document = re.split("[;:]", source)[0]
-    if other := re.match("article|draft", document):
-        return {other[0]}
-    if not document.startswith("thesis"):
-        return set()
-    of_others = r"table \d+|errat(?:um|a) \d+"
-    numbers = re.findall(r"\d(?:\.\d)*", re.sub(of_others, "", document))
-    found = {it if it in sections() else it.rpartition(".")[0] for it in numbers}
-    return found | ({"abstract"} if "abstract" in document else set())
+    document = re.sub(r"table \d+|errat(?:um|a) \d+", "", re.split("[;:]", source)[0])
+    names = re.findall("article|draft", document) or re.findall(r"\d(?:\.\d)*|abstract", document)
+    return {it if it in sections() else it.rpartition(".")[0] for it in names}
 
 
 def traced(claims: Iterable[JudgedClaim]) -> Html:
