@@ -117,9 +117,8 @@ def picks_in_words(run: Run) -> Html:
     rays = [(what, how) for what in (RAY, FOLLOWING) for how in (REBUILT, REFITTED)]
     known = table.reindex(columns=rays).dropna()
     if known.empty:
-        left_out = run.skipped[run.skipped["experiment"] == "bench_picking"]
-        reasons = dict.fromkeys(left_out.loc[left_out["subject"] == RAY, "skipped"])
-        raise MissingError(" ".join(["This run has cast no rays.", *reasons]))
+        left_out = run.skipped.query("experiment == 'bench_picking' and subject == @RAY")["skipped"]
+        raise MissingError(" ".join(["This run has cast no rays.", *left_out.unique()]))
     size = known.index.max()
     asked = cases.query("subject == @NEIGHBORS and order == @COMPILED and vertices == @size")
     require(len(asked), "asked in compiled code what is around a face")
