@@ -2,6 +2,7 @@
 
 from collections import Counter
 from collections.abc import Iterable, Sequence
+from decimal import Decimal
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -244,9 +245,7 @@ def digits(value: float, count: int = 2) -> str:
     """So many digits that count, without powers: 0.036, 5.1, 64, 12,000."""
     if not 0 < abs(value) < float("inf"):
         return "0" if value == 0 else "–"
-    rounded = float(f"{value:.{count - 1}e}")
-    behind = count - 1 - int(f"{abs(rounded):e}".partition("e")[2])
-    return f"{rounded:,.{max(behind, 0)}f}"
+    return f"{Decimal(f'{value:#.{count}g}'):,f}"
 
 
 def count(value: float) -> str:
