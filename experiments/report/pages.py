@@ -220,9 +220,8 @@ def closing(claims: Iterable[JudgedClaim], points: Mapping[str, Sequence[str]]) 
     rows = []
     for text, keys in points.items():
         rests = [judged[key.removeprefix("not ")] for key in keys]
-        nots = (key.startswith("not ") for key in keys)
-        expected = [Outcome.VIOLATED if it else Outcome.CONSISTENT for it in nots]
-        pairs = [{it.outcome, wanted} for it, wanted in zip(rests, expected, strict=True)]
+        wanted = (Outcome.VIOLATED if it.startswith("not ") else Outcome.CONSISTENT for it in keys)
+        pairs = [{it.outcome, other} for it, other in zip(rests, wanted, strict=True)]
         denied, doubted = DETERMINED in pairs, any(len(it) > 1 for it in pairs)
         doubt = "This run does not bear it out: " if denied else "This run cannot tell: "
         rows.append((text.format(*(it.found for it in rests)), doubt if doubted else "", rests))
