@@ -12,21 +12,10 @@ import numpy as np
 import pandas as pd
 from rich.console import Console
 
+from experiments import peers as libraries
 from experiments.claims import CASE_ERROR, Curve, Outcome, curves, load_claims
 from experiments.harness import OPERATIONS, QUERIES_TABLE
-from experiments.peers import (
-    ALGORITHMS,
-    BAD_INPUT,
-    BATCHED,
-    BUILD,
-    BULK,
-    BYTES,
-    LOOPED,
-    OURS,
-    PEERS,
-    SINGLE,
-    SIX,
-)
+from experiments.peers import BAD_INPUT, BUILD, BULK, BYTES, LOOPED, OURS, PEERS, SINGLE
 from experiments.report.pages import Html, text_table
 from experiments.report.session import MissingError, project_file
 from experiments.report.tables import digits, duration, show_rows
@@ -179,9 +168,9 @@ GROUPS: dict[str, tuple[Mapping[str, str], str]] = {
     "Queries, in a compiled loop": (QUESTIONS, LOOPED),
     "Operations, one after the other": (OPERATIONS, SINGLE),
     "Operations, all at once": (OPERATIONS, BULK),
-    "Operations, in a compiled loop": ({it: OPERATIONS[it] for it in BATCHED}, LOOPED),
-    "Algorithms": (ALGORITHMS, ""),
-    "Algorithms of Sieger & Botsch, compiled": (SIX, LOOPED),
+    "Operations, in a compiled loop": ({it: OPERATIONS[it] for it in libraries.BATCHED}, LOOPED),
+    "Algorithms": (libraries.ALGORITHMS, ""),
+    "Algorithms of Sieger & Botsch, compiled": (libraries.SIX, LOOPED),
 }
 """By title what is compared: by subject the head of its row, and the order of its cases."""
 READING = (
