@@ -64,9 +64,8 @@ def _of_newest(trends: Trends) -> tuple[Trends, pd.DataFrame]:
     trends = trends.only(preset=newest["profile"])
     rows = trends.figures
     names = pd.DataFrame(map(ClaimName.read, rows["claim"]), rows.index, ClaimName._fields)
-    here = rows["machine"].isin(("", newest["machine"]["id"]))
-    rows = rows.assign(structure=names["structure"], subject=names["subject"], here=here)
-    wanted = rows["comparable"] & (names["table"] != "listings")
+    rows = rows.join(names).assign(here=rows["machine"].isin(("", newest["machine"]["id"])))
+    wanted = rows["comparable"] & (rows["table"] != "listings")
     return trends, rows[wanted & rows["structure"].isin(NAMES)]
 
 
