@@ -220,11 +220,13 @@ def _flip_edge(s: Structure) -> Iterator[str]:
 
 STEPS = {it.__name__[1:]: it for it in (_split_edge, _collapse_edge, _split_face, _flip_edge)}
 """By operation what is done for each frame but the first -> what is to be seen then."""
+BY_HALF_EDGES = next(it for it in structures.REGISTRY.values() if issubclass(it, Navigable))
+"""The first structure that has half-edges: the one to show operations on."""
 
 
-def operation(structure: type[Structure], name: str) -> Html:
+def operation(name: str) -> Html:
     """An operation frame by frame, each drawn from the mesh that it has left."""
-    s = structure.build(hexagon())
+    s = BY_HALF_EDGES.build(hexagon())
     kept = [(words, *drawn_records(s)) for words in STEPS[name](s)]
     frames = []
     for k, (words, entries, shapes) in enumerate(kept):
@@ -236,11 +238,6 @@ def operation(structure: type[Structure], name: str) -> Html:
             marked = dict.fromkeys(going | entries.keys() & _changes(entries, after), "going")
         frames.append((words, Drawing(shapes, entries, [], marked, [])))
     return page("steps.html.j2", title=OPERATIONS[name], frames=frames)
-
-
-def by_half_edges() -> type[Structure]:
-    """The first structure that has half-edges: the one to show operations on."""
-    return next(it for it in structures.REGISTRY.values() if issubclass(it, Navigable))
 
 
 def _line(points: Any) -> str:

@@ -152,13 +152,13 @@ def test_every_frame_of_an_operation_is_a_valid_mesh_of_the_same_disk(name, oper
 
 
 def test_new_records_are_marked_as_new():
-    shown = drawings.operation(drawings.by_half_edges(), "split_face")
+    shown = drawings.operation("split_face")
     made = re.findall(r'<g class="(\w+) made"', shown)
     assert sorted(made) == ["face"] * 2 + ["half_edge"] * 6 + ["vertex"]
 
 
 def test_before_a_collapse_what_it_takes_away_is_marked():
-    first, *_ = drawings.operation(drawings.by_half_edges(), "collapse_edge").split("<figcaption>")
+    first, *_ = drawings.operation("collapse_edge").split("<figcaption>")
     chosen = set(re.findall(r'<g class="\w+ going" data-at="(\w+ \d+)"', first))
     assert chosen >= {"vertex 0", "face 8", "face 9"}
 
@@ -167,11 +167,11 @@ def test_a_structure_is_described_by_its_own_file_or_that_of_what_it_is_made_of(
     for structure in REGISTRY.values():
         assert "**Invariants**\n\n- " in records.described(structure)
 
-    class Same(drawings.by_half_edges()):
+    class Same(drawings.BY_HALF_EDGES):
         name, title, abbreviation = "same", "Same", "Same"
         claims = REGISTRY["plankton"].claims
 
-    assert records.described(Same) == records.described(drawings.by_half_edges())
+    assert records.described(Same) == records.described(drawings.BY_HALF_EDGES)
 
 
 def test_a_drawing_in_a_docstring_is_one_block_however_its_lines_are_indented():
@@ -235,7 +235,7 @@ def test_next_is_followed_round_a_face(chromium: Browser, chapter):
     chromium.errors.clear()
     chromium.size(1200)
     chromium.open(chapter)
-    half_edge = drawings.by_half_edges().name
+    half_edge = drawings.BY_HALF_EDGES.name
     chromium.run(
         "var figures = [...document.querySelectorAll('figure.mesh')];"
         f"var its = figures.find(it => it.getBoundingClientRect().top >"
