@@ -9,8 +9,8 @@ import numpy as np
 import hem
 from experiments import require_known
 from experiments.advice.prices import Forecast, Prices, predict
-from experiments.advice.workload import Workload, is_edit
-from hem.contract import ANEW, PYTHON
+from experiments.advice.workload import Workload
+from hem.contract import ANEW, PYTHON, is_edit
 from structures import REGISTRY, Structure, build
 
 ALIKE = 1.1

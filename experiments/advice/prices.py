@@ -10,12 +10,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from experiments.advice.workload import Row, Workload, is_edit
+from experiments.advice.workload import Row, Workload
 from experiments.claims import Curve, curves
 from experiments.harness import ANSWERING, IRREGULAR
 from experiments.runs import Run
 from hem.arrays import Array, Triangles
-from hem.contract import ANEW, CHECKED, COMPILED, OPERATIONS, PYTHON
+from hem.contract import ANEW, CHECKED, COMPILED, OPERATIONS, PYTHON, is_edit
 from hem.meshes import foretold
 from structures import REGISTRY
 

@@ -11,7 +11,7 @@ from typing import Any, Self
 
 from experiments import require_known
 from hem import Recording
-from hem.contract import ANEW, BESIDE, CHECKED, COMPILED, OPERATIONS, PYTHON, QUERIES
+from hem.contract import ANEW, BESIDE, CHECKED, COMPILED, OPERATIONS, PYTHON, QUERIES, is_edit
 from structures import REGISTRY
 
 KNOWN = (*QUERIES, *OPERATIONS, *(f"{CHECKED}{it}" for it in OPERATIONS), *BESIDE, ANEW)
@@ -119,11 +119,6 @@ class Workload:
         """The same with so many times the operations."""
         edited = (replace(it, times=it.times * times) if it.edits else it for it in self.rows)
         return replace(self, rows=tuple(edited))
-
-
-def is_edit(what: str) -> bool:
-    """Whether it is an operation that is done, and changes what is adjacent."""
-    return what in OPERATIONS and OPERATIONS[what].element != "vertex"
 
 
 def recorded(recording: Recording, title: str = "Recorded", each: str = "") -> Workload:

@@ -24,7 +24,16 @@ from hem.contract.navigation import STEPS, Navigable
 from hem.contract.operations import Prepared
 from hem.contract.packed import MarkedEdges, PackedEdges, PackedStorage
 from hem.contract.queries import Sweep
-from hem.contract.recording import ANEW, BESIDE, CHECKED, COMPILED, PYTHON, Recording, record
+from hem.contract.recording import (
+    ANEW,
+    BESIDE,
+    CHECKED,
+    COMPILED,
+    PYTHON,
+    Recording,
+    is_edit,
+    record,
+)
 from hem.contract.removal import Remaining, remaining
 from hem.contract.storage import HANDLE_TYPES, Storage, UncompiledStorage
 from hem.contract.structure import Structure
@@ -35,5 +44,5 @@ __all__ = [
     "QUERIES", "REFERENCE_TYPES", "STEPS", "Algorithm", "Attribute", "Claims", "Described", "Look",
     "MarkedEdges", "Navigable", "PackedEdges", "PackedStorage", "Prepared", "Query", "Recording",
     "Remaining", "Storage", "Structure", "Sweep", "UncompiledStorage", "arguments", "centroids",
-    "record", "remaining",
+    "is_edit", "record", "remaining",
 ]  # fmt: skip

@@ -34,6 +34,9 @@ BESIDE = ("face_left_of", "diamond", "are_joined")
 EDITING = {"set_point": "move_vertex", "flip_records": "flip_edge"}
 """Kernels by which algorithms edit without an operation, and what they count as."""
 
+APART = ("move_vertex", "add_vertex", "split_face")
+"""Operations that ask for no neighbors."""
+
 NEAR = 16  # handles no farther apart lie in the same or the next lines of a cache
 BITS = 31  # a handle of an edge that takes more bits than these holds a second number in them
 
@@ -74,10 +77,13 @@ class Recording:
             self._add(what, caller, 1, int(near_last))
 
     def _add(self, what: str, caller: str, times: int, near: int) -> None:
-        if self._edited and needs_neighbors(what):
+        if needs_neighbors(what):
+            # Of a batch of edges each is looked at after the one before was edited.
+            of_edges = is_edit(what) and OPERATIONS[what].element == "edge"
+            if anew := self._edited + (times - 1) * of_edges:
+                self._add(ANEW, COMPILED, anew, 0)
             self._edited = False
-            self._add(ANEW, COMPILED, 1, 0)
-        self._edited |= what in OPERATIONS and OPERATIONS[what].element != "vertex"
+        self._edited |= is_edit(what)
         row = self._counts.setdefault((what, caller), [0, 0])
         row[0] += times
         row[1] += near
@@ -120,7 +126,12 @@ def needs_neighbors(what: str) -> bool:
         source, target = map(list(ELEMENTS).index, QUERIES[what])
         return target >= source
     name = what.removeprefix(CHECKED)
-    return name in BESIDE or (name in OPERATIONS and OPERATIONS[name].element == "edge")
+    return name in BESIDE or (name in OPERATIONS and name not in APART)
+
+
+def is_edit(what: str) -> bool:
+    """Whether it is an operation that is done, after which neighbors are found anew."""
+    return what in OPERATIONS and what != "move_vertex"
 
 
 @contextmanager

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -9,6 +11,8 @@ import hem
 import structures
 from hem import algorithms
 from hem.contract.recording import ANEW, CHECKED, COMPILED, PYTHON
+from hem.engine import interpreted
+from structures import indexed_adjacency
 
 INTERPRETED = next(name for name, it in structures.REGISTRY.items() if not it.compiled)
 COMPILED_ONE = "half_edge"
@@ -81,7 +85,8 @@ def test_an_operation_by_its_name_counts_however_it_is_called() -> None:
         s.operate("flip_edge", int(s.edges()[0]))
         with pytest.raises(TypeError, match="operation"):
             s.operate()
-    assert counts(workload) == {("add_vertex", PYTHON): 2, ("flip_edge", PYTHON): 1}
+    told = {("add_vertex", PYTHON): 2, ("flip_edge", PYTHON): 1, (ANEW, COMPILED): 1}
+    assert counts(workload) == told
 
 
 def test_what_polygons_alone_have_is_not_counted_nor_is_what_is_no_structure_recorded() -> None:
@@ -191,6 +196,7 @@ def test_of_a_batch_what_was_refused_is_no_edit() -> None:
     with hem.record(s) as workload:
         done = s.collapse_edges(s.edges())
     told = {"collapse_edge": done.sum(), f"{CHECKED}collapse_edge": (~done).sum()}
+    told[ANEW] = done.sum() - 1
     assert counts(workload) == {(what, COMPILED): times for what, times in told.items()}
 
 
@@ -216,3 +222,46 @@ def test_a_point_is_one_vertex() -> None:
     with hem.record(s) as workload:
         s.operate("add_vertex", point=(0, 0, 0))
     assert counts(workload) == {("add_vertex", PYTHON): 1}
+
+
+EACH = {
+    "add_face": lambda s: s.add_face(*GONE),
+    "remove_face": lambda s: s.remove_face(50),
+    "remove_faces": lambda s: s.remove_faces([50, 51, 90]),
+    "remove_vertex": lambda s: s.remove_vertex(60),
+    "split_face": lambda s: s.split_face(50, (0, 0, 0)),
+    "split_faces": lambda s: s.split_faces([50, 90], np.zeros((2, 3))),
+    "split_edge": lambda s: s.split_edge(int(s.edges()[100]), (0, 0, 0)),
+    "split_edges": lambda s: s.split_edges(s.edges()[100::30], np.zeros((7, 3))),
+    "collapse_edge": lambda s: s.collapse_edge(int(s.edges()[100])),
+    "collapse_edges": lambda s: s.collapse_edges(s.edges()[100::10]),
+    "flip_edge": lambda s: s.flip_edge(int(s.edges()[100])),
+    "move_vertex": lambda s: s.move_vertex(7, (0, 0, 0)),
+    "add_vertex": lambda s: s.add_vertex((0, 0, 0)),
+}
+GONE = TORUS.triangles[0].tolist()
+
+
+@pytest.mark.parametrize("do", EACH)
+@pytest.mark.parametrize("edited", [False, True])
+def test_neighbors_are_needed_anew_as_often_as_a_mesh_that_keeps_them_finds_them(
+    do: str, edited: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    s, found = structures.build("indexed_adjacency", TORUS, compiled=False), []
+    find = indexed_adjacency.find_neighbors
+
+    def counted(m: Any) -> None:
+        found.extend([1] * (not m.standing[0]))
+        (find if isinstance(m.standing, np.ndarray) else interpreted(find))(m)
+
+    monkeypatch.setattr(indexed_adjacency, "find_neighbors", counted)
+    monkeypatch.setitem(interpreted(indexed_adjacency.row).__globals__, "find_neighbors", counted)
+    s.remove_face(0)
+    s.vertex_faces(20)
+    found.clear()
+    with hem.record(s) as workload:
+        if edited:
+            s.split_face(150, (0, 0, 0))
+        EACH[do](s)
+        s.vertex_faces(20)
+    assert counts(workload).get((ANEW, COMPILED), 0) == len(found)
