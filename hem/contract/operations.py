@@ -147,13 +147,16 @@ class Operations:
     def make_way(self, operation: str) -> None:
         """Make room for what one operation may need."""
         state = self._state
-        more = int(state.records.counts[SIDES]) - 3
-        vertices, faces = self._operations[operation].growth
-        state.make_room(vertices, faces + more * self._operations[operation].grows_with_sides)
+        state.make_room(*self._growth(operation))
         state.widen()
         neighbors = len(state.out["edge"]) // WIDTH
-        corners = 3 * (more + 3)  # a split face: three entries for each
+        corners = 3 * int(state.records.counts[SIDES])  # a split face: three entries for each
         state.lengthen(max(2 * neighbors, corners) + 2 * ENTRIES)
+
+    def _growth(self, operation: str) -> tuple[int, int]:
+        """How many vertices and faces one may create, at the largest face there is."""
+        it, more = self._operations[operation], int(self._state.records.counts[SIDES]) - 3
+        return it.growth[0], it.growth[1] + more * it.grows_with_sides
 
     def _bound(self, operation: str) -> Bound:
         """An operation, bound once."""
@@ -320,8 +323,7 @@ class Operations:
         if rows.shape[1] < 3:
             raise MeshError(f"{operation} takes (n,) or (n, 3) handles, not {rows.shape}")
         state, perform, n = self._state, self._bound(operation).perform, len(rows)
-        vertices, faces = self._operations[operation].growth
-        state.make_room(vertices * n, faces * n)
+        state.make_room(*(n * it for it in self._growth(operation)))
         state.count_valence()
         state.widen(2 * n)  # an operation adds at most 2 to a valence
         positions = arguments.NO_POINT

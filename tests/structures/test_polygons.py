@@ -557,3 +557,11 @@ def test_a_batch_reads_no_more_corners_ahead_than_its_scratch_has_room_for():
     s.split_faces([face, face + 1], s.points[:2])
     assert (behind == 7).all()
     s.validate()
+
+
+def test_there_is_room_for_all_splits_of_polygons_that_are_prepared(mesh):
+    s = plankton(mesh)
+    faces, sides = s.faces(), sum(map(len, mesh.faces))
+    s.prepare("split_face", faces, np.zeros((len(faces), 3))).run()
+    assert (s.n_faces, s.n_vertices) == (sides, len(mesh.points) + len(faces))
+    s.validate()
