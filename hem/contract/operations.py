@@ -187,9 +187,7 @@ class Operations:
             if len(refused):
                 first = refused[0]
                 raise self.refusal(operation, int(results[first]), args[first].tolist())
-        results, log = self.run(operation, args, positions)
-        self._followers.publish(Edit(called, -1, log))
-        return results.astype(np.int32)
+        return self._told(called, operation, args, positions, DO).astype(np.int32)
 
     def require_different(self, called: str, element: str, given: ArrayLike) -> Array:
         """The handles (n,) int64; raises for those of nothing, and for one named twice."""
@@ -207,9 +205,16 @@ class Operations:
 
     def persist(self, called: str, operation: str, args: Array) -> Bools:
         """Do an operation for every row of ``args`` (n, 3) but those refused -> which were done."""
-        results, log = self.run(operation, args, mode=PERSIST)
-        self._followers.publish(Edit(called, -1, log))
-        return results >= 0
+        return self._told(called, operation, args, arguments.NO_POINT, PERSIST) >= 0
+
+    def _told(self, called: str, operation: str, args: Array, points: Array, mode: int) -> Array:
+        """As ``run``, one edit -> the results. What is done before an interrupt is told."""
+        logs: list[Array] = []
+        try:
+            return self.run(operation, args, points, mode, logs)[0]
+        finally:
+            if logs:
+                self._followers.publish(Edit(called, -1, np.concatenate(logs)))
 
     def one_by_one(self, do: Callable[..., Edit], args: Array) -> Bools:
         """As ``persist`` of one on edges, each an edit of its own."""
@@ -236,8 +241,9 @@ class Operations:
         return -1 if edge is None else edge
 
     def run(
-        self, operation: str, args: Array, points: Array = arguments.NO_POINT, mode: int = DO
-    ) -> tuple[Array, Array]:
+        self, operation: str, args: Array, points: Array = arguments.NO_POINT, mode: int = DO,
+        logs: list[Array] | None = None,
+    ) -> tuple[Array, Array]:  # fmt: skip
         """Do an operation for every row of ``args`` (n, 3) -> the results (n,) and the log.
 
         Ends at one that is refused, unless the ``mode`` is another. Nobody is told, and where
@@ -245,7 +251,7 @@ class Operations:
         """
         state, perform, n = self._state, self._bound(operation).perform, len(args)
         forgets = not self._followers
-        results, logs, done = np.zeros(n, np.int64), [], 0
+        results, done, logs = np.zeros(n, np.int64), 0, [] if logs is None else logs
         vertices, faces = self._operations[operation].growth
         lasting = operation in state.declared.lasting
         ahead = state.declared.operating[operation].ahead if n > 1 else 0
@@ -259,14 +265,17 @@ class Operations:
         while True:
             entries = ENTRIES * (1 if forgets else n + 1) + 2 * len(state.log)
             log = np.empty(entries, np.int64)
+            log[0] = 0
             task = np.array([mode, done, n, FORGET if forgets else KEEP, ahead, done])
             scratch = task, args, points, results, state.seen, state.at, state.out["edge"], log
             pinned = state.pinned_now(*scratch)
             if lasting:
                 perform = state.declared.perform_lasting(operation, pinned)
-            perform(pinned.address)
+            try:
+                perform(pinned.address)
+            finally:
+                logs.append(log[1 : log[0] + 1])
             done = int(task[ENDED])
-            logs.append(log[1 : log[0] + 1])
             if done == n or results[done] != NEEDS_ROOM:
                 return results, np.concatenate(logs)
             self.make_way(operation)

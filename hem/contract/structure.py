@@ -428,9 +428,11 @@ class Structure(Described, Surveying, abstract=True):
         """Take faces (k,) away and a vertex that has no others, or -1."""
         plan = planned(self, called, faces, vertex)
         self._queries.count_edges()
-        self.run(removing, plan)
-        edit = Edit(called, -1, plan.log[1 : plan.log[0] + 1])
-        self._followers.publish(edit)
+        try:
+            self.run(removing, plan)
+        finally:  # an interrupt comes as soon as compiled code has ended
+            edit = Edit(called, -1, plan.log[1 : plan.log[0] + 1])
+            self._followers.publish(edit)
         return edit
 
     def compact(self) -> Remapping:

@@ -10,6 +10,7 @@ import pytest
 
 import hem
 import structures
+from hem.engine import Uses
 from tests.extent import OF_EACH_KIND, waiting_for
 from tests.structures.conftest import octahedron, shuffled
 from tests.structures.histories.actions import KINDS, Action, aim, perform, surface_of
@@ -233,6 +234,45 @@ def test_an_interrupt_while_an_edit_is_followed_leaves_all_others_in_step(
     assert ids.values[[new - 1, new]].tolist() == [7, 7]
     assert_in_step(render)
     assert len(told) == 2 or told[-1].resized
+
+
+BATCHES = {
+    "split_faces": lambda s: s.split_faces([3, 50], np.zeros((2, 3))),
+    "split_edges": lambda s: s.split_edges(s.edges()[:40:20], np.zeros((2, 3))),
+    "collapse_edges": lambda s: s.collapse_edges(s.edges()[::9]),
+    "move_vertices": lambda s: s.move_vertices([3, 50], np.zeros((2, 3))),
+    "remove_faces": lambda s: s.remove_faces([3, 50]),
+    "remove_vertex": lambda s: s.remove_vertex(3),
+}
+
+
+@pytest.mark.parametrize("batch", BATCHES)
+def test_what_a_batch_has_done_before_an_interrupt_is_told(s, batch, monkeypatch):
+    """It comes as soon as compiled code has ended; edges are only checked the first time."""
+    ids, render, heard = s.vertex_attribute("id", int, default=7), hem.RenderMesh(s), []
+    s.subscribe(heard.append)
+    left = [2 if batch == "split_edges" else 1]
+
+    def then_stop(run):
+        def running(*given):
+            result = run(*given)
+            left[0] -= 1
+            if not left[0]:
+                raise KeyboardInterrupt
+            return result
+
+        return running
+
+    perform = Uses.perform
+    monkeypatch.setattr(Uses, "perform", lambda *given: then_stop(perform(*given)))
+    monkeypatch.setattr(Uses, "run", then_stop(Uses.run))
+    with pytest.raises(KeyboardInterrupt):
+        BATCHES[batch](s)
+    monkeypatch.undo()
+    assert [edit.kind for edit in heard] == [batch]
+    assert_in_step(render)
+    assert (ids[s.vertices()] == 7).all()
+    s.validate()
 
 
 def seamed(mesh: hem.TriangleMesh) -> tuple[np.ndarray, np.ndarray]:
