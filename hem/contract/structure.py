@@ -288,7 +288,7 @@ class Structure(Described, Surveying, abstract=True):
         first, *more = handles or (-1,)
         if len(more) > 2:
             raise MeshError(f"{operation} takes three handles at most, not {len(handles)}")
-        ends = [_said(it) for it in more]
+        ends = [_said(it) for it in more] if operation == "collapse_edge" else more
         return self._do[operation](first, point, *ends, *[-1] * (2 - len(ends)))
 
     def split_edge(self, edge: int, point: ArrayLike) -> Edit:

@@ -432,6 +432,9 @@ def test_a_vertex_that_names_none_is_not_told_by_another_number(name):
     with pytest.raises(TopologyError, match="end") as refused:
         s.collapse_edge(int(s.edges()[0]), keep=-1)
     assert "-2" not in str(refused.value)
+    with pytest.raises(TopologyError, match="no such vertex") as refused:
+        s.operate("add_face", 0, 1, -1)
+    assert refused.value.elements["vertices"].tolist() == [0, 1, -1]
 
 
 def test_a_refusal_names_the_method_that_was_called():
