@@ -17,7 +17,7 @@ def write_whole(path: str | os.PathLike[str], content: str | bytes) -> None:
     """
     target = Path(os.path.realpath(path))
     target.parent.mkdir(parents=True, exist_ok=True)
-    beside = target.with_name(f".{target.name[:80]}-{secrets.token_hex(4)}.part")
+    beside = target.with_name(f".{target.name[:40]}-{secrets.token_hex(4)}.part")
     try:
         with beside.open("xb") as file:
             file.write(content.encode() if isinstance(content, str) else content)

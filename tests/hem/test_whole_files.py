@@ -16,6 +16,9 @@ def test_a_file_is_written_replaced_and_nothing_is_left_beside(tmp_path: Path) -
     write_whole(file, bytes(range(256)))
     assert file.read_bytes() == bytes(range(256))
     assert os.listdir(file.parent) == ["file.txt"]
+    long = tmp_path / ("🐇" * 60 + ".txt")  # 244 bytes of the 255 that a name may have
+    write_whole(long, "third")
+    assert long.read_text() == "third"
 
 
 @pytest.mark.skipif(os.name != "posix", reason="permissions and links as POSIX has them")
