@@ -48,7 +48,7 @@ class Followers:
     def put_back(self, kept: Kept) -> None:
         """Have the values that were kept again, and the default where nothing was."""
         for key, attribute in self.attributes.items():
-            as_kept = key in kept and _is_alike(attribute, *kept[key][:2])
+            as_kept = key in kept and _is_alike(attribute, *kept[key][:3])
             if as_kept:
                 attribute.restore(kept[key][-1])
             else:  # made since, if only anew under its name
@@ -66,10 +66,10 @@ class Followers:
         return made
 
 
-def _is_alike(attribute: Attribute, kind: type[Attribute], default: Any) -> bool:
-    """Whether an attribute is of a kind, and its values are as the default that was kept."""
-    made = attribute.default
-    return type(attribute) is kind and (made.dtype, made.shape) == (default.dtype, default.shape)
+def _is_alike(attribute: Attribute, kind: type[Attribute], default: Any, rule: Rule) -> bool:
+    """Whether an attribute is of a kind, and has the default and the rule that were kept."""
+    alike = (type(attribute), attribute.default.dtype, attribute.on_split)
+    return alike == (kind, default.dtype, rule) and _same(attribute.default, default)
 
 
 class AttributeMethod:

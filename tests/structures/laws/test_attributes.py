@@ -723,6 +723,15 @@ def test_what_was_made_anew_under_a_name_is_not_what_was_kept_of_it(s):
             s.vertex_attribute("wrong", **wrong)
 
 
+def test_what_was_made_anew_with_another_default_has_that_when_restored(s):
+    s.vertex_attribute("weight")[s.vertices()] = 7
+    before = s.snapshot()
+    s.remove_attribute(s.vertex_attribute("weight"))
+    other = s.vertex_attribute("weight", default=2)
+    s.restore(before)
+    assert (other[s.vertices()] == 2).all()
+
+
 def test_values_are_uploaded_where_it_is_asked(s):
     color = s.vertex_attribute("color", shape=3)
     uploads: list[hem.Upload] = []
