@@ -311,7 +311,7 @@ def fitting(values: ArrayLike, dtype: DTypeLike, called: str) -> Array:
         return given
     with np.errstate(over="ignore", invalid="ignore"):
         value = np.array(values, dtype)
-    rounded = value.dtype.kind == "f" and given.dtype.kind in "biuf"
+    rounded = given.dtype.kind in {"f": "biuf", "c": "biufc"}.get(value.dtype.kind, "")
     fits = np.isfinite(value) == np.isfinite(given) if rounded else value == given
     if not np.all(fits):
         words = f"{value.dtype} cannot hold {called} {values!r:.200}"

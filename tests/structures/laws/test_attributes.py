@@ -625,6 +625,7 @@ def test_what_is_said_of_an_attribute_that_is_there_must_be_so(name: str):
         (bool, True),
         (bool, 0),
         (np.complex64, 1j),
+        (np.complex64, 0.1 - 0.2j),
         ("U3", "abc"),
     ],
 )
