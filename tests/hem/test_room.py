@@ -32,6 +32,7 @@ def test_a_small_array_has_room_for_as_many_rows_again():
         longer = room.longer(array, n, 2 * n)
         assert longer.ctypes.data == array.ctypes.data
         assert np.array_equal(longer[:n], np.arange(n))
+        assert room.behind(array) == array.nbytes
 
 
 @ADDRESSES
@@ -41,7 +42,7 @@ def test_a_large_array_grows_to_eight_times_its_size_in_its_place(n):
     longer = room.longer(array, n, 8 * n)
     assert longer.ctypes.data == array.ctypes.data
     assert np.array_equal(longer[:n], np.arange(n))
-    assert room.behind(array) >= 7 * array.nbytes
+    assert room.behind(array) == max(7 * array.nbytes, room.FRESH - array.nbytes)
 
 
 @ADDRESSES
@@ -82,6 +83,15 @@ def test_so_much_is_kept_at_most_and_all_of_it_is_given_back(monkeypatch):
     before = process.memory_info().rss
     room.give_back()
     assert before - process.memory_info().rss > 30 << 20
+
+
+@ADDRESSES
+def test_what_is_given_back_and_was_never_written_is_what_lay_behind():
+    room.give_back()
+    array = room.longer(room.roomy(np.ones(1 << 20)), 1 << 20, (1 << 20) + 1)
+    unwritten = room.behind(array)
+    del array
+    assert room.give_back() == unwritten > 0
 
 
 @ADDRESSES
