@@ -211,6 +211,18 @@ def test_what_is_no_position_is_refused(name, point):
     assert np.array_equal(s.points, before[1])
 
 
+@pytest.mark.parametrize("wrong", [np.nan, -np.inf, 1e300])
+def test_one_position_that_is_not_finite_refuses_its_batch_and_is_named(name, wrong):
+    s, points = structures.build(name, octahedron()), np.zeros((3, 3))
+    before, points[1, 2] = s.copy(), wrong
+    edges, many = s.edges()[:3], [0, 1, 2]
+    for operate, at in ((s.split_faces, many), (s.split_edges, edges), (s.move_vertices, many)):
+        with pytest.raises(hem.MeshError, match="must be finite") as refused:
+            operate(at, points)
+        assert refused.value.elements["rows"].tolist() == [1]
+        assert s.same_as(before)
+
+
 def test_a_batch_is_done_as_a_whole_or_not_at_all(name):
     s = structures.build(name, octahedron())
     before, edges = faces_of(s), s.edges()[:3].tolist()

@@ -163,8 +163,10 @@ def test_rows_of_different_lengths() -> None:
         with pytest.raises(IndexError, match="of 4 rows"):
             rows[outside]
     assert repr(rows) == "Ragged(4 rows: [1, 2], [], [3], …)"
+    assert repr(rows[:3]) == "Ragged(3 rows: [1, 2], [], [3])"
     assert rows.values[rows.following].tolist() == [2, 1, 3, 5, 6, 4]
-    assert hem.Ragged.from_lists([]).to_list() == []
+    nothing = hem.Ragged.from_lists([])
+    assert nothing.to_list() == nothing.values.tolist() == []
 
 
 def test_nothing_is_asked_of_a_mesh_without_faces(name: str) -> None:
