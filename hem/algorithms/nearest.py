@@ -3,21 +3,23 @@
 Of a few triangles, those whose middles are nearest, the nearest point is taken. On a surface of
 very long triangles that may be a point beside the nearest one. Triangles that face away from a
 vertex come last: they are the other side of a thin wall.
-
-Source: Ericson, Real-Time Collision Detection (2005), 5.1.5.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from hem.algorithms.parts import cross
+from hem.algorithms.parts import cross, dot
 from hem.arrays import Array, Floats
 from hem.authoring import kernel
 from hem.engine import kept
 
 CANDIDATES = 12
 """How many triangles are looked at for each point."""
+
+FLAT = 1e-14
+"""How little the square of twice an area may be: a part of those of its sides and of the way there.
+"""
 
 
 class Surface:
@@ -40,28 +42,38 @@ class Surface:
 
 
 @kernel
-def _on_triangle(corners: Floats, p: Floats) -> Floats:
-    a, b, c = corners[0], corners[1], corners[2]
-    ab, ac = b - a, c - a
-    d1, d2 = (ab * (p - a)).sum(), (ac * (p - a)).sum()
-    d3, d4 = (ab * (p - b)).sum(), (ac * (p - b)).sum()
-    d5, d6 = (ab * (p - c)).sum(), (ac * (p - c)).sum()
-    va, vb, vc = d3 * d6 - d5 * d4, d5 * d2 - d1 * d6, d1 * d4 - d3 * d2
+def nearest_weights(corners: Floats, p: Floats) -> tuple[float, float, float]:
+    """The barycentric weights of the point of a triangle (3, 3) that is nearest to p (3,).
+
+    By the regions of a triangle: Ericson, Real-Time Collision Detection (2005), 5.1.5.
+    """
+    ab, ac, ap = corners[1] - corners[0], corners[2] - corners[0], p - corners[0]
+    d1, d2 = dot(ab, ap), dot(ac, ap)
     if d1 <= 0 and d2 <= 0:
-        return a
+        return 1.0, 0.0, 0.0
+    bp = p - corners[1]
+    d3, d4 = dot(ab, bp), dot(ac, bp)
     if d3 >= 0 and d4 <= d3:
-        return b
+        return 0.0, 1.0, 0.0
+    cp = p - corners[2]
+    d5, d6 = dot(ab, cp), dot(ac, cp)
     if d6 >= 0 and d5 <= d6:
-        return c
+        return 0.0, 0.0, 1.0
+    a, b, c = d3 * d6 - d5 * d4, d5 * d2 - d1 * d6, d1 * d4 - d3 * d2
+    if a + b + c <= FLAT * (dot(ap, ap) + dot(ab, ab)) * dot(ac, ac):
+        a = b = c = 0.0  # as they are but roundings: what lies beside a side is nearest to it
     # Where two corners coincide their edge has no length to divide by; then another one is taken.
-    if vc <= 0 <= d1 and d3 <= 0 and d3 < d1:
-        return a + ab * (d1 / (d1 - d3))
-    if vb <= 0 <= d2 and d6 <= 0 and d6 < d2:
-        return a + ac * (d2 / (d2 - d6))
-    if va <= 0 <= d4 - d3 and d5 >= d6 and (d4 - d3) + (d5 - d6) > 0:
-        return b + (c - b) * ((d4 - d3) / ((d4 - d3) + (d5 - d6)))
-    total = va + vb + vc
-    return a + ab * (vb / total) + ac * (vc / total) if total > 0 else a
+    if c <= 0 <= d1 and d3 <= 0 and d3 < d1:
+        v = d1 / (d1 - d3)
+        return 1 - v, v, 0.0
+    if b <= 0 <= d2 and d6 <= 0 and d6 < d2:
+        w = d2 / (d2 - d6)
+        return 1 - w, 0.0, w
+    if a <= 0 <= d4 - d3 and d5 >= d6 and (d4 - d3) + (d5 - d6) > 0:
+        w = (d4 - d3) / ((d4 - d3) + (d5 - d6))
+        return 0.0, 1 - w, w
+    total = a + b + c
+    return (a / total, b / total, c / total) if total > 0 else (1.0, 0.0, 0.0)
 
 
 @kept
@@ -73,7 +85,8 @@ def _nearest(corners: Floats, candidates: Array, normals: Floats, points: Floats
             a, b, c = corners[f, 0], corners[f, 1], corners[f, 2]
             x, y, z = cross(b - a, c - a)
             away = x * normals[i, 0] + y * normals[i, 1] + z * normals[i, 2] < 0
-            there = _on_triangle(corners[f], points[i])
+            u, v, w = nearest_weights(corners[f], points[i])
+            there = u * a + v * b + w * c
             far = away, ((there - points[i]) ** 2).sum()
             if far < least:
                 least, best = far, there

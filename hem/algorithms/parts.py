@@ -219,6 +219,12 @@ def cross(u: Any, v: Any) -> tuple[float, float, float]:
 
 
 @kernel
+def dot(u: Any, v: Any) -> float:
+    """The scalar product."""
+    return float(u[0] * v[0] + u[1] * v[1] + u[2] * v[2])
+
+
+@kernel
 def unit(x: float, y: float, z: float) -> tuple[float, float, float]:
     """The vector of length 1 in that direction; 0 stays 0."""
     size = np.sqrt(x * x + y * y + z * z)

@@ -78,7 +78,7 @@ def by_numba(decorator: ast.expr) -> bool:
 @pytest.mark.parametrize(
     ("function", "file"),
     [
-        (closest, "surface/breaking.py"),
+        (closest, "algorithms/nearest.py"),
         (add_quadrics, "algorithms/parts.py"),
         (_runs, "hem/edit.py"),
     ],

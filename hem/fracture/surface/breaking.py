@@ -18,6 +18,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from hem.algorithms import cross, dot
 from hem.arrays import Array
 from hem.authoring import ALLOWED, FACE_END, FACES, NEEDS_ROOM, Kernel, kernel
 
@@ -73,21 +74,9 @@ def make_plan(target: Array, tolerance: float, out: Array, log: Array, **given: 
 
 
 @kernel
-def dot(a: Array, b: Array) -> float:
-    """The scalar product."""
-    return float(a[0] * b[0] + a[1] * b[1] + a[2] * b[2])
-
-
-@kernel
 def minus(a: Array, b: Array) -> tuple[float, float, float]:
     """The vector from b to a."""
     return a[0] - b[0], a[1] - b[1], a[2] - b[2]
-
-
-@kernel
-def cross(a: Array, b: Array) -> tuple[float, float, float]:
-    """The vector product."""
-    return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
 
 
 @kernel

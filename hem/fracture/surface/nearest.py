@@ -5,12 +5,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from hem.algorithms import require_mesh
+from hem.algorithms import nearest_weights, require_mesh
 from hem.arrays import Array, Floats
 from hem.contract import Structure
 from hem.engine import kept
 from hem.errors import MeshError
-from hem.fracture.surface.breaking import JUMP, dot, finding, make_plan
+from hem.fracture.surface.breaking import JUMP, finding, make_plan
 from hem.meshes import bounds, corners, length
 from hem.meshes import position as as_position
 
@@ -97,48 +97,11 @@ def _words(p: Array) -> str:
 
 
 @kept
-def _weights(t: Array, p: Array) -> tuple[float, float, float]:
-    """The barycentric weights of the point of a triangle that is nearest to p."""
-    ab, ac, ap = t[1] - t[0], t[2] - t[0], p - t[0]
-    d1, d2 = dot(ab, ap), dot(ac, ap)
-    if d1 <= 0 and d2 <= 0:
-        return 1.0, 0.0, 0.0
-    bp = p - t[1]
-    d3, d4 = dot(ab, bp), dot(ac, bp)
-    if d3 >= 0 and d4 <= d3:
-        return 0.0, 1.0, 0.0
-    c = d1 * d4 - d3 * d2
-    if c <= 0 and d1 >= 0 and d3 <= 0:
-        v = d1 / (d1 - d3) if d1 > d3 else 0.0  # both corners in one place
-        return 1 - v, v, 0.0
-    cp = p - t[2]
-    d5, d6 = dot(ab, cp), dot(ac, cp)
-    if d6 >= 0 and d5 <= d6:
-        return 0.0, 0.0, 1.0
-    b = d5 * d2 - d1 * d6
-    if b <= 0 and d2 >= 0 and d6 <= 0:
-        w = d2 / (d2 - d6) if d2 > d6 else 0.0
-        return 1 - w, 0.0, w
-    a = d3 * d6 - d5 * d4
-    if a <= 0 and d4 - d3 >= 0 and d5 - d6 >= 0:
-        side = (d4 - d3) + (d5 - d6)
-        w = (d4 - d3) / side if side > 0 else 0.0
-        return 0.0, 1 - w, w
-    total = a + b + c
-    if not total > 0:  # no area: between the first corner and the one that is farther from it
-        return 1.0, 0.0, 0.0
-    return a / total, b / total, c / total
-
-
-@kept
 def closest(corners: Array, p: Array) -> tuple[int, Array]:
-    """Of triangles (k, 3, 3) the first nearest to p (3,), and the point on it. Cost O(k).
-
-    By the regions of a triangle: Ericson, Real-Time Collision Detection, 5.1.5.
-    """
+    """Of triangles (k, 3, 3) the first nearest to p (3,), and the point on it. Cost O(k)."""
     best, least, point = -1, np.inf, np.zeros(3)
     for i in range(len(corners)):
-        u, v, w = _weights(corners[i], p)
+        u, v, w = nearest_weights(corners[i], p)
         apart = 0.0
         for j in range(3):
             apart += (

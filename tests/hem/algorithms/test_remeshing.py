@@ -13,6 +13,7 @@ import structures
 from hem import algorithms
 from hem.algorithms.nearest import Surface
 from hem.sources import meshlab
+from tests.hem.algorithms.meshes import dented
 from tests.hem.algorithms.test_passes import OPEN
 
 
@@ -228,3 +229,21 @@ def test_a_mesh_with_vertices_in_the_same_place_can_be_remeshed() -> None:
     points[OPEN.triangles[::50, 1]] = points[OPEN.triangles[::50, 0]]
     mine = remeshed(hem.TriangleMesh(points, OPEN.triangles), iterations=2)
     assert np.isfinite(mine.points).all()
+
+
+def test_on_an_even_surface_a_nearest_point_is_that_of_trimesh() -> None:
+    mesh = dented("torus", 400)
+    trimesh = pytest.importorskip("trimesh")
+    at = mesh.points[::3] + np.random.default_rng(2).normal(0, 0.05, mesh.points[::3].shape)
+    whole = trimesh.Trimesh(mesh.points, mesh.triangles, process=False)
+    _, far, _ = trimesh.proximity.closest_point_naive(whole, at)
+    found = Surface(mesh.points, mesh.triangles).nearest(at, np.zeros_like(at))
+    assert np.allclose(np.linalg.norm(found - at, axis=1), far)
+
+
+def test_the_nearest_point_of_three_corners_in_a_line_lies_between_the_outer_two() -> None:
+    rng = np.random.default_rng(4)
+    for way in rng.integers(1, 10, (300, 3)):
+        corners, at = np.outer(rng.permutation([0, 3, 7]), way), rng.normal(0, 20, (1, 3))
+        found = Surface(corners, np.array([[0, 1, 2]])).nearest(at, np.zeros((1, 3)))
+        assert np.allclose(found, np.clip(at @ way / (way @ way), 0, 7) * way)

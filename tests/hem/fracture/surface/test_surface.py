@@ -516,7 +516,9 @@ def test_faces_without_area_are_no_trouble_to_find_others():
         [(0, 1, 2), (0, 1, 3), (0, 3, 4), (3, 4, 2), (5, 6, 7)],
     )
     s = structures.build("indexed", flat)
-    for at, face in (((5.2, 0.2, 0.5), 4), ((-1, 0, 1), 0), ((1.5, -1, 0), 2)):
+    for at, face in (
+        ((5.2, 0.2, 0.5), 4), ((-1, 0, 1), 0), ((1.5, -1, 0), 2), ((0.5, -1, 0), 1)
+    ):  # fmt: skip
         assert scanned(s, at).face == face
 
 
