@@ -143,9 +143,9 @@ def remesh(s: Structure, length: float | None = None, iterations: int = 10) -> N
         wanted = require_length("remesh", "length", length)
         if not 0 < wanted < np.inf:
             raise MeshError(f"remesh takes length as a positive number, not {length!r}")
-        area, along = float(s.to_triangles().face_areas().sum()), float(lengths.sum())
-        if area / wanted / wanted + along / wanted > np.iinfo(np.int32).max:
-            raise MeshError(f"remesh takes a longer length: {length!r} makes too many faces")
+    area, along = float(s.to_triangles().face_areas().sum()), float(lengths.sum())
+    if area + along * wanted > np.iinfo(np.int32).max * wanted * wanted:
+        raise MeshError(f"remesh takes a longer length: {wanted!r} makes too many faces")
     surface = Surface(s.points, from_smallest(s.triangles()))
     for _ in range(iterations):
         split_longer(s, LONGEST * wanted)

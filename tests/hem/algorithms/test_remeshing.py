@@ -231,6 +231,16 @@ def test_a_mesh_with_vertices_in_the_same_place_can_be_remeshed() -> None:
     assert np.isfinite(mine.points).all()
 
 
+def test_a_mean_length_that_makes_too_many_faces_is_refused_as_one_that_is_said() -> None:
+    corners = np.array([(0, 0, 0), (1, 0, 0), (0, 1, 0)])
+    points = np.concatenate([corners, np.tile(1e-6 * corners, (100_000, 1))])
+    s = structures.build(
+        "half_edge", hem.TriangleMesh(points, np.arange(len(points)).reshape(-1, 3))
+    )
+    with pytest.raises(hem.MeshError, match="makes too many faces"):
+        algorithms.remesh(s, iterations=1)
+
+
 def test_on_an_even_surface_a_nearest_point_is_that_of_trimesh() -> None:
     mesh = dented("torus", 400)
     trimesh = pytest.importorskip("trimesh")
