@@ -201,7 +201,7 @@ def with_hollows(shells: Sequence[Shell]) -> list[Shell]:
         both = bodies[chosen], shell
         mesh = TriangleMesh(*meshes.joined((it.mesh.points, it.mesh.triangles) for it in both))
         bodies[chosen] = Shell(mesh, np.concatenate([it.labels for it in both]))
-    return bodies
+    return sorted(bodies, key=lambda it: -it.mesh.volume())
 
 
 def windings(corners: Floats, at: Floats) -> Indices:

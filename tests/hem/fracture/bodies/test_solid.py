@@ -195,3 +195,9 @@ def opened(triangles, at, other, new):
 def test_what_has_no_volume_is_a_body_of_its_own_where_there_is_no_other():
     pillow = Shell(hem.TriangleMesh(np.eye(3), [(0, 1, 2), (0, 2, 1)]), np.zeros(2))
     assert with_hollows([pillow]) == [pillow]
+
+
+def test_bodies_come_the_largest_first_without_their_hollows():
+    made = box(3, 3, 3), box(2.9, 2.9, 2.9).flipped(), box(2, 2, 2, at=(9, 0, 0))
+    found = with_hollows([Shell(it, np.zeros(12)) for it in made])
+    assert [it.mesh.volume() for it in found] == pytest.approx([8, 27 - 2.9**3])
