@@ -268,7 +268,9 @@ def _require_nested(body: Body) -> None:
     for i in range(count if count > 1 else 0):
         own = component[triangles[:, 0]] == i
         outward = volume(body.corners[own]) > 0
-        around = windings(body.corners[~own], body.corners[own][:1, 0])[0]
+        places = body.mesh.points[component == i].astype(np.float64)
+        some = places[:: len(places) // 9 + 1]  # one may lie on another component, which it touches
+        around = np.median(windings(body.corners[~own], some))
         if around != (0 if outward else 1):
             raise MeshError(
                 "a component lies inside another one that it is no hollow of, or is inside out; "

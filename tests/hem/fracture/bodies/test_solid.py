@@ -114,6 +114,17 @@ def test_a_component_inside_another_is_a_hollow_or_an_error():
         require_body(together(outer, box(1, 1, 1, at=(9, 0, 0)).flipped()))
 
 
+@pytest.mark.parametrize("first", range(8))
+def test_components_may_touch_in_a_corner_whichever_vertex_is_the_first(first):
+    cube = box(1, 1, 1)
+    order = np.argsort(np.arange(8) != first, kind="stable")
+    triangles = np.argsort(order)[cube.triangles]
+    with_it = np.argsort(triangles.min(axis=1), kind="stable")
+    turned = [np.roll(it, -it.argmin()) for it in triangles[with_it]]
+    other = hem.TriangleMesh(cube.points[order] - 1, turned)
+    assert require_body(together(cube, other)).volume == pytest.approx(2)
+
+
 def test_a_flat_mesh_is_no_body():
     sheet = [(0, 1, 2), (0, 2, 1)]
     with pytest.raises(hem.MeshError, match="flat"):
