@@ -67,7 +67,7 @@ def voronoi(
     made = _cut(body, plan)
     shards, rest = ([it.mesh for it in pieces] for pieces in (made.shards, made.rest))
     walls, least = [it.labels for it in made.shards + made.rest], _TOUCH * body.diagonal**2
-    counts = {"used": plan.breaking, "outside": plan.outside + made.missed}
+    counts = {"used": plan.breaking - made.missed, "outside": plan.outside + made.missed}
     broken = Fracture(
         "voronoi", chosen, seed, blow.impact, blow.direction, shards, rest,
         counts | {"repeated": plan.repeated, "vanished": made.vanished}, body.diagonal,

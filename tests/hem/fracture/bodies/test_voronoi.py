@@ -232,6 +232,17 @@ def test_repeated_sites_count_once():
     assert len(found.shards) == 2
 
 
+def test_every_site_is_counted_once():
+    sites = [
+        (0, 0, 0),
+        (5, 0, 0),
+        (30, 0, 0),
+        (0, 0, 0),
+    ]  # of which the second is near enough to ask
+    found = voronoi(body("plate"), (0, 0, 1), "glass", sites=sites)
+    assert found.counts == {"used": 1, "outside": 2, "repeated": 1, "vanished": 0}
+
+
 def test_cells_fill_the_ball_between_them():
     sites = np.random.default_rng(2).random((30, 3))
     made = cells(sites, np.full(3, 0.5), 1.0)
