@@ -45,7 +45,7 @@ class Blow:
 
     def count(self, material: Material) -> int:
         """How many sites: material.sites × √force, at least 2 and at most MOST_SITES."""
-        return int(min(max(round(material.sites * math.sqrt(self.force)), 2), MOST_SITES))
+        return max(round(min(material.sites * math.sqrt(self.force), MOST_SITES)), 2)
 
     def reach(self, material: Material, diagonal: float) -> float:
         """How far sites lie at most: material.reach × diagonal × ∛force, within limits.
