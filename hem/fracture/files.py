@@ -16,6 +16,7 @@ from hem.errors import MeshError, load_optional
 from hem.fracture.blow import Blow, Motion, kinetic_energies, kinetic_energy
 from hem.fracture.pieces import Fracture
 from hem.meshes import direction
+from hem.naming import look_up
 from hem.sources import encoded
 
 SCHEMA = 1
@@ -45,11 +46,9 @@ def save_pieces(
     into place when it is complete; other files stay. Cost O(vertices + faces). Raises MeshError for
     another format, an ``up`` of no direction, and where the folder cannot be written.
     """
-    if format not in FORMATS:
-        raise MeshError(f"pieces cannot be saved as {format!r}; formats are {', '.join(FORMATS)}")
-    top = direction(up)
+    save, top = look_up(format, FORMATS, "format of pieces"), direction(up)
     with whole(folder) as beside:
-        made = [path.relative_to(beside) for path in FORMATS[format](fracture, beside, top)]
+        made = [path.relative_to(beside) for path in save(fracture, beside, top)]
     return [Path(folder) / path for path in made]
 
 

@@ -122,8 +122,9 @@ def test_the_numbers_are_those_of_the_fracture_and_json_can_hold_them(kind, requ
 
 
 def test_another_format_or_no_direction_is_refused_and_nothing_is_made(broken, tmp_path):
-    with pytest.raises(hem.MeshError, match=r"'stl'.*glb, obj, ply"):
-        save_pieces(broken, tmp_path / "new", "stl")
+    for format in ("stl", ["stl"]):
+        with pytest.raises(hem.MeshError, match=r"'stl'.*glb, obj, ply"):
+            save_pieces(broken, tmp_path / "new", format)
     for format, up in itertools.product(("glb", "obj", "ply"), ((0, 0, 0), (np.nan, 0, 0), "y")):
         with pytest.raises(hem.MeshError, match="a direction"):
             save_pieces(broken, tmp_path / "new", format, up)
