@@ -235,7 +235,6 @@ def collapsing(k: Kernels, operations: Kernels) -> Kernel:
             rows[stays, j] = np.float64(coordinate(m, stays, j)) - plan.middle[j]
         for j in range(WIDTH):
             rows[stays, QUADRIC + j] = plan.sum[j]
-        rows[stays, BORDER] = max(rows[a, BORDER], rows[b, BORDER])
         plan.become[stays, VERSION] += 1
         plan.become[a + b - stays, INTO] = stays
         return stays
