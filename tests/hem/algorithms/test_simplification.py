@@ -11,13 +11,25 @@ import hem
 import structures
 from hem import algorithms
 from hem.algorithms import parts
-from hem.algorithms.buckets import bucket_of, drop, peek, put, put_off, queue_for
-from hem.algorithms.collapsing import QUADRICS
+from hem.algorithms.buckets import (
+    BUCKETS,
+    FRESH,
+    LOWEST,
+    bucket_of,
+    drop,
+    peek,
+    put,
+    put_off,
+    queue_for,
+)
+from hem.algorithms.collapsing import QUADRIC, QUADRICS, SHORTEST_TO_PLANES, simplifying
+from hem.algorithms.quadrics import TOWARD_MIDDLE, WIDTH, best_point, value
 from hem.algorithms.simplification import LEAST_COSINES, collapsible
 from hem.meshes.measures import normals
 from hem.sources import meshlab
 from tests.extent import QUICK_TO_COMPILE
 from tests.hem.algorithms.meshes import dented
+from tests.hem.algorithms.test_passes import neighbors
 
 GRID = hem.generate("grid", 900)
 
@@ -184,10 +196,11 @@ def test_positions_are_seen_from_the_middle_of_the_bounding_box() -> None:
 
 @pytest.mark.parametrize("width", [1, 64])
 def test_every_edge_that_is_put_off_comes_again_behind_the_cheaper_ones(width: int) -> None:
-    costs = 2 ** np.linspace(0, 6, 100)
+    costs = np.random.default_rng(1).permutation(2 ** np.linspace(0, 1.5, 100))
     queue = queue_for(len(costs))
-    for edge, cost in enumerate(costs):
-        put(queue, bucket_of(queue, cost), edge)
+    buckets = [bucket_of(queue, cost) for cost in costs]
+    for edge in reversed(range(100)):
+        put(queue, buckets[edge], edge)
     came: list[int] = []
     while (edge := peek(queue, width)) >= 0:
         drop(queue)
@@ -195,6 +208,21 @@ def test_every_edge_that_is_put_off_comes_again_behind_the_cheaper_ones(width: i
             put_off(queue, bucket_of(queue, costs[edge]), edge)
         came.append(edge)
     assert sorted(came) == sorted([*range(100)] * 2)
+    if width == 1:
+        assert [*dict.fromkeys(came)] == sorted(range(100), key=lambda it: (buckets[it], it))
+
+
+def test_an_edge_is_put_off_until_that_is_too_much_and_its_room_is_used_again() -> None:
+    queue, times = queue_for(3), [0, 0, 0]
+    for edge, below in enumerate((96, 97, 1)):
+        put(queue, BUCKETS - below, edge)
+    while (edge := peek(queue, 1)) >= 0:
+        drop(queue)
+        assert bucket_of(queue, 0.0) == queue.state[LOWEST]  # below it would never come
+        put_off(queue, queue.state[LOWEST], edge)
+        times[edge] += 1
+    assert times == [3, 4, 1]  # each time by two doublings, of 16 buckets
+    assert queue.state[FRESH] <= 3
 
 
 def test_no_vertex_comes_to_lie_beyond_all_numbers() -> None:
@@ -206,3 +234,47 @@ def test_no_vertex_comes_to_lie_beyond_all_numbers() -> None:
     s.validate()
     assert s.n_vertices < 162
     assert np.isfinite(s.points[s.vertices()]).all()
+
+
+def test_a_quadric_is_the_sum_of_squared_distances_to_the_planes_at_a_vertex() -> None:
+    """Of faces by area; of the border, upright on its face, by the square of its length."""
+    mesh, at = dented("grid", 64), np.array([0.3, -0.2, 0.5])
+    plan = collapsible(structures.build("half_edge", mesh), QUADRICS, 0.7, np.inf)
+    points, shared, expected = mesh.points.astype(float), neighbors(mesh), np.zeros((64, 2))
+
+    def add(vertices: list[int], normal: np.ndarray, weight: float) -> None:
+        far = (at - points[vertices[0]]) @ normal / np.linalg.norm(normal)
+        expected[vertices] += weight * far**2, weight
+
+    for a, b, c in (np.roll(face, i).tolist() for face in mesh.triangles for i in range(3)):
+        side, normal = points[b] - points[a], np.cross(points[b] - points[a], points[c] - points[a])
+        add([a], normal, np.linalg.norm(normal) / 2)
+        if shared[a, b] == 1:
+            add([a, b], np.cross(side, normal), side @ side)
+    quadrics = plan.rows[:, QUADRIC : QUADRIC + WIDTH]
+    found = [(value(row, *(at - plan.middle)), row[10]) for row in quadrics]
+    assert np.allclose(found, expected)
+
+
+def test_the_best_point_is_where_the_sum_of_squares_is_least_a_little_drawn_to_a_middle() -> None:
+    plan = collapsible(structures.build("half_edge", dented("grid", 64)), QUADRICS, 0.7, np.inf)
+    middle = np.array([0.1, 0.2, 0.3])
+    for row in plan.rows[:, QUADRIC : QUADRIC + WIDTH]:
+        planes = row[[0, 1, 2, 1, 3, 4, 2, 4, 5]].reshape(3, 3)
+        pull = TOWARD_MIDDLE * np.trace(planes)
+        expected = np.linalg.solve(planes + pull * np.eye(3), pull * middle - row[6:9])
+        assert np.allclose(best_point(row, *middle), expected)
+
+
+def test_no_collapse_leaves_an_edge_longer_than_it_may() -> None:
+    mesh = dented("torus", 400)
+    s = structures.build("half_edge", mesh, compiled=False)
+    longest = longest_edge(s)
+    plan = collapsible(s, SHORTEST_TO_PLANES, 0.7, longest, longest=longest)
+    parts.change(s, "simplify", simplifying, plan)
+    assert s.n_vertices < 300
+    assert longest_edge(s) <= longest * (1 + 1e-5)  # of float32
+
+
+def longest_edge(s: structures.Structure) -> float:
+    return float(np.linalg.norm(np.diff(s.points[s.edge_array()], axis=1), axis=2).max())
