@@ -7,11 +7,14 @@ from functools import partial
 
 import numpy as np
 import pytest
+from scipy.spatial import Delaunay
 
 import hem
 import structures
 from hem import algorithms
 from hem.algorithms.nearest import Surface
+from hem.algorithms.remeshing import LEAST_COSINE, flip_to_even, relax
+from hem.meshes.measures import normals
 from hem.sources import meshlab
 from tests.hem.algorithms.meshes import dented
 from tests.hem.algorithms.test_passes import OPEN
@@ -249,6 +252,45 @@ def test_on_an_even_surface_a_nearest_point_is_that_of_trimesh() -> None:
     _, far, _ = trimesh.proximity.closest_point_naive(whole, at)
     found = Surface(mesh.points, mesh.triangles).nearest(at, np.zeros_like(at))
     assert np.allclose(np.linalg.norm(found - at, axis=1), far)
+
+
+def unevenness(s: structures.Structure) -> int:
+    """The sum of squares by which valences differ from 6, or from 4 on the border."""
+    wanted = np.where(s.is_border(s.vertices()), 4, 6)
+    return int(((s.valence(s.vertices()) - wanted) ** 2).sum())
+
+
+def test_in_the_plane_edges_are_flipped_as_long_as_that_evens_out_valences() -> None:
+    points = np.random.default_rng(2).random((60, 2))
+    flat = hem.TriangleMesh(np.pad(points, ((0, 0), (0, 1))), Delaunay(points).simplices)
+    s = structures.build("half_edge", flat, compiled=False)
+    s.corner_attribute("any")  # so that every flip is told on its own
+    told = [unevenness(s)]
+    end = s.subscribe(lambda edit: told.append(unevenness(s)))
+    for _ in range(10):
+        flip_to_even(s)
+    assert told == sorted(set(told), reverse=True)
+    assert len(told) > 10
+    assert (normals(s.points[s.triangles()].astype(float))[:, 2] > 0).all()
+    end()
+    for e in s.edges().tolist():
+        other = s.copy()
+        if other.can_flip_edge(e):
+            other.flip_edge(e)
+            turned = normals(other.points[other.triangles()].astype(float))[:, 2] <= 0
+            assert turned.any() or unevenness(other) >= told[-1]
+
+
+def test_no_face_turns_when_vertices_are_moved() -> None:
+    mesh = hem.generate("torus", 400)
+    rough = mesh.points + np.random.default_rng(5).normal(0, 0.1, mesh.points.shape)
+    s = structures.build("half_edge", hem.TriangleMesh(rough, mesh.triangles), compiled=False)
+    before, told = s.to_triangles().face_normals(), list[hem.Edit]()
+    s.subscribe(told.append)
+    relax(s, Surface(s.points, s.triangles()))
+    assert len(told[0].changed_vertices) > 100
+    cosines = (before * s.to_triangles().face_normals()).sum(axis=1)
+    assert cosines.min() > LEAST_COSINE - 1e-4  # of float32
 
 
 def test_the_nearest_point_of_three_corners_in_a_line_lies_between_the_outer_two() -> None:
