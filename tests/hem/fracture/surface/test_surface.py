@@ -342,7 +342,7 @@ def test_a_wrong_number_of_a_material_is_told_with_its_file(tmp_path, wrong, wor
         (lambda s: shatter(s, (1, 2)), "three finite numbers"),
         (lambda s: shatter(s, (1, 2, np.nan)), "three finite numbers"),
         (lambda s: shatter(s, "here"), "three finite numbers"),
-        (lambda s: shatter(s, (1, 2, 99)), "more than half of its size"),
+        (lambda s: shatter(s, (1, 2, 5.7)), "more than half of its size"),  # which is 8 √2
         (lambda s: shatter(s, (1, 2, 0), "glas"), "did you mean 'glass'"),
         (lambda s: shatter(s, (1, 2, 0), seed=-1), "a seed is a whole number"),
         (lambda s: shatter(s, (1, 2, 0), scale=0), "positive and finite"),
