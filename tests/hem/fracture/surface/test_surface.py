@@ -23,6 +23,7 @@ from hem.fracture import (
     wrapped,
 )
 from hem.fracture.surface.breaking import breaking
+from hem.fracture.surface.hanging import hanging
 from hem.fracture.surface.nearest import ROUNDING
 from hem.fracture.surface.shatter import TOLERANCE, break_points, break_surface
 from tests.extent import OF_EACH_KIND, QUICK_TO_COMPILE, some, waiting_for
@@ -189,6 +190,17 @@ def test_what_hangs_in_a_point_comes_off():
         split.remove_faces(faces)
     broken = shatter(s, grid.points.mean(axis=0), "glass", 0)
     assert broken.counts["broken off"] == len(broken.shards) - len(faces) > 0
+
+
+@pytest.mark.parametrize(
+    ("radii", "off"), [((0.9, 1), [0, 3]), ((1, 0.9), [1, 2]), ((1, 1), [1, 2])]
+)
+def test_of_two_fans_that_would_meet_in_a_point_the_larger_or_else_the_first_stays(radii, off):
+    angles = np.arange(6) * np.pi / 3
+    ring = np.stack([np.cos(angles), np.sin(angles), 0 * angles], 1) * np.repeat(radii, 3)[:, None]
+    fan = [(0, i + 1, (i + 1) % 6 + 1) for i in (0, 3, 4, 1, 2, 5)]
+    s = structures.build("half_edge", hem.TriangleMesh([(0, 0, 0), *ring], fan), compiled=False)
+    assert hanging(s, np.array([4, 5])).tolist() == off
 
 
 def test_islands_are_as_many_as_there_are_parts_of_the_type_they_had():
