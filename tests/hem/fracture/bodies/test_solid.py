@@ -5,6 +5,7 @@ import hem
 from hem.fracture.bodies.solid import (
     Body,
     Shell,
+    collapsed,
     from_manifold,
     require_body,
     to_manifold,
@@ -212,3 +213,24 @@ def test_bodies_come_the_largest_first_without_their_hollows():
     made = box(3, 3, 3), box(2.9, 2.9, 2.9).flipped(), box(2, 2, 2, at=(9, 0, 0))
     found = with_hollows([Shell(it, np.zeros(12)) for it in made])
     assert [it.mesh.volume() for it in found] == pytest.approx([8, 27 - 2.9**3])
+
+
+def test_a_hollow_belongs_to_the_smallest_body_around_it():
+    dolls = [box(it, it, it) if it % 2 else box(it, it, it).flipped() for it in (9, 8, 7, 6)]
+    found = with_hollows([Shell(it, np.zeros(12)) for it in dolls])
+    assert [it.mesh.volume() for it in found] == pytest.approx([9**3 - 8**3, 7**3 - 6**3])
+
+
+@pytest.mark.parametrize(
+    "faces",
+    [
+        [(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)],
+        [(0, 1, 3), (1, 2, 3), (2, 0, 3), (1, 0, 4), (2, 1, 4), (0, 2, 4)],
+    ],
+    ids=["a tetrahedron", "two sheets"],
+)
+def test_an_edge_of_no_length_stays_where_its_end_would_fold_the_surface(faces):
+    points = np.array([(0, 0, 0), (0, 0, 0), (1, 0, 0), (0, 0, 1), (0, 0, -1)], float)
+    mesh, labels = collapsed(hem.TriangleMesh(points, faces), np.arange(len(faces)))
+    assert mesh.triangles.tolist() == [list(face) for face in faces]
+    assert labels.tolist() == [*range(len(faces))]
