@@ -85,6 +85,8 @@ def test_ply_holds_a_file_for_every_piece_and_none_of_a_fracture_before(broken, 
     assert kept == {"notes.txt", "mine.ply", *(path.name for path in paths)}
     for path, piece in zip(paths, broken.pieces, strict=True):
         np.testing.assert_array_equal(corners(hem.load(path)), corners(piece))
+    save_pieces(broken, tmp_path, "obj")
+    assert kept == {path.name for path in (tmp_path / "pieces").iterdir()}
 
 
 def test_the_rest_and_its_islands_have_names_of_their_own(sheet):
