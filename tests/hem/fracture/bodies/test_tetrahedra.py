@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import trimesh
+from scipy.optimize import linprog
 
 import hem
 import structures
@@ -119,6 +120,19 @@ def test_tetrahedra_that_share_what_they_may_do_not_overlap():
     needle = np.array([[(0.1, 0.1, -1), (0.2, 0.1, -1), (0.1, 0.1, 1.0)]])
     assert crossing(at[None, :4], needle, 1e-9).tolist() == [True]
     assert crossing(at[None, :4], needle - (1, 0, 0), 1e-9).tolist() == [False]
+
+
+def test_tetrahedra_overlap_where_some_position_is_a_mean_of_the_corners_of_both():
+    rng, found, expected = np.random.default_rng(6), [], []
+    for _ in range(200):
+        both = rng.normal(size=(2, 4, 3)) + np.multiply.outer([0, 1.2], [[1, 0, 0]])
+        sums = np.kron(np.eye(2), np.ones(4))  # of the weights of either's corners
+        apart = np.concatenate([both[0], -both[1]]).T
+        weights = linprog(np.zeros(8), A_eq=np.vstack([apart, sums]), b_eq=[0, 0, 0, 1, 1])
+        expected.append(weights.success)
+        found.append(bool(overlapping(both, 1e-9).all()))
+    assert found == expected
+    assert 50 < sum(found) < 150
 
 
 @pytest.mark.parametrize(
