@@ -69,6 +69,20 @@ class Prepared(NamedTuple):
             raise RuntimeError("there is no more room; prepare fewer operations at a time")
 
 
+class Methods(dict[str, Callable[..., Edit]]):
+    """Operations as functions, by name: each is made when it is first asked for.
+
+    To bind one takes as long as to do some fifty.
+    """
+
+    def __init__(self, make: Callable[[str], Callable[..., Edit]]) -> None:
+        self._make = make
+
+    def __missing__(self, operation: str) -> Callable[..., Edit]:
+        made = self[operation] = self._make(operation)
+        return made
+
+
 class Operations:
     """The operations on one mesh, by name."""
 

@@ -15,7 +15,7 @@ from hem.contract import arguments
 from hem.contract.attributes import Attribute, EdgeAttribute
 from hem.contract.description import Algorithm, Declared, Described
 from hem.contract.following import AttributeMethod, Followers, Kept
-from hem.contract.operations import Operations, Prepared
+from hem.contract.operations import Methods, Operations, Prepared
 from hem.contract.queries import Queries, QueryMethod, Sweep
 from hem.contract.removal import planned, removing
 from hem.contract.sides import CornerAttribute
@@ -354,9 +354,9 @@ class Structure(Described, Surveying, abstract=True):
         return self._operations.may("flip_edge", edge)
 
     @cached_property
-    def _do(self) -> dict[str, Callable[..., Edit]]:
+    def _do(self) -> Methods:
         """Every operation as a function of its first handle, a point and two more handles."""
-        return {name: self._operations.method(name) for name in self.operations}
+        return Methods(self._operations.method)
 
     # Many operations at once -----------------------------------------------------------------
 

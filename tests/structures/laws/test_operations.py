@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 import hem
 import structures
+from hem.contract.operations import Operations
 from tests.extent import some, waiting_for
 from tests.structures.conftest import OF_ARRAYS, octahedron, shuffled, strip
 from tests.structures.histories.actions import (
@@ -326,3 +327,14 @@ def test_splits_of_recorded_edges_take_the_same_work_on_any_mesh():
                 handle = 7 if operation == "split_face" else int(s.edges()[n])
                 work.add(s.operation_work(operation, handle))
             assert len(work) == 1
+
+
+def test_an_operation_is_bound_when_it_is_first_asked_for(name, monkeypatch):
+    bound, method = [], Operations.method
+    monkeypatch.setattr(Operations, "method", lambda its, of: bound.append(of) or method(its, of))
+    s = structures.build(name, octahedron())
+    s.split_face(0, (0, 0, 1))
+    s.split_face(1, (1, 0, 0))
+    assert bound == ["split_face"]
+    s.flip_edge(int(s.edges()[0]))
+    assert bound == ["split_face", "flip_edge"]
