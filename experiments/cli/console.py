@@ -22,12 +22,6 @@ if os.environ.get("COLUMNS") == "0":  # nobody knows the width, and rich would p
     del os.environ["COLUMNS"]
 
 
-def _on_broken_pipe(_: Console) -> None:
-    """Leave it to ``user_errors``, of help as well: rich ends with 1, which some commands mean."""
-    raise
-
-
-Console.on_broken_pipe = _on_broken_pipe  # type: ignore[assignment, method-assign]
 console = Console(highlight=False)
 CLOSED = 141  # exit code where nobody reads on, as a shell has it
 errors = Console(stderr=True, highlight=False, soft_wrap=True)
@@ -86,7 +80,10 @@ def user_errors(code: int = 1) -> Iterator[None]:
     """Turn what a user can mend into a line and an exit code; all errors, where it is not 1."""
     try:
         yield
-    except BrokenPipeError:  # whoever read, `| head`, has what he wants
+    except (BrokenPipeError, SystemExit) as error:  # whoever read, `| head`, has what he wants
+        # Rich makes it an exit with 1, which some commands mean.
+        if BrokenPipeError not in (type(error), type(error.__context__)):
+            raise
         with suppress(OSError):  # for what is left to print, if it is a file at all
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         raise typer.Exit(CLOSED) from None
