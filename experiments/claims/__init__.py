@@ -21,7 +21,7 @@ from experiments.claims.claim import (
     tally,
 )
 from experiments.claims.curves import Curve, Curves, curves
-from experiments.claims.errata import ERRATA, Erratum
+from experiments.claims.errata import ERRATA
 from experiments.claims.quantities import (
     MIXES,
     break_even,
@@ -42,7 +42,7 @@ from experiments.claims.verdicts import (
 
 __all__ = [
     "BY_TIME", "CASE_ERROR", "CLAIMED", "DETERMINED", "ERRATA", "MEMORY", "MIXES", "NOT_POSSIBLE",
-    "NO_CLAIM", "SENTENCES", "Between", "Claim", "Curve", "Curves", "Erratum", "Exactly", "Family",
+    "NO_CLAIM", "SENTENCES", "Between", "Claim", "Curve", "Curves", "Exactly", "Family",
     "Growth", "JudgedClaim", "Kind", "Outcome", "break_even", "class_told", "curves", "in_digits",
     "judge_cells", "judge_families", "judge_run", "judge_sentences", "load_claims",
     "sentence_claims", "tally",
