@@ -16,6 +16,7 @@ takes a corner from it, ``remove_face`` and ``add_face`` take it as it is; ``fli
 
 from __future__ import annotations
 
+from functools import partial
 from numbers import Real
 from operator import attrgetter
 from typing import Any, Self
@@ -299,16 +300,17 @@ class Plankton(Navigable):
             )
         ends = self.points[self._half_edges[spokes ^ 1, START]]
         points = (1 - fraction) * self.points[vertex] + fraction * ends
-        run, followers = self._operations.run, self._followers
-        _, first = run("insert_vertex", arguments.rows(spokes), points.astype(np.float32))
+        logs: list[Array] = []
+        followers, run = self._followers, partial(self._operations.run, logs=logs)
+        run("insert_vertex", arguments.rows(spokes), points.astype(np.float32))
         before = self._half_edges[spokes, PREVIOUS]  # from the next new vertex to this one
         ends = np.stack([self._half_edges[spokes, NEXT], before, before], axis=1)
-        _, second = run("cut_across", ends.astype(np.int64))
-        followers.carry(Edit("", -1, np.concatenate([first, second])))  # from a vertex still there
-        found, third = run("erase_vertex", arguments.rows([vertex]))
-        followers.carry(Edit("", -1, third))
-        log = np.concatenate([first, second, third])
-        followers.subscribers.tell(Edit("truncate_vertex", -1, log))
+        run("cut_across", ends.astype(np.int64))
+        followers.carry(Edit("", -1, np.concatenate(logs)))  # from a vertex still there
+        made = len(logs)
+        found = run("erase_vertex", arguments.rows([vertex]))
+        followers.carry(Edit("", -1, np.concatenate(logs[made:])))
+        followers.subscribers.tell(Edit("truncate_vertex", -1, np.concatenate(logs)))
         return int(found[0])
 
     # Behind the contract ---------------------------------------------------------------------
@@ -344,11 +346,11 @@ class Plankton(Navigable):
         points = arguments.positions(called, [point], 1) if takes_a_point else arguments.NO_POINT
         row = [arguments.integer(called, element, it) for it in handles]
         args = np.array([[*row, -1, -1][: max(3, len(row))]])
-        results, log = self._operations.run(operation, args, points)
-        result = int(results[0])
+        logs: list[Array] = []
+        result = int(self._operations.run(operation, args, points, logs=logs)[0])
         if result < 0:
             raise self._operations.refusal(operation, result, args[0].tolist(), called)
-        edit = self._operations.edit(called, operation, result, log)
+        edit = self._operations.edit(called, operation, result, np.concatenate(logs))
         self._followers.publish(edit)
         return result, edit
 

@@ -196,7 +196,7 @@ class Operations:
         self.require_different(called, element, handles)
         args = arguments.rows(handles)
         if element == "edge":
-            results, _ = self.run(operation, args, positions, CHECK)
+            results = self.run(operation, args, positions, CHECK)
             refused = np.flatnonzero(results < 0)
             if len(refused):
                 first = refused[0]
@@ -225,7 +225,7 @@ class Operations:
         """As ``run``, one edit -> the results. What is done before an interrupt is told."""
         logs: list[Array] = []
         try:
-            return self.run(operation, args, points, mode, logs)[0]
+            return self.run(operation, args, points, mode, logs)
         finally:
             if logs:
                 self._followers.publish(Edit(called, -1, np.concatenate(logs)))
@@ -257,9 +257,10 @@ class Operations:
     def run(
         self, operation: str, args: Array, points: Array = arguments.NO_POINT, mode: int = DO,
         logs: list[Array] | None = None,
-    ) -> tuple[Array, Array]:  # fmt: skip
-        """Do an operation for every row of ``args`` (n, 3) -> the results (n,) and the log.
+    ) -> Array:  # fmt: skip
+        """Do an operation for every row of ``args`` (n, 3) -> the results (n,).
 
+        What they touch is appended to ``logs``, also before an interrupt.
         Ends at one that is refused, unless the ``mode`` is another. Nobody is told, and where
         nobody follows, nothing is kept to tell: fresh memory for the log takes longer than it.
         """
@@ -291,7 +292,7 @@ class Operations:
                 logs.append(log[1 : log[0] + 1])
             done = int(task[ENDED])
             if done == n or results[done] != NEEDS_ROOM:
-                return results, np.concatenate(logs)
+                return results
             self.make_way(operation)
 
     def edit(self, called: str, operation: str, result: int, log: Any) -> Edit:
