@@ -182,12 +182,12 @@ def describe_origin(kept: dict[str, Any]) -> str:
 
 def main(output: Path = RESULT) -> None:
     """Ask every judge about every curve, keep the answers, and print the shares."""
+    kept = {key: value for key, value in describe("").items() if key != "preset"}
     curves = [
         it for condition in CONDITIONS for name in GROWTH for it in make_curves(name, condition)
     ]
     judges = installed_judges()
     answers = count_answers(judges, curves)
-    kept = {key: value for key, value in describe("").items() if key != "preset"}
     for package in PACKAGES:
         kept["versions"][package] = version(package) if package in judges else "not installed"
     kept |= {"curves": len(curves), "columns": COLUMNS, "rows": answers.to_numpy().tolist()}

@@ -148,11 +148,11 @@ def main(
     """Measure all functions, ask all judges, keep the answers and print the shares."""
     if not ONE_THREAD.items() <= os.environ.items():  # read once, when NumPy is imported
         os.execve(sys.executable, sys.orig_argv, os.environ | ONE_THREAD)
+    kept = {key: value for key, value in describe("").items() if key != "preset"}
     rows = list(_rows(budget, alone, busy, measured))
     other = [] if not output.exists() else load_answers(output)[1].to_numpy().tolist()
     anew = {(row[3], row[4]) for row in rows}
     rows += [row for row in other if (row[3], row[4]) not in anew]
-    kept = {key: value for key, value in describe("").items() if key != "preset"}
     kept |= {"budget": budget, "columns": COLUMNS, "rows": rows}
     output.write_text(json.dumps(kept, indent=1, ensure_ascii=False) + "\n", "utf-8")
     answers = _with_kinds(pd.DataFrame(rows, columns=COLUMNS))
