@@ -4,6 +4,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from rich import box
+from rich.cells import cell_len
 from rich.console import Console
 from rich.table import Table
 from rich.text import Text
@@ -20,7 +21,7 @@ def show_rows(
     colors: by regular expressions.
     """
     every = list(rows)
-    widths = [max(map(len, column)) + 2 for column in zip(*every, strict=True)]
+    widths = [max(map(cell_len, column)) + 2 for column in zip(*every, strict=True)]
     start = 1
     while start < len(widths):
         stop = start + 1

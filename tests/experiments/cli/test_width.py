@@ -91,6 +91,13 @@ def test_brackets_in_a_title_are_no_markup(capsys):
     assert "Runs in a[b]/[/c]" in capsys.readouterr().out
 
 
+def test_names_of_wide_signs_take_no_figure_its_place(capsys):
+    name, *figures = "排序算法的运行时间测量值", "16 … 4096", "0.50", "O(√n)"
+    show_rows(Console(width=40), [["function", "sizes", "slope", "class"], [name, *figures]])
+    text = capsys.readouterr().out
+    assert all(f" {it} " in text for it in (name, *figures)), text
+
+
 def test_the_meshes_and_their_sizes():
     _, output = hem("meshes", "--size", "100000", width=80)
     assert max(map(len, output.splitlines())) <= 80
