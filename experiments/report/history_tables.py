@@ -4,7 +4,6 @@ A line per run, change or claim. A terminal's fit 80 columns: structures by thei
 """
 
 from collections import Counter
-from collections.abc import Collection
 from typing import Any
 
 import pandas as pd
@@ -33,17 +32,17 @@ def show(
     trends: Trends, claim: str | None, console: Console, last: int | None, slopes: bool
 ) -> None:
     """Print the history of some claims, or all in brief; ``last``: just so many runs."""
-    names, shown = trends.claims(claim), range(len(trends.runs))[-(last or len(trends.runs)) :]
-    file = trends.history.path
+    names, last, file = trends.claims(claim), last or len(trends.runs), trends.history.path
     if claim is None:
         changes = changes_frame(trends)
-        recent = changes["run"].isin(shown) & (changes["figure"] != SHORT[OUTCOMES["outcome_time"]])
+        first = len(trends.runs) - last
+        recent = (changes["run"] >= first) & (changes["figure"] != SHORT[OUTCOMES["outcome_time"]])
         tables = {
-            f"Runs in {file}: {len(trends.runs)}": runs_frame(trends)[shown.start :],
+            f"Runs in {file}: {len(trends.runs)}": runs_frame(trends)[-last:],
             "What changed": changes[recent].drop(columns=["run", "machine"]),
         }
     elif len(names) <= FEW:
-        tables = {name: _by_run(trends, name, shown, slopes) for name in names}
+        tables = {name: _by_run(trends, name, last, slopes) for name in names}
     else:
         tables = {f"{len(names)} claims in {file}": _at_a_glance(trends, names)}
     numbers = [measure.title for measure in MEASURES.values()]
@@ -111,13 +110,13 @@ def _mark(outcome: str) -> str:
     return Outcome(outcome).mark if outcome in set(Outcome) else outcome
 
 
-def _by_run(trends: Trends, name: str, shown: Collection[int], slopes: bool) -> pd.DataFrame:
-    """A row per run of one claim, a column per figure."""
+def _by_run(trends: Trends, name: str, last: int, slopes: bool) -> pd.DataFrame:
+    """A row for each of the last runs that measured one claim, a column per figure."""
     titles = {key: measure.title for key, measure in MEASURES.items() if measure.slope == slopes}
     figures = trends.figures.query("claim == @name and measure in @titles")
     cells = figures.assign(text=[_figure(row) for row in figures.itertuples()])
     table = cells.pivot_table("text", "run", "measure", aggfunc="first", sort=False)
-    measured = [k for k in shown if name in trends.runs[k]["claims"]]
+    measured = [k for k, run in enumerate(trends.runs) if name in run["claims"]][-last:]
     verdicts = _verdicts(trends, [name]).set_axis(["verdict"], axis=1)
     return _heads(trends).loc[measured].join([verdicts, table.rename(columns=titles)]).fillna("–")
 

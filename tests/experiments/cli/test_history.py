@@ -76,6 +76,16 @@ def test_a_preset_that_is_named_in_full_is_that_one_beside_those_of_a_mesh_of_on
     assert [it["profile"] for it in json.loads(output)["runs"]] == ["quick"]
 
 
+def test_so_many_runs_of_a_claim_are_shown_that_have_it(base, tmp_path):
+    path, first, newest = tmp_path / "history.jsonl", line(base, 0), line(base, 1)
+    others = {name: it for name, it in newest["claims"].items() if NAME not in name}
+    for made in (first, {**newest, "claims": others}):
+        append_run(made, path)
+    output = output_of("history", "show", NAME, "--last", "1", "--file", str(path))
+    assert first["commit"][:7] in output
+    assert newest["commit"][:7] not in output
+
+
 def test_of_a_history_at_least_one_run_is_shown(kept):
     code, output = words("history", "show", "--last", "0", "--file", str(kept))
     assert code == 2
