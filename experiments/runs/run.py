@@ -65,8 +65,10 @@ def load(folder: Path | str) -> Run:
             missing = f"{folder / name} is {'not whole' if name in files else 'missing'}"
             again = f"measure its cases again with: {store.resume_command(folder)}"
             raise store.DamagedError(f"{missing}; {again}")
+    # What a machine left unfinished was measured anew on another: there it is whole.
+    whole = {it.path.name: it for it in sorted(files.values(), key=lambda it: len(it.cases))}
     found: list[Found] = []
-    for file in files.values():
+    for _, file in sorted(whole.items()):
         machine = "" if file.path.parent == folder else file.path.parent.name
         who = PART_OF.get(file.experiment, file.experiment), file.structure, machine
         found += [(*who, case) for case in file.cases.values()]

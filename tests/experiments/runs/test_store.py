@@ -46,6 +46,17 @@ def test_cases_come_back_as_they_were(tmp_path):
     assert run.skipped["skipped"].tolist() == ["too slow"]
 
 
+@pytest.mark.parametrize("unfinished", ["", "machine-a", "machine-c"])
+def test_a_job_that_one_machine_left_unfinished_counts_where_it_is_whole(tmp_path, unfinished):
+    write_meta(tmp_path, {"schema": 3})
+    CaseFile(tmp_path / unfinished, "bench_x", "indexed").add(measurement("a", 1.0))
+    CaseFile(tmp_path / "machine-b", "bench_x", "indexed").add(*map(measurement, "ab"))
+    CaseFile(tmp_path / "machine-a", "bench_y", "indexed").add(measurement("a", 2.0))
+    cases = load(tmp_path).cases
+    found = cases[["experiment", "machine", "id"]].agg("/".join, axis=1).tolist()
+    assert found == ["bench_x/machine-b/a", "bench_x/machine-b/b", "bench_y/machine-a/a"]
+
+
 def test_of_several_measurements_of_a_case_the_calmest_counts(tmp_path):
     file = CaseFile(tmp_path, "bench_x", "indexed")
     file.add(measurement("a", 1.0, noise=BUSY), measurement("b", 1.0, noise=BUSY))
