@@ -93,23 +93,14 @@ def latest(root: Path | str = RUNS, *, unfinished: bool = False) -> Path:
 
 
 class Noise(NamedTuple):
-    """How steady the machine was during a run, over its timed cases.
+    """Whether a machine was too busy to judge a run by time; and all that is known, in words."""
 
-    ``cases``: how many said so; ``disturbed``: how many were even when they were repeated, and
-    their ``share``; ``repeated``: how many were measured more than once; ``too_busy``: whether not
-    to judge by time; ``words``: all that in a sentence or two.
-    """
-
-    cases: int
-    disturbed: int
-    repeated: int
-    share: float
     too_busy: bool
     words: str
 
 
 def noise(run: Run) -> Noise:
-    """How steady the machine was during a run; no cases for runs that did not watch."""
+    """How steady the machine was while a run took times, if it watched."""
     timed = run.cases[(run.cases["kind"] == "time") & run.cases["noise"].map(bool)]
     bad = timed[timed["noise"].map(disturbed).astype(bool)]
     seen = list(timed["noise"])
@@ -127,8 +118,7 @@ def noise(run: Run) -> Noise:
         worst = (bad["experiment"] + " on " + bad["structure"]).value_counts().head(3)
         most = ", ".join(f"{name} ({count})" for name, count in worst.items())
         words = f"The machine was too busy to judge by time: {found} Most: {most}."
-    words += _cache_in_words(run)
-    return Noise(len(seen), len(bad), repeated, share, share > BUSY, words)
+    return Noise(share > BUSY, words + _cache_in_words(run))
 
 
 def _cache_in_words(run: Run) -> str:
