@@ -78,8 +78,8 @@ def run(folder: Path, address: str, observer: study.Observer | None = None) -> N
             client.cancel(list(running), force=True)
         if failures:
             raise study.StudyFailedError("\n\n".join(failures))
-        used = sorted({path.parent for path in case_files(folder)} - {folder})
-        names = [path.name.removeprefix("machine-") for path in used]
+        used = sorted({path.parent for path in case_files(folder)})
+        names = [str(read_meta(it).get("host", "where it was begun")) for it in used]
         several = {"cpu": f"{len(names)} machines", "machines": names}  # whose times do not mix
         study.finish(folder, read_meta(used[0])["machine"] if len(used) == 1 else several)
 

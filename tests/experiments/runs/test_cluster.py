@@ -3,10 +3,12 @@
 import os
 import signal
 import sys
+from unittest.mock import MagicMock
 
 import pytest
 
-from experiments.runs import cluster, load, read_meta, study
+from experiments.harness import Measurement
+from experiments.runs import cluster, load, read_meta, study, write_meta
 from experiments.runs.worker import Job
 from tests.experiments.cli.calls import hem
 from tests.experiments.small_study import PATIENCE_SECONDS, Recorder, begin, in_new_process, samples
@@ -78,6 +80,20 @@ def test_work_is_spread_kept_apart_and_tried_elsewhere_when_a_machine_is_lost(
         assert (about["preset"], about["machine"]["cores"]) == ("smoke", os.cpu_count())
     used = {name.removeprefix("machine-") for name in run.cases["machine"]}
     assert set(run.machines) == (used if len(used) > 1 else set())
+
+
+def test_times_of_a_run_that_was_begun_here_and_finished_elsewhere_do_not_mix(
+    tmp_path, monkeypatch
+):
+    pytest.importorskip("distributed")
+    monkeypatch.setattr(cluster, "_client", lambda address: MagicMock())
+    folder = begin(tmp_path, "latency", "memory")
+    elsewhere = folder / "machine-b"
+    write_meta(elsewhere, {**cluster.describe("smoke"), "host": "b"})
+    for place, job in zip((folder, elsewhere), study.plan(folder), strict=True):
+        job.file(place).add(*(Measurement(it, "time", samples=[1.0]) for it in job.ids))
+    cluster.run(folder, "tcp://nobody:1")
+    assert len(load(folder).machines) == 2
 
 
 def test_a_machine_measures_only_what_is_wanted_by_the_same_code(tmp_path):
