@@ -159,8 +159,10 @@ def _state(folder: Path, claims: list[Claim]) -> str:
     digest = hashlib.sha256(repr(claims).encode())
     claims_here, whole = Path(__file__).parent, Path(str(hem.__file__)).parent.parent
     # Sentences build today's structures and count in their code; tables stand in experiments.
-    rooms = [(whole / it, "**/*.py") for it in ("hem", "structures", "experiments/harness")]
-    rooms += [(whole / "experiments", "bench_*.py"), (claims_here, "*.*"), (folder, "*.json*")]
+    code = "hem", "structures", "experiments/harness", "experiments/runs"
+    rooms = [(whole / it, "**/*.py") for it in code]
+    rooms += [(whole / "experiments", "bench_*.py"), (claims_here, "*.*"), (folder, "run.json")]
+    rooms.append((folder, "**/*.jsonl"))  # of every machine
     for room, pattern in rooms:
         for path in sorted(filter(Path.is_file, room.glob(pattern))):
             digest.update(path.name.encode() + path.read_bytes())

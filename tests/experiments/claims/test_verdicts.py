@@ -191,6 +191,18 @@ def test_what_was_kept_of_other_measurements_is_not_read(tmp_path):
     assert changed == {"half_edge/memory", "sentence/bytes_winged_half"}
 
 
+def test_what_was_kept_of_other_measurements_of_one_of_several_machines_is_not_read(tmp_path):
+    folder = write_run(tmp_path, only=lambda *it: it == ("bench_memory", "half_edge"))
+    there = folder / "machine-b"
+    there.mkdir()
+    for path in folder.glob("*.jsonl"):
+        path.rename(there / path.name)
+    before = {it.claim.key: it.outcome for it in judge_run(load(folder))}
+    rewrite(there, "bench_memory", "half_edge", lambda it: {"samples": [228_001.0]})
+    after = {it.claim.key: it.outcome for it in judge_run(load(folder))}
+    assert {key for key in before if before[key] != after[key]} == {"half_edge/memory"}
+
+
 def test_what_was_kept_of_other_claims_is_not_read(tmp_path, monkeypatch):
     """Claims stand in the files of structures, too."""
     folder, kind = of_two(tmp_path), REGISTRY["directed_edge"]
