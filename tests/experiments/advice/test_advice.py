@@ -22,6 +22,7 @@ from experiments.advice import (
     predict,
     recorded,
 )
+from experiments.advice.advise import BUILT_OF_OBJECTS
 from experiments.advice.workload import KNOWN
 from experiments.cli.check import BASELINE
 from experiments.harness import IRREGULAR
@@ -222,6 +223,18 @@ def test_who_is_behind_is_told_what_costs_it_most_beside_the_best(prices: Prices
 def test_bytes_are_those_of_the_structure(prices: Prices) -> None:
     for it in advise(prices, ASKED, MESH).options:
         assert it.bytes == sum(build(it.forecast.structure, MESH).memory(names=True).values())
+
+
+@pytest.mark.parametrize("corners", [3, 4])
+def test_no_structure_is_an_option_that_cannot_hold_the_mesh(prices: Prices, corners: int) -> None:
+    torus = hem.generate("torus", BUILT_OF_OBJECTS)
+    extra, (a, b, c), *others = len(torus.points), *torus.triangles.tolist()
+    points = np.vstack([torus.points, torus.points[:1] + 1])
+    faces = {3: [(a, b, c), (a, b, extra), *others], 4: [(a, extra, b, c), *others]}[corners]
+    mesh = hem.PolygonMesh(points, faces)
+    given = mesh.triangulated() if corners == 3 else mesh
+    for name in names(advise(prices, ASKED, given)):
+        build(name, given)
 
 
 def test_a_program_s_own_part_is_what_its_measurement_leaves(prices: Prices) -> None:
