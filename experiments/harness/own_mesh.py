@@ -114,6 +114,7 @@ def _finer(mesh: TriangleMesh) -> Iterator[TriangleMesh]:
         points = np.concatenate([points, points[ends].mean(axis=1)])
         corners = a, ab, ca, ab, b, bc, ca, bc, c, ab, bc, ca
         triangles = np.stack(corners, axis=1).reshape(-1, 3)
-        yield TriangleMesh(points, triangles)
+        if len(points) != len(mesh.points):  # as many as there are with those that no face has
+            yield TriangleMesh(points, triangles)
         if 4 * len(points) > FINE_ENOUGH:
             return

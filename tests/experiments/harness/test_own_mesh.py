@@ -68,6 +68,14 @@ def test_a_small_mesh_gets_finer_versions_only(tmp_path):
     assert sizes[-1] > FINE_ENOUGH / 4
 
 
+def test_no_finer_version_takes_the_place_of_a_mesh_with_unused_vertices(tmp_path):
+    file = tmp_path / "mostly_unused.ply"
+    hem.save(hem.TriangleMesh(np.eye(6, 3), [(0, 1, 2)]), file)  # halving makes 6 vertices, too
+    own_mesh.keep_versions(tmp_path, str(file))
+    name, _ = own_mesh.of_run(tmp_path) or ("", ())
+    assert len(own_mesh.version(name, 6).triangles) == 1
+
+
 def test_that_faces_of_more_corners_are_cut_is_told(tmp_path):
     square = tmp_path / "square.obj"
     square.write_text("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n")
