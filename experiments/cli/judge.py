@@ -18,9 +18,7 @@ COLORS = {"^consistent$": "green", "^violated$": "red", "^undetermined$": "yello
 
 
 def judge_file(
-    file: Annotated[
-        Path, Argument(help="CSV, or JSON of pytest-benchmark, Google Benchmark or hyperfine.")
-    ],
+    file: Annotated[Path, Argument(help="CSV or JSON, see above.")],
     expected: Annotated[str | None, Option(help='The class that is claimed: "O(n log n)".')] = None,
     parameter: Annotated[
         str | None, Option(help="What the sizes are of, where several parameters vary.")
@@ -32,7 +30,8 @@ def judge_file(
 ) -> None:
     """Name the growth class of measured costs, and judge a claim.
 
-    A CSV has sizes in its first column and costs in the others; equal sizes are samples.
+    A CSV has sizes in its first column and costs in the others; equal sizes are samples. JSON is
+    that of pytest-benchmark, Google Benchmark or hyperfine.
     Exit code 0; 1: a claim is violated; 2: it cannot be told, or nothing could be read.
 
     Example: `hem judge benchmark.json --expected "O(n log n)" --plot costs.png`

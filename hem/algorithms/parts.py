@@ -89,12 +89,7 @@ def doing(operation: Kernel) -> Kernel:
 
 
 def change(
-    s: Structure,
-    kind: str,
-    make: Algorithm,
-    plan: Any,
-    splits: int = 0,
-    valence: int | None = None,
+    s: Structure, kind: str, make: Algorithm, plan: Any, splits: int = 0, valence: int | None = None
 ) -> int:
     """Run an algorithm that operates, in steps, until it is done -> its result. One edit.
 

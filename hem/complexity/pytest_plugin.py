@@ -107,8 +107,7 @@ class Complexity:
         are unknown or `expected` is no growth class.
         """
         config, mark = self._item.config, self._item.get_closest_marker("complexity")
-        options = dict(mark.kwargs) if mark else {}
-        args = mark.args if mark else ()
+        args, options = (mark.args, dict(mark.kwargs)) if mark else ((), {})
         if len(args) > len(POSITIONAL):
             pytest.fail(f"{self._item.nodeid}: {TOO_MANY}", pytrace=False)
         options |= zip(POSITIONAL, args, strict=False)

@@ -59,21 +59,19 @@ def tetrahedra(
     """
     require_mesh(structure, "tetrahedra")
     chosen = material if isinstance(material, Material) else named(material)
-    blow = Blow(np.zeros(3), np.array([0.0, 0.0, 1.0]), force)
+    more = np.sqrt(Blow(np.zeros(3), np.array([0.0, 0.0, 1.0]), force).force)
     require_body(structure.to_triangles())
-    more = np.sqrt(blow.force)
     denser = min(more, max(MOST_SITES / max(sum(chosen.circles), 1), 1))
     scattered = replace(chosen, circles=tuple(round(it * denser) for it in chosen.circles))
     broken, faces, size = break_surface(structure, impact, scattered, seed)
-    random = generator(seed).random
+    draw = generator(seed).random
     corners = face_corners(structure, faces)
-    fourth = _fourth_points(structure, faces, corners, chosen.scale * size * more, random)
+    fourth = _fourth_points(structure, faces, corners, chosen.scale * size * more, draw)
     solids = np.concatenate([corners, fourth[:, None]], axis=1)
     deep = _free(structure, faces, solids, size)
     solids = solids[deep]
     structure.split_faces(faces[deep], solids[:, 3])
-    split = _split_inside(solids, broken.target, force, random)
-    shards = [TriangleMesh(it, _SIDES) for it in split]
+    shards = [TriangleMesh(it, _SIDES) for it in _split_inside(solids, broken.target, force, draw)]
     inside = (len(shards) - len(solids)) // 3
     return in_place(
         structure, broken, shards, {"inside": inside, "too shallow": int((~deep).sum())},
