@@ -44,6 +44,8 @@ def find_described(folders: Iterable[str], package: str) -> dict[str, Any]:
                 raise TypeError(f"{it.__module__} and {other.__module__} have one {part}: {own!r}")
     names = {"", *NAMED, *(it.name for it in found)}
     for it in found:
+        if not it.name.isidentifier():
+            raise TypeError(f"{it.__module__}: its name is {it.name!r}, no word such as half_edge")
         if hasattr(it, "claims") and it.claims.like not in names:
             raise TypeError(f"{it.__module__} claims what is claimed of no {it.claims.like!r}")
     return {it.name: it for it in found}

@@ -8,6 +8,7 @@ face beyond it. A negative number is none.
 
 from __future__ import annotations
 
+import inspect
 from typing import Any
 
 import numpy as np
@@ -19,9 +20,17 @@ from hem.authoring.operations import LEFT, RIGHT, C, D
 from hem.authoring.walks import Given
 
 
+def place_of(records: type[Any], array: str) -> int:
+    """Which of the ``records`` an array is. Raises TypeError, with the file, where it is none."""
+    if array not in records._fields:
+        here = f"{inspect.getfile(records)}: {records.__name__}"
+        raise TypeError(f"{here} has no array {array!r}; there are {', '.join(records._fields)}")
+    return int(records._fields.index(array))
+
+
 def column(records: type[Any], array: str, which: int) -> Kernel:
     """Make ``read(m, it)``: one column of an array of the ``records``, a ``NamedTuple`` of them."""
-    place = records._fields.index(array)  # getattr would count references, for 15 ns a read
+    place = place_of(records, array)  # getattr would count references, for 15 ns a read
 
     @kernel
     def read(m: Any, it: int) -> int:
@@ -45,7 +54,7 @@ def entries(records: type[Any], *arrays: str) -> list[Kernel]:
 
         return read
 
-    return [entry(records._fields.index(array)) for array in arrays]
+    return [entry(place_of(records, array)) for array in arrays]
 
 
 def asking(records: type[Any], array: str, items: int = 1) -> Kernel:
@@ -54,7 +63,7 @@ def asking(records: type[Any], array: str, items: int = 1) -> Kernel:
     ``items``: how many share a record, as the two directions of an edge do. See
     ``hem.authoring.ahead``.
     """
-    place = records._fields.index(array)
+    place = place_of(records, array)
 
     @kernel
     def ahead(m: Any, it: int) -> None:

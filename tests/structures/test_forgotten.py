@@ -55,6 +55,11 @@ def write(folder: Path, name: str, changes: dict[str, str]) -> str:
             "'v', and there",
         ),
         ('target="half_edge", marks=True', 'target="half_edge"', "no field of face says marks"),
+        (
+            "face_half_edge: Array",
+            "face_half: Array",
+            "no array 'face_half_edge'; there are vertex_",
+        ),
         ("    counts: Array", "    numbers: Array", "last array of its records is not counts"),
         ("    counts: Array", "    age: Array\n    counts: Array", "have no field: age"),
     ],
@@ -73,6 +78,16 @@ def test_two_structures_of_one_name_are_refused(tmp_path, monkeypatch):
     (tmp_path / "twice" / "again.py").write_text(SOURCE, "utf-8")
     monkeypatch.syspath_prepend(tmp_path)
     with pytest.raises(TypeError, match="have one name: 'half_edge'"):
+        structures.find_described([str(tmp_path / package)], package)
+
+
+@pytest.mark.parametrize("name", ["quarter.edge", "quarter edge", "quarter/edge"])
+def test_a_name_that_no_file_can_have_is_refused(tmp_path, monkeypatch, name):
+    package = write(
+        tmp_path, f"named_{len(name)}_{ord(name[7])}", {'= "half_edge", "': f'= "{name}", "'}
+    )
+    monkeypatch.syspath_prepend(tmp_path)
+    with pytest.raises(TypeError, match=f"its name is '{name}', no word such as half_edge"):
         structures.find_described([str(tmp_path / package)], package)
 
 
