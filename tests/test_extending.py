@@ -104,6 +104,8 @@ def test_a_structure_or_an_experiment_that_forgets_something_is_an_error_that_na
         (of_structure, STRUCTURE.replace("claims =", "claimed ="), "claims"),
         (of_structure, other.replace('"half_edge")', '"halfedge")'), "'halfedge'"),
         (of_structure, other.replace('like="half_edge"', costs), "'O(n_x)' is none of"),
+        (of_structure, other.replace("False, 10", "True, 10"), "claims nothing of 'half_done'"),
+        (of_experiment, walks, "bench_half_done and bench_random_walk both decide walks"),
         *[
             (of_experiment, walks.replace(was, now), told)
             for was, now, told in [
@@ -112,6 +114,7 @@ def test_a_structure_or_an_experiment_that_forgets_something_is_an_error_that_na
                 ('"Random walks"', '"Half"', "have different tables called 'walks'"),
                 ("query_scaling", "query_scalling", "'query_scalling', its chapter"),
                 ("WORK_FACES:", "TIME_FACES:", "['time_faces']: an order has"),
+                ('axes={Axis.WORK_FACES: "walked"},', "", "axes and the table they decide"),
                 ("test_half_done", "walk", "test_half_done = EXPERIMENT.test"),
             ]
         ],

@@ -24,7 +24,7 @@ from experiments.claims.curves import axes_of
 from experiments.harness import Axis, Table
 from experiments.runs import experiments, tables
 from hem.contract import Claims
-from structures import NAMED
+from structures import NAMED, THESIS
 
 MEMORY_TITLE = "Bytes per vertex"
 SYMBOLS = {axis.variable: axis.symbol for axis in Axis}
@@ -53,6 +53,9 @@ def load_claims(text: str | None = None) -> list[Claim]:
     for entry in content["claim"]:
         for row, said in _read(entry):
             rows.setdefault(row, {}).update(said)
+    if lacking := set(THESIS).difference(*rows.values(), NAMED if text else ()):
+        why = "and its file says that the thesis does; what else is claimed stands there (claims)"
+        raise ValueError(f"claims.toml claims nothing of {min(lacking)!r}, {why}")
     cells = [cell for row, said in rows.items() for cell in _of_row(*row, said)]
     cells += [] if text else _of_experiments()
     return [_claim(content["classes"], *cell) for cell in cells]

@@ -117,7 +117,7 @@ class Experiment:
         amiss = [axis.key for axis, kind in kinds.items() if axis.exact != (kind == "work")]
         for wrong, why in (
             (self.kind not in KINDS, f"kind must be one of {KINDS}, not {self.kind!r}"),
-            (self.axes and not self.table, "axes need the table whose claims they decide"),
+            (bool(self.axes) != bool(self.table), "axes and the table they decide need each other"),
             (amiss, f"axes {amiss}: an order has to be counted for work, and timed for time"),
             (strange, f"claims name {sorted(strange)}, which are no subjects of its table"),
             (unknown, f"claims of {sorted(unknown)}, which are no structures"),

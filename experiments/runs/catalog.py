@@ -39,6 +39,7 @@ def experiments() -> dict[str, Experiment]:
 def tables() -> dict[str, Table]:
     """Every table that an experiment decides claims of, by name; ValueError where they clash."""
     found: dict[str, Table] = {}
+    decided: dict[tuple[str, str], str] = {}
     of_them = {name: it.table for name, it in experiments().items() if it.table}
     for experiment, table in of_them.items():
         if table.chapter and not (carried("notebooks") / f"{table.chapter}.ipynb").exists():
@@ -46,4 +47,8 @@ def tables() -> dict[str, Table]:
         if found.setdefault(table.name, table) != table:
             named = " and ".join(it for it, one in of_them.items() if one.name == table.name)
             raise ValueError(f"{named} have different tables called {table.name!r}")
+        for axis in experiments()[experiment].axes:
+            other = decided.setdefault((table.name, axis.key), experiment)
+            if other != experiment:
+                raise ValueError(f"{other} and {experiment} both decide {table.name} by {axis.key}")
     return found

@@ -27,7 +27,7 @@ from typing import Any
 from experiments import require_known
 from experiments.harness import BASE, PRESETS, REPEATS, allowed_cores, own_mesh
 from experiments.runs import store
-from experiments.runs.catalog import PART_OF
+from experiments.runs.catalog import PART_OF, tables
 from experiments.runs.catalog import experiments as catalog
 from experiments.runs.provenance import describe, machine_id, now
 from experiments.runs.run import RUNS
@@ -75,6 +75,7 @@ def begin(
     and where nothing is left to measure, MeshError for a mesh that none of the structures holds,
     CannotWriteError. Warns of structures that are skipped, as they do not hold it.
     """
+    tables()  # what is wrong with one is told before anything is measured
     short = [name.removeprefix("bench_") for name in called(experiments)]
     require_known("experiment", short, [name.removeprefix("bench_") for name in catalog()])
     others = [it for name in short for it in catalog()[f"bench_{name}"].structures]
