@@ -89,9 +89,12 @@ def run_study(
     else:
         given |= {"mesh": mesh, "repair": repair}
         folder = study.begin(given.pop("preset", DEFAULT), output, **given)
-    named = "" if output in (RUNS, PEER_RUNS) and not run else f" {shlex.quote(str(folder))}"
-    of_peers = any(experiments()[it].by_name for it in study.begun(folder)["experiments"])
-    commands = ["hem table --peers"] if of_peers else ["hem table", "hem report"]
+    chosen = [experiments()[it] for it in study.begun(folder)["experiments"]]
+    of_peers = any(it.by_name for it in chosen)
+    in_tables = not chosen or any(it.table or it.kind == "bytes" for it in chosen)
+    there = PEER_RUNS if of_peers else RUNS  # where the commands look
+    named = "" if output == there and not run else f" {shlex.quote(str(folder))}"
+    commands = ["hem table --peers"] if of_peers else [*["hem table"] * in_tables, "hem report"]
     _measure(folder, workers, ", ".join(f"{it}{named}" for it in commands))
 
 

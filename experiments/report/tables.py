@@ -159,18 +159,16 @@ def show_claims(
 
 
 def _shown_claims(run: Run, every: bool) -> list[JudgedClaim]:
-    """What was measured, of the thesis' structures or of all. Raises MissingError for nothing."""
+    """What was measured of the thesis' structures, else of all. Raises MissingError for nothing."""
     if run.cases.empty:
         resume = resume_command(run.folder)
         raise MissingError(f"{run.folder} holds no case; resume it with: {resume}")
     measured = [it for it in judge_run(run) if it.claim.structure in NAMED and it.was_measured]
-    claims = [it for it in measured if every or it.claim.structure in THESIS]
-    if not claims:
+    if not measured:
         of_peers = (run.cases["experiment"] == "bench_peers").any()
         instead = "try --peers" if of_peers else "hem report shows what there is"
-        told = "of the thesis' structures: try --all" if measured else f"of the tables: {instead}"
-        raise MissingError(f"{run.folder} holds nothing {told}")
-    return claims
+        raise MissingError(f"{run.folder} holds nothing of the tables: {instead}")
+    return [it for it in measured if every or it.claim.structure in THESIS] or measured
 
 
 def claims_as_json(run_folder: Path, every: bool = False) -> dict[str, Any]:

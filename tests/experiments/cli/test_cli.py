@@ -14,6 +14,7 @@ from rich.console import Console
 
 from experiments import report
 from experiments.cli import progress
+from experiments.cli import study as study_command
 from experiments.cli.check import BASELINE
 from experiments.presets import PRESETS
 from experiments.runs import experiments, load, read_meta, write_meta
@@ -109,16 +110,27 @@ def test_a_run_that_is_not_ended_is_told_how_it_goes_on(tmp_path):
     assert f"holds no case; resume it with: {goes_on}" in mistake("table", str(run))
 
 
+def test_the_table_of_a_run_without_the_structures_of_the_thesis_has_those_that_there_are(tmp_path):
+    run = str(write_run(tmp_path, only=lambda _, it: it == "triangle_soup"))
+    assert output_of("table", run) == output_of("table", run, "--all")
+    assert "Soup" in output_of("table", run)
+
+
+def test_of_a_run_that_no_table_shows_the_table_says_what_does(tmp_path):
+    run = str(write_run(tmp_path, only=lambda it, _: it == "bench_build"))
+    assert "hem report shows" in mistake("table", run)
+
+
 @pytest.mark.parametrize(
-    ("part", "said"), [("triangle_soup", "try --all"), ("bench_build", "hem report shows")]
+    ("experiment", "shown_by"),
+    [("memory", ["table", "report"]), ("latency", ["report"]), ("peers", ["table --peers"])],
 )
-def test_who_is_told_to_try_a_command_is_shown_something_by_it(tmp_path, part, said):
-    run = str(write_run(tmp_path, only=lambda *job: part in job))
-    assert said in mistake("table", run)
-    if part == "triangle_soup":
-        assert "Soup" in output_of("table", run, "--all")
-    else:
-        assert said in mistake("table", run, "--all")
+def test_a_study_names_the_commands_that_show_its_run(tmp_path, monkeypatch, experiment, shown_by):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(study_command, "_measure", lambda folder, _, now: print(f"{folder}|{now}"))
+    folder, now = output_of("study", "--experiment", experiment, "--preset", "smoke").split("|")
+    beside = f" {folder}" if experiment == "peers" else ""  # where the command would not look
+    assert now.strip() == ", ".join(f"hem {it}{beside}" for it in shown_by)
 
 
 def test_what_cannot_be_written_is_told_before_anything_is_measured(tmp_path):
