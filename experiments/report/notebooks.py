@@ -27,16 +27,20 @@ def page_titles() -> dict[str, str]:
     """The titles of pages by notebook, in reading order; ResultsError where one has none."""
     found = {}
     for path in carried("notebooks").glob("*.ipynb"):
-        about = nbformat.read(path, as_version=4).metadata
-        if not {"title", "order"} <= set(about):
-            raise ResultsError(f"{path}: its metadata has to give a title and an order")
+        about = read(path.stem).metadata
+        if not {"title", "order"} <= set(about) or not isinstance(about["order"], int | float):
+            raise ResultsError(f"{path}: its metadata has to give a title, and a number as order")
         found[about["order"], path.stem] = about["title"]
     return {name: title for (_, name), title in sorted(found.items())}
 
 
 def read(name: str) -> Any:
-    """A notebook that is a page, by its name."""
-    return nbformat.read(carried("notebooks") / f"{name}.ipynb", as_version=4)
+    """A notebook that is a page, by its name. Raises ResultsError for a file that is none."""
+    path = carried("notebooks") / f"{name}.ipynb"
+    try:
+        return nbformat.read(path, as_version=4)
+    except Exception as error:  # of several kinds, as it is damaged
+        raise ResultsError(f"{path} is no notebook: {error}") from error
 
 
 def body(name: str) -> str:

@@ -81,8 +81,24 @@ def test_every_notebook_says_its_title_and_its_place(tmp_path, monkeypatch):
     titles = notebooks.page_titles()
     assert next(iter(titles)) == "index"
     monkeypatch.setattr(notebooks, "carried", lambda folder: tmp_path)
-    nbformat.write(nbformat.v4.new_notebook(), tmp_path / "forgotten.ipynb")
-    with pytest.raises(ResultsError, match=r"forgotten\.ipynb: .* a title and an order"):
+    for order in (
+        {},
+        {"order": 1},
+        {"title": "Here", "order": "1"},
+        {"title": "Here", "order": None},
+    ):
+        nbformat.write(nbformat.v4.new_notebook(metadata=order), tmp_path / "forgotten.ipynb")
+        with pytest.raises(
+            ResultsError, match=r"forgotten\.ipynb: .* a title, and a number as order"
+        ):
+            notebooks.page_titles.__wrapped__()
+
+
+@pytest.mark.parametrize("text", ["no JSON", "{}", "[]"])
+def test_a_file_that_is_no_notebook_is_named(tmp_path, monkeypatch, text):
+    (tmp_path / "broken.ipynb").write_text(text)
+    monkeypatch.setattr(notebooks, "carried", lambda folder: tmp_path)
+    with pytest.raises(ResultsError, match=r"broken\.ipynb is no notebook"):
         notebooks.page_titles.__wrapped__()
 
 
