@@ -52,11 +52,17 @@ _BESIDE = {
 }
 """What text that pymeshlab reads has beside; it does not tell, and makes normals of its own."""
 
-_UNNOTICED = (
+_MISREAD = (
     rb'"mode"\s*:\s*[0-356]|"sparse"\s*:\s*\{'  # strips, fans, lines; numbers that replace some
+    rb'|"EXT_mesh_gpu_instancing"\s*:\s*\{|<(Indexed)?TriangleStripSet\b|<(skew|lookat)\b'
     rb"|<scale\b[^>]*>(?!(\s*1(\.0*)?){3}\s*<)[^<]*"
 )
-"""What gltf, glb and dae may have, and pymeshlab reads the triangles as if it were not there."""
+"""What gltf, glb, dae and x3d may have, and pymeshlab reads the triangles as if it were not there;
+and strips, of which it turns every other triangle around."""
+
+_NUMBER = rb"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
+_FRAME = rb"(?:<matrix\b[^>]*>|\bscale\b\s*(?:=\s*[\"'])?)((?:[\s,]*%b){3}(?:(?:[\s,]+%b){13})?)"
+"""The matrix of a part in dae, or its scale in x3d and wrl, by which it may be mirrored."""
 
 _SAYS_ONLY_WHERE = ("Unable to open file", "Error encountered while loading file", "File:", '"')
 
@@ -174,9 +180,10 @@ def _read(file: Path, repair: bool = False) -> Parts:
     promised = _promised(data, extension)
     if len(data) < promised:  # pymeshlab would read the half of it
         raise cut_short(f"{len(data):,} of {promised:,} bytes")
-    if unnoticed := re.search(_UNNOTICED, data):
-        words = unnoticed[0].decode("latin-1")
-        raise MeshError(f"pymeshlab takes no notice of {words!r}; write plain triangles into it")
+    frames = re.finditer(_FRAME % (_NUMBER, _NUMBER), data)
+    if misread := re.search(_MISREAD, data) or next(filter(_mirrors, frames), None):
+        words = misread[0].decode("latin-1")
+        raise MeshError(f"pymeshlab misreads {words!r}; write plain triangles into it")
     try:
         points, triangles, left_out = load_file(file)
     except MeshlabError as error:
@@ -187,6 +194,13 @@ def _read(file: Path, repair: bool = False) -> Parts:
             "leave them out with hem.load(path, repair=True)"
         )
     return Parts(points, uniform(triangles), _besides(data, extension))
+
+
+def _mirrors(frame: re.Match[bytes]) -> bool:
+    """Whether faces would have to be turned around, which pymeshlab leaves as they are."""
+    numbers = np.array([float(it) for it in re.findall(_NUMBER, frame[1])])
+    matrix = np.diag(numbers) if len(numbers) == 3 else numbers.reshape(4, 4)[:3, :3]
+    return bool(np.linalg.det(matrix) < 0)
 
 
 def _besides(data: bytes, extension: str) -> list[str]:

@@ -701,7 +701,7 @@ def test_a_mirrored_part_of_a_scene_is_seen_from_the_same_side(tmp_path: Path) -
 
 @pytest.mark.parametrize("mode", [0, 1, 2, 3, 5, 6])
 def test_what_gltf_has_for_triangles_is_not_taken_for_some(tmp_path: Path, mode: int) -> None:
-    with pytest.raises(hem.MeshError, match=f"takes no notice of '\"mode\": {mode}'"):
+    with pytest.raises(hem.MeshError, match=f"misreads '\"mode\": {mode}'"):
         hem.load(written(tmp_path / "a.gltf", gltf({"mode": mode}, {})))
 
 
@@ -713,10 +713,54 @@ def test_a_scene_of_dae_whose_scale_would_get_lost_is_refused(tmp_path: Path) ->
     assert text.count(node) == 1
     for scale in ("2 2 2", "1 1 -1", " 1.0 1.01 1"):
         file = written(tmp_path / "a.dae", text.replace(node, f"<scale>{scale}</scale>{node}"))
-        with pytest.raises(hem.MeshError, match=f"takes no notice of '<scale>{scale}'"):
+        with pytest.raises(hem.MeshError, match=f"misreads '<scale>{scale}'"):
             hem.load(file)
     written(file, text.replace(node, f'<scale sid="scale"> 1 1.0 1.000\n</scale>{node}'))
     assert np.array_equal(hem.load(file).points, mesh.points)
+
+
+FRAMES = [[2, 0.5, 1], [-1, 1, 1], [1, -1e-1, 1], [-1, -0.5, 1], [1, 1, -2]]
+"""How a triangle in the plane is scaled; as many of them are mirrored as have an odd sign."""
+
+
+@pytest.mark.parametrize("sides", FRAMES)
+def test_a_part_is_seen_from_the_side_it_was_or_refused(tmp_path: Path, sides: list[float]) -> None:
+    words, flat = " ".join(map(str, sides)), [(0, 0, 0), (1, 0, 0), (0, 1, 0)]
+    hem.save(hem.TriangleMesh(flat, [[0, 1, 2]]), tmp_path / "a.dae")
+    node, (x, y, z) = "<instance_geometry", sides
+    matrix = f"<matrix sid='m'>{x} 0 0 0\n0 {y} 0 0 0 0 {z} 0 0 0 0 1</matrix>"
+    shape = X3D.format("").partition("<Scene>")[2].partition("</Scene>")[0]
+    files = {
+        "dae": (tmp_path / "a.dae").read_text().replace(node, matrix + node),
+        "x3d": X3D.format("").replace(shape, f'<Transform scale="{words}">{shape}</Transform>'),
+        "wrl": WRL.format("").replace("Shape", f"Transform {{ scale {words} children Shape") + "}",
+    }
+    for extension, content in files.items():
+        file = written(tmp_path / f"a.{extension}", content)
+        if x * y * z < 0:
+            with pytest.raises(hem.MeshError, match=r"misreads .(<matrix|scale)"):
+                hem.load(file)
+            continue
+        mesh = hem.load(file)
+        assert np.allclose(mesh.points[mesh.triangles[0]], np.multiply(flat, sides))
+
+
+def test_what_pymeshlab_would_read_in_another_place_or_the_wrong_way_is_refused(
+    tmp_path: Path,
+) -> None:
+    hem.save(hem.TriangleMesh(np.eye(3), [[0, 1, 2]]), tmp_path / "a.dae")
+    dae, node = (tmp_path / "a.dae").read_text(), "<instance_geometry"
+    instances: Any = {"extensions": {"EXT_mesh_gpu_instancing": {"attributes": {}}}}
+    strip = X3D.format("").replace("IndexedFaceSet", "IndexedTriangleStripSet")
+    for name, content, words in (
+        ("a.gltf", gltf({}, instances), "EXT_mesh_gpu_instancing"),
+        ("a.dae", dae.replace(node, f"<skew>45 0 1 0 1 0 0</skew>{node}"), "<skew"),
+        ("a.dae", dae.replace(node, f"<lookat>0 0 5 0 0 0 0 1 0</lookat>{node}"), "<lookat"),
+        ("a.x3d", strip.replace("coordIndex", "index"), "<IndexedTriangleStripSet"),
+        ("a.x3d", strip.replace("IndexedTri", "Tri"), "<TriangleStripSet"),
+    ):
+        with pytest.raises(hem.MeshError, match=f"misreads '\"?{words}"):
+            hem.load(written(tmp_path / name, content))
 
 
 def test_a_part_of_texture_in_a_3ds_file_is_told(tmp_path: Path) -> None:
