@@ -47,8 +47,11 @@ _BESIDE = {
     "texture coordinates": rb'"TEXCOORD|\bTextureCoordinate\b',
     "normals": rb'"NORMAL"|<Normal\b|\bNormal\s*\{',
     "colors": rb'"COLOR|<Color|\bColor(RGBA)?\s*\{',
+    "materials": rb'"materials"\s*:|<[Mm]aterial\b',
+    "poses and motions": rb'"(skins|targets|animations)"\s*:|<(skin|morph|animation)\b',
     "shapes that pymeshlab leaves out": rb"<(tri(strips|fans)|line(s|strips)|polygons)\b"
-    rb"|(<|\bgeometry\s+)(Indexed)?(LineSet|PointSet|Box|Cone|Extrusion|Text|Nurbs\w+)\b",
+    rb"|(<|\bgeometry\s+)(Indexed)?(LineSet|PointSet|Box|Cone|Extrusion|Text|Nurbs\w+"
+    rb"|(Arc|Circ|Disk|Poly|Rect|Tri)\w*2D)\b",
 }
 """What text that pymeshlab reads has beside; it does not tell, and makes normals of its own."""
 

@@ -608,6 +608,7 @@ NORMALS, TEXTURE = "normals", "texture coordinates"
 LEFT_OUT = "shapes that pymeshlab leaves out"
 LINE = """<Shape><IndexedLineSet coordIndex="0 1 -1">
 <Coordinate point="0 0 0 1 0 0"/></IndexedLineSet></Shape>"""
+DISK = "<Shape><Appearance><Material/></Appearance><Disk2D/></Shape>"
 VERTEX = "element vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
 X3D = """<X3D><Scene><Shape><IndexedFaceSet coordIndex="0 1 2 -1">
 <Coordinate point="0 0 0 1 0 0 0 1 0"/>{}</IndexedFaceSet></Shape></Scene></X3D>"""
@@ -644,6 +645,7 @@ coordIndex [0, 1, 2, -1] {} }} }}"""
         ("a.x3d", X3D.format('<TextureCoordinate point="0 0 1 0 0 1"/>'), [TEXTURE]),
         ("a.x3d", X3D.format("").replace("<Scene>", f"<Scene>{LINE}"), [LEFT_OUT]),
         ("a.x3d", X3D.format("").replace("<Scene>", "<Scene><Shape><Box/></Shape>"), [LEFT_OUT]),
+        ("a.x3d", X3D.format("").replace("<Scene>", f"<Scene>{DISK}"), ["materials", LEFT_OUT]),
         ("a.wrl", WRL.format(""), []),
         ("a.wrl", WRL.format("") + "Shape { geometry PointSet { } }", [LEFT_OUT]),
         ("a.wrl", WRL.format("normal Normal { vector [0 0 1, 0 0 1, 0 0 1] }"), [NORMALS]),
@@ -690,6 +692,18 @@ def gltf(primitive: dict[str, int], node: dict[str, list[float]]) -> str:
         ],
     }  # fmt: skip
     return json.dumps(scene)
+
+
+def test_what_a_scene_has_beside_its_shape_is_told(tmp_path: Path) -> None:
+    targets: Any = {"targets": [{"POSITION": 0}]}
+    plain, poses = gltf({}, {}), "poses and motions"
+    for content, name in (
+        (plain.replace("{", '{"materials": [{}], ', 1), "materials"),
+        (plain.replace("{", '{"skins": [{"joints": [0], "inverseBindMatrices": 0}], ', 1), poses),
+        (gltf(targets, {}), poses),
+    ):
+        with pytest.warns(hem.MeshWarning, match=f"a.gltf has {name}, which are dropped"):
+            hem.load(written(tmp_path / "a.gltf", content))
 
 
 def test_a_mirrored_part_of_a_scene_is_seen_from_the_same_side(tmp_path: Path) -> None:
@@ -806,6 +820,7 @@ def test_an_openctm_file_of_all_parts_is_read_whole_and_refused_without_its_last
         ("flat.off", OFF.format(0, 3).replace(" 0\n3", "\n3"), "without three coordinates"),
         ("zero.obj", "v 0 0 0\nf 0 2 3\nv 1 0 0\nv 0 1 0\n", "such as -1"),
         ("other.off", OFF.format(0, 3).replace("OFF", "COFFEE"), "does not begin as off files do"),
+        ("cut.obj", OBJ.format(""), "a last line without all its numbers"),
         ("points.off", "OFF\n3 0 0\n0 0 0\n1 0 0\n0 1 0\n", "only 3 points"),
         (
             "words.stl", "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 no\nvertex 1 0 0\n"
