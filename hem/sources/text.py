@@ -126,8 +126,8 @@ def read_stl(data: bytes) -> Parts:
     has beside, two bytes a triangle, are colors where they are not zero.
     """
     dropped: list[str] = []
-    count = int.from_bytes(data[80:84], "little") if len(data) >= 84 else -1
-    binary = count >= 0 and len(data) >= 84 + 50 * count
+    count = int.from_bytes(data[80:84], "little")
+    binary = len(data) >= 84 + 50 * count
     if data[:80].lstrip()[:5].lower() == b"solid" and not binary:
         text = _NAMED.sub(rb"\1solid", data.lower())
         numbers = re.findall(_LOOP, text)
@@ -142,7 +142,7 @@ def read_stl(data: bytes) -> Parts:
         corners = facets["corners"].reshape(-1, 3)
         dropped += ["colors"] * bool(facets["attribute"].any())
     else:
-        raise cut_short(f"{len(data):,} bytes" + (f" of {84 + 50 * count:,}" if count >= 0 else ""))
+        raise cut_short(f"{len(data):,} of {84 + 50 * count:,} bytes")
     first, cluster = clusters(corners, 0.0)
     return Parts(corners[first], uniform(cluster.reshape(-1, 3)), dropped)
 

@@ -140,7 +140,7 @@ PROMISES = {
         OFF.format(0, 3).replace("3 0 1 2", "2000000000 0 1 2"), "without all its corners",
     ),
     "vertices.obj": ("# Vertices: 4000000000\n" + OBJ.format(4), "4 of 4,000,000,000 vertices"),
-    "facets.stl": (80 * "-" + 4 * "\x7f" + 50 * "-", "134 bytes of 106,953,107,234"),
+    "facets.stl": (80 * "-" + 4 * "\x7f" + 50 * "-", "134 of 106,953,107,234 bytes"),
     "chunk.3ds": ("MM" + 4 * "\x7f" + 80 * "-", "86 of 2,139,062,143 bytes"),
     "maps.ctm": ("OCTM\5\0\0\0RAW\0" + "\1\0\0\0" * 2 + "\0\0\0\4" + 12 * "\0", "no whole part"),
     "raw.ctm": ("OCTM\5\0\0\0RAW\0" + 8 * "\x7f" + 100 * "\0", r"120 of 51,337,491,\d+ bytes"),
