@@ -46,6 +46,6 @@ def find_mesh(
             f"there is no model {name!r}: name a file, or one of "
             f"{', '.join((*SAMPLES, *FAMILIES))}; families take a size, as in sphere:2000"
         )
-    if size and not re.fullmatch(r"\d+(_\d+)*", size, re.ASCII):
+    if size and not re.fullmatch(r"\d(_?\d){0,99}", size, re.ASCII):
         raise MeshError(f"{name!r}: after the colon stands a number of vertices")
     return generate(family, int(size or USUAL_SIZE))

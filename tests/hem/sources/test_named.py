@@ -42,6 +42,7 @@ def test_polygons_are_kept_unless_they_are_to_be_cut(tmp_path):
     ("cube:3", "there is no model 'cube:3': name a file, or one of bunny"),
     ("sphere:many", "after the colon stands a number of vertices"),
     ("sphere:1__000", "after the colon stands a number of vertices"),
+    ("sphere:" + 5_000 * "9", "after the colon stands a number of vertices"),
     ("sphere:_5", "after the colon stands a number of vertices"),
     ("sphere:٣", "after the colon stands a number of vertices"),
     ("torus:5", "reachable are"),
