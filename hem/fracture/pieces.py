@@ -41,8 +41,8 @@ class Fracture:
 
     def __getstate__(self) -> dict[str, Any]:
         """Pickled with all that is made when it is asked for."""
-        made = {"neighbors": self.neighbors, "find_neighbors": None}
-        return self.__dict__ | {"shards": [*self.shards], "rest": [*self.rest]} | made
+        made = {"shards": [*self.shards], "rest": [*self.rest]}
+        return self.__dict__ | made | {"find_neighbors": self.neighbors.copy}
 
     @property
     def closed(self) -> bool:

@@ -561,5 +561,6 @@ def test_a_fracture_can_be_pickled():
     broken = shatter(structures.build("half_edge", sheet()), (3.2, 4.1, 0), "glass", 7)
     again = pickle.loads(pickle.dumps(broken))
     assert np.array_equal(corners(again.shards), corners(broken.shards))
-    assert np.array_equal(again.neighbors, broken.neighbors)
+    for it in (again, replace(again, seed=8)):
+        assert np.array_equal(it.neighbors, broken.neighbors)
     assert again.counts == broken.counts
