@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike
 
 from hem.arrays import Floats
 from hem.errors import MeshError
-from hem.fracture.blow import Blow
+from hem.fracture.blow import Blow, generator
 from hem.fracture.blow import sites as sites_of
 from hem.fracture.bodies.cells import cells
 from hem.fracture.bodies.solid import Body, Shell, from_manifold, require_body, with_hollows
@@ -62,6 +62,7 @@ def voronoi(
         require_triangle_mesh(mesh, "voronoi")
     body = mesh if isinstance(mesh, Body) else require_body(mesh)
     chosen = material if isinstance(material, Material) else named(material)
+    generator(seed)  # raises for what is none
     blow = _aimed(body, position(impact, "an impact"), direction, force)
     plan = _scattered(body, blow, chosen, seed) if sites is None else _given(body, sites)
     made = _cut(body, plan)

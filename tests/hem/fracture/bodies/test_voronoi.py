@@ -281,6 +281,7 @@ def test_the_impact_is_taken_to_the_nearest_point_and_the_blow_goes_inward():
         ({"direction": [(0, 1), 2]}, "direction"),
         ({"seed": -1}, "seed"),
         ({"seed": 0.5}, "seed"),
+        ({"seed": "a", "sites": [(0, 0, 0)]}, "seed"),
         ({"material": "jelly"}, "no material"),
         ({"sites": []}, "sites"),
         ({"sites": [(0, 0)]}, "sites"),
