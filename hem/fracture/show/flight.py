@@ -4,6 +4,7 @@ A piece meets the floor with its convex hull and nothing else: pieces pass throu
 the floor friction stops it and it tips onto the side it can lie on. All is in closed form.
 """
 
+from numbers import Real
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -45,11 +46,12 @@ def flight(
     the height ``floor``. The pieces of the indices ``held`` stay where they are. Cost O(pieces ·
     seconds · vertices of a hull). Raises MeshError for times and frames that make no sense.
     """
-    whole = isinstance(frames, int | np.integer)
-    if not (0 < seconds <= 600 and whole and 2 <= frames <= 100_000 and 0 < ease <= 10):
+    numbers = all(isinstance(it, Real) for it in (seconds, ease, floor)) and np.isfinite(floor)
+    whole = numbers and isinstance(frames, int | np.integer) and 2 <= frames <= 100_000
+    if not (whole and 0 < seconds <= 600 and 0 < ease <= 10):
         raise MeshError(
-            "a flight takes 0 … 600 seconds, 2 … 100,000 frames and an ease of 0 … 10, not "
-            f"{seconds}, {frames} and {ease}"
+            "a flight takes 0 … 600 seconds, 2 … 100,000 frames, an ease of 0 … 10 and a floor "
+            f"somewhere, not {seconds!r}, {frames!r}, {ease!r} and {floor!r}"
         )
     times, top = seconds * np.linspace(0, 1, frames) ** ease, direction(up)
     mass = fracture.mass

@@ -182,7 +182,17 @@ def test_needles_crumbs_and_single_triangles_fly_as_well():
 
 @pytest.mark.parametrize(
     "arguments",
-    [{"seconds": 0}, {"seconds": float("nan")}, {"frames": 1}, {"frames": 2.5}, {"ease": 0}],
+    [
+        {"seconds": 0},
+        {"seconds": float("nan")},
+        {"frames": 1},
+        {"frames": 2.5},
+        {"ease": 0},
+        {"seconds": "1"},
+        {"ease": None},
+        {"floor": float("nan")},
+        {"floor": "low"},
+    ],
 )
 def test_times_that_make_no_sense_are_refused(arguments):
     broken, motion = heap(2)
