@@ -216,7 +216,7 @@ def _spread(corners: Array, count: int) -> Array:
 def view_direction(up: ArrayLike, azimuth: float = AZIMUTH, elevation: float = ELEVATION) -> Floats:
     """From what is seen toward the camera: (3,) of length 1. ``up`` is an axis.
 
-    At azimuth 0 it is the axis that follows next but one: z for y, y for x, x for z.
+    At azimuth 0 it is the next axis: z for y, y for x, x for z.
     """
     top = np.asarray(up, float)
     around, lifted = np.radians(azimuth), np.radians(elevation)

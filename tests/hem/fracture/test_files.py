@@ -96,6 +96,10 @@ def test_the_rest_and_its_islands_have_names_of_their_own(sheet):
     assert given[0] == "shard_000"
     assert names(replace(sheet, rest=[])) == given[: len(sheet.shards)]
     assert names(replace(sheet, shards=[])) == given[len(sheet.shards) :]
+    parts = replace(sheet, shards=sheet.shards[:1], rest=[sheet.rest[0]] * 3)
+    assert names(parts) == ["shard_000", "rest", "island_0", "island_1"]
+    for n, last in ((1000, "shard_999"), (1001, "shard_1000")):
+        assert names(replace(sheet, shards=[*sheet.shards][:1] * n, rest=[]))[-1] == last
 
 
 @pytest.mark.parametrize("kind", ["broken", "sheet"])
