@@ -130,8 +130,8 @@ def save(mesh: Any, path: FilePath) -> None:
 
     Replaces what is there. ply, off and obj keep every bit, every vertex and every polygon; the
     others round to float32. 3ds keeps no polygons, and stl (binary) only triangles and vertices
-    that have faces; text formats such as wrl, dae and x3d round the coordinates once more, 3mf to
-    six decimals, and ctm has the faces in another order. x3d has one vertex per position: a
+    that have faces; text formats such as wrl, dae and x3d keep six digits of a coordinate, 3mf six
+    decimals, and ctm has the faces in another order. x3d has one vertex per position: a
     MeshWarning tells where some become one. A broken run never leaves half a file. Raises MeshError
     where the format is none that `load` reads, or keeps no polygons or not all faces, or the folder
     cannot be written.
