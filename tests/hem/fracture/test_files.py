@@ -124,6 +124,7 @@ def test_the_numbers_are_those_of_the_fracture_and_json_can_hold_them(kind, requ
     assert all(it["neighbors"] == sorted(it["neighbors"]) for it in pieces)
     if not found.closed:
         each = pieces[0]
+        assert each["area_m2"] == pytest.approx(found.pieces[0].area())
         assert each["area_m2"] * told["thickness_m"] == pytest.approx(each["volume_m3"])
 
 
