@@ -338,3 +338,53 @@ def test_an_operation_is_bound_when_it_is_first_asked_for(name, monkeypatch):
     assert bound == ["split_face"]
     s.flip_edge(int(s.edges()[0]))
     assert bound == ["split_face", "flip_edge"]
+
+
+def every(s: structures.Structure, operation: str) -> list[tuple[int, ...]]:
+    """All handles that an operation may be asked for, with all that may stand beside them."""
+    element, nothing = s.operations[operation].element, [[]]
+    first = s.half_edges() if element == "half-edge" else s.handles(element)
+    if operation == "add_vertex":
+        first = [-1]
+    beside = {"collapse_edge": [*nothing, *([v] for v in s.vertices().tolist())]}
+    beside["cut_across"] = beside["split_vertex"] = [[h] for h in first]
+    beside["add_face"] = [[*pair] for pair in product(first, repeat=2)]
+    return [(int(h), *map(int, row)) for h in first for row in beside.get(operation, nothing)]
+
+
+def notch() -> hem.PolygonMesh:
+    """A triangle in a pentagon, of which two corners are joined by an edge that is no side."""
+    return hem.PolygonMesh(np.random.default_rng(0).random((5, 3)), [(1, 4, 0), (1, 2, 3, 0, 4)])
+
+
+@pytest.mark.parametrize("start", [lambda: strip(3), octahedron, lambda: sheet(2), notch])
+def test_what_is_only_checked_changes_nothing_and_is_what_would_be_done(name, start):
+    mesh = start()
+    if isinstance(mesh, hem.PolygonMesh) and not structures.REGISTRY[name].holds_polygons:
+        return
+    s = structures.build(name, mesh, compiled=False)
+    s.add_vertex((0, 0, 1))
+
+    def is_done(operation: str, row: tuple[int, ...], point: object = (0, 0, 2)) -> bool:
+        own = s.copy()
+        try:
+            own.operate(operation, *row, point=point)
+        except hem.TopologyError:
+            assert own.same_as(s)
+            return False
+        own.validate()
+        return True
+
+    before = s.copy()
+    for operation, its in s.operations.items():
+        rows = every(s, operation)
+        args = [[*row, -1, -1][:3] for row in rows]
+        points = np.full((len(rows), 3), (0, 0, 2)) if its.takes_a_point else None
+        told = s.prepare(operation, args, points).check().tolist()
+        s.validate()
+        assert s.same_as(before), operation
+        assert told == [is_done(operation, row) for row in rows], operation
+        if its.takes_a_point and any(told):
+            with pytest.raises(hem.MeshError, match="finite"):
+                s.operate(operation, *rows[told.index(True)], point=(0, np.nan, 0))
+            assert s.same_as(before), operation
