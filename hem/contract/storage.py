@@ -55,10 +55,15 @@ class Storage:
         return "" if arrays[-1] == "counts" else "the last array of its records is not counts"
 
     def require_columns(self, records: Any) -> None:
-        """Raise TypeError if an array has another number of columns, as kernels rely on it."""
+        """Raise TypeError if an array has another number of columns, as kernels rely on it.
+
+        MeshError for positions of eight bytes, of which they would read the halves.
+        """
         for name, array, count in zip(
             records._fields, records, self.columns(type(records)), strict=True
         ):
+            if count and array.dtype == np.float64:
+                raise MeshError("a structure holds float32; structures.build(name, mesh) rounds")
             columns = array.shape[1] if count and array.ndim == 2 else 1
             if count and columns != count:
                 raise TypeError(

@@ -180,8 +180,8 @@ class Structure(Described, Surveying, abstract=True):
     def build(cls, mesh: TriangleMesh, reference_bytes: int = 4) -> Self:
         """The structure of ``mesh``, with stored references of 4 or 8 bytes.
 
-        Cost O(n_v + n_t). Raises NonManifoldError, with the elements, for what the structure
-        cannot represent.
+        Positions are float32, which ``structures.build`` sees to. Cost O(n_v + n_t). Raises
+        NonManifoldError, with the elements, for what the structure cannot represent.
         """
 
     @classmethod

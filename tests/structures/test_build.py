@@ -50,6 +50,14 @@ def test_a_structure_does_not_share_its_arrays_with_the_mesh(name):
     assert np.array_equal(mesh.points, before)
 
 
+@pytest.mark.parametrize("name", OF_ARRAYS)
+def test_no_kernel_is_given_positions_of_eight_bytes(name):
+    mesh = hem.generate("grid", 9).astype(np.float64)
+    with pytest.raises(hem.MeshError, match="holds float32"):
+        structures.REGISTRY[name].build(mesh)
+    assert np.array_equal(structures.build(name, mesh).points, mesh.points.astype(np.float32))
+
+
 @pytest.mark.parametrize("name", NEEDS_MANIFOLD)
 @pytest.mark.parametrize("case", NON_MANIFOLD)
 def test_what_is_not_manifold_is_refused_with_its_elements(name, case):
