@@ -208,7 +208,8 @@ class Plankton(Navigable):
         number = np.zeros(self.face_end, np.int32)
         number[faces] = np.arange(len(faces), dtype=np.int32)
         dual = Ragged(rings.offsets, number[rings.values])
-        return type(self).build(PolygonMesh(centroids(self, faces), dual))
+        mesh = PolygonMesh(centroids(self, faces), dual)
+        return type(self).build(mesh, self._half_edges.itemsize)
 
     # What can be done with polygons -------------------------------------------------------------
 

@@ -195,6 +195,12 @@ def test_the_dual_of_the_dual_has_the_same_faces():
     assert counts(plankton(sheet(4)).dual()) == (16, 24, 9)
 
 
+@pytest.mark.parametrize("reference_bytes", [4, 8])
+def test_a_dual_has_references_as_large_as_the_mesh_has(reference_bytes):
+    cube, built = (structures.build("plankton", it, reference_bytes) for it in (CUBE, octahedron()))
+    assert cube.dual().memory() == built.memory()
+
+
 @pytest.mark.parametrize("corners", [3, 4, 7, 3000])
 def test_faces_of_any_number_of_corners_are_added_and_removed(corners):
     s = plankton(hem.PolygonMesh(np.zeros((0, 3)), []))
