@@ -349,7 +349,7 @@ class Operations:
         state, perform, n = self._state, self._bound(operation).perform, len(rows)
         state.make_room(*(n * it for it in self._growth(operation)))
         state.count_valence()
-        state.widen(2 * n)  # an operation adds at most 2 to a valence
+        state.widen(2 * n)  # an operation adds at most 2 to a valence, if it merges nothing
         positions = arguments.NO_POINT
         if points is not None or self._operations[operation].takes_a_point:
             positions = arguments.positions(operation, () if points is None else points, n)

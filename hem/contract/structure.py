@@ -670,8 +670,9 @@ class Structure(Described, Surveying, abstract=True):
         """Have operations ready to be run in one compiled loop, untold to anyone: for measuring.
 
         ``args``: (n,) first handles, or (n, 3) all of them. Refused ones are passed over. There is
-        room for them all from here on; the arrays must stay the same until it is run. Raises
-        KeyError for no operation, MeshError without ``points`` where it takes some.
+        room for them all from here on, unless collapses or merges heap up neighbors or corners, see
+        ``Prepared.run``; the arrays must stay the same until it is run. Raises KeyError for no
+        operation, MeshError without ``points`` where it takes some.
         """
         return self._operations.prepare(operation, args, points)
 
