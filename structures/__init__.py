@@ -84,7 +84,7 @@ def build(name: str, mesh: Any, reference_bytes: int = 4, *, compiled: bool = Tr
     or a reference size that does not exist.
     """
     kind: Any = look_up(name, REGISTRY, "structure")
-    if reference_bytes not in REFERENCE_TYPES:
+    if not (isinstance(reference_bytes, int | np.integer) and reference_bytes in REFERENCE_TYPES):
         raise MeshError(f"references take 4 or 8 bytes, not {reference_bytes!r}")
     given = as_mesh(mesh).astype(np.float32)
     if not kind.holds_polygons:

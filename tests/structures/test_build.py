@@ -160,7 +160,7 @@ def test_every_byte_of_the_arrays_is_a_field_or_a_name(name):
 
 @pytest.mark.parametrize(
     ("structure", "size"),
-    [("half-edge", 4), (["indexed"], 4), ("half_edge", 2), ("half_edge", None)],
+    [("half-edge", 4), (["indexed"], 4), ("half_edge", 2), ("half_edge", None), ("half_edge", [8])],
 )
 def test_a_name_or_size_that_does_not_exist_is_refused(structure, size):
     with pytest.raises(hem.MeshError, match=r"half_edge|4 or 8"):
