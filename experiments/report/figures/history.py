@@ -65,7 +65,7 @@ def _of_newest(trends: Trends) -> tuple[Trends, pd.DataFrame]:
     rows = trends.figures
     names = pd.DataFrame(map(ClaimName.read, rows["claim"]), rows.index, ClaimName._fields)
     rows = rows.join(names).assign(here=rows["machine"].isin(("", newest["machine"]["id"])))
-    wanted = rows["comparable"] & (rows["table"] != "listings")
+    wanted = rows["comparable"] & rows["table"].isin(("queries", "operations"))
     return trends, rows[wanted & rows["structure"].isin(NAMES)]
 
 

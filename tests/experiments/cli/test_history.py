@@ -252,6 +252,16 @@ def test_figures_and_page_are_there_for_any_number_of_runs(base, tmp_path, count
     assert page.count("<tr") == count + 1
 
 
+def test_a_change_in_a_table_that_is_not_drawn_leaves_the_others_drawn(base, tmp_path):
+    path = tmp_path / "history.jsonl"
+    for k, outcome in enumerate(("consistent", "violated")):
+        made = line(base, k)
+        made["claims"]["naming/indexed/split_by_corners"]["outcome"] = outcome
+        append_run(made, path)
+    figure = history_figures.departures(Trends(read_history(path)))
+    assert not any(it.get_gid() for axes in figure.axes for it in axes.lines)
+
+
 def _require_labels(figure: Figure) -> None:
     figure.draw_without_rendering()
     for axes in figure.axes:
