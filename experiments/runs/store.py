@@ -106,9 +106,7 @@ class CaseFile:
 
     def _read(self) -> None:
         *lines, _torn = self.path.read_bytes().split(b"\n")
-        folder = self.path.parent
-        run = folder.parent if folder.name.startswith("machine-") else folder
-        again = f"measure its cases again with: {resume_command(run)}"
+        again = f"measure its cases again with: {resume_command(self.path.parent)}"
         for number, line in enumerate(lines):
             where = f"{self.path}, line {number + 1},"
             content = _unsealed(line, where, again)
@@ -201,8 +199,9 @@ def writing(path: Path) -> Iterator[None]:
 
 
 def resume_command(folder: Path) -> str:
-    """The command that goes on with a run."""
-    return f"hem study --resume --run {shlex.quote(str(folder))}"
+    """The command that goes on with a run, or with that which a machine measured a part of."""
+    run = folder.parent if folder.name.startswith("machine-") else folder
+    return f"hem study --resume --run {shlex.quote(str(run))}"
 
 
 def _compact(content: dict[str, Any]) -> str:

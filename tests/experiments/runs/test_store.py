@@ -6,7 +6,7 @@ import pytest
 
 from experiments.harness import Measurement
 from experiments.harness.steadiness import REPEATS
-from experiments.runs import CaseFile, ResultsError, latest, load, write_meta
+from experiments.runs import CaseFile, ResultsError, latest, load, resume_command, write_meta
 from experiments.runs.store import DamagedError
 from tests.experiments.small_study import damage, in_new_process
 
@@ -55,6 +55,10 @@ def test_a_job_that_one_machine_left_unfinished_counts_where_it_is_whole(tmp_pat
     cases = load(tmp_path).cases
     found = cases[["experiment", "machine", "id"]].agg("/".join, axis=1).tolist()
     assert found == ["bench_x/machine-b/a", "bench_x/machine-b/b", "bench_y/machine-a/a"]
+
+
+def test_what_one_of_several_machines_measured_is_resumed_as_the_run_that_it_is_of(tmp_path):
+    assert resume_command(tmp_path / "machine-a") == resume_command(tmp_path)
 
 
 def test_of_several_measurements_of_a_case_the_calmest_counts(tmp_path):
