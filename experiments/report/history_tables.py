@@ -51,7 +51,8 @@ def show(
             rows = [list(frame.columns), *frame.astype(str).to_numpy().tolist()]
             show_rows(console, rows, title, numbers)
     machines = {run["machine"]["id"]: run["machine"] for run in trends.runs}
-    told = (f"{key}: {it.get('cores')} cores of {it.get('cpu')}" for key, it in machines.items())
+    facts = {key: [str(it[k]) for k in ("cores", "cpu") if k in it] for key, it in machines.items()}
+    told = (f"{key}: {' cores of '.join(it)}" for key, it in facts.items())  # or so many machines
     legend = LEGEND_RUNS if claim is None else LEGEND_CLAIMS
     last_words = [LEGEND, legend, f"{abbreviations(NAMED)}.", f"Machine {'; '.join(told)}."]
     if len(machines) > 1:

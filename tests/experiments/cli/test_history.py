@@ -111,6 +111,13 @@ def test_brackets_in_a_path_and_in_the_name_of_a_processor_are_told_as_they_are(
     assert "cores of Fast [/x] One." in output
 
 
+def test_of_a_run_of_several_machines_it_is_told_how_many_they_are(base, tmp_path):
+    path, made = tmp_path / "history.jsonl", line(base, 1)
+    made["machine"] = {"id": "cccc3333", "cpu": "2 machines", "machines": ["a", "b"]}
+    append_run(made, path)
+    assert "Machine cccc3333: 2 machines." in output_of("history", "show", "--file", str(path))
+
+
 def test_damage_is_told_of_beside_what_is_whole(base, tmp_path):
     path = tmp_path / "history.jsonl"
     append_run(line(base, 1), path)
