@@ -4,12 +4,11 @@
 measurements of a run; ``advise`` ranks the structures, with intervals, reasons and limits.
 """
 
-from experiments.advice.advise import ALIKE, NEEDS, Advice, Limits, Option, advise, best, flips
-from experiments.advice.prices import SIGMAS, UNMODELED, Forecast, Prices, predict
+from experiments.advice.advise import ALIKE, NEEDS, Advice, Limits, advise, best
+from experiments.advice.prices import SIGMAS, UNMODELED, Prices, predict
 from experiments.advice.workload import PRESETS, Measured, Row, Workload, find_workload, recorded
 
 __all__ = [
-    "ALIKE", "NEEDS", "PRESETS", "SIGMAS", "UNMODELED", "Advice", "Forecast", "Limits",
-    "Measured", "Option", "Prices", "Row", "Workload", "advise", "best", "find_workload", "flips",
-    "predict", "recorded",
+    "ALIKE", "NEEDS", "PRESETS", "SIGMAS", "UNMODELED", "Advice", "Limits", "Measured", "Prices",
+    "Row", "Workload", "advise", "best", "find_workload", "predict", "recorded",
 ]  # fmt: skip

@@ -23,7 +23,7 @@ from experiments.regression.compare import (
 )
 from experiments.regression.counters import measure_counters
 from experiments.regression.findings import CaseKey, Change, Finding, Kind, exit_code
-from experiments.regression.history import History, Line, append_run, read_history, record_run
+from experiments.regression.history import append_run, read_history, record_run
 from experiments.regression.interleaved import HERE, compare_trees, require_tree
 from experiments.regression.significance import FACTOR as INTERLEAVED_FACTOR
 from experiments.regression.snapshots import ClaimName
@@ -31,8 +31,8 @@ from experiments.regression.trends import MEASURES, OUTCOMES, Trends
 
 __all__ = [
     "COUNTERS", "HERE", "INTERLEAVED_FACTOR", "MEASURES", "OUTCOMES", "RUN", "RUN_FACTOR",
-    "CaseKey", "Change", "ClaimName", "Compared", "Finding", "History", "Kind", "Line", "Measured",
-    "Trends", "append_run", "compare_counters", "compare_runs", "compare_trees",
-    "describe_difference", "exit_code", "load_baseline", "measure_counters", "read_history",
-    "record_run", "reduce_run", "require_tree", "save_baseline",
+    "CaseKey", "Change", "ClaimName", "Compared", "Finding", "Kind", "Measured", "Trends",
+    "append_run", "compare_counters", "compare_runs", "compare_trees", "describe_difference",
+    "exit_code", "load_baseline", "measure_counters", "read_history", "record_run", "reduce_run",
+    "require_tree", "save_baseline",
 ]  # fmt: skip
