@@ -11,7 +11,7 @@ import pandas as pd
 from experiments.bench_fracture import FIND, SHATTER, VISITED, WAYS
 from experiments.bench_workloads import COMPILED, WORKLOADS
 from experiments.claims import BY_TIME, MIXES, Family, class_told, curves
-from experiments.harness import BASE, Axis
+from experiments.harness import BASE, Axis, own_mesh
 from experiments.report.pages import Html, numbers, part, text_table
 from experiments.report.rows import two_digits
 from experiments.report.session import MissingError, require
@@ -72,15 +72,16 @@ def workloads(run: Run, order: str = COMPILED) -> Html:
 
 
 def bytes_held(run: Run, width: int) -> pd.DataFrame:
-    """The bytes of structures on the largest mesh of each family; ``width``: of a reference."""
+    """The bytes of structures on the largest mesh of each family, on all versions of one's own."""
     cases = medians(run, "bench_memory").query("reference_bytes == @width")
-    mesh = ["family", "vertices", "faces"]
-    table = at_largest(cases, "family").pivot_table("cost", mesh, "structure", sort=False)
+    own, mesh = own_mesh.of_run(run.folder), ["family", "vertices", "faces"]
+    cases = cases.sort_values("vertices") if own else at_largest(cases, "family")
+    table = cases.pivot_table("cost", mesh, "structure", sort=False)
     return table[[name for name in NAMES if name in table]]
 
 
 def bytes_by_mesh(run: Run) -> Html:
-    """Bytes per vertex on the largest mesh of each family, with references of 8 bytes."""
+    """Bytes per vertex with references of 8 bytes, see ``bytes_held``."""
     table = bytes_held(run, 8).sort_index()
     every: Any = table.T.items()
     rows = [(family, n, faces / n, *(sizes / n)) for (family, n, faces), sizes in every]

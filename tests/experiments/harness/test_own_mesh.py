@@ -11,6 +11,7 @@ import structures
 from experiments.claims import beside
 from experiments.harness import PRESETS, Case, own_mesh, time_rounds
 from experiments.presets import COARSER, FINE_ENOUGH, LARGEST, SMALLEST
+from experiments.report import comparisons
 from experiments.runs import experiments, load, read_meta, study
 from hem.meshes import non_manifold_edges
 from tests.experiments.cli.calls import hem as command
@@ -100,6 +101,22 @@ def test_a_run_keeps_its_mesh_and_is_called_by_it(tmp_path):
         code, printed = command(*asked, str(folder))
         assert code in (1, 2)
         assert "is on model.ply, and the baseline is not" in printed
+
+
+def test_a_mesh_is_weighed_at_its_own_size_and_that_is_told(tmp_path):
+    file = tmp_path / "tetrahedron.off"
+    hem.save(beside.TETRAHEDRON, file)
+    holders = ["half_edge", "half_edge_objects"]
+    folder = begin(tmp_path, "memory", mesh=str(file), structures=holders)
+    go_on(folder)
+    every = [len(it.points) for it in versions(folder)]
+    heads, own, *finer = comparisons.bytes_by_mesh(load(folder)).rows
+    assert [int(row[1].replace(",", "")) for row in (own, *finer)] == every
+    told = dict(zip(heads, own, strict=True))
+    for name in holders:
+        expected = sum(structures.build(name, beside.TETRAHEDRON, 8).memory().values()) / 4
+        title = structures.REGISTRY[name].title
+        assert float(told[title].replace(",", "")) == pytest.approx(expected, abs=0.05)
 
 
 @pytest.mark.parametrize(
