@@ -41,6 +41,8 @@ class Storage:
         """What does not fit in the fields, of records of these arrays; empty where all does."""
         kinds = {it.element for it in self.fields}
         for it in self.fields:
+            if it.name.count(".") != 1:
+                return f"field {it.name!r} has no name such as half_edge.twin"
             known = (it.element, ENDS), (it.array, arrays[:-1]), (it.target, {"", *kinds})
             for named, among in known:
                 if named not in among:

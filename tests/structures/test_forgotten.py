@@ -48,7 +48,9 @@ def write(folder: Path, name: str, changes: dict[str, str]) -> str:
             '"vertex_points", 3',
             "'vertex_points', and there are face_half_edge",
         ),
-        ('Field("half_edge.twin', 'Field("twin', "'twin', and there are edge, face, half_edge"),
+        ('Field("half_edge.twin', 'Field("twin.of', "'twin', and there are edge, face, half_edge"),
+        ('Field("half_edge.twin', 'Field("twin', "field 'twin' has no name such as half_edge.twin"),
+        ('edge.next"', 'edge.next.one"', "field 'half_edge.next.one' has no name such as"),
         (
             'origin", "half_edge", target="vertex',
             'origin", "half_edge", target="v',
