@@ -217,6 +217,14 @@ def test_meshes_and_structures_need_the_core_alone(package):
     assert {(name, path) for name, path in found if name not in CORE} == set()
 
 
+def test_the_judge_needs_numpy_and_nothing_else_of_ours():
+    found = {(it, path) for it, path in imported("hem/complexity") if "pytest_plugin" not in path}
+    assert {it for it, _ in found} == {"numpy"}, found
+    text = "".join(path.read_text("utf-8") for path in (ROOT / "hem/complexity").glob("*.py"))
+    ours = re.findall(r"(?m)^\s*(?:from|import) ((?:hem|structures|experiments)\b[\w.]*)", text)
+    assert {".".join(it.split(".")[:2]) for it in ours} == {"hem.complexity"}
+
+
 @pytest.mark.parametrize("package", PACKAGES)
 def test_whatever_is_imported_is_declared(package):
     declared = CORE.union(*EXTRAS.values())

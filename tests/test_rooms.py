@@ -21,6 +21,9 @@ def past_doors(name: str) -> list[str]:
     """What a module imports from within other rooms, beside what their doors name."""
     room, found = name.rpartition(".")[0], []
     for it in ast.walk(ast.parse(FILES[name].read_text("utf-8"))):
+        if isinstance(it, ast.Import):  # by its whole name a file is seen from anywhere
+            whole = (one.name for one in it.names if one.name not in ROOMS and one.name in FILES)
+            found += [one for one in whole if one.rpartition(".")[0] not in BY_FILE]
         if not isinstance(it, ast.ImportFrom) or not it.module or it.level:
             continue
         if it.module in ROOMS:
