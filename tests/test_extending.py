@@ -160,8 +160,14 @@ def test_an_operation_is_one_module_and_its_name_where_it_is_measured(extended):
     named.write_text(was.replace('MEASURED = "', 'MEASURED = "turn_edge", "'))
     try:
         python(extended, "-c", TURNS)
-    finally:
+        module.write_text(module.read_text().replace("OPERATIONS", "OPERATION"))
+        said = python(extended, "-c", "import hem.contract", code=1)
+        assert "operations.turn_edge' has no attribute 'OPERATIONS'" in said
         module.unlink()
+        said = python(extended, "-c", "import experiments.harness", code=1)
+        assert "no operation of hem.authoring is called 'turn_edge'" in said
+    finally:
+        module.unlink(missing_ok=True)
         named.write_text(was)
 
 

@@ -8,10 +8,12 @@ from dataclasses import dataclass, field
 from enum import Enum
 from functools import cached_property
 
+from experiments import require_known
 from experiments.harness.cases import Case, Measurement, NothingToMeasureError
 from experiments.harness.own_mesh import is_own
 from experiments.harness.timer import Timer, time_rounds
 from experiments.presets import Preset
+from hem.contract import OPERATIONS as KNOWN
 from hem.contract import QUERIES
 from structures import NAMED, NAMES, REGISTRY
 
@@ -20,6 +22,7 @@ KINDS = ("time", "work", "bytes")
 ANYONE = "*"  # in an experiment's claims: every structure that is not named
 
 MEASURED = "split_edge", "split_face", "collapse_edge", "flip_edge", "add_face", "remove_face"
+require_known("operation of hem.authoring", MEASURED, KNOWN)
 OPERATIONS = {name: name.replace("_", " ").capitalize() for name in MEASURED}
 """The operations that are measured, and how a table calls them."""
 SYMBOLS = {"faces": "n_t", "valence": "n_ev"}

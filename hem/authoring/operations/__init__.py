@@ -43,12 +43,14 @@ from hem.authoring.operations.parts import (
 from hem.authoring.operations.prefetching import BLOCK, SEEN, nothing, prefetching
 from hem.authoring.operations.rules import LEFT, RIGHT, A, B, C, D, live_vertex
 
+SHARED = "parts", "prefetching", "rules"  # what operations are made of
 OPERATIONS: dict[str, Operation] = {
     name: operation
-    for module in iter_modules(__path__, f"{__name__}.")
-    for name, operation in getattr(import_module(module.name), "OPERATIONS", {}).items()
+    for module in iter_modules(__path__)
+    if module.name not in SHARED
+    for name, operation in import_module(f"{__name__}.{module.name}").OPERATIONS.items()
 }
-"""Every operation of the contract by name: what the modules of this folder declare."""
+"""Every operation of the contract by name: what the other modules of this folder declare."""
 
 __all__ = [
     "BLOCK", "ENTRIES", "LEFT", "OPERATIONS", "RIGHT", "SEEN", "WIDTH", "A", "B", "C", "D",
