@@ -131,7 +131,7 @@ def _hull(points: Floats) -> tuple[Floats, Floats]:
     try:
         hull = ConvexHull(points)
     except (QhullError, ValueError):
-        flat = np.linalg.svd(points - points.mean(axis=0))[2][2]
+        flat = np.linalg.svd(points, full_matrices=False)[2][2]  # through the center of mass
         return points, np.stack([flat, -flat])
     normals, far = hull.equations[:, :3], -hull.equations[:, 3]
     below = (normals @ normals.T * far[:, None] <= far[None, :] + 1e-9 * far.max()).all(axis=1)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import tracemalloc
 from typing import NamedTuple
 
 import numpy as np
@@ -198,6 +199,16 @@ def test_times_that_make_no_sense_are_refused(arguments):
     broken, motion = heap(2)
     with pytest.raises(hem.MeshError, match="a flight takes"):
         flight(broken, motion, **arguments)
+
+
+def test_a_flat_piece_of_many_vertices_takes_memory_in_proportion_to_them():
+    sheet = fracture([hem.generate("grid", 2_500)], method="surface")
+    tracemalloc.start()
+    flown = flight(sheet, Motion(*np.zeros((2, 1, 3))), 1.0, 5, up=(0, 0, 1), floor=-0.1)
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert peak < 8 * 2_500**2  # bytes of a matrix of vertices by vertices
+    np.testing.assert_allclose(points_of(sheet, flown, 4, 0)[:, 2], -0.1, atol=1e-6)
 
 
 def test_names_are_in_the_order_of_pieces():
