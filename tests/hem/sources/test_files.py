@@ -558,6 +558,19 @@ def test_a_binary_ply_file_may_hold_more_than_a_mesh(
     assert [tuple(face) for face in mesh.faces] == faces
 
 
+def test_a_list_in_a_ply_file_may_be_empty(tmp_path: Path) -> None:
+    text = PLY.format(2).replace("end_header", "property list uchar float texcoord\nend_header")
+    for more in ("0\n", "2 0.5 0.5\n"):
+        with pytest.warns(hem.MeshWarning, match=TEXTURE):
+            mesh = hem.load(written(tmp_path / "a.ply", text + more))
+        assert mesh.triangles.tolist() == [[0, 1, 2]]
+
+
+def test_the_case_of_an_extension_does_not_matter(tmp_path: Path) -> None:
+    hem.save(hem.PolygonMesh(CORNERS, POLYGONS), tmp_path / "HOUSE.OBJ")
+    assert [tuple(face) for face in hem.load_polygons(tmp_path / "HOUSE.OBJ").faces] == POLYGONS
+
+
 @pytest.mark.parametrize("text", [True, False])
 def test_an_element_of_a_ply_file_may_have_no_properties(tmp_path: Path, text: bool) -> None:
     content = PLY.format(2).replace("element vertex", "element mark 2\nelement vertex").encode()

@@ -6,9 +6,11 @@ from scipy.spatial import cKDTree
 import hem
 from hem.fracture.bodies.solid import require_body
 from hem.fracture.bodies.voronoi import voronoi
+from hem.fracture.bodies.walls import touching
 from tests.extent import waiting_for
 from tests.hem.fracture.solids import (
     body,
+    box,
     dumbbell,
     holders,
     hollow_sphere,
@@ -62,6 +64,15 @@ def test_cells_in_several_parts_have_neighbors_of_their_own(axis):
     # left | two of either arm | right
     assert len(found.shards) == 6
     assert found.neighbors.tolist() == [[0, 1], [0, 2], [1, 3], [2, 4], [3, 5], [4, 5]]
+
+
+@pytest.mark.parametrize("wall", [0, 7])
+def test_boxes_on_either_side_of_a_wall_touch_where_they_have_enough_of_it_in_common(wall):
+    boxes = [box(1, 1, 1), box(1, 1, 1, at=(1, 0, 0))]
+    between = [(it.points[it.triangles][:, :, 0] == 0.5).all(axis=1) for it in boxes]
+    labels = [np.where(it, wall, -1) for it in between]
+    assert touching(boxes, labels, 0.9).tolist() == [[0, 1]]
+    assert touching(boxes, labels, 1.1).tolist() == []
 
 
 def test_a_body_in_one_piece_has_no_neighbors():
