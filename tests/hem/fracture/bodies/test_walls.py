@@ -75,5 +75,13 @@ def test_boxes_on_either_side_of_a_wall_touch_where_they_have_enough_of_it_in_co
     assert touching(boxes, labels, 1.1).tolist() == []
 
 
+@pytest.mark.parametrize("axis", range(3))
+def test_of_many_boxes_at_a_wall_those_touch_that_are_opposite(axis):
+    made = [box(1, 1, 1, at=(x, y, z)) for x in (-0.5, 0.5) for y in (0, 1, 2) for z in (0, 1)]
+    labels = [np.where((it.points[it.triangles][:, :, 0] == 0).all(axis=1), 1, -1) for it in made]
+    turned = [hem.TriangleMesh(np.roll(it.points, axis, axis=1), it.triangles) for it in made]
+    assert touching(turned, labels, 0.9).tolist() == [[i, i + 6] for i in range(6)]
+
+
 def test_a_body_in_one_piece_has_no_neighbors():
     assert voronoi(body("plate"), (0, 0, 1), sites=[(0, 0, 0)]).neighbors.shape == (0, 2)
