@@ -107,6 +107,9 @@ def test_what_looks_like_a_mesh_and_is_none_is_a_mesh_error(tmp_path: Path) -> N
     flat = SimpleNamespace(points=POINTS, faces=np.array([0, 1, 2, -1, 0, 2, 3, -1]))
     with pytest.raises(hem.MeshError, match=r"corners behind their count.*number 3 is -1"):
         hem.as_mesh(flat)
+    short = SimpleNamespace(points=POINTS, faces=np.array([3, 0, 1, 2, 4, 0, 1, 2]))
+    with pytest.raises(hem.MeshError, match=r"corners behind their count.*number 4 is 4"):
+        hem.as_mesh(short)
     strips = SimpleNamespace(points=POINTS, faces=np.zeros(0, np.int64), n_strips=1)
     with pytest.raises(hem.MeshError, match="triangle strips are no faces"):
         hem.as_mesh(strips)

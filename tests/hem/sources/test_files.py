@@ -295,8 +295,9 @@ def test_a_type_that_positions_cannot_have_is_told_before_a_file_is_read(tmp_pat
 @pytest.mark.parametrize("extension", FORMATS)
 @pytest.mark.parametrize("junk", [b"this is no mesh at all\n" * 9, bytes(range(256)) * 9])
 def test_what_is_no_mesh_is_refused(tmp_path: Path, extension: str, junk: bytes) -> None:
-    with pytest.raises(hem.MeshError, match=f"junk.{extension}"):
+    with pytest.raises(hem.MeshError, match=f"junk.{extension}") as refusal:
         hem.load(written(tmp_path / f"junk.{extension}", junk))
+    assert str(refusal.value).count(f"junk.{extension}") == 1
 
 
 def test_what_cannot_be_opened_is_refused_with_the_reason(tmp_path: Path) -> None:
@@ -405,6 +406,7 @@ def test_what_pymeshlab_leaves_out_is_left_out_by_repair_alone(
     [
         ("a.off", OFF.format(0, -1), 1), ("b.off", OFF.format(0, 2), 1),
         ("c.obj", OBJ.format(3), 1), ("d.obj", OBJ.format(9), 1), ("e.obj", OBJ.format(4), 2),
+        ("f.off", OFF.format(0, 3).replace("3 0 1 2", "2 0 1"), 1),
     ],
 )  # fmt: skip
 def test_repair_leaves_unusable_elements_out(
@@ -824,6 +826,18 @@ def test_an_openctm_file_of_all_parts_is_read_whole_and_refused_without_its_last
     size = len(head + parts)
     with pytest.raises(hem.MeshError, match=f"{size - 1} of {size} bytes"):
         hem.load(written(tmp_path / "b.ctm", (head + parts)[:-1]))
+
+
+def test_a_packed_openctm_file_is_read_whole_and_refused_without_its_last_byte(
+    tmp_path: Path,
+) -> None:
+    sphere, file = hem.generate("sphere", 42), tmp_path / "a.CTM"
+    meshlab.save_file(sphere, file)  # in capitals pymeshlab packs it
+    data = file.read_bytes()
+    assert data[8:11] == b"MG2"
+    assert len(hem.load(file).triangles) == len(sphere.triangles)
+    with pytest.raises(hem.MeshError, match=f"{len(data) - 1} of {len(data)} bytes"):
+        hem.load(written(file, data[:-1]))
 
 
 @pytest.mark.parametrize(
