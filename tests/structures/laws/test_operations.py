@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 import hem
 import structures
+from hem.authoring import VALENCE
 from hem.contract.operations import Operations
 from tests.extent import some, waiting_for
 from tests.structures.conftest import OF_ARRAYS, octahedron, shuffled, strip
@@ -357,7 +358,15 @@ def notch() -> hem.PolygonMesh:
     return hem.PolygonMesh(np.random.default_rng(0).random((5, 3)), [(1, 4, 0), (1, 2, 3, 0, 4)])
 
 
-@pytest.mark.parametrize("start", [lambda: strip(3), octahedron, lambda: sheet(2), notch])
+def quads() -> hem.PolygonMesh:
+    """Four around a vertex on the border, which has as many edges as there is scratch for."""
+    return hem.PolygonMesh(
+        np.random.default_rng(0).random((10, 3)),
+        [(0, 1 + 2 * i, 2 + 2 * i, 3 + 2 * i) for i in range(4)],
+    )
+
+
+@pytest.mark.parametrize("start", [lambda: strip(4), octahedron, quads, notch])
 def test_what_is_only_checked_changes_nothing_and_is_what_would_be_done(name, start):
     mesh = start()
     if isinstance(mesh, hem.PolygonMesh) and not structures.REGISTRY[name].holds_polygons:
@@ -373,6 +382,8 @@ def test_what_is_only_checked_changes_nothing_and_is_what_would_be_done(name, st
             assert own.same_as(s)
             return False
         own.validate()
+        bound = own.records.counts[VALENCE]
+        assert max(own.valence().max(), own.most_corners) <= bound, operation
         return True
 
     before = s.copy()
