@@ -103,9 +103,10 @@ def test_the_extra_common_neighbor_is_named(name):
     assert refusal.value.elements["vertices"].tolist() == [2]
 
 
+@pytest.mark.parametrize("faces", [BOOK, [(0, 1, 2), (0, 1, 3)], [(1, 0, 2), (1, 0, 3)]])
 @pytest.mark.parametrize("name", HOLDS_ANYTHING)
-def test_an_edge_in_three_faces_is_refused_by_the_mesh_that_can_hold_it(name):
-    s = structures.build(name, hem.TriangleMesh(PLANE, BOOK))
+def test_an_edge_that_no_surface_has_is_refused_by_the_mesh_that_can_hold_it(name, faces):
+    s = structures.build(name, hem.TriangleMesh(PLANE, faces))
     for operation in (s.flip_edge, s.collapse_edge, lambda e: s.split_edge(e, (0, 0, 0))):
         with pytest.raises(hem.TopologyError, match="more faces than a surface"):
             operation(s.find_edge(0, 1))
