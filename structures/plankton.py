@@ -301,17 +301,20 @@ class Plankton(Navigable):
             )
         ends = self.points[self._half_edges[spokes ^ 1, START]]
         points = (1 - fraction) * self.points[vertex] + fraction * ends
-        logs: list[Array] = []
+        logs, told = [np.zeros(0, np.int64)], 0
         followers, run = self._followers, partial(self._operations.run, logs=logs)
-        run("insert_vertex", arguments.rows(spokes), points.astype(np.float32))
-        before = self._half_edges[spokes, PREVIOUS]  # from the next new vertex to this one
-        ends = np.stack([self._half_edges[spokes, NEXT], before, before], axis=1)
-        run("cut_across", ends.astype(np.int64))
-        followers.carry(Edit("", -1, np.concatenate(logs)))  # from a vertex still there
-        made = len(logs)
-        found = run("erase_vertex", arguments.rows([vertex]))
-        followers.carry(Edit("", -1, np.concatenate(logs[made:])))
-        followers.subscribers.tell(Edit("truncate_vertex", -1, np.concatenate(logs)))
+        try:
+            run("insert_vertex", arguments.rows(spokes), points.astype(np.float32))
+            before = self._half_edges[spokes, PREVIOUS]  # from the next new vertex to this one
+            ends = np.stack([self._half_edges[spokes, NEXT], before, before], axis=1)
+            run("cut_across", ends.astype(np.int64))
+            told = len(logs)
+            followers.carry(Edit("", -1, np.concatenate(logs)))  # from a vertex still there
+            found = run("erase_vertex", arguments.rows([vertex]))
+        finally:  # an interrupt comes as soon as compiled code has ended
+            if logs[1:]:
+                followers.carry(Edit("", -1, np.concatenate([logs[0], *logs[told:]])))
+                followers.subscribers.tell(Edit("truncate_vertex", -1, np.concatenate(logs)))
         return int(found[0])
 
     # Behind the contract ---------------------------------------------------------------------

@@ -181,6 +181,29 @@ def test_a_truncated_corner_is_a_face_of_as_many_corners():
     assert once.volume() == pytest.approx(1 - 0.5**3 / 6, abs=1e-6)
 
 
+@pytest.mark.parametrize("last", ["insert_vertex", "cut_across", "erase_vertex"])
+def test_what_an_interrupt_leaves_of_a_truncated_corner_is_told(last, monkeypatch):
+    s, heard = structures.build("plankton", CUBE, compiled=False), []
+    s.subscribe(heard.append)
+    height, run = s.vertex_attribute("height"), s._operations.run
+    height[s.vertices()] = s.points[:, 2]
+
+    def interrupted(operation, *given, **more):
+        found = run(operation, *given, **more)
+        if operation == last:
+            raise KeyboardInterrupt
+        return found
+
+    monkeypatch.setattr(s._operations, "run", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        s.truncate_vertex(0)
+    s.validate()
+    (edit,) = heard
+    assert edit.created_vertices.tolist() == [8, 9, 10]
+    assert edit.created_faces.tolist() == s.faces()[s.faces() >= 6].tolist()
+    assert np.allclose(height[s.vertices()], s.points[s.vertices(), 2])
+
+
 def test_the_dual_of_the_dual_has_the_same_faces():
     cube = plankton(CUBE)
     dual = cube.dual()
