@@ -18,7 +18,8 @@ from filelock import FileLock
 
 from experiments.runs import study
 from experiments.runs.provenance import describe
-from experiments.runs.store import META, case_files, read_meta, write_meta, writing
+from experiments.runs.run import load
+from experiments.runs.store import META, read_meta, write_meta, writing
 from experiments.runs.worker import Job, end_of_log, perform
 from hem.whole_files import write_whole
 
@@ -78,7 +79,7 @@ def run(folder: Path, address: str, observer: study.Observer | None = None) -> N
             client.cancel(list(running), force=True)
         if failures:
             raise study.StudyFailedError("\n\n".join(failures))
-        used = sorted({path.parent for path in case_files(folder)})
+        used = [folder / it for it in sorted(set(load(folder).cases["machine"]))]
         names = [str(read_meta(it).get("host", "where it was begun")) for it in used]
         several = {"cpu": f"{len(names)} machines", "machines": names}  # whose times do not mix
         study.finish(folder, read_meta(used[0])["machine"] if len(used) == 1 else several)

@@ -82,18 +82,21 @@ def test_work_is_spread_kept_apart_and_tried_elsewhere_when_a_machine_is_lost(
     assert set(run.machines) == (used if len(used) > 1 else set())
 
 
+@pytest.mark.parametrize(("begun", "several"), [("", 2), ("machine-b", 0)])
 def test_times_of_a_run_that_was_begun_here_and_finished_elsewhere_do_not_mix(
-    tmp_path, monkeypatch
+    tmp_path, monkeypatch, begun, several
 ):
     pytest.importorskip("distributed")
     monkeypatch.setattr(cluster, "_client", lambda address: MagicMock())
     folder = begin(tmp_path, "latency", "memory")
-    elsewhere = folder / "machine-b"
-    write_meta(elsewhere, {**cluster.describe("smoke"), "host": "b"})
-    for place, job in zip((folder, elsewhere), study.plan(folder), strict=True):
-        job.file(place).add(*(Measurement(it, "time", samples=[1.0]) for it in job.ids))
+    idle, busy = folder / "machine-a", folder / "machine-b"
+    for place in (idle, busy):
+        write_meta(place, {**cluster.describe("smoke"), "host": place.name})
+    for place, job in zip((begun, busy), study.plan(folder), strict=True):
+        job.file(folder / place).add(*(Measurement(it, "time", samples=[1.0]) for it in job.ids))
+        job.file(idle).path.touch()  # where it failed at once
     cluster.run(folder, "tcp://nobody:1")
-    assert len(load(folder).machines) == 2
+    assert len(load(folder).machines) == several
 
 
 def test_a_machine_measures_only_what_is_wanted_by_the_same_code(tmp_path):
