@@ -85,9 +85,8 @@ def words(plot: Figure) -> str:
             ends = np.asarray(line.get_ydata(), float)[[0, -1]]
             first, last = (compact(float(f"{y:.2g}")) for y in ends)
             lines.append(f"{line.get_label()} {first} to {last}")
-        about = ", ".join(
-            filter(None, [axes.get_title("left").replace("\n", " "), axes.get_ylabel()])
-        )
+        title = axes.get_title("left").replace("\n", " ")
+        about = ", ".join(filter(None, [title, axes.get_ylabel()]))
         told.append(": ".join(filter(None, [about, "; ".join(lines)])))
     return ". ".join(filter(None, told))
 
