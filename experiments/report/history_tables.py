@@ -160,7 +160,8 @@ def _at_a_glance(trends: Trends, names: list[str]) -> pd.DataFrame:
 
 def as_json(trends: Trends, claim: str | None, last: int | None) -> dict[str, Any]:
     """Everything that is shown, as records, NaN where nothing is; ``run``: an index of ``runs``."""
-    names, first = trends.claims(claim), len(trends.runs) - (last or len(trends.runs))
+    names = trends.claims(claim)
+    runs = [k for k, it in enumerate(trends.runs) if claim is None or it["claims"].keys() & names]
     content: dict[str, Any] = {
         "file": str(trends.history.path),
         "faults": trends.history.faults,
@@ -168,6 +169,6 @@ def as_json(trends: Trends, claim: str | None, last: int | None) -> dict[str, An
     }
     for name in ("figures", "verdicts", "changes"):
         rows = getattr(trends, name)
-        shown = rows["claim"].isin(names) & (rows["run"] >= first)
+        shown = rows["claim"].isin(names) & rows["run"].isin(runs[-(last or 0) :])
         content[name] = rows[shown].to_dict("records")
     return content

@@ -81,9 +81,11 @@ def test_so_many_runs_of_a_claim_are_shown_that_have_it(base, tmp_path):
     others = {name: it for name, it in newest["claims"].items() if NAME not in name}
     for made in (first, {**newest, "claims": others}):
         append_run(made, path)
-    output = output_of("history", "show", NAME, "--last", "1", "--file", str(path))
+    asked = "history", "show", NAME, "--last", "1", "--file", str(path)
+    output, told = output_of(*asked), json.loads(output_of(*asked, "--json"))
     assert first["commit"][:7] in output
     assert newest["commit"][:7] not in output
+    assert {it["run"] for it in told["figures"]} == {0}
 
 
 def test_of_a_history_at_least_one_run_is_shown(kept):
