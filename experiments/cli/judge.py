@@ -67,11 +67,13 @@ def _by_letters(claim: str, varied: str, fixed: Sequence[str]) -> tuple[str, str
     from hem.complexity import canonical
 
     own, named = varied if re.fullmatch("[a-zA-Z]", varied) else "n_varied", set[str]()
-    for name in (it for it in (varied, *fixed) if it.lower() not in WRITTEN):
+    every = varied, *fixed
+    told_apart = len({it.lower() for it in every}) == len(every)  # else by their case alone
+    for name in (it for it in every if it.lower() not in WRITTEN):
         letter = own if name == varied else "n_held"
         # "nlog n" is read, too, and the O of O(…) is no parameter.
         whole = rf"(?<![a-z_]){re.escape(name)}(?![a-z_]|(?<=o)\s*\()"
-        claim, times = re.subn(whole, letter, claim, flags=re.IGNORECASE)
+        claim, times = re.subn(whole, letter, claim, flags=re.IGNORECASE if told_apart else 0)
         named |= {letter} if times else set()
     if named == {"n_held"}:
         canonical(claim)  # one letter more, that nobody knows, may be meant for the varied one

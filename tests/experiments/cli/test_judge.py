@@ -91,6 +91,21 @@ def test_a_claim_on_what_is_held_fixed_is_no_claim_on_the_sizes(tmp_path: Path) 
         assert [hem(*asked, it)[0] for it in ("O(n)", "O(log n)", "O(log(n))")] == [0, 1, 1]
 
 
+@pytest.mark.parametrize(("varied", "held"), ["Nn", "nN"])
+def test_parameters_that_differ_in_case_alone_are_told_apart(
+    tmp_path: Path, varied: str, held: str
+) -> None:
+    runs = [
+        {"name": f"BM/{varied}:{x}/{held}:{y}", "cpu_time": x * y}
+        for x in (8, 64, 512, 4096)
+        for y in (3, 30)
+    ]
+    file = tmp_path / "two.json"
+    file.write_text(json.dumps({"benchmarks": runs}))
+    asked = str(file), "--exact", "--parameter", varied, "--expected"
+    assert [hem(*asked, f"O({it})")[0] for it in (varied, held)] == [0, 1]
+
+
 def test_sizes_without_a_name_are_judged(costs: Path) -> None:
     costs.write_text(costs.read_text().replace("n,pairs", ",pairs"))
     assert hem(str(costs), "--expected", "O(n)")[0] == 1
