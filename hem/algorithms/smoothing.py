@@ -166,8 +166,9 @@ def averages(
     share = part / np.concatenate([[1.0], neighbors, [2.0]])
     out = s.scratch(0)[0] if border else around.out
     plan = Plan(around, part, share, np.zeros((n, 3), np.float32), out)
-    if s.run(averaging_borders if border else averaging, plan) >= 0:
-        raise not_finite(s, kind, plan.places)
+    with np.errstate(over="ignore"):
+        if s.run(averaging_borders if border else averaging, plan) >= 0:
+            raise not_finite(s, kind, plan.places)
     return plan.places
 
 

@@ -137,6 +137,21 @@ def test_taubin_keeps_the_volume_that_laplace_loses() -> None:
     assert lost.to_triangles().volume() < 0.9 * volume
 
 
+@pytest.mark.parametrize("name", ["half_edge", "half_edge_objects"])
+def test_nothing_is_smoothed_where_a_place_would_not_be_finite(name: str) -> None:
+    """Taubin's second pass takes a sphere a little beyond where it was."""
+    sphere, largest = hem.generate("sphere", 162), np.finfo(np.float32).max
+    mesh = hem.TriangleMesh(sphere.points * (largest / sphere.points.max()), sphere.triangles)
+    beyond = mesh.points.max(axis=1) == largest
+    shared = neighbors(mesh) > 0
+    means = shared @ mesh.points.astype(float) / shared.sum(axis=1, keepdims=True)
+    s = structures.build(name, mesh, compiled=False)
+    with np.errstate(all="raise"), pytest.raises(hem.MeshError, match="must be finite") as error:
+        algorithms.smooth(s, 1, "taubin")
+    assert np.isin(np.flatnonzero(beyond), error.value.elements["vertices"]).all()
+    assert np.allclose(s.points, (mesh.points + means) / 2, rtol=1e-5)
+
+
 @pytest.mark.parametrize("query", ["vertex_faces", "face_vertices"])
 def test_passes_ask_for_memory_ahead_and_queries_do_not(query: str) -> None:
     s = structures.build("half_edge", CLOSED)
