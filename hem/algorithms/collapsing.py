@@ -2,7 +2,7 @@
 
 Planes are only added up, so an edge only ever costs more than it did. What it cost says when to
 look at it again: then it is put where it belongs by now, or collapsed. No edge is looked at because
-another was collapsed beside it.
+another was collapsed beside it; one that becomes shorter by that comes as late as it would have.
 """
 
 from __future__ import annotations

@@ -49,12 +49,12 @@ def simplify(
 
     Of vertices those count that have faces; the others stay, as no edge leads to them.
     ``quadrics`` collapses the edge whose planes are least far from where its vertex comes to lie,
-    ``shortest_edge`` the shortest, into one of its ends; that keeps borders as they are. ``error``
-    is the most that a collapse may cost: the root of the mean squared distance to these planes, or
-    the length of the edge. It bounds one collapse: once none is left, planes are found anew on what
-    there is, again and again, so that the surface may end several times as far away. Fewer than
-    asked for are collapsed where faces would turn over or the surface would break. Handles of what
-    stays are kept; ``compact`` renumbers.
+    ``shortest_edge`` about the shortest, into one of its ends; that keeps borders as they are.
+    ``error`` is the most that a collapse may cost: the root of the mean squared distance to these
+    planes, or the length of the edge. It bounds one collapse: once none is left, planes are found
+    anew on what there is, again and again, so that the surface may end several times as far away.
+    Fewer than asked for are collapsed where faces would turn over or the surface would break.
+    Handles of what stays are kept; ``compact`` renumbers.
 
     An edit, or some where edges have to be tried again. Cost O(n_v log n_v) for bounded
     valence; where neighbors are searched for or found anew, that for each collapse. MeshError for

@@ -22,7 +22,16 @@ from hem.algorithms.buckets import (
     put_off,
     queue_for,
 )
-from hem.algorithms.collapsing import QUADRIC, QUADRICS, SHORTEST_TO_PLANES, simplifying
+from hem.algorithms.collapsing import (
+    BORDER,
+    FLAT,
+    LENGTH_WEIGHT,
+    QUADRIC,
+    QUADRICS,
+    SHORTEST_EDGE,
+    SHORTEST_TO_PLANES,
+    simplifying,
+)
 from hem.algorithms.quadrics import TOWARD_MIDDLE, WIDTH, best_point, value
 from hem.algorithms.simplification import LEAST_COSINES, collapsible
 from hem.meshes.measures import normals
@@ -264,6 +273,51 @@ def test_the_best_point_is_where_the_sum_of_squares_is_least_a_little_drawn_to_a
         pull = TOWARD_MIDDLE * np.trace(planes)
         expected = np.linalg.solve(planes + pull * np.eye(3), pull * middle - row[6:9])
         assert np.allclose(best_point(row, *middle), expected)
+
+
+@pytest.mark.parametrize(
+    ("measure", "count"), [(QUADRICS, 110), (SHORTEST_EDGE, 95), (SHORTEST_TO_PLANES, 35)]
+)
+def test_each_collapse_is_of_the_cheapest_edge_but_for_a_sixteenth(
+    measure: int, count: int
+) -> None:
+    """Of as many as there are before one is refused, or made cheaper by a collapse beside it."""
+    s = structures.build("half_edge", dented("torus", 144), compiled=False)
+    s.corner_attribute("any")  # so that every collapse is told on its own
+    plan = collapsible(s, measure, 0.7, np.inf)
+    rows = collapsible(s, QUADRICS, 0.7, np.inf).rows  # by length no planes are found
+    edges, told = np.sort(s.edge_array()), list[float]()
+
+    def follow(edit: hem.Edit) -> None:
+        nonlocal edges
+        ends = rows[edges]
+        total, middles = ends[:, :, QUADRIC:BORDER].sum(axis=1), ends[:, :, :3].mean(axis=1)
+        planes = total[:, [0, 1, 2, 6, 1, 3, 4, 7, 2, 4, 5, 8, 6, 7, 8, 9]].reshape(-1, 4, 4)
+        pull = TOWARD_MIDDLE * total[:, [0, 3, 5]].sum(axis=1)[:, None]
+        drawn = planes[:, :3, :3] + pull[:, None] * np.eye(3)
+        targets = np.linalg.solve(drawn, (pull * middles - total[:, 6:9])[..., None])[..., 0]
+        places = np.pad(targets, ((0, 0), (0, 1)), constant_values=1)
+        errors = np.einsum("ni,nij,nj->n", places, planes, places)
+        long = (np.diff(ends[:, :, :3], axis=1) ** 2).sum(axis=(1, 2))
+        costs = {
+            QUADRICS: errors + LENGTH_WEIGHT * long * total[:, 10],
+            SHORTEST_EDGE: long,
+            SHORTEST_TO_PLANES: np.where(errors <= FLAT * long * total[:, 10], long, np.inf),
+        }[measure]
+        gone, left = *edit.removed_vertices, *edit.changed_vertices
+        mine = np.isin(edges, (gone, left)).all(axis=1)
+        told.append(costs[mine].item() / costs.min())
+        rows[left, :3] = s.points[left] - plan.middle
+        expected = ends[:, 0, :3] if measure == SHORTEST_EDGE else targets
+        assert np.allclose(rows[left, :3], expected[mine], atol=1e-6)
+        rows[left, QUADRIC:BORDER] += rows[gone, QUADRIC:BORDER]
+        edges = np.sort(s.edge_array())
+
+    s.subscribe(follow)
+    parts.change(s, "simplify", simplifying, plan)
+    assert np.isfinite(told).all()
+    assert len(told) > count
+    assert max(told[:count]) < 17 / 16
 
 
 def test_no_collapse_leaves_an_edge_longer_than_it_may() -> None:
