@@ -108,6 +108,16 @@ def test_a_flat_square_keeps_its_outline_and_its_side() -> None:
 
 
 @pytest.mark.parametrize("by", algorithms.MEASURES)
+def test_no_face_of_a_flat_square_loses_its_area(by: str) -> None:
+    """On a grid many collapses would leave three corners in a line."""
+    s = structures.build("half_edge", hem.generate("grid", 81), compiled=False)
+    up = normals(s.points[s.triangles()[:1]].astype(float))[0]
+    algorithms.simplify(s, vertices=0, by=by)
+    assert s.n_vertices < 40
+    assert (normals(s.points[s.triangles()].astype(float)) @ up > 0).all()
+
+
+@pytest.mark.parametrize("by", algorithms.MEASURES)
 def test_no_collapse_turns_a_face_of_a_curved_surface_further_than_it_may(by: str) -> None:
     s = structures.build("half_edge", dented("torus", 900))
     s.corner_attribute("any")  # so that every collapse is told on its own
