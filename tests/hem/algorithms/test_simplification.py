@@ -286,15 +286,16 @@ def test_the_best_point_is_where_the_sum_of_squares_is_least_a_little_drawn_to_a
 
 
 @pytest.mark.parametrize(
-    ("measure", "count"), [(QUADRICS, 110), (SHORTEST_EDGE, 95), (SHORTEST_TO_PLANES, 35)]
+    ("measure", "most", "count"),
+    [(QUADRICS, (72, 0), 72), (SHORTEST_EDGE, (0, 144), 72), (SHORTEST_TO_PLANES, (0, 0), 35)],
 )
 def test_each_collapse_is_of_the_cheapest_edge_but_for_a_sixteenth(
-    measure: int, count: int
+    measure: int, most: tuple[int, int], count: int
 ) -> None:
-    """Of as many as there are before one is refused, or made cheaper by a collapse beside it."""
+    """Where not much more than half is collapsed, and before one is made cheaper by another."""
     s = structures.build("half_edge", dented("torus", 144), compiled=False)
     s.corner_attribute("any")  # so that every collapse is told on its own
-    plan = collapsible(s, measure, 0.7, np.inf)
+    plan = collapsible(s, measure, 0.7, np.inf, most)
     rows = collapsible(s, QUADRICS, 0.7, np.inf).rows  # by length no planes are found
     edges, told = np.sort(s.edge_array()), list[float]()
 
@@ -326,7 +327,7 @@ def test_each_collapse_is_of_the_cheapest_edge_but_for_a_sixteenth(
     s.subscribe(follow)
     parts.change(s, "simplify", simplifying, plan)
     assert np.isfinite(told).all()
-    assert len(told) > count
+    assert len(told) >= count
     assert max(told[:count]) < 17 / 16
 
 
