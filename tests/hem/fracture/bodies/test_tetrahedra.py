@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import permutations, product
 
 import numpy as np
 import pytest
@@ -120,6 +121,21 @@ def test_tetrahedra_that_share_what_they_may_do_not_overlap():
     needle = np.array([[(0.1, 0.1, -1), (0.2, 0.1, -1), (0.1, 0.1, 1.0)]])
     assert crossing(at[None, :4], needle, 1e-9).tolist() == [True]
     assert crossing(at[None, :4], needle - (1, 0, 0), 1e-9).tolist() == [False]
+
+
+def test_each_face_and_each_pair_of_edges_may_be_all_that_keeps_tetrahedra_apart():
+    corners = np.array([(1, 1, 1), (1, -1, -1), (-1, 1, -1), (-1, -1, 1)], float)
+    random = np.random.default_rng(0)
+    bent = random.uniform(-0.3, 0.3, (4, 3))  # so that no sides are parallel
+    turn = np.linalg.qr(random.normal(size=(3, 3)))[0]  # so that bounding boxes meet
+    cases = [(2 * way, corners) for way in (*np.eye(3), *-np.eye(3))]  # two edges cross
+    cases += [  # a corner stands on a face
+        (-4 / 3 * it, corners + bent * (corners != it).any(axis=1)[:, None]) for it in corners
+    ]
+    for (way, other), order in product(cases, map(list, permutations(range(4)))):
+        for far, expected in ((1.001, False), (0.999, True)):
+            for both in ((corners[order], other + far * way), (other + far * way, corners[order])):
+                assert overlapping(np.stack(both) @ turn, 1e-9).tolist() == [expected] * 2
 
 
 def test_tetrahedra_overlap_where_some_position_is_a_mean_of_the_corners_of_both():
