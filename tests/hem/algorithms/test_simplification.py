@@ -74,6 +74,18 @@ def test_a_tenth_of_the_faces_is_as_near_as_what_others_make(sample: str, rival)
         assert found <= 1.1 * other
 
 
+def test_how_far_meshes_are_apart_is_told_by_the_way_that_is_larger() -> None:
+    if absent := meshlab.problem():
+        pytest.skip(absent)
+    square = hem.generate("grid", 400)
+    wider = hem.TriangleMesh(square.points * np.float32((1.3, 1, 1)), square.triangles)
+    for one, other in ((square, wider), (wider, square)):
+        farthest, usual = meshlab.distances(one, other)
+        size = np.linalg.norm(np.ptp(one.points, axis=0))
+        assert farthest * size == pytest.approx(0.3, rel=1e-3)
+        assert 0 < usual < farthest / 2
+
+
 @pytest.mark.parametrize("by", algorithms.MEASURES)
 def test_it_stops_at_the_number_asked_for(by: str) -> None:
     mesh = dented("torus", 400)

@@ -63,6 +63,16 @@ def test_sizes_that_are_reachable_are_reached(family: str, n: int, reached: int)
     assert len(hem.generate(family, n).points) == reached
 
 
+@pytest.mark.parametrize(
+    ("family", "least"),
+    [("torus", 3 * 3), ("sphere", 12), ("grid", 2 * 2), ("cone", 3 + 2), ("terrain", 2 * 2)],
+)
+def test_the_smallest_size_is_reached_and_none_below(family: str, least: int) -> None:
+    assert len(hem.generate(family, least).points) == least
+    with pytest.raises(hem.MeshError, match=f"no {family} of {least - 1} vertices"):
+        hem.generate(family, least - 1)
+
+
 def test_every_size_is_met_within_15_percent_but_for_the_sphere() -> None:
     for family in set(hem.FAMILIES) - {"sphere"}:
         for n in (*range(100, 200, 13), 147, 997, 4_001):
