@@ -33,6 +33,7 @@ def test_a_small_array_has_room_for_as_many_rows_again():
         assert longer.ctypes.data == array.ctypes.data
         assert np.array_equal(longer[:n], np.arange(n))
         assert room.behind(array) == array.nbytes
+        assert array.dtype == np.arange(n).dtype
 
 
 @ADDRESSES
@@ -132,6 +133,8 @@ def test_without_addresses_an_array_grows_by_moving(monkeypatch):
     assert np.array_equal(array[:200_000], np.arange(200_000))
     moved = room.longer(array, 400_000, 400_001)
     assert np.array_equal(moved[:200_000], np.arange(200_000))
+    with pytest.raises(MemoryError):
+        room.rows(8 << 20, dtype=np.int64)
 
 
 def test_arrays_that_outlive_the_names_of_the_module_end_in_silence(monkeypatch):
