@@ -431,7 +431,8 @@ def test_odd_arguments_are_refused_in_words(s):
     for given in (heat, "uv", None):
         with pytest.raises(hem.MeshError, match="no attribute of corners"):
             hem.split_at_seams(given)
-    render = hem.RenderMesh(s, [heat])
+    render = hem.RenderMesh(s, iter([heat]))
+    assert list(render.attributes) == ["heat"]
     for splits in ("a", -5, 1.5, True, None, 2**31, 2**70):
         with pytest.raises(hem.MeshError, match="reserve takes a number from 0 to 2,147,483,647"):
             render.reserve(splits)
