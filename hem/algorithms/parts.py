@@ -99,7 +99,7 @@ def change(
     own where ``told_one_by_one`` says so. An interrupt leaves what was done so far, and told.
     """
     operations = min(splits or STEP, s.n_faces + 64, STEP)
-    logs: list[Array] = []  # copies, as the log is written over
+    logs: list[Array] = []  # copies but for the last, as the log is written over
     result, steps, idle = NEEDS_ROOM, 0, 0
     out, log = s.scratch(splits, operations, valence)
     try:
@@ -108,11 +108,10 @@ def change(
                 raise MeshError(f"{kind}: there is room for {splits} splits, and more are done")
             if steps == AT_ONCE:
                 steps, (out, log) = 0, s.scratch(0, operations, valence)
-            try:
-                result = step(s, make, plan, out, log, 1 if s.told_one_by_one else operations)
-            finally:
-                if s.followed:
-                    logs.append(log[1 : log[0] + 1].copy())
+            log[0] = 0
+            logs.append(log)  # itself, as an interrupt may come before it is copied
+            result = step(s, make, plan, out, log, 1 if s.told_one_by_one else operations)
+            logs[-1] = log[: log[0] + 1].copy()
             steps, idle = steps + 1, 0 if log[0] else idle + 1
             if idle:  # there was not enough for one operation
                 operations, steps = 2 * operations, AT_ONCE
@@ -121,8 +120,10 @@ def change(
     finally:
         try:
             s.scratch(0, 0, valence)
-        finally:
             tell(s, kind, logs)
+        except BaseException:  # an interrupt, say, before anybody was told
+            tell(s, kind, logs)
+            raise
     return result
 
 
@@ -140,7 +141,6 @@ def step(s: Structure, make: Algorithm, plan: Any, out: Any, log: Any, left: int
     own: tuple[Any, ...] = args, point, at, out, log, count, forgets
     # True and True are 2 to Python's own numbers, as they are to compiled code.
     work = Work(*(it if s.compiled else memoryview(it) for it in own))
-    log[0] = 0
     try:
         return s.run(make, plan._replace(work=work))
     except BaseException:
@@ -151,14 +151,15 @@ def step(s: Structure, make: Algorithm, plan: Any, out: Any, log: Any, left: int
 
 
 def tell(s: Structure, kind: str, logs: list[Array]) -> None:
-    """Tell followers of one edit by its logs, which are forgotten.
+    """Tell followers of one edit by its logs, which are forgotten as soon as anybody is told.
 
     MeshError if one of them edits: a plan would name what is gone. What was done stays, and whole.
     """
-    touched = np.concatenate([np.zeros(0, np.int64), *logs])
+    held = [*logs]  # freed when all are told, as that takes time to be interrupted in
+    touched = np.concatenate([np.zeros(0, np.int64), *(it[1 : it[0] + 1] for it in held)])
+    before = s.records.counts[MADE].tolist()
     logs.clear()
     if len(touched):
-        before = s.records.counts[MADE].tolist()
         s.tell(kind, touched)
         if s.records.counts[MADE].tolist() != before:
             raise MeshError(f"{kind}: a subscriber edited the mesh meanwhile")

@@ -225,10 +225,20 @@ class Operations:
         """As ``run``, one edit -> the results. What is done before an interrupt is told."""
         logs: list[Array] = []
         try:
-            return self.run(operation, args, points, mode, logs)
-        finally:
-            if logs:
-                self._followers.publish(Edit(called, -1, np.concatenate(logs)))
+            results = self.run(operation, args, points, mode, logs)
+            self._publish(called, logs)
+        except BaseException:  # an interrupt, say, before anybody was told
+            self._publish(called, logs)
+            raise
+        return results
+
+    def _publish(self, called: str, logs: list[Array]) -> None:
+        """Tell of one edit by its logs, which are forgotten as soon as anybody is told."""
+        if logs:
+            held = [*logs]  # freed when all are told, as that takes time to be interrupted in
+            edit = Edit(called, -1, np.concatenate(held))
+            logs.clear()
+            self._followers.publish(edit)
 
     def one_by_one(self, do: Callable[..., Edit], args: Array) -> Bools:
         """As ``persist`` of one on edges, each an edit of its own."""

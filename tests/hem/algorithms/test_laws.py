@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable
 from functools import partial
 from typing import Any
@@ -220,6 +221,36 @@ def test_an_interrupt_after_the_last_step_leaves_what_was_told(monkeypatch) -> N
         ALGORITHMS["impacts"](s)
     monkeypatch.undo()
     require_whole(s, render, "impacts")
+
+
+@pytest.mark.parametrize(("change_it", "reached"), [
+    (ALGORITHMS["quadrics"], parts.tell),
+    (ALGORITHMS["impacts"], parts.tell),
+    (lambda s: s.split_all_faces(), hem.Edit.__init__),
+    (lambda s: s.collapse_edges(s.edges()[::5]), hem.Edit.__init__),
+])  # fmt: skip
+def test_an_interrupt_just_before_others_are_told_does_not_keep_it_from_them(
+    change_it: Callable[[Structure], Any], reached: Any
+) -> None:
+    s = structures.build("half_edge", MESHES["torus"]())
+    render, tracing = hem.RenderMesh(s), sys.gettrace()
+    change_it(s.copy())  # compiles, which takes long where it is traced
+
+    def stop(frame: Any, event: str, arg: Any) -> None:
+        if frame.f_code is reached.__code__:
+            raise KeyboardInterrupt  # once, as this ends the tracing
+
+    try:
+        sys.settrace(stop)
+        with pytest.raises(KeyboardInterrupt):
+            change_it(s)
+    finally:
+        sys.settrace(tracing)
+    s.validate()
+    afresh = hem.RenderMesh(s)
+    assert s.n_faces != len(MESHES["torus"]().triangles)
+    assert np.array_equal(render.points, afresh.points)
+    assert np.array_equal(render.indices, afresh.indices)
 
 
 @pytest.mark.parametrize("scheme", algorithms.SCHEMES)
