@@ -178,7 +178,9 @@ def test_an_installed_plugin_tells_pytest_what_grows(installed):
 
 @exhaustive
 @pytest.mark.parametrize(
-    "page", [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))], ids=str
+    "page",
+    [ROOT / "README.md", *sorted([*ROOT.glob("docs/*.md"), *ROOT.glob("hem/*/README.md")])],
+    ids=str,
 )
 def test_the_examples_of_a_page_run_where_hem_is_installed(installed, page):
     code = "\n".join(text for _, text in shown(page))
