@@ -1,6 +1,7 @@
 """Laws of the plugin: a verdict becomes a pass, a failure or a warning, and is kept."""
 
 import json
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -9,6 +10,9 @@ import pytest
 
 pytest_plugins = ["pytester"]
 PLUGIN = "hem.complexity.pytest_plugin"
+GUARD = (Path(__file__).parents[3] / "docs/guard.md").read_text("utf-8")
+(SHOWN,) = re.findall(r'"(default::.*?)"', GUARD)
+FILTERS = f"{SHOWN.replace('default', 'error')}\n{SHOWN}"  # of warnings: the later goes first
 
 TESTS = """
 import pytest
@@ -77,6 +81,7 @@ def test_a_claim_that_is_violated_fails_and_says_why(run) -> None:
         ((), {"passed": 3}, 3),
         (("--complexity-undetermined", "fail"), {"failed": 3}, 0),
         (("-o", "complexity_undetermined=pass"), {"passed": 3}, 0),
+        (("-o", f"filterwarnings={FILTERS}"), {"passed": 3}, 3),
     ],
 )
 def test_what_cannot_be_told_warns_or_does_as_it_is_told(run, options, outcome, warned) -> None:
@@ -85,9 +90,10 @@ def test_what_cannot_be_told_warns_or_does_as_it_is_told(run, options, outcome, 
     assert result.stdout.str().count(" ComplexityWarning: ") == warned
 
 
-def test_nothing_is_timed_in_parallel(run) -> None:
+@pytest.mark.parametrize("filters", ["", FILTERS])
+def test_nothing_is_timed_in_parallel(run, filters: str) -> None:
     pytest.importorskip("xdist")
-    result = run("-n", "2")
+    result = run("-n", "2", "-o", f"filterwarnings={filters}")
     result.assert_outcomes(skipped=3)
     assert result.stdout.str().count("ComplexityWarning: ") == 3
     result.stdout.fnmatch_lines(["*test_body: complexity is not timed beside other tests*"])
