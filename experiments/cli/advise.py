@@ -75,7 +75,7 @@ def advise(
     """
     from experiments import advice
     from experiments.regression import RUN
-    from experiments.runs import load
+    from experiments.runs import load, noise
 
     limits = advice.Limits(most_bytes, worst_edit / 1e3)
     wanted = advice.find_workload(workload)
@@ -86,6 +86,8 @@ def advise(
         raise ValueError(f"{source.folder} was measured by several machines: give one's folder")
     of_mesh = hem.find_mesh(mesh, repair)
     found = advice.advise(advice.Prices(source), wanted, of_mesh, limits, need or [])
+    if (seen := noise(source)).too_busy:
+        errors.print(seen.words, style="yellow")
     if as_json:
         told = {"run": str(source.folder), "machine": source.meta.get("machine", {})}
         told |= asdict(found)

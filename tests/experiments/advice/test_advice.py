@@ -435,6 +435,15 @@ def test_the_command_says_what_it_rests_on_and_tells_programs_the_same(run: Run)
     assert [it["structure"] for it in data["options"]] == told_here
 
 
+def test_the_command_says_that_the_machine_was_too_busy(run: Run, monkeypatch) -> None:
+    noise = run.cases["noise"].map(lambda it: it and {**it, "off_cpu": 1.0})
+    busy = replace(run, cases=run.cases.assign(noise=noise))
+    asked = "torus:1000", "--run", str(run.folder)
+    assert "too busy" not in told(*asked)[1]
+    monkeypatch.setattr("experiments.runs.load", lambda folder: busy)
+    assert "The machine was too busy to judge by time" in told(*asked)[1]
+
+
 def test_the_command_says_to_stay_where_nothing_is_a_tenth_quicker(run: Run, tmp_path) -> None:
     path = tmp_path / "mine.toml"
     path.write_text(measured("winged_edge", 1000))
