@@ -152,7 +152,7 @@ def _bytes(name: str, mesh: Any, faces: int) -> int:
     """Exactly, by building it; of objects in proportion to a small mesh."""
     if REGISTRY[name].compiled or faces <= BUILT_OF_OBJECTS:
         return sum(build(name, mesh).memory(names=True).values())
-    build(REGISTRY[name].claims.like, mesh)  # in arrays, which hold the same meshes
+    build(REGISTRY[name].claims.like or name, mesh)  # in arrays, which hold the same meshes
     small = hem.generate("torus", 1000)
     return round(sum(build(name, small).memory().values()) * faces / len(small.triangles))
 

@@ -35,7 +35,7 @@ baseline, which keeps batches alone: so it was in the standard run that it is of
 
 ASKING = 0.27
 """Part of that which a query takes longer, as it tells of no edit: one by one it took 0.36 µs where
-a flip took 1.33, on another machine 0.60 and 2.77 (`results/reference/speed.json`)."""
+a flip took 1.33, on another machine 0.60 and 2.77 (`experiments.validation.speed`)."""
 
 FORETOLD = 0.9
 """How much is ``foretold`` of a regular mesh, at the least. A processor foretells it, too: where it
