@@ -70,9 +70,9 @@ class RenderMesh:
         self._written: dict[str, list[ArrayLike]] = {it.name: [] for it in self._attributes}
         self._listeners = Listeners()
         self._pending: list[ArrayLike] = []
-        self._depth, self._resized = 0, False
         self._following = ExitStack()
         self._rebuild()
+        self._depth, self._resized = 0, False
         self._following.callback(structure.subscribe(self._follow))
         for it in self._attributes:
             self._following.callback(it.subscribe(partial(self._rewrite, it.name)))
@@ -141,22 +141,21 @@ class RenderMesh:
         self._indices = rows(self._n_triangles, 3, dtype=np.int32, zeros=True)
         corners = s.face_vertices(faces).values.reshape(-1, 3)
         self._indices[faces] = corners[:, [0, 2, 1]]
+        self._pending, self._resized = [], True
 
     def _follow(self, edit: Edit) -> None:
-        if edit.remapping is not None:
-            self._rebuild()
-            self._pending, self._resized = [], True
-        else:
-            if self.structure.most_corners > 3:
-                self._require_triangles_still(np.append(edit.created_faces, edit.changed_faces))
-            self._pending.append(edit.touched)
-            try:
+        if edit.remapping is None and self.structure.most_corners > 3:
+            self._require_triangles_still(np.append(edit.created_faces, edit.changed_faces))
+        try:
+            if edit.remapping is not None:
+                self._rebuild()
+            else:
+                self._pending.append(edit.touched)
                 self._grow()
                 self.structure.copy_touched(edit.touched, self._points, self._indices)
-            except BaseException:  # an interrupt, say: the next commit has all
-                self._rebuild()
-                self._resized = True
-                raise
+        except BaseException:  # an interrupt, say: the next commit has all
+            self._rebuild()
+            raise
         if not self._depth:
             self._commit()
 

@@ -236,6 +236,23 @@ def test_an_interrupt_while_an_edit_is_followed_leaves_all_others_in_step(
     assert len(told) == 2 or told[-1].resized
 
 
+def test_an_interrupt_while_a_compaction_is_followed_leaves_the_arrays_in_step(s, monkeypatch):
+    def stop_once(*given):
+        monkeypatch.undo()
+        raise KeyboardInterrupt
+
+    s.remove_faces([0, 3])
+    render, told = hem.RenderMesh(s), []
+    render.subscribe(told.append)
+    monkeypatch.setattr(s, "face_vertices", stop_once)
+    with pytest.raises(KeyboardInterrupt):
+        s.compact()
+    assert_in_step(render)
+    s.move_vertices([0], [(5, 5, 5)])
+    assert_in_step(render)
+    assert told[-1].resized
+
+
 BATCHES = {
     "split_faces": lambda s: s.split_faces([3, 50], np.zeros((2, 3))),
     "split_edges": lambda s: s.split_edges(s.edges()[:40:20], np.zeros((2, 3))),
