@@ -69,10 +69,10 @@ class RenderMesh:
                 raise MeshError(f"{it!r} is no attribute of vertices of this mesh")
         self._written: dict[str, list[ArrayLike]] = {it.name: [] for it in self._attributes}
         self._listeners = Listeners()
-        self._pending: list[ArrayLike] = []
+        self._pending: list[ArrayLike]
         self._following = ExitStack()
         self._rebuild()
-        self._depth, self._resized = 0, False
+        self._depth, self._resized = 0, False  # nobody listens yet
         self._following.callback(structure.subscribe(self._follow))
         for it in self._attributes:
             self._following.callback(it.subscribe(partial(self._rewrite, it.name)))
