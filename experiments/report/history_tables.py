@@ -16,6 +16,7 @@ from experiments.report.tables import SHOWN, abbreviations, show_rows
 from structures import NAMED
 
 FEW = 6  # claims that get a table each; more of them share one
+MARKS = {it.value: it.mark for it in Outcome}
 SHORT = {what: what.replace("verdict by ", "by ") for what in OUTCOMES.values()}
 
 LEGEND = """\
@@ -96,19 +97,14 @@ def _count_outcomes(outcomes: pd.Series) -> str:
 
 def changes_frame(trends: Trends) -> pd.DataFrame:
     """A row per change of a verdict or a figure, in the order of the commits."""
-    changes = trends.changes
+    changes = trends.changes.replace(MARKS)
     frame = changes[["run"]].assign(
         at=changes["run"].map(trends.about["commit"]),
         claim=changes["claim"].map(short_claim),
         figure=changes["measure"].replace(SHORT),
     )
-    frame["before → after"] = changes["before"].map(_mark) + " → " + changes["after"].map(_mark)
+    frame["before → after"] = changes["before"] + " → " + changes["after"]
     return frame.assign(machine=changes["machine"].replace("", "any"))
-
-
-def _mark(outcome: str) -> str:
-    """A verdict's mark, or any other text as it is."""
-    return Outcome(outcome).mark if outcome in set(Outcome) else outcome
 
 
 def _by_run(trends: Trends, name: str, last: int, slopes: bool) -> pd.DataFrame:
@@ -125,7 +121,7 @@ def _by_run(trends: Trends, name: str, last: int, slopes: bool) -> pd.DataFrame:
 def _verdicts(trends: Trends, names: list[str]) -> pd.DataFrame:
     """By run and claim the verdicts by work and by time, marked where they are not as before."""
     rows = trends.verdicts
-    marks = rows["outcome"].map(_mark) + rows["changed"].map({True: "≠ ", False: "  "})
+    marks = rows["outcome"].replace(MARKS) + rows["changed"].map({True: "≠ ", False: "  "})
     table = marks.groupby([rows["run"], rows["claim"]]).sum().unstack()
     return table.reindex(index=trends.about.index, columns=names)  # a busy run may have none
 
