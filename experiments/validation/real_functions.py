@@ -1,9 +1,7 @@
 """Judges on real functions: how often each names the class that a function is known to have.
 
-``python -m experiments.validation.real_functions`` measures every function of known cost, some
-fifty minutes, and asks every judge. Ours was tuned on some; those held out tell how good it is.
-``--held-out`` measures these alone, a quarter of an hour. ``--busy`` does, too, and keeps the other
-core busy with memory the while.
+``python -m experiments.validation.real_functions`` measures every function held out, a quarter of
+an hour, and asks every judge. ``--busy`` keeps the other core busy with memory the while.
 """
 
 import json
@@ -24,13 +22,11 @@ from typer import Option
 from experiments.runs import describe
 from experiments.validation.accuracy import UNDETERMINED, Judge, installed_judges
 from experiments.validation.accuracy import load_accuracy as load_answers
-from experiments.validation.functions import FUNCTIONS, HELD_OUT
+from experiments.validation.functions import HELD_OUT
 from hem.complexity import BUDGET, InParts, Measured, canonical, measure, parse
 
 RESULT = Path("results/reference/real_functions.json")
-COLUMNS = ["function", "growth", "source", "half", "neighbor", "judge", "answer"]
-HALVES = {"tuned on": FUNCTIONS, "held out": HELD_OUT}
-HELD = "held out"
+COLUMNS = ["function", "growth", "source", "neighbor", "judge", "answer"]
 SAME_POWER = 0.1  # of exponents: a power law that is told by so much is right
 NEIGHBORS = "shared", "busy"  # the machine as it is left, and with one program more
 
@@ -89,17 +85,17 @@ def _with_kinds(answers: pd.DataFrame) -> pd.DataFrame:
 
 
 def shares(answers: pd.DataFrame) -> pd.DataFrame:
-    """Functions by kind of answer: a row per half, neighbor and judge."""
-    keys = ["half", "neighbor", "judge"]
+    """Functions by kind of answer: a row per neighbor and judge."""
+    keys = ["neighbor", "judge"]
     counted = _with_kinds(answers).pivot_table(
         "function", keys, "kind", aggfunc="count", fill_value=0, sort=False
     )
     return counted.reindex(columns=KINDS, fill_value=0)
 
 
-def held_out(answers: pd.DataFrame) -> pd.DataFrame:
-    """The shares of what no judge was tuned on, as a page shows them."""
-    table = shares(answers).loc[HELD].reset_index().rename_axis(columns=None)
+def by_judge(answers: pd.DataFrame) -> pd.DataFrame:
+    """The shares, as a page shows them."""
+    table = shares(answers).reset_index().rename_axis(columns=None)
     table["judge"] += ", " + table["neighbor"] + " machine"
     return table[["judge", *KINDS]]
 
@@ -112,16 +108,14 @@ def _read(line: dict[str, Any]) -> Measured:
     return Measured(samples=list(rows), in_parts=beside, **known)
 
 
-def _rows(budget: float, alone: bool, busy: bool, measured: Path | None) -> Iterator[list[str]]:
+def _rows(budget: float, busy: bool, measured: Path | None) -> Iterator[list[str]]:
     """Measure, or read what was measured, and ask -> rows of the answers."""
     judges, kept = installed_judges(), {}
     if measured and measured.exists():
         lines = map(json.loads, measured.read_text("utf-8").splitlines())
         kept = {line.pop("function"): line for line in lines}
-    halves = {HELD: HELD_OUT} if alone or busy else HALVES
-    functions = [(half, it) for half, some in halves.items() for it in some]
-    with neighbor(busy and len(kept) < len(functions)):
-        for half, it in functions:
+    with neighbor(busy and len(kept) < len(HELD_OUT)):
+        for it in HELD_OUT:
             if line := kept.get(it.name):
                 found = _read(line)
             else:
@@ -131,7 +125,7 @@ def _rows(budget: float, alone: bool, busy: bool, measured: Path | None) -> Iter
                     line = {"function": it.name, **asdict(found)}
                     with measured.open("a", encoding="utf-8") as file:
                         file.write(json.dumps(line, default=np.ndarray.tolist) + "\n")
-            who = [it.name, canonical(it.growth), it.source, half, NEIGHBORS[busy]]
+            who = [it.name, canonical(it.growth), it.source, NEIGHBORS[busy]]
             for judge, answer in answers_of(found, judges).items():
                 yield [*who, judge, answer]
 
@@ -139,7 +133,6 @@ def _rows(budget: float, alone: bool, busy: bool, measured: Path | None) -> Iter
 def main(
     output: Path = RESULT,
     budget: Annotated[float, Option(help="Seconds per function.")] = BUDGET,
-    alone: Annotated[bool, Option("--held-out", help="What no judge was tuned on alone.")] = False,
     busy: Annotated[bool, Option("--busy", help="Beside a program that uses memory.")] = False,
     measured: Annotated[
         Path | None, Option(help="Costs are kept in it; what it has is not measured again.")
@@ -149,15 +142,14 @@ def main(
     if not ONE_THREAD.items() <= os.environ.items():  # read once, when NumPy is imported
         os.execve(sys.executable, sys.orig_argv, os.environ | ONE_THREAD)
     kept = {key: value for key, value in describe("").items() if key != "preset"}
-    rows = list(_rows(budget, alone, busy, measured))
+    rows = list(_rows(budget, busy, measured))
     other = [] if not output.exists() else load_answers(output)[1].to_numpy().tolist()
-    anew = {(row[3], row[4]) for row in rows}
-    rows += [row for row in other if (row[3], row[4]) not in anew]
+    rows += [row for row in other if row[3] != NEIGHBORS[busy]]
     kept |= {"budget": budget, "columns": COLUMNS, "rows": rows}
     output.write_text(json.dumps(kept, indent=1, ensure_ascii=False) + "\n", "utf-8")
     answers = _with_kinds(pd.DataFrame(rows, columns=COLUMNS))
     missed = answers[(answers["judge"] == "hem") & (answers["kind"] != "right")]
-    shown = ["function", "half", "neighbor", "growth", "answer"]
+    shown = ["function", "neighbor", "growth", "answer"]
     print(missed[shown].to_string(index=False))
     print(shares(answers).to_string())
 

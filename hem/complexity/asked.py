@@ -24,7 +24,8 @@ BENT = 4.0  # … or this, where sizes in the caches do not tell that there is l
 UNSEEN_CACHED = 1.15  # the same for sizes in the caches, as a first one is quicker than a second …
 UNSEEN_COSTLY = 1.3  # … and for sizes where a call works longer than it waits
 CACHED = 2.0  # factor by which an access takes longer than at the smallest size, in the caches …
-NEAR_CACHED = 1.2  # … and in the first ones
+NEAR_CACHED = 1.2  # … and in the first ones …
+NEARLY = 1.05  # … or the very first
 FEWEST = 6  # sizes that may decide for all
 KEPT = 256  # the largest of the integers that Python keeps: larger ones are read from memory …
 FREE = (-KEPT / 2, -KEPT)  # … so that a call may cost as if there were so many fewer
@@ -38,7 +39,7 @@ READS = 8  # so many times as long as reading its working set takes what does mo
 WORD = 8  # bytes that a call reads at once: it may wait for each, but no longer
 STEEP = 1.5  # slope from which on a call works more than it waits …
 LESS_STEEP, TIMES = 1.3, 10  # … or this, where it takes so many times as long as it could wait
-ASTRAY = 0.4  # of a slope: by so much a steep class may fall behind at the largest sizes
+ASTRAY = 0.4  # of a slope: by so much a class may fall behind at the largest sizes
 OVERLAP = 2  # factor by which a lookup in a cache is quicker than a step there: hits overlap
 LOWER_TERMS = 9  # tried where a call works more than it waits
 QUICKER = 0.6  # share of the samples of a size that is looked at, the quicker ones: delays only add
@@ -148,8 +149,12 @@ class Asked:
         return None
 
     def bends_up(self, told: Verdict) -> bool:
-        """Whether the largest sizes, in the caches or of all, cost more and more beside a class."""
-        if not told.classes or _is_a_law(told):
+        """Whether the largest sizes, in the caches or of all, cost more and more beside a class.
+
+        Where some are in no cache these tell of a constant.
+        """
+        constant = told.classes == CONSTANT and not self._fits.all()
+        if not told.classes or _is_a_law(told) or constant:
             return False
         least = told.predicted(told.best, self.of.sizes)
         return self._bends_up_in_caches(least) or self._bends_up_beyond(least)
@@ -224,11 +229,17 @@ class Asked:
         bent = sizes[0] < KEPT < np.quantile(sizes, 3 / 4) and sizes[-1] < REACH * KEPT
         every = 0, UNSEEN if bent else UNSEEN_CACHED
         found = (self._in_caches(*it) for it in ((KEPT, UNSEEN_CACHED, FREE), every))
-        return [it for it in found if it]
+        told, last = [it for it in found if it], self._last(6)
+        if told or slope(sizes[last], self.of.cost[last]) > ASTRAY:
+            return told
+        first = self._in_caches(*every, fits=self._slower < NEARLY)
+        return [first] if first else []
 
-    def _in_caches(self, beyond: float, unseen: float, lower: ArrayLike = ()) -> Verdict | None:
+    def _in_caches(
+        self, beyond: float, unseen: float, lower: ArrayLike = (), fits: Sizes | None = None
+    ) -> Verdict | None:
         """What those of the sizes in the caches tell that are larger than one."""
-        fits, sets = self._fits, self.of.working_sets
+        fits, sets = self._fits if fits is None else fits, self.of.working_sets
         room = 1 if fits.all() else 2  # what fills the caches is driven out by the rest
         few = (sets <= sets[fits].max() / room) & (self.of.sizes > beyond)
         if np.count_nonzero(few) < min(FEWEST, len(few)):
@@ -265,7 +276,20 @@ class Asked:
         most = np.minimum((UNSEEN + 2 * overlap * slowdown) * least, least / LESS + self._waiting)
         kept = (of.cost > LESS * least) & (of.cost < most)
         small = np.arange(len(kept)) < len(kept) // 2
-        return bool(np.all(kept | small | excused))
+        return bool(np.all(kept | small | excused)) and not self._leaves(told, least)
+
+    def _leaves(self, told: Verdict, least: Array) -> bool:
+        """Whether at the very largest sizes a sublinear cost grows by more than the memory there.
+
+        What is hidden beside a constant shows there first, from size to size, and however slow
+        memory had become before is no excuse. A jump is none of that.
+        """
+        last, of = self._last(6), self.of
+        sizes, memory = of.sizes[last], of.memory[:, last]
+        beyond = (of.cost / least)[last] / memory[slope(sizes, memory).argmax()]
+        steps = np.diff(np.log(beyond)) / np.diff(np.log(sizes))
+        grows = min(float(slope(sizes, beyond)), float(np.median(steps)))
+        return parse(told.best) < IN_PROPORTION and grows > ASTRAY
 
 
 def _combined(parts: Sequence[Verdict], whole: Verdict) -> Verdict:

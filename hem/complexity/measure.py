@@ -48,8 +48,9 @@ EXPLODES = 6  # slope from one size to the next that no power has
 COSTLIER = 1_000_000  # a call of the largest size than one of the smallest, at most …
 REACH = 8  # … where the largest size remains so many times the smallest
 NEARLY_LINEAR = 0.75, 1.4  # slopes of costs that are compared with those of small inputs …
-PART = 3, 12  # … of which each takes so many times as long as a call does beside its work …
-WIDER, PARTS, FEWEST_PARTS = 8, 9, 4  # … up to so many of them, at so many sizes, or these at least
+PART = 2, 12  # … of which each takes so many times as long as a call does beside its work …
+BESIDE, LEAST_WORK = 0.12, 0.3  # … a part of it that bends their costs, and the rest at least …
+WIDER, PARTS, FEWEST_PARTS = 6, 9, 4  # … up to so many of them, at so many sizes, or these at least
 SHORTER, WIDE = 4, 64  # of the largest size to the largest in parts; or it is so many of them
 LAZY = inspect.isgenerator, inspect.isawaitable, inspect.isasyncgen
 
@@ -144,12 +145,18 @@ def _in_parts(
         return [(calls.f(it), np.empty(beside, np.uint8)) for it in inputs]
 
     apart, share = calls._replace(f=call_each, make=make_parts), turn / len(asked) / 4
-    sets = np.interp(np.log(asked), np.log(found.sizes), np.log(found.working_sets))
+    known = np.log(found.sizes), np.log(found.cost)
+    sets = np.interp(np.log(asked), known[0], np.log(found.working_sets))
     rows = [(int(n), size, share) for n, size in zip(asked, np.exp(sets), strict=True)]
     pairs = [(calls.sampler(*row), apart.sampler(*row)) for row in rows]
     ratios = compared(pairs, -(-rounds * 3 // 5))  # of two samples each
-    missing = asked // part * part / asked  # as the small ones are whole
-    return InParts(asked, [row * less for row, less in zip(ratios, missing, strict=True)])
+    whole, one = (np.exp(np.interp(np.log(n), *known)) for n in (asked, part))
+    # What a call does beside its work, the small ones do each: it is taken off of both.
+    beside_work, many = found.cost.min() * (found.cost.min() > BESIDE * one), asked // part
+    work = 1 - many * beside_work / whole * [np.median(row) for row in ratios]
+    scale = (1 - beside_work / whole) / np.maximum(work, LEAST_WORK)
+    scale *= many * part / asked  # as the small ones are whole
+    return InParts(asked, [row * it for row, it in zip(ratios, scale, strict=True)])
 
 
 def _choose_sizes(calls: Calls, turn: float, most: int) -> list[int]:

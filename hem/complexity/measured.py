@@ -15,8 +15,9 @@ from hem.complexity.notation import Array, parse
 
 WIDE = 64  # of the largest size to the smallest: over less, a constant may hide what grows
 FLAT, QUITE_FLAT = 0.2, 0.1  # powers of log n by which linear costs rise beside small inputs …
-RISING, EVENLY = 0.6, 0.075  # … and others do, straying so little …
-LOG, CLOSELY = 0.33, 0.025  # … or so little that it is no cache's doing
+EVENLY = 12  # … and others do, so many times as much as they stray …
+LOG, CLOSELY = 0.33, 0.025  # … or by so much, straying so little that it is no cache's doing …
+STEEPER = 1.5  # … or by more than log n does
 UNEVEN = 0.5  # relative scatter of costs beside small inputs from which on they tell nothing
 HALF = 4  # sizes, at least, that may tell alone that a rise has ended
 LINEAR, LOGLINEAR = ["O(n)"], ["O(n log n)"]
@@ -53,17 +54,23 @@ class InParts:
         return half >= HALF and self.logs(half)[0] < FLAT <= self.logs()[0]
 
     @property
+    def rises(self) -> bool:
+        """Whether they rise, however slowly, and more evenly than a linear cost ever does."""
+        power, stray = self.logs()
+        return power > max(QUITE_FLAT, EVENLY * stray) and not self.levels_off
+
+    @property
     def is_settled(self) -> bool:
         """Whether they tell that costs are linear."""
-        return self.logs()[0] < FLAT or self.levels_off
+        return (self.logs()[0] < FLAT and not self.rises) or self.levels_off
 
     def hold(self, told: Verdict) -> Verdict:
         """What is told, held to what small inputs take that are as much together.
 
         They take the same memory, so that only the work can differ. What does not grow beside them
         is linear. What does may be slower at random access, or of O(n log n): where it grows
-        evenly, linear costs are not certain, and where both are open no cache grows so evenly:
-        but more and more integers that Python does not keep do.
+        evenly, however slowly, linear costs are not certain, and where both are open no cache
+        grows so evenly: but more and more integers that Python does not keep do.
         """
         power, stray = self.logs()
         if stray > UNEVEN:
@@ -71,12 +78,14 @@ class InParts:
         flat = QUITE_FLAT if told.classes == LOGLINEAR else FLAT
         bent = self.sizes[0] < 2 * KEPT < 2 * self.sizes[-1] < 2 * REACH * KEPT
         as_log = power > LOG and stray < CLOSELY and not bent
-        evenly = as_log or (power > RISING and stray < EVENLY)
         few = told.classes == LOGLINEAR and len(self.sizes) < 2 * HALF
-        is_flat = power < flat or self.levels_off
+        is_flat = (power < flat and not self.rises) or self.levels_off
         if is_flat:
             classes = EITHER if few else LINEAR
-        elif told.classes == LINEAR and evenly:
+        elif power > STEEPER and self.rises and told.classes == LOGLINEAR:
+            reason = "Small inputs, as much together, take ever less: by more than log n."
+            return replace(told, classes=[], outcome="undetermined", reason=reason)
+        elif told.classes == LINEAR and self.rises:
             classes = EITHER
         elif told.classes == EITHER and as_log:
             classes = LOGLINEAR

@@ -6,22 +6,20 @@ import pandas as pd
 import pytest
 
 from experiments.validation import real_functions
-from experiments.validation.functions import CACHE_BOUND
+from experiments.validation.functions import CACHE_BOUND, HELD_OUT
 from hem.complexity import canonical
 
 ROOT = Path(__file__).parents[3]
-EVERY = [it for half in real_functions.HALVES.values() for it in half]
-HELD_OUT = real_functions.HALVES[real_functions.HELD]
 
 
 def test_there_are_enough_functions_of_known_cost_with_their_source() -> None:
     assert len(HELD_OUT) >= 60
-    assert len({it.name for it in EVERY}) == len(EVERY)
-    assert all(it.source and canonical(it.growth) == it.growth for it in EVERY)
+    assert len({it.name for it in HELD_OUT}) == len(HELD_OUT)
+    assert all(it.source and canonical(it.growth) == it.growth for it in HELD_OUT)
     assert sum(it.most == CACHE_BOUND for it in HELD_OUT) >= 6
 
 
-@pytest.mark.parametrize("it", EVERY, ids=lambda it: it.name)
+@pytest.mark.parametrize("it", HELD_OUT, ids=lambda it: it.name)
 def test_every_function_can_be_called_at_small_sizes(it) -> None:
     for n in (5, 8, 64) if it.growth != "O(2^n)" else (5, 8):
         it.call(it.make(n))
@@ -44,11 +42,10 @@ def test_answers_are_of_one_kind(answer: str, kind: str) -> None:
 
 def test_every_judge_is_counted_on_every_function_once() -> None:
     _, answers = real_functions.load_answers(ROOT / real_functions.RESULT)
-    for (half, _, _), rows in answers.groupby(["half", "neighbor", "judge"]):
-        assert sorted(rows["function"]) == sorted(it.name for it in real_functions.HALVES[half])
-    held = answers[answers["half"] == real_functions.HELD]
-    assert set(held["neighbor"]) == set(real_functions.NEIGHBORS)
-    assert (real_functions.shares(held).sum(axis=1) == len(HELD_OUT)).all()
+    for _, rows in answers.groupby(["neighbor", "judge"]):
+        assert sorted(rows["function"]) == sorted(it.name for it in HELD_OUT)
+    assert set(answers["neighbor"]) == set(real_functions.NEIGHBORS)
+    assert (real_functions.shares(answers).sum(axis=1) == len(HELD_OUT)).all()
 
 
 def test_what_is_measured_anew_leaves_the_other_answers_as_they_were(
@@ -57,18 +54,18 @@ def test_what_is_measured_anew_leaves_the_other_answers_as_they_were(
     for name, value in real_functions.ONE_THREAD.items():
         monkeypatch.setenv(name, value)
     who, output = ("f", "O(n)", "a book"), tmp_path / "answers.json"
-    for answer, halves in {"O(1)": real_functions.HALVES, "O(n)": [real_functions.HELD]}.items():
-        rows = [[*who, half, "shared", "hem", answer] for half in halves]
+    for answer, busy in (("O(1)", False), ("O(1)", True), ("O(n)", True)):
+        rows = [[*who, real_functions.NEIGHBORS[busy], "hem", answer]]
         monkeypatch.setattr(real_functions, "_rows", lambda *_, rows=rows: iter(rows))
-        real_functions.main(output)
-    told = real_functions.load_answers(output)[1].set_index("half")["answer"]
-    assert told.to_dict() == {"tuned on": "O(1)", real_functions.HELD: "O(n)"}
+        real_functions.main(output, busy=busy)
+    told = real_functions.load_answers(output)[1].set_index("neighbor")["answer"]
+    assert told.to_dict() == {"shared": "O(1)", "busy": "O(n)"}
 
 
 def test_the_readme_shows_the_kept_answers() -> None:
     _, answers = real_functions.load_answers(ROOT / real_functions.RESULT)
     page = (ROOT / "hem" / "complexity" / "README.md").read_text("utf-8")
-    table = real_functions.held_out(answers).astype(str)
+    table = real_functions.by_judge(answers).astype(str)
     lines = [[*table], ["---"] * 5, *table.to_numpy().tolist()]
     assert "\n".join(f"| {' | '.join(line)} |" for line in lines) in page
 
@@ -83,7 +80,7 @@ def test_ours_is_wrong_least_often_of_all_judges() -> None:
 
 def test_the_first_page_tells_the_figures_of_the_shared_machine() -> None:
     _, answers = real_functions.load_answers(ROOT / real_functions.RESULT)
-    found = real_functions.shares(answers).loc[real_functions.HELD, "shared"]
+    found = real_functions.shares(answers).loc["shared"]
     ours, others = found.loc["hem"], found.drop(index=["hem", "hem, memory unknown"])
     span = [f"{others[kind].min()} to {others[kind].max()}" for kind in ("right", "wrong")]
     open_ones = f"{ours['one of two']} as one of two, and {ours['undetermined']} it leaves open"
